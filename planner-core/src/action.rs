@@ -1,0 +1,98 @@
+//! The integer-indexed action grid: a finite action set in which one `u16` names an action.
+//!
+//! Actions that share a direction of travel form a *ray*, and differ in speed alone. A grid has
+//! `rays` rays of `speeds` speeds, `0, step, 2 step, ...`; the index of an action is
+//! `ray * speeds + speed`.
+
+/// The name of an action within a grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Action(pub u16);
+
+/// What an action asks of the vehicle in one unit of time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Control {
+    /// Speed, metres per unit time.
+    pub v: f32,
+    /// Turn before the drive, radians; positive to the left.
+    pub w: f32,
+}
+
+/// The shape of an action set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct ActionGrid {
+    rays: u16,
+    speeds: u16,
+    speed_step_mm: u32,
+}
+
+/// The grid has no action, more than a `u16` can name, or reaches too far.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct BadGrid;
+
+impl core::fmt::Display for BadGrid {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str("an action grid has 1 to 65536 actions that reach less than 100 m")
+    }
+}
+
+impl core::error::Error for BadGrid {}
+
+impl ActionGrid {
+    /// The longest admissible motion, millimetres: what keeps a ray's steps within an `i32`.
+    pub const LONGEST_MM: u32 = 100_000;
+
+    /// A grid of `rays` directions with the speeds `0, step, ..., (speeds - 1) step`.
+    ///
+    /// # Errors
+    /// [`BadGrid`] when it is empty, has more than 65,536 actions, or reaches 100 m or more.
+    pub const fn new(rays: u16, speeds: u16, speed_step_mm: u32) -> Result<Self, BadGrid> {
+        let actions = rays as u32 * speeds as u32;
+        let reach = (speeds as u64).saturating_sub(1) * speed_step_mm as u64;
+        let fits = actions >= 1 && actions <= 1 << 16;
+        if fits && speed_step_mm >= 1 && reach < Self::LONGEST_MM as u64 {
+            Ok(Self { rays, speeds, speed_step_mm })
+        } else {
+            Err(BadGrid)
+        }
+    }
+
+    /// Number of directions.
+    pub const fn rays(&self) -> u16 {
+        self.rays
+    }
+
+    /// Number of speeds on a ray, standing still included.
+    pub const fn speeds(&self) -> u16 {
+        self.speeds
+    }
+
+    /// Number of actions.
+    pub const fn actions(&self) -> u32 {
+        self.rays as u32 * self.speeds as u32
+    }
+
+    /// The spacing of the speeds, millimetres per unit time.
+    pub const fn speed_step_mm(&self) -> u32 {
+        self.speed_step_mm
+    }
+
+    /// Distance of travel, millimetres.
+    pub const fn reach_mm(&self, speed: u16) -> u32 {
+        speed as u32 * self.speed_step_mm
+    }
+
+    /// The name of an action.
+    pub const fn action(&self, ray: u16, speed: u16) -> Action {
+        Action(ray.wrapping_mul(self.speeds).wrapping_add(speed))
+    }
+
+    /// Ray and speed of an action.
+    pub const fn split(&self, action: Action) -> (u16, u16) {
+        let speeds = if self.speeds == 0 { 1 } else { self.speeds }; // never 0; spares a panic path
+        (action.0 / speeds, action.0 % speeds)
+    }
+}

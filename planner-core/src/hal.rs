@@ -1,0 +1,78 @@
+//! The seam to hardware: a sensor that reads labels and a drive that makes motions, in the shape of
+//! embedded-hal 1.0: an associated `Error`, one required method, an impl for `&mut T`.
+
+use embedded_hal::digital::InputPin;
+
+use crate::dynamics::Pose;
+use crate::planner::Motion;
+use crate::sample::{Label, Reading};
+
+/// Senses on which side of the boundary the vehicle stands.
+pub trait LabelSensor {
+    /// What can go wrong.
+    type Error: core::fmt::Debug;
+
+    /// The reading at the present position.
+    ///
+    /// # Errors
+    /// The sensor's own.
+    fn read(&mut self) -> Result<Reading, Self::Error>;
+}
+
+impl<T: LabelSensor + ?Sized> LabelSensor for &mut T {
+    type Error = T::Error;
+
+    fn read(&mut self) -> Result<Reading, Self::Error> {
+        T::read(self)
+    }
+}
+
+/// Moves the vehicle.
+pub trait Drive {
+    /// What can go wrong.
+    type Error: core::fmt::Debug;
+
+    /// Makes a motion and returns the pose that was reached: the motion's target for an ideal
+    /// vehicle, what localisation says for a real one.
+    ///
+    /// # Errors
+    /// The drive's own.
+    fn drive(&mut self, motion: &Motion) -> Result<Pose, Self::Error>;
+}
+
+impl<T: Drive + ?Sized> Drive for &mut T {
+    type Error = T::Error;
+
+    fn drive(&mut self, motion: &Motion) -> Result<Pose, Self::Error> {
+        T::drive(self, motion)
+    }
+}
+
+/// A label sensor on a digital pin, such as a comparator behind a photodiode or a float switch.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct PinSensor<P> {
+    pin: P,
+    high: Label,
+}
+
+impl<P: InputPin> PinSensor<P> {
+    /// A sensor that reads the label `high` while the pin is high, and the other while it is low.
+    pub const fn new(pin: P, high: Label) -> Self {
+        Self { pin, high }
+    }
+
+    /// Gives the pin back.
+    pub fn release(self) -> P {
+        self.pin
+    }
+}
+
+impl<P: InputPin> LabelSensor for PinSensor<P> {
+    type Error = P::Error;
+
+    fn read(&mut self) -> Result<Reading, Self::Error> {
+        let label = if self.pin.is_high()? { self.high } else { -self.high };
+        Ok(label.into())
+    }
+}

@@ -1,0 +1,136 @@
+//! Lines: exact ones through two samples, and the ones that are read out in metres.
+
+use nalgebra::{Point2, Vector2};
+
+use crate::lattice::{Site, UNITS_PER_METRE, Vector};
+
+/// A line `a x + b z + c = 0` in metres with `a^2 + b^2 = 1`, positive on the +1 side.
+///
+/// Homogeneous, so a vertical line is a line like any other; where the paper's `z = rho x + c`
+/// exists, [`slope`](Self::slope) and [`intercept`](Self::intercept) give it. Lines are read-outs:
+/// no decision of the planner depends on one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Line {
+    a: f64,
+    b: f64,
+    c: f64,
+}
+
+impl Line {
+    /// The line with these coefficients, which are normalised.
+    ///
+    /// `None` when one of them is not finite, or `a` and `b` are both zero: no line then.
+    pub fn from_coefficients(a: f64, b: f64, c: f64) -> Option<Self> {
+        let scale = a.abs().max(b.abs());
+        let (a, b, c) = (a / scale, b / scale, c / scale);
+        let norm = libm::sqrt(a * a + b * b);
+        let line = Self { a: a / norm, b: b / norm, c: c / norm };
+        (line.a.is_finite() && line.b.is_finite() && line.c.is_finite()).then_some(line)
+    }
+
+    /// `z = slope x + intercept`, +1 above it. `None` unless both are finite.
+    pub fn from_slope(slope: f64, intercept: f64) -> Option<Self> {
+        Self::from_coefficients(-slope, 1.0, -intercept)
+    }
+
+    /// The line through a point with a given normal, +1 on the side to which the normal points.
+    pub fn through(point: Point2<f64>, normal: Vector2<f64>) -> Option<Self> {
+        Self::from_coefficients(normal.x, normal.y, -normal.dot(&point.coords))
+    }
+
+    /// The coefficients `a`, `b`, `c`.
+    pub fn coefficients(&self) -> [f64; 3] {
+        [self.a, self.b, self.c]
+    }
+
+    /// Signed distance of a point in metres, positive on the +1 side.
+    pub fn distance(&self, point: Point2<f64>) -> f64 {
+        self.a * point.x + self.b * point.y + self.c
+    }
+
+    /// The paper's `rho`; `None` for a vertical line.
+    pub fn slope(&self) -> Option<f64> {
+        (self.b != 0.0).then(|| -self.a / self.b + 0.0)
+    }
+
+    /// The paper's `c`, in metres: where the line meets `x = 0`; `None` for a vertical line.
+    pub fn intercept(&self) -> Option<f64> {
+        (self.b != 0.0).then(|| -self.c / self.b + 0.0)
+    }
+
+    /// Angle of the line against the x axis, degrees in (-90, 90].
+    pub fn angle_deg(&self) -> f64 {
+        let (run, rise) = (self.b.abs(), if self.b < 0.0 { self.a } else { -self.a });
+        if run == 0.0 { 90.0 } else { libm::atan2(rise + 0.0, run).to_degrees() }
+    }
+
+    /// Angle between the two lines, degrees in [0, 90].
+    pub fn angle_to_deg(&self, other: &Self) -> f64 {
+        let cross = self.a * other.b - self.b * other.a;
+        let dot = self.a * other.a + self.b * other.b;
+        libm::atan2(cross.abs(), dot.abs()).to_degrees()
+    }
+}
+
+/// The exact line through two samples, one of the paper's bounds `l_ij`: a vertex of a cell.
+///
+/// Oriented so that its +1 side is to the left of its direction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Bound {
+    /// A site on the line.
+    pub through: Site,
+    /// The direction of the line, in lattice units. Never zero.
+    pub along: Vector,
+}
+
+impl Bound {
+    /// Positive when `q` is on the +1 side, negative on the other, zero on the line. Exact.
+    pub fn at(&self, q: Site) -> i64 {
+        self.along.cross(q - self.through)
+    }
+
+    /// The intercept in metres; `None` for a vertical line.
+    pub fn intercept(&self) -> Option<f64> {
+        let run = self.along.x;
+        // The numerator is exact, so a line kilometres away loses nothing to cancellation.
+        let rise = i64::from(self.through.z()) * i64::from(run)
+            - i64::from(self.through.x()) * i64::from(self.along.z);
+        (run != 0).then(|| rise as f64 / (f64::from(run) * f64::from(UNITS_PER_METRE)) + 0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slope_and_intercept_come_back() {
+        for (slope, intercept) in [(0.41, 3.5), (0.41, -3.5), (-0.41, 3.5), (-2.0, -900.0)] {
+            let line = Line::from_slope(slope, intercept).unwrap();
+            assert!((line.slope().unwrap() - slope).abs() < 1e-12);
+            assert!((line.intercept().unwrap() - intercept).abs() < 1e-9);
+            assert!((line.angle_deg() - libm::atan(slope).to_degrees()).abs() < 1e-12);
+            assert!(line.distance(Point2::new(1.0, slope + intercept + 1.0)) > 0.0);
+        }
+    }
+
+    #[test]
+    fn a_vertical_line_has_an_angle_and_no_slope() {
+        for sign in [1.0, -1.0] {
+            let line = Line::from_coefficients(2.0 * sign, 0.0, -8.0 * sign).unwrap();
+            assert_eq!((line.slope(), line.intercept(), line.angle_deg()), (None, None, 90.0));
+            assert!((line.distance(Point2::new(5.0, 3.0)) - sign).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn what_is_no_line_is_refused() {
+        assert_eq!(Line::from_coefficients(0.0, 0.0, 1.0), None);
+        assert_eq!(Line::from_coefficients(f64::NAN, 1.0, 1.0), None);
+        assert_eq!(Line::from_slope(f64::INFINITY, 1.0), None);
+        assert_eq!(Line::from_slope(1.0, f64::INFINITY), None);
+        assert!(Line::from_coefficients(1e-200, 1e-200, 0.0).is_some());
+    }
+}

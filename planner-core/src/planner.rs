@@ -1,0 +1,88 @@
+//! The seam between a planner and the loop that runs it: `plan()`, then `observe()`.
+
+use crate::action::{Action, Control};
+use crate::dynamics::Pose;
+use crate::sample::Reading;
+use crate::version_space::Refused;
+
+/// Which one-step problem a motion answers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Stage {
+    /// Look for the opposite label.
+    P1,
+    /// Follow the boundary.
+    P2,
+}
+
+/// What was done as the problem itself had no feasible action.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Recovery {
+    /// The same problem without its rule on directions.
+    Undirected,
+    /// A turn in place; no sample is taken.
+    Reorient,
+    /// A drive through certain ground; no sample is taken.
+    Transit,
+}
+
+/// A motion to make.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Motion {
+    /// The problem it answers.
+    pub stage: Stage,
+    /// The recovery it belongs to, if the problem had no feasible action.
+    pub recovery: Option<Recovery>,
+    /// The action's name in the grid.
+    pub action: Action,
+    /// What it asks of the vehicle.
+    pub control: Control,
+    /// Where it leads.
+    pub target: Pose,
+    /// Actions whose position was looked at to find it.
+    pub examined: u32,
+}
+
+impl Motion {
+    /// Whether a sample is to be taken at its end.
+    pub fn samples(&self) -> bool {
+        !matches!(self.recovery, Some(Recovery::Reorient | Recovery::Transit))
+    }
+}
+
+/// Why a planner has no further motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum StopReason {
+    /// What is uncertain is thinner than the action grid can hit.
+    Resolution,
+    /// The sample buffer is full.
+    SamplesFull,
+    /// The agent stands outside the mission area.
+    OutsideArea,
+}
+
+/// What to do next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Plan {
+    /// Make this motion.
+    Move(Motion),
+    /// The mission is over.
+    Stop(StopReason),
+}
+
+/// A planner: asked for a motion, then told what came of it.
+pub trait Planner {
+    /// The next motion from a pose.
+    fn plan(&mut self, pose: Pose) -> Plan;
+
+    /// Takes in where the motion ended and what was sensed there, if a sample was taken.
+    ///
+    /// # Errors
+    /// [`Refused`] when the reading contradicts what is known or cannot be stored; the planner is
+    /// then as it was.
+    fn observe(&mut self, pose: Pose, reading: Option<Reading>) -> Result<(), Refused>;
+}
