@@ -120,7 +120,7 @@ impl<D: Dynamics, const N: usize> Planner for Cfc<D, N> {
         match solve_or_recover(&self.problem(), &self.dynamics, pose, &mut examined) {
             Some(Found { recovery, action, target }) => {
                 let control = self.dynamics.control(action);
-                Plan::Move(Motion { stage, recovery, action, control, target, examined })
+                Plan::Move(Motion { stage: Some(stage), recovery, action, control, target, examined })
             }
             None => Plan::Stop(StopReason::Resolution),
         }

@@ -31,8 +31,8 @@ pub enum Recovery {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Motion {
-    /// The problem it answers.
-    pub stage: Stage,
+    /// The one-step problem it answers, for planners that pose one.
+    pub stage: Option<Stage>,
     /// The recovery it belongs to, if the problem had no feasible action.
     pub recovery: Option<Recovery>,
     /// The action's name in the grid.

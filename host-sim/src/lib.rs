@@ -1,0 +1,6 @@
+//! draft
+pub mod field;
+pub mod mission;
+pub mod polygon;
+pub mod random_walk;
+pub mod world;
