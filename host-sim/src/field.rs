@@ -9,7 +9,7 @@
 //!    d(angle) d(offset): by rejection, over lines that meet the area's circumscribed disc.
 
 use nalgebra::{Point2, Vector2};
-use planner_core::cfc::{Config, Crossing};
+use planner_core::cfc::{Config, Crossing, Following};
 use planner_core::direction::Heading;
 use planner_core::dynamics::Pose;
 use planner_core::lattice::Site;
@@ -82,7 +82,7 @@ pub fn standard(seed: u64, number: u64, algorithm: Algorithm, steps: u32) -> Mis
         algorithm,
         steps,
         seed: seed ^ number.rotate_left(32),
-        config: Config { area, varrho: Varrho::PAPER, crossing: Crossing::default() },
+        config: Config { area, varrho: Varrho::PAPER, crossing: Crossing::default(), following: Following::default() },
         start: Pose { site: oracle[0].site, heading },
         truth,
         space,

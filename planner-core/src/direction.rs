@@ -116,13 +116,21 @@ impl Arc {
         })
     }
 
-    /// The arc of directions within 1/8 rad (7 degrees, in tangent) of one.
-    pub const fn about(direction: Vector) -> Self {
+    /// The arc of directions that track one: within 1/64 of it in tangent (0.9 degrees), so that
+    /// some ray of the paper's grid, which are 0.57 degrees apart, always does.
+    pub const fn tracking(direction: Vector) -> Self {
         let (d, aside) = (direction, direction.left());
         Self {
-            from: Vector { x: d.x - aside.x / 8, z: d.z - aside.z / 8 },
-            to: Vector { x: d.x + aside.x / 8, z: d.z + aside.z / 8 },
+            from: Vector { x: d.x - aside.x / 64, z: d.z - aside.z / 64 },
+            to: Vector { x: d.x + aside.x / 64, z: d.z + aside.z / 64 },
         }
+    }
+
+    /// The directions of this arc that track its bisector.
+    #[must_use]
+    pub fn middle(&self) -> Self {
+        let middle = Self::tracking(self.bisector());
+        if self.contains(middle.from) { middle } else { *self }
     }
 
     /// Where the arc begins.
