@@ -114,7 +114,7 @@ impl<D: Dynamics, const N: usize> Cfc<D, N> {
         let arc = self.space.slope_arc();
         let rule = match self.phase {
             Phase::Crossing => DirectionRule { inside: self.crossing_arc(arc), outside: Some(arc) },
-            Phase::Following => DirectionRule { inside: Some(if arc.width_deg()>14.0 {Arc::about(arc.bisector())} else {arc}), outside: None },
+            Phase::Following => DirectionRule { inside: Some(self.following_arc(arc)), outside: None },
         };
         Problem { space: &self.space, area, varrho, rule }
     }
