@@ -1,6 +1,19 @@
-//! draft
+//! Simulated worlds for `planner-core`: missions, campaigns over the standard fields, traces and
+//! figures. The command line is in [`cli`].
+
+#![forbid(unsafe_code)]
+
+pub mod campaign;
+pub mod cli;
 pub mod field;
+pub mod figure;
 pub mod mission;
+pub mod output;
 pub mod polygon;
 pub mod random_walk;
+pub mod recording;
+pub mod replay;
+pub mod report;
+pub mod scenario;
+pub mod trace;
 pub mod world;

@@ -4,7 +4,7 @@ use nalgebra::{Point2, Vector2};
 
 use crate::lattice::{Site, UNITS_PER_METRE, Vector};
 
-/// A line `a x + b z + c = 0` in metres with `a^2 + b^2 = 1`, positive on the +1 side.
+/// A line `a x + b z + c = 0` in metres, positive on the +1 side.
 ///
 /// Homogeneous, so a vertical line is a line like any other; where the paper's `z = rho x + c`
 /// exists, [`slope`](Self::slope) and [`intercept`](Self::intercept) give it. Lines are read-outs:
@@ -15,18 +15,17 @@ pub struct Line {
     a: f64,
     b: f64,
     c: f64,
+    /// The length of `(a, b)`.
+    norm: f64,
 }
 
 impl Line {
-    /// The line with these coefficients, which are normalised.
+    /// The line with these coefficients.
     ///
     /// `None` when one of them is not finite, or `a` and `b` are both zero: no line then.
     pub fn from_coefficients(a: f64, b: f64, c: f64) -> Option<Self> {
-        let scale = a.abs().max(b.abs());
-        let (a, b, c) = (a / scale, b / scale, c / scale);
-        let norm = libm::sqrt(a * a + b * b);
-        let line = Self { a: a / norm, b: b / norm, c: c / norm };
-        (line.a.is_finite() && line.b.is_finite() && line.c.is_finite()).then_some(line)
+        let norm = libm::hypot(a, b);
+        (norm > 0.0 && norm.is_finite() && (c / norm).is_finite()).then_some(Self { a, b, c, norm })
     }
 
     /// `z = slope x + intercept`, +1 above it. `None` unless both are finite.
@@ -39,14 +38,14 @@ impl Line {
         Self::from_coefficients(normal.x, normal.y, -normal.dot(&point.coords))
     }
 
-    /// The coefficients `a`, `b`, `c`.
+    /// The coefficients `a`, `b`, `c`, scaled to `a^2 + b^2 = 1`.
     pub fn coefficients(&self) -> [f64; 3] {
-        [self.a, self.b, self.c]
+        [self.a / self.norm, self.b / self.norm, self.c / self.norm]
     }
 
     /// Signed distance of a point in metres, positive on the +1 side.
     pub fn distance(&self, point: Point2<f64>) -> f64 {
-        self.a * point.x + self.b * point.y + self.c
+        (self.a * point.x + self.b * point.y + self.c) / self.norm
     }
 
     /// The paper's `rho`; `None` for a vertical line.
@@ -98,6 +97,15 @@ impl Bound {
         let rise = i64::from(self.through.z()) * i64::from(run)
             - i64::from(self.through.x()) * i64::from(self.along.z);
         (run != 0).then(|| rise as f64 / (f64::from(run) * f64::from(UNITS_PER_METRE)) + 0.0)
+    }
+}
+
+/// The bound in metres, rounded.
+impl From<Bound> for Line {
+    fn from(bound: Bound) -> Self {
+        let through = Point2::<f64>::from(bound.through);
+        let (a, b) = (-f64::from(bound.along.z), f64::from(bound.along.x));
+        Self { a, b, c: -(a * through.x + b * through.y), norm: libm::hypot(a, b) }
     }
 }
 

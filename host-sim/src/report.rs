@@ -1,0 +1,145 @@
+//! What happened, in plain words and figures.
+
+use std::fmt::Write as _;
+
+use nalgebra::Point2;
+use planner_core::estimate::Estimates;
+use planner_core::line::Line;
+use planner_core::planner::Recovery;
+use planner_core::sample::Reading;
+
+use crate::mission::{Algorithm, End};
+use crate::polygon::misclassified;
+use crate::recording::{Recorded, Recording, stage_name};
+
+/// Slope intervals as text.
+pub fn arcs(intervals: &[[f64; 2]]) -> String {
+    let one = |[from, to]: &[f64; 2]| format!("{from:.2} to {to:.2}");
+    intervals.iter().map(one).collect::<Vec<_>>().join(" or ")
+}
+
+/// An intercept range as text.
+pub fn range(intercept: Option<[f64; 2]>) -> String {
+    intercept.map_or("unbounded".into(), |[low, high]| format!("{low:.3} to {high:.3}"))
+}
+
+/// A line as text: slope, intercept and angle.
+pub fn line(line: &Line) -> String {
+    match (line.slope(), line.intercept()) {
+        (Some(slope), Some(intercept)) => {
+            format!("z = {slope:.4} x {intercept:+.4}   ({:.2} deg)", line.angle_deg())
+        }
+        _ => {
+            let [a, _, c] = line.coefficients();
+            format!("x = {:.4}   (vertical)", -c / a)
+        }
+    }
+}
+
+/// Names and lines of the estimates, the recommended one first.
+pub fn estimates(estimates: &Estimates) -> [(&'static str, Option<Line>); 3] {
+    [
+        ("centre of the version space", estimates.centre),
+        ("maximum margin", estimates.maximum_margin),
+        ("bisector (the paper's)", estimates.bisector),
+    ]
+}
+
+fn note(recorded: &Recorded, flipped: bool) -> &'static str {
+    match (recorded.step.motion.recovery, recorded.step.reading) {
+        (Some(Recovery::Reorient), _) => "nothing uncertain ahead: turns in place",
+        (Some(Recovery::Transit), _) => "nothing uncertain near: drives on",
+        (_, Some(Reading::Boundary)) => "exactly on the line: no flip",
+        (Some(Recovery::Undirected), _) if flipped => "no way across: any direction; flipped",
+        (Some(Recovery::Undirected), _) => "no way across: any direction",
+        _ if flipped => "the label flipped",
+        _ => "",
+    }
+}
+
+/// The story of a mission: a table of steps, then the estimates beside the truth.
+pub fn mission(title: &str, recording: &Recording) -> String {
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    let _ = write_mission(&mut text, title, recording);
+    text
+}
+
+fn write_mission(text: &mut String, title: &str, recording: &Recording) -> std::fmt::Result {
+    let mission = &recording.mission;
+    writeln!(text, "{title}")?;
+    writeln!(text, "True line, unknown to the agent: {}", line(&mission.truth))?;
+    let oracle: Vec<_> = mission.space.samples().iter().map(|s| {
+        let at = Point2::<f64>::from(s.site);
+        format!("({}, {}) is {:+}", at.x, at.y, s.label.sign())
+    }).collect();
+    writeln!(text, "The oracle's points: {}", oracle.join(", "))?;
+    let (at, heading) = (Point2::<f64>::from(mission.start.site), mission.start.heading);
+    writeln!(
+        text,
+        "It starts at ({}, {}), heading {:.1} deg; slopes {} deg are possible.\n",
+        at.x,
+        at.y,
+        heading.radians().to_degrees(),
+        arcs(&mission.space.slope_arc().intervals_deg()),
+    )?;
+    writeln!(
+        text,
+        "{:>4}  {:<7} {:>8} {:>5}  {:<16} {:>5}  {:<26} {:<19} {:>5}",
+        "step", "problem", "turn deg", "go m", "now at m", "label", "slopes left, deg",
+        "intercepts left, m", "bits"
+    )?;
+    let mut past = mission.space.first_label();
+    for (recorded, number) in recording.steps.iter().zip(1..) {
+        let step = &recorded.step;
+        let at = Point2::<f64>::from(step.pose.site);
+        let mut flipped = false;
+        if let Some(Reading::Side(label)) = step.reading {
+            flipped = label != past;
+            past = label;
+        }
+        writeln!(
+            text,
+            "{number:>4}  {:<7} {:>8.1} {:>5.1}  {:<16} {:>5}  {:<26} {:<19} {:>5.2}  {}",
+            step.motion.stage.map_or("-", stage_name),
+            f64::from(step.motion.control.w).to_degrees(),
+            step.motion.control.v,
+            format!("({:.3}, {:.3})", at.x, at.y),
+            step.reading.map_or("-".into(), |r| format!("{:+}", r.sign())),
+            arcs(&recorded.slope_arcs),
+            range(recorded.intercept),
+            recorded.bits,
+            if mission.algorithm == Algorithm::Random { "" } else { note(recorded, flipped) },
+        )?;
+    }
+    let why = match recording.end {
+        End::Steps => "all steps are taken",
+        End::Stopped(planner_core::planner::StopReason::Resolution) => {
+            "what is uncertain is thinner than the action grid can hit"
+        }
+        End::Stopped(_) => recording.end.name(),
+    };
+    writeln!(
+        text,
+        "\nEnded: {why}. {} samples in {} steps, {:.1} m travelled, control cost {:.1}.\n",
+        recording.samples(),
+        recording.steps.len(),
+        recording.travelled(),
+        recording.cost(),
+    )?;
+    writeln!(text, "{:<28} {:<36} {:>9} {:>13}", "", "line", "error deg", "misclassified")?;
+    writeln!(text, "{:<28} {:<36}", "truth", line(&mission.truth))?;
+    for (name, estimate) in estimates(&recording.estimates()) {
+        match estimate {
+            Some(estimate) => writeln!(
+                text,
+                "{name:<28} {:<36} {:>9.3} {:>12.3}%",
+                line(&estimate),
+                estimate.angle_to_deg(&mission.truth),
+                100.0 * misclassified(mission.config.area, &mission.truth, &estimate),
+            )?,
+            None => writeln!(text, "{name:<28} none")?,
+        }
+    }
+    Ok(())
+}

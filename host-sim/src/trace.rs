@@ -1,0 +1,181 @@
+//! The trace: a mission as JSON Lines. The contract is in ARCHITECTURE.md.
+
+use nalgebra::Point2;
+use planner_core::dynamics::Pose;
+use planner_core::estimate::Estimates;
+use planner_core::line::Line;
+use planner_core::problem::Area;
+use planner_core::sample::Sample;
+use serde::Serialize;
+
+use crate::mission::Algorithm;
+use crate::recording::{Recorded, Recording, recovery_name, stage_name};
+
+#[derive(Serialize)]
+#[serde(tag = "record", rename_all = "lowercase")]
+enum Record {
+    Start(Start),
+    Step(Step),
+    End(End),
+}
+
+#[derive(Serialize)]
+struct Start {
+    algorithm: Algorithm,
+    seed: u64,
+    varrho: f64,
+    area: AreaRecord,
+    oracle: Vec<SampleRecord>,
+    pose: PoseRecord,
+    truth: LineRecord,
+    p: f64,
+}
+
+#[derive(Serialize)]
+struct Step {
+    step: usize,
+    problem: Option<&'static str>,
+    recovery: Option<&'static str>,
+    action: ActionRecord,
+    pose: PoseRecord,
+    label: Option<i8>,
+    slope_arcs: Vec<[f64; 2]>,
+    intercept: Option<[f64; 2]>,
+    bits: f64,
+    examined: u32,
+}
+
+#[derive(Serialize)]
+struct End {
+    reason: &'static str,
+    estimates: EstimateRecords,
+}
+
+#[derive(Serialize)]
+struct AreaRecord {
+    x: [f64; 2],
+    z: [f64; 2],
+}
+
+/// A sample as a record.
+#[derive(Serialize)]
+pub struct SampleRecord {
+    x: f64,
+    z: f64,
+    label: i8,
+}
+
+#[derive(Serialize)]
+struct PoseRecord {
+    x: f64,
+    z: f64,
+    heading: f64,
+}
+
+#[derive(Serialize)]
+struct ActionRecord {
+    index: u16,
+    v: f32,
+    w: f32,
+}
+
+/// A line as a record; slope and intercept are null for a vertical one.
+#[derive(Serialize)]
+pub struct LineRecord {
+    slope: Option<f64>,
+    intercept: Option<f64>,
+    angle: f64,
+}
+
+/// The estimates as a record; null where there is none.
+#[derive(Serialize)]
+pub struct EstimateRecords {
+    bisector: Option<LineRecord>,
+    centre: Option<LineRecord>,
+    maximum_margin: Option<LineRecord>,
+}
+
+impl From<Area> for AreaRecord {
+    fn from(area: Area) -> Self {
+        let (min, max) = (Point2::<f64>::from(area.min()), Point2::<f64>::from(area.max()));
+        Self { x: [min.x, max.x], z: [min.y, max.y] }
+    }
+}
+
+impl From<&Sample> for SampleRecord {
+    fn from(sample: &Sample) -> Self {
+        let at = Point2::<f64>::from(sample.site);
+        Self { x: at.x, z: at.y, label: sample.label.sign() }
+    }
+}
+
+impl From<Pose> for PoseRecord {
+    fn from(pose: Pose) -> Self {
+        let at = Point2::<f64>::from(pose.site);
+        Self { x: at.x, z: at.y, heading: pose.heading.radians() }
+    }
+}
+
+impl From<Line> for LineRecord {
+    fn from(line: Line) -> Self {
+        Self { slope: line.slope(), intercept: line.intercept(), angle: line.angle_deg() }
+    }
+}
+
+impl From<Estimates> for EstimateRecords {
+    fn from(estimates: Estimates) -> Self {
+        Self {
+            bisector: estimates.bisector.map(LineRecord::from),
+            centre: estimates.centre.map(LineRecord::from),
+            maximum_margin: estimates.maximum_margin.map(LineRecord::from),
+        }
+    }
+}
+
+fn step(number: usize, recorded: &Recorded) -> Step {
+    let motion = recorded.step.motion;
+    Step {
+        step: number,
+        problem: motion.stage.map(stage_name),
+        recovery: motion.recovery.map(recovery_name),
+        action: ActionRecord {
+            index: motion.action.0,
+            v: motion.control.v,
+            w: motion.control.w,
+        },
+        pose: recorded.step.pose.into(),
+        label: recorded.step.reading.map(|reading| reading.sign()),
+        slope_arcs: recorded.slope_arcs.clone(),
+        intercept: recorded.intercept,
+        bits: recorded.bits,
+        examined: motion.examined,
+    }
+}
+
+/// The trace of a mission, a record a line.
+///
+/// # Panics
+/// Never: every record is a plain structure of finite numbers.
+pub fn lines(recording: &Recording) -> String {
+    let mission = &recording.mission;
+    let start = Record::Start(Start {
+        algorithm: mission.algorithm,
+        seed: mission.seed,
+        varrho: mission.config.varrho.value(),
+        area: mission.config.area.into(),
+        oracle: mission.space.samples().iter().map(SampleRecord::from).collect(),
+        pose: mission.start.into(),
+        truth: mission.truth.into(),
+        p: 1.0,
+    });
+    let steps = recording.steps.iter().zip(1..).map(|(s, number)| Record::Step(step(number, s)));
+    let end = Record::End(End {
+        reason: recording.end.name(),
+        estimates: recording.estimates().into(),
+    });
+    std::iter::once(start)
+        .chain(steps)
+        .chain(std::iter::once(end))
+        .map(|record| serde_json::to_string(&record).expect("a plain record") + "\n")
+        .collect()
+}
