@@ -8,7 +8,7 @@ use planner_core::line::Line;
 use planner_core::problem::Area;
 use planner_core::sample::{Label, Reading, Sample};
 use planner_core::version_space::VersionSpace;
-use plotters::coord::Shift;
+use plotters::coord::{CoordTranslate, Shift};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
@@ -88,6 +88,8 @@ impl Figure<'_> {
                 .configure_mesh()
                 .light_line_style(TRANSPARENT)
                 .bold_line_style(BLACK.mix(0.08))
+                .x_label_formatter(&|x| format!("{x}"))
+                .y_label_formatter(&|z| format!("{z}"))
                 .x_desc("x, m")
                 .y_desc("z, m")
                 .label_style(("sans-serif", 15))
@@ -213,7 +215,7 @@ impl Figure<'_> {
 }
 
 /// A sample's mark: a disc for +1, a square for -1.
-fn mark<C: plotters::coord::CoordTranslate<From = P>, P: Clone + 'static>(
+fn mark<C: CoordTranslate<From = P>, P: Clone + 'static>(
     area: &DrawingArea<SVGBackend, C>,
     place: P,
     label: Label,

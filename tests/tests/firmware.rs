@@ -20,6 +20,7 @@ use planner_core::sample::Reading;
 use world::World;
 
 #[path = "../../firmware/src/world.rs"]
+#[expect(dead_code, reason = "the firmware logs why there is no mission; here it is only printed")]
 mod world;
 
 const TARGET: &str = "thumbv7em-none-eabihf";
@@ -39,12 +40,17 @@ fn the_chip_and_the_host_make_the_same_mission() {
     for (n, (chip, host)) in chip.iter().zip(&host).enumerate() {
         assert_eq!(chip, host, "line {} of the log: the chip's (left), the host's (right)", n + 1);
     }
-    assert_eq!(chip.len(), host.len(), "lines of the log: the chip's {chip:#?}, the host's {host:#?}");
+    assert_eq!(
+        chip.len(),
+        host.len(),
+        "lines of the log: the chip's {chip:#?}, the host's {host:#?}"
+    );
 }
 
 /// Why the firmware cannot be built or run here.
 fn obstacle() -> Option<&'static str> {
-    let libraries = Command::new("rustc").args(["--print", "target-libdir", "--target", TARGET]).output();
+    let libraries =
+        Command::new("rustc").args(["--print", "target-libdir", "--target", TARGET]).output();
     if !libraries.is_ok_and(|it| Path::new(String::from_utf8_lossy(&it.stdout).trim()).is_dir()) {
         return Some("the target thumbv7em-none-eabihf is not installed");
     }
@@ -72,7 +78,8 @@ fn build() -> PathBuf {
         .arg(&target_dir)
         .env("DEFMT_LOG", "info");
     // Flags and wrappers of the host's build (coverage, for one) are not the chip's.
-    for host in ["RUSTFLAGS", "CARGO_ENCODED_RUSTFLAGS", "RUSTC_WRAPPER", "RUSTC_WORKSPACE_WRAPPER"] {
+    for host in ["RUSTFLAGS", "CARGO_ENCODED_RUSTFLAGS", "RUSTC_WRAPPER", "RUSTC_WORKSPACE_WRAPPER"]
+    {
         cargo.env_remove(host);
     }
     let built = cargo.output().expect("cargo starts");
@@ -92,7 +99,10 @@ fn mission_under_qemu(elf: &Path) -> Vec<String> {
         .expect("timeout starts");
     let log = decode(&fs::read(elf).expect("cargo left an ELF"), &run.stdout);
     let (status, errors) = (run.status, text(&run.stderr));
-    assert!(status.success(), "QEMU ended with {status} (limit {TIMEOUT_S} s):\n{errors}\n{log:#?}");
+    assert!(
+        status.success(),
+        "QEMU ended with {status} (limit {TIMEOUT_S} s):\n{errors}\n{log:#?}"
+    );
     log
 }
 
@@ -136,7 +146,9 @@ fn mission_on_host() -> Vec<String> {
 fn step_message(number: u32, Step { motion, pose, reading }: &Step) -> String {
     let (action, x, z, heading) = (motion.action.0, pose.site.x(), pose.site.z(), pose.heading.0);
     let sign = reading.map(Reading::sign);
-    format!("step {number}: action {action}, x {x}, z {z}, heading {heading:#010x}, reading {sign:?}")
+    format!(
+        "step {number}: action {action}, x {x}, z {z}, heading {heading:#010x}, reading {sign:?}"
+    )
 }
 
 fn line_message(name: &str, line: Option<Line>) -> String {
@@ -145,7 +157,9 @@ fn line_message(name: &str, line: Option<Line>) -> String {
     };
     let [slope, intercept] = [line.slope(), line.intercept()].map(|it| it.unwrap_or(f64::NAN));
     let [a, b, c] = line.coefficients().map(f64::to_bits);
-    format!("{name}: slope {slope:?}, intercept {intercept:?}; a {a:#018x}, b {b:#018x}, c {c:#018x}")
+    format!(
+        "{name}: slope {slope:?}, intercept {intercept:?}; a {a:#018x}, b {b:#018x}, c {c:#018x}"
+    )
 }
 
 fn text(bytes: &[u8]) -> String {

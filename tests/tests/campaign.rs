@@ -1,0 +1,51 @@
+//! The figures that the README quotes: 1,000 standard fields, seed 1.
+
+use host_sim::campaign::{Campaign, Summary};
+use host_sim::mission::Algorithm;
+use planner_core::cfc::{Crossing, Following};
+
+fn campaign(algorithm: Algorithm, following: Following, steps: u32) -> Summary {
+    let crossing = Crossing::default();
+    let campaign = Campaign { algorithm, fields: 1000, steps, seed: 1, crossing, following };
+    let summary = campaign.run().expect("labels are true");
+    println!("{}", summary.report());
+    summary
+}
+
+#[test]
+fn algorithm_1_learns_what_it_should() {
+    let summary = campaign(Algorithm::Cfc, Following::default(), 20);
+    let at = |step| summary.rows.iter().find(|row| row.step == step).expect("a mark");
+    assert!(at(10).bits_per_step >= 0.65);
+    assert!(at(10).centre_deg.median <= 1.5);
+    assert!(at(20).centre_deg.median <= 0.20);
+    assert!(summary.mean_examined <= 0.05 * f64::from(summary.actions));
+    // A noiseless label tells one bit at most, on average.
+    assert!(summary.rows.iter().all(|row| row.bits_per_step <= 1.0));
+    let random = campaign(Algorithm::Random, Following::default(), 20);
+    let last = |summary: &Summary| summary.rows.last().expect("a mark").bits_per_step;
+    assert!(last(&summary) > 4.0 * last(&random));
+}
+
+#[test]
+fn p2_as_printed_learns_less() {
+    let printed = campaign(Algorithm::Cfc, Following::Anyhow, 10);
+    let bits = printed.rows.last().expect("a mark").bits_per_step;
+    assert!((0.54..0.58).contains(&bits), "{bits}");
+}
+
+#[test]
+fn the_misclassified_area_falls_until_the_grid_can_hit_nothing_more() {
+    let summary = campaign(Algorithm::Cfc, Following::default(), 40);
+    for estimate in [
+        |row: &host_sim::campaign::Row| row.centre_misclassified.median,
+        |row: &host_sim::campaign::Row| row.maximum_margin_misclassified.median,
+    ] {
+        let medians: Vec<_> = summary.rows.iter().map(estimate).collect();
+        assert!(medians.is_sorted_by(|before, after| before > after), "{medians:?}");
+        assert!(medians.last() < Some(&1e-4), "{medians:?}");
+    }
+    let ended: u64 = summary.ends.values().sum();
+    assert_eq!(ended, summary.fields);
+    assert!(summary.ends.keys().all(|reason| ["steps", "resolution"].contains(reason)));
+}

@@ -1,0 +1,166 @@
+//! The search returns the very action that trying all of them would return, ties included.
+
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
+use host_sim::field;
+use host_sim::mission::{Algorithm, CAPACITY};
+use planner_core::direction::{Arc, Heading};
+use planner_core::dynamics::{Dynamics, Holonomic, Pose, Unicycle};
+use planner_core::lattice::{Site, Vector};
+use planner_core::problem::{Area, DirectionRule, Problem, Varrho};
+use planner_core::sample::{Label, Sample};
+use planner_core::version_space::VersionSpace;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+use tests::clamped;
+
+/// Solves the problems P1, P2, the one without a rule, and one that tracks a direction, both ways.
+fn check<D: Dynamics, const N: usize>(
+    dynamics: &D,
+    space: &VersionSpace<N>,
+    area: Area,
+    varrho: Varrho,
+    pose: Pose,
+    context: &str,
+) -> (u64, u64) {
+    let arc = space.slope_arc();
+    let rules = [
+        DirectionRule { inside: None, outside: Some(arc) },
+        DirectionRule { inside: Some(arc), outside: None },
+        DirectionRule { inside: Some(arc.middle()), outside: None },
+        DirectionRule { inside: Some(Arc::tracking(Vector { x: 3, z: 5_000 })), outside: Some(arc) },
+        DirectionRule::ANY,
+    ];
+    let (mut states, mut examined) = (0, 0);
+    for rule in rules {
+        let problem = Problem { space, area, varrho, rule };
+        let quick = problem.solve(dynamics, pose);
+        let slow = problem.solve_exhaustively(dynamics, pose);
+        assert_eq!(quick.best, slow.best, "{context}: {rule:?} from {pose:?} in {space:?}");
+        assert_eq!(slow.examined, dynamics.grid().actions());
+        states += 1;
+        examined += u64::from(quick.examined);
+    }
+    (states, examined)
+}
+
+#[test]
+fn equals_exhaustive_search_along_missions() {
+    let [states, examined] = [0; 2].map(AtomicU64::new);
+    (0..150u64).into_par_iter().for_each(|number| {
+        let mission = field::standard(11, number, Algorithm::Cfc, 40);
+        let mut rng = ChaCha8Rng::seed_from_u64(number);
+        let (area, unicycle) = (mission.config.area, Unicycle::paper());
+        let mut from = mission.start;
+        let mut space_before = mission.space.clone();
+        let mut step = 0;
+        let end = mission.run(|taken, space| {
+            step += 1;
+            let (n, e) = check(&unicycle, &space_before, area, Varrho::PAPER, from, &format!("field {number}, step {step}"));
+            states.fetch_add(n, Relaxed);
+            examined.fetch_add(e, Relaxed);
+            (from, space_before) = (taken.pose, space.clone());
+            // The same place, facing anywhere: the poses that recovery meets.
+            from.heading = if rng.random_range(0..3) == 0 { Heading(rng.random_range(0..=u32::MAX)) } else { from.heading };
+        });
+        assert!(end.is_ok());
+    });
+    let (states, examined): (u64, u64) = (states.into_inner(), examined.into_inner());
+    let mean = examined as f64 / states as f64;
+    println!("{states} states: {mean:.1} of 6657 actions examined on average ({:.2} %)", mean / 66.57);
+    assert!(states >= 20_000);
+    assert!(mean <= 0.05 * 6657.0);
+}
+
+/// A version space of a few random samples, the area around it, and a pose inside.
+fn anywhere(rng: &mut ChaCha8Rng) -> Option<(VersionSpace<CAPACITY>, Area, Pose)> {
+    // From centimetres, where rounding to the lattice shows, to kilometres.
+    let extent = 1i64 << rng.random_range(6..=28);
+    let far = (1i64 << 28) * rng.random_range(-1..=1);
+    let within = |rng: &mut ChaCha8Rng, reach: i64| {
+        clamped(far + rng.random_range(-reach..=reach), rng.random_range(-reach..=reach))
+    };
+    let (a, b) = (within(rng, extent), within(rng, extent));
+    let samples: Vec<_> = (0..rng.random_range(4..12))
+        .map(|_| within(rng, extent))
+        .map(|site| {
+            let above = planner_core::lattice::orient(a, b, site) > 0;
+            Sample { site, label: if above { Label::Positive } else { Label::Negative } }
+        })
+        .collect();
+    let space = VersionSpace::new(&samples).ok()?;
+    let reach = 2 * extent.max(40_000);
+    let corner = |v: i64| clamped(far + v, v);
+    let area = Area::new(corner(-reach), corner(reach))?;
+    let near = samples[rng.random_range(0..samples.len())].site;
+    let nudge = |rng: &mut ChaCha8Rng, v: i32| i64::from(v) + rng.random_range(-2..=2) * extent / 64;
+    let site = match rng.random_range(0..3) {
+        0 => near,
+        1 => clamped(nudge(rng, near.x()), nudge(rng, near.z())),
+        _ => within(rng, extent),
+    };
+    let heading = Heading(rng.random_range(0..=u32::MAX));
+    area.contains(site).then_some((space, area, Pose { site, heading }))
+}
+
+#[test]
+fn equals_exhaustive_search_anywhere_for_any_grid() {
+    let states = AtomicU64::new(0);
+    (0..4_000u64).into_par_iter().for_each(|seed| {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let Some((space, area, pose)) = anywhere(&mut rng) else { return };
+        let varrho = [0.0, 0.1, 0.5, 0.9, 0.999_999][rng.random_range(0..5)];
+        let varrho = Varrho::new(varrho).expect("in [0, 1)");
+        let context = format!("seed {seed}");
+        // Coarse grids have more ties, and one whose last turn falls on a multiple of its step.
+        let coarse = Unicycle::new(100, 0.5, 11, 200).expect("a grid");
+        let round = Holonomic::new(72, 9, 250).expect("a grid");
+        let mut count = check(&coarse, &space, area, varrho, pose, &context).0;
+        count += check(&round, &space, area, varrho, pose, &context).0;
+        if seed % 8 == 0 {
+            count += check(&Unicycle::paper(), &space, area, varrho, pose, &context).0;
+        }
+        states.fetch_add(count, Relaxed);
+    });
+    let states = states.into_inner();
+    println!("{states} states");
+    assert!(states >= 20_000);
+}
+
+#[test]
+fn motions_are_those_of_the_unicycle() {
+    let mut rng = ChaCha8Rng::seed_from_u64(5);
+    let unicycle = Unicycle::paper();
+    let grid = unicycle.grid();
+    assert_eq!((grid.actions(), grid.rays(), grid.speeds()), (6657, 317, 21));
+    for _ in 0..200 {
+        let heading = Heading(rng.random_range(0..=u32::MAX));
+        let from = Site::new(rng.random_range(-1_000_000..1_000_000), 77).expect("on the lattice");
+        let pose = Pose { site: from, heading };
+        let mut seen = 0;
+        let mut before = 0;
+        for ray in unicycle.rays(pose) {
+            seen += 1;
+            assert!(ray.effort >= before, "rays come cheapest first");
+            before = ray.effort;
+            for speed in [0, 1, 7, 20] {
+                let control = unicycle.control(grid.action(ray.index, speed));
+                let angle = heading.radians() + f64::from(control.w);
+                let reach = f64::from(control.v) * 65_536.0;
+                let target = ray.arrive(from, speed).expect("near");
+                let off = |got: i32, start: i32, exact: f64| (f64::from(got - start) - exact).abs();
+                assert!(off(target.site.x(), from.x(), reach * angle.cos()) < 0.6, "{control:?}");
+                assert!(off(target.site.z(), from.z(), reach * angle.sin()) < 0.6, "{control:?}");
+                let turned = (target.heading.radians() - angle).sin().abs();
+                assert!(turned < 1e-6, "{control:?}");
+                let w = f64::from(control.w) * 1000.0;
+                assert!((f64::from(ray.effort) - w * w).abs() < 2.0);
+            }
+        }
+        assert_eq!(seen, 317);
+    }
+    let sharpest = unicycle.control(grid.action(316, 0)).w;
+    assert_eq!((sharpest, unicycle.control(grid.action(315, 0)).w), (core::f32::consts::FRAC_PI_2, 1.57));
+    assert_eq!(unicycle.control(grid.action(0, 20)).w, -core::f32::consts::FRAC_PI_2);
+}
