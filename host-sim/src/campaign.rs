@@ -205,7 +205,9 @@ impl Campaign {
             algorithm: self.algorithm,
             fields: self.fields,
             seed: self.seed,
-            rows: (0..self.marks().count()).map(|i| row(outcomes.iter().map(|o| o.marks[i]))).collect(),
+            rows: (0..self.marks().count())
+                .map(|i| row(&outcomes.iter().map(|o| o.marks[i]).collect::<Vec<_>>()))
+                .collect(),
             ends,
             recoveries: count(|o| &o.recoveries),
             plans,
@@ -241,11 +243,11 @@ fn mark(mission: &Mission, space: &VersionSpace<CAPACITY>, so_far: Mark) -> Mark
     }
 }
 
-fn row(marks: impl Iterator<Item = Mark> + Clone) -> Row {
-    let spread = |pick: fn(&Mark) -> f64| Spread::of(marks.clone().map(|m| pick(&m)));
-    let n = marks.clone().count() as f64;
-    let mean = |pick: fn(&Mark) -> f64| marks.clone().map(|m| pick(&m)).sum::<f64>() / n;
-    let step = marks.clone().next().map_or(0, |m| m.step);
+fn row(marks: &[Mark]) -> Row {
+    let spread = |pick: fn(&Mark) -> f64| Spread::of(marks.iter().map(pick));
+    let n = marks.len() as f64;
+    let mean = |pick: fn(&Mark) -> f64| marks.iter().map(pick).sum::<f64>() / n;
+    let step = marks.first().map_or(0, |m| m.step);
     Row {
         step,
         bits_per_step: mean(|m| m.bits) / f64::from(step),
@@ -285,7 +287,10 @@ impl Summary {
             let spreads = [row.centre_deg, row.maximum_margin_deg, row.bisector_deg].map(cell);
             writeln!(text, "{step:>4} {bits:>9.3}  {}", spreads.join("  "))?;
         }
-        writeln!(text, "\nMisclassified area, per cent: median, 90th percentile, worst; means so far\n")?;
+        writeln!(
+            text,
+            "\nMisclassified area, per cent: median, 90th percentile, worst; means so far\n"
+        )?;
         writeln!(text, "{:>4} {:>9}  {a:^26}  {b:^26}  {c:^26}  {:>8}", "step", "cost", "metres")?;
         for row in &self.rows {
             let cell = |s: Spread| {

@@ -43,6 +43,9 @@ fn unit(angle: f64) -> Vector2<f64> {
 
 /// The standard field with this number in the ensemble of this seed. A field depends on nothing
 /// else: not on the number of fields, the algorithm or the order in which they run.
+///
+/// # Panics
+/// Never: what it draws is within metres of the area.
 pub fn standard(seed: u64, number: u64, algorithm: Algorithm, steps: u32) -> Mission {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     rng.set_stream(number);
@@ -82,7 +85,12 @@ pub fn standard(seed: u64, number: u64, algorithm: Algorithm, steps: u32) -> Mis
         algorithm,
         steps,
         seed: seed ^ number.rotate_left(32),
-        config: Config { area, varrho: Varrho::PAPER, crossing: Crossing::default(), following: Following::default() },
+        config: Config {
+            area,
+            varrho: Varrho::PAPER,
+            crossing: Crossing::default(),
+            following: Following::default(),
+        },
         start: Pose { site: oracle[0].site, heading },
         truth,
         space,

@@ -8,8 +8,8 @@ use planner_core::line::Line;
 use planner_core::problem::Area;
 use planner_core::sample::{Label, Reading, Sample};
 use planner_core::version_space::VersionSpace;
-use plotters::coord::{CoordTranslate, Shift};
 use plotters::coord::types::RangedCoordf64;
+use plotters::coord::{CoordTranslate, Shift};
 use plotters::prelude::*;
 
 use crate::mission::CAPACITY;
@@ -65,7 +65,8 @@ impl Figure<'_> {
     /// When the drawing library fails.
     pub fn svg(&self) -> Result<String> {
         const SIZE: f64 = 760.0;
-        let (min, max) = (Point2::<f64>::from(self.area.min()), Point2::<f64>::from(self.area.max()));
+        let (min, max) =
+            (Point2::<f64>::from(self.area.min()), Point2::<f64>::from(self.area.max()));
         let (width, height) = (max.x - min.x, max.y - min.y);
         let scale = SIZE / width.max(height);
         let margins = (90.0, 210.0); // axes below and left; title, legend and axis above
@@ -113,7 +114,9 @@ impl Figure<'_> {
             let corners: Vec<_> = certain.0.into_iter().map(xy).collect();
             if corners.len() >= 3 {
                 let fill = colour(label).mix(0.18).filled();
-                chart.draw_series([plotters::element::Polygon::new(corners, fill)]).map_err(failed)?;
+                chart
+                    .draw_series([plotters::element::Polygon::new(corners, fill)])
+                    .map_err(failed)?;
             }
         }
         Ok(())
@@ -155,7 +158,9 @@ impl Figure<'_> {
             let beside = EmptyElement::at(xy(at)) + Text::new(format!("{number}"), (7, -15), style);
             chart.draw_series([beside]).map_err(failed)?;
             if s.step.reading == Some(Reading::Boundary) || s.step.reading.is_none() {
-                chart.draw_series([Circle::new(xy(at), 4, PATH.stroke_width(1))]).map_err(failed)?;
+                chart
+                    .draw_series([Circle::new(xy(at), 4, PATH.stroke_width(1))])
+                    .map_err(failed)?;
             }
         }
         Ok(())
@@ -186,26 +191,35 @@ impl Figure<'_> {
             (Label::Positive, rows[0], "label +1, ground certain to have it"),
             (Label::Negative, rows[1], "label -1, ground certain to have it"),
         ] {
-            let ground = Rectangle::new([(left, y - 9), (left + 26, y + 9)], colour(label).mix(0.18).filled());
+            let ground = Rectangle::new(
+                [(left, y - 9), (left + 26, y + 9)],
+                colour(label).mix(0.18).filled(),
+            );
             legend.draw(&ground).map_err(failed)?;
             mark(legend, (left + 13, y), label, 5)?;
             text(words, left, y)?;
         }
         if self.path.is_some() {
-            let path = PathElement::new([(left, rows[2]), (left + 26, rows[2])], PATH.stroke_width(1));
+            let path =
+                PathElement::new([(left, rows[2]), (left + 26, rows[2])], PATH.stroke_width(1));
             legend.draw(&path).map_err(failed)?;
-            let heading = PathElement::new([(left + 12, rows[2]), (left + 26, rows[2])], PATH.stroke_width(2));
+            let heading = PathElement::new(
+                [(left + 12, rows[2]), (left + 26, rows[2])],
+                PATH.stroke_width(2),
+            );
             legend.draw(&heading).map_err(failed)?;
             text("path with headings; o: no sample", left, rows[2])?;
         }
         if self.truth.is_some() {
-            let line = PathElement::new([(right, rows[0]), (right + 26, rows[0])], BLACK.stroke_width(2));
+            let line =
+                PathElement::new([(right, rows[0]), (right + 26, rows[0])], BLACK.stroke_width(2));
             legend.draw(&line).map_err(failed)?;
             text("true line", right, rows[0])?;
         }
         if self.estimate.is_some() {
             for x in [right, right + 15] {
-                let dash = PathElement::new([(x, rows[1]), (x + 10, rows[1])], ESTIMATE.stroke_width(2));
+                let dash =
+                    PathElement::new([(x, rows[1]), (x + 10, rows[1])], ESTIMATE.stroke_width(2));
                 legend.draw(&dash).map_err(failed)?;
             }
             text("estimate: centre of the version space", right, rows[1])?;
@@ -223,9 +237,7 @@ fn mark<C: CoordTranslate<From = P>, P: Clone + 'static>(
 ) -> Result<()> {
     let style = colour(label).filled();
     match label {
-        Label::Positive => {
-            area.draw(&(EmptyElement::at(place) + Circle::new((0, 0), size, style)))
-        }
+        Label::Positive => area.draw(&(EmptyElement::at(place) + Circle::new((0, 0), size, style))),
         Label::Negative => {
             let corners = [(1 - size, 1 - size), (size - 1, size - 1)];
             area.draw(&(EmptyElement::at(place) + Rectangle::new(corners, style)))

@@ -42,6 +42,7 @@ impl Replay {
     pub fn read(path: &Path) -> Result<Self> {
         let name = path.display().to_string();
         let mut reader = csv::ReaderBuilder::new()
+            .flexible(true)
             .trim(csv::Trim::All)
             .comment(Some(b'#'))
             .from_path(path)
@@ -55,20 +56,20 @@ impl Replay {
             })
         };
         let columns = [column("x")?, column("z")?, column("label")?];
-        let (mut samples, mut reduced) = (Vec::new(), Reduced::Too(Vec::new(), NoVersionSpace::Collinear));
+        let mut samples = Vec::new();
+        let mut reduced = Reduced { samples: Vec::new(), space: Err(NoVersionSpace::Collinear) };
         for row in reader.records() {
             let row = row.map_err(|error| anyhow!("{name}: {error}"))?;
             let line = row.position().map_or(0, csv::Position::line);
-            let sample = sample(&row, columns).map_err(|error| anyhow!("{name}:{line}: {error}"))?;
+            let sample =
+                sample(&row, columns).map_err(|error| anyhow!("{name}:{line}: {error}"))?;
             samples.push(sample);
-            reduced = reduced.with(sample).map_err(|error| anyhow!("{name}:{line}: {error}"))?;
+            reduced.take(sample).map_err(|error| anyhow!("{name}:{line}: {error}"))?;
         }
-        match reduced {
-            Reduced::Space(space) => Ok(Self { name, samples, space }),
-            Reduced::Too(_, why) => {
-                bail!("{name}: {why}, so the line could be anywhere: expected samples of both labels, not all on one line")
-            }
-        }
+        let space = reduced.space.map_err(|why| {
+            anyhow!("{name}: {why}; expected samples of both labels, not all on one line")
+        })?;
+        Ok(Self { name, samples, space })
     }
 
     fn estimates(&self) -> Estimates {
@@ -94,7 +95,11 @@ impl Replay {
             report::range(space.intercepts()),
         );
         for (name, estimate) in report::estimates(&estimates) {
-            let _ = writeln!(text, "{name:<28} {}", estimate.map_or("none".into(), |l| report::line(&l)));
+            let _ = writeln!(
+                text,
+                "{name:<28} {}",
+                estimate.map_or("none".into(), |l| report::line(&l))
+            );
         }
         text
     }
@@ -133,35 +138,33 @@ impl Replay {
     }
 }
 
-/// The samples that still matter: all that many rows come to.
-enum Reduced {
-    /// They bound a version space.
-    Space(VersionSpace<CAPACITY>),
-    /// They are too few or too much alike to bound one, for this reason.
-    Too(Vec<Sample>, NoVersionSpace),
+/// The samples that still matter, all that many rows come to, and what they bound.
+struct Reduced {
+    samples: Vec<Sample>,
+    space: Result<VersionSpace<CAPACITY>, NoVersionSpace>,
 }
 
 impl Reduced {
-    fn with(self, sample: Sample) -> Result<Self> {
-        const MIXED: &str = "no line separates this sample from those above by their labels";
-        let mut samples = match self {
-            Self::Space(mut space) => match space.insert(sample) {
-                Ok(_) => return Ok(Self::Space(space)),
+    fn take(&mut self, sample: Sample) -> Result<()> {
+        const MIXED: &str = "no line separates this sample from those above it by their labels";
+        if let Ok(space) = &mut self.space {
+            match space.insert(sample) {
+                Ok(_) => return Ok(()),
                 Err(Refused::Contradiction(_)) => bail!(MIXED),
                 // The samples that no longer matter follow from the others: drop them.
-                Err(Refused::Full(_)) => space.support().collect(),
-            },
-            Self::Too(samples, _) => samples,
-        };
-        samples.push(sample);
-        if samples.len() > CAPACITY {
-            samples = [Label::Negative, Label::Positive].map(|l| hull(&samples, l)).concat();
+                Err(Refused::Full(_)) => self.samples = space.support().collect(),
+            }
         }
-        match VersionSpace::new(&samples) {
-            Ok(space) => Ok(Self::Space(space)),
+        self.samples.push(sample);
+        if self.samples.len() > CAPACITY {
+            self.samples =
+                [Label::Negative, Label::Positive].map(|l| hull(&self.samples, l)).concat();
+        }
+        self.space = VersionSpace::new(&self.samples);
+        match self.space {
             Err(NoVersionSpace::NotSeparable(_)) => bail!(MIXED),
             Err(NoVersionSpace::TooMany) => bail!("more than {CAPACITY} samples bound the line"),
-            Err(why) => Ok(Self::Too(samples, why)),
+            _ => Ok(()),
         }
     }
 }

@@ -25,15 +25,11 @@ pub fn range(intercept: Option<[f64; 2]>) -> String {
 
 /// A line as text: slope, intercept and angle.
 pub fn line(line: &Line) -> String {
-    match (line.slope(), line.intercept()) {
-        (Some(slope), Some(intercept)) => {
-            format!("z = {slope:.4} x {intercept:+.4}   ({:.2} deg)", line.angle_deg())
-        }
-        _ => {
-            let [a, _, c] = line.coefficients();
-            format!("x = {:.4}   (vertical)", -c / a)
-        }
+    if let (Some(slope), Some(intercept)) = (line.slope(), line.intercept()) {
+        return format!("z = {slope:.4} x {intercept:+.4}   ({:.2} deg)", line.angle_deg());
     }
+    let [a, _, c] = line.coefficients();
+    format!("x = {:.4}   (vertical)", -c / a)
 }
 
 /// Names and lines of the estimates, the recommended one first.
@@ -69,10 +65,15 @@ fn write_mission(text: &mut String, title: &str, recording: &Recording) -> std::
     let mission = &recording.mission;
     writeln!(text, "{title}")?;
     writeln!(text, "True line, unknown to the agent: {}", line(&mission.truth))?;
-    let oracle: Vec<_> = mission.space.samples().iter().map(|s| {
-        let at = Point2::<f64>::from(s.site);
-        format!("({}, {}) is {:+}", at.x, at.y, s.label.sign())
-    }).collect();
+    let oracle: Vec<_> = mission
+        .space
+        .samples()
+        .iter()
+        .map(|s| {
+            let at = Point2::<f64>::from(s.site);
+            format!("({}, {}) is {:+}", at.x, at.y, s.label.sign())
+        })
+        .collect();
     writeln!(text, "The oracle's points: {}", oracle.join(", "))?;
     let (at, heading) = (Point2::<f64>::from(mission.start.site), mission.start.heading);
     writeln!(
@@ -86,8 +87,15 @@ fn write_mission(text: &mut String, title: &str, recording: &Recording) -> std::
     writeln!(
         text,
         "{:>4}  {:<7} {:>8} {:>5}  {:<16} {:>5}  {:<26} {:<19} {:>5}",
-        "step", "problem", "turn deg", "go m", "now at m", "label", "slopes left, deg",
-        "intercepts left, m", "bits"
+        "step",
+        "problem",
+        "turn deg",
+        "go m",
+        "now at m",
+        "label",
+        "slopes left, deg",
+        "intercepts left, m",
+        "bits"
     )?;
     let mut past = mission.space.first_label();
     for (recorded, number) in recording.steps.iter().zip(1..) {

@@ -176,7 +176,7 @@ pub fn parse(name: &str, text: &str, overrides: Overrides) -> Result<Mission> {
     if let Some(steps) = overrides.steps {
         check_steps("--steps", steps, file.oracle.len())?;
     }
-    mission(file, overrides).map_err(|error| anyhow!("{name}: {error:#}"))
+    mission(&file, overrides).map_err(|error| anyhow!("{name}: {error:#}"))
 }
 
 fn wrong<T>(field: &str, found: impl Display, expected: impl Display) -> Result<T> {
@@ -208,7 +208,7 @@ fn site(field: &str, x: f64, z: f64) -> Result<Site> {
     Ok(Site::try_from(Point2::new(x, z))?)
 }
 
-fn mission(file: File, overrides: Overrides) -> Result<Mission> {
+fn mission(file: &File, overrides: Overrides) -> Result<Mission> {
     let steps = overrides.steps.unwrap_or(file.steps);
     check_steps("steps", steps, file.oracle.len())?;
     let Some(varrho) = Varrho::new(file.varrho) else {

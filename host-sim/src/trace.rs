@@ -5,7 +5,7 @@ use planner_core::dynamics::Pose;
 use planner_core::estimate::Estimates;
 use planner_core::line::Line;
 use planner_core::problem::Area;
-use planner_core::sample::Sample;
+use planner_core::sample::{Reading, Sample};
 use serde::Serialize;
 
 use crate::mission::Algorithm;
@@ -33,7 +33,8 @@ struct Start {
 
 #[derive(Serialize)]
 struct Step {
-    step: usize,
+    #[serde(rename = "step")]
+    number: usize,
     problem: Option<&'static str>,
     recovery: Option<&'static str>,
     action: ActionRecord,
@@ -135,16 +136,12 @@ impl From<Estimates> for EstimateRecords {
 fn step(number: usize, recorded: &Recorded) -> Step {
     let motion = recorded.step.motion;
     Step {
-        step: number,
+        number,
         problem: motion.stage.map(stage_name),
         recovery: motion.recovery.map(recovery_name),
-        action: ActionRecord {
-            index: motion.action.0,
-            v: motion.control.v,
-            w: motion.control.w,
-        },
+        action: ActionRecord { index: motion.action.0, v: motion.control.v, w: motion.control.w },
         pose: recorded.step.pose.into(),
-        label: recorded.step.reading.map(|reading| reading.sign()),
+        label: recorded.step.reading.map(Reading::sign),
         slope_arcs: recorded.slope_arcs.clone(),
         intercept: recorded.intercept,
         bits: recorded.bits,
@@ -169,10 +166,8 @@ pub fn lines(recording: &Recording) -> String {
         p: 1.0,
     });
     let steps = recording.steps.iter().zip(1..).map(|(s, number)| Record::Step(step(number, s)));
-    let end = Record::End(End {
-        reason: recording.end.name(),
-        estimates: recording.estimates().into(),
-    });
+    let end =
+        Record::End(End { reason: recording.end.name(), estimates: recording.estimates().into() });
     std::iter::once(start)
         .chain(steps)
         .chain(std::iter::once(end))

@@ -114,7 +114,9 @@ impl<D: Dynamics, const N: usize> Cfc<D, N> {
         let arc = self.space.slope_arc();
         let rule = match self.phase {
             Phase::Crossing => DirectionRule { inside: self.crossing_arc(arc), outside: Some(arc) },
-            Phase::Following => DirectionRule { inside: Some(self.following_arc(arc)), outside: None },
+            Phase::Following => {
+                DirectionRule { inside: Some(self.following_arc(arc)), outside: None }
+            }
         };
         Problem { space: &self.space, area, varrho, rule }
     }
@@ -134,8 +136,8 @@ impl<D: Dynamics, const N: usize> Cfc<D, N> {
         }
     }
 
-    fn motion(&self, stage: Stage, found: Found, examined: u32) -> Plan {
-        let Found { recovery, action, target } = found;
+    fn motion(&self, stage: Stage, found: &Found, examined: u32) -> Plan {
+        let Found { recovery, action, target } = *found;
         let control = self.dynamics.control(action);
         Plan::Move(Motion { stage: Some(stage), recovery, action, control, target, examined })
     }
@@ -149,19 +151,18 @@ impl<D: Dynamics, const N: usize> Planner for Cfc<D, N> {
         if !self.config.area.contains(pose.site) {
             return Plan::Stop(StopReason::OutsideArea);
         }
-        if self.phase == Phase::Following && self.problem().solve(&self.dynamics, pose).best.is_none() { self.phase = Phase::Crossing; }
         let mut examined = 0;
         if self.phase == Phase::Following {
             let search = self.problem().solve(&self.dynamics, pose);
             examined += search.examined;
             if let Some(Candidate { action, target, .. }) = search.best {
-                return self.motion(Stage::P2, Found { recovery: None, action, target }, examined);
+                return self.motion(Stage::P2, &Found { recovery: None, action, target }, examined);
             }
             self.phase = Phase::Crossing;
         }
         solve_or_recover(&self.problem(), &self.dynamics, pose, &mut examined)
             .map_or(Plan::Stop(StopReason::Resolution), |found| {
-                self.motion(Stage::P1, found, examined)
+                self.motion(Stage::P1, &found, examined)
             })
     }
 
@@ -185,5 +186,144 @@ impl<D: Dynamics, const N: usize> Planner for Cfc<D, N> {
         };
         self.past = label;
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Point2;
+
+    use super::*;
+    use crate::dynamics::Unicycle;
+    use crate::lattice::Site;
+    use crate::planner::Recovery;
+
+    fn at(x: f64, z: f64) -> Site {
+        Site::try_from(Point2::new(x, z)).unwrap()
+    }
+
+    fn pose(x: f64, z: f64) -> Pose {
+        Pose { site: at(x, z), heading: crate::direction::Heading(0) }
+    }
+
+    /// The oracle's corners of a square around z = 5, and no more room than asked for.
+    fn planner<const N: usize>() -> Cfc<Unicycle, N> {
+        let corners = [(0.0, 0.0), (0.0, 10.0), (10.0, 10.0), (10.0, 0.0)];
+        let sample = |(x, z)| {
+            let label = if z > 5.0 { Label::Positive } else { Label::Negative };
+            Sample { site: at(x, z), label }
+        };
+        let config = Config {
+            area: Area::new(at(0.0, 0.0), at(10.0, 10.0)).unwrap(),
+            varrho: Varrho::PAPER,
+            crossing: Crossing::default(),
+            following: Following::default(),
+        };
+        let space = VersionSpace::new(&corners.map(sample)).unwrap();
+        Cfc::new(config, Unicycle::paper(), space)
+    }
+
+    fn see<const N: usize>(planner: &mut Cfc<Unicycle, N>, x: f64, z: f64, label: Label) -> Phase {
+        planner.observe(pose(x, z), Some(label.into())).unwrap();
+        planner.phase()
+    }
+
+    #[test]
+    fn p1_until_the_label_flips_then_p2_once() {
+        let mut planner = planner::<16>();
+        assert_eq!(planner.phase(), Phase::Crossing);
+        assert_eq!(see(&mut planner, 4.0, 2.0, Label::Negative), Phase::Crossing);
+        assert_eq!(see(&mut planner, 4.0, 6.0, Label::Positive), Phase::Following);
+        // Whatever P2 finds, P1 resumes and remembers the label of where it does.
+        assert_eq!(see(&mut planner, 6.0, 4.0, Label::Negative), Phase::Crossing);
+        assert_eq!(see(&mut planner, 6.0, 4.5, Label::Negative), Phase::Crossing);
+        assert_eq!(see(&mut planner, 6.0, 5.5, Label::Positive), Phase::Following);
+    }
+
+    #[test]
+    fn a_reading_on_the_boundary_is_no_flip() {
+        let mut planner = planner::<16>();
+        planner.observe(pose(4.0, 5.0), Some(Reading::Boundary)).unwrap();
+        assert_eq!(planner.phase(), Phase::Crossing);
+        assert_eq!(planner.space().samples().len(), 5);
+        assert_eq!(see(&mut planner, 4.0, 5.5, Label::Positive), Phase::Following);
+    }
+
+    #[test]
+    fn a_contradiction_changes_nothing() {
+        let mut planner = planner::<16>();
+        see(&mut planner, 4.0, 3.0, Label::Negative);
+        let before = (planner.phase(), planner.past, planner.space.samples().len());
+        let wrong = Sample { site: at(4.0, 1.0), label: Label::Positive };
+        let refused = planner.observe(pose(4.0, 1.0), Some(Label::Positive.into()));
+        assert_eq!(refused, Err(Refused::Contradiction(wrong)));
+        assert_eq!((planner.phase(), planner.past, planner.space.samples().len()), before);
+        assert_eq!(see(&mut planner, 4.0, 4.0, Label::Negative), Phase::Crossing);
+    }
+
+    #[test]
+    fn a_full_buffer_and_a_place_outside_end_the_mission() {
+        let mut planner = planner::<5>();
+        assert_eq!(planner.plan(pose(-1.0, 5.0)), Plan::Stop(StopReason::OutsideArea));
+        assert!(matches!(planner.plan(pose(1.0, 1.0)), Plan::Move(_)));
+        see(&mut planner, 4.0, 3.0, Label::Negative);
+        assert_eq!(planner.plan(pose(4.0, 3.0)), Plan::Stop(StopReason::SamplesFull));
+        let refused = planner.observe(pose(4.0, 4.0), Some(Label::Negative.into()));
+        assert!(matches!(refused, Err(Refused::Full(_))));
+    }
+
+    #[test]
+    fn p1_and_p2_hold_their_directions() {
+        let mut planner = planner::<16>();
+        let direction = |motion: Motion, from: Site| motion.target.site - from;
+        let from = pose(0.0, 0.0);
+        let Plan::Move(motion) = planner.plan(from) else { panic!("P1 is feasible") };
+        assert_eq!((motion.stage, motion.recovery), (Some(Stage::P1), None));
+        assert!(!planner.space().slope_arc().contains(direction(motion, from.site)));
+        see(&mut planner, 1.0, 3.0, Label::Negative);
+        see(&mut planner, 1.0, 7.0, Label::Positive);
+        let from = pose(1.0, 7.0);
+        let Plan::Move(motion) = planner.plan(from) else { panic!("P2 is feasible") };
+        assert_eq!((motion.stage, motion.recovery), (Some(Stage::P2), None));
+        assert!(planner.space().slope_arc().middle().contains(direction(motion, from.site)));
+    }
+
+    #[test]
+    fn ground_that_is_all_certain_ahead_makes_it_turn_and_far_from_all_else_it_drives() {
+        let mut planner = planner::<16>();
+        for (x, z, label) in [
+            (0.0, 4.9, Label::Negative),
+            (10.0, 4.9, Label::Negative),
+            (0.0, 5.1, Label::Positive),
+            (10.0, 5.1, Label::Positive),
+        ] {
+            see(&mut planner, x, z, label);
+        }
+        let quarter = crate::direction::Heading(1 << 30);
+        // Facing away from the strip, one metre above it.
+        let away = Pose { heading: quarter, ..pose(5.0, 6.1) };
+        let Plan::Move(motion) = planner.plan(away) else { panic!("there is a turn") };
+        assert_eq!((motion.recovery, motion.samples()), (Some(Recovery::Reorient), false));
+        assert_eq!(motion.target.site, away.site);
+        // Facing it from five metres below.
+        let facing = Pose { heading: quarter, ..pose(5.0, 0.1) };
+        let Plan::Move(motion) = planner.plan(facing) else { panic!("there is a transit") };
+        assert_eq!((motion.recovery, motion.samples()), (Some(Recovery::Transit), false));
+        assert!(motion.target.site.z() > facing.site.z());
+    }
+
+    #[test]
+    fn a_strip_thinner_than_the_grid_can_hit_ends_the_mission() {
+        let mut planner = planner::<16>();
+        let lattice = |x, z| Pose { site: Site::new(x, z).unwrap(), ..pose(0.0, 0.0) };
+        for (x, z, label) in [
+            (0, 5 << 16, Label::Negative),
+            (10 << 16, 5 << 16, Label::Negative),
+            (0, (5 << 16) + 1, Label::Positive),
+            (10 << 16, (5 << 16) + 1, Label::Positive),
+        ] {
+            planner.observe(lattice(x, z), Some(label.into())).unwrap();
+        }
+        assert_eq!(planner.plan(pose(5.0, 5.5)), Plan::Stop(StopReason::Resolution));
     }
 }

@@ -198,7 +198,10 @@ mod tests {
     fn headings_wrap() {
         let quarter = Heading::from_radians(core::f64::consts::FRAC_PI_2).unwrap();
         assert_eq!(quarter, Heading(1 << 30));
-        assert_eq!(Heading::from_radians(-1e-9), Heading::from_radians(core::f64::consts::TAU - 1e-9));
+        assert_eq!(
+            Heading::from_radians(-1e-9),
+            Heading::from_radians(core::f64::consts::TAU - 1e-9)
+        );
         assert_eq!(quarter.turned(quarter).turned(quarter), quarter.mirrored());
         assert_eq!(Heading::from_radians(f64::NAN), None);
         assert_eq!(Heading::from_radians(f64::INFINITY), None);
@@ -220,9 +223,13 @@ mod tests {
     #[test]
     fn a_direction_and_its_opposite_are_one() {
         let arc = Arc::new(v(10, -1), v(10, 7));
-        for (direction, inside) in
-            [(v(1, 0), true), (v(-1, 0), true), (v(10, 7), true), (v(-10, 1), true), (v(0, 1), false)]
-        {
+        for (direction, inside) in [
+            (v(1, 0), true),
+            (v(-1, 0), true),
+            (v(10, 7), true),
+            (v(-10, 1), true),
+            (v(0, 1), false),
+        ] {
             assert_eq!(arc.contains(direction), inside, "{direction:?}");
         }
         assert!(Arc::new(v(1, 1), v(1, 1)).contains(v(-3, -3)));

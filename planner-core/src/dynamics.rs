@@ -77,12 +77,12 @@ pub trait Dynamics {
 }
 
 /// Length of one speed step in the units of [`Ray::step`].
-const fn step_length(grid: &ActionGrid) -> i32 {
+const fn step_length(grid: ActionGrid) -> i32 {
     let per_metre = (UNITS_PER_METRE as u64) << Ray::STEP_BITS;
     ((grid.speed_step_mm() as u64 * per_metre + 500) / 1000) as i32
 }
 
-fn metres_per_unit_time(grid: &ActionGrid, speed: u16) -> f32 {
+fn metres_per_unit_time(grid: ActionGrid, speed: u16) -> f32 {
     grid.reach_mm(speed) as f32 / 1000.0
 }
 
@@ -175,7 +175,7 @@ impl Dynamics for Unicycle {
 
     /// Straight ahead, then the smallest turns first, each to the left and to the right.
     fn rays(&self, pose: Pose) -> impl Iterator<Item = Ray> {
-        let length = step_length(&self.grid);
+        let length = step_length(self.grid);
         let ahead = pose.heading.unit();
         let (mut to_left, mut to_right) = (ahead, ahead);
         (0..self.grid.rays()).map(move |n| {
@@ -195,11 +195,8 @@ impl Dynamics for Unicycle {
     }
 
     fn turn_in_place(&self, pose: Pose, left: bool) -> Option<(Action, Pose)> {
-        let (ray, turn) = if left {
-            (2 * self.turns, self.sharpest)
-        } else {
-            (0, self.sharpest.mirrored())
-        };
+        let (ray, turn) =
+            if left { (2 * self.turns, self.sharpest) } else { (0, self.sharpest.mirrored()) };
         let turned = Pose { heading: pose.heading.turned(turn), ..pose };
         Some((self.grid.action(ray, 0), turned))
     }
@@ -213,7 +210,7 @@ impl Dynamics for Unicycle {
             (u32::from(turn) * self.step_mrad) as f32 / 1000.0
         };
         let w = if ray < self.turns { -w } else { w };
-        Control { v: metres_per_unit_time(&self.grid, speed), w }
+        Control { v: metres_per_unit_time(self.grid, speed), w }
     }
 }
 
@@ -249,7 +246,7 @@ impl Dynamics for Holonomic {
 
     /// Counter-clockwise from the x axis; all cost the same.
     fn rays(&self, _: Pose) -> impl Iterator<Item = Ray> {
-        let length = step_length(&self.grid);
+        let length = step_length(self.grid);
         let mut unit = Rotation::IDENTITY;
         (0..self.grid.rays()).map(move |index| {
             let step = unit.scaled(length);
@@ -265,7 +262,7 @@ impl Dynamics for Holonomic {
     fn control(&self, action: Action) -> Control {
         let (ray, speed) = self.grid.split(action);
         Control {
-            v: metres_per_unit_time(&self.grid, speed),
+            v: metres_per_unit_time(self.grid, speed),
             w: bearing(ray, self.grid.rays()).radians() as f32,
         }
     }

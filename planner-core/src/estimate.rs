@@ -17,7 +17,7 @@ use crate::sample::{Label, Sample};
 use crate::version_space::VersionSpace;
 
 /// The three estimates; `None` where one does not exist.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Estimates {
     /// The paper's printed estimate.
@@ -125,9 +125,7 @@ pub fn maximum_margin<const N: usize>(space: &VersionSpace<N>) -> Option<Line> {
     }
     // Else two of one label and one of the other: the side of one hull that faces a corner of the
     // other, `w` pointing from the side to the corner.
-    let faces = |side: Site, w: Vector, label: Label| {
-        of(label).all(|r| (r - side).dot(w) <= 0)
-    };
+    let faces = |side: Site, w: Vector, label: Label| of(label).all(|r| (r - side).dot(w) <= 0);
     [Label::Positive, Label::Negative].into_iter().find_map(|label| {
         of(label).find_map(|a| {
             of(label).filter(|&b| b != a).find_map(|b| {
@@ -158,7 +156,8 @@ fn midway(p: Site, q: Site, normal: Vector) -> Option<Line> {
 pub fn bisector(samples: &[Sample]) -> Option<Line> {
     let length = |&(n, p): &(Sample, Sample)| (p.site - n.site).dot(p.site - n.site);
     let shortest = |apart: Option<(Sample, Sample)>| {
-        let free = move |s: &&Sample| apart.is_none_or(|(n, p)| s.site != n.site && s.site != p.site);
+        let free =
+            move |s: &&Sample| apart.is_none_or(|(n, p)| s.site != n.site && s.site != p.site);
         let of = move |label| samples.iter().filter(free).filter(move |s| s.label == label);
         of(Label::Negative)
             .flat_map(|&n| of(Label::Positive).map(move |&p| (n, p)))

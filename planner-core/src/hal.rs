@@ -76,3 +76,47 @@ impl<P: InputPin> LabelSensor for PinSensor<P> {
         Ok(label.into())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Wire(Result<bool, ()>);
+
+    #[derive(Debug)]
+    struct Broken;
+
+    impl embedded_hal::digital::Error for Broken {
+        fn kind(&self) -> embedded_hal::digital::ErrorKind {
+            embedded_hal::digital::ErrorKind::Other
+        }
+    }
+
+    impl embedded_hal::digital::ErrorType for Wire {
+        type Error = Broken;
+    }
+
+    impl InputPin for Wire {
+        fn is_high(&mut self) -> Result<bool, Broken> {
+            self.0.map_err(|()| Broken)
+        }
+
+        fn is_low(&mut self) -> Result<bool, Broken> {
+            self.is_high().map(|high| !high)
+        }
+    }
+
+    #[test]
+    fn a_pin_reads_as_a_label_either_way_round() {
+        for (level, high, label) in [
+            (true, Label::Positive, Label::Positive),
+            (false, Label::Positive, Label::Negative),
+            (true, Label::Negative, Label::Negative),
+            (false, Label::Negative, Label::Positive),
+        ] {
+            let mut sensor = PinSensor::new(Wire(Ok(level)), high);
+            assert_eq!((&mut sensor).read().unwrap(), Reading::Side(label));
+        }
+        assert!(PinSensor::new(Wire(Err(())), Label::Positive).read().is_err());
+    }
+}

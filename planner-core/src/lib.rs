@@ -1,6 +1,122 @@
 #![no_std]
 #![forbid(unsafe_code)]
-//! draft
+#![deny(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing)]
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::panic, clippy::indexing_slicing))]
+
+//! A planner that finds a straight boundary from few samples.
+//!
+//! A robot moves in a plane that an unknown straight line divides: the edge of a spill, a front in
+//! the sea, a shoreline, the border of a field. At each stop it senses on which side it is. Four
+//! labelled points are known at the start. Where should it go next, so that few samples and little
+//! effort identify the line? This is the problem of Raghavan and Johansson, *Motion Planning for
+//! Identification of Linear Classifiers*; section, equation and algorithm numbers in these pages
+//! are that paper's.
+//!
+//! # The idea
+//!
+//! All lines that agree with the samples so far are the **version space**. In the space of
+//! homogeneous lines `(A, B, C)` each sample is a half-space, so the version space is a convex cone:
+//! seen as a polygon, its edges belong to the samples that still matter and its vertices are lines
+//! through two of them. A cyclic list of sample indices holds all of it ([`cell`]).
+//!
+//! On an integer lattice of 15 micrometres ([`lattice`]) one predicate decides everything about that
+//! list, and it is exact in 64-bit integers:
+//!
+//! ```text
+//! orient(a, b, q) = (b.x - a.x)(q.z - a.z) - (b.z - a.z)(q.x - a.x)
+//! ```
+//!
+//! # What follows
+//!
+//! - **Certainty is exact.** A position that all candidate lines label alike lies in a *region of
+//!   certainty*; a sample there would tell nothing, or reveal a fault. No tolerance, no misjudged
+//!   cut, for a vertical boundary and kilometres from the origin as for any other
+//!   ([`version_space`]).
+//! - **Motions come from an integer-indexed grid** ([`action`], [`dynamics`]), and the one-step
+//!   problems are solved exactly by looking at some per cent of it ([`problem`]).
+//! - **The same on every machine.** Integers decide; floating point proposes directions and reads
+//!   results out, by IEEE arithmetic and libm. One mission gives one trace, on a PC and on a chip.
+//! - **Fixed memory.** No allocation, no `unsafe`, no recursion; capacities are const generics. A
+//!   planner for 32 samples is some 500 bytes ([`cfc::Cfc`]).
+//!
+//! # How the pieces meet
+//!
+//! A [`planner::Planner`] is asked for a motion with `plan()` and told what came of it with
+//! `observe()`. [`cfc::Cfc`] is the paper's Algorithm 1. An [`agent::Agent`] joins a planner to a
+//! [`hal::Drive`] and a [`hal::LabelSensor`], which are yours to implement; a sensor on a digital pin
+//! comes with the crate.
+//!
+//! ```
+//! use core::cell::Cell;
+//! use core::convert::Infallible;
+//! use nalgebra::Point2;
+//! use planner_core::agent::{Agent, Event};
+//! use planner_core::cfc::{Cfc, Config, Crossing, Following};
+//! use planner_core::direction::Heading;
+//! use planner_core::dynamics::{Pose, Unicycle};
+//! use planner_core::estimate;
+//! use planner_core::hal::{Drive, LabelSensor};
+//! use planner_core::lattice::Site;
+//! use planner_core::planner::Motion;
+//! use planner_core::problem::{Area, Varrho};
+//! use planner_core::sample::{Label, Reading, Sample};
+//! use planner_core::version_space::VersionSpace;
+//!
+//! // A world in which z = 0.41 x + 3.5 divides the plane, and a vehicle that goes where it is told.
+//! struct World(Cell<Pose>);
+//! impl Drive for &World {
+//!     type Error = Infallible;
+//!     fn drive(&mut self, motion: &Motion) -> Result<Pose, Infallible> {
+//!         self.0.set(motion.target);
+//!         Ok(motion.target)
+//!     }
+//! }
+//! impl LabelSensor for &World {
+//!     type Error = Infallible;
+//!     fn read(&mut self) -> Result<Reading, Infallible> {
+//!         let at = Point2::<f64>::from(self.0.get().site);
+//!         let above = at.y > 0.41 * at.x + 3.5;
+//!         Ok(if above { Label::Positive } else { Label::Negative }.into())
+//!     }
+//! }
+//!
+//! let at = |x, z| Site::try_from(Point2::<f32>::new(x, z));
+//! let oracle = [
+//!     Sample { site: at(2.0, 1.0)?, label: Label::Negative },
+//!     Sample { site: at(2.0, 8.0)?, label: Label::Positive },
+//!     Sample { site: at(18.0, 16.0)?, label: Label::Positive },
+//!     Sample { site: at(18.0, 5.0)?, label: Label::Negative },
+//! ];
+//! let config = Config {
+//!     area: Area::new(at(0.0, 0.0)?, at(20.0, 20.0)?).ok_or("no area")?,
+//!     varrho: Varrho::PAPER,
+//!     crossing: Crossing::default(),
+//!     following: Following::default(),
+//! };
+//! let start = Pose { site: oracle[0].site, heading: Heading(0) };
+//! let world = World(Cell::new(start));
+//! // Room for 32 samples, these four included.
+//! let planner = Cfc::new(config, Unicycle::paper(), VersionSpace::<32>::new(&oracle)?);
+//! let mut agent = Agent::new(planner, &world, &world, start);
+//! for _ in 0..10 {
+//!     if let Event::Stopped(_) = agent.step()? {
+//!         break;
+//!     }
+//! }
+//! let line = estimate::centre(agent.planner.space()).ok_or("no estimate")?;
+//! assert!((line.slope().ok_or("vertical")? - 0.41).abs() < 0.01);
+//! assert!((line.intercept().ok_or("vertical")? - 3.5).abs() < 0.1);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Limits
+//!
+//! - Labels are taken to be true. A sample that contradicts a region of certainty is a typed error
+//!   ([`version_space::Refused`]) and leaves the planner as it was.
+//! - Positions lie within 8,192 m of the origin, one motion is shorter than 100 m, and a buffer holds
+//!   3 to 128 samples.
+//! - The boundary is one straight line. P1 and P2 look one step ahead.
+
 pub mod action;
 pub mod agent;
 pub mod cell;

@@ -162,7 +162,8 @@ impl<const N: usize> Problem<'_, N> {
         let mut slowest = u16::from(self.space.certainty(pose.site) != Certainty::Uncertain);
         for ray in dynamics.rays(pose) {
             let objective = |speed| self.varrho.objective(grid.reach_mm(speed), ray.effort);
-            while best.is_some_and(|b| objective(slowest) <= b.objective) && slowest < grid.speeds() {
+            while best.is_some_and(|b| objective(slowest) <= b.objective) && slowest < grid.speeds()
+            {
                 slowest += 1;
             }
             if slowest >= grid.speeds() {
@@ -281,7 +282,8 @@ impl<'a, const N: usize> Sight<'a, N> {
 
     /// The highest speed, up to `fastest`, that does not leave the area: a ray leaves it once.
     fn farthest_inside(&self, ray: &Ray, fastest: u16) -> Option<u16> {
-        let inside = |speed| self.position(ray, speed).is_some_and(|q| self.problem.area.contains(q));
+        let inside =
+            |speed| self.position(ray, speed).is_some_and(|q| self.problem.area.contains(q));
         if inside(fastest) {
             return Some(fastest);
         }

@@ -96,7 +96,7 @@ impl<D: Dynamics, const N: usize> Ladder<'_, D, N> {
     fn transit(&mut self, pose: Pose) -> Option<Leg> {
         let u = self.problem.space.slope_arc().bisector();
         let l = u.left();
-        let between = |a: Vector, b: Vector| Vector { x: (a.x + b.x) / 2, z: (a.z + b.z) / 2 };
+        let between = |a: Vector, b: Vector| Vector { x: a.x.midpoint(b.x), z: a.z.midpoint(b.z) };
         let diagonal = between(u, l);
         let mut nearest = None;
         let mut horizon = HORIZON;

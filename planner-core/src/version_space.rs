@@ -90,7 +90,9 @@ impl<const N: usize> VersionSpace<N> {
         let apart = edges().zip(samples).find(|(_, sample)| sample.site != first.site);
         let mut cell = apart
             .and_then(|(b, _)| edges().find_map(|c| Cell::triangle(&buffer, [a, b, c])))
-            .ok_or_else(|| crossed(samples).map_or(NoVersionSpace::Collinear, NoVersionSpace::NotSeparable))?;
+            .ok_or_else(|| {
+                crossed(samples).map_or(NoVersionSpace::Collinear, NoVersionSpace::NotSeparable)
+            })?;
         for (i, edge) in edges().enumerate() {
             cell.cut(&buffer, edge).map_err(|_| NoVersionSpace::NotSeparable(i))?;
         }

@@ -96,13 +96,14 @@ impl BigCell {
             let (here, next) = (signs[k], signs[(k + 1) % n]);
             let along = half_plane(samples, *side);
             match (here, next) {
-                (Sign::Plus, Sign::Plus | Sign::NoSign) => kept.push((vertex.clone(), *side)),
+                (Sign::Plus, Sign::Plus | Sign::NoSign) | (Sign::NoSign, Sign::Plus) => {
+                    kept.push((vertex.clone(), *side));
+                }
                 (Sign::Plus, Sign::Minus) => {
                     kept.push((vertex.clone(), *side));
                     kept.push((cross(&along, &normal), edge));
                 }
                 (Sign::Minus, Sign::Plus) => kept.push((cross(&normal, &along), *side)),
-                (Sign::NoSign, Sign::Plus) => kept.push((vertex.clone(), *side)),
                 (Sign::NoSign, _) if signs[(k + n - 1) % n] == Sign::Plus => {
                     kept.push((vertex.clone(), edge));
                 }
@@ -140,7 +141,8 @@ fn cuts_agree_with_big_integers_on_a_million_adversarial_samples() {
             })
             .collect();
         let edges: Vec<_> = (0..).zip(&samples).map(|(i, s)| Edge::new(i, s.label)).collect();
-        let Some(k) = (2..32).find(|&k| Cell::<32>::triangle(&samples, [edges[0], edges[1], edges[k]]).is_some())
+        let Some(k) = (2..32)
+            .find(|&k| Cell::<32>::triangle(&samples, [edges[0], edges[1], edges[k]]).is_some())
         else {
             return;
         };

@@ -203,7 +203,8 @@ fn mixed(samples: &[Sample]) -> bool {
                     on(a, b, q)
                         || of(-label).any(|c| {
                             let turns = [turn(a, b, q), turn(b, c, q), turn(c, a, q)];
-                            turn(a, b, c) != 0 && (turns.iter().all(|t| *t >= 0) || turns.iter().all(|t| *t <= 0))
+                            turn(a, b, c) != 0
+                                && (turns.iter().all(|t| *t >= 0) || turns.iter().all(|t| *t <= 0))
                         })
                         || of(label).any(|r| {
                             turn(a, b, q) * turn(a, b, r) < 0 && turn(q, r, a) * turn(q, r, b) < 0

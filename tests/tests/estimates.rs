@@ -1,0 +1,153 @@
+//! The estimates against brute force, and against what must not change them.
+
+use host_sim::field;
+use host_sim::mission::{Algorithm, CAPACITY};
+use nalgebra::{Point2, Rotation2, Vector2};
+use planner_core::estimate::{Estimates, area, bisector, centre, maximum_margin};
+use planner_core::lattice::Site;
+use planner_core::line::Line;
+use planner_core::sample::{Label, Sample};
+use planner_core::version_space::VersionSpace;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// The version spaces of the first fields after some steps each.
+fn spaces(fields: u64, steps: u32) -> Vec<(u64, VersionSpace<CAPACITY>)> {
+    (0..fields)
+        .map(|number| {
+            let mission = field::standard(4, number, Algorithm::Cfc, steps);
+            let mut last = mission.space.clone();
+            mission.run(|_, space| last = space.clone()).expect("labels are true");
+            (number, last)
+        })
+        .collect()
+}
+
+/// The least signed distance of the samples to the side that their labels say.
+fn margin(line: &Line, samples: &[Sample]) -> f64 {
+    let distance = |s: &Sample| f64::from(s.label.sign()) * line.distance(Point2::from(s.site));
+    samples.iter().map(distance).fold(f64::INFINITY, f64::min)
+}
+
+/// The best line of a fine sweep of angles: the slow twin of the hard margin.
+fn swept_margin(samples: &[Sample]) -> f64 {
+    let best_at = |angle: f64| {
+        let normal = Vector2::new(-angle.sin(), angle.cos());
+        let along = |s: &Sample| normal.dot(&Point2::<f64>::from(s.site).coords);
+        let of = |label| samples.iter().filter(move |s| s.label == label);
+        let low = of(Label::Positive).map(along).fold(f64::INFINITY, f64::min);
+        let high = of(Label::Negative).map(along).fold(f64::NEG_INFINITY, f64::max);
+        (low - high) / 2.0
+    };
+    // The margin is a unimodal function of the angle where it is positive: refine about the best.
+    let (mut best, mut width) = (0.0, std::f64::consts::PI);
+    for _ in 0..40 {
+        let angles = (-200..=200).map(|i| best + width * f64::from(i) / 200.0);
+        best = angles.max_by(|a, b| best_at(*a).total_cmp(&best_at(*b))).expect("some");
+        width /= 4.0;
+    }
+    best_at(best)
+}
+
+#[test]
+fn the_maximum_margin_is_the_largest() {
+    for steps in [0, 3, 10, 20] {
+        for (number, space) in spaces(150, steps) {
+            let line = maximum_margin(&space).expect("separable");
+            // All samples count, though only those that still matter were looked at.
+            let (got, best) = (margin(&line, space.samples()), swept_margin(space.samples()));
+            assert!((got - best).abs() < 1e-9, "field {number}, {steps} steps: {got} for {best}");
+        }
+    }
+}
+
+#[test]
+fn the_centre_and_the_area_are_those_of_lines_drawn_at_random() {
+    for (number, space) in spaces(6, 2) {
+        let mut rng = ChaCha8Rng::seed_from_u64(number);
+        let (half, radius) = (field::SIDE_M / 2.0, 20.0);
+        let middle = Point2::new(half, half);
+        let (draws, mut hits, mut mean) = (2_000_000, 0_u32, Vector2::zeros());
+        let mut offset = 0.0;
+        for _ in 0..draws {
+            let angle: f64 = rng.random_range(0.0..std::f64::consts::TAU);
+            let normal = Vector2::new(angle.cos(), angle.sin());
+            let r = rng.random_range(-radius..radius);
+            let agrees = |s: &Sample| {
+                let distance = normal.dot(&(Point2::<f64>::from(s.site) - middle)) - r;
+                (distance > 0.0) == (s.label == Label::Positive)
+            };
+            if space.support().all(|s| agrees(&s)) {
+                (hits, mean, offset) = (hits + 1, mean + normal, offset + r);
+            }
+        }
+        let share = f64::from(hits) / f64::from(draws);
+        let drawn = share * std::f64::consts::TAU * 2.0 * radius;
+        let noise = 5.0 / f64::from(hits).sqrt();
+        assert!(
+            (area(&space) / drawn - 1.0).abs() < noise,
+            "field {number}: {} for {drawn}",
+            area(&space)
+        );
+        let norm = mean.norm();
+        let mean = Line::through(middle + mean / norm * (offset / norm), mean).expect("a line");
+        let centre = centre(&space).expect("a line");
+        assert!(centre.angle_to_deg(&mean) < 0.3, "field {number}");
+        assert!((centre.distance(middle) - mean.distance(middle)).abs() < 0.05, "field {number}");
+    }
+}
+
+#[test]
+fn the_centre_agrees_with_every_sample() {
+    for steps in [0, 10, 40] {
+        for (number, space) in spaces(200, steps) {
+            let centre = centre(&space).expect("a line");
+            assert!(margin(&centre, space.samples()) > 0.0, "field {number}, {steps} steps");
+        }
+    }
+}
+
+#[test]
+fn no_motion_of_the_plane_changes_the_centre_or_the_maximum_margin() {
+    for (number, space) in spaces(100, 8) {
+        let before = Estimates::of(&space);
+        let turn = Rotation2::new(0.1 * number as f64);
+        let away = Vector2::new(7_000.0, -6_500.0);
+        let moved = |s: &Sample| {
+            let site = Site::try_from(turn * Point2::<f64>::from(s.site) + away);
+            Sample { site: site.expect("on the lattice"), label: s.label }
+        };
+        let moved: Vec<_> = space.samples().iter().map(moved).collect();
+        let moved = VersionSpace::<CAPACITY>::new(&moved).expect("separable as before");
+        let after = Estimates::of(&moved);
+        // Rounding to the lattice moves samples by some micrometres.
+        assert!((area(&moved) / area(&space) - 1.0).abs() < 1e-3, "field {number}");
+        for (name, before, after) in [
+            ("centre", before.centre, after.centre),
+            ("maximum margin", before.maximum_margin, after.maximum_margin),
+        ] {
+            let (before, after) = (before.expect("a line"), after.expect("a line"));
+            let at = Point2::new(10.0, 10.0);
+            let off = (before.distance(at) - after.distance(turn * at + away)).abs();
+            assert!(off < 0.02, "field {number}: {name} is off by {off} m");
+        }
+    }
+}
+
+#[test]
+fn the_bisector_is_the_paper_s() {
+    let sample = |(x, z, y): (f64, f64, i8)| Sample {
+        site: Site::try_from(Point2::new(x, z)).expect("near"),
+        label: if y > 0 { Label::Positive } else { Label::Negative },
+    };
+    // A symmetric quadrilateral about z = 2: the diagonals cross on it.
+    let square = [(1.0, 1.0, -1), (1.0, 3.0, 1), (9.0, 3.0, 1), (9.0, 1.0, -1), (5.0, 9.0, 1)];
+    let line = bisector(&square.map(sample)).expect("a line");
+    assert!(line.slope().expect("level").abs() < 1e-12);
+    assert!((line.intercept().expect("level") - 2.0).abs() < 1e-12);
+    assert!(line.distance(Point2::new(0.0, 5.0)) > 0.0, "+1 is above");
+    // One pair alone has no bisector, nor have diagonals that do not cross.
+    assert!(bisector(&[(1.0, 1.0, -1), (1.0, 3.0, 1), (9.0, 3.0, 1)].map(sample)).is_none());
+    let parallel = [(0.0, 0.0, -1), (0.0, 1.0, 1), (5.0, 6.0, -1), (5.0, 5.0, 1)];
+    assert!(bisector(&parallel.map(sample)).is_none());
+}
