@@ -1,0 +1,93 @@
+//! Host-side times of one planning step, one cut and one estimate, over the states of a mission.
+
+use std::hint::black_box;
+
+use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
+use nalgebra::Point2;
+use planner_core::cfc::{Cfc, Config, Crossing, Following};
+use planner_core::direction::Heading;
+use planner_core::dynamics::{Pose, Unicycle};
+use planner_core::estimate::Estimates;
+use planner_core::lattice::Site;
+use planner_core::planner::{Plan, Planner};
+use planner_core::problem::{Area, Problem, Varrho};
+use planner_core::sample::{Label, Sample};
+use planner_core::version_space::VersionSpace;
+
+type Cfc32 = Cfc<Unicycle, 32>;
+
+fn at(x: f64, z: f64) -> Site {
+    Site::try_from(Point2::new(x, z)).expect("on the lattice")
+}
+
+fn label(site: Site) -> Label {
+    let at = Point2::<f64>::from(site);
+    if at.y > 0.41 * at.x + 3.5 { Label::Positive } else { Label::Negative }
+}
+
+/// The planner and the pose before each of the first steps of the paper's noiseless example.
+fn states() -> Vec<(Cfc32, Pose)> {
+    let corners = [(2.0, 1.0), (2.0, 8.0), (18.0, 16.0), (18.0, 5.0)].map(|(x, z)| at(x, z));
+    let oracle = corners.map(|site| Sample { site, label: label(site) });
+    let config = Config {
+        area: Area::new(at(0.0, 0.0), at(20.0, 20.0)).expect("an area"),
+        varrho: Varrho::PAPER,
+        crossing: Crossing::default(),
+        following: Following::default(),
+    };
+    let space = VersionSpace::new(&oracle).expect("separable");
+    let mut planner = Cfc::new(config, Unicycle::paper(), space);
+    let mut pose = Pose { site: corners[0], heading: Heading(0) };
+    let mut states = Vec::new();
+    for _ in 0..24 {
+        states.push((planner.clone(), pose));
+        let Plan::Move(motion) = planner.plan(pose) else { break };
+        pose = motion.target;
+        let reading = motion.samples().then(|| label(pose.site).into());
+        planner.observe(pose, reading).expect("labels are true");
+    }
+    states
+}
+
+fn step(criterion: &mut Criterion) {
+    let states = states();
+    let n = states.len();
+    criterion.bench_function(&format!("plan, {n} states of a mission"), |bencher| {
+        bencher.iter_batched_ref(
+            || states.clone(),
+            |states| {
+                for (planner, pose) in states {
+                    let _ = black_box(planner.plan(*pose));
+                }
+            },
+            BatchSize::SmallInput,
+        );
+    });
+    criterion.bench_function(
+        &format!("the same problems by trying every action, {n} states"),
+        |bencher| {
+            bencher.iter(|| {
+                for (planner, pose) in &states {
+                    let problem: Problem<32> = planner.problem();
+                    black_box(problem.solve_exhaustively(&Unicycle::paper(), *pose));
+                }
+            });
+        },
+    );
+    let (last, _) = states.last().expect("states");
+    let samples = last.space().samples();
+    let before = VersionSpace::<32>::new(&samples[..samples.len() - 1]).expect("separable");
+    criterion.bench_function("cut by one sample", |bencher| {
+        bencher.iter_batched_ref(
+            || before.clone(),
+            |space| space.insert(black_box(samples[samples.len() - 1])),
+            BatchSize::SmallInput,
+        );
+    });
+    criterion.bench_function("three estimates", |bencher| {
+        bencher.iter(|| Estimates::of(black_box(last.space())));
+    });
+}
+
+criterion_group!(benches, step);
+criterion_main!(benches);
