@@ -1,5 +1,6 @@
 //! The command line as its users meet it: the commands, and one wrong input of each kind.
 
+use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -151,6 +152,9 @@ fn bad_scenarios_are_refused_by_file_and_field() {
     }
 }
 
+/// Oracle points as position and label.
+type Points<'a> = &'a [(f64, f64, i8)];
+
 #[test]
 fn bad_oracles_are_refused() {
     let folder = folder();
@@ -160,7 +164,7 @@ fn bad_oracles_are_refused() {
             points.iter().map(|(x, z, label)| format!("{{ x = {x}, z = {z}, label = {label} }}"));
         format!("{before}oracle = [{}]\n", each.collect::<Vec<_>>().join(", "))
     };
-    let cases: [(&[(f64, f64, i8)], &[&str]); 4] = [
+    let cases: [(Points, &[&str]); 4] = [
         (
             &[(2.0, 8.0, 1), (3.0, 9.0, 1), (4.0, 8.0, 1)],
             &["oracle", "only the label 1", "both labels"],
@@ -226,7 +230,7 @@ fn replay_takes_more_rows_than_any_buffer_holds() {
         let off =
             f64::from(i * 61 % 97 + 3) / 10.0 * if i < 300 || i % 2 == 0 { 1.0 } else { -1.0 };
         let z = 0.5 * x + 7001.25 + off;
-        rows += &format!("{x},{z},{}\n", if off > 0.0 { 1 } else { -1 });
+        writeln!(rows, "{x},{z},{}", if off > 0.0 { 1 } else { -1 }).expect("a string");
     }
     fs::write(folder.path().join("s.csv"), &rows).expect("a file");
     let record: serde_json::Value =

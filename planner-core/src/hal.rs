@@ -115,7 +115,8 @@ mod tests {
             (false, Label::Negative, Label::Positive),
         ] {
             let mut sensor = PinSensor::new(Wire(Ok(level)), high);
-            assert_eq!((&mut sensor).read().unwrap(), Reading::Side(label));
+            let read = |mut sensor: &mut PinSensor<Wire>| LabelSensor::read(&mut sensor);
+            assert_eq!(read(&mut sensor).unwrap(), Reading::Side(label));
         }
         assert!(PinSensor::new(Wire(Err(())), Label::Positive).read().is_err());
     }

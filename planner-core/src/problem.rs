@@ -13,7 +13,7 @@
 //!   ray it is an interval of speeds: it is left by bisection, not speed by speed.
 //!
 //! The last step needs care, as positions are rounded to the lattice and so not quite on the ray. A
-//! [`Sightline`] carries a proven bound on that rounding. Ground is skipped only where it is certain
+//! `Sightline` carries a proven bound on that rounding. Ground is skipped only where it is certain
 //! whatever the rounding; what is left is settled by the exact predicate.
 
 use heapless::Vec;
