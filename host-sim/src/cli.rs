@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, Result};
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use nalgebra::Point2;
 
 use crate::campaign::Campaign;
 use crate::figure::Figure;
@@ -124,6 +123,9 @@ impl Cli {
     }
 }
 
+/// What the bare command tells.
+pub const PAPER_TITLE: &str = "The paper's noiseless example (Section V), Algorithm 1";
+
 /// The paper's example, start to end.
 fn paper() -> Result<String> {
     let path = Path::new("out").join("paper-noiseless.svg");
@@ -132,21 +134,20 @@ fn paper() -> Result<String> {
     let name = "paper-noiseless.toml";
     let mission = scenario::parse(name, scenario::PAPER_NOISELESS, Overrides::default())?;
     let recording = Recording::of(mission)?;
-    let title = "The paper's noiseless example (Section V), Algorithm 1";
-    output.write(&figure(title, &recording)?)?;
-    let story = report::mission(title, &recording);
+    output.write(&Figure::of(PAPER_TITLE, &recording).svg()?)?;
+    let story = report::mission(PAPER_TITLE, &recording);
     Ok(format!("{story}\nFigure: {}\n", path.display()))
 }
 
 fn run(args: &Run) -> Result<String> {
-    let Run { scenario, algorithm, steps, seed, trace, figure: picture, format } = args;
+    let Run { scenario, algorithm, steps, seed, trace, figure, format } = args;
     let overrides = Overrides { algorithm: *algorithm, steps: *steps, seed: *seed };
     let mission = scenario::read(scenario, overrides)?;
-    let outputs = (Output::create_if(trace.as_ref())?, Output::create_if(picture.as_ref())?);
+    let outputs = (Output::create_if(trace.as_ref())?, Output::create_if(figure.as_ref())?);
     let name = scenario.display().to_string();
     let recording = Recording::of(mission).with_context(|| name.clone())?;
     let lines = trace::lines(&recording);
-    let svg = outputs.1.as_ref().map(|_| figure(&name, &recording)).transpose()?;
+    let svg = outputs.1.as_ref().map(|_| Figure::of(&name, &recording).svg()).transpose()?;
     if let Some(output) = outputs.0 {
         output.write(&lines)?;
     }
@@ -190,18 +191,4 @@ fn campaign(args: &CampaignArgs) -> Result<String> {
         Format::Text => summary.report(),
         Format::Json => summary.json(),
     })
-}
-
-fn figure(title: &str, recording: &Recording) -> Result<String> {
-    let mission = &recording.mission;
-    Figure {
-        title: title.to_owned(),
-        area: mission.config.area,
-        space: &recording.space,
-        given: mission.space.samples().len(),
-        path: Some((Point2::from(mission.start.site), &recording.steps)),
-        truth: Some(mission.truth),
-        estimate: recording.estimates().centre,
-    }
-    .svg()
 }

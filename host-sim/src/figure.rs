@@ -14,7 +14,7 @@ use plotters::prelude::*;
 
 use crate::mission::CAPACITY;
 use crate::polygon::Polygon;
-use crate::recording::Recorded;
+use crate::recording::{Recorded, Recording};
 
 // Orange for +1 and blue for -1, as in the paper's Figure 1, in hues that colour-blind readers tell
 // apart; shapes tell them apart too.
@@ -58,7 +58,21 @@ fn xy(point: Point2<f64>) -> (f64, f64) {
     (point.x, point.y)
 }
 
-impl Figure<'_> {
+impl<'a> Figure<'a> {
+    /// The figure of a mission.
+    pub fn of(title: &str, recording: &'a Recording) -> Self {
+        let mission = &recording.mission;
+        Self {
+            title: title.to_owned(),
+            area: mission.config.area,
+            space: &recording.space,
+            given: mission.space.samples().len(),
+            path: Some((Point2::from(mission.start.site), &recording.steps)),
+            truth: Some(mission.truth),
+            estimate: recording.estimates().centre,
+        }
+    }
+
     /// The figure as an SVG document.
     ///
     /// # Errors
@@ -69,7 +83,7 @@ impl Figure<'_> {
             (Point2::<f64>::from(self.area.min()), Point2::<f64>::from(self.area.max()));
         let (width, height) = (max.x - min.x, max.y - min.y);
         let scale = SIZE / width.max(height);
-        let margins = (90.0, 210.0); // axes below and left; title, legend and axis above
+        let margins = (125.0, 210.0); // axes below and left; title, legend and axis above
         let canvas = |length: f64, margin: f64| ((length * scale).max(260.0) + margin) as u32;
         let mut svg = String::new();
         {
@@ -80,8 +94,9 @@ impl Figure<'_> {
             self.draw_legend(&legend)?;
             let mut chart = ChartBuilder::on(&plot)
                 .margin(15)
+                .margin_right(35)
                 .x_label_area_size(45)
-                .y_label_area_size(55)
+                .y_label_area_size(75)
                 .build_cartesian_2d(min.x..max.x, min.y..max.y)
                 .map_err(failed)?;
             self.draw_ground(&mut chart)?;

@@ -1,6 +1,6 @@
 //! The recovery ladder, for when a one-step problem has no feasible action.
 //!
-//! The paper is silent here, and P1 comes to it once in some twelve steps. In this order:
+//! The paper is silent here, and P1 comes to it once in some fourteen steps. In this order:
 //!
 //! 1. *Undirected*: the same problem without its rule on directions.
 //! 2. *Reorient*: turn in place, the fewest sharpest turns after which (1) is feasible; of left and

@@ -6,6 +6,8 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use expect_test::expect_file;
+use host_sim::cli::PAPER_TITLE;
+use host_sim::figure::Figure;
 use host_sim::mission::Algorithm;
 use host_sim::polygon::misclassified;
 use host_sim::recording::{Recording, recovery_name};
@@ -30,6 +32,15 @@ fn standard_scenarios() {
         describe(&mut table, &name, &recording).expect("a string");
     }
     expect_file!["golden/scenarios.txt"].assert_eq(&table);
+}
+
+/// The README's picture is the one that the bare command draws.
+#[test]
+fn the_picture_in_the_readme() {
+    let mission = scenario::parse("", scenario::PAPER_NOISELESS, Overrides::default());
+    let recording = Recording::of(mission.expect("a good file")).expect("noiseless");
+    let figure = Figure::of(PAPER_TITLE, &recording).svg().expect("a figure");
+    expect_file!["../../host-sim/figures/paper-noiseless.svg"].assert_eq(&figure);
 }
 
 fn describe(table: &mut String, name: &str, recording: &Recording) -> std::fmt::Result {
