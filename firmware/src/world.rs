@@ -9,15 +9,17 @@ use core::convert::Infallible;
 
 use nalgebra::Point2;
 use planner_core::agent::Agent;
+use planner_core::area::Area;
 use planner_core::cfc::{Cfc, Config, Crossing, Following};
 use planner_core::direction::Heading;
-use planner_core::dynamics::{Pose, Unicycle};
+use planner_core::dynamics::Pose;
 use planner_core::hal::{Drive, LabelSensor};
 use planner_core::lattice::{Site, UNITS_PER_METRE};
 use planner_core::line::Line;
 use planner_core::planner::Motion;
-use planner_core::problem::{Area, Varrho};
+use planner_core::problem::Varrho;
 use planner_core::sample::{Label, Reading, Sample};
+use planner_core::unicycle::Unicycle;
 use planner_core::version_space::{NoVersionSpace, VersionSpace};
 
 /// Steps at most.

@@ -9,12 +9,13 @@
 //!    d(angle) d(offset): by rejection, over lines that meet the area's circumscribed disc.
 
 use nalgebra::{Point2, Vector2};
+use planner_core::area::Area;
 use planner_core::cfc::{Config, Crossing, Following};
 use planner_core::direction::Heading;
 use planner_core::dynamics::Pose;
 use planner_core::lattice::Site;
 use planner_core::line::Line;
-use planner_core::problem::{Area, Varrho};
+use planner_core::problem::Varrho;
 use planner_core::sample::{Label, Reading, Sample};
 use planner_core::version_space::VersionSpace;
 use rand::{RngExt, SeedableRng};

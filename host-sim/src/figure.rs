@@ -4,8 +4,8 @@ use std::fmt::Display;
 
 use anyhow::{Result, anyhow};
 use nalgebra::{Point2, Vector2};
+use planner_core::area::Area;
 use planner_core::line::Line;
-use planner_core::problem::Area;
 use planner_core::sample::{Label, Reading, Sample};
 use planner_core::version_space::VersionSpace;
 use plotters::coord::types::RangedCoordf64;

@@ -5,9 +5,10 @@ use std::convert::Infallible;
 
 use planner_core::agent::{Agent, AgentError, Event, Step};
 use planner_core::cfc::{Cfc, Config};
-use planner_core::dynamics::{Dynamics, Pose, Unicycle};
+use planner_core::dynamics::{Dynamics, Pose};
 use planner_core::line::Line;
 use planner_core::planner::{Planner, StopReason};
+use planner_core::unicycle::Unicycle;
 use planner_core::version_space::{Refused, VersionSpace};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;

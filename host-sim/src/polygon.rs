@@ -1,8 +1,8 @@
 //! Convex polygons in metres: clipping and area.
 
 use nalgebra::Point2;
+use planner_core::area::Area;
 use planner_core::line::Line;
-use planner_core::problem::Area;
 
 /// A convex polygon as its corners in order; empty when there are none.
 #[derive(Clone, Debug)]

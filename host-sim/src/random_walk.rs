@@ -1,9 +1,9 @@
 //! A planner that moves at random: what any planner has to beat.
 
 use planner_core::action::Action;
+use planner_core::area::Area;
 use planner_core::dynamics::{Dynamics, Pose};
 use planner_core::planner::{Motion, Plan, Planner, StopReason};
-use planner_core::problem::Area;
 use planner_core::sample::{Label, Reading, Sample};
 use planner_core::version_space::{Refused, VersionSpace};
 use rand::RngExt;

@@ -5,12 +5,13 @@ use std::path::Path;
 
 use anyhow::{Result, anyhow, bail};
 use nalgebra::Point2;
+use planner_core::area::Area;
 use planner_core::cfc::{Config, Crossing, Following};
 use planner_core::direction::Heading;
 use planner_core::dynamics::Pose;
 use planner_core::lattice::Site;
 use planner_core::line::Line;
-use planner_core::problem::{Area, Varrho};
+use planner_core::problem::Varrho;
 use planner_core::sample::{Label, Reading, Sample};
 use planner_core::version_space::{NoVersionSpace, VersionSpace};
 use serde::Deserialize;

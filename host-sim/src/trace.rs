@@ -1,10 +1,10 @@
 //! The trace: a mission as JSON Lines. The contract is in ARCHITECTURE.md.
 
 use nalgebra::Point2;
+use planner_core::area::Area;
 use planner_core::dynamics::Pose;
 use planner_core::estimate::Estimates;
 use planner_core::line::Line;
-use planner_core::problem::Area;
 use planner_core::sample::{Reading, Sample};
 use serde::Serialize;
 

@@ -4,14 +4,16 @@ use std::hint::black_box;
 
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use nalgebra::Point2;
+use planner_core::area::Area;
 use planner_core::cfc::{Cfc, Config, Crossing, Following};
 use planner_core::direction::Heading;
-use planner_core::dynamics::{Pose, Unicycle};
+use planner_core::dynamics::Pose;
 use planner_core::estimate::Estimates;
 use planner_core::lattice::Site;
 use planner_core::planner::{Plan, Planner};
-use planner_core::problem::{Area, Problem, Varrho};
+use planner_core::problem::{Problem, Varrho};
 use planner_core::sample::{Label, Sample};
+use planner_core::unicycle::Unicycle;
 use planner_core::version_space::VersionSpace;
 
 type Cfc32 = Cfc<Unicycle, 32>;

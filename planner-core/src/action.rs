@@ -4,6 +4,9 @@
 //! `rays` rays of `speeds` speeds, `0, step, 2 step, ...`; the index of an action is
 //! `ray * speeds + speed`.
 
+use crate::dynamics::Ray;
+use crate::lattice::UNITS_PER_METRE;
+
 /// The name of an action within a grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -83,6 +86,17 @@ impl ActionGrid {
     /// Distance of travel, millimetres.
     pub const fn reach_mm(&self, speed: u16) -> u32 {
         speed as u32 * self.speed_step_mm
+    }
+
+    /// Distance of travel, metres.
+    pub const fn reach_m(&self, speed: u16) -> f32 {
+        self.reach_mm(speed) as f32 / 1000.0
+    }
+
+    /// Length of one step of speed in the units of [`Ray::step`](crate::dynamics::Ray::step).
+    pub(crate) const fn step_length(self) -> i32 {
+        let per_metre = (UNITS_PER_METRE as u64) << Ray::STEP_BITS;
+        ((self.speed_step_mm as u64 * per_metre + 500) / 1000) as i32
     }
 
     /// The name of an action.

@@ -51,15 +51,17 @@
 //! use core::convert::Infallible;
 //! use nalgebra::Point2;
 //! use planner_core::agent::{Agent, Event};
+//! use planner_core::area::Area;
 //! use planner_core::cfc::{Cfc, Config, Crossing, Following};
 //! use planner_core::direction::Heading;
-//! use planner_core::dynamics::{Pose, Unicycle};
+//! use planner_core::dynamics::Pose;
 //! use planner_core::estimate;
 //! use planner_core::hal::{Drive, LabelSensor};
 //! use planner_core::lattice::Site;
 //! use planner_core::planner::Motion;
-//! use planner_core::problem::{Area, Varrho};
+//! use planner_core::problem::Varrho;
 //! use planner_core::sample::{Label, Reading, Sample};
+//! use planner_core::unicycle::Unicycle;
 //! use planner_core::version_space::VersionSpace;
 //!
 //! // A world in which z = 0.41 x + 3.5 divides the plane, and a vehicle that goes where it is told.
@@ -119,16 +121,20 @@
 
 pub mod action;
 pub mod agent;
+pub mod area;
 pub mod cell;
 pub mod cfc;
 pub mod direction;
 pub mod dynamics;
 pub mod estimate;
 pub mod hal;
+pub mod holonomic;
 pub mod lattice;
 pub mod line;
 pub mod planner;
 pub mod problem;
 mod recovery;
 pub mod sample;
+mod sight;
+pub mod unicycle;
 pub mod version_space;

@@ -4,11 +4,14 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 use host_sim::field;
 use host_sim::mission::{Algorithm, CAPACITY};
+use planner_core::area::Area;
 use planner_core::direction::{Arc, Heading};
-use planner_core::dynamics::{Dynamics, Holonomic, Pose, Unicycle};
+use planner_core::dynamics::{Dynamics, Pose};
+use planner_core::holonomic::Holonomic;
 use planner_core::lattice::{Site, Vector};
-use planner_core::problem::{Area, DirectionRule, Problem, Varrho};
+use planner_core::problem::{DirectionRule, Problem, Varrho};
 use planner_core::sample::{Label, Sample};
+use planner_core::unicycle::Unicycle;
 use planner_core::version_space::VersionSpace;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
