@@ -233,7 +233,8 @@ fn mark(mission: &Mission, space: &VersionSpace<CAPACITY>, so_far: Mark) -> Mark
     let (maximum_margin_deg, maximum_margin_misclassified) = errors(estimates.maximum_margin);
     let (bisector_deg, bisector_misclassified) = errors(estimates.bisector);
     Mark {
-        bits: (estimate::area(&mission.space) / estimate::area(space)).log2(),
+        bits: (estimate::area(mission.space.candidates()) / estimate::area(space.candidates()))
+            .log2(),
         centre_deg,
         maximum_margin_deg,
         bisector_deg,

@@ -43,7 +43,7 @@ impl Recording {
     pub fn of(mission: Mission) -> Result<Self> {
         let mut steps = Vec::new();
         let mut last = mission.space.clone();
-        let before = estimate::area(&last);
+        let before = estimate::area(last.candidates());
         let end = mission
             .run(|step, space| {
                 last = space.clone();
@@ -51,7 +51,7 @@ impl Recording {
                     step: *step,
                     slope_arcs: space.slope_arc().intervals_deg().to_vec(),
                     intercept: space.intercepts(),
-                    bits: (before / estimate::area(space)).log2(),
+                    bits: (before / estimate::area(space.candidates())).log2(),
                 });
             })
             .map_err(|refused| match refused {

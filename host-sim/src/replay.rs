@@ -132,7 +132,7 @@ impl Replay {
             given: 0,
             path: None,
             truth: None,
-            estimate: estimate::centre(&self.space),
+            estimate: estimate::centre(self.space.candidates()),
         }
         .svg()
     }

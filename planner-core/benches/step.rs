@@ -11,7 +11,7 @@ use planner_core::dynamics::Pose;
 use planner_core::estimate::Estimates;
 use planner_core::lattice::Site;
 use planner_core::planner::{Plan, Planner};
-use planner_core::problem::{Problem, Varrho};
+use planner_core::problem::Varrho;
 use planner_core::sample::{Label, Sample};
 use planner_core::unicycle::Unicycle;
 use planner_core::version_space::VersionSpace;
@@ -70,7 +70,7 @@ fn step(criterion: &mut Criterion) {
         |bencher| {
             bencher.iter(|| {
                 for (planner, pose) in &states {
-                    let problem: Problem<32> = planner.problem();
+                    let problem = planner.problem();
                     black_box(problem.solve_exhaustively(&Unicycle::paper(), *pose));
                 }
             });

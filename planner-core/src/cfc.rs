@@ -14,7 +14,7 @@ use crate::cell::Certainty;
 use crate::direction::Arc;
 use crate::dynamics::{Dynamics, Pose};
 use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
-use crate::problem::{Candidate, DirectionRule, Problem, Varrho};
+use crate::problem::{ArcRule, Candidate, Problem, Varrho};
 use crate::recovery::{Found, solve_or_recover};
 use crate::sample::{Label, Reading, Sample};
 use crate::version_space::{Refused, VersionSpace};
@@ -110,16 +110,14 @@ impl<D: Dynamics, const N: usize> Cfc<D, N> {
     }
 
     /// The one-step problem of the present phase.
-    pub fn problem(&self) -> Problem<'_, N> {
+    pub fn problem(&self) -> Problem<'_, ArcRule, N> {
         let Config { area, varrho, .. } = self.config;
         let arc = self.space.slope_arc();
         let rule = match self.phase {
-            Phase::Crossing => DirectionRule { inside: self.crossing_arc(arc), outside: Some(arc) },
-            Phase::Following => {
-                DirectionRule { inside: Some(self.following_arc(arc)), outside: None }
-            }
+            Phase::Crossing => ArcRule { inside: self.crossing_arc(arc), outside: Some(arc) },
+            Phase::Following => ArcRule { inside: Some(self.following_arc(arc)), outside: None },
         };
-        Problem { space: &self.space, area, varrho, rule }
+        Problem { ground: self.space.candidates(), area, varrho, rule }
     }
 
     fn crossing_arc(&self, slopes: Arc) -> Option<Arc> {

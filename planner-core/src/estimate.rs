@@ -11,6 +11,7 @@
 
 use nalgebra::{Matrix2, Point2, Vector2};
 
+use crate::candidates::Candidates;
 use crate::lattice::{Site, UNITS_PER_METRE, Vector};
 use crate::line::Line;
 use crate::sample::{Label, Sample};
@@ -33,8 +34,8 @@ impl Estimates {
     pub fn of<const N: usize>(space: &VersionSpace<N>) -> Self {
         Self {
             bisector: bisector(space.samples()),
-            centre: centre(space),
-            maximum_margin: maximum_margin(space),
+            centre: centre(space.candidates()),
+            maximum_margin: maximum_margin(space.candidates()),
         }
     }
 }
@@ -62,8 +63,8 @@ impl Moments {
     /// integral over it is one round its edges. With `u` the direction of the line, `n` a quarter
     /// turn to the left of it and `M` the integral of `n n^T` from one end of an edge to the other,
     /// an edge adds `p . (u' - u)` to the area, `M p` to the normal and `p^T M p / 2` to the offset.
-    fn of<const N: usize>(space: &VersionSpace<N>) -> Self {
-        let samples = space.samples();
+    fn of<const E: usize>(candidates: Candidates<'_, E>) -> Self {
+        let samples = candidates.samples;
         let about = samples.first().map(|s| s.site);
         let mut moments = Self {
             area: 0.0,
@@ -71,7 +72,7 @@ impl Moments {
             offset: 0.0,
             about: about.map_or(Point2::origin(), Point2::from),
         };
-        for (edge, [start, end]) in space.cell().sides(samples) {
+        for (edge, [start, end]) in candidates.cell.sides(samples) {
             let (Some(sample), Some(about)) = (samples.get(edge.index()), about) else {
                 continue;
             };
@@ -91,8 +92,8 @@ impl Moments {
 
 /// The measure of the version space, radian metres: d(angle) d(offset), the measure of lines that
 /// no motion of the plane changes. Its logarithm to the base 2 falls by the bits that samples tell.
-pub fn area<const N: usize>(space: &VersionSpace<N>) -> f64 {
-    Moments::of(space).area.abs()
+pub fn area<const E: usize>(candidates: Candidates<'_, E>) -> f64 {
+    Moments::of(candidates).area.abs()
 }
 
 /// The centre: the mean of the candidate lines, as unit normals with their offsets, by the measure
@@ -101,8 +102,8 @@ pub fn area<const N: usize>(space: &VersionSpace<N>) -> f64 {
 /// Closed form, and the same wherever the origin lies and however the axes turn. The version space
 /// is convex, so its mean agrees with every sample. `None` if the version space is too thin for
 /// double precision.
-pub fn centre<const N: usize>(space: &VersionSpace<N>) -> Option<Line> {
-    let Moments { area, normal, offset, about } = Moments::of(space);
+pub fn centre<const E: usize>(candidates: Candidates<'_, E>) -> Option<Line> {
+    let Moments { area, normal, offset, about } = Moments::of(candidates);
     let normal = normal / area;
     let norm = normal.norm();
     Line::through(about + normal * (offset / area / (norm * norm)), normal)
@@ -112,8 +113,8 @@ pub fn centre<const N: usize>(space: &VersionSpace<N>) -> Option<Line> {
 ///
 /// The pair is chosen by exact integer conditions, so the line is the exact one, rounded once. Only
 /// samples that still matter to the version space can support it. `O(m^3)` for `m` of them.
-pub fn maximum_margin<const N: usize>(space: &VersionSpace<N>) -> Option<Line> {
-    let of = |label: Label| space.support().filter(move |s| s.label == label).map(|s| s.site);
+pub fn maximum_margin<const E: usize>(candidates: Candidates<'_, E>) -> Option<Line> {
+    let of = |label: Label| candidates.support().filter(move |s| s.label == label).map(|s| s.site);
     let (above, below) = (|| of(Label::Positive), || of(Label::Negative));
     // Two samples support it when every other lies beyond them, as seen along their difference.
     let pairs = || above().flat_map(move |p| below().map(move |q| (p, q)));

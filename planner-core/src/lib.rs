@@ -105,7 +105,7 @@
 //!         break;
 //!     }
 //! }
-//! let line = estimate::centre(agent.planner.space()).ok_or("no estimate")?;
+//! let line = estimate::centre(agent.planner.space().candidates()).ok_or("no estimate")?;
 //! assert!((line.slope().ok_or("vertical")? - 0.41).abs() < 0.01);
 //! assert!((line.intercept().ok_or("vertical")? - 3.5).abs() < 0.1);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -122,6 +122,7 @@
 pub mod action;
 pub mod agent;
 pub mod area;
+pub mod candidates;
 pub mod cell;
 pub mod cfc;
 pub mod direction;

@@ -14,12 +14,12 @@
 
 use crate::action::Action;
 use crate::area::Area;
+use crate::candidates::Candidates;
 use crate::cell::Certainty;
 use crate::direction::Arc;
 use crate::dynamics::{Dynamics, Pose};
 use crate::lattice::Vector;
 use crate::sight::Sight;
-use crate::version_space::VersionSpace;
 
 /// The weight of the control in the objective, in [0, 1), to six decimal places.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,19 +58,32 @@ impl Varrho {
 }
 
 /// A rule on the direction of travel, modulo pi.
+pub trait DirectionRule {
+    /// Whether travel in this direction is allowed.
+    fn admits(&self, direction: Vector) -> bool;
+}
+
+/// Any direction will do.
+#[derive(Clone, Copy, Debug)]
+pub struct AnyDirection;
+
+impl DirectionRule for AnyDirection {
+    fn admits(&self, _: Vector) -> bool {
+        true
+    }
+}
+
+/// A rule by arcs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct DirectionRule {
+pub struct ArcRule {
     /// The direction must lie in this arc.
     pub inside: Option<Arc>,
     /// The direction must not lie in this arc.
     pub outside: Option<Arc>,
 }
 
-impl DirectionRule {
-    /// Any direction will do.
-    pub const ANY: Self = Self { inside: None, outside: None };
-
+impl DirectionRule for ArcRule {
     fn admits(&self, direction: Vector) -> bool {
         self.inside.is_none_or(|arc| arc.contains(direction))
             && self.outside.is_none_or(|arc| !arc.contains(direction))
@@ -79,15 +92,15 @@ impl DirectionRule {
 
 /// A one-step problem at some stage of a mission.
 #[derive(Clone, Copy, Debug)]
-pub struct Problem<'a, const N: usize> {
-    /// What is known of the line.
-    pub space: &'a VersionSpace<N>,
+pub struct Problem<'a, R, const E: usize> {
+    /// The candidate lines: what they agree on is the ground to stay out of.
+    pub ground: Candidates<'a, E>,
     /// Where positions must stay.
     pub area: Area,
     /// The weight of the control.
     pub varrho: Varrho,
     /// Where travel may go.
-    pub rule: DirectionRule,
+    pub rule: R,
 }
 
 /// A feasible action.
@@ -112,7 +125,12 @@ pub struct Search {
     pub examined: u32,
 }
 
-impl<const N: usize> Problem<'_, N> {
+impl<'a, R: DirectionRule, const E: usize> Problem<'a, R, E> {
+    /// The same problem with another rule.
+    pub fn with_rule<S: DirectionRule>(&self, rule: S) -> Problem<'a, S, E> {
+        Problem { ground: self.ground, area: self.area, varrho: self.varrho, rule }
+    }
+
     /// Solves the problem from a pose inside the area.
     ///
     /// Cost: for each ray that the rule admits and the objective does not exclude, one or two looks
@@ -120,10 +138,10 @@ impl<const N: usize> Problem<'_, N> {
     /// three multiplications for each vertex of the version space. No trigonometry but one `sincosf`.
     pub fn solve<D: Dynamics>(&self, dynamics: &D, pose: Pose) -> Search {
         let grid = dynamics.grid();
-        let mut sight = Sight::new(self.space, self.area, pose.site, grid.speeds());
+        let mut sight = Sight::new(self.ground, self.area, pose.site, grid.speeds());
         let mut best: Option<Candidate> = None;
         // Standing still yields a sample only where the label is not known.
-        let mut slowest = u16::from(self.space.certainty(pose.site) != Certainty::Uncertain);
+        let mut slowest = u16::from(self.ground.certainty(pose.site) != Certainty::Uncertain);
         for ray in dynamics.rays(pose) {
             let objective = |speed| self.varrho.objective(grid.reach_mm(speed), ray.effort);
             while best.is_some_and(|b| objective(slowest) <= b.objective) && slowest < grid.speeds()
@@ -158,7 +176,7 @@ impl<const N: usize> Problem<'_, N> {
                 let feasible = |target: &Pose| {
                     self.area.contains(target.site)
                         && self.rule.admits(ray.step)
-                        && self.space.certainty(target.site) == Certainty::Uncertain
+                        && self.ground.certainty(target.site) == Certainty::Uncertain
                 };
                 if search.best.is_none_or(|b| objective > b.objective)
                     && let Some(target) = ray.arrive(pose.site, speed).ok().filter(feasible)

@@ -17,7 +17,7 @@ use crate::action::Action;
 use crate::dynamics::{Dynamics, Pose};
 use crate::lattice::Vector;
 use crate::planner::Recovery;
-use crate::problem::{DirectionRule, Problem};
+use crate::problem::{AnyDirection, DirectionRule, Problem};
 
 /// A transit looks this many motions ahead.
 const HORIZON: u32 = 32;
@@ -31,13 +31,13 @@ pub(crate) struct Found {
 
 /// The problem's best action, or the ladder's; `None` when there is neither. Adds the actions that
 /// were looked at to `examined`.
-pub(crate) fn solve_or_recover<D: Dynamics, const N: usize>(
-    problem: &Problem<'_, N>,
+pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule, const E: usize>(
+    problem: &Problem<'_, R, E>,
     dynamics: &D,
     pose: Pose,
     examined: &mut u32,
 ) -> Option<Found> {
-    let undirected = Problem { rule: DirectionRule::ANY, ..*problem };
+    let undirected = problem.with_rule(AnyDirection);
     let mut ladder = Ladder { problem: undirected, dynamics, examined };
     let found = |recovery| move |(action, target)| Found { recovery, action, target };
     ladder
@@ -54,16 +54,20 @@ pub(crate) fn solve_or_recover<D: Dynamics, const N: usize>(
 /// An action and where it leads.
 type Leg = (Action, Pose);
 
-struct Ladder<'a, D, const N: usize> {
+struct Ladder<'a, D, const E: usize> {
     /// The problem without its rule on directions.
-    problem: Problem<'a, N>,
+    problem: Problem<'a, AnyDirection, E>,
     dynamics: &'a D,
     examined: &'a mut u32,
 }
 
-impl<D: Dynamics, const N: usize> Ladder<'_, D, N> {
+impl<D: Dynamics, const E: usize> Ladder<'_, D, E> {
     /// The best action of a problem and its objective.
-    fn solve(&mut self, problem: &Problem<'_, N>, pose: Pose) -> Option<(Leg, i64)> {
+    fn solve<R: DirectionRule>(
+        &mut self,
+        problem: &Problem<'_, R, E>,
+        pose: Pose,
+    ) -> Option<(Leg, i64)> {
         let search = problem.solve(self.dynamics, pose);
         *self.examined += search.examined;
         search.best.map(|best| ((best.action, best.target), best.objective))
@@ -94,7 +98,7 @@ impl<D: Dynamics, const N: usize> Ladder<'_, D, N> {
     }
 
     fn transit(&mut self, pose: Pose) -> Option<Leg> {
-        let u = self.problem.space.slope_arc().bisector();
+        let u = self.problem.ground.slope_arc().bisector();
         let l = u.left();
         let between = |a: Vector, b: Vector| Vector { x: a.x.midpoint(b.x), z: a.z.midpoint(b.z) };
         let diagonal = between(u, l);

@@ -8,13 +8,13 @@
 use heapless::Vec;
 
 use crate::area::Area;
+use crate::candidates::Candidates;
 use crate::cell::Certainty;
 use crate::dynamics::Ray;
 use crate::lattice::{Site, Vector};
 use crate::sample::Label;
-use crate::version_space::VersionSpace;
 
-/// A bound of the version space, seen from where the agent stands.
+/// A bound of the candidates, seen from where the agent stands.
 struct Sightline {
     along: Vector,
     /// The bound's value at the agent's position.
@@ -35,26 +35,26 @@ impl Sightline {
 }
 
 /// All that a search sees from one position.
-pub(crate) struct Sight<'a, const N: usize> {
-    space: &'a VersionSpace<N>,
+pub(crate) struct Sight<'a, const E: usize> {
+    ground: Candidates<'a, E>,
     area: Area,
     from: Site,
-    lines: Vec<Sightline, N, u8>,
+    lines: Vec<Sightline, E, u8>,
     examined: u32,
 }
 
-impl<'a, const N: usize> Sight<'a, N> {
-    /// What the space's bounds look like from a position, for motions of some number of speeds.
-    pub(crate) fn new(space: &'a VersionSpace<N>, area: Area, from: Site, speeds: u16) -> Self {
+impl<'a, const E: usize> Sight<'a, E> {
+    /// What the bounds of candidates look like from a position, for motions of some number of speeds.
+    pub(crate) fn new(ground: Candidates<'a, E>, area: Area, from: Site, speeds: u16) -> Self {
         let mut lines = Vec::new();
-        for bound in space.bounds() {
+        for bound in ground.bounds() {
             let along = bound.along;
             let size = i64::from(along.x.unsigned_abs()) + i64::from(along.z.unsigned_abs());
             let slack = size / 2 + 1 + i64::from(speeds);
             // As many vertices as edges, and these fit: nothing is refused.
             let _ = lines.push(Sightline { along, here: bound.at(from), slack });
         }
-        Self { space, area, from, lines, examined: 0 }
+        Self { ground, area, from, lines, examined: 0 }
     }
 
     /// Actions whose position was looked at so far.
@@ -131,6 +131,6 @@ impl<'a, const N: usize> Sight<'a, N> {
     }
 
     fn is_uncertain(&self, ray: &Ray, speed: u16) -> bool {
-        self.position(ray, speed).is_some_and(|q| self.space.certainty(q) == Certainty::Uncertain)
+        self.position(ray, speed).is_some_and(|q| self.ground.certainty(q) == Certainty::Uncertain)
     }
 }

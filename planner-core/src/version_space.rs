@@ -1,5 +1,6 @@
 //! The version space: all lines that agree with every sample, and what can be read off it.
 
+use crate::candidates::Candidates;
 use crate::cell::{Cell, Certainty, Cut, CutError, Edge};
 use crate::direction::Arc;
 use crate::lattice::Site;
@@ -132,34 +133,35 @@ impl<const N: usize> VersionSpace<N> {
         })
     }
 
+    /// The candidate lines, to be read off.
+    pub fn candidates(&self) -> Candidates<'_, N> {
+        Candidates { cell: &self.cell, samples: &self.samples }
+    }
+
     /// The vertices of the version space, in cyclic order.
     pub fn bounds(&self) -> impl Iterator<Item = Bound> + '_ {
-        self.cell.bounds(&self.samples)
+        self.candidates().bounds()
     }
 
     /// Whether all candidate lines give a position the same label, and which.
     pub fn certainty(&self, q: Site) -> Certainty {
-        self.cell.certainty(&self.samples, q)
+        self.candidates().certainty(q)
     }
 
     /// The directions of the candidate lines: the paper's `E_rho,t`.
     pub fn slope_arc(&self) -> Arc {
-        Arc::spanning(self.bounds().map(|bound| bound.along)).unwrap_or_default()
+        self.candidates().slope_arc()
     }
 
     /// The range of the candidate lines' intercepts in metres, the paper's `I_c,t`; `None` when it
     /// is unbounded, as a vertical line is among them.
     pub fn intercepts(&self) -> Option<[f64; 2]> {
-        let rightward = self.bounds().next()?.along.x.signum();
-        self.bounds().try_fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], bound| {
-            let c = bound.intercept()?;
-            (bound.along.x.signum() == rightward).then(|| [low.min(c), high.max(c)])
-        })
+        self.candidates().intercepts()
     }
 
     /// The samples that still matter: the others follow from these.
     pub fn support(&self) -> impl Iterator<Item = Sample> + Clone + '_ {
-        self.cell.edges().iter().filter_map(|e| self.samples.get(e.index()).copied())
+        self.candidates().support()
     }
 
     /// The first sample's label: where Algorithm 1 starts.

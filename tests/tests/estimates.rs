@@ -53,7 +53,7 @@ fn swept_margin(samples: &[Sample]) -> f64 {
 fn the_maximum_margin_is_the_largest() {
     for steps in [0, 3, 10, 20] {
         for (number, space) in spaces(150, steps) {
-            let line = maximum_margin(&space).expect("separable");
+            let line = maximum_margin(space.candidates()).expect("separable");
             // All samples count, though only those that still matter were looked at.
             let (got, best) = (margin(&line, space.samples()), swept_margin(space.samples()));
             assert!((got - best).abs() < 1e-9, "field {number}, {steps} steps: {got} for {best}");
@@ -85,13 +85,13 @@ fn the_centre_and_the_area_are_those_of_lines_drawn_at_random() {
         let drawn = share * std::f64::consts::TAU * 2.0 * radius;
         let noise = 5.0 / f64::from(hits).sqrt();
         assert!(
-            (area(&space) / drawn - 1.0).abs() < noise,
+            (area(space.candidates()) / drawn - 1.0).abs() < noise,
             "field {number}: {} for {drawn}",
-            area(&space)
+            area(space.candidates())
         );
         let norm = mean.norm();
         let mean = Line::through(middle + mean / norm * (offset / norm), mean).expect("a line");
-        let centre = centre(&space).expect("a line");
+        let centre = centre(space.candidates()).expect("a line");
         assert!(centre.angle_to_deg(&mean) < 0.3, "field {number}");
         assert!((centre.distance(middle) - mean.distance(middle)).abs() < 0.05, "field {number}");
     }
@@ -101,7 +101,7 @@ fn the_centre_and_the_area_are_those_of_lines_drawn_at_random() {
 fn the_centre_agrees_with_every_sample() {
     for steps in [0, 10, 40] {
         for (number, space) in spaces(200, steps) {
-            let centre = centre(&space).expect("a line");
+            let centre = centre(space.candidates()).expect("a line");
             assert!(margin(&centre, space.samples()) > 0.0, "field {number}, {steps} steps");
         }
     }
@@ -121,7 +121,10 @@ fn no_motion_of_the_plane_changes_the_centre_or_the_maximum_margin() {
         let moved = VersionSpace::<CAPACITY>::new(&moved).expect("separable as before");
         let after = Estimates::of(&moved);
         // Rounding to the lattice moves samples by some micrometres.
-        assert!((area(&moved) / area(&space) - 1.0).abs() < 1e-3, "field {number}");
+        assert!(
+            (area(moved.candidates()) / area(space.candidates()) - 1.0).abs() < 1e-3,
+            "field {number}"
+        );
         for (name, before, after) in [
             ("centre", before.centre, after.centre),
             ("maximum margin", before.maximum_margin, after.maximum_margin),

@@ -9,7 +9,7 @@ use planner_core::direction::{Arc, Heading};
 use planner_core::dynamics::{Dynamics, Pose};
 use planner_core::holonomic::Holonomic;
 use planner_core::lattice::{Site, Vector};
-use planner_core::problem::{DirectionRule, Problem, Varrho};
+use planner_core::problem::{ArcRule, Problem, Varrho};
 use planner_core::sample::{Label, Sample};
 use planner_core::unicycle::Unicycle;
 use planner_core::version_space::VersionSpace;
@@ -29,18 +29,15 @@ fn check<D: Dynamics, const N: usize>(
 ) -> (u64, u64) {
     let arc = space.slope_arc();
     let rules = [
-        DirectionRule { inside: None, outside: Some(arc) },
-        DirectionRule { inside: Some(arc), outside: None },
-        DirectionRule { inside: Some(arc.middle()), outside: None },
-        DirectionRule {
-            inside: Some(Arc::tracking(Vector { x: 3, z: 5_000 })),
-            outside: Some(arc),
-        },
-        DirectionRule::ANY,
+        ArcRule { inside: None, outside: Some(arc) },
+        ArcRule { inside: Some(arc), outside: None },
+        ArcRule { inside: Some(arc.middle()), outside: None },
+        ArcRule { inside: Some(Arc::tracking(Vector { x: 3, z: 5_000 })), outside: Some(arc) },
+        ArcRule::default(),
     ];
     let (mut states, mut examined) = (0, 0);
     for rule in rules {
-        let problem = Problem { space, area, varrho, rule };
+        let problem = Problem { ground: space.candidates(), area, varrho, rule };
         let quick = problem.solve(dynamics, pose);
         let slow = problem.solve_exhaustively(dynamics, pose);
         assert_eq!(quick.best, slow.best, "{context}: {rule:?} from {pose:?} in {space:?}");
