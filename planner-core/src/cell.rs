@@ -101,6 +101,9 @@ pub struct Cell<const E: usize> {
 }
 
 impl<const E: usize> Cell<E> {
+    /// No line at all: a cell without edges.
+    pub(crate) const NONE: Self = Self { edges: Vec::new() };
+
     /// The lines that agree with three samples; `None` when these are collinear.
     pub fn triangle(samples: &[Sample], [i, j, k]: [Edge; 3]) -> Option<Self> {
         const { assert!(E >= 3, "a cell has at least three edges") };
@@ -162,6 +165,9 @@ impl<const E: usize> Cell<E> {
         let sign = i64::from(edge.label().sign());
         let agreement = |bound: Bound| sign * bound.at(q).signum();
         let n = self.edges.len();
+        if n == 0 {
+            return Err(CutError::Contradiction);
+        }
         let mut before = self.bound(samples, n - 1).map_or(0, agreement);
         // The vertices that agree are consecutive, and an edge with one of them at an end stays:
         // from the edge that ends in the first of them to the edge that begins with the last.

@@ -47,9 +47,10 @@ fn metres(v: Vector) -> Vector2<f64> {
 
 /// Integrals over a version space by the measure d(angle) d(offset), which no motion of the plane
 /// changes.
-struct Moments {
-    /// The measure, radian metres.
-    area: f64,
+#[derive(Clone, Copy)]
+pub(crate) struct Moments {
+    /// The measure, radian metres; its sign is that of the way round.
+    pub(crate) area: f64,
     /// The integral of the lines' unit normals.
     normal: Vector2<f64>,
     /// The integral of the lines' offsets from `about`.
@@ -63,7 +64,7 @@ impl Moments {
     /// integral over it is one round its edges. With `u` the direction of the line, `n` a quarter
     /// turn to the left of it and `M` the integral of `n n^T` from one end of an edge to the other,
     /// an edge adds `p . (u' - u)` to the area, `M p` to the normal and `p^T M p / 2` to the offset.
-    fn of<const E: usize>(candidates: Candidates<'_, E>) -> Self {
+    pub(crate) fn of<const E: usize>(candidates: Candidates<'_, E>) -> Self {
         let samples = candidates.samples;
         let about = samples.first().map(|s| s.site);
         let mut moments = Self {
@@ -88,6 +89,29 @@ impl Moments {
         }
         moments
     }
+
+    /// The integrals with each line counted this often.
+    pub(crate) fn scaled(self, by: f64) -> Self {
+        let Self { area, normal, offset, about } = self;
+        Self { area: area * by, normal: normal * by, offset: offset * by, about }
+    }
+
+    /// The integrals over both sets of lines, whose cells share their samples.
+    pub(crate) fn plus(self, other: Self) -> Self {
+        Self {
+            area: self.area + other.area,
+            normal: self.normal + other.normal,
+            offset: self.offset + other.offset,
+            about: self.about,
+        }
+    }
+
+    /// The mean line.
+    pub(crate) fn mean(self) -> Option<Line> {
+        let normal = self.normal / self.area;
+        let norm = normal.norm();
+        Line::through(self.about + normal * (self.offset / self.area / (norm * norm)), normal)
+    }
 }
 
 /// The measure of the version space, radian metres: d(angle) d(offset), the measure of lines that
@@ -103,10 +127,7 @@ pub fn area<const E: usize>(candidates: Candidates<'_, E>) -> f64 {
 /// is convex, so its mean agrees with every sample. `None` if the version space is too thin for
 /// double precision.
 pub fn centre<const E: usize>(candidates: Candidates<'_, E>) -> Option<Line> {
-    let Moments { area, normal, offset, about } = Moments::of(candidates);
-    let normal = normal / area;
-    let norm = normal.norm();
-    Line::through(about + normal * (offset / area / (norm * norm)), normal)
+    Moments::of(candidates).mean()
 }
 
 /// The hard-margin separator: midway between the closest points of the two labels' convex hulls.

@@ -1,0 +1,281 @@
+//! The hypothesis table: every separable sequence of true labels, with its weight, in fixed memory.
+//!
+//! Of the `2^t` sequences that `t` labels could have, those matter that some line realises (Section
+//! III-B). Each is a cell of the arrangement that the samples' lines draw on the starting polygon, so
+//! there are at most `1 + t + t (t - 1) / 2`: 56 for 10 labels, 529 for 32, 2,081 for 64. A hypothesis
+//! is such a cell with a weight, 24 bytes in all, and a sample splits the cells that it cuts and weighs
+//! the rest: the whole distribution, exactly, until the table is full.
+//!
+//! - *Full table.* The least likely hypotheses go, in whole, before a sample is taken in. What they
+//!   can have come to since is bounded, see [`Posterior::lost`].
+//! - *A cell with more edges than it can hold* keeps the lines that the sample would have cut off: an
+//!   outer approximation, counted in [`outer_cells`](Hypotheses::outer_cells). With 15 edges it has
+//!   not been seen to happen; 13 was the most.
+//!
+//! [`Posterior::lost`]: crate::posterior::Posterior::lost
+
+use heapless::Vec;
+
+use crate::candidates::Candidates;
+use crate::cell::{Cell, Certainty, Edge};
+use crate::estimate;
+use crate::lattice::Site;
+use crate::sample::{Label, Sample, SampleBuffer};
+use crate::version_space::{NoVersionSpace, Refused, VersionSpace};
+use crate::weight::{LogWeight, Reliability};
+
+/// How hypotheses are weighed before any label is seen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Prior {
+    /// By the measure of their lines, d(angle) d(offset): uniform over lines.
+    #[default]
+    Area,
+    /// All alike: the paper's, uniform over separable sequences.
+    Sequences,
+}
+
+/// A sequence of true labels that some line realises: the cell of the lines that do, and how likely
+/// the labels seen are if it is the true one.
+#[derive(Clone, Debug)]
+pub struct Hypothesis<const E: usize> {
+    cell: Cell<E>,
+    /// Relative to the most likely hypothesis.
+    likelihood: LogWeight,
+    area: LogWeight,
+}
+
+impl<const E: usize> Hypothesis<E> {
+    /// The lines that realise it.
+    pub fn cell(&self) -> &Cell<E> {
+        &self.cell
+    }
+
+    /// Its weight under a prior, up to a factor that all hypotheses share.
+    pub fn weight(&self, prior: Prior) -> LogWeight {
+        match prior {
+            Prior::Area => self.likelihood + self.area,
+            Prior::Sequences => self.likelihood,
+        }
+    }
+
+    /// The logarithm of its measure, radian metres.
+    pub fn area(&self) -> LogWeight {
+        self.area
+    }
+}
+
+/// Mass given up, by both priors, on the scale of the weights held.
+#[derive(Clone, Copy, Debug, Default)]
+struct Lost {
+    area: f64,
+    sequences: f64,
+}
+
+/// Up to `H` hypotheses over up to `N` samples, the given ones included; a cell has up to `E` edges.
+///
+/// `24 H + 12 N` bytes and some 40 for `E = 15`.
+#[derive(Clone, Debug)]
+pub struct Hypotheses<const N: usize, const H: usize, const E: usize = 15> {
+    samples: SampleBuffer<N>,
+    given: u8,
+    start: Cell<E>,
+    table: Vec<Hypothesis<E>, H, u16>,
+    prior: Prior,
+    lost: Lost,
+    outer_cells: u16,
+}
+
+impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
+    /// The one hypothesis that the given samples leave, which are certain: at most `E` of them.
+    /// `prior` decides which hypotheses go when the table is full.
+    ///
+    /// # Errors
+    /// [`NoVersionSpace`].
+    pub fn new(given: &[Sample], prior: Prior) -> Result<Self, NoVersionSpace> {
+        const { assert!(H >= 1, "a table holds at least one hypothesis") };
+        let start = VersionSpace::<E>::new(given)?;
+        let mut samples = SampleBuffer::new();
+        for &sample in given {
+            samples.push(sample).map_err(|_| NoVersionSpace::TooMany)?;
+        }
+        let mut table = Vec::new();
+        let area = LogWeight::of(estimate::area(start.candidates()));
+        let cell = start.cell().clone();
+        let whole = Hypothesis { cell: cell.clone(), likelihood: LogWeight::ZERO, area };
+        let _ = table.push(whole); // it has room for one
+        let (given, lost) = (given.len() as u8, Lost::default());
+        Ok(Self { samples, given, start: cell, table, prior, lost, outer_cells: 0 })
+    }
+
+    /// All samples with the labels that were seen, the given ones first.
+    pub fn samples(&self) -> &[Sample] {
+        &self.samples
+    }
+
+    /// The samples that were given.
+    pub fn given(&self) -> &[Sample] {
+        self.samples.get(..usize::from(self.given)).unwrap_or(&[])
+    }
+
+    /// Labels taken in since.
+    pub fn taken(&self) -> usize {
+        self.samples.len() - self.given().len()
+    }
+
+    /// Whether another sample would be refused for want of room.
+    pub fn is_full(&self) -> bool {
+        self.samples.is_full()
+    }
+
+    /// What the given samples leave: the ground of P3 and P4.
+    pub fn start(&self) -> Candidates<'_, E> {
+        Candidates { cell: &self.start, samples: &self.samples }
+    }
+
+    /// The hypotheses that are held.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &Hypothesis<E>> + Clone {
+        self.table.iter()
+    }
+
+    /// The candidate lines of a hypothesis of this table.
+    pub fn candidates<'a>(&'a self, hypothesis: &'a Hypothesis<E>) -> Candidates<'a, E> {
+        Candidates { cell: &hypothesis.cell, samples: &self.samples }
+    }
+
+    /// How often a cell could not hold another edge and kept lines that it should not have.
+    pub fn outer_cells(&self) -> u16 {
+        self.outer_cells
+    }
+
+    /// Mass given up, at most, under a prior, on the scale of the weights held.
+    pub(crate) fn lost(&self, prior: Prior) -> f64 {
+        match prior {
+            Prior::Area => self.lost.area,
+            Prior::Sequences => self.lost.sequences,
+        }
+    }
+
+    fn certainty(&self, hypothesis: &Hypothesis<E>, q: Site) -> Certainty {
+        self.candidates(hypothesis).certainty(q)
+    }
+
+    /// Takes in a label of some reliability: splits the hypotheses that the sample cuts and weighs
+    /// all. One orientation an edge, and for each of the at most `t + 1` that split two areas.
+    ///
+    /// # Errors
+    /// [`Refused::Contradiction`] when a label that is certain leaves no hypothesis, and
+    /// [`Refused::Full`]; the table is then as it was.
+    pub fn observe(&mut self, sample: Sample, reliability: Reliability) -> Result<(), Refused> {
+        let Reliability { agree, disagree } = reliability;
+        let weight = |label: Label| if label == sample.label { agree } else { disagree };
+        let survives = |hypothesis: &Hypothesis<E>| match self.certainty(hypothesis, sample.site) {
+            Certainty::Certain(label) => weight(label).is_some(),
+            Certainty::Uncertain => true,
+        };
+        if self.samples.is_full() {
+            return Err(Refused::Full(sample));
+        }
+        if !self.table.iter().any(survives) {
+            return Err(Refused::Contradiction(sample));
+        }
+        if agree.is_some() && disagree.is_some() {
+            self.make_room(sample.site);
+        }
+        let Ok(index) = self.samples.push(sample) else { return Err(Refused::Full(sample)) };
+        for k in 0..self.table.len() {
+            self.update(k, Edge::new(index, sample.label), reliability);
+        }
+        self.table.retain(|hypothesis| !hypothesis.cell.edges().is_empty());
+        self.rescale(reliability.most());
+        Ok(())
+    }
+
+    /// Gives up the least likely hypotheses until those that a sample at `q` splits find room.
+    fn make_room(&mut self, q: Site) {
+        let splits = |it: &Self, h: &Hypothesis<E>| it.certainty(h, q) == Certainty::Uncertain;
+        let mut more = self.table.iter().filter(|h| splits(self, h)).count();
+        while self.table.len() > 1 && self.table.len() + more > H {
+            let weights = self.table.iter().map(|h| h.weight(self.prior)).enumerate();
+            let Some((least, _)) = weights.min_by_key(|(_, weight)| *weight) else { return };
+            let gone = self.table.swap_remove(least);
+            more -= usize::from(splits(self, &gone));
+            self.give_up(&gone);
+        }
+    }
+
+    fn give_up(&mut self, gone: &Hypothesis<E>) {
+        self.lost.area += gone.weight(Prior::Area).exp();
+        self.lost.sequences += gone.weight(Prior::Sequences).exp();
+    }
+
+    /// Weighs the `k`-th hypothesis by the newest sample, splitting it first if the sample cuts it.
+    /// One that becomes impossible is left without edges.
+    fn update(&mut self, k: usize, edge: Edge, reliability: Reliability) {
+        let Some(whole) = self.table.get(k) else { return };
+        let Some(site) = self.samples.get(edge.index()).map(|s| s.site) else { return };
+        let label = edge.label();
+        let (kept, split_off) = match self.certainty(whole, site) {
+            Certainty::Certain(certain) => {
+                let weight =
+                    if certain == label { reliability.agree } else { reliability.disagree };
+                let likelihood = weight.map(|weight| whole.likelihood + weight);
+                (likelihood.map(|likelihood| Hypothesis { likelihood, ..whole.clone() }), None)
+            }
+            Certainty::Uncertain => {
+                let whole = whole.clone();
+                let opposite = Edge::new(edge.index() as u8, -label);
+                let agreeing = reliability.agree.map(|weight| self.part(&whole, edge, weight));
+                let other = reliability.disagree.map(|weight| self.part(&whole, opposite, weight));
+                if agreeing.is_some() { (agreeing, other) } else { (other, None) }
+            }
+        };
+        let [kept, split_off] = [kept, split_off].map(|h| h.unwrap_or(Hypothesis::IMPOSSIBLE));
+        let Some(place) = self.table.get_mut(k) else { return };
+        *place = kept;
+        if split_off.cell.edges().is_empty() {
+            return;
+        }
+        if let Err(mut refused) = self.table.push(split_off) {
+            // Only a table of one hypothesis comes here: the likelier part stays.
+            let prior = self.prior;
+            if let Some(place) = self.table.get_mut(k)
+                && refused.weight(prior) > place.weight(prior)
+            {
+                core::mem::swap(place, &mut refused);
+            }
+            self.give_up(&refused);
+        }
+    }
+
+    /// The part of a hypothesis on one side of a sample.
+    fn part(&mut self, whole: &Hypothesis<E>, edge: Edge, weight: LogWeight) -> Hypothesis<E> {
+        let mut part = whole.clone();
+        if part.cell.cut(&self.samples, edge).is_err() {
+            self.outer_cells = self.outer_cells.saturating_add(1);
+        }
+        part.likelihood = whole.likelihood + weight;
+        part.area = LogWeight::of(estimate::area(self.candidates(&part)));
+        part
+    }
+
+    /// Makes the most likely hypothesis the unit of all weights. What was given up can at most have
+    /// been weighed by `most`; by the paper's prior its parts may both have counted, and `p` and
+    /// `1 - p` make 1.
+    fn rescale(&mut self, most: LogWeight) {
+        let best = self.table.iter().map(|h| h.likelihood).max().unwrap_or(LogWeight::ZERO);
+        for hypothesis in &mut self.table {
+            hypothesis.likelihood = hypothesis.likelihood.relative_to(best);
+        }
+        if self.lost.area > 0.0 {
+            self.lost.area *= most.relative_to(best).exp();
+            self.lost.sequences *= LogWeight::ZERO.relative_to(best).exp();
+        }
+    }
+}
+
+impl<const E: usize> Hypothesis<E> {
+    /// What no line realises: a cell without edges.
+    const IMPOSSIBLE: Self =
+        Self { cell: Cell::NONE, likelihood: LogWeight::ZERO, area: LogWeight::ZERO };
+}

@@ -1,0 +1,300 @@
+//! The hypothesis table against brute force over all sequences of labels.
+
+use std::collections::BTreeMap;
+
+use host_sim::field;
+use host_sim::mission::Algorithm;
+use nalgebra::Point2;
+use planner_core::estimate;
+use planner_core::hypotheses::{Hypotheses, Hypothesis, Prior};
+use planner_core::lattice::Site;
+use planner_core::posterior::Posterior;
+use planner_core::sample::{Label, Sample};
+use planner_core::version_space::{Refused, VersionSpace};
+use planner_core::weight::Reliability;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+
+/// A label at a place, seen with some reliability.
+type Seen = (Sample, f64);
+
+/// A standard field's oracle and labels seen at random places of the disagreement region and
+/// elsewhere, true with probability `p`: one `p` for all, or one for each, certain ones included.
+fn mission(
+    number: u64,
+    t: usize,
+    mixed: bool,
+) -> (Vec<Sample>, Vec<Seen>, planner_core::line::Line) {
+    let field = field::standard(7, number, Algorithm::Cfc, 1);
+    let mut rng = ChaCha8Rng::seed_from_u64(number);
+    let mut seen = Vec::new();
+    while seen.len() < t {
+        let mut metres = || rng.random_range(0.0..field::SIDE_M);
+        let site = Site::try_from(Point2::new(metres(), metres())).expect("near");
+        let p = if mixed { [0.0, 0.3, 0.5, 0.7, 0.95, 1.0][rng.random_range(0..6)] } else { 0.7 };
+        let distance = field.truth.distance(Point2::from(site));
+        let truth = if distance > 0.0 { Label::Positive } else { Label::Negative };
+        let label = if rng.random_range(0.0..1.0) < p { truth } else { -truth };
+        seen.push((Sample { site, label }, p));
+    }
+    (field.space.samples().to_vec(), seen, field.truth)
+}
+
+fn table<const N: usize, const H: usize>(given: &[Sample], seen: &[Seen]) -> Hypotheses<N, H> {
+    let mut table = Hypotheses::new(given, Prior::Area).expect("an oracle");
+    for &(sample, p) in seen {
+        let reliability = Reliability::new(p).expect("a probability");
+        table.observe(sample, reliability).expect("room, and a possible label");
+    }
+    table
+}
+
+/// The labels of the samples that a hypothesis stands for: those of any of its lines.
+fn sequence<const N: usize, const H: usize>(table: &Hypotheses<N, H>, h: &Hypothesis<15>) -> u64 {
+    let centre = estimate::centre(table.candidates(h)).expect("a line");
+    let taken = &table.samples()[table.given().len()..];
+    taken.iter().rev().fold(0, |bits, sample| {
+        2 * bits + u64::from(centre.distance(Point2::from(sample.site)) > 0.0)
+    })
+}
+
+/// All separable sequences with their posterior weights by both priors, over all `2^t`.
+fn brute_force(given: &[Sample], seen: &[Seen]) -> BTreeMap<u64, [f64; 2]> {
+    let mut weights = BTreeMap::new();
+    for bits in 0..1u64 << seen.len() {
+        let label = |i: usize| if bits >> i & 1 == 1 { Label::Positive } else { Label::Negative };
+        let likelihood: f64 = seen
+            .iter()
+            .enumerate()
+            .map(|(i, (sample, p))| if label(i) == sample.label { *p } else { 1.0 - p })
+            .product();
+        let labelled = seen.iter().enumerate().map(|(i, (s, _))| Sample { label: label(i), ..*s });
+        let samples: Vec<_> = given.iter().copied().chain(labelled).collect();
+        if likelihood > 0.0
+            && let Ok(space) = VersionSpace::<32>::new(&samples)
+        {
+            weights.insert(bits, [likelihood * estimate::area(space.candidates()), likelihood]);
+        }
+    }
+    let total = weights.values().fold([0.0; 2], |sum, w| [sum[0] + w[0], sum[1] + w[1]]);
+    weights.into_iter().map(|(bits, w)| (bits, [w[0] / total[0], w[1] / total[1]])).collect()
+}
+
+#[test]
+fn equals_brute_force_over_all_sequences() {
+    let cells: usize = (0..400u64)
+        .into_par_iter()
+        .map(|number| {
+            let t = 1 + number as usize % 12;
+            let (given, seen, _) = mission(number, t, number % 3 != 0);
+            let table = table::<16, 79>(&given, &seen);
+            let exact = brute_force(&given, &seen);
+            let posteriors =
+                [Prior::Area, Prior::Sequences].map(|prior| Posterior::new(&table, prior));
+            let mut found = BTreeMap::new();
+            for h in table.iter() {
+                let probabilities = [posteriors[0].probability(h), posteriors[1].probability(h)];
+                let again = found.insert(sequence(&table, h), probabilities);
+                assert!(again.is_none(), "mission {number}: a sequence twice");
+            }
+            assert!(found.keys().eq(exact.keys()), "mission {number}: {found:?} for {exact:?}");
+            for (bits, got) in &found {
+                for prior in 0..2 {
+                    let off = (got[prior] - exact[bits][prior]).abs();
+                    assert!(
+                        off < 1e-6,
+                        "mission {number}, sequence {bits:b}, prior {prior}: {off}"
+                    );
+                }
+            }
+            assert_eq!(
+                (posteriors[0].lost(), posteriors[1].lost(), table.outer_cells()),
+                (0.0, 0.0, 0)
+            );
+            found.len()
+        })
+        .sum();
+    println!("400 missions, {cells} hypotheses");
+}
+
+#[test]
+fn the_count_stays_within_that_of_an_arrangement() {
+    let most: Vec<_> = (0..40u64)
+        .into_par_iter()
+        .map(|number| {
+            let (given, seen, _) = mission(number, 64, false);
+            let mut table = Hypotheses::<68, 2081>::new(&given, Prior::Area).expect("an oracle");
+            let mut edges = 0;
+            for (t, &(sample, p)) in (1..).zip(&seen) {
+                table.observe(sample, Reliability::new(p).expect("p")).expect("room");
+                assert!(table.iter().len() <= 1 + t + t * (t - 1) / 2);
+                edges = edges.max(table.iter().map(|h| h.cell().edges().len()).max().unwrap_or(0));
+            }
+            assert!(Posterior::new(&table, Prior::Area).lost() <= 0.0, "nothing was given up");
+            assert_eq!(table.outer_cells(), 0);
+            // The cells tile the starting polygon.
+            let sum: f64 = table.iter().map(|h| estimate::area(table.candidates(h))).sum();
+            let whole = estimate::area(table.start());
+            assert!((sum / whole - 1.0).abs() < 1e-9, "{sum} of {whole}");
+            (table.iter().len(), edges)
+        })
+        .collect();
+    let (cells, edges) = most.iter().fold((0, 0), |m, n| (m.0.max(n.0), m.1.max(n.1)));
+    println!("64 labels: at most {cells} of 2081 hypotheses, at most {edges} edges");
+}
+
+#[test]
+fn thirty_labels_fit_466_slots_without_pruning() {
+    for number in 0..100 {
+        let (given, seen, _) = mission(number, 30, false);
+        let small = table::<34, 466>(&given, &seen);
+        let large = table::<34, 600>(&given, &seen);
+        assert_eq!(
+            format!("{:?}", small.iter().collect::<Vec<_>>()),
+            format!("{:?}", large.iter().collect::<Vec<_>>())
+        );
+    }
+}
+
+#[test]
+fn tables_are_as_small_as_they_should_be() {
+    const { assert!(size_of::<Hypothesis<15>>() == 24) };
+    const { assert!(size_of::<Hypotheses<20, 137>>() <= 4 << 10) };
+    const { assert!(size_of::<Hypotheses<36, 529>>() <= 13 << 10) };
+    const { assert!(size_of::<Hypotheses<68, 2081>>() <= 56 << 10) };
+    println!(
+        "16, 32, 64 labels: {}, {}, {} bytes",
+        size_of::<Hypotheses<20, 137>>(),
+        size_of::<Hypotheses<36, 529>>(),
+        size_of::<Hypotheses<68, 2081>>()
+    );
+}
+
+#[test]
+fn certain_labels_leave_the_version_space() {
+    for number in 0..100 {
+        let (given, seen, _) = mission(number, 30, false);
+        let mut space = VersionSpace::<64>::new(&given).expect("an oracle");
+        let mut table = Hypotheses::<64, 1>::new(&given, Prior::Area).expect("an oracle");
+        for (sample, _) in seen {
+            let (alone, among) =
+                (space.insert(sample), table.observe(sample, Reliability::CERTAIN));
+            assert_eq!(alone.is_ok(), among.is_ok());
+            let one = table.iter().next().expect("one hypothesis");
+            assert_eq!(table.iter().len(), 1);
+            let corners = |edges: &[planner_core::cell::Edge], samples: &[Sample]| {
+                let mut sites: Vec<_> = edges
+                    .iter()
+                    .map(|e| {
+                        (samples[e.index()].site.x(), samples[e.index()].site.z(), e.label().sign())
+                    })
+                    .collect();
+                sites.sort_unstable();
+                sites
+            };
+            assert_eq!(
+                corners(one.cell().edges(), table.samples()),
+                corners(space.cell().edges(), space.samples()),
+            );
+        }
+    }
+}
+
+#[test]
+fn labels_that_say_nothing_leave_the_prior() {
+    let (given, seen, _) = mission(3, 20, false);
+    let seen: Vec<_> = seen.into_iter().map(|(sample, _)| (sample, 0.5)).collect();
+    let table = table::<24, 211>(&given, &seen);
+    let posterior = Posterior::new(&table, Prior::Area);
+    for h in table.iter() {
+        let share = estimate::area(table.candidates(h)) / estimate::area(table.start());
+        assert!((posterior.probability(h) - share).abs() < 1e-7);
+    }
+    assert!(posterior.information().abs() < 1e-6);
+}
+
+#[test]
+fn the_bound_on_what_was_given_up_holds() {
+    let worst = (0..200u64)
+        .into_par_iter()
+        .map(|number| {
+            let (given, seen, _) = mission(number, 24, false);
+            let prior = if number % 2 == 0 { Prior::Area } else { Prior::Sequences };
+            let mut small = Hypotheses::<28, 24>::new(&given, prior).expect("an oracle");
+            let mut full = Hypotheses::<28, 301>::new(&given, prior).expect("an oracle");
+            let mut most = 0.0f64;
+            for &(sample, p) in &seen {
+                let reliability = Reliability::new(p).expect("p");
+                full.observe(sample, reliability).expect("room");
+                small.observe(sample, reliability).expect("room");
+                assert!(small.iter().len() <= 24);
+                for prior in [Prior::Area, Prior::Sequences] {
+                    let whole = Posterior::new(&full, prior);
+                    let cells: BTreeMap<_, _> =
+                        full.iter().map(|h| (sequence(&full, h), whole.probability(h))).collect();
+                    let kept: f64 = small.iter().map(|h| cells[&sequence(&small, h)]).sum();
+                    let bound = Posterior::new(&small, prior).lost();
+                    assert!(
+                        bound >= 1.0 - kept - 1e-6,
+                        "mission {number}: {bound} for {}",
+                        1.0 - kept
+                    );
+                    most = most.max(1.0 - kept);
+                }
+            }
+            most
+        })
+        .reduce(|| 0.0, f64::max);
+    println!(
+        "24 of 301 hypotheses: at most {worst:.3} of the mass was given up, never more than bounded"
+    );
+    assert!(worst > 0.01, "nothing was pruned");
+}
+
+#[test]
+fn a_certain_label_that_leaves_no_hypothesis_is_refused() {
+    let (given, seen, _) = mission(5, 10, false);
+    let mut table = table::<16, 79>(&given, &seen);
+    let before = format!("{table:?}");
+    let impossible = Sample { label: -given[0].label, ..given[0] };
+    let refused = table.observe(impossible, Reliability::CERTAIN);
+    assert_eq!(refused, Err(Refused::Contradiction(impossible)));
+    assert_eq!(format!("{table:?}"), before);
+    // The very same label with room for doubt is taken.
+    table.observe(impossible, Reliability::new(0.9).expect("p")).expect("possible");
+    assert_eq!(Reliability::new(1.1), None);
+    assert_eq!(Reliability::new(-0.1), None);
+    assert_eq!(Reliability::new(f64::NAN), None);
+}
+
+#[test]
+fn a_credible_set_is_the_smallest() {
+    for number in 0..100 {
+        let (given, seen, _) = mission(number, 12, number % 2 == 0);
+        let table = table::<16, 79>(&given, &seen);
+        for prior in [Prior::Area, Prior::Sequences] {
+            let posterior = Posterior::new(&table, prior);
+            let mut all: Vec<_> = table.iter().map(|h| posterior.probability(h)).collect();
+            all.sort_by(|a, b| b.total_cmp(a));
+            let best = posterior.best().expect("a hypothesis").probability;
+            assert!((best - all[0]).abs() < 1e-12);
+            for level in [0.0, 0.3, 0.9, 1.0] {
+                let set = posterior.credible(level);
+                let mut sum = 0.0;
+                let fewest = all
+                    .iter()
+                    .take_while(|p| {
+                        let more = sum < level - 1e-12;
+                        sum += **p;
+                        more
+                    })
+                    .count();
+                assert_eq!(set.cells, fewest, "mission {number}, level {level}");
+                assert_eq!(posterior.members(&set).count(), set.cells);
+                let members: f64 = posterior.members(&set).map(|h| posterior.probability(h)).sum();
+                assert!((members - set.probability).abs() < 1e-9);
+            }
+        }
+    }
+}
