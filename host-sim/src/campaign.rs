@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use anyhow::{Context as _, Result};
 use indicatif::{ParallelProgressIterator as _, ProgressBar, ProgressStyle};
-use planner_core::cfc::{Crossing, Following};
+use planner_core::config::{Crossing, Following};
 use planner_core::dynamics::Dynamics as _;
 use planner_core::estimate::{self, Estimates};
 use planner_core::line::Line;
@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::field;
-use crate::mission::{Algorithm, CAPACITY, Mission};
+use crate::mission::{Algorithm, CAPACITY, Known, Mission};
 use crate::polygon::misclassified;
 use crate::recording::{cost, recovery_name};
 
@@ -78,7 +78,7 @@ pub struct Spread {
 }
 
 impl Spread {
-    fn of(values: impl Iterator<Item = f64>) -> Self {
+    pub(crate) fn of(values: impl Iterator<Item = f64>) -> Self {
         let mut values: Vec<_> = values.collect();
         values.sort_by(f64::total_cmp);
         // Nearest rank: the smallest value that at least this share do not exceed.
@@ -145,14 +145,7 @@ impl Campaign {
     /// # Errors
     /// Names the field in which a sample contradicted what was known: never, as labels are true.
     pub fn run(&self) -> Result<Summary> {
-        let style = "{bar:40} {pos}/{len} fields  {per_sec}  {eta} left";
-        let bar = ProgressBar::new(self.fields).with_style(ProgressStyle::with_template(style)?);
-        let outcomes = (0..self.fields)
-            .into_par_iter()
-            .progress_with(bar.clone())
-            .map(|number| self.outcome(number).with_context(|| format!("field {number}")))
-            .collect::<Result<Vec<_>>>()?;
-        bar.finish_and_clear();
+        let outcomes = on_all_cores(self.fields, |number| self.outcome(number))?;
         Ok(self.summary(&outcomes))
     }
 
@@ -170,7 +163,8 @@ impl Campaign {
         let (mut marks, mut due) = (Vec::new(), self.marks().peekable());
         let mut recoveries = BTreeMap::new();
         let (mut examined, mut most_examined) = (0, 0);
-        let end = mission.run(|taken, space| {
+        let end = mission.run(|taken, now_known| {
+            let Known::Lines(space) = now_known else { return };
             now.step += 1;
             now.control_cost += cost(taken);
             now.metres += f64::from(taken.motion.control.v);
@@ -218,6 +212,25 @@ impl Campaign {
             marks: outcomes.iter().flat_map(|o| o.marks.iter().copied()).collect(),
         }
     }
+}
+
+/// What comes of each field, on all cores, with a progress bar on a terminal.
+///
+/// # Errors
+/// Names the field whose mission failed.
+pub(crate) fn on_all_cores<T: Send>(
+    fields: u64,
+    outcome: impl Fn(u64) -> Result<T> + Sync,
+) -> Result<Vec<T>> {
+    let style = "{bar:40} {pos}/{len} fields  {per_sec}  {eta} left";
+    let bar = ProgressBar::new(fields).with_style(ProgressStyle::with_template(style)?);
+    let outcomes = (0..fields)
+        .into_par_iter()
+        .progress_with(bar.clone())
+        .map(|number| outcome(number).with_context(|| format!("field {number}")))
+        .collect();
+    bar.finish_and_clear();
+    outcomes
 }
 
 fn mark(mission: &Mission, space: &VersionSpace<CAPACITY>, so_far: Mark) -> Mark {
@@ -274,10 +287,7 @@ impl Summary {
     }
 
     fn write_report(&self, text: &mut String) -> std::fmt::Result {
-        let who = match self.algorithm {
-            Algorithm::Cfc => "Algorithm 1 (cfc)",
-            Algorithm::Random => "random walk",
-        };
+        let who = self.algorithm.title();
         writeln!(text, "{who}, {} standard fields, seed {}", self.fields, self.seed)?;
         writeln!(text, "\nSlope error, degrees: median, 90th percentile, worst\n")?;
         let titles = ["centre", "maximum margin", "bisector (paper)"];

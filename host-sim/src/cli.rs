@@ -3,21 +3,22 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, Result};
+use anyhow::{Context as _, Result, bail};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::campaign::Campaign;
 use crate::figure::Figure;
 use crate::mission::Algorithm;
+use crate::noisy_campaign::NoisyCampaign;
 use crate::output::Output;
 use crate::recording::Recording;
 use crate::replay::Replay;
-use crate::scenario::{self, CrossingName, FollowingName, Overrides};
+use crate::scenario::{self, CrossingName, FollowingName, Overrides, PolicyName, PriorName};
 use crate::{report, trace};
 
 /// Simulates a robot that finds an unknown straight boundary from few samples.
 ///
-/// Without a command: the paper's noiseless example, start to end, with a figure in out/.
+/// Without a command: the paper's two examples, start to end, with figures in out/.
 #[derive(Debug, Parser)]
 #[command(version)]
 pub struct Cli {
@@ -63,6 +64,9 @@ struct Run {
     /// Write a figure here
     #[arg(long, value_name = "FILE.svg")]
     figure: Option<PathBuf>,
+    /// Write a figure of the lines with the fewest violations here (scc)
+    #[arg(long, value_name = "FILE.svg")]
+    candidates: Option<PathBuf>,
     /// What to print; json prints the trace
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -100,6 +104,18 @@ struct CampaignArgs {
     /// How P2 follows the boundary
     #[arg(long, value_enum, default_value_t)]
     following: FollowingName,
+    /// Labels are true with this probability [default: 0.7 for scc, 1 else]
+    #[arg(long)]
+    p: Option<f64>,
+    /// Within this distance of the oracle's points labels are certain, metres
+    #[arg(long, default_value_t = 0.0)]
+    trusted_radius: f64,
+    /// How hypotheses choose an action together (scc)
+    #[arg(long, value_enum, default_value_t)]
+    policy: PolicyName,
+    /// How hypotheses are weighed in that (scc)
+    #[arg(long, value_enum, default_value_t)]
+    prior: PriorName,
     /// Write a row for each field and mark here
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
@@ -123,38 +139,59 @@ impl Cli {
     }
 }
 
-/// What the bare command tells.
+/// What the bare command tells first.
 pub const PAPER_TITLE: &str = "The paper's noiseless example (Section V), Algorithm 1";
 
-/// The paper's example, start to end.
+const PAPER_NOISY_TITLE: &str = "The paper's noisy example (Section V), Algorithm 2";
+
+const CANDIDATES_TITLE: &str = "Its labels do not tell which line is true: fewest violations";
+
+/// The paper's two examples, start to end.
 fn paper() -> Result<String> {
-    let path = Path::new("out").join("paper-noiseless.svg");
     fs::create_dir_all("out").context("out: expected a place to make a folder")?;
-    let output = Output::create(&path)?;
-    let name = "paper-noiseless.toml";
-    let mission = scenario::parse(name, scenario::PAPER_NOISELESS, Overrides::default())?;
-    let recording = Recording::of(mission)?;
-    output.write(&Figure::of(PAPER_TITLE, &recording).svg()?)?;
-    let story = report::mission(PAPER_TITLE, &recording);
-    Ok(format!("{story}\nFigure: {}\n", path.display()))
+    let place = |name: &str| Output::create(&Path::new("out").join(name));
+    let names = ["paper-noiseless.svg", "paper-noisy.svg", "paper-noisy-candidates.svg"];
+    let [first, second, third] = names.map(place);
+    let example = |text| Recording::of(scenario::parse("", text, Overrides::default())?);
+    let noiseless = example(scenario::PAPER_NOISELESS)?;
+    let noisy = example(scenario::PAPER_NOISY)?;
+    first?.write(&Figure::of(PAPER_TITLE, &noiseless).svg()?)?;
+    second?.write(&Figure::of(PAPER_NOISY_TITLE, &noisy).svg()?)?;
+    if let Some(candidates) = Figure::of_candidates(CANDIDATES_TITLE, &noisy) {
+        third?.write(&candidates.svg()?)?;
+    }
+    Ok(format!(
+        "{}\n\n{}\nFigures in out/: {}\n",
+        report::mission(PAPER_TITLE, &noiseless),
+        report::mission(PAPER_NOISY_TITLE, &noisy),
+        names.join(", ")
+    ))
 }
 
 fn run(args: &Run) -> Result<String> {
-    let Run { scenario, algorithm, steps, seed, trace, figure, format } = args;
-    let overrides = Overrides { algorithm: *algorithm, steps: *steps, seed: *seed };
-    let mission = scenario::read(scenario, overrides)?;
-    let outputs = (Output::create_if(trace.as_ref())?, Output::create_if(figure.as_ref())?);
-    let name = scenario.display().to_string();
+    let overrides = Overrides { algorithm: args.algorithm, steps: args.steps, seed: args.seed };
+    let mission = scenario::read(&args.scenario, overrides)?;
+    if args.candidates.is_some() && !mission.is_noisy() {
+        bail!("--candidates: found a mission without noise, expected one with noisy labels");
+    }
+    let trace = Output::create_if(args.trace.as_ref())?;
+    let figure = Output::create_if(args.figure.as_ref())?;
+    let candidates = Output::create_if(args.candidates.as_ref())?;
+    let name = args.scenario.display().to_string();
     let recording = Recording::of(mission).with_context(|| name.clone())?;
     let lines = trace::lines(&recording);
-    let svg = outputs.1.as_ref().map(|_| Figure::of(&name, &recording).svg()).transpose()?;
-    if let Some(output) = outputs.0 {
-        output.write(&lines)?;
+    // All is drawn before anything is written.
+    let svg = figure.as_ref().map(|_| Figure::of(&name, &recording).svg()).transpose()?;
+    let fewest = candidates.as_ref().and_then(|_| Figure::of_candidates(&name, &recording));
+    let fewest = fewest.map(|figure| figure.svg()).transpose()?;
+    for (output, content) in
+        [(trace, Some(&lines)), (figure, svg.as_ref()), (candidates, fewest.as_ref())]
+    {
+        if let (Some(output), Some(content)) = (output, content) {
+            output.write(content)?;
+        }
     }
-    if let (Some(output), Some(svg)) = (outputs.1, svg) {
-        output.write(&svg)?;
-    }
-    Ok(match format {
+    Ok(match args.format {
         Format::Text => report::mission(&name, &recording),
         Format::Json => lines,
     })
@@ -183,12 +220,27 @@ fn campaign(args: &CampaignArgs) -> Result<String> {
         crossing: args.crossing.into(),
         following: args.following.into(),
     };
-    let summary = campaign.run()?;
+    let p = args.p.unwrap_or(if args.algorithm == Algorithm::Scc { 0.7 } else { 1.0 });
+    let p = scenario::probability("--p", p)?;
+    let trusted_radius = scenario::trusted("--trusted-radius", args.trusted_radius)?;
+    let noisy = args.algorithm == Algorithm::Scc || p < 1.0;
+    if noisy && args.algorithm == Algorithm::Cfc {
+        bail!("--p: found {p}, expected 1 with --algorithm cfc, which takes labels to be true");
+    }
+    let (table, rows, json) = if noisy {
+        let (policy, prior) = (args.policy.into(), args.prior.into());
+        let noisy = NoisyCampaign { fields: campaign, p, trusted_radius, policy, prior };
+        let summary = noisy.run()?;
+        (summary.report(), summary.csv()?, summary.json())
+    } else {
+        let summary = campaign.run()?;
+        (summary.report(), summary.csv()?, summary.json())
+    };
     if let Some(output) = output {
-        output.write(&summary.csv()?)?;
+        output.write(&rows)?;
     }
     Ok(match args.format {
-        Format::Text => summary.report(),
-        Format::Json => summary.json(),
+        Format::Text => table,
+        Format::Json => json,
     })
 }

@@ -10,13 +10,15 @@
 
 use nalgebra::{Point2, Vector2};
 use planner_core::area::Area;
-use planner_core::cfc::{Config, Crossing, Following};
+use planner_core::config::{Config, Crossing, Following};
 use planner_core::direction::Heading;
 use planner_core::dynamics::Pose;
+use planner_core::hypotheses::Prior;
 use planner_core::lattice::Site;
 use planner_core::line::Line;
 use planner_core::problem::Varrho;
 use planner_core::sample::{Label, Reading, Sample};
+use planner_core::scc::Policy;
 use planner_core::version_space::VersionSpace;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -95,5 +97,8 @@ pub fn standard(seed: u64, number: u64, algorithm: Algorithm, steps: u32) -> Mis
         start: Pose { site: oracle[0].site, heading },
         truth,
         space,
+        noise: None,
+        policy: Policy::default(),
+        prior: Prior::default(),
     }
 }

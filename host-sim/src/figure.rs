@@ -5,16 +5,22 @@ use std::fmt::Display;
 use anyhow::{Result, anyhow};
 use nalgebra::{Point2, Vector2};
 use planner_core::area::Area;
+use planner_core::cell::Certainty;
+use planner_core::estimate;
+use planner_core::hypotheses::Prior;
+use planner_core::lattice::{Site, Vector};
 use planner_core::line::Line;
+use planner_core::posterior::Posterior;
 use planner_core::sample::{Label, Reading, Sample};
 use planner_core::version_space::VersionSpace;
 use plotters::coord::types::RangedCoordf64;
 use plotters::coord::{CoordTranslate, Shift};
 use plotters::prelude::*;
 
-use crate::mission::CAPACITY;
+use crate::mission::{CAPACITY, Table};
 use crate::polygon::Polygon;
-use crate::recording::{Recorded, Recording};
+use crate::recording::{LEVEL, Outcome, Recorded, Recording};
+use crate::world;
 
 // Orange for +1 and blue for -1, as in the paper's Figure 1, in hues that colour-blind readers tell
 // apart; shapes tell them apart too.
@@ -30,15 +36,47 @@ pub struct Figure<'a> {
     /// The ground to show.
     pub area: Area,
     /// What is known at the end.
-    pub space: &'a VersionSpace<CAPACITY>,
-    /// How many of its samples were given, not taken on the way.
+    pub ground: Ground<'a>,
+    /// The samples, with the labels that were seen.
+    pub samples: &'a [Sample],
+    /// How many of them were given, not taken on the way.
     pub given: usize,
     /// The steps of a mission and where it began.
     pub path: Option<(Point2<f64>, &'a [Recorded])>,
     /// The true line, where known.
     pub truth: Option<Line>,
-    /// The estimate.
-    pub estimate: Option<Line>,
+    /// Other lines, with their names.
+    pub lines: Vec<Named>,
+}
+
+/// What is known of the ground.
+#[derive(Clone, Copy)]
+pub enum Ground<'a> {
+    /// All lines that agree with every label: two regions of certainty.
+    Certain(&'a VersionSpace<CAPACITY>),
+    /// A credible set of hypotheses, shaded by probability.
+    Credible(&'a Table, Prior),
+    /// Nothing to show.
+    Plain,
+}
+
+/// A line with a name for the legend.
+pub struct Named {
+    /// The name.
+    pub name: String,
+    /// The line.
+    pub line: Line,
+    /// How it is drawn.
+    pub colour: RGBColor,
+    /// A short mark beside it, if any.
+    pub mark: Option<String>,
+}
+
+impl Named {
+    /// The estimate that is recommended.
+    pub fn estimate(name: &str, line: Option<Line>) -> Option<Self> {
+        Some(Self { name: format!("estimate: {name}"), line: line?, colour: ESTIMATE, mark: None })
+    }
 }
 
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
@@ -62,15 +100,65 @@ impl<'a> Figure<'a> {
     /// The figure of a mission.
     pub fn of(title: &str, recording: &'a Recording) -> Self {
         let mission = &recording.mission;
+        let mut lines = Vec::new();
+        let centre = recording.estimates().centre;
+        let (ground, samples) = match &recording.outcome {
+            Outcome::Lines(space) => {
+                lines.extend(Named::estimate("centre of the version space", centre));
+                (Ground::Certain(space), space.samples())
+            }
+            Outcome::Hypotheses(table) => {
+                lines.extend(Named::estimate("posterior mean", centre));
+                lines.extend(bounding(table, mission.prior));
+                (Ground::Credible(table, mission.prior), table.samples())
+            }
+        };
         Self {
             title: title.to_owned(),
             area: mission.config.area,
-            space: &recording.space,
+            ground,
+            samples,
             given: mission.space.samples().len(),
             path: Some((Point2::from(mission.start.site), &recording.steps)),
             truth: Some(mission.truth),
-            estimate: recording.estimates().centre,
+            lines,
         }
+    }
+
+    /// The figure of the lines that violate the fewest labels of a noisy mission, with their counts
+    /// of violations, and of the one among them that a plain maximum margin would choose.
+    pub fn of_candidates(title: &str, recording: &'a Recording) -> Option<Self> {
+        const SHOWN: usize = 3;
+        const SPREAD: [RGBColor; SHOWN] =
+            [RGBColor(110, 110, 110), RGBColor(150, 150, 150), RGBColor(185, 185, 185)];
+        let Outcome::Hypotheses(table) = &recording.outcome else { return None };
+        let taken = &table.samples()[table.given().len()..];
+        let violations = |line: &Line| {
+            taken.iter().filter(|s| world::reading(line, s.site) != Reading::Side(s.label)).count()
+        };
+        let mut candidates: Vec<_> = table
+            .iter()
+            .filter_map(|h| {
+                let widest = estimate::maximum_margin(table.candidates(h))?;
+                let margin =
+                    table.samples().iter().map(|s| widest.distance(Point2::from(s.site)).abs());
+                Some((violations(&widest), widest, margin.fold(f64::INFINITY, f64::min)))
+            })
+            .collect();
+        candidates.sort_by(|a, b| (a.0, -a.2).partial_cmp(&(b.0, -b.2)).expect("finite"));
+        let lines =
+            candidates.iter().zip(SPREAD).enumerate().map(|(i, ((n, line, _), grey))| Named {
+                name: match i {
+                    0 => format!("maximum margin of the fewest violations ({n})"),
+                    _ => format!("another candidate, {n} violations"),
+                },
+                line: *line,
+                colour: if i == 0 { RGBColor(190, 0, 60) } else { grey },
+                mark: Some(format!("{n}")),
+            });
+        let of = Self::of(title, recording);
+        let lines = lines.collect();
+        Some(Self { ground: Ground::Plain, path: None, lines, ..of })
     }
 
     /// The figure as an SVG document.
@@ -119,11 +207,44 @@ impl<'a> Figure<'a> {
         Ok(svg)
     }
 
-    /// The two regions of certainty: the ground on one side of every bound.
     fn draw_ground(&self, chart: &mut Chart) -> Result<()> {
+        match self.ground {
+            Ground::Certain(space) => self.draw_certain(chart, space),
+            Ground::Credible(table, prior) => self.draw_credible(chart, table, prior),
+            Ground::Plain => Ok(()),
+        }
+    }
+
+    /// The credible set: each patch of ground as dark as the hypotheses of the set are likely whose
+    /// lines pass through it.
+    fn draw_credible(&self, chart: &mut Chart, table: &Table, prior: Prior) -> Result<()> {
+        const PATCHES: i32 = 72;
+        let posterior = Posterior::new(table, prior);
+        let set = posterior.credible(LEVEL);
+        let (min, max) =
+            (Point2::<f64>::from(self.area.min()), Point2::<f64>::from(self.area.max()));
+        let size = (max - min) / f64::from(PATCHES);
+        for (i, j) in (0..PATCHES).flat_map(|i| (0..PATCHES).map(move |j| (i, j))) {
+            let corner = min + size.component_mul(&Vector2::new(f64::from(i), f64::from(j)));
+            let Ok(q) = Site::try_from(corner + size / 2.0) else { continue };
+            let passing = posterior
+                .members(&set)
+                .filter(|h| table.candidates(h).certainty(q) == Certainty::Uncertain);
+            let mass: f64 = passing.map(|h| posterior.probability(h)).sum();
+            if mass > 0.01 {
+                let patch = [xy(corner), xy(corner + size)];
+                let shade = RGBColor(120, 60, 160).mix(0.75 * mass.min(1.0)).filled();
+                chart.draw_series([Rectangle::new(patch, shade)]).map_err(failed)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The two regions of certainty: the ground on one side of every bound.
+    fn draw_certain(&self, chart: &mut Chart, space: &VersionSpace<CAPACITY>) -> Result<()> {
         for label in [Label::Positive, Label::Negative] {
             let side = f64::from(label.sign());
-            let certain = self.space.bounds().fold(Polygon::from(self.area), |ground, bound| {
+            let certain = space.bounds().fold(Polygon::from(self.area), |ground, bound| {
                 ground.clip(&Line::from(bound), side)
             });
             let corners: Vec<_> = certain.0.into_iter().map(xy).collect();
@@ -147,11 +268,16 @@ impl<'a> Figure<'a> {
             let style = BLACK.stroke_width(2);
             chart.draw_series([PathElement::new(across(truth), style)]).map_err(failed)?;
         }
-        if let Some(estimate) = self.estimate {
-            let style = ESTIMATE.stroke_width(2);
-            chart
-                .draw_series(DashedLineSeries::new(across(estimate), 9, 6, style))
-                .map_err(failed)?;
+        for Named { line, colour, mark, .. } in &self.lines {
+            let ends = across(*line);
+            let style = colour.stroke_width(2);
+            chart.draw_series(DashedLineSeries::new(ends.clone(), 9, 6, style)).map_err(failed)?;
+            if let (Some(mark), Some(&end)) = (mark, ends.iter().max_by(|a, b| a.0.total_cmp(&b.0)))
+            {
+                let font = ("sans-serif", 15).into_font().color(colour);
+                let text = Text::new(mark.clone(), (4, -8), font);
+                chart.draw_series([EmptyElement::at(end) + text]).map_err(failed)?;
+            }
         }
         Ok(())
     }
@@ -182,11 +308,16 @@ impl<'a> Figure<'a> {
     }
 
     fn draw_samples(&self, chart: &mut Chart) -> Result<()> {
-        for (i, sample) in self.space.samples().iter().enumerate() {
+        for (i, sample) in self.samples.iter().enumerate() {
             let given = i < self.given;
             let place = xy(Point2::from(sample.site));
+            let right = Reading::Side(sample.label);
+            if self.truth.is_some_and(|truth| world::reading(&truth, sample.site) != right) {
+                let ring = Circle::new((0, 0), 10, BLACK.stroke_width(1));
+                chart.draw_series([EmptyElement::at(place) + ring]).map_err(failed)?;
+            }
             mark(chart.plotting_area(), place, sample.label, if given { 7 } else { 5 })?;
-            if given && self.path.is_some() {
+            if given && self.truth.is_some() {
                 let style = ("sans-serif", 15).into_font().color(&BLACK);
                 let name = Text::new(format!("p{}", i + 1), (-24, -18), style);
                 chart.draw_series([EmptyElement::at(place) + name]).map_err(failed)?;
@@ -201,46 +332,68 @@ impl<'a> Figure<'a> {
         let text = |words: &str, x: i32, y: i32| {
             legend.draw(&Text::new(words.to_owned(), (x + 34, y - 8), font(14))).map_err(failed)
         };
-        let (left, right, rows) = (20, 330, [54, 80, 106]);
-        for (label, y, words) in [
-            (Label::Positive, rows[0], "label +1, ground certain to have it"),
-            (Label::Negative, rows[1], "label -1, ground certain to have it"),
-        ] {
-            let ground = Rectangle::new(
-                [(left, y - 9), (left + 26, y + 9)],
-                colour(label).mix(0.18).filled(),
-            );
-            legend.draw(&ground).map_err(failed)?;
+        let (left, right, rows) = (20, 330, [50, 72, 94, 116]);
+        let stroke = |x: i32, y: i32, length: i32, colour: RGBColor, width: u32| {
+            let style = colour.stroke_width(width);
+            legend.draw(&PathElement::new([(x, y), (x + length, y)], style)).map_err(failed)
+        };
+        let certain = matches!(self.ground, Ground::Certain(_));
+        for (label, y) in [(Label::Positive, rows[0]), (Label::Negative, rows[1])] {
+            if certain {
+                let corners = [(left, y - 9), (left + 26, y + 9)];
+                let ground = Rectangle::new(corners, colour(label).mix(0.18).filled());
+                legend.draw(&ground).map_err(failed)?;
+            }
             mark(legend, (left + 13, y), label, 5)?;
-            text(words, left, y)?;
+            let known = if certain { ", ground certain to have it" } else { "" };
+            text(&format!("label {:+}{known}", label.sign()), left, y)?;
         }
         if self.path.is_some() {
-            let path =
-                PathElement::new([(left, rows[2]), (left + 26, rows[2])], PATH.stroke_width(1));
-            legend.draw(&path).map_err(failed)?;
-            let heading = PathElement::new(
-                [(left + 12, rows[2]), (left + 26, rows[2])],
-                PATH.stroke_width(2),
-            );
-            legend.draw(&heading).map_err(failed)?;
+            stroke(left, rows[2], 26, PATH, 1)?;
+            stroke(left + 12, rows[2], 14, PATH, 2)?;
             text("path with headings; o: no sample", left, rows[2])?;
         }
-        if self.truth.is_some() {
-            let line =
-                PathElement::new([(right, rows[0]), (right + 26, rows[0])], BLACK.stroke_width(2));
-            legend.draw(&line).map_err(failed)?;
-            text("true line", right, rows[0])?;
+        if let Ground::Credible(..) = self.ground {
+            let corners = [(left, rows[3] - 9), (left + 26, rows[3] + 9)];
+            let shade = RGBColor(120, 60, 160).mix(0.5).filled();
+            legend.draw(&Rectangle::new(corners, shade)).map_err(failed)?;
+            text("lines of the 90 % credible set; ringed: a wrong label", left, rows[3])?;
+        } else if !certain {
+            legend
+                .draw(&Circle::new((left + 13, rows[2]), 9, BLACK.stroke_width(1)))
+                .map_err(failed)?;
+            text("a wrong label", left, rows[2])?;
         }
-        if self.estimate.is_some() {
-            for x in [right, right + 15] {
-                let dash =
-                    PathElement::new([(x, rows[1]), (x + 10, rows[1])], ESTIMATE.stroke_width(2));
-                legend.draw(&dash).map_err(failed)?;
-            }
-            text("estimate: centre of the version space", right, rows[1])?;
+        let mut row = rows.into_iter();
+        if let (Some(_), Some(y)) = (self.truth, row.next()) {
+            stroke(right, y, 26, BLACK, 2)?;
+            text("true line", right, y)?;
+        }
+        for (named, y) in self.lines.iter().zip(row) {
+            stroke(right, y, 10, named.colour, 2)?;
+            stroke(right + 15, y, 10, named.colour, 2)?;
+            text(&named.name, right, y)?;
         }
         Ok(())
     }
+}
+
+/// The lines at the two ends of a credible set's slopes: the paper's `l1` and `l2`.
+fn bounding(table: &Table, prior: Prior) -> Vec<Named> {
+    let posterior = Posterior::new(table, prior);
+    let set = posterior.credible(LEVEL);
+    let bounds = || posterior.members(&set).flat_map(|h| table.candidates(h).bounds());
+    let ends = [("l1", set.slope_arc.from()), ("l2", set.slope_arc.to())];
+    let named = |(name, end): (&str, Vector)| {
+        let bound = bounds().find(|bound| bound.along.cross(end) == 0)?;
+        Some(Named {
+            name: format!("{name}, which bounds the credible slopes"),
+            line: bound.into(),
+            colour: RGBColor(120, 60, 160),
+            mark: Some(name.to_owned()),
+        })
+    };
+    ends.into_iter().filter_map(named).collect()
 }
 
 /// A sample's mark: a disc for +1, a square for -1.

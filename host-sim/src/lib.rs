@@ -8,6 +8,7 @@ pub mod cli;
 pub mod field;
 pub mod figure;
 pub mod mission;
+pub mod noisy_campaign;
 pub mod output;
 pub mod polygon;
 pub mod random_walk;

@@ -4,21 +4,32 @@ use std::cell::Cell;
 use std::convert::Infallible;
 
 use planner_core::agent::{Agent, AgentError, Event, Step};
-use planner_core::cfc::{Cfc, Config};
+use planner_core::cfc::Cfc;
+use planner_core::config::Config;
 use planner_core::dynamics::{Dynamics, Pose};
+use planner_core::hal::LabelSensor;
+use planner_core::hypotheses::{Hypotheses, Prior};
 use planner_core::line::Line;
 use planner_core::planner::{Planner, StopReason};
+use planner_core::scc::{Noise, Policy, Scc, trusted_radius};
 use planner_core::unicycle::Unicycle;
 use planner_core::version_space::{Refused, VersionSpace};
+use planner_core::weight::Reliability;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
 use crate::random_walk::RandomWalk;
-use crate::world::{Probe, Vehicle};
+use crate::world::{Extent, Flipped, NoiseModel, Probe, Vehicle};
 
-/// Samples that a simulated planner can hold, the oracle's included.
-pub const CAPACITY: usize = 64;
+/// Samples that a simulated planner can hold, the oracle's included: 64 labels beside its four.
+pub const CAPACITY: usize = 68;
+
+/// Hypotheses that a simulated planner can hold: all that 64 labels can come to.
+pub const HYPOTHESES: usize = 2081;
+
+/// The hypothesis table of simulated planners.
+pub type Table = Hypotheses<CAPACITY, HYPOTHESES>;
 
 /// Who plans.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
@@ -26,8 +37,21 @@ pub const CAPACITY: usize = 64;
 pub enum Algorithm {
     /// Algorithm 1, noiseless labels.
     Cfc,
+    /// Algorithm 2, noisy labels.
+    Scc,
     /// A random walk, for scale.
     Random,
+}
+
+impl Algorithm {
+    /// What tables call it.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Cfc => "Algorithm 1 (cfc)",
+            Self::Scc => "Algorithm 2 (scc)",
+            Self::Random => "random walk",
+        }
+    }
 }
 
 /// Everything that determines a mission.
@@ -47,6 +71,21 @@ pub struct Mission {
     pub truth: Line,
     /// What the oracle's points leave open.
     pub space: VersionSpace<CAPACITY>,
+    /// How labels are flipped; `None` when they are true.
+    pub noise: Option<NoiseModel>,
+    /// How hypotheses choose an action together (Algorithm 2).
+    pub policy: Policy,
+    /// How hypotheses are weighed beforehand (Algorithm 2).
+    pub prior: Prior,
+}
+
+/// What is known of the line at some stage.
+#[derive(Clone, Copy)]
+pub enum Known<'a> {
+    /// All lines that agree with every label.
+    Lines(&'a VersionSpace<CAPACITY>),
+    /// All separable sequences of labels with their weights.
+    Hypotheses(&'a Table),
 }
 
 /// Why a mission ended.
@@ -72,55 +111,122 @@ impl End {
 
 /// A planner whose knowledge can be read.
 trait Learner: Planner {
-    fn space(&self) -> &VersionSpace<CAPACITY>;
+    fn known(&self) -> Known<'_>;
 }
 
 impl<D: Dynamics> Learner for Cfc<D, CAPACITY> {
-    fn space(&self) -> &VersionSpace<CAPACITY> {
-        self.space()
+    fn known(&self) -> Known<'_> {
+        Known::Lines(self.space())
     }
 }
 
-impl<D: Dynamics> Learner for RandomWalk<D> {
-    fn space(&self) -> &VersionSpace<CAPACITY> {
-        &self.space
+impl<D: Dynamics> Learner for Scc<D, CAPACITY, HYPOTHESES> {
+    fn known(&self) -> Known<'_> {
+        Known::Hypotheses(self.hypotheses())
+    }
+}
+
+impl<D: Dynamics> Learner for RandomWalk<D, VersionSpace<CAPACITY>> {
+    fn known(&self) -> Known<'_> {
+        Known::Lines(&self.knowledge)
+    }
+}
+
+impl<D: Dynamics> Learner for RandomWalk<D, (Table, Noise)> {
+    fn known(&self) -> Known<'_> {
+        Known::Hypotheses(&self.knowledge.0)
     }
 }
 
 impl Mission {
+    /// Whether what is known is a distribution over hypotheses.
+    pub fn is_noisy(&self) -> bool {
+        self.algorithm == Algorithm::Scc
+            || (self.algorithm == Algorithm::Random && self.noise.is_some())
+    }
+
+    /// What a planner is told of the noise: of a band it can know `p` alone.
+    ///
+    /// # Panics
+    /// Never: a noise model holds a probability and a radius within the lattice.
+    pub fn noise_told(&self) -> Noise {
+        let (p, radius) = match self.noise {
+            None => (1.0, 0.0),
+            Some(NoiseModel { p, extent: Extent::OutsideBalls(radius) }) => (p, radius),
+            Some(NoiseModel { p, extent: Extent::Band(_) }) => (p, 0.0),
+        };
+        Noise {
+            reliability: Reliability::new(p).expect("a probability"),
+            trusted_radius: trusted_radius(radius).expect("a radius"),
+        }
+    }
+
+    /// The table before the first label.
+    ///
+    /// # Panics
+    /// Never: the oracle's points have a version space.
+    pub fn table(&self) -> Table {
+        Table::new(self.space.samples(), self.prior).expect("it has a version space")
+    }
+
     /// Runs the mission with the paper's unicycle; `watch` sees every step and what is known after
     /// it.
     ///
     /// # Errors
     /// [`Refused`] when a sample contradicts what is known.
-    pub fn run(&self, watch: impl FnMut(&Step, &VersionSpace<CAPACITY>)) -> Result<End, Refused> {
-        let (dynamics, space) = (Unicycle::paper(), self.space.clone());
+    pub fn run(&self, watch: impl FnMut(&Step, Known<'_>)) -> Result<End, Refused> {
+        let (dynamics, config, noise) = (Unicycle::paper(), self.config, self.noise_told());
+        let (area, rng) = (config.area, ChaCha8Rng::seed_from_u64(self.seed));
         match self.algorithm {
-            Algorithm::Cfc => self.drive(Cfc::new(self.config, dynamics, space), watch),
+            Algorithm::Cfc => self.sense(Cfc::new(config, dynamics, self.space.clone()), watch),
+            Algorithm::Scc => {
+                let (policy, prior) = (self.policy, self.prior);
+                let table = self.table();
+                self.sense(Scc::new(config, noise, policy, prior, dynamics, table), watch)
+            }
+            Algorithm::Random if self.is_noisy() => {
+                let knowledge = (self.table(), noise);
+                self.sense(RandomWalk { dynamics, area, knowledge, rng }, watch)
+            }
             Algorithm::Random => {
-                let rng = ChaCha8Rng::seed_from_u64(self.seed);
-                self.drive(RandomWalk { dynamics, area: self.config.area, space, rng }, watch)
+                let knowledge = self.space.clone();
+                self.sense(RandomWalk { dynamics, area, knowledge, rng }, watch)
             }
         }
+    }
+
+    /// Gives the planner its sensor.
+    fn sense(
+        &self,
+        planner: impl Learner,
+        watch: impl FnMut(&Step, Known<'_>),
+    ) -> Result<End, Refused> {
+        let pose = Cell::new(self.start);
+        let sensor = Probe { truth: self.truth, pose: &pose };
+        let Some(model) = self.noise else {
+            return self.drive(planner, sensor, &pose, watch);
+        };
+        let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
+        rng.set_stream(1); // the random walk has stream 0
+        let (truth, noise, given) = (self.truth, self.noise_told(), self.space.samples());
+        let flipped = Flipped { sensor, model, truth, noise, given, pose: &pose, rng };
+        self.drive(planner, flipped, &pose, watch)
     }
 
     fn drive(
         &self,
         planner: impl Learner,
-        mut watch: impl FnMut(&Step, &VersionSpace<CAPACITY>),
+        sensor: impl LabelSensor<Error = Infallible>,
+        pose: &Cell<Pose>,
+        mut watch: impl FnMut(&Step, Known<'_>),
     ) -> Result<End, Refused> {
-        let pose = Cell::new(self.start);
-        let probe = Probe { truth: self.truth, pose: &pose };
-        let mut agent = Agent::new(planner, probe, Vehicle { pose: &pose }, self.start);
+        let mut agent = Agent::new(planner, sensor, Vehicle { pose }, self.start);
         for _ in 0..self.steps {
             match agent.step() {
-                Ok(Event::Step(step)) => watch(&step, agent.planner.space()),
+                Ok(Event::Step(step)) => watch(&step, agent.planner.known()),
                 Ok(Event::Stopped(reason)) => return Ok(End::Stopped(reason)),
                 Err(AgentError::Refused(refused)) => return Err(refused),
-                Err(AgentError::Sensor(never) | AgentError::Drive(never)) => {
-                    let never: Infallible = never;
-                    match never {}
-                }
+                Err(AgentError::Sensor(never) | AgentError::Drive(never)) => match never {},
             }
         }
         Ok(End::Steps)

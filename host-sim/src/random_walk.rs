@@ -5,35 +5,62 @@ use planner_core::area::Area;
 use planner_core::dynamics::{Dynamics, Pose};
 use planner_core::planner::{Motion, Plan, Planner, StopReason};
 use planner_core::sample::{Label, Reading, Sample};
+use planner_core::scc::Noise;
 use planner_core::version_space::{Refused, VersionSpace};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use crate::mission::CAPACITY;
+use crate::mission::{CAPACITY, Table};
+
+/// What a walk learns from its samples.
+pub trait Knowledge {
+    /// Whether another sample would be refused for want of room.
+    fn is_full(&self) -> bool;
+
+    /// Takes in a sample.
+    ///
+    /// # Errors
+    /// [`Refused`].
+    fn learn(&mut self, sample: Sample) -> Result<(), Refused>;
+}
+
+impl Knowledge for VersionSpace<CAPACITY> {
+    fn is_full(&self) -> bool {
+        self.is_full()
+    }
+
+    fn learn(&mut self, sample: Sample) -> Result<(), Refused> {
+        self.insert(sample).map(|_| ())
+    }
+}
+
+/// A table with what is known of the noise.
+impl Knowledge for (Table, Noise) {
+    fn is_full(&self) -> bool {
+        self.0.is_full()
+    }
+
+    fn learn(&mut self, sample: Sample) -> Result<(), Refused> {
+        let reliability = self.1.at(sample.site, self.0.given());
+        self.0.observe(sample, reliability)
+    }
+}
 
 /// Takes each action with equal probability among those that stay in the area.
-pub struct RandomWalk<D> {
+pub struct RandomWalk<D, K> {
     /// The action set.
     pub dynamics: D,
     /// Where positions stay.
     pub area: Area,
     /// What has been learnt on the way.
-    pub space: VersionSpace<CAPACITY>,
+    pub knowledge: K,
     /// The source of chance.
     pub rng: ChaCha8Rng,
 }
 
-impl<D: Dynamics> RandomWalk<D> {
-    fn target(&self, pose: Pose, action: Action) -> Option<Pose> {
-        let (index, speed) = self.dynamics.grid().split(action);
-        let ray = self.dynamics.rays(pose).find(|ray| ray.index == index)?;
-        ray.arrive(pose.site, speed).ok().filter(|target| self.area.contains(target.site))
-    }
-}
-
-impl<D: Dynamics> Planner for RandomWalk<D> {
+impl<D: Dynamics, K: Knowledge> Planner for RandomWalk<D, K> {
     fn plan(&mut self, pose: Pose) -> Plan {
-        if self.space.is_full() {
+        if self.knowledge.is_full() {
             return Plan::Stop(StopReason::SamplesFull);
         }
         if !self.area.contains(pose.site) {
@@ -42,7 +69,8 @@ impl<D: Dynamics> Planner for RandomWalk<D> {
         loop {
             let actions = self.dynamics.grid().actions();
             let action = Action(self.rng.random_range(0..actions) as u16);
-            if let Some(target) = self.target(pose, action) {
+            let target = self.dynamics.target(pose, action);
+            if let Some(target) = target.filter(|target| self.area.contains(target.site)) {
                 let control = self.dynamics.control(action);
                 let motion =
                     Motion { stage: None, recovery: None, action, control, target, examined: 1 };
@@ -58,6 +86,6 @@ impl<D: Dynamics> Planner for RandomWalk<D> {
             Some(Reading::Boundary) => Label::Positive,
             None => return Ok(()),
         };
-        self.space.insert(Sample { site: pose.site, label }).map(|_| ())
+        self.knowledge.learn(Sample { site: pose.site, label })
     }
 }

@@ -4,22 +4,53 @@ use anyhow::{Result, anyhow};
 use nalgebra::Point2;
 use planner_core::agent::Step;
 use planner_core::estimate::{self, Estimates};
+use planner_core::hypotheses::Prior;
 use planner_core::planner::{Recovery, Stage};
+use planner_core::posterior::Posterior;
 use planner_core::version_space::{Refused, VersionSpace};
+use planner_core::weight::Reliability;
 
-use crate::mission::{CAPACITY, End, Mission};
+use crate::mission::{CAPACITY, End, Known, Mission, Table};
+
+/// The level of the credible sets that are told.
+pub const LEVEL: f64 = 0.9;
 
 /// A step and what was known after it.
 #[derive(Clone, Debug)]
 pub struct Recorded {
     /// The step.
     pub step: Step,
-    /// The slopes left, as intervals of degrees.
+    /// The slopes left, as intervals of degrees: of all lines that agree with the labels, or of the
+    /// credible set.
     pub slope_arcs: Vec<[f64; 2]>,
     /// The intercepts left, metres; `None` when unbounded.
     pub intercept: Option<[f64; 2]>,
     /// Bits learnt since the start.
     pub bits: f64,
+    /// What noisy labels add.
+    pub noisy: Option<NoisyStep>,
+}
+
+/// The distribution over hypotheses after a step, in figures.
+#[derive(Clone, Copy, Debug)]
+pub struct NoisyStep {
+    /// The sample lies in a trusted ball.
+    pub trusted: bool,
+    /// Number of hypotheses.
+    pub hypotheses: usize,
+    /// The probability given up as the table was full, at most.
+    pub pruned_mass: f64,
+    /// Entropy over the hypotheses, bits.
+    pub entropy: f64,
+}
+
+/// What was known at the end.
+#[derive(Clone, Debug)]
+pub enum Outcome {
+    /// All lines that agree with every label.
+    Lines(VersionSpace<CAPACITY>),
+    /// The distribution over hypotheses.
+    Hypotheses(Box<Table>),
 }
 
 /// A whole mission.
@@ -32,7 +63,7 @@ pub struct Recording {
     /// Why it ended.
     pub end: End,
     /// What was known at the end.
-    pub space: VersionSpace<CAPACITY>,
+    pub outcome: Outcome,
 }
 
 impl Recording {
@@ -42,17 +73,27 @@ impl Recording {
     /// Names the sample that the planner refused.
     pub fn of(mission: Mission) -> Result<Self> {
         let mut steps = Vec::new();
-        let mut last = mission.space.clone();
-        let before = estimate::area(last.candidates());
+        let mut outcome = if mission.is_noisy() {
+            Outcome::Hypotheses(Box::new(mission.table()))
+        } else {
+            Outcome::Lines(mission.space.clone())
+        };
+        let before = estimate::area(mission.space.candidates());
+        let noise = mission.noise_told();
         let end = mission
-            .run(|step, space| {
-                last = space.clone();
-                steps.push(Recorded {
-                    step: *step,
-                    slope_arcs: space.slope_arc().intervals_deg().to_vec(),
-                    intercept: space.intercepts(),
-                    bits: (before / estimate::area(space.candidates())).log2(),
+            .run(|step, known| {
+                steps.push(match known {
+                    Known::Lines(space) => lines_left(step, space, before),
+                    Known::Hypotheses(table) => {
+                        let reliability = noise.at(step.pose.site, table.given());
+                        let trusted = reliability == Reliability::CERTAIN;
+                        hypotheses_left(step, table, mission.prior, trusted)
+                    }
                 });
+                outcome = match known {
+                    Known::Lines(space) => Outcome::Lines(space.clone()),
+                    Known::Hypotheses(table) => Outcome::Hypotheses(Box::new(table.clone())),
+                };
             })
             .map_err(|refused| match refused {
                 Refused::Contradiction(sample) => {
@@ -67,12 +108,24 @@ impl Recording {
                 }
                 Refused::Full(_) => anyhow!("step {}: {refused}", steps.len() + 1),
             })?;
-        Ok(Self { mission, steps, end, space: last })
+        Ok(Self { mission, steps, end, outcome })
     }
 
-    /// The estimates at the end.
+    /// The estimates at the end. Of noisy labels, the centre is the posterior mean and the maximum
+    /// margin that of the most likely hypothesis.
     pub fn estimates(&self) -> Estimates {
-        Estimates::of(&self.space)
+        match &self.outcome {
+            Outcome::Lines(space) => Estimates::of(space),
+            Outcome::Hypotheses(table) => {
+                let posterior = Posterior::new(table, self.mission.prior);
+                let best = posterior.best().map(|best| table.candidates(best.hypothesis));
+                Estimates {
+                    bisector: estimate::bisector(table.samples()),
+                    centre: posterior.mean(),
+                    maximum_margin: best.and_then(estimate::maximum_margin),
+                }
+            }
+        }
     }
 
     /// Samples taken on the way.
@@ -91,6 +144,33 @@ impl Recording {
     }
 }
 
+fn lines_left(step: &Step, space: &VersionSpace<CAPACITY>, before: f64) -> Recorded {
+    Recorded {
+        step: *step,
+        slope_arcs: space.slope_arc().intervals_deg().to_vec(),
+        intercept: space.intercepts(),
+        bits: (before / estimate::area(space.candidates())).log2(),
+        noisy: None,
+    }
+}
+
+fn hypotheses_left(step: &Step, table: &Table, prior: Prior, trusted: bool) -> Recorded {
+    let posterior = Posterior::new(table, prior);
+    let credible = posterior.credible(LEVEL);
+    Recorded {
+        step: *step,
+        slope_arcs: credible.slope_arc.intervals_deg().to_vec(),
+        intercept: credible.intercept,
+        bits: posterior.information(),
+        noisy: Some(NoisyStep {
+            trusted,
+            hypotheses: table.iter().len(),
+            pruned_mass: posterior.lost(),
+            entropy: posterior.entropy(),
+        }),
+    }
+}
+
 /// The control cost of a step, the paper's `|u|^2 = v^2 + w^2`.
 pub fn cost(step: &Step) -> f64 {
     let control = step.motion.control;
@@ -102,6 +182,8 @@ pub fn stage_name(stage: Stage) -> &'static str {
     match stage {
         Stage::P1 => "P1",
         Stage::P2 => "P2",
+        Stage::P3 => "P3",
+        Stage::P4 => "P4",
     }
 }
 

@@ -11,7 +11,7 @@ use planner_core::sample::{Label, Sample};
 use planner_core::version_space::{NoVersionSpace, Refused, VersionSpace};
 use serde::Serialize;
 
-use crate::figure::{Figure, area_around};
+use crate::figure::{Figure, Ground, Named, area_around};
 use crate::mission::CAPACITY;
 use crate::report;
 use crate::trace::EstimateRecords;
@@ -128,11 +128,17 @@ impl Replay {
         Figure {
             title: self.name.clone(),
             area,
-            space: &self.space,
+            ground: Ground::Certain(&self.space),
+            samples: &self.samples,
             given: 0,
             path: None,
             truth: None,
-            estimate: estimate::centre(self.space.candidates()),
+            lines: Named::estimate(
+                "centre of the version space",
+                estimate::centre(self.space.candidates()),
+            )
+            .into_iter()
+            .collect(),
         }
         .svg()
     }

@@ -4,13 +4,16 @@ use std::fmt::Write as _;
 
 use nalgebra::Point2;
 use planner_core::estimate::Estimates;
+use planner_core::hypotheses::Prior;
 use planner_core::line::Line;
 use planner_core::planner::Recovery;
+use planner_core::posterior::Posterior;
 use planner_core::sample::Reading;
 
-use crate::mission::{Algorithm, End};
+use crate::mission::{Algorithm, End, Table};
 use crate::polygon::misclassified;
-use crate::recording::{Recorded, Recording, stage_name};
+use crate::recording::{LEVEL, Outcome, Recorded, Recording, stage_name};
+use crate::world::{self, reading};
 
 /// Slope intervals as text.
 pub fn arcs(intervals: &[[f64; 2]]) -> String {
@@ -61,29 +64,79 @@ pub fn mission(title: &str, recording: &Recording) -> String {
     text
 }
 
-fn write_mission(text: &mut String, title: &str, recording: &Recording) -> std::fmt::Result {
-    let mission = &recording.mission;
-    writeln!(text, "{title}")?;
-    writeln!(text, "True line, unknown to the agent: {}", line(&mission.truth))?;
-    let oracle: Vec<_> = mission
-        .space
-        .samples()
-        .iter()
-        .map(|s| {
-            let at = Point2::<f64>::from(s.site);
-            format!("({}, {}) is {:+}", at.x, at.y, s.label.sign())
-        })
-        .collect();
-    writeln!(text, "The oracle's points: {}", oracle.join(", "))?;
-    let (at, heading) = (Point2::<f64>::from(mission.start.site), mission.start.heading);
+/// A noisy mission: what was seen, what it says, how much.
+fn write_noisy_steps(text: &mut String, recording: &Recording) -> std::fmt::Result {
     writeln!(
         text,
-        "It starts at ({}, {}), heading {:.1} deg; slopes {} deg are possible.\n",
-        at.x,
-        at.y,
-        heading.radians().to_degrees(),
-        arcs(&mission.space.slope_arc().intervals_deg()),
+        "{:>4}  {:<7} {:>8} {:>5}  {:<16} {:>5} {:>6} {:>10} {:>7} {:>5}  {:<26}",
+        "step",
+        "problem",
+        "turn deg",
+        "go m",
+        "now at m",
+        "label",
+        "in fact",
+        "hypotheses",
+        "entropy",
+        "bits",
+        "slopes of the 90 % set, deg"
     )?;
+    for (recorded, number) in recording.steps.iter().zip(1..) {
+        let (step, Some(noisy)) = (&recorded.step, recorded.noisy) else { continue };
+        let at = Point2::<f64>::from(step.pose.site);
+        let fact = reading(&recording.mission.truth, step.pose.site);
+        let seen = |reading: Reading| format!("{:+}", reading.sign());
+        let wrong = if step.reading.is_some_and(|seen| seen != fact) { " !" } else { "  " };
+        writeln!(
+            text,
+            "{number:>4}  {:<7} {:>8.1} {:>5.1}  {:<16} {:>5} {:>6} {:>10} {:>7.2} {:>5.2}  {}{}",
+            step.motion.stage.map_or("-", stage_name),
+            f64::from(step.motion.control.w).to_degrees(),
+            step.motion.control.v,
+            format!("({:.3}, {:.3})", at.x, at.y),
+            step.reading.map_or("-".into(), seen),
+            format!("{}{wrong}", seen(fact)),
+            noisy.hypotheses,
+            noisy.entropy,
+            recorded.bits,
+            arcs(&recorded.slope_arcs),
+            if noisy.trusted { "  (trusted)" } else { "" },
+        )?;
+    }
+    Ok(())
+}
+
+fn write_outcome(text: &mut String, recording: &Recording, table: &Table) -> std::fmt::Result {
+    let truth = |inside: bool| if inside { "holds the truth" } else { "misses the truth" };
+    let line = &recording.mission.truth;
+    let holds = |hypothesis| world::agrees(line, table.candidates(hypothesis));
+    if let Some(best) = Posterior::new(table, Prior::Sequences).best() {
+        writeln!(
+            text,
+            "Most likely hypothesis (the paper's outcome): slope {} deg, intercept {} m, \
+             probability {:.2}; {}",
+            arcs(&best.slope_arc.intervals_deg()),
+            range(best.intercept),
+            best.probability,
+            truth(holds(best.hypothesis)),
+        )?;
+    }
+    let posterior = Posterior::new(table, recording.mission.prior);
+    let set = posterior.credible(LEVEL);
+    writeln!(
+        text,
+        "Credible set: slope {} deg, intercept {} m, probability {:.2} in {} of {} hypotheses; {}\n",
+        arcs(&set.slope_arc.intervals_deg()),
+        range(set.intercept),
+        set.probability,
+        set.cells,
+        table.iter().len(),
+        truth(posterior.members(&set).any(holds)),
+    )
+}
+
+fn write_steps(text: &mut String, recording: &Recording) -> std::fmt::Result {
+    let mission = &recording.mission;
     writeln!(
         text,
         "{:>4}  {:<7} {:>8} {:>5}  {:<16} {:>5}  {:<26} {:<19} {:>5}",
@@ -120,6 +173,36 @@ fn write_mission(text: &mut String, title: &str, recording: &Recording) -> std::
             if mission.algorithm == Algorithm::Random { "" } else { note(recorded, flipped) },
         )?;
     }
+    Ok(())
+}
+
+fn write_mission(text: &mut String, title: &str, recording: &Recording) -> std::fmt::Result {
+    let mission = &recording.mission;
+    writeln!(text, "{title}")?;
+    writeln!(text, "True line, unknown to the agent: {}", line(&mission.truth))?;
+    let oracle: Vec<_> = mission
+        .space
+        .samples()
+        .iter()
+        .map(|s| {
+            let at = Point2::<f64>::from(s.site);
+            format!("({}, {}) is {:+}", at.x, at.y, s.label.sign())
+        })
+        .collect();
+    writeln!(text, "The oracle's points: {}", oracle.join(", "))?;
+    let (at, heading) = (Point2::<f64>::from(mission.start.site), mission.start.heading);
+    writeln!(
+        text,
+        "It starts at ({}, {}), heading {:.1} deg; slopes {} deg are possible.\n",
+        at.x,
+        at.y,
+        heading.radians().to_degrees(),
+        arcs(&mission.space.slope_arc().intervals_deg()),
+    )?;
+    match &recording.outcome {
+        Outcome::Lines(_) => write_steps(text, recording)?,
+        Outcome::Hypotheses(_) => write_noisy_steps(text, recording)?,
+    }
     let why = match recording.end {
         End::Steps => "all steps are taken",
         End::Stopped(planner_core::planner::StopReason::Resolution) => {
@@ -135,9 +218,18 @@ fn write_mission(text: &mut String, title: &str, recording: &Recording) -> std::
         recording.travelled(),
         recording.cost(),
     )?;
+    if let Outcome::Hypotheses(table) = &recording.outcome {
+        write_outcome(text, recording, table)?;
+    }
     writeln!(text, "{:<28} {:<36} {:>9} {:>13}", "", "line", "error deg", "misclassified")?;
     writeln!(text, "{:<28} {:<36}", "truth", line(&mission.truth))?;
+    let noisy = matches!(recording.outcome, Outcome::Hypotheses(_));
     for (name, estimate) in estimates(&recording.estimates()) {
+        let name = match name {
+            "centre of the version space" if noisy => "posterior mean",
+            "maximum margin" if noisy => "margin of the likeliest",
+            name => name,
+        };
         match estimate {
             Some(estimate) => writeln!(
                 text,

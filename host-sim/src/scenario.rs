@@ -6,21 +6,27 @@ use std::path::Path;
 use anyhow::{Result, anyhow, bail};
 use nalgebra::Point2;
 use planner_core::area::Area;
-use planner_core::cfc::{Config, Crossing, Following};
+use planner_core::config::{Config, Crossing, Following};
 use planner_core::direction::Heading;
 use planner_core::dynamics::Pose;
+use planner_core::hypotheses::Prior;
 use planner_core::lattice::Site;
 use planner_core::line::Line;
 use planner_core::problem::Varrho;
 use planner_core::sample::{Label, Reading, Sample};
+use planner_core::scc::{Policy, trusted_radius};
 use planner_core::version_space::{NoVersionSpace, VersionSpace};
+use planner_core::weight::Reliability;
 use serde::Deserialize;
 
 use crate::mission::{Algorithm, CAPACITY, Mission};
-use crate::world;
+use crate::world::{self, Extent, NoiseModel};
 
 /// The paper's noiseless example (Section V).
 pub const PAPER_NOISELESS: &str = include_str!("../scenarios/paper-noiseless.toml");
+
+/// The paper's noisy example (Section V).
+pub const PAPER_NOISY: &str = include_str!("../scenarios/paper-noisy.toml");
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -37,6 +43,11 @@ struct File {
     crossing: CrossingName,
     #[serde(default)]
     following: FollowingName,
+    #[serde(default)]
+    policy: PolicyName,
+    #[serde(default)]
+    prior: PriorName,
+    noise: Option<NoiseTable>,
     #[serde(default)]
     area: AreaTable,
     #[serde(default)]
@@ -103,6 +114,57 @@ impl From<FollowingName> for Following {
             FollowingName::AlongBisector => Self::AlongBisector,
         }
     }
+}
+
+/// How hypotheses choose an action together, by name.
+#[derive(Clone, Copy, Debug, Default, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum PolicyName {
+    /// P3 and P4 over all hypotheses at once
+    Joint,
+    /// A vote, each held to the starting regions of certainty
+    MixtureOfStart,
+    /// A vote, each held to its own regions of certainty
+    #[default]
+    MixtureOfOwn,
+}
+
+impl From<PolicyName> for Policy {
+    fn from(name: PolicyName) -> Self {
+        match name {
+            PolicyName::Joint => Self::Joint,
+            PolicyName::MixtureOfStart => Self::MixtureOfStart,
+            PolicyName::MixtureOfOwn => Self::MixtureOfOwn,
+        }
+    }
+}
+
+/// How hypotheses are weighed beforehand, by name.
+#[derive(Clone, Copy, Debug, Default, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum PriorName {
+    /// By the measure of their lines
+    #[default]
+    Area,
+    /// All alike, as the paper has it
+    Sequences,
+}
+
+impl From<PriorName> for Prior {
+    fn from(name: PriorName) -> Self {
+        match name {
+            PriorName::Area => Self::Area,
+            PriorName::Sequences => Self::Sequences,
+        }
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct NoiseTable {
+    p: f64,
+    trusted_radius: Option<f64>,
+    band: Option<f64>,
 }
 
 #[derive(Deserialize)]
@@ -224,6 +286,7 @@ fn mission(file: &File, overrides: Overrides) -> Result<Mission> {
     let truth = truth(&file.truth)?;
     let space = oracle(&file.oracle, area, &truth)?;
     let start = start(&file.start, &space, area)?;
+    let noise = file.noise.as_ref().map(noise).transpose()?;
     let (crossing, following) = (file.crossing.into(), file.following.into());
     Ok(Mission {
         algorithm: overrides.algorithm.unwrap_or(file.algorithm),
@@ -233,7 +296,47 @@ fn mission(file: &File, overrides: Overrides) -> Result<Mission> {
         start,
         truth,
         space,
+        noise,
+        policy: file.policy.into(),
+        prior: file.prior.into(),
     })
+}
+
+fn noise(table: &NoiseTable) -> Result<NoiseModel> {
+    let p = probability("noise.p", table.p)?;
+    let extent = match (table.trusted_radius, table.band) {
+        (Some(_), Some(_)) => {
+            return wrong("noise", "both trusted_radius and band", "one of them");
+        }
+        (None, Some(half)) if half >= 0.0 && half.is_finite() => Extent::Band(half),
+        (None, Some(half)) => return wrong("noise.band", half, "a distance in metres"),
+        (radius, None) => {
+            Extent::OutsideBalls(trusted("noise.trusted_radius", radius.unwrap_or(0.0))?)
+        }
+    };
+    Ok(NoiseModel { p, extent })
+}
+
+/// Whether this is a probability.
+///
+/// # Errors
+/// Names `field` and the number.
+pub fn probability(field: &str, p: f64) -> Result<f64> {
+    if Reliability::new(p).is_none() {
+        return wrong(field, p, "a probability in [0, 1]");
+    }
+    Ok(p)
+}
+
+/// Whether this is a radius of trusted balls.
+///
+/// # Errors
+/// Names `field` and the number.
+pub fn trusted(field: &str, radius: f64) -> Result<f64> {
+    if trusted_radius(radius).is_none() {
+        return wrong(field, radius, "a radius in metres, at least 0 and below 8192");
+    }
+    Ok(radius)
 }
 
 fn truth(table: &TruthTable) -> Result<Line> {

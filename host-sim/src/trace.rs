@@ -4,12 +4,14 @@ use nalgebra::Point2;
 use planner_core::area::Area;
 use planner_core::dynamics::Pose;
 use planner_core::estimate::Estimates;
+use planner_core::hypotheses::Prior;
 use planner_core::line::Line;
+use planner_core::posterior::Posterior;
 use planner_core::sample::{Reading, Sample};
 use serde::Serialize;
 
 use crate::mission::Algorithm;
-use crate::recording::{Recorded, Recording, recovery_name, stage_name};
+use crate::recording::{LEVEL, Outcome, Recorded, Recording, recovery_name, stage_name};
 
 #[derive(Serialize)]
 #[serde(tag = "record", rename_all = "lowercase")]
@@ -44,12 +46,48 @@ struct Step {
     intercept: Option<[f64; 2]>,
     bits: f64,
     examined: u32,
+    #[serde(flatten)]
+    noisy: Option<NoisyRecord>,
+}
+
+#[derive(Serialize)]
+struct NoisyRecord {
+    trusted: bool,
+    hypotheses: usize,
+    pruned_mass: f64,
+    entropy: f64,
 }
 
 #[derive(Serialize)]
 struct End {
     reason: &'static str,
     estimates: EstimateRecords,
+    #[serde(flatten)]
+    noisy: Option<NoisyEnd>,
+}
+
+/// What noisy labels come to: the paper's outcome by the paper's prior, and the credible set by the
+/// chosen one.
+#[derive(Serialize)]
+struct NoisyEnd {
+    best: BestRecord,
+    credible: CredibleRecord,
+}
+
+#[derive(Serialize)]
+struct BestRecord {
+    slope_arcs: Vec<[f64; 2]>,
+    intercept: Option<[f64; 2]>,
+    probability: f64,
+}
+
+#[derive(Serialize)]
+struct CredibleRecord {
+    level: f64,
+    slope_arcs: Vec<[f64; 2]>,
+    intercept: Option<[f64; 2]>,
+    probability: f64,
+    cells: usize,
 }
 
 #[derive(Serialize)]
@@ -146,7 +184,33 @@ fn step(number: usize, recorded: &Recorded) -> Step {
         intercept: recorded.intercept,
         bits: recorded.bits,
         examined: motion.examined,
+        noisy: recorded.noisy.map(|noisy| NoisyRecord {
+            trusted: noisy.trusted,
+            hypotheses: noisy.hypotheses,
+            pruned_mass: noisy.pruned_mass,
+            entropy: noisy.entropy,
+        }),
     }
+}
+
+fn noisy_end(recording: &Recording) -> Option<NoisyEnd> {
+    let Outcome::Hypotheses(table) = &recording.outcome else { return None };
+    let best = Posterior::new(table, Prior::Sequences).best()?;
+    let credible = Posterior::new(table, recording.mission.prior).credible(LEVEL);
+    Some(NoisyEnd {
+        best: BestRecord {
+            slope_arcs: best.slope_arc.intervals_deg().to_vec(),
+            intercept: best.intercept,
+            probability: best.probability,
+        },
+        credible: CredibleRecord {
+            level: credible.level,
+            slope_arcs: credible.slope_arc.intervals_deg().to_vec(),
+            intercept: credible.intercept,
+            probability: credible.probability,
+            cells: credible.cells,
+        },
+    })
 }
 
 /// The trace of a mission, a record a line.
@@ -163,11 +227,14 @@ pub fn lines(recording: &Recording) -> String {
         oracle: mission.space.samples().iter().map(SampleRecord::from).collect(),
         pose: mission.start.into(),
         truth: mission.truth.into(),
-        p: 1.0,
+        p: mission.noise.map_or(1.0, |noise| noise.p),
     });
     let steps = recording.steps.iter().zip(1..).map(|(s, number)| Record::Step(step(number, s)));
-    let end =
-        Record::End(End { reason: recording.end.name(), estimates: recording.estimates().into() });
+    let end = Record::End(End {
+        reason: recording.end.name(),
+        estimates: recording.estimates().into(),
+        noisy: noisy_end(recording),
+    });
     std::iter::once(start)
         .chain(steps)
         .chain(std::iter::once(end))

@@ -4,12 +4,17 @@ use std::cell::Cell;
 use std::convert::Infallible;
 
 use nalgebra::Point2;
+use planner_core::candidates::Candidates;
 use planner_core::dynamics::Pose;
 use planner_core::hal::{Drive, LabelSensor};
 use planner_core::lattice::Site;
 use planner_core::line::Line;
 use planner_core::planner::Motion;
-use planner_core::sample::{Label, Reading};
+use planner_core::sample::{Label, Reading, Sample};
+use planner_core::scc::Noise;
+use planner_core::weight::Reliability;
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
 
 /// What a perfect sensor reads at a position.
 pub fn reading(truth: &Line, site: Site) -> Reading {
@@ -20,6 +25,67 @@ pub fn reading(truth: &Line, site: Site) -> Reading {
         Label::Negative.into()
     } else {
         Reading::Boundary
+    }
+}
+
+/// Whether a line is among the candidates: it has the labels that their cell gives its samples.
+pub fn agrees<const E: usize>(line: &Line, candidates: Candidates<'_, E>) -> bool {
+    candidates.support().all(|s| reading(line, s.site) == Reading::Side(s.label))
+}
+
+/// How the simulated world flips labels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NoiseModel {
+    /// Where labels can be wrong, they are true with this probability.
+    pub p: f64,
+    /// Where that is.
+    pub extent: Extent,
+}
+
+/// Where labels can be wrong.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Extent {
+    /// Outside balls of this radius around the oracle's points, metres.
+    OutsideBalls(f64),
+    /// Within this distance of the true line, metres (Section II-B's `c_bar`): what a planner cannot
+    /// know.
+    Band(f64),
+}
+
+/// A sensor whose labels are sometimes flipped: a wrapper around any other.
+pub struct Flipped<'w, S> {
+    /// The sensor.
+    pub sensor: S,
+    /// How labels are flipped.
+    pub model: NoiseModel,
+    /// The true line.
+    pub truth: Line,
+    /// What a planner knows of the noise, for the trusted balls.
+    pub noise: Noise,
+    /// The oracle's samples.
+    pub given: &'w [Sample],
+    /// Where the vehicle is.
+    pub pose: &'w Cell<Pose>,
+    /// The source of chance.
+    pub rng: ChaCha8Rng,
+}
+
+impl<S: LabelSensor> LabelSensor for Flipped<'_, S> {
+    type Error = S::Error;
+
+    fn read(&mut self) -> Result<Reading, S::Error> {
+        let reading = self.sensor.read()?;
+        let site = self.pose.get().site;
+        let exposed = match self.model.extent {
+            Extent::OutsideBalls(_) => self.noise.at(site, self.given) != Reliability::CERTAIN,
+            Extent::Band(half) => self.truth.distance(Point2::from(site)).abs() <= half,
+        };
+        // Drawn whether it is used or not, so that a path's noise does not depend on its places.
+        let flips = self.rng.random_range(0.0..1.0) >= self.model.p;
+        Ok(match reading {
+            Reading::Side(label) if exposed && flips => Reading::Side(-label),
+            reading => reading,
+        })
     }
 }
 

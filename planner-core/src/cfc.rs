@@ -6,57 +6,17 @@
 //!   the listing leaves `Label` alone after P2. Over the standard fields the two hardly differ.
 //! - *P2 with no feasible action* is passed over: the listing runs it once and moves its counter on
 //!   "even if the objective is not met". P1 with none climbs the recovery ladder.
-//! - *P2's direction* is held to the bisector of the slope arc ([`Following`]). Over 4,000 standard
+//! - *P2's direction* is held to the bisector of the slope arc ([`Following`](crate::config::Following)). Over 4,000 standard
 //!   fields this learns 0.65 bits a step in 10 steps where P2 as printed learns 0.56.
 
-use crate::area::Area;
 use crate::cell::Certainty;
-use crate::direction::Arc;
+use crate::config::{Config, first_to_second};
 use crate::dynamics::{Dynamics, Pose};
 use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
-use crate::problem::{ArcRule, Candidate, Problem, Varrho};
+use crate::problem::{ArcRule, Candidate, Problem};
 use crate::recovery::{Found, solve_or_recover};
 use crate::sample::{Label, Reading, Sample};
 use crate::version_space::{Refused, VersionSpace};
-
-/// How P1 looks for the opposite label (Section III-A).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Crossing {
-    /// In any direction in which the boundary cannot run: P1 as printed.
-    #[default]
-    Anyhow,
-    /// Of these, only along the direction from the first oracle point to the second.
-    AlongOracle,
-    /// Of these, only at right angles to the bisector of the slope arc.
-    AcrossBisector,
-}
-
-/// How P2 follows the boundary.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Following {
-    /// In any direction in which the boundary can run: P2 as printed. It takes the smallest turn
-    /// into the slope arc, so it skims ground that is all but certain and learns next to nothing.
-    Anyhow,
-    /// Of these, only along the bisector of the slope arc, as Section III-A proposes for P1.
-    #[default]
-    AlongBisector,
-}
-
-/// What a mission fixes beforehand.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Config {
-    /// Where positions must stay.
-    pub area: Area,
-    /// The weight of the control in the objective.
-    pub varrho: Varrho,
-    /// How P1 looks for the opposite label.
-    pub crossing: Crossing,
-    /// How P2 follows the boundary.
-    pub following: Following,
-}
 
 /// Where Algorithm 1 stands.
 ///
@@ -114,25 +74,12 @@ impl<D: Dynamics, const N: usize> Cfc<D, N> {
         let Config { area, varrho, .. } = self.config;
         let arc = self.space.slope_arc();
         let rule = match self.phase {
-            Phase::Crossing => ArcRule { inside: self.crossing_arc(arc), outside: Some(arc) },
-            Phase::Following => ArcRule { inside: Some(self.following_arc(arc)), outside: None },
+            Phase::Crossing => {
+                self.config.crossing_rule(arc, first_to_second(self.space.samples()))
+            }
+            Phase::Following => self.config.following_rule(arc),
         };
         Problem { ground: self.space.candidates(), area, varrho, rule }
-    }
-
-    fn crossing_arc(&self, slopes: Arc) -> Option<Arc> {
-        match (self.config.crossing, self.space.samples()) {
-            (Crossing::AlongOracle, [p1, p2, ..]) => Some(Arc::tracking(p2.site - p1.site)),
-            (Crossing::AcrossBisector, _) => Some(Arc::tracking(slopes.bisector().left())),
-            _ => None,
-        }
-    }
-
-    fn following_arc(&self, slopes: Arc) -> Arc {
-        match self.config.following {
-            Following::Anyhow => slopes,
-            Following::AlongBisector => slopes.middle(),
-        }
     }
 
     fn motion(&self, stage: Stage, found: &Found, examined: u32) -> Plan {
@@ -193,8 +140,11 @@ mod tests {
     use nalgebra::Point2;
 
     use super::*;
+    use crate::area::Area;
+    use crate::config::{Crossing, Following};
     use crate::lattice::Site;
     use crate::planner::Recovery;
+    use crate::problem::Varrho;
     use crate::unicycle::Unicycle;
 
     fn at(x: f64, z: f64) -> Site {

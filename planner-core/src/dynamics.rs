@@ -75,4 +75,11 @@ pub trait Dynamics {
 
     /// What an action asks of the vehicle.
     fn control(&self, action: Action) -> Control;
+
+    /// The pose after an action; `None` when there is no such action or it leads off the lattice.
+    fn target(&self, pose: Pose, action: Action) -> Option<Pose> {
+        let (index, speed) = self.grid().split(action);
+        let ray = self.rays(pose).find(|ray| ray.index == index)?;
+        ray.arrive(pose.site, speed).ok()
+    }
 }

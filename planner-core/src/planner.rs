@@ -13,6 +13,10 @@ pub enum Stage {
     P1,
     /// Follow the boundary.
     P2,
+    /// Explore directions in which no hypothesis has the boundary.
+    P3,
+    /// Explore directions in which some hypothesis has it.
+    P4,
 }
 
 /// What was done as the problem itself had no feasible action.

@@ -2,7 +2,7 @@
 
 use host_sim::campaign::{Campaign, Summary};
 use host_sim::mission::Algorithm;
-use planner_core::cfc::{Crossing, Following};
+use planner_core::config::{Crossing, Following};
 
 fn campaign(algorithm: Algorithm, following: Following, steps: u32) -> Summary {
     let crossing = Crossing::default();

@@ -1,0 +1,230 @@
+//! Algorithm 2, stochastic control for classification (SCC): noisy labels.
+//!
+//! As printed: at even steps P1, at odd steps P2, each time the most likely action of the policy, and
+//! the distribution over hypotheses is updated by every label. Steps are counted by labels here, so
+//! that a turn without a sample does not change the problem. What the paper leaves open is a
+//! [`Policy`]:
+//!
+//! - [`Joint`](Policy::Joint): P3 and P4 as printed, over all retained hypotheses at once.
+//! - [`MixtureOfStart`](Policy::MixtureOfStart): Equation 9. Each hypothesis votes for its own best
+//!   action with its posterior weight, held to the starting regions of certainty as in P3 and P4.
+//! - [`MixtureOfOwn`](Policy::MixtureOfOwn): the same, each hypothesis held to its own regions of
+//!   certainty as in P1 and P2, which is what Algorithm 2 lists. It learns the most, so it is the
+//!   default.
+//!
+//! When no hypothesis has a feasible action, the recovery ladder climbs on the starting ground.
+
+use heapless::Vec;
+
+use crate::action::Action;
+use crate::candidates::Candidates;
+use crate::config::{Config, first_to_second};
+use crate::dynamics::{Dynamics, Pose};
+use crate::hypotheses::{Hypotheses, Hypothesis, Prior};
+use crate::lattice::{Site, Vector};
+use crate::planner::{Motion, Plan, Planner, Recovery, Stage, StopReason};
+use crate::problem::{AnyDirection, ArcRule, DirectionRule, Problem};
+use crate::recovery::{Found, solve_or_recover};
+use crate::sample::{Reading, Sample};
+use crate::version_space::Refused;
+use crate::weight::Reliability;
+
+/// How the hypotheses choose an action together.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Policy {
+    /// One problem, P3 or P4, whose rule looks at the slopes of all hypotheses.
+    Joint,
+    /// A vote among each hypothesis's own P3 or P4, on the ground that was uncertain at the start.
+    MixtureOfStart,
+    /// A vote among each hypothesis's own P1 or P2, on the ground that is uncertain to it.
+    #[default]
+    MixtureOfOwn,
+}
+
+/// What is known of the noise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Noise {
+    /// How far a label can be believed.
+    pub reliability: Reliability,
+    /// Within this distance of a given sample's site labels are certain, lattice units; see
+    /// [`trusted_radius`].
+    pub trusted_radius: u32,
+}
+
+impl Noise {
+    /// The reliability of a label at a site: certain in a trusted ball (the paper's `B_r(p_j)`).
+    pub fn at(&self, site: Site, given: &[Sample]) -> Reliability {
+        let radius = i64::from(self.trusted_radius);
+        let near = |s: &Sample| {
+            let apart = site - s.site;
+            apart.dot(apart) <= radius * radius
+        };
+        if radius > 0 && given.iter().any(near) { Reliability::CERTAIN } else { self.reliability }
+    }
+}
+
+/// A radius in metres as lattice units; `None` when it is negative, not finite, or 8,192 m or more.
+pub fn trusted_radius(metres: f64) -> Option<u32> {
+    let inside = Site::try_from(nalgebra::Point2::new(metres, 0.0)).ok()?;
+    u32::try_from(inside.x()).ok()
+}
+
+/// The rules of P3 and P4 as printed: travel in no retained hypothesis's slopes, or in some one's.
+#[derive(Clone, Copy, Debug)]
+struct Retained<'a, const N: usize, const H: usize> {
+    hypotheses: &'a Hypotheses<N, H>,
+    among: bool,
+}
+
+impl<const N: usize, const H: usize> DirectionRule for Retained<'_, N, H> {
+    fn admits(&self, direction: Vector) -> bool {
+        // A cell's slopes hold a direction when its vertices are not all to one side of it.
+        let holds = |h: &Hypothesis<15>| {
+            let (mut left, mut right) = (false, false);
+            for bound in self.hypotheses.candidates(h).bounds() {
+                let turn = direction.cross(bound.along);
+                left |= turn >= 0;
+                right |= turn <= 0;
+            }
+            left && right
+        };
+        self.hypotheses.iter().any(holds) == self.among
+    }
+}
+
+/// Algorithm 2 for `D`'s dynamics, with room for `N` samples, the given ones included, and `H`
+/// hypotheses.
+#[derive(Clone, Debug)]
+pub struct Scc<D, const N: usize, const H: usize> {
+    config: Config,
+    noise: Noise,
+    policy: Policy,
+    prior: Prior,
+    dynamics: D,
+    hypotheses: Hypotheses<N, H>,
+}
+
+impl<D: Dynamics, const N: usize, const H: usize> Scc<D, N, H> {
+    /// A planner over a table of hypotheses; `prior` weighs their votes.
+    pub fn new(
+        config: Config,
+        noise: Noise,
+        policy: Policy,
+        prior: Prior,
+        dynamics: D,
+        hypotheses: Hypotheses<N, H>,
+    ) -> Self {
+        Self { config, noise, policy, prior, dynamics, hypotheses }
+    }
+
+    /// What is known of the line.
+    pub fn hypotheses(&self) -> &Hypotheses<N, H> {
+        &self.hypotheses
+    }
+
+    fn is_even(&self) -> bool {
+        self.hypotheses.taken().is_multiple_of(2)
+    }
+
+    /// The problem of a hypothesis: where it votes to go.
+    pub fn problem<'a>(&'a self, hypothesis: &'a Hypothesis<15>) -> Problem<'a, ArcRule, 15> {
+        let own = self.hypotheses.candidates(hypothesis);
+        let ground = match self.policy {
+            Policy::MixtureOfOwn => own,
+            Policy::Joint | Policy::MixtureOfStart => self.hypotheses.start(),
+        };
+        let arc = own.slope_arc();
+        let rule = if self.is_even() {
+            self.config.crossing_rule(arc, first_to_second(self.hypotheses.given()))
+        } else {
+            self.config.following_rule(arc)
+        };
+        self.on(ground, rule)
+    }
+
+    fn on<'a, R, const E: usize>(&self, ground: Candidates<'a, E>, rule: R) -> Problem<'a, R, E> {
+        Problem { ground, area: self.config.area, varrho: self.config.varrho, rule }
+    }
+
+    /// The vote of a hypothesis among those of a table whose largest weight is `most`, in 2^-20.
+    fn votes(&self, hypothesis: &Hypothesis<15>, most: f64) -> u32 {
+        const WHOLE: f64 = (1 << 20) as f64;
+        libm::round(hypothesis.weight(self.prior).exp() / most * WHOLE) as u32
+    }
+
+    /// Equation 9: the action with the most votes, and of equals the one of smallest index.
+    fn elect(&self, pose: Pose, examined: &mut u32) -> Option<Action> {
+        let weights = self.hypotheses.iter().map(|h| h.weight(self.prior));
+        let most = weights.max()?.exp();
+        let mut ballot: Vec<(Action, u32), H, u16> = Vec::new();
+        for hypothesis in self.hypotheses.iter() {
+            let votes = self.votes(hypothesis, most);
+            if votes == 0 {
+                continue;
+            }
+            let search = self.problem(hypothesis).solve(&self.dynamics, pose);
+            *examined += search.examined;
+            let Some(best) = search.best else { continue };
+            match ballot.iter_mut().find(|(action, _)| *action == best.action) {
+                Some((_, sum)) => *sum += votes,
+                // As many actions as hypotheses, and these fit: nothing is refused.
+                None => drop(ballot.push((best.action, votes))),
+            }
+        }
+        ballot
+            .into_iter()
+            .max_by_key(|(action, votes)| (*votes, core::cmp::Reverse(*action)))
+            .map(|(action, _)| action)
+    }
+
+    fn find(&self, pose: Pose, examined: &mut u32) -> Option<Found> {
+        let start = self.hypotheses.start();
+        if self.policy == Policy::Joint {
+            let rule = Retained { hypotheses: &self.hypotheses, among: !self.is_even() };
+            return solve_or_recover(&self.on(start, rule), &self.dynamics, pose, examined);
+        }
+        let elected = self.elect(pose, examined).and_then(|action| {
+            let target = self.dynamics.target(pose, action)?;
+            Some(Found { recovery: None, action, target })
+        });
+        elected.or_else(|| {
+            let undirected = self.on(start, AnyDirection);
+            let found = solve_or_recover(&undirected, &self.dynamics, pose, examined)?;
+            let recovery = found.recovery.or(Some(Recovery::Undirected));
+            Some(Found { recovery, ..found })
+        })
+    }
+}
+
+impl<D: Dynamics, const N: usize, const H: usize> Planner for Scc<D, N, H> {
+    fn plan(&mut self, pose: Pose) -> Plan {
+        if self.hypotheses.is_full() {
+            return Plan::Stop(StopReason::SamplesFull);
+        }
+        if !self.config.area.contains(pose.site) {
+            return Plan::Stop(StopReason::OutsideArea);
+        }
+        let stage = match (self.policy, self.is_even()) {
+            (Policy::MixtureOfOwn, true) => Stage::P1,
+            (Policy::MixtureOfOwn, false) => Stage::P2,
+            (_, true) => Stage::P3,
+            (_, false) => Stage::P4,
+        };
+        let mut examined = 0;
+        let Some(Found { recovery, action, target }) = self.find(pose, &mut examined) else {
+            return Plan::Stop(StopReason::Resolution);
+        };
+        let control = self.dynamics.control(action);
+        Plan::Move(Motion { stage: Some(stage), recovery, action, control, target, examined })
+    }
+
+    /// A reading on the boundary agrees with both sides, and tells nothing here.
+    fn observe(&mut self, pose: Pose, reading: Option<Reading>) -> Result<(), Refused> {
+        let Some(Reading::Side(label)) = reading else { return Ok(()) };
+        let sample = Sample { site: pose.site, label };
+        let reliability = self.noise.at(pose.site, self.hypotheses.given());
+        self.hypotheses.observe(sample, reliability)
+    }
+}
