@@ -149,8 +149,8 @@ impl<'a> Figure<'a> {
         let lines =
             candidates.iter().zip(SPREAD).enumerate().map(|(i, ((n, line, _), grey))| Named {
                 name: match i {
-                    0 => format!("maximum margin of the fewest violations ({n})"),
-                    _ => format!("another candidate, {n} violations"),
+                    0 => format!("plain maximum margin; violations: {n}"),
+                    _ => format!("another candidate; violations: {n}"),
                 },
                 line: *line,
                 colour: if i == 0 { RGBColor(190, 0, 60) } else { grey },
@@ -332,7 +332,7 @@ impl<'a> Figure<'a> {
         let text = |words: &str, x: i32, y: i32| {
             legend.draw(&Text::new(words.to_owned(), (x + 34, y - 8), font(14))).map_err(failed)
         };
-        let (left, right, rows) = (20, 330, [50, 72, 94, 116]);
+        let (left, right, rows) = (20, 400, [50, 72, 94, 116]);
         let stroke = |x: i32, y: i32, length: i32, colour: RGBColor, width: u32| {
             let style = colour.stroke_width(width);
             legend.draw(&PathElement::new([(x, y), (x + length, y)], style)).map_err(failed)

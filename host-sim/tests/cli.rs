@@ -52,11 +52,15 @@ fn folder() -> TempDir {
 }
 
 #[test]
-fn the_bare_command_tells_the_paper_s_example() {
+fn the_bare_command_tells_the_paper_s_examples() {
     let folder = folder();
     let story = prints(folder.path(), &[]);
     for part in ["the label flipped", "centre of the version space", "maximum margin", "bisector"] {
         assert!(story.contains(part), "{part}: {story}");
+    }
+    assert!(story.contains("Credible set"), "{story}");
+    for name in ["paper-noisy.svg", "paper-noisy-candidates.svg"] {
+        assert!(folder.path().join("out").join(name).exists(), "{name}");
     }
     let svg = fs::read_to_string(folder.path().join("out/paper-noiseless.svg")).expect("a figure");
     assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
@@ -114,13 +118,65 @@ fn a_vertical_truth_has_no_slope() {
 }
 
 #[test]
+fn a_noisy_run_adds_to_the_trace() {
+    let folder = folder();
+    let noisy = include_str!("../scenarios/paper-noisy.toml");
+    fs::write(folder.path().join("n.toml"), noisy).expect("a file");
+    let args =
+        ["run", "n.toml", "--trace", "t.jsonl", "--figure", "f.svg", "--candidates", "c.svg"];
+    let story = prints(folder.path(), &args);
+    for part in ["Most likely hypothesis", "Credible set", "posterior mean"] {
+        assert!(story.contains(part), "{part}: {story}");
+    }
+    for (figure, part) in [("f.svg", "l1, which bounds"), ("c.svg", "plain maximum margin")] {
+        let svg = fs::read_to_string(folder.path().join(figure)).expect("a figure");
+        assert!(svg.contains(part), "{figure}: {part}");
+    }
+    let trace = fs::read_to_string(folder.path().join("t.jsonl")).expect("a trace");
+    let records: Vec<serde_json::Value> =
+        trace.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
+    assert_eq!(records[0]["p"], 0.7);
+    for step in &records[1..=10] {
+        assert_eq!(step["trusted"], false);
+        assert!(step["hypotheses"].as_u64() > Some(1) && step["entropy"].is_f64());
+        assert_eq!(step["pruned_mass"], 0.0);
+    }
+    let end = &records[11];
+    assert!(end["best"]["probability"].is_f64() && end["best"]["slope_arcs"][0][0].is_f64());
+    assert_eq!(end["credible"]["level"], 0.9);
+    assert!(end["credible"]["probability"].as_f64() >= Some(0.9));
+    assert!(end["credible"]["cells"].as_u64() >= Some(1));
+}
+
+#[test]
+fn bad_noise_is_refused() {
+    let folder = folder();
+    let noisy = include_str!("../scenarios/paper-noisy.toml");
+    let good = "p = 0.7, trusted_radius = 0.5";
+    let cases: [(&str, &[&str]); 8] = [
+        ("p = 1.1", &["noise.p", "found 1.1", "[0, 1]"]),
+        ("p = -0.1", &["noise.p", "found -0.1", "[0, 1]"]),
+        ("p = nan", &["noise.p", "found NaN", "[0, 1]"]),
+        ("p = 0.7, trusted_radius = -0.5", &["noise.trusted_radius", "found -0.5", "at least 0"]),
+        ("p = 0.7, trusted_radius = inf", &["noise.trusted_radius", "found inf"]),
+        ("p = 0.7, band = -1.0", &["noise.band", "found -1", "distance"]),
+        ("p = 0.7, band = 1.0, trusted_radius = 1.0", &["noise", "both", "one of them"]),
+        ("trusted_radius = 0.5", &["bad.toml:10", "missing field `p`"]),
+    ];
+    for (bad, parts) in cases {
+        fs::write(folder.path().join("bad.toml"), noisy.replace(good, bad)).expect("a file");
+        refuses(folder.path(), &["run", "bad.toml"], &[&["bad.toml"], parts].concat());
+    }
+}
+
+#[test]
 fn bad_scenarios_are_refused_by_file_and_field() {
     let folder = folder();
     let cases: [(&str, &str, &[&str]); 22] = [
         ("steps = 10", "steps = ten", &["bad.toml:4"]),
         ("steps = 10", "stepz = 10", &["bad.toml:4", "stepz", "expected one of", "`steps`"]),
-        ("steps = 10", "steps = 61", &["steps", "found 61", "1 to 60", "64 samples"]),
-        ("steps = 10", "steps = 0", &["steps", "found 0", "1 to 60"]),
+        ("steps = 10", "steps = 65", &["steps", "found 65", "1 to 64", "68 samples"]),
+        ("steps = 10", "steps = 0", &["steps", "found 0", "1 to 64"]),
         ("steps = 10", "steps = -3", &["bad.toml:4", "-3"]),
         ("\"cfc\"", "\"dfc\"", &["bad.toml:3", "dfc", "`cfc`"]),
         ("varrho = 0.1", "varrho = 1.0", &["varrho", "found 1", "[0, 1)"]),
@@ -187,15 +243,22 @@ fn bad_flags_and_places_are_refused() {
     let folder = folder();
     fs::write(folder.path().join("m.toml"), GOOD).expect("a file");
     fs::create_dir(folder.path().join("d")).expect("a folder");
-    let cases: [(&[&str], &[&str]); 9] = [
+    let cases: [(&[&str], &[&str]); 13] = [
         (&["run", "none.toml"], &["none.toml", "readable"]),
-        (&["run", "m.toml", "--steps", "99"], &["--steps", "found 99", "1 to 60"]),
+        (&["run", "m.toml", "--steps", "99"], &["--steps", "found 99", "1 to 64"]),
         (&["run", "m.toml", "--steps", "many"], &["--steps", "many"]),
         (&["run", "m.toml", "--algorithm", "abc"], &["--algorithm", "abc", "cfc"]),
         (&["run", "m.toml", "--trace", "no/t.jsonl"], &["no/t.jsonl", "expected a place"]),
         (&["run", "m.toml", "--trace", "t.jsonl", "--figure", "d"], &["d", "directory"]),
         (&["campaign", "--fields", "0"], &["--fields", "0"]),
-        (&["campaign", "--steps", "61"], &["--steps", "found 61", "1 to 60"]),
+        (&["campaign", "--steps", "65"], &["--steps", "found 65", "1 to 64"]),
+        (&["campaign", "--p", "1.5"], &["--p", "found 1.5", "[0, 1]"]),
+        (&["campaign", "--p", "0.7"], &["--p", "found 0.7", "expected 1", "cfc"]),
+        (
+            &["campaign", "--algorithm", "scc", "--trusted-radius=-1"],
+            &["--trusted-radius", "found -1"],
+        ),
+        (&["run", "m.toml", "--candidates", "c.svg"], &["--candidates", "without noise"]),
         (&["campaign", "--csv", "no/c.csv"], &["no/c.csv", "expected a place"]),
     ];
     for (args, parts) in cases {

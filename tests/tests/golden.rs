@@ -8,7 +8,6 @@ use std::path::Path;
 use expect_test::expect_file;
 use host_sim::cli::PAPER_TITLE;
 use host_sim::figure::Figure;
-use host_sim::mission::Algorithm;
 use host_sim::polygon::misclassified;
 use host_sim::recording::{Recording, recovery_name};
 use host_sim::report;
@@ -25,9 +24,8 @@ fn standard_scenarios() {
     files.sort();
     let mut table = String::new();
     for file in files {
-        let overrides = Overrides { algorithm: Some(Algorithm::Cfc), ..Overrides::default() };
-        let mission = scenario::read(&file, overrides).expect("a good file");
-        let recording = Recording::of(mission).expect("noiseless");
+        let mission = scenario::read(&file, Overrides::default()).expect("a good file");
+        let recording = Recording::of(mission).expect("no contradiction");
         let name = file.file_stem().expect("a name").to_string_lossy().into_owned();
         describe(&mut table, &name, &recording).expect("a string");
     }

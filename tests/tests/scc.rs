@@ -1,0 +1,233 @@
+//! Algorithm 2: the vote against the slow way, the world's noise, and what its posterior is worth.
+
+use std::cell::Cell;
+use std::collections::BTreeMap;
+
+use host_sim::campaign::Campaign;
+use host_sim::field;
+use host_sim::mission::{Algorithm, CAPACITY, HYPOTHESES, Known, Table};
+use host_sim::noisy_campaign::{NoisyCampaign, Summary, limit};
+use host_sim::recording::Recording;
+use host_sim::trace;
+use host_sim::world::{self, Extent, Flipped, NoiseModel, Probe};
+use nalgebra::Point2;
+use planner_core::action::Action;
+use planner_core::config::{Crossing, Following};
+use planner_core::direction::Heading;
+use planner_core::dynamics::Pose;
+use planner_core::hal::LabelSensor;
+use planner_core::hypotheses::Prior;
+use planner_core::lattice::Site;
+use planner_core::planner::{Plan, Planner, Stage};
+use planner_core::sample::Reading;
+use planner_core::scc::{Policy, Scc};
+use planner_core::unicycle::Unicycle;
+use planner_core::weight::Reliability;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+
+type Planner64 = Scc<Unicycle, CAPACITY, HYPOTHESES>;
+
+/// The election the slow way: every hypothesis tries every action, and all votes are summed.
+fn slow_election(planner: &Planner64, prior: Prior, pose: Pose) -> Option<Action> {
+    let weights = || planner.hypotheses().iter().map(|h| h.weight(prior).exp());
+    let most = weights().fold(0.0, f64::max);
+    let mut sums: BTreeMap<Action, u64> = BTreeMap::new();
+    for (hypothesis, weight) in planner.hypotheses().iter().zip(weights()) {
+        let votes = (weight / most * f64::from(1 << 20)).round() as u64;
+        let search = planner.problem(hypothesis).solve_exhaustively(&Unicycle::paper(), pose);
+        if let (Some(best), 1..) = (search.best, votes) {
+            *sums.entry(best.action).or_default() += votes;
+        }
+    }
+    let most = sums.values().max()?;
+    sums.iter().find(|(_, votes)| *votes == most).map(|(action, _)| *action)
+}
+
+#[test]
+fn a_vote_is_the_sum_over_hypotheses_computed_the_slow_way() {
+    let elections: u64 = (0..24u64)
+        .into_par_iter()
+        .map(|number| {
+            let policy = [Policy::MixtureOfOwn, Policy::MixtureOfStart][number as usize % 2];
+            let prior = [Prior::Area, Prior::Sequences][number as usize / 2 % 2];
+            let mut mission = field::standard(9, number, Algorithm::Scc, 12);
+            mission.noise = Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.5) });
+            (mission.policy, mission.prior) = (policy, prior);
+            let (mut from, mut before) = (mission.start, mission.table());
+            let mut elections = 0;
+            let end = mission.run(|step, known| {
+                let planner = |table: Table| -> Planner64 {
+                    let (config, noise) = (mission.config, mission.noise_told());
+                    Scc::new(config, noise, policy, prior, Unicycle::paper(), table)
+                };
+                // From where it was and, facing elsewhere, where it was not.
+                let elsewhere = Pose { heading: Heading(from.heading.0.wrapping_mul(77)), ..from };
+                for pose in [from, elsewhere] {
+                    let mut planner = planner(before.clone());
+                    let slow = slow_election(&planner, prior, pose);
+                    let Plan::Move(motion) = planner.plan(pose) else { panic!("it moves") };
+                    match slow {
+                        Some(action) => {
+                            assert_eq!(
+                                (motion.action, motion.recovery),
+                                (action, None),
+                                "{number}"
+                            );
+                        }
+                        None => assert!(motion.recovery.is_some(), "{number}"),
+                    }
+                    elections += 1;
+                }
+                let Known::Hypotheses(table) = known else { panic!("noisy") };
+                (from, before) = (step.pose, table.clone());
+            });
+            assert!(end.is_ok());
+            elections
+        })
+        .sum();
+    println!("{elections} elections");
+    assert!(elections > 400);
+}
+
+#[test]
+fn problems_alternate_by_labels() {
+    for (policy, names) in [
+        (Policy::Joint, [Stage::P3, Stage::P4]),
+        (Policy::MixtureOfStart, [Stage::P3, Stage::P4]),
+        (Policy::MixtureOfOwn, [Stage::P1, Stage::P2]),
+    ] {
+        for number in 0..20 {
+            let mut mission = field::standard(10, number, Algorithm::Scc, 15);
+            mission.noise = Some(NoiseModel { p: 0.8, extent: Extent::Band(3.0) });
+            mission.policy = policy;
+            let mut labels = 0;
+            let end = mission.run(|step, _| {
+                assert_eq!(step.motion.stage, Some(names[labels % 2]));
+                labels += usize::from(step.reading.is_some());
+            });
+            assert!(end.is_ok() && labels > 5);
+        }
+    }
+}
+
+#[test]
+fn the_world_flips_labels_where_it_should_and_as_often() {
+    let mission = field::standard(1, 2, Algorithm::Scc, 1);
+    let truth = mission.truth;
+    let given = mission.space.samples();
+    for extent in [Extent::OutsideBalls(3.0), Extent::Band(2.0), Extent::OutsideBalls(0.0)] {
+        let model = NoiseModel { p: 0.7, extent };
+        let noisy = host_sim::mission::Mission { noise: Some(model), ..mission.clone() };
+        let pose = Cell::new(mission.start);
+        let sensor = Probe { truth, pose: &pose };
+        let rng = ChaCha8Rng::seed_from_u64(4);
+        let noise = noisy.noise_told();
+        let mut sensor = Flipped { sensor, model, truth, noise, given, pose: &pose, rng };
+        let mut places = ChaCha8Rng::seed_from_u64(5);
+        let (mut exposed, mut flipped) = (0, 0);
+        for _ in 0..40_000 {
+            let mut metres = || places.random_range(0.0..field::SIDE_M);
+            let at = Point2::new(metres(), metres());
+            let site = Site::try_from(at).expect("near");
+            pose.set(Pose { site, ..mission.start });
+            let wrong = sensor.read() != Ok(world::reading(&truth, site));
+            let near = |s: &planner_core::sample::Sample| (Point2::<f64>::from(s.site) - at).norm();
+            let safe = match extent {
+                Extent::OutsideBalls(radius) => given.iter().any(|s| near(s) < radius - 1e-3),
+                Extent::Band(half) => truth.distance(at).abs() > half + 1e-3,
+            };
+            assert!(!(safe && wrong), "{extent:?}: a flip at {at}");
+            if !safe {
+                exposed += 1;
+                flipped += i32::from(wrong);
+            }
+            // What the planner is told of the balls is what the world does.
+            if let Extent::OutsideBalls(_) = extent {
+                let trusted = noise.at(site, given) == Reliability::CERTAIN;
+                assert!(!trusted || !wrong);
+            }
+        }
+        let share = f64::from(flipped) / f64::from(exposed);
+        assert!((share - 0.3).abs() < 0.02, "{extent:?}: {share}");
+    }
+}
+
+#[test]
+fn a_noisy_mission_comes_out_the_same_again_byte_for_byte() {
+    for algorithm in [Algorithm::Scc, Algorithm::Random] {
+        for number in 0..5 {
+            let trace = || {
+                let mut mission = field::standard(3, number, algorithm, 20);
+                mission.noise = Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.5) });
+                trace::lines(&Recording::of(mission).expect("trusted labels are true"))
+            };
+            assert_eq!(trace(), trace(), "field {number}");
+        }
+    }
+}
+
+#[test]
+fn perfect_labels_lead_as_in_the_noiseless_case() {
+    for number in 0..20 {
+        let mission = field::standard(6, number, Algorithm::Scc, 15); // p = 1: no noise
+        let end = mission.run(|_, known| {
+            let Known::Hypotheses(table) = known else { panic!("a table") };
+            assert_eq!(table.iter().len(), 1);
+            let held = table.iter().next().expect("one");
+            assert!(world::agrees(&mission.truth, table.candidates(held)));
+        });
+        assert!(end.is_ok());
+    }
+}
+
+fn campaign(algorithm: Algorithm, fields: u64, steps: u32, policy: Policy) -> Summary {
+    let (crossing, following) = (Crossing::default(), Following::default());
+    let fields = Campaign { algorithm, fields, steps, seed: 1, crossing, following };
+    let (p, trusted_radius, prior) = (0.7, 0.0, Prior::Area);
+    let summary = NoisyCampaign { fields, p, trusted_radius, policy, prior }.run();
+    let summary = summary.expect("no trusted label");
+    println!("{}", summary.report());
+    summary
+}
+
+/// 2,000 standard fields: what is stated holds, by the area prior.
+#[test]
+fn credible_sets_cover_as_they_state() {
+    let summary = campaign(Algorithm::Scc, 2_000, 36, Policy::MixtureOfOwn);
+    for labels in [10, 20, 30] {
+        let row = summary.rows.iter().find(|row| row.labels == labels).expect("a mark");
+        assert!(row.missions == 2_000 && row.pruned_mass <= 0.0);
+        let [area, paper] = &row.calibration;
+        assert!((area.coverage - area.stated).abs() < 0.02, "{labels}: {area:?}");
+        assert!(paper.coverage < area.coverage, "{labels}: the paper's prior is overconfident");
+        for &(n, stated, hit) in &area.best {
+            // Two points, and what chance adds in a bin of this size.
+            let chance = 3.0 * (stated * (1.0 - stated) / n as f64).sqrt();
+            assert!((hit - stated).abs() < 0.02 + chance, "{labels}: {n} {stated} {hit}");
+        }
+    }
+    let last = summary.rows.iter().find(|row| row.labels == 30).expect("a mark");
+    assert!(last.bits >= 1.8 && last.bits / 30.0 <= summary.limit);
+}
+
+#[test]
+fn the_default_policy_learns_the_most() {
+    let bits = |algorithm, policy| {
+        let summary = campaign(algorithm, 150, 36, policy);
+        summary.rows.iter().find(|row| row.labels == 30).expect("a mark").bits
+    };
+    let own = bits(Algorithm::Scc, Policy::MixtureOfOwn);
+    for policy in [Policy::MixtureOfStart, Policy::Joint] {
+        assert!(own > 1.2 * bits(Algorithm::Scc, policy), "{policy:?}");
+    }
+    assert!(own > 2.0 * bits(Algorithm::Random, Policy::default()));
+}
+
+#[test]
+fn a_label_can_tell_so_much() {
+    assert!((limit(0.7) - 0.1187).abs() < 1e-4);
+    assert!(limit(0.5).abs() < 1e-12 && (limit(1.0) - 1.0).abs() < 1e-12);
+    assert_eq!(Reading::Boundary.sign(), 0);
+}
