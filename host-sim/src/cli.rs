@@ -101,9 +101,9 @@ struct CampaignArgs {
     /// How P1 looks for the opposite label
     #[arg(long, value_enum, default_value_t)]
     crossing: CrossingName,
-    /// How P2 follows the boundary
-    #[arg(long, value_enum, default_value_t)]
-    following: FollowingName,
+    /// How P2 follows the boundary [default: along-bisector; for scc anyhow]
+    #[arg(long, value_enum)]
+    following: Option<FollowingName>,
     /// Labels are true with this probability [default: 0.7 for scc, 1 else]
     #[arg(long)]
     p: Option<f64>,
@@ -218,7 +218,7 @@ fn campaign(args: &CampaignArgs) -> Result<String> {
         steps: args.steps,
         seed: args.seed,
         crossing: args.crossing.into(),
-        following: args.following.into(),
+        following: args.following.map_or(args.algorithm.following(), Into::into),
     };
     let p = args.p.unwrap_or(if args.algorithm == Algorithm::Scc { 0.7 } else { 1.0 });
     let p = scenario::probability("--p", p)?;

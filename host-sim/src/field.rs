@@ -10,7 +10,7 @@
 
 use nalgebra::{Point2, Vector2};
 use planner_core::area::Area;
-use planner_core::config::{Config, Crossing, Following};
+use planner_core::config::{Config, Crossing};
 use planner_core::direction::Heading;
 use planner_core::dynamics::Pose;
 use planner_core::hypotheses::Prior;
@@ -92,7 +92,7 @@ pub fn standard(seed: u64, number: u64, algorithm: Algorithm, steps: u32) -> Mis
             area,
             varrho: Varrho::PAPER,
             crossing: Crossing::default(),
-            following: Following::default(),
+            following: algorithm.following(),
         },
         start: Pose { site: oracle[0].site, heading },
         truth,

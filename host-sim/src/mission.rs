@@ -5,7 +5,7 @@ use std::convert::Infallible;
 
 use planner_core::agent::{Agent, AgentError, Event, Step};
 use planner_core::cfc::Cfc;
-use planner_core::config::Config;
+use planner_core::config::{Config, Following};
 use planner_core::dynamics::{Dynamics, Pose};
 use planner_core::hal::LabelSensor;
 use planner_core::hypotheses::{Hypotheses, Prior};
@@ -50,6 +50,14 @@ impl Algorithm {
             Self::Cfc => "Algorithm 1 (cfc)",
             Self::Scc => "Algorithm 2 (scc)",
             Self::Random => "random walk",
+        }
+    }
+
+    /// How P2 follows the boundary unless one says: in the way that learns the most.
+    pub fn following(self) -> Following {
+        match self {
+            Self::Cfc | Self::Random => Following::AlongBisector,
+            Self::Scc => Following::Anyhow,
         }
     }
 }

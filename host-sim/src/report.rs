@@ -11,6 +11,7 @@ use planner_core::posterior::Posterior;
 use planner_core::sample::Reading;
 
 use crate::mission::{Algorithm, End, Table};
+use crate::noisy_campaign::limit;
 use crate::polygon::misclassified;
 use crate::recording::{LEVEL, Outcome, Recorded, Recording, stage_name};
 use crate::world::{self, reading};
@@ -199,6 +200,17 @@ fn write_mission(text: &mut String, title: &str, recording: &Recording) -> std::
         heading.radians().to_degrees(),
         arcs(&mission.space.slope_arc().intervals_deg()),
     )?;
+    if let Some(noise) = mission.noise {
+        let each = limit(noise.p);
+        writeln!(
+            text,
+            "A label is true with probability {}, so it tells {each:.3} bits at most on average, \
+             {} of them {:.2}.\n",
+            noise.p,
+            mission.steps,
+            f64::from(mission.steps) * each,
+        )?;
+    }
     match &recording.outcome {
         Outcome::Lines(_) => write_steps(text, recording)?,
         Outcome::Hypotheses(_) => write_noisy_steps(text, recording)?,

@@ -41,8 +41,7 @@ struct File {
     varrho: f64,
     #[serde(default)]
     crossing: CrossingName,
-    #[serde(default)]
-    following: FollowingName,
+    following: Option<FollowingName>,
     #[serde(default)]
     policy: PolicyName,
     #[serde(default)]
@@ -97,13 +96,12 @@ impl From<CrossingName> for Crossing {
 }
 
 /// How P2 follows the boundary, by name.
-#[derive(Clone, Copy, Debug, Default, Deserialize, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum FollowingName {
     /// In any direction in which the boundary can run: P2 as printed
     Anyhow,
     /// Along the bisector of the slope arc
-    #[default]
     AlongBisector,
 }
 
@@ -287,9 +285,11 @@ fn mission(file: &File, overrides: Overrides) -> Result<Mission> {
     let space = oracle(&file.oracle, area, &truth)?;
     let start = start(&file.start, &space, area)?;
     let noise = file.noise.as_ref().map(noise).transpose()?;
-    let (crossing, following) = (file.crossing.into(), file.following.into());
+    let algorithm = overrides.algorithm.unwrap_or(file.algorithm);
+    let following = file.following.map_or(algorithm.following(), Following::from);
+    let crossing = file.crossing.into();
     Ok(Mission {
-        algorithm: overrides.algorithm.unwrap_or(file.algorithm),
+        algorithm,
         steps,
         seed: overrides.seed.unwrap_or(file.seed),
         config: Config { area, varrho, crossing, following },

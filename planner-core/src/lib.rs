@@ -34,6 +34,9 @@
 //!   ([`version_space`]).
 //! - **Motions come from an integer-indexed grid** ([`action`], [`dynamics`]), and the one-step
 //!   problems are solved exactly by looking at some per cent of it ([`problem`]).
+//! - **Noisy labels in fixed memory.** The sequences of true labels that some line realises are cells
+//!   too, at most 529 for 32 labels; a table of weighed cells is the whole posterior
+//!   ([`hypotheses`], [`posterior`]).
 //! - **The same on every machine.** Integers decide; floating point proposes directions and reads
 //!   results out, by IEEE arithmetic and libm. One mission gives one trace, on a PC and on a chip.
 //! - **Fixed memory.** No allocation, no `unsafe`, no recursion; capacities are const generics. A
@@ -42,7 +45,8 @@
 //! # How the pieces meet
 //!
 //! A [`planner::Planner`] is asked for a motion with `plan()` and told what came of it with
-//! `observe()`. [`cfc::Cfc`] is the paper's Algorithm 1. An [`agent::Agent`] joins a planner to a
+//! `observe()`. [`cfc::Cfc`] is the paper's Algorithm 1, for labels that are true, [`scc::Scc`] its
+//! Algorithm 2, for labels that are sometimes wrong. An [`agent::Agent`] joins a planner to a
 //! [`hal::Drive`] and a [`hal::LabelSensor`], which are yours to implement; a sensor on a digital pin
 //! comes with the crate.
 //!
@@ -114,8 +118,8 @@
 //!
 //! # Limits
 //!
-//! - Labels are taken to be true. A sample that contradicts a region of certainty is a typed error
-//!   ([`version_space::Refused`]) and leaves the planner as it was.
+//! - Algorithm 1 takes labels to be true. A sample that contradicts a region of certainty is a typed
+//!   error ([`version_space::Refused`]) and leaves the planner as it was.
 //! - Positions lie within 8,192 m of the origin, one motion is shorter than 100 m, and a buffer holds
 //!   3 to 128 samples.
 //! - The boundary is one straight line. P1 and P2 look one step ahead.

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use host_sim::field;
 use host_sim::mission::Algorithm;
+use host_sim::world;
 use nalgebra::Point2;
 use planner_core::cell::Certainty;
 use planner_core::estimate;
@@ -309,4 +310,37 @@ fn a_credible_set_is_the_smallest() {
             }
         }
     }
+}
+
+/// Cells with room for few edges hold more lines than they should, never fewer.
+#[test]
+fn a_cell_that_cannot_hold_its_edges_holds_more_lines_and_says_so() {
+    let mut outer = 0;
+    for number in 0..200 {
+        let (given, seen, truth) = mission(number, 16, false);
+        let mut rng = ChaCha8Rng::seed_from_u64(number);
+        let mut table = Hypotheses::<20, 137, 4>::new(&given, Prior::Area).expect("an oracle");
+        let mut exact = Hypotheses::<20, 137>::new(&given, Prior::Area).expect("an oracle");
+        for &(sample, p) in &seen {
+            let reliability = Reliability::new(p).expect("p");
+            if table.observe(sample, reliability).is_err() {
+                break;
+            }
+            exact.observe(sample, reliability).expect("room");
+            // The true line is still among the lines of some hypothesis, unless that was given up.
+            let held = table.iter().any(|h| world::agrees(&truth, table.candidates(h)));
+            let lost = Posterior::new(&table, Prior::Area).lost();
+            assert!(held || lost > 0.0, "mission {number}");
+        }
+        // So is every line of every exact hypothesis.
+        if Posterior::new(&table, Prior::Area).lost() <= 0.0 {
+            for h in exact.iter().filter(|_| rng.random_range(0..4) == 0) {
+                let line = estimate::centre(exact.candidates(h)).expect("a line");
+                assert!(table.iter().any(|h| world::agrees(&line, table.candidates(h))));
+            }
+        }
+        outer += u32::from(table.outer_cells());
+    }
+    println!("{outer} cells kept lines that they should not have");
+    assert!(outer > 100);
 }
