@@ -145,7 +145,7 @@ impl<'a> Figure<'a> {
                 Some((violations(&widest), widest, margin.fold(f64::INFINITY, f64::min)))
             })
             .collect();
-        candidates.sort_by(|a, b| (a.0, -a.2).partial_cmp(&(b.0, -b.2)).expect("finite"));
+        candidates.sort_by(|a, b| a.0.cmp(&b.0).then(b.2.total_cmp(&a.2)));
         let lines =
             candidates.iter().zip(SPREAD).enumerate().map(|(i, ((n, line, _), grey))| Named {
                 name: match i {

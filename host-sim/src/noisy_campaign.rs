@@ -188,24 +188,27 @@ fn row(labels: usize, marks: &[Mark]) -> Row {
         pruned_mass: marks.iter().map(|m| m.pruned_mass).fold(0.0, f64::max),
         mean_deg: Spread::of(marks.iter().map(|m| m.mean_deg)),
         control_cost: mean(|m| m.control_cost),
-        calibration: [0, 1].map(|prior| calibration(marks.iter().map(|m| m.by_prior[prior]))),
+        calibration: [0, 1].map(|prior| {
+            let of = marks.iter().map(|m| m.by_prior[prior]);
+            calibration(&of.collect::<Vec<_>>())
+        }),
     }
 }
 
-fn calibration(statements: impl Iterator<Item = Statement> + Clone) -> Calibration {
-    let n = statements.clone().count() as f64;
+fn calibration(statements: &[Statement]) -> Calibration {
+    let n = statements.len() as f64;
     let share = |holds: bool| f64::from(u8::from(holds));
     let bin = |p: f64| BINS.iter().rposition(|&from| p >= from).unwrap_or(0);
     let best = (0..BINS.len()).map(|b| {
-        let of = statements.clone().filter(|s| bin(s.best_probability) == b);
+        let of = statements.iter().filter(|s| bin(s.best_probability) == b);
         let (count, stated, holds) = of.fold((0, 0.0, 0.0), |(count, stated, holds), s| {
             (count + 1, stated + s.best_probability, holds + share(s.best_holds))
         });
         (count, stated / count as f64, holds / count as f64)
     });
     Calibration {
-        coverage: statements.clone().map(|s| share(s.credible_holds)).sum::<f64>() / n,
-        stated: statements.clone().map(|s| s.credible_probability).sum::<f64>() / n,
+        coverage: statements.iter().map(|s| share(s.credible_holds)).sum::<f64>() / n,
+        stated: statements.iter().map(|s| s.credible_probability).sum::<f64>() / n,
         best: best.filter(|(count, ..)| *count > 0).collect(),
     }
 }

@@ -48,7 +48,7 @@ pub struct NoisyStep {
 #[derive(Clone, Debug)]
 pub enum Outcome {
     /// All lines that agree with every label.
-    Lines(VersionSpace<CAPACITY>),
+    Lines(Box<VersionSpace<CAPACITY>>),
     /// The distribution over hypotheses.
     Hypotheses(Box<Table>),
 }
@@ -76,7 +76,7 @@ impl Recording {
         let mut outcome = if mission.is_noisy() {
             Outcome::Hypotheses(Box::new(mission.table()))
         } else {
-            Outcome::Lines(mission.space.clone())
+            Outcome::Lines(Box::new(mission.space.clone()))
         };
         let before = estimate::area(mission.space.candidates());
         let noise = mission.noise_told();
@@ -91,7 +91,7 @@ impl Recording {
                     }
                 });
                 outcome = match known {
-                    Known::Lines(space) => Outcome::Lines(space.clone()),
+                    Known::Lines(space) => Outcome::Lines(Box::new(space.clone())),
                     Known::Hypotheses(table) => Outcome::Hypotheses(Box::new(table.clone())),
                 };
             })
