@@ -172,9 +172,9 @@ impl Mission {
     /// The table before the first label.
     ///
     /// # Panics
-    /// Never: the oracle's points have a version space.
+    /// When more than 15 of the oracle's points bound the line, which scenario files are refused for.
     pub fn table(&self) -> Table {
-        Table::new(self.space.samples(), self.prior).expect("it has a version space")
+        Table::new(self.space.samples(), self.prior).expect("15 points bound the line at most")
     }
 
     /// Runs the mission with the paper's unicycle; `watch` sees every step and what is known after

@@ -33,8 +33,8 @@ pub struct NoisyCampaign {
 /// Labels after which missions are compared.
 const MARKS: [usize; 6] = [1, 5, 10, 20, 30, 60];
 
-/// Bounds of the bins of stated probabilities, the last one closed.
-const BINS: [f64; 6] = [0.0, 0.1, 0.2, 0.35, 0.5, 0.75];
+/// Bins of stated probabilities, each with as many missions.
+const BINS: usize = 5;
 
 /// What a posterior states of one mission, and whether it is so.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -65,8 +65,8 @@ pub struct Calibration {
     pub coverage: f64,
     /// The mean probability that they state.
     pub stated: f64,
-    /// For each bin of the best hypothesis's stated probability: how many fell in it, the mean
-    /// stated, and the share that hold the truth.
+    /// The missions in bins of equal size by the best hypothesis's stated probability: how many, the
+    /// mean stated, and the share whose best hypothesis holds the truth.
     pub best: Vec<(u64, f64, f64)>,
 }
 
@@ -198,18 +198,19 @@ fn row(labels: usize, marks: &[Mark]) -> Row {
 fn calibration(statements: &[Statement]) -> Calibration {
     let n = statements.len() as f64;
     let share = |holds: bool| f64::from(u8::from(holds));
-    let bin = |p: f64| BINS.iter().rposition(|&from| p >= from).unwrap_or(0);
-    let best = (0..BINS.len()).map(|b| {
-        let of = statements.iter().filter(|s| bin(s.best_probability) == b);
-        let (count, stated, holds) = of.fold((0, 0.0, 0.0), |(count, stated, holds), s| {
-            (count + 1, stated + s.best_probability, holds + share(s.best_holds))
-        });
-        (count, stated / count as f64, holds / count as f64)
-    });
+    let mut sorted = statements.to_vec();
+    sorted.sort_by(|a, b| a.best_probability.total_cmp(&b.best_probability));
+    let bin = |of: &[Statement]| {
+        let n = of.len() as f64;
+        let stated = of.iter().map(|s| s.best_probability).sum::<f64>() / n;
+        let holds = of.iter().map(|s| share(s.best_holds)).sum::<f64>() / n;
+        (of.len() as u64, stated, holds)
+    };
+    let best = sorted.chunks(sorted.len().div_ceil(BINS)).map(bin);
     Calibration {
         coverage: statements.iter().map(|s| share(s.credible_holds)).sum::<f64>() / n,
         stated: statements.iter().map(|s| s.credible_probability).sum::<f64>() / n,
-        best: best.filter(|(count, ..)| *count > 0).collect(),
+        best: best.collect(),
     }
 }
 
@@ -256,15 +257,13 @@ impl Summary {
             writeln!(text, "\nBy the {}:", name.trim_start_matches("the "))?;
             writeln!(
                 text,
-                "{:>6}  {:>8} {:>7}  best hypothesis, binned: how many, mean stated > share that hold the truth",
+                "{:>6}  {:>8} {:>7}  best hypothesis in five bins: mean stated > share that hold the truth",
                 "labels", "coverage", "stated"
             )?;
             for row in &self.rows {
                 let Calibration { coverage, stated, best } = &row.calibration[prior];
-                let bins: Vec<_> = best
-                    .iter()
-                    .map(|(n, stated, hit)| format!("{n}: {stated:.2} > {hit:.2}"))
-                    .collect();
+                let bins: Vec<_> =
+                    best.iter().map(|(_, stated, hit)| format!("{stated:.3} > {hit:.3}")).collect();
                 writeln!(
                     text,
                     "{:>6}  {coverage:>8.3} {stated:>7.3}  {}",

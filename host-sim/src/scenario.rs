@@ -28,6 +28,9 @@ pub const PAPER_NOISELESS: &str = include_str!("../scenarios/paper-noiseless.tom
 /// The paper's noisy example (Section V).
 pub const PAPER_NOISY: &str = include_str!("../scenarios/paper-noisy.toml");
 
+/// Oracle points that can bound the line: the edges that a hypothesis holds.
+const MOST_BOUNDING: usize = 15;
+
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
@@ -283,6 +286,11 @@ fn mission(file: &File, overrides: Overrides) -> Result<Mission> {
     };
     let truth = truth(&file.truth)?;
     let space = oracle(&file.oracle, area, &truth)?;
+    let bounding = space.cell().edges().len();
+    if bounding > MOST_BOUNDING {
+        let found = format!("{bounding} points that bound the line");
+        return wrong("oracle", found, format!("at most {MOST_BOUNDING} that do"));
+    }
     let start = start(&file.start, &space, area)?;
     let noise = file.noise.as_ref().map(noise).transpose()?;
     let algorithm = overrides.algorithm.unwrap_or(file.algorithm);

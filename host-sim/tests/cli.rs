@@ -239,6 +239,34 @@ fn bad_oracles_are_refused() {
 }
 
 #[test]
+fn an_oracle_may_have_many_points() {
+    let folder = folder();
+    let (before, _) = GOOD.split_once("oracle = [").expect("an oracle");
+    let oracle = |points: &mut dyn Iterator<Item = (f64, f64, i8)>| {
+        let each = points.map(|(x, z, label)| format!("{{ x = {x}, z = {z}, label = {label} }}"));
+        format!("{before}oracle = [{}]\n", each.collect::<Vec<_>>().join(", "))
+    };
+    // Twenty in two rows: few of them bound the line.
+    let mut rows = (0..20).map(|i| {
+        let (x, above) = (f64::from(i), i % 2 == 1);
+        (x, if above { 0.41 * x + 7.0 } else { 0.3 * x }, if above { 1 } else { -1 })
+    });
+    fs::write(folder.path().join("many.toml"), oracle(&mut rows)).expect("a file");
+    for algorithm in ["cfc", "scc", "random"] {
+        prints(folder.path(), &["run", "many.toml", "--algorithm", algorithm]);
+    }
+    // Forty on two parabolas that face each other: all of them do.
+    let mut facing = (0..40).map(|i| {
+        let (x, above) = (f64::from(i) / 2.0, i % 2 == 1);
+        let off = 0.5 + 0.02 * (x - 10.0).powi(2);
+        let line = 0.41 * x + 3.5;
+        (x, if above { line + off } else { line - off }, if above { 1 } else { -1 })
+    });
+    fs::write(folder.path().join("bad.toml"), oracle(&mut facing)).expect("a file");
+    refuses(folder.path(), &["run", "bad.toml"], &["oracle", "bound the line", "at most 15"]);
+}
+
+#[test]
 fn bad_flags_and_places_are_refused() {
     let folder = folder();
     fs::write(folder.path().join("m.toml"), GOOD).expect("a file");

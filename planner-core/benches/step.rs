@@ -10,12 +10,15 @@ use planner_core::config::{Config, Crossing, Following};
 use planner_core::direction::Heading;
 use planner_core::dynamics::Pose;
 use planner_core::estimate::Estimates;
+use planner_core::hypotheses::{Hypotheses, Prior};
 use planner_core::lattice::Site;
 use planner_core::planner::{Plan, Planner};
 use planner_core::problem::Varrho;
 use planner_core::sample::{Label, Sample};
+use planner_core::scc::{Noise, Policy, Scc};
 use planner_core::unicycle::Unicycle;
 use planner_core::version_space::VersionSpace;
+use planner_core::weight::Reliability;
 
 type Cfc32 = Cfc<Unicycle, 32>;
 
@@ -28,18 +31,21 @@ fn label(site: Site) -> Label {
     if at.y > 0.41 * at.x + 3.5 { Label::Positive } else { Label::Negative }
 }
 
-/// The planner and the pose before each of the first steps of the paper's noiseless example.
-fn states() -> Vec<(Cfc32, Pose)> {
-    let corners = [(2.0, 1.0), (2.0, 8.0), (18.0, 16.0), (18.0, 5.0)].map(|(x, z)| at(x, z));
-    let oracle = corners.map(|site| Sample { site, label: label(site) });
-    let config = Config {
+fn config() -> Config {
+    Config {
         area: Area::new(at(0.0, 0.0), at(20.0, 20.0)).expect("an area"),
         varrho: Varrho::PAPER,
         crossing: Crossing::default(),
         following: Following::default(),
-    };
+    }
+}
+
+/// The planner and the pose before each of the first steps of the paper's noiseless example.
+fn states() -> Vec<(Cfc32, Pose)> {
+    let corners = [(2.0, 1.0), (2.0, 8.0), (18.0, 16.0), (18.0, 5.0)].map(|(x, z)| at(x, z));
+    let oracle = corners.map(|site| Sample { site, label: label(site) });
     let space = VersionSpace::new(&oracle).expect("separable");
-    let mut planner = Cfc::new(config, Unicycle::paper(), space);
+    let mut planner = Cfc::new(config(), Unicycle::paper(), space);
     let mut pose = Pose { site: corners[0], heading: Heading(0) };
     let mut states = Vec::new();
     for _ in 0..24 {
@@ -92,5 +98,47 @@ fn step(criterion: &mut Criterion) {
     });
 }
 
-criterion_group!(benches, step);
+/// Algorithm 2 after some labels of the same example, every third of them wrong.
+fn noisy(labels: usize) -> (Scc<Unicycle, 36, 529>, Pose) {
+    let (planner, start) = states().swap_remove(0);
+    let reliability = Reliability::new(0.7).expect("a probability");
+    let noise = Noise { reliability, trusted_radius: 0 };
+    let hypotheses = Hypotheses::new(planner.space().samples(), Prior::Area).expect("an oracle");
+    let config = Config { following: Following::Anyhow, ..config() };
+    let (policy, prior) = (Policy::default(), Prior::default());
+    let mut planner = Scc::new(config, noise, policy, prior, Unicycle::paper(), hypotheses);
+    let mut pose = start;
+    let mut taken = 0;
+    while taken < labels {
+        let Plan::Move(motion) = planner.plan(pose) else { break };
+        pose = motion.target;
+        let seen = if taken % 3 == 0 { -label(pose.site) } else { label(pose.site) };
+        taken += usize::from(motion.samples());
+        planner.observe(pose, motion.samples().then(|| seen.into())).expect("possible");
+    }
+    (planner, pose)
+}
+
+fn noisy_step(criterion: &mut Criterion) {
+    let (planner, pose) = noisy(10);
+    let n = planner.hypotheses().iter().len();
+    criterion.bench_function(&format!("noisy: plan at 10 labels, {n} hypotheses"), |bencher| {
+        bencher.iter_batched_ref(
+            || planner.clone(),
+            |planner| planner.plan(black_box(pose)),
+            BatchSize::SmallInput,
+        );
+    });
+    let (planner, pose) = noisy(31);
+    let n = planner.hypotheses().iter().len();
+    criterion.bench_function(&format!("noisy: the 32nd label, {n} hypotheses"), |bencher| {
+        bencher.iter_batched_ref(
+            || planner.clone(),
+            |planner| planner.observe(black_box(pose), Some(Label::Positive.into())),
+            BatchSize::SmallInput,
+        );
+    });
+}
+
+criterion_group!(benches, step, noisy_step);
 criterion_main!(benches);

@@ -118,6 +118,11 @@ impl<const E: usize> Cell<E> {
         Vec::from_slice(&ordered).ok().map(|edges| Self { edges })
     }
 
+    /// The same cell with another capacity; `None` when its edges do not fit.
+    pub(crate) fn resized<const F: usize>(&self) -> Option<Cell<F>> {
+        Vec::from_slice(&self.edges).ok().map(|edges| Cell { edges })
+    }
+
     /// The samples that still matter, in cyclic order.
     pub fn edges(&self) -> &[Edge] {
         &self.edges

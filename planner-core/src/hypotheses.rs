@@ -95,25 +95,25 @@ pub struct Hypotheses<const N: usize, const H: usize, const E: usize = 15> {
 }
 
 impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
-    /// The one hypothesis that the given samples leave, which are certain: at most `E` of them.
-    /// `prior` decides which hypotheses go when the table is full.
+    /// The one hypothesis that the given samples leave, which are certain. `prior` decides which
+    /// hypotheses go when the table is full.
     ///
     /// # Errors
-    /// [`NoVersionSpace`].
+    /// [`NoVersionSpace`], and `TooMany` also when more than `E` of them bound the line.
     pub fn new(given: &[Sample], prior: Prior) -> Result<Self, NoVersionSpace> {
         const { assert!(H >= 1, "a table holds at least one hypothesis") };
-        let start = VersionSpace::<E>::new(given)?;
+        let space = VersionSpace::<N>::new(given)?;
+        let start: Cell<E> = space.cell().resized().ok_or(NoVersionSpace::TooMany)?;
         let mut samples = SampleBuffer::new();
         for &sample in given {
             samples.push(sample).map_err(|_| NoVersionSpace::TooMany)?;
         }
         let mut table = Vec::new();
-        let area = LogWeight::of(estimate::area(start.candidates()));
-        let cell = start.cell().clone();
-        let whole = Hypothesis { cell: cell.clone(), likelihood: LogWeight::ZERO, area };
+        let area = LogWeight::of(estimate::area(space.candidates()));
+        let whole = Hypothesis { cell: start.clone(), likelihood: LogWeight::ZERO, area };
         let _ = table.push(whole); // it has room for one
         let (given, lost) = (given.len() as u8, Lost::default());
-        Ok(Self { samples, given, start: cell, table, prior, lost, outer_cells: 0 })
+        Ok(Self { samples, given, start, table, prior, lost, outer_cells: 0 })
     }
 
     /// All samples with the labels that were seen, the given ones first.

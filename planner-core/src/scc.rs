@@ -172,7 +172,7 @@ impl<D: Dynamics, const N: usize, const H: usize> Scc<D, N, H> {
             *examined += search.examined;
             let Some(best) = search.best else { continue };
             match ballot.iter_mut().find(|(action, _)| *action == best.action) {
-                Some((_, sum)) => *sum += votes,
+                Some((_, sum)) => *sum = sum.saturating_add(votes),
                 // As many actions as hypotheses, and these fit: nothing is refused.
                 None => drop(ballot.push((best.action, votes))),
             }
