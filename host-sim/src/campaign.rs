@@ -16,6 +16,7 @@ use serde::Serialize;
 
 use crate::field;
 use crate::mission::{Algorithm, CAPACITY, Known, Mission};
+use crate::output;
 use crate::polygon::misclassified;
 use crate::recording::{cost, recovery_name};
 
@@ -336,23 +337,11 @@ impl Summary {
         Ok(())
     }
 
-    /// The tables as JSON.
-    ///
-    /// # Panics
-    /// Never: the summary is a plain structure.
-    pub fn json(&self) -> String {
-        serde_json::to_string(self).expect("a plain structure") + "\n"
-    }
-
     /// A row for each field and mark, as CSV.
     ///
     /// # Errors
     /// When a row could not be written.
     pub fn csv(&self) -> Result<String> {
-        let mut writer = csv::Writer::from_writer(Vec::new());
-        for mark in &self.marks {
-            writer.serialize(mark)?;
-        }
-        Ok(String::from_utf8(writer.into_inner()?)?)
+        output::csv(&self.marks)
     }
 }

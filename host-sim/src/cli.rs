@@ -9,11 +9,12 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use crate::campaign::Campaign;
 use crate::figure::Figure;
 use crate::mission::Algorithm;
+use crate::names::{CrossingName, FollowingName, PolicyName, PriorName};
 use crate::noisy_campaign::NoisyCampaign;
-use crate::output::Output;
+use crate::output::{Output, json};
 use crate::recording::Recording;
 use crate::replay::Replay;
-use crate::scenario::{self, CrossingName, FollowingName, Overrides, PolicyName, PriorName};
+use crate::scenario::{self, Overrides};
 use crate::{report, trace};
 
 /// Simulates a robot that finds an unknown straight boundary from few samples.
@@ -204,7 +205,7 @@ fn replay(args: &ReplayArgs) -> Result<String> {
     }
     Ok(match args.format {
         Format::Text => replay.report(),
-        Format::Json => replay.json(),
+        Format::Json => json(&replay.record()),
     })
 }
 
@@ -227,20 +228,20 @@ fn campaign(args: &CampaignArgs) -> Result<String> {
     if noisy && args.algorithm == Algorithm::Cfc {
         bail!("--p: found {p}, expected 1 with --algorithm cfc, which takes labels to be true");
     }
-    let (table, rows, json) = if noisy {
+    let (table, rows, record) = if noisy {
         let (policy, prior) = (args.policy.into(), args.prior.into());
         let noisy = NoisyCampaign { fields: campaign, p, trusted_radius, policy, prior };
         let summary = noisy.run()?;
-        (summary.report(), summary.csv()?, summary.json())
+        (summary.report(), summary.csv()?, json(&summary))
     } else {
         let summary = campaign.run()?;
-        (summary.report(), summary.csv()?, summary.json())
+        (summary.report(), summary.csv()?, json(&summary))
     };
     if let Some(output) = output {
         output.write(&rows)?;
     }
     Ok(match args.format {
         Format::Text => table,
-        Format::Json => json,
+        Format::Json => record,
     })
 }

@@ -14,9 +14,9 @@ use planner_core::posterior::Posterior;
 use planner_core::sample::{Label, Reading, Sample};
 use planner_core::version_space::VersionSpace;
 use plotters::coord::types::RangedCoordf64;
-use plotters::coord::{CoordTranslate, Shift};
 use plotters::prelude::*;
 
+use crate::legend::mark;
 use crate::mission::{CAPACITY, Table};
 use crate::polygon::Polygon;
 use crate::recording::{LEVEL, Outcome, Recorded, Recording};
@@ -26,7 +26,8 @@ use crate::world;
 // apart; shapes tell them apart too.
 const POSITIVE: RGBColor = RGBColor(213, 94, 0);
 const NEGATIVE: RGBColor = RGBColor(0, 114, 178);
-const PATH: RGBColor = RGBColor(90, 90, 90);
+pub(crate) const PATH: RGBColor = RGBColor(90, 90, 90);
+pub(crate) const SHADE: RGBColor = RGBColor(120, 60, 160);
 const ESTIMATE: RGBColor = RGBColor(0, 120, 80);
 
 /// What to draw.
@@ -81,14 +82,14 @@ impl Named {
 
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
-fn colour(label: Label) -> RGBColor {
+pub(crate) fn colour(label: Label) -> RGBColor {
     match label {
         Label::Positive => POSITIVE,
         Label::Negative => NEGATIVE,
     }
 }
 
-fn failed(error: impl Display) -> anyhow::Error {
+pub(crate) fn failed(error: impl Display) -> anyhow::Error {
     anyhow!("the figure could not be drawn: {error}")
 }
 
@@ -233,7 +234,7 @@ impl<'a> Figure<'a> {
             let mass: f64 = passing.map(|h| posterior.probability(h)).sum();
             if mass > 0.01 {
                 let patch = [xy(corner), xy(corner + size)];
-                let shade = RGBColor(120, 60, 160).mix(0.75 * mass.min(1.0)).filled();
+                let shade = SHADE.mix(0.75 * mass.min(1.0)).filled();
                 chart.draw_series([Rectangle::new(patch, shade)]).map_err(failed)?;
             }
         }
@@ -325,57 +326,6 @@ impl<'a> Figure<'a> {
         }
         Ok(())
     }
-
-    fn draw_legend(&self, legend: &DrawingArea<SVGBackend, Shift>) -> Result<()> {
-        let font = |size: i32| ("sans-serif", size).into_font().color(&BLACK);
-        legend.draw(&Text::new(self.title.clone(), (16, 12), font(19))).map_err(failed)?;
-        let text = |words: &str, x: i32, y: i32| {
-            legend.draw(&Text::new(words.to_owned(), (x + 34, y - 8), font(14))).map_err(failed)
-        };
-        let (left, right, rows) = (20, 400, [50, 72, 94, 116]);
-        let stroke = |x: i32, y: i32, length: i32, colour: RGBColor, width: u32| {
-            let style = colour.stroke_width(width);
-            legend.draw(&PathElement::new([(x, y), (x + length, y)], style)).map_err(failed)
-        };
-        let certain = matches!(self.ground, Ground::Certain(_));
-        for (label, y) in [(Label::Positive, rows[0]), (Label::Negative, rows[1])] {
-            if certain {
-                let corners = [(left, y - 9), (left + 26, y + 9)];
-                let ground = Rectangle::new(corners, colour(label).mix(0.18).filled());
-                legend.draw(&ground).map_err(failed)?;
-            }
-            mark(legend, (left + 13, y), label, 5)?;
-            let known = if certain { ", ground certain to have it" } else { "" };
-            text(&format!("label {:+}{known}", label.sign()), left, y)?;
-        }
-        if self.path.is_some() {
-            stroke(left, rows[2], 26, PATH, 1)?;
-            stroke(left + 12, rows[2], 14, PATH, 2)?;
-            text("path with headings; o: no sample", left, rows[2])?;
-        }
-        if let Ground::Credible(..) = self.ground {
-            let corners = [(left, rows[3] - 9), (left + 26, rows[3] + 9)];
-            let shade = RGBColor(120, 60, 160).mix(0.5).filled();
-            legend.draw(&Rectangle::new(corners, shade)).map_err(failed)?;
-            text("lines of the 90 % credible set; ringed: a wrong label", left, rows[3])?;
-        } else if !certain {
-            legend
-                .draw(&Circle::new((left + 13, rows[2]), 9, BLACK.stroke_width(1)))
-                .map_err(failed)?;
-            text("a wrong label", left, rows[2])?;
-        }
-        let mut row = rows.into_iter();
-        if let (Some(_), Some(y)) = (self.truth, row.next()) {
-            stroke(right, y, 26, BLACK, 2)?;
-            text("true line", right, y)?;
-        }
-        for (named, y) in self.lines.iter().zip(row) {
-            stroke(right, y, 10, named.colour, 2)?;
-            stroke(right + 15, y, 10, named.colour, 2)?;
-            text(&named.name, right, y)?;
-        }
-        Ok(())
-    }
 }
 
 /// The lines at the two ends of a credible set's slopes: the paper's `l1` and `l2`.
@@ -389,29 +339,11 @@ fn bounding(table: &Table, prior: Prior) -> Vec<Named> {
         Some(Named {
             name: format!("{name}, which bounds the credible slopes"),
             line: bound.into(),
-            colour: RGBColor(120, 60, 160),
+            colour: SHADE,
             mark: Some(name.to_owned()),
         })
     };
     ends.into_iter().filter_map(named).collect()
-}
-
-/// A sample's mark: a disc for +1, a square for -1.
-fn mark<C: CoordTranslate<From = P>, P: Clone + 'static>(
-    area: &DrawingArea<SVGBackend, C>,
-    place: P,
-    label: Label,
-    size: i32,
-) -> Result<()> {
-    let style = colour(label).filled();
-    match label {
-        Label::Positive => area.draw(&(EmptyElement::at(place) + Circle::new((0, 0), size, style))),
-        Label::Negative => {
-            let corners = [(1 - size, 1 - size), (size - 1, size - 1)];
-            area.draw(&(EmptyElement::at(place) + Rectangle::new(corners, style)))
-        }
-    }
-    .map_err(failed)
 }
 
 /// The smallest area that shows all samples with a margin, for samples without a mission.

@@ -12,6 +12,7 @@ use serde::Serialize;
 use crate::campaign::{Campaign, Spread, on_all_cores};
 use crate::field;
 use crate::mission::{Known, Mission, Table};
+use crate::output;
 use crate::recording::{LEVEL, cost};
 use crate::world::{self, Extent, NoiseModel};
 
@@ -107,7 +108,7 @@ pub struct Summary {
 
 /// Bits that a label which is true with probability `p` can tell at most: `1 - H(p)`.
 pub fn limit(p: f64) -> f64 {
-    let term = |p: f64| if p > 0.0 { p * p.log2() } else { 0.0 };
+    let term = |p: f64| if p > 0.0 { p * libm::log2(p) } else { 0.0 };
     1.0 + term(p) + term(1.0 - p)
 }
 
@@ -275,23 +276,11 @@ impl Summary {
         Ok(())
     }
 
-    /// The tables as JSON.
-    ///
-    /// # Panics
-    /// Never: the summary is a plain structure.
-    pub fn json(&self) -> String {
-        serde_json::to_string(self).expect("a plain structure") + "\n"
-    }
-
     /// A row for each field and mark, as CSV.
     ///
     /// # Errors
     /// When a row could not be written.
     pub fn csv(&self) -> Result<String> {
-        let mut writer = csv::Writer::from_writer(Vec::new());
-        for mark in &self.marks {
-            writer.serialize(mark)?;
-        }
-        Ok(String::from_utf8(writer.into_inner()?)?)
+        output::csv(&self.marks)
     }
 }

@@ -1,11 +1,32 @@
-//! Output files, written whole or not at all.
+//! Output: records as text, and files that are written whole or not at all.
 
 use std::fs;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, Result};
+use serde::Serialize;
 use tempfile::NamedTempFile;
+
+/// A record as a line of JSON.
+///
+/// # Panics
+/// Never for the records of this crate: plain structures whose keys are strings.
+pub fn json(record: &impl Serialize) -> String {
+    serde_json::to_string(record).expect("a plain structure") + "\n"
+}
+
+/// Records as CSV, under a header.
+///
+/// # Errors
+/// When a record could not be written.
+pub fn csv(records: &[impl Serialize]) -> Result<String> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for record in records {
+        writer.serialize(record)?;
+    }
+    Ok(String::from_utf8(writer.into_inner()?)?)
+}
 
 /// A file that is to be written. It is opened beside its place before any work is done, so that a
 /// place that cannot be written to is found at once, and moved there when it is complete.

@@ -149,7 +149,7 @@ fn lines_left(step: &Step, space: &VersionSpace<CAPACITY>, before: f64) -> Recor
         step: *step,
         slope_arcs: space.slope_arc().intervals_deg().to_vec(),
         intercept: space.intercepts(),
-        bits: (before / estimate::area(space.candidates())).log2(),
+        bits: libm::log2(before / estimate::area(space.candidates())),
         noisy: None,
     }
 }
@@ -173,8 +173,8 @@ fn hypotheses_left(step: &Step, table: &Table, prior: Prior, trusted: bool) -> R
 
 /// The control cost of a step, the paper's `|u|^2 = v^2 + w^2`.
 pub fn cost(step: &Step) -> f64 {
-    let control = step.motion.control;
-    f64::from(control.v).powi(2) + f64::from(control.w).powi(2)
+    let (v, w) = (f64::from(step.motion.control.v), f64::from(step.motion.control.w));
+    v * v + w * w
 }
 
 /// The name of a one-step problem.

@@ -23,8 +23,9 @@ pub struct Replay {
     space: VersionSpace<CAPACITY>,
 }
 
+/// What samples determine.
 #[derive(Serialize)]
-struct Record {
+pub struct Record {
     samples: usize,
     matter: usize,
     slope_arcs: Vec<[f64; 2]>,
@@ -104,19 +105,15 @@ impl Replay {
         text
     }
 
-    /// What the samples determine, as JSON.
-    ///
-    /// # Panics
-    /// Never: the record is a plain structure.
-    pub fn json(&self) -> String {
-        let record = Record {
+    /// What the samples determine, as a record.
+    pub fn record(&self) -> Record {
+        Record {
             samples: self.samples.len(),
             matter: self.space.support().count(),
             slope_arcs: self.space.slope_arc().intervals_deg().to_vec(),
             intercept: self.space.intercepts(),
             estimates: self.estimates().into(),
-        };
-        serde_json::to_string(&record).expect("a plain record") + "\n"
+        }
     }
 
     /// The samples and what they determine, as an SVG document.

@@ -11,6 +11,7 @@ use planner_core::sample::{Reading, Sample};
 use serde::Serialize;
 
 use crate::mission::Algorithm;
+use crate::output::json;
 use crate::recording::{LEVEL, Outcome, Recorded, Recording, recovery_name, stage_name};
 
 #[derive(Serialize)]
@@ -214,9 +215,6 @@ fn noisy_end(recording: &Recording) -> Option<NoisyEnd> {
 }
 
 /// The trace of a mission, a record a line.
-///
-/// # Panics
-/// Never: every record is a plain structure of finite numbers.
 pub fn lines(recording: &Recording) -> String {
     let mission = &recording.mission;
     let start = Record::Start(Start {
@@ -238,6 +236,6 @@ pub fn lines(recording: &Recording) -> String {
     std::iter::once(start)
         .chain(steps)
         .chain(std::iter::once(end))
-        .map(|record| serde_json::to_string(&record).expect("a plain record") + "\n")
+        .map(|record| json(&record))
         .collect()
 }
