@@ -247,8 +247,9 @@ fn mark(mission: &Mission, space: &VersionSpace<CAPACITY>, so_far: Mark) -> Mark
     let (maximum_margin_deg, maximum_margin_misclassified) = errors(estimates.maximum_margin);
     let (bisector_deg, bisector_misclassified) = errors(estimates.bisector);
     Mark {
-        bits: (estimate::area(mission.space.candidates()) / estimate::area(space.candidates()))
-            .log2(),
+        bits: libm::log2(
+            estimate::area(mission.space.candidates()) / estimate::area(space.candidates()),
+        ),
         centre_deg,
         maximum_margin_deg,
         bisector_deg,
