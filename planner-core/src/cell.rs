@@ -191,13 +191,13 @@ impl<const E: usize> Cell<E> {
         match (first, last) {
             _ if !disagrees => Ok(Cut::Unchanged),
             (Some(first), Some(last)) => {
-                let kept = (last + n - first) % n + 1;
-                if kept == E {
-                    return Err(CutError::Full);
+                let kept = if first <= last { last - first + 1 } else { last + n - first + 1 };
+                let around = self.edges.iter().cycle().skip(first).take(kept);
+                let mut edges = Vec::new();
+                for &edge in around.chain(core::iter::once(&edge)) {
+                    edges.push(edge).map_err(|_| CutError::Full)?;
                 }
-                self.edges.rotate_left(first);
-                self.edges.truncate(kept);
-                self.edges.push(edge).map_err(|_| CutError::Full)?;
+                self.edges = edges;
                 Ok(Cut::Smaller)
             }
             _ => Err(CutError::Contradiction),

@@ -206,7 +206,11 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
         while self.table.len() > 1 && self.table.len() + more > H {
             let weights = self.table.iter().map(|h| h.weight(self.prior)).enumerate();
             let Some((least, _)) = weights.min_by_key(|(_, weight)| *weight) else { return };
-            let gone = self.table.swap_remove(least);
+            // The last takes its place.
+            let Some(mut gone) = self.table.pop() else { return };
+            if let Some(place) = self.table.get_mut(least) {
+                core::mem::swap(place, &mut gone);
+            }
             more -= usize::from(splits(self, &gone));
             self.give_up(&gone);
         }
