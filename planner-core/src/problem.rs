@@ -2,7 +2,8 @@
 //!
 //! Maximise `|zeta' - zeta|^2 - varrho |u|^2` over the action set, subject to `zeta'` inside the
 //! area and outside both regions of certainty, and to a rule on the direction of travel. Ties go to
-//! the smaller turn, then to the left.
+//! the smaller turn, then to the left. The agent moves: standing still would sample a place again,
+//! which the regions of certainty exclude but for P3 and P4, whose regions are those of the start.
 //!
 //! The search returns the action that trying every action would return, and looks at few of them:
 //!
@@ -140,8 +141,7 @@ impl<'a, R: DirectionRule, const E: usize> Problem<'a, R, E> {
         let grid = dynamics.grid();
         let mut sight = Sight::new(self.ground, self.area, pose.site, grid.speeds());
         let mut best: Option<Candidate> = None;
-        // Standing still yields a sample only where the label is not known.
-        let mut slowest = u16::from(self.ground.certainty(pose.site) != Certainty::Uncertain);
+        let mut slowest = 1;
         for ray in dynamics.rays(pose) {
             let objective = |speed| self.varrho.objective(grid.reach_mm(speed), ray.effort);
             while best.is_some_and(|b| objective(slowest) <= b.objective) && slowest < grid.speeds()
@@ -174,7 +174,8 @@ impl<'a, R: DirectionRule, const E: usize> Problem<'a, R, E> {
                 search.examined += 1;
                 let objective = self.varrho.objective(grid.reach_mm(speed), ray.effort);
                 let feasible = |target: &Pose| {
-                    self.area.contains(target.site)
+                    speed > 0
+                        && self.area.contains(target.site)
                         && self.rule.admits(ray.step)
                         && self.ground.certainty(target.site) == Certainty::Uncertain
                 };
