@@ -150,16 +150,21 @@ const CANDIDATES_TITLE: &str = "Its labels do not tell which line is true: fewes
 /// The paper's two examples, start to end.
 fn paper() -> Result<String> {
     fs::create_dir_all("out").context("out: expected a place to make a folder")?;
-    let place = |name: &str| Output::create(&Path::new("out").join(name));
     let names = ["paper-noiseless.svg", "paper-noisy.svg", "paper-noisy-candidates.svg"];
-    let [first, second, third] = names.map(place);
+    let places = names.map(|name| Output::create(&Path::new("out").join(name)));
+    let places = places.into_iter().collect::<Result<Vec<_>>>()?;
     let example = |text| Recording::of(scenario::parse("", text, Overrides::default())?);
     let noiseless = example(scenario::PAPER_NOISELESS)?;
     let noisy = example(scenario::PAPER_NOISY)?;
-    first?.write(&Figure::of(PAPER_TITLE, &noiseless).svg()?)?;
-    second?.write(&Figure::of(PAPER_NOISY_TITLE, &noisy).svg()?)?;
-    if let Some(candidates) = Figure::of_candidates(CANDIDATES_TITLE, &noisy) {
-        third?.write(&candidates.svg()?)?;
+    // All is drawn before anything is written.
+    let figures = [
+        Some(Figure::of(PAPER_TITLE, &noiseless)),
+        Some(Figure::of(PAPER_NOISY_TITLE, &noisy)),
+        Figure::of_candidates(CANDIDATES_TITLE, &noisy),
+    ];
+    let drawn = figures.iter().flatten().map(Figure::svg).collect::<Result<Vec<_>>>()?;
+    for (place, svg) in places.into_iter().zip(drawn) {
+        place.write(&svg)?;
     }
     Ok(format!(
         "{}\n\n{}\nFigures in out/: {}\n",

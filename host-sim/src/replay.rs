@@ -95,7 +95,7 @@ impl Replay {
             "intercept between, m",
             report::range(space.intercepts()),
         );
-        for (name, estimate) in report::estimates(&estimates) {
+        for (name, estimate) in report::named(report::NAMES, &estimates) {
             let _ = writeln!(
                 text,
                 "{name:<28} {}",

@@ -3,10 +3,11 @@
 use std::fmt::Write as _;
 
 use nalgebra::Point2;
+use planner_core::agent::Step;
 use planner_core::estimate::Estimates;
 use planner_core::hypotheses::Prior;
 use planner_core::line::Line;
-use planner_core::planner::Recovery;
+use planner_core::planner::{Recovery, StopReason};
 use planner_core::posterior::Posterior;
 use planner_core::sample::Reading;
 
@@ -36,13 +37,38 @@ pub fn line(line: &Line) -> String {
     format!("x = {:.4}   (vertical)", -c / a)
 }
 
-/// Names and lines of the estimates, the recommended one first.
-pub fn estimates(estimates: &Estimates) -> [(&'static str, Option<Line>); 3] {
-    [
-        ("centre of the version space", estimates.centre),
-        ("maximum margin", estimates.maximum_margin),
-        ("bisector (the paper's)", estimates.bisector),
-    ]
+/// Names and lines of a mission's estimates, the recommended one first.
+pub fn estimates(recording: &Recording) -> [(&'static str, Option<Line>); 3] {
+    let names = match recording.outcome {
+        Outcome::Lines(_) => NAMES,
+        Outcome::Hypotheses(_) => ["posterior mean", "margin of the likeliest", BISECTOR],
+    };
+    named(names, &recording.estimates())
+}
+
+const BISECTOR: &str = "bisector (the paper's)";
+
+/// What the estimates are called that follow from all labels being true.
+pub const NAMES: [&str; 3] = ["centre of the version space", "maximum margin", BISECTOR];
+
+/// The estimates with these names, the recommended one first.
+pub fn named(
+    [centre, margin, bisector]: [&'static str; 3],
+    estimates: &Estimates,
+) -> [(&'static str, Option<Line>); 3] {
+    [(centre, estimates.centre), (margin, estimates.maximum_margin), (bisector, estimates.bisector)]
+}
+
+/// A step's motion in columns: number, problem, turn, drive, place.
+fn motion(number: usize, step: &Step) -> String {
+    let at = Point2::<f64>::from(step.pose.site);
+    format!(
+        "{number:>4}  {:<7} {:>8.1} {:>5.1}  {:<16}",
+        step.motion.stage.map_or("-", stage_name),
+        f64::from(step.motion.control.w).to_degrees(),
+        step.motion.control.v,
+        format!("({:.3}, {:.3})", at.x, at.y),
+    )
 }
 
 fn note(recorded: &Recorded, flipped: bool) -> &'static str {
@@ -84,17 +110,13 @@ fn write_noisy_steps(text: &mut String, recording: &Recording) -> std::fmt::Resu
     )?;
     for (recorded, number) in recording.steps.iter().zip(1..) {
         let (step, Some(noisy)) = (&recorded.step, recorded.noisy) else { continue };
-        let at = Point2::<f64>::from(step.pose.site);
         let fact = reading(&recording.mission.truth, step.pose.site);
         let seen = |reading: Reading| format!("{:+}", reading.sign());
         let wrong = if step.reading.is_some_and(|seen| seen != fact) { " !" } else { "  " };
         writeln!(
             text,
-            "{number:>4}  {:<7} {:>8.1} {:>5.1}  {:<16} {:>5} {:>6} {:>10} {:>7.2} {:>5.2}  {}{}",
-            step.motion.stage.map_or("-", stage_name),
-            f64::from(step.motion.control.w).to_degrees(),
-            step.motion.control.v,
-            format!("({:.3}, {:.3})", at.x, at.y),
+            "{} {:>5} {:>6} {:>10} {:>7.2} {:>5.2}  {}{}",
+            motion(number, step),
             step.reading.map_or("-".into(), seen),
             format!("{}{wrong}", seen(fact)),
             noisy.hypotheses,
@@ -154,7 +176,6 @@ fn write_steps(text: &mut String, recording: &Recording) -> std::fmt::Result {
     let mut past = mission.space.first_label();
     for (recorded, number) in recording.steps.iter().zip(1..) {
         let step = &recorded.step;
-        let at = Point2::<f64>::from(step.pose.site);
         let mut flipped = false;
         if let Some(Reading::Side(label)) = step.reading {
             flipped = label != past;
@@ -162,11 +183,8 @@ fn write_steps(text: &mut String, recording: &Recording) -> std::fmt::Result {
         }
         writeln!(
             text,
-            "{number:>4}  {:<7} {:>8.1} {:>5.1}  {:<16} {:>5}  {:<26} {:<19} {:>5.2}  {}",
-            step.motion.stage.map_or("-", stage_name),
-            f64::from(step.motion.control.w).to_degrees(),
-            step.motion.control.v,
-            format!("({:.3}, {:.3})", at.x, at.y),
+            "{} {:>5}  {:<26} {:<19} {:>5.2}  {}",
+            motion(number, step),
             step.reading.map_or("-".into(), |r| format!("{:+}", r.sign())),
             arcs(&recorded.slope_arcs),
             range(recorded.intercept),
@@ -217,7 +235,7 @@ fn write_mission(text: &mut String, title: &str, recording: &Recording) -> std::
     }
     let why = match recording.end {
         End::Steps => "all steps are taken",
-        End::Stopped(planner_core::planner::StopReason::Resolution) => {
+        End::Stopped(StopReason::Resolution) => {
             "what is uncertain is thinner than the action grid can hit"
         }
         End::Stopped(_) => recording.end.name(),
@@ -235,13 +253,7 @@ fn write_mission(text: &mut String, title: &str, recording: &Recording) -> std::
     }
     writeln!(text, "{:<28} {:<36} {:>9} {:>13}", "", "line", "error deg", "misclassified")?;
     writeln!(text, "{:<28} {:<36}", "truth", line(&mission.truth))?;
-    let noisy = matches!(recording.outcome, Outcome::Hypotheses(_));
-    for (name, estimate) in estimates(&recording.estimates()) {
-        let name = match name {
-            "centre of the version space" if noisy => "posterior mean",
-            "maximum margin" if noisy => "margin of the likeliest",
-            name => name,
-        };
+    for (name, estimate) in estimates(recording) {
         match estimate {
             Some(estimate) => writeln!(
                 text,

@@ -191,7 +191,7 @@ fn mission(file: &File, overrides: Overrides) -> Result<Mission> {
     let steps = overrides.steps.unwrap_or(file.steps);
     check_steps("steps", steps, file.oracle.len())?;
     let Some(varrho) = Varrho::new(file.varrho) else {
-        return wrong("varrho", file.varrho, "a weight in [0, 1)");
+        return wrong("varrho", file.varrho, "a weight in [0, 1), to six decimal places");
     };
     let ([x0, x1], [z0, z1]) = (file.area.x, file.area.z);
     let corners = (site("area", x0, z0)?, site("area", x1, z1)?);

@@ -10,7 +10,7 @@
 //!   can have come to since is bounded, see [`Posterior::lost`].
 //! - *A cell with more edges than it can hold* keeps the lines that the sample would have cut off: an
 //!   outer approximation, counted in [`outer_cells`](Hypotheses::outer_cells). With 15 edges it has
-//!   not been seen to happen; 13 was the most.
+//!   not been seen to happen: over the tests' missions of 64 labels a cell has 9 at most.
 //!
 //! [`Posterior::lost`]: crate::posterior::Posterior::lost
 

@@ -1,4 +1,4 @@
-//! The one-step problems P1 and P2 (Section III-A) and their exact search.
+//! The one-step problems P1 to P4 (Section III) and their exact search.
 //!
 //! Maximise `|zeta' - zeta|^2 - varrho |u|^2` over the action set, subject to `zeta'` inside the
 //! area and outside both regions of certainty, and to a rule on the direction of travel. Ties go to
@@ -136,7 +136,7 @@ impl<'a, R: DirectionRule, const E: usize> Problem<'a, R, E> {
     ///
     /// Cost: for each ray that the rule admits and the objective does not exclude, one or two looks
     /// at a position when the whole ray is certain, `log2(speeds)` more when it is not; a look is
-    /// three multiplications for each vertex of the version space. No trigonometry but one `sincosf`.
+    /// three multiplications for each vertex of the ground's cell. No trigonometry but one `sincos`.
     pub fn solve<D: Dynamics>(&self, dynamics: &D, pose: Pose) -> Search {
         let grid = dynamics.grid();
         let mut sight = Sight::new(self.ground, self.area, pose.site, grid.speeds());

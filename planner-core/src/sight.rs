@@ -26,9 +26,10 @@ struct Sightline {
 impl Sightline {
     /// The bound's value at a speed on a ray, within `slack`.
     ///
-    /// The position is `here + k step / 2^8 + e` with components of `e` of at most 1/2, so its
-    /// value is `value + k cross(along, step) / 2^8 + cross(along, e)`. Shifting the product loses
-    /// less than 1, `k` times; `cross(along, e)` is at most `(|along.x| + |along.z|) / 2`.
+    /// From the agent's position it is `k step / 2^8 + e` to the one at speed `k`, with components
+    /// of `e` of at most 1/2, so the value there is `here + k cross(along, step) / 2^8 +
+    /// cross(along, e)`. Shifting the product loses less than 1, `k` times; `cross(along, e)` is at
+    /// most `(|along.x| + |along.z|) / 2`.
     const fn at(&self, step: Vector, speed: u16) -> i64 {
         self.here + speed as i64 * (self.along.cross(step) >> Ray::STEP_BITS)
     }

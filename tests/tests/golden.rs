@@ -62,7 +62,7 @@ fn describe(table: &mut String, name: &str, recording: &Recording) -> std::fmt::
         writeln!(table, "{}", line.trim_end())?;
     }
     writeln!(table, "     {} samples; ended by: {}", recording.samples(), recording.end.name())?;
-    for (name, estimate) in report::estimates(&recording.estimates()) {
+    for (name, estimate) in report::estimates(recording) {
         let Some(line) = estimate else {
             writeln!(table, "     {name}: none")?;
             continue;
