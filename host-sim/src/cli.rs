@@ -5,10 +5,13 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, Result, bail};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use planner_core::wire::LabelSource;
 
 use crate::campaign::Campaign;
+use crate::faults::Faults;
 use crate::figure::Figure;
-use crate::mission::Algorithm;
+use crate::hil::{self, Chip};
+use crate::mission::{Algorithm, Mission};
 use crate::names::{CrossingName, FollowingName, PolicyName, PriorName};
 use crate::noisy_campaign::NoisyCampaign;
 use crate::output::{Output, json};
@@ -35,6 +38,8 @@ enum Command {
     Replay(ReplayArgs),
     /// Run the standard fields and print tables
     Campaign(CampaignArgs),
+    /// Have a board, or its firmware under emulation, fly a mission
+    Hil(HilArgs),
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -71,6 +76,52 @@ struct Run {
     /// What to print; json prints the trace
     #[arg(long, value_enum, default_value_t)]
     format: Format,
+}
+
+#[derive(Debug, Args)]
+#[group(id = "chip", required = true, multiple = false, args = ["port", "emulator"])]
+struct HilArgs {
+    #[command(flatten)]
+    run: Run,
+    /// The serial port that a board is at
+    #[arg(long, value_name = "DEVICE")]
+    port: Option<String>,
+    /// The port's speed, bits per second
+    #[arg(long, default_value_t = 115_200)]
+    baud: u32,
+    /// Emulate the firmware under QEMU instead
+    #[arg(
+        long,
+        value_name = "ELF",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = FIRMWARE
+    )]
+    emulator: Option<PathBuf>,
+    /// Write the emulated board's log here, for defmt-print
+    #[arg(long, value_name = "FILE", conflicts_with = "port")]
+    log: Option<PathBuf>,
+    /// Who reads labels: the simulated vehicle, or the board's own pin
+    #[arg(long, value_enum, default_value_t)]
+    labels: Labels,
+    /// Spoil the link: drop, cut, corrupt, duplicate (probabilities of a frame), delay (at most)
+    #[arg(long, value_name = "drop=0.1,delay=20ms,...")]
+    fault: Option<Faults>,
+    /// Write what each step took here
+    #[arg(long, value_name = "FILE.csv")]
+    timing: Option<PathBuf>,
+}
+
+/// Where `cargo firmware` leaves it.
+const FIRMWARE: &str = "target/thumbv7em-none-eabihf/release/firmware";
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+enum Labels {
+    /// The simulated vehicle
+    #[default]
+    Vehicle,
+    /// The board's own sensor
+    Chip,
 }
 
 #[derive(Debug, Args)]
@@ -136,6 +187,7 @@ impl Cli {
             Some(Command::Run(args)) => run(&args),
             Some(Command::Replay(args)) => replay(&args),
             Some(Command::Campaign(args)) => campaign(&args),
+            Some(Command::Hil(args)) => hil(&args),
         }
     }
 }
@@ -153,7 +205,7 @@ fn paper() -> Result<String> {
     let names = ["paper-noiseless.svg", "paper-noisy.svg", "paper-noisy-candidates.svg"];
     let places = names.map(|name| Output::create(&Path::new("out").join(name)));
     let places = places.into_iter().collect::<Result<Vec<_>>>()?;
-    let example = |text| Recording::of(scenario::parse("", text, Overrides::default())?);
+    let example = |text| Recording::of(&scenario::parse("", text, Overrides::default())?);
     let noiseless = example(scenario::PAPER_NOISELESS)?;
     let noisy = example(scenario::PAPER_NOISY)?;
     // All is drawn before anything is written.
@@ -175,32 +227,91 @@ fn paper() -> Result<String> {
 }
 
 fn run(args: &Run) -> Result<String> {
-    let overrides = Overrides { algorithm: args.algorithm, steps: args.steps, seed: args.seed };
-    let mission = scenario::read(&args.scenario, overrides)?;
-    if args.candidates.is_some() && !mission.is_noisy() {
-        bail!("--candidates: found a mission without noise, expected one with noisy labels");
-    }
-    let trace = Output::create_if(args.trace.as_ref())?;
-    let figure = Output::create_if(args.figure.as_ref())?;
-    let candidates = Output::create_if(args.candidates.as_ref())?;
-    let name = args.scenario.display().to_string();
-    let recording = Recording::of(mission).with_context(|| name.clone())?;
-    let lines = trace::lines(&recording);
-    // All is drawn before anything is written.
-    let svg = figure.as_ref().map(|_| Figure::of(&name, &recording).svg()).transpose()?;
-    let fewest = candidates.as_ref().and_then(|_| Figure::of_candidates(&name, &recording));
-    let fewest = fewest.map(|figure| figure.svg()).transpose()?;
-    for (output, content) in
-        [(trace, Some(&lines)), (figure, svg.as_ref()), (candidates, fewest.as_ref())]
-    {
-        if let (Some(output), Some(content)) = (output, content) {
-            output.write(content)?;
+    let mission = args.mission()?;
+    let outputs = args.outputs()?;
+    let recording = Recording::of(&mission).with_context(|| args.name())?;
+    args.tell(outputs, &recording)
+}
+
+fn hil(args: &HilArgs) -> Result<String> {
+    let mission = args.run.mission()?;
+    let outputs = args.run.outputs()?;
+    let timing = Output::create_if(args.timing.as_ref())?;
+    let chip = match (&args.port, &args.emulator) {
+        (Some(device), _) => Chip::Board { device: device.clone(), baud: args.baud },
+        (None, elf) => {
+            let elf = elf.clone().unwrap_or_else(|| FIRMWARE.into());
+            Chip::Emulated { elf, log: args.log.clone() }
         }
+    };
+    let labels = match args.labels {
+        Labels::Vehicle => LabelSource::Vehicle,
+        Labels::Chip => LabelSource::Chip,
+    };
+    let faults = args.fault.unwrap_or_default();
+    let flight = hil::fly(&mission, labels, &chip, faults).with_context(|| args.run.name())?;
+    let rows = flight.csv()?;
+    let mut text = args.run.tell(outputs, &flight.played.recording)?;
+    if let Some(output) = timing {
+        output.write(&rows)?;
     }
-    Ok(match args.format {
-        Format::Text => report::mission(&name, &recording),
-        Format::Json => lines,
-    })
+    if args.run.format == Format::Text {
+        text.push('\n');
+        text.push_str(&flight.report());
+    }
+    Ok(text)
+}
+
+/// The files that a mission is told in.
+struct Outputs {
+    trace: Option<Output>,
+    figure: Option<Output>,
+    candidates: Option<Output>,
+}
+
+impl Run {
+    fn name(&self) -> String {
+        self.scenario.display().to_string()
+    }
+
+    fn mission(&self) -> Result<Mission> {
+        let Self { algorithm, steps, seed, .. } = *self;
+        let mission = scenario::read(&self.scenario, Overrides { algorithm, steps, seed })?;
+        if self.candidates.is_some() && !mission.is_noisy() {
+            bail!("--candidates: found a mission without noise, expected one with noisy labels");
+        }
+        Ok(mission)
+    }
+
+    fn outputs(&self) -> Result<Outputs> {
+        Ok(Outputs {
+            trace: Output::create_if(self.trace.as_ref())?,
+            figure: Output::create_if(self.figure.as_ref())?,
+            candidates: Output::create_if(self.candidates.as_ref())?,
+        })
+    }
+
+    /// Writes the files that were asked for; what to print.
+    fn tell(&self, outputs: Outputs, recording: &Recording) -> Result<String> {
+        let Outputs { trace, figure, candidates } = outputs;
+        let name = self.name();
+        let lines = trace::lines(recording);
+        // All is drawn before anything is written.
+        let svg = figure.as_ref().map(|_| Figure::of(&name, recording).svg()).transpose()?;
+        let fewest = candidates.as_ref().and_then(|_| Figure::of_candidates(&name, recording));
+        let fewest = fewest.map(|figure| figure.svg()).transpose()?;
+        for (output, content) in
+            [(trace, Some(&lines)), (figure, svg.as_ref()), (candidates, fewest.as_ref())]
+        {
+            if let (Some(output), Some(content)) = (output, content) {
+                output.write(content)?;
+            }
+        }
+        Ok(match self.format {
+            Format::Text => report::mission(&name, recording),
+            Format::Json => lines,
+        })
+    }
 }
 
 fn replay(args: &ReplayArgs) -> Result<String> {

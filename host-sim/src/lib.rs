@@ -3,15 +3,20 @@
 
 #![forbid(unsafe_code)]
 
+pub mod cable;
 pub mod campaign;
 pub mod cli;
+pub mod emulator;
+pub mod faults;
 pub mod field;
 pub mod figure;
+pub mod hil;
 mod legend;
 pub mod mission;
 pub mod names;
 pub mod noisy_campaign;
 pub mod output;
+pub mod player;
 pub mod polygon;
 pub mod random_walk;
 pub mod recording;

@@ -1,13 +1,12 @@
 //! One mission in a simulated world, from its first step to its end.
 
 use std::cell::Cell;
-use std::convert::Infallible;
+use std::rc::Rc;
 
 use planner_core::agent::{Agent, AgentError, Event, Step};
 use planner_core::cfc::Cfc;
 use planner_core::config::{Config, Following};
 use planner_core::dynamics::{Dynamics, Pose};
-use planner_core::hal::LabelSensor;
 use planner_core::hypotheses::{Hypotheses, Prior};
 use planner_core::line::Line;
 use planner_core::planner::{Planner, StopReason};
@@ -20,7 +19,7 @@ use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
 use crate::random_walk::RandomWalk;
-use crate::world::{Extent, Flipped, NoiseModel, Probe, Vehicle};
+use crate::world::{Extent, Flipped, NoiseModel, Probe, Sensor, Vehicle};
 
 /// Samples that a simulated planner can hold, the oracle's included: 64 labels beside its four.
 pub const CAPACITY: usize = 68;
@@ -118,7 +117,8 @@ impl End {
 }
 
 /// A planner whose knowledge can be read.
-trait Learner: Planner {
+pub trait Learner: Planner {
+    /// What is known.
     fn known(&self) -> Known<'_>;
 }
 
@@ -177,58 +177,50 @@ impl Mission {
         Table::new(self.space.samples(), self.prior).expect("15 points bound the line at most")
     }
 
-    /// Runs the mission with the paper's unicycle; `watch` sees every step and what is known after
-    /// it.
-    ///
-    /// # Errors
-    /// [`Refused`] when a sample contradicts what is known.
-    pub fn run(&self, watch: impl FnMut(&Step, Known<'_>)) -> Result<End, Refused> {
+    /// The planner, with the paper's unicycle, as yet without a label.
+    pub fn learner(&self) -> Box<dyn Learner> {
         let (dynamics, config, noise) = (Unicycle::paper(), self.config, self.noise_told());
         let (area, rng) = (config.area, ChaCha8Rng::seed_from_u64(self.seed));
         match self.algorithm {
-            Algorithm::Cfc => self.sense(Cfc::new(config, dynamics, self.space.clone()), watch),
+            Algorithm::Cfc => Box::new(Cfc::new(config, dynamics, self.space.clone())),
             Algorithm::Scc => {
                 let (policy, prior) = (self.policy, self.prior);
-                let table = self.table();
-                self.sense(Scc::new(config, noise, policy, prior, dynamics, table), watch)
+                Box::new(Scc::new(config, noise, policy, prior, dynamics, self.table()))
             }
             Algorithm::Random if self.is_noisy() => {
                 let knowledge = (self.table(), noise);
-                self.sense(RandomWalk { dynamics, area, knowledge, rng }, watch)
+                Box::new(RandomWalk { dynamics, area, knowledge, rng })
             }
             Algorithm::Random => {
                 let knowledge = self.space.clone();
-                self.sense(RandomWalk { dynamics, area, knowledge, rng }, watch)
+                Box::new(RandomWalk { dynamics, area, knowledge, rng })
             }
         }
     }
 
-    /// Gives the planner its sensor.
-    fn sense(
-        &self,
-        planner: impl Learner,
-        watch: impl FnMut(&Step, Known<'_>),
-    ) -> Result<End, Refused> {
-        let pose = Cell::new(self.start);
-        let sensor = Probe { truth: self.truth, pose: &pose };
+    /// The vehicle at its start, and the sensor it carries.
+    pub fn world(&self) -> (Vehicle, Sensor) {
+        let pose = Rc::new(Cell::new(self.start));
+        let vehicle = Vehicle { pose: pose.clone() };
+        let sensor = Probe { truth: self.truth, pose: pose.clone() };
         let Some(model) = self.noise else {
-            return self.drive(planner, sensor, &pose, watch);
+            return (vehicle, Box::new(sensor));
         };
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
         rng.set_stream(1); // the random walk has stream 0
-        let (truth, noise, given) = (self.truth, self.noise_told(), self.space.samples());
-        let flipped = Flipped { sensor, model, truth, noise, given, pose: &pose, rng };
-        self.drive(planner, flipped, &pose, watch)
+        let (truth, noise) = (self.truth, self.noise_told());
+        let given = self.space.samples().to_vec();
+        (vehicle, Box::new(Flipped { sensor, model, truth, noise, given, pose, rng }))
     }
 
-    fn drive(
-        &self,
-        planner: impl Learner,
-        sensor: impl LabelSensor<Error = Infallible>,
-        pose: &Cell<Pose>,
-        mut watch: impl FnMut(&Step, Known<'_>),
-    ) -> Result<End, Refused> {
-        let mut agent = Agent::new(planner, sensor, Vehicle { pose }, self.start);
+    /// Runs the mission; `watch` sees every step and what is known after it.
+    ///
+    /// # Errors
+    /// [`Refused`] when a sample contradicts what is known.
+    pub fn run(&self, mut watch: impl FnMut(&Step, Known<'_>)) -> Result<End, Refused> {
+        let mut learner = self.learner();
+        let (vehicle, mut sensor) = self.world();
+        let mut agent = Agent::new(&mut *learner, &mut *sensor, vehicle, self.start);
         for _ in 0..self.steps {
             match agent.step() {
                 Ok(Event::Step(step)) => watch(&step, agent.planner.known()),

@@ -3,7 +3,10 @@
 use planner_core::action::Action;
 use planner_core::area::Area;
 use planner_core::dynamics::{Dynamics, Pose};
+use planner_core::estimate::Estimates;
+use planner_core::hypotheses::Prior;
 use planner_core::planner::{Motion, Plan, Planner, StopReason};
+use planner_core::posterior::Posterior;
 use planner_core::sample::{Label, Reading, Sample};
 use planner_core::scc::Noise;
 use planner_core::version_space::{Refused, VersionSpace};
@@ -22,6 +25,9 @@ pub trait Knowledge {
     /// # Errors
     /// [`Refused`].
     fn learn(&mut self, sample: Sample) -> Result<(), Refused>;
+
+    /// The line as far as it is known.
+    fn estimates(&self) -> Estimates;
 }
 
 impl Knowledge for VersionSpace<CAPACITY> {
@@ -31,6 +37,10 @@ impl Knowledge for VersionSpace<CAPACITY> {
 
     fn learn(&mut self, sample: Sample) -> Result<(), Refused> {
         self.insert(sample).map(|_| ())
+    }
+
+    fn estimates(&self) -> Estimates {
+        Estimates::of(self)
     }
 }
 
@@ -43,6 +53,10 @@ impl Knowledge for (Table, Noise) {
     fn learn(&mut self, sample: Sample) -> Result<(), Refused> {
         let reliability = self.1.at(sample.site, self.0.given());
         self.0.observe(sample, reliability)
+    }
+
+    fn estimates(&self) -> Estimates {
+        Posterior::new(&self.0, Prior::Area).estimates()
     }
 }
 
@@ -87,5 +101,9 @@ impl<D: Dynamics, K: Knowledge> Planner for RandomWalk<D, K> {
             None => return Ok(()),
         };
         self.knowledge.learn(Sample { site: pose.site, label })
+    }
+
+    fn estimates(&self) -> Estimates {
+        self.knowledge.estimates()
     }
 }

@@ -66,49 +66,84 @@ pub struct Recording {
     pub outcome: Outcome,
 }
 
-impl Recording {
-    /// Runs a mission and records it.
-    ///
-    /// # Errors
-    /// Names the sample that the planner refused.
-    pub fn of(mission: Mission) -> Result<Self> {
-        let mut steps = Vec::new();
-        let mut outcome = if mission.is_noisy() {
+/// A mission that is being recorded.
+#[derive(Clone, Debug)]
+pub struct Recorder {
+    mission: Mission,
+    steps: Vec<Recorded>,
+    outcome: Outcome,
+    /// The measure of what was left at the start.
+    before: f64,
+}
+
+impl Recorder {
+    /// Nothing has happened yet.
+    pub fn new(mission: Mission) -> Self {
+        let outcome = if mission.is_noisy() {
             Outcome::Hypotheses(Box::new(mission.table()))
         } else {
             Outcome::Lines(Box::new(mission.space.clone()))
         };
         let before = estimate::area(mission.space.candidates());
-        let noise = mission.noise_told();
-        let end = mission
-            .run(|step, known| {
-                steps.push(match known {
-                    Known::Lines(space) => lines_left(step, space, before),
-                    Known::Hypotheses(table) => {
-                        let reliability = noise.at(step.pose.site, table.given());
-                        let trusted = reliability == Reliability::CERTAIN;
-                        hypotheses_left(step, table, mission.prior, trusted)
-                    }
-                });
-                outcome = match known {
-                    Known::Lines(space) => Outcome::Lines(Box::new(space.clone())),
-                    Known::Hypotheses(table) => Outcome::Hypotheses(Box::new(table.clone())),
-                };
-            })
-            .map_err(|refused| match refused {
-                Refused::Contradiction(sample) => {
-                    let at = Point2::<f64>::from(sample.site);
-                    anyhow!(
-                        "step {}: label {} at ({}, {}) contradicts the region of certainty it lies in",
-                        steps.len() + 1,
-                        sample.label.sign(),
-                        at.x,
-                        at.y,
-                    )
-                }
-                Refused::Full(_) => anyhow!("step {}: {refused}", steps.len() + 1),
-            })?;
-        Ok(Self { mission, steps, end, outcome })
+        Self { mission, steps: Vec::new(), outcome, before }
+    }
+
+    /// Takes down a step and what is known after it.
+    pub fn take(&mut self, step: &Step, known: Known<'_>) {
+        let (recorded, outcome) = match known {
+            Known::Lines(space) => {
+                (lines_left(step, space, self.before), Outcome::Lines(Box::new(space.clone())))
+            }
+            Known::Hypotheses(table) => {
+                let reliability = self.mission.noise_told().at(step.pose.site, table.given());
+                let trusted = reliability == Reliability::CERTAIN;
+                let recorded = hypotheses_left(step, table, self.mission.prior, trusted);
+                (recorded, Outcome::Hypotheses(Box::new(table.clone())))
+            }
+        };
+        self.steps.push(recorded);
+        self.outcome = outcome;
+    }
+
+    /// Steps so far.
+    pub fn steps(&self) -> usize {
+        self.steps.len()
+    }
+
+    /// What is said of a sample that the planner does not take in the step after these.
+    pub fn refusal(&self, refused: &Refused) -> anyhow::Error {
+        let step = self.steps.len() + 1;
+        match refused {
+            Refused::Contradiction(sample) => {
+                let (at, label) = (Point2::<f64>::from(sample.site), sample.label.sign());
+                anyhow!(
+                    "step {step}: label {label} at ({}, {}) contradicts the region of certainty it lies in",
+                    at.x,
+                    at.y,
+                )
+            }
+            Refused::Full(_) => anyhow!("step {step}: {refused}"),
+        }
+    }
+
+    /// The mission is over.
+    pub fn end(self, end: End) -> Recording {
+        let Self { mission, steps, outcome, .. } = self;
+        Recording { mission, steps, end, outcome }
+    }
+}
+
+impl Recording {
+    /// Runs a mission and records it.
+    ///
+    /// # Errors
+    /// Names the sample that the planner refused.
+    pub fn of(mission: &Mission) -> Result<Self> {
+        let mut recorder = Recorder::new(mission.clone());
+        match mission.run(|step, known| recorder.take(step, known)) {
+            Ok(end) => Ok(recorder.end(end)),
+            Err(refused) => Err(recorder.refusal(&refused)),
+        }
     }
 
     /// The estimates at the end. Of noisy labels, the centre is the posterior mean and the maximum
@@ -116,15 +151,7 @@ impl Recording {
     pub fn estimates(&self) -> Estimates {
         match &self.outcome {
             Outcome::Lines(space) => Estimates::of(space),
-            Outcome::Hypotheses(table) => {
-                let posterior = Posterior::new(table, self.mission.prior);
-                let best = posterior.best().map(|best| table.candidates(best.hypothesis));
-                Estimates {
-                    bisector: estimate::bisector(table.samples()),
-                    centre: posterior.mean(),
-                    maximum_margin: best.and_then(estimate::maximum_margin),
-                }
-            }
+            Outcome::Hypotheses(table) => Posterior::new(table, self.mission.prior).estimates(),
         }
     }
 

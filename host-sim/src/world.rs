@@ -2,6 +2,7 @@
 
 use std::cell::Cell;
 use std::convert::Infallible;
+use std::rc::Rc;
 
 use nalgebra::Point2;
 use planner_core::candidates::Candidates;
@@ -52,8 +53,14 @@ pub enum Extent {
     Band(f64),
 }
 
+/// Where the vehicle is: shared by the vehicle and the sensor it carries.
+pub type Whereabouts = Rc<Cell<Pose>>;
+
+/// A label sensor that cannot fail.
+pub type Sensor = Box<dyn LabelSensor<Error = Infallible>>;
+
 /// A sensor whose labels are sometimes flipped: a wrapper around any other.
-pub struct Flipped<'w, S> {
+pub struct Flipped<S> {
     /// The sensor.
     pub sensor: S,
     /// How labels are flipped.
@@ -63,21 +70,21 @@ pub struct Flipped<'w, S> {
     /// What a planner knows of the noise, for the trusted balls.
     pub noise: Noise,
     /// The oracle's samples.
-    pub given: &'w [Sample],
+    pub given: Vec<Sample>,
     /// Where the vehicle is.
-    pub pose: &'w Cell<Pose>,
+    pub pose: Whereabouts,
     /// The source of chance.
     pub rng: ChaCha8Rng,
 }
 
-impl<S: LabelSensor> LabelSensor for Flipped<'_, S> {
+impl<S: LabelSensor> LabelSensor for Flipped<S> {
     type Error = S::Error;
 
     fn read(&mut self) -> Result<Reading, S::Error> {
         let reading = self.sensor.read()?;
         let site = self.pose.get().site;
         let exposed = match self.model.extent {
-            Extent::OutsideBalls(_) => self.noise.at(site, self.given) != Reliability::CERTAIN,
+            Extent::OutsideBalls(_) => self.noise.at(site, &self.given) != Reliability::CERTAIN,
             Extent::Band(half) => self.truth.distance(Point2::from(site)).abs() <= half,
         };
         // Drawn whether it is used or not, so that a path's noise does not depend on its places.
@@ -90,12 +97,12 @@ impl<S: LabelSensor> LabelSensor for Flipped<'_, S> {
 }
 
 /// A vehicle that reaches the target of every motion.
-pub struct Vehicle<'w> {
-    /// Where it is; shared with the sensor it carries.
-    pub pose: &'w Cell<Pose>,
+pub struct Vehicle {
+    /// Where it is.
+    pub pose: Whereabouts,
 }
 
-impl Drive for Vehicle<'_> {
+impl Drive for Vehicle {
     type Error = Infallible;
 
     fn drive(&mut self, motion: &Motion) -> Result<Pose, Infallible> {
@@ -105,14 +112,14 @@ impl Drive for Vehicle<'_> {
 }
 
 /// A perfect label sensor, carried by the vehicle.
-pub struct Probe<'w> {
+pub struct Probe {
     /// The true line.
     pub truth: Line,
     /// Where the vehicle is.
-    pub pose: &'w Cell<Pose>,
+    pub pose: Whereabouts,
 }
 
-impl LabelSensor for Probe<'_> {
+impl LabelSensor for Probe {
     type Error = Infallible;
 
     fn read(&mut self) -> Result<Reading, Infallible> {

@@ -10,11 +10,13 @@ use crate::lattice::UNITS_PER_METRE;
 /// The name of an action within a grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub struct Action(pub u16);
 
 /// What an action asks of the vehicle in one unit of time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub struct Control {
     /// Speed, metres per unit time.
     pub v: f32,

@@ -5,6 +5,11 @@ use crate::lattice::Site;
 /// The rectangle in which all positions stay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "wire",
+    serde(try_from = "[crate::lattice::Site; 2]", into = "[crate::lattice::Site; 2]")
+)]
 pub struct Area {
     min: Site,
     max: Site,

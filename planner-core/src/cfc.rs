@@ -13,6 +13,7 @@
 use crate::cell::Certainty;
 use crate::config::{Config, first_to_second};
 use crate::dynamics::{Dynamics, Pose};
+use crate::estimate::Estimates;
 use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
 use crate::problem::{ArcRule, Candidate, Problem};
 use crate::recovery::{Found, solve_or_recover};
@@ -133,6 +134,10 @@ impl<D: Dynamics, const N: usize> Planner for Cfc<D, N> {
         };
         self.past = label;
         Ok(())
+    }
+
+    fn estimates(&self) -> Estimates {
+        Estimates::of(&self.space)
     }
 }
 

@@ -9,6 +9,7 @@ use crate::sample::Sample;
 /// How P1 looks for the opposite label (Section III-A).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub enum Crossing {
     /// In any direction in which the boundary cannot run: P1 as printed.
     #[default]
@@ -22,6 +23,7 @@ pub enum Crossing {
 /// How P2 follows the boundary.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub enum Following {
     /// In any direction in which the boundary can run: P2 as printed. It takes the smallest turn
     /// into the slope arc, so it skims ground that is all but certain and learns next to nothing.
@@ -34,6 +36,7 @@ pub enum Following {
 /// What a mission fixes beforehand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub struct Config {
     /// Where positions must stay.
     pub area: Area,

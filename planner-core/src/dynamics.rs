@@ -11,6 +11,7 @@ use crate::lattice::{OffLattice, Site, Vector};
 /// Where the agent is and where it faces: the state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub struct Pose {
     /// Position.
     pub site: Site,

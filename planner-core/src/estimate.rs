@@ -20,6 +20,7 @@ use crate::version_space::VersionSpace;
 /// The three estimates; `None` where one does not exist.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub struct Estimates {
     /// The paper's printed estimate.
     pub bisector: Option<Line>,

@@ -1,6 +1,8 @@
 //! The seam to hardware: a sensor that reads labels and a drive that makes motions, in the shape of
 //! embedded-hal 1.0: an associated `Error`, one required method, an impl for `&mut T`.
 
+use core::convert::Infallible;
+
 use embedded_hal::digital::InputPin;
 
 use crate::dynamics::Pose;
@@ -24,6 +26,15 @@ impl<T: LabelSensor + ?Sized> LabelSensor for &mut T {
 
     fn read(&mut self) -> Result<Reading, Self::Error> {
         T::read(self)
+    }
+}
+
+/// No sensor: a place for one that stays empty.
+impl LabelSensor for Infallible {
+    type Error = Self;
+
+    fn read(&mut self) -> Result<Reading, Self> {
+        match *self {}
     }
 }
 

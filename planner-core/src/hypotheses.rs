@@ -27,6 +27,7 @@ use crate::weight::{LogWeight, Reliability};
 /// How hypotheses are weighed before any label is seen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub enum Prior {
     /// By the measure of their lines, d(angle) d(offset): uniform over lines.
     #[default]

@@ -139,13 +139,19 @@ pub mod holonomic;
 pub mod hypotheses;
 pub mod lattice;
 pub mod line;
+#[cfg(feature = "wire")]
+pub mod link;
 pub mod planner;
 pub mod posterior;
 pub mod problem;
 mod recovery;
+#[cfg(feature = "wire")]
+pub mod remote;
 pub mod sample;
 pub mod scc;
 mod sight;
 pub mod unicycle;
 pub mod version_space;
 pub mod weight;
+#[cfg(feature = "wire")]
+pub mod wire;

@@ -11,10 +11,12 @@ use crate::lattice::{Site, UNITS_PER_METRE, Vector};
 /// no decision of the planner depends on one.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "wire", serde(try_from = "[f64; 3]", into = "[f64; 3]"))]
 pub struct Line {
-    a: f64,
-    b: f64,
-    c: f64,
+    pub(crate) a: f64,
+    pub(crate) b: f64,
+    pub(crate) c: f64,
     /// The length of `(a, b)`.
     norm: f64,
 }

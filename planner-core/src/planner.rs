@@ -1,13 +1,15 @@
-//! The seam between a planner and the loop that runs it: `plan()`, then `observe()`.
+//! The seam between a planner and the loop that runs it: `plan()`, then `observe()`; `estimates()` at any time.
 
 use crate::action::{Action, Control};
 use crate::dynamics::Pose;
+use crate::estimate::Estimates;
 use crate::sample::Reading;
 use crate::version_space::Refused;
 
 /// Which one-step problem a motion answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub enum Stage {
     /// Look for the opposite label.
     P1,
@@ -22,6 +24,7 @@ pub enum Stage {
 /// What was done as the problem itself had no feasible action.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub enum Recovery {
     /// The same problem without its rule on directions.
     Undirected,
@@ -34,6 +37,7 @@ pub enum Recovery {
 /// A motion to make.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub struct Motion {
     /// The one-step problem it answers, for planners that pose one.
     pub stage: Option<Stage>,
@@ -59,6 +63,7 @@ impl Motion {
 /// Why a planner has no further motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub enum StopReason {
     /// What is uncertain is thinner than the action grid can hit.
     Resolution,
@@ -78,7 +83,7 @@ pub enum Plan {
     Stop(StopReason),
 }
 
-/// A planner: asked for a motion, then told what came of it.
+/// A planner: asked for a motion, told what came of it, and in the end asked for the line.
 pub trait Planner {
     /// The next motion from a pose.
     fn plan(&mut self, pose: Pose) -> Plan;
@@ -89,4 +94,21 @@ pub trait Planner {
     /// [`Refused`] when the reading contradicts what is known or cannot be stored; the planner is
     /// then as it was.
     fn observe(&mut self, pose: Pose, reading: Option<Reading>) -> Result<(), Refused>;
+
+    /// The line as far as it is known.
+    fn estimates(&self) -> Estimates;
+}
+
+impl<T: Planner + ?Sized> Planner for &mut T {
+    fn plan(&mut self, pose: Pose) -> Plan {
+        T::plan(self, pose)
+    }
+
+    fn observe(&mut self, pose: Pose, reading: Option<Reading>) -> Result<(), Refused> {
+        T::observe(self, pose, reading)
+    }
+
+    fn estimates(&self) -> Estimates {
+        T::estimates(self)
+    }
 }

@@ -7,7 +7,7 @@
 
 use crate::candidates::{Candidates, intercepts};
 use crate::direction::Arc;
-use crate::estimate::Moments;
+use crate::estimate::{Estimates, Moments, bisector, maximum_margin};
 use crate::hypotheses::{Hypotheses, Hypothesis, Prior};
 use crate::line::Line;
 use crate::weight::LogWeight;
@@ -157,5 +157,16 @@ impl<'a, const N: usize, const H: usize, const E: usize> Posterior<'a, N, H, E> 
             moments.scaled(self.probability(hypothesis) / moments.area)
         };
         self.hypotheses.iter().map(each).reduce(Moments::plus)?.mean()
+    }
+
+    /// The three estimates: the bisector of the labels as they were seen, the posterior mean, and the
+    /// maximum margin of the most likely hypothesis.
+    pub fn estimates(&self) -> Estimates {
+        let best = self.best().map(|best| self.hypotheses.candidates(best.hypothesis));
+        Estimates {
+            bisector: bisector(self.hypotheses.samples()),
+            centre: self.mean(),
+            maximum_margin: best.and_then(maximum_margin),
+        }
     }
 }

@@ -25,12 +25,14 @@ use crate::sight::Sight;
 /// The weight of the control in the objective, in [0, 1), to six decimal places.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "wire", serde(try_from = "u32", into = "u32"))]
 pub struct Varrho {
-    millionths: u32,
+    pub(crate) millionths: u32,
 }
 
 impl Varrho {
-    const ONE: u32 = 1_000_000;
+    pub(crate) const ONE: u32 = 1_000_000;
 
     /// The paper's 0.1.
     pub const PAPER: Self = Self { millionths: 100_000 };

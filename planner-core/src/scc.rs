@@ -24,9 +24,11 @@ use crate::action::Action;
 use crate::candidates::Candidates;
 use crate::config::{Config, first_to_second};
 use crate::dynamics::{Dynamics, Pose};
+use crate::estimate::Estimates;
 use crate::hypotheses::{Hypotheses, Hypothesis, Prior};
 use crate::lattice::{Site, Vector};
 use crate::planner::{Motion, Plan, Planner, Recovery, Stage, StopReason};
+use crate::posterior::Posterior;
 use crate::problem::{AnyDirection, ArcRule, DirectionRule, Problem};
 use crate::recovery::{Found, solve_or_recover};
 use crate::sample::{Reading, Sample};
@@ -36,6 +38,7 @@ use crate::weight::Reliability;
 /// How the hypotheses choose an action together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub enum Policy {
     /// One problem, P3 or P4, whose rule looks at the slopes of all hypotheses.
     Joint,
@@ -49,6 +52,7 @@ pub enum Policy {
 /// What is known of the noise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub struct Noise {
     /// How far a label can be believed.
     pub reliability: Reliability,
@@ -230,5 +234,9 @@ impl<D: Dynamics, const N: usize, const H: usize> Planner for Scc<D, N, H> {
         let sample = Sample { site: pose.site, label };
         let reliability = self.noise.at(pose.site, self.hypotheses.given());
         self.hypotheses.observe(sample, reliability)
+    }
+
+    fn estimates(&self) -> Estimates {
+        Posterior::new(&self.hypotheses, self.prior).estimates()
     }
 }

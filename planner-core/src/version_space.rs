@@ -10,6 +10,7 @@ use crate::sample::{Label, Sample, SampleBuffer};
 /// Why samples do not make a version space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub enum NoVersionSpace {
     /// All samples lie on one line (or there are fewer than three): any line may pass.
     Collinear,
@@ -38,6 +39,7 @@ impl core::error::Error for NoVersionSpace {}
 /// Why a sample was not taken. The version space is as it was.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub enum Refused {
     /// The sample lies in the region of certainty of the other label: a label was wrong, or the
     /// boundary is not straight.

@@ -8,12 +8,14 @@ use core::ops::Add;
 /// What is less likely than `e^-96` is held to be that likely.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct LogWeight(i32);
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "wire", serde(try_from = "i32", into = "i32"))]
+pub struct LogWeight(pub(crate) i32);
 
 impl LogWeight {
     const ONE: i32 = 1 << 24;
-    const LEAST: i32 = -96 * Self::ONE;
-    const MOST: i32 = 31 * Self::ONE;
+    pub(crate) const LEAST: i32 = -96 * Self::ONE;
+    pub(crate) const MOST: i32 = 31 * Self::ONE;
 
     /// The logarithm of 1.
     pub const ZERO: Self = Self(0);
@@ -58,6 +60,7 @@ impl Add for LogWeight {
 /// How far a label can be believed: it is true with probability `p`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub struct Reliability {
     /// The weight of what agrees with the label; `None` when nothing can.
     pub(crate) agree: Option<LogWeight>,

@@ -25,7 +25,7 @@ fn standard_scenarios() {
     let mut table = String::new();
     for file in files {
         let mission = scenario::read(&file, Overrides::default()).expect("a good file");
-        let recording = Recording::of(mission).expect("no contradiction");
+        let recording = Recording::of(&mission).expect("no contradiction");
         let name = file.file_stem().expect("a name").to_string_lossy().into_owned();
         describe(&mut table, &name, &recording).expect("a string");
     }
@@ -36,7 +36,7 @@ fn standard_scenarios() {
 #[test]
 fn the_picture_in_the_readme() {
     let mission = scenario::parse("", scenario::PAPER_NOISELESS, Overrides::default());
-    let recording = Recording::of(mission.expect("a good file")).expect("noiseless");
+    let recording = Recording::of(&mission.expect("a good file")).expect("noiseless");
     let figure = Figure::of(PAPER_TITLE, &recording).svg().expect("a figure");
     expect_file!["../../host-sim/figures/paper-noiseless.svg"].assert_eq(&figure);
 }

@@ -67,7 +67,7 @@ fn a_mission_comes_out_the_same_again_byte_for_byte() {
         for number in 0..50 {
             let trace = || {
                 let mission = field::standard(3, number, algorithm, 40);
-                trace::lines(&Recording::of(mission).expect("noiseless"))
+                trace::lines(&Recording::of(&mission).expect("noiseless"))
             };
             assert_eq!(trace(), trace(), "field {number}");
         }
@@ -80,7 +80,7 @@ fn a_seed_changes_the_random_walk_and_nothing_else() {
     let run = |algorithm, seed| {
         let overrides = Overrides { algorithm: Some(algorithm), steps: None, seed: Some(seed) };
         let mission = scenario::read(&folder.join("paper-noiseless.toml"), overrides);
-        let recording = Recording::of(mission.expect("a good file")).expect("noiseless");
+        let recording = Recording::of(&mission.expect("a good file")).expect("noiseless");
         recording.steps.iter().map(|s| s.step.pose).collect::<Vec<_>>()
     };
     assert_eq!(run(Algorithm::Cfc, 1), run(Algorithm::Cfc, 2));

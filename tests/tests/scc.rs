@@ -2,6 +2,7 @@
 
 use std::cell::Cell;
 use std::collections::BTreeMap;
+use std::rc::Rc;
 
 use host_sim::campaign::Campaign;
 use host_sim::field;
@@ -122,11 +123,12 @@ fn the_world_flips_labels_where_it_should_and_as_often() {
     for extent in [Extent::OutsideBalls(3.0), Extent::Band(2.0), Extent::OutsideBalls(0.0)] {
         let model = NoiseModel { p: 0.7, extent };
         let noisy = host_sim::mission::Mission { noise: Some(model), ..mission.clone() };
-        let pose = Cell::new(mission.start);
-        let sensor = Probe { truth, pose: &pose };
+        let pose = Rc::new(Cell::new(mission.start));
+        let sensor = Probe { truth, pose: pose.clone() };
         let rng = ChaCha8Rng::seed_from_u64(4);
         let noise = noisy.noise_told();
-        let mut sensor = Flipped { sensor, model, truth, noise, given, pose: &pose, rng };
+        let mut sensor =
+            Flipped { sensor, model, truth, noise, given: given.to_vec(), pose: pose.clone(), rng };
         let mut places = ChaCha8Rng::seed_from_u64(5);
         let (mut exposed, mut flipped) = (0, 0);
         for _ in 0..40_000 {
@@ -163,7 +165,7 @@ fn a_noisy_mission_comes_out_the_same_again_byte_for_byte() {
             let trace = || {
                 let mut mission = field::standard(3, number, algorithm, 20);
                 mission.noise = Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.5) });
-                trace::lines(&Recording::of(mission).expect("trusted labels are true"))
+                trace::lines(&Recording::of(&mission).expect("trusted labels are true"))
             };
             assert_eq!(trace(), trace(), "field {number}");
         }

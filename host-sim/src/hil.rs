@@ -1,0 +1,186 @@
+//! Hardware in the loop: a chip plans, this program plays its world.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context as _, Result, bail};
+use indicatif::{ProgressBar, ProgressStyle};
+use planner_core::wire::{ClockRate, LabelSource, Took};
+use serde::Serialize;
+
+use crate::cable::Cable;
+use crate::emulator::{Emulator, NS_PER_INSTRUCTION};
+use crate::faults::Faults;
+use crate::mission::Mission;
+use crate::output::csv;
+use crate::player::{Played, Player};
+
+/// Where the chip is.
+#[derive(Clone, Debug)]
+pub enum Chip {
+    /// A board at a serial port.
+    Board {
+        /// The port.
+        device: String,
+        /// Its speed, bits per second.
+        baud: u32,
+    },
+    /// A firmware under emulation.
+    Emulated {
+        /// Its ELF.
+        elf: PathBuf,
+        /// Where its log goes, as defmt encodes it.
+        log: Option<PathBuf>,
+    },
+}
+
+/// How long a chip may be silent before it counts as gone: longer than it waits itself.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// How long a chip is listened to that may not have heard that its mission is over.
+const FAREWELL: Duration = Duration::from_secs(2);
+
+/// A mission that a chip has flown, with what it took.
+#[derive(Debug)]
+pub struct Flight {
+    /// The mission.
+    pub played: Played,
+    /// From each answer to the next request, as seen from here.
+    turnarounds: Vec<Duration>,
+}
+
+/// What a step took.
+#[derive(Clone, Copy, Debug, Serialize)]
+struct Timing {
+    step: usize,
+    plan_ticks: u32,
+    observe_ticks: u32,
+    /// By the board's clock; empty under emulation.
+    plan_us: Option<f64>,
+    observe_us: Option<f64>,
+    /// Under emulation; empty on a board.
+    plan_instructions: Option<u64>,
+    observe_instructions: Option<u64>,
+    turnaround_ms: f64,
+}
+
+/// Has a chip fly a mission.
+///
+/// # Errors
+/// When there is no chip, it declines, falls silent, gives up, or differs from this machine.
+pub fn fly(mission: &Mission, labels: LabelSource, chip: &Chip, faults: Faults) -> Result<Flight> {
+    let player = Player::new(mission, labels)?;
+    match chip {
+        Chip::Board { device, baud } => {
+            let read_timeout = Duration::from_millis(100);
+            let port = serialport::new(device, *baud).timeout(read_timeout).open();
+            let port = port.with_context(|| format!("{device}: expected a serial port"))?;
+            let reader = port.try_clone().with_context(|| device.clone())?;
+            play(player, Cable::new(reader, port, faults, mission.seed))
+        }
+        Chip::Emulated { elf, log } => {
+            let (_emulator, link) = Emulator::start(elf, log.as_deref())?;
+            let reader = link.try_clone()?;
+            play(player, Cable::new(reader, link, faults, mission.seed))
+        }
+    }
+}
+
+/// Plays a world over a cable until the mission is over.
+///
+/// # Errors
+/// As [`fly`].
+pub fn play(mut player: Player, mut cable: Cable) -> Result<Flight> {
+    let style = "{spinner} {pos} steps flown, {elapsed}";
+    let bar = ProgressBar::new_spinner().with_style(ProgressStyle::with_template(style)?);
+    let mut turnarounds = Vec::new();
+    let mut answered = Instant::now();
+    let mut over = None;
+    while !player.is_dismissed() {
+        let patience = if player.is_over() { FAREWELL } else { PATIENCE };
+        let until = *over.get_or_insert_with(|| Instant::now() + patience);
+        let Some(bytes) = cable.receive(until)? else {
+            if player.is_over() {
+                break;
+            }
+            bail!("the board has been silent for {} s", PATIENCE.as_secs());
+        };
+        for byte in bytes {
+            let (motions, was_over) = (player.motions(), player.is_over());
+            let Some(frame) = player.hear(byte)? else { continue };
+            if player.motions() > motions {
+                turnarounds.push(answered.elapsed());
+                bar.set_position(player.steps() as u64);
+            }
+            cable.send(frame.bytes())?;
+            answered = Instant::now();
+            // Silence is counted from the last word; the farewell from the end of the mission.
+            if !was_over {
+                over = None;
+            }
+        }
+    }
+    bar.finish_and_clear();
+    Ok(Flight { played: player.finish()?, turnarounds })
+}
+
+impl Flight {
+    fn timings(&self) -> Vec<Timing> {
+        let clock = self.played.clock;
+        let rows = self.played.took.iter().zip(&self.turnarounds).zip(1..);
+        rows.map(|((took, turnaround), step)| timing(step, *took, clock, *turnaround)).collect()
+    }
+
+    /// What each step took, as CSV.
+    ///
+    /// # Errors
+    /// When a record could not be written.
+    pub fn csv(&self) -> Result<String> {
+        csv(&self.timings())
+    }
+
+    /// What each step took, for people.
+    pub fn report(&self) -> String {
+        let emulated = self.played.clock.emulated;
+        let unit = if emulated { "instructions" } else { "us" };
+        let mut text = format!(
+            "What each step took on the chip, {unit}, and from here:\n{:>4} {:>12} {:>12} {:>14}\n",
+            "step", "plan", "observe", "round trip ms"
+        );
+        let number = |count: Option<u64>, time: Option<f64>| match (count, time) {
+            (Some(count), _) => count.to_string(),
+            (_, Some(time)) => format!("{time:.1}"),
+            _ => "-".into(),
+        };
+        for row in self.timings() {
+            // Writing to a string cannot fail.
+            let _ = writeln!(
+                text,
+                "{:>4} {:>12} {:>12} {:>14.1}",
+                row.step,
+                number(row.plan_instructions, row.plan_us),
+                number(row.observe_instructions, row.observe_us),
+                row.turnaround_ms,
+            );
+        }
+        text
+    }
+}
+
+fn timing(step: usize, took: Took, clock: ClockRate, turnaround: Duration) -> Timing {
+    let seconds = |ticks: u32| f64::from(ticks) / f64::from(clock.per_second.max(1));
+    let time = |ticks| (!clock.emulated).then(|| seconds(ticks) * 1e6);
+    let count =
+        |ticks| clock.emulated.then(|| (seconds(ticks) * 1e9 / NS_PER_INSTRUCTION).round() as u64);
+    Timing {
+        step,
+        plan_ticks: took.plan,
+        observe_ticks: took.observe,
+        plan_us: time(took.plan),
+        observe_us: time(took.observe),
+        plan_instructions: count(took.plan),
+        observe_instructions: count(took.observe),
+        turnaround_ms: turnaround.as_secs_f64() * 1e3,
+    }
+}

@@ -1,0 +1,438 @@
+//! What a chip that plans and a vehicle that moves say to each other.
+//!
+//! The chip asks, the vehicle answers: every [`Request`] has one [`Reply`].
+//!
+//! ```text
+//! chip                                        vehicle (or `host-sim hil` in its place)
+//!  | -- Hello { protocol } ------------------->  |  repeated until someone answers
+//!  | <------------------------- Setup { .. } --  |  the mission
+//!  | -- Ready(Accepted), or Declined --------->  |
+//!  | <-------------------------------- Noted --  |
+//!  | -- Move { motion, what came of the last } ->  |
+//!  | <------------- Arrived { pose, reading } --  |  as often as the mission takes
+//!  | -- End { reason, estimates } ------------>  |
+//!  | <-------------------------------- Noted --  |
+//! ```
+//!
+//! Delivery (loss, repetition, lateness) is [`link`](crate::link)'s. A frame holds one message: the
+//! way it goes, its number, itself, in postcard's form, and a CRC-32 of these; COBS keeps zeros out,
+//! and a zero stands before and after. So a frame that was cut spoils itself alone.
+
+mod checked;
+
+pub use checked::OutOfRange;
+use crc::{CRC_32_ISO_HDLC, Crc};
+use heapless::Vec;
+use postcard::ser_flavors::crc::CrcModifier;
+use postcard::ser_flavors::{Cobs, Slice};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+use crate::config::Config;
+use crate::dynamics::Pose;
+use crate::estimate::Estimates;
+use crate::hypotheses::Prior;
+use crate::planner::{Motion, StopReason};
+use crate::sample::{Reading, Sample};
+use crate::scc::{Noise, Policy};
+use crate::version_space::{NoVersionSpace, Refused};
+
+/// The version of this protocol. The layout of [`Request::Hello`] is that of every version.
+pub const PROTOCOL: u16 = 1;
+
+/// Bytes of the longest frame, its two zeros included.
+pub const FRAME: usize = 320;
+
+/// Given samples that a setup can hold.
+pub const MOST_GIVEN: usize = 16;
+
+/// What the chip asks of the vehicle.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Request {
+    /// For a mission.
+    Hello {
+        /// [`PROTOCOL`] as the chip has it.
+        protocol: u16,
+    },
+    /// To begin: the setup is accepted.
+    Ready(Accepted),
+    /// For another setup: this one is not accepted.
+    Declined(Declined),
+    /// To make a motion and say what came of it.
+    Move(Move),
+    /// To take note that the mission is over.
+    End(End),
+}
+
+/// What the vehicle answers.
+#[expect(clippy::large_enum_variant, reason = "there is one at a time, and no heap")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Reply {
+    /// To [`Request::Hello`]: the mission.
+    Setup(Setup),
+    /// To [`Request::Move`]: where the motion ended and what was sensed there.
+    Arrived {
+        /// Where it ended.
+        pose: Pose,
+        /// What was sensed; `None` when no sample was taken, or the chip has the sensor.
+        reading: Option<Reading>,
+    },
+    /// To [`Request::Move`]: the vehicle could not make the motion.
+    Failed,
+    /// To all else.
+    Noted,
+    /// To any: heard, and still at it. A motion may take longer than the link is patient.
+    Busy,
+}
+
+/// A mission.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Setup {
+    /// [`PROTOCOL`] as the vehicle has it.
+    pub protocol: u16,
+    /// Who plans.
+    pub algorithm: Algorithm,
+    /// What the mission fixes beforehand.
+    pub config: Config,
+    /// The room asked for.
+    pub room: Room,
+    /// Steps at most.
+    pub steps: u16,
+    /// Where the vehicle is.
+    pub start: Pose,
+    /// Who reads labels.
+    pub labels: LabelSource,
+    /// The oracle's samples.
+    pub given: Vec<Sample, MOST_GIVEN, u8>,
+}
+
+/// Who plans.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Algorithm {
+    /// Algorithm 1, noiseless labels.
+    Cfc,
+    /// Algorithm 2, noisy labels.
+    Scc {
+        /// What is known of the noise.
+        noise: Noise,
+        /// How hypotheses choose an action together.
+        policy: Policy,
+        /// How they are weighed.
+        prior: Prior,
+    },
+}
+
+/// Room for a mission's memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Room {
+    /// Samples, the given ones included.
+    pub samples: u16,
+    /// Hypotheses; 1 where there is but one.
+    pub hypotheses: u16,
+}
+
+/// Who reads labels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum LabelSource {
+    /// The vehicle: they come with [`Reply::Arrived`].
+    Vehicle,
+    /// The chip, from its own sensor.
+    Chip,
+}
+
+/// What the chip accepts, and what its figures mean.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Accepted {
+    /// The room there is: at least what was asked for.
+    pub room: Room,
+    /// The clock.
+    pub clock: ClockRate,
+}
+
+/// What a [`Took`]'s ticks are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct ClockRate {
+    /// Ticks in a second.
+    pub per_second: u32,
+    /// Under emulation ticks count instructions, not time.
+    pub emulated: bool,
+}
+
+/// Why a setup is not accepted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Declined {
+    /// The chip speaks this version of the protocol.
+    Protocol(u16),
+    /// The chip has this room, which is too little.
+    Room(Room),
+    /// The given samples leave nothing to find.
+    Given(NoVersionSpace),
+    /// The chip has no sensor of its own.
+    Labels,
+}
+
+/// A motion to make, with what came of the one before.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Move {
+    /// The motion.
+    pub motion: Motion,
+    /// The reading that the planner last took in, if it took one in at the end of the last motion.
+    pub last: Option<Reading>,
+    /// Ticks it took.
+    pub took: Took,
+}
+
+/// Ticks of the chip's clock.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Took {
+    /// To take in the last reading.
+    pub observe: u32,
+    /// To plan.
+    pub plan: u32,
+}
+
+/// How a mission ended.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct End {
+    /// Why.
+    pub reason: EndReason,
+    /// As in [`Move`].
+    pub last: Option<Reading>,
+    /// Ticks of the last observation and of a plan that found no motion.
+    pub took: Took,
+    /// What is known of the line.
+    pub estimates: Estimates,
+}
+
+/// Why a mission ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum EndReason {
+    /// All steps were taken.
+    Steps,
+    /// The planner had no further motion.
+    Stopped(StopReason),
+    /// The planner did not take a sample.
+    Refused(Refused),
+    /// The chip's sensor failed.
+    Sensor,
+    /// The vehicle could not make a motion.
+    Vehicle,
+}
+
+/// What goes one way over the link.
+pub trait Message: Serialize + DeserializeOwned {
+    /// Tells the two ways apart, so that an echo of one's own frames is not taken for an answer.
+    const WAY: u8;
+}
+
+impl Message for Request {
+    const WAY: u8 = b'?';
+}
+
+impl Message for Reply {
+    const WAY: u8 = b'!';
+}
+
+/// A message and the number of its exchange, which request and reply share.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Envelope<M> {
+    way: u8,
+    /// The number.
+    pub number: u32,
+    /// The message.
+    pub message: M,
+}
+
+impl<M: Message> Envelope<M> {
+    /// A message with its number.
+    pub const fn new(number: u32, message: M) -> Self {
+        Self { way: M::WAY, number, message }
+    }
+}
+
+static CHECK: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
+
+/// A message as it goes over the wire.
+#[derive(Clone, Debug, Default)]
+pub struct Frame(Vec<u8, FRAME, u16>);
+
+impl Frame {
+    /// The frame of an envelope.
+    pub fn of<M: Message>(envelope: &Envelope<M>) -> Self {
+        let mut frame = Vec::new();
+        // Every message fits, as a test over the longest of each shows.
+        let _ = frame.resize(FRAME, 0);
+        let written = encode(envelope, frame.get_mut(1..).unwrap_or(&mut [])).unwrap_or(0);
+        frame.truncate(1 + written);
+        Self(frame)
+    }
+
+    /// Its bytes.
+    pub fn bytes(&self) -> &[u8] {
+        &self.0
+    }
+}
+
+fn encode<M: Message>(envelope: &Envelope<M>, into: &mut [u8]) -> postcard::Result<usize> {
+    let stuffed = Cobs::try_new(Slice::new(into))?;
+    let checked = CrcModifier::new(stuffed, CHECK.digest());
+    postcard::serialize_with_flavor(envelope, checked).map(|written: &mut [u8]| written.len())
+}
+
+/// Finds frames in a stream of bytes, and skips what is none.
+#[derive(Debug, Default)]
+pub struct Decoder {
+    state: cobs::DecoderState,
+    /// What the frame holds so far.
+    content: Vec<u8, FRAME, u16>,
+    /// More came than a frame holds.
+    overlong: bool,
+}
+
+impl Decoder {
+    /// Takes in a byte; the envelope of the frame that it completes, if that is whole and goes `M`'s
+    /// way.
+    pub fn feed<M: Message>(&mut self, byte: u8) -> Option<Envelope<M>> {
+        match self.state.feed(byte) {
+            Ok(cobs::DecodeResult::DataContinue(content)) => {
+                self.overlong |= self.content.push(content).is_err();
+                None
+            }
+            Ok(cobs::DecodeResult::NoData) => None,
+            Ok(cobs::DecodeResult::DataComplete) => {
+                let envelope = if self.overlong { None } else { open(&self.content) };
+                self.restart();
+                envelope
+            }
+            Ok(cobs::DecodeResult::DataStart) | Err(_) => {
+                self.restart();
+                None
+            }
+        }
+    }
+
+    fn restart(&mut self) {
+        self.content.clear();
+        self.overlong = false;
+    }
+}
+
+fn open<M: Message>(content: &[u8]) -> Option<Envelope<M>> {
+    let (envelope, rest) =
+        postcard::take_from_bytes_crc32::<Envelope<M>>(content, CHECK.digest()).ok()?;
+    (envelope.way == M::WAY && rest.is_empty()).then_some(envelope)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::action::{Action, Control};
+    use crate::area::Area;
+    use crate::config::{Crossing, Following};
+    use crate::direction::Heading;
+    use crate::lattice::{LIMIT, Site};
+    use crate::line::Line;
+    use crate::planner::{Recovery, Stage};
+    use crate::problem::Varrho;
+    use crate::sample::Label;
+    use crate::weight::Reliability;
+
+    /// What a decoder makes of a frame and of what came before it.
+    fn received<M: Message>(frame: &Frame) -> Option<Envelope<M>> {
+        let mut decoder = Decoder::default();
+        let noise = [7; 2 * FRAME];
+        let mut heard = noise.iter().chain(frame.bytes()).filter_map(|b| decoder.feed::<M>(*b));
+        let first = heard.next();
+        assert!(heard.next().is_none());
+        first
+    }
+
+    fn far(x: i32, z: i32) -> Site {
+        Site::new(x * (LIMIT - 1), z * (LIMIT - 1)).unwrap()
+    }
+
+    fn longest_setup() -> Setup {
+        let sample = Sample { site: far(-1, -1), label: Label::Positive };
+        let reliability = Reliability::new(1e-40).unwrap();
+        Setup {
+            protocol: u16::MAX,
+            algorithm: Algorithm::Scc {
+                noise: Noise { reliability, trusted_radius: u32::MAX },
+                policy: Policy::MixtureOfOwn,
+                prior: Prior::Sequences,
+            },
+            config: Config {
+                area: Area::new(far(-1, -1), far(1, 1)).unwrap(),
+                varrho: Varrho::new(0.999_999).unwrap(),
+                crossing: Crossing::AcrossBisector,
+                following: Following::AlongBisector,
+            },
+            room: Room { samples: u16::MAX, hypotheses: u16::MAX },
+            steps: u16::MAX,
+            start: Pose { site: far(-1, -1), heading: Heading(u32::MAX) },
+            labels: LabelSource::Chip,
+            given: Vec::from_array([sample; MOST_GIVEN]),
+        }
+    }
+
+    #[test]
+    fn the_longest_messages_fit_a_frame_and_arrive_as_they_were_sent() {
+        let setup = Reply::Setup(longest_setup());
+        let frame = Frame::of(&Envelope::new(u32::MAX, setup.clone()));
+        let arrived = received::<Reply>(&frame).unwrap();
+        assert_eq!((arrived.number, arrived.message), (u32::MAX, setup));
+
+        let pose = Pose { site: far(-1, -1), heading: Heading(u32::MAX) };
+        let motion = Motion {
+            stage: Some(Stage::P4),
+            recovery: Some(Recovery::Transit),
+            action: Action(u16::MAX),
+            control: Control { v: -1.0, w: f32::MIN_POSITIVE },
+            target: pose,
+            examined: u32::MAX,
+        };
+        let took = Took { observe: u32::MAX, plan: u32::MAX };
+        let last = Some(Label::Positive.into());
+        let line = Line::from_coefficients(-1.0 / 3.0, 1.0 / 7.0, f64::MAX.sqrt());
+        let estimates = Estimates { bisector: line, centre: line, maximum_margin: line };
+        let sample = Sample { site: far(-1, -1), label: Label::Positive };
+        let reason = EndReason::Refused(Refused::Contradiction(sample));
+        for request in [
+            Request::Move(Move { motion, last, took }),
+            Request::End(End { reason, last, took, estimates }),
+        ] {
+            let frame = Frame::of(&Envelope::new(u32::MAX, request.clone()));
+            let arrived = received::<Request>(&frame).unwrap();
+            // Debug output tells every bit of a float apart but for NaN's.
+            let debug = |it: &Request| heapless::format!(2048; "{it:?}").unwrap();
+            assert_eq!(debug(&arrived.message), debug(&request));
+            assert!(received::<Reply>(&frame).is_none(), "an echo is no answer");
+        }
+    }
+
+    #[test]
+    fn values_that_cannot_be_are_not_taken_in() {
+        let mut bytes = [0; 32];
+        postcard::to_slice(&(LIMIT, 0), &mut bytes).unwrap();
+        assert!(postcard::from_bytes::<Site>(&bytes).is_err());
+        postcard::to_slice(&1_000_000_u32, &mut bytes).unwrap();
+        assert!(postcard::from_bytes::<Varrho>(&bytes).is_err());
+        postcard::to_slice(&[0.0, 0.0, 1.0], &mut bytes).unwrap();
+        assert!(postcard::from_bytes::<Line>(&bytes).is_err());
+        postcard::to_slice(&[far(1, 1), far(0, 0)], &mut bytes).unwrap();
+        assert!(postcard::from_bytes::<Area>(&bytes).is_err());
+    }
+}

@@ -1,0 +1,354 @@
+//! The link: missions over one that loses, cuts, spoils, doubles and delays frames, and a decoder fed
+//! with garbage.
+//!
+//! Chip and vehicle run here, in one thread and in virtual time, so that a thousand missions with all
+//! their waits take seconds, and each is the same whenever it is run.
+
+use std::cell::RefCell;
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::convert::Infallible;
+use std::time::Duration;
+
+use host_sim::faults::{Faults, Spoiler};
+use host_sim::field;
+use host_sim::mission::{Algorithm, Mission};
+use host_sim::player::Player;
+use host_sim::recording::Recording;
+use host_sim::trace;
+use host_sim::world::{Extent, NoiseModel};
+use planner_core::link::{Heard, Link, LinkLost, Port, Responder};
+use planner_core::remote::{Flown, Station};
+use planner_core::wire::{
+    self, ClockRate, Declined, Decoder, Envelope, FRAME, Frame, LabelSource, Message, Reply,
+    Request,
+};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+
+/// How long the chip waits for an answer before it asks again.
+const WAIT: Duration = Duration::from_millis(100);
+
+const SEED: u64 = 4;
+
+/// Which way a frame goes.
+#[derive(Clone, Copy, PartialEq)]
+enum Way {
+    ToChip,
+    ToVehicle,
+}
+
+/// A network in virtual time with the vehicle at its other end.
+struct Network {
+    now: Duration,
+    /// When the chip's wait is over.
+    until: Duration,
+    under_way: BTreeMap<(Duration, u64), (Way, Vec<u8>)>,
+    launched: u64,
+    /// Cut for good after so many frames, in one way or both.
+    cut: Option<(u64, Option<Way>)>,
+    to_chip: Spoiler,
+    to_vehicle: Spoiler,
+    arrived: VecDeque<u8>,
+    player: Player,
+    failure: Option<String>,
+    frames_of_chip: u64,
+}
+
+impl Network {
+    fn new(mission: &Mission, faults: Faults) -> Self {
+        Self {
+            now: Duration::ZERO,
+            until: Duration::ZERO,
+            under_way: BTreeMap::new(),
+            launched: 0,
+            cut: None,
+            to_chip: Spoiler::new(faults, mission.seed, 0),
+            to_vehicle: Spoiler::new(faults, mission.seed, 1),
+            arrived: VecDeque::new(),
+            player: Player::new(mission, LabelSource::Vehicle).expect("a mission for a chip"),
+            failure: None,
+            frames_of_chip: 0,
+        }
+    }
+
+    fn launch(&mut self, way: Way, frame: &[u8]) {
+        let spoiler = if way == Way::ToChip { &mut self.to_chip } else { &mut self.to_vehicle };
+        for (late, bytes) in spoiler.spoil(frame) {
+            self.launched += 1;
+            let is_cut = |(after, only): (u64, Option<Way>)| {
+                self.launched > after && only.is_none_or(|only| only == way)
+            };
+            if !self.cut.is_some_and(is_cut) {
+                self.under_way.insert((self.now + late, self.launched), (way, bytes));
+            }
+        }
+    }
+}
+
+/// The chip's end of a network.
+#[derive(Clone, Copy)]
+struct Plug<'a>(&'a RefCell<Network>);
+
+impl Port for Plug<'_> {
+    fn send(&mut self, frame: &[u8]) {
+        let mut net = self.0.borrow_mut();
+        net.until = net.now + WAIT;
+        net.frames_of_chip += 1;
+        net.launch(Way::ToVehicle, frame);
+    }
+
+    fn receive(&mut self) -> Option<u8> {
+        let mut net = self.0.borrow_mut();
+        loop {
+            if let Some(byte) = net.arrived.pop_front() {
+                return Some(byte);
+            }
+            let until = net.until;
+            let due = net.under_way.first_entry().filter(|it| it.key().0 < until);
+            let Some(due) = due else {
+                net.now = until;
+                return None;
+            };
+            let ((at, _), (way, bytes)) = due.remove_entry();
+            net.now = net.now.max(at);
+            match way {
+                Way::ToChip => net.arrived.extend(bytes),
+                Way::ToVehicle => {
+                    for byte in bytes {
+                        match net.player.hear(byte) {
+                            Ok(Some(frame)) => net.launch(Way::ToChip, frame.bytes()),
+                            Ok(None) => {}
+                            Err(error) => net.failure = Some(error.to_string()),
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+type Chip<'a> = Station<Plug<'a>, Infallible>;
+
+fn chip(network: &RefCell<Network>) -> Chip<'_> {
+    let clock = ClockRate { per_second: 1, emulated: false };
+    Station { link: Link::new(Plug(network)), sensor: None, ticks: || 0, clock }
+}
+
+/// What the firmware does with a setup.
+fn fly(chip: &mut Chip<'_>, setup: &wire::Setup) -> Result<Flown, LinkLost> {
+    match setup.algorithm {
+        wire::Algorithm::Cfc => chip.fly(setup, setup.cfc::<68>(), |_| {}),
+        wire::Algorithm::Scc { noise, policy, prior } => {
+            chip.fly(setup, setup.scc::<36, 529>(noise, policy, prior), |_| {})
+        }
+    }
+}
+
+/// Missions of both algorithms by turns.
+fn mission(number: u64) -> Mission {
+    let algorithm = if number.is_multiple_of(2) { Algorithm::Cfc } else { Algorithm::Scc };
+    let mut mission = field::standard(SEED, number, algorithm, 10);
+    if algorithm == Algorithm::Scc {
+        mission.noise = Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.5) });
+    }
+    mission
+}
+
+#[test]
+fn a_thousand_missions_over_a_bad_link_end_as_over_a_good_one() {
+    let faults: Faults =
+        "drop=0.1,cut=0.02,corrupt=0.05,duplicate=0.1,delay=20ms".parse().expect("faults");
+    let asked: u64 = (0..1000)
+        .into_par_iter()
+        .map(|number| {
+            let mission = mission(number);
+            let network = RefCell::new(Network::new(&mission, faults));
+            let mut chip = chip(&network);
+            let setup = chip.await_setup();
+            let flown = fly(&mut chip, &setup);
+            assert!(matches!(flown, Ok(Flown::Ended(_))), "mission {number}: {flown:?}");
+            drop(chip);
+            let Network { player, failure, frames_of_chip, .. } = network.into_inner();
+            assert!(failure.is_none(), "mission {number}: {failure:?}");
+            let here = Recording::of(&mission).expect("trusted labels are true");
+            assert_eq!(player.motions(), here.steps.len(), "mission {number}: motions made");
+            let there = player.finish().expect("the mission is over").recording;
+            assert_eq!(trace::lines(&there), trace::lines(&here), "mission {number}");
+            frames_of_chip - (3 + here.steps.len() as u64)
+        })
+        .sum();
+    println!("1000 missions end as without faults; requests were repeated {asked} times");
+    assert!(asked > 1000, "the link was not bad");
+}
+
+#[test]
+fn a_cut_link_ends_every_mission_within_the_bound_and_with_no_motion_after_it() {
+    let bound = WAIT * u32::from(Link::<Plug<'_>>::ATTEMPTS);
+    (0..300u64).into_par_iter().for_each(|number| {
+        let mission = mission(number);
+        let network = RefCell::new(Network::new(&mission, Faults::default()));
+        let mut chip = chip(&network);
+        let setup = chip.await_setup();
+        let ways = [None, Some(Way::ToChip), Some(Way::ToVehicle)];
+        // A setup takes two frames, a mission of ten steps 24 more.
+        let after = 2 + number / 3 % 20;
+        network.borrow_mut().cut = Some((after, ways[(number % 3) as usize]));
+        let flown = fly(&mut chip, &setup);
+        assert_eq!(flown, Err(LinkLost), "mission {number}, cut after {after} frames");
+        let Network { now, player, .. } = &*network.borrow();
+        // Until the cut no virtual time passes.
+        assert_eq!(*now, bound, "mission {number}");
+        // Requests are the odd frames; Hello and Ready come before the first motion.
+        let heard = match ways[(number % 3) as usize] {
+            None | Some(Way::ToVehicle) => after.div_ceil(2),
+            Some(Way::ToChip) => after / 2 + 1,
+        };
+        assert_eq!(player.motions() as u64, heard.saturating_sub(2), "mission {number}");
+    });
+}
+
+#[test]
+fn a_chip_declines_what_it_has_no_room_for_and_says_how_much_it_has() {
+    let mut long = mission(1);
+    long.steps = 60;
+    let network = RefCell::new(Network::new(&long, Faults::default()));
+    let mut chip = chip(&network);
+    let setup = chip.await_setup();
+    let flown = fly(&mut chip, &setup);
+    assert!(matches!(flown, Ok(Flown::Declined(Declined::Room(_)))), "{flown:?}");
+    drop(chip);
+    let error = network.into_inner().player.finish().expect_err("it was declined").to_string();
+    assert!(error.contains("at most 32") && error.contains("529 hypotheses"), "{error}");
+}
+
+#[test]
+fn a_vehicle_that_takes_its_time_is_waited_for() {
+    /// Says that it is busy so many times before it answers.
+    struct Slow {
+        responder: Responder,
+        busy: u32,
+        arriving: VecDeque<u8>,
+        motions: u32,
+    }
+    impl Port for &mut Slow {
+        fn send(&mut self, frame: &[u8]) {
+            let slow = &mut **self;
+            for byte in frame {
+                match slow.responder.hear(*byte) {
+                    Some(Heard::New(_)) => slow.motions += 1,
+                    Some(Heard::Again(frame)) => slow.arriving.extend(frame.bytes()),
+                    None => {}
+                }
+            }
+            slow.busy = slow.busy.saturating_sub(1);
+            if slow.busy == 0 {
+                slow.arriving.extend(slow.responder.answer(Reply::Noted).bytes());
+            }
+        }
+
+        fn receive(&mut self) -> Option<u8> {
+            self.arriving.pop_front()
+        }
+    }
+    let (responder, arriving) = (Responder::default(), VecDeque::new());
+    let mut slow = Slow { responder, busy: 1000, arriving, motions: 0 };
+    let mut link = Link::new(&mut slow);
+    assert_eq!(link.ask(Request::Hello { protocol: 1 }), Ok(Reply::Noted));
+    assert_eq!(slow.motions, 1);
+}
+
+/// Frames of every message, of missions with all that makes messages long.
+fn corpus() -> Vec<Vec<u8>> {
+    /// Hears what passes.
+    struct Tap<'a>(Plug<'a>, &'a RefCell<Vec<Vec<u8>>>);
+    impl Port for Tap<'_> {
+        fn send(&mut self, frame: &[u8]) {
+            self.1.borrow_mut().push(frame.to_vec());
+            self.0.send(frame);
+        }
+
+        fn receive(&mut self) -> Option<u8> {
+            let arrived = self.0.receive()?;
+            let mut frames = self.1.borrow_mut();
+            match frames.last_mut() {
+                Some(last) if last.len() < 2 || last.last() != Some(&0) => last.push(arrived),
+                _ => frames.push(vec![arrived]),
+            }
+            Some(arrived)
+        }
+    }
+    let frames = RefCell::new(Vec::new());
+    for number in 0..20 {
+        let mission = mission(number);
+        let network = RefCell::new(Network::new(&mission, Faults::default()));
+        let clock = ClockRate { per_second: 168_000_000, emulated: true };
+        let link = Link::new(Tap(Plug(&network), &frames));
+        let mut chip = Station::<_, Infallible> { link, sensor: None, ticks: || 77, clock };
+        let setup = chip.await_setup();
+        let planner = setup.cfc::<68>();
+        assert!(planner.is_err() || chip.fly(&setup, planner, |_| {}).is_ok());
+    }
+    frames.into_inner()
+}
+
+fn decode<M: Message>(bytes: &[u8]) -> Vec<Vec<u8>> {
+    let mut decoder = Decoder::default();
+    let envelopes = bytes.iter().filter_map(|byte| decoder.feed::<M>(*byte));
+    envelopes.map(|envelope: Envelope<M>| Frame::of(&envelope).bytes().to_vec()).collect()
+}
+
+/// Every message that either side makes of these bytes, as frames.
+fn accepted(bytes: &[u8]) -> Vec<Vec<u8>> {
+    [decode::<Request>(bytes), decode::<Reply>(bytes)].concat()
+}
+
+#[test]
+fn a_decoder_takes_what_was_sent_and_nothing_else() {
+    let corpus = corpus();
+    let longest = corpus.iter().map(Vec::len).max();
+    for frame in &corpus {
+        assert_eq!(accepted(frame), [frame.clone()], "a frame is one message, one way");
+    }
+    let sent: BTreeSet<_> = corpus.iter().cloned().collect();
+    let mut rng = ChaCha8Rng::seed_from_u64(SEED);
+    let (mut fed, mut taken) = (0, 0);
+    while fed < 20_000_000 {
+        let mut bytes: Vec<u8> = Vec::new();
+        if rng.random_range(0..4) == 0 {
+            // Noise; zeros are frequent enough to end many a frame.
+            let zeros = rng.random_range(1..64);
+            let noise = |rng: &mut ChaCha8Rng| {
+                if rng.random_range(0..zeros) == 0 { 0 } else { rng.random_range(0..=255u8) }
+            };
+            bytes.extend((0..rng.random_range(0..1000)).map(|_| noise(&mut rng)));
+        }
+        let mut untouched = Vec::new();
+        for _ in 0..rng.random_range(1..4) {
+            let mut frame = corpus[rng.random_range(0..corpus.len())].clone();
+            let (at, other) = (rng.random_range(0..frame.len()), rng.random_range(0..frame.len()));
+            match rng.random_range(0..8) {
+                0 => frame[at] ^= 1 << rng.random_range(0..8),
+                1 => frame[at] = rng.random_range(0..=255),
+                2 => frame.truncate(at),
+                3 => drop(frame.drain(..at)),
+                4 => frame.insert(at, rng.random_range(0..=255)),
+                5 => drop(frame.remove(at)),
+                6 => frame.swap(at, other),
+                _ => untouched.push(frame.clone()),
+            }
+            bytes.extend(frame);
+        }
+        fed += bytes.len();
+        let heard = accepted(&bytes);
+        taken += heard.len();
+        for frame in &heard {
+            assert!(sent.contains(frame), "seed {SEED}: {frame:?} was never sent, in {bytes:?}");
+        }
+        for frame in untouched {
+            assert!(heard.contains(&frame), "seed {SEED}: {frame:?} was passed over in {bytes:?}");
+        }
+    }
+    println!("{fed} bytes fed, {taken} whole frames found; the longest is {longest:?} bytes");
+    assert!(taken > 1000 && longest <= Some(FRAME));
+}
