@@ -6,13 +6,12 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, Result, bail};
 use indicatif::{ProgressBar, ProgressStyle};
-use planner_core::wire::{ClockRate, LabelSource, Took};
+use planner_core::wire::{ClockRate, Took};
 use serde::Serialize;
 
 use crate::cable::Cable;
 use crate::emulator::{Emulator, NS_PER_INSTRUCTION};
 use crate::faults::Faults;
-use crate::mission::Mission;
 use crate::output::csv;
 use crate::player::{Played, Player};
 
@@ -41,15 +40,6 @@ const PATIENCE: Duration = Duration::from_secs(30);
 /// How long a chip is listened to that may not have heard that its mission is over.
 const FAREWELL: Duration = Duration::from_secs(2);
 
-/// A mission that a chip has flown, with what it took.
-#[derive(Debug)]
-pub struct Flight {
-    /// The mission.
-    pub played: Played,
-    /// From each answer to the next request, as seen from here.
-    turnarounds: Vec<Duration>,
-}
-
 /// What a step took.
 #[derive(Clone, Copy, Debug, Serialize)]
 struct Timing {
@@ -65,24 +55,23 @@ struct Timing {
     turnaround_ms: f64,
 }
 
-/// Has a chip fly a mission.
+/// Has a chip fly a player's mission; the time from each answer to the next request, as seen from here.
 ///
 /// # Errors
-/// When there is no chip, it declines, falls silent, gives up, or differs from this machine.
-pub fn fly(mission: &Mission, labels: LabelSource, chip: &Chip, faults: Faults) -> Result<Flight> {
-    let player = Player::new(mission, labels)?;
+/// When there is no chip, or it falls silent, gives up, or says what cannot be.
+pub fn fly(player: &mut Player, chip: &Chip, faults: Faults, seed: u64) -> Result<Vec<Duration>> {
     match chip {
         Chip::Board { device, baud } => {
             let read_timeout = Duration::from_millis(100);
             let port = serialport::new(device, *baud).timeout(read_timeout).open();
             let port = port.with_context(|| format!("{device}: expected a serial port"))?;
             let reader = port.try_clone().with_context(|| device.clone())?;
-            play(player, Cable::new(reader, port, faults, mission.seed))
+            play(player, Cable::new(reader, port, faults, seed))
         }
         Chip::Emulated { elf, log } => {
             let (_emulator, link) = Emulator::start(elf, log.as_deref())?;
             let reader = link.try_clone()?;
-            play(player, Cable::new(reader, link, faults, mission.seed))
+            play(player, Cable::new(reader, link, faults, seed))
         }
     }
 }
@@ -91,7 +80,7 @@ pub fn fly(mission: &Mission, labels: LabelSource, chip: &Chip, faults: Faults) 
 ///
 /// # Errors
 /// As [`fly`].
-pub fn play(mut player: Player, mut cable: Cable) -> Result<Flight> {
+pub fn play(player: &mut Player, mut cable: Cable) -> Result<Vec<Duration>> {
     let style = "{spinner} {pos} steps flown, {elapsed}";
     let bar = ProgressBar::new_spinner().with_style(ProgressStyle::with_template(style)?);
     let mut turnarounds = Vec::new();
@@ -122,28 +111,36 @@ pub fn play(mut player: Player, mut cable: Cable) -> Result<Flight> {
         }
     }
     bar.finish_and_clear();
-    Ok(Flight { played: player.finish()?, turnarounds })
+    Ok(turnarounds)
 }
 
-impl Flight {
-    fn timings(&self) -> Vec<Timing> {
-        let clock = self.played.clock;
-        let rows = self.played.took.iter().zip(&self.turnarounds).zip(1..);
-        rows.map(|((took, turnaround), step)| timing(step, *took, clock, *turnaround)).collect()
+/// What the steps of a mission took.
+#[derive(Clone, Debug)]
+pub struct Timings {
+    emulated: bool,
+    rows: Vec<Timing>,
+}
+
+impl Timings {
+    /// The chip's own figures and those from here.
+    pub fn new(played: &Played, turnarounds: &[Duration]) -> Self {
+        let clock = played.clock;
+        let each = played.took.iter().zip(turnarounds).zip(1..);
+        let rows = each.map(|((took, around), step)| timing(step, *took, clock, *around));
+        Self { emulated: clock.emulated, rows: rows.collect() }
     }
 
-    /// What each step took, as CSV.
+    /// As CSV.
     ///
     /// # Errors
     /// When a record could not be written.
     pub fn csv(&self) -> Result<String> {
-        csv(&self.timings())
+        csv(&self.rows)
     }
 
-    /// What each step took, for people.
+    /// For people.
     pub fn report(&self) -> String {
-        let emulated = self.played.clock.emulated;
-        let unit = if emulated { "instructions" } else { "us" };
+        let unit = if self.emulated { "instructions" } else { "us" };
         let mut text = format!(
             "What each step took on the chip, {unit}, and from here:\n{:>4} {:>12} {:>12} {:>14}\n",
             "step", "plan", "observe", "round trip ms"
@@ -153,7 +150,7 @@ impl Flight {
             (_, Some(time)) => format!("{time:.1}"),
             _ => "-".into(),
         };
-        for row in self.timings() {
+        for row in &self.rows {
             // Writing to a string cannot fail.
             let _ = writeln!(
                 text,

@@ -6,6 +6,7 @@
 pub mod cable;
 pub mod campaign;
 pub mod cli;
+pub mod commands;
 pub mod emulator;
 pub mod faults;
 pub mod field;

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use expect_test::expect_file;
-use host_sim::cli::PAPER_TITLE;
+use host_sim::commands::PAPER_TITLE;
 use host_sim::figure::Figure;
 use host_sim::polygon::misclassified;
 use host_sim::recording::{Recording, recovery_name};

@@ -1,0 +1,193 @@
+//! What the commands do.
+
+use std::fs;
+use std::path::Path;
+
+use anyhow::{Context as _, Result, bail};
+use planner_core::wire::LabelSource;
+
+use crate::campaign::Campaign;
+use crate::cli::{CampaignArgs, FIRMWARE, Format, HilArgs, Labels, ReplayArgs, Run};
+use crate::figure::Figure;
+use crate::hil::{self, Chip, Timings};
+use crate::mission::{Algorithm, Mission};
+use crate::noisy_campaign::NoisyCampaign;
+use crate::output::{Output, json};
+use crate::player::Player;
+use crate::recording::Recording;
+use crate::replay::Replay;
+use crate::scenario::{self, Overrides};
+use crate::{report, trace};
+
+/// What the bare command tells first.
+pub const PAPER_TITLE: &str = "The paper's noiseless example (Section V), Algorithm 1";
+
+const PAPER_NOISY_TITLE: &str = "The paper's noisy example (Section V), Algorithm 2";
+
+const CANDIDATES_TITLE: &str = "Its labels do not tell which line is true: fewest violations";
+
+/// The paper's two examples, start to end.
+pub(crate) fn paper() -> Result<String> {
+    fs::create_dir_all("out").context("out: expected a place to make a folder")?;
+    let names = ["paper-noiseless.svg", "paper-noisy.svg", "paper-noisy-candidates.svg"];
+    let places = names.map(|name| Output::create(&Path::new("out").join(name)));
+    let places = places.into_iter().collect::<Result<Vec<_>>>()?;
+    let example = |text| Recording::of(&scenario::parse("", text, Overrides::default())?);
+    let noiseless = example(scenario::PAPER_NOISELESS)?;
+    let noisy = example(scenario::PAPER_NOISY)?;
+    // All is drawn before anything is written.
+    let figures = [
+        Some(Figure::of(PAPER_TITLE, &noiseless)),
+        Some(Figure::of(PAPER_NOISY_TITLE, &noisy)),
+        Figure::of_candidates(CANDIDATES_TITLE, &noisy),
+    ];
+    let drawn = figures.iter().flatten().map(Figure::svg).collect::<Result<Vec<_>>>()?;
+    for (place, svg) in places.into_iter().zip(drawn) {
+        place.write(&svg)?;
+    }
+    Ok(format!(
+        "{}\n\n{}\nFigures in out/: {}\n",
+        report::mission(PAPER_TITLE, &noiseless),
+        report::mission(PAPER_NOISY_TITLE, &noisy),
+        names.join(", ")
+    ))
+}
+
+pub(crate) fn run(args: &Run) -> Result<String> {
+    let mission = args.mission()?;
+    let outputs = args.outputs()?;
+    let recording = Recording::of(&mission).with_context(|| args.name())?;
+    args.tell(outputs, &recording)
+}
+
+pub(crate) fn hil(args: &HilArgs) -> Result<String> {
+    let mission = args.run.mission()?;
+    let outputs = args.run.outputs()?;
+    let timing = Output::create_if(args.timing.as_ref())?;
+    let chip = match (&args.port, &args.emulator) {
+        (Some(device), _) => Chip::Board { device: device.clone(), baud: args.baud },
+        (None, elf) => {
+            let elf = elf.clone().unwrap_or_else(|| FIRMWARE.into());
+            Chip::Emulated { elf, log: args.log.clone() }
+        }
+    };
+    let labels = match args.labels {
+        Labels::Vehicle => LabelSource::Vehicle,
+        Labels::Chip => LabelSource::Chip,
+    };
+    let faults = args.fault.unwrap_or_default();
+    let mut player = Player::new(&mission, labels).with_context(|| args.run.name())?;
+    let turnarounds = hil::fly(&mut player, &chip, faults, mission.seed)?;
+    let played = player.finish().with_context(|| args.run.name())?;
+    let timings = Timings::new(&played, &turnarounds);
+    let rows = timings.csv()?;
+    let mut text = args.run.tell(outputs, &played.recording)?;
+    if let Some(output) = timing {
+        output.write(&rows)?;
+    }
+    if args.run.format == Format::Text {
+        text.push('\n');
+        text.push_str(&timings.report());
+    }
+    Ok(text)
+}
+
+/// The files that a mission is told in.
+struct Outputs {
+    trace: Option<Output>,
+    figure: Option<Output>,
+    candidates: Option<Output>,
+}
+
+impl Run {
+    fn name(&self) -> String {
+        self.scenario.display().to_string()
+    }
+
+    fn mission(&self) -> Result<Mission> {
+        let Self { algorithm, steps, seed, .. } = *self;
+        let mission = scenario::read(&self.scenario, Overrides { algorithm, steps, seed })?;
+        if self.candidates.is_some() && !mission.is_noisy() {
+            bail!("--candidates: found a mission without noise, expected one with noisy labels");
+        }
+        Ok(mission)
+    }
+
+    fn outputs(&self) -> Result<Outputs> {
+        Ok(Outputs {
+            trace: Output::create_if(self.trace.as_ref())?,
+            figure: Output::create_if(self.figure.as_ref())?,
+            candidates: Output::create_if(self.candidates.as_ref())?,
+        })
+    }
+
+    /// Writes the files that were asked for; what to print.
+    fn tell(&self, outputs: Outputs, recording: &Recording) -> Result<String> {
+        let Outputs { trace, figure, candidates } = outputs;
+        let name = self.name();
+        let lines = trace::lines(recording);
+        // All is drawn before anything is written.
+        let svg = figure.as_ref().map(|_| Figure::of(&name, recording).svg()).transpose()?;
+        let fewest = candidates.as_ref().and_then(|_| Figure::of_candidates(&name, recording));
+        let fewest = fewest.map(|figure| figure.svg()).transpose()?;
+        for (output, content) in
+            [(trace, Some(&lines)), (figure, svg.as_ref()), (candidates, fewest.as_ref())]
+        {
+            if let (Some(output), Some(content)) = (output, content) {
+                output.write(content)?;
+            }
+        }
+        Ok(match self.format {
+            Format::Text => report::mission(&name, recording),
+            Format::Json => lines,
+        })
+    }
+}
+
+pub(crate) fn replay(args: &ReplayArgs) -> Result<String> {
+    let replay = Replay::read(&args.samples)?;
+    if let Some(output) = Output::create_if(args.figure.as_ref())? {
+        output.write(&replay.figure()?)?;
+    }
+    Ok(match args.format {
+        Format::Text => replay.report(),
+        Format::Json => json(&replay.record()),
+    })
+}
+
+pub(crate) fn campaign(args: &CampaignArgs) -> Result<String> {
+    const ORACLE: usize = 4;
+    scenario::check_steps("--steps", args.steps, ORACLE)?;
+    let output = Output::create_if(args.csv.as_ref())?;
+    let campaign = Campaign {
+        algorithm: args.algorithm,
+        fields: args.fields,
+        steps: args.steps,
+        seed: args.seed,
+        crossing: args.crossing.into(),
+        following: args.following.map_or(args.algorithm.following(), Into::into),
+    };
+    let p = args.p.unwrap_or(if args.algorithm == Algorithm::Scc { 0.7 } else { 1.0 });
+    let p = scenario::probability("--p", p)?;
+    let trusted_radius = scenario::trusted("--trusted-radius", args.trusted_radius)?;
+    let noisy = args.algorithm == Algorithm::Scc || p < 1.0;
+    if noisy && args.algorithm == Algorithm::Cfc {
+        bail!("--p: found {p}, expected 1 with --algorithm cfc, which takes labels to be true");
+    }
+    let (table, rows, record) = if noisy {
+        let (policy, prior) = (args.policy.into(), args.prior.into());
+        let noisy = NoisyCampaign { fields: campaign, p, trusted_radius, policy, prior };
+        let summary = noisy.run()?;
+        (summary.report(), summary.csv()?, json(&summary))
+    } else {
+        let summary = campaign.run()?;
+        (summary.report(), summary.csv()?, json(&summary))
+    };
+    if let Some(output) = output {
+        output.write(&rows)?;
+    }
+    Ok(match args.format {
+        Format::Text => table,
+        Format::Json => record,
+    })
+}
