@@ -85,15 +85,14 @@ pub fn play(player: &mut Player, mut cable: Cable) -> Result<Vec<Duration>> {
     let bar = ProgressBar::new_spinner().with_style(ProgressStyle::with_template(style)?);
     let mut turnarounds = Vec::new();
     let mut answered = Instant::now();
-    let mut over = None;
+    let mut until = answered + PATIENCE;
     while !player.is_dismissed() {
-        let patience = if player.is_over() { FAREWELL } else { PATIENCE };
-        let until = *over.get_or_insert_with(|| Instant::now() + patience);
-        let Some(bytes) = cable.receive(until)? else {
-            if player.is_over() {
-                break;
-            }
-            bail!("the board has been silent for {} s", PATIENCE.as_secs());
+        let bytes = match cable.receive(until) {
+            Ok(Some(bytes)) => bytes,
+            // It may be gone as soon as its mission is over.
+            Ok(None) | Err(_) if player.is_over() => break,
+            Ok(None) => bail!("the board has been silent for {} s", PATIENCE.as_secs()),
+            Err(error) => return Err(error),
         };
         for byte in bytes {
             let (motions, was_over) = (player.motions(), player.is_over());
@@ -104,9 +103,9 @@ pub fn play(player: &mut Player, mut cable: Cable) -> Result<Vec<Duration>> {
             }
             cable.send(frame.bytes())?;
             answered = Instant::now();
-            // Silence is counted from the last word; the farewell from the end of the mission.
+            // Silence is counted from the last word, the farewell from the end of the mission.
             if !was_over {
-                over = None;
+                until = answered + if player.is_over() { FAREWELL } else { PATIENCE };
             }
         }
     }

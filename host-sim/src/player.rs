@@ -22,6 +22,9 @@ use crate::mission::{Algorithm, End, Learner, Mission};
 use crate::recording::{Recorder, Recording};
 use crate::world::{Sensor, Vehicle};
 
+/// A chip that has begun so often to ask for a mission hears nothing.
+const MOST_HELLOS: u32 = 5;
+
 /// Plays the world for one mission.
 pub struct Player {
     setup: Setup,
@@ -30,6 +33,8 @@ pub struct Player {
     sensor: Sensor,
     learner: Box<dyn Learner>,
     recorder: Recorder,
+    /// How often the chip has begun to ask for a mission.
+    hellos: u32,
     /// The motion under way, and what the vehicle sensed at its end.
     pending: Option<(Motion, Option<Reading>)>,
     took: Vec<Took>,
@@ -66,6 +71,7 @@ impl Player {
             sensor,
             learner: mission.learner(),
             recorder: Recorder::new(mission.clone()),
+            hellos: 0,
             pending: None,
             took: Vec::new(),
             clock: None,
@@ -119,7 +125,13 @@ impl Player {
             Request::Hello { .. } if self.clock.is_some() => {
                 bail!("the board gave up after step {} and asks for a new mission", self.steps())
             }
-            Request::Hello { .. } => Ok(Some(Reply::Setup(self.setup.clone()))),
+            Request::Hello { .. } if self.hellos == MOST_HELLOS => {
+                bail!("the board asks for a mission again and again, and hears no answer")
+            }
+            Request::Hello { .. } => {
+                self.hellos += 1;
+                Ok(Some(Reply::Setup(self.setup.clone())))
+            }
             Request::Declined(declined) => {
                 self.outcome = Some(Err(decline(declined, &self.setup)));
                 Ok(Some(Reply::Noted))
