@@ -38,6 +38,7 @@ pub struct Player {
     /// The motion under way, and what the vehicle sensed at its end.
     pending: Option<(Motion, Option<Reading>)>,
     took: Vec<Took>,
+    ending: Took,
     clock: Option<ClockRate>,
     /// How the mission ended, or why it came to nothing.
     outcome: Option<Result<End>>,
@@ -52,6 +53,8 @@ pub struct Played {
     pub recording: Recording,
     /// Ticks of the chip's clock for each step.
     pub took: Vec<Took>,
+    /// Ticks of the mission's end: a plan that found no motion, if one did not, and the estimates.
+    pub ending: Took,
     /// What they are.
     pub clock: ClockRate,
 }
@@ -74,6 +77,7 @@ impl Player {
             hellos: 0,
             pending: None,
             took: Vec::new(),
+            ending: Took::default(),
             clock: None,
             outcome: None,
             dismissed: false,
@@ -151,11 +155,12 @@ impl Player {
                     None
                 };
                 self.pending = Some((motion, reading));
-                self.took.push(Took { observe: 0, plan: took.plan });
+                self.took.push(Took { observe: 0, ..took });
                 Ok(Some(Reply::Arrived { pose, reading }))
             }
             Request::End(end) => {
                 let settled = self.settle(end.last, end.took);
+                self.ending = end.took;
                 self.outcome = Some(settled.and_then(|()| self.judge(&end)));
                 Ok(Some(Reply::Noted))
             }
@@ -213,11 +218,11 @@ impl Player {
     /// # Errors
     /// When it is not over, the chip declined it, or it came to nothing.
     pub fn finish(self) -> Result<Played> {
-        let Self { recorder, took, clock, outcome, .. } = self;
+        let Self { recorder, took, ending, clock, outcome, .. } = self;
         let unfinished = || anyhow!("the mission broke off after step {}", recorder.steps());
         let end = outcome.unwrap_or_else(|| Err(unfinished()))?;
         let clock = clock.ok_or_else(unfinished)?;
-        Ok(Played { recording: recorder.end(end), took, clock })
+        Ok(Played { recording: recorder.end(end), took, ending, clock })
     }
 }
 
@@ -263,6 +268,7 @@ fn decline(declined: Declined, setup: &Setup) -> anyhow::Error {
                 setup.given.len(),
             )
         }
+        Declined::Algorithm => anyhow!("algorithm: declined by the board, which has another"),
         Declined::Given(error) => anyhow!("oracle: declined by the board: {error}"),
         Declined::Labels => anyhow!("--labels: found chip, but this board has no label sensor"),
     }

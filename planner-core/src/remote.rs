@@ -189,7 +189,11 @@ impl<L: Planner> Planner for Timed<'_, L> {
     }
 
     fn estimates(&self) -> Estimates {
-        self.planner.estimates()
+        let before = (self.ticks)();
+        let estimates = self.planner.estimates();
+        let took = (self.ticks)().wrapping_sub(before);
+        self.memo.took.set(Took { estimate: took, ..self.memo.took.get() });
+        estimates
     }
 }
 

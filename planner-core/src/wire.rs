@@ -172,6 +172,8 @@ pub struct ClockRate {
 pub enum Declined {
     /// The chip speaks this version of the protocol.
     Protocol(u16),
+    /// The chip does not have this algorithm.
+    Algorithm,
     /// The chip has this room, which is too little.
     Room(Room),
     /// The given samples leave nothing to find.
@@ -200,6 +202,8 @@ pub struct Took {
     pub observe: u32,
     /// To plan.
     pub plan: u32,
+    /// To estimate the line; 0 before the end.
+    pub estimate: u32,
 }
 
 /// How a mission ended.
@@ -210,7 +214,7 @@ pub struct End {
     pub reason: EndReason,
     /// As in [`Move`].
     pub last: Option<Reading>,
-    /// Ticks of the last observation and of a plan that found no motion.
+    /// Ticks of the last observation, of the last plan, and of the estimates.
     pub took: Took,
     /// What is known of the line.
     pub estimates: Estimates,
@@ -404,7 +408,7 @@ mod tests {
             target: pose,
             examined: u32::MAX,
         };
-        let took = Took { observe: u32::MAX, plan: u32::MAX };
+        let took = Took { observe: u32::MAX, plan: u32::MAX, estimate: u32::MAX };
         let last = Some(Label::Positive.into());
         let line = Line::from_coefficients(-1.0 / 3.0, 1.0 / 7.0, f64::MAX.sqrt());
         let estimates = Estimates { bisector: line, centre: line, maximum_margin: line };

@@ -1,9 +1,15 @@
-//! What the cross-crate tests share: adversarial sites and the slow twin of the version space.
+//! What the cross-crate tests share: adversarial sites and the slow twin of the version space;
+//! programs for a chip ([`elf`]), a core to run them on ([`emulator`]), and missions that they fly
+//! there ([`bench`]).
 
 use planner_core::lattice::{LIMIT, Site, Vector};
 use planner_core::sample::{Label, Sample};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
+
+pub mod bench;
+pub mod elf;
+pub mod emulator;
 
 /// A site whose coordinates are clamped into the lattice.
 ///

@@ -1,0 +1,54 @@
+//! Missions that a program of the package `bench` flies in the emulator.
+
+use std::fs;
+use std::path::Path;
+
+use anyhow::Result;
+use host_sim::mission::Mission;
+use host_sim::player::{Played, Player};
+use planner_core::wire::LabelSource;
+
+use crate::elf;
+use crate::emulator::{Core, Emulator, Event};
+
+/// A core, the target that it runs, and what people call it.
+pub const CORES: [(Core, &str); 2] =
+    [(Core::M4F, "thumbv7em-none-eabihf"), (Core::M0, "thumbv6m-none-eabi")];
+
+/// Builds the programs for a target; `None`, and a visible line, where that cannot be done.
+///
+/// # Panics
+/// When they fail to build, or with `CI` set where they cannot be built.
+pub fn build(scratch: &str, target: &str) -> Option<impl Fn(&str) -> Vec<u8> + use<>> {
+    if !elf::can_build(target) {
+        elf::skip("the bench", &format!("the target {target} is not installed"));
+        return None;
+    }
+    let folder = elf::build(scratch, "bench", target).unwrap_or_else(|errors| panic!("{errors}"));
+    Some(move |name: &str| fs::read(Path::new(&folder).join(name)).expect("cargo left an ELF"))
+}
+
+/// Has a program fly a mission, from where it asks for one.
+///
+/// # Errors
+/// As [`Player::hear`] and [`Player::finish`].
+///
+/// # Panics
+/// When the program ends.
+pub fn fly(emulator: &mut Emulator, mission: &Mission) -> Result<Played> {
+    let mut player = Player::new(mission, LabelSource::Vehicle)?;
+    while !player.is_over() {
+        match emulator.run() {
+            Event::Write(bytes) => {
+                for byte in bytes {
+                    if let Some(frame) = player.hear(byte)? {
+                        emulator.supply(frame.bytes());
+                    }
+                }
+            }
+            Event::Read => panic!("the program waits for an answer that it has"),
+            Event::Exit(status) => panic!("the program ended with status {status}"),
+        }
+    }
+    player.finish()
+}
