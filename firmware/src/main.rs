@@ -1,34 +1,108 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
-#![forbid(unsafe_code)]
-//! Algorithm 1 on a Cortex-M4F: runs one mission in a compiled-in world, reports it over defmt, and
-//! idles.
+#![deny(unsafe_code)]
+//! The planner on an STM32F405, over a serial link to the vehicle.
 //!
 //! Wiring only: what to do next is decided in `planner-core`.
 //!
 //! | module | does |
 //! | --- | --- |
-//! | `board` | the logger, the panic handler, what follows the mission |
-//! | `mission` | steps the agent and logs what comes of it |
-//! | `world` | the mission's data, and a simulated sensor and drive |
+//! | `clock` | the core clock: crystal, internal oscillator, or none to set under emulation |
+//! | `log` | defmt frames to RTT and to USART2, never waiting for a reader |
+//! | `mission` | what `idle` runs: asks for a mission and flies it |
+//! | `reset` | why the chip started |
+//! | `serial` | the link: USART1 |
+//! | `stop` | the drive's enable pin; panics and faults pull it low, log, and restart |
+//! | `time` | the beat of `SysTick`, and its ticks |
+//! | `watchdog` | restarts the chip when it hangs |
 //!
-//! `cargo firmware` builds it. The log goes to RTT, which never waits for a reader; the feature
-//! `semihosting` sends it to an emulator or a debugger instead, and ends with an exit status.
+//! | pin | is |
+//! | --- | --- |
+//! | PA9, PA10 | USART1, transmit and receive: the link, 115,200 baud, 8N1 |
+//! | PA2 | USART2, transmit: the log, the same |
+//! | PB0 | output: drive enable, high during a mission; wants a pull-down on the board |
+//! | PB1 | input with pull-down: the label |
+//!
+//! `cargo firmware` builds it. The same ELF runs on the chip and in QEMU's `netduinoplus2`.
 
 #[cfg(target_os = "none")]
-mod board;
+mod clock;
+#[cfg(target_os = "none")]
+mod log;
 #[cfg(target_os = "none")]
 mod mission;
 #[cfg(target_os = "none")]
-mod world;
+mod reset;
+#[cfg(target_os = "none")]
+mod serial;
+#[cfg(target_os = "none")]
+mod stop;
+#[cfg(target_os = "none")]
+mod time;
+#[cfg(target_os = "none")]
+mod watchdog;
 
 #[cfg(target_os = "none")]
-#[cortex_m_rt::entry]
-fn main() -> ! {
-    let outcome = mission::run();
-    if let Err(failure) = &outcome {
-        defmt::error!("the mission failed: {}", failure);
+#[rtic::app(device = stm32f4xx_hal::pac)]
+mod app {
+    use planner_core::hal::PinSensor;
+    use planner_core::link::Link;
+    use planner_core::remote::Station;
+    use planner_core::sample::Label;
+    use planner_core::wire::ClockRate;
+    use stm32f4xx_hal::gpio::GpioExt;
+
+    use crate::clock::Clock;
+    use crate::log;
+    use crate::mission::Board;
+    use crate::reset::Reset;
+    use crate::serial::{self, Arrivals, Receiver, Serial};
+    use crate::stop::Enable;
+    use crate::time::{Mono, ticks};
+    use crate::watchdog::Watchdog;
+
+    #[shared]
+    struct Shared {}
+
+    #[local]
+    struct Local {
+        board: Board,
+        receiver: Receiver,
     }
-    board::end(outcome.is_ok())
+
+    #[init(local = [arrivals: Arrivals = Arrivals::new()])]
+    fn init(cx: init::Context) -> (Shared, Local) {
+        let chip = cx.device;
+        // First of all, so that a hang in what follows ends too.
+        let watchdog = Watchdog::start(chip.IWDG, &chip.DBGMCU);
+        let reset = Reset::take(&chip.RCC);
+        let (clock, mut rcc) = Clock::start(chip.RCC, reset);
+        Mono::start(cx.core.SYST, clock.hz());
+
+        let gpioa = chip.GPIOA.split(&mut rcc);
+        let gpiob = chip.GPIOB.split(&mut rcc);
+        log::open(chip.USART2, gpioa.pa2, &chip.DBGMCU, &mut rcc);
+        let enable = Enable::new(gpiob.pb0);
+        let sensor = PinSensor::new(gpiob.pb1.into_pull_down_input(), Label::Positive);
+        let (tx, rx) = serial::open(chip.USART1, (gpioa.pa9, gpioa.pa10), &mut rcc);
+        let (received, arrived) = cx.local.arrivals.split();
+        let link = Link::new(Serial::new(tx, arrived, watchdog));
+
+        defmt::info!("started: {}, clock: {}", reset, clock);
+        let rate = ClockRate { per_second: clock.hz(), emulated: clock == Clock::Emulated };
+        let station = Station { link, sensor: Some(sensor), ticks, clock: rate };
+        let board = Board { station, enable };
+        (Shared {}, Local { board, receiver: Receiver::new(rx, received) })
+    }
+
+    #[idle(local = [board])]
+    fn idle(cx: idle::Context) -> ! {
+        cx.local.board.run()
+    }
+
+    #[task(binds = USART1, local = [receiver])]
+    fn receive(cx: receive::Context) {
+        cx.local.receiver.take_in();
+    }
 }
 
 /// On a host there is nothing to run: `host-sim` flies the same planner there.

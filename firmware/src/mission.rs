@@ -1,61 +1,77 @@
-//! One mission: steps the agent and logs each step, the three estimates, and how it ended.
-//!
-//! Lines are logged as the bits of their coefficients too, so that a log from the chip can be
-//! compared with a run on a host exactly.
+//! What `idle` runs: asks for a mission, flies it, logs it, and asks for the next.
 
-use core::convert::Infallible;
-
-use planner_core::agent::{AgentError, Event, Step};
-use planner_core::estimate::Estimates;
+use planner_core::agent::Step;
+use planner_core::hal::PinSensor;
 use planner_core::line::Line;
+use planner_core::planner::Planner;
+use planner_core::remote::{Flown, Prepared, Station};
 use planner_core::sample::Reading;
+use planner_core::wire::{Algorithm, Declined, End, Setup};
+use stm32f4xx_hal::gpio::{Input, PB1};
 
-use crate::world::{self, NoMission, World};
+use crate::serial::Serial;
+use crate::stop::Enable;
 
-/// What ended a mission early.
-#[derive(defmt::Format)]
-pub(crate) enum Failure {
-    /// The compiled-in data are at fault.
-    Mission(NoMission),
-    /// A step failed.
-    Step(AgentError<Infallible, Infallible>),
+/// Samples that Algorithm 1 can hold: 64 labels beside four given ones.
+const CFC_SAMPLES: usize = 68;
+
+/// Samples that Algorithm 2 can hold: 32 labels beside four given ones.
+const SCC_SAMPLES: usize = 36;
+
+/// All hypotheses that 32 labels can come to.
+const HYPOTHESES: usize = 529;
+
+/// What a mission has to do with.
+pub(crate) struct Board {
+    pub(crate) station: Station<Serial, PinSensor<PB1<Input>>>,
+    pub(crate) enable: Enable,
 }
 
-/// Runs the compiled-in mission from its start to its end.
-pub(crate) fn run() -> Result<(), Failure> {
-    let world = World::new().map_err(Failure::Mission)?;
-    let mut agent = world.agent().map_err(Failure::Mission)?;
-    let mut steps = 0;
-    let stopped = loop {
-        if steps == world::STEPS {
-            break None;
-        }
-        match agent.step().map_err(Failure::Step)? {
-            Event::Step(step) => {
-                steps += 1;
-                log_step(steps, &step);
+impl Board {
+    pub(crate) fn run(&mut self) -> ! {
+        loop {
+            let setup = self.station.await_setup();
+            match setup.algorithm {
+                Algorithm::Cfc => self.fly(&setup, setup.cfc::<CFC_SAMPLES>()),
+                Algorithm::Scc { noise, policy, prior } => {
+                    let planner = setup.scc::<SCC_SAMPLES, HYPOTHESES>(noise, policy, prior);
+                    self.fly(&setup, planner);
+                }
             }
-            Event::Stopped(reason) => break Some(reason),
         }
-    };
-    let Estimates { bisector, centre, maximum_margin } = Estimates::of(agent.planner.space());
-    log_line("bisector", bisector);
-    log_line("centre", centre);
-    log_line("maximum margin", maximum_margin);
-    match stopped {
-        None => defmt::info!("end: all {=u32} steps made", steps),
-        Some(reason) => defmt::info!("end: {} after {=u32} steps", reason, steps),
     }
-    Ok(())
+
+    /// The drive is enabled for as long as this takes.
+    fn fly<L: Planner>(&mut self, setup: &Setup, planner: Result<Prepared<L>, Declined>) {
+        defmt::info!("mission: {}, {=u16} steps at most", setup.algorithm, setup.steps);
+        if planner.is_ok() {
+            self.enable.on();
+        }
+        let mut steps = 0;
+        let flown = self.station.fly(setup, planner, |step| {
+            steps += 1;
+            log_step(steps, step);
+        });
+        self.enable.off();
+        match flown {
+            Ok(Flown::Ended(End { reason, estimates, .. })) => {
+                defmt::info!("ended after {=u16} steps: {}", steps, reason);
+                log_line("centre", estimates.centre);
+                log_line("maximum margin", estimates.maximum_margin);
+                log_line("bisector", estimates.bisector);
+            }
+            Ok(Flown::Declined(declined)) => defmt::warn!("declined: {}", declined),
+            Err(lost) => defmt::error!("stopped after {=u16} steps: {}", steps, lost),
+        }
+    }
 }
 
-/// Position in lattice units, heading as a binary angle; the reading is `None` where no sample was
-/// taken.
-fn log_step(number: u32, step: &Step) {
-    let Step { motion, pose, reading } = step;
+fn log_step(number: u16, Step { motion, pose, reading }: &Step) {
     defmt::info!(
-        "step {=u32}: action {=u16}, x {=i32}, z {=i32}, heading {=u32:#010x}, reading {}",
+        "step {=u16}: {} {}, action {=u16}, to x {=i32}, z {=i32}, heading {=u32:#010x}, label {}",
         number,
+        motion.stage,
+        motion.recovery,
         motion.action.0,
         pose.site.x(),
         pose.site.z(),
@@ -64,20 +80,12 @@ fn log_step(number: u32, step: &Step) {
     );
 }
 
-/// Slope and intercept in metres, `NaN` for a vertical line, then the bits of `a x + b z + c = 0`.
+/// `a x + b z + c = 0` in metres, with `a^2 + b^2 = 1`.
 fn log_line(name: &str, line: Option<Line>) {
-    let Some(line) = line else {
-        defmt::info!("{=str}: none", name);
-        return;
-    };
-    let [a, b, c] = line.coefficients().map(f64::to_bits);
-    defmt::info!(
-        "{=str}: slope {=f64}, intercept {=f64}; a {=u64:#018x}, b {=u64:#018x}, c {=u64:#018x}",
-        name,
-        line.slope().unwrap_or(f64::NAN),
-        line.intercept().unwrap_or(f64::NAN),
-        a,
-        b,
-        c,
-    );
+    match line.map(|line| line.coefficients()) {
+        None => defmt::info!("{=str}: none", name),
+        Some([a, b, c]) => {
+            defmt::info!("{=str}: {=f64} x + {=f64} z + {=f64} = 0", name, a, b, c);
+        }
+    }
 }

@@ -24,12 +24,13 @@ pub struct Emulator {
 }
 
 impl Emulator {
-    /// Starts a firmware; the other end of its link. Its log, as defmt encodes it, goes to `log`.
+    /// Starts a firmware, with further arguments for QEMU; the other end of its link. Its log, as defmt
+    /// encodes it, goes to `log`.
     ///
     /// # Errors
     /// When there is no such ELF or no QEMU, or it does not come up.
-    pub fn start(elf: &Path, log: Option<&Path>) -> Result<(Self, TcpStream)> {
-        if !fs::metadata(elf).is_ok_and(|it| it.is_file()) {
+    pub fn start(elf: &Path, log: Option<&Path>, more: &[&str]) -> Result<(Self, TcpStream)> {
+        if !fs::read(elf).is_ok_and(|content| content.starts_with(b"\x7fELF")) {
             bail!("{}: expected the firmware's ELF; `cargo firmware` builds it", elf.display());
         }
         let listener = TcpListener::bind("127.0.0.1:0").context("no port for the link")?;
@@ -39,7 +40,9 @@ impl Emulator {
             .args(["-M", "netduinoplus2", "-nographic", "-monitor", "none"])
             .args(["-icount", "shift=6"])
             .args(["-serial", &format!("tcp:127.0.0.1:{port},nodelay=on")])
-            .args(["-serial", &log, "-kernel"])
+            .args(["-serial", &log])
+            .args(more)
+            .arg("-kernel")
             .arg(elf)
             .stdin(Stdio::null())
             .stdout(Stdio::null())

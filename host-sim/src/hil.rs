@@ -69,7 +69,7 @@ pub fn fly(player: &mut Player, chip: &Chip, faults: Faults, seed: u64) -> Resul
             play(player, Cable::new(reader, port, faults, seed))
         }
         Chip::Emulated { elf, log } => {
-            let (_emulator, link) = Emulator::start(elf, log.as_deref())?;
+            let (_emulator, link) = Emulator::start(elf, log.as_deref(), &[])?;
             let reader = link.try_clone()?;
             play(player, Cable::new(reader, link, faults, seed))
         }

@@ -114,6 +114,11 @@ impl Player {
             Some(Heard::Again(frame)) => return Ok(Some(frame.clone())),
             Some(Heard::New(request)) => request,
         };
+        if self.hellos == 0 && !matches!(request, Request::Hello { .. }) {
+            // Of a mission that someone else began: it finds no answer and ends.
+            self.responder = Responder::default();
+            return Ok(None);
+        }
         Ok(self.act(request)?.map(|reply| self.responder.answer(reply).clone()))
     }
 

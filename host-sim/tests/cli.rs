@@ -295,6 +295,33 @@ fn bad_flags_and_places_are_refused() {
 }
 
 #[test]
+fn a_chip_that_cannot_be_is_refused() {
+    let folder = folder();
+    fs::write(folder.path().join("m.toml"), GOOD).expect("a file");
+    let many = (0..17).fold(String::new(), |mut text, i| {
+        let _ = write!(text, "  {{ x = {i}.0, z = 0.0, label = -1 }},\n");
+        text
+    });
+    let many = GOOD.replace("oracle = [\n", &format!("oracle = [\n{many}"));
+    fs::write(folder.path().join("many.toml"), many).expect("a file");
+    let cases: [(&[&str], &[&str]); 10] = [
+        (&["m.toml"], &["--port", "--emulator"]),
+        (&["m.toml", "--port", "x", "--emulator"], &["--port", "--emulator"]),
+        (&["m.toml", "--port", "no-such-device"], &["no-such-device", "expected a serial port"]),
+        (&["m.toml", "--emulator"], &["release/firmware", "cargo firmware"]),
+        (&["m.toml", "--emulator=m.toml"], &["m.toml", "ELF", "cargo firmware"]),
+        (&["m.toml", "--port", "x", "--log", "l"], &["--log", "--port"]),
+        (&["m.toml", "--emulator", "--fault", "drop=2"], &["drop", "found 2", "[0, 1]"]),
+        (&["m.toml", "--emulator", "--fault", "delay=1s"], &["delay", "found 1s", "20ms"]),
+        (&["m.toml", "--emulator", "--algorithm", "random"], &["m.toml", "random", "cfc or scc"]),
+        (&["many.toml", "--emulator"], &["many.toml", "found 21 points", "at most 16"]),
+    ];
+    for (args, parts) in cases {
+        refuses(folder.path(), &[&["hil"], args].concat(), parts);
+    }
+}
+
+#[test]
 fn replay_says_what_samples_determine() {
     let folder = folder();
     let rows = "# by hand\n label , x,z,note\n-1,2,1,a\n1,2,8,b\n+1.0,18.0,16,\n-1,18,5,\n";

@@ -50,6 +50,10 @@
 //! [`hal::Drive`] and a [`hal::LabelSensor`], which are yours to implement; a sensor on a digital pin
 //! comes with the crate.
 //!
+//! With the feature `wire` the vehicle may be elsewhere: the modules `wire`, `link` and `remote` have
+//! the messages, their delivery, and the chip's side of a mission. `defmt` derives `Format` for what is
+//! public.
+//!
 //! ```
 //! use core::cell::Cell;
 //! use core::convert::Infallible;

@@ -81,13 +81,13 @@ pub struct Station<P, S> {
 }
 
 /// What became of a setup.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Flown {
     /// It was declined.
     Declined(Declined),
     /// A mission was flown.
-    Ended(EndReason),
+    Ended(End),
 }
 
 impl<P: Port, S: LabelSensor> Station<P, S> {
@@ -130,8 +130,9 @@ impl<P: Port, S: LabelSensor> Station<P, S> {
         let reason = mission(&mut agent, setup.steps, watch)?;
         let estimates = agent.planner.estimates();
         let (last, took) = (memo.taken.get(), memo.took.get());
-        self.link.ask(Request::End(End { reason, last, took, estimates }))?;
-        Ok(Flown::Ended(reason))
+        let end = End { reason, last, took, estimates };
+        self.link.ask(Request::End(end.clone()))?;
+        Ok(Flown::Ended(end))
     }
 }
 

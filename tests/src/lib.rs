@@ -1,6 +1,6 @@
 //! What the cross-crate tests share: adversarial sites and the slow twin of the version space;
 //! programs for a chip ([`elf`]), a core to run them on ([`emulator`]), and missions that they fly
-//! there ([`bench`]).
+//! there ([`mod@bench`]).
 
 use planner_core::lattice::{LIMIT, Site, Vector};
 use planner_core::sample::{Label, Sample};

@@ -33,7 +33,9 @@ fn missions() -> Vec<Mission> {
 
 fn hash(traces: &[String]) -> u64 {
     let mut hasher = DefaultHasher::new();
-    traces.iter().for_each(|it| hasher.write(it.as_bytes()));
+    for trace in traces {
+        hasher.write(trace.as_bytes());
+    }
     hasher.finish()
 }
 
@@ -50,13 +52,8 @@ fn every_machine_makes_the_same_traces() {
         let elf = program("standard");
         let there = |mission: &Mission| {
             let mut emulator = Emulator::load(&elf, core);
-            // Twice: a mission leaves nothing behind.
-            let [first, second] = [(); 2].map(|()| {
-                let played = bench::fly(&mut emulator, mission).expect("it flies as the host");
-                trace::lines(&played.recording)
-            });
-            assert_eq!(first, second);
-            first
+            let played = bench::fly(&mut emulator, mission).expect("it flies as the host");
+            trace::lines(&played.recording)
         };
         let chip: Vec<String> = missions.par_iter().map(there).collect();
         for (number, (chip, host)) in chip.iter().zip(&host).enumerate() {
@@ -68,6 +65,19 @@ fn every_machine_makes_the_same_traces() {
         println!("{hash:016x}  {machine}");
     }
     assert!(hashes.iter().all(|(_, hash)| *hash == hashes[0].1));
+}
+
+#[test]
+fn a_mission_leaves_nothing_behind() {
+    let (core, target) = CORES[0];
+    let Some(program) = bench::build(env!("CARGO_TARGET_TMPDIR"), target) else { return };
+    let mut emulator = Emulator::load(&program("standard"), core);
+    let missions = missions();
+    let [first, second] = [(); 2].map(|()| {
+        let fly = |mission| bench::fly(&mut emulator, mission).expect("it flies as the host");
+        missions[..4].iter().map(fly).map(|it| trace::lines(&it.recording)).collect::<Vec<_>>()
+    });
+    assert_eq!(first, second);
 }
 
 #[test]

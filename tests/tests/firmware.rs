@@ -1,167 +1,375 @@
-//! The firmware under emulation: the chip's mission is the host's, bit for bit.
+//! The firmware under emulation, closed loop: the ELF that a board would run, in QEMU's STM32F405, with
+//! its world at the other end of its serial link.
 //!
-//! Builds the firmware with its feature `semihosting`, runs it in QEMU's STM32F405, decodes its log,
-//! and compares that with the same mission made here: every action, pose and reading, and every
-//! coefficient of the estimates. Both sides take their world from one file, so what differs is the
-//! machine alone.
-//!
-//! Without QEMU or the target's standard library the test says so and passes; with `CI` set it fails.
+//! Without QEMU or the target's standard library the tests say so and pass; with `CI` set they fail.
 
-use std::io::Write;
+use std::convert::Infallible;
+use std::io::{BufRead as _, BufReader, Read as _, Write as _};
+use std::net::TcpStream;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-use std::{env, fs, io};
+use std::sync::OnceLock;
+use std::time::{Duration, Instant};
+use std::{fs, thread};
 
 use defmt_decoder::{DecodeError, Table};
-use planner_core::agent::{Event, Step};
-use planner_core::estimate::Estimates;
-use planner_core::line::Line;
-use planner_core::sample::Reading;
-use world::World;
-
-#[path = "../../firmware/src/world.rs"]
-#[expect(dead_code, reason = "the firmware logs why there is no mission; here it is only printed")]
-mod world;
+use host_sim::cable::Cable;
+use host_sim::emulator::Emulator;
+use host_sim::faults::Faults;
+use host_sim::field;
+use host_sim::hil;
+use host_sim::mission::{Algorithm, Mission};
+use host_sim::player::{Played, Player};
+use host_sim::recording::Recording;
+use host_sim::scenario::{self, Overrides};
+use host_sim::trace;
+use host_sim::world::{Extent, NoiseModel};
+use planner_core::agent::{Agent, Event, Step};
+use planner_core::hal::LabelSensor;
+use planner_core::link::{Link, Port};
+use planner_core::sample::{Label, Reading};
+use planner_core::wire::LabelSource;
+use rand::{Rng as _, SeedableRng as _};
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+use tempfile::{NamedTempFile, TempPath};
+use tests::elf;
 
 const TARGET: &str = "thumbv7em-none-eabihf";
 
-/// The run takes a tenth of a second.
-const TIMEOUT_S: &str = "60";
+/// For anything that the chip does within two seconds.
+const PATIENCE: Duration = Duration::from_secs(20);
 
-#[test]
-fn the_chip_and_the_host_make_the_same_mission() {
-    if let Some(reason) = obstacle() {
-        assert!(env::var_os("CI").is_none(), "cannot run the firmware under QEMU: {reason}");
-        skip(reason);
-        return;
-    }
-    let chip = mission_under_qemu(&build());
-    let host = mission_on_host();
-    for (n, (chip, host)) in chip.iter().zip(&host).enumerate() {
-        assert_eq!(chip, host, "line {} of the log: the chip's (left), the host's (right)", n + 1);
-    }
-    assert_eq!(
-        chip.len(),
-        host.len(),
-        "lines of the log: the chip's {chip:#?}, the host's {host:#?}"
-    );
+/// The first message. Under emulation the chip has no record of why it started, and no clock tree.
+const STARTED: &str = "started: Other, clock: Emulated";
+
+/// A chip that runs.
+struct Chip {
+    _emulator: Emulator,
+    link: TcpStream,
+    log: TempPath,
 }
 
-/// Why the firmware cannot be built or run here.
-fn obstacle() -> Option<&'static str> {
-    let libraries =
-        Command::new("rustc").args(["--print", "target-libdir", "--target", TARGET]).output();
-    if !libraries.is_ok_and(|it| Path::new(String::from_utf8_lossy(&it.stdout).trim()).is_dir()) {
-        return Some("the target thumbv7em-none-eabihf is not installed");
+impl Chip {
+    /// Starts the firmware, with further arguments for QEMU; `None` where that cannot be.
+    fn start(more: &[&str]) -> Option<Self> {
+        let elf = firmware()?;
+        let log = NamedTempFile::new().expect("a temporary file").into_temp_path();
+        let (emulator, link) = Emulator::start(elf, Some(&log), more).expect("QEMU runs it");
+        Some(Self { _emulator: emulator, link, log })
     }
-    let absent = |tool| Command::new(tool).arg("--version").output().is_err();
-    if absent("qemu-system-arm") {
-        return Some("qemu-system-arm is not on PATH");
+
+    fn play(&self, player: &mut Player, faults: Faults, seed: u64) -> anyhow::Result<()> {
+        let [reader, port] = [(); 2].map(|()| self.link.try_clone().expect("a socket"));
+        hil::play(player, Cable::new(reader, port, faults, seed)).map(drop)
     }
-    absent("timeout").then_some("timeout (GNU coreutils) is not on PATH")
-}
 
-/// Straight to the handle: what the print macros write, libtest swallows when a test passes.
-fn skip(reason: &str) {
-    let line = format!("SKIPPED firmware under QEMU: {reason}\n");
-    let _ = io::stderr().write_all(line.as_bytes());
-}
-
-/// Builds the firmware, into a target directory of its own, and returns the ELF's path.
-fn build() -> PathBuf {
-    let target_dir = Path::new(env!("CARGO_TARGET_TMPDIR")).with_file_name("firmware-test");
-    let mut cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    cargo
-        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(".."))
-        .args(["build", "--quiet", "--package", "firmware", "--release", "--target", TARGET])
-        .args(["--features", "semihosting", "--target-dir"])
-        .arg(&target_dir)
-        .env("DEFMT_LOG", "info");
-    // Flags and wrappers of the host's build (coverage, for one) are not the chip's.
-    for host in ["RUSTFLAGS", "CARGO_ENCODED_RUSTFLAGS", "RUSTC_WRAPPER", "RUSTC_WORKSPACE_WRAPPER"]
-    {
-        cargo.env_remove(host);
+    fn fly(&self, mission: &Mission, faults: Faults) -> anyhow::Result<Played> {
+        let mut player = Player::new(mission, LabelSource::Vehicle)?;
+        self.play(&mut player, faults, mission.seed)?;
+        player.finish()
     }
-    let built = cargo.output().expect("cargo starts");
-    assert!(built.status.success(), "the firmware fails to build:\n{}", text(&built.stderr));
-    target_dir.join(TARGET).join("release/firmware")
-}
 
-/// The messages that the firmware logs, one a line.
-fn mission_under_qemu(elf: &Path) -> Vec<String> {
-    let run = Command::new("timeout")
-        .args(["--signal=KILL", TIMEOUT_S, "qemu-system-arm", "-M", "netduinoplus2"])
-        .args(["-nographic", "-serial", "none", "-monitor", "none"])
-        .args(["-semihosting-config", "enable=on,target=native", "-kernel"])
-        .arg(elf)
-        .stdin(Stdio::null())
-        .output()
-        .expect("timeout starts");
-    let log = decode(&fs::read(elf).expect("cargo left an ELF"), &run.stdout);
-    let (status, errors) = (run.status, text(&run.stderr));
-    assert!(
-        status.success(),
-        "QEMU ended with {status} (limit {TIMEOUT_S} s):\n{errors}\n{log:#?}"
-    );
-    log
-}
-
-fn decode(elf: &[u8], frames: &[u8]) -> Vec<String> {
-    let table = Table::parse(elf).expect("the ELF is sound").expect("the ELF has a .defmt section");
-    let mut decoder = table.new_stream_decoder();
-    decoder.received(frames);
-    let mut log = Vec::new();
-    loop {
-        match decoder.decode() {
-            Ok(frame) => log.push(frame.display_message().to_string()),
-            Err(DecodeError::UnexpectedEof) => return log,
-            Err(DecodeError::Malformed) => panic!("a malformed defmt frame after {log:#?}"),
-        }
-    }
-}
-
-/// The messages that the firmware would log for the mission as this machine makes it.
-fn mission_on_host() -> Vec<String> {
-    let world = World::new().expect("the world is sound");
-    let mut agent = world.agent().expect("the mission is sound");
-    let mut log = Vec::new();
-    let mut stopped = None;
-    for number in 1..=world::STEPS {
-        match agent.step().expect("labels are true") {
-            Event::Step(step) => log.push(step_message(number, &step)),
-            Event::Stopped(reason) => {
-                stopped = Some(format!("end: {reason:?} after {} steps", number - 1));
-                break;
+    /// The log so far.
+    fn messages(&self) -> Vec<String> {
+        let elf = fs::read(firmware().expect("it runs")).expect("cargo left an ELF");
+        let table = Table::parse(&elf).expect("the ELF is sound").expect("it logs");
+        let mut decoder = table.new_stream_decoder();
+        decoder.received(&fs::read(&self.log).expect("QEMU writes it"));
+        let mut messages = Vec::new();
+        loop {
+            match decoder.decode() {
+                Ok(frame) => messages.push(frame.display_message().to_string()),
+                Err(DecodeError::UnexpectedEof) => return messages,
+                Err(DecodeError::Malformed) => panic!("a malformed frame after {messages:#?}"),
             }
         }
     }
-    let Estimates { bisector, centre, maximum_margin } = Estimates::of(agent.planner.space());
-    log.push(line_message("bisector", bisector));
-    log.push(line_message("centre", centre));
-    log.push(line_message("maximum margin", maximum_margin));
-    log.push(stopped.unwrap_or_else(|| format!("end: all {} steps made", world::STEPS)));
-    log
+
+    /// The log up to the `n`-th message that begins so.
+    fn messages_until(&self, n: usize, beginning: &str) -> Vec<String> {
+        let since = Instant::now();
+        loop {
+            let messages = self.messages();
+            if messages.iter().filter(|it| it.starts_with(beginning)).count() >= n {
+                return messages;
+            }
+            assert!(since.elapsed() < PATIENCE, "no {beginning:?} in {messages:#?}");
+            thread::sleep(Duration::from_millis(10));
+        }
+    }
 }
 
-fn step_message(number: u32, Step { motion, pose, reading }: &Step) -> String {
-    let (action, x, z, heading) = (motion.action.0, pose.site.x(), pose.site.z(), pose.heading.0);
-    let sign = reading.map(Reading::sign);
-    format!(
-        "step {number}: action {action}, x {x}, z {z}, heading {heading:#010x}, reading {sign:?}"
-    )
-}
-
-fn line_message(name: &str, line: Option<Line>) -> String {
-    let Some(line) = line else {
-        return format!("{name}: none");
+/// The firmware, built once; `None`, and a visible line, where it cannot be built or run.
+fn firmware() -> Option<&'static Path> {
+    static ELF: OnceLock<Option<PathBuf>> = OnceLock::new();
+    let build = || {
+        if !elf::can_build(TARGET) {
+            elf::skip("firmware under QEMU", "the target thumbv7em-none-eabihf is not installed");
+            return None;
+        }
+        if !elf::has_tool("qemu-system-arm") {
+            elf::skip("firmware under QEMU", "qemu-system-arm is not on PATH");
+            return None;
+        }
+        let folder = elf::build(env!("CARGO_TARGET_TMPDIR"), "firmware", TARGET);
+        Some(folder.unwrap_or_else(|errors| panic!("{errors}")).join("firmware"))
     };
-    let [slope, intercept] = [line.slope(), line.intercept()].map(|it| it.unwrap_or(f64::NAN));
-    let [a, b, c] = line.coefficients().map(f64::to_bits);
+    ELF.get_or_init(build).as_deref()
+}
+
+fn example(text: &str) -> Mission {
+    scenario::parse("", text, Overrides::default()).expect("a good scenario")
+}
+
+/// Random missions, each algorithm by turns.
+fn random(number: u64) -> Mission {
+    let algorithm = if number.is_multiple_of(2) { Algorithm::Cfc } else { Algorithm::Scc };
+    let mut mission = field::standard(6, number, algorithm, 10 + (number % 11) as u32);
+    if algorithm == Algorithm::Scc {
+        mission.noise = Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.5) });
+    }
+    mission
+}
+
+fn here(mission: &Mission) -> String {
+    trace::lines(&Recording::of(mission).expect("labels that are certain are true"))
+}
+
+#[test]
+fn the_closed_loop_makes_the_trace_of_this_machine_byte_for_byte() {
+    let examples = [scenario::PAPER_NOISELESS, scenario::PAPER_NOISY].map(example);
+    let missions: Vec<_> = examples.into_iter().chain((0..200).map(random)).collect();
+    // Twenty missions in a row on a chip: one leaves nothing behind for the next.
+    let flown: usize = missions
+        .par_chunks(20)
+        .map(|missions| {
+            let Some(chip) = Chip::start(&[]) else { return 0 };
+            for mission in missions {
+                let played = chip.fly(mission, Faults::default()).expect("it flies as here");
+                assert_eq!(trace::lines(&played.recording), here(mission), "{mission:?}");
+            }
+            missions.len()
+        })
+        .sum();
+    println!("{flown} closed loops under QEMU made the traces of this machine");
+}
+
+#[test]
+fn a_bad_link_changes_nothing() {
+    let faults = "drop=0.1,cut=0.02,corrupt=0.05,duplicate=0.1,delay=20ms";
+    let faults: Faults = faults.parse().expect("faults");
+    (0..16).into_par_iter().for_each(|number| {
+        let Some(chip) = Chip::start(&[]) else { return };
+        let mission = random(number);
+        let played = chip.fly(&mission, faults).expect("it flies as here");
+        assert_eq!(trace::lines(&played.recording), here(&mission), "mission {number}");
+    });
+}
+
+#[test]
+fn garbage_is_passed_over() {
+    let Some(mut chip) = Chip::start(&[]) else { return };
+    let mut garbage = [0; 5_000];
+    ChaCha8Rng::seed_from_u64(1).fill_bytes(&mut garbage);
+    for mission in [random(0), random(1)] {
+        chip.link.write_all(&garbage).expect("the link is open");
+        let played = chip.fly(&mission, Faults::default()).expect("it flies as here");
+        assert_eq!(trace::lines(&played.recording), here(&mission));
+    }
+}
+
+/// What the chip logs of a step.
+fn step_message(number: usize, Step { motion, pose, reading }: &Step) -> String {
+    let (stage, recovery, action) = (motion.stage, motion.recovery, motion.action.0);
+    let (x, z, heading) = (pose.site.x(), pose.site.z(), pose.heading.0);
+    let label = reading.map(Reading::sign);
     format!(
-        "{name}: slope {slope:?}, intercept {intercept:?}; a {a:#018x}, b {b:#018x}, c {c:#018x}"
+        "step {number}: {stage:?} {recovery:?}, action {action}, to x {x}, z {z}, \
+         heading {heading:#010x}, label {label:?}"
     )
 }
 
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
+#[test]
+fn the_log_tells_the_mission() {
+    let Some(chip) = Chip::start(&[]) else { return };
+    let mission = example(scenario::PAPER_NOISELESS);
+    let played = chip.fly(&mission, Faults::default()).expect("it flies");
+    let log = chip.messages_until(1, "bisector");
+    let steps = played.recording.steps.iter().zip(1..);
+    let mut expected = vec![STARTED.to_owned(), "mission: Cfc, 10 steps at most".to_owned()];
+    expected.extend(steps.map(|(it, number)| step_message(number, &it.step)));
+    expected.push("ended after 10 steps: Steps".to_owned());
+    let estimates = played.recording.estimates();
+    for (name, line) in [
+        ("centre", estimates.centre),
+        ("maximum margin", estimates.maximum_margin),
+        ("bisector", estimates.bisector),
+    ] {
+        let [a, b, c] = line.expect("a line").coefficients();
+        expected.push(format!("{name}: {a:?} x + {b:?} z + {c:?} = 0"));
+    }
+    assert_eq!(log, expected);
+}
+
+/// What was written to a port's set and reset register, by QEMU's log: it has no GPIO but says so.
+fn drive_enable(writes: &Path) -> Vec<&'static str> {
+    let log = fs::read_to_string(writes).expect("QEMU left a log");
+    log.lines()
+        .filter_map(|line| line.strip_prefix("GPIOB: unimplemented device write (size 4, offset "))
+        .filter_map(|write| match write.strip_prefix("0x018, value ")?.strip_suffix(")")? {
+            "0x00000001" => Some("on"),
+            "0x00010000" => Some("off"),
+            other => panic!("an unexpected write to GPIOB: {other}"),
+        })
+        .collect()
+}
+
+/// Arguments that have QEMU log writes to what it does not emulate.
+fn writes_to(file: &Path) -> [&str; 4] {
+    ["-d", "unimp", "-D", file.to_str().expect("the path is UTF-8")]
+}
+
+#[test]
+fn a_cut_link_stops_the_mission_safely_within_the_bound_and_the_next_can_begin() {
+    let writes = NamedTempFile::new().expect("a temporary file").into_temp_path();
+    let Some(mut chip) = Chip::start(&writes_to(&writes)) else { return };
+    let mission = random(0);
+    let mut player = Player::new(&mission, LabelSource::Vehicle).expect("a mission for a chip");
+    // Answers up to the third motion, and then no more.
+    while player.motions() < 3 {
+        let mut byte = [0];
+        chip.link.read_exact(&mut byte).expect("the chip asks");
+        if let Some(frame) = player.hear(byte[0]).expect("it makes sense") {
+            chip.link.write_all(frame.bytes()).expect("the link is open");
+        }
+    }
+    let cut = Instant::now();
+    let log = chip.messages_until(1, "stopped");
+    let took = cut.elapsed();
+    assert_eq!(log.last().expect("it says so"), "stopped after 3 steps: LinkLost");
+    // Each wait ends on a beat of 10 ms after 100 ms.
+    let bound = Duration::from_millis(110) * u32::from(Link::<Never>::ATTEMPTS);
+    assert!(took < bound + Duration::from_secs(2), "{took:?}");
+    println!("a cut link: stopped after {took:?}, by the chip's clock within {bound:?}");
+    assert_eq!(drive_enable(&writes), ["off", "on", "off"]);
+    // What it asked meanwhile, nobody reads: a new cable finds it asking for a mission.
+    let played = chip.fly(&mission, Faults::default()).expect("it flies as here");
+    assert_eq!(trace::lines(&played.recording), here(&mission));
+    assert_eq!(drive_enable(&writes), ["off", "on", "off", "on", "off"]);
+}
+
+struct Never;
+
+impl Port for Never {
+    fn send(&mut self, _: &[u8]) {}
+
+    fn receive(&mut self) -> Option<u8> {
+        None
+    }
+}
+
+/// A label sensor on a pin that nothing pulls up.
+struct Low;
+
+impl LabelSensor for Low {
+    type Error = Infallible;
+
+    fn read(&mut self) -> Result<Reading, Infallible> {
+        Ok(Label::Negative.into())
+    }
+}
+
+#[test]
+fn the_chip_can_read_labels_from_its_own_pin() {
+    let Some(chip) = Chip::start(&[]) else { return };
+    let mission = random(1);
+    let mut player = Player::new(&mission, LabelSource::Chip).expect("a mission for a chip");
+    chip.play(&mut player, Faults::default(), 1).expect("it flies");
+    let played = player.finish().expect("it ends");
+    let mut learner = mission.learner();
+    let (vehicle, _) = mission.world();
+    let mut agent = Agent::new(&mut *learner, Low, vehicle, mission.start);
+    let mut steps = Vec::new();
+    while steps.len() < mission.steps as usize {
+        match agent.step() {
+            Ok(Event::Step(step)) => steps.push(step),
+            other => panic!("{other:?}"),
+        }
+    }
+    let flown: Vec<_> = played.recording.steps.iter().map(|it| it.step).collect();
+    assert_eq!(flown, steps);
+}
+
+/// The program counter among all registers, as hexadecimal digits.
+const PC: std::ops::Range<usize> = 15 * 8..16 * 8;
+
+/// A debugger at QEMU's stub: commands out, answers in.
+struct Debugger {
+    out: TcpStream,
+    answers: BufReader<TcpStream>,
+}
+
+impl Debugger {
+    /// Connecting halts the chip.
+    fn connect(port: u16) -> Self {
+        let out = TcpStream::connect(("127.0.0.1", port)).expect("QEMU listens");
+        let answers = BufReader::new(out.try_clone().expect("a socket"));
+        let mut debugger = Self { out, answers };
+        assert!(debugger.answer().starts_with('T'), "it says that it has halted");
+        debugger
+    }
+
+    fn ask(&mut self, command: &str) -> String {
+        let sum = command.bytes().fold(0, u8::wrapping_add);
+        write!(self.out, "${command}#{sum:02x}").expect("QEMU listens");
+        self.answer()
+    }
+
+    /// The text between `$` and `#`, without the checksum after it.
+    fn answer(&mut self) -> String {
+        let mut answer = Vec::new();
+        self.answers.read_until(b'#', &mut answer).expect("QEMU answers");
+        self.answers.read_exact(&mut [0; 2]).expect("a checksum");
+        write!(self.out, "+").expect("QEMU listens");
+        let answer = String::from_utf8_lossy(&answer).into_owned();
+        answer.trim_start_matches('+').trim_matches(['$', '#']).to_owned()
+    }
+}
+
+#[test]
+fn a_fault_disables_the_drive_first_then_tells_and_starts_anew() {
+    let writes = NamedTempFile::new().expect("a temporary file").into_temp_path();
+    let debugger = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
+    let port = debugger.local_addr().expect("it is bound").port();
+    drop(debugger); // QEMU takes its place
+    let gdb = format!("tcp:127.0.0.1:{port}");
+    let arguments = [&writes_to(&writes)[..], &["-gdb", &gdb]].concat();
+    let Some(chip) = Chip::start(&arguments) else { return };
+    chip.messages_until(1, STARTED);
+    // In the middle of a mission: after Setup and Noted it waits for the end of its first motion.
+    let mission = random(0);
+    let mut player = Player::new(&mission, LabelSource::Vehicle).expect("a mission for a chip");
+    let mut link = chip.link.try_clone().expect("a socket");
+    while player.motions() < 1 {
+        let mut byte = [0];
+        link.read_exact(&mut byte).expect("the chip asks");
+        match player.hear(byte[0]).expect("it makes sense") {
+            Some(frame) if player.motions() == 0 => {
+                link.write_all(frame.bytes()).expect("the link is open");
+            }
+            _ => {}
+        }
+    }
+    // A debugger sends the chip to where no memory is.
+    let mut debugger = Debugger::connect(port);
+    let mut registers = debugger.ask("g");
+    registers.replace_range(PC, "000000f0");
+    assert_eq!(debugger.ask(&format!("G{registers}")), "OK");
+    assert_eq!(debugger.ask("D"), "OK");
+    let log = chip.messages_until(2, STARTED);
+    assert!(log[log.len() - 2].starts_with("fault at 0x"), "{log:#?}");
+    assert_eq!(drive_enable(&writes), ["off", "on", "off", "off"]);
+    // And it flies again.
+    let played = chip.fly(&mission, Faults::default()).expect("it flies as here");
+    assert_eq!(trace::lines(&played.recording), here(&mission));
 }

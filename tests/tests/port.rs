@@ -15,7 +15,7 @@ use host_sim::recording::Recording;
 use host_sim::trace;
 use planner_core::link::{Link, Port};
 use planner_core::remote::{Flown, Station};
-use planner_core::wire::{ClockRate, EndReason, LabelSource};
+use planner_core::wire::{ClockRate, End, EndReason, LabelSource};
 use serialport::{SerialPort as _, TTYPort};
 
 const WAIT: Duration = Duration::from_millis(100);
@@ -65,7 +65,7 @@ fn a_board_at_a_serial_port_flies_as_this_machine_does() {
     let turnarounds = hil::fly(&mut player, &chip, faults, 1).expect("the board answers");
     let played = player.finish().expect("the mission is over");
     let flown = board.join().unwrap_or_else(|cause| panic::resume_unwind(cause));
-    assert!(matches!(flown, Ok(Flown::Ended(EndReason::Steps))), "{flown:?}");
+    assert!(matches!(flown, Ok(Flown::Ended(End { reason: EndReason::Steps, .. }))), "{flown:?}");
     let timings = Timings::new(&played, &turnarounds);
     assert_eq!(timings.csv().expect("rows").lines().count(), 1 + 10);
     let here = Recording::of(&mission).expect("labels are true");

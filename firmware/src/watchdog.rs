@@ -1,0 +1,26 @@
+//! The independent watchdog: restarts the chip when the firmware hangs.
+
+use stm32f4xx_hal::pac::{DBGMCU, IWDG};
+use stm32f4xx_hal::prelude::_fugit_ExtU32 as _;
+use stm32f4xx_hal::watchdog::IndependentWatchdog;
+
+/// The longest that the firmware goes without feeding is one plan: up to 1 s at 16 MHz. The
+/// watchdog's oscillator is 17 to 47 kHz where 32 is meant, so this is 2.7 to 7.5 s.
+const PERIOD_MS: u32 = 4_000;
+
+/// The watchdog, started. Nothing but a debugger that halts the core stops it.
+pub(crate) struct Watchdog(IndependentWatchdog);
+
+impl Watchdog {
+    pub(crate) fn start(iwdg: IWDG, debug: &DBGMCU) -> Self {
+        let mut watchdog = IndependentWatchdog::new(iwdg);
+        watchdog.stop_on_debug(debug, true);
+        watchdog.start(PERIOD_MS.millis());
+        Self(watchdog)
+    }
+
+    /// Puts the reset off by the whole period.
+    pub(crate) fn feed(&mut self) {
+        self.0.feed();
+    }
+}
