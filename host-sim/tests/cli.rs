@@ -299,7 +299,7 @@ fn a_chip_that_cannot_be_is_refused() {
     let folder = folder();
     fs::write(folder.path().join("m.toml"), GOOD).expect("a file");
     let many = (0..17).fold(String::new(), |mut text, i| {
-        let _ = write!(text, "  {{ x = {i}.0, z = 0.0, label = -1 }},\n");
+        let _ = writeln!(text, "  {{ x = {i}.0, z = 0.0, label = -1 }},");
         text
     });
     let many = GOOD.replace("oracle = [\n", &format!("oracle = [\n{many}"));
