@@ -185,7 +185,7 @@ fn a_thousand_missions_over_a_bad_link_end_as_over_a_good_one() {
 #[test]
 fn a_cut_link_ends_every_mission_within_the_bound_and_with_no_motion_after_it() {
     let bound = WAIT * u32::from(Link::<Plug<'_>>::ATTEMPTS);
-    (0..300u64).into_par_iter().for_each(|number| {
+    (0..1000u64).into_par_iter().for_each(|number| {
         let mission = mission(number);
         let network = RefCell::new(Network::new(&mission, Faults::default()));
         let mut chip = chip(&network);
