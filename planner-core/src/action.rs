@@ -31,6 +31,8 @@ pub struct ActionGrid {
     rays: u16,
     speeds: u16,
     speed_step_mm: u32,
+    /// One step of speed in the units of [`Ray::step`].
+    step_length: i32,
 }
 
 /// The grid has no action, more than a `u16` can name, or reaches too far.
@@ -59,7 +61,9 @@ impl ActionGrid {
         let reach = (speeds as u64).saturating_sub(1) * speed_step_mm as u64;
         let fits = actions >= 1 && actions <= 1 << 16;
         if fits && speed_step_mm >= 1 && reach < Self::LONGEST_MM as u64 {
-            Ok(Self { rays, speeds, speed_step_mm })
+            let per_metre = (UNITS_PER_METRE as u64) << Ray::STEP_BITS;
+            let step_length = ((speed_step_mm as u64 * per_metre + 500) / 1000) as i32;
+            Ok(Self { rays, speeds, speed_step_mm, step_length })
         } else {
             Err(BadGrid)
         }
@@ -97,8 +101,12 @@ impl ActionGrid {
 
     /// Length of one step of speed in the units of [`Ray::step`](crate::dynamics::Ray::step).
     pub(crate) const fn step_length(self) -> i32 {
-        let per_metre = (UNITS_PER_METRE as u64) << Ray::STEP_BITS;
-        ((self.speed_step_mm as u64 * per_metre + 500) / 1000) as i32
+        self.step_length
+    }
+
+    /// Length of one step of speed, lattice units.
+    pub(crate) const fn step_units(self) -> f32 {
+        self.step_length as f32 / (1 << Ray::STEP_BITS) as f32
     }
 
     /// The name of an action.

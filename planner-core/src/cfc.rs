@@ -15,8 +15,9 @@ use crate::config::{Config, first_to_second};
 use crate::dynamics::{Dynamics, Pose};
 use crate::estimate::Estimates;
 use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
-use crate::problem::{ArcRule, Candidate, Problem};
+use crate::problem::{Candidate, Problem};
 use crate::recovery::{Found, solve_or_recover};
+use crate::rule::ArcRule;
 use crate::sample::{Label, Reading, Sample};
 use crate::version_space::{Refused, VersionSpace};
 

@@ -3,7 +3,8 @@
 use crate::area::Area;
 use crate::direction::Arc;
 use crate::lattice::Vector;
-use crate::problem::{ArcRule, Varrho};
+use crate::problem::Varrho;
+use crate::rule::ArcRule;
 use crate::sample::Sample;
 
 /// How P1 looks for the opposite label (Section III-A).

@@ -2,6 +2,7 @@
 
 use heapless::Vec;
 
+use crate::approximate::{atan2, sqrt};
 use crate::lattice::Vector;
 
 /// A heading as a binary angle: a whole turn is 2^32, so it wraps by itself and sums of turns are
@@ -38,41 +39,59 @@ impl Heading {
         Self(self.0.wrapping_neg())
     }
 
-    /// The unit vector of this heading. One libm call: once a plan, never once a candidate.
-    pub fn unit(self) -> Rotation {
-        const ONE: f64 = (1 << 30) as f64;
-        let (sin, cos) = libm::sincos(self.radians());
-        Rotation { cos: libm::round(cos * ONE) as i32, sin: libm::round(sin * ONE) as i32 }
+    /// The unit vector of this heading, to 2^-29. Integers alone: some 60 instructions.
+    pub const fn unit(self) -> Unit {
+        // Within an eighth of a turn of a multiple of a quarter, sine and cosine are short series.
+        let quarters = self.0.wrapping_add(1 << 29) >> 30;
+        let angle = self.0.wrapping_sub(quarters << 30) as i32;
+        let x = round_shift(angle as i64 * PI_30, 31);
+        let square = product(x, x);
+        let sin = product(x, series(square, &SIN));
+        let cos = series(square, &COS);
+        let (cos, sin) = match quarters {
+            0 => (cos, sin),
+            1 => (-sin, cos),
+            2 => (-cos, -sin),
+            _ => (sin, -cos),
+        };
+        Unit { cos, sin }
+    }
+
+    /// The heading of a direction, to 10^-5 rad: it proposes, and decides nothing.
+    pub(crate) fn near(direction: Vector) -> Self {
+        Self(atan2(direction.z as f32, direction.x as f32))
     }
 }
 
-/// A unit vector, which is also a rotation, in fixed point with 30 fractional bits.
+/// Pi with 30 fractional bits.
+const PI_30: i64 = 3_373_259_426;
+
+/// Coefficients of the sine's series in the square, without its factor `x`, with 30 fractional bits.
+const SIN: [i32; 6] = [1 << 30, -178_956_971, 8_947_849, -213_044, 2959, -27];
+
+/// Coefficients of the cosine's series in the square, with 30 fractional bits.
+const COS: [i32; 6] = [1 << 30, -536_870_912, 44_739_243, -1_491_308, 26_631, -296];
+
+/// A polynomial by Horner's rule, with 30 fractional bits.
+const fn series(x: i32, coefficients: &[i32; 6]) -> i32 {
+    let [c0, c1, c2, c3, c4, c5] = *coefficients;
+    c0 + product(x, c1 + product(x, c2 + product(x, c3 + product(x, c4 + product(x, c5)))))
+}
+
+/// A product with 30 fractional bits.
+const fn product(a: i32, b: i32) -> i32 {
+    round_shift(a as i64 * b as i64, 30)
+}
+
+/// A unit vector in fixed point with 30 fractional bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Rotation {
+pub struct Unit {
     cos: i32,
     sin: i32,
 }
 
-impl Rotation {
-    /// No rotation.
-    pub const IDENTITY: Self = Self { cos: 1 << 30, sin: 0 };
-
-    /// One rotation after another. Rounding adds less than 2^-30 to the error, so a fan of some
-    /// hundred rotations stays good to 10^-7.
-    #[must_use]
-    pub const fn then(self, by: Self) -> Self {
-        let (c, s) = (self.cos as i64, self.sin as i64);
-        let (bc, bs) = (by.cos as i64, by.sin as i64);
-        Self { cos: round_shift(c * bc - s * bs, 30), sin: round_shift(c * bs + s * bc, 30) }
-    }
-
-    /// The rotation back.
-    #[must_use]
-    pub const fn inverse(self) -> Self {
-        Self { cos: self.cos, sin: -self.sin }
-    }
-
+impl Unit {
     /// The vector of this direction with the given length (below 2^30), to the nearest integers.
     pub const fn scaled(self, length: i32) -> Vector {
         let length = length as i64;
@@ -117,6 +136,15 @@ impl Arc {
         })
     }
 
+    /// The arc that spans two which lie within half a turn of each other.
+    #[must_use]
+    pub const fn hull(self, other: Self) -> Self {
+        Self {
+            from: if self.from.cross(other.from) < 0 { other.from } else { self.from },
+            to: if self.to.cross(other.to) > 0 { other.to } else { self.to },
+        }
+    }
+
     /// The arc of directions that track one: within 1/64 of it in tangent (0.9 degrees), so that
     /// some ray of the paper's grid, which are 0.57 degrees apart, always does.
     pub const fn tracking(direction: Vector) -> Self {
@@ -155,7 +183,7 @@ impl Arc {
     pub fn bisector(&self) -> Vector {
         let unit = |v: Vector| {
             let (x, z) = (v.x as f32, v.z as f32);
-            let scale = (1 << 27) as f32 / libm::sqrtf(x * x + z * z);
+            let scale = (1 << 27) as f32 / sqrt(x * x + z * z);
             (x * scale, z * scale)
         };
         let ((ax, az), (bx, bz)) = (unit(self.from), unit(self.to));
@@ -209,16 +237,18 @@ mod tests {
     }
 
     #[test]
-    fn a_fan_of_rotations_stays_true() {
-        let step = Heading::from_radians(0.01).unwrap();
-        let (mut heading, mut rotation) = (Heading(0), Rotation::IDENTITY);
-        for _ in 0..157 {
-            (heading, rotation) = (heading.turned(step), rotation.then(step.unit()));
+    fn unit_vectors_are_true_to_the_last_bits() {
+        let scale = f64::from(1 << 30);
+        for n in 0..200_000_u32 {
+            let heading = Heading(n.wrapping_mul(2_654_435_761));
             let (sin, cos) = heading.radians().sin_cos();
-            let scale = f64::from(1 << 30);
-            assert!((f64::from(rotation.cos) / scale - cos).abs() < 1e-7);
-            assert!((f64::from(rotation.sin) / scale - sin).abs() < 1e-7);
+            let Unit { cos: c, sin: s } = heading.unit();
+            let off = [(f64::from(c), cos), (f64::from(s), sin)].map(|(got, is)| got - is * scale);
+            assert!(off.iter().all(|off| off.abs() < 2.0), "{heading:?}: {off:?}");
+            let near = Heading::near(Vector { x: c, z: s });
+            assert!((near.0.wrapping_sub(heading.0) as i32).unsigned_abs() < 7_000, "{heading:?}");
         }
+        assert_eq!(Heading(1 << 30).unit(), Unit { cos: 0, sin: 1 << 30 });
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Dynamics: how an action moves the agent.
 //!
 //! The general one-step problem has any `phi` and any finite action set. What the search needs of
-//! them is here: the actions grouped into [`Ray`]s, cheapest first. [`Unicycle`](crate::unicycle) is
+//! them is here: the actions grouped into [`Ray`]s, which lie as a [`Fan`]. [`Unicycle`](crate::unicycle) is
 //! the paper's dynamics, [`Holonomic`](crate::holonomic) another.
 
 use crate::action::{Action, ActionGrid, Control};
@@ -58,6 +58,29 @@ impl Ray {
     }
 }
 
+/// To which side of straight ahead a ray lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Side {
+    /// Counter-clockwise. Straight ahead counts here.
+    Left,
+    /// Clockwise.
+    Right,
+}
+
+/// How the rays from a pose lie: to each side they turn away in equal steps, the last of them maybe in
+/// a smaller one, and their effort never decreases.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Fan {
+    /// Rays to the left, from the 0th, straight ahead.
+    pub left: u16,
+    /// Rays to the right, from the 1st.
+    pub right: u16,
+    /// The step from one to the next, at most.
+    pub spacing: Heading,
+}
+
 /// The agent's known dynamics over its finite action set (Section II-A's `phi` and `U`).
 ///
 /// An action's squared control is its squared reach plus its ray's effort,
@@ -66,21 +89,50 @@ pub trait Dynamics {
     /// The action set.
     fn grid(&self) -> ActionGrid;
 
-    /// The rays from a pose in the order in which ties are settled: effort never decreases, and of
-    /// equals the preferred one comes first.
-    fn rays(&self, pose: Pose) -> impl Iterator<Item = Ray>;
+    /// How the rays lie.
+    fn fan(&self) -> Fan;
+
+    /// The heading of the `n`-th ray to a side of the fan.
+    fn heading(&self, pose: Pose, side: Side, n: u16) -> Heading;
+
+    /// The `n`-th ray to a side of the fan.
+    fn ray(&self, pose: Pose, side: Side, n: u16) -> Ray;
+
+    /// The rays from a pose in the order in which ties are settled: by number, left before right.
+    fn rays(&self, pose: Pose) -> impl Iterator<Item = Ray> {
+        let Fan { left, right, .. } = self.fan();
+        (0..left.max(right + 1)).flat_map(move |n| {
+            let on_left = (n < left).then(|| self.ray(pose, Side::Left, n));
+            let on_right = (1..=right).contains(&n).then(|| self.ray(pose, Side::Right, n));
+            on_left.into_iter().chain(on_right)
+        })
+    }
+
+    /// The ray whose heading is nearest to this one.
+    fn towards(&self, pose: Pose, heading: Heading) -> Ray {
+        let Fan { left, right, spacing } = self.fan();
+        let turn = heading.0.wrapping_sub(self.heading(pose, Side::Left, 0).0);
+        let nearest = |turn: u32| (turn.saturating_add(spacing.0 / 2) / spacing.0.max(1)) as u16;
+        if turn < 1 << 31 || right == 0 {
+            self.ray(pose, Side::Left, nearest(turn).min(left.saturating_sub(1)))
+        } else {
+            self.ray(pose, Side::Right, nearest(turn.wrapping_neg()).clamp(1, right))
+        }
+    }
 
     /// The sharpest turn in place, to the left or right: its action and the pose after it. `None`
     /// when the action set does not depend on the heading.
-    fn turn_in_place(&self, pose: Pose, left: bool) -> Option<(Action, Pose)>;
+    fn turn_in_place(&self, pose: Pose, side: Side) -> Option<(Action, Pose)>;
 
     /// What an action asks of the vehicle.
     fn control(&self, action: Action) -> Control;
 
+    /// The ray to which an action belongs.
+    fn ray_of(&self, pose: Pose, action: Action) -> Option<Ray>;
+
     /// The pose after an action; `None` when there is no such action or it leads off the lattice.
     fn target(&self, pose: Pose, action: Action) -> Option<Pose> {
-        let (index, speed) = self.grid().split(action);
-        let ray = self.rays(pose).find(|ray| ray.index == index)?;
-        ray.arrive(pose.site, speed).ok()
+        let (_, speed) = self.grid().split(action);
+        self.ray_of(pose, action)?.arrive(pose.site, speed).ok()
     }
 }

@@ -1,8 +1,8 @@
 //! A holonomic integrator: any bearing, whichever way the agent faces.
 
 use crate::action::{Action, ActionGrid, BadGrid, Control};
-use crate::direction::{Heading, Rotation};
-use crate::dynamics::{Dynamics, Pose, Ray};
+use crate::direction::Heading;
+use crate::dynamics::{Dynamics, Fan, Pose, Ray, Side};
 
 /// A holonomic integrator, `zeta' = zeta + u`, with `u` on a polar grid: any of `bearings` equally
 /// spaced directions at any speed of the grid, whichever way the agent faces.
@@ -10,7 +10,6 @@ use crate::dynamics::{Dynamics, Pose, Ray};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Holonomic {
     grid: ActionGrid,
-    one_bearing: Rotation,
 }
 
 impl Holonomic {
@@ -20,13 +19,12 @@ impl Holonomic {
     /// # Errors
     /// [`BadGrid`] when the grid is none.
     pub fn new(bearings: u16, speeds: u16, speed_step_mm: u32) -> Result<Self, BadGrid> {
-        let grid = ActionGrid::new(bearings, speeds, speed_step_mm)?;
-        Ok(Self { grid, one_bearing: bearing(1, bearings).unit() })
+        Ok(Self { grid: ActionGrid::new(bearings, speeds, speed_step_mm)? })
     }
-}
 
-fn bearing(n: u16, bearings: u16) -> Heading {
-    Heading(((u64::from(n) << 32) / u64::from(bearings.max(1))) as u32)
+    fn bearing(&self, n: u16) -> Heading {
+        Heading(((u64::from(n) << 32) / u64::from(self.grid.rays().max(1))) as u32)
+    }
 }
 
 impl Dynamics for Holonomic {
@@ -35,22 +33,31 @@ impl Dynamics for Holonomic {
     }
 
     /// Counter-clockwise from the x axis; all cost the same.
-    fn rays(&self, _: Pose) -> impl Iterator<Item = Ray> {
-        let length = self.grid.step_length();
-        let mut unit = Rotation::IDENTITY;
-        (0..self.grid.rays()).map(move |index| {
-            let step = unit.scaled(length);
-            unit = unit.then(self.one_bearing);
-            Ray { index, heading: bearing(index, self.grid.rays()), step, effort: 0 }
-        })
+    fn fan(&self) -> Fan {
+        Fan { left: self.grid.rays(), right: 0, spacing: Heading(self.bearing(1).0.max(1)) }
     }
 
-    fn turn_in_place(&self, _: Pose, _: bool) -> Option<(Action, Pose)> {
+    fn heading(&self, _: Pose, _: Side, n: u16) -> Heading {
+        self.bearing(n)
+    }
+
+    fn ray(&self, _: Pose, _: Side, n: u16) -> Ray {
+        let heading = self.bearing(n);
+        let step = heading.unit().scaled(self.grid.step_length());
+        Ray { index: n, heading, step, effort: 0 }
+    }
+
+    fn turn_in_place(&self, _: Pose, _: Side) -> Option<(Action, Pose)> {
         None
+    }
+
+    fn ray_of(&self, pose: Pose, action: Action) -> Option<Ray> {
+        let (index, _) = self.grid.split(action);
+        (index < self.grid.rays()).then(|| self.ray(pose, Side::Left, index))
     }
 
     fn control(&self, action: Action) -> Control {
         let (ray, speed) = self.grid.split(action);
-        Control { v: self.grid.reach_m(speed), w: bearing(ray, self.grid.rays()).radians() as f32 }
+        Control { v: self.grid.reach_m(speed), w: self.bearing(ray).radians() as f32 }
     }
 }

@@ -130,6 +130,7 @@
 
 pub mod action;
 pub mod agent;
+mod approximate;
 pub mod area;
 pub mod candidates;
 pub mod cell;
@@ -151,6 +152,7 @@ pub mod problem;
 mod recovery;
 #[cfg(feature = "wire")]
 pub mod remote;
+pub mod rule;
 pub mod sample;
 pub mod scc;
 mod sight;

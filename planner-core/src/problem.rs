@@ -7,19 +7,19 @@
 //!
 //! The search returns the action that trying every action would return, and looks at few of them:
 //!
-//! - **By the objective.** Rays come cheapest first and on a ray faster is better, so once a speed
-//!   is found only a higher one on a later ray can win.
-//! - **By the arc.** A ray whose direction breaks the rule is skipped whole.
-//! - **A ray's speeds together.** The ground that is certain to have one label is convex, so on a
-//!   ray it is an interval of speeds: it is left by bisection, not speed by speed (`sight.rs`).
+//! - **By the objective.** Faster is better and turning less is: so the outermost circle of positions
+//!   comes first, on it the smallest turns, and the search ends where no circle can do better.
+//! - **By the ground.** Ground that is certain ends on a circle where a bound of the candidates cuts it:
+//!   what lies before is passed over at once, not ray by ray (`sight.rs`).
+//! - **By the rule.** Directions that it bars are passed over in the same way (`rule.rs`).
 
-use crate::action::Action;
+use crate::action::{Action, ActionGrid};
 use crate::area::Area;
 use crate::candidates::Candidates;
 use crate::cell::Certainty;
-use crate::direction::Arc;
 use crate::dynamics::{Dynamics, Pose};
-use crate::lattice::Vector;
+use crate::lattice::Site;
+use crate::rule::{ArcRule, DirectionRule};
 use crate::sight::Sight;
 
 /// The weight of the control in the objective, in [0, 1), to six decimal places.
@@ -53,43 +53,10 @@ impl Varrho {
     }
 
     /// The objective, in 10^-12 m^2: an integer, so that ties are ties.
-    const fn objective(self, reach_mm: u32, effort: u32) -> i64 {
+    pub(crate) const fn objective(self, reach_mm: u32, effort: u32) -> i64 {
         let reach = reach_mm as i64 * reach_mm as i64;
         let (varrho, one) = (self.millionths as i64, Self::ONE as i64);
         (one - varrho) * reach - varrho * effort as i64
-    }
-}
-
-/// A rule on the direction of travel, modulo pi.
-pub trait DirectionRule {
-    /// Whether travel in this direction is allowed.
-    fn admits(&self, direction: Vector) -> bool;
-}
-
-/// Any direction will do.
-#[derive(Clone, Copy, Debug)]
-pub struct AnyDirection;
-
-impl DirectionRule for AnyDirection {
-    fn admits(&self, _: Vector) -> bool {
-        true
-    }
-}
-
-/// A rule by arcs.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct ArcRule {
-    /// The direction must lie in this arc.
-    pub inside: Option<Arc>,
-    /// The direction must not lie in this arc.
-    pub outside: Option<Arc>,
-}
-
-impl DirectionRule for ArcRule {
-    fn admits(&self, direction: Vector) -> bool {
-        self.inside.is_none_or(|arc| arc.contains(direction))
-            && self.outside.is_none_or(|arc| !arc.contains(direction))
     }
 }
 
@@ -129,42 +96,26 @@ pub struct Search {
 }
 
 impl<'a, R: DirectionRule, const E: usize> Problem<'a, R, E> {
-    /// The same problem with another rule.
-    pub fn with_rule<S: DirectionRule>(&self, rule: S) -> Problem<'a, S, E> {
+    /// The same problem without its rule.
+    pub fn undirected(&self) -> Problem<'a, ArcRule, E> {
+        let rule = ArcRule::default();
         Problem { ground: self.ground, area: self.area, varrho: self.varrho, rule }
     }
 
     /// Solves the problem from a pose inside the area.
     ///
-    /// Cost: for each ray that the rule admits and the objective does not exclude, one or two looks
-    /// at a position when the whole ray is certain, `log2(speeds)` more when it is not; a look is
-    /// three multiplications for each vertex of the ground's cell. No trigonometry but one `sincos`.
+    /// Cost: for each circle of positions that may beat the best, to either side as many looks as
+    /// certain ground has pieces there; a look is two multiplications and an arc cosine for each vertex of the
+    /// ground's cell.
     pub fn solve<D: Dynamics>(&self, dynamics: &D, pose: Pose) -> Search {
-        let grid = dynamics.grid();
-        let mut sight = Sight::new(self.ground, self.area, pose.site, grid.speeds());
-        let mut best: Option<Candidate> = None;
-        let mut slowest = 1;
-        for ray in dynamics.rays(pose) {
-            let objective = |speed| self.varrho.objective(grid.reach_mm(speed), ray.effort);
-            while best.is_some_and(|b| objective(slowest) <= b.objective) && slowest < grid.speeds()
-            {
-                slowest += 1;
-            }
-            if slowest >= grid.speeds() {
-                break;
-            }
-            if !self.rule.admits(ray.step) {
-                continue;
-            }
-            if let Some(speed) = sight.fastest(&ray, slowest, grid.speeds() - 1)
-                && let Ok(target) = ray.arrive(pose.site, speed)
-            {
-                let action = grid.action(ray.index, speed);
-                best = Some(Candidate { action, target, objective: objective(speed) });
-                slowest = speed;
-            }
-        }
+        let mut sight = self.sight(pose.site, dynamics.grid());
+        let best = sight.best(dynamics, pose.heading, self.varrho, &self.rule);
         Search { best, examined: sight.examined() }
+    }
+
+    /// What is seen of it from a position.
+    pub(crate) fn sight(&self, site: Site, grid: ActionGrid) -> Sight<'a, E> {
+        Sight::new(self.ground, self.area, site, grid)
     }
 
     /// Solves the problem by trying every action: the slow twin of [`solve`](Self::solve).

@@ -3,24 +3,31 @@
 //! The paper is silent here, and P1 comes to it once in some fourteen steps. In this order:
 //!
 //! 1. *Undirected*: the same problem without its rule on directions.
-//! 2. *Reorient*: turn in place, the fewest sharpest turns after which (1) is feasible; of left and
-//!    right, the one with the better action afterwards. No sample is taken.
-//! 3. *Transit*: drive straight through certain ground, at full speed, to the nearest pose (counted
-//!    in motions, turns included) from which (1) is feasible. Eight bearings are considered: along
-//!    the bisector of the slope arc both ways, across it both ways, and between.
+//! 2. *Reorient*: turn in place, the fewest sharpest turns after which (1) is feasible beyond them; of
+//!    left and right, the one with the better action there. No sample is taken.
+//! 3. *Transit*: where all ground within reach is certain, the way to the nearest that is not, turns
+//!    first and then at full speed. Where some is uncertain and yet no action hits it, to the nearest
+//!    pose (counted in motions, a few at most) from which (1) is feasible: eight bearings are considered,
+//!    along the bisector of the slope arc both ways, across it both ways, and between.
 //! 4. Nothing: the resolution of the action grid is reached.
 //!
 //! Neither a turn nor a transit changes what is known, and each brings the pose it leads to one
 //! motion nearer, so asking afresh at every step finishes what was begun: the ladder has no state.
 
 use crate::action::Action;
-use crate::dynamics::{Dynamics, Pose};
+use crate::direction::Heading;
+use crate::dynamics::{Dynamics, Pose, Side};
 use crate::lattice::Vector;
 use crate::planner::Recovery;
-use crate::problem::{AnyDirection, DirectionRule, Problem};
+use crate::problem::Problem;
+use crate::rule::{ArcRule, DirectionRule};
+use crate::sight::Sight;
 
-/// A transit looks this many motions ahead.
-const HORIZON: u32 = 32;
+/// A transit among uncertain ground looks this many motions ahead: half a turn and two drives.
+const HORIZON: u32 = 4;
+
+/// A heading this far from a bearing drives along it, as a binary angle: 1/8 rad.
+const ALONG: u32 = 85_445_659;
 
 /// An action, where it leads, and the rung on which it was found.
 pub(crate) struct Found {
@@ -37,18 +44,24 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule, const E: usize>(
     pose: Pose,
     examined: &mut u32,
 ) -> Option<Found> {
-    let undirected = problem.with_rule(AnyDirection);
-    let mut ladder = Ladder { problem: undirected, dynamics, examined };
+    let mut sight = problem.sight(pose.site, dynamics.grid());
+    let directed = sight.best(dynamics, pose.heading, problem.varrho, &problem.rule);
+    let mut ladder = Ladder { problem: problem.undirected(), dynamics, examined };
     let found = |recovery| move |(action, target)| Found { recovery, action, target };
-    ladder
-        .solve(problem, pose)
-        .map(|(motion, _)| found(None)(motion))
-        .or_else(|| {
-            let (motion, _) = ladder.solve(&undirected, pose)?;
-            Some(found(Some(Recovery::Undirected))(motion))
-        })
-        .or_else(|| ladder.reorient(pose).map(found(Some(Recovery::Reorient))))
-        .or_else(|| ladder.transit(pose).map(found(Some(Recovery::Transit))))
+    let motion = directed.map(|best| found(None)((best.action, best.target)));
+    let motion = motion.or_else(|| {
+        if sight.is_clear() {
+            let way = sight.way_out()?;
+            return ladder.leg(pose, Heading::near(way)).map(found(Some(Recovery::Transit)));
+        }
+        let undirected = ladder.undirected(&mut sight, pose.heading);
+        undirected
+            .map(|(leg, _)| found(Some(Recovery::Undirected))(leg))
+            .or_else(|| ladder.reorient(&mut sight, pose).map(found(Some(Recovery::Reorient))))
+            .or_else(|| ladder.transit(pose).map(found(Some(Recovery::Transit))))
+    });
+    *ladder.examined += sight.examined();
+    motion
 }
 
 /// An action and where it leads.
@@ -56,42 +69,38 @@ type Leg = (Action, Pose);
 
 struct Ladder<'a, D, const E: usize> {
     /// The problem without its rule on directions.
-    problem: Problem<'a, AnyDirection, E>,
+    problem: Problem<'a, ArcRule, E>,
     dynamics: &'a D,
     examined: &'a mut u32,
 }
 
 impl<D: Dynamics, const E: usize> Ladder<'_, D, E> {
-    /// The best action of a problem and its objective.
-    fn solve<R: DirectionRule>(
-        &mut self,
-        problem: &Problem<'_, R, E>,
-        pose: Pose,
-    ) -> Option<(Leg, i64)> {
-        let search = problem.solve(self.dynamics, pose);
-        *self.examined += search.examined;
-        search.best.map(|best| ((best.action, best.target), best.objective))
+    /// The undirected problem's best action and its objective.
+    fn undirected(&self, sight: &mut Sight<'_, E>, heading: Heading) -> Option<(Leg, i64)> {
+        let best = sight.best(self.dynamics, heading, self.problem.varrho, &self.problem.rule)?;
+        Some(((best.action, best.target), best.objective))
     }
 
-    /// What the undirected problem is worth from a pose.
-    fn worth(&mut self, pose: Pose) -> Option<i64> {
-        let undirected = self.problem;
-        self.solve(&undirected, pose).map(|(_, objective)| objective)
-    }
-
-    fn reorient(&mut self, pose: Pose) -> Option<Leg> {
+    fn reorient(&self, sight: &mut Sight<'_, E>, pose: Pose) -> Option<Leg> {
         const HALF_TURN: u32 = 1 << 31;
-        let left = self.dynamics.turn_in_place(pose, true)?;
-        let right = self.dynamics.turn_in_place(pose, false)?;
+        let (dynamics, problem) = (self.dynamics, &self.problem);
+        let left = dynamics.turn_in_place(pose, Side::Left)?;
+        let right = dynamics.turn_in_place(pose, Side::Right)?;
         let sharpest = left.1.heading.0.wrapping_sub(pose.heading.0);
-        let (mut to_left, mut to_right, mut turned) = (left.1, right.1, sharpest);
-        while turned <= HALF_TURN {
-            let (on_left, on_right) = (self.worth(to_left), self.worth(to_right));
+        // What lies ahead is known by now: after each turn, what lies beyond it.
+        let (mut to, mut turned) = ([left.1, right.1], sharpest);
+        while turned < HALF_TURN {
+            let headings = to.map(|pose| pose.heading);
+            let beyond = sight.beside(dynamics, headings, problem.varrho, &problem.rule);
+            let [on_left, on_right] = beyond.map(|best| best.map(|best| best.objective));
             if on_left.max(on_right).is_some() {
                 return Some(if on_left >= on_right { left } else { right });
             }
-            to_left = self.dynamics.turn_in_place(to_left, true)?.1;
-            to_right = self.dynamics.turn_in_place(to_right, false)?.1;
+            let [to_left, to_right] = to;
+            to = [
+                dynamics.turn_in_place(to_left, Side::Left)?.1,
+                dynamics.turn_in_place(to_right, Side::Right)?.1,
+            ];
             turned = turned.saturating_add(sharpest);
         }
         None
@@ -106,6 +115,7 @@ impl<D: Dynamics, const E: usize> Ladder<'_, D, E> {
         let mut horizon = HORIZON;
         for bearing in [u, l, diagonal, diagonal.left()] {
             for bearing in [bearing, bearing.reversed()] {
+                let bearing = Heading::near(bearing);
                 if let Some((leg, motions)) = self.approach(pose, bearing, horizon) {
                     (nearest, horizon) = (Some(leg), motions - 1);
                 }
@@ -116,27 +126,34 @@ impl<D: Dynamics, const E: usize> Ladder<'_, D, E> {
 
     /// The first leg of the straight drive on a bearing to where the undirected problem is
     /// feasible, and its number of motions, at most `horizon`.
-    fn approach(&mut self, from: Pose, bearing: Vector, horizon: u32) -> Option<(Leg, u32)> {
+    fn approach(&mut self, from: Pose, bearing: Heading, horizon: u32) -> Option<(Leg, u32)> {
         let mut first = None;
         let mut pose = from;
         for motions in 1..=horizon {
             let leg = self.leg(pose, bearing)?;
             first = first.or(Some(leg));
-            pose = leg.1;
-            if self.worth(pose).is_some() {
-                return first.map(|leg| (leg, motions));
+            // What turns in place lead to is known from the reorientation: nothing.
+            if leg.1.site != pose.site {
+                let mut sight = self.problem.sight(leg.1.site, self.dynamics.grid());
+                let best = self.undirected(&mut sight, leg.1.heading);
+                *self.examined += sight.examined();
+                if best.is_some() {
+                    return first.map(|leg| (leg, motions));
+                }
             }
+            pose = leg.1;
         }
         None
     }
 
     /// One motion on a bearing: the drive along the nearest ray, or the turn that brings it nearer.
-    fn leg(&self, pose: Pose, bearing: Vector) -> Option<Leg> {
+    fn leg(&self, pose: Pose, bearing: Heading) -> Option<Leg> {
         let grid = self.dynamics.grid();
-        let ray = self.dynamics.rays(pose).max_by_key(|ray| ray.step.dot(bearing))?;
-        let (dot, cross) = (ray.step.dot(bearing), ray.step.cross(bearing));
-        if cross.abs() > dot / 8
-            && let Some(turn) = self.dynamics.turn_in_place(pose, cross > 0)
+        let ray = self.dynamics.towards(pose, bearing);
+        let off = bearing.0.wrapping_sub(ray.heading.0) as i32;
+        let side = if off > 0 { Side::Left } else { Side::Right };
+        if off.unsigned_abs() > ALONG
+            && let Some(turn) = self.dynamics.turn_in_place(pose, side)
         {
             return Some(turn);
         }

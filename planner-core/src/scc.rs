@@ -26,11 +26,12 @@ use crate::config::{Config, first_to_second};
 use crate::dynamics::{Dynamics, Pose};
 use crate::estimate::Estimates;
 use crate::hypotheses::{Hypotheses, Hypothesis, Prior};
-use crate::lattice::{Site, Vector};
+use crate::lattice::Site;
 use crate::planner::{Motion, Plan, Planner, Recovery, Stage, StopReason};
 use crate::posterior::Posterior;
-use crate::problem::{AnyDirection, ArcRule, DirectionRule, Problem};
+use crate::problem::Problem;
 use crate::recovery::{Found, solve_or_recover};
+use crate::rule::{ArcRule, ArcUnion, UnionRule};
 use crate::sample::{Reading, Sample};
 use crate::version_space::Refused;
 use crate::weight::Reliability;
@@ -77,29 +78,6 @@ impl Noise {
 pub fn trusted_radius(metres: f64) -> Option<u32> {
     let inside = Site::try_from(nalgebra::Point2::new(metres, 0.0)).ok()?;
     u32::try_from(inside.x()).ok()
-}
-
-/// The rules of P3 and P4 as printed: travel in no retained hypothesis's slopes, or in some one's.
-#[derive(Clone, Copy, Debug)]
-struct Retained<'a, const N: usize, const H: usize> {
-    hypotheses: &'a Hypotheses<N, H>,
-    among: bool,
-}
-
-impl<const N: usize, const H: usize> DirectionRule for Retained<'_, N, H> {
-    fn admits(&self, direction: Vector) -> bool {
-        // A cell's slopes hold a direction when its vertices are not all to one side of it.
-        let holds = |h: &Hypothesis<15>| {
-            let (mut left, mut right) = (false, false);
-            for bound in self.hypotheses.candidates(h).bounds() {
-                let turn = direction.cross(bound.along);
-                left |= turn >= 0;
-                right |= turn <= 0;
-            }
-            left && right
-        };
-        self.hypotheses.iter().any(holds) == self.among
-    }
 }
 
 /// Algorithm 2 for `D`'s dynamics, with room for `N` samples, the given ones included, and `H`
@@ -190,7 +168,10 @@ impl<D: Dynamics, const N: usize, const H: usize> Scc<D, N, H> {
     fn find(&self, pose: Pose, examined: &mut u32) -> Option<Found> {
         let start = self.hypotheses.start();
         if self.policy == Policy::Joint {
-            let rule = Retained { hypotheses: &self.hypotheses, among: !self.is_even() };
+            // P3 and P4 as printed: travel in no retained hypothesis's slopes, or in some one's.
+            let slopes = self.hypotheses.iter().map(|h| self.hypotheses.candidates(h).slope_arc());
+            let slopes: ArcUnion = slopes.collect();
+            let rule = UnionRule { arcs: slopes.arcs(), among: !self.is_even() };
             return solve_or_recover(&self.on(start, rule), &self.dynamics, pose, examined);
         }
         let elected = self.elect(pose, examined).and_then(|action| {
@@ -198,7 +179,7 @@ impl<D: Dynamics, const N: usize, const H: usize> Scc<D, N, H> {
             Some(Found { recovery: None, action, target })
         });
         elected.or_else(|| {
-            let undirected = self.on(start, AnyDirection);
+            let undirected = self.on(start, ArcRule::default());
             let found = solve_or_recover(&undirected, &self.dynamics, pose, examined)?;
             let recovery = found.recovery.or(Some(Recovery::Undirected));
             Some(Found { recovery, ..found })

@@ -1,61 +1,188 @@
-//! What the search sees along a ray: which ground surely has one label, and how to get past it.
+//! What a search sees from a position: where certain ground and the area end, circle by circle.
 //!
-//! Ground that is certain to have one label is convex, so on a ray it is an interval of speeds. But
-//! positions are rounded to the lattice and so not quite on the ray. A [`Sightline`] carries a proven
-//! bound on that rounding: ground is skipped only where it is certain whatever the rounding, and what
-//! is left is settled by the exact predicate.
+//! The positions of one speed lie on a circle around the agent. Seen from there a bound of the
+//! candidates is a height and a heading, and it cuts the circle where an arc cosine says. Where all
+//! bounds have the circle on one side, the ground is certain; so a search turns at once to where the
+//! first of them cuts it. And as certain ground of one label is convex, a ray whose end has the label
+//! of the agent's own position has it throughout.
+//!
+//! All of this is approximate and on the safe side: what is passed over is certain. The rest is
+//! settled by the exact predicate.
 
 use heapless::Vec;
 
+use crate::action::ActionGrid;
+use crate::approximate::{HALF_TURN, acos, sqrt};
 use crate::area::Area;
 use crate::candidates::Candidates;
 use crate::cell::Certainty;
-use crate::dynamics::Ray;
+use crate::direction::Heading;
+use crate::dynamics::{Dynamics, Fan, Pose, Ray, Side};
 use crate::lattice::{Site, Vector};
+use crate::line::Bound;
+use crate::problem::{Candidate, Varrho};
+use crate::rule::DirectionRule;
 use crate::sample::Label;
 
-/// A bound of the candidates, seen from where the agent stands.
-struct Sightline {
-    along: Vector,
-    /// The bound's value at the agent's position.
-    here: i64,
-    /// How far rounding can put a value off the ray's linear prediction.
-    slack: i64,
+/// Room for the error of an arc cosine and of a heading: 2 10^-4 rad.
+const ROOM: i32 = 35_000;
+
+/// A line as seen from the agent: at a radius `r` and a heading `t` its value is
+/// `height + r cos(t - uphill)`.
+#[derive(Clone, Copy)]
+struct Mark {
+    /// Distance of the agent from the line in lattice units, positive on its +1 side, to 10^-5 of it.
+    height: f32,
+    /// The heading of its normal.
+    uphill: Heading,
+    /// On the circle looked at: up to this angle to either side of uphill, it surely is on the line's
+    /// +1 side.
+    above: i32,
+    /// On the circle looked at: from this angle on it surely is on the other side.
+    below: i32,
 }
 
-impl Sightline {
-    /// The bound's value at a speed on a ray, within `slack`.
-    ///
-    /// From the agent's position it is `k step / 2^8 + e` to the one at speed `k`, with components
-    /// of `e` of at most 1/2, so the value there is `here + k cross(along, step) / 2^8 +
-    /// cross(along, e)`. Shifting the product loses less than 1, `k` times; `cross(along, e)` is at
-    /// most `(|along.x| + |along.z|) / 2`.
-    const fn at(&self, step: Vector, speed: u16) -> i64 {
-        self.here + speed as i64 * (self.along.cross(step) >> Ray::STEP_BITS)
+impl Mark {
+    const fn new(height: f32, uphill: Heading) -> Self {
+        Self { height, uphill, above: -1, below: 2 * HALF_TURN }
     }
+
+    fn of(Bound { along, .. }: Bound, value: i64) -> Self {
+        let (x, z) = (along.x as f32, along.z as f32);
+        Self::new(value as f32 / sqrt(x * x + z * z), Heading::near(along.left()))
+    }
+
+    /// Looks at a circle; `room`, in radii, is for the rounding of positions to the lattice.
+    fn cut(&mut self, inverse_radius: f32, room: f32) {
+        let depth = -self.height * inverse_radius;
+        let (most, least) = (depth + room, depth - room);
+        (self.above, self.below) = if most <= -1.0 {
+            // A line that misses the circle leaves it on one side all around.
+            (2 * HALF_TURN, 2 * HALF_TURN)
+        } else if least >= 1.0 {
+            (-1, -HALF_TURN)
+        } else if most < 0.9 && least > -0.9 {
+            // The arc cosine falls by less than 2.5 there, and an angle's unit is 5.9 10^-9 rad.
+            let (angle, slack) = (acos(depth), (room * (2.5 / 5.85e-9)) as i32 + ROOM);
+            (angle - slack, angle + slack)
+        } else {
+            let within =
+                |cosine: f32| if cosine.abs() < 1.0 { cosine } else { 1.0_f32.copysign(cosine) };
+            (acos(within(most)) - ROOM, acos(within(least)) + ROOM)
+        };
+    }
+
+    /// Which side of the line the circle surely is on at a heading, and how far a turn stays there.
+    fn surely(&self, heading: Heading, side: Side) -> Option<(Label, i32)> {
+        let turned = (heading.0.wrapping_sub(self.uphill.0) as i32) >> 2;
+        let turned = if side == Side::Left { turned } else { -turned };
+        let away = turned.abs();
+        if away <= self.above {
+            return Some((Label::Positive, self.above - turned));
+        }
+        // The other way around to uphill.
+        let around = if turned > 0 { 2 * HALF_TURN - turned } else { away };
+        (away >= self.below).then(|| (Label::Negative, around - self.below))
+    }
+}
+
+/// A turn as a binary angle.
+fn turned(turn: i32) -> u32 {
+    (turn.max(0) as u32) << 2
+}
+
+/// The rays to one side of a pose, and what a search has found there.
+struct Arm {
+    pose: Pose,
+    side: Side,
+    /// The first that may lead anywhere.
+    first: u32,
+    count: u32,
+    best: Option<Ranked>,
+}
+
+/// A candidate and the number and side of its ray, by which ties are settled.
+type Ranked = (Candidate, (u16, Side));
+
+impl Arm {
+    fn new<D: Dynamics>(dynamics: &D, pose: Pose, side: Side) -> Self {
+        let Fan { left, right, .. } = dynamics.fan();
+        let (first, count) = match side {
+            Side::Left => (0, u32::from(left)),
+            Side::Right => (1, u32::from(right) + 1),
+        };
+        Self { pose, side, first, count, best: None }
+    }
+}
+
+/// The better of two.
+fn better(a: Option<Ranked>, b: Option<Ranked>) -> Option<Ranked> {
+    let rank = |(candidate, order): &Ranked| (candidate.objective, core::cmp::Reverse(*order));
+    if b.as_ref().map(rank) > a.as_ref().map(rank) { b } else { a }
 }
 
 /// All that a search sees from one position.
 pub(crate) struct Sight<'a, const E: usize> {
     ground: Candidates<'a, E>,
     area: Area,
-    from: Site,
-    lines: Vec<Sightline, E, u8>,
+    site: Site,
+    grid: ActionGrid,
+    /// Room for the rounding of positions to the lattice and for the errors of marks, in radii: enough
+    /// for the innermost circle if the ray to this one is certain throughout.
+    room: f32,
+    /// What all candidates say of where the agent stands.
+    here: Certainty,
+    /// Within this distance all ground is certain, lattice units.
+    clear: f32,
+    /// The bounds of the candidates within reach.
+    marks: Vec<Mark, E, u8>,
+    /// Whether some of those beyond it lie below, or above.
+    beyond: [bool; 2],
+    /// The sides of the area within reach, with what is outside uphill.
+    sides: Vec<Mark, 4, u8>,
     examined: u32,
 }
 
 impl<'a, const E: usize> Sight<'a, E> {
-    /// What the bounds of candidates look like from a position, for motions of some number of speeds.
-    pub(crate) fn new(ground: Candidates<'a, E>, area: Area, from: Site, speeds: u16) -> Self {
-        let mut lines = Vec::new();
+    /// The view from a position inside the area, for motions on some grid.
+    pub(crate) fn new(ground: Candidates<'a, E>, area: Area, site: Site, grid: ActionGrid) -> Self {
+        let room = 3e-5 + 3.0 / grid.step_units();
+        let reach = f32::from(grid.speeds()) * grid.step_units() * (1.0 + room);
+        let (mut marks, mut sides) = (Vec::new(), Vec::new());
+        let (mut signs, mut beyond) = ([false; 2], [false; 2]);
+        let mut clear = f32::INFINITY;
         for bound in ground.bounds() {
-            let along = bound.along;
-            let size = i64::from(along.x.unsigned_abs()) + i64::from(along.z.unsigned_abs());
-            let slack = size / 2 + 1 + i64::from(speeds);
-            // As many vertices as edges, and these fit: nothing is refused.
-            let _ = lines.push(Sightline { along, here: bound.at(from), slack });
+            let value = bound.at(site);
+            let mark = Mark::of(bound, value);
+            let [below, above] = &mut signs;
+            *below |= value < 0;
+            *above |= value > 0;
+            let distance = mark.height.abs();
+            clear = if distance < clear { distance } else { clear };
+            if distance < reach {
+                // As many vertices as edges, and these fit: nothing is refused.
+                let _ = marks.push(mark);
+            } else {
+                let [below, above] = &mut beyond;
+                *below |= value < 0;
+                *above |= value > 0;
+            }
         }
-        Self { ground, area, from, lines, examined: 0 }
+        let here = match signs {
+            [true, true] => Certainty::Uncertain,
+            [true, false] => Certainty::Certain(Label::Negative),
+            [false, _] => Certainty::Certain(Label::Positive),
+        };
+        let (from, to) = (area.min(), area.max());
+        let inside =
+            [to.x() - site.x(), to.z() - site.z(), site.x() - from.x(), site.z() - from.z()];
+        for (inside, quarters) in inside.into_iter().zip(0..) {
+            if (inside as f32) < reach {
+                let _ = sides.push(Mark::new(-(inside as f32), Heading(quarters << 30)));
+            }
+        }
+        let clear = if here == Certainty::Uncertain { 0.0 } else { clear };
+        Self { ground, area, site, grid, room, here, clear, marks, beyond, sides, examined: 0 }
     }
 
     /// Actions whose position was looked at so far.
@@ -63,75 +190,219 @@ impl<'a, const E: usize> Sight<'a, E> {
         self.examined
     }
 
-    /// The highest speed from `slowest` to `fastest` at which the ray ends inside the area on
-    /// uncertain ground.
-    pub(crate) fn fastest(&mut self, ray: &Ray, slowest: u16, fastest: u16) -> Option<u16> {
-        let mut high = self.farthest_inside(ray, fastest)?;
-        while high >= slowest {
-            let Some(label) = self.surely(ray, high) else {
-                if self.is_uncertain(ray, high) {
-                    return Some(high);
-                }
-                high = high.checked_sub(1)?;
-                continue;
-            };
-            // Ground that surely has one label is an interval of speeds: if it holds the slowest
-            // too, it holds all between.
-            if self.surely(ray, slowest) == Some(label) {
+    /// Whether all ground is certain that one motion can reach.
+    pub(crate) fn is_clear(&self) -> bool {
+        !self.reaches(self.inverse_radius(self.grid.speeds() - 1))
+    }
+
+    fn inverse_radius(&self, speed: u16) -> f32 {
+        1.0 / (f32::from(speed) * self.grid.step_units())
+    }
+
+    /// Whether some ground on a circle may be uncertain.
+    fn reaches(&self, inverse_radius: f32) -> bool {
+        self.clear * inverse_radius < 1.0 + self.room
+    }
+
+    /// Looks at the circle of a speed, unless all ground up to there is certain.
+    fn look(&mut self, speed: u16) -> bool {
+        let inverse_radius = self.inverse_radius(speed);
+        let reaches = self.reaches(inverse_radius);
+        if reaches {
+            for mark in self.marks.iter_mut().chain(&mut self.sides) {
+                mark.cut(inverse_radius, self.room);
+            }
+        }
+        reaches
+    }
+
+    /// The label that the circle surely has at a heading, and how far a turn keeps it.
+    fn surely(&self, heading: Heading, side: Side) -> Option<(Label, u32)> {
+        let mut label = match self.beyond {
+            [true, true] => return None,
+            [true, false] => Some(Label::Negative),
+            [false, true] => Some(Label::Positive),
+            [false, false] => None,
+        };
+        let mut turn = 2 * HALF_TURN;
+        for mark in &self.marks {
+            let (other, least) = mark.surely(heading, side)?;
+            if *label.get_or_insert(other) != other {
                 return None;
             }
-            let mut low = slowest;
-            while high - low > 1 {
-                let middle = low.midpoint(high);
-                if self.surely(ray, middle) == Some(label) {
-                    high = middle;
-                } else {
-                    low = middle;
+            turn = turn.min(least);
+        }
+        label.map(|label| (label, turned(turn)))
+    }
+
+    /// Whether the circle surely is outside the area at a heading, and how far a turn keeps it there.
+    fn outside(&self, heading: Heading, side: Side) -> Option<u32> {
+        self.sides.iter().find_map(|mark| match mark.surely(heading, side) {
+            Some((Label::Positive, turn)) => Some(turned(turn)),
+            _ => None,
+        })
+    }
+
+    /// The best action from here when facing some heading: see
+    /// [`Problem::solve`](crate::problem::Problem::solve).
+    pub(crate) fn best<D: Dynamics, R: DirectionRule>(
+        &mut self,
+        dynamics: &D,
+        heading: Heading,
+        varrho: Varrho,
+        rule: &R,
+    ) -> Option<Candidate> {
+        let pose = Pose { site: self.site, heading };
+        let arm = |side| Arm::new(dynamics, pose, side);
+        let [left, right] =
+            self.search(dynamics, [arm(Side::Left), arm(Side::Right)], true, varrho, rule);
+        better(left, right).map(|(candidate, _)| candidate)
+    }
+
+    /// The best actions on the left of one heading and on the right of another.
+    pub(crate) fn beside<D: Dynamics, R: DirectionRule>(
+        &mut self,
+        dynamics: &D,
+        [left, right]: [Heading; 2],
+        varrho: Varrho,
+        rule: &R,
+    ) -> [Option<Candidate>; 2] {
+        let arm = |heading, side| Arm::new(dynamics, Pose { site: self.site, heading }, side);
+        let arms = [arm(left, Side::Left), arm(right, Side::Right)];
+        self.search(dynamics, arms, false, varrho, rule)
+            .map(|found| found.map(|(candidate, _)| candidate))
+    }
+
+    /// The best action on each arm; if only the better of the two counts, the other may be missed.
+    ///
+    /// The outermost circle first, and on it the first ray that will do: those after it turn more.
+    /// The search ends where a circle is no better even straight ahead.
+    fn search<D: Dynamics, R: DirectionRule>(
+        &mut self,
+        dynamics: &D,
+        mut arms: [Arm; 2],
+        together: bool,
+        varrho: Varrho,
+        rule: &R,
+    ) -> [Option<Ranked>; 2] {
+        let grid = self.grid;
+        for speed in (1..grid.speeds()).rev() {
+            let objective = |effort| varrho.objective(grid.reach_mm(speed), effort);
+            let straight = objective(0);
+            let mut looked = false;
+            for turn in 0..2 {
+                let other = if together { arms.get(1 - turn).and_then(|it| it.best) } else { None };
+                let Some(arm) = arms.get_mut(turn) else { continue };
+                let bar = better(other, arm.best);
+                if arm.first >= arm.count || bar.is_some_and(|(b, _)| straight < b.objective) {
+                    continue;
+                }
+                if !looked && !self.look(speed) {
+                    return arms.map(|arm| arm.best);
+                }
+                looked = true;
+                let side = arm.side;
+                let found = self.first(dynamics, arm, speed, rule, |ray, n| {
+                    let value = objective(ray.effort);
+                    bar.is_none_or(|(b, order)| {
+                        value > b.objective || (value == b.objective && (n, side) < order)
+                    })
+                });
+                if let Some((ray, n, target)) = found {
+                    let (action, objective) =
+                        (grid.action(ray.index, speed), objective(ray.effort));
+                    arm.best = Some((Candidate { action, target, objective }, (n, side)));
                 }
             }
-            high = low;
+            if !looked {
+                break;
+            }
+        }
+        arms.map(|arm| arm.best)
+    }
+
+    /// The first ray of an arm whose end on a circle will do, as long as rays are worth it.
+    fn first<D: Dynamics, R: DirectionRule>(
+        &mut self,
+        dynamics: &D,
+        arm: &mut Arm,
+        speed: u16,
+        rule: &R,
+        is_worth_it: impl Fn(&Ray, u16) -> bool,
+    ) -> Option<(Ray, u16, Pose)> {
+        let spacing = dynamics.fan().spacing.0.max(1);
+        let (pose, side) = (arm.pose, arm.side);
+        let mut next = arm.first;
+        while next < arm.count {
+            let n = next as u16;
+            let heading = dynamics.heading(pose, side, n);
+            // How far this ray's verdict holds, and whether it does for the inner circles too.
+            let (turn, throughout) = if let Some((label, turn)) = self.surely(heading, side) {
+                (turn, self.here == Certainty::Certain(label))
+            } else if let Some(turn) = self.outside(heading, side) {
+                (turn, false)
+            } else {
+                let ray = dynamics.ray(pose, side, n);
+                if !is_worth_it(&ray, n) {
+                    return None;
+                }
+                if rule.admits(ray.step) {
+                    if let Some(target) = self.uncertain_end(&ray, speed) {
+                        return Some((ray, n, target));
+                    }
+                    (0, false)
+                } else {
+                    (rule.barred(heading, ray.step, side), true)
+                }
+            };
+            // Rays within the turn are like this one: it is below 2^32, and a step above 2^15.
+            let after = next + turn / spacing + 1;
+            if throughout && next == arm.first {
+                arm.first = after;
+            }
+            next = after;
         }
         None
     }
 
-    /// The highest speed, up to `fastest`, that does not leave the area: a ray leaves it once.
-    fn farthest_inside(&self, ray: &Ray, fastest: u16) -> Option<u16> {
-        let inside = |speed| self.position(ray, speed).is_some_and(|q| self.area.contains(q));
-        if inside(fastest) {
-            return Some(fastest);
-        }
-        let (mut low, mut high) = (0, fastest);
-        while high - low > 1 {
-            let middle = low.midpoint(high);
-            if inside(middle) {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        inside(low).then_some(low)
-    }
-
-    fn position(&self, ray: &Ray, speed: u16) -> Option<Site> {
-        self.from.step(ray.displacement(speed)).ok()
-    }
-
-    /// The label that the ray's ground at a speed has however positions are rounded.
-    fn surely(&mut self, ray: &Ray, speed: u16) -> Option<Label> {
+    /// The pose at a ray's end, if that is inside the area and on uncertain ground.
+    fn uncertain_end(&mut self, ray: &Ray, speed: u16) -> Option<Pose> {
+        let target = ray.arrive(self.site, speed).ok()?;
         self.examined += 1;
-        let (mut below, mut above) = (true, true);
-        for line in &self.lines {
-            let value = line.at(ray.step, speed);
-            below &= value <= -line.slack;
-            above &= value >= line.slack;
-            if !below && !above {
-                return None;
-            }
-        }
-        Some(if above { Label::Positive } else { Label::Negative })
+        let feasible = self.area.contains(target.site)
+            && self.ground.certainty(target.site) == Certainty::Uncertain;
+        feasible.then_some(target)
     }
 
-    fn is_uncertain(&self, ray: &Ray, speed: u16) -> bool {
-        self.position(ray, speed).is_some_and(|q| self.ground.certainty(q) == Certainty::Uncertain)
+    /// The way to the nearest uncertain ground inside the area; `None` when there is none.
+    pub(crate) fn way_out(&self) -> Option<Vector> {
+        const ONE: i32 = 1 << 30;
+        let here = self.site;
+        let apart = |a: i32, b: i32| (a - b) as f32;
+        let from = [apart(self.area.min().x(), here.x()), apart(self.area.min().z(), here.z())];
+        let to = [apart(self.area.max().x(), here.x()), apart(self.area.max().z(), here.z())];
+        let mut nearest: Option<(f32, [f32; 2])> = None;
+        for bound in self.ground.bounds() {
+            let mark = Mark::of(bound, bound.at(here));
+            let normal = mark.uphill.unit().scaled(ONE);
+            let normal = [normal.x, normal.z].map(|v| v as f32 / ONE as f32);
+            let along = [-normal[1], normal[0]];
+            // The line's foot, and the part of the line that is inside: foot + t along.
+            let foot = normal.map(|v| -v * mark.height);
+            let (mut low, mut high) = (f32::NEG_INFINITY, f32::INFINITY);
+            for (((foot, along), from), to) in foot.iter().zip(along).zip(from).zip(to) {
+                let (a, b) = ((from - foot) / along, (to - foot) / along);
+                low = low.max(a.min(b));
+                high = high.min(a.max(b));
+            }
+            if low <= high {
+                let t = 0.0_f32.clamp(low, high);
+                let distance = mark.height * mark.height + t * t;
+                if nearest.is_none_or(|(least, _)| distance < least) {
+                    nearest = Some((distance, [foot[0] + t * along[0], foot[1] + t * along[1]]));
+                }
+            }
+        }
+        nearest.map(|(_, [x, z])| Vector { x: x as i32, z: z as i32 })
     }
 }

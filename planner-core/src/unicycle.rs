@@ -1,8 +1,8 @@
 //! The paper's unicycle: turn, then drive.
 
 use crate::action::{Action, ActionGrid, BadGrid, Control};
-use crate::direction::{Heading, Rotation};
-use crate::dynamics::{Dynamics, Pose, Ray};
+use crate::direction::Heading;
+use crate::dynamics::{Dynamics, Fan, Pose, Ray, Side};
 
 /// The paper's unicycle (Section V): `theta' = theta + w`, then `x' = x + v cos theta'`,
 /// `z' = z + v sin theta'`.
@@ -21,9 +21,6 @@ pub struct Unicycle {
     sharpest_rad: f32,
     sharpest_mrad2: u32,
     sharpest: Heading,
-    /// Rotations by one step, and by what the sharpest turn adds to the last multiple of it.
-    one_turn: Rotation,
-    last_turn: Rotation,
 }
 
 impl Unicycle {
@@ -48,38 +45,35 @@ impl Unicycle {
 
     /// The paper's action set: `v` in {0, 0.1, ..., 2.0} and `w` in {-pi/2, -1.57, ..., 0, 0.01,
     /// ..., 1.57, pi/2}: 317 x 21 = 6,657 actions.
-    pub fn paper() -> Self {
-        const GRID: ActionGrid = match ActionGrid::new(317, 21, 100) {
-            Ok(grid) => grid,
+    pub const fn paper() -> Self {
+        const PAPER: Unicycle = match ActionGrid::new(317, 21, 100) {
+            Ok(grid) => Unicycle::with_grid(grid, 10, core::f64::consts::FRAC_PI_2),
             Err(_) => panic!("the paper's grid is none"),
         };
-        Self::with_grid(GRID, 10, core::f64::consts::FRAC_PI_2)
+        PAPER
     }
 
-    fn with_grid(grid: ActionGrid, step_mrad: u32, sharpest_rad: f64) -> Self {
-        let turns = grid.rays() / 2;
-        let before_last_rad = f64::from(u32::from(turns - 1) * step_mrad) / 1000.0;
-        let heading = |rad| Heading::from_radians(rad).unwrap_or_default();
+    /// A sharpest turn is at most pi, so all of this is far from overflow.
+    const fn with_grid(grid: ActionGrid, step_mrad: u32, sharpest_rad: f64) -> Self {
+        let sharpest_mrad = sharpest_rad * 1000.0;
         Self {
             grid,
-            turns,
+            turns: grid.rays() / 2,
             step_mrad,
-            step: libm::round(f64::from(step_mrad) * BINARY_ANGLE_PER_MRAD) as u64,
+            step: (step_mrad as f64 * BINARY_ANGLE_PER_MRAD + 0.5) as u64,
             sharpest_rad: sharpest_rad as f32,
-            sharpest_mrad2: libm::round(sharpest_rad * sharpest_rad * 1e6) as u32,
-            sharpest: heading(sharpest_rad),
-            one_turn: heading(f64::from(step_mrad) / 1000.0).unit(),
-            last_turn: heading(sharpest_rad - before_last_rad).unit(),
+            sharpest_mrad2: (sharpest_mrad * sharpest_mrad + 0.5) as u32,
+            sharpest: Heading((sharpest_mrad * BINARY_ANGLE_PER_MRAD / 65_536.0 + 0.5) as u32),
         }
     }
 
     /// The `j`-th turn to the left and its square, mrad^2.
-    fn turn(&self, j: u16) -> (Heading, u32) {
-        if j == self.turns {
+    const fn turn(&self, j: u16) -> (Heading, u32) {
+        if j >= self.turns {
             return (self.sharpest, self.sharpest_mrad2);
         }
-        let turned = (u64::from(j) * self.step + (1 << 15)) >> 16;
-        (Heading(turned as u32), (u32::from(j) * self.step_mrad).pow(2))
+        let turned = (j as u64 * self.step + (1 << 15)) >> 16;
+        (Heading(turned as u32), (j as u32 * self.step_mrad).pow(2))
     }
 }
 
@@ -91,32 +85,32 @@ impl Dynamics for Unicycle {
         self.grid
     }
 
-    /// Straight ahead, then the smallest turns first, each to the left and to the right.
-    fn rays(&self, pose: Pose) -> impl Iterator<Item = Ray> {
-        let length = self.grid.step_length();
-        let ahead = pose.heading.unit();
-        let (mut to_left, mut to_right) = (ahead, ahead);
-        (0..self.grid.rays()).map(move |n| {
-            let (j, left) = (n.div_ceil(2), n % 2 == 1);
-            if left {
-                let by = if j == self.turns { self.last_turn } else { self.one_turn };
-                (to_left, to_right) = (to_left.then(by), to_right.then(by.inverse()));
-            }
-            let (turn, effort) = self.turn(j);
-            let (index, turn, unit) = if left {
-                (self.turns + j, turn, to_left)
-            } else {
-                (self.turns - j, turn.mirrored(), to_right)
-            };
-            Ray { index, heading: pose.heading.turned(turn), step: unit.scaled(length), effort }
-        })
+    fn fan(&self) -> Fan {
+        let spacing = Heading((self.step >> 16) as u32 + 1);
+        Fan { left: self.turns + 1, right: self.turns, spacing }
     }
 
-    fn turn_in_place(&self, pose: Pose, left: bool) -> Option<(Action, Pose)> {
-        let (ray, turn) =
-            if left { (2 * self.turns, self.sharpest) } else { (0, self.sharpest.mirrored()) };
-        let turned = Pose { heading: pose.heading.turned(turn), ..pose };
-        Some((self.grid.action(ray, 0), turned))
+    fn heading(&self, pose: Pose, side: Side, n: u16) -> Heading {
+        let (turn, _) = self.turn(n);
+        pose.heading.turned(if side == Side::Left { turn } else { turn.mirrored() })
+    }
+
+    fn ray(&self, pose: Pose, side: Side, n: u16) -> Ray {
+        let n = n.min(self.turns);
+        let (heading, (_, effort)) = (self.heading(pose, side, n), self.turn(n));
+        let index = if side == Side::Left { self.turns + n } else { self.turns - n };
+        Ray { index, heading, step: heading.unit().scaled(self.grid.step_length()), effort }
+    }
+
+    fn turn_in_place(&self, pose: Pose, side: Side) -> Option<(Action, Pose)> {
+        let ray = self.ray(pose, side, self.turns);
+        Some((self.grid.action(ray.index, 0), Pose { heading: ray.heading, ..pose }))
+    }
+
+    fn ray_of(&self, pose: Pose, action: Action) -> Option<Ray> {
+        let (index, _) = self.grid.split(action);
+        let side = if index >= self.turns { Side::Left } else { Side::Right };
+        (index < self.grid.rays()).then(|| self.ray(pose, side, index.abs_diff(self.turns)))
     }
 
     fn control(&self, action: Action) -> Control {

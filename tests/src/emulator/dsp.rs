@@ -7,9 +7,9 @@ use armagnac::registers::RegisterIndex;
 use super::decoder::{Decoded, added};
 
 /// The parallel additions and subtractions: in armagnac 0.3 those that set GE clear N, Z, C and V.
-/// Compilers do not choose them by themselves, so none is known here.
+/// Compilers do not choose them by themselves, but for the unsigned saturating ones, which set none.
 pub(super) fn loses_flags(code: u32) -> bool {
-    code & 0xff80_f080 == 0xfa80_f000
+    code & 0xff80_f080 == 0xfa80_f000 && code & 0xf0 != 0x50
 }
 
 pub(super) fn decode(code: u32) -> Option<Decoded> {
@@ -22,6 +22,11 @@ pub(super) fn decode(code: u32) -> Option<Decoded> {
         0xfa0..=0xfa5 if code & 0xf0c0 == 0xf080 => added(move |p| {
             let m = p[rm].rotate_right(8 * (column & 3));
             p.set(rd, extend(row, or_zero(p, rn), m));
+            Ok(Effect::None)
+        }),
+        // UQADD8, UQADD16, UQSUB8, UQSUB16
+        0xfa8 | 0xfa9 | 0xfac | 0xfad if code & 0xf0f0 == 0xf050 => added(move |p| {
+            p.set(rd, saturating(row, p[rn], p[rm]));
             Ok(Effect::None)
         }),
         0xeac if code & 0x8010 == 0 => {
@@ -72,6 +77,17 @@ fn extend(row: u32, n: u32, m: u32) -> u32 {
         4 => n.wrapping_add(m as i8 as u32),
         _ => n.wrapping_add(m & 0xff),
     }
+}
+
+/// The unsigned saturating sums and differences of bytes (an even row) or halfwords.
+fn saturating(row: u32, n: u32, m: u32) -> u32 {
+    let width = if row & 1 == 0 { 8 } else { 16 };
+    let most = (1_u32 << width) - 1;
+    (0..32 / width).fold(0, |result, lane| {
+        let [a, b] = [n, m].map(|word| word >> (lane * width) & most);
+        let value = if row & 4 == 0 { (a + b).min(most) } else { a.saturating_sub(b) };
+        result | value << (lane * width)
+    })
 }
 
 /// PKHBT and PKHTB.
@@ -181,5 +197,13 @@ mod tests {
         assert_eq!(multiply_long(4, 9, 3, 0x0005_0007, 1, 0), Some(16));
         assert_eq!(multiply_long(4, 10, 0x0003_0001, 0x0005_0007, 1, 0), Some(22));
         assert_eq!(multiply_long(5, 13, 0x0002_0003, 0x0005_0007, 0, 0), Some(1));
+    }
+
+    #[test]
+    fn lanes_saturate_by_themselves() {
+        assert_eq!(saturating(1, 0xfff0_0003, 0x0020_0004), 0xffff_0007);
+        assert_eq!(saturating(5, 0x0010_0003, 0x0020_0002), 0x0000_0001);
+        assert_eq!(saturating(0, 0xf0_01_80_7f, 0x20_02_80_01), 0xff_03_ff_80);
+        assert_eq!(saturating(4, 0x10_05_00_80, 0x20_02_01_01), 0x00_03_00_7f);
     }
 }
