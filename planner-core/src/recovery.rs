@@ -23,8 +23,8 @@ use crate::problem::Problem;
 use crate::rule::{ArcRule, DirectionRule};
 use crate::sight::Sight;
 
-/// A transit among uncertain ground looks this many motions ahead: half a turn and two drives.
-const HORIZON: u32 = 4;
+/// A transit among uncertain ground looks this many motions ahead.
+const HORIZON: u32 = 16;
 
 /// A heading this far from a bearing drives along it, as a binary angle: 1/8 rad.
 const ALONG: u32 = 85_445_659;
@@ -54,9 +54,10 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule, const E: usize>(
             let way = sight.way_out()?;
             return ladder.leg(pose, Heading::near(way)).map(found(Some(Recovery::Transit)));
         }
-        let undirected = ladder.undirected(&mut sight, pose.heading);
+        let undirected =
+            if sight.was_barred() { ladder.undirected(&mut sight, pose.heading) } else { None };
         undirected
-            .map(|(leg, _)| found(Some(Recovery::Undirected))(leg))
+            .map(found(Some(Recovery::Undirected)))
             .or_else(|| ladder.reorient(&mut sight, pose).map(found(Some(Recovery::Reorient))))
             .or_else(|| ladder.transit(pose).map(found(Some(Recovery::Transit))))
     });
@@ -75,10 +76,10 @@ struct Ladder<'a, D, const E: usize> {
 }
 
 impl<D: Dynamics, const E: usize> Ladder<'_, D, E> {
-    /// The undirected problem's best action and its objective.
-    fn undirected(&self, sight: &mut Sight<'_, E>, heading: Heading) -> Option<(Leg, i64)> {
+    /// The undirected problem's best action.
+    fn undirected(&self, sight: &mut Sight<'_, E>, heading: Heading) -> Option<Leg> {
         let best = sight.best(self.dynamics, heading, self.problem.varrho, &self.problem.rule)?;
-        Some(((best.action, best.target), best.objective))
+        Some((best.action, best.target))
     }
 
     fn reorient(&self, sight: &mut Sight<'_, E>, pose: Pose) -> Option<Leg> {
@@ -91,10 +92,10 @@ impl<D: Dynamics, const E: usize> Ladder<'_, D, E> {
         let (mut to, mut turned) = ([left.1, right.1], sharpest);
         while turned < HALF_TURN {
             let headings = to.map(|pose| pose.heading);
-            let beyond = sight.beside(dynamics, headings, problem.varrho, &problem.rule);
-            let [on_left, on_right] = beyond.map(|best| best.map(|best| best.objective));
-            if on_left.max(on_right).is_some() {
-                return Some(if on_left >= on_right { left } else { right });
+            match sight.better_side(dynamics, headings, problem.varrho, &problem.rule) {
+                Some(Side::Left) => return Some(left),
+                Some(Side::Right) => return Some(right),
+                None => {}
             }
             let [to_left, to_right] = to;
             to = [

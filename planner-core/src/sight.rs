@@ -12,12 +12,12 @@
 use heapless::Vec;
 
 use crate::action::ActionGrid;
-use crate::approximate::{HALF_TURN, acos, sqrt};
+use crate::approximate::{HALF_TURN, UNITS_PER_RADIAN, acos, sqrt};
 use crate::area::Area;
 use crate::candidates::Candidates;
 use crate::cell::Certainty;
 use crate::direction::Heading;
-use crate::dynamics::{Dynamics, Fan, Pose, Ray, Side};
+use crate::dynamics::{Dynamics, Pose, Ray, Side};
 use crate::lattice::{Site, Vector};
 use crate::line::Bound;
 use crate::problem::{Candidate, Varrho};
@@ -26,6 +26,9 @@ use crate::sample::Label;
 
 /// Room for the error of an arc cosine and of a heading: 2 10^-4 rad.
 const ROOM: i32 = 35_000;
+
+/// Within this the arc cosine falls by less than 2.3, or 2.4 with some room beside.
+const STEEP: f32 = 0.9;
 
 /// A line as seen from the agent: at a radius `r` and a heading `t` its value is
 /// `height + r cos(t - uphill)`.
@@ -52,23 +55,21 @@ impl Mark {
         Self::new(value as f32 / sqrt(x * x + z * z), Heading::near(along.left()))
     }
 
-    /// Looks at a circle; `room`, in radii, is for the rounding of positions to the lattice.
-    fn cut(&mut self, inverse_radius: f32, room: f32) {
+    /// Looks at a circle; `room`, in radii, is for the rounding of positions to the lattice, and `slack`
+    /// what it comes to as an angle where the circle is not cut at a slant.
+    fn cut(&mut self, inverse_radius: f32, room: f32, slack: i32) {
         let depth = -self.height * inverse_radius;
         let (most, least) = (depth + room, depth - room);
-        (self.above, self.below) = if most <= -1.0 {
+        (self.above, self.below) = if depth.abs() < STEEP {
+            let angle = acos(depth);
+            (angle - slack, angle + slack)
+        } else if most <= -1.0 {
             // A line that misses the circle leaves it on one side all around.
             (2 * HALF_TURN, 2 * HALF_TURN)
         } else if least >= 1.0 {
             (-1, -HALF_TURN)
-        } else if most < 0.9 && least > -0.9 {
-            // The arc cosine falls by less than 2.5 there, and an angle's unit is 5.9 10^-9 rad.
-            let (angle, slack) = (acos(depth), (room * (2.5 / 5.85e-9)) as i32 + ROOM);
-            (angle - slack, angle + slack)
         } else {
-            let within =
-                |cosine: f32| if cosine.abs() < 1.0 { cosine } else { 1.0_f32.copysign(cosine) };
-            (acos(within(most)) - ROOM, acos(within(least)) + ROOM)
+            (acos(most.clamp(-1.0, 1.0)) - ROOM, acos(least.clamp(-1.0, 1.0)) + ROOM)
         };
     }
 
@@ -91,35 +92,17 @@ fn turned(turn: i32) -> u32 {
     (turn.max(0) as u32) << 2
 }
 
-/// The rays to one side of a pose, and what a search has found there.
+/// The rays to one side of a heading.
 struct Arm {
     pose: Pose,
     side: Side,
     /// The first that may lead anywhere.
     first: u32,
     count: u32,
-    best: Option<Ranked>,
 }
 
 /// A candidate and the number and side of its ray, by which ties are settled.
 type Ranked = (Candidate, (u16, Side));
-
-impl Arm {
-    fn new<D: Dynamics>(dynamics: &D, pose: Pose, side: Side) -> Self {
-        let Fan { left, right, .. } = dynamics.fan();
-        let (first, count) = match side {
-            Side::Left => (0, u32::from(left)),
-            Side::Right => (1, u32::from(right) + 1),
-        };
-        Self { pose, side, first, count, best: None }
-    }
-}
-
-/// The better of two.
-fn better(a: Option<Ranked>, b: Option<Ranked>) -> Option<Ranked> {
-    let rank = |(candidate, order): &Ranked| (candidate.objective, core::cmp::Reverse(*order));
-    if b.as_ref().map(rank) > a.as_ref().map(rank) { b } else { a }
-}
 
 /// All that a search sees from one position.
 pub(crate) struct Sight<'a, const E: usize> {
@@ -130,6 +113,8 @@ pub(crate) struct Sight<'a, const E: usize> {
     /// Room for the rounding of positions to the lattice and for the errors of marks, in radii: enough
     /// for the innermost circle if the ray to this one is certain throughout.
     room: f32,
+    /// What this comes to as an angle.
+    slack: i32,
     /// What all candidates say of where the agent stands.
     here: Certainty,
     /// Within this distance all ground is certain, lattice units.
@@ -141,12 +126,15 @@ pub(crate) struct Sight<'a, const E: usize> {
     /// The sides of the area within reach, with what is outside uphill.
     sides: Vec<Mark, 4, u8>,
     examined: u32,
+    barred: bool,
 }
 
 impl<'a, const E: usize> Sight<'a, E> {
     /// The view from a position inside the area, for motions on some grid.
     pub(crate) fn new(ground: Candidates<'a, E>, area: Area, site: Site, grid: ActionGrid) -> Self {
         let room = 3e-5 + 3.0 / grid.step_units();
+        let slack =
+            if room < 0.01 { (room * 2.5 * UNITS_PER_RADIAN) as i32 + ROOM } else { HALF_TURN };
         let reach = f32::from(grid.speeds()) * grid.step_units() * (1.0 + room);
         let (mut marks, mut sides) = (Vec::new(), Vec::new());
         let (mut signs, mut beyond) = ([false; 2], [false; 2]);
@@ -182,7 +170,21 @@ impl<'a, const E: usize> Sight<'a, E> {
             }
         }
         let clear = if here == Certainty::Uncertain { 0.0 } else { clear };
-        Self { ground, area, site, grid, room, here, clear, marks, beyond, sides, examined: 0 }
+        Self {
+            ground,
+            area,
+            site,
+            grid,
+            room,
+            slack,
+            here,
+            clear,
+            marks,
+            beyond,
+            sides,
+            examined: 0,
+            barred: false,
+        }
     }
 
     /// Actions whose position was looked at so far.
@@ -209,9 +211,9 @@ impl<'a, const E: usize> Sight<'a, E> {
         let inverse_radius = self.inverse_radius(speed);
         let reaches = self.reaches(inverse_radius);
         if reaches {
-            for mark in self.marks.iter_mut().chain(&mut self.sides) {
-                mark.cut(inverse_radius, self.room);
-            }
+            let (room, slack) = (self.room, self.slack);
+            self.marks.iter_mut().for_each(|mark| mark.cut(inverse_radius, room, slack));
+            self.sides.iter_mut().for_each(|mark| mark.cut(inverse_radius, room, slack));
         }
         reaches
     }
@@ -252,73 +254,70 @@ impl<'a, const E: usize> Sight<'a, E> {
         varrho: Varrho,
         rule: &R,
     ) -> Option<Candidate> {
-        let pose = Pose { site: self.site, heading };
-        let arm = |side| Arm::new(dynamics, pose, side);
-        let [left, right] =
-            self.search(dynamics, [arm(Side::Left), arm(Side::Right)], true, varrho, rule);
-        better(left, right).map(|(candidate, _)| candidate)
+        self.search(dynamics, [heading; 2], varrho, rule).map(|(candidate, _)| candidate)
     }
 
-    /// The best actions on the left of one heading and on the right of another.
-    pub(crate) fn beside<D: Dynamics, R: DirectionRule>(
+    /// On which side there is the better action: on the left of one heading or the right of another.
+    pub(crate) fn better_side<D: Dynamics, R: DirectionRule>(
+        &mut self,
+        dynamics: &D,
+        headings: [Heading; 2],
+        varrho: Varrho,
+        rule: &R,
+    ) -> Option<Side> {
+        self.search(dynamics, headings, varrho, rule).map(|(_, (_, side))| side)
+    }
+
+    /// Whether the rule has kept a search from a ray that may have had a place to go.
+    pub(crate) fn was_barred(&self) -> bool {
+        self.barred
+    }
+
+    /// The best action on the left of one heading and the right of another.
+    ///
+    /// The outermost circle first, and on it to either side the first ray that will do: those after it
+    /// turn more. The search ends where a circle is no better even straight ahead.
+    fn search<D: Dynamics, R: DirectionRule>(
         &mut self,
         dynamics: &D,
         [left, right]: [Heading; 2],
         varrho: Varrho,
         rule: &R,
-    ) -> [Option<Candidate>; 2] {
-        let arm = |heading, side| Arm::new(dynamics, Pose { site: self.site, heading }, side);
-        let arms = [arm(left, Side::Left), arm(right, Side::Right)];
-        self.search(dynamics, arms, false, varrho, rule)
-            .map(|found| found.map(|(candidate, _)| candidate))
-    }
-
-    /// The best action on each arm; if only the better of the two counts, the other may be missed.
-    ///
-    /// The outermost circle first, and on it the first ray that will do: those after it turn more.
-    /// The search ends where a circle is no better even straight ahead.
-    fn search<D: Dynamics, R: DirectionRule>(
-        &mut self,
-        dynamics: &D,
-        mut arms: [Arm; 2],
-        together: bool,
-        varrho: Varrho,
-        rule: &R,
-    ) -> [Option<Ranked>; 2] {
-        let grid = self.grid;
+    ) -> Option<Ranked> {
+        let (grid, fan) = (self.grid, dynamics.fan());
+        let arm = |heading, side, first, count| Arm {
+            pose: Pose { site: self.site, heading },
+            side,
+            first,
+            count,
+        };
+        let mut arms = [
+            arm(left, Side::Left, 0, u32::from(fan.left)),
+            arm(right, Side::Right, 1, u32::from(fan.right) + 1),
+        ];
+        let mut best: Option<Ranked> = None;
         for speed in (1..grid.speeds()).rev() {
             let objective = |effort| varrho.objective(grid.reach_mm(speed), effort);
-            let straight = objective(0);
-            let mut looked = false;
-            for turn in 0..2 {
-                let other = if together { arms.get(1 - turn).and_then(|it| it.best) } else { None };
-                let Some(arm) = arms.get_mut(turn) else { continue };
-                let bar = better(other, arm.best);
-                if arm.first >= arm.count || bar.is_some_and(|(b, _)| straight < b.objective) {
-                    continue;
-                }
-                if !looked && !self.look(speed) {
-                    return arms.map(|arm| arm.best);
-                }
-                looked = true;
+            let done = arms.iter().all(|arm| arm.first >= arm.count);
+            if done || best.is_some_and(|(b, _)| objective(0) < b.objective) || !self.look(speed) {
+                break;
+            }
+            for arm in &mut arms {
                 let side = arm.side;
                 let found = self.first(dynamics, arm, speed, rule, |ray, n| {
                     let value = objective(ray.effort);
-                    bar.is_none_or(|(b, order)| {
+                    best.is_none_or(|(b, order)| {
                         value > b.objective || (value == b.objective && (n, side) < order)
                     })
                 });
                 if let Some((ray, n, target)) = found {
                     let (action, objective) =
                         (grid.action(ray.index, speed), objective(ray.effort));
-                    arm.best = Some((Candidate { action, target, objective }, (n, side)));
+                    best = Some((Candidate { action, target, objective }, (n, side)));
                 }
             }
-            if !looked {
-                break;
-            }
         }
-        arms.map(|arm| arm.best)
+        best
     }
 
     /// The first ray of an arm whose end on a circle will do, as long as rays are worth it.
@@ -352,6 +351,7 @@ impl<'a, const E: usize> Sight<'a, E> {
                     }
                     (0, false)
                 } else {
+                    self.barred = true;
                     (rule.barred(heading, ray.step, side), true)
                 }
             };
