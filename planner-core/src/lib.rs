@@ -146,6 +146,7 @@ pub mod lattice;
 pub mod line;
 #[cfg(feature = "wire")]
 pub mod link;
+mod mark;
 pub mod planner;
 pub mod posterior;
 pub mod problem;
@@ -155,6 +156,7 @@ pub mod remote;
 pub mod rule;
 pub mod sample;
 pub mod scc;
+mod search;
 mod sight;
 pub mod unicycle;
 pub mod version_space;

@@ -110,7 +110,7 @@ impl<'a, R: DirectionRule, const E: usize> Problem<'a, R, E> {
     pub fn solve<D: Dynamics>(&self, dynamics: &D, pose: Pose) -> Search {
         let mut sight = self.sight(pose.site, dynamics.grid());
         let best = sight.best(dynamics, pose.heading, self.varrho, &self.rule);
-        Search { best, examined: sight.examined() }
+        Search { best, examined: sight.examined }
     }
 
     /// What is seen of it from a position.

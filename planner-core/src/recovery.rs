@@ -55,13 +55,13 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule, const E: usize>(
             return ladder.leg(pose, Heading::near(way)).map(found(Some(Recovery::Transit)));
         }
         let undirected =
-            if sight.was_barred() { ladder.undirected(&mut sight, pose.heading) } else { None };
+            if sight.barred { ladder.undirected(&mut sight, pose.heading) } else { None };
         undirected
             .map(found(Some(Recovery::Undirected)))
             .or_else(|| ladder.reorient(&mut sight, pose).map(found(Some(Recovery::Reorient))))
             .or_else(|| ladder.transit(pose).map(found(Some(Recovery::Transit))))
     });
-    *ladder.examined += sight.examined();
+    *ladder.examined += sight.examined;
     motion
 }
 
@@ -137,7 +137,7 @@ impl<D: Dynamics, const E: usize> Ladder<'_, D, E> {
             if leg.1.site != pose.site {
                 let mut sight = self.problem.sight(leg.1.site, self.dynamics.grid());
                 let best = self.undirected(&mut sight, leg.1.heading);
-                *self.examined += sight.examined();
+                *self.examined += sight.examined;
                 if best.is_some() {
                     return first.map(|leg| (leg, motions));
                 }
