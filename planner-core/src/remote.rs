@@ -42,6 +42,7 @@ impl Setup {
     ///
     /// # Errors
     /// [`Declined`].
+    #[inline(never)] // it is the planner's, see `seam`
     pub fn cfc<const N: usize>(&self) -> Result<Prepared<Cfc<Unicycle, N>>, Declined> {
         let room = Room { samples: N as u16, hypotheses: 1 };
         self.check(room)?;
@@ -53,6 +54,7 @@ impl Setup {
     ///
     /// # Errors
     /// [`Declined`].
+    #[inline(never)] // it is the planner's, see `seam`
     pub fn scc<const N: usize, const H: usize>(
         &self,
         noise: Noise,
@@ -174,7 +176,7 @@ struct Timed<'a, L> {
 impl<L: Planner> Planner for Timed<'_, L> {
     fn plan(&mut self, pose: Pose) -> Plan {
         let before = (self.ticks)();
-        let plan = self.planner.plan(pose);
+        let plan = seam::plan(&mut self.planner, pose);
         let took = (self.ticks)().wrapping_sub(before);
         self.memo.took.set(Took { plan: took, ..self.memo.took.get() });
         plan
@@ -183,7 +185,7 @@ impl<L: Planner> Planner for Timed<'_, L> {
     fn observe(&mut self, pose: Pose, reading: Option<Reading>) -> Result<(), Refused> {
         self.memo.taken.set(reading);
         let before = (self.ticks)();
-        let observed = self.planner.observe(pose, reading);
+        let observed = seam::observe(&mut self.planner, pose, reading);
         let took = (self.ticks)().wrapping_sub(before);
         self.memo.took.set(Took { observe: took, ..self.memo.took.get() });
         observed
@@ -191,10 +193,35 @@ impl<L: Planner> Planner for Timed<'_, L> {
 
     fn estimates(&self) -> Estimates {
         let before = (self.ticks)();
-        let estimates = self.planner.estimates();
+        let estimates = seam::estimates(&self.planner);
         let took = (self.ticks)().wrapping_sub(before);
         self.memo.took.set(Took { estimate: took, ..self.memo.took.get() });
         estimates
+    }
+}
+
+/// Where the planner begins. Functions of their own also in an optimised program, so that its size, its
+/// stack and its instructions can be told from those of the link.
+mod seam {
+    use super::{Estimates, Plan, Planner, Pose, Reading, Refused};
+
+    #[inline(never)]
+    pub(super) fn plan<L: Planner>(planner: &mut L, pose: Pose) -> Plan {
+        planner.plan(pose)
+    }
+
+    #[inline(never)]
+    pub(super) fn observe<L: Planner>(
+        planner: &mut L,
+        pose: Pose,
+        reading: Option<Reading>,
+    ) -> Result<(), Refused> {
+        planner.observe(pose, reading)
+    }
+
+    #[inline(never)]
+    pub(super) fn estimates<L: Planner>(planner: &L) -> Estimates {
+        planner.estimates()
     }
 }
 

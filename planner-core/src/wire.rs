@@ -20,11 +20,13 @@
 
 mod checked;
 
+use core::ops::{Index, IndexMut};
+
 pub use checked::OutOfRange;
 use crc::{CRC_32_ISO_HDLC, Crc};
 use heapless::Vec;
 use postcard::ser_flavors::crc::CrcModifier;
-use postcard::ser_flavors::{Cobs, Slice};
+use postcard::ser_flavors::{Cobs, Flavor};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
@@ -291,9 +293,63 @@ impl Frame {
 }
 
 fn encode<M: Message>(envelope: &Envelope<M>, into: &mut [u8]) -> postcard::Result<usize> {
-    let stuffed = Cobs::try_new(Slice::new(into))?;
+    let stuffed = Cobs::try_new(Content { bytes: into, written: 0, nowhere: 0 })?;
     let checked = CrcModifier::new(stuffed, CHECK.digest());
-    postcard::serialize_with_flavor(envelope, checked).map(|written: &mut [u8]| written.len())
+    postcard::serialize_with_flavor(envelope, Once(checked))
+}
+
+/// What takes bytes, compiled once: every field of every message would else have a copy of it.
+struct Once<F>(F);
+
+impl<F: Flavor> Flavor for Once<F> {
+    type Output = F::Output;
+
+    #[inline(never)]
+    fn try_push(&mut self, byte: u8) -> postcard::Result<()> {
+        self.0.try_push(byte)
+    }
+
+    fn finalize(self) -> postcard::Result<F::Output> {
+        self.0.finalize()
+    }
+}
+
+/// Takes what is written of a frame. COBS comes back to places that it has written to; postcard's own
+/// slice panics at others, and so would have a panic in every program.
+struct Content<'a> {
+    bytes: &'a mut [u8],
+    written: usize,
+    /// What is at a place that there is not.
+    nowhere: u8,
+}
+
+impl Flavor for Content<'_> {
+    type Output = usize;
+
+    fn try_push(&mut self, byte: u8) -> postcard::Result<()> {
+        let next = self.bytes.get_mut(self.written);
+        *next.ok_or(postcard::Error::SerializeBufferFull)? = byte;
+        self.written += 1;
+        Ok(())
+    }
+
+    fn finalize(self) -> postcard::Result<usize> {
+        Ok(self.written)
+    }
+}
+
+impl Index<usize> for Content<'_> {
+    type Output = u8;
+
+    fn index(&self, at: usize) -> &u8 {
+        self.bytes.get(at).unwrap_or(&self.nowhere)
+    }
+}
+
+impl IndexMut<usize> for Content<'_> {
+    fn index_mut(&mut self, at: usize) -> &mut u8 {
+        self.bytes.get_mut(at).unwrap_or(&mut self.nowhere)
+    }
 }
 
 /// Finds frames in a stream of bytes, and skips what is none.

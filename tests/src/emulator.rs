@@ -11,6 +11,7 @@
 //! | `undone` | cases that the interpreter has but leaves open |
 //! | `vfp`, `single` | the floating-point unit: its registers, its arithmetic |
 //! | `semihosting` | calls of the host |
+//! | `cycles`, `profile` | what it takes: cycles by a table; calls of functions that are watched |
 
 use std::cell::RefCell;
 use std::fmt::Display;
@@ -25,10 +26,14 @@ use object::elf::{FileHeader32, PT_LOAD};
 use object::read::elf::{FileHeader, ProgramHeader};
 
 use decoder::Decoder;
+pub use profile::Call;
+use profile::{Place, Profile};
 use semihosting::Host;
 
+mod cycles;
 mod decoder;
 mod dsp;
+mod profile;
 mod semihosting;
 mod single;
 mod undone;
@@ -74,6 +79,7 @@ pub struct Emulator {
     processor: Processor,
     host: Host,
     lowest_stack: u32,
+    profile: Profile,
 }
 
 impl Emulator {
@@ -91,6 +97,7 @@ impl Emulator {
     }
 
     fn reset(flash: &[u8], core: Core) -> Self {
+        let profile = Profile::new(flash);
         let flash = RamMemory::new_from_slice(flash).read_only();
         let mut processor = Processor::new(match core {
             Core::M0 => Config::v6m(),
@@ -109,7 +116,7 @@ impl Emulator {
         processor.set_sp(stack);
         processor.set_lr(u32::MAX);
         processor.set_pc(reset & !1);
-        Self { processor, host: Host::default(), lowest_stack: stack }
+        Self { processor, host: Host::default(), lowest_stack: stack, profile }
     }
 
     /// Runs until the program wants something of the world.
@@ -130,7 +137,9 @@ impl Emulator {
                 Ok(Err(error)) => self.fail(pc, &format!("{error:?}")),
                 Err(_) => self.fail(pc, &"armagnac panics"),
             };
-            self.lowest_stack = self.lowest_stack.min(self.processor.sp());
+            let to = self.place();
+            self.lowest_stack = self.lowest_stack.min(to.sp);
+            self.profile.executed(pc, to);
             if self.processor.registers.mode == Mode::Handler {
                 self.fail(pc, &"an exception");
             }
@@ -161,6 +170,27 @@ impl Emulator {
     /// The lowest stack pointer since the reset.
     pub fn lowest_stack(&self) -> u32 {
         self.lowest_stack
+    }
+
+    /// Cycles that a Cortex-M4 would have taken since the reset: an estimate, see the module `cycles`.
+    pub fn cycles(&self) -> u64 {
+        self.profile.cycles
+    }
+
+    /// Takes down every call of the function at an address, but for those on behalf of another that is
+    /// watched.
+    pub fn watch(&mut self, function: u32) {
+        self.profile.watch(function);
+    }
+
+    /// The calls of watched functions since the last time.
+    pub fn calls(&mut self) -> Vec<Call> {
+        std::mem::take(&mut self.profile.calls)
+    }
+
+    fn place(&self) -> Place {
+        let (pc, sp, lr) = (self.processor.pc(), self.processor.sp(), self.processor.lr());
+        Place { pc, sp, lr, instructions: self.instructions() }
     }
 
     fn fail(&mut self, pc: u32, reason: &dyn Display) -> ! {

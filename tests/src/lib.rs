@@ -8,8 +8,13 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 pub mod bench;
+pub mod budget;
 pub mod elf;
 pub mod emulator;
+pub mod footprint;
+pub mod image;
+pub mod timing;
+pub mod workload;
 
 /// A site whose coordinates are clamped into the lattice.
 ///

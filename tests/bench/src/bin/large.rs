@@ -3,7 +3,7 @@
 //! Both algorithms with 64 labels beside 4 given samples.
 
 #[cfg(target_os = "none")]
-#[cortex_m_rt::entry]
+#[bench::entry]
 fn main() -> ! {
     bench::any::<68, 2081>()
 }

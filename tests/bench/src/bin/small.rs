@@ -3,7 +3,7 @@
 //! Algorithm 1 with 16 samples.
 
 #[cfg(target_os = "none")]
-#[cortex_m_rt::entry]
+#[bench::entry]
 fn main() -> ! {
     bench::cfc::<16>()
 }

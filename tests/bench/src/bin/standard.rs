@@ -3,7 +3,7 @@
 //! Both algorithms with 32 labels beside 4 given samples.
 
 #[cfg(target_os = "none")]
-#[cortex_m_rt::entry]
+#[bench::entry]
 fn main() -> ! {
     bench::any::<36, 529>()
 }

@@ -1,0 +1,129 @@
+//! Time: what the planner takes for the steps of missions that a program flies in the emulator.
+//!
+//! Counted is what the functions of `remote::seam` execute, from their first instruction to their return.
+//! That leaves out what it costs to read a counter; the ticks that the program itself tells of are the
+//! same and a constant more, which is checked.
+
+use host_sim::mission::{End, Mission};
+use host_sim::player::Played;
+use host_sim::recording::Recording;
+use planner_core::planner::StopReason;
+use rayon::prelude::*;
+
+use crate::bench;
+use crate::emulator::{Call, Core, Emulator};
+use crate::footprint::SEAM;
+use crate::image::Image;
+
+/// Instructions that two readings of the counter come to, at most.
+const COUNTER: u64 = 64;
+
+/// A mission that was flown, with what every call took.
+#[derive(Debug)]
+pub struct Flight {
+    /// The mission as it went.
+    pub recording: Recording,
+    /// A plan for each step, and one that found no motion if it ended so.
+    pub plans: Vec<Call>,
+    /// An observation for each step.
+    pub observations: Vec<Call>,
+    /// The estimates at the end.
+    pub estimates: Vec<Call>,
+    /// The lowest stack pointer of its emulator so far.
+    pub lowest_stack: u32,
+}
+
+/// Flies missions, each as if it were the first.
+///
+/// # Panics
+/// When one does not fly as on the host, or the program's own count is not that of its calls.
+pub fn fly(elf: &[u8], missions: &[Mission]) -> Vec<Flight> {
+    let image = Image::read(elf);
+    let seam = |role: &str| -> Vec<u32> {
+        let named = image.functions().iter().filter(|it| it.name.strip_prefix(SEAM) == Some(role));
+        named.map(|it| it.address).collect()
+    };
+    let roles = ["plan", "observe", "estimates"].map(seam);
+    let start = || {
+        let mut emulator = Emulator::load(elf, Core::M4F);
+        roles.iter().flatten().for_each(|function| emulator.watch(*function));
+        emulator
+    };
+    let fly = |emulator: &mut Emulator, mission: &Mission| {
+        let played = bench::fly(emulator, mission).expect("it flies as on the host");
+        let calls = emulator.calls();
+        let of = |role: usize| -> Vec<Call> {
+            calls.iter().filter(|it| roles[role].contains(&it.function)).copied().collect()
+        };
+        let (plans, observations, estimates) = (of(0), of(1), of(2));
+        check(&played, &plans, &observations);
+        let lowest_stack = emulator.lowest_stack();
+        Flight { recording: played.recording, plans, observations, estimates, lowest_stack }
+    };
+    // An emulator's first mission is slow, as it has decoded nothing yet: few of them, used often.
+    let share = missions.len().div_ceil(2 * rayon::current_num_threads());
+    missions.par_iter().with_min_len(share.max(1)).map_init(start, fly).collect()
+}
+
+/// Whether the program's own count is that of its calls, but for the readings of the counter.
+fn check(played: &Played, plans: &[Call], observations: &[Call]) {
+    let steps = played.took.len();
+    let stopped = matches!(played.recording.end, End::Stopped(_));
+    assert_eq!((plans.len(), observations.len()), (steps + usize::from(stopped), steps));
+    for (took, (plan, observation)) in played.took.iter().zip(plans.iter().zip(observations)) {
+        for (told, counted) in [(took.plan, plan), (took.observe, observation)] {
+            let more = u64::from(told).checked_sub(counted.instructions);
+            assert!(more.is_some_and(|it| it < COUNTER), "told {told}, counted {counted:?}");
+        }
+    }
+}
+
+impl Flight {
+    /// The plan that was made when so many labels had been taken in, and the observation of the last of
+    /// them.
+    pub fn at_label(&self, labels: usize) -> (Option<Call>, Option<Call>) {
+        let steps = self.recording.steps.iter().enumerate();
+        let mut sampled =
+            steps.filter(|(_, it)| it.step.reading.is_some()).map(|(number, _)| number);
+        let Some(last) = sampled.nth(labels - 1) else { return (None, None) };
+        (self.plans.get(last + 1).copied(), self.observations.get(last).copied())
+    }
+
+    /// Steps whose problem had no feasible action.
+    pub fn recoveries(&self) -> usize {
+        self.recording.steps.iter().filter(|it| it.step.motion.recovery.is_some()).count()
+    }
+
+    /// Whether it ended as there was nothing left to hit.
+    pub fn ended_by_resolution(&self) -> bool {
+        self.recording.end == End::Stopped(StopReason::Resolution)
+    }
+}
+
+/// What calls took: the median of some, the worst of all.
+#[derive(Clone, Copy, Debug)]
+pub struct Took {
+    /// Instructions of those drawn at random, the upper of two medians.
+    pub median: u64,
+    /// Instructions.
+    pub worst: u64,
+    /// Cycles of a Cortex-M4, an estimate.
+    pub worst_cycles: u64,
+}
+
+impl Took {
+    /// Of calls drawn at random, and of others.
+    ///
+    /// # Panics
+    /// If none was drawn at random.
+    pub fn of(random: &[Call], others: &[Call]) -> Self {
+        let mut sorted: Vec<u64> = random.iter().map(|it| it.instructions).collect();
+        sorted.sort_unstable();
+        let all = || random.iter().chain(others);
+        Self {
+            median: sorted[sorted.len() / 2],
+            worst: all().map(|it| it.instructions).max().unwrap_or(0),
+            worst_cycles: all().map(|it| it.cycles).max().unwrap_or(0),
+        }
+    }
+}
