@@ -32,17 +32,17 @@ impl Board {
         loop {
             let setup = self.station.await_setup();
             match setup.algorithm {
-                Algorithm::Cfc => self.fly(&setup, setup.cfc::<CFC_SAMPLES>()),
+                Algorithm::Cfc => self.fly(&setup, &mut setup.cfc::<CFC_SAMPLES>()),
                 Algorithm::Scc { noise, policy, prior } => {
-                    let planner = setup.scc::<SCC_SAMPLES, HYPOTHESES>(noise, policy, prior);
-                    self.fly(&setup, planner);
+                    let mut planner = setup.scc::<SCC_SAMPLES, HYPOTHESES>(noise, policy, prior);
+                    self.fly(&setup, &mut planner);
                 }
             }
         }
     }
 
     /// The drive is enabled for as long as this takes.
-    fn fly<L: Planner>(&mut self, setup: &Setup, planner: Result<Prepared<L>, Declined>) {
+    fn fly<L: Planner>(&mut self, setup: &Setup, planner: &mut Result<Prepared<L>, Declined>) {
         defmt::info!("mission: {}, {=u16} steps at most", setup.algorithm, setup.steps);
         if planner.is_ok() {
             self.enable.on();

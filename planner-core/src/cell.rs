@@ -8,9 +8,7 @@
 //!
 //! A cell does not hold the samples: several cells can share one buffer of sites.
 
-use heapless::Vec;
-
-use crate::lattice::{Site, orient};
+use crate::lattice::{Site, Vector, orient};
 use crate::line::Bound;
 use crate::sample::{Label, Sample};
 
@@ -38,6 +36,12 @@ impl Edge {
     pub const fn label(self) -> Label {
         if self.0 & Self::NEGATIVE == 0 { Label::Positive } else { Label::Negative }
     }
+
+    /// The sample as seen from `q`, on the other side of it if its label is negative.
+    fn seen(self, samples: &[Sample], q: Site) -> Vector {
+        let seen = samples.get(self.index()).map(|s| s.site - q).unwrap_or_default();
+        if self.label() == Label::Positive { seen } else { seen.reversed() }
+    }
 }
 
 impl core::fmt::Debug for Edge {
@@ -58,17 +62,18 @@ pub enum Certainty {
 }
 
 impl Certainty {
-    /// What lines on both sides, given as signs, say together.
+    /// What lines on both sides, given as signs, say together. They are smaller than 2^63 in size.
     pub(crate) fn of_signs(signs: impl Iterator<Item = i64>) -> Self {
-        let (mut below, mut above) = (false, false);
+        // The upper halves of them all, and of their opposites, for their sign bits.
+        let (mut below, mut above) = (0, 0);
         for sign in signs {
-            below |= sign < 0;
-            above |= sign > 0;
-            if below && above {
+            below |= (sign >> 32) as i32;
+            above |= (sign.wrapping_neg() >> 32) as i32;
+            if below & above < 0 {
                 return Self::Uncertain;
             }
         }
-        Self::Certain(if below { Label::Negative } else { Label::Positive })
+        Self::Certain(if below < 0 { Label::Negative } else { Label::Positive })
     }
 }
 
@@ -95,14 +100,16 @@ pub enum CutError {
 /// A convex cell of candidate lines with up to `E` edges. `E + 1` bytes.
 ///
 /// `samples` in every method is the one buffer whose indices the edges are.
-#[derive(Clone, PartialEq, Eq)]
+#[derive(Clone, Copy)]
 pub struct Cell<const E: usize> {
-    edges: Vec<Edge, E, u8>,
+    /// In cyclic order, from the first on.
+    edges: [Edge; E],
+    len: u8,
 }
 
 impl<const E: usize> Cell<E> {
     /// No line at all: a cell without edges.
-    pub(crate) const NONE: Self = Self { edges: Vec::new() };
+    pub(crate) const NONE: Self = Self { edges: [Edge(0); E], len: 0 };
 
     /// The lines that agree with three samples; `None` when these are collinear.
     pub fn triangle(samples: &[Sample], [i, j, k]: [Edge; 3]) -> Option<Self> {
@@ -115,48 +122,34 @@ impl<const E: usize> Cell<E> {
             1 => [i, j, k],
             _ => [i, k, j],
         };
-        Vec::from_slice(&ordered).ok().map(|edges| Self { edges })
+        Self::of(&ordered)
+    }
+
+    /// The cell with these edges; `None` when they do not fit.
+    fn of(edges: &[Edge]) -> Option<Self> {
+        let mut cell = Self { len: u8::try_from(edges.len()).ok()?, ..Self::NONE };
+        cell.edges.get_mut(..edges.len())?.copy_from_slice(edges);
+        Some(cell)
     }
 
     /// The same cell with another capacity; `None` when its edges do not fit.
     pub(crate) fn resized<const F: usize>(&self) -> Option<Cell<F>> {
-        Vec::from_slice(&self.edges).ok().map(|edges| Cell { edges })
+        Cell::of(self.edges())
     }
 
     /// The samples that still matter, in cyclic order.
     pub fn edges(&self) -> &[Edge] {
-        &self.edges
-    }
-
-    /// The vertex after the `k`-th edge.
-    fn bound(&self, samples: &[Sample], k: usize) -> Option<Bound> {
-        let i = *self.edges.get(k)?;
-        let j = *self.edges.get(k + 1).or(self.edges.first())?;
-        let (p, q) = (samples.get(i.index())?.site, samples.get(j.index())?.site);
-        let along = if i.label() == j.label() { q - p } else { p - q };
-        Some(Bound { through: p, along })
+        self.edges.get(..usize::from(self.len)).unwrap_or(&[])
     }
 
     /// The vertices: the lines through two samples that bound the cell, in cyclic order.
     pub fn bounds<'a>(&'a self, samples: &'a [Sample]) -> impl Iterator<Item = Bound> + 'a {
-        (0..self.edges.len()).filter_map(|k| self.bound(samples, k))
-    }
-
-    /// Each edge with the vertices at its two ends, in cyclic order.
-    pub fn sides<'a>(
-        &'a self,
-        samples: &'a [Sample],
-    ) -> impl Iterator<Item = (Edge, [Bound; 2])> + 'a {
-        let n = self.edges.len();
-        self.edges.iter().enumerate().filter_map(move |(k, &edge)| {
-            let before = if k == 0 { n - 1 } else { k - 1 };
-            Some((edge, [self.bound(samples, before)?, self.bound(samples, k)?]))
-        })
+        (0..self.edges().len()).filter_map(|k| bound(self.edges(), samples, k))
     }
 
     /// What the lines of the cell say about a position. One orientation an edge, at most.
     pub fn certainty(&self, samples: &[Sample], q: Site) -> Certainty {
-        Certainty::of_signs(self.bounds(samples).map(|bound| bound.at(q)))
+        certainty(self.edges(), samples, q)
     }
 
     /// Keeps the lines that agree with the edge's sample. One orientation an edge, exact.
@@ -164,49 +157,109 @@ impl<const E: usize> Cell<E> {
     /// # Errors
     /// [`CutError`], with the cell as it was.
     pub fn cut(&mut self, samples: &[Sample], edge: Edge) -> Result<Cut, CutError> {
-        let Some(q) = samples.get(edge.index()).map(|s| s.site) else {
-            return Err(CutError::Full);
+        let Some([first, last]) = agreeing(self.edges(), samples, edge)? else {
+            return Ok(Cut::Unchanged);
         };
-        let sign = i64::from(edge.label().sign());
-        let agreement = |bound: Bound| sign * bound.at(q).signum();
-        let n = self.edges.len();
-        if n == 0 {
-            return Err(CutError::Contradiction);
+        let n = self.edges().len();
+        let kept = if first <= last { last - first + 1 } else { last + n - first + 1 };
+        let mut cell = Self { len: kept as u8 + 1, ..Self::NONE };
+        *cell.edges.get_mut(kept).ok_or(CutError::Full)? = edge;
+        let mut k = first;
+        for place in cell.edges.iter_mut().take(kept) {
+            *place = self.edges.get(k).copied().unwrap_or(edge);
+            k = if k + 1 == n { 0 } else { k + 1 };
         }
-        let mut before = self.bound(samples, n - 1).map_or(0, agreement);
-        // The vertices that agree are consecutive, and an edge with one of them at an end stays:
-        // from the edge that ends in the first of them to the edge that begins with the last.
-        let (mut first, mut last, mut disagrees) = (None, None, false);
-        for (k, bound) in self.bounds(samples).enumerate() {
-            let after = agreement(bound);
-            if before <= 0 && after > 0 {
-                first = Some(k);
-            }
-            if before > 0 && after <= 0 {
-                last = Some(k);
-            }
-            disagrees |= after < 0;
-            before = after;
-        }
-        match (first, last) {
-            _ if !disagrees => Ok(Cut::Unchanged),
-            (Some(first), Some(last)) => {
-                let kept = if first <= last { last - first + 1 } else { last + n - first + 1 };
-                let around = self.edges.iter().cycle().skip(first).take(kept);
-                let mut edges = Vec::new();
-                for &edge in around.chain(core::iter::once(&edge)) {
-                    edges.push(edge).map_err(|_| CutError::Full)?;
-                }
-                self.edges = edges;
-                Ok(Cut::Smaller)
-            }
-            _ => Err(CutError::Contradiction),
-        }
+        *self = cell;
+        Ok(Cut::Smaller)
     }
 }
 
+/// The vertex after the `k`-th edge.
+fn bound(edges: &[Edge], samples: &[Sample], k: usize) -> Option<Bound> {
+    let i = *edges.get(k)?;
+    let j = *edges.get(k + 1).or(edges.first())?;
+    let (p, q) = (samples.get(i.index())?.site, samples.get(j.index())?.site);
+    let along = if i.label() == j.label() { q - p } else { p - q };
+    Some(Bound { through: p, along })
+}
+
+/// Each edge of a cell with the vertices at its two ends, in cyclic order.
+pub(crate) fn sides(
+    edges: &[Edge],
+    samples: &[Sample],
+) -> impl Iterator<Item = (Edge, [Bound; 2])> {
+    edges.iter().enumerate().filter_map(move |(k, &edge)| {
+        let before = if k == 0 { edges.len() - 1 } else { k - 1 };
+        Some((edge, [bound(edges, samples, before)?, bound(edges, samples, k)?]))
+    })
+}
+
+/// [`Cell::certainty`], once for cells of all sizes.
+#[inline(never)]
+fn certainty(edges: &[Edge], samples: &[Sample], q: Site) -> Certainty {
+    Certainty::of_signs(turns(edges, samples, q))
+}
+
+/// On which side of the vertex before each edge a position lies: [`Bound::at`], by the turn from
+/// one sample to the next as they are seen from there.
+fn turns(edges: &[Edge], samples: &[Sample], q: Site) -> impl Iterator<Item = i64> {
+    let mut before = edges.last().map(|edge| edge.seen(samples, q)).unwrap_or_default();
+    edges.iter().map(move |edge| {
+        let after = edge.seen(samples, q);
+        core::mem::replace(&mut before, after).cross(after)
+    })
+}
+
+/// The first and the last edge that stay when a cell keeps the lines that agree with an edge's
+/// sample; `None` when all do.
+fn agreeing(
+    edges: &[Edge],
+    samples: &[Sample],
+    edge: Edge,
+) -> Result<Option<[usize; 2]>, CutError> {
+    let Some(q) = samples.get(edge.index()).map(|s| s.site) else {
+        return Err(CutError::Full);
+    };
+    let mut disagrees = false;
+    let mut agreements = turns(edges, samples, q).map(|turn| {
+        let turn = if edge.label() == Label::Positive { turn } else { -turn };
+        disagrees |= turn < 0;
+        turn > 0
+    });
+    let Some(start) = agreements.next() else {
+        return Err(CutError::Contradiction);
+    };
+    // The vertices that agree are consecutive, and an edge with one of them at an end stays: from
+    // the edge that ends in the first of them to the edge that begins with the last.
+    let (mut first, mut last) = (None, None);
+    let mut before = start;
+    for k in 0..edges.len() {
+        let after = agreements.next().unwrap_or(start);
+        if !before && after {
+            first = Some(k);
+        }
+        if before && !after {
+            last = Some(k);
+        }
+        before = after;
+    }
+    match (first, last) {
+        _ if !disagrees => Ok(None),
+        (Some(first), Some(last)) => Ok(Some([first, last])),
+        _ => Err(CutError::Contradiction),
+    }
+}
+
+impl<const E: usize> PartialEq for Cell<E> {
+    fn eq(&self, other: &Self) -> bool {
+        self.edges() == other.edges()
+    }
+}
+
+impl<const E: usize> Eq for Cell<E> {}
+
 impl<const E: usize> core::fmt::Debug for Cell<E> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.debug_list().entries(&self.edges).finish()
+        f.debug_list().entries(self.edges()).finish()
     }
 }

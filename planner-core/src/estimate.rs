@@ -12,6 +12,7 @@
 use nalgebra::{Matrix2, Point2, Vector2};
 
 use crate::candidates::Candidates;
+use crate::cell::{self, Edge};
 use crate::lattice::{Site, UNITS_PER_METRE, Vector};
 use crate::line::Line;
 use crate::sample::{Label, Sample};
@@ -66,7 +67,11 @@ impl Moments {
     /// turn to the left of it and `M` the integral of `n n^T` from one end of an edge to the other,
     /// an edge adds `p . (u' - u)` to the area, `M p` to the normal and `p^T M p / 2` to the offset.
     pub(crate) fn of<const E: usize>(candidates: Candidates<'_, E>) -> Self {
-        let samples = candidates.samples;
+        Self::of_cell(candidates.cell.edges(), candidates.samples)
+    }
+
+    /// Once for cells of all sizes.
+    fn of_cell(edges: &[Edge], samples: &[Sample]) -> Self {
         let about = samples.first().map(|s| s.site);
         let mut moments = Self {
             area: 0.0,
@@ -74,7 +79,7 @@ impl Moments {
             offset: 0.0,
             about: about.map_or(Point2::origin(), Point2::from),
         };
-        for (edge, [start, end]) in candidates.cell.sides(samples) {
+        for (edge, [start, end]) in cell::sides(edges, samples) {
             let (Some(sample), Some(about)) = (samples.get(edge.index()), about) else {
                 continue;
             };

@@ -14,12 +14,12 @@
 //!
 //! [`Posterior::lost`]: crate::posterior::Posterior::lost
 
-use heapless::Vec;
-
 use crate::candidates::Candidates;
 use crate::cell::{Cell, Certainty, Edge};
-use crate::estimate;
 use crate::lattice::Site;
+use crate::list::List;
+use crate::lost::Lost;
+use crate::measure::measure;
 use crate::sample::{Label, Sample, SampleBuffer};
 use crate::version_space::{NoVersionSpace, Refused, VersionSpace};
 use crate::weight::{LogWeight, Reliability};
@@ -38,7 +38,7 @@ pub enum Prior {
 
 /// A sequence of true labels that some line realises: the cell of the lines that do, and how likely
 /// the labels seen are if it is the true one.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct Hypothesis<const E: usize> {
     cell: Cell<E>,
     /// Relative to the most likely hypothesis.
@@ -53,6 +53,7 @@ impl<const E: usize> Hypothesis<E> {
     }
 
     /// Its weight under a prior, up to a factor that all hypotheses share.
+    #[inline(never)] // or every loop over the table comes twice, once for each prior
     pub fn weight(&self, prior: Prior) -> LogWeight {
         match prior {
             Prior::Area => self.likelihood + self.area,
@@ -66,17 +67,10 @@ impl<const E: usize> Hypothesis<E> {
     }
 }
 
-/// Mass given up, by both priors, on the scale of the weights held.
-#[derive(Clone, Copy, Debug, Default)]
-struct Lost {
-    area: f64,
-    sequences: f64,
-}
-
 /// Up to `H` hypotheses over up to `N` samples, the given ones included; a cell has up to `E` edges.
 ///
-/// `24 H + 12 N` bytes and some 50 for `E = 15`: with the four oracle points, 3,576 bytes for all
-/// hypotheses of 16 labels (`H` = 137), 13,176 for 32 (529), 50,808 for 64 (2,081).
+/// `24 H + 12 N` bytes and some 40 for `E = 15`: with the four oracle points, 3,564 bytes for all
+/// hypotheses of 16 labels (`H` = 137), 13,164 for 32 (529), 50,796 for 64 (2,081).
 ///
 /// A table without room for one hypothesis does not compile:
 ///
@@ -89,7 +83,7 @@ pub struct Hypotheses<const N: usize, const H: usize, const E: usize = 15> {
     samples: SampleBuffer<N>,
     given: u8,
     start: Cell<E>,
-    table: Vec<Hypothesis<E>, H, u16>,
+    table: List<Hypothesis<E>, H>,
     prior: Prior,
     lost: Lost,
     outer_cells: u16,
@@ -109,12 +103,18 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
         for &sample in given {
             samples.push(sample).map_err(|_| NoVersionSpace::TooMany)?;
         }
-        let mut table = Vec::new();
-        let area = LogWeight::of(estimate::area(space.candidates()));
-        let whole = Hypothesis { cell: start.clone(), likelihood: LogWeight::ZERO, area };
-        let _ = table.push(whole); // it has room for one
-        let (given, lost) = (given.len() as u8, Lost::default());
-        Ok(Self { samples, given, start, table, prior, lost, outer_cells: 0 })
+        let whole = Candidates { cell: &start, samples: &samples };
+        let area = LogWeight::of_single(measure(whole));
+        let whole = Hypothesis { cell: start, likelihood: LogWeight::ZERO, area };
+        Ok(Self {
+            table: List::of(whole),
+            samples,
+            given: given.len() as u8,
+            start,
+            prior,
+            lost: Lost::default(),
+            outer_cells: 0,
+        })
     }
 
     /// All samples with the labels that were seen, the given ones first.
@@ -159,10 +159,7 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
 
     /// Mass given up, at most, under a prior, on the scale of the weights held.
     pub(crate) fn lost(&self, prior: Prior) -> f64 {
-        match prior {
-            Prior::Area => self.lost.area,
-            Prior::Sequences => self.lost.sequences,
-        }
+        f64::from(self.lost.mass(prior))
     }
 
     fn certainty(&self, hypothesis: &Hypothesis<E>, q: Site) -> Certainty {
@@ -170,7 +167,8 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
     }
 
     /// Takes in a label of some reliability: splits the hypotheses that the sample cuts and weighs
-    /// all. One orientation an edge, and for each of the at most `t + 1` that split two areas.
+    /// all. One orientation an edge, and for each of the at most `t + 1` that split two cuts and two
+    /// measures, in integers and single precision.
     ///
     /// # Errors
     /// [`Refused::Contradiction`] when a label that is certain leaves no hypothesis, and
@@ -182,73 +180,78 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
             Certainty::Certain(label) => weight(label).is_some(),
             Certainty::Uncertain => true,
         };
+        let doubtful = agree.is_some() && disagree.is_some();
         if self.samples.is_full() {
             return Err(Refused::Full(sample));
         }
-        if !self.table.iter().any(survives) {
+        if !doubtful && !self.table.iter().any(survives) {
             return Err(Refused::Contradiction(sample));
         }
-        if agree.is_some() && disagree.is_some() {
+        if doubtful {
             self.make_room(sample.site);
         }
         let Ok(index) = self.samples.push(sample) else { return Err(Refused::Full(sample)) };
         for k in 0..self.table.len() {
             self.update(k, Edge::new(index, sample.label), reliability);
         }
-        self.table.retain(|hypothesis| !hypothesis.cell.edges().is_empty());
+        if !doubtful {
+            self.table.retain(|hypothesis| !hypothesis.cell.edges().is_empty());
+        }
         self.rescale(reliability.most());
         Ok(())
     }
 
     /// Gives up the least likely hypotheses until those that a sample at `q` splits find room.
     fn make_room(&mut self, q: Site) {
+        // Exact cells tile the starting polygon, and a line crosses at most one more of them than
+        // there are other lines.
+        if self.outer_cells == 0 && self.table.len() + self.taken() < H {
+            return;
+        }
         let splits = |it: &Self, h: &Hypothesis<E>| it.certainty(h, q) == Certainty::Uncertain;
         let mut more = self.table.iter().filter(|h| splits(self, h)).count();
         while self.table.len() > 1 && self.table.len() + more > H {
             let weights = self.table.iter().map(|h| h.weight(self.prior)).enumerate();
             let Some((least, _)) = weights.min_by_key(|(_, weight)| *weight) else { return };
-            // The last takes its place.
-            let Some(mut gone) = self.table.pop() else { return };
-            if let Some(place) = self.table.get_mut(least) {
-                core::mem::swap(place, &mut gone);
-            }
+            let Some(gone) = self.table.swap_remove(least) else { return };
             more -= usize::from(splits(self, &gone));
-            self.give_up(&gone);
+            self.lost.add(&gone);
         }
-    }
-
-    fn give_up(&mut self, gone: &Hypothesis<E>) {
-        self.lost.area += gone.weight(Prior::Area).exp();
-        self.lost.sequences += gone.weight(Prior::Sequences).exp();
     }
 
     /// Weighs the `k`-th hypothesis by the newest sample, splitting it first if the sample cuts it.
     /// One that becomes impossible is left without edges.
     fn update(&mut self, k: usize, edge: Edge, reliability: Reliability) {
-        let Some(whole) = self.table.get(k) else { return };
+        let Reliability { agree, disagree } = reliability;
         let Some(site) = self.samples.get(edge.index()).map(|s| s.site) else { return };
-        let label = edge.label();
-        let (kept, split_off) = match self.certainty(whole, site) {
+        let Some(whole) = self.table.get_mut(k) else { return };
+        match whole.cell.certainty(&self.samples, site) {
             Certainty::Certain(certain) => {
-                let weight =
-                    if certain == label { reliability.agree } else { reliability.disagree };
-                let likelihood = weight.map(|weight| whole.likelihood + weight);
-                (likelihood.map(|likelihood| Hypothesis { likelihood, ..whole.clone() }), None)
+                let weight = if certain == edge.label() { agree } else { disagree };
+                match weight {
+                    Some(weight) => whole.likelihood = whole.likelihood + weight,
+                    None => whole.cell = Cell::NONE,
+                }
             }
             Certainty::Uncertain => {
-                let whole = whole.clone();
-                let opposite = Edge::new(edge.index() as u8, -label);
-                let agreeing = reliability.agree.map(|weight| self.part(&whole, edge, weight));
-                let other = reliability.disagree.map(|weight| self.part(&whole, opposite, weight));
-                if agreeing.is_some() { (agreeing, other) } else { (other, None) }
+                let whole = *whole;
+                let opposite = Edge::new(edge.index() as u8, -edge.label());
+                let agreeing = agree.map(|weight| self.part(&whole, edge, weight));
+                let other = disagree.map(|weight| self.part(&whole, opposite, weight));
+                let (kept, split_off) =
+                    if agreeing.is_some() { (agreeing, other) } else { (other, None) };
+                if let (Some(kept), Some(place)) = (kept, self.table.get_mut(k)) {
+                    *place = kept;
+                }
+                if let Some(split_off) = split_off {
+                    self.add(k, split_off);
+                }
             }
-        };
-        let [kept, split_off] = [kept, split_off].map(|h| h.unwrap_or(Hypothesis::IMPOSSIBLE));
-        let Some(place) = self.table.get_mut(k) else { return };
-        *place = kept;
-        if split_off.cell.edges().is_empty() {
-            return;
         }
+    }
+
+    /// Adds what was split off the `k`-th hypothesis.
+    fn add(&mut self, k: usize, split_off: Hypothesis<E>) {
         if let Err(mut refused) = self.table.push(split_off) {
             // Only a table of one hypothesis comes here: the likelier part stays.
             let prior = self.prior;
@@ -257,38 +260,27 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
             {
                 core::mem::swap(place, &mut refused);
             }
-            self.give_up(&refused);
+            self.lost.add(&refused);
         }
     }
 
     /// The part of a hypothesis on one side of a sample.
     fn part(&mut self, whole: &Hypothesis<E>, edge: Edge, weight: LogWeight) -> Hypothesis<E> {
-        let mut part = whole.clone();
+        let mut part = *whole;
         if part.cell.cut(&self.samples, edge).is_err() {
             self.outer_cells = self.outer_cells.saturating_add(1);
         }
         part.likelihood = whole.likelihood + weight;
-        part.area = LogWeight::of(estimate::area(self.candidates(&part)));
+        part.area = LogWeight::of_single(measure(self.candidates(&part)));
         part
     }
 
-    /// Makes the most likely hypothesis the unit of all weights. What was given up can at most have
-    /// been weighed by `most`; by the paper's prior its parts may both have counted, and `p` and
-    /// `1 - p` make 1.
+    /// Makes the most likely hypothesis the unit of all weights.
     fn rescale(&mut self, most: LogWeight) {
         let best = self.table.iter().map(|h| h.likelihood).max().unwrap_or(LogWeight::ZERO);
-        for hypothesis in &mut self.table {
+        for hypothesis in self.table.iter_mut() {
             hypothesis.likelihood = hypothesis.likelihood.relative_to(best);
         }
-        if self.lost.area > 0.0 {
-            self.lost.area *= most.relative_to(best).exp();
-            self.lost.sequences *= LogWeight::ZERO.relative_to(best).exp();
-        }
+        self.lost.rescale(most, best);
     }
-}
-
-impl<const E: usize> Hypothesis<E> {
-    /// What no line realises: a cell without edges.
-    const IMPOSSIBLE: Self =
-        Self { cell: Cell::NONE, likelihood: LogWeight::ZERO, area: LogWeight::ZERO };
 }

@@ -146,7 +146,10 @@ pub mod lattice;
 pub mod line;
 #[cfg(feature = "wire")]
 pub mod link;
+mod list;
+mod lost;
 mod mark;
+mod measure;
 pub mod planner;
 pub mod posterior;
 pub mod problem;

@@ -103,26 +103,27 @@ impl<P: Port, S: LabelSensor> Station<P, S> {
         }
     }
 
-    /// Flies the mission of a setup with the planner that was made for it; `watch` sees every step.
+    /// Flies the mission of a setup with the planner that was made for it, in place: planners are large.
+    /// `watch` sees every step.
     ///
     /// # Errors
     /// [`LinkLost`]: the vehicle has been asked for nothing since, and is asked for nothing more.
     pub fn fly<L: Planner>(
         &mut self,
         setup: &Setup,
-        prepared: Result<Prepared<L>, Declined>,
+        prepared: &mut Result<Prepared<L>, Declined>,
         watch: impl FnMut(&Step),
     ) -> Result<Flown, LinkLost> {
         let blind = setup.labels == LabelSource::Chip && self.sensor.is_none();
-        let prepared = if blind { Err(Declined::Labels) } else { prepared };
         let Prepared { planner, room } = match prepared {
-            Ok(prepared) => prepared,
-            Err(declined) => {
+            Ok(prepared) if !blind => prepared,
+            declined => {
+                let declined = declined.as_ref().err().copied().unwrap_or(Declined::Labels);
                 self.link.ask(Request::Declined(declined))?;
                 return Ok(Flown::Declined(declined));
             }
         };
-        self.link.ask(Request::Ready(Accepted { room, clock: self.clock }))?;
+        self.link.ask(Request::Ready(Accepted { room: *room, clock: self.clock }))?;
         let memo = Memo::default();
         let planner = Timed { planner, ticks: self.ticks, memo: &memo };
         let chip = self.sensor.as_mut().filter(|_| setup.labels == LabelSource::Chip);
@@ -168,7 +169,7 @@ struct Memo {
 
 /// A planner against the clock.
 struct Timed<'a, L> {
-    planner: L,
+    planner: &'a mut L,
     ticks: fn() -> u32,
     memo: &'a Memo,
 }
@@ -176,7 +177,7 @@ struct Timed<'a, L> {
 impl<L: Planner> Planner for Timed<'_, L> {
     fn plan(&mut self, pose: Pose) -> Plan {
         let before = (self.ticks)();
-        let plan = seam::plan(&mut self.planner, pose);
+        let plan = seam::plan(self.planner, pose);
         let took = (self.ticks)().wrapping_sub(before);
         self.memo.took.set(Took { plan: took, ..self.memo.took.get() });
         plan
@@ -185,7 +186,7 @@ impl<L: Planner> Planner for Timed<'_, L> {
     fn observe(&mut self, pose: Pose, reading: Option<Reading>) -> Result<(), Refused> {
         self.memo.taken.set(reading);
         let before = (self.ticks)();
-        let observed = seam::observe(&mut self.planner, pose, reading);
+        let observed = seam::observe(self.planner, pose, reading);
         let took = (self.ticks)().wrapping_sub(before);
         self.memo.took.set(Took { observe: took, ..self.memo.took.get() });
         observed
@@ -193,7 +194,7 @@ impl<L: Planner> Planner for Timed<'_, L> {
 
     fn estimates(&self) -> Estimates {
         let before = (self.ticks)();
-        let estimates = seam::estimates(&self.planner);
+        let estimates = seam::estimates(self.planner);
         let took = (self.ticks)().wrapping_sub(before);
         self.memo.took.set(Took { estimate: took, ..self.memo.took.get() });
         estimates

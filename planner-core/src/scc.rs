@@ -134,19 +134,13 @@ impl<D: Dynamics, const N: usize, const H: usize> Scc<D, N, H> {
         Problem { ground, area: self.config.area, varrho: self.config.varrho, rule }
     }
 
-    /// The vote of a hypothesis among those of a table whose largest weight is `most`, in 2^-20.
-    fn votes(&self, hypothesis: &Hypothesis<15>, most: f64) -> u32 {
-        const WHOLE: f64 = (1 << 20) as f64;
-        libm::round(hypothesis.weight(self.prior).exp() / most * WHOLE) as u32
-    }
-
     /// Equation 9: the action with the most votes, and of equals the one of smallest index.
     fn elect(&self, pose: Pose, examined: &mut u32) -> Option<Action> {
         let weights = self.hypotheses.iter().map(|h| h.weight(self.prior));
-        let most = weights.max()?.exp();
+        let most = weights.max()?;
         let mut ballot: Vec<(Action, u32), H, u16> = Vec::new();
         for hypothesis in self.hypotheses.iter() {
-            let votes = self.votes(hypothesis, most);
+            let votes = hypothesis.weight(self.prior).votes(most);
             if votes == 0 {
                 continue;
             }

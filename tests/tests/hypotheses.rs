@@ -312,6 +312,39 @@ fn a_credible_set_is_the_smallest() {
     }
 }
 
+/// Areas in single precision against those in double, which are exact to some 10^-14 of a square
+/// metre-radian: thinner cells are compared by what that leaves.
+#[test]
+fn areas_in_single_precision_are_as_good_as_their_units() {
+    let worst = (0..400u64)
+        .into_par_iter()
+        .map(|number| {
+            let (given, mut seen, _) = mission(number, 32, false);
+            for k in (2..32).step_by(3) {
+                // A hair's breadth beside the one before, for slivers.
+                let near = seen[k - 1].0.site;
+                let site = Site::new(near.x() + 1, near.z() + k as i32 % 3).expect("near");
+                seen[k].0.site = site;
+            }
+            let away = 7_000 * 65_536 * (number as i32 % 3 - 1);
+            let moved = |s: &Sample| Sample {
+                site: Site::new(s.site.x() + away, s.site.z() - away).expect("on the lattice"),
+                ..*s
+            };
+            let given: Vec<_> = given.iter().map(moved).collect();
+            let seen: Vec<_> = seen.iter().map(|(s, p)| (moved(s), *p)).collect();
+            let table = table::<36, 529>(&given, &seen);
+            let off = |h: &Hypothesis<15>| {
+                let exact = estimate::area(table.candidates(h));
+                (h.area().exp() / exact - 1.0).abs() - 1e-13 / exact
+            };
+            table.iter().map(off).fold(0.0, f64::max)
+        })
+        .reduce(|| 0.0, f64::max);
+    println!("areas are off by {worst:.1e} of themselves at most");
+    assert!(worst < 1e-6);
+}
+
 /// Cells with room for few edges hold more lines than they should, never fewer.
 #[test]
 fn a_cell_that_cannot_hold_its_edges_holds_more_lines_and_says_so() {

@@ -138,9 +138,9 @@ fn chip(network: &RefCell<Network>) -> Chip<'_> {
 /// What the firmware does with a setup.
 fn fly(chip: &mut Chip<'_>, setup: &wire::Setup) -> Result<Flown, LinkLost> {
     match setup.algorithm {
-        wire::Algorithm::Cfc => chip.fly(setup, setup.cfc::<68>(), |_| {}),
+        wire::Algorithm::Cfc => chip.fly(setup, &mut setup.cfc::<68>(), |_| {}),
         wire::Algorithm::Scc { noise, policy, prior } => {
-            chip.fly(setup, setup.scc::<36, 529>(noise, policy, prior), |_| {})
+            chip.fly(setup, &mut setup.scc::<36, 529>(noise, policy, prior), |_| {})
         }
     }
 }
@@ -286,8 +286,8 @@ fn corpus() -> Vec<Vec<u8>> {
         let link = Link::new(Tap(Plug(&network), &frames));
         let mut chip = Station::<_, Infallible> { link, sensor: None, ticks: || 77, clock };
         let setup = chip.await_setup();
-        let planner = setup.cfc::<68>();
-        assert!(planner.is_err() || chip.fly(&setup, planner, |_| {}).is_ok());
+        let mut planner = setup.cfc::<68>();
+        assert!(planner.is_err() || chip.fly(&setup, &mut planner, |_| {}).is_ok());
     }
     frames.into_inner()
 }

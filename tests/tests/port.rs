@@ -56,7 +56,7 @@ fn a_board_at_a_serial_port_flies_as_this_machine_does() {
         let clock = ClockRate { per_second: 1_000_000, emulated: false };
         let mut board = Station::<_, Infallible> { link, sensor: None, ticks: || 0, clock };
         let setup = board.await_setup();
-        board.fly(&setup, setup.cfc::<68>(), |_| {})
+        board.fly(&setup, &mut setup.cfc::<68>(), |_| {})
     });
     let mission = field::standard(4, 1, Algorithm::Cfc, 10);
     let mut player = Player::new(&mission, LabelSource::Vehicle).expect("a mission for a chip");

@@ -49,12 +49,12 @@ mod on_target {
         let mut station = station(&streams);
         loop {
             let setup = station.await_setup();
-            let planner = match setup.algorithm {
+            let mut planner = match setup.algorithm {
                 Algorithm::Cfc => setup.cfc::<N>(),
                 Algorithm::Scc { .. } => Err(Declined::Algorithm),
             };
             // How it ended is the host's to judge.
-            let _ = station.fly(&setup, planner, |_| {});
+            let _ = station.fly(&setup, &mut planner, |_| {});
         }
     }
 
@@ -65,10 +65,10 @@ mod on_target {
         loop {
             let setup = station.await_setup();
             let _ = match setup.algorithm {
-                Algorithm::Cfc => station.fly(&setup, setup.cfc::<N>(), |_| {}),
+                Algorithm::Cfc => station.fly(&setup, &mut setup.cfc::<N>(), |_| {}),
                 Algorithm::Scc { noise, policy, prior } => {
-                    let planner = setup.scc::<N, H>(noise, policy, prior);
-                    station.fly(&setup, planner, |_| {})
+                    let mut planner = setup.scc::<N, H>(noise, policy, prior);
+                    station.fly(&setup, &mut planner, |_| {})
                 }
             };
         }
