@@ -135,28 +135,41 @@ impl<D: Dynamics, const N: usize, const H: usize> Scc<D, N, H> {
     }
 
     /// Equation 9: the action with the most votes, and of equals the one of smallest index.
+    ///
+    /// Hypotheses are asked in the order of their weight, by halves, until those that are left cannot
+    /// change the outcome.
     fn elect(&self, pose: Pose, examined: &mut u32) -> Option<Action> {
-        let weights = self.hypotheses.iter().map(|h| h.weight(self.prior));
-        let most = weights.max()?;
-        let mut ballot: Vec<(Action, u32), H, u16> = Vec::new();
-        for hypothesis in self.hypotheses.iter() {
-            let votes = hypothesis.weight(self.prior).votes(most);
-            if votes == 0 {
-                continue;
-            }
-            let search = self.problem(hypothesis).solve(&self.dynamics, pose);
-            *examined += search.examined;
-            let Some(best) = search.best else { continue };
-            match ballot.iter_mut().find(|(action, _)| *action == best.action) {
-                Some((_, sum)) => *sum = sum.saturating_add(votes),
-                // As many actions as hypotheses, and these fit: nothing is refused.
-                None => drop(ballot.push((best.action, votes))),
-            }
+        const { assert!(H < 1 << 12, "a table's votes are counted in 32 bits") };
+        let weights = || self.hypotheses.iter().map(|h| h.weight(self.prior));
+        let most = weights().max()?;
+        // As many votes, and at most as many actions, as hypotheses: nothing is refused.
+        let mut votes: Vec<u32, H, u16> = Vec::new();
+        for weight in weights() {
+            let _ = votes.push(weight.votes(most));
         }
-        ballot
-            .into_iter()
-            .max_by_key(|(action, votes)| (*votes, core::cmp::Reverse(*action)))
-            .map(|(action, _)| action)
+        let mut left: u32 = votes.iter().sum();
+        let mut ballot: Vec<(Action, u32), H, u16> = Vec::new();
+        let (mut above, mut least) = (u32::MAX, votes.iter().copied().max()?);
+        while above > 1 {
+            for (hypothesis, &votes) in self.hypotheses.iter().zip(&votes) {
+                if votes < least || votes >= above {
+                    continue;
+                }
+                left -= votes;
+                let search = self.problem(hypothesis).solve(&self.dynamics, pose);
+                *examined += search.examined;
+                let Some(best) = search.best else { continue };
+                match ballot.iter_mut().find(|(action, _)| *action == best.action) {
+                    Some((_, sum)) => *sum += votes,
+                    None => drop(ballot.push((best.action, votes))),
+                }
+                if lead(&ballot) > left {
+                    return first(&ballot);
+                }
+            }
+            (above, least) = (least, (least / 2).max(1));
+        }
+        first(&ballot)
     }
 
     fn find(&self, pose: Pose, examined: &mut u32) -> Option<Found> {
@@ -179,6 +192,20 @@ impl<D: Dynamics, const N: usize, const H: usize> Scc<D, N, H> {
             Some(Found { recovery, ..found })
         })
     }
+}
+
+/// The action with the most votes, and of equals the one of smallest index.
+fn first(ballot: &[(Action, u32)]) -> Option<Action> {
+    let best = ballot.iter().max_by_key(|(action, votes)| (*votes, core::cmp::Reverse(*action)))?;
+    Some(best.0)
+}
+
+/// By how many votes the first leads the second.
+fn lead(ballot: &[(Action, u32)]) -> u32 {
+    let [first, second] = ballot.iter().fold([0; 2], |[first, second], &(_, votes)| {
+        if votes > first { [votes, first] } else { [first, second.max(votes)] }
+    });
+    first - second
 }
 
 impl<D: Dynamics, const N: usize, const H: usize> Planner for Scc<D, N, H> {

@@ -167,16 +167,16 @@ fn time_standard(budgets: &mut Budgets, elf: &[u8]) -> u32 {
     let cfc = Workload { steps: 32, random: 32, searched: 1_000, sought: 2, ..CFC };
     let flights = fly(budgets, elf, "standard, Algorithm 1", cfc);
     let mut stack = record_all(budgets, "standard", "cfc_", &flights);
-    let scc = Workload { algorithm: Algorithm::Scc, searched: 60, ..CFC };
+    let scc = Workload { algorithm: Algorithm::Scc, searched: 400, ..CFC };
     for (name, policy) in [("joint", Policy::Joint), ("mixture", Policy::MixtureOfOwn)] {
-        let workload = Workload { policy, steps: 11, random: 8, sought: 2, ..scc };
+        let workload = Workload { policy, steps: 11, random: 400, sought: 4, ..scc };
         let flights = fly(budgets, elf, &format!("standard, {name}, 10 labels"), workload);
         let [random, sought] = [0, 1]
             .map(|n| flights[n].iter().filter_map(|it| it.at_label(10).0).collect::<Vec<_>>());
         record(budgets, "standard", &format!("{name}_plan_at_10"), Took::of(&random, &sought));
         stack = stack.max(deepest(&flights));
     }
-    let workload = Workload { policy: Policy::Joint, steps: 32, random: 4, sought: 0, ..scc };
+    let workload = Workload { policy: Policy::Joint, steps: 32, random: 60, sought: 0, ..scc };
     let flights = fly(budgets, elf, "standard, 32 labels", workload);
     let [random, sought] =
         [0, 1].map(|n| flights[n].iter().filter_map(|it| it.at_label(32).1).collect::<Vec<_>>());
