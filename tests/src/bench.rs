@@ -36,6 +36,18 @@ pub fn build(scratch: &str, target: &str) -> Option<impl Fn(&str) -> Vec<u8> + u
 /// # Panics
 /// When the program ends.
 pub fn fly(emulator: &mut Emulator, mission: &Mission) -> Result<Played> {
+    fly_and_record(emulator, mission).map(|(played, _)| played)
+}
+
+/// As [`fly`], and all that the program was told.
+///
+/// # Errors
+/// As [`fly`].
+///
+/// # Panics
+/// As [`fly`].
+pub fn fly_and_record(emulator: &mut Emulator, mission: &Mission) -> Result<(Played, Vec<u8>)> {
+    let mut told = Vec::new();
     let mut player = Player::new(mission, LabelSource::Vehicle)?;
     while !player.is_over() {
         match emulator.run() {
@@ -43,6 +55,7 @@ pub fn fly(emulator: &mut Emulator, mission: &Mission) -> Result<Played> {
                 for byte in bytes {
                     if let Some(frame) = player.hear(byte)? {
                         emulator.supply(frame.bytes());
+                        told.extend(frame.bytes());
                     }
                 }
             }
@@ -50,5 +63,5 @@ pub fn fly(emulator: &mut Emulator, mission: &Mission) -> Result<Played> {
             Event::Exit(status) => panic!("the program ended with status {status}"),
         }
     }
-    player.finish()
+    Ok((player.finish()?, told))
 }

@@ -4,7 +4,9 @@
 //! The programs are the planner with the chip's side of the link, compiled for Armv7E-M with a
 //! single-precision unit and for Armv6-M, which has neither that nor a divider nor long multiplies.
 
+use std::fs;
 use std::hash::{DefaultHasher, Hasher as _};
+use std::process::{Command, Stdio};
 
 use host_sim::field;
 use host_sim::mission::{Algorithm, Mission};
@@ -14,7 +16,9 @@ use host_sim::trace;
 use host_sim::world::{Extent, NoiseModel};
 use rayon::prelude::*;
 use tests::bench::{self, CORES};
+use tests::elf;
 use tests::emulator::{Core, Emulator};
+use tests::timing;
 
 /// The paper's two examples, then random fields, each algorithm by turns.
 fn missions() -> Vec<Mission> {
@@ -95,4 +99,63 @@ fn the_small_program_has_one_algorithm_and_says_so() {
     assert!(refusal(&mut emulator, &long).contains("at most 12"));
     let fits = field::standard(5, 1, Algorithm::Cfc, 12);
     assert!(bench::fly(&mut emulator, &fits).is_ok());
+}
+
+/// What a function executed at each call, by a log of program counters.
+fn calls(executed: &[u32], function: u32) -> Vec<u64> {
+    let mut calls = Vec::new();
+    for (entry, pcs) in executed.windows(2).enumerate().filter(|(_, pcs)| pcs[1] == function) {
+        let returns = pcs[0] + 4; // after the call, which is a word long
+        let body = executed[entry + 1..].iter().take_while(|pc| **pc != returns);
+        calls.push(body.count() as u64);
+    }
+    calls
+}
+
+#[test]
+fn qemu_executes_as_many_instructions() {
+    let (core, target) = CORES[0];
+    let Some(program) = bench::build(env!("CARGO_TARGET_TMPDIR"), target) else { return };
+    if !elf::has_tool("qemu-system-arm") {
+        elf::skip("instruction counts under QEMU", "qemu-system-arm is not on PATH");
+        return;
+    }
+    let elf = program("small");
+    let mission = field::standard(5, 3, Algorithm::Cfc, 12);
+    let (_, told) = bench::fly_and_record(&mut Emulator::load(&elf, core), &mission)
+        .expect("it flies as the host");
+    let flights = timing::fly(&elf, &[mission]);
+
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let [elf_file, input, log] = ["elf", "input", "log"].map(|name| folder.path().join(name));
+    fs::write(&elf_file, &elf).expect("a file");
+    fs::write(&input, &told).expect("a file");
+    // One instruction a block, and a line for each; at the end of its input the program ends.
+    let qemu = Command::new("qemu-system-arm")
+        .args(["-M", "netduinoplus2", "-nographic", "-monitor", "none", "-serial", "none"])
+        .args(["-singlestep", "-d", "exec,nochain", "-D"])
+        .arg(&log)
+        .args(["-semihosting-config", "enable=on,target=native", "-kernel"])
+        .arg(&elf_file)
+        .stdin(fs::File::open(&input).expect("it was written"))
+        .stdout(Stdio::null())
+        .status()
+        .expect("QEMU starts");
+    assert!(qemu.success(), "{qemu}");
+    // Trace 0: host address [... / program counter / ...] name
+    let log = fs::read_to_string(log).expect("QEMU left a log");
+    let counter = |line: &str| {
+        let counter = line.strip_prefix("Trace")?.split('[').nth(1)?.split('/').nth(1)?;
+        u32::from_str_radix(counter, 16).ok()
+    };
+    let executed: Vec<u32> = log.lines().filter_map(counter).collect();
+
+    let mut compared = 0;
+    for calls_here in [&flights[0].plans, &flights[0].observations, &flights[0].estimates] {
+        let here: Vec<u64> = calls_here.iter().map(|call| call.instructions).collect();
+        let there = calls(&executed, calls_here.first().expect("it was called").function);
+        assert_eq!(there, here, "QEMU (left), the emulator (right)");
+        compared += here.iter().sum::<u64>();
+    }
+    println!("{compared} instructions of plans, observations and estimates: as many under QEMU");
 }
