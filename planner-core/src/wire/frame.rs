@@ -1,0 +1,167 @@
+//! Frames: how a message goes over the wire, and how it is found again in a stream of bytes.
+//!
+//! A frame holds one message: the way it goes, its number, itself, in postcard's form, and a CRC-32 of
+//! these; COBS keeps zeros out, and a zero stands before and after. So a frame that was cut spoils itself
+//! alone.
+
+use core::ops::{Index, IndexMut};
+
+use crc::{CRC_32_ISO_HDLC, Crc};
+use heapless::Vec;
+use postcard::ser_flavors::crc::CrcModifier;
+use postcard::ser_flavors::{Cobs, Flavor};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+/// Bytes of the longest frame, its two zeros included.
+pub const FRAME: usize = 320;
+
+/// What goes one way over the link.
+pub trait Message: Serialize + DeserializeOwned {
+    /// Tells the two ways apart, so that an echo of one's own frames is not taken for an answer.
+    const WAY: u8;
+}
+
+/// A message and the number of its exchange, which request and reply share.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Envelope<M> {
+    way: u8,
+    /// The number.
+    pub number: u32,
+    /// The message.
+    pub message: M,
+}
+
+impl<M: Message> Envelope<M> {
+    /// A message with its number.
+    pub const fn new(number: u32, message: M) -> Self {
+        Self { way: M::WAY, number, message }
+    }
+}
+
+static CHECK: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
+
+/// A message as it goes over the wire.
+#[derive(Clone, Debug, Default)]
+pub struct Frame(Vec<u8, FRAME, u16>);
+
+impl Frame {
+    /// The frame of an envelope.
+    pub fn of<M: Message>(envelope: &Envelope<M>) -> Self {
+        let mut frame = Vec::new();
+        // Every message fits, as a test over the longest of each shows.
+        let _ = frame.resize(FRAME, 0);
+        let written = encode(envelope, frame.get_mut(1..).unwrap_or(&mut [])).unwrap_or(0);
+        frame.truncate(1 + written);
+        Self(frame)
+    }
+
+    /// Its bytes.
+    pub fn bytes(&self) -> &[u8] {
+        &self.0
+    }
+}
+
+fn encode<M: Message>(envelope: &Envelope<M>, into: &mut [u8]) -> postcard::Result<usize> {
+    let stuffed = Cobs::try_new(Content { bytes: into, written: 0, nowhere: 0 })?;
+    let checked = CrcModifier::new(stuffed, CHECK.digest());
+    postcard::serialize_with_flavor(envelope, Once(checked))
+}
+
+/// What takes bytes, compiled once: every field of every message would else have a copy of it.
+struct Once<F>(F);
+
+impl<F: Flavor> Flavor for Once<F> {
+    type Output = F::Output;
+
+    #[inline(never)]
+    fn try_push(&mut self, byte: u8) -> postcard::Result<()> {
+        self.0.try_push(byte)
+    }
+
+    fn finalize(self) -> postcard::Result<F::Output> {
+        self.0.finalize()
+    }
+}
+
+/// Takes what is written of a frame. COBS comes back to places that it has written to; postcard's own
+/// slice panics at others, and so would have a panic in every program.
+struct Content<'a> {
+    bytes: &'a mut [u8],
+    written: usize,
+    /// What is at a place that there is not.
+    nowhere: u8,
+}
+
+impl Flavor for Content<'_> {
+    type Output = usize;
+
+    fn try_push(&mut self, byte: u8) -> postcard::Result<()> {
+        let next = self.bytes.get_mut(self.written);
+        *next.ok_or(postcard::Error::SerializeBufferFull)? = byte;
+        self.written += 1;
+        Ok(())
+    }
+
+    fn finalize(self) -> postcard::Result<usize> {
+        Ok(self.written)
+    }
+}
+
+impl Index<usize> for Content<'_> {
+    type Output = u8;
+
+    fn index(&self, at: usize) -> &u8 {
+        self.bytes.get(at).unwrap_or(&self.nowhere)
+    }
+}
+
+impl IndexMut<usize> for Content<'_> {
+    fn index_mut(&mut self, at: usize) -> &mut u8 {
+        self.bytes.get_mut(at).unwrap_or(&mut self.nowhere)
+    }
+}
+
+/// Finds frames in a stream of bytes, and skips what is none.
+#[derive(Debug, Default)]
+pub struct Decoder {
+    state: cobs::DecoderState,
+    /// What the frame holds so far.
+    content: Vec<u8, FRAME, u16>,
+    /// More came than a frame holds.
+    overlong: bool,
+}
+
+impl Decoder {
+    /// Takes in a byte; the envelope of the frame that it completes, if that is whole and goes `M`'s
+    /// way.
+    pub fn feed<M: Message>(&mut self, byte: u8) -> Option<Envelope<M>> {
+        match self.state.feed(byte) {
+            Ok(cobs::DecodeResult::DataContinue(content)) => {
+                self.overlong |= self.content.push(content).is_err();
+                None
+            }
+            Ok(cobs::DecodeResult::NoData) => None,
+            Ok(cobs::DecodeResult::DataComplete) => {
+                let envelope = if self.overlong { None } else { open(&self.content) };
+                self.restart();
+                envelope
+            }
+            Ok(cobs::DecodeResult::DataStart) | Err(_) => {
+                self.restart();
+                None
+            }
+        }
+    }
+
+    fn restart(&mut self) {
+        self.content.clear();
+        self.overlong = false;
+    }
+}
+
+fn open<M: Message>(content: &[u8]) -> Option<Envelope<M>> {
+    let (envelope, rest) =
+        postcard::take_from_bytes_crc32::<Envelope<M>>(content, CHECK.digest()).ok()?;
+    (envelope.way == M::WAY && rest.is_empty()).then_some(envelope)
+}
