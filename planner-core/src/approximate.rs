@@ -5,6 +5,7 @@
 /// half turns are still an `i32`.
 pub(crate) const HALF_TURN: i32 = 1 << 29;
 
+/// The units of angles here in a radian.
 pub(crate) const UNITS_PER_RADIAN: f32 = HALF_TURN as f32 / core::f32::consts::PI;
 
 /// The square root of a number that is not negative, to 10^-5 of it. Newton's method on `1 / sqrt(x)`.

