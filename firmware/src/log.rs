@@ -1,4 +1,7 @@
-#![expect(unsafe_code, reason = "defmt's logger is an unsafe trait")]
+#![expect(
+    unsafe_code,
+    reason = "defmt's logger is an unsafe trait, and a fault takes the log over from what it broke off"
+)]
 //! The log: defmt frames to RTT, for a probe, and to USART2, for a wire or an emulator.
 //!
 //! Neither waits for a reader. A frame that does not fit is dropped whole, and counted, so that the
@@ -6,10 +9,10 @@
 //! both ways, and it spins in a critical section when a probe has gone away, and drops parts of
 //! frames; `defmt-serial` blocks.
 
-use core::cell::RefCell;
+use core::cell::UnsafeCell;
 use core::mem;
 
-use critical_section::{Mutex, RestoreState};
+use critical_section::RestoreState;
 use embedded_hal_nb::serial::Write;
 use heapless::{Deque, Vec};
 use rtt_target::{ChannelMode, UpChannel, rtt_init};
@@ -23,13 +26,16 @@ use crate::serial::BAUD;
 /// Bytes in a frame, at most.
 const FRAME: usize = 256;
 
+/// Between frames, one or more.
+const SEPARATOR: u8 = 0;
+
 /// Bytes that wait for the wire, at most: some 180 ms of it.
 const WAITING: usize = 2_048;
 
 /// Bytes handed to the wire at a time.
 const PORTION: usize = 16;
 
-static LOG: Mutex<RefCell<Log>> = Mutex::new(RefCell::new(Log {
+static LOG: Shared = Shared(UnsafeCell::new(Log {
     encoder: defmt::Encoder::new(),
     frame: Vec::new(),
     too_long: false,
@@ -39,6 +45,12 @@ static LOG: Mutex<RefCell<Log>> = Mutex::new(RefCell::new(Log {
     wire: None,
     restore: RestoreState::invalid(),
 }));
+
+/// One at a time has it: see [`Log::with`].
+struct Shared(UnsafeCell<Log>);
+
+// SAFETY: `Log::with` alone reaches what is inside.
+unsafe impl Sync for Shared {}
 
 struct Log {
     encoder: defmt::Encoder,
@@ -52,11 +64,12 @@ struct Log {
 }
 
 impl Log {
-    /// `None` if a fault came while the log was in hand: its message is lost.
-    fn with<T>(f: impl FnOnce(&mut Self) -> T) -> Option<T> {
-        critical_section::with(|token| {
-            LOG.borrow(token).try_borrow_mut().ok().map(|mut log| f(&mut log))
-        })
+    /// A panic or a fault while the log is in hand takes it over as it is: any byte or index that was
+    /// about to change is a sound one.
+    fn with<T>(f: impl FnOnce(&mut Self) -> T) -> T {
+        // SAFETY: no `f` logs, and in a critical section only a panic or a fault can come between. They
+        // never return, so then the other reference is not used again.
+        critical_section::with(|_| f(unsafe { &mut *LOG.0.get() }))
     }
 
     fn encode(&mut self, part: impl FnOnce(&mut defmt::Encoder, &mut dyn FnMut(&[u8]))) {
@@ -112,7 +125,7 @@ pub(crate) fn open(usart: USART2, pin: PA2, debug: &DBGMCU, rcc: &mut Rcc) {
 
 /// Sends what the wire takes without a wait; says whether more is waiting.
 pub(crate) fn drain() -> bool {
-    let Some((more, dropped)) = Log::with(Log::send) else { return false };
+    let (more, dropped) = Log::with(Log::send);
     if dropped != 0 {
         defmt::warn!("the log was full: {=u32} messages lost", dropped);
     }
@@ -122,7 +135,7 @@ pub(crate) fn drain() -> bool {
 /// Sends all that is waiting. Only the watchdog ends this if the transmitter is stuck.
 pub(crate) fn flush() {
     while drain() {}
-    while Log::with(Log::is_sending) == Some(true) {}
+    while Log::with(Log::is_sending) {}
 }
 
 #[defmt::global_logger]
@@ -134,11 +147,15 @@ unsafe impl defmt::Logger for Logger {
         // SAFETY: defmt pairs this with `release`.
         let restore = unsafe { critical_section::acquire() };
         Log::with(|log| {
-            // Left over if a fault or a panic came in the middle of a frame, never to return to it.
+            // A panic or a fault may have broken off a frame in the making, which goes, or one on its
+            // way out, which the separator ends.
             log.frame.clear();
             log.too_long = false;
             log.restore = restore;
-            log.encode(|encoder, put| encoder.start_frame(put));
+            log.encode(|encoder, put| {
+                put(&[SEPARATOR]);
+                encoder.start_frame(put);
+            });
         });
     }
 
@@ -154,9 +171,7 @@ unsafe impl defmt::Logger for Logger {
             log.commit();
             log.restore
         });
-        if let Some(restore) = restore {
-            // SAFETY: this is the state that `acquire` was given.
-            unsafe { critical_section::release(restore) }
-        }
+        // SAFETY: this is the state that `acquire` was given.
+        unsafe { critical_section::release(restore) }
     }
 }
