@@ -1,12 +1,13 @@
 //! The firmware under emulation: QEMU's STM32F405, its first UART over TCP.
 
+use std::io::Read as _;
 use std::net::{TcpListener, TcpStream};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 use std::{fs, thread};
 
-use anyhow::{Context as _, Result, bail};
+use anyhow::{Context as _, Result, anyhow, bail};
 
 /// Emulated nanoseconds that an instruction takes (`-icount shift=6`), so that the emulated clock counts
 /// them.
@@ -16,6 +17,9 @@ const QEMU: &str = "qemu-system-arm";
 
 /// How long QEMU may take to come up.
 const PATIENCE: Duration = Duration::from_secs(20);
+
+/// How long QEMU may take to end once its ports are closed.
+const DYING: Duration = Duration::from_millis(200);
 
 /// A running emulator; it ends with this value.
 #[derive(Debug)]
@@ -30,7 +34,7 @@ impl Emulator {
     /// # Errors
     /// When there is no such ELF or no QEMU, or it does not come up.
     pub fn start(elf: &Path, log: Option<&Path>, more: &[&str]) -> Result<(Self, TcpStream)> {
-        if !fs::read(elf).is_ok_and(|content| content.starts_with(b"\x7fELF")) {
+        if !fs::read(elf).is_ok_and(|content| is_arm_elf(&content)) {
             bail!("{}: expected the firmware's ELF; `cargo firmware` builds it", elf.display());
         }
         let listener = TcpListener::bind("127.0.0.1:0").context("no port for the link")?;
@@ -63,17 +67,35 @@ impl Emulator {
                 link.set_nonblocking(false)?;
                 return Ok(link);
             }
-            if let Some(status) = self.qemu.try_wait()? {
-                let mut message = String::new();
-                if let Some(mut stderr) = self.qemu.stderr.take() {
-                    std::io::Read::read_to_string(&mut stderr, &mut message)?;
-                }
-                bail!("{QEMU} ended with {status}: {}", message.trim());
+            if let Some(failure) = self.failure() {
+                return Err(failure);
             }
             thread::sleep(Duration::from_millis(5));
         }
         bail!("{QEMU} did not come up within {} s", PATIENCE.as_secs())
     }
+
+    /// What QEMU says if it has ended by itself.
+    fn failure(&mut self) -> Option<anyhow::Error> {
+        let status = self.qemu.try_wait().ok()??;
+        let mut message = String::new();
+        if let Some(mut stderr) = self.qemu.stderr.take() {
+            // Without its words, its status has to do.
+            let _ = stderr.read_to_string(&mut message);
+        }
+        Some(anyhow!("{QEMU} ended with {status}: {}", message.trim()))
+    }
+
+    /// What broke a mission off: the emulator, if that has ended.
+    pub fn blame(&mut self, error: anyhow::Error) -> anyhow::Error {
+        thread::sleep(DYING);
+        self.failure().unwrap_or(error)
+    }
+}
+
+fn is_arm_elf(content: &[u8]) -> bool {
+    const ARM: [u8; 2] = [40, 0];
+    content.starts_with(b"\x7fELF") && content.get(18..20) == Some(&ARM)
 }
 
 impl Drop for Emulator {

@@ -69,9 +69,10 @@ pub fn fly(player: &mut Player, chip: &Chip, faults: Faults, seed: u64) -> Resul
             play(player, Cable::new(reader, port, faults, seed))
         }
         Chip::Emulated { elf, log } => {
-            let (_emulator, link) = Emulator::start(elf, log.as_deref(), &[])?;
+            let (mut emulator, link) = Emulator::start(elf, log.as_deref(), &[])?;
             let reader = link.try_clone()?;
-            play(player, Cable::new(reader, link, faults, seed))
+            let played = play(player, Cable::new(reader, link, faults, seed));
+            played.map_err(|error| emulator.blame(error))
         }
     }
 }

@@ -304,8 +304,11 @@ fn a_chip_that_cannot_be_is_refused() {
     });
     let many = GOOD.replace("oracle = [\n", &format!("oracle = [\n{many}"));
     fs::write(folder.path().join("many.toml"), many).expect("a file");
-    let cases: [(&[&str], &[&str]); 10] = [
+    let other = env!("CARGO_BIN_EXE_host-sim");
+    let other = format!("--emulator={other}");
+    let cases: [(&[&str], &[&str]); 11] = [
         (&["m.toml"], &["--port", "--emulator"]),
+        (&["m.toml", &other], &["host-sim", "firmware's ELF"]),
         (&["m.toml", "--port", "x", "--emulator"], &["--port", "--emulator"]),
         (&["m.toml", "--port", "no-such-device"], &["no-such-device", "expected a serial port"]),
         (&["m.toml", "--emulator"], &["release/firmware", "cargo firmware"]),
