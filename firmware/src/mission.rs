@@ -35,7 +35,7 @@ impl Board {
                 Algorithm::Cfc => self.fly(&setup, &mut setup.cfc::<CFC_SAMPLES>()),
                 Algorithm::Scc { noise, policy, prior } => {
                     let mut planner = setup.scc::<SCC_SAMPLES, HYPOTHESES>(noise, policy, prior);
-                    self.fly(&setup, &mut planner);
+                    self.fly(&setup, &mut setup.prepare(&mut planner));
                 }
             }
         }

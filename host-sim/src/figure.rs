@@ -5,7 +5,7 @@ use std::fmt::Display;
 use anyhow::{Result, anyhow};
 use nalgebra::{Point2, Vector2};
 use planner_core::area::Area;
-use planner_core::cell::Certainty;
+use planner_core::candidates::Certainty;
 use planner_core::estimate;
 use planner_core::hypotheses::Prior;
 use planner_core::lattice::{Site, Vector};

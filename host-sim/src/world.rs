@@ -30,7 +30,7 @@ pub fn reading(truth: &Line, site: Site) -> Reading {
 }
 
 /// Whether a line is among the candidates: it has the labels that their cell gives its samples.
-pub fn agrees<const E: usize>(line: &Line, candidates: Candidates<'_, E>) -> bool {
+pub fn agrees(line: &Line, candidates: Candidates<'_>) -> bool {
     candidates.support().all(|s| reading(line, s.site) == Reading::Side(s.label))
 }
 

@@ -1,29 +1,86 @@
-//! Candidate lines: a cell beside the samples it names, and what can be read off the two.
+//! Candidate lines: the edges of a cell beside the samples they name, and what can be read off the two.
 
-use crate::cell::{Cell, Certainty};
+use crate::cell::Edge;
 use crate::direction::Arc;
 use crate::lattice::Site;
 use crate::line::Bound;
-use crate::sample::Sample;
+use crate::sample::{Label, Sample};
 
-/// A view of a cell and its samples. The version space is one; so is each hypothesis.
+/// What the lines of a cell say about a position.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Certainty {
+    /// All give it this label: it lies in a region of certainty (the paper's `X_t` or `X^c_t`).
+    Certain(Label),
+    /// They disagree: a sample here cuts the cell.
+    Uncertain,
+}
+
+impl Certainty {
+    /// What lines on both sides, given as signs, say together. They are smaller than 2^63 in size.
+    pub(crate) fn of_signs(signs: impl Iterator<Item = i64>) -> Self {
+        // The upper halves of them all, and of their opposites, for their sign bits.
+        let (mut below, mut above) = (0, 0);
+        for sign in signs {
+            below |= (sign >> 32) as i32;
+            above |= (sign.wrapping_neg() >> 32) as i32;
+            if below & above < 0 {
+                return Self::Uncertain;
+            }
+        }
+        Self::Certain(if below < 0 { Label::Negative } else { Label::Positive })
+    }
+}
+
+/// The lines that agree with some samples, each with the label that its edge gives it. The version
+/// space is such a set; so is each hypothesis.
 #[derive(Clone, Copy, Debug)]
-pub struct Candidates<'a, const E: usize> {
-    /// The polygon of lines.
-    pub cell: &'a Cell<E>,
-    /// The buffer whose indices its edges are.
+pub struct Candidates<'a> {
+    /// The samples that matter, in cyclic order.
+    pub edges: &'a [Edge],
+    /// The buffer whose indices the edges are.
     pub samples: &'a [Sample],
 }
 
-impl<'a, const E: usize> Candidates<'a, E> {
-    /// The vertices, in cyclic order.
-    pub fn bounds(self) -> impl Iterator<Item = Bound> + 'a {
-        self.cell.bounds(self.samples)
+impl<'a> Candidates<'a> {
+    /// The vertex after the `k`-th edge.
+    fn bound(self, k: usize) -> Option<Bound> {
+        let i = *self.edges.get(k)?;
+        let j = *self.edges.get(k + 1).or(self.edges.first())?;
+        let (p, q) = (self.samples.get(i.index())?.site, self.samples.get(j.index())?.site);
+        let along = if i.label() == j.label() { q - p } else { p - q };
+        Some(Bound { through: p, along })
     }
 
-    /// Whether all candidate lines give a position the same label, and which.
+    /// The vertices: the lines through two samples that bound the set, in cyclic order.
+    pub fn bounds(self) -> impl Iterator<Item = Bound> + 'a {
+        (0..self.edges.len()).filter_map(move |k| self.bound(k))
+    }
+
+    /// Each edge with the vertices at its two ends, in cyclic order.
+    pub(crate) fn sides(self) -> impl Iterator<Item = (Edge, [Bound; 2])> + 'a {
+        self.edges.iter().enumerate().filter_map(move |(k, &edge)| {
+            let before = if k == 0 { self.edges.len() - 1 } else { k - 1 };
+            Some((edge, [self.bound(before)?, self.bound(k)?]))
+        })
+    }
+
+    /// Whether all candidate lines give a position the same label, and which. One orientation an
+    /// edge, at most.
+    #[inline(never)]
     pub fn certainty(self, q: Site) -> Certainty {
-        self.cell.certainty(self.samples, q)
+        Certainty::of_signs(self.turns(q))
+    }
+
+    /// On which side of the vertex before each edge a position lies: [`Bound::at`], by the turn from
+    /// one sample to the next as they are seen from there.
+    pub(crate) fn turns(self, q: Site) -> impl Iterator<Item = i64> + 'a {
+        let seen = move |edge: &Edge| edge.seen(self.samples, q);
+        let mut before = self.edges.last().map(seen).unwrap_or_default();
+        self.edges.iter().map(move |edge| {
+            let after = seen(edge);
+            core::mem::replace(&mut before, after).cross(after)
+        })
     }
 
     /// The directions of the candidate lines: the paper's `E_rho,t`.
@@ -40,7 +97,7 @@ impl<'a, const E: usize> Candidates<'a, E> {
     /// The samples that still matter, with the labels that the cell gives them: the others follow
     /// from these.
     pub fn support(self) -> impl Iterator<Item = Sample> + Clone + 'a {
-        self.cell.edges().iter().filter_map(move |edge| {
+        self.edges.iter().filter_map(move |edge| {
             let site = self.samples.get(edge.index())?.site;
             Some(Sample { site, label: edge.label() })
         })

@@ -3,13 +3,13 @@
 //! In the space of homogeneous lines `(A, B, C)` a sample `(x, z)` with label `y` admits the
 //! half-space `y (A x + B z + C) >= 0`. The lines that agree with a set of samples are a convex
 //! cone; seen as a polygon, each *edge* belongs to a sample that still matters and each *vertex*,
-//! between two edges, is the line through their two samples: a [`Bound`]. So a list of samples says
-//! it all, and one predicate, [`Bound::at`], decides every question about it.
+//! between two edges, is the line through their two samples: a [`Bound`](crate::line::Bound). So a list of samples says
+//! it all, and one predicate, [`Bound::at`](crate::line::Bound::at), decides every question about it.
 //!
 //! A cell does not hold the samples: several cells can share one buffer of sites.
 
+use crate::candidates::Candidates;
 use crate::lattice::{Site, Vector, orient};
-use crate::line::Bound;
 use crate::sample::{Label, Sample};
 
 /// A sample's part in a cell: its index in the buffer and the label the cell gives it.
@@ -38,7 +38,7 @@ impl Edge {
     }
 
     /// The sample as seen from `q`, on the other side of it if its label is negative.
-    fn seen(self, samples: &[Sample], q: Site) -> Vector {
+    pub(crate) fn seen(self, samples: &[Sample], q: Site) -> Vector {
         let seen = samples.get(self.index()).map(|s| s.site - q).unwrap_or_default();
         if self.label() == Label::Positive { seen } else { seen.reversed() }
     }
@@ -48,32 +48,6 @@ impl core::fmt::Debug for Edge {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let sign = if self.label() == Label::Positive { '+' } else { '-' };
         write!(f, "{sign}{}", self.index())
-    }
-}
-
-/// What the lines of a cell say about a position.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Certainty {
-    /// All give it this label: it lies in a region of certainty (the paper's `X_t` or `X^c_t`).
-    Certain(Label),
-    /// They disagree: a sample here cuts the cell.
-    Uncertain,
-}
-
-impl Certainty {
-    /// What lines on both sides, given as signs, say together. They are smaller than 2^63 in size.
-    pub(crate) fn of_signs(signs: impl Iterator<Item = i64>) -> Self {
-        // The upper halves of them all, and of their opposites, for their sign bits.
-        let (mut below, mut above) = (0, 0);
-        for sign in signs {
-            below |= (sign >> 32) as i32;
-            above |= (sign.wrapping_neg() >> 32) as i32;
-            if below & above < 0 {
-                return Self::Uncertain;
-            }
-        }
-        Self::Certain(if below < 0 { Label::Negative } else { Label::Positive })
     }
 }
 
@@ -142,14 +116,9 @@ impl<const E: usize> Cell<E> {
         self.edges.get(..usize::from(self.len)).unwrap_or(&[])
     }
 
-    /// The vertices: the lines through two samples that bound the cell, in cyclic order.
-    pub fn bounds<'a>(&'a self, samples: &'a [Sample]) -> impl Iterator<Item = Bound> + 'a {
-        (0..self.edges().len()).filter_map(|k| bound(self.edges(), samples, k))
-    }
-
-    /// What the lines of the cell say about a position. One orientation an edge, at most.
-    pub fn certainty(&self, samples: &[Sample], q: Site) -> Certainty {
-        certainty(self.edges(), samples, q)
+    /// The lines, beside the samples that the edges name.
+    pub fn candidates<'a>(&'a self, samples: &'a [Sample]) -> Candidates<'a> {
+        Candidates { edges: self.edges(), samples }
     }
 
     /// Keeps the lines that agree with the edge's sample. One orientation an edge, exact.
@@ -157,7 +126,7 @@ impl<const E: usize> Cell<E> {
     /// # Errors
     /// [`CutError`], with the cell as it was.
     pub fn cut(&mut self, samples: &[Sample], edge: Edge) -> Result<Cut, CutError> {
-        let Some([first, last]) = agreeing(self.edges(), samples, edge)? else {
+        let Some([first, last]) = agreeing(self.candidates(samples), edge)? else {
             return Ok(Cut::Unchanged);
         };
         let n = self.edges().len();
@@ -174,54 +143,14 @@ impl<const E: usize> Cell<E> {
     }
 }
 
-/// The vertex after the `k`-th edge.
-fn bound(edges: &[Edge], samples: &[Sample], k: usize) -> Option<Bound> {
-    let i = *edges.get(k)?;
-    let j = *edges.get(k + 1).or(edges.first())?;
-    let (p, q) = (samples.get(i.index())?.site, samples.get(j.index())?.site);
-    let along = if i.label() == j.label() { q - p } else { p - q };
-    Some(Bound { through: p, along })
-}
-
-/// Each edge of a cell with the vertices at its two ends, in cyclic order.
-pub(crate) fn sides(
-    edges: &[Edge],
-    samples: &[Sample],
-) -> impl Iterator<Item = (Edge, [Bound; 2])> {
-    edges.iter().enumerate().filter_map(move |(k, &edge)| {
-        let before = if k == 0 { edges.len() - 1 } else { k - 1 };
-        Some((edge, [bound(edges, samples, before)?, bound(edges, samples, k)?]))
-    })
-}
-
-/// [`Cell::certainty`], once for cells of all sizes.
-#[inline(never)]
-fn certainty(edges: &[Edge], samples: &[Sample], q: Site) -> Certainty {
-    Certainty::of_signs(turns(edges, samples, q))
-}
-
-/// On which side of the vertex before each edge a position lies: [`Bound::at`], by the turn from
-/// one sample to the next as they are seen from there.
-fn turns(edges: &[Edge], samples: &[Sample], q: Site) -> impl Iterator<Item = i64> {
-    let mut before = edges.last().map(|edge| edge.seen(samples, q)).unwrap_or_default();
-    edges.iter().map(move |edge| {
-        let after = edge.seen(samples, q);
-        core::mem::replace(&mut before, after).cross(after)
-    })
-}
-
 /// The first and the last edge that stay when a cell keeps the lines that agree with an edge's
 /// sample; `None` when all do.
-fn agreeing(
-    edges: &[Edge],
-    samples: &[Sample],
-    edge: Edge,
-) -> Result<Option<[usize; 2]>, CutError> {
-    let Some(q) = samples.get(edge.index()).map(|s| s.site) else {
+fn agreeing(whole: Candidates<'_>, edge: Edge) -> Result<Option<[usize; 2]>, CutError> {
+    let Some(q) = whole.samples.get(edge.index()).map(|s| s.site) else {
         return Err(CutError::Full);
     };
     let mut disagrees = false;
-    let mut agreements = turns(edges, samples, q).map(|turn| {
+    let mut agreements = whole.turns(q).map(|turn| {
         let turn = if edge.label() == Label::Positive { turn } else { -turn };
         disagrees |= turn < 0;
         turn > 0
@@ -233,7 +162,7 @@ fn agreeing(
     // the edge that ends in the first of them to the edge that begins with the last.
     let (mut first, mut last) = (None, None);
     let mut before = start;
-    for k in 0..edges.len() {
+    for k in 0..whole.edges.len() {
         let after = agreements.next().unwrap_or(start);
         if !before && after {
             first = Some(k);

@@ -10,7 +10,7 @@
 //!   [`Following`](crate::config::Following). Over 4,000 standard fields this learns 0.65 bits a step
 //!   in 10 steps where P2 as printed learns 0.56.
 
-use crate::cell::Certainty;
+use crate::candidates::Certainty;
 use crate::config::{Config, first_to_second};
 use crate::dynamics::{Dynamics, Pose};
 use crate::estimate::Estimates;
@@ -73,7 +73,7 @@ impl<D: Dynamics, const N: usize> Cfc<D, N> {
     }
 
     /// The one-step problem of the present phase.
-    pub fn problem(&self) -> Problem<'_, ArcRule, N> {
+    pub fn problem(&self) -> Problem<'_, ArcRule> {
         let Config { area, varrho, .. } = self.config;
         let arc = self.space.slope_arc();
         let rule = match self.phase {

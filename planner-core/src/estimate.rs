@@ -12,7 +12,6 @@
 use nalgebra::{Matrix2, Point2, Vector2};
 
 use crate::candidates::Candidates;
-use crate::cell::{self, Edge};
 use crate::lattice::{Site, UNITS_PER_METRE, Vector};
 use crate::line::Line;
 use crate::sample::{Label, Sample};
@@ -66,12 +65,8 @@ impl Moments {
     /// integral over it is one round its edges. With `u` the direction of the line, `n` a quarter
     /// turn to the left of it and `M` the integral of `n n^T` from one end of an edge to the other,
     /// an edge adds `p . (u' - u)` to the area, `M p` to the normal and `p^T M p / 2` to the offset.
-    pub(crate) fn of<const E: usize>(candidates: Candidates<'_, E>) -> Self {
-        Self::of_cell(candidates.cell.edges(), candidates.samples)
-    }
-
-    /// Once for cells of all sizes.
-    fn of_cell(edges: &[Edge], samples: &[Sample]) -> Self {
+    pub(crate) fn of(candidates: Candidates<'_>) -> Self {
+        let Candidates { samples, .. } = candidates;
         let about = samples.first().map(|s| s.site);
         let mut moments = Self {
             area: 0.0,
@@ -79,7 +74,7 @@ impl Moments {
             offset: 0.0,
             about: about.map_or(Point2::origin(), Point2::from),
         };
-        for (edge, [start, end]) in cell::sides(edges, samples) {
+        for (edge, [start, end]) in candidates.sides() {
             let (Some(sample), Some(about)) = (samples.get(edge.index()), about) else {
                 continue;
             };
@@ -122,7 +117,7 @@ impl Moments {
 
 /// The measure of the version space, radian metres: d(angle) d(offset), the measure of lines that
 /// no motion of the plane changes. Its logarithm to the base 2 falls by the bits that samples tell.
-pub fn area<const E: usize>(candidates: Candidates<'_, E>) -> f64 {
+pub fn area(candidates: Candidates<'_>) -> f64 {
     Moments::of(candidates).area.abs()
 }
 
@@ -132,7 +127,7 @@ pub fn area<const E: usize>(candidates: Candidates<'_, E>) -> f64 {
 /// Closed form, and the same wherever the origin lies and however the axes turn. The version space
 /// is convex, so its mean agrees with every sample. `None` if the version space is too thin for
 /// double precision.
-pub fn centre<const E: usize>(candidates: Candidates<'_, E>) -> Option<Line> {
+pub fn centre(candidates: Candidates<'_>) -> Option<Line> {
     Moments::of(candidates).mean()
 }
 
@@ -140,7 +135,7 @@ pub fn centre<const E: usize>(candidates: Candidates<'_, E>) -> Option<Line> {
 ///
 /// The pair is chosen by exact integer conditions, so the line is the exact one, rounded once. Only
 /// samples that still matter to the version space can support it. `O(m^3)` for `m` of them.
-pub fn maximum_margin<const E: usize>(candidates: Candidates<'_, E>) -> Option<Line> {
+pub fn maximum_margin(candidates: Candidates<'_>) -> Option<Line> {
     let of = |label: Label| candidates.support().filter(move |s| s.label == label).map(|s| s.site);
     let (above, below) = (|| of(Label::Positive), || of(Label::Negative));
     // Two samples support it when every other lies beyond them, as seen along their difference.

@@ -14,8 +14,8 @@
 //!
 //! [`Posterior::lost`]: crate::posterior::Posterior::lost
 
-use crate::candidates::Candidates;
-use crate::cell::{Cell, Certainty, Edge};
+use crate::candidates::{Candidates, Certainty};
+use crate::cell::{Cell, Edge};
 use crate::lattice::Site;
 use crate::list::List;
 use crate::lost::Lost;
@@ -47,6 +47,11 @@ pub struct Hypothesis<const E: usize> {
 }
 
 impl<const E: usize> Hypothesis<E> {
+    /// What no line realises. All its bytes are zero, so that memory is filled with it at no cost of
+    /// flash.
+    const NONE: Self =
+        Self { cell: Cell::NONE, likelihood: LogWeight::ZERO, area: LogWeight::ZERO };
+
     /// The lines that realise it.
     pub fn cell(&self) -> &Cell<E> {
         &self.cell
@@ -90,31 +95,49 @@ pub struct Hypotheses<const N: usize, const H: usize, const E: usize = 15> {
 }
 
 impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
+    /// No sample and no hypothesis: memory to [`restart`](Self::restart) in.
+    pub const NONE: Self = {
+        assert!(H >= 1, "a table holds at least one hypothesis");
+        Self {
+            samples: SampleBuffer::new(),
+            given: 0,
+            start: Cell::NONE,
+            table: List::filled(Hypothesis::NONE),
+            prior: Prior::Area,
+            lost: Lost::NOTHING,
+            outer_cells: 0,
+        }
+    };
+
     /// The one hypothesis that the given samples leave, which are certain. `prior` decides which
     /// hypotheses go when the table is full.
     ///
     /// # Errors
     /// [`NoVersionSpace`], and `TooMany` also when more than `E` of them bound the line.
     pub fn new(given: &[Sample], prior: Prior) -> Result<Self, NoVersionSpace> {
-        const { assert!(H >= 1, "a table holds at least one hypothesis") };
+        let mut hypotheses = Self::NONE;
+        hypotheses.restart(given, prior)?;
+        Ok(hypotheses)
+    }
+
+    /// As [`new`](Self::new), in place: a table can be larger than the memory that is left beside it.
+    ///
+    /// # Errors
+    /// As `new`, with the table as it was.
+    pub fn restart(&mut self, given: &[Sample], prior: Prior) -> Result<(), NoVersionSpace> {
         let space = VersionSpace::<N>::new(given)?;
         let start: Cell<E> = space.cell().resized().ok_or(NoVersionSpace::TooMany)?;
-        let mut samples = SampleBuffer::new();
-        for &sample in given {
-            samples.push(sample).map_err(|_| NoVersionSpace::TooMany)?;
-        }
-        let whole = Candidates { cell: &start, samples: &samples };
-        let area = LogWeight::of_single(measure(whole));
-        let whole = Hypothesis { cell: start, likelihood: LogWeight::ZERO, area };
-        Ok(Self {
-            table: List::of(whole),
-            samples,
-            given: given.len() as u8,
-            start,
-            prior,
-            lost: Lost::default(),
-            outer_cells: 0,
-        })
+        let area = LogWeight::of_single(measure(space.candidates()));
+        self.samples = space.into_samples();
+        self.given = given.len() as u8;
+        self.start = start;
+        self.table.clear();
+        // It has room for one.
+        let _ = self.table.push(Hypothesis { cell: start, likelihood: LogWeight::ZERO, area });
+        self.prior = prior;
+        self.lost = Lost::NOTHING;
+        self.outer_cells = 0;
+        Ok(())
     }
 
     /// All samples with the labels that were seen, the given ones first.
@@ -138,8 +161,8 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
     }
 
     /// What the given samples leave: the ground of P3 and P4.
-    pub fn start(&self) -> Candidates<'_, E> {
-        Candidates { cell: &self.start, samples: &self.samples }
+    pub fn start(&self) -> Candidates<'_> {
+        self.start.candidates(&self.samples)
     }
 
     /// The hypotheses that are held.
@@ -148,8 +171,8 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
     }
 
     /// The candidate lines of a hypothesis of this table.
-    pub fn candidates<'a>(&'a self, hypothesis: &'a Hypothesis<E>) -> Candidates<'a, E> {
-        Candidates { cell: &hypothesis.cell, samples: &self.samples }
+    pub fn candidates<'a>(&'a self, hypothesis: &'a Hypothesis<E>) -> Candidates<'a> {
+        hypothesis.cell.candidates(&self.samples)
     }
 
     /// How often a cell could not hold another edge and kept lines that it should not have.
@@ -225,7 +248,7 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
         let Reliability { agree, disagree } = reliability;
         let Some(site) = self.samples.get(edge.index()).map(|s| s.site) else { return };
         let Some(whole) = self.table.get_mut(k) else { return };
-        match whole.cell.certainty(&self.samples, site) {
+        match whole.cell.candidates(&self.samples).certainty(site) {
             Certainty::Certain(certain) => {
                 let weight = if certain == edge.label() { agree } else { disagree };
                 match weight {

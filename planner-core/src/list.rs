@@ -1,12 +1,12 @@
 //! A list of copies in an array.
 //!
 //! A `heapless::Vec` of the hypotheses begins as an image of itself in flash, all of it undefined:
-//! 12 kB for 529 of them. This begins as copies of its first item.
+//! 12 kB for 529 of them. This begins as copies of an item.
 
 use core::mem::swap;
 use core::ops::{Deref, DerefMut};
 
-/// From 1 to `N` items; those beyond `len` are of no meaning.
+/// Up to `N` items; those beyond `len` are of no meaning.
 #[derive(Clone)]
 pub(crate) struct List<T, const N: usize> {
     items: [T; N],
@@ -14,10 +14,14 @@ pub(crate) struct List<T, const N: usize> {
 }
 
 impl<T: Copy, const N: usize> List<T, N> {
-    /// A list of one item.
-    pub(crate) const fn of(first: T) -> Self {
+    /// An empty list, its memory filled with an item.
+    pub(crate) const fn filled(item: T) -> Self {
         const { assert!(N >= 1 && N <= u16::MAX as usize, "a list holds at least one item") };
-        Self { items: [first; N], len: 1 }
+        Self { items: [item; N], len: 0 }
+    }
+
+    pub(crate) fn clear(&mut self) {
+        self.len = 0;
     }
 
     /// Adds an item at the end, or hands it back when there is no room.
@@ -81,8 +85,9 @@ mod tests {
 
     #[test]
     fn it_holds_as_many_as_it_should_and_keeps_their_order() {
-        let mut list: List<i32, 5> = List::of(0);
-        for n in 1..5 {
+        let mut list: List<i32, 5> = List::filled(7);
+        assert!(list.is_empty());
+        for n in 0..5 {
             assert_eq!(list.push(n), Ok(()));
         }
         assert_eq!(list.push(5), Err(5));
@@ -94,5 +99,8 @@ mod tests {
         list.retain(|_| false);
         assert!(list.is_empty());
         assert_eq!(list.swap_remove(0), None);
+        assert_eq!(list.push(6), Ok(()));
+        list.clear();
+        assert!(list.is_empty());
     }
 }

@@ -4,13 +4,15 @@ use crate::hypotheses::{Hypothesis, Prior};
 use crate::weight::LogWeight;
 
 /// Mass given up, at most, by both priors, on the scale of the weights held.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Lost {
     area: f32,
     sequences: f32,
 }
 
 impl Lost {
+    pub(crate) const NOTHING: Self = Self { area: 0.0, sequences: 0.0 };
+
     /// More than a step can round away.
     const UP: f32 = 1.0 + 8.0 * f32::EPSILON;
 

@@ -41,7 +41,7 @@ impl Unit {
 
 /// Radian metres; 0 for a cell without area.
 #[inline(never)]
-pub(crate) fn measure<const E: usize>(candidates: Candidates<'_, E>) -> f32 {
+pub(crate) fn measure(candidates: Candidates<'_>) -> f32 {
     let mut bounds = candidates.bounds();
     let Some(apex) = bounds.next() else { return 0.0 };
     let apex_unit = Unit::of(apex.along);

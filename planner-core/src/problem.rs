@@ -15,8 +15,7 @@
 
 use crate::action::{Action, ActionGrid};
 use crate::area::Area;
-use crate::candidates::Candidates;
-use crate::cell::Certainty;
+use crate::candidates::{Candidates, Certainty};
 use crate::dynamics::{Dynamics, Pose};
 use crate::lattice::Site;
 use crate::rule::{ArcRule, DirectionRule};
@@ -62,9 +61,9 @@ impl Varrho {
 
 /// A one-step problem at some stage of a mission.
 #[derive(Clone, Copy, Debug)]
-pub struct Problem<'a, R, const E: usize> {
+pub struct Problem<'a, R> {
     /// The candidate lines: what they agree on is the ground to stay out of.
-    pub ground: Candidates<'a, E>,
+    pub ground: Candidates<'a>,
     /// Where positions must stay.
     pub area: Area,
     /// The weight of the control.
@@ -95,9 +94,9 @@ pub struct Search {
     pub examined: u32,
 }
 
-impl<'a, R: DirectionRule, const E: usize> Problem<'a, R, E> {
+impl<'a, R: DirectionRule> Problem<'a, R> {
     /// The same problem without its rule.
-    pub fn undirected(&self) -> Problem<'a, ArcRule, E> {
+    pub fn undirected(&self) -> Problem<'a, ArcRule> {
         let rule = ArcRule::default();
         Problem { ground: self.ground, area: self.area, varrho: self.varrho, rule }
     }
@@ -114,7 +113,7 @@ impl<'a, R: DirectionRule, const E: usize> Problem<'a, R, E> {
     }
 
     /// What is seen of it from a position.
-    pub(crate) fn sight(&self, site: Site, grid: ActionGrid) -> Sight<'a, E> {
+    pub(crate) fn sight(&self, site: Site, grid: ActionGrid) -> Sight<'a> {
         Sight::new(self.ground, self.area, site, grid)
     }
 

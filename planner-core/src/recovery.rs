@@ -39,8 +39,8 @@ pub(crate) struct Found {
 
 /// The problem's best action, or the ladder's; `None` when there is neither. Adds the actions that
 /// were looked at to `examined`.
-pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule, const E: usize>(
-    problem: &Problem<'_, R, E>,
+pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule>(
+    problem: &Problem<'_, R>,
     dynamics: &D,
     pose: Pose,
     examined: &mut u32,
@@ -69,21 +69,21 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule, const E: usize>(
 /// An action and where it leads.
 type Leg = (Action, Pose);
 
-struct Ladder<'a, D, const E: usize> {
+struct Ladder<'a, D> {
     /// The problem without its rule on directions.
-    problem: Problem<'a, ArcRule, E>,
+    problem: Problem<'a, ArcRule>,
     dynamics: &'a D,
     examined: &'a mut u32,
 }
 
-impl<D: Dynamics, const E: usize> Ladder<'_, D, E> {
+impl<D: Dynamics> Ladder<'_, D> {
     /// The undirected problem's best action.
-    fn undirected(&self, sight: &mut Sight<'_, E>, heading: Heading) -> Option<Leg> {
+    fn undirected(&self, sight: &mut Sight<'_>, heading: Heading) -> Option<Leg> {
         let best = sight.best(self.dynamics, heading, self.problem.varrho, &self.problem.rule)?;
         Some((best.action, best.target))
     }
 
-    fn reorient(&self, sight: &mut Sight<'_, E>, pose: Pose) -> Option<Leg> {
+    fn reorient(&self, sight: &mut Sight<'_>, pose: Pose) -> Option<Leg> {
         const HALF_TURN: u32 = 1 << 31;
         let (dynamics, problem) = (self.dynamics, &self.problem);
         let left = dynamics.turn_in_place(pose, Side::Left)?;

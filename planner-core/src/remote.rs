@@ -50,21 +50,30 @@ impl Setup {
         Ok(Prepared { planner: Cfc::new(self.config, Unicycle::paper(), space), room })
     }
 
-    /// Algorithm 2 for this mission, with the paper's unicycle.
-    ///
-    /// # Errors
-    /// [`Declined`].
-    #[inline(never)] // it is the planner's, see `seam`
+    /// Algorithm 2 for this mission, with the paper's unicycle and none of its samples yet: the memory
+    /// for [`prepare`](Self::prepare).
+    #[inline(always)] // so that it comes to be where it stays
     pub fn scc<const N: usize, const H: usize>(
         &self,
         noise: Noise,
         policy: Policy,
         prior: Prior,
-    ) -> Result<Prepared<Scc<Unicycle, N, H>>, Declined> {
+    ) -> Scc<Unicycle, N, H> {
+        Scc::new(self.config, noise, policy, prior, Unicycle::paper(), Hypotheses::NONE)
+    }
+
+    /// Begins the mission in this memory, so that there is never a second planner beside it.
+    ///
+    /// # Errors
+    /// [`Declined`].
+    #[inline(never)] // it is the planner's, see `seam`
+    pub fn prepare<'a, const N: usize, const H: usize>(
+        &self,
+        planner: &'a mut Scc<Unicycle, N, H>,
+    ) -> Result<Prepared<&'a mut Scc<Unicycle, N, H>>, Declined> {
         let room = Room { samples: N as u16, hypotheses: H as u16 };
         self.check(room)?;
-        let table = Hypotheses::new(&self.given, prior).map_err(Declined::Given)?;
-        let planner = Scc::new(self.config, noise, policy, prior, Unicycle::paper(), table);
+        planner.restart(&self.given).map_err(Declined::Given)?;
         Ok(Prepared { planner, room })
     }
 }

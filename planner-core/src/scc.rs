@@ -33,7 +33,7 @@ use crate::problem::Problem;
 use crate::recovery::{Found, solve_or_recover};
 use crate::rule::{ArcRule, ArcUnion, UnionRule};
 use crate::sample::{Reading, Sample};
-use crate::version_space::Refused;
+use crate::version_space::{NoVersionSpace, Refused};
 use crate::weight::Reliability;
 
 /// How the hypotheses choose an action together.
@@ -110,12 +110,20 @@ impl<D: Dynamics, const N: usize, const H: usize> Scc<D, N, H> {
         &self.hypotheses
     }
 
+    /// Begins again, in place, with what other given samples leave: see [`Hypotheses::restart`].
+    ///
+    /// # Errors
+    /// [`NoVersionSpace`], with the planner as it was.
+    pub fn restart(&mut self, given: &[Sample]) -> Result<(), NoVersionSpace> {
+        self.hypotheses.restart(given, self.prior)
+    }
+
     fn is_even(&self) -> bool {
         self.hypotheses.taken().is_multiple_of(2)
     }
 
     /// The problem of a hypothesis: where it votes to go.
-    pub fn problem<'a>(&'a self, hypothesis: &'a Hypothesis<15>) -> Problem<'a, ArcRule, 15> {
+    pub fn problem<'a>(&'a self, hypothesis: &'a Hypothesis<15>) -> Problem<'a, ArcRule> {
         let own = self.hypotheses.candidates(hypothesis);
         let ground = match self.policy {
             Policy::MixtureOfOwn => own,
@@ -130,7 +138,7 @@ impl<D: Dynamics, const N: usize, const H: usize> Scc<D, N, H> {
         self.on(ground, rule)
     }
 
-    fn on<'a, R, const E: usize>(&self, ground: Candidates<'a, E>, rule: R) -> Problem<'a, R, E> {
+    fn on<'a, R>(&self, ground: Candidates<'a>, rule: R) -> Problem<'a, R> {
         Problem { ground, area: self.config.area, varrho: self.config.varrho, rule }
     }
 

@@ -6,7 +6,7 @@
 //! (`sight.rs`), and as certain ground of one label is convex, a ray whose end has the label of the
 //! agent's own position is passed over for good. What is left is settled by the exact predicate.
 
-use crate::cell::Certainty;
+use crate::candidates::Certainty;
 use crate::direction::Heading;
 use crate::dynamics::{Dynamics, Pose, Ray, Side};
 use crate::problem::{Candidate, Varrho};
@@ -25,7 +25,7 @@ struct Arm {
 /// A candidate and the number and side of its ray, by which ties are settled.
 type Ranked = (Candidate, (u16, Side));
 
-impl<const E: usize> Sight<'_, E> {
+impl Sight<'_> {
     /// The best action from here when facing some heading: see
     /// [`Problem::solve`](crate::problem::Problem::solve).
     pub(crate) fn best<D: Dynamics, R: DirectionRule>(

@@ -9,13 +9,16 @@ use heapless::Vec;
 use crate::action::ActionGrid;
 use crate::approximate::{HALF_TURN, UNITS_PER_RADIAN};
 use crate::area::Area;
-use crate::candidates::Candidates;
-use crate::cell::Certainty;
+use crate::candidates::{Candidates, Certainty};
 use crate::direction::Heading;
 use crate::dynamics::Side;
 use crate::lattice::{Site, Vector};
 use crate::mark::{Mark, ROOM};
 use crate::sample::Label;
+
+/// Bounds within reach whose marks are kept. Where there are more, no ground is passed over: slow, and
+/// as exact. More than 9 have not been seen.
+const MARKS: usize = 16;
 
 /// A turn as a binary angle.
 fn turned(turn: i32) -> u32 {
@@ -23,8 +26,8 @@ fn turned(turn: i32) -> u32 {
 }
 
 /// All that a search sees from one position.
-pub(crate) struct Sight<'a, const E: usize> {
-    pub(crate) ground: Candidates<'a, E>,
+pub(crate) struct Sight<'a> {
+    pub(crate) ground: Candidates<'a>,
     pub(crate) area: Area,
     pub(crate) site: Site,
     pub(crate) grid: ActionGrid,
@@ -38,8 +41,8 @@ pub(crate) struct Sight<'a, const E: usize> {
     /// Within this distance all ground is certain, lattice units.
     clear: f32,
     /// The bounds of the candidates within reach.
-    marks: Vec<Mark, E, u8>,
-    /// Whether some of those beyond it lie below, or above.
+    marks: Vec<Mark, MARKS, u8>,
+    /// Whether some of those beyond it lie below, or above; both if there were too many marks.
     beyond: [bool; 2],
     /// The sides of the area within reach, with what is outside uphill.
     sides: Vec<Mark, 4, u8>,
@@ -49,9 +52,9 @@ pub(crate) struct Sight<'a, const E: usize> {
     pub(crate) barred: bool,
 }
 
-impl<'a, const E: usize> Sight<'a, E> {
+impl<'a> Sight<'a> {
     /// The view from a position inside the area, for motions on some grid.
-    pub(crate) fn new(ground: Candidates<'a, E>, area: Area, site: Site, grid: ActionGrid) -> Self {
+    pub(crate) fn new(ground: Candidates<'a>, area: Area, site: Site, grid: ActionGrid) -> Self {
         let room = 3e-5 + 3.0 / grid.step_units();
         let slack =
             if room < 0.01 { (room * 2.5 * UNITS_PER_RADIAN) as i32 + ROOM } else { HALF_TURN };
@@ -68,8 +71,9 @@ impl<'a, const E: usize> Sight<'a, E> {
             let distance = mark.height.abs();
             clear = if distance < clear { distance } else { clear };
             if distance < reach {
-                // As many vertices as edges, and these fit: nothing is refused.
-                let _ = marks.push(mark);
+                if marks.push(mark).is_err() {
+                    beyond = [true; 2];
+                }
             } else {
                 let [below, above] = &mut beyond;
                 *below |= value < 0;

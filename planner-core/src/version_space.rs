@@ -1,7 +1,7 @@
 //! The version space: all lines that agree with every sample, and what can be read off it.
 
-use crate::candidates::Candidates;
-use crate::cell::{Cell, Certainty, Cut, CutError, Edge};
+use crate::candidates::{Candidates, Certainty};
+use crate::cell::{Cell, Cut, CutError, Edge};
 use crate::direction::Arc;
 use crate::lattice::Site;
 use crate::line::Bound;
@@ -110,6 +110,10 @@ impl<const N: usize> VersionSpace<N> {
         &self.samples
     }
 
+    pub(crate) fn into_samples(self) -> SampleBuffer<N> {
+        self.samples
+    }
+
     /// Whether another sample would be refused for want of room.
     pub fn is_full(&self) -> bool {
         self.samples.is_full()
@@ -136,8 +140,8 @@ impl<const N: usize> VersionSpace<N> {
     }
 
     /// The candidate lines, to be read off.
-    pub fn candidates(&self) -> Candidates<'_, N> {
-        Candidates { cell: &self.cell, samples: &self.samples }
+    pub fn candidates(&self) -> Candidates<'_> {
+        self.cell.candidates(&self.samples)
     }
 
     /// The vertices of the version space, in cyclic order.

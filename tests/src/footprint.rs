@@ -2,7 +2,7 @@
 //!
 //! **The planner's flash** is that of all functions that the planner's entries reach, and of the
 //! constants in `.rodata` that these point to. The entries are `remote::seam` (plan, observe, estimates)
-//! and `Setup::cfc` and `Setup::scc`, which are kept as functions of their own. So what the planner
+//! and `Setup::cfc` and `Setup::prepare`, which are kept as functions of their own. So what the planner
 //! shares with the link (`memcpy`) counts as the planner's, and what it gets from libm, nalgebra,
 //! heapless and compiler-builtins does; a mission's loop, messages, frames and start-up do not.
 //!

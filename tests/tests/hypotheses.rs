@@ -6,7 +6,7 @@ use host_sim::field;
 use host_sim::mission::Algorithm;
 use host_sim::world;
 use nalgebra::Point2;
-use planner_core::cell::Certainty;
+use planner_core::candidates::Certainty;
 use planner_core::estimate;
 use planner_core::hypotheses::{Hypotheses, Hypothesis, Prior};
 use planner_core::lattice::Site;
@@ -167,6 +167,26 @@ fn thirty_labels_fit_466_slots_without_pruning() {
             format!("{:?}", small.iter().collect::<Vec<_>>()),
             format!("{:?}", large.iter().collect::<Vec<_>>())
         );
+    }
+}
+
+#[test]
+fn a_table_begins_again_in_place() {
+    // Small enough that something is given up.
+    let of = |number| {
+        let (given, seen, _) = mission(number, 12, false);
+        (table::<20, 30>(&given, &seen), given, seen)
+    };
+    let (mut again, ..) = of(0);
+    for number in 1..20 {
+        let (anew, given, seen) = of(number);
+        again.restart(&given, Prior::Area).expect("an oracle");
+        again.restart(&given[..2], Prior::Area).expect_err("it is left as it was");
+        for (sample, p) in seen {
+            let reliability = Reliability::new(p).expect("a probability");
+            again.observe(sample, reliability).expect("room, and a possible label");
+        }
+        assert_eq!(format!("{again:?}"), format!("{anew:?}"));
     }
 }
 

@@ -140,7 +140,8 @@ fn fly(chip: &mut Chip<'_>, setup: &wire::Setup) -> Result<Flown, LinkLost> {
     match setup.algorithm {
         wire::Algorithm::Cfc => chip.fly(setup, &mut setup.cfc::<68>(), |_| {}),
         wire::Algorithm::Scc { noise, policy, prior } => {
-            chip.fly(setup, &mut setup.scc::<36, 529>(noise, policy, prior), |_| {})
+            let mut planner = setup.scc::<36, 529>(noise, policy, prior);
+            chip.fly(setup, &mut setup.prepare(&mut planner), |_| {})
         }
     }
 }

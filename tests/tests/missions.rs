@@ -8,7 +8,7 @@ use host_sim::recording::Recording;
 use host_sim::scenario::{self, Overrides};
 use host_sim::{trace, world};
 use nalgebra::Point2;
-use planner_core::cell::Certainty;
+use planner_core::candidates::Certainty;
 use planner_core::lattice::Site;
 use planner_core::sample::Reading;
 use rand::{RngExt, SeedableRng};

@@ -149,6 +149,29 @@ fn equals_exhaustive_search_anywhere_for_any_grid() {
 }
 
 #[test]
+fn equals_exhaustive_search_among_more_bounds_than_are_kept() {
+    // Two parabolas that face each other: a tangent at any of these points keeps clear of the other.
+    let label = |up: i32| if up > 0 { Label::Positive } else { Label::Negative };
+    let points = (-5..=5).flat_map(|n| [-1, 1].map(|up| (n, up)));
+    let samples: Vec<_> = points
+        .map(|(n, up)| Sample {
+            site: Site::new(50_000 * n, up * (65_536 + 2_000 * n * n)).expect("on the lattice"),
+            label: label(up),
+        })
+        .collect();
+    let space = VersionSpace::<CAPACITY>::new(&samples).expect("they are apart");
+    assert_eq!(space.cell().edges().len(), samples.len());
+    let corner = |v| Site::new(v, v).expect("on the lattice");
+    let area = Area::new(corner(-400_000), corner(400_000)).expect("an area");
+    let coarse = Unicycle::new(100, 0.5, 11, 200).expect("a grid");
+    for n in -9..=9 {
+        let site = Site::new(9_000 * n, 7_000 * n).expect("on the lattice");
+        let pose = Pose { site, heading: Heading(n.unsigned_abs() << 28) };
+        check(&coarse, &space, area, Varrho::PAPER, pose, "between parabolas");
+    }
+}
+
+#[test]
 fn motions_are_those_of_the_unicycle() {
     let mut rng = ChaCha8Rng::seed_from_u64(5);
     let unicycle = Unicycle::paper();

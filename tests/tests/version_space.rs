@@ -1,6 +1,6 @@
 //! The version space against its slow twin: every line through two samples that agrees with all.
 
-use planner_core::cell::Certainty;
+use planner_core::candidates::Certainty;
 use planner_core::lattice::Site;
 use planner_core::sample::{Label, Sample};
 use planner_core::version_space::{NoVersionSpace, Refused, VersionSpace};

@@ -68,7 +68,7 @@ mod on_target {
                 Algorithm::Cfc => station.fly(&setup, &mut setup.cfc::<N>(), |_| {}),
                 Algorithm::Scc { noise, policy, prior } => {
                     let mut planner = setup.scc::<N, H>(noise, policy, prior);
-                    station.fly(&setup, &mut planner, |_| {})
+                    station.fly(&setup, &mut setup.prepare(&mut planner), |_| {})
                 }
             };
         }
