@@ -52,7 +52,6 @@ impl Setup {
 
     /// Algorithm 2 for this mission, with the paper's unicycle and none of its samples yet: the memory
     /// for [`prepare`](Self::prepare).
-    #[inline(always)] // so that it comes to be where it stays
     pub fn scc<const N: usize, const H: usize>(
         &self,
         noise: Noise,
