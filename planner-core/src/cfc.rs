@@ -74,9 +74,13 @@ impl<D: Dynamics, const N: usize> Cfc<D, N> {
 
     /// The one-step problem of the present phase.
     pub fn problem(&self) -> Problem<'_, ArcRule> {
+        self.problem_of(self.phase)
+    }
+
+    fn problem_of(&self, phase: Phase) -> Problem<'_, ArcRule> {
         let Config { area, varrho, .. } = self.config;
         let arc = self.space.slope_arc();
-        let rule = match self.phase {
+        let rule = match phase {
             Phase::Crossing => {
                 self.config.crossing_rule(arc, first_to_second(self.space.samples()))
             }
@@ -85,10 +89,21 @@ impl<D: Dynamics, const N: usize> Cfc<D, N> {
         Problem { ground: self.space.candidates(), area, varrho, rule }
     }
 
-    fn motion(&self, stage: Stage, found: &Found, examined: u32) -> Plan {
-        let Found { recovery, action, target } = *found;
-        let control = self.dynamics.control(action);
-        Plan::Move(Motion { stage: Some(stage), recovery, action, control, target, examined })
+    /// The motion to make, the phase that it belongs to, and the actions that were looked at.
+    fn find(&self, pose: Pose) -> (Option<Found>, Phase, u32) {
+        let problem = self.problem();
+        let mut sight = problem.sight(pose.site, self.dynamics.grid());
+        if self.phase == Phase::Following
+            && let Some(best) =
+                sight.best(&self.dynamics, pose.heading, problem.varrho, &problem.rule)
+        {
+            let Candidate { action, target, .. } = best;
+            let found = Found { recovery: None, action, target };
+            return (Some(found), Phase::Following, sight.examined);
+        }
+        let crossing = self.problem_of(Phase::Crossing);
+        let found = solve_or_recover(&crossing, &self.dynamics, pose, &mut sight);
+        (found, Phase::Crossing, sight.examined)
     }
 }
 
@@ -100,19 +115,17 @@ impl<D: Dynamics, const N: usize> Planner for Cfc<D, N> {
         if !self.config.area.contains(pose.site) {
             return Plan::Stop(StopReason::OutsideArea);
         }
-        let mut examined = 0;
-        if self.phase == Phase::Following {
-            let search = self.problem().solve(&self.dynamics, pose);
-            examined += search.examined;
-            if let Some(Candidate { action, target, .. }) = search.best {
-                return self.motion(Stage::P2, &Found { recovery: None, action, target }, examined);
-            }
-            self.phase = Phase::Crossing;
-        }
-        solve_or_recover(&self.problem(), &self.dynamics, pose, &mut examined)
-            .map_or(Plan::Stop(StopReason::Resolution), |found| {
-                self.motion(Stage::P1, &found, examined)
-            })
+        let (found, phase, examined) = self.find(pose);
+        self.phase = phase;
+        let Some(Found { recovery, action, target }) = found else {
+            return Plan::Stop(StopReason::Resolution);
+        };
+        let stage = match phase {
+            Phase::Crossing => Stage::P1,
+            Phase::Following => Stage::P2,
+        };
+        let control = self.dynamics.control(action);
+        Plan::Move(Motion { stage: Some(stage), recovery, action, control, target, examined })
     }
 
     fn observe(&mut self, pose: Pose, reading: Option<Reading>) -> Result<(), Refused> {

@@ -108,8 +108,8 @@ impl<'a, R: DirectionRule> Problem<'a, R> {
     /// ground's cell.
     pub fn solve<D: Dynamics>(&self, dynamics: &D, pose: Pose) -> Search {
         let mut sight = self.sight(pose.site, dynamics.grid());
-        let best = sight.best(dynamics, pose.heading, self.varrho, &self.rule);
-        Search { best, examined: sight.examined }
+        let best = sight.search(dynamics, [pose.heading; 2], self.varrho, &self.rule);
+        Search { best: best.map(|(candidate, _)| candidate), examined: sight.examined }
     }
 
     /// What is seen of it from a position.

@@ -37,33 +37,28 @@ pub(crate) struct Found {
     pub(crate) target: Pose,
 }
 
-/// The problem's best action, or the ladder's; `None` when there is neither. Adds the actions that
-/// were looked at to `examined`.
+/// The problem's best action from a pose that all of this is seen from, or the ladder's; `None` when
+/// there is neither.
 pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule>(
     problem: &Problem<'_, R>,
     dynamics: &D,
     pose: Pose,
-    examined: &mut u32,
+    sight: &mut Sight<'_>,
 ) -> Option<Found> {
-    let mut sight = problem.sight(pose.site, dynamics.grid());
-    let directed = sight.best(dynamics, pose.heading, problem.varrho, &problem.rule);
-    let mut ladder = Ladder { problem: problem.undirected(), dynamics, examined };
     let found = |recovery| move |(action, target)| Found { recovery, action, target };
-    let motion = directed.map(|best| found(None)((best.action, best.target)));
-    let motion = motion.or_else(|| {
-        if sight.is_clear() {
-            let way = sight.way_out()?;
-            return ladder.leg(pose, Heading::near(way)).map(found(Some(Recovery::Transit)));
-        }
-        let undirected =
-            if sight.barred { ladder.undirected(&mut sight, pose.heading) } else { None };
-        undirected
-            .map(found(Some(Recovery::Undirected)))
-            .or_else(|| ladder.reorient(&mut sight, pose).map(found(Some(Recovery::Reorient))))
-            .or_else(|| ladder.transit(pose).map(found(Some(Recovery::Transit))))
-    });
-    *ladder.examined += sight.examined;
-    motion
+    if let Some(best) = sight.best(dynamics, pose.heading, problem.varrho, &problem.rule) {
+        return Some(found(None)((best.action, best.target)));
+    }
+    let ladder = Ladder { problem: problem.undirected(), dynamics };
+    if sight.is_clear() {
+        let way = sight.way_out()?;
+        return ladder.leg(pose, Heading::near(way)).map(found(Some(Recovery::Transit)));
+    }
+    ladder
+        .undirected(sight, pose.heading)
+        .map(found(Some(Recovery::Undirected)))
+        .or_else(|| ladder.reorient(sight, pose).map(found(Some(Recovery::Reorient))))
+        .or_else(|| ladder.transit(sight, pose).map(found(Some(Recovery::Transit))))
 }
 
 /// An action and where it leads.
@@ -73,7 +68,6 @@ struct Ladder<'a, D> {
     /// The problem without its rule on directions.
     problem: Problem<'a, ArcRule>,
     dynamics: &'a D,
-    examined: &'a mut u32,
 }
 
 impl<D: Dynamics> Ladder<'_, D> {
@@ -108,7 +102,7 @@ impl<D: Dynamics> Ladder<'_, D> {
         None
     }
 
-    fn transit(&mut self, pose: Pose) -> Option<Leg> {
+    fn transit(&self, sight: &mut Sight<'_>, pose: Pose) -> Option<Leg> {
         let u = self.problem.ground.slope_arc().bisector();
         let l = u.left();
         let between = |a: Vector, b: Vector| Vector { x: a.x.midpoint(b.x), z: a.z.midpoint(b.z) };
@@ -118,7 +112,7 @@ impl<D: Dynamics> Ladder<'_, D> {
         for bearing in [u, l, diagonal, diagonal.left()] {
             for bearing in [bearing, bearing.reversed()] {
                 let bearing = Heading::near(bearing);
-                if let Some((leg, motions)) = self.approach(pose, bearing, horizon) {
+                if let Some((leg, motions)) = self.approach(sight, pose, bearing, horizon) {
                     (nearest, horizon) = (Some(leg), motions - 1);
                 }
             }
@@ -128,7 +122,13 @@ impl<D: Dynamics> Ladder<'_, D> {
 
     /// The first leg of the straight drive on a bearing to where the undirected problem is
     /// feasible, and its number of motions, at most `horizon`.
-    fn approach(&mut self, from: Pose, bearing: Heading, horizon: u32) -> Option<(Leg, u32)> {
+    fn approach(
+        &self,
+        sight: &mut Sight<'_>,
+        from: Pose,
+        bearing: Heading,
+        horizon: u32,
+    ) -> Option<(Leg, u32)> {
         let mut first = None;
         let mut pose = from;
         for motions in 1..=horizon {
@@ -136,9 +136,9 @@ impl<D: Dynamics> Ladder<'_, D> {
             first = first.or(Some(leg));
             // What turns in place lead to is known from the reorientation: nothing.
             if leg.1.site != pose.site {
-                let mut sight = self.problem.sight(leg.1.site, self.dynamics.grid());
-                let best = self.undirected(&mut sight, leg.1.heading);
-                *self.examined += sight.examined;
+                let mut there = self.problem.sight(leg.1.site, self.dynamics.grid());
+                let best = self.undirected(&mut there, leg.1.heading);
+                sight.examined += there.examined;
                 if best.is_some() {
                     return first.map(|leg| (leg, motions));
                 }

@@ -31,7 +31,7 @@ use crate::planner::{Motion, Plan, Planner, Recovery, Stage, StopReason};
 use crate::posterior::Posterior;
 use crate::problem::Problem;
 use crate::recovery::{Found, solve_or_recover};
-use crate::rule::{ArcRule, ArcUnion, UnionRule};
+use crate::rule::{ArcRule, ArcUnion, DirectionRule, UnionRule};
 use crate::sample::{Reading, Sample};
 use crate::version_space::{NoVersionSpace, Refused};
 use crate::weight::Reliability;
@@ -181,24 +181,36 @@ impl<D: Dynamics, const N: usize, const H: usize> Scc<D, N, H> {
     }
 
     fn find(&self, pose: Pose, examined: &mut u32) -> Option<Found> {
-        let start = self.hypotheses.start();
         if self.policy == Policy::Joint {
             // P3 and P4 as printed: travel in no retained hypothesis's slopes, or in some one's.
             let slopes = self.hypotheses.iter().map(|h| self.hypotheses.candidates(h).slope_arc());
             let slopes: ArcUnion = slopes.collect();
             let rule = UnionRule { arcs: slopes.arcs(), among: !self.is_even() };
-            return solve_or_recover(&self.on(start, rule), &self.dynamics, pose, examined);
+            return self.find_on_start(rule, pose, examined);
         }
         let elected = self.elect(pose, examined).and_then(|action| {
             let target = self.dynamics.target(pose, action)?;
             Some(Found { recovery: None, action, target })
         });
         elected.or_else(|| {
-            let undirected = self.on(start, ArcRule::default());
-            let found = solve_or_recover(&undirected, &self.dynamics, pose, examined)?;
+            let found = self.find_on_start(ArcRule::default(), pose, examined)?;
             let recovery = found.recovery.or(Some(Recovery::Undirected));
             Some(Found { recovery, ..found })
         })
+    }
+
+    /// The best action on the ground that was uncertain at the start, or the ladder's.
+    fn find_on_start(
+        &self,
+        rule: impl DirectionRule,
+        pose: Pose,
+        examined: &mut u32,
+    ) -> Option<Found> {
+        let problem = self.on(self.hypotheses.start(), rule);
+        let mut sight = problem.sight(pose.site, self.dynamics.grid());
+        let found = solve_or_recover(&problem, &self.dynamics, pose, &mut sight);
+        *examined += sight.examined;
+        found
     }
 }
 

@@ -23,11 +23,11 @@ struct Arm {
 }
 
 /// A candidate and the number and side of its ray, by which ties are settled.
-type Ranked = (Candidate, (u16, Side));
+pub(crate) type Ranked = (Candidate, (u16, Side));
 
 impl Sight<'_> {
-    /// The best action from here when facing some heading: see
-    /// [`Problem::solve`](crate::problem::Problem::solve).
+    /// The best action from here when facing some heading, the same each time; at once if an earlier
+    /// search by another rule has come upon no place to go at all.
     pub(crate) fn best<D: Dynamics, R: DirectionRule>(
         &mut self,
         dynamics: &D,
@@ -35,7 +35,12 @@ impl Sight<'_> {
         varrho: Varrho,
         rule: &R,
     ) -> Option<Candidate> {
-        self.search(dynamics, [heading; 2], varrho, rule).map(|(candidate, _)| candidate)
+        if !core::mem::take(&mut self.promising) {
+            return None;
+        }
+        let (best, _) = self.search(dynamics, [heading; 2], varrho, rule)?;
+        self.promising = true;
+        Some(best)
     }
 
     /// On which side there is the better action: on the left of one heading or the right of another.
@@ -50,7 +55,7 @@ impl Sight<'_> {
     }
 
     /// The best action on the left of one heading and the right of another.
-    fn search<D: Dynamics, R: DirectionRule>(
+    pub(crate) fn search<D: Dynamics, R: DirectionRule>(
         &mut self,
         dynamics: &D,
         [left, right]: [Heading; 2],
@@ -123,9 +128,11 @@ impl Sight<'_> {
                         return Some((ray, n, target));
                     }
                     (0, false)
-                } else {
-                    self.barred = true;
+                } else if self.promising || self.uncertain_end(&ray, speed).is_some() {
+                    self.promising = true;
                     (rule.barred(heading, ray.step, side), true)
+                } else {
+                    (0, false)
                 }
             };
             // Rays within the turn are like this one: it is below 2^32, and a step above 2^15.

@@ -48,8 +48,9 @@ pub(crate) struct Sight<'a> {
     sides: Vec<Mark, 4, u8>,
     /// Actions whose position was looked at so far.
     pub(crate) examined: u32,
-    /// Whether the rule has kept a search from a ray that may have had a place to go.
-    pub(crate) barred: bool,
+    /// Whether there may be a place to go, whatever the rule: not if a search came upon none, not even
+    /// one that its rule barred.
+    pub(crate) promising: bool,
 }
 
 impl<'a> Sight<'a> {
@@ -107,7 +108,7 @@ impl<'a> Sight<'a> {
             beyond,
             sides,
             examined: 0,
-            barred: false,
+            promising: true,
         }
     }
 
