@@ -5,6 +5,8 @@
 /// half turns are still an `i32`.
 pub(crate) const HALF_TURN: i32 = 1 << 29;
 
+const QUARTER_TURN: i32 = HALF_TURN / 2;
+
 /// The units of angles here in a radian.
 pub(crate) const UNITS_PER_RADIAN: f32 = HALF_TURN as f32 / core::f32::consts::PI;
 
@@ -18,9 +20,14 @@ pub(crate) fn sqrt(x: f32) -> f32 {
 }
 
 /// The arc cosine of a number in [-1, 1], in units of which [`HALF_TURN`] is half a turn, to 10^-4 rad.
-/// Abramowitz and Stegun, 4.4.45.
+/// In the middle by the arc sine, without a root; beyond by Abramowitz and Stegun, 4.4.45.
 pub(crate) fn acos(x: f32) -> i32 {
     let size = x.abs();
+    if size < 0.6 {
+        let s = x * x;
+        let asin = x * (1.0 + s * (0.167_385_2 + s * (0.065_445_93 + s * 0.080_477_12)));
+        return QUARTER_TURN - (asin * UNITS_PER_RADIAN) as i32;
+    }
     let cubic = 1.570_728_8 + size * (-0.212_114_4 + size * (0.074_261 - size * 0.018_729_3));
     let angle = (sqrt(1.0 - size) * cubic * UNITS_PER_RADIAN) as i32;
     if x < 0.0 { HALF_TURN - angle } else { angle }
@@ -28,7 +35,6 @@ pub(crate) fn acos(x: f32) -> i32 {
 
 /// The angle of a vector against the x axis as a binary angle, to 10^-5 rad.
 pub(crate) fn atan2(z: f32, x: f32) -> u32 {
-    const QUARTER_TURN: i32 = HALF_TURN / 2;
     let (along, up) = (x.abs(), z.abs());
     let t = if up > along { along / up } else { up / along };
     let s = t * t;

@@ -2,16 +2,16 @@
 //!
 //! Approximate and on the safe side: what surely is on one side of the line is.
 
-use crate::approximate::{HALF_TURN, acos, sqrt};
+use crate::approximate::{HALF_TURN, UNITS_PER_RADIAN, acos, sqrt};
 use crate::direction::Heading;
 use crate::dynamics::Side;
 use crate::line::Bound;
 use crate::sample::Label;
 
 /// Room for the error of an arc cosine and of a heading: 2 10^-4 rad.
-pub(crate) const ROOM: i32 = 35_000;
+const ROOM: i32 = 35_000;
 
-/// Within this the arc cosine falls by less than 2.3, or 2.4 with some room beside.
+/// Within this, and some room beside, the arc cosine of `x` falls by less than `1 + 1.75 x^2`.
 const STEEP: f32 = 0.9;
 
 /// A line as seen from the agent: at a radius `r` and a heading `t` its value is
@@ -39,13 +39,16 @@ impl Mark {
         Self::new(value as f32 / sqrt(x * x + z * z), Heading::near(along.left()))
     }
 
-    /// Looks at a circle; `room`, in radii, is for the rounding of positions to the lattice, and `slack`
-    /// what it comes to as an angle where the circle is not cut at a slant.
-    pub(crate) fn cut(&mut self, inverse_radius: f32, room: f32, slack: i32) {
+    /// Looks at a circle; `room`, in radii, is for the rounding of positions to the lattice.
+    pub(crate) fn cut(&mut self, inverse_radius: f32, room: f32) {
         let depth = -self.height * inverse_radius;
+        if self.height == 0.0 && self.above >= 0 {
+            return; // a line through the agent cuts all circles alike
+        }
         let (most, least) = (depth + room, depth - room);
         (self.above, self.below) = if depth.abs() < STEEP {
             let angle = acos(depth);
+            let slack = (room * (1.0 + 1.75 * depth * depth) * UNITS_PER_RADIAN) as i32 + ROOM;
             (angle - slack, angle + slack)
         } else if most <= -1.0 {
             // A line that misses the circle leaves it on one side all around.

@@ -7,18 +7,21 @@
 use heapless::Vec;
 
 use crate::action::ActionGrid;
-use crate::approximate::{HALF_TURN, UNITS_PER_RADIAN};
+use crate::approximate::HALF_TURN;
 use crate::area::Area;
 use crate::candidates::{Candidates, Certainty};
 use crate::direction::Heading;
 use crate::dynamics::Side;
 use crate::lattice::{Site, Vector};
-use crate::mark::{Mark, ROOM};
+use crate::mark::Mark;
 use crate::sample::Label;
 
 /// Bounds within reach whose marks are kept. Where there are more, no ground is passed over: slow, and
 /// as exact. More than 9 have not been seen.
 const MARKS: usize = 16;
+
+/// More room than there is between any two headings.
+const NOTHING_IS_SURE: f32 = 4.0;
 
 /// A turn as a binary angle.
 fn turned(turn: i32) -> u32 {
@@ -34,8 +37,6 @@ pub(crate) struct Sight<'a> {
     /// Room for the rounding of positions to the lattice and for the errors of marks, in radii: enough
     /// for the innermost circle if the ray to this one is certain throughout.
     room: f32,
-    /// What this comes to as an angle.
-    slack: i32,
     /// What all candidates say of where the agent stands.
     pub(crate) here: Certainty,
     /// Within this distance all ground is certain, lattice units.
@@ -56,9 +57,9 @@ pub(crate) struct Sight<'a> {
 impl<'a> Sight<'a> {
     /// The view from a position inside the area, for motions on some grid.
     pub(crate) fn new(ground: Candidates<'a>, area: Area, site: Site, grid: ActionGrid) -> Self {
-        let room = 3e-5 + 3.0 / grid.step_units();
-        let slack =
-            if room < 0.01 { (room * 2.5 * UNITS_PER_RADIAN) as i32 + ROOM } else { HALF_TURN };
+        // A position is rounded by 0.71 units at most.
+        let room = 3e-5 + 1.0 / grid.step_units();
+        let room = if room < 0.01 { room } else { NOTHING_IS_SURE };
         let reach = f32::from(grid.speeds()) * grid.step_units() * (1.0 + room);
         let (mut marks, mut sides) = (Vec::new(), Vec::new());
         let (mut signs, mut beyond) = ([false; 2], [false; 2]);
@@ -101,7 +102,6 @@ impl<'a> Sight<'a> {
             site,
             grid,
             room,
-            slack,
             here,
             clear,
             marks,
@@ -131,9 +131,9 @@ impl<'a> Sight<'a> {
         let inverse_radius = self.inverse_radius(speed);
         let reaches = self.reaches(inverse_radius);
         if reaches {
-            let (room, slack) = (self.room, self.slack);
-            self.marks.iter_mut().for_each(|mark| mark.cut(inverse_radius, room, slack));
-            self.sides.iter_mut().for_each(|mark| mark.cut(inverse_radius, room, slack));
+            let room = self.room;
+            self.marks.iter_mut().for_each(|mark| mark.cut(inverse_radius, room));
+            self.sides.iter_mut().for_each(|mark| mark.cut(inverse_radius, room));
         }
         reaches
     }
