@@ -57,14 +57,6 @@ impl<'a> Candidates<'a> {
         (0..self.edges.len()).filter_map(move |k| self.bound(k))
     }
 
-    /// Each edge with the vertices at its two ends, in cyclic order.
-    pub(crate) fn sides(self) -> impl Iterator<Item = (Edge, [Bound; 2])> + 'a {
-        self.edges.iter().enumerate().filter_map(move |(k, &edge)| {
-            let before = if k == 0 { self.edges.len() - 1 } else { k - 1 };
-            Some((edge, [self.bound(before)?, self.bound(k)?]))
-        })
-    }
-
     /// Whether all candidate lines give a position the same label, and which. One orientation an
     /// edge, at most.
     #[inline(never)]

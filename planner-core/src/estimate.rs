@@ -13,7 +13,7 @@ use nalgebra::{Matrix2, Point2, Vector2};
 
 use crate::candidates::Candidates;
 use crate::lattice::{Site, UNITS_PER_METRE, Vector};
-use crate::line::Line;
+use crate::line::{Bound, Line};
 use crate::sample::{Label, Sample};
 use crate::version_space::VersionSpace;
 
@@ -41,9 +41,10 @@ impl Estimates {
     }
 }
 
-fn metres(v: Vector) -> Vector2<f64> {
-    let scale = 1.0 / f64::from(UNITS_PER_METRE);
-    Vector2::new(f64::from(v.x) * scale, f64::from(v.z) * scale)
+const METRE: f64 = 1.0 / UNITS_PER_METRE as f64;
+
+fn float(v: Vector) -> Vector2<f64> {
+    Vector2::new(f64::from(v.x), f64::from(v.z))
 }
 
 /// Integrals over a version space by the measure d(angle) d(offset), which no motion of the plane
@@ -66,27 +67,28 @@ impl Moments {
     /// turn to the left of it and `M` the integral of `n n^T` from one end of an edge to the other,
     /// an edge adds `p . (u' - u)` to the area, `M p` to the normal and `p^T M p / 2` to the offset.
     pub(crate) fn of(candidates: Candidates<'_>) -> Self {
-        let Candidates { samples, .. } = candidates;
-        let about = samples.first().map(|s| s.site);
-        let mut moments = Self {
-            area: 0.0,
-            normal: Vector2::zeros(),
-            offset: 0.0,
-            about: about.map_or(Point2::origin(), Point2::from),
+        let mut moments =
+            Self { area: 0.0, normal: Vector2::zeros(), offset: 0.0, about: Point2::origin() };
+        let direction = |bound: Bound| float(bound.along).normalize();
+        let (Some(first), Some(last)) = (candidates.samples.first(), candidates.bounds().last())
+        else {
+            return moments;
         };
-        for (edge, [start, end]) in candidates.sides() {
-            let (Some(sample), Some(about)) = (samples.get(edge.index()), about) else {
-                continue;
-            };
-            let p = metres(sample.site - about);
-            let (u, v) = (metres(start.along).normalize(), metres(end.along).normalize());
+        let about = first.site;
+        moments.about = about.into();
+        let mut u = direction(last);
+        for (sample, bound) in candidates.support().zip(candidates.bounds()) {
+            let p = float(sample.site - about) * METRE;
+            let v = direction(bound);
             let turn = libm::atan2(u.perp(&v), u.dot(&v));
             // The integrals of sin^2, cos^2 and -sin cos over the turn.
             let (sin2, cross) = ((v.x * v.y - u.x * u.y) / 2.0, (v.x * v.x - u.x * u.x) / 2.0);
             let m = Matrix2::new(turn / 2.0 - sin2, cross, cross, turn / 2.0 + sin2);
+            let normal = m * p;
             moments.area += p.dot(&(v - u));
-            moments.normal += m * p;
-            moments.offset += p.dot(&(m * p)) / 2.0;
+            moments.normal += normal;
+            moments.offset += p.dot(&normal) / 2.0;
+            u = v;
         }
         moments
     }
@@ -107,11 +109,11 @@ impl Moments {
         }
     }
 
-    /// The mean line.
+    /// The mean line; `None` if it is none in double precision.
     pub(crate) fn mean(self) -> Option<Line> {
         let normal = self.normal / self.area;
-        let norm = normal.norm();
-        Line::through(self.about + normal * (self.offset / self.area / (norm * norm)), normal)
+        let foot = normal * (self.offset / self.area / normal.norm_squared());
+        Line::through(self.about + foot, normal)
     }
 }
 
@@ -134,40 +136,48 @@ pub fn centre(candidates: Candidates<'_>) -> Option<Line> {
 /// The hard-margin separator: midway between the closest points of the two labels' convex hulls.
 ///
 /// The pair is chosen by exact integer conditions, so the line is the exact one, rounded once. Only
-/// samples that still matter to the version space can support it. `O(m^3)` for `m` of them.
+/// samples that still matter to the version space can support it. `O(m^4)` for `m` of them, few as they
+/// are.
 pub fn maximum_margin(candidates: Candidates<'_>) -> Option<Line> {
-    let of = |label: Label| candidates.support().filter(move |s| s.label == label).map(|s| s.site);
-    let (above, below) = (|| of(Label::Positive), || of(Label::Negative));
-    // Two samples support it when every other lies beyond them, as seen along their difference.
-    let pairs = || above().flat_map(move |p| below().map(move |q| (p, q)));
-    if let Some((p, q)) = pairs().find(|&(p, q)| {
-        let w = p - q;
-        above().all(|r| (r - p).dot(w) >= 0) && below().all(|r| (r - q).dot(w) <= 0)
-    }) {
-        return midway(p, q, p - q);
+    let of = |label: Label| candidates.support().filter(move |s| s.label == label);
+    for a in candidates.support() {
+        for q in of(-a.label) {
+            // The two are closest, or else a point between `a` and another of its label, and `q`.
+            let apart = a.site - q.site;
+            if let Some(line) = midway(candidates, a, q, apart) {
+                return Some(line);
+            }
+            for b in of(a.label) {
+                let side = b.site - a.site;
+                let beside = side.dot(apart) <= 0 && side.dot(b.site - q.site) >= 0;
+                let normal = side.left();
+                let away = normal.dot(apart);
+                if beside && away != 0 {
+                    let normal = if away > 0 { normal } else { normal.reversed() };
+                    if let Some(line) = midway(candidates, a, q, normal) {
+                        return Some(line);
+                    }
+                }
+            }
+        }
     }
-    // Else two of one label and one of the other: the side of one hull that faces a corner of the
-    // other, `w` pointing from the side to the corner.
-    let faces = |side: Site, w: Vector, label: Label| of(label).all(|r| (r - side).dot(w) <= 0);
-    [Label::Positive, Label::Negative].into_iter().find_map(|label| {
-        of(label).find_map(|a| {
-            of(label).filter(|&b| b != a).find_map(|b| {
-                let w = (b - a).left();
-                of(-label).find_map(|corner| {
-                    let nearest = of(-label).all(|r| (r - corner).dot(w) >= 0);
-                    let beside = (corner - a).dot(b - a) >= 0 && (corner - b).dot(a - b) >= 0;
-                    let up = if label == Label::Positive { w.reversed() } else { w };
-                    (nearest && beside && (corner - a).dot(w) > 0 && faces(a, w, label))
-                        .then(|| midway(a, corner, up))?
-                })
-            })
-        })
-    })
+    None
 }
 
-/// The line halfway between two sites with a given normal.
-fn midway(p: Site, q: Site, normal: Vector) -> Option<Line> {
-    Line::through(nalgebra::center(&Point2::from(p), &Point2::from(q)), metres(normal))
+/// The line halfway between two sites, with a normal that points from `q` to `p`, if no candidate line
+/// between them has another sample any nearer.
+fn midway(candidates: Candidates<'_>, p: Sample, q: Sample, normal: Vector) -> Option<Line> {
+    for s in candidates.support() {
+        let beyond = if s.label == p.label { s.site - p.site } else { q.site - s.site };
+        if beyond.dot(normal) < 0 {
+            return None;
+        }
+    }
+    let normal = if p.label == Label::Positive { normal } else { normal.reversed() };
+    let (p, q) = (p.site, q.site);
+    let twice = normal.dot(Vector { x: p.x() + q.x(), z: p.z() + q.z() });
+    let (a, b) = (f64::from(normal.x), f64::from(normal.z));
+    Some(Line { a, b, c: twice as f64 * (-0.5 * METRE) })
 }
 
 /// The paper's printed estimate: of all pairs of opposite labels the two shortest that share no
@@ -177,23 +187,31 @@ fn midway(p: Site, q: Site, normal: Vector) -> Option<Line> {
 /// `None` when there are no two such pairs or their diagonals do not cross. When the pairs lie side
 /// by side it is a poor estimate: prefer [`centre`]. `O(n^2)` for `n` samples.
 pub fn bisector(samples: &[Sample]) -> Option<Line> {
-    let length = |&(n, p): &(Sample, Sample)| (p.site - n.site).dot(p.site - n.site);
-    let shortest = |apart: Option<(Sample, Sample)>| {
-        let free =
-            move |s: &&Sample| apart.is_none_or(|(n, p)| s.site != n.site && s.site != p.site);
-        let of = move |label| samples.iter().filter(free).filter(move |s| s.label == label);
-        of(Label::Negative)
-            .flat_map(|&n| of(Label::Positive).map(move |&p| (n, p)))
-            .min_by_key(length)
-    };
-    let first = shortest(None)?;
-    let ((n1, p1), (n2, p2)) = (first, shortest(Some(first))?);
-    let (d, e) = (metres(p2.site - n1.site), metres(n2.site - p1.site));
-    let along = metres(p1.site - n1.site).perp(&e) / d.perp(&e);
-    let crossing = d * along; // seen from the negative end of the first pair
-    let to_negative = -crossing;
-    let to_positive = metres(p1.site - n1.site) - crossing;
+    let first = shortest(samples, &[])?;
+    let [n1, p1] = first;
+    let [n2, p2] = shortest(samples, &first)?;
+    let (d, e) = (p2 - n1, n2 - p1);
+    let along = (p1 - n1).cross(e) as f64 / d.cross(e) as f64;
+    // As seen from the negative end of the first pair.
+    let crossing = float(d) * along;
+    let to_positive = float(p1 - n1) - crossing;
     // The line that bisects the angle has the difference of the two unit vectors as its normal.
-    let normal = to_positive.try_normalize(0.0)? - to_negative.try_normalize(0.0)?;
-    Line::through(Point2::from(n1.site) + crossing, normal)
+    let normal = to_positive.try_normalize(0.0)? + crossing.try_normalize(0.0)?;
+    Line::through(Point2::from(n1) + crossing * METRE, normal)
+}
+
+/// The closest two samples of opposite labels that are not among some: the negative one first.
+fn shortest(samples: &[Sample], but: &[Site]) -> Option<[Site; 2]> {
+    let mut shortest = None;
+    let mut least = i64::MAX;
+    for n in samples.iter().filter(|s| s.label == Label::Negative && !but.contains(&s.site)) {
+        for p in samples.iter().filter(|s| s.label == Label::Positive && !but.contains(&s.site)) {
+            let apart = p.site - n.site;
+            let length = apart.dot(apart);
+            if length < least {
+                (shortest, least) = (Some([n.site, p.site]), length);
+            }
+        }
+    }
+    shortest
 }

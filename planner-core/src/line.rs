@@ -17,8 +17,6 @@ pub struct Line {
     pub(crate) a: f64,
     pub(crate) b: f64,
     pub(crate) c: f64,
-    /// The length of `(a, b)`.
-    norm: f64,
 }
 
 impl Line {
@@ -26,8 +24,9 @@ impl Line {
     ///
     /// `None` when one of them is not finite, or `a` and `b` are both zero: no line then.
     pub fn from_coefficients(a: f64, b: f64, c: f64) -> Option<Self> {
-        let norm = libm::hypot(a, b);
-        (norm > 0.0 && norm.is_finite() && (c / norm).is_finite()).then_some(Self { a, b, c, norm })
+        let line = Self { a, b, c };
+        let norm = line.norm();
+        (norm > 0.0 && norm.is_finite() && (c / norm).is_finite()).then_some(line)
     }
 
     /// `z = slope x + intercept`, +1 above it. `None` unless both are finite.
@@ -36,18 +35,26 @@ impl Line {
     }
 
     /// The line through a point with a given normal, +1 on the side to which the normal points.
+    ///
+    /// `None` when one of these is not finite, or the normal is zero.
     pub fn through(point: Point2<f64>, normal: Vector2<f64>) -> Option<Self> {
-        Self::from_coefficients(normal.x, normal.y, -normal.dot(&point.coords))
+        let (a, b, c) = (normal.x, normal.y, -normal.dot(&point.coords));
+        let is_one = (a != 0.0 || b != 0.0) && (a + b).is_finite() && c.is_finite();
+        is_one.then_some(Self { a, b, c })
+    }
+
+    fn norm(&self) -> f64 {
+        libm::hypot(self.a, self.b)
     }
 
     /// The coefficients `a`, `b`, `c`, scaled to `a^2 + b^2 = 1`.
     pub fn coefficients(&self) -> [f64; 3] {
-        [self.a / self.norm, self.b / self.norm, self.c / self.norm]
+        [self.a, self.b, self.c].map(|it| it / self.norm())
     }
 
     /// Signed distance of a point in metres, positive on the +1 side.
     pub fn distance(&self, point: Point2<f64>) -> f64 {
-        (self.a * point.x + self.b * point.y + self.c) / self.norm
+        (self.a * point.x + self.b * point.y + self.c) / self.norm()
     }
 
     /// The paper's `rho`; `None` for a vertical line.
@@ -107,7 +114,7 @@ impl From<Bound> for Line {
     fn from(bound: Bound) -> Self {
         let through = Point2::<f64>::from(bound.through);
         let (a, b) = (-f64::from(bound.along.z), f64::from(bound.along.x));
-        Self { a, b, c: -(a * through.x + b * through.y), norm: libm::hypot(a, b) }
+        Self { a, b, c: -(a * through.x + b * through.y) }
     }
 }
 

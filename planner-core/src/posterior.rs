@@ -71,11 +71,15 @@ impl<'a, const N: usize, const H: usize, const E: usize> Posterior<'a, N, H, E> 
         lost / (lost + self.total)
     }
 
-    /// The most likely hypothesis, the first of equals.
-    pub fn best(&self) -> Option<Best<'a, E>> {
+    fn most_likely(&self) -> Option<&'a Hypothesis<E>> {
         let weight = |h: &Hypothesis<E>| h.weight(self.prior);
         let likelier = |best, next| if weight(next) > weight(best) { next } else { best };
-        let hypothesis = self.hypotheses.iter().reduce(likelier)?;
+        self.hypotheses.iter().reduce(likelier)
+    }
+
+    /// The most likely hypothesis, the first of equals.
+    pub fn best(&self) -> Option<Best<'a, E>> {
+        let hypothesis = self.most_likely()?;
         let lines = self.hypotheses.candidates(hypothesis);
         Some(Best {
             hypothesis,
@@ -162,7 +166,7 @@ impl<'a, const N: usize, const H: usize, const E: usize> Posterior<'a, N, H, E> 
     /// The three estimates: the bisector of the labels as they were seen, the posterior mean, and the
     /// maximum margin of the most likely hypothesis.
     pub fn estimates(&self) -> Estimates {
-        let best = self.best().map(|best| self.hypotheses.candidates(best.hypothesis));
+        let best = self.most_likely().map(|best| self.hypotheses.candidates(best));
         Estimates {
             bisector: bisector(self.hypotheses.samples()),
             centre: self.mean(),
