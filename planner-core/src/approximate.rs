@@ -21,6 +21,7 @@ pub(crate) fn sqrt(x: f32) -> f32 {
 
 /// The arc cosine of a number in [-1, 1], in units of which [`HALF_TURN`] is half a turn, to 10^-4 rad.
 /// In the middle by the arc sine, without a root; beyond by Abramowitz and Stegun, 4.4.45.
+#[inline(never)] // it is called in three places of one small function
 pub(crate) fn acos(x: f32) -> i32 {
     let size = x.abs();
     if size < 0.6 {

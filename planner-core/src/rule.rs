@@ -32,11 +32,12 @@ impl DirectionRule for ArcRule {
     }
 
     fn barred(&self, heading: Heading, direction: Vector, side: Side) -> u32 {
-        match (self.inside.filter(|arc| !arc.contains(direction)), self.outside) {
-            (Some(arc), _) => turn_into(arc, heading, side),
-            (None, Some(arc)) => turn_out_of(arc, heading, side),
-            (None, None) => 0,
-        }
+        let end = match (self.inside.filter(|arc| !arc.contains(direction)), self.outside) {
+            (Some(arc), _) => ends(arc, side).0,
+            (None, Some(arc)) => ends(arc, side).1,
+            (None, None) => return 0,
+        };
+        turn_to(heading, end, side)
     }
 }
 
@@ -103,9 +104,9 @@ impl DirectionRule for UnionRule<'_> {
 
     fn barred(&self, heading: Heading, direction: Vector, side: Side) -> u32 {
         if let Some(arc) = self.holder(direction) {
-            return turn_out_of(*arc, heading, side);
+            return turn_to(heading, ends(*arc, side).1, side);
         }
-        let turns = self.arcs.iter().map(|arc| turn_into(*arc, heading, side));
+        let turns = self.arcs.iter().map(|arc| turn_to(heading, ends(*arc, side).0, side));
         turns.min().unwrap_or(u32::MAX)
     }
 }
@@ -113,19 +114,11 @@ impl DirectionRule for UnionRule<'_> {
 /// Room for the error of [`Heading::near`], as a binary angle: 10^-4 rad.
 const ROOM: u32 = 68_000;
 
-/// The turn to a side until a heading outside an arc, or its opposite, enters it, at least.
-fn turn_into(arc: Arc, heading: Heading, side: Side) -> u32 {
+/// Where a heading that turns to a side, or its opposite, enters an arc, and where it leaves it.
+fn ends(arc: Arc, side: Side) -> (Vector, Vector) {
     match side {
-        Side::Left => turn_to(heading, arc.from(), side),
-        Side::Right => turn_to(heading, arc.to(), side),
-    }
-}
-
-/// The turn to a side until a heading inside an arc, or its opposite, leaves it, at least.
-fn turn_out_of(arc: Arc, heading: Heading, side: Side) -> u32 {
-    match side {
-        Side::Left => turn_to(heading, arc.to(), side),
-        Side::Right => turn_to(heading, arc.from(), side),
+        Side::Left => (arc.from(), arc.to()),
+        Side::Right => (arc.to(), arc.from()),
     }
 }
 
