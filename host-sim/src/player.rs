@@ -218,6 +218,18 @@ impl Player {
         Ok(())
     }
 
+    /// The mission as it went so far, when the chip has been halted: what the vehicle sensed last it has
+    /// taken in, but has not said so.
+    ///
+    /// # Errors
+    /// When that is refused here, or the chip had not begun.
+    pub fn break_off(mut self) -> Result<Played> {
+        let sensed = self.pending.and_then(|(_, reading)| reading);
+        self.settle(sensed, Took::default())?;
+        self.outcome = Some(Ok(End::Steps));
+        self.finish()
+    }
+
     /// The mission as it went.
     ///
     /// # Errors

@@ -59,9 +59,8 @@ impl<'a> Candidates<'a> {
 
     /// Whether all candidate lines give a position the same label, and which. One orientation an
     /// edge, at most.
-    #[inline(never)]
     pub fn certainty(self, q: Site) -> Certainty {
-        Certainty::of_signs(self.turns(q))
+        certainty(self.edges, self.samples, q)
     }
 
     /// On which side of the vertex before each edge a position lies: [`Bound::at`], by the turn from
@@ -94,6 +93,12 @@ impl<'a> Candidates<'a> {
             Some(Sample { site, label: edge.label() })
         })
     }
+}
+
+/// [`Candidates::certainty`], in one place and with its arguments in registers.
+#[inline(never)]
+fn certainty(edges: &[Edge], samples: &[Sample], q: Site) -> Certainty {
+    Certainty::of_signs(Candidates { edges, samples }.turns(q))
 }
 
 /// The range of intercepts between vertices of candidates, metres; `None` when a vertical line lies

@@ -61,6 +61,7 @@ pub fn fly_and_record(emulator: &mut Emulator, mission: &Mission) -> Result<(Pla
             }
             Event::Read => panic!("the program waits for an answer that it has"),
             Event::Exit(status) => panic!("the program ended with status {status}"),
+            Event::Halted => return Ok((player.break_off()?, told)),
         }
     }
     Ok((player.finish()?, told))

@@ -14,7 +14,6 @@
 //! | `cycles`, `profile` | what it takes: cycles by a table; calls of functions that are watched |
 
 use std::cell::RefCell;
-use std::fmt::Display;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::rc::Rc;
 
@@ -72,6 +71,8 @@ pub enum Event {
     Read,
     /// It ended with this status.
     Exit(i32),
+    /// The last call that was to be watched has returned.
+    Halted,
 }
 
 /// A core with a program in its flash.
@@ -80,6 +81,14 @@ pub struct Emulator {
     host: Host,
     lowest_stack: u32,
     profile: Profile,
+    /// Calls to be watched before it halts.
+    calls: Option<usize>,
+}
+
+/// The program did what is not known here.
+struct Failure {
+    pc: u32,
+    reason: String,
 }
 
 impl Emulator {
@@ -111,50 +120,72 @@ impl Emulator {
             // It has no accesses off their alignment, which the interpreter would make.
             processor.write_u32le_iface(CCR, UNALIGN_TRP).expect("a register");
         }
-        let [stack, reset] =
-            [0, 4].map(|n| processor.read_u32le_iface(FLASH + n).expect("a vector in flash"));
-        processor.set_sp(stack);
-        processor.set_lr(u32::MAX);
-        processor.set_pc(reset & !1);
-        Self { processor, host: Host::default(), lowest_stack: stack, profile }
+        let (host, lowest_stack) = (Host::default(), u32::MAX);
+        let mut emulator = Self { processor, host, lowest_stack, profile, calls: None };
+        emulator.restart();
+        emulator
     }
 
-    /// Runs until the program wants something of the world.
+    /// Begins anew as after a reset, with what is in RAM left there. What was decoded is kept, so this is
+    /// quicker than another emulator.
+    ///
+    /// # Panics
+    /// If there are no vectors.
+    pub fn restart(&mut self) {
+        let [stack, reset] =
+            [0, 4].map(|n| self.processor.read_u32le_iface(FLASH + n).expect("a vector in flash"));
+        self.processor.set_sp(stack);
+        self.processor.set_lr(u32::MAX);
+        self.processor.set_pc(reset & !1);
+        self.host = Host::default();
+        self.profile.calls.clear();
+        self.calls = None;
+    }
+
+    /// Runs until the program wants something of the world, or it halts.
     ///
     /// # Panics
     /// If the program does what is not known here, takes an exception or hangs.
     pub fn run(&mut self) -> Event {
         if let Err(reason) = self.host.resume(&mut self.processor) {
-            self.fail(self.processor.pc(), &reason);
+            self.fail(&Failure { pc: self.processor.pc(), reason });
         }
+        let mut pc = 0;
+        // The interpreter panics where it is unfinished, and does not say at which instruction.
+        let event = catch_unwind(AssertUnwindSafe(|| self.execute(&mut pc)));
+        let failure = event.unwrap_or_else(|_| {
+            let reason = "armagnac panics".to_owned();
+            Err(Failure { pc, reason })
+        });
+        failure.unwrap_or_else(|failure| self.fail(&failure))
+    }
+
+    fn execute(&mut self, pc: &mut u32) -> Result<Event, Failure> {
         let limit = self.instructions() + PATIENCE;
         while self.instructions() < limit {
-            let pc = self.processor.pc();
-            // The interpreter panics where it is unfinished, and does not say at which instruction.
-            let step = catch_unwind(AssertUnwindSafe(|| self.processor.next_event()));
-            let happening = match step {
-                Ok(Ok(happening)) => happening,
-                Ok(Err(error)) => self.fail(pc, &format!("{error:?}")),
-                Err(_) => self.fail(pc, &"armagnac panics"),
-            };
+            *pc = self.processor.pc();
+            let failure = |reason| Failure { pc: *pc, reason };
+            let happening = self.processor.next_event().map_err(|it| failure(format!("{it:?}")))?;
             let to = self.place();
             self.lowest_stack = self.lowest_stack.min(to.sp);
-            self.profile.executed(pc, to);
+            let returned = self.profile.executed(*pc, to);
             if self.processor.registers.mode == Mode::Handler {
-                self.fail(pc, &"an exception");
+                return Err(failure("an exception".to_owned()));
+            }
+            if returned && self.calls == Some(self.profile.calls.len()) {
+                return Ok(Event::Halted);
             }
             let answer = match happening {
                 Happening::Instruction { .. } => continue,
                 Happening::Break(semihosting::BREAKPOINT) => self.host.call(&mut self.processor),
                 _ => Err("a breakpoint or a reset".into()),
             };
-            match answer {
-                Ok(None) => {}
-                Ok(Some(event)) => return event,
-                Err(reason) => self.fail(pc, &reason),
+            if let Some(event) = answer.map_err(failure)? {
+                return Ok(event);
             }
         }
-        self.fail(self.processor.pc(), &format!("nothing in {PATIENCE} instructions"))
+        let reason = format!("nothing in {PATIENCE} instructions");
+        Err(Failure { pc: self.processor.pc(), reason })
     }
 
     /// Appends to the program's standard input.
@@ -183,7 +214,12 @@ impl Emulator {
         self.profile.watch(function);
     }
 
-    /// The calls of watched functions since the last time.
+    /// Has it halt when so many calls of watched functions have returned since a restart.
+    pub fn halt_after(&mut self, calls: usize) {
+        self.calls = Some(calls);
+    }
+
+    /// The calls of watched functions since a restart or the last time.
     pub fn calls(&mut self) -> Vec<Call> {
         std::mem::take(&mut self.profile.calls)
     }
@@ -193,8 +229,8 @@ impl Emulator {
         Place { pc, sp, lr, instructions: self.instructions() }
     }
 
-    fn fail(&mut self, pc: u32, reason: &dyn Display) -> ! {
-        let [first, second] = [pc, pc.wrapping_add(2)]
+    fn fail(&mut self, Failure { pc, reason }: &Failure) -> ! {
+        let [first, second] = [*pc, pc.wrapping_add(2)]
             .map(|at| self.processor.read_u16le_iface(at).map_or("----".into(), hexadecimal));
         let count = self.instructions();
         panic!("at pc {pc:#010x}, opcode {first} {second}, after {count} instructions: {reason}");

@@ -35,6 +35,8 @@ pub struct Workload {
     pub searched: u64,
     /// What is taken of these, for each of the reasons.
     pub sought: usize,
+    /// Calls of the planner after which a mission is broken off, if it is: estimates take long.
+    pub calls: Option<usize>,
 }
 
 impl Workload {

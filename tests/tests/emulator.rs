@@ -124,7 +124,7 @@ fn qemu_executes_as_many_instructions() {
     let mission = field::standard(5, 3, Algorithm::Cfc, 12);
     let (_, told) = bench::fly_and_record(&mut Emulator::load(&elf, core), &mission)
         .expect("it flies as the host");
-    let flights = timing::fly(&elf, &[mission]);
+    let flights = timing::fly(&elf, &[mission], None);
 
     let folder = tempfile::tempdir().expect("a temporary folder");
     let [elf_file, input, log] = ["elf", "input", "log"].map(|name| folder.path().join(name));

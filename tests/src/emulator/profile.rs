@@ -64,8 +64,9 @@ impl Profile {
         self.watched.push(function & !1);
     }
 
-    /// Takes down an instruction: where it was, and where the core stands after it.
-    pub(super) fn executed(&mut self, pc: u32, to: Place) {
+    /// Takes down an instruction: where it was, and where the core stands after it. Says whether with it a
+    /// watched call has returned.
+    pub(super) fn executed(&mut self, pc: u32, to: Place) -> bool {
         let at = pc.wrapping_sub(FLASH) as usize / 2;
         let Cost { size, cycles, single } = self.costs[at];
         self.cycles += u64::from(cycles) - u64::from(single && self.pipelined);
@@ -81,6 +82,7 @@ impl Profile {
                     ..call
                 });
                 self.open = None;
+                return true;
             }
             None if self.watched.contains(&to.pc) => {
                 let (instructions, cycles) = (to.instructions, self.cycles);
@@ -89,5 +91,6 @@ impl Profile {
             }
             _ => {}
         }
+        false
     }
 }
