@@ -151,12 +151,9 @@ pub fn maximum_margin(candidates: Candidates<'_>) -> Option<Line> {
                 let side = b.site - a.site;
                 let beside = side.dot(apart) <= 0 && side.dot(b.site - q.site) >= 0;
                 let normal = side.left();
-                let away = normal.dot(apart);
-                if beside && away != 0 {
-                    let normal = if away > 0 { normal } else { normal.reversed() };
-                    if let Some(line) = midway(candidates, a, q, normal) {
-                        return Some(line);
-                    }
+                let normal = if normal.dot(apart) > 0 { normal } else { normal.reversed() };
+                if beside && let Some(line) = midway(candidates, a, q, normal) {
+                    return Some(line);
                 }
             }
         }
@@ -164,9 +161,12 @@ pub fn maximum_margin(candidates: Candidates<'_>) -> Option<Line> {
     None
 }
 
-/// The line halfway between two sites, with a normal that points from `q` to `p`, if no candidate line
-/// between them has another sample any nearer.
+/// The line halfway between two samples with a normal that points from `q` to `p`, if all others lie
+/// beyond the two.
 fn midway(candidates: Candidates<'_>, p: Sample, q: Sample, normal: Vector) -> Option<Line> {
+    if normal.dot(p.site - q.site) <= 0 {
+        return None;
+    }
     for s in candidates.support() {
         let beyond = if s.label == p.label { s.site - p.site } else { q.site - s.site };
         if beyond.dot(normal) < 0 {

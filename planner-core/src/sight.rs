@@ -21,7 +21,7 @@ use crate::sample::Label;
 const MARKS: usize = 16;
 
 /// More room than there is between any two headings.
-const NOTHING_IS_SURE: f32 = 4.0;
+const NOTHING_IS_SURE: f32 = core::f32::consts::PI;
 
 /// A turn as a binary angle.
 fn turned(turn: i32) -> u32 {
