@@ -85,7 +85,9 @@ impl Log {
             rtt.write(&self.frame);
         }
         if !self.too_long && self.frame.len() <= WAITING - self.waiting.len() {
-            self.waiting.extend(self.frame.iter().copied());
+            for &byte in &self.frame {
+                let _ = self.waiting.push_back(byte); // there is room
+            }
         } else {
             self.dropped += 1;
         }

@@ -1,6 +1,6 @@
 //! What the cross-crate tests share: adversarial sites and the slow twin of the version space;
 //! programs for a chip ([`elf`]), a core to run them on ([`emulator`]), and missions that they fly
-//! there ([`mod@bench`]).
+//! there ([`mod@bench`]); a debugger for QEMU ([`debugger`]).
 
 use planner_core::lattice::{LIMIT, Site, Vector};
 use planner_core::sample::{Label, Sample};
@@ -9,6 +9,7 @@ use rand_chacha::ChaCha8Rng;
 
 pub mod bench;
 pub mod budget;
+pub mod debugger;
 pub mod elf;
 pub mod emulator;
 pub mod footprint;

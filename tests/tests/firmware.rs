@@ -4,7 +4,7 @@
 //! Without QEMU or the target's standard library the tests say so and pass; with `CI` set they fail.
 
 use std::convert::Infallible;
-use std::io::{BufRead as _, BufReader, Read as _, Write as _};
+use std::io::{Read as _, Write as _};
 use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
@@ -32,7 +32,10 @@ use rand::{Rng as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use tempfile::{NamedTempFile, TempPath};
+use tests::debugger::{self, Debugger};
 use tests::elf;
+use tests::footprint::{self, Footprint};
+use tests::image::Image;
 
 const TARGET: &str = "thumbv7em-none-eabihf";
 
@@ -306,50 +309,10 @@ const PC: std::ops::Range<usize> = 15 * 8..16 * 8;
 /// USART2's data register: the firmware's log goes through it.
 const LOG_DATA: u32 = 0x4000_4404;
 
-/// A debugger at QEMU's stub: commands out, answers in.
-struct Debugger {
-    out: TcpStream,
-    answers: BufReader<TcpStream>,
-}
-
-impl Debugger {
-    /// Connecting halts the chip.
-    fn connect(port: u16) -> Self {
-        let out = TcpStream::connect(("127.0.0.1", port)).expect("QEMU listens");
-        out.set_read_timeout(Some(PATIENCE)).expect("a socket");
-        let answers = BufReader::new(out.try_clone().expect("a socket"));
-        let mut debugger = Self { out, answers };
-        assert!(debugger.answer().starts_with('T'), "it says that it has halted");
-        debugger
-    }
-
-    fn say(&mut self, command: &str) {
-        let sum = command.bytes().fold(0, u8::wrapping_add);
-        write!(self.out, "${command}#{sum:02x}").expect("QEMU listens");
-    }
-
-    fn ask(&mut self, command: &str) -> String {
-        self.say(command);
-        self.answer()
-    }
-
-    /// The text between `$` and `#`, without the checksum after it.
-    fn answer(&mut self) -> String {
-        let mut answer = Vec::new();
-        self.answers.read_until(b'#', &mut answer).expect("QEMU answers");
-        self.answers.read_exact(&mut [0; 2]).expect("a checksum");
-        write!(self.out, "+").expect("QEMU listens");
-        let answer = String::from_utf8_lossy(&answer).into_owned();
-        answer.trim_start_matches('+').trim_matches(['$', '#']).to_owned()
-    }
-}
-
 #[test]
 fn a_fault_disables_the_drive_first_then_tells_and_starts_anew() {
     let writes = NamedTempFile::new().expect("a temporary file").into_temp_path();
-    let debugger = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
-    let port = debugger.local_addr().expect("it is bound").port();
-    drop(debugger); // QEMU takes its place
+    let port = debugger::free_port();
     let gdb = format!("tcp:127.0.0.1:{port}");
     let arguments = [&writes_to(&writes)[..], &["-gdb", &gdb]].concat();
     let Some(chip) = Chip::start(&arguments) else { return };
@@ -383,4 +346,22 @@ fn a_fault_disables_the_drive_first_then_tells_and_starts_anew() {
     // And it flies again.
     let played = chip.fly(&mission, Faults::default()).expect("it flies as here");
     assert_eq!(trace::lines(&played.recording), here(&mission));
+}
+
+#[test]
+fn the_stack_stays_within_its_bound() {
+    let port = debugger::free_port();
+    let Some(chip) = Chip::start(&["-gdb", &format!("tcp:127.0.0.1:{port}")]) else { return };
+    for number in 0..6 {
+        chip.fly(&random(number), Faults::default()).expect("it flies");
+    }
+    let image = Image::read(&fs::read(firmware().expect("it runs")).expect("cargo left an ELF"));
+    let bound = Footprint::of(&image).expect("a graph").stack as usize;
+    // QEMU's RAM begins as zeros: what lies between statics and stack still is.
+    let size = footprint::ram(include_str!("../../memory.x")).expect("memory.x says how much");
+    let mut debugger = Debugger::connect(port);
+    let between = debugger.memory(0x2000_0000 + image.statics(), size - image.statics());
+    let used = between.iter().skip_while(|byte| **byte == 0).count();
+    println!("firmware: {used} of at most {bound} bytes of stack in QEMU");
+    assert!(bound / 2 < used && used <= bound, "{used} of {bound}");
 }

@@ -7,6 +7,9 @@
 //! - divisions of integers: the longest, 12 (the table has 2 to 12);
 //! - no stall where a floating-point result is used at once, nor for an address just made;
 //! - instructions that a condition passes over take as long as if they were done.
+//!
+//! So it is at the long end of the table. At the short end, refills of 1 and divisions of 2, plans take 8 to
+//! 11 % less and observations 5 to 6 %.
 
 /// A pipeline refill.
 pub(super) const REFILL: u32 = 3;
