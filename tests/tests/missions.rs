@@ -1,6 +1,8 @@
 //! Whole missions over the standard fields, and traces that come out the same again.
 
+use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Mutex;
 
 use host_sim::field;
 use host_sim::mission::{Algorithm, Known};
@@ -9,8 +11,12 @@ use host_sim::scenario::{self, Overrides};
 use host_sim::{trace, world};
 use nalgebra::Point2;
 use planner_core::candidates::Certainty;
+use planner_core::cfc::Cfc;
+use planner_core::hal::Drive as _;
 use planner_core::lattice::Site;
+use planner_core::planner::{Plan, Planner as _, Recovery};
 use planner_core::sample::Reading;
+use planner_core::unicycle::Unicycle;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -59,6 +65,47 @@ fn ten_thousand_fields_never_contradict_themselves_or_the_truth() {
         .sum();
     println!("10,000 fields of 40 steps; {certain} certain positions, all of them true");
     assert!(certain > 1_000_000);
+}
+
+#[test]
+fn every_plan_is_what_trying_all_actions_would_make_it() {
+    let unicycle = Unicycle::paper();
+    let rungs = Mutex::new(BTreeMap::new());
+    (0..640u64).into_par_iter().for_each(|number| {
+        let mission = field::standard(12, number, Algorithm::Cfc, 60);
+        let (mut vehicle, mut sensor) = mission.world();
+        let mut planner = Cfc::new(mission.config, unicycle, mission.space.clone());
+        let mut pose = mission.start;
+        for step in 1..=mission.steps {
+            let slow = planner.problem().solve_exhaustively(&unicycle, pose).best;
+            let plan = planner.plan(pose);
+            // Where P2 found nothing the problem is P1 by now.
+            let slow = slow.or_else(|| planner.problem().solve_exhaustively(&unicycle, pose).best);
+            let undirected = || planner.problem().undirected().solve_exhaustively(&unicycle, pose);
+            let expected = match slow {
+                Some(best) => Some((None, best.action)),
+                None => undirected().best.map(|it| (Some(Recovery::Undirected), it.action)),
+            };
+            let found = match plan {
+                Plan::Move(motion) => Some((motion.recovery, motion.action)),
+                Plan::Stop(_) => None,
+            };
+            let rung = found.and_then(|(recovery, _)| recovery);
+            let further = matches!(rung, Some(Recovery::Reorient | Recovery::Transit));
+            let agrees =
+                if expected.is_some() { found == expected } else { found.is_none() || further };
+            assert!(agrees, "field {number}, step {step}: {found:?}, expected {expected:?}");
+            *rungs.lock().expect("no panic").entry(format!("{rung:?}")).or_insert(0) += 1;
+            let Plan::Move(motion) = plan else { break };
+            let Ok(arrived) = vehicle.drive(&motion);
+            let reading = motion.samples().then(|| sensor.read().expect("it cannot fail"));
+            planner.observe(arrived, reading).expect("labels are true");
+            pose = arrived;
+        }
+    });
+    let rungs = rungs.into_inner().expect("no panic");
+    println!("{rungs:?}");
+    assert!(rungs.len() == 4 && rungs.values().all(|count| *count >= 20), "{rungs:?}");
 }
 
 #[test]
