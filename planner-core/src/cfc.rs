@@ -12,6 +12,7 @@
 
 use crate::candidates::Certainty;
 use crate::config::{Config, first_to_second};
+use crate::direction::Arc;
 use crate::dynamics::{Dynamics, Pose};
 use crate::estimate::Estimates;
 use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
@@ -74,24 +75,24 @@ impl<D: Dynamics, const N: usize> Cfc<D, N> {
 
     /// The one-step problem of the present phase.
     pub fn problem(&self) -> Problem<'_, ArcRule> {
-        self.problem_of(self.phase)
+        self.problem_of(self.phase, self.space.slope_arc())
     }
 
-    fn problem_of(&self, phase: Phase) -> Problem<'_, ArcRule> {
+    fn problem_of(&self, phase: Phase, slopes: Arc) -> Problem<'_, ArcRule> {
         let Config { area, varrho, .. } = self.config;
-        let arc = self.space.slope_arc();
         let rule = match phase {
             Phase::Crossing => {
-                self.config.crossing_rule(arc, first_to_second(self.space.samples()))
+                self.config.crossing_rule(slopes, first_to_second(self.space.samples()))
             }
-            Phase::Following => self.config.following_rule(arc),
+            Phase::Following => self.config.following_rule(slopes),
         };
         Problem { ground: self.space.candidates(), area, varrho, rule }
     }
 
     /// The motion to make, the phase that it belongs to, and the actions that were looked at.
     fn find(&self, pose: Pose) -> (Option<Found>, Phase, u32) {
-        let problem = self.problem();
+        let slopes = self.space.slope_arc();
+        let problem = self.problem_of(self.phase, slopes);
         let mut sight = problem.sight(pose.site, self.dynamics.grid());
         if self.phase == Phase::Following
             && let Some(best) =
@@ -101,7 +102,7 @@ impl<D: Dynamics, const N: usize> Cfc<D, N> {
             let found = Found { recovery: None, action, target };
             return (Some(found), Phase::Following, sight.examined);
         }
-        let crossing = self.problem_of(Phase::Crossing);
+        let crossing = self.problem_of(Phase::Crossing, slopes);
         let found = solve_or_recover(&crossing, &self.dynamics, pose, &mut sight);
         (found, Phase::Crossing, sight.examined)
     }

@@ -48,7 +48,7 @@ impl Mark {
         let (most, least) = (depth + room, depth - room);
         (self.above, self.below) = if depth.abs() < STEEP {
             let angle = acos(depth);
-            let slack = (room * (1.0 + 1.75 * depth * depth) * UNITS_PER_RADIAN) as i32 + ROOM;
+            let slack = ((1.0 + 1.75 * (depth * depth)) * (room * UNITS_PER_RADIAN)) as i32 + ROOM;
             (angle - slack, angle + slack)
         } else if most <= -1.0 {
             // A line that misses the circle leaves it on one side all around.

@@ -4,7 +4,8 @@
 //! so the outermost circle comes first, on it to either side the first ray that will do, and the search
 //! ends where a circle is no better even straight ahead. What surely is certain is passed over
 //! (`sight.rs`), and as certain ground of one label is convex, a ray whose end has the label of the
-//! agent's own position is passed over for good. What is left is settled by the exact predicate.
+//! agent's own position is passed over for good; so is one that leaves the area, convex too, within the
+//! shortest motion. What is left is settled by the exact predicate.
 
 use crate::candidates::Certainty;
 use crate::direction::Heading;
@@ -17,7 +18,7 @@ use crate::sight::Sight;
 struct Arm {
     pose: Pose,
     side: Side,
-    /// The first that may lead anywhere.
+    /// The first that may lead anywhere, and up to which they may.
     first: u32,
     count: u32,
 }
@@ -114,7 +115,9 @@ impl Sight<'_> {
             let n = next as u16;
             let heading = dynamics.heading(pose, side, n);
             // How far this ray's verdict holds, and whether it does for the inner circles too.
-            let (turn, throughout) = if let Some((label, turn)) = self.surely(heading, side) {
+            let (turn, throughout) = if let Some(turn) = self.walled(heading, side) {
+                (turn, true)
+            } else if let Some((label, turn)) = self.surely(heading, side) {
                 (turn, self.here == Certainty::Certain(label))
             } else if let Some(turn) = self.outside(heading, side) {
                 (turn, false)
@@ -139,6 +142,8 @@ impl Sight<'_> {
             let after = next + turn / spacing + 1;
             if throughout && next == arm.first {
                 arm.first = after;
+            } else if throughout && after >= arm.count {
+                arm.count = next;
             }
             next = after;
         }

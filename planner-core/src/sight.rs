@@ -45,8 +45,13 @@ pub(crate) struct Sight<'a> {
     marks: Vec<Mark, MARKS, u8>,
     /// Whether some of those beyond it lie below, or above; both if there were too many marks.
     beyond: [bool; 2],
-    /// The sides of the area within reach, with what is outside uphill.
+    /// The sides of the area within reach, with what is outside uphill; cut with the circle looked at
+    /// when it comes to them.
     sides: Vec<Mark, 4, u8>,
+    sides_are_cut: bool,
+    inverse_radius: f32,
+    /// Those within the shortest motion, as they cut its circle.
+    walls: Vec<Mark, 4, u8>,
     /// Actions whose position was looked at so far.
     pub(crate) examined: u32,
     /// Whether there may be a place to go, whatever the rule: not if a search came upon none, not even
@@ -60,55 +65,74 @@ impl<'a> Sight<'a> {
         // A position is rounded by 0.71 units at most.
         let room = 3e-5 + 1.0 / grid.step_units();
         let room = if room < 0.01 { room } else { NOTHING_IS_SURE };
-        let reach = f32::from(grid.speeds()) * grid.step_units() * (1.0 + room);
-        let (mut marks, mut sides) = (Vec::new(), Vec::new());
-        let (mut signs, mut beyond) = ([false; 2], [false; 2]);
-        let mut clear = f32::INFINITY;
-        for bound in ground.bounds() {
-            let value = bound.at(site);
-            let mark = Mark::of(bound, value);
-            let [below, above] = &mut signs;
-            *below |= value < 0;
-            *above |= value > 0;
-            let distance = mark.height.abs();
-            clear = if distance < clear { distance } else { clear };
-            if distance < reach {
-                if marks.push(mark).is_err() {
-                    beyond = [true; 2];
-                }
-            } else {
-                let [below, above] = &mut beyond;
-                *below |= value < 0;
-                *above |= value > 0;
-            }
-        }
-        let here = match signs {
-            [true, true] => Certainty::Uncertain,
-            [true, false] => Certainty::Certain(Label::Negative),
-            [false, _] => Certainty::Certain(Label::Positive),
-        };
-        let (from, to) = (area.min(), area.max());
-        let inside =
-            [to.x() - site.x(), to.z() - site.z(), site.x() - from.x(), site.z() - from.z()];
-        for (inside, quarters) in inside.into_iter().zip(0..) {
-            if (inside as f32) < reach {
-                let _ = sides.push(Mark::new(-(inside as f32), Heading(quarters << 30)));
-            }
-        }
-        let clear = if here == Certainty::Uncertain { 0.0 } else { clear };
-        Self {
+        let mut sight = Self {
             ground,
             area,
             site,
             grid,
             room,
-            here,
-            clear,
-            marks,
-            beyond,
-            sides,
+            here: Certainty::Uncertain,
+            clear: f32::INFINITY,
+            marks: Vec::new(),
+            beyond: [false; 2],
+            sides: Vec::new(),
+            sides_are_cut: false,
+            inverse_radius: 0.0,
+            walls: Vec::new(),
             examined: 0,
             promising: true,
+        };
+        let reach = f32::from(grid.speeds()) * grid.step_units() * (1.0 + room);
+        sight.see_bounds(reach);
+        sight.see_sides(reach);
+        sight
+    }
+
+    fn see_bounds(&mut self, reach: f32) {
+        let mut signs = [false; 2];
+        for bound in self.ground.bounds() {
+            let value = bound.at(self.site);
+            let mark = Mark::of(bound, value);
+            let [below, above] = &mut signs;
+            *below |= value < 0;
+            *above |= value > 0;
+            let distance = mark.height.abs();
+            self.clear = if distance < self.clear { distance } else { self.clear };
+            if distance < reach {
+                if self.marks.push(mark).is_err() {
+                    self.beyond = [true; 2];
+                }
+            } else {
+                let [below, above] = &mut self.beyond;
+                *below |= value < 0;
+                *above |= value > 0;
+            }
+        }
+        self.here = match signs {
+            [true, true] => Certainty::Uncertain,
+            [true, false] => Certainty::Certain(Label::Negative),
+            [false, _] => Certainty::Certain(Label::Positive),
+        };
+        if self.here == Certainty::Uncertain {
+            self.clear = 0.0;
+        }
+    }
+
+    fn see_sides(&mut self, reach: f32) {
+        let (from, to, site) = (self.area.min(), self.area.max(), self.site);
+        let inside =
+            [to.x() - site.x(), to.z() - site.z(), site.x() - from.x(), site.z() - from.z()];
+        for (inside, quarters) in inside.into_iter().zip(0..) {
+            let mut side = Mark::new(-(inside as f32), Heading(quarters << 30));
+            // There are four: nothing is refused.
+            if (inside as f32) < reach {
+                let _ = self.sides.push(side);
+            }
+            let shortest = self.grid.step_units();
+            if (inside as f32) < shortest {
+                side.cut(1.0 / shortest, self.room);
+                let _ = self.walls.push(side);
+            }
         }
     }
 
@@ -133,36 +157,44 @@ impl<'a> Sight<'a> {
         if reaches {
             let room = self.room;
             self.marks.iter_mut().for_each(|mark| mark.cut(inverse_radius, room));
-            self.sides.iter_mut().for_each(|mark| mark.cut(inverse_radius, room));
+            (self.inverse_radius, self.sides_are_cut) = (inverse_radius, false);
         }
         reaches
     }
 
     /// The label that the circle surely has at a heading, and how far a turn keeps it.
     pub(crate) fn surely(&self, heading: Heading, side: Side) -> Option<(Label, u32)> {
-        let mut label = match self.beyond {
-            [true, true] => return None,
-            [true, false] => Some(Label::Negative),
-            [false, true] => Some(Label::Positive),
-            [false, false] => None,
+        let mut marks = self.marks.iter();
+        let (label, mut turn) = match (marks.next(), self.beyond) {
+            (Some(first), _) => first.surely(heading, side)?,
+            (None, [true, _]) => (Label::Negative, 2 * HALF_TURN),
+            (None, [false, _]) => (Label::Positive, 2 * HALF_TURN),
         };
-        let mut turn = 2 * HALF_TURN;
-        for mark in &self.marks {
+        for mark in marks {
             let (other, least) = mark.surely(heading, side)?;
-            if *label.get_or_insert(other) != other {
+            if other != label {
                 return None;
             }
             turn = turn.min(least);
         }
-        label.map(|label| (label, turned(turn)))
+        let [below, above] = self.beyond;
+        let contradicted = if label == Label::Positive { below } else { above };
+        (!contradicted).then(|| (label, turned(turn)))
     }
 
     /// Whether the circle surely is outside the area at a heading, and how far a turn keeps it there.
-    pub(crate) fn outside(&self, heading: Heading, side: Side) -> Option<u32> {
-        self.sides.iter().find_map(|mark| match mark.surely(heading, side) {
-            Some((Label::Positive, turn)) => Some(turned(turn)),
-            _ => None,
-        })
+    pub(crate) fn outside(&mut self, heading: Heading, side: Side) -> Option<u32> {
+        if !self.sides_are_cut {
+            let (inverse_radius, room) = (self.inverse_radius, self.room);
+            self.sides.iter_mut().for_each(|mark| mark.cut(inverse_radius, room));
+            self.sides_are_cut = true;
+        }
+        beyond(&self.sides, heading, side)
+    }
+
+    /// The same of all circles: who leaves a convex area does not come back.
+    pub(crate) fn walled(&self, heading: Heading, side: Side) -> Option<u32> {
+        beyond(&self.walls, heading, side)
     }
 
     /// The way to the nearest uncertain ground inside the area; `None` when there is none.
@@ -196,4 +228,12 @@ impl<'a> Sight<'a> {
         }
         nearest.map(|(_, [x, z])| Vector { x: x as i32, z: z as i32 })
     }
+}
+
+/// Whether a circle surely is beyond one of these lines at a heading, and how far a turn keeps it there.
+fn beyond(lines: &[Mark], heading: Heading, side: Side) -> Option<u32> {
+    lines.iter().find_map(|line| match line.surely(heading, side) {
+        Some((Label::Positive, turn)) => Some(turned(turn)),
+        _ => None,
+    })
 }
