@@ -49,16 +49,16 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule>(
     if let Some(best) = sight.best(dynamics, pose.heading, problem.varrho, &problem.rule) {
         return Some(found(None)((best.action, best.target)));
     }
+    if let Some((best, _)) = sight.barred {
+        return Some(found(Some(Recovery::Undirected))((best.action, best.target)));
+    }
     let ladder = Ladder { problem: problem.undirected(), dynamics };
     if sight.is_clear() {
         let way = sight.way_out()?;
         return ladder.leg(pose, Heading::near(way)).map(found(Some(Recovery::Transit)));
     }
-    ladder
-        .undirected(sight, pose.heading)
-        .map(found(Some(Recovery::Undirected)))
-        .or_else(|| ladder.reorient(sight, pose).map(found(Some(Recovery::Reorient))))
-        .or_else(|| ladder.transit(sight, pose).map(found(Some(Recovery::Transit))))
+    let reorient = ladder.reorient(sight, pose).map(found(Some(Recovery::Reorient)));
+    reorient.or_else(|| ladder.transit(sight, pose).map(found(Some(Recovery::Transit))))
 }
 
 /// An action and where it leads.
@@ -71,12 +71,6 @@ struct Ladder<'a, D> {
 }
 
 impl<D: Dynamics> Ladder<'_, D> {
-    /// The undirected problem's best action.
-    fn undirected(&self, sight: &mut Sight<'_>, heading: Heading) -> Option<Leg> {
-        let best = sight.best(self.dynamics, heading, self.problem.varrho, &self.problem.rule)?;
-        Some((best.action, best.target))
-    }
-
     fn reorient(&self, sight: &mut Sight<'_>, pose: Pose) -> Option<Leg> {
         const HALF_TURN: u32 = 1 << 31;
         let (dynamics, problem) = (self.dynamics, &self.problem);
@@ -137,7 +131,8 @@ impl<D: Dynamics> Ladder<'_, D> {
             // What turns in place lead to is known from the reorientation: nothing.
             if leg.1.site != pose.site {
                 let mut there = self.problem.sight(leg.1.site, self.dynamics.grid());
-                let best = self.undirected(&mut there, leg.1.heading);
+                let Problem { varrho, rule, .. } = &self.problem;
+                let best = there.best(self.dynamics, leg.1.heading, *varrho, rule);
                 sight.examined += there.examined;
                 if best.is_some() {
                     return first.map(|leg| (leg, motions));

@@ -23,8 +23,15 @@ struct Arm {
     count: u32,
 }
 
-/// A candidate and the number and side of its ray, by which ties are settled.
-pub(crate) type Ranked = (Candidate, (u16, Side));
+/// The number and side of a ray, by which ties are settled.
+type Order = (u16, Side);
+
+/// A candidate and the order of its ray.
+pub(crate) type Ranked = (Candidate, Order);
+
+fn is_better(value: i64, order: Order, than: Option<Ranked>) -> bool {
+    than.is_none_or(|(best, at)| value > best.objective || (value == best.objective && order < at))
+}
 
 impl Sight<'_> {
     /// The best action from here when facing some heading, the same each time; at once if an earlier
@@ -36,12 +43,10 @@ impl Sight<'_> {
         varrho: Varrho,
         rule: &R,
     ) -> Option<Candidate> {
-        if !core::mem::take(&mut self.promising) {
+        if core::mem::replace(&mut self.keeps_barred, true) && self.barred.is_none() {
             return None;
         }
-        let (best, _) = self.search(dynamics, [heading; 2], varrho, rule)?;
-        self.promising = true;
-        Some(best)
+        self.search(dynamics, [heading; 2], varrho, rule).map(|(candidate, _)| candidate)
     }
 
     /// On which side there is the better action: on the left of one heading or the right of another.
@@ -82,32 +87,22 @@ impl Sight<'_> {
                 break;
             }
             for arm in &mut arms {
-                let side = arm.side;
-                let found = self.first(dynamics, arm, speed, rule, |ray, n| {
-                    let value = objective(ray.effort);
-                    best.is_none_or(|(b, order)| {
-                        value > b.objective || (value == b.objective && (n, side) < order)
-                    })
-                });
-                if let Some((ray, n, target)) = found {
-                    let (action, objective) =
-                        (grid.action(ray.index, speed), objective(ray.effort));
-                    best = Some((Candidate { action, target, objective }, (n, side)));
-                }
+                best = self.first(dynamics, arm, speed, rule, best, objective).or(best);
             }
         }
         best
     }
 
-    /// The first ray of an arm whose end on a circle will do, as long as rays are worth it.
+    /// The first ray of an arm whose end on a circle will do, if that is better than the best so far.
     fn first<D: Dynamics, R: DirectionRule>(
         &mut self,
         dynamics: &D,
         arm: &mut Arm,
         speed: u16,
         rule: &R,
-        is_worth_it: impl Fn(&Ray, u16) -> bool,
-    ) -> Option<(Ray, u16, Pose)> {
+        best: Option<Ranked>,
+        objective: impl Fn(u32) -> i64,
+    ) -> Option<Ranked> {
         let spacing = dynamics.fan().spacing.0.max(1);
         let (pose, side) = (arm.pose, arm.side);
         let mut next = arm.first;
@@ -123,16 +118,22 @@ impl Sight<'_> {
                 (turn, false)
             } else {
                 let ray = dynamics.ray(pose, side, n);
-                if !is_worth_it(&ray, n) {
+                let (value, order) = (objective(ray.effort), (n, side));
+                if !is_better(value, order, best) {
                     return None;
                 }
+                let action = self.grid.action(ray.index, speed);
+                let candidate = |target| (Candidate { action, target, objective: value }, order);
                 if rule.admits(ray.step) {
-                    if let Some(target) = self.uncertain_end(&ray, speed) {
-                        return Some((ray, n, target));
+                    let found = self.uncertain_end(&ray, speed).map(candidate);
+                    if found.is_some() {
+                        return found;
                     }
                     (0, false)
-                } else if self.promising || self.uncertain_end(&ray, speed).is_some() {
-                    self.promising = true;
+                } else if !self.keeps_barred || !is_better(value, order, self.barred) {
+                    (rule.barred(heading, ray.step, side), true)
+                } else if let Some(target) = self.uncertain_end(&ray, speed) {
+                    self.barred = Some(candidate(target));
                     (rule.barred(heading, ray.step, side), true)
                 } else {
                     (0, false)

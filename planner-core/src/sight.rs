@@ -15,6 +15,7 @@ use crate::dynamics::Side;
 use crate::lattice::{Site, Vector};
 use crate::mark::Mark;
 use crate::sample::Label;
+use crate::search::Ranked;
 
 /// Bounds within reach whose marks are kept. Where there are more, no ground is passed over: slow, and
 /// as exact. More than 9 have not been seen.
@@ -54,9 +55,10 @@ pub(crate) struct Sight<'a> {
     walls: Vec<Mark, 4, u8>,
     /// Actions whose position was looked at so far.
     pub(crate) examined: u32,
-    /// Whether there may be a place to go, whatever the rule: not if a search came upon none, not even
-    /// one that its rule barred.
-    pub(crate) promising: bool,
+    /// The best action that a rule has barred: after a search that found none, the best by no rule.
+    pub(crate) barred: Option<Ranked>,
+    /// Whether searches are to keep it.
+    pub(crate) keeps_barred: bool,
 }
 
 impl<'a> Sight<'a> {
@@ -80,7 +82,8 @@ impl<'a> Sight<'a> {
             inverse_radius: 0.0,
             walls: Vec::new(),
             examined: 0,
-            promising: true,
+            barred: None,
+            keeps_barred: false,
         };
         let reach = f32::from(grid.speeds()) * grid.step_units() * (1.0 + room);
         sight.see_bounds(reach);
