@@ -26,16 +26,10 @@ const PROGRAMS: [&str; 3] = ["small", "standard", "large"];
 const MEMORY_X: &str = include_str!("../../memory.x");
 
 /// What would bring the goals nearer that are missed.
-const NEXT: [(&str, &str); 2] = [
-    (
-        "small.plan_worst",
-        "a plan that finds nothing goes over its circles twice, ahead and then beside: once for both",
-    ),
-    (
-        "flash_of_planner",
-        "estimates and what they need of f64 are two fifths of it in small: single precision, about a sample",
-    ),
-];
+const NEXT: [(&str, &str); 1] = [(
+    "flash_of_planner",
+    "estimates and what they need of f64 are two fifths of it in small: single precision, about a sample",
+)];
 
 /// A program for a target; `None`, and a visible line, where it cannot be built.
 fn build(package: &str, target: &str) -> Option<impl Fn(&str) -> Vec<u8> + use<>> {
