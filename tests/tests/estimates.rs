@@ -158,3 +158,19 @@ fn the_bisector_is_the_paper_s() {
     let parallel = [(0.0, 0.0, -1), (0.0, 1.0, 1), (5.0, 6.0, -1), (5.0, 5.0, 1)];
     assert!(bisector(&parallel.map(sample)).is_none());
 }
+
+#[test]
+fn the_bisector_is_that_of_the_two_shortest_pairs() {
+    for (number, space) in spaces(200, 12) {
+        let samples = space.samples();
+        let of = |label: Label| samples.iter().filter(move |s| s.label == label);
+        let opposite = of(Label::Negative).flat_map(|n| of(Label::Positive).map(move |p| [*n, *p]));
+        let mut pairs: Vec<[Sample; 2]> = opposite.collect();
+        pairs.sort_by_key(|[n, p]| (p.site - n.site).dot(p.site - n.site));
+        let apart = |pair: &&[Sample; 2]| !pairs[0].iter().any(|s| pair.contains(s));
+        let second = pairs.iter().find(apart).expect("the oracle's points are four");
+        let alone = bisector(&[pairs[0], *second].concat());
+        let bits = |line: Option<Line>| line.map(|it| it.coefficients().map(f64::to_bits));
+        assert_eq!(bits(bisector(samples)), bits(alone), "field {number}");
+    }
+}

@@ -138,9 +138,12 @@ fn equals_exhaustive_search_anywhere_for_any_grid() {
         let round = Holonomic::new(72, 9, 250).expect("a grid");
         // On this one positions are rounded by more than any heading is sure.
         let tiny = Unicycle::new(100, 1.0, 5, 1).expect("a grid");
+        // On this one they are rounded by much, and headings are dense.
+        let fine = Unicycle::new(1, 0.5, 9, 4).expect("a grid");
         let mut count = check(&coarse, &space, area, varrho, pose, &context).0;
         count += check(&round, &space, area, varrho, pose, &context).0;
         count += check(&tiny, &space, area, varrho, pose, &context).0;
+        count += check(&fine, &space, area, varrho, pose, &context).0;
         if seed % 8 == 0 {
             count += check(&Unicycle::paper(), &space, area, varrho, pose, &context).0;
         }
