@@ -152,12 +152,12 @@ impl Emulator {
         }
         let mut pc = 0;
         // The interpreter panics where it is unfinished, and does not say at which instruction.
-        let event = catch_unwind(AssertUnwindSafe(|| self.execute(&mut pc)));
-        let failure = event.unwrap_or_else(|_| {
+        let executed = catch_unwind(AssertUnwindSafe(|| self.execute(&mut pc)));
+        let event = executed.unwrap_or_else(|_| {
             let reason = "armagnac panics".to_owned();
             Err(Failure { pc, reason })
         });
-        failure.unwrap_or_else(|failure| self.fail(&failure))
+        event.unwrap_or_else(|failure| self.fail(&failure))
     }
 
     fn execute(&mut self, pc: &mut u32) -> Result<Event, Failure> {
