@@ -50,6 +50,7 @@ pub(crate) struct Sight<'a> {
     /// when it comes to them.
     sides: Vec<Mark, 4, u8>,
     sides_are_cut: bool,
+    /// Of the circle looked at.
     inverse_radius: f32,
     /// Those within the shortest motion, as they cut its circle.
     walls: Vec<Mark, 4, u8>,
