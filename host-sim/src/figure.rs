@@ -7,7 +7,6 @@ use nalgebra::{Point2, Vector2};
 use planner_core::area::Area;
 use planner_core::candidates::Certainty;
 use planner_core::estimate;
-use planner_core::hypotheses::Prior;
 use planner_core::lattice::{Site, Vector};
 use planner_core::line::Line;
 use planner_core::posterior::Posterior;
@@ -56,7 +55,7 @@ pub enum Ground<'a> {
     /// All lines that agree with every label: two regions of certainty.
     Certain(&'a VersionSpace<CAPACITY>),
     /// A credible set of hypotheses, shaded by probability.
-    Credible(&'a Table, Prior),
+    Credible(&'a Table),
     /// Nothing to show.
     Plain,
 }
@@ -110,8 +109,8 @@ impl<'a> Figure<'a> {
             }
             Outcome::Hypotheses(table) => {
                 lines.extend(Named::estimate("posterior mean", centre));
-                lines.extend(bounding(table, mission.prior));
-                (Ground::Credible(table, mission.prior), table.samples())
+                lines.extend(bounding(table));
+                (Ground::Credible(table), table.samples())
             }
         };
         Self {
@@ -211,16 +210,16 @@ impl<'a> Figure<'a> {
     fn draw_ground(&self, chart: &mut Chart) -> Result<()> {
         match self.ground {
             Ground::Certain(space) => self.draw_certain(chart, space),
-            Ground::Credible(table, prior) => self.draw_credible(chart, table, prior),
+            Ground::Credible(table) => self.draw_credible(chart, table),
             Ground::Plain => Ok(()),
         }
     }
 
     /// The credible set: each patch of ground as dark as the hypotheses of the set are likely whose
     /// lines pass through it.
-    fn draw_credible(&self, chart: &mut Chart, table: &Table, prior: Prior) -> Result<()> {
+    fn draw_credible(&self, chart: &mut Chart, table: &Table) -> Result<()> {
         const PATCHES: i32 = 72;
-        let posterior = Posterior::new(table, prior);
+        let posterior = Posterior::new(table);
         let set = posterior.credible(LEVEL);
         let (min, max) =
             (Point2::<f64>::from(self.area.min()), Point2::<f64>::from(self.area.max()));
@@ -329,8 +328,8 @@ impl<'a> Figure<'a> {
 }
 
 /// The lines at the two ends of a credible set's slopes: the paper's `l1` and `l2`.
-fn bounding(table: &Table, prior: Prior) -> Vec<Named> {
-    let posterior = Posterior::new(table, prior);
+fn bounding(table: &Table) -> Vec<Named> {
+    let posterior = Posterior::new(table);
     let set = posterior.credible(LEVEL);
     let bounds = || posterior.members(&set).flat_map(|h| table.candidates(h).bounds());
     let ends = [("l1", set.slope_arc.from()), ("l2", set.slope_arc.to())];

@@ -4,13 +4,13 @@ use std::cell::Cell;
 use std::rc::Rc;
 
 use planner_core::agent::{Agent, AgentError, Event, Step};
-use planner_core::cfc::Cfc;
+use planner_core::cfc::{self, Cfc};
 use planner_core::config::{Config, Following};
 use planner_core::dynamics::{Dynamics, Pose};
 use planner_core::hypotheses::{Hypotheses, Prior};
 use planner_core::line::Line;
 use planner_core::planner::{Planner, StopReason};
-use planner_core::scc::{Noise, Policy, Scc, trusted_radius};
+use planner_core::scc::{self, Noise, Policy, Scc, trusted_radius};
 use planner_core::unicycle::Unicycle;
 use planner_core::version_space::{Refused, VersionSpace};
 use planner_core::weight::Reliability;
@@ -55,8 +55,8 @@ impl Algorithm {
     /// How P2 follows the boundary unless one says: in the way that learns the most.
     pub fn following(self) -> Following {
         match self {
-            Self::Cfc | Self::Random => Following::AlongBisector,
-            Self::Scc => Following::Anyhow,
+            Self::Cfc | Self::Random => cfc::FOLLOWING,
+            Self::Scc => scc::FOLLOWING,
         }
     }
 }
@@ -112,6 +112,8 @@ impl End {
             Self::Stopped(StopReason::Resolution) => "resolution",
             Self::Stopped(StopReason::SamplesFull) => "samples full",
             Self::Stopped(StopReason::OutsideArea) => "outside area",
+            Self::Stopped(StopReason::Cornered) => "cornered",
+            Self::Stopped(StopReason::Undecided) => "undecided",
         }
     }
 }
@@ -184,8 +186,7 @@ impl Mission {
         match self.algorithm {
             Algorithm::Cfc => Box::new(Cfc::new(config, dynamics, self.space.clone())),
             Algorithm::Scc => {
-                let (policy, prior) = (self.policy, self.prior);
-                Box::new(Scc::new(config, noise, policy, prior, dynamics, self.table()))
+                Box::new(Scc::new(config, noise, self.policy, dynamics, self.table()))
             }
             Algorithm::Random if self.is_noisy() => {
                 let knowledge = (self.table(), noise);

@@ -153,9 +153,11 @@ impl NoisyCampaign {
 }
 
 fn mark(field: u64, mission: &Mission, table: &Table, control_cost: f64) -> Mark {
-    let by_area = Posterior::new(table, Prior::Area);
+    let by_area = table.weighed_by(Prior::Area);
+    let by_area = Posterior::new(&by_area);
     let statement = |prior| {
-        let posterior = Posterior::new(table, prior);
+        let table = &table.weighed_by(prior);
+        let posterior = Posterior::new(table);
         let set = posterior.credible(LEVEL);
         let holds = |h: &Hypothesis<15>| world::agrees(&mission.truth, table.candidates(h));
         let best = posterior.best().expect("a hypothesis");

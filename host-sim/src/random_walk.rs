@@ -4,7 +4,7 @@ use planner_core::action::Action;
 use planner_core::area::Area;
 use planner_core::dynamics::{Dynamics, Pose};
 use planner_core::estimate::Estimates;
-use planner_core::hypotheses::Prior;
+use planner_core::lattice::Site;
 use planner_core::planner::{Motion, Plan, Planner, StopReason};
 use planner_core::posterior::Posterior;
 use planner_core::sample::{Label, Reading, Sample};
@@ -20,11 +20,11 @@ pub trait Knowledge {
     /// Whether another sample would be refused for want of room.
     fn is_full(&self) -> bool;
 
-    /// Takes in a sample.
+    /// Takes in a reading.
     ///
     /// # Errors
     /// [`Refused`].
-    fn learn(&mut self, sample: Sample) -> Result<(), Refused>;
+    fn learn(&mut self, site: Site, reading: Reading) -> Result<(), Refused>;
 
     /// The line as far as it is known.
     fn estimates(&self) -> Estimates;
@@ -35,8 +35,8 @@ impl Knowledge for VersionSpace<CAPACITY> {
         self.is_full()
     }
 
-    fn learn(&mut self, sample: Sample) -> Result<(), Refused> {
-        self.insert(sample).map(|_| ())
+    fn learn(&mut self, site: Site, reading: Reading) -> Result<(), Refused> {
+        self.observe(site, reading, Label::Positive).map(|_| ())
     }
 
     fn estimates(&self) -> Estimates {
@@ -50,13 +50,14 @@ impl Knowledge for (Table, Noise) {
         self.0.is_full()
     }
 
-    fn learn(&mut self, sample: Sample) -> Result<(), Refused> {
-        let reliability = self.1.at(sample.site, self.0.given());
-        self.0.observe(sample, reliability)
+    /// Of hypotheses a reading on the boundary says nothing: see Algorithm 2.
+    fn learn(&mut self, site: Site, reading: Reading) -> Result<(), Refused> {
+        let Reading::Side(label) = reading else { return Ok(()) };
+        self.0.observe(Sample { site, label }, self.1.at(site, self.0.given()))
     }
 
     fn estimates(&self) -> Estimates {
-        Posterior::new(&self.0, Prior::Area).estimates()
+        Posterior::new(&self.0).estimates()
     }
 }
 
@@ -86,21 +87,22 @@ impl<D: Dynamics, K: Knowledge> Planner for RandomWalk<D, K> {
             let target = self.dynamics.target(pose, action);
             if let Some(target) = target.filter(|target| self.area.contains(target.site)) {
                 let control = self.dynamics.control(action);
-                let motion =
-                    Motion { stage: None, recovery: None, action, control, target, examined: 1 };
-                return Plan::Move(motion);
+                let (stage, recovery, examined, proven) = (None, None, 1, true);
+                return Plan::Move(Motion {
+                    stage,
+                    recovery,
+                    action,
+                    control,
+                    target,
+                    examined,
+                    proven,
+                });
             }
         }
     }
 
     fn observe(&mut self, pose: Pose, reading: Option<Reading>) -> Result<(), Refused> {
-        let label = match reading {
-            Some(Reading::Side(label)) => label,
-            // True of the closed half-plane, as the negative one would be.
-            Some(Reading::Boundary) => Label::Positive,
-            None => return Ok(()),
-        };
-        self.knowledge.learn(Sample { site: pose.site, label })
+        reading.map_or(Ok(()), |reading| self.knowledge.learn(pose.site, reading))
     }
 
     fn estimates(&self) -> Estimates {

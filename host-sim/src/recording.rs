@@ -4,7 +4,6 @@ use anyhow::{Result, anyhow};
 use nalgebra::Point2;
 use planner_core::agent::Step;
 use planner_core::estimate::{self, Estimates};
-use planner_core::hypotheses::Prior;
 use planner_core::planner::{Recovery, Stage};
 use planner_core::posterior::Posterior;
 use planner_core::version_space::{Refused, VersionSpace};
@@ -97,7 +96,7 @@ impl Recorder {
             Known::Hypotheses(table) => {
                 let reliability = self.mission.noise_told().at(step.pose.site, table.given());
                 let trusted = reliability == Reliability::CERTAIN;
-                let recorded = hypotheses_left(step, table, self.mission.prior, trusted);
+                let recorded = hypotheses_left(step, table, trusted);
                 (recorded, Outcome::Hypotheses(Box::new(table.clone())))
             }
         };
@@ -151,7 +150,7 @@ impl Recording {
     pub fn estimates(&self) -> Estimates {
         match &self.outcome {
             Outcome::Lines(space) => Estimates::of(space),
-            Outcome::Hypotheses(table) => Posterior::new(table, self.mission.prior).estimates(),
+            Outcome::Hypotheses(table) => Posterior::new(table).estimates(),
         }
     }
 
@@ -181,8 +180,8 @@ fn lines_left(step: &Step, space: &VersionSpace<CAPACITY>, before: f64) -> Recor
     }
 }
 
-fn hypotheses_left(step: &Step, table: &Table, prior: Prior, trusted: bool) -> Recorded {
-    let posterior = Posterior::new(table, prior);
+fn hypotheses_left(step: &Step, table: &Table, trusted: bool) -> Recorded {
+    let posterior = Posterior::new(table);
     let credible = posterior.credible(LEVEL);
     Recorded {
         step: *step,

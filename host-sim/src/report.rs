@@ -133,7 +133,8 @@ fn write_outcome(text: &mut String, recording: &Recording, table: &Table) -> std
     let truth = |inside: bool| if inside { "holds the truth" } else { "misses the truth" };
     let line = &recording.mission.truth;
     let holds = |hypothesis| world::agrees(line, table.candidates(hypothesis));
-    if let Some(best) = Posterior::new(table, Prior::Sequences).best() {
+    let by_sequences = table.weighed_by(Prior::Sequences);
+    if let Some(best) = Posterior::new(&by_sequences).best() {
         writeln!(
             text,
             "Most likely hypothesis (the paper's outcome): slope {} deg, intercept {} m, \
@@ -144,7 +145,7 @@ fn write_outcome(text: &mut String, recording: &Recording, table: &Table) -> std
             truth(holds(best.hypothesis)),
         )?;
     }
-    let posterior = Posterior::new(table, recording.mission.prior);
+    let posterior = Posterior::new(table);
     let set = posterior.credible(LEVEL);
     writeln!(
         text,

@@ -196,8 +196,9 @@ fn step(number: usize, recorded: &Recorded) -> Step {
 
 fn noisy_end(recording: &Recording) -> Option<NoisyEnd> {
     let Outcome::Hypotheses(table) = &recording.outcome else { return None };
-    let best = Posterior::new(table, Prior::Sequences).best()?;
-    let credible = Posterior::new(table, recording.mission.prior).credible(LEVEL);
+    let by_sequences = table.weighed_by(Prior::Sequences);
+    let best = Posterior::new(&by_sequences).best()?;
+    let credible = Posterior::new(table).credible(LEVEL);
     Some(NoisyEnd {
         best: BestRecord {
             slope_arcs: best.slope_arc.intervals_deg().to_vec(),

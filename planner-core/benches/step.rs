@@ -5,8 +5,8 @@ use std::hint::black_box;
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use nalgebra::Point2;
 use planner_core::area::Area;
-use planner_core::cfc::Cfc;
-use planner_core::config::{Config, Crossing, Following};
+use planner_core::cfc::{self, Cfc};
+use planner_core::config::{Config, Crossing};
 use planner_core::direction::Heading;
 use planner_core::dynamics::Pose;
 use planner_core::estimate::Estimates;
@@ -15,7 +15,7 @@ use planner_core::lattice::Site;
 use planner_core::planner::{Plan, Planner};
 use planner_core::problem::Varrho;
 use planner_core::sample::{Label, Sample};
-use planner_core::scc::{Noise, Policy, Scc};
+use planner_core::scc::{self, Noise, Policy, Scc};
 use planner_core::unicycle::Unicycle;
 use planner_core::version_space::VersionSpace;
 use planner_core::weight::Reliability;
@@ -36,7 +36,7 @@ fn config() -> Config {
         area: Area::new(at(0.0, 0.0), at(20.0, 20.0)).expect("an area"),
         varrho: Varrho::PAPER,
         crossing: Crossing::default(),
-        following: Following::default(),
+        following: cfc::FOLLOWING,
     }
 }
 
@@ -104,9 +104,8 @@ fn noisy(labels: usize) -> (Scc<Unicycle, 36, 529>, Pose) {
     let reliability = Reliability::new(0.7).expect("a probability");
     let noise = Noise { reliability, trusted_radius: 0 };
     let hypotheses = Hypotheses::new(planner.space().samples(), Prior::Area).expect("an oracle");
-    let config = Config { following: Following::Anyhow, ..config() };
-    let (policy, prior) = (Policy::default(), Prior::default());
-    let mut planner = Scc::new(config, noise, policy, prior, Unicycle::paper(), hypotheses);
+    let config = Config { following: scc::FOLLOWING, ..config() };
+    let mut planner = Scc::new(config, noise, Policy::default(), Unicycle::paper(), hypotheses);
     let mut pose = start;
     let mut taken = 0;
     while taken < labels {

@@ -35,14 +35,29 @@ pub struct ActionGrid {
     step_length: i32,
 }
 
-/// The grid has no action, more than a `u16` can name, or reaches too far.
+/// Why there is no such grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct BadGrid;
+#[non_exhaustive]
+pub enum BadGrid {
+    /// It has no action, or more than 65,536.
+    Actions,
+    /// Its steps of speed are nothing, or one of its motions is 100 m long or longer.
+    Reach,
+    /// Its step of turning is nothing or more than half a turn, or its sharpest turn is less than a
+    /// milliradian or more than half a turn.
+    Turn,
+}
 
 impl core::fmt::Display for BadGrid {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str("an action grid has 1 to 65536 actions that reach less than 100 m")
+        f.write_str(match self {
+            Self::Actions => "an action grid has 1 to 65536 actions",
+            Self::Reach => "steps of speed are 1 mm or more, and a motion is shorter than 100 m",
+            Self::Turn => {
+                "a step of turning is 1 to 3141 mrad, and the sharpest turn from 0.001 to pi rad"
+            }
+        })
     }
 }
 
@@ -55,18 +70,20 @@ impl ActionGrid {
     /// A grid of `rays` directions with the speeds `0, step, ..., (speeds - 1) step`.
     ///
     /// # Errors
-    /// [`BadGrid`] when it is empty, has more than 65,536 actions, or reaches 100 m or more.
+    /// [`BadGrid::Actions`], [`BadGrid::Reach`].
     pub const fn new(rays: u16, speeds: u16, speed_step_mm: u32) -> Result<Self, BadGrid> {
         let actions = rays as u32 * speeds as u32;
-        let reach = (speeds as u64).saturating_sub(1) * speed_step_mm as u64;
-        let fits = actions >= 1 && actions <= 1 << 16;
-        if fits && speed_step_mm >= 1 && reach < Self::LONGEST_MM as u64 {
-            let per_metre = (UNITS_PER_METRE as u64) << Ray::STEP_BITS;
-            let step_length = ((speed_step_mm as u64 * per_metre + 500) / 1000) as i32;
-            Ok(Self { rays, speeds, speed_step_mm, step_length })
-        } else {
-            Err(BadGrid)
+        if actions == 0 || actions > 1 << 16 {
+            return Err(BadGrid::Actions);
         }
+        let reach = (speeds as u64 - 1) * speed_step_mm as u64;
+        let longest = if reach > speed_step_mm as u64 { reach } else { speed_step_mm as u64 };
+        if speed_step_mm == 0 || longest >= Self::LONGEST_MM as u64 {
+            return Err(BadGrid::Reach);
+        }
+        let per_metre = (UNITS_PER_METRE as u64) << Ray::STEP_BITS;
+        let step_length = ((speed_step_mm as u64 * per_metre + 500) / 1000) as i32;
+        Ok(Self { rays, speeds, speed_step_mm, step_length })
     }
 
     /// Number of directions.
@@ -89,9 +106,10 @@ impl ActionGrid {
         self.speed_step_mm
     }
 
-    /// Distance of travel, millimetres.
+    /// Distance of travel at a speed of the grid, millimetres. Speeds beyond the grid have none: what
+    /// is returned for them means nothing.
     pub const fn reach_mm(&self, speed: u16) -> u32 {
-        speed as u32 * self.speed_step_mm
+        (speed as u32).wrapping_mul(self.speed_step_mm)
     }
 
     /// Distance of travel, metres.

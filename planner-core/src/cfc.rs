@@ -11,16 +11,19 @@
 //!   in 10 steps where P2 as printed learns 0.56.
 
 use crate::candidates::Certainty;
-use crate::config::{Config, first_to_second};
+use crate::config::{Config, Following, first_to_second};
 use crate::direction::Arc;
 use crate::dynamics::{Dynamics, Pose};
 use crate::estimate::Estimates;
 use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
-use crate::problem::{Candidate, Problem};
+use crate::problem::{Candidate, Effort, LOOKS, Problem};
 use crate::recovery::{Found, solve_or_recover};
 use crate::rule::ArcRule;
-use crate::sample::{Label, Reading, Sample};
+use crate::sample::{Label, Reading};
 use crate::version_space::{Refused, VersionSpace};
+
+/// With this P2 Algorithm 1 learns the most.
+pub const FOLLOWING: Following = Following::AlongBisector;
 
 /// Where Algorithm 1 stands.
 ///
@@ -89,22 +92,23 @@ impl<D: Dynamics, const N: usize> Cfc<D, N> {
         Problem { ground: self.space.candidates(), area, varrho, rule }
     }
 
-    /// The motion to make, the phase that it belongs to, and the actions that were looked at.
-    fn find(&self, pose: Pose) -> (Option<Found>, Phase, u32) {
+    /// The motion to make, the phase that it belongs to, and what it cost to find it.
+    fn find(&self, pose: Pose) -> (Result<Found, StopReason>, Phase, Effort) {
         let slopes = self.space.slope_arc();
         let problem = self.problem_of(self.phase, slopes);
-        let mut sight = problem.sight(pose.site, self.dynamics.grid());
+        let mut sight = problem.sight(pose.site, self.dynamics.grid(), Effort::of(LOOKS));
+        let sight = sight.open();
         if self.phase == Phase::Following
             && let Some(best) =
                 sight.best(&self.dynamics, pose.heading, problem.varrho, &problem.rule)
         {
             let Candidate { action, target, .. } = best;
             let found = Found { recovery: None, action, target };
-            return (Some(found), Phase::Following, sight.examined);
+            return (Ok(found), Phase::Following, sight.effort);
         }
         let crossing = self.problem_of(Phase::Crossing, slopes);
-        let found = solve_or_recover(&crossing, &self.dynamics, pose, &mut sight);
-        (found, Phase::Crossing, sight.examined)
+        let found = solve_or_recover(&crossing, &self.dynamics, pose, sight);
+        (found, Phase::Crossing, sight.effort)
     }
 }
 
@@ -116,17 +120,19 @@ impl<D: Dynamics, const N: usize> Planner for Cfc<D, N> {
         if !self.config.area.contains(pose.site) {
             return Plan::Stop(StopReason::OutsideArea);
         }
-        let (found, phase, examined) = self.find(pose);
+        let (found, phase, effort) = self.find(pose);
         self.phase = phase;
-        let Some(Found { recovery, action, target }) = found else {
-            return Plan::Stop(StopReason::Resolution);
+        let Found { recovery, action, target } = match found {
+            Ok(found) => found,
+            Err(reason) => return Plan::Stop(reason),
         };
-        let stage = match phase {
+        let stage = Some(match phase {
             Phase::Crossing => Stage::P1,
             Phase::Following => Stage::P2,
-        };
+        });
         let control = self.dynamics.control(action);
-        Plan::Move(Motion { stage: Some(stage), recovery, action, control, target, examined })
+        let (examined, proven) = (effort.examined, effort.is_enough());
+        Plan::Move(Motion { stage, recovery, action, control, target, examined, proven })
     }
 
     fn observe(&mut self, pose: Pose, reading: Option<Reading>) -> Result<(), Refused> {
@@ -137,17 +143,14 @@ impl<D: Dynamics, const N: usize> Planner for Cfc<D, N> {
             }
             return Ok(());
         };
-        // On the boundary both labels are true of the closed half-planes; the past one is no flip.
-        let label = match reading {
-            Reading::Side(label) => label,
-            Reading::Boundary => self.past,
-        };
-        self.space.insert(Sample { site: pose.site, label })?;
-        self.phase = match self.phase {
-            Phase::Crossing if label != self.past => Phase::Following,
-            _ => Phase::Crossing,
-        };
-        self.past = label;
+        self.space.observe(pose.site, reading, self.past)?;
+        let crossing = core::mem::replace(&mut self.phase, Phase::Crossing) == Phase::Crossing;
+        if let Reading::Side(label) = reading {
+            if crossing && label != self.past {
+                self.phase = Phase::Following;
+            }
+            self.past = label;
+        }
         Ok(())
     }
 
@@ -162,10 +165,11 @@ mod tests {
 
     use super::*;
     use crate::area::Area;
-    use crate::config::{Crossing, Following};
+    use crate::config::Crossing;
     use crate::lattice::Site;
     use crate::planner::Recovery;
     use crate::problem::Varrho;
+    use crate::sample::Sample;
     use crate::unicycle::Unicycle;
 
     fn at(x: f64, z: f64) -> Site {
@@ -187,7 +191,7 @@ mod tests {
             area: Area::new(at(0.0, 0.0), at(10.0, 10.0)).unwrap(),
             varrho: Varrho::PAPER,
             crossing: Crossing::default(),
-            following: Following::default(),
+            following: FOLLOWING,
         };
         let space = VersionSpace::new(&corners.map(sample)).unwrap();
         Cfc::new(config, Unicycle::paper(), space)
@@ -220,6 +224,25 @@ mod tests {
     }
 
     #[test]
+    fn a_reading_on_the_boundary_is_never_refused_when_it_is_true() {
+        // The line z = 5 passes through all of these; (5, 5) stays on the border of certain ground.
+        let mut planner = planner::<16>();
+        let on = |x| pose(x, 5.0);
+        planner.observe(on(5.0), Some(Reading::Boundary)).unwrap();
+        assert_eq!(see(&mut planner, 2.0, 5.5, Label::Positive), Phase::Following);
+        assert_eq!(see(&mut planner, 2.0, 5.25, Label::Positive), Phase::Crossing);
+        for x in [5.0, 2.0, 8.0, 5.0, 8.0, 0.0, 10.0] {
+            let past = planner.past;
+            assert_eq!(planner.observe(on(x), Some(Reading::Boundary)), Ok(()), "at {x}");
+            assert_eq!((planner.past, planner.phase), (past, Phase::Crossing));
+        }
+        // And refused when it is false.
+        let refused = planner.observe(pose(5.0, 9.0), Some(Reading::Boundary));
+        let contrary = Sample { site: at(5.0, 9.0), label: Label::Negative };
+        assert_eq!(refused, Err(Refused::Contradiction(contrary)));
+    }
+
+    #[test]
     fn a_contradiction_changes_nothing() {
         let mut planner = planner::<16>();
         see(&mut planner, 4.0, 3.0, Label::Negative);
@@ -229,6 +252,21 @@ mod tests {
         assert_eq!(refused, Err(Refused::Contradiction(wrong)));
         assert_eq!((planner.phase(), planner.past, planner.space.samples().len()), before);
         assert_eq!(see(&mut planner, 4.0, 4.0, Label::Negative), Phase::Crossing);
+    }
+
+    #[test]
+    fn certain_ground_that_is_crossed_without_a_sample_sets_the_past_label() {
+        let mut planner = planner::<16>();
+        see(&mut planner, 4.0, 3.0, Label::Negative);
+        see(&mut planner, 4.0, 7.0, Label::Positive);
+        assert_eq!(see(&mut planner, 4.0, 6.0, Label::Positive), Phase::Crossing);
+        // Below (4, 3) all is negative: coming from there, a positive label is a flip.
+        planner.observe(pose(4.0, 2.0), None).unwrap();
+        assert_eq!((planner.past, planner.phase()), (Label::Negative, Phase::Crossing));
+        assert_eq!(see(&mut planner, 4.0, 5.5, Label::Positive), Phase::Following);
+        // Uncertain ground says nothing.
+        planner.observe(pose(4.0, 4.0), None).unwrap();
+        assert_eq!((planner.past, planner.phase()), (Label::Positive, Phase::Following));
     }
 
     #[test]

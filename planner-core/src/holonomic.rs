@@ -17,7 +17,7 @@ impl Holonomic {
     /// `0, step, ..., (speeds - 1) step`, millimetres per unit time.
     ///
     /// # Errors
-    /// [`BadGrid`] when the grid is none.
+    /// [`BadGrid::Actions`], [`BadGrid::Reach`].
     pub fn new(bearings: u16, speeds: u16, speed_step_mm: u32) -> Result<Self, BadGrid> {
         Ok(Self { grid: ActionGrid::new(bearings, speeds, speed_step_mm)? })
     }
@@ -34,7 +34,8 @@ impl Dynamics for Holonomic {
 
     /// Counter-clockwise from the x axis; all cost the same.
     fn fan(&self) -> Fan {
-        Fan { left: self.grid.rays(), right: 0, spacing: Heading(self.bearing(1).0.max(1)) }
+        let spacing = (u32::MAX / u32::from(self.grid.rays().max(1))).saturating_add(1);
+        Fan { left: self.grid.rays(), right: 0, spacing: Heading(spacing) }
     }
 
     fn heading(&self, _: Pose, _: Side, n: u16) -> Heading {

@@ -22,7 +22,7 @@ use crate::lost::Lost;
 use crate::measure::measure;
 use crate::sample::{Label, Sample, SampleBuffer};
 use crate::version_space::{NoVersionSpace, Refused, VersionSpace};
-use crate::weight::{LogWeight, Reliability};
+use crate::weight::{Coarse, LogWeight, Reliability};
 
 /// How hypotheses are weighed before any label is seen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -36,39 +36,37 @@ pub enum Prior {
     Sequences,
 }
 
-/// A sequence of true labels that some line realises: the cell of the lines that do, and how likely
-/// the labels seen are if it is the true one.
+/// A sequence of true labels that some line realises: the cell of the lines that do, and what it weighs
+/// if the labels seen are given. 24 bytes for `E = 15`.
 #[derive(Clone, Copy, Debug)]
 pub struct Hypothesis<const E: usize> {
     cell: Cell<E>,
-    /// Relative to the most likely hypothesis.
-    likelihood: LogWeight,
-    area: LogWeight,
+    /// The weight in two halves, or a hypothesis would be padded to a multiple of 8 bytes.
+    high: i32,
+    low: u32,
 }
 
 impl<const E: usize> Hypothesis<E> {
     /// What no line realises. All its bytes are zero, so that memory is filled with it at no cost of
     /// flash.
-    const NONE: Self =
-        Self { cell: Cell::NONE, likelihood: LogWeight::ZERO, area: LogWeight::ZERO };
+    const NONE: Self = Self { cell: Cell::NONE, high: 0, low: 0 };
+
+    fn new(cell: Cell<E>, LogWeight(units): LogWeight) -> Self {
+        Self { cell, high: (units >> 32) as i32, low: units as u32 }
+    }
 
     /// The lines that realise it.
     pub fn cell(&self) -> &Cell<E> {
         &self.cell
     }
 
-    /// Its weight under a prior, up to a factor that all hypotheses share.
-    #[inline(never)] // or every loop over the table comes twice, once for each prior
-    pub fn weight(&self, prior: Prior) -> LogWeight {
-        match prior {
-            Prior::Area => self.likelihood + self.area,
-            Prior::Sequences => self.likelihood,
-        }
+    /// Its weight by the table's prior, relative to the heaviest hypothesis.
+    pub const fn weight(&self) -> LogWeight {
+        LogWeight((self.high as i64) << 32 | self.low as i64)
     }
 
-    /// The logarithm of its measure, radian metres.
-    pub fn area(&self) -> LogWeight {
-        self.area
+    fn weigh(&mut self, by: LogWeight) {
+        *self = Self::new(self.cell, self.weight() + by);
     }
 }
 
@@ -76,6 +74,9 @@ impl<const E: usize> Hypothesis<E> {
 ///
 /// `24 H + 12 N` bytes and some 40 for `E = 15`: with the four oracle points, 3,564 bytes for all
 /// hypotheses of 16 labels (`H` = 137), 13,164 for 32 (529), 50,796 for 64 (2,081).
+///
+/// Weights are exact but for the logarithms of a label's odds (to 10^-10 each) and of a cell's measure
+/// (to 10^-6), however certain labels are.
 ///
 /// A table without room for one hypothesis does not compile:
 ///
@@ -109,8 +110,8 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
         }
     };
 
-    /// The one hypothesis that the given samples leave, which are certain. `prior` decides which
-    /// hypotheses go when the table is full.
+    /// The one hypothesis that the given samples leave, which are certain. `prior` weighs those that
+    /// labels will make of it.
     ///
     /// # Errors
     /// [`NoVersionSpace`], and `TooMany` also when more than `E` of them bound the line.
@@ -127,17 +128,45 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
     pub fn restart(&mut self, given: &[Sample], prior: Prior) -> Result<(), NoVersionSpace> {
         let space = VersionSpace::<N>::new(given)?;
         let start: Cell<E> = space.cell().resized().ok_or(NoVersionSpace::TooMany)?;
-        let area = LogWeight::of_single(measure(space.candidates()));
         self.samples = space.into_samples();
         self.given = given.len() as u8;
         self.start = start;
         self.table.clear();
         // It has room for one.
-        let _ = self.table.push(Hypothesis { cell: start, likelihood: LogWeight::ZERO, area });
+        let _ = self.table.push(Hypothesis::new(start, LogWeight::ZERO));
         self.prior = prior;
         self.lost = Lost::NOTHING;
         self.outer_cells = 0;
         Ok(())
+    }
+
+    /// The same hypotheses as another prior weighs them.
+    #[must_use]
+    pub fn weighed_by(&self, prior: Prior) -> Self {
+        let mut other = self.clone();
+        if prior != self.prior {
+            other.prior = prior;
+            for hypothesis in other.table.iter_mut() {
+                let area = self.log_area(hypothesis);
+                hypothesis.weigh(match prior {
+                    Prior::Area => area,
+                    Prior::Sequences => LogWeight::ZERO - area,
+                });
+            }
+            other.rescale();
+        }
+        other
+    }
+
+    /// What hypotheses are weighed by before any label is seen.
+    pub const fn prior(&self) -> Prior {
+        self.prior
+    }
+
+    /// The logarithm of the measure of a hypothesis's lines, radian metres, to 10^-6; at least -96.
+    #[inline(never)] // called from many places
+    pub fn log_area(&self, hypothesis: &Hypothesis<E>) -> LogWeight {
+        Coarse::of(measure(self.candidates(hypothesis))).into()
     }
 
     /// All samples with the labels that were seen, the given ones first.
@@ -180,9 +209,9 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
         self.outer_cells
     }
 
-    /// Mass given up, at most, under a prior, on the scale of the weights held.
-    pub(crate) fn lost(&self, prior: Prior) -> f64 {
-        f64::from(self.lost.mass(prior))
+    /// Mass given up, at most, on the scale of the weights held.
+    pub(crate) fn lost(&self) -> f64 {
+        f64::from(self.lost.mass(self.prior))
     }
 
     fn certainty(&self, hypothesis: &Hypothesis<E>, q: Site) -> Certainty {
@@ -197,7 +226,7 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
     /// [`Refused::Contradiction`] when a label that is certain leaves no hypothesis, and
     /// [`Refused::Full`]; the table is then as it was.
     pub fn observe(&mut self, sample: Sample, reliability: Reliability) -> Result<(), Refused> {
-        let Reliability { agree, disagree } = reliability;
+        let (agree, disagree) = (reliability.agree(), reliability.disagree());
         let weight = |label: Label| if label == sample.label { agree } else { disagree };
         let survives = |hypothesis: &Hypothesis<E>| match self.certainty(hypothesis, sample.site) {
             Certainty::Certain(label) => weight(label).is_some(),
@@ -220,7 +249,8 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
         if !doubtful {
             self.table.retain(|hypothesis| !hypothesis.cell.edges().is_empty());
         }
-        self.rescale(reliability.most());
+        self.lost.split(reliability);
+        self.rescale();
         Ok(())
     }
 
@@ -234,33 +264,47 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
         let splits = |it: &Self, h: &Hypothesis<E>| it.certainty(h, q) == Certainty::Uncertain;
         let mut more = self.table.iter().filter(|h| splits(self, h)).count();
         while self.table.len() > 1 && self.table.len() + more > H {
-            let weights = self.table.iter().map(|h| h.weight(self.prior)).enumerate();
+            let weights = self.table.iter().map(Hypothesis::weight).enumerate();
             let Some((least, _)) = weights.min_by_key(|(_, weight)| *weight) else { return };
             let Some(gone) = self.table.swap_remove(least) else { return };
             more -= usize::from(splits(self, &gone));
-            self.lost.add(&gone);
+            self.give_up(&gone);
+        }
+    }
+
+    fn give_up(&mut self, gone: &Hypothesis<E>) {
+        let (weight, area) = (gone.weight(), self.log_area(gone));
+        match self.prior {
+            Prior::Area => self.lost.add(weight, weight - area),
+            Prior::Sequences => self.lost.add(weight + area, weight),
         }
     }
 
     /// Weighs the `k`-th hypothesis by the newest sample, splitting it first if the sample cuts it.
     /// One that becomes impossible is left without edges.
     fn update(&mut self, k: usize, edge: Edge, reliability: Reliability) {
-        let Reliability { agree, disagree } = reliability;
+        let (agree, disagree) = (reliability.agree(), reliability.disagree());
         let Some(site) = self.samples.get(edge.index()).map(|s| s.site) else { return };
         let Some(whole) = self.table.get_mut(k) else { return };
         match whole.cell.candidates(&self.samples).certainty(site) {
             Certainty::Certain(certain) => {
                 let weight = if certain == edge.label() { agree } else { disagree };
                 match weight {
-                    Some(weight) => whole.likelihood = whole.likelihood + weight,
+                    Some(weight) => whole.weigh(weight),
                     None => whole.cell = Cell::NONE,
                 }
             }
             Certainty::Uncertain => {
                 let whole = *whole;
                 let opposite = Edge::new(edge.index() as u8, -edge.label());
-                let agreeing = agree.map(|weight| self.part(&whole, edge, weight));
-                let other = disagree.map(|weight| self.part(&whole, opposite, weight));
+                // A cell's measure is the same each time it is taken: nothing is lost in the quotients.
+                let weight = match self.prior {
+                    Prior::Area => LogWeight::ZERO - self.log_area(&whole),
+                    Prior::Sequences => LogWeight::ZERO,
+                };
+                let mut part = |edge, by| self.part(&whole, edge, weight + by);
+                let agreeing = agree.map(|by| part(edge, by));
+                let other = disagree.map(|by| part(opposite, by));
                 let (kept, split_off) =
                     if agreeing.is_some() { (agreeing, other) } else { (other, None) };
                 if let (Some(kept), Some(place)) = (kept, self.table.get_mut(k)) {
@@ -277,33 +321,35 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
     fn add(&mut self, k: usize, split_off: Hypothesis<E>) {
         if let Err(mut refused) = self.table.push(split_off) {
             // Only a table of one hypothesis comes here: the likelier part stays.
-            let prior = self.prior;
             if let Some(place) = self.table.get_mut(k)
-                && refused.weight(prior) > place.weight(prior)
+                && refused.weight() > place.weight()
             {
                 core::mem::swap(place, &mut refused);
             }
-            self.lost.add(&refused);
+            self.give_up(&refused);
         }
     }
 
-    /// The part of a hypothesis on one side of a sample.
+    /// The part of a hypothesis on one side of a sample, weighed anew and by the measure of its lines if
+    /// that is the prior.
     fn part(&mut self, whole: &Hypothesis<E>, edge: Edge, weight: LogWeight) -> Hypothesis<E> {
         let mut part = *whole;
         if part.cell.cut(&self.samples, edge).is_err() {
             self.outer_cells = self.outer_cells.saturating_add(1);
         }
-        part.likelihood = whole.likelihood + weight;
-        part.area = LogWeight::of_single(measure(self.candidates(&part)));
+        part.weigh(match self.prior {
+            Prior::Area => weight + self.log_area(&part),
+            Prior::Sequences => weight,
+        });
         part
     }
 
-    /// Makes the most likely hypothesis the unit of all weights.
-    fn rescale(&mut self, most: LogWeight) {
-        let best = self.table.iter().map(|h| h.likelihood).max().unwrap_or(LogWeight::ZERO);
-        for hypothesis in self.table.iter_mut() {
-            hypothesis.likelihood = hypothesis.likelihood.relative_to(best);
+    /// Makes the heaviest hypothesis the unit of all weights.
+    fn rescale(&mut self) {
+        let most = self.table.iter().map(Hypothesis::weight).max().unwrap_or(LogWeight::ZERO);
+        if most != LogWeight::ZERO {
+            self.table.iter_mut().for_each(|h| h.weigh(LogWeight::ZERO - most));
+            self.lost.rescale(most);
         }
-        self.lost.rescale(most, best);
     }
 }

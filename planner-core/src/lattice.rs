@@ -39,6 +39,9 @@ impl core::fmt::Display for OffLattice {
 impl core::error::Error for OffLattice {}
 
 impl Site {
+    /// Where both coordinates are 0.
+    pub const ORIGIN: Self = Self { x: 0, z: 0 };
+
     /// The site at `x`, `z` in lattice units.
     ///
     /// # Errors
@@ -113,18 +116,36 @@ impl From<Site> for Point2<f32> {
 
 /// A displacement or a direction in the plane, in integer units.
 ///
-/// Differences of sites and steps of rays have components below 2^30 in size, which keeps
-/// [`cross`](Self::cross) and [`dot`](Self::dot) exact.
+/// Components are smaller than 2^30 in size, as differences of sites and steps of rays are, which
+/// keeps [`cross`](Self::cross) and [`dot`](Self::dot) exact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Vector {
-    /// First component.
-    pub x: i32,
-    /// Second component.
-    pub z: i32,
+    pub(crate) x: i32,
+    pub(crate) z: i32,
 }
 
 impl Vector {
+    /// The vector with these components; `None` unless both are smaller than 2^30 in size.
+    pub const fn new(x: i32, z: i32) -> Option<Self> {
+        const BOUND: u32 = 1 << 30;
+        if x.unsigned_abs() < BOUND && z.unsigned_abs() < BOUND {
+            Some(Self { x, z })
+        } else {
+            None
+        }
+    }
+
+    /// First component.
+    pub const fn x(self) -> i32 {
+        self.x
+    }
+
+    /// Second component.
+    pub const fn z(self) -> i32 {
+        self.z
+    }
+
     /// `self.x other.z - self.z other.x`: positive when `other` lies to the left of `self`.
     pub const fn cross(self, other: Self) -> i64 {
         self.x as i64 * other.z as i64 - self.z as i64 * other.x as i64
@@ -183,6 +204,17 @@ mod tests {
         assert!(Site::new(LIMIT, 0).is_err());
         let edge = Site::new(LIMIT - 1, 0).unwrap();
         assert!(edge.step(Vector { x: i32::MAX, z: 0 }).is_err());
+    }
+
+    #[test]
+    fn no_vector_overflows() {
+        for bad in [i32::MIN, i32::MAX, 1 << 30, -(1 << 30)] {
+            assert_eq!((Vector::new(bad, 0), Vector::new(0, bad)), (None, None));
+        }
+        let most = (1 << 30) - 1;
+        let v = Vector::new(-most, most).unwrap();
+        assert_eq!(v.left(), v.left().reversed().reversed());
+        assert_eq!((v.dot(v), v.cross(v.left())), (2 * i64::from(most).pow(2), v.dot(v)));
     }
 
     #[test]

@@ -60,8 +60,8 @@
 //! use nalgebra::Point2;
 //! use planner_core::agent::{Agent, Event};
 //! use planner_core::area::Area;
-//! use planner_core::cfc::Cfc;
-//! use planner_core::config::{Config, Crossing, Following};
+//! use planner_core::cfc::{self, Cfc};
+//! use planner_core::config::{Config, Crossing};
 //! use planner_core::direction::Heading;
 //! use planner_core::dynamics::Pose;
 //! use planner_core::estimate;
@@ -102,7 +102,7 @@
 //!     area: Area::new(at(0.0, 0.0)?, at(20.0, 20.0)?).ok_or("no area")?,
 //!     varrho: Varrho::PAPER,
 //!     crossing: Crossing::default(),
-//!     following: Following::default(),
+//!     following: cfc::FOLLOWING,
 //! };
 //! let start = Pose { site: oracle[0].site, heading: Heading(0) };
 //! let world = World(Cell::new(start));
@@ -136,6 +136,7 @@ pub mod candidates;
 pub mod cell;
 pub mod cfc;
 pub mod config;
+pub mod contract;
 pub mod direction;
 pub mod dynamics;
 pub mod estimate;

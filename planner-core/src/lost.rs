@@ -1,7 +1,7 @@
 //! What a full table of hypotheses gave up: a bound, in single precision and rounded up.
 
-use crate::hypotheses::{Hypothesis, Prior};
-use crate::weight::LogWeight;
+use crate::hypotheses::Prior;
+use crate::weight::{LogWeight, Reliability};
 
 /// Mass given up, at most, by both priors, on the scale of the weights held.
 #[derive(Clone, Copy, Debug)]
@@ -13,9 +13,6 @@ pub(crate) struct Lost {
 impl Lost {
     pub(crate) const NOTHING: Self = Self { area: 0.0, sequences: 0.0 };
 
-    /// More than a step can round away.
-    const UP: f32 = 1.0 + 8.0 * f32::EPSILON;
-
     pub(crate) fn mass(self, prior: Prior) -> f32 {
         match prior {
             Prior::Area => self.area,
@@ -23,22 +20,31 @@ impl Lost {
         }
     }
 
-    pub(crate) fn add<const E: usize>(&mut self, gone: &Hypothesis<E>) {
-        self.area = (self.area + gone.weight(Prior::Area).exp_single()) * Self::UP;
-        self.sequences = (self.sequences + gone.weight(Prior::Sequences).exp_single()) * Self::UP;
+    pub(crate) fn add(&mut self, by_area: LogWeight, by_sequences: LogWeight) {
+        self.area = up(self.area + by_area.exp_bound());
+        self.sequences = up(self.sequences + by_sequences.exp_bound());
     }
 
-    /// After a label, and with `best` as the new unit of weights. What was given up can at most have
-    /// been weighed by `most`; by the paper's prior its parts may both have counted, and `p` and
-    /// `1 - p` make 1.
-    pub(crate) fn rescale(&mut self, most: LogWeight, best: LogWeight) {
-        let scaled = |mass: f32, by: LogWeight| {
-            let mass = mass * by.relative_to(best).exp_single() * Self::UP;
-            if mass < f32::MAX { mass } else { f32::MAX }
-        };
-        if self.area > 0.0 {
-            self.area = scaled(self.area, most);
-            self.sequences = scaled(self.sequences, LogWeight::ZERO);
+    /// After a label of some reliability. Relative to its likelier side a label only takes from what was
+    /// given up; but by the paper's prior a sequence that it split counts twice, once for each side.
+    pub(crate) fn split(&mut self, reliability: Reliability) {
+        if let (Some(agree), Some(disagree)) = (reliability.agree(), reliability.disagree()) {
+            self.sequences = up(self.sequences * (1.0 + agree.min(disagree).exp_bound()));
         }
     }
+
+    /// With what was `unit` as the new unit of weights.
+    pub(crate) fn rescale(&mut self, unit: LogWeight) {
+        if self.area > 0.0 {
+            let scale = (LogWeight::ZERO - unit).exp_bound();
+            self.area = up(self.area * scale);
+            self.sequences = up(self.sequences * scale);
+        }
+    }
+}
+
+/// A bound of what a sum or product of two was rounded from.
+fn up(mass: f32) -> f32 {
+    let mass = mass * (1.0 + 4.0 * f32::EPSILON);
+    if mass < f32::MAX { mass } else { f32::MAX }
 }

@@ -39,18 +39,32 @@ impl Mark {
         Self::new(value as f32 / sqrt(x * x + z * z), Heading::near(along.left()))
     }
 
+    /// How far another line is from this one within a distance of the agent, at most.
+    pub(crate) fn aside(&self, other: &Self, reach: f32) -> f32 {
+        let turn = ((other.uphill.0.wrapping_sub(self.uphill.0) as i32).unsigned_abs() >> 2) as f32;
+        (other.height - self.height).abs() + reach * (turn / UNITS_PER_RADIAN)
+    }
+
     /// Looks at a circle; `room`, in radii, is for the rounding of positions to the lattice.
     pub(crate) fn cut(&mut self, inverse_radius: f32, room: f32) {
         let depth = -self.height * inverse_radius;
         if self.height == 0.0 && self.above >= 0 {
             return; // a line through the agent cuts all circles alike
         }
-        let (most, least) = (depth + room, depth - room);
-        (self.above, self.below) = if depth.abs() < STEEP {
+        if depth.abs() < STEEP {
             let angle = acos(depth);
             let slack = ((1.0 + 1.75 * (depth * depth)) * (room * UNITS_PER_RADIAN)) as i32 + ROOM;
-            (angle - slack, angle + slack)
-        } else if most <= -1.0 {
+            (self.above, self.below) = (angle - slack, angle + slack);
+        } else {
+            self.cut_wide(inverse_radius, room);
+        }
+    }
+
+    /// The same for any room, such as for lines that this one stands for.
+    pub(crate) fn cut_wide(&mut self, inverse_radius: f32, room: f32) {
+        let depth = -self.height * inverse_radius;
+        let (most, least) = (depth + room, depth - room);
+        (self.above, self.below) = if most <= -1.0 {
             // A line that misses the circle leaves it on one side all around.
             (2 * HALF_TURN, 2 * HALF_TURN)
         } else if least >= 1.0 {

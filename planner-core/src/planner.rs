@@ -51,6 +51,9 @@ pub struct Motion {
     pub target: Pose,
     /// Actions whose position was looked at to find it.
     pub examined: u32,
+    /// Whether it is what a search of all actions would find; else the plan's looks were used up, and it
+    /// is the best so far.
+    pub proven: bool,
 }
 
 impl Motion {
@@ -65,12 +68,17 @@ impl Motion {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub enum StopReason {
-    /// What is uncertain is thinner than the action grid can hit.
+    /// What is uncertain is thinner than the action grid can hit, or lies outside the area.
     Resolution,
     /// The sample buffer is full.
     SamplesFull,
     /// The agent stands outside the mission area.
     OutsideArea,
+    /// There is uncertain ground, but no motion that leads towards it: the border is in the way, or the
+    /// agent cannot turn.
+    Cornered,
+    /// A plan may look at so many rays, and none of these was a way on.
+    Undecided,
 }
 
 /// What to do next.

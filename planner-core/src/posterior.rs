@@ -8,17 +8,16 @@
 use crate::candidates::{Candidates, intercepts};
 use crate::direction::Arc;
 use crate::estimate::{Estimates, Moments, bisector, maximum_margin};
-use crate::hypotheses::{Hypotheses, Hypothesis, Prior};
+use crate::hypotheses::{Hypotheses, Hypothesis};
 use crate::line::Line;
 use crate::weight::LogWeight;
 
-/// A distribution over the hypotheses of a table, by one prior.
+/// The distribution over the hypotheses of a table, by its prior.
 ///
 /// Building it and each read-out cost one exponential for each hypothesis.
 #[derive(Clone, Copy, Debug)]
 pub struct Posterior<'a, const N: usize, const H: usize, const E: usize> {
     hypotheses: &'a Hypotheses<N, H, E>,
-    prior: Prior,
     total: f64,
 }
 
@@ -53,27 +52,29 @@ pub struct Credible {
 }
 
 impl<'a, const N: usize, const H: usize, const E: usize> Posterior<'a, N, H, E> {
-    /// The posterior by a prior.
-    pub fn new(hypotheses: &'a Hypotheses<N, H, E>, prior: Prior) -> Self {
-        let total = hypotheses.iter().map(|h| h.weight(prior).exp()).sum();
-        Self { hypotheses, prior, total }
+    /// The posterior of a table.
+    pub fn new(hypotheses: &'a Hypotheses<N, H, E>) -> Self {
+        let total = hypotheses.iter().map(|h| h.weight().exp()).sum();
+        Self { hypotheses, total }
     }
 
-    /// The probability of a hypothesis of the table.
+    /// The probability of a hypothesis of the table, to 10^-6 of it; what is less likely than 10^-37 is
+    /// held to be about that.
     pub fn probability(&self, hypothesis: &Hypothesis<E>) -> f64 {
-        hypothesis.weight(self.prior).exp() / self.total
+        hypothesis.weight().exp() / self.total
     }
 
     /// An upper bound on the probability of all that was given up as the table was full: 0 when
     /// nothing was. Every probability stated is too high by this share at most.
     pub fn lost(&self) -> f64 {
-        let lost = self.hypotheses.lost(self.prior);
+        let lost = self.hypotheses.lost();
         lost / (lost + self.total)
     }
 
     fn most_likely(&self) -> Option<&'a Hypothesis<E>> {
-        let weight = |h: &Hypothesis<E>| h.weight(self.prior);
-        let likelier = |best, next| if weight(next) > weight(best) { next } else { best };
+        let likelier = |best: &'a Hypothesis<E>, next: &'a Hypothesis<E>| {
+            if next.weight() > best.weight() { next } else { best }
+        };
         self.hypotheses.iter().reduce(likelier)
     }
 
@@ -92,7 +93,7 @@ impl<'a, const N: usize, const H: usize, const E: usize> Posterior<'a, N, H, E> 
     /// The smallest set of hypotheses with at least this probability, taken by falling weight.
     /// `O(H)` comparisons for each hypothesis in the set.
     pub fn credible(&self, level: f64) -> Credible {
-        let weights = || self.hypotheses.iter().map(|h| h.weight(self.prior));
+        let weights = || self.hypotheses.iter().map(Hypothesis::weight);
         let (mut probability, mut cells) = (0.0, 0);
         let mut cut = None;
         while probability < level {
@@ -120,11 +121,10 @@ impl<'a, const N: usize, const H: usize, const E: usize> Posterior<'a, N, H, E> 
 
     /// The hypotheses above a weight, and the first so many of that weight.
     fn down_to(&self, cut: Option<(LogWeight, usize)>) -> impl Iterator<Item = &'a Hypothesis<E>> {
-        let prior = self.prior;
         let mut alike = cut.map_or(0, |(_, alike)| alike);
         self.hypotheses.iter().filter(move |h| {
             let Some((least, _)) = cut else { return false };
-            let weight = h.weight(prior);
+            let weight = h.weight();
             if weight == least && alike > 0 {
                 alike -= 1;
                 return true;
@@ -146,7 +146,7 @@ impl<'a, const N: usize, const H: usize, const E: usize> Posterior<'a, N, H, E> 
         let start = crate::estimate::area(self.hypotheses.start());
         let term = |h| {
             let p = self.probability(h);
-            let share = Hypothesis::area(h).exp() / start;
+            let share = self.hypotheses.log_area(h).exp() / start;
             if p > 0.0 { p * libm::log2(p / share) } else { 0.0 }
         };
         self.hypotheses.iter().map(term).sum()

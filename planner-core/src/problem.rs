@@ -21,6 +21,10 @@ use crate::lattice::Site;
 use crate::rule::{ArcRule, DirectionRule};
 use crate::sight::Sight;
 
+/// Rays that a plan of Algorithm 1, or of Algorithm 2 by the joint reading, looks at at most. With the
+/// paper's grid 520 are the most that a plan of 3,000 standard missions of 60 steps needed.
+pub const LOOKS: u32 = 8_192;
+
 /// The weight of the control in the objective, in [0, 1), to six decimal places.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -84,6 +88,26 @@ pub struct Candidate {
     pub objective: i64,
 }
 
+/// What searches may still cost, and have cost.
+#[derive(Clone, Copy)]
+pub(crate) struct Effort {
+    /// Rays that may still be looked at.
+    pub(crate) looks: u32,
+    /// Actions whose position was looked at so far.
+    pub(crate) examined: u32,
+}
+
+impl Effort {
+    pub(crate) const fn of(looks: u32) -> Self {
+        Self { looks, examined: 0 }
+    }
+
+    /// Whether no search has ended for want of looks.
+    pub(crate) const fn is_enough(self) -> bool {
+        self.looks > 0
+    }
+}
+
 /// What a search found, and at what cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -92,6 +116,8 @@ pub struct Search {
     pub best: Option<Candidate>,
     /// Actions whose position was looked at.
     pub examined: u32,
+    /// Whether it is the best for certain: the search did not end for want of looks.
+    pub proven: bool,
 }
 
 impl<'a, R: DirectionRule> Problem<'a, R> {
@@ -107,20 +133,40 @@ impl<'a, R: DirectionRule> Problem<'a, R> {
     /// certain ground has pieces there; a look is two multiplications and an arc cosine for each vertex of the
     /// ground's cell.
     pub fn solve<D: Dynamics>(&self, dynamics: &D, pose: Pose) -> Search {
-        let mut sight = self.sight(pose.site, dynamics.grid());
-        let best = sight.search(dynamics, [pose.heading; 2], self.varrho, &self.rule);
-        Search { best: best.map(|(candidate, _)| candidate), examined: sight.examined }
+        self.solve_within(u32::MAX, dynamics, pose)
     }
 
-    /// What is seen of it from a position.
-    pub(crate) fn sight(&self, site: Site, grid: ActionGrid) -> Sight<'a> {
-        Sight::new(self.ground, self.area, site, grid)
+    /// As [`solve`](Self::solve), with so many looks: each is a ray of a circle. When they are used up
+    /// it is the best so far.
+    pub fn solve_within<D: Dynamics>(&self, looks: u32, dynamics: &D, pose: Pose) -> Search {
+        let mut effort = Effort::of(looks);
+        let best = self.find(&mut effort, dynamics, pose);
+        Search { best, examined: effort.examined, proven: effort.is_enough() }
+    }
+
+    /// The best action, for what effort is left.
+    pub(crate) fn find<D: Dynamics>(
+        &self,
+        effort: &mut Effort,
+        dynamics: &D,
+        pose: Pose,
+    ) -> Option<Candidate> {
+        let mut sight = self.sight(pose.site, dynamics.grid(), *effort);
+        let sight = sight.open();
+        let best = sight.search(dynamics, [pose.heading; 2], self.varrho, &self.rule);
+        *effort = sight.effort;
+        best.map(|(candidate, _)| candidate)
+    }
+
+    /// What is to be seen of it from a position.
+    pub(crate) fn sight(&self, site: Site, grid: ActionGrid, effort: Effort) -> Sight<'a> {
+        Sight::new(self.ground, self.area, site, grid, effort)
     }
 
     /// Solves the problem by trying every action: the slow twin of [`solve`](Self::solve).
     pub fn solve_exhaustively<D: Dynamics>(&self, dynamics: &D, pose: Pose) -> Search {
         let grid = dynamics.grid();
-        let mut search = Search::default();
+        let mut search = Search { proven: true, ..Search::default() };
         for ray in dynamics.rays(pose) {
             for speed in 0..grid.speeds() {
                 search.examined += 1;

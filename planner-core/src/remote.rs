@@ -58,7 +58,7 @@ impl Setup {
         policy: Policy,
         prior: Prior,
     ) -> Scc<Unicycle, N, H> {
-        Scc::new(self.config, noise, policy, prior, Unicycle::paper(), Hypotheses::NONE)
+        Scc::new(self.config, noise, policy, Unicycle::paper(), Hypotheses::empty(prior))
     }
 
     /// Begins the mission in this memory, so that there is never a second planner beside it.

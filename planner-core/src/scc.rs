@@ -13,7 +13,7 @@
 //!   default.
 //!
 //! Over 2,000 standard fields at `p = 0.7` thirty labels tell 2.18 bits with the last, P2 as printed
-//! ([`Following::Anyhow`](crate::config::Following)), where 3.56 are possible; 2.08 with P2 along the
+//! ([`FOLLOWING`]), where 3.56 are possible; 2.08 with P2 along the
 //! bisector; 1.53 with the joint reading, 1.43 with the middle one, 0.76 on a random walk.
 //!
 //! When no hypothesis has a feasible action, the recovery ladder climbs on the starting ground.
@@ -22,19 +22,26 @@ use heapless::Vec;
 
 use crate::action::Action;
 use crate::candidates::Candidates;
-use crate::config::{Config, first_to_second};
+use crate::config::{Config, Following, first_to_second};
 use crate::dynamics::{Dynamics, Pose};
 use crate::estimate::Estimates;
 use crate::hypotheses::{Hypotheses, Hypothesis, Prior};
 use crate::lattice::Site;
 use crate::planner::{Motion, Plan, Planner, Recovery, Stage, StopReason};
 use crate::posterior::Posterior;
-use crate::problem::Problem;
+use crate::problem::{Effort, LOOKS, Problem};
 use crate::recovery::{Found, solve_or_recover};
 use crate::rule::{ArcRule, ArcUnion, DirectionRule, UnionRule};
 use crate::sample::{Reading, Sample};
 use crate::version_space::{NoVersionSpace, Refused};
 use crate::weight::Reliability;
+
+/// With this P2 Algorithm 2 learns the most.
+pub const FOLLOWING: Following = Following::Anyhow;
+
+/// Rays that all hypotheses of a vote look at together, at most: then those that were asked decide. The
+/// paper's example has been seen to need 26,000 at 60 labels.
+pub const VOTE_LOOKS: u32 = 65_536;
 
 /// How the hypotheses choose an action together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -65,10 +72,10 @@ pub struct Noise {
 impl Noise {
     /// The reliability of a label at a site: certain in a trusted ball (the paper's `B_r(p_j)`).
     pub fn at(&self, site: Site, given: &[Sample]) -> Reliability {
-        let radius = i64::from(self.trusted_radius);
+        let radius = u64::from(self.trusted_radius);
         let near = |s: &Sample| {
             let apart = site - s.site;
-            apart.dot(apart) <= radius * radius
+            apart.dot(apart).unsigned_abs() <= radius * radius
         };
         if radius > 0 && given.iter().any(near) { Reliability::CERTAIN } else { self.reliability }
     }
@@ -87,22 +94,20 @@ pub struct Scc<D, const N: usize, const H: usize> {
     config: Config,
     noise: Noise,
     policy: Policy,
-    prior: Prior,
     dynamics: D,
     hypotheses: Hypotheses<N, H>,
 }
 
 impl<D: Dynamics, const N: usize, const H: usize> Scc<D, N, H> {
-    /// A planner over a table of hypotheses; `prior` weighs their votes.
+    /// A planner over a table of hypotheses, whose prior weighs their votes.
     pub fn new(
         config: Config,
         noise: Noise,
         policy: Policy,
-        prior: Prior,
         dynamics: D,
         hypotheses: Hypotheses<N, H>,
     ) -> Self {
-        Self { config, noise, policy, prior, dynamics, hypotheses }
+        Self { config, noise, policy, dynamics, hypotheses }
     }
 
     /// What is known of the line.
@@ -114,8 +119,8 @@ impl<D: Dynamics, const N: usize, const H: usize> Scc<D, N, H> {
     ///
     /// # Errors
     /// [`NoVersionSpace`], with the planner as it was.
-    pub fn restart(&mut self, given: &[Sample]) -> Result<(), NoVersionSpace> {
-        self.hypotheses.restart(given, self.prior)
+    pub fn restart(&mut self, given: &[Sample], prior: Prior) -> Result<(), NoVersionSpace> {
+        self.hypotheses.restart(given, prior)
     }
 
     fn is_even(&self) -> bool {
@@ -146,9 +151,9 @@ impl<D: Dynamics, const N: usize, const H: usize> Scc<D, N, H> {
     ///
     /// Hypotheses are asked in the order of their weight, by halves, until those that are left cannot
     /// change the outcome.
-    fn elect(&self, pose: Pose, examined: &mut u32) -> Option<Action> {
+    fn elect(&self, pose: Pose, effort: &mut Effort) -> Option<Action> {
         const { assert!(H < 1 << 12, "a table's votes are counted in 32 bits") };
-        let weights = || self.hypotheses.iter().map(|h| h.weight(self.prior));
+        let weights = || self.hypotheses.iter().map(Hypothesis::weight);
         let most = weights().max()?;
         // As many votes, and at most as many actions, as hypotheses: nothing is refused.
         let mut votes: Vec<u32, H, u16> = Vec::new();
@@ -158,15 +163,14 @@ impl<D: Dynamics, const N: usize, const H: usize> Scc<D, N, H> {
         let mut left: u32 = votes.iter().sum();
         let mut ballot: Vec<(Action, u32), H, u16> = Vec::new();
         let (mut above, mut least) = (u32::MAX, votes.iter().copied().max()?);
-        while above > 1 {
+        while above > 1 && effort.is_enough() {
             for (hypothesis, &votes) in self.hypotheses.iter().zip(&votes) {
                 if votes < least || votes >= above {
                     continue;
                 }
                 left -= votes;
-                let search = self.problem(hypothesis).solve(&self.dynamics, pose);
-                *examined += search.examined;
-                let Some(best) = search.best else { continue };
+                let best = self.problem(hypothesis).find(effort, &self.dynamics, pose);
+                let Some(best) = best else { continue };
                 match ballot.iter_mut().find(|(action, _)| *action == best.action) {
                     Some((_, sum)) => *sum += votes,
                     None => drop(ballot.push((best.action, votes))),
@@ -180,23 +184,26 @@ impl<D: Dynamics, const N: usize, const H: usize> Scc<D, N, H> {
         first(&ballot)
     }
 
-    fn find(&self, pose: Pose, examined: &mut u32) -> Option<Found> {
+    fn find(&self, pose: Pose, effort: &mut Effort) -> Result<Found, StopReason> {
         if self.policy == Policy::Joint {
             // P3 and P4 as printed: travel in no retained hypothesis's slopes, or in some one's.
             let slopes = self.hypotheses.iter().map(|h| self.hypotheses.candidates(h).slope_arc());
             let slopes: ArcUnion = slopes.collect();
             let rule = UnionRule { arcs: slopes.arcs(), among: !self.is_even() };
-            return self.find_on_start(rule, pose, examined);
+            return self.find_on_start(rule, pose, effort);
         }
-        let elected = self.elect(pose, examined).and_then(|action| {
+        let elected = self.elect(pose, effort).and_then(|action| {
             let target = self.dynamics.target(pose, action)?;
             Some(Found { recovery: None, action, target })
         });
-        elected.or_else(|| {
-            let found = self.find_on_start(ArcRule::default(), pose, examined)?;
-            let recovery = found.recovery.or(Some(Recovery::Undirected));
-            Some(Found { recovery, ..found })
-        })
+        elected.map_or_else(
+            || {
+                let found = self.find_on_start(ArcRule::default(), pose, effort)?;
+                let recovery = found.recovery.or(Some(Recovery::Undirected));
+                Ok(Found { recovery, ..found })
+            },
+            Ok,
+        )
     }
 
     /// The best action on the ground that was uncertain at the start, or the ladder's.
@@ -204,12 +211,13 @@ impl<D: Dynamics, const N: usize, const H: usize> Scc<D, N, H> {
         &self,
         rule: impl DirectionRule,
         pose: Pose,
-        examined: &mut u32,
-    ) -> Option<Found> {
+        effort: &mut Effort,
+    ) -> Result<Found, StopReason> {
         let problem = self.on(self.hypotheses.start(), rule);
-        let mut sight = problem.sight(pose.site, self.dynamics.grid());
-        let found = solve_or_recover(&problem, &self.dynamics, pose, &mut sight);
-        *examined += sight.examined;
+        let mut sight = problem.sight(pose.site, self.dynamics.grid(), *effort);
+        let sight = sight.open();
+        let found = solve_or_recover(&problem, &self.dynamics, pose, sight);
+        *effort = sight.effort;
         found
     }
 }
@@ -242,12 +250,14 @@ impl<D: Dynamics, const N: usize, const H: usize> Planner for Scc<D, N, H> {
             (_, true) => Stage::P3,
             (_, false) => Stage::P4,
         };
-        let mut examined = 0;
-        let Some(Found { recovery, action, target }) = self.find(pose, &mut examined) else {
-            return Plan::Stop(StopReason::Resolution);
+        let mut effort = Effort::of(if self.policy == Policy::Joint { LOOKS } else { VOTE_LOOKS });
+        let Found { recovery, action, target } = match self.find(pose, &mut effort) {
+            Ok(found) => found,
+            Err(reason) => return Plan::Stop(reason),
         };
-        let control = self.dynamics.control(action);
-        Plan::Move(Motion { stage: Some(stage), recovery, action, control, target, examined })
+        let (stage, control) = (Some(stage), self.dynamics.control(action));
+        let (examined, proven) = (effort.examined, effort.is_enough());
+        Plan::Move(Motion { stage, recovery, action, control, target, examined, proven })
     }
 
     /// A reading on the boundary agrees with both sides, and tells nothing here.
@@ -259,6 +269,6 @@ impl<D: Dynamics, const N: usize, const H: usize> Planner for Scc<D, N, H> {
     }
 
     fn estimates(&self) -> Estimates {
-        Posterior::new(&self.hypotheses, self.prior).estimates()
+        Posterior::new(&self.hypotheses).estimates()
     }
 }

@@ -117,6 +117,7 @@ impl Sight<'_> {
             } else if let Some(turn) = self.outside(heading, side) {
                 (turn, false)
             } else {
+                self.effort.looks = self.effort.looks.checked_sub(1)?;
                 let ray = dynamics.ray(pose, side, n);
                 let (value, order) = (objective(ray.effort), (n, side));
                 if !is_better(value, order, best) {
@@ -154,7 +155,7 @@ impl Sight<'_> {
     /// The pose at a ray's end, if that is inside the area and on uncertain ground.
     fn uncertain_end(&mut self, ray: &Ray, speed: u16) -> Option<Pose> {
         let target = ray.arrive(self.site, speed).ok()?;
-        self.examined += 1;
+        self.effort.examined += 1;
         let feasible = self.area.contains(target.site)
             && self.ground.certainty(target.site) == Certainty::Uncertain;
         feasible.then_some(target)

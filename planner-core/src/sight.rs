@@ -14,11 +14,11 @@ use crate::direction::Heading;
 use crate::dynamics::Side;
 use crate::lattice::{Site, Vector};
 use crate::mark::Mark;
+use crate::problem::Effort;
 use crate::sample::Label;
 use crate::search::Ranked;
 
-/// Bounds within reach whose marks are kept. Where there are more, no ground is passed over: slow, and
-/// as exact. More than 9 have not been seen.
+/// Marks that are kept. Where there are more bounds, each mark stands for several.
 const MARKS: usize = 16;
 
 /// More room than there is between any two headings.
@@ -42,9 +42,11 @@ pub(crate) struct Sight<'a> {
     pub(crate) here: Certainty,
     /// Within this distance all ground is certain, lattice units.
     clear: f32,
-    /// The bounds of the candidates within reach.
+    /// The bounds of the candidates within reach, or every so-many-th of all.
     marks: Vec<Mark, MARKS, u8>,
-    /// Whether some of those beyond it lie below, or above; both if there were too many marks.
+    /// How far within reach the bounds are from the marks that stand for them, lattice units.
+    aside: f32,
+    /// Whether some of those beyond reach lie below, or above.
     beyond: [bool; 2],
     /// The sides of the area within reach, with what is outside uphill; cut with the circle looked at
     /// when it comes to them.
@@ -54,8 +56,8 @@ pub(crate) struct Sight<'a> {
     inverse_radius: f32,
     /// Those within the shortest motion, as they cut its circle.
     walls: Vec<Mark, 4, u8>,
-    /// Actions whose position was looked at so far.
-    pub(crate) examined: u32,
+    /// What searches may cost, and have: with no looks left they end with the best so far.
+    pub(crate) effort: Effort,
     /// The best action that a rule has barred: after a search that found none, the best by no rule.
     pub(crate) barred: Option<Ranked>,
     /// Whether searches are to keep it.
@@ -63,12 +65,19 @@ pub(crate) struct Sight<'a> {
 }
 
 impl<'a> Sight<'a> {
-    /// The view from a position inside the area, for motions on some grid.
-    pub(crate) fn new(ground: Candidates<'a>, area: Area, site: Site, grid: ActionGrid) -> Self {
+    /// From a position inside the area, for motions on some grid; nothing is seen before
+    /// [`open`](Self::open).
+    pub(crate) fn new(
+        ground: Candidates<'a>,
+        area: Area,
+        site: Site,
+        grid: ActionGrid,
+        effort: Effort,
+    ) -> Self {
         // A position is rounded by 0.71 units at most.
         let room = 3e-5 + 1.0 / grid.step_units();
         let room = if room < 0.01 { room } else { NOTHING_IS_SURE };
-        let mut sight = Self {
+        Self {
             ground,
             area,
             site,
@@ -77,24 +86,33 @@ impl<'a> Sight<'a> {
             here: Certainty::Uncertain,
             clear: f32::INFINITY,
             marks: Vec::new(),
+            aside: 0.0,
             beyond: [false; 2],
             sides: Vec::new(),
             sides_are_cut: false,
             inverse_radius: 0.0,
             walls: Vec::new(),
-            examined: 0,
+            effort,
             barred: None,
             keeps_barred: false,
-        };
-        let reach = f32::from(grid.speeds()) * grid.step_units() * (1.0 + room);
-        sight.see_bounds(reach);
-        sight.see_sides(reach);
-        sight
+        }
+    }
+
+    /// Sees what there is. A step of its own, so that all of this is made where it stays.
+    #[must_use]
+    pub(crate) fn open(&mut self) -> &mut Self {
+        let grid = self.grid;
+        let reach = f32::from(grid.speeds()) * grid.step_units() * (1.0 + self.room);
+        self.see_bounds(reach);
+        self.see_sides(reach);
+        self
     }
 
     fn see_bounds(&mut self, reach: f32) {
         let mut signs = [false; 2];
-        for bound in self.ground.bounds() {
+        // Neighbours in the order of the cell look alike.
+        let stride = self.ground.edges.len().div_ceil(MARKS);
+        for (k, bound) in self.ground.bounds().enumerate() {
             let value = bound.at(self.site);
             let mark = Mark::of(bound, value);
             let [below, above] = &mut signs;
@@ -102,10 +120,12 @@ impl<'a> Sight<'a> {
             *above |= value > 0;
             let distance = mark.height.abs();
             self.clear = if distance < self.clear { distance } else { self.clear };
-            if distance < reach {
-                if self.marks.push(mark).is_err() {
-                    self.beyond = [true; 2];
-                }
+            if stride > 1 && !k.is_multiple_of(stride) {
+                let aside = self.marks.last().map_or(0.0, |kept| kept.aside(&mark, reach));
+                self.aside = if aside > self.aside { aside } else { self.aside };
+            } else if distance < reach || stride > 1 {
+                // There are so many at most: nothing is refused.
+                let _ = self.marks.push(mark);
             } else {
                 let [below, above] = &mut self.beyond;
                 *below |= value < 0;
@@ -140,9 +160,10 @@ impl<'a> Sight<'a> {
         }
     }
 
-    /// Whether all ground is certain that one motion can reach.
-    pub(crate) fn is_clear(&self) -> bool {
-        !self.reaches(self.inverse_radius(self.grid.speeds() - 1))
+    /// Whether what lies this way is further than one motion reaches.
+    pub(crate) fn is_far(&self, way: Vector) -> bool {
+        let reach = f32::from(self.grid.speeds() - 1) * self.grid.step_units() * (1.0 + self.room);
+        self.here != Certainty::Uncertain && way.dot(way) as f32 > reach * reach
     }
 
     fn inverse_radius(&self, speed: u16) -> f32 {
@@ -161,9 +182,20 @@ impl<'a> Sight<'a> {
         if reaches {
             let room = self.room;
             self.marks.iter_mut().for_each(|mark| mark.cut(inverse_radius, room));
+            if self.aside > 0.0 {
+                self.widen(inverse_radius);
+            }
             (self.inverse_radius, self.sides_are_cut) = (inverse_radius, false);
         }
         reaches
+    }
+
+    /// Cuts again where marks stand for lines beside them.
+    #[cold]
+    fn widen(&mut self, inverse_radius: f32) {
+        let room = self.room + self.aside * inverse_radius;
+        let room = if room < NOTHING_IS_SURE { room } else { NOTHING_IS_SURE };
+        self.marks.iter_mut().for_each(|mark| mark.cut_wide(inverse_radius, room));
     }
 
     /// The label that the circle surely has at a heading, and how far a turn keeps it.

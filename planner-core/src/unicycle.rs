@@ -28,17 +28,20 @@ impl Unicycle {
     /// sides, and whose speeds are `0, step, ..., (speeds - 1) step`, millimetres per unit time.
     ///
     /// # Errors
-    /// [`BadGrid`] when there is no turn, a turn exceeds pi, or the grid is none.
+    /// [`BadGrid`].
     pub fn new(
         turn_step_mrad: u32,
         sharpest_rad: f64,
         speeds: u16,
         speed_step_mm: u32,
     ) -> Result<Self, BadGrid> {
-        if turn_step_mrad == 0 || !(sharpest_rad > 0.0 && sharpest_rad <= core::f64::consts::PI) {
-            return Err(BadGrid);
+        use core::f64::consts::PI;
+        let step = f64::from(turn_step_mrad) / 1000.0;
+        if turn_step_mrad == 0 || step > PI || !(1e-3..=PI).contains(&sharpest_rad) {
+            return Err(BadGrid::Turn);
         }
-        let turns = libm::ceil(sharpest_rad * 1000.0 / f64::from(turn_step_mrad)) as u16;
+        // A sharpest turn that is a multiple of the step but for rounding is that multiple.
+        let turns = libm::ceil(sharpest_rad / step - 1e-9) as u16;
         let grid = ActionGrid::new(2 * turns + 1, speeds, speed_step_mm)?;
         Ok(Self::with_grid(grid, turn_step_mrad, sharpest_rad))
     }
@@ -86,7 +89,7 @@ impl Dynamics for Unicycle {
     }
 
     fn fan(&self) -> Fan {
-        let spacing = Heading((self.step >> 16) as u32 + 1);
+        let spacing = Heading(((self.step >> 16) as u32 + 1).min(self.sharpest.0));
         Fan { left: self.turns + 1, right: self.turns, spacing }
     }
 

@@ -5,7 +5,7 @@ use crate::cell::{Cell, Cut, CutError, Edge};
 use crate::direction::Arc;
 use crate::lattice::Site;
 use crate::line::Bound;
-use crate::sample::{Label, Sample, SampleBuffer};
+use crate::sample::{Label, Reading, Sample, SampleBuffer};
 
 /// Why samples do not make a version space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -137,6 +137,34 @@ impl<const N: usize> VersionSpace<N> {
                 CutError::Full => Refused::Full(sample),
             }
         })
+    }
+
+    /// Takes a reading, and returns the label that the site has from now on.
+    ///
+    /// A reading on the boundary says that the line passes here, so both labels are true of the closed
+    /// half-planes. On uncertain ground the sample gets `either` of them, whichever the caller likes;
+    /// where all lines agree it tells nothing and is passed over, and is true as long as one of them
+    /// passes here.
+    ///
+    /// # Errors
+    /// As [`insert`](Self::insert), never for a true reading.
+    pub fn observe(
+        &mut self,
+        site: Site,
+        reading: Reading,
+        either: Label,
+    ) -> Result<Label, Refused> {
+        let label = match reading {
+            Reading::Side(label) => label,
+            Reading::Boundary => match self.certainty(site) {
+                Certainty::Uncertain => either,
+                Certainty::Certain(label) if self.bounds().any(|bound| bound.at(site) == 0) => {
+                    return Ok(label);
+                }
+                Certainty::Certain(label) => -label,
+            },
+        };
+        self.insert(Sample { site, label }).map(|_| label)
     }
 
     /// The candidate lines, to be read off.

@@ -1,34 +1,92 @@
 //! Probabilities as logarithms in fixed point, so that weights add exactly and compare alike on
 //! every machine.
 
-use core::ops::Add;
+use core::ops::{Add, Sub};
 
-/// A natural logarithm in units of 2^-24 (relative precision 6e-8), from -96 to 31.
-///
-/// What is less likely than `e^-96` is held to be that likely.
+/// A natural logarithm in units of 2^-32, far from overflow: 128 labels of the least probability that
+/// a double can hold come to 2^49.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "wire", serde(try_from = "i32", into = "i32"))]
-pub struct LogWeight(pub(crate) i32);
+pub struct LogWeight(pub(crate) i64);
 
 impl LogWeight {
-    const ONE: i32 = 1 << 24;
-    pub(crate) const LEAST: i32 = -96 * Self::ONE;
-    pub(crate) const MOST: i32 = 31 * Self::ONE;
+    const ONE: i64 = 1 << 32;
 
     /// The logarithm of 1.
     pub const ZERO: Self = Self(0);
 
-    /// The logarithm of a positive number; the least weight for 0 and below.
-    pub fn of(value: f64) -> Self {
-        let units = libm::log(value.max(f64::MIN_POSITIVE)) * f64::from(Self::ONE);
-        Self(libm::round(units).clamp(f64::from(Self::LEAST), f64::from(Self::MOST)) as i32)
+    fn from_log(log: f64) -> Self {
+        Self(libm::round(log * Self::ONE as f64) as i64)
     }
 
-    /// The logarithm of a positive number in single precision; the least weight below 2^-126. Off by
-    /// less than 3 units.
-    pub(crate) fn of_single(value: f32) -> Self {
+    /// The number whose logarithm this is, rounded to single precision and never below 2^-125.
+    pub fn exp(self) -> f64 {
+        f64::from(self.exp_single())
+    }
+
+    /// The logarithm as a number.
+    pub fn value(self) -> f64 {
+        self.0 as f64 / Self::ONE as f64
+    }
+
+    /// As [`exp`](Self::exp).
+    #[inline(never)] // called from many places
+    pub(crate) fn exp_single(self) -> f32 {
+        Coarse::near(self).exp()
+    }
+
+    /// A bound of the number above, in single precision: infinite where that ends.
+    pub(crate) fn exp_bound(self) -> f32 {
+        if self > LogWeight::from(Coarse(Coarse::MOST)) {
+            return f32::INFINITY;
+        }
+        self.exp_single() * (1.0 + 8.0 * f32::EPSILON)
+    }
+
+    /// Of a whole of 2^20 votes, how many go to a weight when the largest has all.
+    pub(crate) fn votes(self, largest: Self) -> u32 {
+        const WHOLE: f32 = (1 << 20) as f32;
+        ((self - largest).exp_single() * WHOLE + 0.5) as u32
+    }
+}
+
+/// The product of the two numbers.
+impl Add for LogWeight {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self(self.0 + other.0)
+    }
+}
+
+/// Their quotient.
+impl Sub for LogWeight {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        Self(self.0 - other.0)
+    }
+}
+
+/// A logarithm in units of 2^-24 (relative precision 6e-8), from -96 to 88: what floating point in
+/// single precision can tell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Coarse(i32);
+
+impl Coarse {
+    const BITS: u32 = 24;
+    const ONE: i32 = 1 << Self::BITS;
+    const LEAST: i32 = -96 * Self::ONE;
+    const MOST: i32 = 88 * Self::ONE;
+
+    fn near(weight: LogWeight) -> Self {
+        const SHIFT: u32 = 32 - Coarse::BITS;
+        let units = (weight.0 + (1 << (SHIFT - 1))) >> SHIFT;
+        Self(units.clamp(Self::LEAST.into(), Self::MOST.into()) as i32)
+    }
+
+    /// The logarithm of a positive number; the least there is below 2^-126. Off by less than 3 units.
+    pub(crate) fn of(value: f32) -> Self {
         const SQRT_HALF: u32 = core::f32::consts::FRAC_1_SQRT_2.to_bits();
         if value < f32::MIN_POSITIVE {
             return Self(Self::LEAST);
@@ -40,17 +98,12 @@ impl LogWeight {
         let ss = s * s;
         let log =
             2.0 * s + 2.0 * s * ss * (1.0 / 3.0 + ss * (1.0 / 5.0 + ss * (1.0 / 7.0 + ss / 9.0)));
-        Self::clamped(Self::of_power(k) + (log * Self::ONE as f32) as i32)
-    }
-
-    /// The number whose logarithm this is, rounded to single precision: the weight is no finer.
-    pub fn exp(self) -> f64 {
-        f64::from(self.exp_single())
+        let units = Self::of_power(k) + (log * Self::ONE as f32) as i32;
+        Self(units.clamp(Self::LEAST, Self::MOST))
     }
 
     /// The number whose logarithm this is; what is less than 2^-125 is held to be about that.
-    #[inline(never)] // called from many places
-    pub(crate) fn exp_single(self) -> f32 {
+    fn exp(self) -> f32 {
         const LOG2_E_IN_2_30: i64 = 1_549_082_005;
         const SERIES: [f32; 7] =
             [1.0 / 5040.0, 1.0 / 720.0, 1.0 / 120.0, 1.0 / 24.0, 1.0 / 6.0, 1.0 / 2.0, 1.0];
@@ -66,64 +119,65 @@ impl LogWeight {
         const LN_2_IN_2_31: i64 = 1_488_522_236;
         ((i64::from(k) * LN_2_IN_2_31) >> 7) as i32
     }
-
-    /// Of a whole of 2^20 votes, how many go to a weight when the largest has all.
-    pub(crate) fn votes(self, largest: Self) -> u32 {
-        const WHOLE: f32 = (1 << 20) as f32;
-        (self.relative_to(largest).exp_single() * WHOLE + 0.5) as u32
-    }
-
-    /// This weight as seen from another: their quotient.
-    #[must_use]
-    pub const fn relative_to(self, other: Self) -> Self {
-        Self::clamped(self.0 - other.0) // at most 127 times 2^24 in size
-    }
-
-    const fn clamped(units: i32) -> Self {
-        Self(if units < Self::LEAST {
-            Self::LEAST
-        } else if units > Self::MOST {
-            Self::MOST
-        } else {
-            units
-        })
-    }
 }
 
-/// The product of the two numbers.
-impl Add for LogWeight {
-    type Output = Self;
-
-    fn add(self, other: Self) -> Self {
-        Self::clamped(self.0.saturating_add(other.0))
+impl From<Coarse> for LogWeight {
+    fn from(coarse: Coarse) -> Self {
+        Self(i64::from(coarse.0) << (32 - Coarse::BITS))
     }
 }
 
 /// How far a label can be believed: it is true with probability `p`.
+///
+/// Held as the logarithm of the odds `p / (1 - p)`, to 10^-10, which is all that a posterior needs of
+/// it: lines that agree with a label gain so much on those that do not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "wire", serde(try_from = "i64", into = "i64"))]
 pub struct Reliability {
-    /// The weight of what agrees with the label; `None` when nothing can.
-    pub(crate) agree: Option<LogWeight>,
-    /// The weight of what does not; `None` when all must agree.
-    pub(crate) disagree: Option<LogWeight>,
+    log_odds: LogWeight,
 }
 
 impl Reliability {
+    /// No odds of a number are as large: a double is no smaller than `e^-745`.
+    const BEYOND: LogWeight = LogWeight(1_000 * LogWeight::ONE);
+
     /// The label is true for certain, as within a trusted ball.
-    pub const CERTAIN: Self = Self { agree: Some(LogWeight::ZERO), disagree: None };
+    pub const CERTAIN: Self = Self { log_odds: Self::BEYOND };
 
     /// A label that is true with probability `p`: 1 is certain, 0 certainly wrong, and 1/2 says
     /// nothing. `None` outside [0, 1].
     pub fn new(p: f64) -> Option<Self> {
-        let weight = |p: f64| (p > 0.0).then(|| LogWeight::of(p));
-        (0.0..=1.0).contains(&p).then(|| Self { agree: weight(p), disagree: weight(1.0 - p) })
+        let beyond = Self::BEYOND.value();
+        let inside = (0.0..=1.0).contains(&p);
+        inside.then(|| {
+            let log_odds = libm::log(p) - libm::log1p(-p); // infinite for 0 and 1
+            Self { log_odds: LogWeight::from_log(log_odds.clamp(-beyond, beyond)) }
+        })
     }
 
-    /// The larger of the two weights.
-    pub(crate) fn most(self) -> LogWeight {
-        self.agree.max(self.disagree).unwrap_or(LogWeight::ZERO)
+    /// The reliability with these odds as a logarithm in units of 2^-32; `None` if there is no such
+    /// probability.
+    pub(crate) fn from_log_odds(units: i64) -> Option<Self> {
+        let inside = units.unsigned_abs() <= Self::BEYOND.0.unsigned_abs();
+        inside.then_some(Self { log_odds: LogWeight(units) })
+    }
+
+    /// The logarithm of the odds, in units of 2^-32.
+    pub(crate) const fn log_odds(self) -> i64 {
+        self.log_odds.0
+    }
+
+    /// What lines weigh that agree with the label, relative to the likelier side; `None` when no line
+    /// can.
+    pub(crate) fn agree(self) -> Option<LogWeight> {
+        (self.log_odds.0 > -Self::BEYOND.0).then_some(LogWeight(self.log_odds.0.min(0)))
+    }
+
+    /// What lines weigh that do not agree; `None` when all must.
+    pub(crate) fn disagree(self) -> Option<LogWeight> {
+        (self.log_odds < Self::BEYOND).then_some(LogWeight(self.log_odds.0.saturating_neg().min(0)))
     }
 }
 
@@ -134,21 +188,51 @@ mod tests {
     #[test]
     fn single_precision_is_as_good_as_the_units() {
         for n in 0..400_000 {
-            let units = LogWeight::LEAST + 5_003 * n;
-            let exact = libm::exp(f64::from(units) / f64::from(LogWeight::ONE));
-            let got = LogWeight(units).exp();
+            let units = Coarse::LEAST + 5_003 * n;
+            let exact = libm::exp(f64::from(units) / f64::from(Coarse::ONE));
+            let got = LogWeight::from(Coarse(units)).exp();
             let least = libm::exp2(-125.0);
             assert!((got / exact.max(least / 1.5) - 1.0).abs() < 3e-7 || exact < least, "{units}");
             let value = exact as f32;
             if value >= f32::MIN_POSITIVE {
-                let of = LogWeight::of(f64::from(value));
-                assert!((of.0 - LogWeight::of_single(value).0).abs() < 3, "{value}");
+                let log = libm::log(f64::from(value)) * f64::from(Coarse::ONE);
+                assert!((log - f64::from(Coarse::of(value).0)).abs() < 3.5, "{value}");
             }
         }
         for value in [0.0, -1.0, 1e-39] {
-            assert_eq!(LogWeight::of_single(value).0, LogWeight::LEAST);
+            assert_eq!(Coarse::of(value).0, Coarse::LEAST);
         }
-        assert_eq!((LogWeight::of_single(1.0), LogWeight::ZERO.exp()), (LogWeight::ZERO, 1.0));
+        assert_eq!((Coarse::of(1.0), LogWeight::ZERO.exp()), (Coarse(0), 1.0));
         assert_eq!(LogWeight::ZERO.votes(LogWeight::ZERO), 1 << 20);
+        let thin = LogWeight::from_log(-86.0).exp() / libm::exp(-86.0);
+        assert!((thin - 1.0).abs() < 3e-7, "{thin}");
+        // Beyond what single precision can tell.
+        assert_eq!(Coarse::near(LogWeight(i64::MIN / 2)).0, Coarse::LEAST);
+        assert_eq!(Coarse::near(LogWeight(i64::MAX / 2)).0, Coarse::MOST);
+    }
+
+    #[test]
+    fn odds_are_those_of_the_probability() {
+        for p in [5e-324, 1e-300, 1e-9, 0.3, 0.5, 0.7, 0.999, 1.0 - f64::EPSILON] {
+            let it = Reliability::new(p).unwrap();
+            let exact = libm::log(p) - libm::log1p(-p);
+            assert!((it.log_odds.value() - exact).abs() < 2e-10, "{p}");
+            let [agree, disagree] = [it.agree(), it.disagree()].map(Option::unwrap);
+            assert_eq!((agree - disagree, agree.max(disagree)), (it.log_odds, LogWeight::ZERO));
+            assert_eq!(Reliability::from_log_odds(it.log_odds()), Some(it));
+        }
+        let sure = Reliability::new(1.0).unwrap();
+        assert_eq!(
+            (sure, sure.agree(), sure.disagree()),
+            (Reliability::CERTAIN, Some(LogWeight::ZERO), None)
+        );
+        let wrong = Reliability::new(0.0).unwrap();
+        assert_eq!((wrong.agree(), wrong.disagree()), (None, Some(LogWeight::ZERO)));
+        for units in [i64::MIN, i64::MAX, Reliability::BEYOND.0 + 1] {
+            assert_eq!(Reliability::from_log_odds(units), None);
+        }
+        for p in [-0.1, 1.1, f64::NAN] {
+            assert_eq!(Reliability::new(p), None);
+        }
     }
 }

@@ -267,7 +267,7 @@ mod tests {
 
     fn longest_setup() -> Setup {
         let sample = Sample { site: far(-1, -1), label: Label::Positive };
-        let reliability = Reliability::new(1e-40).unwrap();
+        let reliability = Reliability::new(5e-324).unwrap();
         Setup {
             protocol: u16::MAX,
             algorithm: Algorithm::Scc {
@@ -304,6 +304,7 @@ mod tests {
             control: Control { v: -1.0, w: f32::MIN_POSITIVE },
             target: pose,
             examined: u32::MAX,
+            proven: false,
         };
         let took = Took { observe: u32::MAX, plan: u32::MAX, estimate: u32::MAX };
         let last = Some(Label::Positive.into());
@@ -331,6 +332,8 @@ mod tests {
         assert!(postcard::from_bytes::<Site>(&bytes).is_err());
         postcard::to_slice(&1_000_000_u32, &mut bytes).unwrap();
         assert!(postcard::from_bytes::<Varrho>(&bytes).is_err());
+        postcard::to_slice(&i64::MAX, &mut bytes).unwrap();
+        assert!(postcard::from_bytes::<Reliability>(&bytes).is_err());
         postcard::to_slice(&[0.0, 0.0, 1.0], &mut bytes).unwrap();
         assert!(postcard::from_bytes::<Line>(&bytes).is_err());
         postcard::to_slice(&[far(1, 1), far(0, 0)], &mut bytes).unwrap();

@@ -8,14 +8,25 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 pub mod bench;
+pub mod brute;
 pub mod budget;
 pub mod debugger;
 pub mod elf;
 pub mod emulator;
 pub mod footprint;
+pub mod hardest;
 pub mod image;
+pub mod ladder;
 pub mod timing;
 pub mod workload;
+
+/// Whether the long runs are asked for, with the feature `long`.
+pub const LONG: bool = cfg!(feature = "long");
+
+/// So many cases: few by default, more in the long runs.
+pub const fn cases(few: u64, many: u64) -> u64 {
+    if LONG { many } else { few }
+}
 
 /// A site whose coordinates are clamped into the lattice.
 ///
@@ -44,7 +55,7 @@ pub fn adversarial(rng: &mut ChaCha8Rng, so_far: &[Site]) -> Site {
             let (d, t) = (*b - *a, rng.random_range(-8..=16i64));
             let on = |start: i32, run: i32| i64::from(start) + i64::from(run) * t / 8;
             let off = rng.random_range(0..=1);
-            clamped(on(a.x(), d.x) + small(rng, off), on(a.z(), d.z) + small(rng, off))
+            clamped(on(a.x(), d.x()) + small(rng, off), on(a.z(), d.z()) + small(rng, off))
         }
         _ => clamped(65_536 * small(rng, 20), 65_536 * small(rng, 20)),
     }
@@ -119,5 +130,5 @@ pub fn cross(a: [i128; 2], b: [i128; 2]) -> i128 {
 
 /// A vector in the twin's integers.
 pub fn wide(v: Vector) -> [i128; 2] {
-    [i128::from(v.x), i128::from(v.z)]
+    [i128::from(v.x()), i128::from(v.z())]
 }

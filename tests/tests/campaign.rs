@@ -2,6 +2,7 @@
 
 use host_sim::campaign::{Campaign, Summary};
 use host_sim::mission::Algorithm;
+use planner_core::cfc;
 use planner_core::config::{Crossing, Following};
 
 fn campaign(algorithm: Algorithm, following: Following, steps: u32) -> Summary {
@@ -14,7 +15,7 @@ fn campaign(algorithm: Algorithm, following: Following, steps: u32) -> Summary {
 
 #[test]
 fn algorithm_1_learns_what_it_should() {
-    let summary = campaign(Algorithm::Cfc, Following::default(), 20);
+    let summary = campaign(Algorithm::Cfc, cfc::FOLLOWING, 20);
     let at = |step| summary.rows.iter().find(|row| row.step == step).expect("a mark");
     assert!(at(10).bits_per_step >= 0.65);
     assert!(at(10).centre_deg.median <= 1.5);
@@ -22,7 +23,7 @@ fn algorithm_1_learns_what_it_should() {
     assert!(summary.mean_examined <= 0.05 * f64::from(summary.actions));
     // A noiseless label tells one bit at most, on average.
     assert!(summary.rows.iter().all(|row| row.bits_per_step <= 1.0));
-    let random = campaign(Algorithm::Random, Following::default(), 20);
+    let random = campaign(Algorithm::Random, cfc::FOLLOWING, 20);
     let last = |summary: &Summary| summary.rows.last().expect("a mark").bits_per_step;
     assert!(last(&summary) > 4.0 * last(&random));
 }
@@ -36,7 +37,7 @@ fn p2_as_printed_learns_less() {
 
 #[test]
 fn the_misclassified_area_falls_until_the_grid_can_hit_nothing_more() {
-    let summary = campaign(Algorithm::Cfc, Following::default(), 40);
+    let summary = campaign(Algorithm::Cfc, cfc::FOLLOWING, 40);
     for estimate in [
         |row: &host_sim::campaign::Row| row.centre_misclassified.median,
         |row: &host_sim::campaign::Row| row.maximum_margin_misclassified.median,

@@ -18,10 +18,10 @@ use planner_core::direction::Heading;
 use planner_core::dynamics::Pose;
 use planner_core::hal::LabelSensor;
 use planner_core::hypotheses::Prior;
-use planner_core::lattice::Site;
+use planner_core::lattice::{LIMIT, Site};
 use planner_core::planner::{Plan, Planner, Stage};
-use planner_core::sample::Reading;
-use planner_core::scc::{Policy, Scc};
+use planner_core::sample::{Label, Reading, Sample};
+use planner_core::scc::{Noise, Policy, Scc};
 use planner_core::unicycle::Unicycle;
 use planner_core::weight::Reliability;
 use rand::{RngExt, SeedableRng};
@@ -31,8 +31,8 @@ use rayon::prelude::*;
 type Planner64 = Scc<Unicycle, CAPACITY, HYPOTHESES>;
 
 /// The election the slow way: every hypothesis tries every action, and all votes are summed.
-fn slow_election(planner: &Planner64, prior: Prior, pose: Pose) -> Option<Action> {
-    let weights = || planner.hypotheses().iter().map(|h| h.weight(prior).exp());
+fn slow_election(planner: &Planner64, pose: Pose) -> Option<Action> {
+    let weights = || planner.hypotheses().iter().map(|h| h.weight().exp());
     let most = weights().fold(0.0, f64::max);
     let mut sums: BTreeMap<Action, u64> = BTreeMap::new();
     for (hypothesis, weight) in planner.hypotheses().iter().zip(weights()) {
@@ -61,13 +61,13 @@ fn a_vote_is_the_sum_over_hypotheses_computed_the_slow_way() {
             let end = mission.run(|step, known| {
                 let planner = |table: Table| -> Planner64 {
                     let (config, noise) = (mission.config, mission.noise_told());
-                    Scc::new(config, noise, policy, prior, Unicycle::paper(), table)
+                    Scc::new(config, noise, policy, Unicycle::paper(), table)
                 };
                 // From where it was and, facing elsewhere, where it was not.
                 let elsewhere = Pose { heading: Heading(from.heading.0.wrapping_mul(77)), ..from };
                 for pose in [from, elsewhere] {
                     let mut planner = planner(before.clone());
-                    let slow = slow_election(&planner, prior, pose);
+                    let slow = slow_election(&planner, pose);
                     let Plan::Move(motion) = planner.plan(pose) else { panic!("it moves") };
                     match slow {
                         Some(action) => {
@@ -137,7 +137,7 @@ fn the_world_flips_labels_where_it_should_and_as_often() {
             let site = Site::try_from(at).expect("near");
             pose.set(Pose { site, ..mission.start });
             let wrong = sensor.read() != Ok(world::reading(&truth, site));
-            let near = |s: &planner_core::sample::Sample| (Point2::<f64>::from(s.site) - at).norm();
+            let near = |s: &Sample| (Point2::<f64>::from(s.site) - at).norm();
             let safe = match extent {
                 Extent::OutsideBalls(radius) => given.iter().any(|s| near(s) < radius - 1e-3),
                 Extent::Band(half) => truth.distance(at).abs() > half + 1e-3,
@@ -155,6 +155,29 @@ fn the_world_flips_labels_where_it_should_and_as_often() {
         }
         let share = f64::from(flipped) / f64::from(exposed);
         assert!((share - 0.3).abs() < 0.02, "{extent:?}: {share}");
+    }
+}
+
+#[test]
+fn a_trusted_ball_ends_where_it_should_whatever_its_radius() {
+    let reliability = Reliability::new(0.7).expect("a probability");
+    let at = |x, z| Site::new(x, z).expect("on the lattice");
+    let corner = LIMIT - 1;
+    let given = [(0, 0), (-corner, -corner)]
+        .map(|(x, z)| Sample { site: at(x, z), label: Label::Positive });
+    for (radius, x, z, trusted) in [
+        (0, 0, 0, false),
+        (5, 3, 4, true),
+        (5, 5, 1, false),
+        (5, -corner + 3, -corner + 4, true),
+        (100_000, 0, -100_000, true),
+        (100_000, 0, -100_001, false),
+        (3_037_000_500, corner, corner, true),
+        (u32::MAX, corner, corner, true),
+    ] {
+        let noise = Noise { reliability, trusted_radius: radius };
+        let is_trusted = noise.at(at(x, z), &given) == Reliability::CERTAIN;
+        assert_eq!(is_trusted, trusted, "{radius} at ({x}, {z})");
     }
 }
 

@@ -5,11 +5,15 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use host_sim::field;
 use host_sim::mission::{Algorithm, CAPACITY, Known};
 use planner_core::area::Area;
+use planner_core::candidates::Certainty;
+use planner_core::cfc::{self, Cfc};
+use planner_core::config::{Config, Crossing};
 use planner_core::direction::{Arc, Heading};
 use planner_core::dynamics::{Dynamics, Pose};
 use planner_core::holonomic::Holonomic;
 use planner_core::lattice::{Site, Vector};
-use planner_core::problem::{Problem, Varrho};
+use planner_core::planner::{Plan, Planner as _, StopReason};
+use planner_core::problem::{LOOKS, Problem, Search, Varrho};
 use planner_core::rule::ArcRule;
 use planner_core::sample::{Label, Sample};
 use planner_core::unicycle::Unicycle;
@@ -33,7 +37,10 @@ fn check<D: Dynamics, const N: usize>(
         ArcRule { inside: None, outside: Some(arc) },
         ArcRule { inside: Some(arc), outside: None },
         ArcRule { inside: Some(arc.middle()), outside: None },
-        ArcRule { inside: Some(Arc::tracking(Vector { x: 3, z: 5_000 })), outside: Some(arc) },
+        ArcRule {
+            inside: Some(Arc::tracking(Vector::new(3, 5_000).expect("small"))),
+            outside: Some(arc),
+        },
         ArcRule::default(),
     ];
     let (mut states, mut examined) = (0, 0);
@@ -154,27 +161,97 @@ fn equals_exhaustive_search_anywhere_for_any_grid() {
     assert!(states >= 20_000);
 }
 
-#[test]
-fn equals_exhaustive_search_among_more_bounds_than_are_kept() {
-    // Two parabolas that face each other: a tangent at any of these points keeps clear of the other.
-    let label = |up: i32| if up > 0 { Label::Positive } else { Label::Negative };
-    let points = (-5..=5).flat_map(|n| [-1, 1].map(|up| (n, up)));
+/// Two parabolas that face each other, `gap` off the axis: a tangent at any of these points keeps clear
+/// of the other, so all of them bound the line.
+fn parabolas(reach: i32, step: i32, gap: i32) -> VersionSpace<CAPACITY> {
+    let points = (-reach..=reach).flat_map(|n| [-1, 1].map(|up| (n, up)));
     let samples: Vec<_> = points
         .map(|(n, up)| Sample {
-            site: Site::new(50_000 * n, up * (65_536 + 2_000 * n * n)).expect("on the lattice"),
-            label: label(up),
+            site: Site::new(step * n, up * (gap + gap * n * n / (reach * reach)))
+                .expect("on the lattice"),
+            label: if up > 0 { Label::Positive } else { Label::Negative },
         })
         .collect();
-    let space = VersionSpace::<CAPACITY>::new(&samples).expect("they are apart");
+    let space = VersionSpace::new(&samples).expect("they are apart");
     assert_eq!(space.cell().edges().len(), samples.len());
+    space
+}
+
+fn square(half: i32) -> Area {
     let corner = |v| Site::new(v, v).expect("on the lattice");
-    let area = Area::new(corner(-400_000), corner(400_000)).expect("an area");
+    Area::new(corner(-half), corner(half)).expect("an area")
+}
+
+#[test]
+fn equals_exhaustive_search_among_more_bounds_than_are_kept() {
     let coarse = Unicycle::new(100, 0.5, 11, 200).expect("a grid");
-    for n in -9..=9 {
-        let site = Site::new(9_000 * n, 7_000 * n).expect("on the lattice");
-        let pose = Pose { site, heading: Heading(n.unsigned_abs() << 28) };
-        check(&coarse, &space, area, Varrho::PAPER, pose, "between parabolas");
+    let (mut quick, mut slow) = (0, 0);
+    for (reach, step, gap) in [(5, 50_000, 65_536), (15, 20_000, 512), (16, 3_000, 40_000)] {
+        let space = parabolas(reach, step, gap);
+        for n in -9..=9 {
+            let site = Site::new(reach * step / 10 * n, gap * n / 5).expect("on the lattice");
+            let pose = Pose { site, heading: Heading(n.unsigned_abs() << 28) };
+            let context = "between parabolas";
+            let area = square(400_000);
+            let (states, examined) = check(&coarse, &space, area, Varrho::PAPER, pose, context);
+            let (more, also) =
+                check(&Unicycle::paper(), &space, area, Varrho::PAPER, pose, context);
+            slow += states * u64::from(coarse.grid().actions()) + more * 6657;
+            quick += examined + also;
+        }
     }
+    println!("{quick} of {slow} actions examined");
+    assert!(quick < slow / 100, "many bounds are no reason to look everywhere");
+}
+
+/// Motions of a few millimetres, where rounding hides what is certain from a search: the uncertain ground
+/// is behind the agent, and there are more rays before it than a plan may look at.
+#[test]
+fn a_plan_has_so_many_looks_and_says_when_they_do_not_do() {
+    let sample = |x, z, label| Sample { site: Site::new(x, z).expect("on the lattice"), label };
+    let space = VersionSpace::<CAPACITY>::new(&[
+        sample(-60_000, -100, Label::Negative),
+        sample(60_000, -100, Label::Negative),
+        sample(-60_000, 100, Label::Positive),
+        sample(60_000, 100, Label::Positive),
+    ]);
+    let config = Config {
+        area: square(400_000),
+        varrho: Varrho::PAPER,
+        crossing: Crossing::default(),
+        following: cfc::FOLLOWING,
+    };
+    let planner = |dynamics| Cfc::new(config, dynamics, space.clone().expect("they are apart"));
+    let pose = |z, quarters: u32| Pose {
+        site: Site::new(0, z).expect("on the lattice"),
+        heading: Heading(quarters << 30),
+    };
+    let fine = Unicycle::new(1, 1.57, 20, 1).expect("a grid");
+    assert!(fine.grid().actions() > 7 * LOOKS);
+    // Facing away from the strip.
+    assert_eq!(planner(fine).plan(pose(700, 1)), Plan::Stop(StopReason::Undecided));
+    // Beside it: what is found first asks for a sharp turn, and all that turns less has to be looked at.
+    let beside = pose(-1_100, 0);
+    let Plan::Move(motion) = planner(fine).plan(beside) else { panic!("there are motions") };
+    assert!(!motion.proven && motion.examined <= LOOKS, "{motion:?}");
+    assert_eq!(space.as_ref().map(|it| it.certainty(motion.target.site)), Ok(Certainty::Uncertain));
+    // More looks, never a worse action, and in the end the best.
+    let problem = planner(fine);
+    let problem = problem.problem();
+    let best = problem.solve_exhaustively(&fine, beside).best;
+    let mut before = None;
+    for looks in [0, 1, 10, 100, 1_000, 10_000, 100_000] {
+        let Search { best: found, examined, proven } = problem.solve_within(looks, &fine, beside);
+        let objective = found.map(|it| it.objective);
+        assert!(examined <= looks && objective >= before, "{looks} looks: {found:?}");
+        assert!(!proven || found == best, "{looks} looks: {found:?}");
+        before = objective;
+    }
+    assert_eq!(before, best.map(|it| it.objective));
+    // A coarser grid is looked at to the end.
+    let coarse = Unicycle::new(100, 1.57, 20, 1).expect("a grid");
+    let Plan::Move(motion) = planner(coarse).plan(pose(700, 1)) else { panic!("it can turn") };
+    assert!(motion.proven && !motion.samples());
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use planner_core::candidates::Certainty;
 use planner_core::lattice::Site;
-use planner_core::sample::{Label, Sample};
+use planner_core::sample::{Label, Reading, Sample};
 use planner_core::version_space::{NoVersionSpace, Refused, VersionSpace};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -89,8 +89,8 @@ proptest! {
             let origin = samples[0].site;
             let along = |k: i64, v: i32| k * i64::from(v) / 8;
             clamped(
-                i64::from(origin.x()) + along(*i, step.x) + j,
-                i64::from(origin.z()) + along(*j, step.z) + i,
+                i64::from(origin.x()) + along(*i, step.x()) + j,
+                i64::from(origin.z()) + along(*j, step.z()) + i,
             )
         });
         for q in probes.chain(samples.iter().map(|s| s.site)) {
@@ -168,6 +168,35 @@ proptest! {
             all
         };
         prop_assert_eq!(vertices(&space), vertices(&kept));
+    }
+
+    #[test]
+    fn a_true_reading_is_never_refused(
+        sites in prop::collection::vec((-20..=20i64, -20..=20i64, any::<bool>()), 8..28),
+        line in (-9..=9i64, -9..=9i64, -99..=99i64),
+    ) {
+        let (a, b, c) = line;
+        prop_assume!((a, b) != (0, 0));
+        let scale = 40_000;
+        let read = |x: i64, z: i64| match (a * x + b * z + c).signum() {
+            0 => Reading::Boundary,
+            side => Reading::Side(if side > 0 { Label::Positive } else { Label::Negative }),
+        };
+        let sided: Vec<_> = sites.iter().filter_map(|&(x, z, _)| match read(x, z) {
+            Reading::Side(label) => Some(Sample { site: clamped(scale * x, scale * z), label }),
+            Reading::Boundary => None,
+        }).collect();
+        let Ok(mut space) = VersionSpace::<64>::new(sided.get(..6).unwrap_or(&[])) else {
+            return Err(TestCaseError::reject("no version space"));
+        };
+        // Many sites on the line itself, from what lies in reach of the grid.
+        let on = (-20..=20i64).flat_map(|x| (-20..=20i64).map(move |z| (x, z, x % 2 == 0)));
+        let on = on.filter(|&(x, z, _)| read(x, z) == Reading::Boundary).take(20);
+        for (x, z, coin) in on.chain(sites) {
+            let either = if coin { Label::Positive } else { Label::Negative };
+            let observed = space.observe(clamped(scale * x, scale * z), read(x, z), either);
+            prop_assert!(observed.is_ok(), "({x}, {z}): {observed:?} in {space:?}");
+        }
     }
 
     #[test]

@@ -4,7 +4,7 @@ use crate::area::Area;
 use crate::lattice::{OffLattice, Site};
 use crate::line::Line;
 use crate::problem::Varrho;
-use crate::weight::LogWeight;
+use crate::weight::Reliability;
 
 impl From<Site> for (i32, i32) {
     fn from(site: Site) -> Self {
@@ -62,18 +62,18 @@ impl TryFrom<u32> for Varrho {
     }
 }
 
-/// Units of 2^-24.
-impl From<LogWeight> for i32 {
-    fn from(weight: LogWeight) -> Self {
-        weight.0
+/// The logarithm of the odds, in units of 2^-32.
+impl From<Reliability> for i64 {
+    fn from(reliability: Reliability) -> Self {
+        reliability.log_odds()
     }
 }
 
-impl TryFrom<i32> for LogWeight {
+impl TryFrom<i64> for Reliability {
     type Error = OutOfRange;
 
-    fn try_from(units: i32) -> Result<Self, OutOfRange> {
-        (Self::LEAST..=Self::MOST).contains(&units).then_some(Self(units)).ok_or(OutOfRange)
+    fn try_from(units: i64) -> Result<Self, OutOfRange> {
+        Self::from_log_odds(units).ok_or(OutOfRange)
     }
 }
 

@@ -1,0 +1,233 @@
+//! Dynamics: what the constructors take keeps the contract, what they refuse is named, and a broken
+//! promise is found out.
+
+use planner_core::action::{Action, ActionGrid, BadGrid, Control};
+use planner_core::contract::{self, Broken};
+use planner_core::direction::Heading;
+use planner_core::dynamics::{Dynamics, Fan, Pose, Ray, Side};
+use planner_core::holonomic::Holonomic;
+use planner_core::lattice::{Site, Vector};
+use planner_core::unicycle::Unicycle;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+#[test]
+fn what_the_constructors_take_keeps_the_contract() {
+    let mut rng = ChaCha8Rng::seed_from_u64(1);
+    let mut taken = 0;
+    for _ in 0..400 {
+        let speeds = [1, 2, 21, 200][rng.random_range(0..4)];
+        let step_mm = [1, 100, 99_999][rng.random_range(0..3)];
+        if let Ok(it) = Holonomic::new(rng.random_range(1..400), speeds, step_mm) {
+            assert_eq!(contract::check(&it), Ok(()), "{it:?}");
+            taken += 1;
+        }
+        let sharpest = [1e-3, 0.3, FRAC_PI_2, 1.1, 3.0, PI][rng.random_range(0..6)];
+        let step = [1, 10, 100, 785, 3_141, rng.random_range(1..3_141)][rng.random_range(0..6)];
+        if let Ok(it) = Unicycle::new(step, sharpest, speeds, step_mm) {
+            assert_eq!(contract::check(&it), Ok(()), "{it:?}");
+            taken += 1;
+        }
+    }
+    assert!(taken > 200, "{taken}");
+    assert_eq!(contract::check(&Unicycle::paper()), Ok(()));
+    assert_eq!(Unicycle::new(10, FRAC_PI_2, 21, 100), Ok(Unicycle::paper()));
+    assert_eq!(contract::check(&Holonomic::new(65_535, 1, 1).expect("a grid")), Ok(()));
+}
+
+#[test]
+fn what_is_no_grid_is_refused_by_what_is_wrong_with_it() {
+    // A turn of nothing, a step of more than a half turn, and steps of none.
+    for (step, sharpest) in
+        [(10, 1e-10), (7_000, 3.0), (3_142, PI), (0, 1.0), (10, 0.0), (10, -1.0), (10, 3.2)]
+    {
+        assert_eq!(Unicycle::new(step, sharpest, 21, 100), Err(BadGrid::Turn), "{step} {sharpest}");
+    }
+    for sharpest in [f64::NAN, f64::INFINITY] {
+        assert_eq!(Unicycle::new(10, sharpest, 21, 100), Err(BadGrid::Turn), "{sharpest}");
+    }
+    assert_eq!(Unicycle::new(1, PI, 21, 100), Err(BadGrid::Actions));
+    assert_eq!(Unicycle::new(u32::MAX, 1.0, u16::MAX, u32::MAX), Err(BadGrid::Turn));
+    for (rays, speeds) in [(0, 21), (5, 0), (65_535, 2), (257, 256)] {
+        assert_eq!(ActionGrid::new(rays, speeds, 100), Err(BadGrid::Actions), "{rays} {speeds}");
+    }
+    for (speeds, step_mm) in [(21, 0), (21, 5_000), (1, 100_000), (2, u32::MAX), (1, u32::MAX)] {
+        assert_eq!(ActionGrid::new(5, speeds, step_mm), Err(BadGrid::Reach), "{speeds} {step_mm}");
+    }
+    let longest = ActionGrid::new(1, 2, 99_999).expect("a grid");
+    assert_eq!(longest.reach_mm(1), 99_999);
+    let _ = longest.reach_mm(u16::MAX); // it does not overflow
+    assert_eq!(ActionGrid::new(256, 256, 1).map(|it| it.actions()), Ok(65_536));
+    assert!(Holonomic::new(0, 21, 100).is_err());
+}
+
+fn pose(heading: u32) -> Pose {
+    Pose { site: Site::new(1_000, -2_000).expect("on the lattice"), heading: Heading(heading) }
+}
+
+/// How far a heading lies from another, either way.
+fn apart(a: Heading, b: Heading) -> u32 {
+    (a.0.wrapping_sub(b.0) as i32).unsigned_abs()
+}
+
+#[test]
+fn the_rays_around_a_heading_are_the_nearest_to_either_side() {
+    fn compare<D: Dynamics>(dynamics: &D, rng: &mut ChaCha8Rng) {
+        for _ in 0..200 {
+            let (pose, heading) = (pose(rng.random()), Heading(rng.random()));
+            let [nearest, other] = dynamics.around(pose, heading);
+            let off = |ray: Ray| heading.0.wrapping_sub(ray.heading.0) as i32;
+            let least = dynamics.rays(pose).map(|ray| apart(ray.heading, heading)).min();
+            assert_eq!(Some(apart(nearest.heading, heading)), least);
+            let across = |it: &i32| (*it >= 0) != (off(nearest) >= 0);
+            let beyond = dynamics.rays(pose).map(off).filter(across);
+            let least = beyond.map(i32::unsigned_abs).min();
+            assert_eq!(
+                apart(other.heading, heading),
+                least.unwrap_or(apart(nearest.heading, heading))
+            );
+        }
+    }
+    let mut rng = ChaCha8Rng::seed_from_u64(2);
+    // 350 degrees: the nearest of four bearings is the first.
+    let four = Holonomic::new(4, 21, 100).expect("a grid");
+    let steep = Heading::from_radians(350f64.to_radians()).expect("an angle");
+    assert_eq!(four.around(pose(0), steep)[0].index, 0);
+    for bearings in [1, 2, 3, 4, 7, 72, 1_000] {
+        compare(&Holonomic::new(bearings, 21, 100).expect("a grid"), &mut rng);
+    }
+    for (step, sharpest) in [(10, FRAC_PI_2), (785, 1.6), (100, 0.35), (3_000, 3.0), (500, PI)] {
+        compare(&Unicycle::new(step, sharpest, 21, 100).expect("a grid"), &mut rng);
+    }
+}
+
+/// A unicycle that breaks one promise.
+#[derive(Clone, Copy)]
+enum Breaks {
+    Nothing,
+    Count,
+    NoLeft,
+    Spacing,
+    TurnsBack,
+    Overlap,
+    Effort,
+    StepLength,
+    StepHeading,
+    Index,
+    Twice,
+    MovesInPlace,
+    TurnsTheOtherWay,
+    TurnsBeyond,
+}
+
+struct Faulty(Unicycle, Breaks);
+
+impl Dynamics for Faulty {
+    fn grid(&self) -> ActionGrid {
+        self.0.grid()
+    }
+
+    fn fan(&self) -> Fan {
+        let fan = self.0.fan();
+        match self.1 {
+            Breaks::Count => Fan { left: fan.left + 1, ..fan },
+            Breaks::NoLeft => Fan { left: 0, right: fan.left + fan.right, ..fan },
+            Breaks::Spacing => Fan { spacing: Heading(fan.spacing.0 - 4), ..fan },
+            _ => fan,
+        }
+    }
+
+    fn heading(&self, pose: Pose, side: Side, n: u16) -> Heading {
+        let heading = self.0.heading(pose, side, n);
+        match self.1 {
+            Breaks::TurnsBack if n == 3 => self.0.heading(pose, side, 1),
+            Breaks::Overlap if n == 5 && side == Side::Right => {
+                self.0.heading(pose, Side::Left, 5).turned(Heading(77).mirrored())
+            }
+            _ => heading,
+        }
+    }
+
+    fn ray(&self, pose: Pose, side: Side, n: u16) -> Ray {
+        let ray = self.0.ray(pose, side, n);
+        let heading = self.heading(pose, side, n);
+        match self.1 {
+            Breaks::Effort if n == 4 => Ray { effort: 1, ..ray },
+            Breaks::StepLength if n == 2 => {
+                let step = Vector::new(ray.step.x() / 2, ray.step.z() / 2).expect("small");
+                Ray { step, ..ray }
+            }
+            Breaks::StepHeading if n == 2 => Ray { step: ray.step.left(), ..ray },
+            Breaks::Index if n == 1 => Ray { index: 11, ..ray },
+            Breaks::Twice if n == 1 => Ray { index: 5, ..ray },
+            Breaks::TurnsBack | Breaks::Overlap => {
+                let step = heading.unit().scaled(ray.step.dot(ray.step).isqrt() as i32);
+                Ray { heading, step, ..ray }
+            }
+            _ => ray,
+        }
+    }
+
+    fn turn_in_place(&self, pose: Pose, side: Side) -> Option<(Action, Pose)> {
+        let (action, after) = self.0.turn_in_place(pose, side)?;
+        let opposite = if side == Side::Left { Side::Right } else { Side::Left };
+        match self.1 {
+            Breaks::MovesInPlace => self.target(pose, Action(action.0 + 1)).map(|it| (action, it)),
+            Breaks::TurnsTheOtherWay => self.0.turn_in_place(pose, opposite),
+            Breaks::TurnsBeyond => {
+                let heading = after.heading.turned(after.heading);
+                Some((action, Pose { heading, ..after }))
+            }
+            _ => Some((action, after)),
+        }
+    }
+
+    fn control(&self, action: Action) -> Control {
+        self.0.control(action)
+    }
+
+    fn ray_of(&self, pose: Pose, action: Action) -> Option<Ray> {
+        self.0.ray_of(pose, action).map(|ray| {
+            let (side, n) = if ray.index < 5 {
+                (Side::Right, 5 - ray.index)
+            } else {
+                (Side::Left, ray.index - 5)
+            };
+            self.ray(pose, side, n)
+        })
+    }
+}
+
+#[test]
+fn each_broken_promise_is_named() {
+    // Eleven rays, 700 mrad apart and at last 200: right 5 to 1, ahead, left 1 to 5.
+    let unicycle = Unicycle::new(700, 3.0, 5, 1_000).expect("a grid");
+    assert_eq!(unicycle.fan(), Fan { left: 6, right: 5, ..unicycle.fan() });
+    let check = |breaks| contract::check(&Faulty(unicycle, breaks));
+    assert_eq!(check(Breaks::Nothing), Ok(()));
+    for (breaks, broken) in [
+        (Breaks::Count, Broken::Count),
+        (Breaks::NoLeft, Broken::Count),
+        (Breaks::Spacing, Broken::Spacing(Side::Left, 1)),
+        (Breaks::TurnsBack, Broken::Spacing(Side::Left, 3)),
+        (Breaks::Effort, Broken::Effort(Side::Left, 4)),
+        (Breaks::StepLength, Broken::Step(Side::Left, 2)),
+        (Breaks::StepHeading, Broken::Step(Side::Left, 2)),
+        (Breaks::Index, Broken::Index(Side::Left, 1)),
+        (Breaks::Twice, Broken::Index(Side::Left, 1)),
+        (Breaks::MovesInPlace, Broken::TurnInPlace(Side::Left)),
+        (Breaks::TurnsTheOtherWay, Broken::TurnInPlace(Side::Left)),
+        (Breaks::TurnsBeyond, Broken::TurnInPlace(Side::Left)),
+    ] {
+        assert_eq!(check(breaks), Err(broken));
+    }
+    assert!(matches!(check(Breaks::Overlap), Err(Broken::Spacing(Side::Right, 5))));
+}
+
+#[test]
+fn rays_are_as_many_as_a_grid_can_have() {
+    let most = Holonomic::new(65_535, 1, 1).expect("a grid");
+    assert_eq!(most.rays(pose(0)).count(), 65_535);
+}
