@@ -34,8 +34,8 @@ impl Board {
             match setup.algorithm {
                 Algorithm::Cfc => self.fly(&setup, &mut setup.cfc::<CFC_SAMPLES>()),
                 Algorithm::Scc { noise, policy, prior } => {
-                    let mut planner = setup.scc::<SCC_SAMPLES, HYPOTHESES>(noise, policy, prior);
-                    self.fly(&setup, &mut setup.prepare(&mut planner));
+                    let mut planner = setup.scc::<SCC_SAMPLES, HYPOTHESES>(noise, policy);
+                    self.fly(&setup, &mut setup.prepare(&mut planner, prior));
                 }
             }
         }

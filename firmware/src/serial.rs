@@ -117,6 +117,10 @@ impl Port for Serial {
         self.deadline = Mono::now() + WAIT;
     }
 
+    fn unreadable(&mut self) {
+        defmt::warn!("a frame came whole and held no message");
+    }
+
     fn receive(&mut self) -> Option<u8> {
         loop {
             self.watchdog.feed();

@@ -76,7 +76,8 @@ pub(crate) fn hil(args: &HilArgs) -> Result<String> {
         Labels::Chip => LabelSource::Chip,
     };
     let faults = args.fault.unwrap_or_default();
-    let mut player = Player::new(&mission, labels).with_context(|| args.run.name())?;
+    let mut player =
+        Player::new(&mission, labels, hil::start_number()).with_context(|| args.run.name())?;
     let turnarounds = hil::fly(&mut player, &chip, faults, mission.seed)?;
     let played = player.finish().with_context(|| args.run.name())?;
     let timings = Timings::new(&played, &turnarounds);

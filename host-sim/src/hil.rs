@@ -1,6 +1,8 @@
 //! Hardware in the loop: a chip plans, this program plays its world.
 
 use std::fmt::Write as _;
+use std::hash::{BuildHasher as _, Hasher as _, RandomState};
+use std::io::Write as _;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -92,6 +94,12 @@ pub fn play(player: &mut Player, mut cable: Cable) -> Result<Vec<Duration>> {
             Ok(Some(bytes)) => bytes,
             // It may be gone as soon as its mission is over.
             Ok(None) | Err(_) if player.is_over() => break,
+            Ok(None) if player.unreadable() > 0 => bail!(
+                "the board has been silent for {} s but for frames that make no sense, {} of them: \
+                 does it speak another version of the protocol?",
+                PATIENCE.as_secs(),
+                player.unreadable()
+            ),
             Ok(None) => bail!("the board has been silent for {} s", PATIENCE.as_secs()),
             Err(error) => return Err(error),
         };
@@ -111,7 +119,20 @@ pub fn play(player: &mut Player, mut cable: Cable) -> Result<Vec<Duration>> {
         }
     }
     bar.finish_and_clear();
+    if player.unreadable() > 0 {
+        // Nobody may listen.
+        let _ = writeln!(
+            std::io::stderr(),
+            "warning: {} frames came whole from the board and held no message",
+            player.unreadable()
+        );
+    }
     Ok(turnarounds)
+}
+
+/// A number that is another at each start of this program: it tells no more than that.
+pub fn start_number() -> u32 {
+    RandomState::new().build_hasher().finish() as u32
 }
 
 /// What the steps of a mission took.

@@ -10,7 +10,7 @@ use planner_core::agent::Step;
 use planner_core::estimate::Estimates;
 use planner_core::hal::Drive as _;
 use planner_core::line::Line;
-use planner_core::link::{Heard, Responder};
+use planner_core::link::{Heard, Hello, Responder};
 use planner_core::planner::Motion;
 use planner_core::sample::Reading;
 use planner_core::wire::{
@@ -22,8 +22,8 @@ use crate::mission::{Algorithm, End, Learner, Mission};
 use crate::recording::{Recorder, Recording};
 use crate::world::{Sensor, Vehicle};
 
-/// A chip that has begun so often to ask for a mission hears nothing.
-const MOST_HELLOS: u32 = 5;
+/// A chip that has asked so often for a mission hears nothing: five times as often as it sends a request.
+const MOST_HELLOS: u32 = 5 * 16;
 
 /// Plays the world for one mission.
 pub struct Player {
@@ -33,7 +33,7 @@ pub struct Player {
     sensor: Sensor,
     learner: Box<dyn Learner>,
     recorder: Recorder,
-    /// How often the chip has begun to ask for a mission.
+    /// How often the chip has asked for a mission since it took up the last.
     hellos: u32,
     /// The motion under way, and what the vehicle sensed at its end.
     pending: Option<(Motion, Option<Reading>)>,
@@ -60,16 +60,16 @@ pub struct Played {
 }
 
 impl Player {
-    /// A world that waits for a chip.
+    /// A world that waits for a chip. `seed` tells the world's starts apart: see [`Responder::new`].
     ///
     /// # Errors
     /// When the mission is none that a chip can be asked to fly.
-    pub fn new(mission: &Mission, labels: LabelSource) -> Result<Self> {
+    pub fn new(mission: &Mission, labels: LabelSource, seed: u32) -> Result<Self> {
         let setup = setup(mission, labels)?;
         let (vehicle, sensor) = mission.world();
         Ok(Self {
             setup,
-            responder: Responder::default(),
+            responder: Responder::new(seed),
             vehicle,
             sensor,
             learner: mission.learner(),
@@ -99,6 +99,11 @@ impl Player {
         self.outcome.is_some()
     }
 
+    /// Frames that came whole from the chip and held no message.
+    pub fn unreadable(&self) -> u32 {
+        self.responder.unreadable()
+    }
+
     /// Whether the chip knows that it is.
     pub fn is_dismissed(&self) -> bool {
         self.dismissed
@@ -109,45 +114,47 @@ impl Player {
     /// # Errors
     /// When the chip gives the mission up, or says what cannot be.
     pub fn hear(&mut self, byte: u8) -> Result<Option<Frame>> {
-        let request = match self.responder.hear(byte) {
-            None => return Ok(None),
-            Some(Heard::Again(frame)) => return Ok(Some(frame.clone())),
-            Some(Heard::New(request)) => request,
-        };
-        if self.hellos == 0 && !matches!(request, Request::Hello { .. }) {
-            // Of a mission that someone else began: it finds no answer and ends.
-            self.responder = Responder::default();
-            return Ok(None);
+        match self.responder.hear(byte) {
+            None => Ok(None),
+            Some(Heard::Old(frame)) => Ok(Some(frame)),
+            Some(Heard::Hello(hello)) => self.welcome(hello),
+            Some(Heard::New(request)) => {
+                let reply = self.act(request)?;
+                Ok(Some(self.responder.answer(reply).clone()))
+            }
         }
-        Ok(self.act(request)?.map(|reply| self.responder.answer(reply).clone()))
     }
 
-    fn act(&mut self, request: Request) -> Result<Option<Reply>> {
+    fn welcome(&mut self, hello: Hello) -> Result<Option<Frame>> {
+        if self.is_over() {
+            self.dismissed |= hello.is_later;
+            return Ok(None);
+        }
+        if hello.protocol != PROTOCOL {
+            bail!("the board speaks protocol {}, expected {PROTOCOL}", hello.protocol);
+        }
+        self.hellos += 1;
+        if self.hellos > MOST_HELLOS {
+            bail!("the board asks for a mission again and again, and hears no answer");
+        }
+        Ok(Some(self.responder.offer(hello, self.setup.clone())))
+    }
+
+    fn act(&mut self, request: Request) -> Result<Reply> {
+        self.hellos = 0;
         match request {
-            Request::Hello { .. } if self.is_over() => {
-                self.dismissed = true;
-                Ok(None)
-            }
-            Request::Hello { protocol } if protocol != PROTOCOL => {
-                bail!("the board speaks protocol {protocol}, expected {PROTOCOL}")
-            }
-            Request::Hello { .. } if self.clock.is_some() => {
-                bail!("the board gave up after step {} and asks for a new mission", self.steps())
-            }
-            Request::Hello { .. } if self.hellos == MOST_HELLOS => {
-                bail!("the board asks for a mission again and again, and hears no answer")
-            }
-            Request::Hello { .. } => {
-                self.hellos += 1;
-                Ok(Some(Reply::Setup(self.setup.clone())))
+            Request::Hello { .. } => unreachable!("a hello is welcomed"),
+            // Of a session that the chip begins: it knows nothing of the last.
+            Request::Ready(_) | Request::Declined(_) if self.clock.is_some() => {
+                bail!("the board restarted or gave up after step {}", self.steps())
             }
             Request::Declined(declined) => {
                 self.outcome = Some(Err(decline(declined, &self.setup)));
-                Ok(Some(Reply::Noted))
+                Ok(Reply::Noted)
             }
             Request::Ready(accepted) => {
                 self.clock = Some(accepted.clock);
-                Ok(Some(Reply::Noted))
+                Ok(Reply::Noted)
             }
             Request::Move(wire::Move { motion, last, took }) => {
                 self.settle(last, took)?;
@@ -161,13 +168,13 @@ impl Player {
                 };
                 self.pending = Some((motion, reading));
                 self.took.push(Took { observe: 0, ..took });
-                Ok(Some(Reply::Arrived { pose, reading }))
+                Ok(Reply::Arrived { pose, reading })
             }
             Request::End(end) => {
                 let settled = self.settle(end.last, end.took);
                 self.ending = end.took;
                 self.outcome = Some(settled.and_then(|()| self.judge(&end)));
-                Ok(Some(Reply::Noted))
+                Ok(Reply::Noted)
             }
         }
     }
@@ -244,7 +251,10 @@ impl Player {
 }
 
 /// The mission as a chip is told it.
-fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
+///
+/// # Errors
+/// When it is none that a chip can be asked to fly.
+pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
     let algorithm = match mission.algorithm {
         Algorithm::Cfc => wire::Algorithm::Cfc,
         Algorithm::Scc => wire::Algorithm::Scc {

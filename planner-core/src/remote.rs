@@ -56,9 +56,8 @@ impl Setup {
         &self,
         noise: Noise,
         policy: Policy,
-        prior: Prior,
     ) -> Scc<Unicycle, N, H> {
-        Scc::new(self.config, noise, policy, Unicycle::paper(), Hypotheses::empty(prior))
+        Scc::new(self.config, noise, policy, Unicycle::paper(), Hypotheses::NONE)
     }
 
     /// Begins the mission in this memory, so that there is never a second planner beside it.
@@ -69,10 +68,11 @@ impl Setup {
     pub fn prepare<'a, const N: usize, const H: usize>(
         &self,
         planner: &'a mut Scc<Unicycle, N, H>,
+        prior: Prior,
     ) -> Result<Prepared<&'a mut Scc<Unicycle, N, H>>, Declined> {
         let room = Room { samples: N as u16, hypotheses: H as u16 };
         self.check(room)?;
-        planner.restart(&self.given).map_err(Declined::Given)?;
+        planner.restart(&self.given, prior).map_err(Declined::Given)?;
         Ok(Prepared { planner, room })
     }
 }
@@ -158,7 +158,7 @@ fn mission<L: Planner, S: LabelSensor, P: Port>(
             Ok(Event::Stopped(reason)) => return Ok(EndReason::Stopped(reason)),
             Err(AgentError::Refused(refused)) => return Ok(EndReason::Refused(refused)),
             Err(AgentError::Sensor(NoLabel)) => return Ok(EndReason::Sensor),
-            Err(AgentError::Drive(NoMotion::Lost)) => return Err(LinkLost),
+            Err(AgentError::Drive(NoMotion::Lost(lost))) => return Err(lost),
             Err(AgentError::Drive(NoMotion::Failed)) => return Ok(EndReason::Vehicle),
         }
     }
@@ -242,7 +242,7 @@ struct Vehicle<'a, P> {
 
 #[derive(Debug)]
 enum NoMotion {
-    Lost,
+    Lost(LinkLost),
     /// The vehicle says so, or answers something that is no answer.
     Failed,
 }
@@ -258,7 +258,7 @@ impl<P: Port> Drive for Vehicle<'_, P> {
                 Ok(pose)
             }
             Ok(_) => Err(NoMotion::Failed),
-            Err(LinkLost) => Err(NoMotion::Lost),
+            Err(lost) => Err(NoMotion::Lost(lost)),
         }
     }
 }

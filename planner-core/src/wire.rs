@@ -33,8 +33,9 @@ use crate::sample::{Reading, Sample};
 use crate::scc::{Noise, Policy};
 use crate::version_space::{NoVersionSpace, Refused};
 
-/// The version of this protocol. The layout of [`Request::Hello`] is that of every version.
-pub const PROTOCOL: u16 = 1;
+/// The version of this protocol. The layout of [`Request::Hello`] and of its frame is that of every
+/// version from 2 on.
+pub const PROTOCOL: u16 = 2;
 
 /// Given samples that a setup can hold.
 pub const MOST_GIVEN: usize = 16;
@@ -78,6 +79,8 @@ pub enum Reply {
     Noted,
     /// To any: heard, and still at it. A motion may take longer than the link is patient.
     Busy,
+    /// To any: it belongs to no session that runs here, or is older than the last.
+    Stale,
 }
 
 /// A mission.
@@ -292,7 +295,7 @@ mod tests {
     #[test]
     fn the_longest_messages_fit_a_frame_and_arrive_as_they_were_sent() {
         let setup = Reply::Setup(longest_setup());
-        let frame = Frame::of(&Envelope::new(u32::MAX, setup.clone()));
+        let frame = Frame::of(&Envelope::new(u32::MAX, u32::MAX, setup.clone()));
         let arrived = received::<Reply>(&frame).unwrap();
         assert_eq!((arrived.number, arrived.message), (u32::MAX, setup));
 
@@ -316,7 +319,7 @@ mod tests {
             Request::Move(Move { motion, last, took }),
             Request::End(End { reason, last, took, estimates }),
         ] {
-            let frame = Frame::of(&Envelope::new(u32::MAX, request.clone()));
+            let frame = Frame::of(&Envelope::new(u32::MAX, u32::MAX, request.clone()));
             let arrived = received::<Request>(&frame).unwrap();
             // Debug output tells every bit of a float apart but for NaN's.
             let debug = |it: &Request| heapless::format!(2048; "{it:?}").unwrap();

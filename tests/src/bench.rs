@@ -21,7 +21,7 @@ pub const CORES: [(Core, &str); 2] =
 /// When they fail to build, or with `CI` set where they cannot be built.
 pub fn build(scratch: &str, target: &str) -> Option<impl Fn(&str) -> Vec<u8> + use<>> {
     if !elf::can_build(target) {
-        elf::skip("the bench", &format!("the target {target} is not installed"));
+        elf::skip(scratch, "the bench", &format!("the target {target} is not installed"));
         return None;
     }
     let folder = elf::build(scratch, "bench", target).unwrap_or_else(|errors| panic!("{errors}"));
@@ -48,7 +48,7 @@ pub fn fly(emulator: &mut Emulator, mission: &Mission) -> Result<Played> {
 /// As [`fly`].
 pub fn fly_and_record(emulator: &mut Emulator, mission: &Mission) -> Result<(Played, Vec<u8>)> {
     let mut told = Vec::new();
-    let mut player = Player::new(mission, LabelSource::Vehicle)?;
+    let mut player = Player::new(mission, LabelSource::Vehicle, 1)?;
     while !player.is_over() {
         match emulator.run() {
             Event::Write(bytes) => {

@@ -67,7 +67,7 @@ impl Chip {
     }
 
     fn fly(&self, mission: &Mission, faults: Faults) -> anyhow::Result<Played> {
-        let mut player = Player::new(mission, LabelSource::Vehicle)?;
+        let mut player = Player::new(mission, LabelSource::Vehicle, hil::start_number())?;
         self.play(&mut player, faults, mission.seed)?;
         player.finish()
     }
@@ -107,11 +107,19 @@ fn firmware() -> Option<&'static Path> {
     static ELF: OnceLock<Option<PathBuf>> = OnceLock::new();
     let build = || {
         if !elf::can_build(TARGET) {
-            elf::skip("firmware under QEMU", "the target thumbv7em-none-eabihf is not installed");
+            elf::skip(
+                env!("CARGO_TARGET_TMPDIR"),
+                "firmware under QEMU",
+                "the target thumbv7em-none-eabihf is not installed",
+            );
             return None;
         }
         if !elf::has_tool("qemu-system-arm") {
-            elf::skip("firmware under QEMU", "qemu-system-arm is not on PATH");
+            elf::skip(
+                env!("CARGO_TARGET_TMPDIR"),
+                "firmware under QEMU",
+                "qemu-system-arm is not on PATH",
+            );
             return None;
         }
         let folder = elf::build(env!("CARGO_TARGET_TMPDIR"), "firmware", TARGET);
@@ -237,7 +245,8 @@ fn a_cut_link_stops_the_mission_safely_within_the_bound_and_the_next_can_begin()
     let writes = NamedTempFile::new().expect("a temporary file").into_temp_path();
     let Some(mut chip) = Chip::start(&writes_to(&writes)) else { return };
     let mission = random(0);
-    let mut player = Player::new(&mission, LabelSource::Vehicle).expect("a mission for a chip");
+    let mut player = Player::new(&mission, LabelSource::Vehicle, hil::start_number())
+        .expect("a mission for a chip");
     // Answers up to the third motion, and then no more.
     while player.motions() < 3 {
         let mut byte = [0];
@@ -249,7 +258,7 @@ fn a_cut_link_stops_the_mission_safely_within_the_bound_and_the_next_can_begin()
     let cut = Instant::now();
     let log = chip.messages_until(1, "stopped");
     let took = cut.elapsed();
-    assert_eq!(log.last().expect("it says so"), "stopped after 3 steps: LinkLost");
+    assert_eq!(log.last().expect("it says so"), "stopped after 3 steps: Silent");
     // Each wait ends on a beat of 10 ms after 100 ms.
     let bound = Duration::from_millis(110) * u32::from(Link::<Never>::ATTEMPTS);
     assert!(took < bound + Duration::from_secs(2), "{took:?}");
@@ -286,7 +295,8 @@ impl LabelSensor for Low {
 fn the_chip_can_read_labels_from_its_own_pin() {
     let Some(chip) = Chip::start(&[]) else { return };
     let mission = random(1);
-    let mut player = Player::new(&mission, LabelSource::Chip).expect("a mission for a chip");
+    let mut player = Player::new(&mission, LabelSource::Chip, hil::start_number())
+        .expect("a mission for a chip");
     chip.play(&mut player, Faults::default(), 1).expect("it flies");
     let played = player.finish().expect("it ends");
     let mut learner = mission.learner();
@@ -322,7 +332,8 @@ fn a_fault_disables_the_drive_first_then_tells_and_starts_anew() {
     debugger.say("c");
     // Taking the mission, it enables the drive, and logs; while it waits it has the log in hand.
     let mission = random(0);
-    let mut player = Player::new(&mission, LabelSource::Vehicle).expect("a mission for a chip");
+    let mut player = Player::new(&mission, LabelSource::Vehicle, hil::start_number())
+        .expect("a mission for a chip");
     let mut link = chip.link.try_clone().expect("a socket");
     let setup = loop {
         let mut byte = [0];

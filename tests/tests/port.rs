@@ -59,7 +59,7 @@ fn a_board_at_a_serial_port_flies_as_this_machine_does() {
         board.fly(&setup, &mut setup.cfc::<68>(), |_| {})
     });
     let mission = field::standard(4, 1, Algorithm::Cfc, 10);
-    let mut player = Player::new(&mission, LabelSource::Vehicle).expect("a mission for a chip");
+    let mut player = Player::new(&mission, LabelSource::Vehicle, 1).expect("a mission for a chip");
     let faults: Faults = "drop=0.2,duplicate=0.1,delay=3ms".parse().expect("faults");
     let chip = Chip::Board { device, baud: 115_200 };
     let turnarounds = hil::fly(&mut player, &chip, faults, 1).expect("the board answers");
