@@ -89,6 +89,10 @@ impl Body {
                     }
                 }
                 Flow::Return | Flow::Trap => {}
+                Flow::Unknown => {
+                    let name = &function.name;
+                    return Err(format!("{name} holds what is not known here, at {at:#010x}"));
+                }
             }
             if falls {
                 // Passed over, it leaves the stack as it was.

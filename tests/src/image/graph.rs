@@ -262,8 +262,9 @@ mod tests {
     #[test]
     fn what_cannot_be_followed_is_an_error() {
         let error = |code: &[u16]| Graph::of(&program(&[("it", code)]), &[]).err();
-        // mov sp, r7; sub sp, #8 for ever; blx r0; bl to nowhere
-        let cases: [(&[u16], &str); 4] = [
+        // no instruction; mov sp, r7; sub sp, #8 for ever; blx r0; bl to nowhere
+        let cases: [(&[u16], &str); 5] = [
+            (&[0xb700, 0x4770], "it holds what is not known here, at 0x00000100"),
             (&[0x46bd, 0x4770], "it moves the stack pointer at 0x00000100"),
             (&[0xb082, 0xe7fd], "it has a stack without an end"),
             (&[0x4780, 0x4770], "it calls through a register: where does that lead?"),

@@ -17,6 +17,8 @@ pub(super) enum Flow {
     /// By the table that follows, of entries of so many bytes.
     Table(u32),
     Trap,
+    /// Not known here.
+    Unknown,
 }
 
 /// What an instruction does to the stack pointer.
@@ -107,6 +109,8 @@ fn narrow(pc: u32, code: u32) -> Instruction {
         0xde00..=0xdeff => it.flow = Flow::Trap,
         0xd000..=0xddff => it.flow = Flow::Either(ahead(signed(code & 0xff, 8) << 1)),
         0xe000..=0xe7ff => it.flow = Flow::Branch(ahead(signed(code & 0x7ff, 11) << 1)),
+        // Of the miscellaneous ones these are none, nor are those between reversals.
+        0xb600..=0xb65f | 0xb680..=0xb8ff | 0xba40..=0xbabf => it.flow = Flow::Unknown,
         _ if code & 0xf500 == 0xb100 => {
             it.flow = Flow::Either(ahead((code >> 3 & 0x40) | (code >> 2 & 0x3e)));
         }
@@ -124,11 +128,11 @@ fn wide(pc: u32, first: u32, second: u32) -> Instruction {
         0b0100 => multiple(first, second),
         // Data processing by shifted registers; by registers, with multiplies and divides.
         0b0101 | 0b1101 => guarded(first, second),
-        0b0110 => coprocessor(first, second),
+        0b0110 | 0b0111 => coprocessor(first, second),
         0b1000..=0b1011 if second & 0x8000 != 0 => branch(pc, first, second),
         0b1000..=0b1011 => immediate(first, second),
         0b1100 => single(pc, first, second),
-        _ => Instruction::plain(4),
+        _ => Instruction { flow: Flow::Unknown, ..Instruction::plain(4) },
     }
 }
 
@@ -165,9 +169,15 @@ fn multiple(first: u32, second: u32) -> Instruction {
     it
 }
 
-/// Of these only loads and stores of several floating-point registers move the stack pointer.
+/// The floating-point unit is all there is. Of its instructions only loads and stores of several
+/// registers move the stack pointer.
 fn coprocessor(first: u32, second: u32) -> Instruction {
-    let on_stack = first & 0xf == SP && first & 0x20 != 0 && first & 0x100 != first << 1 & 0x100;
+    if !matches!(second >> 8 & 0xf, 10 | 11) {
+        return Instruction { flow: Flow::Unknown, ..Instruction::plain(4) };
+    }
+    let transfers = first & 0x200 == 0;
+    let on_stack =
+        transfers && first & 0xf == SP && first & 0x20 != 0 && first & 0x100 != first << 1 & 0x100;
     let stack = if on_stack { moved(first & 0x80 != 0, 4 * (second & 0xff)) } else { Stack::Still };
     Instruction { stack, ..Instruction::plain(4) }
 }
@@ -189,7 +199,9 @@ fn branch(pc: u32, first: u32, second: u32) -> Instruction {
         0x9000 => Flow::Branch(ahead(signed(far, 25))),
         0x8000 if first >> 6 & 0xf < 14 => Flow::Either(ahead(signed(near, 21))),
         0x8000 if first & 0xfff0 == 0xf7f0 && second & 0xf000 == 0xa000 => Flow::Trap,
-        _ => Flow::Next,
+        // Special registers, hints and barriers
+        0x8000 if matches!(first & 0xffe0, 0xf380 | 0xf3a0 | 0xf3e0) => Flow::Next,
+        _ => Flow::Unknown,
     };
     it
 }
@@ -280,6 +292,14 @@ mod tests {
             ("tbh [pc, r0, lsl #1]", [0xe8df, 0xf010], Flow::Table(2)),
             ("udf #254", [0xdefe, 0], Flow::Trap),
             ("dmb sy", [0xf3bf, 0x8f5f], Flow::Next),
+            ("msr primask, r0", [0xf380, 0x8810], Flow::Next),
+            ("mrs r0, apsr", [0xf3ef, 0x8000], Flow::Next),
+            ("vadd.f32 s0, s0, s1", [0xee30, 0x0a20], Flow::Next),
+            ("rev r0, r1", [0xba08, 0], Flow::Next),
+            ("mcr p15", [0xee01, 0x0f10], Flow::Unknown),
+            ("of Advanced SIMD", [0xff00, 0x0110], Flow::Unknown),
+            ("between the reversals", [0xba80, 0], Flow::Unknown),
+            ("of no kind", [0xb700, 0], Flow::Unknown),
         ] {
             assert_eq!(Instruction::decode(0x100, code[0], code[1]).flow, flow, "{name}");
         }
