@@ -1,9 +1,12 @@
 //! Programs for a chip, built by cargo for a test.
 
+use std::collections::BTreeSet;
+use std::fs::OpenOptions;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::{env, io};
+use std::sync::{Mutex, PoisonError};
+use std::{env, fs, io};
 
 /// Builds the programs of a package in the release profile and returns the folder they are in.
 ///
@@ -34,11 +37,21 @@ pub fn build(scratch: &str, package: &str, target: &str) -> Result<PathBuf, Stri
     Ok(directory.join(target).join("release"))
 }
 
-/// Whether the standard library for a target is installed.
+/// Whether the standard library for a target is installed; where it is missing, rustup is asked to add
+/// it.
 pub fn can_build(target: &str) -> bool {
-    let libraries =
-        Command::new("rustc").args(["--print", "target-libdir", "--target", target]).output();
-    libraries.is_ok_and(|it| Path::new(String::from_utf8_lossy(&it.stdout).trim()).is_dir())
+    static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+    let _guard = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
+    let is_there = || {
+        let libraries =
+            Command::new("rustc").args(["--print", "target-libdir", "--target", target]).output();
+        libraries.is_ok_and(|it| Path::new(String::from_utf8_lossy(&it.stdout).trim()).is_dir())
+    };
+    if !is_there() {
+        // Whether it worked shows when one looks again.
+        let _ = Command::new("rustup").args(["target", "add", target]).output();
+    }
+    is_there()
 }
 
 /// Whether a program is on `PATH`.
@@ -46,12 +59,28 @@ pub fn has_tool(name: &str) -> bool {
     Command::new(name).arg("--version").output().is_ok()
 }
 
-/// Says that a part of a test is left out, and why.
+/// Says that a part of a test is left out, and why: at once, and again when all tests have run (the test
+/// `zz_skipped`).
 ///
 /// # Panics
 /// With `CI` set: there nothing may be left out.
-pub fn skip(what: &str, why: &str) {
+pub fn skip(scratch: &str, what: &str, why: &str) {
     assert!(env::var_os("CI").is_none(), "cannot run {what}: {why}");
+    let line = format!("SKIPPED {what}: {why}\n");
     // Straight to the handle: what the print macros write, libtest swallows when a test passes.
-    let _ = io::stderr().write_all(format!("SKIPPED {what}: {why}\n").as_bytes());
+    let _ = io::stderr().write_all(line.as_bytes());
+    let list = OpenOptions::new().create(true).append(true).open(list(scratch));
+    let _ = list.and_then(|mut list| list.write_all(line.as_bytes()));
+}
+
+/// What the tests of this run left out so far, and an empty list for the next.
+pub fn skipped(scratch: &str) -> Vec<String> {
+    let lines = fs::read_to_string(list(scratch)).unwrap_or_default();
+    let _ = fs::remove_file(list(scratch));
+    let lines: BTreeSet<_> = lines.lines().map(str::to_owned).collect();
+    lines.into_iter().collect()
+}
+
+fn list(scratch: &str) -> PathBuf {
+    Path::new(scratch).join("skipped")
 }

@@ -4,16 +4,18 @@
 //! That leaves out what it costs to read a counter; the ticks that the program itself tells of are the
 //! same and a constant more, which is checked.
 
-use host_sim::mission::{End, Mission};
+use host_sim::mission::End;
 use host_sim::player::Played;
 use host_sim::recording::Recording;
 use planner_core::planner::StopReason;
 use rayon::prelude::*;
+use std::cmp::Reverse;
 
 use crate::bench;
 use crate::emulator::{Call, Core, Emulator};
 use crate::footprint::SEAM;
 use crate::image::Image;
+use crate::workload::Workload;
 
 /// Instructions that two readings of the counter come to, at most.
 const COUNTER: u64 = 64;
@@ -21,6 +23,8 @@ const COUNTER: u64 = 64;
 /// A mission that was flown, with what every call took.
 #[derive(Debug)]
 pub struct Flight {
+    /// The number of the mission in its workload.
+    pub number: u64,
     /// The mission as it went.
     pub recording: Recording,
     /// A plan for each step, and one that found no motion if it ended so.
@@ -33,11 +37,12 @@ pub struct Flight {
     pub lowest_stack: u32,
 }
 
-/// Flies missions, each from a reset, to their end or up to so many calls.
+/// Flies missions of a workload, each from a reset, to their end or up to so many calls.
 ///
 /// # Panics
 /// When one does not fly as on the host, or the program's own count is not that of its calls.
-pub fn fly(elf: &[u8], missions: &[Mission], most: Option<usize>) -> Vec<Flight> {
+pub fn fly(elf: &[u8], workload: &Workload, missions: &[u64]) -> Vec<Flight> {
+    let most = workload.calls;
     let image = Image::read(elf);
     let seam = |role: &str| -> Vec<u32> {
         let named = image.functions().iter().filter(|it| it.name.strip_prefix(SEAM) == Some(role));
@@ -49,12 +54,13 @@ pub fn fly(elf: &[u8], missions: &[Mission], most: Option<usize>) -> Vec<Flight>
         roles.iter().flatten().for_each(|function| emulator.watch(*function));
         emulator
     };
-    let fly = |emulator: &mut Emulator, mission: &Mission| {
+    let fly = |emulator: &mut Emulator, number: &u64| {
         emulator.restart();
         if let Some(calls) = most {
             emulator.halt_after(calls);
         }
-        let played = bench::fly(emulator, mission).expect("it flies as on the host");
+        let mission = workload.mission(*number);
+        let played = bench::fly(emulator, &mission).expect("it flies as on the host");
         let calls = emulator.calls();
         let of = |role: usize| -> Vec<Call> {
             calls.iter().filter(|it| roles[role].contains(&it.function)).copied().collect()
@@ -62,7 +68,8 @@ pub fn fly(elf: &[u8], missions: &[Mission], most: Option<usize>) -> Vec<Flight>
         let (plans, observations, estimates) = (of(0), of(1), of(2));
         check(&played, &plans, &observations, most.is_none());
         let lowest_stack = emulator.lowest_stack();
-        Flight { recording: played.recording, plans, observations, estimates, lowest_stack }
+        let (number, recording) = (*number, played.recording);
+        Flight { number, recording, plans, observations, estimates, lowest_stack }
     };
     // An emulator's first mission is slow, as it has decoded nothing yet: few of them, used often.
     let share = missions.len().div_ceil(2 * rayon::current_num_threads());
@@ -90,14 +97,21 @@ fn check(played: &Played, plans: &[Call], observations: &[Call], whole: bool) {
 }
 
 impl Flight {
-    /// The plan that was made when so many labels had been taken in, and the observation of the last of
-    /// them.
-    pub fn at_label(&self, labels: usize) -> (Option<Call>, Option<Call>) {
+    /// The plan that was made when so many labels had been taken in.
+    pub fn plan_at_label(&self, labels: usize) -> Option<&Call> {
+        self.plans.get(self.step_of_label(labels)? + 1)
+    }
+
+    /// The observation of the so-many-th label.
+    pub fn observation_of_label(&self, labels: usize) -> Option<&Call> {
+        self.observations.get(self.step_of_label(labels)?)
+    }
+
+    fn step_of_label(&self, labels: usize) -> Option<usize> {
         let steps = self.recording.steps.iter().enumerate();
         let mut sampled =
             steps.filter(|(_, it)| it.step.reading.is_some()).map(|(number, _)| number);
-        let Some(last) = sampled.nth(labels - 1) else { return (None, None) };
-        (self.plans.get(last + 1).copied(), self.observations.get(last).copied())
+        sampled.nth(labels - 1)
     }
 
     /// Steps whose problem had no feasible action.
@@ -111,30 +125,31 @@ impl Flight {
     }
 }
 
-/// What calls took: the median of some, the worst of all.
+/// What calls took: the median of some, the worst of all. Each call comes with its mission's number.
 #[derive(Clone, Copy, Debug)]
 pub struct Took {
-    /// Instructions of those drawn at random, the upper of two medians.
-    pub median: u64,
-    /// Instructions.
-    pub worst: u64,
-    /// Cycles of a Cortex-M4, an estimate.
-    pub worst_cycles: u64,
+    /// Instructions of those drawn at random, the upper of two medians; `None` if none was.
+    pub median: Option<u64>,
+    /// Instructions, and the mission.
+    pub worst: (u64, u64),
+    /// Cycles of a Cortex-M4, an estimate, and the mission.
+    pub worst_cycles: (u64, u64),
 }
 
 impl Took {
     /// Of calls drawn at random, and of others.
-    ///
-    /// # Panics
-    /// If none was drawn at random.
-    pub fn of(random: &[Call], others: &[Call]) -> Self {
-        let mut sorted: Vec<u64> = random.iter().map(|it| it.instructions).collect();
+    pub fn of(random: &[(Call, u64)], others: &[(Call, u64)]) -> Self {
+        let mut sorted: Vec<u64> = random.iter().map(|(it, _)| it.instructions).collect();
         sorted.sort_unstable();
-        let all = || random.iter().chain(others);
+        // Of equals the mission with the smallest number.
+        let most = |figure: fn(&Call) -> u64| {
+            let all = random.iter().chain(others).map(|(call, mission)| (figure(call), *mission));
+            all.max_by_key(|(figure, mission)| (*figure, Reverse(*mission))).unwrap_or_default()
+        };
         Self {
-            median: sorted[sorted.len() / 2],
-            worst: all().map(|it| it.instructions).max().unwrap_or(0),
-            worst_cycles: all().map(|it| it.cycles).max().unwrap_or(0),
+            median: sorted.get(sorted.len() / 2).copied(),
+            worst: most(|it| it.instructions),
+            worst_cycles: most(|it| it.cycles),
         }
     }
 }

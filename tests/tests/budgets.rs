@@ -1,8 +1,10 @@
 //! Budgets that fail the build: flash, RAM, stack, time, panics and `f64`, of the planner on a bare core
-//! and of the firmware. `budgets.toml` has them; to commit new figures:
+//! and of the firmware. `budgets.toml` has them. A plain run looks at the programs that people build and
+//! flies the hardest missions that are known; a long one, `--features long`, measures all, finds the
+//! hardest anew, and commits:
 //!
 //! ```sh
-//! UPDATE_EXPECT=1 cargo test -p tests --test budgets
+//! UPDATE_EXPECT=1 cargo test -p tests --features long --test budgets
 //! ```
 
 use std::io::{self, Write as _};
@@ -10,9 +12,12 @@ use std::{fs, path::Path};
 
 use host_sim::mission::Algorithm;
 use planner_core::scc::Policy;
+use tests::LONG;
 use tests::budget::Budgets;
 use tests::elf;
+use tests::emulator::Call;
 use tests::footprint::{self, Footprint};
+use tests::hardest::Hardest;
 use tests::image::Image;
 use tests::timing::{self, Flight, Took};
 use tests::workload::Workload;
@@ -21,7 +26,9 @@ use tests::workload::Workload;
 const CHIP: &str = "thumbv7em-none-eabihf";
 const OTHERS: [&str; 2] = ["thumbv6m-none-eabi", "riscv32imac-unknown-none-elf"];
 
+/// The programs, and how many of them a plain run looks at.
 const PROGRAMS: [&str; 3] = ["small", "standard", "large"];
+const LOOKED_AT: usize = if LONG { 3 } else { 2 };
 
 const MEMORY_X: &str = include_str!("../../memory.x");
 
@@ -34,7 +41,11 @@ const NEXT: [(&str, &str); 1] = [(
 /// A program for a target; `None`, and a visible line, where it cannot be built.
 fn build(package: &str, target: &str) -> Option<impl Fn(&str) -> Vec<u8> + use<>> {
     if !elf::can_build(target) {
-        elf::skip(package, &format!("the target {target} is not installed"));
+        elf::skip(
+            env!("CARGO_TARGET_TMPDIR"),
+            package,
+            &format!("the target {target} is not installed"),
+        );
         return None;
     }
     let folder = elf::build(env!("CARGO_TARGET_TMPDIR"), package, target);
@@ -42,41 +53,49 @@ fn build(package: &str, target: &str) -> Option<impl Fn(&str) -> Vec<u8> + use<>
     Some(move |name: &str| fs::read(Path::new(&folder).join(name)).expect("cargo left an ELF"))
 }
 
+/// Where figures go.
+struct Books {
+    budgets: Budgets,
+    hardest: Hardest,
+}
+
 #[test]
 fn every_figure_keeps_its_budget() {
-    let mut budgets = Budgets::open();
+    let mut books = Books { budgets: Budgets::open(), hardest: Hardest::open() };
     let mut skipped = Vec::new();
     if let (Some(bench), Some(firmware)) = (build("bench", CHIP), build("firmware", CHIP)) {
-        let [small, standard, large] = PROGRAMS.map(&bench);
-        for (name, elf) in PROGRAMS.into_iter().zip([small, standard, large]) {
-            let (bound, fits) = size(&mut budgets, name, &elf);
-            let stack = match name {
-                "small" => time_small(&mut budgets, &elf),
-                "standard" => time_standard(&mut budgets, &elf),
-                _ => time_large(&mut budgets, &elf, fits),
+        for name in &PROGRAMS[..LOOKED_AT] {
+            let elf = bench(name);
+            let (bound, fits) = size(&mut books.budgets, name, &elf);
+            let stack = match *name {
+                "small" => time_small(&mut books, &elf),
+                "standard" => time_standard(&mut books, &elf),
+                _ => time_large(&mut books, &elf, fits),
             };
-            budgets.note(&format!("{name}: {stack} bytes of stack in the emulator"));
+            books.budgets.note(&format!("{name}: {stack} bytes of stack in the emulator"));
             if stack > bound {
-                budgets.fail(format!("{name} has {stack} bytes of stack, more than its bound"));
+                let what = format!("{name} has {stack} bytes of stack, more than its bound");
+                books.budgets.fail(what);
             }
         }
-        size(&mut budgets, "firmware", &firmware("firmware"));
+        size(&mut books.budgets, "firmware", &firmware("firmware"));
     } else {
         skipped.extend(["firmware"].into_iter().chain(PROGRAMS));
     }
-    for target in OTHERS {
+    for target in OTHERS.into_iter().filter(|_| LONG) {
         let Some(program) = build("bench", target) else {
             skipped.push(target);
             continue;
         };
         for name in PROGRAMS {
-            budgets.figure(target, name, Image::read(&program(name)).flash().into());
+            books.budgets.figure(target, name, Image::read(&program(name)).flash().into());
         }
     }
     for (goal, reduction) in NEXT {
-        budgets.note(&format!("{goal}, next: {reduction}"));
+        books.budgets.note(&format!("{goal}, next: {reduction}"));
     }
-    let (report, failures) = budgets.close(&skipped);
+    let (report, failures) = books.budgets.close(&skipped);
+    books.hardest.close();
     // Straight to the handle: what the print macros write, libtest swallows when a test passes.
     let _ = io::stderr().write_all(report.as_bytes());
     assert!(failures.is_empty(), "{}", failures.join("\n"));
@@ -108,54 +127,70 @@ fn size(budgets: &mut Budgets, name: &str, elf: &[u8]) -> (u32, bool) {
     (it.stack, fits)
 }
 
-/// Flies a workload; the missions drawn at random, and all others.
-fn fly(budgets: &mut Budgets, elf: &[u8], what: &str, workload: Workload) -> [Vec<Flight>; 2] {
-    let (random, sought) = workload.missions();
-    let count = random.len();
-    let mut flights = timing::fly(elf, &[random, sought].concat(), workload.calls);
-    let sought = flights.split_off(count);
-    let flights = [flights, sought];
-    let all = || flights.iter().flatten();
-    let sum = |of: fn(&Flight) -> usize| all().map(of).sum::<usize>();
-    budgets.note(&format!(
-        "{what}: {} missions, {} plans, {} steps recovered, {} missions ended by resolution",
-        all().count(),
-        sum(|it| it.plans.len()),
-        sum(Flight::recoveries),
-        sum(|it| usize::from(it.ended_by_resolution())),
-    ));
-    flights
+/// The flights of a workload: those drawn at random, and all others.
+struct Flown {
+    name: &'static str,
+    flights: [Vec<Flight>; 2],
 }
 
-fn record(budgets: &mut Budgets, section: &str, name: &str, took: Took) {
-    budgets.figure(section, &format!("{name}_median"), took.median);
-    budgets.figure(section, &format!("{name}_worst"), took.worst);
-    budgets.figure(section, &format!("{name}_worst_cycles"), took.worst_cycles);
-}
-
-/// All plans, observations and estimates of flights; the deepest stack.
-fn record_all(
-    budgets: &mut Budgets,
-    section: &str,
-    prefix: &str,
-    flights: &[Vec<Flight>; 2],
-) -> u32 {
-    for (name, calls) in [
-        ("plan", (|it| &it.plans) as fn(&Flight) -> &Vec<_>),
-        ("observe", |it| &it.observations),
-        ("estimate", |it| &it.estimates),
-    ] {
-        let [random, sought] =
-            [0, 1].map(|n| flights[n].iter().flat_map(calls).copied().collect::<Vec<_>>());
-        let took = Took::of(&random, &sought);
-        record(budgets, section, &format!("{prefix}{name}"), took);
+impl Flown {
+    /// Flies all of a workload in a long run, and its hardest missions in any other.
+    fn of(books: &mut Books, elf: &[u8], name: &'static str, workload: Workload) -> Self {
+        let (random, others) =
+            if LONG { workload.missions() } else { (Vec::new(), books.hardest.of(name)) };
+        let count = random.len();
+        let numbers = [random, others].concat();
+        let mut flights = timing::fly(elf, &workload, &numbers);
+        let others = flights.split_off(count);
+        let flown = Self { name, flights: [flights, others] };
+        let sum = |of: fn(&Flight) -> usize| flown.all().map(of).sum::<usize>();
+        books.budgets.note(&format!(
+            "{name}: {} missions, {} plans, {} steps recovered, {} missions ended by resolution",
+            flown.all().count(),
+            sum(|it| it.plans.len()),
+            sum(Flight::recoveries),
+            sum(|it| usize::from(it.ended_by_resolution())),
+        ));
+        flown
     }
-    deepest(flights)
-}
 
-fn deepest(flights: &[Vec<Flight>; 2]) -> u32 {
-    let top = 0x2002_0000;
-    flights.iter().flatten().map(|it| top - it.lowest_stack).max().unwrap_or(0)
+    fn all(&self) -> impl Iterator<Item = &Flight> {
+        self.flights.iter().flatten()
+    }
+
+    /// Enters some of the calls of each flight as a figure.
+    fn record<'a, I: IntoIterator<Item = &'a Call>>(
+        &'a self,
+        books: &mut Books,
+        [section, figure]: [&str; 2],
+        calls: impl Fn(&'a Flight) -> I,
+    ) {
+        let [random, others] = [0, 1].map(|n| {
+            let numbered = |it: &'a Flight| calls(it).into_iter().map(|call| (*call, it.number));
+            self.flights[n].iter().flat_map(numbered).collect::<Vec<_>>()
+        });
+        let Took { median, worst, worst_cycles } = Took::of(&random, &others);
+        if let Some(median) = median {
+            books.budgets.figure(section, &format!("{figure}_median"), median);
+        }
+        books.budgets.figure(section, &format!("{figure}_worst"), worst.0);
+        books.budgets.figure(section, &format!("{figure}_worst_cycles"), worst_cycles.0);
+        books.hardest.add(self.name, [worst.1, worst_cycles.1]);
+    }
+
+    /// Enters all plans, observations and estimates.
+    fn record_all(&self, books: &mut Books, section: &str, prefix: &str) {
+        let figure = |name| format!("{prefix}{name}");
+        self.record(books, [section, &figure("plan")], |it| &it.plans);
+        self.record(books, [section, &figure("observe")], |it| &it.observations);
+        self.record(books, [section, &figure("estimate")], |it| &it.estimates);
+    }
+
+    /// The deepest stack.
+    fn stack(&self) -> u32 {
+        let top = 0x2002_0000;
+        self.all().map(|it| top - it.lowest_stack).max().unwrap_or(0)
+    }
 }
 
 const CFC: Workload = Workload {
@@ -168,48 +203,49 @@ const CFC: Workload = Workload {
     calls: None,
 };
 
-fn time_small(budgets: &mut Budgets, elf: &[u8]) -> u32 {
-    let flights = fly(budgets, elf, "small", CFC);
-    record_all(budgets, "small", "", &flights)
+fn time_small(books: &mut Books, elf: &[u8]) -> u32 {
+    let flown = Flown::of(books, elf, "small", CFC);
+    flown.record_all(books, "small", "");
+    flown.stack()
 }
 
-fn time_standard(budgets: &mut Budgets, elf: &[u8]) -> u32 {
+fn time_standard(books: &mut Books, elf: &[u8]) -> u32 {
     let cfc = Workload { steps: 32, random: 60, searched: 1_000, sought: 2, ..CFC };
-    let flights = fly(budgets, elf, "standard, Algorithm 1", cfc);
-    let mut stack = record_all(budgets, "standard", "cfc_", &flights);
+    let flown = Flown::of(books, elf, "standard, Algorithm 1", cfc);
+    flown.record_all(books, "standard", "cfc_");
+    let mut stack = flown.stack();
     let scc = Workload { algorithm: Algorithm::Scc, searched: 400, ..CFC };
-    for (name, policy) in [("joint", Policy::Joint), ("mixture", Policy::MixtureOfOwn)] {
+    for (figure, name, policy) in [
+        ("joint_plan_at_10", "standard, joint, 10 labels", Policy::Joint),
+        ("mixture_plan_at_10", "standard, mixture, 10 labels", Policy::MixtureOfOwn),
+    ] {
         // Up to the plan after ten plans and observations.
         let workload = Workload { policy, steps: 11, calls: Some(21), ..scc };
-        let flights = fly(budgets, elf, &format!("standard, {name}, 10 labels"), workload);
-        let [random, sought] = [0, 1]
-            .map(|n| flights[n].iter().filter_map(|it| it.at_label(10).0).collect::<Vec<_>>());
-        record(budgets, "standard", &format!("{name}_plan_at_10"), Took::of(&random, &sought));
-        stack = stack.max(deepest(&flights));
+        let flown = Flown::of(books, elf, name, workload);
+        flown.record(books, ["standard", figure], |it| it.plan_at_label(10));
+        stack = stack.max(flown.stack());
     }
     let scc = Workload { policy: Policy::Joint, steps: 32, searched: 0, ..scc };
     let workload = Workload { calls: Some(64), ..scc };
-    let [flights, _] = fly(budgets, elf, "standard, 32 labels", workload);
-    let observations: Vec<_> = flights.iter().filter_map(|it| it.at_label(32).1).collect();
-    record(budgets, "standard", "scc_observe_at_32", Took::of(&observations, &[]));
+    let flown = Flown::of(books, elf, "standard, 32 labels", workload);
+    flown.record(books, ["standard", "scc_observe_at_32"], |it| it.observation_of_label(32));
     // Seven million instructions each.
-    let flights = fly(budgets, elf, "standard, estimates", Workload { random: 60, ..scc });
-    let estimates: Vec<_> = flights[0].iter().flat_map(|it| it.estimates.clone()).collect();
-    record(budgets, "standard", "scc_estimate_at_32", Took::of(&estimates, &[]));
-    stack.max(deepest(&flights))
+    let workload = Workload { random: 60, ..scc };
+    let flown = Flown::of(books, elf, "standard, estimates", workload);
+    flown.record(books, ["standard", "scc_estimate_at_32"], |it| &it.estimates);
+    stack.max(flown.stack())
 }
 
-fn time_large(budgets: &mut Budgets, elf: &[u8], fits: bool) -> u32 {
+fn time_large(books: &mut Books, elf: &[u8], fits: bool) -> u32 {
     let cfc = Workload { steps: 64, random: 20, searched: 200, sought: 1, ..CFC };
-    let flights = fly(budgets, elf, "large, Algorithm 1", cfc);
-    let stack = record_all(budgets, "large", "cfc_", &flights);
+    let flown = Flown::of(books, elf, "large, Algorithm 1", cfc);
+    flown.record_all(books, "large", "cfc_");
     if !fits {
-        return stack; // the other algorithm would run into the end of RAM
+        return flown.stack(); // the other algorithm would run into the end of RAM
     }
     // For the stack: what all 2,081 hypotheses take of it does not grow with the labels.
     let scc = Workload { algorithm: Algorithm::Scc, steps: 4, random: 4, searched: 0, ..CFC };
-    let flights = fly(budgets, elf, "large, Algorithm 2", scc);
-    stack.max(deepest(&flights))
+    flown.stack().max(Flown::of(books, elf, "large, Algorithm 2", scc).stack())
 }
 
 #[test]
@@ -220,7 +256,7 @@ fn a_program_that_can_panic_is_found_out() {
         panics("panicking"),
         ["bench::on_target::panicking -> core::panicking::panic_bounds_check"]
     );
-    for name in PROGRAMS {
+    for name in &PROGRAMS[..LOOKED_AT] {
         assert_eq!(panics(name), [""; 0], "{name}");
     }
 }
@@ -230,7 +266,7 @@ fn the_planner_forbids_unsafe_code_and_does_not_allocate() {
     let text = include_str!("../../planner-core/src/lib.rs");
     assert!(text.starts_with("#![no_std]\n#![forbid(unsafe_code)]\n"));
     let Some(bench) = build("bench", CHIP) else { return };
-    for name in PROGRAMS {
+    for name in &PROGRAMS[..LOOKED_AT] {
         let image = Image::read(&bench(name));
         let allocates = |name: &str| name.contains("__rust_alloc") || name.starts_with("alloc::");
         assert!(!image.functions().iter().any(|it| allocates(&it.name)), "{name}");

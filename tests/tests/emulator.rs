@@ -14,11 +14,13 @@ use host_sim::recording::Recording;
 use host_sim::scenario::{self, Overrides};
 use host_sim::trace;
 use host_sim::world::{Extent, NoiseModel};
+use planner_core::scc::Policy;
 use rayon::prelude::*;
 use tests::bench::{self, CORES};
 use tests::elf;
 use tests::emulator::{Core, Emulator};
 use tests::timing;
+use tests::workload::Workload;
 
 /// The paper's two examples, then random fields, each algorithm by turns.
 fn missions() -> Vec<Mission> {
@@ -117,14 +119,26 @@ fn qemu_executes_as_many_instructions() {
     let (core, target) = CORES[0];
     let Some(program) = bench::build(env!("CARGO_TARGET_TMPDIR"), target) else { return };
     if !elf::has_tool("qemu-system-arm") {
-        elf::skip("instruction counts under QEMU", "qemu-system-arm is not on PATH");
+        elf::skip(
+            env!("CARGO_TARGET_TMPDIR"),
+            "instruction counts under QEMU",
+            "qemu-system-arm is not on PATH",
+        );
         return;
     }
     let elf = program("small");
-    let mission = field::standard(5, 3, Algorithm::Cfc, 12);
-    let (_, told) = bench::fly_and_record(&mut Emulator::load(&elf, core), &mission)
+    let workload = Workload {
+        algorithm: Algorithm::Cfc,
+        policy: Policy::default(),
+        steps: 12,
+        random: 4,
+        searched: 0,
+        sought: 0,
+        calls: None,
+    };
+    let (_, told) = bench::fly_and_record(&mut Emulator::load(&elf, core), &workload.mission(3))
         .expect("it flies as the host");
-    let flights = timing::fly(&elf, &[mission], None);
+    let flights = timing::fly(&elf, &workload, &[3]);
 
     let folder = tempfile::tempdir().expect("a temporary folder");
     let [elf_file, input, log] = ["elf", "input", "log"].map(|name| folder.path().join(name));
