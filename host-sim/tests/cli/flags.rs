@@ -1,0 +1,64 @@
+//! Flags and places that are refused.
+
+use std::fmt::Write as _;
+use std::fs;
+
+use crate::{GOOD, folder, refuses};
+
+#[test]
+fn bad_flags_and_places_are_refused() {
+    let folder = folder();
+    fs::write(folder.path().join("m.toml"), GOOD).expect("a file");
+    fs::create_dir(folder.path().join("d")).expect("a folder");
+    let cases: [(&[&str], &[&str]); 13] = [
+        (&["run", "none.toml"], &["none.toml", "readable"]),
+        (&["run", "m.toml", "--steps", "99"], &["--steps", "found 99", "1 to 64"]),
+        (&["run", "m.toml", "--steps", "many"], &["--steps", "many"]),
+        (&["run", "m.toml", "--algorithm", "abc"], &["--algorithm", "abc", "cfc"]),
+        (&["run", "m.toml", "--trace", "no/t.jsonl"], &["no/t.jsonl", "expected a place"]),
+        (&["run", "m.toml", "--trace", "t.jsonl", "--figure", "d"], &["d", "directory"]),
+        (&["campaign", "--fields", "0"], &["--fields", "0"]),
+        (&["campaign", "--steps", "65"], &["--steps", "found 65", "1 to 64"]),
+        (&["campaign", "--p", "1.5"], &["--p", "found 1.5", "[0, 1]"]),
+        (&["campaign", "--p", "0.7"], &["--p", "found 0.7", "expected 1", "cfc"]),
+        (
+            &["campaign", "--algorithm", "scc", "--trusted-radius=-1"],
+            &["--trusted-radius", "found -1"],
+        ),
+        (&["run", "m.toml", "--candidates", "c.svg"], &["--candidates", "without noise"]),
+        (&["campaign", "--csv", "no/c.csv"], &["no/c.csv", "expected a place"]),
+    ];
+    for (args, parts) in cases {
+        refuses(folder.path(), args, parts);
+    }
+}
+
+#[test]
+fn a_chip_that_cannot_be_is_refused() {
+    let folder = folder();
+    fs::write(folder.path().join("m.toml"), GOOD).expect("a file");
+    let many = (0..17).fold(String::new(), |mut text, i| {
+        let _ = writeln!(text, "  {{ x = {i}.0, z = 0.0, label = -1 }},");
+        text
+    });
+    let many = GOOD.replace("oracle = [\n", &format!("oracle = [\n{many}"));
+    fs::write(folder.path().join("many.toml"), many).expect("a file");
+    let other = env!("CARGO_BIN_EXE_host-sim");
+    let other = format!("--emulator={other}");
+    let cases: [(&[&str], &[&str]); 11] = [
+        (&["m.toml"], &["--port", "--emulator"]),
+        (&["m.toml", &other], &["host-sim", "firmware's ELF"]),
+        (&["m.toml", "--port", "x", "--emulator"], &["--port", "--emulator"]),
+        (&["m.toml", "--port", "no-such-device"], &["no-such-device", "expected a serial port"]),
+        (&["m.toml", "--emulator"], &["release/firmware", "cargo firmware"]),
+        (&["m.toml", "--emulator=m.toml"], &["m.toml", "ELF", "cargo firmware"]),
+        (&["m.toml", "--port", "x", "--log", "l"], &["--log", "--port"]),
+        (&["m.toml", "--emulator", "--fault", "drop=2"], &["drop", "found 2", "[0, 1]"]),
+        (&["m.toml", "--emulator", "--fault", "delay=1s"], &["delay", "found 1s", "20ms"]),
+        (&["m.toml", "--emulator", "--algorithm", "random"], &["m.toml", "random", "cfc or scc"]),
+        (&["many.toml", "--emulator"], &["many.toml", "found 21 points", "at most 16"]),
+    ];
+    for (args, parts) in cases {
+        refuses(folder.path(), &[&["hil"], args].concat(), parts);
+    }
+}
