@@ -3,11 +3,13 @@
 use std::io::Read as _;
 use std::net::{TcpListener, TcpStream};
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use std::process::{ChildStderr, Command, Stdio};
 use std::time::{Duration, Instant};
 use std::{fs, thread};
 
 use anyhow::{Context as _, Result, anyhow, bail};
+
+use crate::interruption::unfinished;
 
 /// Emulated nanoseconds that an instruction takes (`-icount shift=6`), so that the emulated clock counts
 /// them.
@@ -21,10 +23,12 @@ const PATIENCE: Duration = Duration::from_secs(20);
 /// How long QEMU may take to end once its ports are closed.
 const DYING: Duration = Duration::from_millis(200);
 
-/// A running emulator; it ends with this value.
+/// A running emulator; it ends with this value, and if the program is interrupted.
 #[derive(Debug)]
 pub struct Emulator {
-    qemu: Child,
+    /// The id of its process, which is among what is unfinished.
+    id: u32,
+    complaints: Option<ChildStderr>,
 }
 
 impl Emulator {
@@ -40,7 +44,8 @@ impl Emulator {
         let listener = TcpListener::bind("127.0.0.1:0").context("no port for the link")?;
         let port = listener.local_addr()?.port();
         let log = log.map_or_else(|| "null".into(), |path| format!("file:{}", path.display()));
-        let qemu = Command::new(QEMU)
+        let mut command = Command::new(QEMU);
+        command
             .args(["-M", "netduinoplus2", "-nographic", "-monitor", "none"])
             .args(["-icount", "shift=6"])
             .args(["-serial", &format!("tcp:127.0.0.1:{port},nodelay=on")])
@@ -50,13 +55,19 @@ impl Emulator {
             .arg(elf)
             .stdin(Stdio::null())
             .stdout(Stdio::null())
-            .stderr(Stdio::piped())
-            .spawn()
-            .with_context(|| format!("{QEMU}: expected on PATH"))?;
-        let mut emulator = Self { qemu };
+            .stderr(Stdio::piped());
+        let mut emulator = Self::spawn(&mut command)?;
         let link = emulator.accept(&listener)?;
         link.set_nodelay(true)?;
         Ok((emulator, link))
+    }
+
+    fn spawn(command: &mut Command) -> Result<Self> {
+        let mut unfinished = unfinished();
+        let mut qemu = command.spawn().with_context(|| format!("{QEMU}: expected on PATH"))?;
+        let (id, complaints) = (qemu.id(), qemu.stderr.take());
+        unfinished.children.insert(id, qemu);
+        Ok(Self { id, complaints })
     }
 
     fn accept(&mut self, listener: &TcpListener) -> Result<TcpStream> {
@@ -77,11 +88,11 @@ impl Emulator {
 
     /// What QEMU says if it has ended by itself.
     fn failure(&mut self) -> Option<anyhow::Error> {
-        let status = self.qemu.try_wait().ok()??;
+        let status = unfinished().children.get_mut(&self.id)?.try_wait().ok()??;
         let mut message = String::new();
-        if let Some(mut stderr) = self.qemu.stderr.take() {
+        if let Some(mut complaints) = self.complaints.take() {
             // Without its words, its status has to do.
-            let _ = stderr.read_to_string(&mut message);
+            let _ = complaints.read_to_string(&mut message);
         }
         Some(anyhow!("{QEMU} ended with {status}: {}", message.trim()))
     }
@@ -100,8 +111,11 @@ fn is_arm_elf(content: &[u8]) -> bool {
 
 impl Drop for Emulator {
     fn drop(&mut self) {
-        // It may have ended by itself.
-        let _ = self.qemu.kill();
-        let _ = self.qemu.wait();
+        let mut unfinished = unfinished();
+        if let Some(mut qemu) = unfinished.children.remove(&self.id) {
+            // It may have ended by itself.
+            let _ = qemu.kill();
+            let _ = qemu.wait();
+        }
     }
 }

@@ -12,6 +12,7 @@ pub mod faults;
 pub mod field;
 pub mod figure;
 pub mod hil;
+pub mod interruption;
 mod legend;
 pub mod mission;
 pub mod names;

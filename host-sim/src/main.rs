@@ -1,24 +1,51 @@
 //! `host-sim`: the simulator's command line.
 
-use std::io::{ErrorKind, Write as _};
+use std::io::{self, ErrorKind, Write};
 use std::process::ExitCode;
 
+use anyhow::{Context as _, Result};
 use clap::Parser as _;
 use host_sim::cli::Cli;
+use host_sim::interruption;
+
+/// What bad input ends with.
+const REFUSED: u8 = 2;
 
 fn main() -> ExitCode {
-    let done = Cli::parse().execute().and_then(|text| {
-        match std::io::stdout().lock().write_all(text.as_bytes()) {
-            // Whoever reads may stop early.
-            Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error.into()),
-            _ => Ok(()),
-        }
-    });
-    match done {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: {error:#}");
-            ExitCode::from(2)
-        }
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(answer) => return tell_answer(&answer),
+    };
+    let done = interruption::watch()
+        .context("signals cannot be watched")
+        .and_then(|()| cli.execute())
+        .and_then(|text| print(|stdout| write!(stdout, "{text}")));
+    done.map_or_else(|error| fail(&error), |()| ExitCode::SUCCESS)
+}
+
+/// Prints help or a version, or what is wrong with the arguments.
+fn tell_answer(answer: &clap::Error) -> ExitCode {
+    let told = print(|_| answer.print());
+    if answer.use_stderr() {
+        // Where nobody hears it the status has to do.
+        return ExitCode::from(REFUSED);
     }
+    told.map_or_else(|error| fail(&error), |()| ExitCode::SUCCESS)
+}
+
+/// Prints to standard output. Whoever reads may stop early.
+fn print(write: impl FnOnce(&mut io::Stdout) -> io::Result<()>) -> Result<()> {
+    let mut stdout = io::stdout();
+    match write(&mut stdout).and_then(|()| stdout.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(error).context("standard output: expected to be written")
+        }
+        _ => Ok(()),
+    }
+}
+
+fn fail(error: &anyhow::Error) -> ExitCode {
+    // Where nobody hears it the status has to do.
+    let _ = writeln!(io::stderr(), "error: {error:#}");
+    ExitCode::from(REFUSED)
 }

@@ -1,0 +1,88 @@
+//! Interruption by a signal: what is undone before the program ends.
+//!
+//! A temporary file and a running emulator would outlive the program. Whoever makes one holds the lock while it
+//! is made and entered here, and while it becomes something that stays; the thread that waits for signals takes
+//! the lock and never gives it back. So nothing slips through between the making and the entry. Where there
+//! are no signals, nothing is ever undone from here.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
+use std::process::Child;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// What is undone: an entry that has gone by itself does no harm.
+#[derive(Debug)]
+pub(crate) struct Unfinished {
+    /// Temporary files, to be removed.
+    pub(crate) files: BTreeSet<PathBuf>,
+    /// Child processes by their ids, to be ended.
+    pub(crate) children: BTreeMap<u32, Child>,
+}
+
+static UNFINISHED: Mutex<Unfinished> =
+    Mutex::new(Unfinished { files: BTreeSet::new(), children: BTreeMap::new() });
+
+/// What is undone if a signal comes, under its lock.
+pub(crate) fn unfinished() -> MutexGuard<'static, Unfinished> {
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[cfg(unix)]
+pub use by_signal::watch;
+
+/// Where there are no signals there is nothing to watch.
+///
+/// # Errors
+/// Never.
+#[cfg(not(unix))]
+pub fn watch() -> std::io::Result<()> {
+    Ok(())
+}
+
+#[cfg(unix)]
+mod by_signal {
+    use std::{fs, io, process, thread};
+
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    use signal_hook::iterator::Signals;
+
+    use super::{Unfinished, unfinished};
+
+    /// From here on an interruption, a request to end, and a terminal's going away undo what is unfinished and
+    /// end the program with 128 and the signal's number, as shells have it.
+    ///
+    /// # Errors
+    /// When signals cannot be watched.
+    pub fn watch() -> io::Result<()> {
+        let heeded = [SIGHUP, SIGINT, SIGTERM].into_iter().filter(|signal| !is_ignored(*signal));
+        let mut signals = Signals::new(heeded)?;
+        thread::spawn(move || {
+            if let Some(signal) = signals.forever().next() {
+                let mut unfinished = unfinished();
+                undo(&mut unfinished);
+                process::exit(128 + signal);
+            }
+        });
+        Ok(())
+    }
+
+    fn undo(unfinished: &mut Unfinished) {
+        // What has gone by itself need not go again.
+        for file in &unfinished.files {
+            let _ = fs::remove_file(file);
+        }
+        for child in unfinished.children.values_mut() {
+            let _ = child.kill();
+            let _ = child.wait();
+        }
+    }
+
+    /// Whether whoever started the program had the signal ignored, as `nohup` does: then it stays so. Linux
+    /// tells; elsewhere it is not known.
+    fn is_ignored(signal: i32) -> bool {
+        let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+        let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+        let ignored = ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+        ignored.is_some_and(|mask| mask >> (signal - 1) & 1 == 1)
+    }
+}
