@@ -1,7 +1,7 @@
 //! What the commands do.
 
-use std::fs;
 use std::path::Path;
+use std::{env, fs};
 
 use anyhow::{Context as _, Result, bail};
 use planner_core::wire::LabelSource;
@@ -12,7 +12,7 @@ use crate::figure::Figure;
 use crate::hil::{self, Chip, Timings};
 use crate::mission::{Algorithm, Mission};
 use crate::noisy_campaign::NoisyCampaign;
-use crate::output::{Output, json};
+use crate::output::{Output, json, prepare, temporary};
 use crate::player::Player;
 use crate::recording::Recording;
 use crate::replay::Replay;
@@ -30,8 +30,9 @@ const CANDIDATES_TITLE: &str = "Its labels do not tell which line is true: fewes
 pub(crate) fn paper() -> Result<String> {
     fs::create_dir_all("out").context("out: expected a place to make a folder")?;
     let names = ["paper-noiseless.svg", "paper-noisy.svg", "paper-noisy-candidates.svg"];
-    let places = names.map(|name| Output::create(&Path::new("out").join(name)));
-    let places = places.into_iter().collect::<Result<Vec<_>>>()?;
+    let places = names.map(|name| (name, Path::new("out").join(name)));
+    let asked = places.each_ref().map(|(name, path)| (*name, Some(path.as_path())));
+    let outputs = prepare(&[], asked)?;
     let example = |text| Recording::of(&scenario::parse("", text, Overrides::default())?);
     let noiseless = example(scenario::PAPER_NOISELESS)?;
     let noisy = example(scenario::PAPER_NOISY)?;
@@ -42,8 +43,8 @@ pub(crate) fn paper() -> Result<String> {
         Figure::of_candidates(CANDIDATES_TITLE, &noisy),
     ];
     let drawn = figures.iter().flatten().map(Figure::svg).collect::<Result<Vec<_>>>()?;
-    for (place, svg) in places.into_iter().zip(drawn) {
-        place.write(&svg)?;
+    for (output, svg) in outputs.into_iter().flatten().zip(drawn) {
+        output.write(svg)?;
     }
     Ok(format!(
         "{}\n\n{}\nFigures in out/: {}\n",
@@ -55,21 +56,29 @@ pub(crate) fn paper() -> Result<String> {
 
 pub(crate) fn run(args: &Run) -> Result<String> {
     let mission = args.mission()?;
-    let outputs = args.outputs()?;
+    let outputs = prepare(&[args.input()], args.outputs())?;
     let recording = Recording::of(&mission).with_context(|| args.name())?;
     args.tell(outputs, &recording)
 }
 
 pub(crate) fn hil(args: &HilArgs) -> Result<String> {
     let mission = args.run.mission()?;
-    let outputs = args.run.outputs()?;
-    let timing = Output::create_if(args.timing.as_ref())?;
-    let chip = match (&args.port, &args.emulator) {
-        (Some(device), _) => Chip::Board { device: device.clone(), baud: args.baud },
-        (None, elf) => {
-            let elf = elf.clone().unwrap_or_else(|| FIRMWARE.into());
-            Chip::Emulated { elf, log: args.log.clone() }
-        }
+    let elf = args.emulator.clone().unwrap_or_else(|| FIRMWARE.into());
+    let (chip, board) = match &args.port {
+        Some(device) => ("the port", Path::new(device)),
+        None => ("the firmware", elf.as_path()),
+    };
+    let [trace, figure, candidates] = args.run.outputs();
+    let (timing, log) = (args.timing.as_deref(), args.log.as_deref());
+    let asked = [trace, figure, candidates, ("--timing", timing), ("--log", log)];
+    let prepared = prepare(&[args.run.input(), (chip, board)], asked)?;
+    let [trace, figure, candidates, timing, log] = prepared;
+    // The emulator writes its log as it goes; it comes to its place when it is whole.
+    let log = log.map(|log| Ok::<_, anyhow::Error>((log, temporary(&env::temp_dir())?)));
+    let log = log.transpose().context("expected a place for temporary files")?;
+    let chip = match &args.port {
+        Some(device) => Chip::Board { device: device.clone(), baud: args.baud },
+        None => Chip::Emulated { elf, log: log.as_ref().map(|(_, said)| said.path().to_owned()) },
     };
     let labels = match args.labels {
         Labels::Vehicle => LabelSource::Vehicle,
@@ -78,26 +87,27 @@ pub(crate) fn hil(args: &HilArgs) -> Result<String> {
     let faults = args.fault.unwrap_or_default();
     let mut player =
         Player::new(&mission, labels, hil::start_number()).with_context(|| args.run.name())?;
-    let turnarounds = hil::fly(&mut player, &chip, faults, mission.seed)?;
+    let flown = hil::fly(&mut player, &chip, faults, mission.seed);
+    if let Some((log, said)) = log {
+        let said = fs::read(said.path())?;
+        // What the board said is wanted most when its mission has failed.
+        if flown.is_ok() || !said.is_empty() {
+            log.write(said)?;
+        }
+    }
+    let turnarounds = flown?;
     let played = player.finish().with_context(|| args.run.name())?;
     let timings = Timings::new(&played, &turnarounds);
     let rows = timings.csv()?;
-    let mut text = args.run.tell(outputs, &played.recording)?;
+    let mut text = args.run.tell([trace, figure, candidates], &played.recording)?;
     if let Some(output) = timing {
-        output.write(&rows)?;
+        output.write(rows)?;
     }
     if args.run.format == Format::Text {
         text.push('\n');
         text.push_str(&timings.report());
     }
     Ok(text)
-}
-
-/// The files that a mission is told in.
-struct Outputs {
-    trace: Option<Output>,
-    figure: Option<Output>,
-    candidates: Option<Output>,
 }
 
 impl Run {
@@ -114,17 +124,21 @@ impl Run {
         Ok(mission)
     }
 
-    fn outputs(&self) -> Result<Outputs> {
-        Ok(Outputs {
-            trace: Output::create_if(self.trace.as_ref())?,
-            figure: Output::create_if(self.figure.as_ref())?,
-            candidates: Output::create_if(self.candidates.as_ref())?,
-        })
+    fn input(&self) -> (&'static str, &Path) {
+        ("the scenario", &self.scenario)
     }
 
-    /// Writes the files that were asked for; what to print.
-    fn tell(&self, outputs: Outputs, recording: &Recording) -> Result<String> {
-        let Outputs { trace, figure, candidates } = outputs;
+    fn outputs(&self) -> [(&'static str, Option<&Path>); 3] {
+        [
+            ("--trace", self.trace.as_deref()),
+            ("--figure", self.figure.as_deref()),
+            ("--candidates", self.candidates.as_deref()),
+        ]
+    }
+
+    /// Writes the trace and the figures that were asked for; what to print.
+    fn tell(&self, outputs: [Option<Output>; 3], recording: &Recording) -> Result<String> {
+        let [trace, figure, candidates] = outputs;
         let name = self.name();
         let lines = trace::lines(recording);
         // All is drawn before anything is written.
@@ -146,9 +160,11 @@ impl Run {
 }
 
 pub(crate) fn replay(args: &ReplayArgs) -> Result<String> {
+    let [figure] =
+        prepare(&[("the samples", &args.samples)], [("--figure", args.figure.as_deref())])?;
     let replay = Replay::read(&args.samples)?;
-    if let Some(output) = Output::create_if(args.figure.as_ref())? {
-        output.write(&replay.figure()?)?;
+    if let Some(output) = figure {
+        output.write(replay.figure()?)?;
     }
     Ok(match args.format {
         Format::Text => replay.report(),
@@ -159,7 +175,7 @@ pub(crate) fn replay(args: &ReplayArgs) -> Result<String> {
 pub(crate) fn campaign(args: &CampaignArgs) -> Result<String> {
     const ORACLE: usize = 4;
     scenario::check_steps("--steps", args.steps, ORACLE)?;
-    let output = Output::create_if(args.csv.as_ref())?;
+    let [output] = prepare(&[], [("--csv", args.csv.as_deref())])?;
     let campaign = Campaign {
         algorithm: args.algorithm,
         fields: args.fields,
@@ -185,7 +201,7 @@ pub(crate) fn campaign(args: &CampaignArgs) -> Result<String> {
         (summary.report(), summary.csv()?, json(&summary))
     };
     if let Some(output) = output {
-        output.write(&rows)?;
+        output.write(rows)?;
     }
     Ok(match args.format {
         Format::Text => table,

@@ -18,6 +18,7 @@ pub mod mission;
 pub mod names;
 pub mod noisy_campaign;
 pub mod output;
+mod place;
 pub mod player;
 pub mod polygon;
 pub mod random_walk;

@@ -8,7 +8,9 @@ use tempfile::TempDir;
 
 mod campaigns;
 mod flags;
+mod interruption;
 mod missions;
+mod outputs;
 mod samples;
 mod scenarios;
 

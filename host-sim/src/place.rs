@@ -1,0 +1,112 @@
+//! Where a path leads: to a file, there or not yet, or to a stream; and whether two paths lead to the same.
+
+use std::fs::{self, File, Metadata, OpenOptions};
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
+
+/// Symbolic links that a path may lead through, as many as Linux follows.
+const MOST_LINKS: usize = 40;
+
+/// Where the process's own descriptors stand. What looks like a file there may be a stream.
+const DESCRIPTORS: [&str; 2] = ["/proc", "/dev/fd"];
+
+/// Where a path leads in the end.
+#[derive(Clone, Debug)]
+pub(crate) struct Place {
+    /// Absolute and without symbolic links, but for those that name a descriptor.
+    path: PathBuf,
+    /// A pipe or a device: to be written through, as it cannot be replaced.
+    is_stream: bool,
+    /// What the file system calls it by, which all its names share; `None` if nothing is there.
+    node: Option<Node>,
+}
+
+/// A file system's number and the file's number in it.
+type Node = (u64, u64);
+
+impl Place {
+    /// Follows a path, through symbolic links also to where nothing is yet.
+    pub(crate) fn of(path: &Path) -> io::Result<Self> {
+        let mut path = path.to_owned();
+        for _ in 0..MOST_LINKS {
+            let name = path.file_name().ok_or(ErrorKind::InvalidFilename)?.to_owned();
+            let folder = fs::canonicalize(folder(&path))?;
+            path = folder.join(name);
+            let is_stream = match fs::symlink_metadata(&path) {
+                _ if DESCRIPTORS.iter().any(|place| folder.starts_with(place)) => true,
+                Ok(found) if found.is_symlink() => {
+                    path = folder.join(fs::read_link(&path)?);
+                    continue;
+                }
+                Ok(found) => !found.is_file(),
+                Err(error) if error.kind() == ErrorKind::NotFound => false,
+                Err(error) => return Err(error),
+            };
+            return Ok(Self { node: node(fs::metadata(&path)), path, is_stream });
+        }
+        Err(io::Error::other("it leads through too many symbolic links"))
+    }
+
+    /// The path without symbolic links.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The folder that it stands in.
+    pub(crate) fn folder(&self) -> &Path {
+        folder(&self.path)
+    }
+
+    /// Whether it is a pipe or a device.
+    pub(crate) fn is_stream(&self) -> bool {
+        self.is_stream
+    }
+
+    /// Whether both are one, by whatever names.
+    pub(crate) fn is(&self, other: &Self) -> bool {
+        self.path == other.path || (self.node.is_some() && self.node == other.node)
+    }
+
+    /// Opens a stream. A pipe waits for its reader.
+    pub(crate) fn open_stream(&self) -> io::Result<File> {
+        match self.node.and_then(own_stream) {
+            // Opened a second time, a redirected one would begin anew at its start.
+            Some(own) => Ok(own),
+            None => OpenOptions::new().write(true).open(&self.path),
+        }
+    }
+}
+
+fn folder(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    }
+}
+
+#[cfg(unix)]
+fn node(found: io::Result<Metadata>) -> Option<Node> {
+    use std::os::unix::fs::MetadataExt as _;
+    let found = found.ok()?;
+    Some((found.dev(), found.ino()))
+}
+
+#[cfg(not(unix))]
+fn node(_: io::Result<Metadata>) -> Option<Node> {
+    None
+}
+
+/// Standard output or standard error, if that is what stands there.
+#[cfg(unix)]
+fn own_stream(wanted: Node) -> Option<File> {
+    use std::os::fd::AsFd as _;
+    let (stdout, stderr) = (io::stdout(), io::stderr());
+    let copies = [stdout.as_fd(), stderr.as_fd()].map(|own| own.try_clone_to_owned());
+    let mut own = copies.into_iter().flatten().map(File::from);
+    own.find(|own| node(own.metadata()) == Some(wanted))
+}
+
+#[cfg(not(unix))]
+fn own_stream(_: Node) -> Option<File> {
+    None
+}
