@@ -53,7 +53,7 @@ impl<'a> Candidates<'a> {
     }
 
     /// The vertices: the lines through two samples that bound the set, in cyclic order.
-    pub fn bounds(self) -> impl Iterator<Item = Bound> + 'a {
+    pub fn bounds(self) -> impl Iterator<Item = Bound> + Clone + 'a {
         (0..self.edges.len()).filter_map(move |k| self.bound(k))
     }
 
@@ -95,6 +95,15 @@ impl<'a> Candidates<'a> {
     }
 }
 
+/// The vertices of a set of lines whose samples that matter, in cyclic order, are these: what
+/// [`Candidates::bounds`] are for a cell, for a list of any length.
+pub fn bounds(
+    support: impl Iterator<Item = Sample> + Clone,
+) -> impl Iterator<Item = Bound> + Clone {
+    let next = support.clone().cycle().skip(1);
+    support.zip(next).map(|(p, q)| Bound::between(p, q))
+}
+
 /// [`Candidates::certainty`], in one place and with its arguments in registers.
 #[inline(never)]
 fn certainty(edges: &[Edge], samples: &[Sample], q: Site) -> Certainty {
@@ -103,7 +112,7 @@ fn certainty(edges: &[Edge], samples: &[Sample], q: Site) -> Certainty {
 
 /// The range of intercepts between vertices of candidates, metres; `None` when a vertical line lies
 /// among them, or there are none.
-pub(crate) fn intercepts(bounds: impl IntoIterator<Item = Bound>) -> Option<[f64; 2]> {
+pub fn intercepts(bounds: impl IntoIterator<Item = Bound>) -> Option<[f64; 2]> {
     let mut bounds = bounds.into_iter().peekable();
     let rightward = bounds.peek()?.along.x.signum();
     bounds.try_fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], bound| {

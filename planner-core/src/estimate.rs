@@ -11,7 +11,7 @@
 
 use nalgebra::{Matrix2, Point2, Vector2};
 
-use crate::candidates::Candidates;
+use crate::candidates::{Candidates, bounds};
 use crate::lattice::{Site, UNITS_PER_METRE, Vector};
 use crate::line::{Bound, Line};
 use crate::sample::{Label, Sample};
@@ -67,17 +67,21 @@ impl Moments {
     /// turn to the left of it and `M` the integral of `n n^T` from one end of an edge to the other,
     /// an edge adds `p . (u' - u)` to the area, `M p` to the normal and `p^T M p / 2` to the offset.
     pub(crate) fn of(candidates: Candidates<'_>) -> Self {
+        let about = candidates.samples.first().map(|first| first.site);
+        Self::round(about, candidates.support().zip(candidates.bounds()))
+    }
+
+    /// The integral round some edges, each with the vertex after it.
+    fn round(about: Option<Site>, edges: impl Iterator<Item = (Sample, Bound)> + Clone) -> Self {
         let mut moments =
             Self { area: 0.0, normal: Vector2::zeros(), offset: 0.0, about: Point2::origin() };
         let direction = |bound: Bound| float(bound.along).normalize();
-        let (Some(first), Some(last)) = (candidates.samples.first(), candidates.bounds().last())
-        else {
+        let (Some(about), Some((_, last))) = (about, edges.clone().last()) else {
             return moments;
         };
-        let about = first.site;
         moments.about = about.into();
         let mut u = direction(last);
-        for (sample, bound) in candidates.support().zip(candidates.bounds()) {
+        for (sample, bound) in edges {
             let p = float(sample.site - about) * METRE;
             let v = direction(bound);
             let turn = libm::atan2(u.perp(&v), u.dot(&v));
@@ -133,18 +137,30 @@ pub fn centre(candidates: Candidates<'_>) -> Option<Line> {
     Moments::of(candidates).mean()
 }
 
+/// [`centre`] of a cyclic list of samples, of any length. The sums are taken about a site, which had best
+/// be near.
+pub fn centre_of(about: Site, support: impl Iterator<Item = Sample> + Clone) -> Option<Line> {
+    Moments::round(Some(about), support.clone().zip(bounds(support))).mean()
+}
+
 /// The hard-margin separator: midway between the closest points of the two labels' convex hulls.
 ///
 /// The pair is chosen by exact integer conditions, so the line is the exact one, rounded once. Only
 /// samples that still matter to the version space can support it. `O(m^4)` for `m` of them, few as they
 /// are.
 pub fn maximum_margin(candidates: Candidates<'_>) -> Option<Line> {
-    let of = |label: Label| candidates.support().filter(move |s| s.label == label);
-    for a in candidates.support() {
+    maximum_margin_of(candidates.support())
+}
+
+/// [`maximum_margin`] of a list of samples.
+pub fn maximum_margin_of(support: impl Iterator<Item = Sample> + Clone) -> Option<Line> {
+    let all = support.clone();
+    let of = |label: Label| all.clone().filter(move |s| s.label == label);
+    for a in support {
         for q in of(-a.label) {
             // The two are closest, or else a point between `a` and another of its label, and `q`.
             let apart = a.site - q.site;
-            if let Some(line) = midway(candidates, a, q, apart) {
+            if let Some(line) = midway(all.clone(), a, q, apart) {
                 return Some(line);
             }
             for b in of(a.label) {
@@ -152,7 +168,7 @@ pub fn maximum_margin(candidates: Candidates<'_>) -> Option<Line> {
                 let beside = side.dot(apart) <= 0 && side.dot(b.site - q.site) >= 0;
                 let normal = side.left();
                 let normal = if normal.dot(apart) > 0 { normal } else { normal.reversed() };
-                if beside && let Some(line) = midway(candidates, a, q, normal) {
+                if beside && let Some(line) = midway(all.clone(), a, q, normal) {
                     return Some(line);
                 }
             }
@@ -163,11 +179,16 @@ pub fn maximum_margin(candidates: Candidates<'_>) -> Option<Line> {
 
 /// The line halfway between two samples with a normal that points from `q` to `p`, if all others lie
 /// beyond the two.
-fn midway(candidates: Candidates<'_>, p: Sample, q: Sample, normal: Vector) -> Option<Line> {
+fn midway(
+    support: impl Iterator<Item = Sample>,
+    p: Sample,
+    q: Sample,
+    normal: Vector,
+) -> Option<Line> {
     if normal.dot(p.site - q.site) <= 0 {
         return None;
     }
-    for s in candidates.support() {
+    for s in support {
         let beyond = if s.label == p.label { s.site - p.site } else { q.site - s.site };
         if beyond.dot(normal) < 0 {
             return None;

@@ -3,6 +3,7 @@
 use nalgebra::{Point2, Vector2};
 
 use crate::lattice::{Site, UNITS_PER_METRE, Vector};
+use crate::sample::Sample;
 
 /// A line `a x + b z + c = 0` in metres, positive on the +1 side.
 ///
@@ -94,6 +95,12 @@ pub struct Bound {
 }
 
 impl Bound {
+    /// The bound through two samples that are neighbours round a cell.
+    pub fn between(p: Sample, q: Sample) -> Self {
+        let along = if p.label == q.label { q.site - p.site } else { p.site - q.site };
+        Self { through: p.site, along }
+    }
+
     /// Positive when `q` is on the +1 side, negative on the other, zero on the line. Exact.
     pub fn at(&self, q: Site) -> i64 {
         self.along.cross(q - self.through)
