@@ -7,16 +7,15 @@ use nalgebra::{Point2, Vector2};
 use planner_core::area::Area;
 use planner_core::candidates::Certainty;
 use planner_core::estimate;
-use planner_core::lattice::{Site, Vector};
+use planner_core::lattice::{LIMIT, Site, UNITS_PER_METRE, Vector};
 use planner_core::line::Line;
 use planner_core::posterior::Posterior;
 use planner_core::sample::{Label, Reading, Sample};
-use planner_core::version_space::VersionSpace;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
 use crate::legend::mark;
-use crate::mission::{CAPACITY, Table};
+use crate::mission::Table;
 use crate::polygon::Polygon;
 use crate::recording::{LEVEL, Outcome, Recorded, Recording};
 use crate::world;
@@ -33,6 +32,8 @@ const ESTIMATE: RGBColor = RGBColor(0, 120, 80);
 pub struct Figure<'a> {
     /// The title.
     pub title: String,
+    /// What the legend says of the samples, if anything.
+    pub note: Option<String>,
     /// The ground to show.
     pub area: Area,
     /// What is known at the end.
@@ -50,10 +51,10 @@ pub struct Figure<'a> {
 }
 
 /// What is known of the ground.
-#[derive(Clone, Copy)]
 pub enum Ground<'a> {
-    /// All lines that agree with every label: two regions of certainty.
-    Certain(&'a VersionSpace<CAPACITY>),
+    /// All lines that agree with every label: two regions of certainty. The samples that bound the lines, in
+    /// cyclic order.
+    Certain(Vec<Sample>),
     /// A credible set of hypotheses, shaded by probability.
     Credible(&'a Table),
     /// Nothing to show.
@@ -105,7 +106,7 @@ impl<'a> Figure<'a> {
         let (ground, samples) = match &recording.outcome {
             Outcome::Lines(space) => {
                 lines.extend(Named::estimate("centre of the version space", centre));
-                (Ground::Certain(space), space.samples())
+                (Ground::Certain(space.support().collect()), space.samples())
             }
             Outcome::Hypotheses(table) => {
                 lines.extend(Named::estimate("posterior mean", centre));
@@ -115,6 +116,7 @@ impl<'a> Figure<'a> {
         };
         Self {
             title: title.to_owned(),
+            note: None,
             area: mission.config.area,
             ground,
             samples,
@@ -208,8 +210,8 @@ impl<'a> Figure<'a> {
     }
 
     fn draw_ground(&self, chart: &mut Chart) -> Result<()> {
-        match self.ground {
-            Ground::Certain(space) => self.draw_certain(chart, space),
+        match &self.ground {
+            Ground::Certain(support) => self.draw_certain(chart, support),
             Ground::Credible(table) => self.draw_credible(chart, table),
             Ground::Plain => Ok(()),
         }
@@ -240,13 +242,10 @@ impl<'a> Figure<'a> {
         Ok(())
     }
 
-    /// The two regions of certainty: the ground on one side of every bound.
-    fn draw_certain(&self, chart: &mut Chart, space: &VersionSpace<CAPACITY>) -> Result<()> {
+    /// The two regions of certainty.
+    fn draw_certain(&self, chart: &mut Chart, support: &[Sample]) -> Result<()> {
         for label in [Label::Positive, Label::Negative] {
-            let side = f64::from(label.sign());
-            let certain = space.bounds().fold(Polygon::from(self.area), |ground, bound| {
-                ground.clip(&Line::from(bound), side)
-            });
+            let certain = Polygon::certain(self.area, support, label);
             let corners: Vec<_> = certain.0.into_iter().map(xy).collect();
             if corners.len() >= 3 {
                 let fill = colour(label).mix(0.18).filled();
@@ -345,10 +344,13 @@ fn bounding(table: &Table) -> Vec<Named> {
     ends.into_iter().filter_map(named).collect()
 }
 
-/// The smallest area that shows all samples with a margin, for samples without a mission.
+/// The smallest area that shows all samples with a margin, for samples without a mission. Where the lattice
+/// ends there is no margin.
 pub fn area_around(samples: &[Sample]) -> Option<Area> {
+    const END: f64 = (LIMIT - 1) as f64 / UNITS_PER_METRE as f64;
     let places = || samples.iter().map(|s| Point2::<f64>::from(s.site));
     let (min, max) = (places().reduce(|a, b| a.inf(&b))?, places().reduce(|a, b| a.sup(&b))?);
     let margin = Vector2::repeat(0.1 * (max - min).amax());
-    Area::new((min - margin).try_into().ok()?, (max + margin).try_into().ok()?)
+    let corner = |at: Point2<f64>| Site::try_from(at.map(|m| m.clamp(-END, END))).ok();
+    Area::new(corner(min - margin)?, corner(max + margin)?)
 }

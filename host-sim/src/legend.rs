@@ -35,6 +35,9 @@ impl Figure<'_> {
             stroke(left + 12, rows[2], 14, PATH, 2)?;
             text("path with headings; o: no sample", left, rows[2])?;
         }
+        if let Some(note) = &self.note {
+            text(note, left, rows[2])?;
+        }
         if let Ground::Credible(..) = self.ground {
             let corners = [(left, rows[3] - 9), (left + 26, rows[3] + 9)];
             let shade = SHADE.mix(0.5).filled();

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 use std::fs;
+use std::time::{Duration, Instant};
 
 use crate::{folder, prints, refuses};
 
@@ -72,4 +73,106 @@ fn bad_samples_are_refused_by_file_and_line() {
         fs::write(folder.path().join("s.csv"), rows).expect("a file");
         refuses(folder.path(), &["replay", "s.csv", "--figure", "f.svg"], parts);
     }
+}
+
+#[test]
+fn the_line_that_is_named_is_the_one_on_which_the_row_begins() {
+    let folder = folder();
+    let cases: [(&str, &str); 14] = [
+        ("x,z,label\r\n1,2,1\r\nbad,2,1\r\n", "s.csv:3"),
+        ("x,z,label\n\n\n1,2,1\n\nbad,2,1\n", "s.csv:6"),
+        ("x,z,label\r\n\r\n1,2,1\r\n\r\n\r\nbad,2,1\r\n", "s.csv:6"),
+        ("# one\n# two\nx,z,label\n# three\n1,2,1\n# four\n\n# five\nbad,2,1", "s.csv:9"),
+        ("# one\r\n\r\nx,z,label\r\n# two\r\nbad,2,1\r\n", "s.csv:5"),
+        ("x,z,label\r1,2,1\r\rbad,2,1\r", "s.csv:4"),
+        ("x,z,label,note\n1,2,1,\"two\nlines\"\nbad,2,1,\n", "s.csv:4"),
+        ("x,z,label,note\n1,2,1,\nbad,2,1,\"two\nlines\"\n", "s.csv:3"),
+        ("\u{feff}x,z,label\n1,2,1\nbad,2,1\n", "s.csv:3"),
+        ("\u{feff}x,z,label\r\n\r\nbad,2,1\r\n", "s.csv:3"),
+        ("x,z,label\n1,2,1\n  \n", "s.csv:3"),
+        // What no line separates, and the header, are named alike.
+        ("x,z,label\r\n\r\n0,0,1\r\n# a comment\r\n1,1,-1\r\n\r\n2,2,1\r\n", "s.csv:7"),
+        ("# a comment\r\n\r\nx,y,label\r\n", "s.csv:3"),
+        ("\n\nx,z,x,label\n", "s.csv:3"),
+    ];
+    for (rows, place) in cases {
+        fs::write(folder.path().join("s.csv"), rows).expect("a file");
+        refuses(folder.path(), &["replay", "s.csv"], &[&format!("error: {place}: ")]);
+    }
+}
+
+#[test]
+fn a_column_that_comes_twice_is_refused_by_name() {
+    let folder = folder();
+    for (header, name) in
+        [("x,x,z,label", "x"), ("label,x,z, label", "label"), ("x,z,label,z", "z")]
+    {
+        let rows = format!("{header}\n2,2,1,-1\n2,2,8,1\n18,18,16,1\n18,18,5,-1\n");
+        fs::write(folder.path().join("s.csv"), rows).expect("a file");
+        let parts = ["s.csv:1", &format!("the column {name} twice"), "x,z,label once"];
+        refuses(folder.path(), &["replay", "s.csv"], &parts);
+    }
+    // What is not looked at may come as it likes, and in any encoding.
+    let rows = b"note,x,z,label,note\n\xe9,2,1,-1,\n,2,8,1,\n,18,16,1,\n,18,5,-1,\n";
+    fs::write(folder.path().join("s.csv"), rows).expect("a file");
+    prints(folder.path(), &["replay", "s.csv"]);
+}
+
+#[test]
+fn replay_is_quick_with_very_many_rows() {
+    let folder = folder();
+    let count = 200_000_u32;
+    let mut rows = String::from("x,z,label\n");
+    for i in 0..count {
+        // Numbers that fill their ranges evenly, one after the other.
+        let part = |step: u32| f64::from(i.wrapping_mul(step) % 999_983) / 999_983.0;
+        let (x, off) = (100.0 * part(7_919), 0.5 + 40.0 * part(104_729));
+        let off = if i % 2 == 0 { off } else { -off };
+        writeln!(rows, "{x:.4},{:.4},{}", 0.41 * x + 3.5 + off, off.signum()).expect("a string");
+    }
+    fs::write(folder.path().join("s.csv"), &rows).expect("a file");
+    let begun = Instant::now();
+    let args = ["replay", "s.csv", "--format", "json", "--figure", "f.svg"];
+    let record: serde_json::Value =
+        serde_json::from_str(&prints(folder.path(), &args)).expect("JSON");
+    // Quadratic, it takes minutes.
+    assert!(begun.elapsed() < Duration::from_secs(20), "{:?}", begun.elapsed());
+    assert_eq!(record["samples"], count);
+    for name in ["centre", "maximum_margin", "bisector"] {
+        let slope = record["estimates"][name]["slope"].as_f64().expect("a slope");
+        assert!((slope - 0.41).abs() < 0.01, "{name}: {slope}");
+    }
+    // The figure shows some of them, and says so.
+    let svg = fs::read_to_string(folder.path().join("f.svg")).expect("a figure");
+    let bounding = record["matter"].as_u64().expect("a count");
+    assert!(svg.contains(&format!("one in 100 of 200000 samples, all {bounding} that bound")));
+    let marks = svg.matches("<circle").count() + svg.matches("<rect").count();
+    assert!((2_000..2_100).contains(&marks), "{marks}");
+    // The row that no line allows is found as soon.
+    let begun = Instant::now();
+    fs::write(folder.path().join("s.csv"), rows + "50,44,-1\n0,0,-1\n").expect("a file");
+    refuses(folder.path(), &["replay", "s.csv"], &["s.csv:200002:", "no line separates"]);
+    assert!(begun.elapsed() < Duration::from_secs(20), "{:?}", begun.elapsed());
+}
+
+#[test]
+fn any_number_of_samples_may_bound_the_line() {
+    let folder = folder();
+    let mut rows = String::from("x,z,label\n");
+    let half = 1_500_i32;
+    for i in -half..=half {
+        // Corners of a convex arc on the lattice: the second difference of z is one unit in 2^16.
+        let units = f64::from(i * (i + 1) / 2 + half * half);
+        let (x, z) = (f64::from(i) / 65_536.0, units / 65_536.0);
+        writeln!(rows, "{x},{z},1\n{x},{},-1", -z).expect("a string");
+    }
+    fs::write(folder.path().join("s.csv"), rows).expect("a file");
+    let args = ["replay", "s.csv", "--format", "json", "--figure", "f.svg"];
+    let record: serde_json::Value =
+        serde_json::from_str(&prints(folder.path(), &args)).expect("JSON");
+    assert_eq!(
+        (&record["samples"], &record["matter"]),
+        (&(4 * half + 2).into(), &(4 * half + 2).into())
+    );
+    assert!(record["estimates"]["maximum_margin"]["slope"].as_f64().expect("one").abs() < 1e-3);
 }
