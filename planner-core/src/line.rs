@@ -25,6 +25,9 @@ impl Line {
     ///
     /// `None` when one of them is not finite, or `a` and `b` are both zero: no line then.
     pub fn from_coefficients(a: f64, b: f64, c: f64) -> Option<Self> {
+        // Scaled by a power of two no ratio changes, and no product with a coordinate overflows.
+        let (_, exponent) = libm::frexp(a.abs().max(b.abs()));
+        let [a, b, c] = [a, b, c].map(|it| libm::scalbn(it, -exponent));
         let line = Self { a, b, c };
         let norm = line.norm();
         (norm > 0.0 && norm.is_finite() && (c / norm).is_finite()).then_some(line)
@@ -147,6 +150,29 @@ mod tests {
             assert_eq!((line.slope(), line.intercept(), line.angle_deg()), (None, None, 90.0));
             assert!((line.distance(Point2::new(5.0, 3.0)) - sign).abs() < 1e-15);
         }
+    }
+
+    #[test]
+    fn coefficients_of_any_size_make_the_same_line() {
+        let point = Point2::new(5.0, 3.0);
+        let plain = Line::from_coefficients(-0.41, 1.0, -3.5).unwrap();
+        for exponent in [-1074 + 60, -600, -1, 1, 600, 1021] {
+            let [a, b, c] = [-0.41, 1.0, -3.5].map(|it| libm::scalbn(it, exponent));
+            let line = Line::from_coefficients(a, b, c).unwrap();
+            let all = |line: &Line| {
+                let [a, b, c] = line.coefficients();
+                let (slope, intercept) = (line.slope().unwrap(), line.intercept().unwrap());
+                [a, b, c, slope, intercept, line.distance(point)].map(f64::to_bits)
+            };
+            assert_eq!(all(&line), all(&plain), "2^{exponent}");
+        }
+        let diagonal = Line::from_coefficients(1e308, -1e308, 0.0).unwrap();
+        assert!((diagonal.distance(point) - 2.0 / core::f64::consts::SQRT_2).abs() < 1e-15);
+        let upright = Line::from_coefficients(f64::MAX, 0.0, -f64::MAX).unwrap();
+        assert!((upright.distance(point) - 4.0).abs() < 1e-15);
+        assert!(Line::from_slope(1e308, 3.5).unwrap().distance(point).is_finite());
+        // Too far off to be told.
+        assert!(Line::from_coefficients(1e-300, 0.0, 1e300).is_none());
     }
 
     #[test]
