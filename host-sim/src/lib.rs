@@ -31,5 +31,6 @@ mod sample_file;
 pub mod scenario;
 mod separation;
 mod shortest_pairs;
+mod strict;
 pub mod trace;
 pub mod world;

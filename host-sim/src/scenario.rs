@@ -20,6 +20,7 @@ use serde::Deserialize;
 
 use crate::mission::{Algorithm, CAPACITY, Mission};
 use crate::names::{CrossingName, FollowingName, PolicyName, PriorName};
+use crate::strict::{Numbers, Table};
 use crate::world::{self, Extent, NoiseModel};
 
 /// The paper's noiseless example (Section V).
@@ -49,13 +50,13 @@ struct File {
     policy: PolicyName,
     #[serde(default)]
     prior: PriorName,
-    noise: Option<NoiseTable>,
+    noise: Option<Table<NoiseTable>>,
     #[serde(default)]
-    area: AreaTable,
+    area: Table<AreaTable>,
     #[serde(default)]
-    start: StartTable,
-    truth: TruthTable,
-    oracle: Vec<SampleTable>,
+    start: Table<StartTable>,
+    truth: Table<TruthTable>,
+    oracle: Vec<Table<SampleTable>>,
 }
 
 mod defaults {
@@ -86,13 +87,13 @@ struct NoiseTable {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct AreaTable {
-    x: [f64; 2],
-    z: [f64; 2],
+    x: Numbers<2>,
+    z: Numbers<2>,
 }
 
 impl Default for AreaTable {
     fn default() -> Self {
-        Self { x: [0.0, 20.0], z: [0.0, 20.0] }
+        Self { x: Numbers([0.0, 20.0]), z: Numbers([0.0, 20.0]) }
     }
 }
 
@@ -110,7 +111,7 @@ struct StartTable {
 struct TruthTable {
     slope: Option<f64>,
     intercept: Option<f64>,
-    line: Option<[f64; 3]>,
+    line: Option<Numbers<3>>,
 }
 
 #[derive(Deserialize)]
@@ -165,9 +166,16 @@ fn wrong<T>(field: &str, found: impl Display, expected: impl Display) -> Result<
 /// Whether this many steps fit beside the oracle's samples.
 ///
 /// # Errors
-/// Names `field`, the number and the limit.
+/// Names `field` or the oracle, the number and the limit.
 pub fn check_steps(field: &str, steps: u32, oracle: usize) -> Result<()> {
     let most = CAPACITY.saturating_sub(oracle);
+    if most == 0 {
+        let expected = format!(
+            "at most {}: a planner holds {CAPACITY} samples, and so many leave room for one step",
+            CAPACITY - 1
+        );
+        return wrong("oracle", format!("{oracle} points"), expected);
+    }
     if steps == 0 || steps as usize > most {
         let room = format!(
             "1 to {most} (the planner holds {CAPACITY} samples, {oracle} of them the oracle's)"
@@ -193,21 +201,21 @@ fn mission(file: &File, overrides: Overrides) -> Result<Mission> {
     let Some(varrho) = Varrho::new(file.varrho) else {
         return wrong("varrho", file.varrho, "a weight in [0, 1), to six decimal places");
     };
-    let ([x0, x1], [z0, z1]) = (file.area.x, file.area.z);
+    let AreaTable { x: Numbers([x0, x1]), z: Numbers([z0, z1]) } = file.area.0;
     let corners = (site("area", x0, z0)?, site("area", x1, z1)?);
     let Some(area) = Area::new(corners.0, corners.1) else {
         let found = format!("x = [{x0}, {x1}], z = [{z0}, {z1}]");
         return wrong("area", found, "each range from smaller to larger");
     };
-    let truth = truth(&file.truth)?;
+    let truth = truth(&file.truth.0)?;
     let space = oracle(&file.oracle, area, &truth)?;
     let bounding = space.cell().edges().len();
     if bounding > MOST_BOUNDING {
         let found = format!("{bounding} points that bound the line");
         return wrong("oracle", found, format!("at most {MOST_BOUNDING} that do"));
     }
-    let start = start(&file.start, &space, area)?;
-    let noise = file.noise.as_ref().map(noise).transpose()?;
+    let start = start(&file.start.0, &space, area)?;
+    let noise = file.noise.as_ref().map(|table| noise(&table.0)).transpose()?;
     let algorithm = overrides.algorithm.unwrap_or(file.algorithm);
     let following = file.following.map_or(algorithm.following(), Following::from);
     let crossing = file.crossing.into();
@@ -264,14 +272,15 @@ pub fn trusted(field: &str, radius: f64) -> Result<f64> {
 
 fn truth(table: &TruthTable) -> Result<Line> {
     let expected = "either { slope, intercept } or { line = [A, B, C] }";
-    let line = match (table.slope, table.intercept, table.line) {
+    let coefficients = table.line.as_ref().map(|numbers| numbers.0);
+    let line = match (table.slope, table.intercept, coefficients) {
         (Some(slope), Some(intercept), None) => Line::from_slope(slope, intercept),
         (None, None, Some([a, b, c])) => Line::from_coefficients(a, b, c),
         (None, None, None) => return wrong("truth", "neither", expected),
         (_, _, Some(_)) => return wrong("truth", "both", expected),
         _ => return wrong("truth", "only one of slope and intercept", expected),
     };
-    let found = match (table.slope, table.intercept, table.line) {
+    let found = match (table.slope, table.intercept, coefficients) {
         (Some(slope), Some(intercept), _) => format!("slope {slope}, intercept {intercept}"),
         (_, _, line) => format!("{:?}", line.unwrap_or_default()),
     };
@@ -279,9 +288,13 @@ fn truth(table: &TruthTable) -> Result<Line> {
     line.map_or_else(|| wrong("truth", found, finite), Ok)
 }
 
-fn oracle(tables: &[SampleTable], area: Area, truth: &Line) -> Result<VersionSpace<CAPACITY>> {
+fn oracle(
+    tables: &[Table<SampleTable>],
+    area: Area,
+    truth: &Line,
+) -> Result<VersionSpace<CAPACITY>> {
     let mut samples = Vec::with_capacity(tables.len());
-    for (i, table) in tables.iter().enumerate() {
+    for (i, Table(table)) in tables.iter().enumerate() {
         let field = format!("oracle[{i}]");
         let label = match table.label {
             1 => Label::Positive,

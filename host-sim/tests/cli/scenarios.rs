@@ -121,3 +121,74 @@ fn an_oracle_may_have_many_points() {
     fs::write(folder.path().join("bad.toml"), oracle(&mut facing)).expect("a file");
     refuses(folder.path(), &["run", "bad.toml"], &["oracle", "bound the line", "at most 15"]);
 }
+
+#[test]
+fn shapes_are_taken_literally() {
+    let folder = folder();
+    let area = "area = { x = [0.0, 20.0], z = [0.0, 20.0] }";
+    let start = "start = { heading = 0.0 }";
+    let truth = "truth = { slope = 0.41, intercept = 3.5 }";
+    let point = "{ x = 2.0, z = 8.0, label = 1 }";
+    let two = "an array of 2 numbers";
+    let cases: [(&str, &str, &[&str]); 10] = [
+        (area, "area = { x = [0, 20, 30], z = [0, 20] }", &[":7: ", "length 3", two]),
+        (area, "area = { x = [0, 20], z = [0] }", &[":7: ", "length 1", two]),
+        (area, "area = [[0, 20], [0, 20]]", &[":7: ", "expected a table"]),
+        (area, "area = { x = { from = 0, to = 20 }, z = [0, 20] }", &[":7: ", two]),
+        (start, "start = [1, 2]", &[":8: ", "expected a table"]),
+        (truth, "truth = [0.41, 3.5]", &[":9: ", "expected a table"]),
+        (truth, "truth = { line = [1, 2, 3, 4] }", &[":9: ", "length 4", "an array of 3 numbers"]),
+        (truth, "truth = { line = [1, 2] }", &[":9: ", "length 2", "an array of 3 numbers"]),
+        (truth, "noise = [0.7]\ntruth = { slope = 0.41, intercept = 3.5 }", &[":9: ", "a table"]),
+        (point, "[2.0, 8.0, 1]", &[":12: ", "expected a table"]),
+    ];
+    for (good, bad, parts) in cases {
+        assert!(GOOD.contains(good), "{good}");
+        fs::write(folder.path().join("bad.toml"), GOOD.replace(good, bad)).expect("a file");
+        refuses(folder.path(), &["run", "bad.toml"], &[&["bad.toml"], parts].concat());
+    }
+}
+
+#[test]
+fn a_line_may_have_coefficients_of_any_size() {
+    let folder = folder();
+    let slope = "slope = 0.41, intercept = 3.5";
+    let trace = |line: &str| {
+        fs::write(folder.path().join("m.toml"), GOOD.replace(slope, line)).expect("a file");
+        prints(folder.path(), &["run", "m.toml", "--format", "json"])
+    };
+    // The same up to a power of two: the same to the last bit.
+    let large = 2.0_f64.powi(1022);
+    let line = format!("line = [{:e}, {large:e}, {:e}]", -0.5 * large, -2.5 * large);
+    assert_eq!(trace(&line), trace("line = [-0.5, 1, -2.5]"));
+    let bad = GOOD.replace(slope, "line = [1e308, -1e308, 0]");
+    fs::write(folder.path().join("bad.toml"), bad).expect("a file");
+    let parts = ["oracle[0].label", "found -1", "expected 1, as the truth"];
+    refuses(folder.path(), &["run", "bad.toml"], &parts);
+}
+
+#[test]
+fn so_many_oracle_points_that_no_step_is_left_are_refused_plainly() {
+    let folder = folder();
+    let (before, _) = GOOD.split_once("oracle = [").expect("an oracle");
+    for (count, message) in [
+        (67, "steps: found 10, expected 1 to 1 (the planner holds 68 samples, 67 of them"),
+        (68, "oracle: found 68 points, expected at most 67: a planner holds 68 samples"),
+        (69, "oracle: found 69 points, expected at most 67: a planner holds 68 samples"),
+    ] {
+        let points = (0..count).map(|i| {
+            let x = f64::from(i) / 4.0;
+            let (z, label) = if i % 2 == 0 { (0.1 * x, -1) } else { (18.0, 1) };
+            format!("{{ x = {x}, z = {z}, label = {label} }}")
+        });
+        let text = format!("{before}oracle = [{}]\n", points.collect::<Vec<_>>().join(", "));
+        fs::write(folder.path().join("many.toml"), text).expect("a file");
+        refuses(folder.path(), &["run", "many.toml"], &["many.toml", message]);
+        if count > 67 {
+            let args = ["run", "many.toml", "--steps", "3"];
+            refuses(folder.path(), &args, &["oracle", "at most 67", "room for one step"]);
+        } else {
+            prints(folder.path(), &["run", "many.toml", "--steps", "1"]);
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! Shapes of values in scenario files, taken literally. By itself serde takes an array for a table, its fields
+//! in order, and of an array with too many elements the first.
+
+use std::fmt;
+use std::marker::PhantomData;
+
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+
+/// A table.
+#[derive(Default)]
+pub(crate) struct Table<T>(pub(crate) T);
+
+/// An array of this many numbers.
+pub(crate) struct Numbers<const N: usize>(pub(crate) [f64; N]);
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for Table<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(TableVisitor(PhantomData)).map(Self)
+    }
+}
+
+struct TableVisitor<T>(PhantomData<T>);
+
+impl<'de, T: Deserialize<'de>> Visitor<'de> for TableVisitor<T> {
+    type Value = T;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("a table")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, fields: A) -> Result<T, A::Error> {
+        T::deserialize(MapAccessDeserializer::new(fields))
+    }
+}
+
+impl<'de, const N: usize> Deserialize<'de> for Numbers<N> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_seq(NumbersVisitor).map(Self)
+    }
+}
+
+struct NumbersVisitor<const N: usize>;
+
+impl<'de, const N: usize> Visitor<'de> for NumbersVisitor<N> {
+    type Value = [f64; N];
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "an array of {N} numbers")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut elements: A) -> Result<[f64; N], A::Error> {
+        let mut numbers = [0.0; N];
+        for (i, number) in numbers.iter_mut().enumerate() {
+            *number = elements.next_element()?.ok_or_else(|| Error::invalid_length(i, &self))?;
+        }
+        let mut count = N;
+        while elements.next_element::<IgnoredAny>()?.is_some() {
+            count += 1;
+        }
+        if count > N { Err(Error::invalid_length(count, &self)) } else { Ok(numbers) }
+    }
+}
