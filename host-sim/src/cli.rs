@@ -140,24 +140,24 @@ pub(crate) struct CampaignArgs {
     /// Who plans
     #[arg(long, value_enum, default_value_t = Algorithm::Cfc)]
     pub(crate) algorithm: Algorithm,
-    /// How P1 looks for the opposite label
-    #[arg(long, value_enum, default_value_t)]
-    pub(crate) crossing: CrossingName,
-    /// How P2 follows the boundary [default: along-bisector; for scc anyhow]
+    /// How P1 looks for the opposite label (cfc, scc) [default: anyhow]
+    #[arg(long, value_enum)]
+    pub(crate) crossing: Option<CrossingName>,
+    /// How P2 follows the boundary (cfc, scc) [default: along-bisector; for scc anyhow]
     #[arg(long, value_enum)]
     pub(crate) following: Option<FollowingName>,
-    /// Labels are true with this probability [default: 0.7 for scc, 1 else]
+    /// Labels are true with this probability (scc, random) [default: 0.7 for scc, 1 else]
     #[arg(long)]
     pub(crate) p: Option<f64>,
-    /// Within this distance of the oracle's points labels are certain, metres
-    #[arg(long, default_value_t = 0.0)]
-    pub(crate) trusted_radius: f64,
-    /// How hypotheses choose an action together (scc)
-    #[arg(long, value_enum, default_value_t)]
-    pub(crate) policy: PolicyName,
-    /// How hypotheses are weighed in that (scc)
-    #[arg(long, value_enum, default_value_t)]
-    pub(crate) prior: PriorName,
+    /// Within this distance of the oracle's points labels are certain, metres (where p is below 1) [default: 0]
+    #[arg(long)]
+    pub(crate) trusted_radius: Option<f64>,
+    /// How hypotheses choose an action together (scc) [default: mixture-of-own]
+    #[arg(long, value_enum)]
+    pub(crate) policy: Option<PolicyName>,
+    /// How hypotheses are weighed in that (scc) [default: area]
+    #[arg(long, value_enum)]
+    pub(crate) prior: Option<PriorName>,
     /// Write a row for each field and mark here
     #[arg(long, value_name = "FILE")]
     pub(crate) csv: Option<PathBuf>,

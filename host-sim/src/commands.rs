@@ -4,6 +4,8 @@ use std::path::Path;
 use std::{env, fs};
 
 use anyhow::{Context as _, Result, bail};
+use clap::ValueEnum as _;
+use clap::builder::PossibleValue;
 use planner_core::wire::LabelSource;
 
 use crate::campaign::Campaign;
@@ -175,24 +177,23 @@ pub(crate) fn replay(args: &ReplayArgs) -> Result<String> {
 pub(crate) fn campaign(args: &CampaignArgs) -> Result<String> {
     const ORACLE: usize = 4;
     scenario::check_steps("--steps", args.steps, ORACLE)?;
+    let p = args.p.unwrap_or(if args.algorithm == Algorithm::Scc { 0.7 } else { 1.0 });
+    let p = scenario::probability("--p", p)?;
+    args.check_meanings(p)?;
+    let radius = args.trusted_radius.unwrap_or_default();
+    let trusted_radius = scenario::trusted("--trusted-radius", radius)?;
     let [output] = prepare(&[], [("--csv", args.csv.as_deref())])?;
     let campaign = Campaign {
         algorithm: args.algorithm,
         fields: args.fields,
         steps: args.steps,
         seed: args.seed,
-        crossing: args.crossing.into(),
+        crossing: args.crossing.unwrap_or_default().into(),
         following: args.following.map_or(args.algorithm.following(), Into::into),
     };
-    let p = args.p.unwrap_or(if args.algorithm == Algorithm::Scc { 0.7 } else { 1.0 });
-    let p = scenario::probability("--p", p)?;
-    let trusted_radius = scenario::trusted("--trusted-radius", args.trusted_radius)?;
-    let noisy = args.algorithm == Algorithm::Scc || p < 1.0;
-    if noisy && args.algorithm == Algorithm::Cfc {
-        bail!("--p: found {p}, expected 1 with --algorithm cfc, which takes labels to be true");
-    }
-    let (table, rows, record) = if noisy {
-        let (policy, prior) = (args.policy.into(), args.prior.into());
+    let (table, rows, record) = if args.algorithm == Algorithm::Scc || p < 1.0 {
+        let policy = args.policy.unwrap_or_default().into();
+        let prior = args.prior.unwrap_or_default().into();
         let noisy = NoisyCampaign { fields: campaign, p, trusted_radius, policy, prior };
         let summary = noisy.run()?;
         (summary.report(), summary.csv()?, json(&summary))
@@ -207,4 +208,34 @@ pub(crate) fn campaign(args: &CampaignArgs) -> Result<String> {
         Format::Text => table,
         Format::Json => record,
     })
+}
+
+impl CampaignArgs {
+    /// Whether every flag that was given has a meaning for the algorithm. `p` is how often labels are true.
+    fn check_meanings(&self, p: f64) -> Result<()> {
+        if p < 1.0 && self.algorithm == Algorithm::Cfc {
+            bail!("--p: found {p}, expected 1 with --algorithm cfc, which takes labels to be true");
+        }
+        let plans = self.algorithm != Algorithm::Random;
+        let weighs = self.algorithm == Algorithm::Scc;
+        for (flag, is_given, has_meaning, meant) in [
+            ("--crossing", self.crossing.is_some(), plans, "--algorithm cfc or scc"),
+            ("--following", self.following.is_some(), plans, "--algorithm cfc or scc"),
+            ("--policy", self.policy.is_some(), weighs, "--algorithm scc"),
+            ("--prior", self.prior.is_some(), weighs, "--algorithm scc"),
+            (
+                "--trusted-radius",
+                self.trusted_radius.is_some(),
+                p < 1.0,
+                "labels that can be wrong: --algorithm scc or random, --p below 1",
+            ),
+        ] {
+            if is_given && !has_meaning {
+                let algorithm = self.algorithm.to_possible_value();
+                let algorithm = algorithm.as_ref().map_or("", PossibleValue::get_name);
+                bail!("{flag}: found with --algorithm {algorithm}, expected with {meant}");
+            }
+        }
+        Ok(())
+    }
 }

@@ -28,10 +28,15 @@ impl FromStr for Faults {
 
     fn from_str(text: &str) -> Result<Self> {
         let mut faults = Self::default();
+        let mut named = Vec::new();
         for part in text.split(',') {
             let (name, value) = part
                 .split_once('=')
                 .ok_or_else(|| anyhow!("{part:?}: expected name=value, such as drop=0.1"))?;
+            if named.contains(&name) {
+                bail!("{name}: found twice, expected once");
+            }
+            named.push(name);
             let place = match name {
                 "drop" => &mut faults.drop,
                 "cut" => &mut faults.cut,
@@ -114,6 +119,8 @@ mod tests {
             ("cut=x", "cut"),
             ("delay=20", "delay"),
             ("lose=0.1", "lose"),
+            ("drop=0.1,cut=0.1,drop=0.2", "drop: found twice"),
+            ("delay=1ms,delay=1ms", "delay: found twice"),
             ("", "name=value"),
         ] {
             let error = text.parse::<Faults>().unwrap_err().to_string();

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::fs;
 
-use crate::{GOOD, folder, refuses};
+use crate::{GOOD, folder, prints, refuses};
 
 #[test]
 fn bad_flags_and_places_are_refused() {
@@ -60,5 +60,45 @@ fn a_chip_that_cannot_be_is_refused() {
     ];
     for (args, parts) in cases {
         refuses(folder.path(), &[&["hil"], args].concat(), parts);
+    }
+}
+
+#[test]
+fn a_repeated_fault_is_refused() {
+    let folder = folder();
+    fs::write(folder.path().join("m.toml"), GOOD).expect("a file");
+    let args = ["hil", "m.toml", "--emulator", "--fault", "drop=0.1,cut=0.1,drop=0.2"];
+    refuses(folder.path(), &args, &["--fault", "drop: found twice, expected once"]);
+}
+
+#[test]
+fn a_flag_that_an_algorithm_ignores_is_refused() {
+    let folder = folder();
+    let radius = ["--trusted-radius", "0.5"];
+    let cases: [(&[&str], &[&str], &str); 9] = [
+        (&[], &["--policy", "joint"], "--algorithm scc"),
+        (&[], &["--prior", "area"], "--algorithm scc"),
+        (&[], &radius, "labels that can be wrong"),
+        (&["--algorithm", "scc", "--p", "1"], &radius, "--p below 1"),
+        (&["--algorithm", "random"], &radius, "--p below 1"),
+        (&["--algorithm", "random"], &["--crossing", "anyhow"], "--algorithm cfc or scc"),
+        (&["--algorithm", "random"], &["--following", "anyhow"], "--algorithm cfc or scc"),
+        (&["--algorithm", "random", "--p", "0.7"], &["--policy", "joint"], "--algorithm scc"),
+        (&["--algorithm", "random", "--p", "0.7"], &["--prior", "area"], "--algorithm scc"),
+    ];
+    for (who, flag, meant) in cases {
+        let args = [&["campaign", "--fields", "2", "--csv", "c.csv"], who, flag].concat();
+        refuses(folder.path(), &args, &[flag[0], "found with --algorithm", meant]);
+    }
+    // Where they have a meaning they are taken.
+    let quick = ["campaign", "--fields", "2", "--steps", "3"];
+    let cases: [&[&str]; 4] = [
+        &["--crossing", "along-oracle", "--following", "anyhow", "--p", "1"],
+        &["--algorithm", "scc", "--crossing", "along-oracle", "--following", "anyhow"],
+        &["--algorithm", "scc", "--policy", "joint", "--prior", "sequences", radius[0], radius[1]],
+        &["--algorithm", "random", "--p", "0.7", radius[0], radius[1]],
+    ];
+    for flags in cases {
+        prints(folder.path(), &[&quick[..], flags].concat());
     }
 }
