@@ -244,13 +244,15 @@ impl Summary {
         for row in &self.rows {
             let each = row.bits / row.labels as f64;
             let Spread { median, p90, worst } = row.mean_deg;
+            // Of nothing there is no share.
+            let share = (self.limit > 0.0).then(|| 100.0 * each / self.limit);
             writeln!(
                 text,
-                "{:>6} {:>8} {:>7.3} {each:>10.4} {:>8.1}% {:>11.1} {:>8.4} {median:>8.3} {p90:>8.3} {worst:>8.3} {:>7.1}",
+                "{:>6} {:>8} {:>7.3} {each:>10.4} {:>9} {:>11.1} {:>8.4} {median:>8.3} {p90:>8.3} {worst:>8.3} {:>7.1}",
                 row.labels,
                 row.missions,
                 row.bits,
-                100.0 * each / self.limit,
+                share.map_or("-".into(), |share| format!("{share:.1}%")),
                 row.hypotheses,
                 row.pruned_mass,
                 row.control_cost,

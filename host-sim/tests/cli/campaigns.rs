@@ -23,3 +23,20 @@ fn a_campaign_prints_tables_and_writes_rows() {
     let summary: serde_json::Value = serde_json::from_str(&json).expect("JSON");
     assert_eq!((&summary["fields"], &summary["algorithm"]), (&5.into(), &"random".into()));
 }
+
+#[test]
+fn of_labels_that_tell_nothing_there_is_no_share() {
+    let folder = folder();
+    let coin = ["campaign", "--fields", "2", "--steps", "5", "--algorithm", "scc", "--p", "0.5"];
+    let table = prints(folder.path(), &coin);
+    let row = table.lines().find(|line| line.trim_start().starts_with("5 ")).expect("a row");
+    assert_eq!(row.split_whitespace().nth(4), Some("-"), "{table}");
+    assert!(!table.contains("inf") && !table.contains("NaN"), "{table}");
+    let record = prints(folder.path(), &[&coin[..], &["--format", "json"]].concat());
+    let record: serde_json::Value = serde_json::from_str(&record).expect("JSON");
+    assert_eq!(record["limit"], 0.0);
+    // Where labels tell something it is as it was.
+    let table = prints(folder.path(), &[&coin[..8], &["0.9"]].concat());
+    let row = table.lines().find(|line| line.trim_start().starts_with("5 ")).expect("a row");
+    assert!(row.split_whitespace().nth(4).is_some_and(|share| share.ends_with('%')), "{table}");
+}
