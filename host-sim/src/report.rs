@@ -28,13 +28,22 @@ pub fn range(intercept: Option<[f64; 2]>) -> String {
     intercept.map_or("unbounded".into(), |[low, high]| format!("{low:.3} to {high:.3}"))
 }
 
-/// A line as text: slope, intercept and angle.
+/// A line as text, with its angle: `z` by `x`, or, where it is steep, `x` by `z`.
 pub fn line(line: &Line) -> String {
-    if let (Some(slope), Some(intercept)) = (line.slope(), line.intercept()) {
-        return format!("z = {slope:.4} x {intercept:+.4}   ({:.2} deg)", line.angle_deg());
+    /// Beyond this slope the intercept says little.
+    const STEEP: f64 = 10.0;
+    let ([a, b, c], angle) = (line.coefficients(), line.angle_deg());
+    match (line.slope(), line.intercept()) {
+        (Some(slope), Some(intercept)) if slope.abs() <= STEEP => {
+            format!("z = {slope:.4} x {intercept:+.4}   ({angle:.2} deg)")
+        }
+        (None, _) => format!("x = {:.4}   (vertical)", -c / a),
+        _ => {
+            let lean = format!("{:+.4} z", -b / a);
+            let lean = if lean.ends_with("0.0000 z") { String::new() } else { format!(" {lean}") };
+            format!("x = {:.4}{lean}   ({angle:.2} deg)", -c / a)
+        }
     }
-    let [a, _, c] = line.coefficients();
-    format!("x = {:.4}   (vertical)", -c / a)
 }
 
 /// Names and lines of a mission's estimates, the recommended one first.

@@ -176,3 +176,25 @@ fn any_number_of_samples_may_bound_the_line() {
     );
     assert!(record["estimates"]["maximum_margin"]["slope"].as_f64().expect("one").abs() < 1e-3);
 }
+
+#[test]
+fn a_steep_line_is_told_by_where_it_is() {
+    let folder = folder();
+    // Columns of samples that lean by as much as is said, +1 on the right.
+    for (lean, centre) in [
+        (0.0, "x = 9.2500   (vertical)"),
+        (0.000_61, "x = 9.2500 +0.0006 z   (89.97 deg)"),
+        (-0.099, "x = 9.2500 -0.0990 z   (-84.35 deg)"),
+        (0.125, "z = 8.0000 x -74.0000   (82.87 deg)"),
+    ] {
+        let mut rows = String::from("x,z,label\n");
+        for z in [0.0, 10.0] {
+            let x = 9.25 + lean * z;
+            writeln!(rows, "{},{z},-1\n{},{z},1", x - 0.5, x + 0.5).expect("a string");
+        }
+        fs::write(folder.path().join("s.csv"), rows).expect("a file");
+        let words = prints(folder.path(), &["replay", "s.csv"]);
+        let margin = words.lines().find(|line| line.starts_with("maximum margin")).expect("one");
+        assert_eq!(margin["maximum margin".len()..].trim(), centre);
+    }
+}
