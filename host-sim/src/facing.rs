@@ -100,16 +100,27 @@ impl Facing {
     }
 
     /// A direction from the origin to the point of the polygon nearest to it.
-    pub(crate) fn widest(&self) -> Vector {
-        let corners = self.differences.iter().map(|pair| pair.apart());
+    pub(crate) fn widest(&self) -> [i64; 2] {
+        let corners = self.differences.iter().map(|pair| wide(pair.apart()));
         let next = corners.clone().cycle().skip(1);
         let beside = corners.clone().zip(next).find_map(|(v, w)| {
-            let edge = Vector { x: w.x - v.x, z: w.z - v.z };
-            let faces = edge.cross(v) > 0 && edge.dot(v) < 0 && edge.dot(w) > 0;
-            faces.then(|| edge.left())
+            let edge = [w[0] - v[0], w[1] - v[1]];
+            let left = [-edge[1], edge[0]];
+            let faces = dot(left, v) > 0 && dot(edge, v) < 0 && dot(edge, w) > 0;
+            faces.then_some(left)
         });
-        beside.or_else(|| corners.min_by_key(|v| v.dot(*v))).unwrap_or_default()
+        beside.or_else(|| corners.min_by_key(|v| dot(*v, *v))).unwrap_or_default()
     }
+}
+
+/// A vector with room for differences of differences.
+pub(crate) fn wide(v: Vector) -> [i64; 2] {
+    [v.x().into(), v.z().into()]
+}
+
+/// The scalar product.
+pub(crate) fn dot(v: [i64; 2], w: [i64; 2]) -> i64 {
+    v[0] * w[0] + v[1] * w[1]
 }
 
 /// The corners of half of the polygon of differences: on along a chain of each hull, the negative one's read

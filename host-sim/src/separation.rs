@@ -5,12 +5,12 @@
 use planner_core::candidates;
 use planner_core::direction::Arc;
 use planner_core::estimate;
-use planner_core::lattice::{Site, Vector, orient};
+use planner_core::lattice::{Site, orient};
 use planner_core::line::{Bound, Line};
 use planner_core::sample::{Label, Sample};
 use planner_core::version_space::NoVersionSpace;
 
-use crate::facing::Facing;
+use crate::facing::{Facing, dot, wide};
 use crate::hull::Row;
 
 /// All lines that separate a record: a version space of any size.
@@ -116,8 +116,8 @@ fn in_sequence(samples: &[Sample], mut cycle: Vec<Row>) -> Vec<Sample> {
 }
 
 /// Those of some samples that the widest strip between the labels touches, which lies across a direction.
-fn touched(support: &[Sample], across: Vector) -> Vec<Sample> {
-    let height = |s: &Sample| across.dot(s.site - support[0].site);
+fn touched(support: &[Sample], across: [i64; 2]) -> Vec<Sample> {
+    let height = |s: &Sample| dot(across, wide(s.site - support[0].site));
     let of = |label: Label| support.iter().filter(move |s| s.label == label).map(height);
     let (top, bottom) = (of(Label::Positive).min(), of(Label::Negative).max());
     let touches =
