@@ -47,6 +47,8 @@ struct Step {
     intercept: Option<[f64; 2]>,
     bits: f64,
     examined: u32,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    proven: Option<bool>,
     #[serde(flatten)]
     noisy: Option<NoisyRecord>,
 }
@@ -185,6 +187,7 @@ fn step(number: usize, recorded: &Recorded) -> Step {
         intercept: recorded.intercept,
         bits: recorded.bits,
         examined: motion.examined,
+        proven: (!motion.proven).then_some(false),
         noisy: recorded.noisy.map(|noisy| NoisyRecord {
             trusted: noisy.trusted,
             hypotheses: noisy.hypotheses,
