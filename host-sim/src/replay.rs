@@ -46,7 +46,18 @@ impl Replay {
     /// Names the file and the line, what was found and what was expected; for samples that no line
     /// separates, the first line of which that is true.
     pub fn read(path: &Path) -> Result<Self> {
-        let recorded = SampleFile::read(path)?;
+        Self::of(SampleFile::read(path)?)
+    }
+
+    /// As [`read`](Self::read), from the text of the file called `name`.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn parse(name: &str, text: &[u8]) -> Result<Self> {
+        Self::of(SampleFile::parse(name, text)?)
+    }
+
+    fn of(recorded: SampleFile) -> Result<Self> {
         let rows = in_order(&recorded.samples);
         let lines = Separation::of(&recorded.samples, &rows).map_err(|why| match why {
             NoVersionSpace::NotSeparable(index) => anyhow!(

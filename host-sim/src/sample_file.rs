@@ -28,13 +28,21 @@ impl SampleFile {
         let name = path.display().to_string();
         let text = fs::read(path)
             .map_err(|error| anyhow!("{name}: expected a readable CSV file: {error}"))?;
+        Self::parse(&name, &text)
+    }
+
+    /// As [`read`](Self::read), from the text of the file called `name`.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub(crate) fn parse(name: &str, text: &[u8]) -> Result<Self> {
         let mut rows = csv::ReaderBuilder::new()
             .has_headers(false)
             .flexible(true)
             .trim(csv::Trim::All)
             .comment(Some(COMMENT))
-            .from_reader(&text[..]);
-        let mut lines = Lines::of(&text);
+            .from_reader(text);
+        let mut lines = Lines::of(text);
         let mut row = ByteRecord::new();
         let mut next = |row: &mut ByteRecord| -> Result<Option<usize>> {
             let there = rows.read_byte_record(row).map_err(|error| anyhow!("{name}: {error}"))?;
@@ -42,7 +50,7 @@ impl SampleFile {
         };
         let line = next(&mut row)?.unwrap_or(1);
         let columns = columns(&row).map_err(|error| anyhow!("{name}:{line}: {error}"))?;
-        let mut all = Self { name: name.clone(), samples: Vec::new(), lines: Vec::new() };
+        let mut all = Self { name: name.to_owned(), samples: Vec::new(), lines: Vec::new() };
         while let Some(line) = next(&mut row)? {
             let sample =
                 sample(&row, columns).map_err(|error| anyhow!("{name}:{line}: {error}"))?;

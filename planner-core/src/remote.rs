@@ -26,6 +26,13 @@ pub struct Prepared<L> {
     room: Room,
 }
 
+impl<L> Prepared<L> {
+    /// The planner.
+    pub const fn planner(&mut self) -> &mut L {
+        &mut self.planner
+    }
+}
+
 impl Setup {
     /// Whether this much room will do for the mission, in the protocol spoken here.
     fn check(&self, room: Room) -> Result<(), Declined> {

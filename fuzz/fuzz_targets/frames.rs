@@ -1,0 +1,97 @@
+#![no_main]
+//! The wire: whatever arrives, what is taken for a message is one, goes through a frame unchanged, and
+//! can be acted on. Missions that it sets up are flown for some steps, so that no value that the wire
+//! takes can overflow.
+
+use std::fmt::Debug;
+
+use crc::{CRC_32_ISO_HDLC, Crc};
+use libfuzzer_sys::fuzz_target;
+use planner_core::dynamics::Pose;
+use planner_core::link::{Heard, Responder};
+use planner_core::planner::{Plan, Planner};
+use planner_core::sample::{Label, Reading};
+use planner_core::wire::{
+    Algorithm, Decoder, Envelope, FRAME, Frame, Message, Reply, Request, Setup,
+};
+
+/// Steps that a mission is flown for.
+const STEPS: usize = 6;
+
+/// Content as it goes over the wire: with its check sum, and without zeros.
+fn framed(content: &[u8]) -> Vec<u8> {
+    let sum = Crc::<u32>::new(&CRC_32_ISO_HDLC).checksum(content).to_le_bytes();
+    let content = [content, &sum].concat();
+    let mut frame = vec![0; 2 + cobs::max_encoding_length(content.len())];
+    let end = cobs::encode(&content, &mut frame[1..]) + 1;
+    frame.truncate(end + 1);
+    frame
+}
+
+fn messages<M: Message + Debug>(bytes: &[u8]) -> Vec<Envelope<M>> {
+    let mut decoder = Decoder::default();
+    let messages: Vec<_> = bytes.iter().filter_map(|byte| decoder.feed(*byte)).collect();
+    for envelope in &messages {
+        let frame = Frame::of(envelope);
+        assert!(frame.bytes().len() <= FRAME);
+        let mut decoder = Decoder::default();
+        let mut again = frame.bytes().iter().filter_map(|byte| decoder.feed::<M>(*byte));
+        let again = again.next().expect("a frame that was taken is taken again");
+        assert_eq!(format!("{again:?}"), format!("{envelope:?}"));
+    }
+    messages
+}
+
+/// Plans and takes in readings by turns, as far as it goes.
+fn fly<P: Planner>(planner: &mut P, setup: &Setup) {
+    let Setup { config, start, .. } = setup;
+    let mut pose: Pose = *start;
+    for step in 0..STEPS {
+        let Plan::Move(motion) = planner.plan(pose) else { return };
+        assert!(config.area.contains(motion.target.site), "out of the area: {motion:?}");
+        pose = motion.target;
+        let label = if step % 2 == 0 { Label::Positive } else { Label::Negative };
+        let reading = motion.samples().then_some(Reading::Side(label));
+        // It may contradict what is known: an error, and nothing else.
+        if planner.observe(pose, reading).is_err() {
+            return;
+        }
+    }
+    let _ = planner.estimates();
+}
+
+fuzz_target!(|bytes: &[u8]| {
+    // As it is, and as the content of a frame whose check sum is right.
+    let (way, content) = (bytes.first().copied().unwrap_or_default(), bytes);
+    let frame = framed(content);
+    for stream in [bytes, &frame] {
+        let requests = messages::<Request>(stream);
+        let replies = messages::<Reply>(stream);
+        assert!(stream == bytes || requests.is_empty() || way == Request::WAY);
+        assert!(stream == bytes || replies.is_empty() || way == Reply::WAY);
+        let mut responder = Responder::new(7);
+        for byte in stream {
+            if let Some(Heard::New(request)) = responder.hear(*byte) {
+                // Of no session that was offered: only the one after 7 can be.
+                assert!(matches!(request, Request::Ready(_) | Request::Declined(_) | Request::Move(_) | Request::End(_)));
+                responder.answer(Reply::Noted);
+            }
+        }
+        for envelope in replies {
+            let Reply::Setup(setup) = envelope.message else { continue };
+            match setup.algorithm {
+                Algorithm::Cfc => {
+                    if let Ok(mut prepared) = setup.cfc::<16>() {
+                        fly(prepared.planner(), &setup);
+                    }
+                }
+                Algorithm::Scc { noise, policy, prior } => {
+                    let mut planner = setup.scc::<24, 40>(noise, policy);
+                    if let Ok(mut prepared) = setup.prepare(&mut planner, prior) {
+                        fly(prepared.planner(), &setup);
+                    }
+                }
+            }
+        }
+    }
+});

@@ -1,0 +1,220 @@
+#![no_main]
+//! The planner's calls in any order, on any grid that the constructors take, with labels of a line or of
+//! none: nothing overflows, positions stay in the area, true labels are never refused, what is certain
+//! is true, and what the search finds is what trying every action finds.
+
+use arbitrary::{Arbitrary, Unstructured};
+use libfuzzer_sys::fuzz_target;
+use planner_core::area::Area;
+use planner_core::candidates::Certainty;
+use planner_core::cfc::Cfc;
+use planner_core::config::{Config, Crossing, Following};
+use planner_core::contract;
+use planner_core::direction::Heading;
+use planner_core::dynamics::{Dynamics, Pose};
+use planner_core::holonomic::Holonomic;
+use planner_core::hypotheses::{Hypotheses, Prior};
+use planner_core::lattice::{Site, orient};
+use planner_core::planner::{Plan, Planner};
+use planner_core::posterior::Posterior;
+use planner_core::problem::{LOOKS, Varrho};
+use planner_core::sample::{Label, Reading, Sample};
+use planner_core::scc::{Noise, Policy, Scc};
+use planner_core::unicycle::Unicycle;
+use planner_core::version_space::{Refused, VersionSpace};
+use planner_core::weight::Reliability;
+
+/// Actions that are tried one by one, at most.
+const FEW: u32 = 3_000;
+
+#[derive(Arbitrary, Debug)]
+struct Case {
+    holonomic: bool,
+    turn_step: u16,
+    sharpest: u16,
+    speeds: u8,
+    speed_step: u16,
+    /// Two points of the true line, and how far they are off the grid of all others.
+    line: [(i16, i16, i8, i8); 2],
+    scale: u8,
+    oracle: Vec<(i16, i16)>,
+    start: (i16, i16, u32),
+    varrho: u32,
+    crossing: u8,
+    follows_bisector: bool,
+    p: f64,
+    trusted_radius: u32,
+    steps: Vec<Step>,
+}
+
+#[derive(Arbitrary, Debug)]
+enum Step {
+    /// Plan, move, and read: the truth, or the opposite.
+    Fly { lies: bool },
+    /// Move and read nothing.
+    Pass,
+    /// Read at some other place.
+    Jump { x: i16, z: i16, heading: u32 },
+}
+
+struct World {
+    line: [Site; 2],
+    scale: i32,
+}
+
+impl World {
+    fn site(&self, x: i32, z: i32) -> Option<Site> {
+        Site::new(x.checked_mul(self.scale)?, z.checked_mul(self.scale)?).ok()
+    }
+
+    fn reading(&self, site: Site) -> Reading {
+        match orient(self.line[0], self.line[1], site) {
+            0 => Reading::Boundary,
+            side if side > 0 => Label::Positive.into(),
+            _ => Label::Negative.into(),
+        }
+    }
+}
+
+fn run<D: Dynamics + Copy>(case: &Case, dynamics: D, world: &World) -> Option<()> {
+    contract::check(&dynamics).expect("what the constructors take keeps the contract");
+    let oracle: Vec<_> = case
+        .oracle
+        .iter()
+        .take(9)
+        .filter_map(|&(x, z)| {
+            let site = world.site(x.into(), z.into())?;
+            let Reading::Side(label) = world.reading(site) else { return None };
+            Some(Sample { site, label })
+        })
+        .collect();
+    let space = VersionSpace::<16>::new(&oracle).ok()?;
+    let half = 40_000;
+    let corner = |v: i32| world.site(v, v).unwrap_or(Site::ORIGIN);
+    let config = Config {
+        area: Area::new(corner(-half), corner(half))?,
+        varrho: Varrho::new(f64::from(case.varrho % 1_000_000) / 1e6)?,
+        crossing: [Crossing::Anyhow, Crossing::AlongOracle, Crossing::AcrossBisector]
+            [usize::from(case.crossing % 3)],
+        following: if case.follows_bisector { Following::AlongBisector } else { Following::Anyhow },
+    };
+    let (x, z, heading) = case.start;
+    let start = Pose { site: world.site(x.into(), z.into())?, heading: Heading(heading) };
+    fly_true(case, Cfc::new(config, dynamics, space), world, start, &config, dynamics);
+    let reliability = Reliability::new(case.p)?;
+    for (policy, prior) in [
+        (Policy::Joint, Prior::Area),
+        (Policy::MixtureOfStart, Prior::Sequences),
+        (Policy::MixtureOfOwn, Prior::Area),
+    ] {
+        let table = Hypotheses::<16, 24>::new(&oracle, prior).ok()?;
+        let noise = Noise { reliability, trusted_radius: case.trusted_radius };
+        fly_any(case, Scc::new(config, noise, policy, dynamics, table), world, start, &config);
+    }
+    Some(())
+}
+
+/// Algorithm 1 with labels that are true.
+fn fly_true<D: Dynamics>(
+    case: &Case,
+    mut planner: Cfc<D, 16>,
+    world: &World,
+    mut pose: Pose,
+    config: &Config,
+    dynamics: D,
+) {
+    for step in &case.steps {
+        let reading = match step {
+            Step::Fly { .. } | Step::Pass => {
+                let few = dynamics.grid().actions() <= FEW && config.area.contains(pose.site);
+                let slow = few.then(|| planner.problem().solve_exhaustively(&dynamics, pose).best);
+                let quick = few.then(|| planner.problem().solve(&dynamics, pose).best);
+                assert_eq!(quick, slow, "from {pose:?}");
+                let Plan::Move(motion) = planner.plan(pose) else { return };
+                assert!(config.area.contains(motion.target.site) && motion.examined <= LOOKS);
+                pose = motion.target;
+                let reads = motion.samples() && !matches!(step, Step::Pass);
+                reads.then(|| world.reading(pose.site))
+            }
+            Step::Jump { x, z, heading } => {
+                let Some(site) = world.site((*x).into(), (*z).into()) else { return };
+                pose = Pose { site, heading: Heading(*heading) };
+                Some(world.reading(site))
+            }
+        };
+        if let (Certainty::Certain(label), Reading::Side(truth)) =
+            (planner.space().certainty(pose.site), world.reading(pose.site))
+        {
+            assert_eq!(label, truth, "certain of what is false at {pose:?}");
+        }
+        match planner.observe(pose, reading) {
+            Ok(()) => {}
+            Err(Refused::Full(_)) => return,
+            Err(refused) => panic!("a true reading was refused: {refused:?}"),
+        }
+    }
+    let _ = planner.estimates();
+}
+
+/// Algorithm 2 with labels of any kind.
+fn fly_any<D: Dynamics>(
+    case: &Case,
+    mut planner: Scc<D, 16, 24>,
+    world: &World,
+    mut pose: Pose,
+    config: &Config,
+) {
+    for step in &case.steps {
+        let reading = match step {
+            Step::Fly { .. } | Step::Pass => {
+                let Plan::Move(motion) = planner.plan(pose) else { return };
+                assert!(config.area.contains(motion.target.site));
+                pose = motion.target;
+                let lies = matches!(step, Step::Fly { lies: true });
+                let flip = |reading| match reading {
+                    Reading::Side(label) if lies => Reading::Side(-label),
+                    reading => reading,
+                };
+                (!matches!(step, Step::Pass)).then(|| flip(world.reading(pose.site)))
+            }
+            Step::Jump { x, z, heading } => {
+                let Some(site) = world.site((*x).into(), (*z).into()) else { return };
+                pose = Pose { site, heading: Heading(*heading) };
+                Some(world.reading(site))
+            }
+        };
+        if planner.observe(pose, reading).is_err() {
+            return;
+        }
+        let posterior = Posterior::new(planner.hypotheses());
+        let all: f64 = planner.hypotheses().iter().map(|it| posterior.probability(it)).sum();
+        assert!((all - 1.0).abs() < 1e-6, "probabilities sum to {all}");
+        assert!((0.0..=1.0).contains(&posterior.lost()));
+    }
+    let _ = planner.estimates();
+}
+
+fuzz_target!(|bytes: &[u8]| {
+    let Ok(case) = Case::arbitrary_take_rest(Unstructured::new(bytes)) else { return };
+    let scale = 1 << (case.scale % 14);
+    let point = |(x, z, dx, dz): (i16, i16, i8, i8)| {
+        let at = |v: i16, off: i8| i32::from(v) * scale + i32::from(off);
+        Site::new(at(x, dx), at(z, dz)).expect("on the lattice")
+    };
+    let line = case.line.map(point);
+    if line[0] == line[1] {
+        return;
+    }
+    let world = World { line, scale };
+    // What the constructors take, mostly.
+    let speeds = 1 + u16::from(case.speeds % 64);
+    let step = u32::from(case.speed_step) % (100_000 / u32::from(speeds));
+    let _ = if case.holonomic {
+        Holonomic::new(case.turn_step % 512, speeds, step).ok().and_then(|it| run(&case, it, &world))
+    } else {
+        let sharpest = f64::from(case.sharpest % 31_416) / 10_000.0;
+        let turn_step = u32::from(case.turn_step) % 3_142;
+        let unicycle = Unicycle::new(turn_step, sharpest, speeds, step);
+        unicycle.ok().and_then(|it| run(&case, it, &world))
+    };
+});

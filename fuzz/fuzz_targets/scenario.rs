@@ -1,0 +1,37 @@
+#![no_main]
+//! Scenario files: one that is taken flies and leaves a trace of good JSON; one that is not gets one line
+//! that names the file.
+
+use host_sim::mission::Algorithm;
+use host_sim::recording::Recording;
+use host_sim::scenario::{self, Overrides};
+use host_sim::trace;
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|text: &str| {
+    let overrides = Overrides { algorithm: None, steps: None, seed: None };
+    let mission = match scenario::parse("it.toml", text, overrides) {
+        Ok(mission) => mission,
+        Err(error) => {
+            let message = format!("{error:#}");
+            assert!(message.starts_with("it.toml:") && !message.contains('\n'), "{message}");
+            return;
+        }
+    };
+    // Algorithm 1 may be misled by labels that are not true: an error, and nothing else.
+    let recording = match Recording::of(&mission) {
+        Ok(recording) => recording,
+        Err(error) => {
+            let noisy = mission.noise.is_some_and(|noise| noise.p < 1.0);
+            assert!(noisy && mission.algorithm == Algorithm::Cfc, "{error:#}");
+            return;
+        }
+    };
+    for line in trace::lines(&recording).lines() {
+        serde_json::from_str::<serde_json::Value>(line).expect("a line of JSON");
+    }
+    for recorded in &recording.steps {
+        assert!(mission.config.area.contains(recorded.step.pose.site));
+        assert!(recorded.bits.is_finite() && recorded.slope_arcs.iter().flatten().all(|it| it.is_finite()));
+    }
+});
