@@ -36,8 +36,8 @@ const HORIZON: u32 = 16;
 /// A heading this far from a bearing drives along it, as a binary angle: 1/8 rad.
 const ALONG: u32 = 85_445_659;
 
-/// Turns in place that a leg considers one after the other, even where fewer are half a turn: fans of few
-/// rays see more with each.
+/// Turns in place that a leg considers one after the other, even where fewer are half a turn, if rays are
+/// so few that each turn brings others.
 const TURNS: u32 = 8;
 
 const HALF_TURN: u32 = 1 << 31;
@@ -83,7 +83,7 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule>(
 /// An action and where it leads.
 type Leg = (Action, Pose);
 
-/// What comes of a drive on a bearing.
+/// What comes of following a bearing.
 enum Approach {
     /// Its first leg, and the number of motions to where the undirected problem is feasible.
     Feasible(Leg, u32),
@@ -187,46 +187,62 @@ impl<D: Dynamics> Ladder<'_, D> {
     /// turns in place after which there is one.
     fn leg(&self, effort: &mut Effort, pose: Pose, goal: Vector) -> Option<Leg> {
         let bearing = Heading::near(goal);
-        if let Some(drive) = self.drive(pose, bearing, goal) {
-            return Some(drive);
+        let coarse = self.dynamics.fan().spacing.0 / 2 > ALONG;
+        match self.drive(pose, bearing, goal) {
+            Drive::Leg(leg) => return Some(leg),
+            Drive::Blocked if !coarse => return None,
+            _ => {}
         }
         let off = bearing.0.wrapping_sub(pose.heading.0) as i32;
         let sides = if off > 0 { [Side::Left, Side::Right] } else { [Side::Right, Side::Left] };
-        let (mut after, mut turns, mut turned) = ([pose; 2], 0, 0_u32);
-        while (turns < TURNS || turned < HALF_TURN) && effort.is_enough() {
+        let first = self.dynamics.turn_in_place(pose, sides[0])?;
+        let sharpest = (first.1.heading.0.wrapping_sub(pose.heading.0) as i32).unsigned_abs();
+        let (mut after, mut turned, mut turns) = ([pose; 2], 0_u32, 0);
+        while (turned < HALF_TURN || coarse && turns < TURNS) && effort.is_enough() {
             effort.looks -= 1;
             for (side, after) in sides.into_iter().zip(&mut after) {
-                let turn = self.dynamics.turn_in_place(*after, side)?.1;
-                let sharpest = (turn.heading.0.wrapping_sub(after.heading.0) as i32).unsigned_abs();
-                (turned, *after) = (turned.saturating_add(sharpest / 2), turn);
-                if self.drive(turn, bearing, goal).is_some() {
-                    return self.dynamics.turn_in_place(pose, side);
+                *after = self.dynamics.turn_in_place(*after, side)?.1;
+                match self.drive(*after, bearing, goal) {
+                    Drive::Leg(_) => return self.dynamics.turn_in_place(pose, side),
+                    Drive::Blocked if !coarse => return None,
+                    _ => {}
                 }
             }
-            turns += 1;
+            (turned, turns) = (turned.saturating_add(sharpest), turns + 1);
         }
         None
     }
 
     /// The fastest drive that brings a point nearer, if its bearing lies within the fan: along the
     /// nearest ray, or along the one on the other side of the bearing.
-    fn drive(&self, pose: Pose, bearing: Heading, goal: Vector) -> Option<Leg> {
+    fn drive(&self, pose: Pose, bearing: Heading, goal: Vector) -> Drive {
         let grid = self.dynamics.grid();
         let rays = self.dynamics.around(pose, bearing);
         let aside = bearing.0.wrapping_sub(rays[0].heading.0) as i32;
         if aside.unsigned_abs() > ALONG.max(self.dynamics.fan().spacing.0 / 2) {
-            return None;
+            return Drive::Beyond;
         }
-        rays.iter().find_map(|ray| {
-            let legs = (1..grid.speeds()).rev().filter(|speed| nears(ray, *speed, goal));
-            let mut legs = legs.filter_map(|speed| {
-                let target = ray.arrive(pose.site, speed).ok()?;
-                let leg = (grid.action(ray.index, speed), target);
-                self.problem.area.contains(target.site).then_some(leg)
-            });
-            legs.next()
-        })
+        for ray in rays {
+            for speed in (1..grid.speeds()).rev().filter(|speed| nears(&ray, *speed, goal)) {
+                if let Ok(target) = ray.arrive(pose.site, speed)
+                    && self.problem.area.contains(target.site)
+                {
+                    return Drive::Leg((grid.action(ray.index, speed), target));
+                }
+            }
+        }
+        Drive::Blocked
     }
+}
+
+/// What comes of one drive on a bearing.
+enum Drive {
+    /// It brings its goal nearer.
+    Leg(Leg),
+    /// No ray leads that way: a turn may help.
+    Beyond,
+    /// The rays that lead that way leave the area, or are too long.
+    Blocked,
 }
 
 /// Whether a drive brings a point nearer by an eighth of its own length at least.

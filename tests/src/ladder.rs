@@ -165,44 +165,50 @@ impl<D: Dynamics> Ladder<'_, D> {
         (first, None)
     }
 
+    /// Of fans whose rays are dense.
     fn leg(&self, pose: Pose, direction: Vector) -> Option<Action> {
-        if let Some(drive) = self.drive(pose, direction) {
-            return Some(drive);
+        if self.is_within_fan(pose, direction) {
+            return self.drive(pose, direction);
         }
         let ahead = angle(pose, direction);
         let sides = if ahead > 0.0 { [Side::Left, Side::Right] } else { [Side::Right, Side::Left] };
         let (mut after, mut firsts) = ([pose; 2], [None; 2]);
-        for _ in 0..64 {
+        loop {
             for ((side, after), first) in sides.into_iter().zip(&mut after).zip(&mut firsts) {
                 let (action, turned) = self.dynamics.turn_in_place(*after, side)?;
                 first.get_or_insert(action);
                 *after = turned;
-                if self.drive(turned, direction).is_some() {
-                    return *first;
+                if self.is_within_fan(turned, direction) {
+                    return self.drive(turned, direction).and(*first);
                 }
             }
         }
-        None
+    }
+
+    /// All rays, the nearest to a direction first, each with its angle to that.
+    fn by_angle(&self, pose: Pose, direction: Vector) -> Vec<(f64, Ray)> {
+        let off = |ray: &Ray| angle(Pose { heading: ray.heading, ..pose }, direction);
+        let mut rays: Vec<_> = self.dynamics.rays(pose).map(|ray| (off(&ray), ray)).collect();
+        rays.sort_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
+        rays
+    }
+
+    fn is_within_fan(&self, pose: Pose, direction: Vector) -> bool {
+        self.by_angle(pose, direction)[0].0.abs() <= 0.125
     }
 
     fn drive(&self, pose: Pose, direction: Vector) -> Option<Action> {
         let grid = self.dynamics.grid();
-        let off = |ray: &Ray| angle(Pose { heading: ray.heading, ..pose }, direction);
-        let mut rays: Vec<Ray> = self.dynamics.rays(pose).collect();
-        rays.sort_by(|a, b| off(a).abs().total_cmp(&off(b).abs()));
-        let nearest = *rays.first()?;
-        let spacing = self.dynamics.fan().spacing.radians();
-        if off(&nearest).abs() > (spacing / 2.0).max(0.125) {
-            return None;
-        }
-        let across = rays.iter().find(|ray| (off(ray) > 0.0) != (off(&nearest) > 0.0));
-        std::iter::once(&nearest).chain(across).find_map(|ray| {
+        let rays = self.by_angle(pose, direction);
+        let (nearest, _) = rays[0];
+        let across = rays.iter().find(|(off, _)| (*off > 0.0) != (nearest > 0.0));
+        rays.first().into_iter().chain(across).find_map(|(off, ray)| {
             (1..grid.speeds()).rev().find_map(|speed| {
                 let target = ray.arrive(pose.site, speed).ok()?;
                 let reach = f64::from(grid.reach_mm(speed)) / 1000.0;
                 let goal = f64::hypot(direction.x().into(), direction.z().into())
                     / f64::from(UNITS_PER_METRE);
-                let nears = off(ray).cos() >= reach / (2.0 * goal) + 0.125;
+                let nears = off.cos() >= reach / (2.0 * goal) + 0.125;
                 let inside = self.problem.area.contains(target.site);
                 (nears && inside).then(|| grid.action(ray.index, speed))
             })
