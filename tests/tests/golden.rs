@@ -1,18 +1,27 @@
-//! The standard scenarios at a glance: what each comes to, to the last step. A change of behaviour
-//! shows as a diff of `golden/scenarios.txt`; `UPDATE_EXPECT=1 cargo test -p tests --test golden`
-//! writes it anew.
+//! What stays as it is unless someone means to change it: the standard scenarios to the last step
+//! (`golden/scenarios.txt`), and by their hashes the traces of 200 missions, the figures and what campaigns
+//! print for programs (`golden/hashes.txt`). `UPDATE_EXPECT=1 cargo test -p tests --test golden` writes
+//! them anew.
 
 use std::fmt::Write as _;
 use std::path::Path;
 
+use clap::Parser as _;
 use expect_test::expect_file;
+use host_sim::cli::Cli;
 use host_sim::commands::PAPER_TITLE;
+use host_sim::field;
 use host_sim::figure::Figure;
+use host_sim::mission::{Algorithm, Mission};
 use host_sim::polygon::misclassified;
 use host_sim::recording::{Recording, recovery_name};
 use host_sim::report;
 use host_sim::scenario::{self, Overrides};
+use host_sim::trace;
+use host_sim::world::{Extent, NoiseModel};
 use nalgebra::Point2;
+use planner_core::hypotheses::Prior;
+use planner_core::scc::Policy;
 
 #[test]
 fn standard_scenarios() {
@@ -30,6 +39,66 @@ fn standard_scenarios() {
         describe(&mut table, &name, &recording).expect("a string");
     }
     expect_file!["golden/scenarios.txt"].assert_eq(&table);
+}
+
+/// FNV-1a, so that a hash means the same for ever.
+fn hash(text: &str) -> u64 {
+    text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+    })
+}
+
+/// A random mission of each algorithm by turns, with noise and without.
+fn mission(number: u64) -> Mission {
+    let algorithms = [Algorithm::Cfc, Algorithm::Scc, Algorithm::Random, Algorithm::Random];
+    let algorithm = algorithms[number as usize % 4];
+    let steps = 10 + (number % 50) as u32;
+    let mut mission = field::standard(17, number, algorithm, steps);
+    if algorithm == Algorithm::Scc || number % 4 == 3 {
+        let p = [0.6, 0.7, 0.9, 0.99][number as usize / 4 % 4];
+        let extents = [Extent::OutsideBalls(0.5), Extent::OutsideBalls(0.0), Extent::Band(3.0)];
+        mission.noise = Some(NoiseModel { p, extent: extents[number as usize / 4 % 3] });
+        mission.policy =
+            [Policy::MixtureOfOwn, Policy::Joint, Policy::MixtureOfStart][number as usize / 8 % 3];
+        mission.prior = [Prior::Area, Prior::Sequences][number as usize / 4 % 2];
+    }
+    mission
+}
+
+#[test]
+fn hashes_of_traces_figures_and_campaigns() {
+    let mut table = String::new();
+    let mut line = |name: &str, text: &str| {
+        let _ = writeln!(table, "{:016x}  {:>7} bytes  {name}", hash(text), text.len());
+    };
+    for number in 0..200 {
+        let recording = Recording::of(&mission(number)).expect("trusted labels are true");
+        line(&format!("trace {number}"), &trace::lines(&recording));
+        if number % 10 < 2 {
+            line(&format!("report {number}"), &report::mission("a mission", &recording));
+            let figure = Figure::of("a mission", &recording).svg().expect("a figure");
+            line(&format!("figure {number}"), &figure);
+        }
+    }
+    let program = Path::new(env!("CARGO_MANIFEST_DIR")).join("../host-sim/scenarios");
+    let run = |args: &str| {
+        let args = std::iter::once("host-sim").chain(args.split(' '));
+        Cli::try_parse_from(args).expect("good arguments").execute().expect("it runs")
+    };
+    for args in [
+        "campaign --fields 40 --steps 40 --format json",
+        "campaign --fields 40 --steps 40",
+        "campaign --fields 40 --algorithm random --format json",
+        "campaign --fields 20 --steps 36 --algorithm scc --format json",
+        "campaign --fields 20 --steps 36 --algorithm scc --policy joint --prior sequences",
+        "campaign --fields 20 --steps 12 --algorithm random --p 0.8 --format json",
+    ] {
+        line(args, &run(args));
+    }
+    let samples = program.join("../../fuzz/corpus/samples/by-hand.csv");
+    let samples = samples.to_str().expect("UTF-8");
+    line("replay", &run(&format!("replay {samples} --format json")));
+    expect_file!["golden/hashes.txt"].assert_eq(&table);
 }
 
 /// The README's picture is the one that the bare command draws.
