@@ -1,12 +1,12 @@
 //! What `idle` runs: asks for a mission, flies it, logs it, and asks for the next.
 
-use planner_core::agent::Step;
-use planner_core::hal::PinSensor;
-use planner_core::line::Line;
+use planner_core::belief::sample::Reading;
+use planner_core::geometry::line::Line;
+use planner_core::link::message::{Algorithm, Declined, End, Setup};
+use planner_core::link::station::{Flown, Prepared, Station};
 use planner_core::planner::Planner;
-use planner_core::remote::{Flown, Prepared, Station};
-use planner_core::sample::Reading;
-use planner_core::wire::{Algorithm, Declined, End, Setup};
+use planner_core::robot::agent::Step;
+use planner_core::robot::hal::PinSensor;
 use stm32f4xx_hal::gpio::{Input, PB1};
 
 use crate::serial::Serial;

@@ -7,7 +7,7 @@ use cortex_m::{asm, interrupt};
 use embedded_hal_nb::nb;
 use embedded_hal_nb::serial::{Read, Write};
 use heapless::spsc::{Consumer, Producer, Queue};
-use planner_core::link::Port;
+use planner_core::link::delivery::Port;
 use rtic_monotonics::Timebase;
 use stm32f4xx_hal::gpio::{PA9, PA10};
 use stm32f4xx_hal::pac::USART1;

@@ -7,13 +7,12 @@ use std::fmt::Debug;
 
 use crc::{CRC_32_ISO_HDLC, Crc};
 use libfuzzer_sys::fuzz_target;
-use planner_core::dynamics::Pose;
-use planner_core::link::{Heard, Responder};
+use planner_core::motion::dynamics::Pose;
+use planner_core::link::delivery::{Heard, Responder};
 use planner_core::planner::{Plan, Planner};
-use planner_core::sample::{Label, Reading};
-use planner_core::wire::{
-    Algorithm, Decoder, Envelope, FRAME, Frame, Message, Reply, Request, Setup,
-};
+use planner_core::belief::sample::{Label, Reading};
+use planner_core::link::frame::{Decoder, Envelope, FRAME, Frame, Message};
+use planner_core::link::message::{Algorithm, Reply, Request, Setup};
 
 /// Steps that a mission is flown for.
 const STEPS: usize = 6;

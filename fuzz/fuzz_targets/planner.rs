@@ -5,24 +5,24 @@
 
 use arbitrary::{Arbitrary, Unstructured};
 use libfuzzer_sys::fuzz_target;
-use planner_core::area::Area;
-use planner_core::candidates::Certainty;
-use planner_core::cfc::Cfc;
-use planner_core::config::{Config, Crossing, Following};
-use planner_core::contract;
-use planner_core::direction::Heading;
-use planner_core::dynamics::{Dynamics, Pose};
-use planner_core::holonomic::Holonomic;
-use planner_core::hypotheses::{Hypotheses, Prior};
-use planner_core::lattice::{Site, orient};
+use planner_core::geometry::area::Area;
+use planner_core::belief::candidates::Certainty;
+use planner_core::planner::cfc::Cfc;
+use planner_core::planner::config::{Config, Crossing, Following};
+use planner_core::motion::contract;
+use planner_core::geometry::direction::Heading;
+use planner_core::motion::dynamics::{Dynamics, Pose};
+use planner_core::motion::holonomic::Holonomic;
+use planner_core::belief::hypotheses::{Hypotheses, Prior};
+use planner_core::geometry::lattice::{Site, orient};
 use planner_core::planner::{Plan, Planner};
-use planner_core::posterior::Posterior;
-use planner_core::problem::{LOOKS, Varrho};
-use planner_core::sample::{Label, Reading, Sample};
-use planner_core::scc::{Noise, Policy, Scc};
-use planner_core::unicycle::Unicycle;
-use planner_core::version_space::{Refused, VersionSpace};
-use planner_core::weight::Reliability;
+use planner_core::belief::posterior::Posterior;
+use planner_core::search::problem::{LOOKS, Varrho};
+use planner_core::belief::sample::{Label, Reading, Sample};
+use planner_core::planner::scc::{Noise, Policy, Scc};
+use planner_core::motion::unicycle::Unicycle;
+use planner_core::belief::version_space::{Refused, VersionSpace};
+use planner_core::belief::weight::Reliability;
 
 /// Actions that are tried one by one, at most.
 const FEW: u32 = 3_000;

@@ -2,7 +2,7 @@
 //! Recorded samples: what they determine has every sample on its side, or one line says what is wrong and
 //! where.
 
-use host_sim::replay::Replay;
+use host_sim::replay::record::Replay;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &[u8]| {

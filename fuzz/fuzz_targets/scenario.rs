@@ -2,10 +2,10 @@
 //! Scenario files: one that is taken flies and leaves a trace of good JSON; one that is not gets one line
 //! that names the file.
 
-use host_sim::mission::Algorithm;
-use host_sim::recording::Recording;
-use host_sim::scenario::{self, Overrides};
-use host_sim::trace;
+use host_sim::mission::definition::Algorithm;
+use host_sim::mission::recording::Recording;
+use host_sim::mission::scenario::{self, Overrides};
+use host_sim::report::trace;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &str| {

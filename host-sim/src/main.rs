@@ -5,8 +5,8 @@ use std::process::ExitCode;
 
 use anyhow::{Context as _, Result};
 use clap::Parser as _;
-use host_sim::cli::Cli;
-use host_sim::interruption;
+use host_sim::cli::arguments::Cli;
+use host_sim::output::interruption;
 
 /// What bad input ends with.
 const REFUSED: u8 = 2;

@@ -4,21 +4,21 @@ use std::hint::black_box;
 
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use nalgebra::Point2;
-use planner_core::area::Area;
-use planner_core::cfc::{self, Cfc};
-use planner_core::config::{Config, Crossing};
-use planner_core::direction::Heading;
-use planner_core::dynamics::Pose;
-use planner_core::estimate::Estimates;
-use planner_core::hypotheses::{Hypotheses, Prior};
-use planner_core::lattice::Site;
+use planner_core::belief::estimate::Estimates;
+use planner_core::belief::hypotheses::{Hypotheses, Prior};
+use planner_core::belief::sample::{Label, Sample};
+use planner_core::belief::version_space::VersionSpace;
+use planner_core::belief::weight::Reliability;
+use planner_core::geometry::area::Area;
+use planner_core::geometry::direction::Heading;
+use planner_core::geometry::lattice::Site;
+use planner_core::motion::dynamics::Pose;
+use planner_core::motion::unicycle::Unicycle;
+use planner_core::planner::cfc::{self, Cfc};
+use planner_core::planner::config::{Config, Crossing};
+use planner_core::planner::scc::{self, Noise, Policy, Scc};
 use planner_core::planner::{Plan, Planner};
-use planner_core::problem::Varrho;
-use planner_core::sample::{Label, Sample};
-use planner_core::scc::{self, Noise, Policy, Scc};
-use planner_core::unicycle::Unicycle;
-use planner_core::version_space::VersionSpace;
-use planner_core::weight::Reliability;
+use planner_core::search::problem::Varrho;
 
 type Cfc32 = Cfc<Unicycle, 32>;
 

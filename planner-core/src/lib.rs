@@ -17,9 +17,9 @@
 //! All lines that agree with the samples so far are the **version space**. In the space of
 //! homogeneous lines `(A, B, C)` each sample is a half-space, so the version space is a convex cone:
 //! seen as a polygon, its edges belong to the samples that still matter and its vertices are lines
-//! through two of them. A cyclic list of sample indices holds all of it ([`cell`]).
+//! through two of them. A cyclic list of sample indices holds all of it ([`belief::cell`]).
 //!
-//! On an integer lattice of 15 micrometres ([`lattice`]) one predicate decides everything about that
+//! On an integer lattice of 15 micrometres ([`geometry::lattice`]) one predicate decides everything about that
 //! list, and it is exact in 64-bit integers:
 //!
 //! ```text
@@ -31,23 +31,24 @@
 //! - **Certainty is exact.** A position that all candidate lines label alike lies in a *region of
 //!   certainty*; a sample there would tell nothing, or reveal a fault. No tolerance, no misjudged
 //!   cut, for a vertical boundary and kilometres from the origin as for any other
-//!   ([`version_space`]).
-//! - **Motions come from an integer-indexed grid** ([`action`], [`dynamics`]), and the one-step
-//!   problems are solved exactly by looking at a few of its actions ([`problem`]).
+//!   ([`belief::version_space`]).
+//! - **Motions come from an integer-indexed grid** ([`motion::action`], [`motion::dynamics`]), and the one-step
+//!   problems are solved exactly by looking at a few of its actions ([`search::problem`]).
 //! - **Noisy labels in fixed memory.** The sequences of true labels that some line realises are cells
 //!   too, at most 529 for 32 labels; a table of weighed cells is the whole posterior
-//!   ([`hypotheses`], [`posterior`]).
+//!   ([`belief::hypotheses`],
+//!   [`belief::posterior`]).
 //! - **The same on every machine.** Integers decide; floating point proposes directions and reads
 //!   results out, by IEEE arithmetic and libm. One mission gives one trace, on a PC and on a chip.
 //! - **Fixed memory.** No allocation, no `unsafe`, no recursion; capacities are const generics. A
-//!   planner for 32 samples is some 500 bytes ([`cfc::Cfc`]).
+//!   planner for 32 samples is some 500 bytes ([`planner::cfc::Cfc`]).
 //!
 //! # How the pieces meet
 //!
 //! A [`planner::Planner`] is asked for a motion with `plan()` and told what came of it with
-//! `observe()`. [`cfc::Cfc`] is the paper's Algorithm 1, for labels that are true, [`scc::Scc`] its
-//! Algorithm 2, for labels that are sometimes wrong. An [`agent::Agent`] joins a planner to a
-//! [`hal::Drive`] and a [`hal::LabelSensor`], which are yours to implement; a sensor on a digital pin
+//! `observe()`. [`planner::cfc::Cfc`] is the paper's Algorithm 1, for labels that are true, [`planner::scc::Scc`] its
+//! Algorithm 2, for labels that are sometimes wrong. An [`robot::agent::Agent`] joins a planner to a
+//! [`robot::hal::Drive`] and a [`robot::hal::LabelSensor`], which are yours to implement; a sensor on a digital pin
 //! comes with the crate.
 //!
 //! With the feature `wire` the vehicle may be elsewhere: the modules `wire`, `link` and `remote` have
@@ -58,20 +59,20 @@
 //! use core::cell::Cell;
 //! use core::convert::Infallible;
 //! use nalgebra::Point2;
-//! use planner_core::agent::{Agent, Event};
-//! use planner_core::area::Area;
-//! use planner_core::cfc::{self, Cfc};
-//! use planner_core::config::{Config, Crossing};
-//! use planner_core::direction::Heading;
-//! use planner_core::dynamics::Pose;
-//! use planner_core::estimate;
-//! use planner_core::hal::{Drive, LabelSensor};
-//! use planner_core::lattice::Site;
+//! use planner_core::robot::agent::{Agent, Event};
+//! use planner_core::geometry::area::Area;
+//! use planner_core::planner::cfc::{self, Cfc};
+//! use planner_core::planner::config::{Config, Crossing};
+//! use planner_core::geometry::direction::Heading;
+//! use planner_core::motion::dynamics::Pose;
+//! use planner_core::belief::estimate;
+//! use planner_core::robot::hal::{Drive, LabelSensor};
+//! use planner_core::geometry::lattice::Site;
 //! use planner_core::planner::Motion;
-//! use planner_core::problem::Varrho;
-//! use planner_core::sample::{Label, Reading, Sample};
-//! use planner_core::unicycle::Unicycle;
-//! use planner_core::version_space::VersionSpace;
+//! use planner_core::search::problem::Varrho;
+//! use planner_core::belief::sample::{Label, Reading, Sample};
+//! use planner_core::motion::unicycle::Unicycle;
+//! use planner_core::belief::version_space::VersionSpace;
 //!
 //! // A world in which z = 0.41 x + 3.5 divides the plane, and a vehicle that goes where it is told.
 //! struct World(Cell<Pose>);
@@ -123,47 +124,16 @@
 //! # Limits
 //!
 //! - Algorithm 1 takes labels to be true. A sample that contradicts a region of certainty is a typed
-//!   error ([`version_space::Refused`]) and leaves the planner as it was.
+//!   error ([`belief::version_space::Refused`]) and leaves the planner as it was.
 //! - Positions lie within 8,192 m of the origin, one motion is shorter than 100 m, and a buffer holds
 //!   3 to 128 samples.
 //! - The boundary is one straight line. P1 and P2 look one step ahead.
 
-pub mod action;
-pub mod agent;
-mod approximate;
-pub mod area;
-pub mod candidates;
-pub mod cell;
-pub mod cfc;
-pub mod config;
-pub mod contract;
-pub mod direction;
-pub mod dynamics;
-pub mod estimate;
-pub mod hal;
-pub mod holonomic;
-pub mod hypotheses;
-pub mod lattice;
-pub mod line;
+pub mod belief;
+pub mod geometry;
 #[cfg(feature = "wire")]
 pub mod link;
-mod list;
-mod lost;
-mod mark;
-mod measure;
+pub mod motion;
 pub mod planner;
-pub mod posterior;
-pub mod problem;
-mod recovery;
-#[cfg(feature = "wire")]
-pub mod remote;
-pub mod rule;
-pub mod sample;
-pub mod scc;
-mod search;
-mod sight;
-pub mod unicycle;
-pub mod version_space;
-pub mod weight;
-#[cfg(feature = "wire")]
-pub mod wire;
+pub mod robot;
+pub mod search;

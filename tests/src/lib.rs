@@ -1,24 +1,17 @@
 //! What the cross-crate tests share: adversarial sites and the slow twin of the version space;
-//! programs for a chip ([`elf`]), a core to run them on ([`emulator`]), and missions that they fly
-//! there ([`mod@bench`]); a debugger for QEMU ([`debugger`]).
+//! programs for a chip ([`program`]), a core to run them on ([`emulator`]), what they may take
+//! ([`budget`]); a debugger for QEMU ([`debugger`]).
 
-use planner_core::lattice::{LIMIT, Site, Vector};
-use planner_core::sample::{Label, Sample};
+use planner_core::belief::sample::{Label, Sample};
+use planner_core::geometry::lattice::{LIMIT, Site, Vector};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-pub mod bench;
-pub mod brute;
 pub mod budget;
 pub mod debugger;
-pub mod elf;
 pub mod emulator;
-pub mod footprint;
-pub mod hardest;
-pub mod image;
-pub mod ladder;
-pub mod timing;
-pub mod workload;
+pub mod program;
+pub mod twins;
 
 /// Whether the long runs are asked for, with the feature `long`.
 pub const LONG: bool = cfg!(feature = "long");

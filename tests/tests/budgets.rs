@@ -10,17 +10,17 @@
 use std::io::{self, Write as _};
 use std::{fs, path::Path};
 
-use host_sim::mission::Algorithm;
-use planner_core::scc::Policy;
+use host_sim::mission::definition::Algorithm;
+use planner_core::planner::scc::Policy;
 use tests::LONG;
-use tests::budget::Budgets;
-use tests::elf;
+use tests::budget::footprint::{self, Footprint};
+use tests::budget::hardest::Hardest;
+use tests::budget::table::Budgets;
+use tests::budget::timing::{self, Flight, Took};
+use tests::budget::workload::Workload;
 use tests::emulator::Call;
-use tests::footprint::{self, Footprint};
-use tests::hardest::Hardest;
-use tests::image::Image;
-use tests::timing::{self, Flight, Took};
-use tests::workload::Workload;
+use tests::program::build;
+use tests::program::image::Image;
 
 /// The chip, and the cores whose sizes alone are compared.
 const CHIP: &str = "thumbv7em-none-eabihf";
@@ -40,15 +40,15 @@ const NEXT: [(&str, &str); 1] = [(
 
 /// A program for a target; `None`, and a visible line, where it cannot be built.
 fn build(package: &str, target: &str) -> Option<impl Fn(&str) -> Vec<u8> + use<>> {
-    if !elf::can_build(target) {
-        elf::skip(
+    if !build::can_build(target) {
+        build::skip(
             env!("CARGO_TARGET_TMPDIR"),
             package,
             &format!("the target {target} is not installed"),
         );
         return None;
     }
-    let folder = elf::build(env!("CARGO_TARGET_TMPDIR"), package, target);
+    let folder = build::build(env!("CARGO_TARGET_TMPDIR"), package, target);
     let folder = folder.unwrap_or_else(|errors| panic!("{errors}"));
     Some(move |name: &str| fs::read(Path::new(&folder).join(name)).expect("cargo left an ELF"))
 }
@@ -63,9 +63,9 @@ struct Books {
 fn every_figure_keeps_its_budget() {
     let mut books = Books { budgets: Budgets::open(), hardest: Hardest::open() };
     let mut skipped = Vec::new();
-    if let (Some(bench), Some(firmware)) = (build("bench", CHIP), build("firmware", CHIP)) {
+    if let (Some(bare), Some(firmware)) = (build("bare-core", CHIP), build("firmware", CHIP)) {
         for name in &PROGRAMS[..LOOKED_AT] {
-            let elf = bench(name);
+            let elf = bare(name);
             let (bound, fits) = size(&mut books.budgets, name, &elf);
             let stack = match *name {
                 "small" => time_small(&mut books, &elf),
@@ -83,7 +83,7 @@ fn every_figure_keeps_its_budget() {
         skipped.extend(["firmware"].into_iter().chain(PROGRAMS));
     }
     for target in OTHERS.into_iter().filter(|_| LONG) {
-        let Some(program) = build("bench", target) else {
+        let Some(program) = build("bare-core", target) else {
             skipped.push(target);
             continue;
         };
@@ -250,11 +250,11 @@ fn time_large(books: &mut Books, elf: &[u8], fits: bool) -> u32 {
 
 #[test]
 fn a_program_that_can_panic_is_found_out() {
-    let Some(bench) = build("bench", CHIP) else { return };
-    let panics = |name| Footprint::of(&Image::read(&bench(name))).expect("a graph").panics;
+    let Some(bare) = build("bare-core", CHIP) else { return };
+    let panics = |name| Footprint::of(&Image::read(&bare(name))).expect("a graph").panics;
     assert_eq!(
         panics("panicking"),
-        ["bench::on_target::panicking -> core::panicking::panic_bounds_check"]
+        ["bare_core::on_target::panicking -> core::panicking::panic_bounds_check"]
     );
     for name in &PROGRAMS[..LOOKED_AT] {
         assert_eq!(panics(name), [""; 0], "{name}");
@@ -265,9 +265,9 @@ fn a_program_that_can_panic_is_found_out() {
 fn the_planner_forbids_unsafe_code_and_does_not_allocate() {
     let text = include_str!("../../planner-core/src/lib.rs");
     assert!(text.starts_with("#![no_std]\n#![forbid(unsafe_code)]\n"));
-    let Some(bench) = build("bench", CHIP) else { return };
+    let Some(bare) = build("bare-core", CHIP) else { return };
     for name in &PROGRAMS[..LOOKED_AT] {
-        let image = Image::read(&bench(name));
+        let image = Image::read(&bare(name));
         let allocates = |name: &str| name.contains("__rust_alloc") || name.starts_with("alloc::");
         assert!(!image.functions().iter().any(|it| allocates(&it.name)), "{name}");
     }

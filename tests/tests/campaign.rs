@@ -1,9 +1,9 @@
 //! The figures that the README quotes: 1,000 standard fields, seed 1.
 
-use host_sim::campaign::{Campaign, Summary};
-use host_sim::mission::Algorithm;
-use planner_core::cfc;
-use planner_core::config::{Crossing, Following};
+use host_sim::campaign::ensemble::{Campaign, Summary};
+use host_sim::mission::definition::Algorithm;
+use planner_core::planner::cfc;
+use planner_core::planner::config::{Crossing, Following};
 
 fn campaign(algorithm: Algorithm, following: Following, steps: u32) -> Summary {
     let crossing = Crossing::default();
@@ -39,8 +39,8 @@ fn p2_as_printed_learns_less() {
 fn the_misclassified_area_falls_until_the_grid_can_hit_nothing_more() {
     let summary = campaign(Algorithm::Cfc, cfc::FOLLOWING, 40);
     for estimate in [
-        |row: &host_sim::campaign::Row| row.centre_misclassified.median,
-        |row: &host_sim::campaign::Row| row.maximum_margin_misclassified.median,
+        |row: &host_sim::campaign::ensemble::Row| row.centre_misclassified.median,
+        |row: &host_sim::campaign::ensemble::Row| row.maximum_margin_misclassified.median,
     ] {
         let medians: Vec<_> = summary.rows.iter().map(estimate).collect();
         assert!(medians.is_sorted_by(|before, after| before > after), "{medians:?}");

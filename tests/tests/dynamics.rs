@@ -1,13 +1,13 @@
 //! Dynamics: what the constructors take keeps the contract, what they refuse is named, and a broken
 //! promise is found out.
 
-use planner_core::action::{Action, ActionGrid, BadGrid, Control};
-use planner_core::contract::{self, Broken};
-use planner_core::direction::Heading;
-use planner_core::dynamics::{Dynamics, Fan, Pose, Ray, Side};
-use planner_core::holonomic::Holonomic;
-use planner_core::lattice::{Site, Vector};
-use planner_core::unicycle::Unicycle;
+use planner_core::geometry::direction::Heading;
+use planner_core::geometry::lattice::{Site, Vector};
+use planner_core::motion::action::{Action, ActionGrid, BadGrid, Control};
+use planner_core::motion::contract::{self, Broken};
+use planner_core::motion::dynamics::{Dynamics, Fan, Pose, Ray, Side};
+use planner_core::motion::holonomic::Holonomic;
+use planner_core::motion::unicycle::Unicycle;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 

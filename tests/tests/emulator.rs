@@ -8,28 +8,28 @@ use std::fs;
 use std::hash::{DefaultHasher, Hasher as _};
 use std::process::{Command, Stdio};
 
-use host_sim::field;
-use host_sim::mission::{Algorithm, Mission};
-use host_sim::recording::Recording;
-use host_sim::scenario::{self, Overrides};
-use host_sim::trace;
-use host_sim::world::{Extent, NoiseModel};
-use planner_core::scc::Policy;
+use host_sim::campaign::standard_field;
+use host_sim::mission::definition::{Algorithm, Mission};
+use host_sim::mission::recording::Recording;
+use host_sim::mission::scenario::{self, Overrides};
+use host_sim::report::trace;
+use host_sim::world::truth::{Extent, NoiseModel};
+use planner_core::planner::scc::Policy;
 use rayon::prelude::*;
-use tests::bench::{self, CORES};
-use tests::elf;
+use tests::budget::timing;
+use tests::budget::workload::Workload;
+use tests::emulator::missions::{self, CORES};
 use tests::emulator::{Core, Emulator};
-use tests::timing;
-use tests::workload::Workload;
+use tests::program::build;
 
 /// The paper's two examples, then random fields, each algorithm by turns.
 fn missions() -> Vec<Mission> {
     let example = |text| scenario::parse("", text, Overrides::default()).expect("a good scenario");
     let mut missions = vec![example(scenario::PAPER_NOISELESS), example(scenario::PAPER_NOISY)];
     for number in 0..20 {
-        let mut mission = field::standard(5, number, Algorithm::Cfc, 20);
+        let mut mission = standard_field::standard(5, number, Algorithm::Cfc, 20);
         if number % 2 == 1 {
-            mission = field::standard(5, number, Algorithm::Scc, 8);
+            mission = standard_field::standard(5, number, Algorithm::Scc, 8);
             mission.noise = Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.5) });
         }
         missions.push(mission);
@@ -54,11 +54,11 @@ fn every_machine_makes_the_same_traces() {
     let host: Vec<String> = missions.iter().map(here).collect();
     let mut hashes = vec![("host", hash(&host))];
     for (core, target) in CORES {
-        let Some(program) = bench::build(env!("CARGO_TARGET_TMPDIR"), target) else { continue };
+        let Some(program) = missions::build(env!("CARGO_TARGET_TMPDIR"), target) else { continue };
         let elf = program("standard");
         let there = |mission: &Mission| {
             let mut emulator = Emulator::load(&elf, core);
-            let played = bench::fly(&mut emulator, mission).expect("it flies as the host");
+            let played = missions::fly(&mut emulator, mission).expect("it flies as the host");
             trace::lines(&played.recording)
         };
         let chip: Vec<String> = missions.par_iter().map(there).collect();
@@ -76,11 +76,11 @@ fn every_machine_makes_the_same_traces() {
 #[test]
 fn a_mission_leaves_nothing_behind() {
     let (core, target) = CORES[0];
-    let Some(program) = bench::build(env!("CARGO_TARGET_TMPDIR"), target) else { return };
+    let Some(program) = missions::build(env!("CARGO_TARGET_TMPDIR"), target) else { return };
     let mut emulator = Emulator::load(&program("standard"), core);
     let missions = missions();
     let [first, second] = [(); 2].map(|()| {
-        let fly = |mission| bench::fly(&mut emulator, mission).expect("it flies as the host");
+        let fly = |mission| missions::fly(&mut emulator, mission).expect("it flies as the host");
         missions[..4].iter().map(fly).map(|it| trace::lines(&it.recording)).collect::<Vec<_>>()
     });
     assert_eq!(first, second);
@@ -90,17 +90,17 @@ fn a_mission_leaves_nothing_behind() {
 fn the_small_program_has_one_algorithm_and_says_so() {
     let (core, target) = CORES[0];
     assert_eq!(core, Core::M4F);
-    let Some(program) = bench::build(env!("CARGO_TARGET_TMPDIR"), target) else { return };
+    let Some(program) = missions::build(env!("CARGO_TARGET_TMPDIR"), target) else { return };
     let mut emulator = Emulator::load(&program("small"), core);
     let refusal = |emulator: &mut Emulator, mission: &Mission| {
-        bench::fly(emulator, mission).expect_err("it is declined").to_string()
+        missions::fly(emulator, mission).expect_err("it is declined").to_string()
     };
-    let noisy = field::standard(5, 1, Algorithm::Scc, 8);
+    let noisy = standard_field::standard(5, 1, Algorithm::Scc, 8);
     assert!(refusal(&mut emulator, &noisy).contains("algorithm"));
-    let long = field::standard(5, 1, Algorithm::Cfc, 13);
+    let long = standard_field::standard(5, 1, Algorithm::Cfc, 13);
     assert!(refusal(&mut emulator, &long).contains("at most 12"));
-    let fits = field::standard(5, 1, Algorithm::Cfc, 12);
-    assert!(bench::fly(&mut emulator, &fits).is_ok());
+    let fits = standard_field::standard(5, 1, Algorithm::Cfc, 12);
+    assert!(missions::fly(&mut emulator, &fits).is_ok());
 }
 
 /// What a function executed at each call, by a log of program counters.
@@ -117,9 +117,9 @@ fn calls(executed: &[u32], function: u32) -> Vec<u64> {
 #[test]
 fn qemu_executes_as_many_instructions() {
     let (core, target) = CORES[0];
-    let Some(program) = bench::build(env!("CARGO_TARGET_TMPDIR"), target) else { return };
-    if !elf::has_tool("qemu-system-arm") {
-        elf::skip(
+    let Some(program) = missions::build(env!("CARGO_TARGET_TMPDIR"), target) else { return };
+    if !build::has_tool("qemu-system-arm") {
+        build::skip(
             env!("CARGO_TARGET_TMPDIR"),
             "instruction counts under QEMU",
             "qemu-system-arm is not on PATH",
@@ -136,7 +136,7 @@ fn qemu_executes_as_many_instructions() {
         sought: 0,
         calls: None,
     };
-    let (_, told) = bench::fly_and_record(&mut Emulator::load(&elf, core), &workload.mission(3))
+    let (_, told) = missions::fly_and_record(&mut Emulator::load(&elf, core), &workload.mission(3))
         .expect("it flies as the host");
     let flights = timing::fly(&elf, &workload, &[3]);
 

@@ -1,13 +1,13 @@
 //! The estimates against brute force, and against what must not change them.
 
-use host_sim::field;
-use host_sim::mission::{Algorithm, CAPACITY, Known};
+use host_sim::campaign::standard_field;
+use host_sim::mission::definition::{Algorithm, CAPACITY, Known};
 use nalgebra::{Point2, Rotation2, Vector2};
-use planner_core::estimate::{Estimates, area, bisector, centre, maximum_margin};
-use planner_core::lattice::Site;
-use planner_core::line::Line;
-use planner_core::sample::{Label, Sample};
-use planner_core::version_space::VersionSpace;
+use planner_core::belief::estimate::{Estimates, area, bisector, centre, maximum_margin};
+use planner_core::belief::sample::{Label, Sample};
+use planner_core::belief::version_space::VersionSpace;
+use planner_core::geometry::lattice::Site;
+use planner_core::geometry::line::Line;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -15,7 +15,7 @@ use rand_chacha::ChaCha8Rng;
 fn spaces(fields: u64, steps: u32) -> Vec<(u64, VersionSpace<CAPACITY>)> {
     (0..fields)
         .map(|number| {
-            let mission = field::standard(4, number, Algorithm::Cfc, steps);
+            let mission = standard_field::standard(4, number, Algorithm::Cfc, steps);
             let mut last = mission.space.clone();
             let end = mission.run(|_, known| {
                 let Known::Lines(space) = known else { return };
@@ -69,7 +69,7 @@ fn the_maximum_margin_is_the_largest() {
 fn the_centre_and_the_area_are_those_of_lines_drawn_at_random() {
     for (number, space) in spaces(6, 2) {
         let mut rng = ChaCha8Rng::seed_from_u64(number);
-        let (half, radius) = (field::SIDE_M / 2.0, 20.0);
+        let (half, radius) = (standard_field::SIDE_M / 2.0, 20.0);
         let middle = Point2::new(half, half);
         let (draws, mut hits, mut mean) = (2_000_000, 0_u32, Vector2::zeros());
         let mut offset = 0.0;

@@ -1,9 +1,9 @@
 //! Orientation and cuts against arbitrary-precision integers.
 
 use num_bigint::{BigInt, Sign};
-use planner_core::cell::{Cell, Cut, CutError, Edge};
-use planner_core::lattice::{Site, orient};
-use planner_core::sample::{Label, Sample};
+use planner_core::belief::cell::{Cell, Cut, CutError, Edge};
+use planner_core::belief::sample::{Label, Sample};
+use planner_core::geometry::lattice::{Site, orient};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;

@@ -12,30 +12,30 @@ use std::time::{Duration, Instant};
 use std::{fs, thread};
 
 use defmt_decoder::{DecodeError, Table};
-use host_sim::cable::Cable;
-use host_sim::emulator::Emulator;
-use host_sim::faults::Faults;
-use host_sim::field;
-use host_sim::hil;
-use host_sim::mission::{Algorithm, Mission};
-use host_sim::player::{Played, Player};
-use host_sim::recording::Recording;
-use host_sim::scenario::{self, Overrides};
-use host_sim::trace;
-use host_sim::world::{Extent, NoiseModel};
-use planner_core::agent::{Agent, Event, Step};
-use planner_core::hal::LabelSensor;
-use planner_core::link::{Link, Port};
-use planner_core::sample::{Label, Reading};
-use planner_core::wire::LabelSource;
+use host_sim::campaign::standard_field;
+use host_sim::hil::cable::Cable;
+use host_sim::hil::faults::Faults;
+use host_sim::hil::flight;
+use host_sim::hil::player::{Played, Player};
+use host_sim::hil::qemu::Emulator;
+use host_sim::mission::definition::{Algorithm, Mission};
+use host_sim::mission::recording::Recording;
+use host_sim::mission::scenario::{self, Overrides};
+use host_sim::report::trace;
+use host_sim::world::truth::{Extent, NoiseModel};
+use planner_core::belief::sample::{Label, Reading};
+use planner_core::link::delivery::{Link, Port};
+use planner_core::link::message::LabelSource;
+use planner_core::robot::agent::{Agent, Event, Step};
+use planner_core::robot::hal::LabelSensor;
 use rand::{Rng as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use tempfile::{NamedTempFile, TempPath};
+use tests::budget::footprint::{self, Footprint};
 use tests::debugger::{self, Debugger};
-use tests::elf;
-use tests::footprint::{self, Footprint};
-use tests::image::Image;
+use tests::program::build;
+use tests::program::image::Image;
 
 const TARGET: &str = "thumbv7em-none-eabihf";
 
@@ -63,11 +63,11 @@ impl Chip {
 
     fn play(&self, player: &mut Player, faults: Faults, seed: u64) -> anyhow::Result<()> {
         let [reader, port] = [(); 2].map(|()| self.link.try_clone().expect("a socket"));
-        hil::play(player, Cable::new(reader, port, faults, seed)).map(drop)
+        flight::play(player, Cable::new(reader, port, faults, seed)).map(drop)
     }
 
     fn fly(&self, mission: &Mission, faults: Faults) -> anyhow::Result<Played> {
-        let mut player = Player::new(mission, LabelSource::Vehicle, hil::start_number())?;
+        let mut player = Player::new(mission, LabelSource::Vehicle, flight::start_number())?;
         self.play(&mut player, faults, mission.seed)?;
         player.finish()
     }
@@ -106,23 +106,23 @@ impl Chip {
 fn firmware() -> Option<&'static Path> {
     static ELF: OnceLock<Option<PathBuf>> = OnceLock::new();
     let build = || {
-        if !elf::can_build(TARGET) {
-            elf::skip(
+        if !build::can_build(TARGET) {
+            build::skip(
                 env!("CARGO_TARGET_TMPDIR"),
                 "firmware under QEMU",
                 "the target thumbv7em-none-eabihf is not installed",
             );
             return None;
         }
-        if !elf::has_tool("qemu-system-arm") {
-            elf::skip(
+        if !build::has_tool("qemu-system-arm") {
+            build::skip(
                 env!("CARGO_TARGET_TMPDIR"),
                 "firmware under QEMU",
                 "qemu-system-arm is not on PATH",
             );
             return None;
         }
-        let folder = elf::build(env!("CARGO_TARGET_TMPDIR"), "firmware", TARGET);
+        let folder = build::build(env!("CARGO_TARGET_TMPDIR"), "firmware", TARGET);
         Some(folder.unwrap_or_else(|errors| panic!("{errors}")).join("firmware"))
     };
     ELF.get_or_init(build).as_deref()
@@ -135,7 +135,7 @@ fn example(text: &str) -> Mission {
 /// Random missions, each algorithm by turns.
 fn random(number: u64) -> Mission {
     let algorithm = if number.is_multiple_of(2) { Algorithm::Cfc } else { Algorithm::Scc };
-    let mut mission = field::standard(6, number, algorithm, 10 + (number % 11) as u32);
+    let mut mission = standard_field::standard(6, number, algorithm, 10 + (number % 11) as u32);
     if algorithm == Algorithm::Scc {
         mission.noise = Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.5) });
     }
@@ -245,7 +245,7 @@ fn a_cut_link_stops_the_mission_safely_within_the_bound_and_the_next_can_begin()
     let writes = NamedTempFile::new().expect("a temporary file").into_temp_path();
     let Some(mut chip) = Chip::start(&writes_to(&writes)) else { return };
     let mission = random(0);
-    let mut player = Player::new(&mission, LabelSource::Vehicle, hil::start_number())
+    let mut player = Player::new(&mission, LabelSource::Vehicle, flight::start_number())
         .expect("a mission for a chip");
     // Answers up to the third motion, and then no more.
     while player.motions() < 3 {
@@ -295,7 +295,7 @@ impl LabelSensor for Low {
 fn the_chip_can_read_labels_from_its_own_pin() {
     let Some(chip) = Chip::start(&[]) else { return };
     let mission = random(1);
-    let mut player = Player::new(&mission, LabelSource::Chip, hil::start_number())
+    let mut player = Player::new(&mission, LabelSource::Chip, flight::start_number())
         .expect("a mission for a chip");
     chip.play(&mut player, Faults::default(), 1).expect("it flies");
     let played = player.finish().expect("it ends");
@@ -332,7 +332,7 @@ fn a_fault_disables_the_drive_first_then_tells_and_starts_anew() {
     debugger.say("c");
     // Taking the mission, it enables the drive, and logs; while it waits it has the log in hand.
     let mission = random(0);
-    let mut player = Player::new(&mission, LabelSource::Vehicle, hil::start_number())
+    let mut player = Player::new(&mission, LabelSource::Vehicle, flight::start_number())
         .expect("a mission for a chip");
     let mut link = chip.link.try_clone().expect("a socket");
     let setup = loop {

@@ -8,20 +8,20 @@ use std::path::Path;
 
 use clap::Parser as _;
 use expect_test::expect_file;
-use host_sim::cli::Cli;
-use host_sim::commands::PAPER_TITLE;
-use host_sim::field;
-use host_sim::figure::Figure;
-use host_sim::mission::{Algorithm, Mission};
-use host_sim::polygon::misclassified;
-use host_sim::recording::{Recording, recovery_name};
-use host_sim::report;
-use host_sim::scenario::{self, Overrides};
-use host_sim::trace;
-use host_sim::world::{Extent, NoiseModel};
+use host_sim::campaign::standard_field;
+use host_sim::cli::arguments::Cli;
+use host_sim::cli::commands::PAPER_TITLE;
+use host_sim::mission::definition::{Algorithm, Mission};
+use host_sim::mission::recording::{Recording, recovery_name};
+use host_sim::mission::scenario::{self, Overrides};
+use host_sim::report::figure::Figure;
+use host_sim::report::text;
+use host_sim::report::trace;
+use host_sim::world::polygon::misclassified;
+use host_sim::world::truth::{Extent, NoiseModel};
 use nalgebra::Point2;
-use planner_core::hypotheses::Prior;
-use planner_core::scc::Policy;
+use planner_core::belief::hypotheses::Prior;
+use planner_core::planner::scc::Policy;
 
 #[test]
 fn standard_scenarios() {
@@ -53,7 +53,7 @@ fn mission(number: u64) -> Mission {
     let algorithms = [Algorithm::Cfc, Algorithm::Scc, Algorithm::Random, Algorithm::Random];
     let algorithm = algorithms[number as usize % 4];
     let steps = 10 + (number % 50) as u32;
-    let mut mission = field::standard(17, number, algorithm, steps);
+    let mut mission = standard_field::standard(17, number, algorithm, steps);
     if algorithm == Algorithm::Scc || number % 4 == 3 {
         let p = [0.6, 0.7, 0.9, 0.99][number as usize / 4 % 4];
         let extents = [Extent::OutsideBalls(0.5), Extent::OutsideBalls(0.0), Extent::Band(3.0)];
@@ -75,7 +75,7 @@ fn hashes_of_traces_figures_and_campaigns() {
         let recording = Recording::of(&mission(number)).expect("trusted labels are true");
         line(&format!("trace {number}"), &trace::lines(&recording));
         if number % 10 < 2 {
-            line(&format!("report {number}"), &report::mission("a mission", &recording));
+            line(&format!("report {number}"), &text::mission("a mission", &recording));
             let figure = Figure::of("a mission", &recording).svg().expect("a figure");
             line(&format!("figure {number}"), &figure);
         }
@@ -112,13 +112,13 @@ fn the_picture_in_the_readme() {
 
 fn describe(table: &mut String, name: &str, recording: &Recording) -> std::fmt::Result {
     let mission = &recording.mission;
-    writeln!(table, "{name}: {}", report::line(&mission.truth))?;
+    writeln!(table, "{name}: {}", text::line(&mission.truth))?;
     for (recorded, number) in recording.steps.iter().zip(1..) {
         let step = &recorded.step;
         let at = Point2::<f64>::from(step.pose.site);
         let line = format!(
             "{number:>4} {} {:>5} {:>5.2} {:>3.1} ({:.4}, {:.4}) {:>2} {:>6.3} bits {}",
-            step.motion.stage.map_or("--", host_sim::recording::stage_name),
+            step.motion.stage.map_or("--", host_sim::mission::recording::stage_name),
             step.motion.action.0,
             step.motion.control.w,
             step.motion.control.v,
@@ -131,14 +131,14 @@ fn describe(table: &mut String, name: &str, recording: &Recording) -> std::fmt::
         writeln!(table, "{}", line.trim_end())?;
     }
     writeln!(table, "     {} samples; ended by: {}", recording.samples(), recording.end.name())?;
-    for (name, estimate) in report::estimates(recording) {
+    for (name, estimate) in text::estimates(recording) {
         let Some(line) = estimate else {
             writeln!(table, "     {name}: none")?;
             continue;
         };
         let error = line.angle_to_deg(&mission.truth);
         let wrong = 100.0 * misclassified(mission.config.area, &mission.truth, &line);
-        let line = report::line(&line);
+        let line = text::line(&line);
         writeln!(table, "     {name}: {line}, off by {error:.3} deg and {wrong:.3} %")?;
     }
     writeln!(table)

@@ -2,22 +2,22 @@
 
 use std::collections::BTreeMap;
 
-use host_sim::field;
-use host_sim::mission::Algorithm;
-use host_sim::world;
+use host_sim::campaign::standard_field;
+use host_sim::mission::definition::Algorithm;
+use host_sim::world::truth;
 use nalgebra::Point2;
-use planner_core::candidates::Certainty;
-use planner_core::estimate;
-use planner_core::hypotheses::{Hypotheses, Hypothesis, Prior};
-use planner_core::lattice::Site;
-use planner_core::posterior::Posterior;
-use planner_core::sample::{Label, Sample};
-use planner_core::version_space::{Refused, VersionSpace};
-use planner_core::weight::Reliability;
+use planner_core::belief::candidates::Certainty;
+use planner_core::belief::estimate;
+use planner_core::belief::hypotheses::{Hypotheses, Hypothesis, Prior};
+use planner_core::belief::posterior::Posterior;
+use planner_core::belief::sample::{Label, Sample};
+use planner_core::belief::version_space::{Refused, VersionSpace};
+use planner_core::belief::weight::Reliability;
+use planner_core::geometry::lattice::Site;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
-use tests::brute;
+use tests::twins::brute;
 
 /// A label at a place, seen with some reliability.
 type Seen = (Sample, f64);
@@ -28,12 +28,12 @@ fn mission(
     number: u64,
     t: usize,
     mixed: bool,
-) -> (Vec<Sample>, Vec<Seen>, planner_core::line::Line) {
-    let field = field::standard(7, number, Algorithm::Cfc, 1);
+) -> (Vec<Sample>, Vec<Seen>, planner_core::geometry::line::Line) {
+    let field = standard_field::standard(7, number, Algorithm::Cfc, 1);
     let mut rng = ChaCha8Rng::seed_from_u64(number);
     let mut seen = Vec::new();
     while seen.len() < t {
-        let mut metres = || rng.random_range(0.0..field::SIDE_M);
+        let mut metres = || rng.random_range(0.0..standard_field::SIDE_M);
         let site = Site::try_from(Point2::new(metres(), metres())).expect("near");
         let dull = field.space.certainty(site) != Certainty::Uncertain;
         if dull && rng.random_range(0..4) > 0 {
@@ -251,7 +251,7 @@ fn certain_labels_leave_the_version_space() {
             assert_eq!(alone.is_ok(), among.is_ok());
             let one = table.iter().next().expect("one hypothesis");
             assert_eq!(table.iter().len(), 1);
-            let corners = |edges: &[planner_core::cell::Edge], samples: &[Sample]| {
+            let corners = |edges: &[planner_core::belief::cell::Edge], samples: &[Sample]| {
                 let mut sites: Vec<_> = edges
                     .iter()
                     .map(|e| {
@@ -420,7 +420,7 @@ fn a_cell_that_cannot_hold_its_edges_holds_more_lines_and_says_so() {
             }
             exact.observe(sample, reliability).expect("room");
             // The true line is still among the lines of some hypothesis, unless that was given up.
-            let held = table.iter().any(|h| world::agrees(&truth, table.candidates(h)));
+            let held = table.iter().any(|h| truth::agrees(&truth, table.candidates(h)));
             let lost = Posterior::new(&table).lost();
             assert!(held || lost > 0.0, "mission {number}");
         }
@@ -428,7 +428,7 @@ fn a_cell_that_cannot_hold_its_edges_holds_more_lines_and_says_so() {
         if Posterior::new(&table).lost() <= 0.0 {
             for h in exact.iter().filter(|_| rng.random_range(0..4) == 0) {
                 let line = estimate::centre(exact.candidates(h)).expect("a line");
-                assert!(table.iter().any(|h| world::agrees(&line, table.candidates(h))));
+                assert!(table.iter().any(|h| truth::agrees(&line, table.candidates(h))));
             }
         }
         outer += u32::from(table.outer_cells());

@@ -11,24 +11,24 @@ use std::fmt::Debug;
 use std::panic::{self, AssertUnwindSafe};
 use std::time::Duration;
 
-use host_sim::faults::{Faults, Spoiler};
-use host_sim::field;
-use host_sim::mission::{Algorithm, Mission};
-use host_sim::player::{self, Player};
-use host_sim::recording::Recording;
-use host_sim::trace;
-use host_sim::world::{Extent, NoiseModel, Sensor, Vehicle};
-use planner_core::estimate::Estimates;
-use planner_core::hal::Drive as _;
-use planner_core::line::Line;
-use planner_core::link::{Heard, Link, LinkLost, Port, Responder};
-use planner_core::remote::{Flown, Station};
-use planner_core::sample::Reading;
-use planner_core::version_space::NoVersionSpace;
-use planner_core::wire::{
-    self, ClockRate, Declined, Decoder, Envelope, FRAME, Frame, LabelSource, Message, PROTOCOL,
-    Reply, Request, Room,
+use host_sim::campaign::standard_field;
+use host_sim::hil::faults::{Faults, Spoiler};
+use host_sim::hil::player::{self, Player};
+use host_sim::mission::definition::{Algorithm, Mission};
+use host_sim::mission::recording::Recording;
+use host_sim::report::trace;
+use host_sim::world::truth::{Extent, NoiseModel, Sensor, Vehicle};
+use planner_core::belief::estimate::Estimates;
+use planner_core::belief::sample::Reading;
+use planner_core::belief::version_space::NoVersionSpace;
+use planner_core::geometry::line::Line;
+use planner_core::link::delivery::{Heard, Link, LinkLost, Port, Responder};
+use planner_core::link::frame::{Decoder, Envelope, FRAME, Frame, Message};
+use planner_core::link::message::{
+    self, ClockRate, Declined, LabelSource, PROTOCOL, Reply, Request, Room,
 };
+use planner_core::link::station::{Flown, Station};
+use planner_core::robot::hal::Drive as _;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -144,10 +144,13 @@ fn chip(network: &RefCell<Network>) -> Chip<'_> {
 }
 
 /// What the firmware does with a setup.
-fn fly<P: Port>(chip: &mut Station<P, Infallible>, setup: &wire::Setup) -> Result<Flown, LinkLost> {
+fn fly<P: Port>(
+    chip: &mut Station<P, Infallible>,
+    setup: &message::Setup,
+) -> Result<Flown, LinkLost> {
     match setup.algorithm {
-        wire::Algorithm::Cfc => chip.fly(setup, &mut setup.cfc::<68>(), |_| {}),
-        wire::Algorithm::Scc { noise, policy, prior } => {
+        message::Algorithm::Cfc => chip.fly(setup, &mut setup.cfc::<68>(), |_| {}),
+        message::Algorithm::Scc { noise, policy, prior } => {
             let mut planner = setup.scc::<36, 529>(noise, policy);
             chip.fly(setup, &mut setup.prepare(&mut planner, prior), |_| {})
         }
@@ -157,7 +160,7 @@ fn fly<P: Port>(chip: &mut Station<P, Infallible>, setup: &wire::Setup) -> Resul
 /// Missions of both algorithms by turns.
 fn mission(number: u64) -> Mission {
     let algorithm = if number.is_multiple_of(2) { Algorithm::Cfc } else { Algorithm::Scc };
-    let mut mission = field::standard(SEED, number, algorithm, 10);
+    let mut mission = standard_field::standard(SEED, number, algorithm, 10);
     if algorithm == Algorithm::Scc {
         mission.noise = Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.5) });
     }
@@ -238,7 +241,7 @@ fn a_chip_declines_what_it_has_no_room_for_and_says_how_much_it_has() {
 struct Garage {
     responder: Responder,
     mission: Mission,
-    setup: wire::Setup,
+    setup: message::Setup,
     world: (Vehicle, Sensor),
     /// Motions of the last mission, and whether it has ended.
     motions: usize,
@@ -269,7 +272,7 @@ impl Garage {
                 (self.motions, self.ended) = (0, false);
                 Reply::Noted
             }
-            Request::Move(wire::Move { motion, .. }) => {
+            Request::Move(message::Move { motion, .. }) => {
                 self.motions += 1;
                 let (vehicle, sensor) = &mut self.world;
                 let Ok(pose) = vehicle.drive(&motion);
@@ -497,7 +500,7 @@ impl Liar {
         liar.says(Request::Hello { protocol: PROTOCOL }).expect("it offers a mission");
         let room = Room { samples: 68, hypotheses: 1 };
         let clock = ClockRate { per_second: 1, emulated: false };
-        liar.says(Request::Ready(wire::Accepted { room, clock })).expect("it takes note");
+        liar.says(Request::Ready(message::Accepted { room, clock })).expect("it takes note");
         liar
     }
 
@@ -519,24 +522,24 @@ impl Liar {
 #[test]
 fn a_player_finds_out_a_chip_that_took_in_another_reading() {
     let mission = mission(0);
-    let took = wire::Took::default();
+    let took = message::Took::default();
     let steps = Recording::of(&mission).expect("labels are true").steps;
     let motion = |n: usize| steps[n].step.motion;
     let mut liar = Liar::new(&mission);
-    let reply = liar.says(Request::Move(wire::Move { motion: motion(0), last: None, took }));
+    let reply = liar.says(Request::Move(message::Move { motion: motion(0), last: None, took }));
     let Ok(Reply::Arrived { reading: Some(Reading::Side(sensed)), .. }) = reply else {
         panic!("{reply:?}")
     };
     for last in [None, Some(Reading::Boundary), Some((-sensed).into())] {
         let mut liar = Liar::new(&mission);
-        let moved = liar.says(Request::Move(wire::Move { motion: motion(0), last: None, took }));
+        let moved = liar.says(Request::Move(message::Move { motion: motion(0), last: None, took }));
         assert!(moved.is_ok());
-        let lie = liar.says(Request::Move(wire::Move { motion: motion(1), last, took }));
+        let lie = liar.says(Request::Move(message::Move { motion: motion(1), last, took }));
         let error = lie.expect_err("it was found out").to_string();
         assert!(error.contains("step 1: sensed"), "{error}");
     }
     let last = Some(sensed.into());
-    assert!(liar.says(Request::Move(wire::Move { motion: motion(1), last, took })).is_ok());
+    assert!(liar.says(Request::Move(message::Move { motion: motion(1), last, took })).is_ok());
 }
 
 #[test]
@@ -544,8 +547,8 @@ fn a_player_compares_every_estimate_to_the_last_bit() {
     let mission = mission(0);
     let right = Estimates::of(&mission.space);
     let end = |estimates| {
-        let (last, took) = (None, wire::Took::default());
-        Request::End(wire::End { reason: wire::EndReason::Steps, last, took, estimates })
+        let (last, took) = (None, message::Took::default());
+        Request::End(message::End { reason: message::EndReason::Steps, last, took, estimates })
     };
     let judge = |estimates| {
         let mut liar = Liar::new(&mission);

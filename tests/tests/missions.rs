@@ -4,25 +4,26 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Mutex;
 
-use host_sim::field;
-use host_sim::mission::{Algorithm, Known};
-use host_sim::recording::Recording;
-use host_sim::scenario::{self, Overrides};
-use host_sim::{trace, world};
+use host_sim::campaign::standard_field;
+use host_sim::mission::definition::{Algorithm, Known};
+use host_sim::mission::recording::Recording;
+use host_sim::mission::scenario::{self, Overrides};
+use host_sim::report::trace;
+use host_sim::world::truth as real;
 use nalgebra::Point2;
-use planner_core::candidates::Certainty;
-use planner_core::cfc::Cfc;
-use planner_core::dynamics::Pose;
-use planner_core::hal::Drive as _;
-use planner_core::lattice::Site;
+use planner_core::belief::candidates::Certainty;
+use planner_core::belief::sample::Reading;
+use planner_core::geometry::lattice::Site;
+use planner_core::motion::dynamics::Pose;
+use planner_core::motion::unicycle::Unicycle;
+use planner_core::planner::cfc::Cfc;
 use planner_core::planner::{Plan, Planner as _, Recovery};
-use planner_core::sample::Reading;
-use planner_core::unicycle::Unicycle;
+use planner_core::robot::hal::Drive as _;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use tests::cases;
-use tests::ladder::{Ladder, Rung};
+use tests::twins::ladder::{Ladder, Rung};
 
 const FIELDS: u64 = cases(2_000, 10_000);
 
@@ -31,7 +32,7 @@ fn fields_never_contradict_themselves_or_the_truth() {
     let certain: u64 = (0..FIELDS)
         .into_par_iter()
         .map(|number| {
-            let mission = field::standard(2, number, Algorithm::Cfc, 40);
+            let mission = standard_field::standard(2, number, Algorithm::Cfc, 40);
             let mut rng = ChaCha8Rng::seed_from_u64(number);
             let truth = mission.truth;
             let mut certain = 0;
@@ -41,10 +42,10 @@ fn fields_never_contradict_themselves_or_the_truth() {
                 assert!(mission.config.area.contains(step.pose.site), "{place}: outside the area");
                 // What is certain is true.
                 for _ in 0..4 {
-                    let mut metres = || rng.random_range(0.0..field::SIDE_M);
+                    let mut metres = || rng.random_range(0.0..standard_field::SIDE_M);
                     let q = Site::try_from(Point2::new(metres(), metres())).expect("near");
                     if let Certainty::Certain(label) = space.certainty(q) {
-                        let reading = world::reading(&truth, q);
+                        let reading = real::reading(&truth, q);
                         assert_eq!(reading, Reading::Side(label), "{place}: certain of {q:?}");
                         certain += 1;
                     }
@@ -61,7 +62,7 @@ fn fields_never_contradict_themselves_or_the_truth() {
                 }
                 // So no label can contradict it.
                 for sample in space.samples() {
-                    assert_eq!(world::reading(&truth, sample.site), Reading::Side(sample.label));
+                    assert_eq!(real::reading(&truth, sample.site), Reading::Side(sample.label));
                 }
             });
             assert!(end.is_ok(), "field {number}: {end:?}");
@@ -77,7 +78,7 @@ fn every_plan_is_what_trying_all_actions_would_make_it() {
     let unicycle = Unicycle::paper();
     let rungs = Mutex::new(BTreeMap::new());
     (0..cases(100, 2_000)).into_par_iter().for_each(|number| {
-        let mission = field::standard(12, number, Algorithm::Cfc, 60);
+        let mission = standard_field::standard(12, number, Algorithm::Cfc, 60);
         let (mut vehicle, mut sensor) = mission.world();
         let mut planner = Cfc::new(mission.config, unicycle, mission.space.clone());
         let mut pose = mission.start;
@@ -139,7 +140,7 @@ fn a_mission_comes_out_the_same_again_byte_for_byte() {
     for algorithm in [Algorithm::Cfc, Algorithm::Random] {
         for number in 0..50 {
             let trace = || {
-                let mission = field::standard(3, number, algorithm, 40);
+                let mission = standard_field::standard(3, number, algorithm, 40);
                 trace::lines(&Recording::of(&mission).expect("noiseless"))
             };
             assert_eq!(trace(), trace(), "field {number}");

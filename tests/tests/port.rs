@@ -6,16 +6,16 @@ use std::io::{Read, Write};
 use std::time::{Duration, Instant};
 use std::{panic, thread};
 
-use host_sim::faults::Faults;
-use host_sim::field;
-use host_sim::hil::{self, Chip, Timings};
-use host_sim::mission::Algorithm;
-use host_sim::player::Player;
-use host_sim::recording::Recording;
-use host_sim::trace;
-use planner_core::link::{Link, Port};
-use planner_core::remote::{Flown, Station};
-use planner_core::wire::{ClockRate, End, EndReason, LabelSource};
+use host_sim::campaign::standard_field;
+use host_sim::hil::faults::Faults;
+use host_sim::hil::flight::{self, Chip, Timings};
+use host_sim::hil::player::Player;
+use host_sim::mission::definition::Algorithm;
+use host_sim::mission::recording::Recording;
+use host_sim::report::trace;
+use planner_core::link::delivery::{Link, Port};
+use planner_core::link::message::{ClockRate, End, EndReason, LabelSource};
+use planner_core::link::station::{Flown, Station};
 use serialport::{SerialPort as _, TTYPort};
 
 const WAIT: Duration = Duration::from_millis(100);
@@ -58,11 +58,11 @@ fn a_board_at_a_serial_port_flies_as_this_machine_does() {
         let setup = board.await_setup();
         board.fly(&setup, &mut setup.cfc::<68>(), |_| {})
     });
-    let mission = field::standard(4, 1, Algorithm::Cfc, 10);
+    let mission = standard_field::standard(4, 1, Algorithm::Cfc, 10);
     let mut player = Player::new(&mission, LabelSource::Vehicle, 1).expect("a mission for a chip");
     let faults: Faults = "drop=0.2,duplicate=0.1,delay=3ms".parse().expect("faults");
     let chip = Chip::Board { device, baud: 115_200 };
-    let turnarounds = hil::fly(&mut player, &chip, faults, 1).expect("the board answers");
+    let turnarounds = flight::fly(&mut player, &chip, faults, 1).expect("the board answers");
     let played = player.finish().expect("the mission is over");
     let flown = board.join().unwrap_or_else(|cause| panic::resume_unwind(cause));
     assert!(matches!(flown, Ok(Flown::Ended(End { reason: EndReason::Steps, .. }))), "{flown:?}");

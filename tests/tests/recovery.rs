@@ -3,22 +3,22 @@
 use std::collections::{BTreeMap, HashSet};
 use std::sync::Mutex;
 
-use host_sim::field;
-use host_sim::mission::{Algorithm, CAPACITY};
+use host_sim::campaign::standard_field;
+use host_sim::mission::definition::{Algorithm, CAPACITY};
 use nalgebra::Point2;
-use planner_core::area::Area;
-use planner_core::cfc::{self, Cfc};
-use planner_core::config::{Config, Crossing};
-use planner_core::contract;
-use planner_core::direction::Heading;
-use planner_core::dynamics::{Dynamics, Pose};
-use planner_core::holonomic::Holonomic;
-use planner_core::lattice::Site;
+use planner_core::belief::sample::{Label, Reading, Sample};
+use planner_core::belief::version_space::VersionSpace;
+use planner_core::geometry::area::Area;
+use planner_core::geometry::direction::Heading;
+use planner_core::geometry::lattice::Site;
+use planner_core::motion::contract;
+use planner_core::motion::dynamics::{Dynamics, Pose};
+use planner_core::motion::holonomic::Holonomic;
+use planner_core::motion::unicycle::Unicycle;
+use planner_core::planner::cfc::{self, Cfc};
+use planner_core::planner::config::{Config, Crossing};
 use planner_core::planner::{Plan, Planner as _, StopReason};
-use planner_core::problem::Varrho;
-use planner_core::sample::{Label, Reading, Sample};
-use planner_core::unicycle::Unicycle;
-use planner_core::version_space::VersionSpace;
+use planner_core::search::problem::Varrho;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -115,7 +115,7 @@ fn any(rng: &mut ChaCha8Rng) -> Any {
 /// Flies a mission on some grid until it ends, at the latest when the buffer is full; why it ended.
 fn fly<D: Dynamics>(dynamics: D, number: u64, rng: &mut ChaCha8Rng) -> StopReason {
     contract::check(&dynamics).expect("a grid of ours");
-    let mission = field::standard(21, number, Algorithm::Cfc, 1);
+    let mission = standard_field::standard(21, number, Algorithm::Cfc, 1);
     let mut planner = Cfc::new(mission.config, dynamics, mission.space.clone());
     let mut pose = Pose { heading: Heading(rng.random_range(0..=u32::MAX)), ..mission.start };
     loop {
@@ -126,7 +126,7 @@ fn fly<D: Dynamics>(dynamics: D, number: u64, rng: &mut ChaCha8Rng) -> StopReaso
             Ok(pose) => pose,
             Err(reason) => return reason,
         };
-        let label = host_sim::world::reading(&mission.truth, pose.site);
+        let label = host_sim::world::truth::reading(&mission.truth, pose.site);
         assert!(label != Reading::Boundary, "a line that goes through no site");
         planner.observe(pose, Some(label)).expect("labels are true");
     }

@@ -4,26 +4,26 @@ use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use host_sim::campaign::Campaign;
-use host_sim::field;
-use host_sim::mission::{Algorithm, CAPACITY, HYPOTHESES, Known, Table};
-use host_sim::noisy_campaign::{NoisyCampaign, Summary, limit};
-use host_sim::recording::Recording;
-use host_sim::trace;
-use host_sim::world::{self, Extent, Flipped, NoiseModel, Probe};
+use host_sim::campaign::ensemble::Campaign;
+use host_sim::campaign::noisy::{NoisyCampaign, Summary, limit};
+use host_sim::campaign::standard_field;
+use host_sim::mission::definition::{Algorithm, CAPACITY, HYPOTHESES, Known, Table};
+use host_sim::mission::recording::Recording;
+use host_sim::report::trace;
+use host_sim::world::truth::{self, Extent, Flipped, NoiseModel, Probe};
 use nalgebra::Point2;
-use planner_core::action::Action;
-use planner_core::config::Crossing;
-use planner_core::direction::Heading;
-use planner_core::dynamics::Pose;
-use planner_core::hal::LabelSensor;
-use planner_core::hypotheses::Prior;
-use planner_core::lattice::{LIMIT, Site};
+use planner_core::belief::hypotheses::Prior;
+use planner_core::belief::sample::{Label, Reading, Sample};
+use planner_core::belief::weight::Reliability;
+use planner_core::geometry::direction::Heading;
+use planner_core::geometry::lattice::{LIMIT, Site};
+use planner_core::motion::action::Action;
+use planner_core::motion::dynamics::Pose;
+use planner_core::motion::unicycle::Unicycle;
+use planner_core::planner::config::Crossing;
+use planner_core::planner::scc::{Noise, Policy, Scc};
 use planner_core::planner::{Plan, Planner, Stage};
-use planner_core::sample::{Label, Reading, Sample};
-use planner_core::scc::{Noise, Policy, Scc};
-use planner_core::unicycle::Unicycle;
-use planner_core::weight::Reliability;
+use planner_core::robot::hal::LabelSensor;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -53,7 +53,7 @@ fn a_vote_is_the_sum_over_hypotheses_computed_the_slow_way() {
         .map(|number| {
             let policy = [Policy::MixtureOfOwn, Policy::MixtureOfStart][number as usize % 2];
             let prior = [Prior::Area, Prior::Sequences][number as usize / 2 % 2];
-            let mut mission = field::standard(9, number, Algorithm::Scc, 12);
+            let mut mission = standard_field::standard(9, number, Algorithm::Scc, 12);
             mission.noise = Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.5) });
             (mission.policy, mission.prior) = (policy, prior);
             let (mut from, mut before) = (mission.start, mission.table());
@@ -100,7 +100,7 @@ fn problems_alternate_by_labels_and_the_agent_moves_on() {
         (Policy::MixtureOfOwn, [Stage::P1, Stage::P2]),
     ] {
         for number in 0..20 {
-            let mut mission = field::standard(10, number, Algorithm::Scc, 40);
+            let mut mission = standard_field::standard(10, number, Algorithm::Scc, 40);
             mission.noise = Some(NoiseModel { p: 0.8, extent: Extent::Band(3.0) });
             mission.policy = policy;
             let mut labels = 0;
@@ -117,12 +117,13 @@ fn problems_alternate_by_labels_and_the_agent_moves_on() {
 
 #[test]
 fn the_world_flips_labels_where_it_should_and_as_often() {
-    let mission = field::standard(1, 2, Algorithm::Scc, 1);
+    let mission = standard_field::standard(1, 2, Algorithm::Scc, 1);
     let truth = mission.truth;
     let given = mission.space.samples();
     for extent in [Extent::OutsideBalls(3.0), Extent::Band(2.0), Extent::OutsideBalls(0.0)] {
         let model = NoiseModel { p: 0.7, extent };
-        let noisy = host_sim::mission::Mission { noise: Some(model), ..mission.clone() };
+        let noisy =
+            host_sim::mission::definition::Mission { noise: Some(model), ..mission.clone() };
         let pose = Rc::new(Cell::new(mission.start));
         let sensor = Probe { truth, pose: pose.clone() };
         let rng = ChaCha8Rng::seed_from_u64(4);
@@ -132,11 +133,11 @@ fn the_world_flips_labels_where_it_should_and_as_often() {
         let mut places = ChaCha8Rng::seed_from_u64(5);
         let (mut exposed, mut flipped) = (0, 0);
         for _ in 0..40_000 {
-            let mut metres = || places.random_range(0.0..field::SIDE_M);
+            let mut metres = || places.random_range(0.0..standard_field::SIDE_M);
             let at = Point2::new(metres(), metres());
             let site = Site::try_from(at).expect("near");
             pose.set(Pose { site, ..mission.start });
-            let wrong = sensor.read() != Ok(world::reading(&truth, site));
+            let wrong = sensor.read() != Ok(truth::reading(&truth, site));
             let near = |s: &Sample| (Point2::<f64>::from(s.site) - at).norm();
             let safe = match extent {
                 Extent::OutsideBalls(radius) => given.iter().any(|s| near(s) < radius - 1e-3),
@@ -186,7 +187,7 @@ fn a_noisy_mission_comes_out_the_same_again_byte_for_byte() {
     for algorithm in [Algorithm::Scc, Algorithm::Random] {
         for number in 0..5 {
             let trace = || {
-                let mut mission = field::standard(3, number, algorithm, 20);
+                let mut mission = standard_field::standard(3, number, algorithm, 20);
                 mission.noise = Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.5) });
                 trace::lines(&Recording::of(&mission).expect("trusted labels are true"))
             };
@@ -198,12 +199,12 @@ fn a_noisy_mission_comes_out_the_same_again_byte_for_byte() {
 #[test]
 fn perfect_labels_lead_as_in_the_noiseless_case() {
     for number in 0..20 {
-        let mission = field::standard(6, number, Algorithm::Scc, 15); // p = 1: no noise
+        let mission = standard_field::standard(6, number, Algorithm::Scc, 15); // p = 1: no noise
         let end = mission.run(|_, known| {
             let Known::Hypotheses(table) = known else { panic!("a table") };
             assert_eq!(table.iter().len(), 1);
             let held = table.iter().next().expect("one");
-            assert!(world::agrees(&mission.truth, table.candidates(held)));
+            assert!(truth::agrees(&mission.truth, table.candidates(held)));
         });
         assert!(end.is_ok());
     }

@@ -2,22 +2,22 @@
 
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
-use host_sim::field;
-use host_sim::mission::{Algorithm, CAPACITY, Known};
-use planner_core::area::Area;
-use planner_core::candidates::Certainty;
-use planner_core::cfc::{self, Cfc};
-use planner_core::config::{Config, Crossing};
-use planner_core::direction::{Arc, Heading};
-use planner_core::dynamics::{Dynamics, Pose};
-use planner_core::holonomic::Holonomic;
-use planner_core::lattice::{Site, Vector};
+use host_sim::campaign::standard_field;
+use host_sim::mission::definition::{Algorithm, CAPACITY, Known};
+use planner_core::belief::candidates::Certainty;
+use planner_core::belief::sample::{Label, Sample};
+use planner_core::belief::version_space::VersionSpace;
+use planner_core::geometry::area::Area;
+use planner_core::geometry::direction::{Arc, Heading};
+use planner_core::geometry::lattice::{Site, Vector};
+use planner_core::motion::dynamics::{Dynamics, Pose};
+use planner_core::motion::holonomic::Holonomic;
+use planner_core::motion::unicycle::Unicycle;
+use planner_core::planner::cfc::{self, Cfc};
+use planner_core::planner::config::{Config, Crossing};
 use planner_core::planner::{Plan, Planner as _, StopReason};
-use planner_core::problem::{LOOKS, Problem, Search, Varrho};
-use planner_core::rule::ArcRule;
-use planner_core::sample::{Label, Sample};
-use planner_core::unicycle::Unicycle;
-use planner_core::version_space::VersionSpace;
+use planner_core::search::direction_rule::ArcRule;
+use planner_core::search::problem::{LOOKS, Problem, Search, Varrho};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -60,7 +60,7 @@ fn check<D: Dynamics, const N: usize>(
 fn equals_exhaustive_search_along_missions() {
     let [states, examined] = [0; 2].map(AtomicU64::new);
     (0..150u64).into_par_iter().for_each(|number| {
-        let mission = field::standard(11, number, Algorithm::Cfc, 40);
+        let mission = standard_field::standard(11, number, Algorithm::Cfc, 40);
         let mut rng = ChaCha8Rng::seed_from_u64(number);
         let (area, unicycle) = (mission.config.area, Unicycle::paper());
         let mut from = mission.start;
@@ -111,7 +111,7 @@ fn anywhere(rng: &mut ChaCha8Rng) -> Option<(VersionSpace<CAPACITY>, Area, Pose)
     let samples: Vec<_> = (0..rng.random_range(4..12))
         .map(|_| within(rng, extent))
         .map(|site| {
-            let above = planner_core::lattice::orient(a, b, site) > 0;
+            let above = planner_core::geometry::lattice::orient(a, b, site) > 0;
             Sample { site, label: if above { Label::Positive } else { Label::Negative } }
         })
         .collect();

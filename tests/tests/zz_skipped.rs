@@ -2,13 +2,13 @@
 //!
 //! Without libtest's harness, so that its line is the last of the integration tests.
 
-use tests::elf;
+use tests::program::build;
 
 fn main() {
     if std::env::args().any(|it| it == "--list") {
         return; // for runners that ask what there is
     }
-    let skipped = elf::skipped(env!("CARGO_TARGET_TMPDIR"));
+    let skipped = build::skipped(env!("CARGO_TARGET_TMPDIR"));
     if skipped.is_empty() {
         println!("nothing was skipped");
     }

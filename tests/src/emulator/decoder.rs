@@ -11,7 +11,7 @@ use armagnac::instructions::{Encoding, Instruction, InstructionSize, Pattern};
 
 use super::Core;
 use super::vfp::{self, Unit};
-use super::{dsp, undone};
+use super::{dsp, missing_instructions};
 
 /// A decoded instruction.
 pub(super) type Decoded = Rc<dyn Instruction>;
@@ -43,7 +43,7 @@ impl Decoder {
         state: ItState,
     ) -> Result<Decoded, InstructionDecodeError> {
         let added = match (size, self.core) {
-            (InstructionSize::Ins16, _) => undone::decode_narrow(code, state),
+            (InstructionSize::Ins16, _) => missing_instructions::decode_narrow(code, state),
             (InstructionSize::Ins32, Core::M0) => None,
             (InstructionSize::Ins32, Core::M4F) if vfp::owns(code) => {
                 return vfp::decode(code, &self.unit).ok_or(InstructionDecodeError::Unknown);
@@ -52,7 +52,7 @@ impl Decoder {
                 return Err(InstructionDecodeError::Unknown);
             }
             (InstructionSize::Ins32, Core::M4F) => {
-                dsp::decode(code).or_else(|| undone::decode_wide(code))
+                dsp::decode(code).or_else(|| missing_instructions::decode_wide(code))
             }
         };
         if let Some(added) = added {

@@ -1,0 +1,104 @@
+//! The standard fields: the seeded ensemble on which planners are measured.
+//!
+//! 1. A guide line through a point uniform in [6, 14]^2, with a uniform direction.
+//! 2. The oracle's points in the paper's order `-, +, +, -`: two towards one end of the guide line,
+//!    two towards the other, 3 to 8 m along it from that point and 1.5 to 5 m off it on the sides
+//!    that their labels say. All is drawn again when one leaves the area. Initial heading uniform,
+//!    start at `p1`.
+//! 3. The true line, uniform from the version space of those four points by the measure
+//!    d(angle) d(offset): by rejection, over lines that meet the area's circumscribed disc.
+
+use nalgebra::{Point2, Vector2};
+use planner_core::belief::hypotheses::Prior;
+use planner_core::belief::sample::{Label, Reading, Sample};
+use planner_core::belief::version_space::VersionSpace;
+use planner_core::geometry::area::Area;
+use planner_core::geometry::direction::Heading;
+use planner_core::geometry::lattice::Site;
+use planner_core::geometry::line::Line;
+use planner_core::motion::dynamics::Pose;
+use planner_core::planner::config::{Config, Crossing};
+use planner_core::planner::scc::Policy;
+use planner_core::search::problem::Varrho;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+use crate::mission::definition::{Algorithm, Mission};
+use crate::world::truth;
+
+/// Side of the standard area, metres.
+pub const SIDE_M: f64 = 20.0;
+
+/// The standard area.
+///
+/// # Panics
+/// Never: its corners are on the lattice.
+pub fn area() -> Area {
+    let corner = |m: f64| Site::try_from(Point2::new(m, m)).expect("within the lattice");
+    Area::new(corner(0.0), corner(SIDE_M)).expect("has an inside")
+}
+
+/// A unit vector by libm, the same on every machine.
+fn unit(angle: f64) -> Vector2<f64> {
+    let (sin, cos) = libm::sincos(angle);
+    Vector2::new(cos, sin)
+}
+
+/// The standard field with this number in the ensemble of this seed. A field depends on nothing
+/// else: not on the number of fields, the algorithm or the order in which they run.
+///
+/// # Panics
+/// Never: what it draws is within metres of the area.
+pub fn standard(seed: u64, number: u64, algorithm: Algorithm, steps: u32) -> Mission {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    rng.set_stream(number);
+    let turn = |rng: &mut ChaCha8Rng| rng.random_range(0.0..std::f64::consts::TAU);
+    let area = area();
+    let (oracle, space) = loop {
+        let middle = Point2::new(rng.random_range(6.0..14.0), rng.random_range(6.0..14.0));
+        let along = unit(turn(&mut rng));
+        let left = Vector2::new(-along.y, along.x);
+        let corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)];
+        let oracle = corners.map(|(end, side)| {
+            let (run, off) = (rng.random_range(3.0..8.0), rng.random_range(1.5..5.0));
+            let site = Site::try_from(middle + along * (end * run) + left * (side * off));
+            let label = if side > 0.0 { Label::Positive } else { Label::Negative };
+            Sample { site: site.expect("metres from the area"), label }
+        });
+        if oracle.iter().all(|s| area.contains(s.site))
+            && let Ok(space) = VersionSpace::new(&oracle)
+        {
+            break (oracle, space);
+        }
+    };
+    let heading = Heading::from_radians(turn(&mut rng)).expect("an angle");
+    let truth = loop {
+        let half = SIDE_M / 2.0;
+        let radius = half * std::f64::consts::SQRT_2;
+        let normal = unit(turn(&mut rng));
+        let point = Point2::new(half, half) + normal * rng.random_range(-radius..radius);
+        let agrees = |line: &Line| {
+            oracle.iter().all(|s| truth::reading(line, s.site) == Reading::Side(s.label))
+        };
+        if let Some(line) = Line::through(point, normal).filter(agrees) {
+            break line;
+        }
+    };
+    Mission {
+        algorithm,
+        steps,
+        seed: seed ^ number.rotate_left(32),
+        config: Config {
+            area,
+            varrho: Varrho::PAPER,
+            crossing: Crossing::default(),
+            following: algorithm.following(),
+        },
+        start: Pose { site: oracle[0].site, heading },
+        truth,
+        space,
+        noise: None,
+        policy: Policy::default(),
+        prior: Prior::default(),
+    }
+}

@@ -1,0 +1,241 @@
+//! What the commands do.
+
+use std::path::Path;
+use std::{env, fs};
+
+use anyhow::{Context as _, Result, bail};
+use clap::ValueEnum as _;
+use clap::builder::PossibleValue;
+use planner_core::link::message::LabelSource;
+
+use crate::campaign::ensemble::Campaign;
+use crate::campaign::noisy::NoisyCampaign;
+use crate::cli::arguments::{CampaignArgs, FIRMWARE, Format, HilArgs, Labels, ReplayArgs, Run};
+use crate::hil::flight::{self, Chip, Timings};
+use crate::hil::player::Player;
+use crate::mission::definition::{Algorithm, Mission};
+use crate::mission::recording::Recording;
+use crate::mission::scenario::{self, Overrides};
+use crate::output::file::{Output, json, prepare, temporary};
+use crate::replay::record::Replay;
+use crate::report::figure::Figure;
+use crate::report::{text, trace};
+
+/// What the bare command tells first.
+pub const PAPER_TITLE: &str = "The paper's noiseless example (Section V), Algorithm 1";
+
+const PAPER_NOISY_TITLE: &str = "The paper's noisy example (Section V), Algorithm 2";
+
+const CANDIDATES_TITLE: &str = "Its labels do not tell which line is true: fewest violations";
+
+/// The paper's two examples, start to end.
+pub(crate) fn paper() -> Result<String> {
+    fs::create_dir_all("out").context("out: expected a place to make a folder")?;
+    let names = ["paper-noiseless.svg", "paper-noisy.svg", "paper-noisy-candidates.svg"];
+    let places = names.map(|name| (name, Path::new("out").join(name)));
+    let asked = places.each_ref().map(|(name, path)| (*name, Some(path.as_path())));
+    let outputs = prepare(&[], asked)?;
+    let example = |text| Recording::of(&scenario::parse("", text, Overrides::default())?);
+    let noiseless = example(scenario::PAPER_NOISELESS)?;
+    let noisy = example(scenario::PAPER_NOISY)?;
+    // All is drawn before anything is written.
+    let figures = [
+        Some(Figure::of(PAPER_TITLE, &noiseless)),
+        Some(Figure::of(PAPER_NOISY_TITLE, &noisy)),
+        Figure::of_candidates(CANDIDATES_TITLE, &noisy),
+    ];
+    let drawn = figures.iter().flatten().map(Figure::svg).collect::<Result<Vec<_>>>()?;
+    for (output, svg) in outputs.into_iter().flatten().zip(drawn) {
+        output.write(svg)?;
+    }
+    Ok(format!(
+        "{}\n\n{}\nFigures in out/: {}\n",
+        text::mission(PAPER_TITLE, &noiseless),
+        text::mission(PAPER_NOISY_TITLE, &noisy),
+        names.join(", ")
+    ))
+}
+
+pub(crate) fn run(args: &Run) -> Result<String> {
+    let mission = args.mission()?;
+    let outputs = prepare(&[args.input()], args.outputs())?;
+    let recording = Recording::of(&mission).with_context(|| args.name())?;
+    args.tell(outputs, &recording)
+}
+
+pub(crate) fn hil(args: &HilArgs) -> Result<String> {
+    let mission = args.run.mission()?;
+    let elf = args.emulator.clone().unwrap_or_else(|| FIRMWARE.into());
+    let (chip, board) = match &args.port {
+        Some(device) => ("the port", Path::new(device)),
+        None => ("the firmware", elf.as_path()),
+    };
+    let [trace, figure, candidates] = args.run.outputs();
+    let (timing, log) = (args.timing.as_deref(), args.log.as_deref());
+    let asked = [trace, figure, candidates, ("--timing", timing), ("--log", log)];
+    let prepared = prepare(&[args.run.input(), (chip, board)], asked)?;
+    let [trace, figure, candidates, timing, log] = prepared;
+    // The emulator writes its log as it goes; it comes to its place when it is whole.
+    let log = log.map(|log| Ok::<_, anyhow::Error>((log, temporary(&env::temp_dir())?)));
+    let log = log.transpose().context("expected a place for temporary files")?;
+    let chip = match &args.port {
+        Some(device) => Chip::Board { device: device.clone(), baud: args.baud },
+        None => Chip::Emulated { elf, log: log.as_ref().map(|(_, said)| said.path().to_owned()) },
+    };
+    let labels = match args.labels {
+        Labels::Vehicle => LabelSource::Vehicle,
+        Labels::Chip => LabelSource::Chip,
+    };
+    let faults = args.fault.unwrap_or_default();
+    let mut player =
+        Player::new(&mission, labels, flight::start_number()).with_context(|| args.run.name())?;
+    let flown = flight::fly(&mut player, &chip, faults, mission.seed);
+    if let Some((log, said)) = log {
+        let said = fs::read(said.path())?;
+        // What the board said is wanted most when its mission has failed.
+        if flown.is_ok() || !said.is_empty() {
+            log.write(said)?;
+        }
+    }
+    let turnarounds = flown?;
+    let played = player.finish().with_context(|| args.run.name())?;
+    let timings = Timings::new(&played, &turnarounds);
+    let rows = timings.csv()?;
+    let mut text = args.run.tell([trace, figure, candidates], &played.recording)?;
+    if let Some(output) = timing {
+        output.write(rows)?;
+    }
+    if args.run.format == Format::Text {
+        text.push('\n');
+        text.push_str(&timings.report());
+    }
+    Ok(text)
+}
+
+impl Run {
+    fn name(&self) -> String {
+        self.scenario.display().to_string()
+    }
+
+    fn mission(&self) -> Result<Mission> {
+        let Self { algorithm, steps, seed, .. } = *self;
+        let mission = scenario::read(&self.scenario, Overrides { algorithm, steps, seed })?;
+        if self.candidates.is_some() && !mission.is_noisy() {
+            bail!("--candidates: found a mission without noise, expected one with noisy labels");
+        }
+        Ok(mission)
+    }
+
+    fn input(&self) -> (&'static str, &Path) {
+        ("the scenario", &self.scenario)
+    }
+
+    fn outputs(&self) -> [(&'static str, Option<&Path>); 3] {
+        [
+            ("--trace", self.trace.as_deref()),
+            ("--figure", self.figure.as_deref()),
+            ("--candidates", self.candidates.as_deref()),
+        ]
+    }
+
+    /// Writes the trace and the figures that were asked for; what to print.
+    fn tell(&self, outputs: [Option<Output>; 3], recording: &Recording) -> Result<String> {
+        let [trace, figure, candidates] = outputs;
+        let name = self.name();
+        let lines = trace::lines(recording);
+        // All is drawn before anything is written.
+        let svg = figure.as_ref().map(|_| Figure::of(&name, recording).svg()).transpose()?;
+        let fewest = candidates.as_ref().and_then(|_| Figure::of_candidates(&name, recording));
+        let fewest = fewest.map(|figure| figure.svg()).transpose()?;
+        for (output, content) in
+            [(trace, Some(&lines)), (figure, svg.as_ref()), (candidates, fewest.as_ref())]
+        {
+            if let (Some(output), Some(content)) = (output, content) {
+                output.write(content)?;
+            }
+        }
+        Ok(match self.format {
+            Format::Text => text::mission(&name, recording),
+            Format::Json => lines,
+        })
+    }
+}
+
+pub(crate) fn replay(args: &ReplayArgs) -> Result<String> {
+    let [figure] =
+        prepare(&[("the samples", &args.samples)], [("--figure", args.figure.as_deref())])?;
+    let replay = Replay::read(&args.samples)?;
+    if let Some(output) = figure {
+        output.write(replay.figure()?)?;
+    }
+    Ok(match args.format {
+        Format::Text => replay.report(),
+        Format::Json => json(&replay.record()),
+    })
+}
+
+pub(crate) fn campaign(args: &CampaignArgs) -> Result<String> {
+    const ORACLE: usize = 4;
+    scenario::check_steps("--steps", args.steps, ORACLE)?;
+    let p = args.p.unwrap_or(if args.algorithm == Algorithm::Scc { 0.7 } else { 1.0 });
+    let p = scenario::probability("--p", p)?;
+    args.check_meanings(p)?;
+    let radius = args.trusted_radius.unwrap_or_default();
+    let trusted_radius = scenario::trusted("--trusted-radius", radius)?;
+    let [output] = prepare(&[], [("--csv", args.csv.as_deref())])?;
+    let campaign = Campaign {
+        algorithm: args.algorithm,
+        fields: args.fields,
+        steps: args.steps,
+        seed: args.seed,
+        crossing: args.crossing.unwrap_or_default().into(),
+        following: args.following.map_or(args.algorithm.following(), Into::into),
+    };
+    let (table, rows, record) = if args.algorithm == Algorithm::Scc || p < 1.0 {
+        let policy = args.policy.unwrap_or_default().into();
+        let prior = args.prior.unwrap_or_default().into();
+        let noisy = NoisyCampaign { fields: campaign, p, trusted_radius, policy, prior };
+        let summary = noisy.run()?;
+        (summary.report(), summary.csv()?, json(&summary))
+    } else {
+        let summary = campaign.run()?;
+        (summary.report(), summary.csv()?, json(&summary))
+    };
+    if let Some(output) = output {
+        output.write(rows)?;
+    }
+    Ok(match args.format {
+        Format::Text => table,
+        Format::Json => record,
+    })
+}
+
+impl CampaignArgs {
+    /// Whether every flag that was given has a meaning for the algorithm. `p` is how often labels are true.
+    fn check_meanings(&self, p: f64) -> Result<()> {
+        if p < 1.0 && self.algorithm == Algorithm::Cfc {
+            bail!("--p: found {p}, expected 1 with --algorithm cfc, which takes labels to be true");
+        }
+        let plans = self.algorithm != Algorithm::Random;
+        let weighs = self.algorithm == Algorithm::Scc;
+        for (flag, is_given, has_meaning, meant) in [
+            ("--crossing", self.crossing.is_some(), plans, "--algorithm cfc or scc"),
+            ("--following", self.following.is_some(), plans, "--algorithm cfc or scc"),
+            ("--policy", self.policy.is_some(), weighs, "--algorithm scc"),
+            ("--prior", self.prior.is_some(), weighs, "--algorithm scc"),
+            (
+                "--trusted-radius",
+                self.trusted_radius.is_some(),
+                p < 1.0,
+                "labels that can be wrong: --algorithm scc or random, --p below 1",
+            ),
+        ] {
+            if is_given && !has_meaning {
+                let algorithm = self.algorithm.to_possible_value();
+                let algorithm = algorithm.as_ref().map_or("", PossibleValue::get_name);
+                bail!("{flag}: found with --algorithm {algorithm}, expected with {meant}");
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,7 @@
+//! Hardware in the loop: a chip plans at the other end of a link, and the simulator is its vehicle.
+
+pub mod cable;
+pub mod faults;
+pub mod flight;
+pub mod player;
+pub mod qemu;

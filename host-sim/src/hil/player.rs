@@ -1,0 +1,302 @@
+//! The world that a chip plans in: bytes of the link in, frames out.
+//!
+//! Knows nothing of ports and clocks, so a serial line, an emulator and a test's own network can all
+//! carry the bytes. Each reading is taken in here as on the chip. What is known then is the same, or
+//! the estimates at the end would differ, and that is an error.
+
+use anyhow::{Result, anyhow, bail};
+use heapless::Vec as BoundedVec;
+use planner_core::belief::estimate::Estimates;
+use planner_core::belief::sample::Reading;
+use planner_core::geometry::line::Line;
+use planner_core::link::delivery::{Heard, Hello, Responder};
+use planner_core::link::frame::Frame;
+use planner_core::link::message::{
+    self, ClockRate, Declined, EndReason, LabelSource, PROTOCOL, Reply, Request, Room, Setup, Took,
+};
+use planner_core::planner::Motion;
+use planner_core::robot::agent::Step;
+use planner_core::robot::hal::Drive as _;
+
+use crate::mission::definition::{Algorithm, End, Learner, Mission};
+use crate::mission::recording::{Recorder, Recording};
+use crate::world::truth::{Sensor, Vehicle};
+
+/// A chip that has asked so often for a mission hears nothing: five times as often as it sends a request.
+const MOST_HELLOS: u32 = 5 * 16;
+
+/// Plays the world for one mission.
+pub struct Player {
+    setup: Setup,
+    responder: Responder,
+    vehicle: Vehicle,
+    sensor: Sensor,
+    learner: Box<dyn Learner>,
+    recorder: Recorder,
+    /// How often the chip has asked for a mission since it took up the last.
+    hellos: u32,
+    /// The motion under way, and what the vehicle sensed at its end.
+    pending: Option<(Motion, Option<Reading>)>,
+    took: Vec<Took>,
+    ending: Took,
+    clock: Option<ClockRate>,
+    /// How the mission ended, or why it came to nothing.
+    outcome: Option<Result<End>>,
+    /// The chip has heard that its mission is over.
+    dismissed: bool,
+}
+
+/// A mission that a chip has flown.
+#[derive(Debug)]
+pub struct Played {
+    /// The mission as it went.
+    pub recording: Recording,
+    /// Ticks of the chip's clock for each step.
+    pub took: Vec<Took>,
+    /// Ticks of the mission's end: a plan that found no motion, if one did not, and the estimates.
+    pub ending: Took,
+    /// What they are.
+    pub clock: ClockRate,
+}
+
+impl Player {
+    /// A world that waits for a chip. `seed` tells the world's starts apart: see [`Responder::new`].
+    ///
+    /// # Errors
+    /// When the mission is none that a chip can be asked to fly.
+    pub fn new(mission: &Mission, labels: LabelSource, seed: u32) -> Result<Self> {
+        let setup = setup(mission, labels)?;
+        let (vehicle, sensor) = mission.world();
+        Ok(Self {
+            setup,
+            responder: Responder::new(seed),
+            vehicle,
+            sensor,
+            learner: mission.learner(),
+            recorder: Recorder::new(mission.clone()),
+            hellos: 0,
+            pending: None,
+            took: Vec::new(),
+            ending: Took::default(),
+            clock: None,
+            outcome: None,
+            dismissed: false,
+        })
+    }
+
+    /// Steps that have been flown.
+    pub fn steps(&self) -> usize {
+        self.recorder.steps()
+    }
+
+    /// Motions that the vehicle has made.
+    pub fn motions(&self) -> usize {
+        self.took.len()
+    }
+
+    /// Whether the mission is over.
+    pub fn is_over(&self) -> bool {
+        self.outcome.is_some()
+    }
+
+    /// Frames that came whole from the chip and held no message.
+    pub fn unreadable(&self) -> u32 {
+        self.responder.unreadable()
+    }
+
+    /// Whether the chip knows that it is.
+    pub fn is_dismissed(&self) -> bool {
+        self.dismissed
+    }
+
+    /// Takes in a byte from the chip; what is to be sent in turn.
+    ///
+    /// # Errors
+    /// When the chip gives the mission up, or says what cannot be.
+    pub fn hear(&mut self, byte: u8) -> Result<Option<Frame>> {
+        match self.responder.hear(byte) {
+            None => Ok(None),
+            Some(Heard::Old(frame)) => Ok(Some(frame)),
+            Some(Heard::Hello(hello)) => self.welcome(hello),
+            Some(Heard::New(request)) => {
+                let reply = self.act(request)?;
+                Ok(Some(self.responder.answer(reply).clone()))
+            }
+        }
+    }
+
+    fn welcome(&mut self, hello: Hello) -> Result<Option<Frame>> {
+        if self.is_over() {
+            self.dismissed |= hello.is_later;
+            return Ok(None);
+        }
+        if hello.protocol != PROTOCOL {
+            bail!("the board speaks protocol {}, expected {PROTOCOL}", hello.protocol);
+        }
+        self.hellos += 1;
+        if self.hellos > MOST_HELLOS {
+            bail!("the board asks for a mission again and again, and hears no answer");
+        }
+        Ok(Some(self.responder.offer(hello, self.setup.clone())))
+    }
+
+    fn act(&mut self, request: Request) -> Result<Reply> {
+        self.hellos = 0;
+        match request {
+            Request::Hello { .. } => unreachable!("a hello is welcomed"),
+            // Of a session that the chip begins: it knows nothing of the last.
+            Request::Ready(_) | Request::Declined(_) if self.clock.is_some() => {
+                bail!("the board restarted or gave up after step {}", self.steps())
+            }
+            Request::Declined(declined) => {
+                self.outcome = Some(Err(decline(declined, &self.setup)));
+                Ok(Reply::Noted)
+            }
+            Request::Ready(accepted) => {
+                self.clock = Some(accepted.clock);
+                Ok(Reply::Noted)
+            }
+            Request::Move(message::Move { motion, last, took }) => {
+                self.settle(last, took)?;
+                let Ok(pose) = self.vehicle.drive(&motion);
+                let chip_senses = self.setup.labels == LabelSource::Chip;
+                let reading = if motion.samples() && !chip_senses {
+                    let Ok(reading) = self.sensor.read();
+                    Some(reading)
+                } else {
+                    None
+                };
+                self.pending = Some((motion, reading));
+                self.took.push(Took { observe: 0, ..took });
+                Ok(Reply::Arrived { pose, reading })
+            }
+            Request::End(end) => {
+                let settled = self.settle(end.last, end.took);
+                self.ending = end.took;
+                self.outcome = Some(settled.and_then(|()| self.judge(&end)));
+                Ok(Reply::Noted)
+            }
+        }
+    }
+
+    /// Whether the mission ended as it can end here.
+    fn judge(&self, end: &message::End) -> Result<End> {
+        let reason = match end.reason {
+            EndReason::Steps => End::Steps,
+            EndReason::Stopped(reason) => End::Stopped(reason),
+            EndReason::Refused(refused) => bail!("the board refused what agrees: {refused}"),
+            EndReason::Sensor => bail!("step {}: the board's sensor failed", self.motions()),
+            EndReason::Vehicle => bail!("step {}: the vehicle failed", self.motions()),
+        };
+        self.compare(&end.estimates)?;
+        Ok(reason)
+    }
+
+    /// Takes down the last step, now that the chip says what it took in at its end.
+    fn settle(&mut self, last: Option<Reading>, took: Took) -> Result<()> {
+        let Some((motion, sensed)) = self.pending.take() else { return Ok(()) };
+        if self.setup.labels == LabelSource::Vehicle && last != sensed {
+            bail!("step {}: sensed {sensed:?}, the board took in {last:?}", self.motions());
+        }
+        let pose = self.vehicle.pose.get();
+        if let Some(current) = self.took.last_mut() {
+            current.observe = took.observe;
+        }
+        if let Err(refused) = self.learner.observe(pose, last) {
+            return Err(self.recorder.refusal(&refused));
+        }
+        self.recorder.take(&Step { motion, pose, reading: last }, self.learner.known());
+        Ok(())
+    }
+
+    /// Whether the chip's estimates are those of this machine, to the last bit.
+    fn compare(&self, chip: &Estimates) -> Result<()> {
+        let here = self.learner.estimates();
+        for (name, chip, here) in [
+            ("bisector", chip.bisector, here.bisector),
+            ("centre", chip.centre, here.centre),
+            ("maximum margin", chip.maximum_margin, here.maximum_margin),
+        ] {
+            let bits = |line: Option<Line>| line.map(|it| it.coefficients().map(f64::to_bits));
+            if bits(chip) != bits(here) {
+                bail!("the {name}: found {chip:?} on the board, expected {here:?} as here");
+            }
+        }
+        Ok(())
+    }
+
+    /// The mission as it went so far, when the chip has been halted: what the vehicle sensed last it has
+    /// taken in, but has not said so.
+    ///
+    /// # Errors
+    /// When that is refused here, or the chip had not begun.
+    pub fn break_off(mut self) -> Result<Played> {
+        let sensed = self.pending.and_then(|(_, reading)| reading);
+        self.settle(sensed, Took::default())?;
+        self.outcome = Some(Ok(End::Steps));
+        self.finish()
+    }
+
+    /// The mission as it went.
+    ///
+    /// # Errors
+    /// When it is not over, the chip declined it, or it came to nothing.
+    pub fn finish(self) -> Result<Played> {
+        let Self { recorder, took, ending, clock, outcome, .. } = self;
+        let unfinished = || anyhow!("the mission broke off after step {}", recorder.steps());
+        let end = outcome.unwrap_or_else(|| Err(unfinished()))?;
+        let clock = clock.ok_or_else(unfinished)?;
+        Ok(Played { recording: recorder.end(end), took, ending, clock })
+    }
+}
+
+/// The mission as a chip is told it.
+///
+/// # Errors
+/// When it is none that a chip can be asked to fly.
+pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
+    let algorithm = match mission.algorithm {
+        Algorithm::Cfc => message::Algorithm::Cfc,
+        Algorithm::Scc => message::Algorithm::Scc {
+            noise: mission.noise_told(),
+            policy: mission.policy,
+            prior: mission.prior,
+        },
+        Algorithm::Random => bail!("algorithm: found random, expected cfc or scc"),
+    };
+    let samples = mission.space.samples();
+    let given = BoundedVec::from_slice(samples).map_err(|_| {
+        let most = message::MOST_GIVEN;
+        anyhow!("oracle: found {} points, expected at most {most} on a board", samples.len())
+    })?;
+    // Labels that are all certain make no second hypothesis; of t others there are at most so many.
+    let taken = mission.steps;
+    let hypotheses = match mission.algorithm {
+        Algorithm::Scc => 1 + taken + taken * taken.saturating_sub(1) / 2,
+        _ => 1,
+    };
+    let room =
+        Room { samples: (samples.len() as u32 + taken) as u16, hypotheses: hypotheses as u16 };
+    let (steps, config, start) = (taken as u16, mission.config, mission.start);
+    Ok(Setup { protocol: PROTOCOL, algorithm, config, room, steps, start, labels, given })
+}
+
+fn decline(declined: Declined, setup: &Setup) -> anyhow::Error {
+    match declined {
+        Declined::Protocol(theirs) => {
+            anyhow!("the board speaks protocol {theirs}, expected {PROTOCOL}")
+        }
+        Declined::Room(Room { samples, hypotheses }) => {
+            let most = usize::from(samples).saturating_sub(setup.given.len());
+            anyhow!(
+                "steps: found {}, expected at most {most}: the board has room for {samples} samples \
+                 and {hypotheses} hypotheses, {} of the samples the oracle's",
+                setup.steps,
+                setup.given.len(),
+            )
+        }
+        Declined::Algorithm => anyhow!("algorithm: declined by the board, which has another"),
+        Declined::Given(error) => anyhow!("oracle: declined by the board: {error}"),
+        Declined::Labels => anyhow!("--labels: found chip, but this board has no label sensor"),
+    }
+}

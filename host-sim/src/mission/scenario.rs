@@ -1,0 +1,345 @@
+//! Scenario files: what a mission is, in TOML. The contract is in ARCHITECTURE.md.
+
+use std::fmt::Display;
+use std::path::Path;
+
+use anyhow::{Result, anyhow, bail};
+use nalgebra::Point2;
+use planner_core::belief::sample::{Label, Reading, Sample};
+use planner_core::belief::version_space::{NoVersionSpace, VersionSpace};
+use planner_core::belief::weight::Reliability;
+use planner_core::geometry::area::Area;
+use planner_core::geometry::direction::Heading;
+use planner_core::geometry::lattice::Site;
+use planner_core::geometry::line::Line;
+use planner_core::motion::dynamics::Pose;
+use planner_core::planner::config::{Config, Following};
+use planner_core::planner::scc::trusted_radius;
+use planner_core::search::problem::Varrho;
+use serde::Deserialize;
+
+use crate::mission::definition::{Algorithm, CAPACITY, Mission};
+use crate::mission::names::{CrossingName, FollowingName, PolicyName, PriorName};
+use crate::mission::strict::{Numbers, Table};
+use crate::world::truth::{self, Extent, NoiseModel};
+
+/// The paper's noiseless example (Section V).
+pub const PAPER_NOISELESS: &str = include_str!("../../scenarios/paper-noiseless.toml");
+
+/// The paper's noisy example (Section V).
+pub const PAPER_NOISY: &str = include_str!("../../scenarios/paper-noisy.toml");
+
+/// Oracle points that can bound the line: the edges that a hypothesis holds.
+const MOST_BOUNDING: usize = 15;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    #[serde(default = "defaults::algorithm")]
+    algorithm: Algorithm,
+    #[serde(default = "defaults::steps")]
+    steps: u32,
+    #[serde(default = "defaults::seed")]
+    seed: u64,
+    #[serde(default = "defaults::varrho")]
+    varrho: f64,
+    #[serde(default)]
+    crossing: CrossingName,
+    following: Option<FollowingName>,
+    #[serde(default)]
+    policy: PolicyName,
+    #[serde(default)]
+    prior: PriorName,
+    noise: Option<Table<NoiseTable>>,
+    #[serde(default)]
+    area: Table<AreaTable>,
+    #[serde(default)]
+    start: Table<StartTable>,
+    truth: Table<TruthTable>,
+    oracle: Vec<Table<SampleTable>>,
+}
+
+mod defaults {
+    use crate::mission::definition::Algorithm;
+
+    pub(super) fn algorithm() -> Algorithm {
+        Algorithm::Cfc
+    }
+    pub(super) fn steps() -> u32 {
+        10
+    }
+    pub(super) fn seed() -> u64 {
+        1
+    }
+    pub(super) fn varrho() -> f64 {
+        0.1
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct NoiseTable {
+    p: f64,
+    trusted_radius: Option<f64>,
+    band: Option<f64>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct AreaTable {
+    x: Numbers<2>,
+    z: Numbers<2>,
+}
+
+impl Default for AreaTable {
+    fn default() -> Self {
+        Self { x: Numbers([0.0, 20.0]), z: Numbers([0.0, 20.0]) }
+    }
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StartTable {
+    x: Option<f64>,
+    z: Option<f64>,
+    #[serde(default)]
+    heading: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct TruthTable {
+    slope: Option<f64>,
+    intercept: Option<f64>,
+    line: Option<Numbers<3>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SampleTable {
+    x: f64,
+    z: f64,
+    label: i64,
+}
+
+/// What flags put in place of the file's values.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Overrides {
+    /// Who plans.
+    pub algorithm: Option<Algorithm>,
+    /// Steps at most.
+    pub steps: Option<u32>,
+    /// Seed of whatever is random.
+    pub seed: Option<u64>,
+}
+
+/// The mission that a scenario file describes.
+///
+/// # Errors
+/// One message with the file, the line or field, what was found and what was expected.
+pub fn read(path: &Path, overrides: Overrides) -> Result<Mission> {
+    let text = std::fs::read_to_string(path)
+        .map_err(|error| anyhow!("{}: expected a readable text file: {error}", path.display()))?;
+    parse(&path.display().to_string(), &text, overrides)
+}
+
+/// As [`read`], from the text of the file called `name`.
+///
+/// # Errors
+/// As [`read`].
+pub fn parse(name: &str, text: &str, overrides: Overrides) -> Result<Mission> {
+    let file: File = toml::from_str(text).map_err(|error| {
+        let line = error.span().map_or(1, |span| 1 + text[..span.start].matches('\n').count());
+        anyhow!("{name}:{line}: {}", error.message().replace('\n', "; "))
+    })?;
+    // A steps flag is a culprit of its own.
+    if let Some(steps) = overrides.steps {
+        check_steps("--steps", steps, file.oracle.len())?;
+    }
+    mission(&file, overrides).map_err(|error| anyhow!("{name}: {error:#}"))
+}
+
+fn wrong<T>(field: &str, found: impl Display, expected: impl Display) -> Result<T> {
+    bail!("{field}: found {found}, expected {expected}")
+}
+
+/// Whether this many steps fit beside the oracle's samples.
+///
+/// # Errors
+/// Names `field` or the oracle, the number and the limit.
+pub fn check_steps(field: &str, steps: u32, oracle: usize) -> Result<()> {
+    let most = CAPACITY.saturating_sub(oracle);
+    if most == 0 {
+        let expected = format!(
+            "at most {}: a planner holds {CAPACITY} samples, and so many leave room for one step",
+            CAPACITY - 1
+        );
+        return wrong("oracle", format!("{oracle} points"), expected);
+    }
+    if steps == 0 || steps as usize > most {
+        let room = format!(
+            "1 to {most} (the planner holds {CAPACITY} samples, {oracle} of them the oracle's)"
+        );
+        return wrong(field, steps, room);
+    }
+    Ok(())
+}
+
+fn site(field: &str, x: f64, z: f64) -> Result<Site> {
+    for (name, value) in [("x", x), ("z", z)] {
+        if Site::try_from(Point2::new(value, 0.0)).is_err() {
+            let expected = "a finite coordinate smaller than 8192 m in size";
+            return wrong(&format!("{field}.{name}"), value, expected);
+        }
+    }
+    Ok(Site::try_from(Point2::new(x, z))?)
+}
+
+fn mission(file: &File, overrides: Overrides) -> Result<Mission> {
+    let steps = overrides.steps.unwrap_or(file.steps);
+    check_steps("steps", steps, file.oracle.len())?;
+    let Some(varrho) = Varrho::new(file.varrho) else {
+        return wrong("varrho", file.varrho, "a weight in [0, 1), to six decimal places");
+    };
+    let AreaTable { x: Numbers([x0, x1]), z: Numbers([z0, z1]) } = file.area.0;
+    let corners = (site("area", x0, z0)?, site("area", x1, z1)?);
+    let Some(area) = Area::new(corners.0, corners.1) else {
+        let found = format!("x = [{x0}, {x1}], z = [{z0}, {z1}]");
+        return wrong("area", found, "each range from smaller to larger");
+    };
+    let truth = truth(&file.truth.0)?;
+    let space = oracle(&file.oracle, area, &truth)?;
+    let bounding = space.cell().edges().len();
+    if bounding > MOST_BOUNDING {
+        let found = format!("{bounding} points that bound the line");
+        return wrong("oracle", found, format!("at most {MOST_BOUNDING} that do"));
+    }
+    let start = start(&file.start.0, &space, area)?;
+    let noise = file.noise.as_ref().map(|table| noise(&table.0)).transpose()?;
+    let algorithm = overrides.algorithm.unwrap_or(file.algorithm);
+    let following = file.following.map_or(algorithm.following(), Following::from);
+    let crossing = file.crossing.into();
+    Ok(Mission {
+        algorithm,
+        steps,
+        seed: overrides.seed.unwrap_or(file.seed),
+        config: Config { area, varrho, crossing, following },
+        start,
+        truth,
+        space,
+        noise,
+        policy: file.policy.into(),
+        prior: file.prior.into(),
+    })
+}
+
+fn noise(table: &NoiseTable) -> Result<NoiseModel> {
+    let p = probability("noise.p", table.p)?;
+    let extent = match (table.trusted_radius, table.band) {
+        (Some(_), Some(_)) => {
+            return wrong("noise", "both trusted_radius and band", "one of them");
+        }
+        (None, Some(half)) if half >= 0.0 && half.is_finite() => Extent::Band(half),
+        (None, Some(half)) => return wrong("noise.band", half, "a distance in metres"),
+        (radius, None) => {
+            Extent::OutsideBalls(trusted("noise.trusted_radius", radius.unwrap_or(0.0))?)
+        }
+    };
+    Ok(NoiseModel { p, extent })
+}
+
+/// Whether this is a probability.
+///
+/// # Errors
+/// Names `field` and the number.
+pub fn probability(field: &str, p: f64) -> Result<f64> {
+    if Reliability::new(p).is_none() {
+        return wrong(field, p, "a probability in [0, 1]");
+    }
+    Ok(p)
+}
+
+/// Whether this is a radius of trusted balls.
+///
+/// # Errors
+/// Names `field` and the number.
+pub fn trusted(field: &str, radius: f64) -> Result<f64> {
+    if trusted_radius(radius).is_none() {
+        return wrong(field, radius, "a radius in metres, at least 0 and below 8192");
+    }
+    Ok(radius)
+}
+
+fn truth(table: &TruthTable) -> Result<Line> {
+    let expected = "either { slope, intercept } or { line = [A, B, C] }";
+    let coefficients = table.line.as_ref().map(|numbers| numbers.0);
+    let line = match (table.slope, table.intercept, coefficients) {
+        (Some(slope), Some(intercept), None) => Line::from_slope(slope, intercept),
+        (None, None, Some([a, b, c])) => Line::from_coefficients(a, b, c),
+        (None, None, None) => return wrong("truth", "neither", expected),
+        (_, _, Some(_)) => return wrong("truth", "both", expected),
+        _ => return wrong("truth", "only one of slope and intercept", expected),
+    };
+    let found = match (table.slope, table.intercept, coefficients) {
+        (Some(slope), Some(intercept), _) => format!("slope {slope}, intercept {intercept}"),
+        (_, _, line) => format!("{:?}", line.unwrap_or_default()),
+    };
+    let finite = "finite numbers, A and B not both 0";
+    line.map_or_else(|| wrong("truth", found, finite), Ok)
+}
+
+fn oracle(
+    tables: &[Table<SampleTable>],
+    area: Area,
+    truth: &Line,
+) -> Result<VersionSpace<CAPACITY>> {
+    let mut samples = Vec::with_capacity(tables.len());
+    for (i, Table(table)) in tables.iter().enumerate() {
+        let field = format!("oracle[{i}]");
+        let label = match table.label {
+            1 => Label::Positive,
+            -1 => Label::Negative,
+            other => return wrong(&format!("{field}.label"), other, "-1 or 1"),
+        };
+        let site = site(&field, table.x, table.z)?;
+        if !area.contains(site) {
+            let found = format!("({}, {})", table.x, table.z);
+            return wrong(&field, found, "a point inside the area");
+        }
+        let reading = truth::reading(truth, site);
+        if reading != Reading::Side(label) {
+            let expected = format!("{}, as the truth has it", reading.sign());
+            return wrong(&format!("{field}.label"), table.label, expected);
+        }
+        samples.push(Sample { site, label });
+    }
+    VersionSpace::new(&samples).or_else(|error| match error {
+        NoVersionSpace::Collinear => {
+            wrong("oracle", "points on one line", "three or more points that are not collinear")
+        }
+        NoVersionSpace::OneLabel => {
+            let label = samples.first().map_or(0, |s| s.label.sign());
+            wrong("oracle", format!("only the label {label}"), "points of both labels")
+        }
+        NoVersionSpace::NotSeparable(i) => {
+            let expected = "points that a line separates by their labels";
+            wrong(&format!("oracle[{i}]"), "a label that no line allows", expected)
+        }
+        NoVersionSpace::TooMany => {
+            wrong("oracle", format!("{} points", samples.len()), format!("at most {CAPACITY}"))
+        }
+    })
+}
+
+fn start(table: &StartTable, space: &VersionSpace<CAPACITY>, area: Area) -> Result<Pose> {
+    let Some(heading) = Heading::from_radians(table.heading) else {
+        return wrong("start.heading", table.heading, "a finite angle in radians");
+    };
+    let first = Point2::<f64>::from(space.samples()[0].site);
+    let (x, z) = (table.x.unwrap_or(first.x), table.z.unwrap_or(first.y));
+    let site = site("start", x, z)?;
+    if !area.contains(site) {
+        return wrong("start", format!("({x}, {z})"), "a point inside the area");
+    }
+    Ok(Pose { site, heading })
+}

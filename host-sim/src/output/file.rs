@@ -1,0 +1,152 @@
+//! Output: records as text, and files that are written whole or not at all.
+
+use std::fs::{self, File};
+use std::io::{self, ErrorKind, Write as _};
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, Result, bail};
+use serde::Serialize;
+use tempfile::NamedTempFile;
+
+use crate::output::interruption::unfinished;
+use crate::output::place::Place;
+
+/// A record as a line of JSON.
+///
+/// # Panics
+/// Never for the records of this crate: plain structures whose keys are strings.
+pub fn json(record: &impl Serialize) -> String {
+    serde_json::to_string(record).expect("a plain structure") + "\n"
+}
+
+/// Records as CSV, under a header.
+///
+/// # Errors
+/// When a record could not be written.
+pub fn csv(records: &[impl Serialize]) -> Result<String> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for record in records {
+        writer.serialize(record)?;
+    }
+    Ok(String::from_utf8(writer.into_inner()?)?)
+}
+
+/// A temporary file, which goes with this value, and if the program is interrupted. Whoever the user's umask
+/// lets may read it.
+///
+/// # Errors
+/// When the folder cannot be written to.
+pub fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt as _;
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    let mut unfinished = unfinished();
+    let file = builder.tempfile_in(folder)?;
+    unfinished.files.insert(file.path().to_owned());
+    Ok(file)
+}
+
+/// What a command writes: a file or a stream.
+#[derive(Debug)]
+pub struct Output {
+    name: String,
+    to: Destination,
+}
+
+#[derive(Debug)]
+enum Destination {
+    /// Begun beside its place, and moved there when it is complete.
+    File { place: PathBuf, begun: NamedTempFile },
+    /// Written through.
+    Stream(File),
+}
+
+/// Prepares all that a command is to write, so that a place that cannot be written to is found before any
+/// work is done; `None` for what was not asked for. Inputs and outputs come with what they are called.
+///
+/// # Errors
+/// Names the place that cannot be written to, or that is an input or another output as well.
+pub fn prepare<const N: usize>(
+    inputs: &[(&str, &Path)],
+    asked: [(&str, Option<&Path>); N],
+) -> Result<[Option<Output>; N]> {
+    // An input that is not there is for its reader to complain of.
+    let mut taken: Vec<(String, Place)> = inputs
+        .iter()
+        .filter_map(|(what, path)| Some(((*what).to_owned(), Place::of(path).ok()?)))
+        .collect();
+    let mut places: [Option<Place>; N] = [const { None }; N];
+    for ((what, path), place) in asked.iter().zip(&mut places) {
+        let Some(path) = path else { continue };
+        let found = place_for(path)?;
+        if let Some((other, _)) = taken.iter().find(|(_, other)| other.is(&found)) {
+            bail!("{}: found {other}, expected a place of its own for {what}", path.display());
+        }
+        taken.push((format!("the place of {what}"), found.clone()));
+        *place = Some(found);
+    }
+    // To open a pipe is to wait for its reader, so all else is settled before.
+    let mut outputs = [const { None }; N];
+    for (((_, path), place), output) in asked.iter().zip(places).zip(&mut outputs) {
+        if let (Some(path), Some(place)) = (path, place) {
+            *output = Some(Output::at(path, &place).with_context(|| refusal(path))?);
+        }
+    }
+    Ok(outputs)
+}
+
+fn place_for(path: &Path) -> Result<Place> {
+    if path.is_dir() || path.as_os_str().as_encoded_bytes().ends_with(b"/") {
+        bail!("{}: found a directory, expected a file", path.display());
+    }
+    Place::of(path).with_context(|| refusal(path))
+}
+
+fn refusal(path: &Path) -> String {
+    format!("{}: expected a place to write a file", path.display())
+}
+
+impl Output {
+    fn at(path: &Path, place: &Place) -> io::Result<Self> {
+        let to = if place.is_stream() {
+            Destination::Stream(place.open_stream()?)
+        } else {
+            let (begun, place) = (temporary(place.folder())?, place.path().to_owned());
+            Destination::File { place, begun }
+        };
+        Ok(Self { name: path.display().to_string(), to })
+    }
+
+    /// Writes it, in place of a file that may be there.
+    ///
+    /// # Errors
+    /// Names the file that could not be written.
+    pub fn write(self, content: impl AsRef<[u8]>) -> Result<()> {
+        let Self { name, to } = self;
+        let content = content.as_ref();
+        let written = match to {
+            Destination::File { place, begun } => replace(&place, begun, content),
+            Destination::Stream(mut stream) => match stream.write_all(content) {
+                // Whoever reads may stop early.
+                Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+                written => written,
+            },
+        };
+        written.context(name)
+    }
+}
+
+/// Completes a file and moves it to its place. One that was there hands on its permissions.
+fn replace(place: &Path, mut begun: NamedTempFile, content: &[u8]) -> io::Result<()> {
+    begun.write_all(content)?;
+    if let Ok(replaced) = fs::metadata(place) {
+        fs::set_permissions(begun.path(), replaced.permissions())?;
+    }
+    let mut unfinished = unfinished();
+    unfinished.files.remove(begun.path());
+    begun.persist(place)?;
+    Ok(())
+}

@@ -1,0 +1,159 @@
+//! Two convex hulls that face each other, one of each label.
+//!
+//! Take from each position labelled +1 each one labelled -1. The differences fill a convex polygon, which has
+//! an edge for each edge of the two hulls. A line separates the labels exactly if the origin lies outside of
+//! the polygon, and the rest can be seen from there:
+//!
+//! - The polygon's two ends, as seen from the origin, are the two lines that touch both hulls and pass between
+//!   them. All that bounds a separating line is a corner of a hull on its stretch from one of these lines to
+//!   the other, which faces the other hull.
+//! - The polygon's point nearest to the origin is as far off as the maximum margin is wide, in its direction.
+//!
+//! All is decided in integers, in a time that grows with the number of corners.
+
+use planner_core::belief::sample::Label;
+use planner_core::geometry::lattice::Vector;
+
+use crate::replay::hull::{Hull, Row};
+
+/// A sample of each label.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pair {
+    positive: Row,
+    negative: Row,
+}
+
+impl Pair {
+    /// The difference of their positions: what points from the negative one to the positive one.
+    pub(crate) fn apart(self) -> Vector {
+        self.positive.site() - self.negative.site()
+    }
+}
+
+/// The hulls of both labels and their polygon of differences.
+#[derive(Debug)]
+pub(crate) struct Facing {
+    positive: Hull,
+    negative: Hull,
+    /// The polygon's corners, counter-clockwise, some of them more than once. Where an edge comes of two that
+    /// are parallel, a point on it is there too.
+    differences: Vec<Pair>,
+}
+
+impl Facing {
+    /// Of the first so many samples of a record.
+    pub(crate) fn of(rows: &[Row], count: usize) -> Self {
+        let rows = rows.iter().filter(|row| row.index < count);
+        let positive = Hull::of(rows.clone(), Label::Positive);
+        let negative = Hull::of(rows, Label::Negative);
+        let mut differences = merged(&positive.lower, &negative.upper);
+        differences.extend(merged(&positive.upper, &negative.lower));
+        Self { positive, negative, differences }
+    }
+
+    pub(crate) fn are_of_one_label(&self) -> bool {
+        self.differences.is_empty()
+    }
+
+    /// Whether each is on a line.
+    pub(crate) fn are_flat(&self) -> bool {
+        self.positive.is_flat() && self.negative.is_flat()
+    }
+
+    /// The rightmost and the leftmost difference as seen from the origin, the nearest of several: samples
+    /// through which the lines pass that touch both hulls and pass between them. `None` when the hulls touch
+    /// each other: no line separates them.
+    pub(crate) fn ends(&self) -> Option<[Pair; 2]> {
+        let length = |pair: Pair| pair.apart().dot(pair.apart());
+        let end = |side: i64| {
+            self.differences.iter().copied().reduce(|end, pair| {
+                let beyond = side * end.apart().cross(pair.apart());
+                let is_nearer = beyond == 0 && length(pair) < length(end);
+                if beyond > 0 || is_nearer { pair } else { end }
+            })
+        };
+        let (right, left) = (end(-1)?, end(1)?);
+        let is_ahead = |pair: &Pair| right.apart().dot(pair.apart()) > 0;
+        let are_apart =
+            right.apart().cross(left.apart()) > 0 || self.differences.iter().all(is_ahead);
+        // Whatever has been found: it holds only if every corner is on its side.
+        (are_apart && self.separates(right, 1) && self.separates(left, -1)).then_some([right, left])
+    }
+
+    /// Whether no sample is on the wrong side of the line through two; `side` is 1 if the positive ones are to
+    /// be on the left as seen from the negative one of the two, and -1 if on the right.
+    fn separates(&self, pair: Pair, side: i64) -> bool {
+        let height = |row: Row| side * pair.apart().cross(row.site() - pair.negative.site());
+        self.positive.corners().all(|row| height(row) >= 0)
+            && self.negative.corners().all(|row| height(row) <= 0)
+    }
+
+    /// The corners that bound the separating lines, in the cyclic order of a cell: those of the positive hull
+    /// from the left end to the right, then those of the negative one back again.
+    pub(crate) fn between(&self, right: Pair, left: Pair) -> Vec<Row> {
+        let positive: Vec<_> = self.positive.corners().collect();
+        let mut negative: Vec<_> = self.negative.corners().collect();
+        negative.reverse();
+        let mut between = stretch(&positive, left.positive, right.positive);
+        between.extend(stretch(&negative, right.negative, left.negative));
+        between
+    }
+
+    /// A direction from the origin to the point of the polygon nearest to it.
+    pub(crate) fn widest(&self) -> [i64; 2] {
+        let corners = self.differences.iter().map(|pair| wide(pair.apart()));
+        let next = corners.clone().cycle().skip(1);
+        let beside = corners.clone().zip(next).find_map(|(v, w)| {
+            let edge = [w[0] - v[0], w[1] - v[1]];
+            let left = [-edge[1], edge[0]];
+            let faces = dot(left, v) > 0 && dot(edge, v) < 0 && dot(edge, w) > 0;
+            faces.then_some(left)
+        });
+        beside.or_else(|| corners.min_by_key(|v| dot(*v, *v))).unwrap_or_default()
+    }
+}
+
+/// A vector with room for differences of differences.
+pub(crate) fn wide(v: Vector) -> [i64; 2] {
+    [v.x().into(), v.z().into()]
+}
+
+/// The scalar product.
+pub(crate) fn dot(v: [i64; 2], w: [i64; 2]) -> i64 {
+    v[0] * w[0] + v[1] * w[1]
+}
+
+/// The corners of half of the polygon of differences: on along a chain of each hull, the negative one's read
+/// backwards, always by the edge that turns less.
+fn merged(positive: &[Row], negative: &[Row]) -> Vec<Pair> {
+    let (Some((&p, mut ps)), Some((&n, mut ns))) = (positive.split_first(), negative.split_first())
+    else {
+        return Vec::new();
+    };
+    let mut pair = Pair { positive: p, negative: n };
+    let mut pairs = vec![pair];
+    loop {
+        let turn = match (ps, ns) {
+            ([], []) => return pairs,
+            ([_, ..], []) => 1,
+            ([], [_, ..]) => -1,
+            ([p, ..], [n, ..]) => {
+                (p.site() - pair.positive.site()).cross(pair.negative.site() - n.site())
+            }
+        };
+        let (next, rest) =
+            if turn >= 0 { (&mut pair.positive, &mut ps) } else { (&mut pair.negative, &mut ns) };
+        if let Some((row, after)) = rest.split_first() {
+            (*next, *rest) = (*row, after);
+        }
+        pairs.push(pair);
+    }
+}
+
+/// The part of a cycle from one of its rows to another, both included.
+fn stretch(cycle: &[Row], from: Row, to: Row) -> Vec<Row> {
+    let place = |wanted: Row| cycle.iter().position(|row| *row == wanted).unwrap_or_default();
+    let (from, to) = (place(from), place(to));
+    let count = (to + cycle.len() - from) % cycle.len() + 1;
+    cycle.iter().cycle().skip(from).take(count).copied().collect()
+}

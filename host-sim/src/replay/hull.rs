@@ -1,0 +1,72 @@
+//! Convex hulls of recorded positions, exact.
+
+use planner_core::belief::sample::{Label, Sample};
+use planner_core::geometry::lattice::{Site, orient};
+
+/// A sample and its row in the record.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Row {
+    pub(crate) sample: Sample,
+    pub(crate) index: usize,
+}
+
+impl Row {
+    pub(crate) fn site(self) -> Site {
+        self.sample.site
+    }
+}
+
+/// The rows of a record by their positions; of those that repeat a sample, the first.
+pub(crate) fn in_order(samples: &[Sample]) -> Vec<Row> {
+    let mut rows: Vec<_> =
+        samples.iter().enumerate().map(|(index, sample)| Row { sample: *sample, index }).collect();
+    let place = |row: &Row| (row.site().x(), row.site().z(), row.sample.label.sign());
+    rows.sort_unstable_by_key(|row| (place(row), row.index));
+    rows.dedup_by_key(|row| place(row));
+    rows
+}
+
+/// A convex hull as two chains of corners between its first and its last in order, both of which are in both
+/// chains; no three of its corners are on one line.
+#[derive(Debug)]
+pub(crate) struct Hull {
+    /// From the first to the last, counter-clockwise.
+    pub(crate) lower: Vec<Row>,
+    /// On from the last to the first.
+    pub(crate) upper: Vec<Row>,
+}
+
+impl Hull {
+    /// The hull of the rows with a label, of some in order (Andrew's monotone chain).
+    pub(crate) fn of<'a>(
+        rows: impl DoubleEndedIterator<Item = &'a Row> + Clone,
+        label: Label,
+    ) -> Self {
+        let rows = rows.copied().filter(|row| row.sample.label == label);
+        Self { lower: chain(rows.clone()), upper: chain(rows.rev()) }
+    }
+
+    /// The corners, counter-clockwise.
+    pub(crate) fn corners(&self) -> impl Iterator<Item = Row> + '_ {
+        let back = self.upper.get(1..self.upper.len().max(2) - 1).unwrap_or_default();
+        self.lower.iter().chain(back).copied()
+    }
+
+    /// Whether all of it is on one line.
+    pub(crate) fn is_flat(&self) -> bool {
+        self.lower.len() <= 2 && self.upper.len() <= 2
+    }
+}
+
+fn chain(rows: impl Iterator<Item = Row>) -> Vec<Row> {
+    let mut chain: Vec<Row> = Vec::new();
+    for row in rows {
+        while let [.., a, b] = chain[..]
+            && orient(a.site(), b.site(), row.site()) <= 0
+        {
+            chain.pop();
+        }
+        chain.push(row);
+    }
+    chain
+}

@@ -1,0 +1,130 @@
+//! Convex polygons in metres: clipping, area, and certain ground.
+
+use nalgebra::Point2;
+use planner_core::belief::sample::{Label, Sample};
+use planner_core::geometry::area::Area;
+use planner_core::geometry::line::{Bound, Line};
+
+/// A convex polygon as its corners in order; empty when there are none.
+#[derive(Clone, Debug)]
+pub struct Polygon(pub Vec<Point2<f64>>);
+
+impl From<Area> for Polygon {
+    fn from(area: Area) -> Self {
+        let (a, b) = (Point2::<f64>::from(area.min()), Point2::<f64>::from(area.max()));
+        Self(vec![a, Point2::new(b.x, a.y), b, Point2::new(a.x, b.y)])
+    }
+}
+
+impl Polygon {
+    /// The part on the +1 side of the line (`side` 1) or on the other (`side` -1).
+    #[must_use]
+    pub fn clip(&self, line: &Line, side: f64) -> Self {
+        let corners = &self.0;
+        let mut kept = Vec::with_capacity(corners.len() + 1);
+        for (p, q) in corners.iter().zip(corners.iter().cycle().skip(1)) {
+            let (d, e) = (side * line.distance(*p), side * line.distance(*q));
+            if d >= 0.0 {
+                kept.push(*p);
+            }
+            if (d > 0.0 && e < 0.0) || (d < 0.0 && e > 0.0) {
+                kept.push(p + (q - p) * (d / (d - e)));
+            }
+        }
+        Self(kept)
+    }
+
+    /// The part of an area to which all lines give a label that some samples bound. `support` has these in
+    /// cyclic order; all of them lie in the area.
+    ///
+    /// It lies beyond the two lines that pass between the labels, and beyond the samples of the label, which
+    /// cut off the corner where the two lines cross.
+    pub fn certain(area: Area, support: &[Sample], label: Label) -> Self {
+        let next = support.iter().cycle().skip(1);
+        let sides = support.iter().zip(next).filter(|(p, q)| p.label != q.label);
+        let lines: Vec<_> = sides.map(|(p, q)| Line::from(Bound::between(*p, *q))).collect();
+        let beyond = |ground: Self, line: &Line| ground.clip(line, f64::from(label.sign()));
+        let mut ground = lines.iter().fold(Self::from(area), beyond);
+        let off =
+            |corner: &Point2<f64>| lines.iter().map(|line| line.distance(*corner).abs()).sum();
+        let offs: Vec<f64> = ground.0.iter().map(off).collect();
+        if let Some(crossing) = (0..offs.len()).min_by(|a, b| offs[*a].total_cmp(&offs[*b])) {
+            let opposite = support.iter().position(|s| s.label != label).unwrap_or_default();
+            let from_opposite = support.iter().cycle().skip(opposite).take(support.len());
+            let mut own: Vec<_> =
+                from_opposite.filter(|s| s.label == label).map(|s| Point2::from(s.site)).collect();
+            if label == Label::Negative {
+                own.reverse(); // corners go counter-clockwise, and round a negative hull a cell does not
+            }
+            ground.0.splice(crossing..=crossing, own);
+        }
+        ground
+    }
+
+    /// Area, square metres.
+    pub fn area(&self) -> f64 {
+        let corners = &self.0;
+        let twice: f64 = corners
+            .iter()
+            .zip(corners.iter().cycle().skip(1))
+            .map(|(p, q)| p.coords.perp(&q.coords))
+            .sum();
+        twice.abs() / 2.0
+    }
+}
+
+/// The share of the area to which the estimate gives the wrong label.
+pub fn misclassified(area: Area, truth: &Line, estimate: &Line) -> f64 {
+    let all = Polygon::from(area);
+    let wrong: f64 =
+        [1.0, -1.0].iter().map(|side| all.clip(truth, *side).clip(estimate, -side).area()).sum();
+    wrong / all.area()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::standard_field;
+    use crate::mission::definition::Algorithm;
+    use crate::mission::recording::{Outcome, Recording};
+
+    #[test]
+    fn misclassified_shares_of_a_square() {
+        let area = standard_field::area();
+        let line = |slope, intercept| Line::from_slope(slope, intercept).unwrap();
+        for (truth, estimate, share) in [
+            (line(0.0, 10.0), line(0.0, 10.0), 0.0),
+            (line(0.0, 10.0), line(0.0, 11.0), 0.05),
+            (line(1.0, 0.0), line(-1.0, 20.0), 0.5),
+            (line(0.0, -5.0), line(0.0, 30.0), 1.0),
+        ] {
+            let got = misclassified(area, &truth, &estimate);
+            assert!((got - share).abs() < 1e-12, "{got} for {share}");
+        }
+    }
+
+    #[test]
+    fn certain_ground_is_on_one_side_of_every_bound() {
+        for number in 0..300 {
+            let mission = standard_field::standard(9, number, Algorithm::Cfc, 12);
+            let recording = Recording::of(&mission).unwrap();
+            let Outcome::Lines(space) = recording.outcome else { continue };
+            let support: Vec<_> = space.support().collect();
+            let area = mission.config.area;
+            for label in [Label::Positive, Label::Negative] {
+                let side = f64::from(label.sign());
+                let clipped = space.bounds().fold(Polygon::from(area), |ground, bound| {
+                    ground.clip(&Line::from(bound), side)
+                });
+                let certain = Polygon::certain(area, &support, label);
+                // Either may begin at another corner, and have one twice by rounding.
+                for (one, other) in [(&certain, &clipped), (&clipped, &certain)] {
+                    let near = |p: &Point2<f64>| other.0.iter().any(|q| (p - q).norm() < 1e-6);
+                    assert!(one.0.iter().all(near), "field {number}: {certain:?} for {clipped:?}");
+                }
+                let share = certain.area() / clipped.area();
+                assert!((share - 1.0).abs() < 1e-9, "field {number}: {share}");
+            }
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! Candidate lines: the edges of a cell beside the samples they name, and what can be read off the two.
+
+use crate::belief::cell::Edge;
+use crate::belief::sample::{Label, Sample};
+use crate::geometry::direction::Arc;
+use crate::geometry::lattice::Site;
+use crate::geometry::line::Bound;
+
+/// What the lines of a cell say about a position.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Certainty {
+    /// All give it this label: it lies in a region of certainty (the paper's `X_t` or `X^c_t`).
+    Certain(Label),
+    /// They disagree: a sample here cuts the cell.
+    Uncertain,
+}
+
+impl Certainty {
+    /// What lines on both sides, given as signs, say together. They are smaller than 2^63 in size.
+    pub(crate) fn of_signs(signs: impl Iterator<Item = i64>) -> Self {
+        // The upper halves of them all, and of their opposites, for their sign bits.
+        let (mut below, mut above) = (0, 0);
+        for sign in signs {
+            below |= (sign >> 32) as i32;
+            above |= (sign.wrapping_neg() >> 32) as i32;
+            if below & above < 0 {
+                return Self::Uncertain;
+            }
+        }
+        Self::Certain(if below < 0 { Label::Negative } else { Label::Positive })
+    }
+}
+
+/// The lines that agree with some samples, each with the label that its edge gives it. The version
+/// space is such a set; so is each hypothesis.
+#[derive(Clone, Copy, Debug)]
+pub struct Candidates<'a> {
+    /// The samples that matter, in cyclic order.
+    pub edges: &'a [Edge],
+    /// The buffer whose indices the edges are.
+    pub samples: &'a [Sample],
+}
+
+impl<'a> Candidates<'a> {
+    /// The vertex after the `k`-th edge.
+    fn bound(self, k: usize) -> Option<Bound> {
+        let i = *self.edges.get(k)?;
+        let j = *self.edges.get(k + 1).or(self.edges.first())?;
+        let (p, q) = (self.samples.get(i.index())?.site, self.samples.get(j.index())?.site);
+        let along = if i.label() == j.label() { q - p } else { p - q };
+        Some(Bound { through: p, along })
+    }
+
+    /// The vertices: the lines through two samples that bound the set, in cyclic order.
+    pub fn bounds(self) -> impl Iterator<Item = Bound> + Clone + 'a {
+        (0..self.edges.len()).filter_map(move |k| self.bound(k))
+    }
+
+    /// Whether all candidate lines give a position the same label, and which. One orientation an
+    /// edge, at most.
+    pub fn certainty(self, q: Site) -> Certainty {
+        certainty(self.edges, self.samples, q)
+    }
+
+    /// On which side of the vertex before each edge a position lies: [`Bound::at`], by the turn from
+    /// one sample to the next as they are seen from there.
+    pub(crate) fn turns(self, q: Site) -> impl Iterator<Item = i64> + 'a {
+        let seen = move |edge: &Edge| edge.seen(self.samples, q);
+        let mut before = self.edges.last().map(seen).unwrap_or_default();
+        self.edges.iter().map(move |edge| {
+            let after = seen(edge);
+            core::mem::replace(&mut before, after).cross(after)
+        })
+    }
+
+    /// The directions of the candidate lines: the paper's `E_rho,t`.
+    pub fn slope_arc(self) -> Arc {
+        Arc::spanning(self.bounds().map(|bound| bound.along)).unwrap_or_default()
+    }
+
+    /// The range of the candidate lines' intercepts in metres, the paper's `I_c,t`; `None` when it
+    /// is unbounded, as a vertical line is among them.
+    pub fn intercepts(self) -> Option<[f64; 2]> {
+        intercepts(self.bounds())
+    }
+
+    /// The samples that still matter, with the labels that the cell gives them: the others follow
+    /// from these.
+    pub fn support(self) -> impl Iterator<Item = Sample> + Clone + 'a {
+        self.edges.iter().filter_map(move |edge| {
+            let site = self.samples.get(edge.index())?.site;
+            Some(Sample { site, label: edge.label() })
+        })
+    }
+}
+
+/// The vertices of a set of lines whose samples that matter, in cyclic order, are these: what
+/// [`Candidates::bounds`] are for a cell, for a list of any length.
+pub fn bounds(
+    support: impl Iterator<Item = Sample> + Clone,
+) -> impl Iterator<Item = Bound> + Clone {
+    let next = support.clone().cycle().skip(1);
+    support.zip(next).map(|(p, q)| Bound::between(p, q))
+}
+
+/// [`Candidates::certainty`], in one place and with its arguments in registers.
+#[inline(never)]
+fn certainty(edges: &[Edge], samples: &[Sample], q: Site) -> Certainty {
+    Certainty::of_signs(Candidates { edges, samples }.turns(q))
+}
+
+/// The range of intercepts between vertices of candidates, metres; `None` when a vertical line lies
+/// among them, or there are none.
+pub fn intercepts(bounds: impl IntoIterator<Item = Bound>) -> Option<[f64; 2]> {
+    let mut bounds = bounds.into_iter().peekable();
+    let rightward = bounds.peek()?.along.x.signum();
+    bounds.try_fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], bound| {
+        let c = bound.intercept()?;
+        (bound.along.x.signum() == rightward).then(|| [low.min(c), high.max(c)])
+    })
+}

@@ -1,0 +1,355 @@
+//! The hypothesis table: every separable sequence of true labels, with its weight, in fixed memory.
+//!
+//! Of the `2^t` sequences that `t` labels could have, those matter that some line realises (Section
+//! III-B). Each is a cell of the arrangement that the samples' lines draw on the starting polygon, so
+//! there are at most `1 + t + t (t - 1) / 2`: 56 for 10 labels, 529 for 32, 2,081 for 64. A hypothesis
+//! is such a cell with a weight, 24 bytes in all, and a sample splits the cells that it cuts and weighs
+//! the rest: the whole distribution, exactly, until the table is full.
+//!
+//! - *Full table.* The least likely hypotheses go, in whole, before a sample is taken in. What they
+//!   can have come to since is bounded, see [`Posterior::lost`].
+//! - *A cell with more edges than it can hold* keeps the lines that the sample would have cut off: an
+//!   outer approximation, counted in [`outer_cells`](Hypotheses::outer_cells). With 15 edges it has
+//!   not been seen to happen: over the tests' missions of 64 labels a cell has 9 at most.
+//!
+//! [`Posterior::lost`]: crate::belief::posterior::Posterior::lost
+
+use crate::belief::candidates::{Candidates, Certainty};
+use crate::belief::cell::{Cell, Edge};
+use crate::belief::cell_measure::measure;
+use crate::belief::list::List;
+use crate::belief::pruned::Lost;
+use crate::belief::sample::{Label, Sample, SampleBuffer};
+use crate::belief::version_space::{NoVersionSpace, Refused, VersionSpace};
+use crate::belief::weight::{Coarse, LogWeight, Reliability};
+use crate::geometry::lattice::Site;
+
+/// How hypotheses are weighed before any label is seen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+pub enum Prior {
+    /// By the measure of their lines, d(angle) d(offset): uniform over lines.
+    #[default]
+    Area,
+    /// All alike: the paper's, uniform over separable sequences.
+    Sequences,
+}
+
+/// A sequence of true labels that some line realises: the cell of the lines that do, and what it weighs
+/// if the labels seen are given. 24 bytes for `E = 15`.
+#[derive(Clone, Copy, Debug)]
+pub struct Hypothesis<const E: usize> {
+    cell: Cell<E>,
+    /// The weight in two halves, or a hypothesis would be padded to a multiple of 8 bytes.
+    high: i32,
+    low: u32,
+}
+
+impl<const E: usize> Hypothesis<E> {
+    /// What no line realises. All its bytes are zero, so that memory is filled with it at no cost of
+    /// flash.
+    const NONE: Self = Self { cell: Cell::NONE, high: 0, low: 0 };
+
+    fn new(cell: Cell<E>, LogWeight(units): LogWeight) -> Self {
+        Self { cell, high: (units >> 32) as i32, low: units as u32 }
+    }
+
+    /// The lines that realise it.
+    pub fn cell(&self) -> &Cell<E> {
+        &self.cell
+    }
+
+    /// Its weight by the table's prior, relative to the heaviest hypothesis.
+    pub const fn weight(&self) -> LogWeight {
+        LogWeight((self.high as i64) << 32 | self.low as i64)
+    }
+
+    fn weigh(&mut self, by: LogWeight) {
+        *self = Self::new(self.cell, self.weight() + by);
+    }
+}
+
+/// Up to `H` hypotheses over up to `N` samples, the given ones included; a cell has up to `E` edges.
+///
+/// `24 H + 12 N` bytes and some 40 for `E = 15`: with the four oracle points, 3,564 bytes for all
+/// hypotheses of 16 labels (`H` = 137), 13,164 for 32 (529), 50,796 for 64 (2,081).
+///
+/// Weights are exact but for the logarithms of a label's odds (to 10^-10 each) and of a cell's measure
+/// (to 10^-6), however certain labels are.
+///
+/// A table without room for one hypothesis does not compile:
+///
+/// ```compile_fail,E0080
+/// use planner_core::belief::hypotheses::{Hypotheses, Prior};
+/// let table = Hypotheses::<16, 0>::new(&[], Prior::Area);
+/// ```
+#[derive(Clone, Debug)]
+pub struct Hypotheses<const N: usize, const H: usize, const E: usize = 15> {
+    samples: SampleBuffer<N>,
+    given: u8,
+    start: Cell<E>,
+    table: List<Hypothesis<E>, H>,
+    prior: Prior,
+    lost: Lost,
+    outer_cells: u16,
+}
+
+impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
+    /// No sample and no hypothesis: memory to [`restart`](Self::restart) in.
+    pub const NONE: Self = {
+        assert!(H >= 1, "a table holds at least one hypothesis");
+        Self {
+            samples: SampleBuffer::new(),
+            given: 0,
+            start: Cell::NONE,
+            table: List::filled(Hypothesis::NONE),
+            prior: Prior::Area,
+            lost: Lost::NOTHING,
+            outer_cells: 0,
+        }
+    };
+
+    /// The one hypothesis that the given samples leave, which are certain. `prior` weighs those that
+    /// labels will make of it.
+    ///
+    /// # Errors
+    /// [`NoVersionSpace`], and `TooMany` also when more than `E` of them bound the line.
+    pub fn new(given: &[Sample], prior: Prior) -> Result<Self, NoVersionSpace> {
+        let mut hypotheses = Self::NONE;
+        hypotheses.restart(given, prior)?;
+        Ok(hypotheses)
+    }
+
+    /// As [`new`](Self::new), in place: a table can be larger than the memory that is left beside it.
+    ///
+    /// # Errors
+    /// As `new`, with the table as it was.
+    pub fn restart(&mut self, given: &[Sample], prior: Prior) -> Result<(), NoVersionSpace> {
+        let space = VersionSpace::<N>::new(given)?;
+        let start: Cell<E> = space.cell().resized().ok_or(NoVersionSpace::TooMany)?;
+        self.samples = space.into_samples();
+        self.given = given.len() as u8;
+        self.start = start;
+        self.table.clear();
+        // It has room for one.
+        let _ = self.table.push(Hypothesis::new(start, LogWeight::ZERO));
+        self.prior = prior;
+        self.lost = Lost::NOTHING;
+        self.outer_cells = 0;
+        Ok(())
+    }
+
+    /// The same hypotheses as another prior weighs them.
+    #[must_use]
+    pub fn weighed_by(&self, prior: Prior) -> Self {
+        let mut other = self.clone();
+        if prior != self.prior {
+            other.prior = prior;
+            for hypothesis in other.table.iter_mut() {
+                let area = self.log_area(hypothesis);
+                hypothesis.weigh(match prior {
+                    Prior::Area => area,
+                    Prior::Sequences => LogWeight::ZERO - area,
+                });
+            }
+            other.rescale();
+        }
+        other
+    }
+
+    /// What hypotheses are weighed by before any label is seen.
+    pub const fn prior(&self) -> Prior {
+        self.prior
+    }
+
+    /// The logarithm of the measure of a hypothesis's lines, radian metres, to 10^-6; at least -96.
+    #[inline(never)] // called from many places
+    pub fn log_area(&self, hypothesis: &Hypothesis<E>) -> LogWeight {
+        Coarse::of(measure(self.candidates(hypothesis))).into()
+    }
+
+    /// All samples with the labels that were seen, the given ones first.
+    pub fn samples(&self) -> &[Sample] {
+        &self.samples
+    }
+
+    /// The samples that were given.
+    pub fn given(&self) -> &[Sample] {
+        self.samples.get(..usize::from(self.given)).unwrap_or(&[])
+    }
+
+    /// Labels taken in since.
+    pub fn taken(&self) -> usize {
+        self.samples.len() - self.given().len()
+    }
+
+    /// Whether another sample would be refused for want of room.
+    pub fn is_full(&self) -> bool {
+        self.samples.is_full()
+    }
+
+    /// What the given samples leave: the ground of P3 and P4.
+    pub fn start(&self) -> Candidates<'_> {
+        self.start.candidates(&self.samples)
+    }
+
+    /// The hypotheses that are held.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &Hypothesis<E>> + Clone {
+        self.table.iter()
+    }
+
+    /// The candidate lines of a hypothesis of this table.
+    pub fn candidates<'a>(&'a self, hypothesis: &'a Hypothesis<E>) -> Candidates<'a> {
+        hypothesis.cell.candidates(&self.samples)
+    }
+
+    /// How often a cell could not hold another edge and kept lines that it should not have.
+    pub fn outer_cells(&self) -> u16 {
+        self.outer_cells
+    }
+
+    /// Mass given up, at most, on the scale of the weights held.
+    pub(crate) fn lost(&self) -> f64 {
+        f64::from(self.lost.mass(self.prior))
+    }
+
+    fn certainty(&self, hypothesis: &Hypothesis<E>, q: Site) -> Certainty {
+        self.candidates(hypothesis).certainty(q)
+    }
+
+    /// Takes in a label of some reliability: splits the hypotheses that the sample cuts and weighs
+    /// all. One orientation an edge, and for each of the at most `t + 1` that split two cuts and two
+    /// measures, in integers and single precision.
+    ///
+    /// # Errors
+    /// [`Refused::Contradiction`] when a label that is certain leaves no hypothesis, and
+    /// [`Refused::Full`]; the table is then as it was.
+    pub fn observe(&mut self, sample: Sample, reliability: Reliability) -> Result<(), Refused> {
+        let (agree, disagree) = (reliability.agree(), reliability.disagree());
+        let weight = |label: Label| if label == sample.label { agree } else { disagree };
+        let survives = |hypothesis: &Hypothesis<E>| match self.certainty(hypothesis, sample.site) {
+            Certainty::Certain(label) => weight(label).is_some(),
+            Certainty::Uncertain => true,
+        };
+        let doubtful = agree.is_some() && disagree.is_some();
+        if self.samples.is_full() {
+            return Err(Refused::Full(sample));
+        }
+        if !doubtful && !self.table.iter().any(survives) {
+            return Err(Refused::Contradiction(sample));
+        }
+        if doubtful {
+            self.make_room(sample.site);
+        }
+        let Ok(index) = self.samples.push(sample) else { return Err(Refused::Full(sample)) };
+        for k in 0..self.table.len() {
+            self.update(k, Edge::new(index, sample.label), reliability);
+        }
+        if !doubtful {
+            self.table.retain(|hypothesis| !hypothesis.cell.edges().is_empty());
+        }
+        self.lost.split(reliability);
+        self.rescale();
+        Ok(())
+    }
+
+    /// Gives up the least likely hypotheses until those that a sample at `q` splits find room.
+    fn make_room(&mut self, q: Site) {
+        // Exact cells tile the starting polygon, and a line crosses at most one more of them than
+        // there are other lines.
+        if self.outer_cells == 0 && self.table.len() + self.taken() < H {
+            return;
+        }
+        let splits = |it: &Self, h: &Hypothesis<E>| it.certainty(h, q) == Certainty::Uncertain;
+        let mut more = self.table.iter().filter(|h| splits(self, h)).count();
+        while self.table.len() > 1 && self.table.len() + more > H {
+            let weights = self.table.iter().map(Hypothesis::weight).enumerate();
+            let Some((least, _)) = weights.min_by_key(|(_, weight)| *weight) else { return };
+            let Some(gone) = self.table.swap_remove(least) else { return };
+            more -= usize::from(splits(self, &gone));
+            self.give_up(&gone);
+        }
+    }
+
+    fn give_up(&mut self, gone: &Hypothesis<E>) {
+        let (weight, area) = (gone.weight(), self.log_area(gone));
+        match self.prior {
+            Prior::Area => self.lost.add(weight, weight - area),
+            Prior::Sequences => self.lost.add(weight + area, weight),
+        }
+    }
+
+    /// Weighs the `k`-th hypothesis by the newest sample, splitting it first if the sample cuts it.
+    /// One that becomes impossible is left without edges.
+    fn update(&mut self, k: usize, edge: Edge, reliability: Reliability) {
+        let (agree, disagree) = (reliability.agree(), reliability.disagree());
+        let Some(site) = self.samples.get(edge.index()).map(|s| s.site) else { return };
+        let Some(whole) = self.table.get_mut(k) else { return };
+        match whole.cell.candidates(&self.samples).certainty(site) {
+            Certainty::Certain(certain) => {
+                let weight = if certain == edge.label() { agree } else { disagree };
+                match weight {
+                    Some(weight) => whole.weigh(weight),
+                    None => whole.cell = Cell::NONE,
+                }
+            }
+            Certainty::Uncertain => {
+                let whole = *whole;
+                let opposite = Edge::new(edge.index() as u8, -edge.label());
+                // A cell's measure is the same each time it is taken: nothing is lost in the quotients.
+                let weight = match self.prior {
+                    Prior::Area => LogWeight::ZERO - self.log_area(&whole),
+                    Prior::Sequences => LogWeight::ZERO,
+                };
+                let mut part = |edge, by| self.part(&whole, edge, weight + by);
+                let agreeing = agree.map(|by| part(edge, by));
+                let other = disagree.map(|by| part(opposite, by));
+                let (kept, split_off) =
+                    if agreeing.is_some() { (agreeing, other) } else { (other, None) };
+                if let (Some(kept), Some(place)) = (kept, self.table.get_mut(k)) {
+                    *place = kept;
+                }
+                if let Some(split_off) = split_off {
+                    self.add(k, split_off);
+                }
+            }
+        }
+    }
+
+    /// Adds what was split off the `k`-th hypothesis.
+    fn add(&mut self, k: usize, split_off: Hypothesis<E>) {
+        if let Err(mut refused) = self.table.push(split_off) {
+            // Only a table of one hypothesis comes here: the likelier part stays.
+            if let Some(place) = self.table.get_mut(k)
+                && refused.weight() > place.weight()
+            {
+                core::mem::swap(place, &mut refused);
+            }
+            self.give_up(&refused);
+        }
+    }
+
+    /// The part of a hypothesis on one side of a sample, weighed anew and by the measure of its lines if
+    /// that is the prior.
+    fn part(&mut self, whole: &Hypothesis<E>, edge: Edge, weight: LogWeight) -> Hypothesis<E> {
+        let mut part = *whole;
+        if part.cell.cut(&self.samples, edge).is_err() {
+            self.outer_cells = self.outer_cells.saturating_add(1);
+        }
+        part.weigh(match self.prior {
+            Prior::Area => weight + self.log_area(&part),
+            Prior::Sequences => weight,
+        });
+        part
+    }
+
+    /// Makes the heaviest hypothesis the unit of all weights.
+    fn rescale(&mut self) {
+        let most = self.table.iter().map(Hypothesis::weight).max().unwrap_or(LogWeight::ZERO);
+        if most != LogWeight::ZERO {
+            self.table.iter_mut().for_each(|h| h.weigh(LogWeight::ZERO - most));
+            self.lost.rescale(most);
+        }
+    }
+}

@@ -1,0 +1,176 @@
+//! The posterior over hypotheses: what the labels seen say of the line.
+//!
+//! With a policy that depends on the information alone, Equation 8 comes to
+//! `weight = p^agree (1 - p)^disagree` over the samples outside the trusted balls, divided by the sum
+//! over all separable sequences. Every probability stands beside a bound on what pruning can have
+//! made of it: [`Posterior::lost`].
+
+use crate::belief::candidates::{Candidates, intercepts};
+use crate::belief::estimate::{Estimates, Moments, bisector, maximum_margin};
+use crate::belief::hypotheses::{Hypotheses, Hypothesis};
+use crate::belief::weight::LogWeight;
+use crate::geometry::direction::Arc;
+use crate::geometry::line::Line;
+
+/// The distribution over the hypotheses of a table, by its prior.
+///
+/// Building it and each read-out cost one exponential for each hypothesis.
+#[derive(Clone, Copy, Debug)]
+pub struct Posterior<'a, const N: usize, const H: usize, const E: usize> {
+    hypotheses: &'a Hypotheses<N, H, E>,
+    total: f64,
+}
+
+/// The paper's outcome: the most likely hypothesis (Section IV-B).
+#[derive(Clone, Copy, Debug)]
+pub struct Best<'a, const E: usize> {
+    /// The hypothesis.
+    pub hypothesis: &'a Hypothesis<E>,
+    /// Its probability.
+    pub probability: f64,
+    /// The slopes of its lines.
+    pub slope_arc: Arc,
+    /// The intercepts of its lines, metres; `None` when unbounded.
+    pub intercept: Option<[f64; 2]>,
+}
+
+/// The smallest set of hypotheses that holds at least a stated probability.
+#[derive(Clone, Copy, Debug)]
+pub struct Credible {
+    /// What was asked.
+    pub level: f64,
+    /// What the set holds: whole hypotheses overshoot.
+    pub probability: f64,
+    /// Number of hypotheses.
+    pub cells: usize,
+    /// The arc that spans the slopes of their lines.
+    pub slope_arc: Arc,
+    /// The range of the intercepts of their lines, metres; `None` when unbounded.
+    pub intercept: Option<[f64; 2]>,
+    /// The smallest weight in the set and the number of those of that weight that belong to it.
+    cut: Option<(LogWeight, usize)>,
+}
+
+impl<'a, const N: usize, const H: usize, const E: usize> Posterior<'a, N, H, E> {
+    /// The posterior of a table.
+    pub fn new(hypotheses: &'a Hypotheses<N, H, E>) -> Self {
+        let total = hypotheses.iter().map(|h| h.weight().exp()).sum();
+        Self { hypotheses, total }
+    }
+
+    /// The probability of a hypothesis of the table, to 10^-6 of it; what is less likely than 10^-37 is
+    /// held to be about that.
+    pub fn probability(&self, hypothesis: &Hypothesis<E>) -> f64 {
+        hypothesis.weight().exp() / self.total
+    }
+
+    /// An upper bound on the probability of all that was given up as the table was full: 0 when
+    /// nothing was. Every probability stated is too high by this share at most.
+    pub fn lost(&self) -> f64 {
+        let lost = self.hypotheses.lost();
+        lost / (lost + self.total)
+    }
+
+    fn most_likely(&self) -> Option<&'a Hypothesis<E>> {
+        let likelier = |best: &'a Hypothesis<E>, next: &'a Hypothesis<E>| {
+            if next.weight() > best.weight() { next } else { best }
+        };
+        self.hypotheses.iter().reduce(likelier)
+    }
+
+    /// The most likely hypothesis, the first of equals.
+    pub fn best(&self) -> Option<Best<'a, E>> {
+        let hypothesis = self.most_likely()?;
+        let lines = self.hypotheses.candidates(hypothesis);
+        Some(Best {
+            hypothesis,
+            probability: self.probability(hypothesis),
+            slope_arc: lines.slope_arc(),
+            intercept: lines.intercepts(),
+        })
+    }
+
+    /// The smallest set of hypotheses with at least this probability, taken by falling weight.
+    /// `O(H)` comparisons for each hypothesis in the set.
+    pub fn credible(&self, level: f64) -> Credible {
+        let weights = || self.hypotheses.iter().map(Hypothesis::weight);
+        let (mut probability, mut cells) = (0.0, 0);
+        let mut cut = None;
+        while probability < level {
+            let next = weights().filter(|w| cut.is_none_or(|(above, _)| *w < above)).max();
+            let Some(weight) = next else { break };
+            let alike = weights().filter(|w| *w == weight).count();
+            let each = weight.exp() / self.total;
+            let enough = (1..alike).find(|&n| probability + n as f64 * each >= level);
+            let taken = enough.unwrap_or(alike);
+            probability += taken as f64 * each;
+            cells += taken;
+            cut = Some((weight, taken));
+        }
+        let lines = || self.down_to(cut).map(|h| self.hypotheses.candidates(h));
+        let directions = lines().flat_map(|c| c.bounds().map(|bound| bound.along));
+        let slope_arc = Arc::spanning(directions).unwrap_or_default();
+        let intercept = intercepts(lines().flat_map(Candidates::bounds));
+        Credible { level, probability, cells, slope_arc, intercept, cut }
+    }
+
+    /// The hypotheses of a credible set of this posterior.
+    pub fn members(&self, set: &Credible) -> impl Iterator<Item = &'a Hypothesis<E>> {
+        self.down_to(set.cut)
+    }
+
+    /// The hypotheses above a weight, and the first so many of that weight.
+    fn down_to(&self, cut: Option<(LogWeight, usize)>) -> impl Iterator<Item = &'a Hypothesis<E>> {
+        let mut alike = cut.map_or(0, |(_, alike)| alike);
+        self.hypotheses.iter().filter(move |h| {
+            let Some((least, _)) = cut else { return false };
+            let weight = h.weight();
+            if weight == least && alike > 0 {
+                alike -= 1;
+                return true;
+            }
+            weight > least
+        })
+    }
+
+    /// Shannon entropy over the hypotheses, bits.
+    pub fn entropy(&self) -> f64 {
+        let term = |p: f64| if p > 0.0 { -p * libm::log2(p) } else { 0.0 };
+        self.hypotheses.iter().map(|h| term(self.probability(h))).sum()
+    }
+
+    /// What the labels told of the line, bits: the divergence of this posterior from the uniform
+    /// distribution over the starting lines. Of noiseless labels it is `log2` of the share of the
+    /// starting lines that are left.
+    pub fn information(&self) -> f64 {
+        let start = crate::belief::estimate::area(self.hypotheses.start());
+        let term = |h| {
+            let p = self.probability(h);
+            let share = self.hypotheses.log_area(h).exp() / start;
+            if p > 0.0 { p * libm::log2(p / share) } else { 0.0 }
+        };
+        self.hypotheses.iter().map(term).sum()
+    }
+
+    /// The posterior mean of the line: each hypothesis adds its centre, as unit normals with their
+    /// offsets, by its probability. The mean over lines, so it needs no choice of a hypothesis and
+    /// moves smoothly as labels come in: the point estimate to use.
+    pub fn mean(&self) -> Option<Line> {
+        let each = |hypothesis| {
+            let moments = Moments::of(self.hypotheses.candidates(hypothesis));
+            moments.scaled(self.probability(hypothesis) / moments.area)
+        };
+        self.hypotheses.iter().map(each).reduce(Moments::plus)?.mean()
+    }
+
+    /// The three estimates: the bisector of the labels as they were seen, the posterior mean, and the
+    /// maximum margin of the most likely hypothesis.
+    pub fn estimates(&self) -> Estimates {
+        let best = self.most_likely().map(|best| self.hypotheses.candidates(best));
+        Estimates {
+            bisector: bisector(self.hypotheses.samples()),
+            centre: self.mean(),
+            maximum_margin: best.and_then(maximum_margin),
+        }
+    }
+}

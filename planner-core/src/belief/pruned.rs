@@ -1,0 +1,50 @@
+//! What a full table of hypotheses gave up: a bound, in single precision and rounded up.
+
+use crate::belief::hypotheses::Prior;
+use crate::belief::weight::{LogWeight, Reliability};
+
+/// Mass given up, at most, by both priors, on the scale of the weights held.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lost {
+    area: f32,
+    sequences: f32,
+}
+
+impl Lost {
+    pub(crate) const NOTHING: Self = Self { area: 0.0, sequences: 0.0 };
+
+    pub(crate) fn mass(self, prior: Prior) -> f32 {
+        match prior {
+            Prior::Area => self.area,
+            Prior::Sequences => self.sequences,
+        }
+    }
+
+    pub(crate) fn add(&mut self, by_area: LogWeight, by_sequences: LogWeight) {
+        self.area = up(self.area + by_area.exp_bound());
+        self.sequences = up(self.sequences + by_sequences.exp_bound());
+    }
+
+    /// After a label of some reliability. Relative to its likelier side a label only takes from what was
+    /// given up; but by the paper's prior a sequence that it split counts twice, once for each side.
+    pub(crate) fn split(&mut self, reliability: Reliability) {
+        if let (Some(agree), Some(disagree)) = (reliability.agree(), reliability.disagree()) {
+            self.sequences = up(self.sequences * (1.0 + agree.min(disagree).exp_bound()));
+        }
+    }
+
+    /// With what was `unit` as the new unit of weights.
+    pub(crate) fn rescale(&mut self, unit: LogWeight) {
+        if self.area > 0.0 {
+            let scale = (LogWeight::ZERO - unit).exp_bound();
+            self.area = up(self.area * scale);
+            self.sequences = up(self.sequences * scale);
+        }
+    }
+}
+
+/// A bound of what a sum or product of two was rounded from.
+fn up(mass: f32) -> f32 {
+    let mass = mass * (1.0 + 4.0 * f32::EPSILON);
+    if mass < f32::MAX { mass } else { f32::MAX }
+}

@@ -1,0 +1,42 @@
+//! The mission area: the rectangle in which all positions stay.
+
+use crate::geometry::lattice::Site;
+
+/// The rectangle in which all positions stay.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "wire",
+    serde(
+        try_from = "[crate::geometry::lattice::Site; 2]",
+        into = "[crate::geometry::lattice::Site; 2]"
+    )
+)]
+pub struct Area {
+    min: Site,
+    max: Site,
+}
+
+impl Area {
+    /// The rectangle with these corners; `None` unless it has an inside.
+    pub fn new(min: Site, max: Site) -> Option<Self> {
+        (min.x() < max.x() && min.z() < max.z()).then_some(Self { min, max })
+    }
+
+    /// The corner of smallest coordinates.
+    pub const fn min(&self) -> Site {
+        self.min
+    }
+
+    /// The corner of largest coordinates.
+    pub const fn max(&self) -> Site {
+        self.max
+    }
+
+    /// Whether a position lies inside or on the border.
+    pub fn contains(&self, q: Site) -> bool {
+        (self.min.x()..=self.max.x()).contains(&q.x())
+            && (self.min.z()..=self.max.z()).contains(&q.z())
+    }
+}

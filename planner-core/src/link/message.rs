@@ -1,0 +1,342 @@
+//! What a chip that plans and a vehicle that moves say to each other.
+//!
+//! The chip asks, the vehicle answers: every [`Request`] has one [`Reply`].
+//!
+//! ```text
+//! chip                                        vehicle (or `host-sim hil` in its place)
+//!  | -- Hello { protocol } ------------------->  |  repeated until someone answers
+//!  | <------------------------- Setup { .. } --  |  the mission
+//!  | -- Ready(Accepted), or Declined --------->  |
+//!  | <-------------------------------- Noted --  |
+//!  | -- Move { motion, what came of the last } ->  |
+//!  | <------------- Arrived { pose, reading } --  |  as often as the mission takes
+//!  | -- End { reason, estimates } ------------>  |
+//!  | <-------------------------------- Noted --  |
+//! ```
+//!
+//! A message goes as a [`Frame`](crate::link::frame::Frame); delivery (loss, repetition, lateness) is [`link`](crate::link::delivery)'s.
+
+use heapless::Vec;
+use serde::{Deserialize, Serialize};
+
+use crate::belief::estimate::Estimates;
+use crate::belief::hypotheses::Prior;
+use crate::belief::sample::{Reading, Sample};
+use crate::belief::version_space::{NoVersionSpace, Refused};
+use crate::link::frame::Message;
+use crate::motion::dynamics::Pose;
+use crate::planner::config::Config;
+use crate::planner::scc::{Noise, Policy};
+use crate::planner::{Motion, StopReason};
+
+/// The version of this protocol. The layout of [`Request::Hello`] and of its frame is that of every
+/// version from 2 on.
+pub const PROTOCOL: u16 = 2;
+
+/// Given samples that a setup can hold.
+pub const MOST_GIVEN: usize = 16;
+
+/// What the chip asks of the vehicle.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Request {
+    /// For a mission.
+    Hello {
+        /// [`PROTOCOL`] as the chip has it.
+        protocol: u16,
+    },
+    /// To begin: the setup is accepted.
+    Ready(Accepted),
+    /// For another setup: this one is not accepted.
+    Declined(Declined),
+    /// To make a motion and say what came of it.
+    Move(Move),
+    /// To take note that the mission is over.
+    End(End),
+}
+
+/// What the vehicle answers.
+#[expect(clippy::large_enum_variant, reason = "there is one at a time, and no heap")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Reply {
+    /// To [`Request::Hello`]: the mission.
+    Setup(Setup),
+    /// To [`Request::Move`]: where the motion ended and what was sensed there.
+    Arrived {
+        /// Where it ended.
+        pose: Pose,
+        /// What was sensed; `None` when no sample was taken, or the chip has the sensor.
+        reading: Option<Reading>,
+    },
+    /// To [`Request::Move`]: the vehicle could not make the motion.
+    Failed,
+    /// To all else.
+    Noted,
+    /// To any: heard, and still at it. A motion may take longer than the link is patient.
+    Busy,
+    /// To any: it belongs to no session that runs here, or is older than the last.
+    Stale,
+}
+
+/// A mission.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Setup {
+    /// [`PROTOCOL`] as the vehicle has it.
+    pub protocol: u16,
+    /// Who plans.
+    pub algorithm: Algorithm,
+    /// What the mission fixes beforehand.
+    pub config: Config,
+    /// The room asked for.
+    pub room: Room,
+    /// Steps at most.
+    pub steps: u16,
+    /// Where the vehicle is.
+    pub start: Pose,
+    /// Who reads labels.
+    pub labels: LabelSource,
+    /// The oracle's samples.
+    pub given: Vec<Sample, MOST_GIVEN, u8>,
+}
+
+/// Who plans.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Algorithm {
+    /// Algorithm 1, noiseless labels.
+    Cfc,
+    /// Algorithm 2, noisy labels.
+    Scc {
+        /// What is known of the noise.
+        noise: Noise,
+        /// How hypotheses choose an action together.
+        policy: Policy,
+        /// How they are weighed.
+        prior: Prior,
+    },
+}
+
+/// Room for a mission's memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Room {
+    /// Samples, the given ones included.
+    pub samples: u16,
+    /// Hypotheses; 1 where there is but one.
+    pub hypotheses: u16,
+}
+
+/// Who reads labels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum LabelSource {
+    /// The vehicle: they come with [`Reply::Arrived`].
+    Vehicle,
+    /// The chip, from its own sensor.
+    Chip,
+}
+
+/// What the chip accepts, and what its figures mean.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Accepted {
+    /// The room there is: at least what was asked for.
+    pub room: Room,
+    /// The clock.
+    pub clock: ClockRate,
+}
+
+/// What a [`Took`]'s ticks are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct ClockRate {
+    /// Ticks in a second.
+    pub per_second: u32,
+    /// Under emulation ticks count instructions, not time.
+    pub emulated: bool,
+}
+
+/// Why a setup is not accepted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Declined {
+    /// The chip speaks this version of the protocol.
+    Protocol(u16),
+    /// The chip does not have this algorithm.
+    Algorithm,
+    /// The chip has this room, which is too little.
+    Room(Room),
+    /// The given samples leave nothing to find.
+    Given(NoVersionSpace),
+    /// The chip has no sensor of its own.
+    Labels,
+}
+
+/// A motion to make, with what came of the one before.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Move {
+    /// The motion.
+    pub motion: Motion,
+    /// The reading that the planner last took in, if it took one in at the end of the last motion.
+    pub last: Option<Reading>,
+    /// Ticks it took.
+    pub took: Took,
+}
+
+/// Ticks of the chip's clock.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Took {
+    /// To take in the last reading.
+    pub observe: u32,
+    /// To plan.
+    pub plan: u32,
+    /// To estimate the line; 0 before the end.
+    pub estimate: u32,
+}
+
+/// How a mission ended.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct End {
+    /// Why.
+    pub reason: EndReason,
+    /// As in [`Move`].
+    pub last: Option<Reading>,
+    /// Ticks of the last observation, of the last plan, and of the estimates.
+    pub took: Took,
+    /// What is known of the line.
+    pub estimates: Estimates,
+}
+
+/// Why a mission ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum EndReason {
+    /// All steps were taken.
+    Steps,
+    /// The planner had no further motion.
+    Stopped(StopReason),
+    /// The planner did not take a sample.
+    Refused(Refused),
+    /// The chip's sensor failed.
+    Sensor,
+    /// The vehicle could not make a motion.
+    Vehicle,
+}
+
+impl Message for Request {
+    const WAY: u8 = b'?';
+}
+
+impl Message for Reply {
+    const WAY: u8 = b'!';
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::belief::sample::Label;
+    use crate::belief::weight::Reliability;
+    use crate::geometry::area::Area;
+    use crate::geometry::direction::Heading;
+    use crate::geometry::lattice::{LIMIT, Site};
+    use crate::geometry::line::Line;
+    use crate::link::frame::{Decoder, Envelope, FRAME, Frame};
+    use crate::motion::action::{Action, Control};
+    use crate::planner::config::{Crossing, Following};
+    use crate::planner::{Recovery, Stage};
+    use crate::search::problem::Varrho;
+
+    /// What a decoder makes of a frame and of what came before it.
+    fn received<M: Message>(frame: &Frame) -> Option<Envelope<M>> {
+        let mut decoder = Decoder::default();
+        let noise = [7; 2 * FRAME];
+        let mut heard = noise.iter().chain(frame.bytes()).filter_map(|b| decoder.feed::<M>(*b));
+        let first = heard.next();
+        assert!(heard.next().is_none());
+        first
+    }
+
+    fn far(x: i32, z: i32) -> Site {
+        Site::new(x * (LIMIT - 1), z * (LIMIT - 1)).unwrap()
+    }
+
+    fn longest_setup() -> Setup {
+        let sample = Sample { site: far(-1, -1), label: Label::Positive };
+        let reliability = Reliability::new(5e-324).unwrap();
+        Setup {
+            protocol: u16::MAX,
+            algorithm: Algorithm::Scc {
+                noise: Noise { reliability, trusted_radius: u32::MAX },
+                policy: Policy::MixtureOfOwn,
+                prior: Prior::Sequences,
+            },
+            config: Config {
+                area: Area::new(far(-1, -1), far(1, 1)).unwrap(),
+                varrho: Varrho::new(0.999_999).unwrap(),
+                crossing: Crossing::AcrossBisector,
+                following: Following::AlongBisector,
+            },
+            room: Room { samples: u16::MAX, hypotheses: u16::MAX },
+            steps: u16::MAX,
+            start: Pose { site: far(-1, -1), heading: Heading(u32::MAX) },
+            labels: LabelSource::Chip,
+            given: Vec::from_array([sample; MOST_GIVEN]),
+        }
+    }
+
+    #[test]
+    fn the_longest_messages_fit_a_frame_and_arrive_as_they_were_sent() {
+        let setup = Reply::Setup(longest_setup());
+        let frame = Frame::of(&Envelope::new(u32::MAX, u32::MAX, setup.clone()));
+        let arrived = received::<Reply>(&frame).unwrap();
+        assert_eq!((arrived.number, arrived.message), (u32::MAX, setup));
+
+        let pose = Pose { site: far(-1, -1), heading: Heading(u32::MAX) };
+        let motion = Motion {
+            stage: Some(Stage::P4),
+            recovery: Some(Recovery::Transit),
+            action: Action(u16::MAX),
+            control: Control { v: -1.0, w: f32::MIN_POSITIVE },
+            target: pose,
+            examined: u32::MAX,
+            proven: false,
+        };
+        let took = Took { observe: u32::MAX, plan: u32::MAX, estimate: u32::MAX };
+        let last = Some(Label::Positive.into());
+        let line = Line::from_coefficients(-1.0 / 3.0, 1.0 / 7.0, f64::MAX.sqrt());
+        let estimates = Estimates { bisector: line, centre: line, maximum_margin: line };
+        let sample = Sample { site: far(-1, -1), label: Label::Positive };
+        let reason = EndReason::Refused(Refused::Contradiction(sample));
+        for request in [
+            Request::Move(Move { motion, last, took }),
+            Request::End(End { reason, last, took, estimates }),
+        ] {
+            let frame = Frame::of(&Envelope::new(u32::MAX, u32::MAX, request.clone()));
+            let arrived = received::<Request>(&frame).unwrap();
+            // Debug output tells every bit of a float apart but for NaN's.
+            let debug = |it: &Request| heapless::format!(2048; "{it:?}").unwrap();
+            assert_eq!(debug(&arrived.message), debug(&request));
+            assert!(received::<Reply>(&frame).is_none(), "an echo is no answer");
+        }
+    }
+
+    #[test]
+    fn values_that_cannot_be_are_not_taken_in() {
+        let mut bytes = [0; 32];
+        postcard::to_slice(&(LIMIT, 0), &mut bytes).unwrap();
+        assert!(postcard::from_bytes::<Site>(&bytes).is_err());
+        postcard::to_slice(&1_000_000_u32, &mut bytes).unwrap();
+        assert!(postcard::from_bytes::<Varrho>(&bytes).is_err());
+        postcard::to_slice(&i64::MAX, &mut bytes).unwrap();
+        assert!(postcard::from_bytes::<Reliability>(&bytes).is_err());
+        postcard::to_slice(&[0.0, 0.0, 1.0], &mut bytes).unwrap();
+        assert!(postcard::from_bytes::<Line>(&bytes).is_err());
+        postcard::to_slice(&[far(1, 1), far(0, 0)], &mut bytes).unwrap();
+        assert!(postcard::from_bytes::<Area>(&bytes).is_err());
+    }
+}

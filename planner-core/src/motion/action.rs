@@ -1,0 +1,140 @@
+//! The integer-indexed action grid: a finite action set in which one `u16` names an action.
+//!
+//! Actions that share a direction of travel form a *ray*, and differ in speed alone. A grid has
+//! `rays` rays of `speeds` speeds, `0, step, 2 step, ...`; the index of an action is
+//! `ray * speeds + speed`.
+
+use crate::geometry::lattice::UNITS_PER_METRE;
+use crate::motion::dynamics::Ray;
+
+/// The name of an action within a grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+pub struct Action(pub u16);
+
+/// What an action asks of the vehicle in one unit of time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+pub struct Control {
+    /// Speed, metres per unit time.
+    pub v: f32,
+    /// Turn before the drive, radians; positive to the left.
+    pub w: f32,
+}
+
+/// The shape of an action set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct ActionGrid {
+    rays: u16,
+    speeds: u16,
+    speed_step_mm: u32,
+    /// One step of speed in the units of [`Ray::step`].
+    step_length: i32,
+}
+
+/// Why there is no such grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum BadGrid {
+    /// It has no action, or more than 65,536.
+    Actions,
+    /// Its steps of speed are nothing, or one of its motions is 100 m long or longer.
+    Reach,
+    /// Its step of turning is nothing or more than half a turn, or its sharpest turn is less than a
+    /// milliradian or more than half a turn.
+    Turn,
+}
+
+impl core::fmt::Display for BadGrid {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::Actions => "an action grid has 1 to 65536 actions",
+            Self::Reach => "steps of speed are 1 mm or more, and a motion is shorter than 100 m",
+            Self::Turn => {
+                "a step of turning is 1 to 3141 mrad, and the sharpest turn from 0.001 to pi rad"
+            }
+        })
+    }
+}
+
+impl core::error::Error for BadGrid {}
+
+impl ActionGrid {
+    /// The longest admissible motion, millimetres: what keeps a ray's steps within an `i32`.
+    pub const LONGEST_MM: u32 = 100_000;
+
+    /// A grid of `rays` directions with the speeds `0, step, ..., (speeds - 1) step`.
+    ///
+    /// # Errors
+    /// [`BadGrid::Actions`], [`BadGrid::Reach`].
+    pub const fn new(rays: u16, speeds: u16, speed_step_mm: u32) -> Result<Self, BadGrid> {
+        let actions = rays as u32 * speeds as u32;
+        if actions == 0 || actions > 1 << 16 {
+            return Err(BadGrid::Actions);
+        }
+        let reach = (speeds as u64 - 1) * speed_step_mm as u64;
+        let longest = if reach > speed_step_mm as u64 { reach } else { speed_step_mm as u64 };
+        if speed_step_mm == 0 || longest >= Self::LONGEST_MM as u64 {
+            return Err(BadGrid::Reach);
+        }
+        let per_metre = (UNITS_PER_METRE as u64) << Ray::STEP_BITS;
+        let step_length = ((speed_step_mm as u64 * per_metre + 500) / 1000) as i32;
+        Ok(Self { rays, speeds, speed_step_mm, step_length })
+    }
+
+    /// Number of directions.
+    pub const fn rays(&self) -> u16 {
+        self.rays
+    }
+
+    /// Number of speeds on a ray, standing still included.
+    pub const fn speeds(&self) -> u16 {
+        self.speeds
+    }
+
+    /// Number of actions.
+    pub const fn actions(&self) -> u32 {
+        self.rays as u32 * self.speeds as u32
+    }
+
+    /// The spacing of the speeds, millimetres per unit time.
+    pub const fn speed_step_mm(&self) -> u32 {
+        self.speed_step_mm
+    }
+
+    /// Distance of travel at a speed of the grid, millimetres. Speeds beyond the grid have none: what
+    /// is returned for them means nothing.
+    pub const fn reach_mm(&self, speed: u16) -> u32 {
+        (speed as u32).wrapping_mul(self.speed_step_mm)
+    }
+
+    /// Distance of travel, metres.
+    pub const fn reach_m(&self, speed: u16) -> f32 {
+        self.reach_mm(speed) as f32 / 1000.0
+    }
+
+    /// Length of one step of speed in the units of [`Ray::step`](crate::motion::dynamics::Ray::step).
+    pub(crate) const fn step_length(self) -> i32 {
+        self.step_length
+    }
+
+    /// Length of one step of speed, lattice units.
+    pub(crate) const fn step_units(self) -> f32 {
+        self.step_length as f32 / (1 << Ray::STEP_BITS) as f32
+    }
+
+    /// The name of an action.
+    pub const fn action(&self, ray: u16, speed: u16) -> Action {
+        Action(ray.wrapping_mul(self.speeds).wrapping_add(speed))
+    }
+
+    /// Ray and speed of an action.
+    pub const fn split(&self, action: Action) -> (u16, u16) {
+        let speeds = if self.speeds == 0 { 1 } else { self.speeds }; // never 0; spares a panic path
+        (action.0 / speeds, action.0 % speeds)
+    }
+}

@@ -1,0 +1,163 @@
+//! The contract of [`Dynamics`], checked: for implementations of your own.
+//!
+//! The search skips rays by what a fan promises of them, so dynamics that break a promise make wrong
+//! plans, not errors. Call [`check`] in a test.
+//!
+//! ```
+//! use planner_core::motion::contract;
+//! use planner_core::motion::unicycle::Unicycle;
+//!
+//! contract::check(&Unicycle::paper())?;
+//! # Ok::<(), contract::Broken>(())
+//! ```
+
+use crate::geometry::direction::Heading;
+use crate::geometry::lattice::Site;
+use crate::motion::action::Action;
+use crate::motion::dynamics::{Dynamics, Fan, Pose, Ray, Side};
+
+/// A promise of [`Dynamics`] that is not kept, by its number in the contract.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum Broken {
+    /// 1: the fan has not as many rays as the grid, or none on the left.
+    Count,
+    /// 2: from the ray before, this one turns back or not at all, or further than the fan's spacing, or
+    /// the fan's sides overlap behind it.
+    Spacing(Side, u16),
+    /// 3: this ray asks for less effort than one before it.
+    Effort(Side, u16),
+    /// 4: this ray does not lead where its heading points, or by another length than the grid's.
+    Step(Side, u16),
+    /// 5: this ray's index is not in the grid, is another ray's too, or does not lead back to it.
+    Index(Side, u16),
+    /// 6: the turn in place to this side moves the agent, turns it the other way or not at all, or
+    /// leaves a gap between the fans.
+    TurnInPlace(Side),
+}
+
+impl core::fmt::Display for Broken {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Count => f.write_str("the fan has not as many rays as the grid"),
+            Self::Spacing(side, n) => {
+                write!(f, "ray {n} to the {side:?} is not between nothing and the spacing further")
+            }
+            Self::Effort(side, n) => {
+                write!(f, "ray {n} to the {side:?} asks for less effort than one before it")
+            }
+            Self::Step(side, n) => {
+                write!(
+                    f,
+                    "ray {n} to the {side:?} does not lead one step of speed along its heading"
+                )
+            }
+            Self::Index(side, n) => {
+                write!(f, "the index of ray {n} to the {side:?} does not name that ray alone")
+            }
+            Self::TurnInPlace(side) => {
+                write!(f, "the turn in place to the {side:?} is none, or leaves a gap")
+            }
+        }
+    }
+}
+
+impl core::error::Error for Broken {}
+
+/// Headings from which an implementation is looked at: the axes, and between.
+const HEADINGS: u32 = 16;
+
+/// Whether the [contract](Dynamics#contract) is kept, at a position and at headings all around. A few
+/// hundred instructions for each ray and heading.
+///
+/// # Errors
+/// The first promise that was found [`Broken`].
+pub fn check<D: Dynamics>(dynamics: &D) -> Result<(), Broken> {
+    let Fan { left, right, .. } = dynamics.fan();
+    let rays = u32::from(left) + u32::from(right);
+    if left == 0 || rays != u32::from(dynamics.grid().rays()) {
+        return Err(Broken::Count);
+    }
+    let site = Site::new(12_345, -6_789).unwrap_or(Site::ORIGIN);
+    for n in 0..HEADINGS {
+        // A turn that is a multiple of nothing else.
+        let pose = Pose { site, heading: Heading(n * (u32::MAX / HEADINGS)) };
+        let reached =
+            [arm(dynamics, pose, Side::Left, left - 1)?, arm(dynamics, pose, Side::Right, right)?];
+        let [left, right] = reached;
+        if u64::from(left) + u64::from(right) > 1 << 32 {
+            return Err(Broken::Spacing(Side::Right, dynamics.fan().right));
+        }
+        for (side, most) in [(Side::Left, left), (Side::Right, right)] {
+            turn_in_place(dynamics, pose, side, most)?;
+        }
+    }
+    Ok(())
+}
+
+/// Checks the rays of one side up to the last; how far they reach.
+fn arm<D: Dynamics>(dynamics: &D, pose: Pose, side: Side, last: u16) -> Result<u32, Broken> {
+    let ahead = dynamics.ray(pose, Side::Left, 0);
+    let (mut before, mut effort) = (0, ahead.effort);
+    for n in 0..=last {
+        let ray = dynamics.ray(pose, side, n);
+        let turned = turn(ahead.heading, ray.heading, side);
+        let more = turned.wrapping_sub(before);
+        let spacing = dynamics.fan().spacing.0;
+        if n == 0 && ray != ahead || n > 0 && (turned <= before || more > spacing) {
+            return Err(Broken::Spacing(side, n));
+        }
+        if ray.effort < effort {
+            return Err(Broken::Effort(side, n));
+        }
+        if ray.heading != dynamics.heading(pose, side, n) || !leads_ahead(dynamics, &ray) {
+            return Err(Broken::Step(side, n));
+        }
+        if !is_named(dynamics, pose, &ray) {
+            return Err(Broken::Index(side, n));
+        }
+        (before, effort) = (turned, ray.effort);
+    }
+    Ok(before)
+}
+
+/// The turn to a side from one heading to another.
+fn turn(from: Heading, to: Heading, side: Side) -> u32 {
+    match side {
+        Side::Left => to.0.wrapping_sub(from.0),
+        Side::Right => from.0.wrapping_sub(to.0),
+    }
+}
+
+/// Whether a ray's step has the heading and the length that it should, to a few units.
+fn leads_ahead<D: Dynamics>(dynamics: &D, ray: &Ray) -> bool {
+    const FEW: i32 = 4;
+    let exact = ray.heading.unit().scaled(dynamics.grid().step_length());
+    let near = |a: i32, b: i32| a.checked_sub(b).is_some_and(|off| off.abs() <= FEW);
+    near(ray.step.x, exact.x) && near(ray.step.z, exact.z)
+}
+
+/// Whether all actions of a ray lead back to it: as indices are below their number, and each gives its
+/// own ray back, none is used twice.
+fn is_named<D: Dynamics>(dynamics: &D, pose: Pose, ray: &Ray) -> bool {
+    let grid = dynamics.grid();
+    let back = |speed| dynamics.ray_of(pose, grid.action(ray.index, speed)) == Some(*ray);
+    ray.index < grid.rays() && back(0) && back(grid.speeds() - 1)
+}
+
+fn turn_in_place<D: Dynamics>(
+    dynamics: &D,
+    pose: Pose,
+    side: Side,
+    most: u32,
+) -> Result<(), Broken> {
+    let Some((Action(action), after)) = dynamics.turn_in_place(pose, side) else { return Ok(()) };
+    let turned = turn(pose.heading, after.heading, side);
+    let there = dynamics.target(pose, Action(action));
+    if after.site == pose.site && turned > 0 && turned <= most && there == Some(after) {
+        Ok(())
+    } else {
+        Err(Broken::TurnInPlace(side))
+    }
+}

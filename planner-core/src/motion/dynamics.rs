@@ -1,0 +1,191 @@
+//! Dynamics: how an action moves the agent.
+//!
+//! The general one-step problem has any `phi` and any finite action set. What the search needs of
+//! them is here: the actions grouped into [`Ray`]s, which lie as a [`Fan`]. [`Unicycle`](crate::motion::unicycle) is
+//! the paper's dynamics, [`Holonomic`](crate::motion::holonomic) another.
+
+use crate::geometry::direction::Heading;
+use crate::geometry::lattice::{OffLattice, Site, Vector};
+use crate::motion::action::{Action, ActionGrid, Control};
+
+/// Where the agent is and where it faces: the state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+pub struct Pose {
+    /// Position.
+    pub site: Site,
+    /// Heading.
+    pub heading: Heading,
+}
+
+/// The actions that share a direction of travel from a pose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Ray {
+    /// Which ray of the grid.
+    pub index: u16,
+    /// Heading of travel.
+    pub heading: Heading,
+    /// Displacement for one step of speed, in 2^-[`STEP_BITS`](Self::STEP_BITS) lattice units.
+    pub step: Vector,
+    /// The share of `|u|^2` that does not depend on the speed, 10^-6: a turn's square in mrad^2.
+    pub effort: u32,
+}
+
+impl Ray {
+    /// Fractional bits of [`step`](Self::step).
+    pub const STEP_BITS: u32 = 8;
+
+    /// Displacement at a speed of the grid, to the nearest lattice units.
+    pub const fn displacement(&self, speed: u16) -> Vector {
+        const HALF: i32 = 1 << (Ray::STEP_BITS - 1);
+        let k = speed as i32;
+        // The longest motion, 100 m, is below 2^31 of these units: see ActionGrid::LONGEST_MM.
+        Vector {
+            x: k.wrapping_mul(self.step.x).wrapping_add(HALF) >> Self::STEP_BITS,
+            z: k.wrapping_mul(self.step.z).wrapping_add(HALF) >> Self::STEP_BITS,
+        }
+    }
+
+    /// The pose after travelling this ray at a speed of the grid.
+    ///
+    /// # Errors
+    /// [`OffLattice`] when that is beyond the lattice.
+    pub fn arrive(&self, from: Site, speed: u16) -> Result<Pose, OffLattice> {
+        let site = from.step(self.displacement(speed))?;
+        Ok(Pose { site, heading: self.heading })
+    }
+}
+
+/// To which side of straight ahead a ray lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Side {
+    /// Counter-clockwise. Straight ahead counts here.
+    Left,
+    /// Clockwise.
+    Right,
+}
+
+/// How the rays from a pose lie. They fan out from the 0th, straight ahead, to the left and to the
+/// right; see [`Dynamics`] for what is promised of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Fan {
+    /// Rays to the left, the 0th included.
+    pub left: u16,
+    /// Rays to the right, from the 1st.
+    pub right: u16,
+    /// The turn from one to the next, at most.
+    pub spacing: Heading,
+}
+
+/// The agent's known dynamics over its finite action set (Section II-A's `phi` and `U`).
+///
+/// An action's squared control is its squared reach plus its ray's effort,
+/// `|u|^2 = |zeta' - zeta|^2 + effort`: for the unicycle `v^2 + w^2`, for an integrator `v^2`.
+///
+/// # Contract
+///
+/// The search passes over rays that it has not looked at, so it takes these for granted, from every
+/// pose. [`contract::check`](crate::motion::contract::check) tells which one an implementation breaks.
+///
+/// 1. The fan has the grid's number of rays, one at least on the left.
+/// 2. To either side each ray turns further away from the 0th, by [`Fan::spacing`] at most, and the two
+///    sides together by a whole turn at most.
+/// 3. The effort never decreases from one ray of a side to the next, and the 0th's is the least of all.
+/// 4. [`Ray::heading`] is [`heading`](Self::heading)'s, and [`Ray::step`] points there, as long as one
+///    step of the grid's speed.
+/// 5. Indices are those of the grid, each once, and [`ray_of`](Self::ray_of) gives the ray back.
+/// 6. A turn in place keeps the position, turns to its side by less than a whole turn, and by no more
+///    than the fan reaches to that side, so that the fans before and after leave no gap.
+pub trait Dynamics {
+    /// The action set.
+    fn grid(&self) -> ActionGrid;
+
+    /// How the rays lie.
+    fn fan(&self) -> Fan;
+
+    /// The heading of the `n`-th ray to a side of the fan; the 0th is the same on both.
+    fn heading(&self, pose: Pose, side: Side, n: u16) -> Heading;
+
+    /// The `n`-th ray to a side of the fan.
+    fn ray(&self, pose: Pose, side: Side, n: u16) -> Ray;
+
+    /// The rays from a pose in the order in which ties are settled: by number, left before right.
+    fn rays(&self, pose: Pose) -> impl Iterator<Item = Ray> {
+        let Fan { left, right, .. } = self.fan();
+        (0..left.max(right.saturating_add(1))).flat_map(move |n| {
+            let on_left = (n < left).then(|| self.ray(pose, Side::Left, n));
+            let on_right = (1..=right).contains(&n).then(|| self.ray(pose, Side::Right, n));
+            on_left.into_iter().chain(on_right)
+        })
+    }
+
+    /// The ray nearest to a heading, and the nearest within half a turn to the other side of it; the first
+    /// again where there is none. Some 40 headings are asked for, at most.
+    fn around(&self, pose: Pose, heading: Heading) -> [Ray; 2] {
+        let Fan { left, right, .. } = self.fan();
+        let to_left = heading.0.wrapping_sub(self.heading(pose, Side::Left, 0).0);
+        // To the right of the heading and to the left: how far off, and which ray.
+        let mut nearest = [(u32::MAX, Side::Left, 0); 2];
+        for (side, last, to) in [
+            (Side::Left, left.saturating_sub(1), to_left),
+            (Side::Right, right, to_left.wrapping_neg()),
+        ] {
+            let before = last_within(last, to, |n| turn(self, pose, side, n));
+            for n in [before, before.saturating_add(1).min(last)] {
+                // Positive if the ray turns less than the heading.
+                let off = to.wrapping_sub(turn(self, pose, side, n)) as i32;
+                let is_left = (off < 0) == (side == Side::Left);
+                if let Some(place) = nearest.get_mut(usize::from(is_left))
+                    && off.unsigned_abs() < place.0
+                {
+                    *place = (off.unsigned_abs(), side, n);
+                }
+            }
+        }
+        let [right, left] = nearest;
+        let (first, second) = if left.0 < right.0 { (left, right) } else { (right, left) };
+        let second = if second.0 == u32::MAX { first } else { second };
+        [first, second].map(|(_, side, n)| self.ray(pose, side, n))
+    }
+
+    /// The sharpest turn in place, to the left or right: its action and the pose after it. `None`
+    /// when the agent cannot turn on the spot, or has no reason to as it can leave in any direction.
+    fn turn_in_place(&self, pose: Pose, side: Side) -> Option<(Action, Pose)>;
+
+    /// What an action asks of the vehicle.
+    fn control(&self, action: Action) -> Control;
+
+    /// The ray to which an action belongs.
+    fn ray_of(&self, pose: Pose, action: Action) -> Option<Ray>;
+
+    /// The pose after an action; `None` when there is no such action or it leads off the lattice.
+    fn target(&self, pose: Pose, action: Action) -> Option<Pose> {
+        let (_, speed) = self.grid().split(action);
+        self.ray_of(pose, action)?.arrive(pose.site, speed).ok()
+    }
+}
+
+/// The turn from straight ahead to the `n`-th ray of a side.
+#[inline(never)] // it is called in three places, where time does not matter
+fn turn<D: Dynamics + ?Sized>(dynamics: &D, pose: Pose, side: Side, n: u16) -> u32 {
+    let turned = dynamics.heading(pose, side, n).0.wrapping_sub(dynamics.heading(pose, side, 0).0);
+    if side == Side::Left { turned } else { turned.wrapping_neg() }
+}
+
+/// The last of the numbers from 0 whose turn is at most this one; the turns grow from 0.
+fn last_within(last: u16, most: u32, turn: impl Fn(u16) -> u32) -> u16 {
+    let (mut low, mut high) = (0, last);
+    while low < high {
+        let middle = high - (high - low) / 2;
+        if turn(middle) <= most {
+            low = middle;
+        } else {
+            high = middle - 1;
+        }
+    }
+    low
+}

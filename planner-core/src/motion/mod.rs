@@ -1,0 +1,11 @@
+//! How the robot moves: a finite set of actions, named by integers, and where each of them leads.
+//!
+//! Actions that share a direction of travel form a *ray*, and the rays from a pose lie as a *fan*
+//! ([`dynamics`]). Two vehicles come with the crate, the paper's [`unicycle`] and a [`holonomic`] one;
+//! [`contract`] checks one of your own. Nothing here knows of the line.
+
+pub mod action;
+pub mod contract;
+pub mod dynamics;
+pub mod holonomic;
+pub mod unicycle;

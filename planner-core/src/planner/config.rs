@@ -1,0 +1,82 @@
+//! What a mission fixes beforehand: where it may go, what motion costs, how directions are held.
+
+use crate::belief::sample::Sample;
+use crate::geometry::area::Area;
+use crate::geometry::direction::Arc;
+use crate::geometry::lattice::Vector;
+use crate::search::direction_rule::ArcRule;
+use crate::search::problem::Varrho;
+
+/// How P1 looks for the opposite label (Section III-A).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+pub enum Crossing {
+    /// In any direction in which the boundary cannot run: P1 as printed.
+    #[default]
+    Anyhow,
+    /// Of these, only along the direction from the first oracle point to the second.
+    AlongOracle,
+    /// Of these, only at right angles to the bisector of the slope arc.
+    AcrossBisector,
+}
+
+/// How P2 follows the boundary.
+///
+/// It has no default: what learns the most with Algorithm 1 ([`cfc::FOLLOWING`](crate::planner::cfc::FOLLOWING))
+/// costs Algorithm 2 a tenth of a bit in thirty labels, see [`scc::FOLLOWING`](crate::planner::scc::FOLLOWING).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+pub enum Following {
+    /// In any direction in which the boundary can run: P2 as printed. It takes the smallest turn
+    /// into the slope arc, so it skims ground that is all but certain and learns next to nothing.
+    Anyhow,
+    /// Of these, only along the bisector of the slope arc, as Section III-A proposes for P1.
+    AlongBisector,
+}
+
+/// What a mission fixes beforehand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+pub struct Config {
+    /// Where positions must stay.
+    pub area: Area,
+    /// The weight of the control in the objective.
+    pub varrho: Varrho,
+    /// How P1 looks for the opposite label.
+    pub crossing: Crossing,
+    /// How P2 follows the boundary.
+    pub following: Following,
+}
+
+impl Config {
+    /// The directions in which P1, or P3, looks for the opposite label when the boundary's slopes lie
+    /// in an arc; `oracle` is the direction from the first oracle point to the second.
+    pub(crate) fn crossing_rule(&self, slopes: Arc, oracle: Option<Vector>) -> ArcRule {
+        let inside = match self.crossing {
+            Crossing::Anyhow => None,
+            Crossing::AlongOracle => oracle.map(Arc::tracking),
+            Crossing::AcrossBisector => Some(Arc::tracking(slopes.bisector().left())),
+        };
+        ArcRule { inside, outside: Some(slopes) }
+    }
+
+    /// The directions in which P2, or P4, follows a boundary whose slopes lie in an arc.
+    pub(crate) fn following_rule(&self, slopes: Arc) -> ArcRule {
+        let inside = match self.following {
+            Following::Anyhow => slopes,
+            Following::AlongBisector => slopes.middle(),
+        };
+        ArcRule { inside: Some(inside), outside: None }
+    }
+}
+
+/// The direction from the first of these samples to the second.
+pub(crate) fn first_to_second(samples: &[Sample]) -> Option<Vector> {
+    match samples {
+        [p1, p2, ..] => Some(p2.site - p1.site),
+        _ => None,
+    }
+}

@@ -1,0 +1,14 @@
+//! The best action for what is known: the paper's one-step problems, solved exactly by looking at a few
+//! of the actions.
+//!
+//! A [`problem`] asks for the longest cheap motion that ends on uncertain ground in an allowed direction
+//! ([`direction_rule`]). The positions of one speed lie on a circle around the agent; where a line that
+//! bounds the uncertain ground crosses that circle says which rays can be passed over. Where no action
+//! is feasible a ladder of recoveries leads on.
+
+pub(crate) mod circles;
+pub(crate) mod crossing;
+pub mod direction_rule;
+pub mod problem;
+pub(crate) mod recovery;
+pub(crate) mod view;

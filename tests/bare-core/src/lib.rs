@@ -1,0 +1,87 @@
+#![cfg_attr(target_os = "none", no_std)]
+#![forbid(unsafe_code)]
+//! The planner on a bare core: the chip's side of the link over semihosting, without peripherals.
+//!
+//! | binary | flies | holds |
+//! | --- | --- | --- |
+//! | `small` | Algorithm 1 | 16 samples |
+//! | `standard` | both algorithms | 32 labels beside 4 given, all 529 hypotheses |
+//! | `large` | both algorithms | 64 labels beside 4 given, all 2,081 hypotheses |
+//! | `panicking` | nothing | a panic: that of an index |
+//!
+//! It is built for Arm and for RISC-V (`riscv32imac`), there for its size alone.
+//! An emulator, or QEMU, plays the world at its standard streams; at the end of the input it exits.
+//! Ticks are the host's: instructions in the tests' emulator.
+
+#[cfg(target_os = "none")]
+mod port;
+
+#[cfg(all(target_os = "none", target_arch = "arm"))]
+pub use cortex_m_rt::entry;
+#[cfg(target_os = "none")]
+pub use on_target::{any, cfc, panicking};
+#[cfg(all(target_os = "none", target_arch = "riscv32"))]
+pub use riscv_rt::entry;
+
+#[cfg(target_os = "none")]
+mod on_target {
+    use core::convert::Infallible;
+
+    use planner_core::link::delivery::Link;
+    use planner_core::link::message::{Algorithm, ClockRate, Declined};
+    use planner_core::link::station::Station;
+
+    use crate::port::{Semihosting, Streams, ticks};
+
+    fn open() -> Streams {
+        Streams::open().unwrap_or_else(|| semihosting::process::exit(1))
+    }
+
+    fn station(streams: &Streams) -> Station<Semihosting<'_>, Infallible> {
+        // A tick is an instruction: on the scale of `host-sim hil --emulator`, one of 64 ns.
+        let clock = ClockRate { per_second: 15_625_000, emulated: true };
+        Station { link: Link::new(Semihosting::new(streams)), sensor: None, ticks, clock }
+    }
+
+    /// Flies missions of Algorithm 1 with room for `N` samples.
+    pub fn cfc<const N: usize>() -> ! {
+        let streams = open();
+        let mut station = station(&streams);
+        loop {
+            let setup = station.await_setup();
+            let mut planner = match setup.algorithm {
+                Algorithm::Cfc => setup.cfc::<N>(),
+                Algorithm::Scc { .. } => Err(Declined::Algorithm),
+            };
+            // How it ended is the host's to judge.
+            let _ = station.fly(&setup, &mut planner, |_| {});
+        }
+    }
+
+    /// Flies missions of both algorithms with room for `N` samples and `H` hypotheses.
+    pub fn any<const N: usize, const H: usize>() -> ! {
+        let streams = open();
+        let mut station = station(&streams);
+        loop {
+            let setup = station.await_setup();
+            let _ = match setup.algorithm {
+                Algorithm::Cfc => station.fly(&setup, &mut setup.cfc::<N>(), |_| {}),
+                Algorithm::Scc { noise, policy, prior } => {
+                    let mut planner = setup.scc::<N, H>(noise, policy);
+                    station.fly(&setup, &mut setup.prepare(&mut planner, prior), |_| {})
+                }
+            };
+        }
+    }
+
+    /// Panics, unless the host's clock stands below four.
+    pub fn panicking() -> ! {
+        semihosting::process::exit([0, 1, 2, 3][ticks() as usize])
+    }
+
+    /// Without a word: the exit status says enough, and formatting would cost more than the planner.
+    #[panic_handler]
+    fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
+        semihosting::process::exit(101)
+    }
+}

@@ -1,0 +1,148 @@
+//! What a program takes of a chip, read from its ELF.
+//!
+//! **The planner's flash** is that of all functions that the planner's entries reach, and of the
+//! constants in `.rodata` that these point to. The entries are `station::seam` (plan, observe, estimates)
+//! and `Setup::cfc` and `Setup::prepare`, which are kept as functions of their own. So what the planner
+//! shares with the link (`memcpy`) counts as the planner's, and what it gets from libm, nalgebra,
+//! heapless and compiler-builtins does; a mission's loop, messages, frames and start-up do not.
+//!
+//! **The stack** is a bound: the deepest chain of calls from the reset, and on top of it every handler
+//! in the vectors once, each with the frame that the core stacks. A panic ends the program; it may itself
+//! panic once while it tells of the first (`firmware`'s `stop`), so its own chain counts twice, and is
+//! not followed where another calls it.
+
+use std::collections::BTreeSet;
+
+use crate::program::graph::{Chain, Graph, Known};
+use crate::program::image::Image;
+
+/// Where calls through registers lead.
+pub const KNOWN: Known<'static> = &[
+    ("bare_core::on_target::cfc", &["bare_core::port::ticks"]),
+    ("bare_core::on_target::any", &["bare_core::port::ticks"]),
+    ("firmware::mission::Board::run", &["firmware::time::ticks"]),
+    // It would wake who waits on the monotonic. No task does: the queue is empty.
+    ("SysTick", &[]),
+];
+
+/// What the core stacks for an exception with floating point: 26 words, and one to align them.
+const FRAME: u32 = 4 * 27;
+
+/// Where every panic comes through.
+const PANIC: &str = "core::panicking::panic_fmt";
+
+/// What a program takes of a chip.
+#[derive(Clone, Debug)]
+pub struct Footprint {
+    /// Bytes of flash, all of it.
+    pub flash: u32,
+    /// Bytes of flash for the planner.
+    pub planner: u32,
+    /// Bytes of RAM that are not stack.
+    pub statics: u32,
+    /// Bytes of stack at most.
+    pub stack: u32,
+    /// The chain of calls from the reset that takes the most of it.
+    pub chain: Vec<String>,
+    /// Functions that can panic, each with how.
+    pub panics: Vec<String>,
+    /// Functions that compute in `f64`, which these cores have no instructions for: of `plan`.
+    pub doubles_of_plan: Vec<String>,
+    /// The same of `observe`.
+    pub doubles_of_observe: Vec<String>,
+}
+
+impl Footprint {
+    /// Reads a program.
+    ///
+    /// # Errors
+    /// As [`Graph::of`] and [`Graph::deepest`].
+    pub fn of(image: &Image) -> Result<Self, String> {
+        let graph = Graph::of(image, KNOWN)?;
+        let from_reset = deepest(&graph, image.handlers().first().copied())?;
+        let mut stack = from_reset.stack;
+        for handler in image.handlers().into_iter().skip(1) {
+            stack += FRAME + deepest(&graph, Some(handler))?.stack;
+        }
+        for panic in graph.named(|it| it == PANIC) {
+            stack += 2 * deepest(&graph, Some(panic))?.stack;
+        }
+        Ok(Self {
+            flash: image.flash(),
+            planner: graph.flash(&graph.closure(&graph.named(is_planner_s))),
+            statics: image.statics(),
+            stack,
+            chain: from_reset.functions.iter().map(|it| graph.name(*it).to_owned()).collect(),
+            panics: panics(&graph),
+            doubles_of_plan: doubles(&graph, "plan"),
+            doubles_of_observe: doubles(&graph, "observe"),
+        })
+    }
+}
+
+/// The deepest chain from a function, up to where it panics.
+fn deepest(graph: &Graph<'_>, function: Option<u32>) -> Result<Chain, String> {
+    let function = function.ok_or("no vectors")?;
+    graph.deepest(function, &graph.named(|it| it == PANIC))
+}
+
+fn is_planner_s(name: &str) -> bool {
+    let setup = "planner_core::link::station::<impl planner_core::link::message::Setup>::";
+    name.starts_with(setup) || name.starts_with(SEAM)
+}
+
+/// The planner's entries while a mission runs.
+pub const SEAM: &str = "planner_core::link::station::seam::";
+
+/// Functions of the standard library that are there for panics alone, whatever else they are called.
+fn is_panic(name: &str) -> bool {
+    name.starts_with("core::panicking::")
+        || name.contains("rust_begin_unwind")
+        || name.starts_with("core::")
+            && ["_failed", "_fail", "slice_error", "_overflow"].iter().any(|it| name.contains(it))
+}
+
+/// Who can panic, in the whole program and not only where it is known to come: `caller -> how`.
+fn panics(graph: &Graph<'_>) -> Vec<String> {
+    let how: BTreeSet<u32> = graph.named(is_panic).into_iter().collect();
+    let mut panics = BTreeSet::new();
+    for caller in graph.named(|it| !is_panic(it)) {
+        let ways = graph.callees(caller).into_iter().filter(|it| how.contains(it));
+        panics.extend(ways.map(|way| format!("{} -> {}", graph.name(caller), graph.name(way))));
+    }
+    // One that nobody calls is still in the program.
+    let called: BTreeSet<u32> =
+        graph.named(|_| true).into_iter().flat_map(|it| graph.callees(it)).collect();
+    panics.extend(how.difference(&called).map(|way| format!("? -> {}", graph.name(*way))));
+    panics.into_iter().collect()
+}
+
+/// Routines that compute in `f64`.
+fn is_double(name: &str) -> bool {
+    let routine = name.rsplit("::").next().unwrap_or(name);
+    let run_time = routine.starts_with("__");
+    run_time && (routine.contains("df") || routine.contains("aeabi_d") || routine.ends_with("2d"))
+}
+
+/// Who calls such routines on behalf of an entry.
+fn doubles(graph: &Graph<'_>, entry: &str) -> Vec<String> {
+    let entries = graph.named(|it| it.strip_prefix(SEAM) == Some(entry));
+    let mut doubles = BTreeSet::new();
+    for function in graph.closure(&entries) {
+        let computes = graph.callees(function).into_iter().any(|it| is_double(graph.name(it)));
+        if computes && !is_double(graph.name(function)) {
+            doubles.insert(graph.name(function).to_owned());
+        }
+    }
+    doubles.into_iter().collect()
+}
+
+/// Bytes of RAM by a linker script for `MEMORY`.
+pub fn ram(memory_x: &str) -> Option<u32> {
+    let line = memory_x.lines().find(|it| it.trim_start().starts_with("RAM"))?;
+    let length = line.rsplit('=').next()?.trim();
+    match length.strip_suffix('K') {
+        Some(kib) => Some(kib.parse::<u32>().ok()? * 1024),
+        None => length.parse().ok(),
+    }
+}

@@ -1,0 +1,7 @@
+//! Budgets: what the planner takes of a chip, measured, beside what it may take.
+
+pub mod footprint;
+pub mod hardest;
+pub mod table;
+pub mod timing;
+pub mod workload;

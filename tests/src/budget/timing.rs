@@ -1,0 +1,155 @@
+//! Time: what the planner takes for the steps of missions that a program flies in the emulator.
+//!
+//! Counted is what the functions of `remote::seam` execute, from their first instruction to their return.
+//! That leaves out what it costs to read a counter; the ticks that the program itself tells of are the
+//! same and a constant more, which is checked.
+
+use host_sim::hil::player::Played;
+use host_sim::mission::definition::End;
+use host_sim::mission::recording::Recording;
+use planner_core::planner::StopReason;
+use rayon::prelude::*;
+use std::cmp::Reverse;
+
+use crate::budget::footprint::SEAM;
+use crate::budget::workload::Workload;
+use crate::emulator::missions;
+use crate::emulator::{Call, Core, Emulator};
+use crate::program::image::Image;
+
+/// Instructions that two readings of the counter come to, at most.
+const COUNTER: u64 = 64;
+
+/// A mission that was flown, with what every call took.
+#[derive(Debug)]
+pub struct Flight {
+    /// The number of the mission in its workload.
+    pub number: u64,
+    /// The mission as it went.
+    pub recording: Recording,
+    /// A plan for each step, and one that found no motion if it ended so.
+    pub plans: Vec<Call>,
+    /// An observation for each step.
+    pub observations: Vec<Call>,
+    /// The estimates at the end.
+    pub estimates: Vec<Call>,
+    /// The lowest stack pointer of its emulator so far.
+    pub lowest_stack: u32,
+}
+
+/// Flies missions of a workload, each from a reset, to their end or up to so many calls.
+///
+/// # Panics
+/// When one does not fly as on the host, or the program's own count is not that of its calls.
+pub fn fly(elf: &[u8], workload: &Workload, missions: &[u64]) -> Vec<Flight> {
+    let most = workload.calls;
+    let image = Image::read(elf);
+    let seam = |role: &str| -> Vec<u32> {
+        let named = image.functions().iter().filter(|it| it.name.strip_prefix(SEAM) == Some(role));
+        named.map(|it| it.address).collect()
+    };
+    let roles = ["plan", "observe", "estimates"].map(seam);
+    let start = || {
+        let mut emulator = Emulator::load(elf, Core::M4F);
+        roles.iter().flatten().for_each(|function| emulator.watch(*function));
+        emulator
+    };
+    let fly = |emulator: &mut Emulator, number: &u64| {
+        emulator.restart();
+        if let Some(calls) = most {
+            emulator.halt_after(calls);
+        }
+        let mission = workload.mission(*number);
+        let played = missions::fly(emulator, &mission).expect("it flies as on the host");
+        let calls = emulator.calls();
+        let of = |role: usize| -> Vec<Call> {
+            calls.iter().filter(|it| roles[role].contains(&it.function)).copied().collect()
+        };
+        let (plans, observations, estimates) = (of(0), of(1), of(2));
+        check(&played, &plans, &observations, most.is_none());
+        let lowest_stack = emulator.lowest_stack();
+        let (number, recording) = (*number, played.recording);
+        Flight { number, recording, plans, observations, estimates, lowest_stack }
+    };
+    // An emulator's first mission is slow, as it has decoded nothing yet: few of them, used often.
+    let share = missions.len().div_ceil(2 * rayon::current_num_threads());
+    missions.par_iter().with_min_len(share.max(1)).map_init(start, fly).collect()
+}
+
+/// Whether the program's own count is that of its calls, but for the readings of the counter. Of a
+/// mission that may not be whole it has not told of the last observation, nor of a plan beyond.
+fn check(played: &Played, plans: &[Call], observations: &[Call], whole: bool) {
+    let steps = played.took.len();
+    let stopped = matches!(played.recording.end, End::Stopped(_));
+    assert_eq!(observations.len(), steps);
+    if whole {
+        assert_eq!(plans.len(), steps + usize::from(stopped));
+    } else {
+        assert!((0..=1).contains(&(plans.len() - steps)), "one plan beyond the steps at most");
+    }
+    let told_of = if whole { steps } else { steps - 1 };
+    let told_of_plans = played.took.iter().map(|it| it.plan).zip(plans);
+    let told_of_observations = played.took.iter().map(|it| it.observe).zip(observations);
+    for (told, counted) in told_of_plans.chain(told_of_observations.take(told_of)) {
+        let more = u64::from(told).checked_sub(counted.instructions);
+        assert!(more.is_some_and(|it| it < COUNTER), "told {told}, counted {counted:?}");
+    }
+}
+
+impl Flight {
+    /// The plan that was made when so many labels had been taken in.
+    pub fn plan_at_label(&self, labels: usize) -> Option<&Call> {
+        self.plans.get(self.step_of_label(labels)? + 1)
+    }
+
+    /// The observation of the so-many-th label.
+    pub fn observation_of_label(&self, labels: usize) -> Option<&Call> {
+        self.observations.get(self.step_of_label(labels)?)
+    }
+
+    fn step_of_label(&self, labels: usize) -> Option<usize> {
+        let steps = self.recording.steps.iter().enumerate();
+        let mut sampled =
+            steps.filter(|(_, it)| it.step.reading.is_some()).map(|(number, _)| number);
+        sampled.nth(labels - 1)
+    }
+
+    /// Steps whose problem had no feasible action.
+    pub fn recoveries(&self) -> usize {
+        self.recording.steps.iter().filter(|it| it.step.motion.recovery.is_some()).count()
+    }
+
+    /// Whether it ended as there was nothing left to hit.
+    pub fn ended_by_resolution(&self) -> bool {
+        self.recording.end == End::Stopped(StopReason::Resolution)
+    }
+}
+
+/// What calls took: the median of some, the worst of all. Each call comes with its mission's number.
+#[derive(Clone, Copy, Debug)]
+pub struct Took {
+    /// Instructions of those drawn at random, the upper of two medians; `None` if none was.
+    pub median: Option<u64>,
+    /// Instructions, and the mission.
+    pub worst: (u64, u64),
+    /// Cycles of a Cortex-M4, an estimate, and the mission.
+    pub worst_cycles: (u64, u64),
+}
+
+impl Took {
+    /// Of calls drawn at random, and of others.
+    pub fn of(random: &[(Call, u64)], others: &[(Call, u64)]) -> Self {
+        let mut sorted: Vec<u64> = random.iter().map(|(it, _)| it.instructions).collect();
+        sorted.sort_unstable();
+        // Of equals the mission with the smallest number.
+        let most = |figure: fn(&Call) -> u64| {
+            let all = random.iter().chain(others).map(|(call, mission)| (figure(call), *mission));
+            all.max_by_key(|(figure, mission)| (*figure, Reverse(*mission))).unwrap_or_default()
+        };
+        Self {
+            median: sorted.get(sorted.len() / 2).copied(),
+            worst: most(|it| it.instructions),
+            worst_cycles: most(|it| it.cycles),
+        }
+    }
+}

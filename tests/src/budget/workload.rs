@@ -1,0 +1,109 @@
+//! The missions by whose steps time is measured.
+//!
+//! In a long run standard fields drawn at random give the median. For the worst case there are besides, of
+//! many more such fields that are flown on the host, those whose plans look at the most actions, those that
+//! most often find none and recover, and those that end as there is none left. Every other of these starts
+//! in a corner of the area, facing out of it. Any other run flies the hardest that are known.
+
+use std::cmp::Reverse;
+use std::f64::consts::FRAC_PI_4;
+
+use host_sim::campaign::standard_field::{self, SIDE_M};
+use host_sim::mission::definition::{Algorithm, End, Mission};
+use host_sim::world::truth::{Extent, NoiseModel};
+use nalgebra::Point2;
+use planner_core::geometry::direction::Heading;
+use planner_core::geometry::lattice::Site;
+use planner_core::motion::dynamics::Pose;
+use planner_core::planner::scc::Policy;
+use rayon::prelude::*;
+
+const SEED: u64 = 9;
+
+/// What is flown.
+#[derive(Clone, Copy, Debug)]
+pub struct Workload {
+    /// Who plans.
+    pub algorithm: Algorithm,
+    /// How hypotheses choose together.
+    pub policy: Policy,
+    /// Steps at most.
+    pub steps: u32,
+    /// Fields drawn at random.
+    pub random: u64,
+    /// Fields that are searched for a worse case.
+    pub searched: u64,
+    /// What is taken of these, for each of the reasons.
+    pub sought: usize,
+    /// Calls of the planner after which a mission is broken off, if it is: estimates take long.
+    pub calls: Option<usize>,
+}
+
+impl Workload {
+    /// The numbers of the missions that are drawn at random, and of those sought.
+    pub fn missions(&self) -> (Vec<u64>, Vec<u64>) {
+        let random = (0..self.random).collect();
+        let others: Vec<u64> = (self.random..self.random + self.searched).collect();
+        let mut flown: Vec<(u64, Rank)> = others
+            .into_par_iter()
+            .map(|number| (number, Rank::of(&self.mission(number))))
+            .collect();
+        let mut sought = Vec::new();
+        let ranks: [fn(&Rank) -> u32; 3] =
+            [|it| it.last, |it| it.recoveries, |it| it.stopped * (1 + it.recoveries)];
+        for rank in ranks {
+            flown.sort_by_key(|(number, it)| (Reverse(rank(it)), *number));
+            let best = flown.iter().filter(|(_, it)| rank(it) > 0).take(self.sought);
+            sought.extend(best.map(|(number, _)| *number));
+        }
+        sought.sort_unstable();
+        sought.dedup();
+        (random, sought)
+    }
+
+    /// The mission with a number.
+    pub fn mission(&self, number: u64) -> Mission {
+        let mut mission = standard_field::standard(SEED, number, self.algorithm, self.steps);
+        mission.policy = self.policy;
+        if self.algorithm == Algorithm::Scc {
+            mission.noise = Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.5) });
+        }
+        if number >= self.random && number % 2 == 1 {
+            mission.start = facing_out(number / 2 % 4);
+        }
+        mission
+    }
+}
+
+/// A corner of the standard area, facing away from its middle.
+fn facing_out(corner: u64) -> Pose {
+    let (right, top) = (corner & 1, corner >> 1);
+    let at = Point2::new(right as f64, top as f64) * SIDE_M;
+    let heading = FRAC_PI_4 * [5.0, 7.0, 3.0, 1.0][corner as usize];
+    Pose {
+        site: Site::try_from(at).expect("within the lattice"),
+        heading: Heading::from_radians(heading).expect("an angle"),
+    }
+}
+
+/// What makes a mission hard.
+#[derive(Clone, Copy, Debug, Default)]
+struct Rank {
+    /// The most that a plan looked at; with hypotheses, that the last did, when they are the most.
+    last: u32,
+    recoveries: u32,
+    stopped: u32,
+}
+
+impl Rank {
+    fn of(mission: &Mission) -> Self {
+        let mut rank = Self::default();
+        let end = mission.run(|step, _| {
+            let examined = step.motion.examined;
+            rank.last = if mission.is_noisy() { examined } else { rank.last.max(examined) };
+            rank.recoveries += u32::from(step.motion.recovery.is_some());
+        });
+        rank.stopped = u32::from(matches!(end, Ok(End::Stopped(_))));
+        rank
+    }
+}

@@ -1,0 +1,4 @@
+//! Slow twins: the same answers by other means, for tests to compare.
+
+pub mod brute;
+pub mod ladder;
