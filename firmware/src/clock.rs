@@ -1,11 +1,14 @@
 //! The core clock: 168 MHz from the crystal, or 16 MHz from the internal oscillator where there is
-//! no crystal to count on.
+//! no crystal to count on; and the speed of the serial lines.
 
 use stm32f4xx_hal::pac;
 use stm32f4xx_hal::rcc::{Config, Rcc, RccExt};
-use stm32f4xx_hal::time::Hertz;
+use stm32f4xx_hal::time::{Bps, Hertz};
 
 use crate::reset::Reset;
+
+/// The speed of both serial lines, the link's and the log's.
+pub(crate) const BAUD: Bps = Bps(115_200);
 
 const CRYSTAL: Hertz = Hertz::MHz(8);
 const FULL_SPEED: Hertz = Hertz::MHz(168);

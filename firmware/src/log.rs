@@ -21,7 +21,7 @@ use stm32f4xx_hal::pac::{DBGMCU, USART2};
 use stm32f4xx_hal::rcc::Rcc;
 use stm32f4xx_hal::serial::{Serial, Tx2};
 
-use crate::serial::BAUD;
+use crate::clock::BAUD;
 
 /// Bytes in a frame, at most.
 const FRAME: usize = 256;

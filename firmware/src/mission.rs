@@ -2,7 +2,7 @@
 
 use planner_core::belief::sample::Reading;
 use planner_core::geometry::line::Line;
-use planner_core::link::message::{Algorithm, Declined, End, Setup};
+use planner_core::link::message::{Algorithm, Declined, MissionEnd, Setup};
 use planner_core::link::station::{Flown, Prepared, Station};
 use planner_core::planner::Planner;
 use planner_core::robot::agent::Step;
@@ -34,8 +34,8 @@ impl Board {
             match setup.algorithm {
                 Algorithm::Cfc => self.fly(&setup, &mut setup.cfc::<CFC_SAMPLES>()),
                 Algorithm::Scc { noise, policy, prior } => {
-                    let mut planner = setup.scc::<SCC_SAMPLES, HYPOTHESES>(noise, policy);
-                    self.fly(&setup, &mut setup.prepare(&mut planner, prior));
+                    let mut planner = setup.scc::<SCC_SAMPLES, HYPOTHESES>(policy);
+                    self.fly(&setup, &mut setup.prepare(&mut planner, prior, noise));
                 }
             }
         }
@@ -54,7 +54,7 @@ impl Board {
         });
         self.enable.off();
         match flown {
-            Ok(Flown::Ended(End { reason, estimates, .. })) => {
+            Ok(Flown::Ended(MissionEnd { reason, estimates, .. })) => {
                 defmt::info!("ended after {=u16} steps: {}", steps, reason);
                 log_line("centre", estimates.centre);
                 log_line("maximum margin", estimates.maximum_margin);

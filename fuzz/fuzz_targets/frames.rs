@@ -7,12 +7,12 @@ use std::fmt::Debug;
 
 use crc::{CRC_32_ISO_HDLC, Crc};
 use libfuzzer_sys::fuzz_target;
-use planner_core::motion::dynamics::Pose;
-use planner_core::link::delivery::{Heard, Responder};
-use planner_core::planner::{Plan, Planner};
 use planner_core::belief::sample::{Label, Reading};
+use planner_core::link::delivery::{Heard, Responder};
 use planner_core::link::frame::{Decoder, Envelope, FRAME, Frame, Message};
 use planner_core::link::message::{Algorithm, Reply, Request, Setup};
+use planner_core::motion::dynamics::Pose;
+use planner_core::planner::{Plan, Planner};
 
 /// Steps that a mission is flown for.
 const STEPS: usize = 6;
@@ -50,7 +50,7 @@ fn fly<P: Planner>(planner: &mut P, setup: &Setup) {
         assert!(config.area.contains(motion.target.site), "out of the area: {motion:?}");
         pose = motion.target;
         let label = if step % 2 == 0 { Label::Positive } else { Label::Negative };
-        let reading = motion.samples().then_some(Reading::Side(label));
+        let reading = motion.wants_label.then_some(Reading::Side(label));
         // It may contradict what is known: an error, and nothing else.
         if planner.observe(pose, reading).is_err() {
             return;
@@ -72,7 +72,10 @@ fuzz_target!(|bytes: &[u8]| {
         for byte in stream {
             if let Some(Heard::New(request)) = responder.hear(*byte) {
                 // Of no session that was offered: only the one after 7 can be.
-                assert!(matches!(request, Request::Ready(_) | Request::Declined(_) | Request::Move(_) | Request::End(_)));
+                assert!(matches!(
+                    request,
+                    Request::Ready(_) | Request::Declined(_) | Request::Move(_) | Request::End(_)
+                ));
                 responder.answer(Reply::Noted);
             }
         }
@@ -85,8 +88,8 @@ fuzz_target!(|bytes: &[u8]| {
                     }
                 }
                 Algorithm::Scc { noise, policy, prior } => {
-                    let mut planner = setup.scc::<24, 40>(noise, policy);
-                    if let Ok(mut prepared) = setup.prepare(&mut planner, prior) {
+                    let mut planner = setup.scc::<24, 40>(policy);
+                    if let Ok(mut prepared) = setup.prepare(&mut planner, prior, noise) {
                         fly(prepared.planner(), &setup);
                     }
                 }

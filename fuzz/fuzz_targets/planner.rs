@@ -5,24 +5,27 @@
 
 use arbitrary::{Arbitrary, Unstructured};
 use libfuzzer_sys::fuzz_target;
+use planner_core::belief::Refused;
+use planner_core::belief::consistent_lines::Certainty;
+use planner_core::belief::hypotheses::Hypotheses;
+use planner_core::belief::noise::Noise;
+use planner_core::belief::noise::Reliability;
+use planner_core::belief::posterior::Posterior;
+use planner_core::belief::sample::{Label, Reading, Sample};
+use planner_core::belief::version_space::VersionSpace;
+use planner_core::belief::weight::Prior;
 use planner_core::geometry::area::Area;
-use planner_core::belief::candidates::Certainty;
-use planner_core::planner::cfc::Cfc;
-use planner_core::planner::config::{Config, Crossing, Following};
+use planner_core::geometry::heading::Heading;
+use planner_core::geometry::lattice::{Site, orient};
 use planner_core::motion::contract;
-use planner_core::geometry::direction::Heading;
 use planner_core::motion::dynamics::{Dynamics, Pose};
 use planner_core::motion::holonomic::Holonomic;
-use planner_core::belief::hypotheses::{Hypotheses, Prior};
-use planner_core::geometry::lattice::{Site, orient};
-use planner_core::planner::{Plan, Planner};
-use planner_core::belief::posterior::Posterior;
-use planner_core::search::problem::{LOOKS, Varrho};
-use planner_core::belief::sample::{Label, Reading, Sample};
-use planner_core::planner::scc::{Noise, Policy, Scc};
 use planner_core::motion::unicycle::Unicycle;
-use planner_core::belief::version_space::{Refused, VersionSpace};
-use planner_core::belief::weight::Reliability;
+use planner_core::planner::cfc::Cfc;
+use planner_core::planner::config::{Config, Crossing, Following};
+use planner_core::planner::scc::{Policy, Scc};
+use planner_core::planner::{Plan, Planner};
+use planner_core::search::objective::{LOOKS, Varrho};
 
 /// Actions that are tried one by one, at most.
 const FEW: u32 = 3_000;
@@ -94,9 +97,13 @@ fn run<D: Dynamics + Copy>(case: &Case, dynamics: D, world: &World) -> Option<()
     let config = Config {
         area: Area::new(corner(-half), corner(half))?,
         varrho: Varrho::new(f64::from(case.varrho % 1_000_000) / 1e6)?,
-        crossing: [Crossing::Anyhow, Crossing::AlongOracle, Crossing::AcrossBisector]
+        crossing: [Crossing::Unrestricted, Crossing::AlongOracle, Crossing::AcrossBisector]
             [usize::from(case.crossing % 3)],
-        following: if case.follows_bisector { Following::AlongBisector } else { Following::Anyhow },
+        following: if case.follows_bisector {
+            Following::AlongBisector
+        } else {
+            Following::Unrestricted
+        },
     };
     let (x, z, heading) = case.start;
     let start = Pose { site: world.site(x.into(), z.into())?, heading: Heading(heading) };
@@ -107,9 +114,9 @@ fn run<D: Dynamics + Copy>(case: &Case, dynamics: D, world: &World) -> Option<()
         (Policy::MixtureOfStart, Prior::Sequences),
         (Policy::MixtureOfOwn, Prior::Area),
     ] {
-        let table = Hypotheses::<16, 24>::new(&oracle, prior).ok()?;
         let noise = Noise { reliability, trusted_radius: case.trusted_radius };
-        fly_any(case, Scc::new(config, noise, policy, dynamics, table), world, start, &config);
+        let table = Hypotheses::<16, 24>::new(&oracle, prior, noise).ok()?;
+        fly_any(case, Scc::new(config, policy, dynamics, table), world, start, &config);
     }
     Some(())
 }
@@ -133,7 +140,7 @@ fn fly_true<D: Dynamics>(
                 let Plan::Move(motion) = planner.plan(pose) else { return };
                 assert!(config.area.contains(motion.target.site) && motion.examined <= LOOKS);
                 pose = motion.target;
-                let reads = motion.samples() && !matches!(step, Step::Pass);
+                let reads = motion.wants_label && !matches!(step, Step::Pass);
                 reads.then(|| world.reading(pose.site))
             }
             Step::Jump { x, z, heading } => {
@@ -143,7 +150,7 @@ fn fly_true<D: Dynamics>(
             }
         };
         if let (Certainty::Certain(label), Reading::Side(truth)) =
-            (planner.space().certainty(pose.site), world.reading(pose.site))
+            (planner.belief().certainty(pose.site), world.reading(pose.site))
         {
             assert_eq!(label, truth, "certain of what is false at {pose:?}");
         }
@@ -186,10 +193,10 @@ fn fly_any<D: Dynamics>(
         if planner.observe(pose, reading).is_err() {
             return;
         }
-        let posterior = Posterior::new(planner.hypotheses());
-        let all: f64 = planner.hypotheses().iter().map(|it| posterior.probability(it)).sum();
+        let posterior = Posterior::new(planner.belief());
+        let all: f64 = planner.belief().iter().map(|it| posterior.probability(it)).sum();
         assert!((all - 1.0).abs() < 1e-6, "probabilities sum to {all}");
-        assert!((0.0..=1.0).contains(&posterior.lost()));
+        assert!((0.0..=1.0).contains(&posterior.pruned_mass()));
     }
     let _ = planner.estimates();
 }
@@ -210,7 +217,9 @@ fuzz_target!(|bytes: &[u8]| {
     let speeds = 1 + u16::from(case.speeds % 64);
     let step = u32::from(case.speed_step) % (100_000 / u32::from(speeds));
     let _ = if case.holonomic {
-        Holonomic::new(case.turn_step % 512, speeds, step).ok().and_then(|it| run(&case, it, &world))
+        Holonomic::new(case.turn_step % 512, speeds, step)
+            .ok()
+            .and_then(|it| run(&case, it, &world))
     } else {
         let sharpest = f64::from(case.sharpest % 31_416) / 10_000.0;
         let turn_step = u32::from(case.turn_step) % 3_142;

@@ -2,7 +2,7 @@
 //! Scenario files: one that is taken flies and leaves a trace of good JSON; one that is not gets one line
 //! that names the file.
 
-use host_sim::mission::definition::Algorithm;
+use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::recording::Recording;
 use host_sim::mission::scenario::{self, Overrides};
 use host_sim::report::trace;
@@ -27,11 +27,14 @@ fuzz_target!(|text: &str| {
             return;
         }
     };
-    for line in trace::lines(&recording).lines() {
+    for line in trace::lines(&recording.results).lines() {
         serde_json::from_str::<serde_json::Value>(line).expect("a line of JSON");
     }
-    for recorded in &recording.steps {
-        assert!(mission.config.area.contains(recorded.step.pose.site));
-        assert!(recorded.bits.is_finite() && recorded.slope_arcs.iter().flatten().all(|it| it.is_finite()));
+    for (step, recorded) in recording.steps.iter().zip(&recording.results.steps) {
+        assert!(mission.config.area.contains(step.pose.site));
+        assert!(
+            recorded.bits.is_finite()
+                && recorded.slope_arcs.iter().flatten().all(|it| it.is_finite())
+        );
     }
 });

@@ -4,21 +4,23 @@ use std::hint::black_box;
 
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use nalgebra::Point2;
-use planner_core::belief::estimate::Estimates;
-use planner_core::belief::hypotheses::{Hypotheses, Prior};
+use planner_core::belief::Belief as _;
+use planner_core::belief::hypotheses::Hypotheses;
+use planner_core::belief::noise::Noise;
+use planner_core::belief::noise::Reliability;
 use planner_core::belief::sample::{Label, Sample};
 use planner_core::belief::version_space::VersionSpace;
-use planner_core::belief::weight::Reliability;
+use planner_core::belief::weight::Prior;
 use planner_core::geometry::area::Area;
-use planner_core::geometry::direction::Heading;
+use planner_core::geometry::heading::Heading;
 use planner_core::geometry::lattice::Site;
 use planner_core::motion::dynamics::Pose;
 use planner_core::motion::unicycle::Unicycle;
 use planner_core::planner::cfc::{self, Cfc};
 use planner_core::planner::config::{Config, Crossing};
-use planner_core::planner::scc::{self, Noise, Policy, Scc};
+use planner_core::planner::scc::{self, Policy, Scc};
 use planner_core::planner::{Plan, Planner};
-use planner_core::search::problem::Varrho;
+use planner_core::search::objective::Varrho;
 
 type Cfc32 = Cfc<Unicycle, 32>;
 
@@ -52,7 +54,7 @@ fn states() -> Vec<(Cfc32, Pose)> {
         states.push((planner.clone(), pose));
         let Plan::Move(motion) = planner.plan(pose) else { break };
         pose = motion.target;
-        let reading = motion.samples().then(|| label(pose.site).into());
+        let reading = motion.wants_label.then(|| label(pose.site).into());
         planner.observe(pose, reading).expect("labels are true");
     }
     states
@@ -84,7 +86,7 @@ fn step(criterion: &mut Criterion) {
         },
     );
     let (last, _) = states.last().expect("states");
-    let samples = last.space().samples();
+    let samples = last.belief().samples();
     let before = VersionSpace::<32>::new(&samples[..samples.len() - 1]).expect("separable");
     criterion.bench_function("cut by one sample", |bencher| {
         bencher.iter_batched_ref(
@@ -94,7 +96,7 @@ fn step(criterion: &mut Criterion) {
         );
     });
     criterion.bench_function("three estimates", |bencher| {
-        bencher.iter(|| Estimates::of(black_box(last.space())));
+        bencher.iter(|| black_box(last.belief()).estimates());
     });
 }
 
@@ -103,24 +105,25 @@ fn noisy(labels: usize) -> (Scc<Unicycle, 36, 529>, Pose) {
     let (planner, start) = states().swap_remove(0);
     let reliability = Reliability::new(0.7).expect("a probability");
     let noise = Noise { reliability, trusted_radius: 0 };
-    let hypotheses = Hypotheses::new(planner.space().samples(), Prior::Area).expect("an oracle");
+    let hypotheses =
+        Hypotheses::new(planner.belief().samples(), Prior::Area, noise).expect("an oracle");
     let config = Config { following: scc::FOLLOWING, ..config() };
-    let mut planner = Scc::new(config, noise, Policy::default(), Unicycle::paper(), hypotheses);
+    let mut planner = Scc::new(config, Policy::default(), Unicycle::paper(), hypotheses);
     let mut pose = start;
     let mut taken = 0;
     while taken < labels {
         let Plan::Move(motion) = planner.plan(pose) else { break };
         pose = motion.target;
         let seen = if taken % 3 == 0 { -label(pose.site) } else { label(pose.site) };
-        taken += usize::from(motion.samples());
-        planner.observe(pose, motion.samples().then(|| seen.into())).expect("possible");
+        taken += usize::from(motion.wants_label);
+        planner.observe(pose, motion.wants_label.then(|| seen.into())).expect("possible");
     }
     (planner, pose)
 }
 
 fn noisy_step(criterion: &mut Criterion) {
     let (planner, pose) = noisy(10);
-    let n = planner.hypotheses().iter().len();
+    let n = planner.belief().iter().len();
     criterion.bench_function(&format!("noisy: plan at 10 labels, {n} hypotheses"), |bencher| {
         bencher.iter_batched_ref(
             || planner.clone(),
@@ -129,7 +132,7 @@ fn noisy_step(criterion: &mut Criterion) {
         );
     });
     let (planner, pose) = noisy(31);
-    let n = planner.hypotheses().iter().len();
+    let n = planner.belief().iter().len();
     criterion.bench_function(&format!("noisy: the 32nd label, {n} hypotheses"), |bencher| {
         bencher.iter_batched_ref(
             || planner.clone(),

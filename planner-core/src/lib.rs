@@ -28,7 +28,7 @@
 //!
 //! # What follows
 //!
-//! - **Certainty is exact.** A position that all candidate lines label alike lies in a *region of
+//! - **Certainty is exact.** A position that all lines left label alike lies in a *region of
 //!   certainty*; a sample there would tell nothing, or reveal a fault. No tolerance, no misjudged
 //!   cut, for a vertical boundary and kilometres from the origin as for any other
 //!   ([`belief::version_space`]).
@@ -43,36 +43,32 @@
 //! - **Fixed memory.** No allocation, no `unsafe`, no recursion; capacities are const generics. A
 //!   planner for 32 samples is some 500 bytes ([`planner::cfc::Cfc`]).
 //!
-//! # How the pieces meet
+//! # The storeys
 //!
-//! A [`planner::Planner`] is asked for a motion with `plan()` and told what came of it with
-//! `observe()`. [`planner::cfc::Cfc`] is the paper's Algorithm 1, for labels that are true, [`planner::scc::Scc`] its
-//! Algorithm 2, for labels that are sometimes wrong. An [`robot::agent::Agent`] joins a planner to a
-//! [`robot::hal::Drive`] and a [`robot::hal::LabelSensor`], which are yours to implement; a sensor on a digital pin
-//! comes with the crate.
+//! Each folder reads only those above it in this table.
 //!
-//! With the feature `wire` the vehicle may be elsewhere: the modules `wire`, `link` and `remote` have
-//! the messages, their delivery, and the chip's side of a mission. `defmt` derives `Format` for what is
-//! public.
+//! | module | holds |
+//! | --- | --- |
+//! | [`geometry`] | points, directions and lines, in integers |
+//! | [`belief`] | what is known of the line; behind the trait [`Belief`] |
+//! | [`motion`] | how the robot moves; behind the trait [`Dynamics`] |
+//! | [`search`] | the best action for what is known |
+//! | [`planner`] | Algorithm 1 ([`Cfc`]), for labels that are true, and Algorithm 2 ([`Scc`]), for labels that are sometimes wrong; behind the trait [`Planner`] |
+//! | [`robot`] | what you implement, [`Drive`] and [`LabelSensor`], and the loop that joins it to a planner, [`Agent`] |
+//! | `link` | with the feature `wire`: a mission whose planner and vehicle are apart |
+//!
+//! A planner is asked for a motion with [`plan`](Planner::plan) and told what came of it with
+//! [`observe`](Planner::observe); what it knows is its [`belief`](Planner::belief). The feature `defmt`
+//! derives `Format` for what is public.
 //!
 //! ```
 //! use core::cell::Cell;
 //! use core::convert::Infallible;
-//! use nalgebra::Point2;
-//! use planner_core::robot::agent::{Agent, Event};
-//! use planner_core::geometry::area::Area;
-//! use planner_core::planner::cfc::{self, Cfc};
-//! use planner_core::planner::config::{Config, Crossing};
-//! use planner_core::geometry::direction::Heading;
-//! use planner_core::motion::dynamics::Pose;
-//! use planner_core::belief::estimate;
-//! use planner_core::robot::hal::{Drive, LabelSensor};
-//! use planner_core::geometry::lattice::Site;
-//! use planner_core::planner::Motion;
-//! use planner_core::search::problem::Varrho;
-//! use planner_core::belief::sample::{Label, Reading, Sample};
-//! use planner_core::motion::unicycle::Unicycle;
-//! use planner_core::belief::version_space::VersionSpace;
+//! use planner_core::nalgebra::Point2;
+//! use planner_core::{
+//!     Agent, Area, Belief, Cfc, Config, Crossing, Drive, Event, Heading, Label, LabelSensor, Motion,
+//!     Planner, Pose, Reading, Sample, Site, Unicycle, Varrho, Vehicle, VersionSpace, cfc,
+//! };
 //!
 //! // A world in which z = 0.41 x + 3.5 divides the plane, and a vehicle that goes where it is told.
 //! struct World(Cell<Pose>);
@@ -109,13 +105,14 @@
 //! let world = World(Cell::new(start));
 //! // Room for 32 samples, these four included.
 //! let planner = Cfc::new(config, Unicycle::paper(), VersionSpace::<32>::new(&oracle)?);
-//! let mut agent = Agent::new(planner, &world, &world, start);
+//! let vehicle = Vehicle { drive: &world, sensor: &world };
+//! let mut agent = Agent::new(planner, vehicle, start);
 //! for _ in 0..10 {
 //!     if let Event::Stopped(_) = agent.step()? {
 //!         break;
 //!     }
 //! }
-//! let line = estimate::centre(agent.planner.space().candidates()).ok_or("no estimate")?;
+//! let line = agent.planner.belief().estimates().centre.ok_or("no estimate")?;
 //! assert!((line.slope().ok_or("vertical")? - 0.41).abs() < 0.01);
 //! assert!((line.intercept().ok_or("vertical")? - 3.5).abs() < 0.1);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -124,7 +121,7 @@
 //! # Limits
 //!
 //! - Algorithm 1 takes labels to be true. A sample that contradicts a region of certainty is a typed
-//!   error ([`belief::version_space::Refused`]) and leaves the planner as it was.
+//!   error ([`belief::Refused`]) and leaves the planner as it was.
 //! - Positions lie within 8,192 m of the origin, one motion is shorter than 100 m, and a buffer holds
 //!   3 to 128 samples.
 //! - The boundary is one straight line. P1 and P2 look one step ahead.
@@ -137,3 +134,28 @@ pub mod motion;
 pub mod planner;
 pub mod robot;
 pub mod search;
+
+pub use nalgebra;
+
+pub use crate::belief::hypotheses::Hypotheses;
+pub use crate::belief::noise::{Noise, Reliability};
+pub use crate::belief::posterior::Posterior;
+pub use crate::belief::sample::{Label, Reading, Sample};
+pub use crate::belief::version_space::VersionSpace;
+pub use crate::belief::weight::Prior;
+pub use crate::belief::{Belief, Refused};
+pub use crate::geometry::area::Area;
+pub use crate::geometry::heading::Heading;
+pub use crate::geometry::lattice::Site;
+pub use crate::geometry::line::Line;
+pub use crate::motion::dynamics::{Dynamics, Pose};
+pub use crate::motion::holonomic::Holonomic;
+pub use crate::motion::unicycle::Unicycle;
+pub use crate::planner::cfc::{self, Cfc};
+pub use crate::planner::config::{Config, Crossing, Following};
+pub use crate::planner::scc::{self, Policy, Scc};
+pub use crate::planner::{Motion, Plan, Planner, StopReason};
+pub use crate::robot::agent::{Agent, Event, Step};
+pub use crate::robot::body::{Body, Vehicle};
+pub use crate::robot::hal::{Drive, LabelSensor, PinSensor};
+pub use crate::search::objective::Varrho;

@@ -10,7 +10,7 @@
 use std::io::{self, Write as _};
 use std::{fs, path::Path};
 
-use host_sim::mission::definition::Algorithm;
+use host_sim::mission::algorithm::Algorithm;
 use planner_core::planner::scc::Policy;
 use tests::LONG;
 use tests::budget::footprint::{self, Footprint};

@@ -1,7 +1,7 @@
 //! Dynamics: what the constructors take keeps the contract, what they refuse is named, and a broken
 //! promise is found out.
 
-use planner_core::geometry::direction::Heading;
+use planner_core::geometry::heading::Heading;
 use planner_core::geometry::lattice::{Site, Vector};
 use planner_core::motion::action::{Action, ActionGrid, BadGrid, Control};
 use planner_core::motion::contract::{self, Broken};

@@ -9,11 +9,12 @@ use std::hash::{DefaultHasher, Hasher as _};
 use std::process::{Command, Stdio};
 
 use host_sim::campaign::standard_field;
-use host_sim::mission::definition::{Algorithm, Mission};
+use host_sim::mission::algorithm::Algorithm;
+use host_sim::mission::definition::Mission;
 use host_sim::mission::recording::Recording;
 use host_sim::mission::scenario::{self, Overrides};
 use host_sim::report::trace;
-use host_sim::world::truth::{Extent, NoiseModel};
+use host_sim::world::noise::{Extent, NoiseModel};
 use planner_core::planner::scc::Policy;
 use rayon::prelude::*;
 use tests::budget::timing;
@@ -49,7 +50,7 @@ fn hash(traces: &[String]) -> u64 {
 fn every_machine_makes_the_same_traces() {
     let missions = missions();
     let here = |mission: &Mission| {
-        trace::lines(&Recording::of(mission).expect("labels that are certain are true"))
+        trace::lines(&Recording::of(mission).expect("labels that are certain are true").results)
     };
     let host: Vec<String> = missions.iter().map(here).collect();
     let mut hashes = vec![("host", hash(&host))];
@@ -59,7 +60,7 @@ fn every_machine_makes_the_same_traces() {
         let there = |mission: &Mission| {
             let mut emulator = Emulator::load(&elf, core);
             let played = missions::fly(&mut emulator, mission).expect("it flies as the host");
-            trace::lines(&played.recording)
+            trace::lines(&played.recording.results)
         };
         let chip: Vec<String> = missions.par_iter().map(there).collect();
         for (number, (chip, host)) in chip.iter().zip(&host).enumerate() {
@@ -81,7 +82,11 @@ fn a_mission_leaves_nothing_behind() {
     let missions = missions();
     let [first, second] = [(); 2].map(|()| {
         let fly = |mission| missions::fly(&mut emulator, mission).expect("it flies as the host");
-        missions[..4].iter().map(fly).map(|it| trace::lines(&it.recording)).collect::<Vec<_>>()
+        missions[..4]
+            .iter()
+            .map(fly)
+            .map(|it| trace::lines(&it.recording.results))
+            .collect::<Vec<_>>()
     });
     assert_eq!(first, second);
 }

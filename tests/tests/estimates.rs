@@ -1,9 +1,13 @@
 //! The estimates against brute force, and against what must not change them.
 
 use host_sim::campaign::standard_field;
-use host_sim::mission::definition::{Algorithm, CAPACITY, Known};
+use host_sim::mission::algorithm::Algorithm;
+use host_sim::mission::definition::CAPACITY;
+use host_sim::world::noise::{Extent, NoiseModel};
 use nalgebra::{Point2, Rotation2, Vector2};
-use planner_core::belief::estimate::{Estimates, area, bisector, centre, maximum_margin};
+use planner_core::belief::Belief as _;
+use planner_core::belief::estimate::{area, bisector, centre, maximum_margin};
+use planner_core::belief::posterior::Posterior;
 use planner_core::belief::sample::{Label, Sample};
 use planner_core::belief::version_space::VersionSpace;
 use planner_core::geometry::lattice::Site;
@@ -16,13 +20,8 @@ fn spaces(fields: u64, steps: u32) -> Vec<(u64, VersionSpace<CAPACITY>)> {
     (0..fields)
         .map(|number| {
             let mission = standard_field::standard(4, number, Algorithm::Cfc, steps);
-            let mut last = mission.space.clone();
-            let end = mission.run(|_, known| {
-                let Known::Lines(space) = known else { return };
-                last = space.clone();
-            });
-            assert!(end.is_ok(), "labels are true");
-            (number, last)
+            let flown = mission.fly(|_, _| {}).expect("labels are true");
+            (number, flown.belief.version_space().expect("labels are true").clone())
         })
         .collect()
 }
@@ -57,7 +56,7 @@ fn swept_margin(samples: &[Sample]) -> f64 {
 fn the_maximum_margin_is_the_largest() {
     for steps in [0, 3, 10, 20] {
         for (number, space) in spaces(150, steps) {
-            let line = maximum_margin(space.candidates()).expect("separable");
+            let line = maximum_margin(space.lines()).expect("separable");
             // All samples count, though only those that still matter were looked at.
             let (got, best) = (margin(&line, space.samples()), swept_margin(space.samples()));
             assert!((got - best).abs() < 1e-9, "field {number}, {steps} steps: {got} for {best}");
@@ -89,13 +88,13 @@ fn the_centre_and_the_area_are_those_of_lines_drawn_at_random() {
         let drawn = share * std::f64::consts::TAU * 2.0 * radius;
         let noise = 5.0 / f64::from(hits).sqrt();
         assert!(
-            (area(space.candidates()) / drawn - 1.0).abs() < noise,
+            (area(space.lines()) / drawn - 1.0).abs() < noise,
             "field {number}: {} for {drawn}",
-            area(space.candidates())
+            area(space.lines())
         );
         let norm = mean.norm();
         let mean = Line::through(middle + mean / norm * (offset / norm), mean).expect("a line");
-        let centre = centre(space.candidates()).expect("a line");
+        let centre = centre(space.lines()).expect("a line");
         assert!(centre.angle_to_deg(&mean) < 0.3, "field {number}");
         assert!((centre.distance(middle) - mean.distance(middle)).abs() < 0.05, "field {number}");
     }
@@ -105,7 +104,7 @@ fn the_centre_and_the_area_are_those_of_lines_drawn_at_random() {
 fn the_centre_agrees_with_every_sample() {
     for steps in [0, 10, 40] {
         for (number, space) in spaces(200, steps) {
-            let centre = centre(space.candidates()).expect("a line");
+            let centre = centre(space.lines()).expect("a line");
             assert!(margin(&centre, space.samples()) > 0.0, "field {number}, {steps} steps");
         }
     }
@@ -114,7 +113,7 @@ fn the_centre_agrees_with_every_sample() {
 #[test]
 fn no_motion_of_the_plane_changes_the_centre_or_the_maximum_margin() {
     for (number, space) in spaces(100, 8) {
-        let before = Estimates::of(&space);
+        let before = space.estimates();
         let turn = Rotation2::new(0.1 * number as f64);
         let away = Vector2::new(7_000.0, -6_500.0);
         let moved = |s: &Sample| {
@@ -123,12 +122,9 @@ fn no_motion_of_the_plane_changes_the_centre_or_the_maximum_margin() {
         };
         let moved: Vec<_> = space.samples().iter().map(moved).collect();
         let moved = VersionSpace::<CAPACITY>::new(&moved).expect("separable as before");
-        let after = Estimates::of(&moved);
+        let after = moved.estimates();
         // Rounding to the lattice moves samples by some micrometres.
-        assert!(
-            (area(moved.candidates()) / area(space.candidates()) - 1.0).abs() < 1e-3,
-            "field {number}"
-        );
+        assert!((area(moved.lines()) / area(space.lines()) - 1.0).abs() < 1e-3, "field {number}");
         for (name, before, after) in [
             ("centre", before.centre, after.centre),
             ("maximum margin", before.maximum_margin, after.maximum_margin),
@@ -172,5 +168,63 @@ fn the_bisector_is_that_of_the_two_shortest_pairs() {
         let alone = bisector(&[pairs[0], *second].concat());
         let bits = |line: Option<Line>| line.map(|it| it.coefficients().map(f64::to_bits));
         assert_eq!(bits(bisector(samples)), bits(alone), "field {number}");
+    }
+}
+
+/// The chance of a label against the measures of what either label would leave.
+#[test]
+fn chances_are_shares_of_what_is_left() {
+    let mut split = 0;
+    for (number, space) in spaces(60, 6) {
+        let mut rng = ChaCha8Rng::seed_from_u64(number);
+        for _ in 0..20 {
+            let mut metres = || rng.random_range(0.0..standard_field::SIDE_M);
+            let site = Site::try_from(Point2::new(metres(), metres())).expect("near");
+            let left = |label| {
+                let mut space = space.clone();
+                space.insert(Sample { site, label }).map_or(0.0, |_| area(space.lines()))
+            };
+            let (above, below) = (left(Label::Positive), left(Label::Negative));
+            let share = above / (above + below);
+            let chance = space.chance(site);
+            assert!(
+                (chance - share).abs() < 1e-9,
+                "field {number}, {site:?}: {chance} for {share}"
+            );
+            split += u32::from(share > 0.0 && share < 1.0);
+        }
+    }
+    assert!(split > 200, "{split}");
+}
+
+/// The same of labels that may err: each hypothesis adds its share, and the sensor its errors.
+#[test]
+fn chances_of_labels_that_may_err_are_those_of_the_next_posterior() {
+    for number in 0..20 {
+        let mut mission = standard_field::standard(5, number, Algorithm::Scc, 8);
+        let (p, extent) = (0.8, Extent::OutsideBalls(0.0));
+        mission.noise = Some(NoiseModel { p, extent });
+        let flown = mission.fly(|_, _| {}).expect("no trusted label");
+        let table = flown.belief.hypotheses().expect("labels may err");
+        let mut rng = ChaCha8Rng::seed_from_u64(number);
+        for _ in 0..10 {
+            let mut metres = || rng.random_range(0.0..standard_field::SIDE_M);
+            let site = Site::try_from(Point2::new(metres(), metres())).expect("near");
+            let chance = table.chance(site);
+            // By Bayes's rule: what a certain label of either kind would leave of each hypothesis.
+            let posterior = Posterior::new(table);
+            let above: f64 = table
+                .iter()
+                .map(|h| {
+                    let lines = table.lines(h);
+                    let support: Vec<_> = lines.support().collect();
+                    let whole = VersionSpace::<CAPACITY>::new(&support).expect("a cell");
+                    posterior.probability(h) * whole.chance(site)
+                })
+                .sum();
+            let expected = above * p + (1.0 - above) * (1.0 - p);
+            assert!((chance - expected).abs() < 1e-9, "field {number}: {chance} for {expected}");
+            assert!((0.2 - 1e-9..=0.8 + 1e-9).contains(&chance));
+        }
     }
 }

@@ -1,7 +1,8 @@
 //! Orientation and cuts against arbitrary-precision integers.
 
 use num_bigint::{BigInt, Sign};
-use planner_core::belief::cell::{Cell, Cut, CutError, Edge};
+use planner_core::belief::cell::{Cut, CutError, LineCell};
+use planner_core::belief::edge::Edge;
 use planner_core::belief::sample::{Label, Sample};
 use planner_core::geometry::lattice::{Site, orient};
 use rand::{RngExt, SeedableRng};
@@ -141,13 +142,13 @@ fn cuts_agree_with_big_integers_on_a_million_adversarial_samples() {
             })
             .collect();
         let edges: Vec<_> = (0..).zip(&samples).map(|(i, s)| Edge::new(i, s.label)).collect();
-        let Some(k) = (2..32)
-            .find(|&k| Cell::<32>::triangle(&samples, [edges[0], edges[1], edges[k]]).is_some())
-        else {
+        let Some(k) = (2..32).find(|&k| {
+            LineCell::<32>::triangle(&samples, [edges[0], edges[1], edges[k]]).is_some()
+        }) else {
             return;
         };
         let first = [edges[0], edges[1], edges[k]];
-        let mut cell = Cell::<32>::triangle(&samples, first).expect("found above");
+        let mut cell = LineCell::<32>::triangle(&samples, first).expect("found above");
         let mut big = BigCell::triangle(&samples, first).expect("as the other");
         for edge in edges {
             let before = cell.edges().to_vec();

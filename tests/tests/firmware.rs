@@ -18,16 +18,19 @@ use host_sim::hil::faults::Faults;
 use host_sim::hil::flight;
 use host_sim::hil::player::{Played, Player};
 use host_sim::hil::qemu::Emulator;
-use host_sim::mission::definition::{Algorithm, Mission};
+use host_sim::mission::algorithm::Algorithm;
+use host_sim::mission::definition::Mission;
 use host_sim::mission::recording::Recording;
 use host_sim::mission::scenario::{self, Overrides};
 use host_sim::report::trace;
-use host_sim::world::truth::{Extent, NoiseModel};
+use host_sim::world::noise::{Extent, NoiseModel};
 use planner_core::belief::sample::{Label, Reading};
 use planner_core::link::delivery::{Link, Port};
 use planner_core::link::message::LabelSource;
+use planner_core::motion::dynamics::Pose;
+use planner_core::planner::Motion;
 use planner_core::robot::agent::{Agent, Event, Step};
-use planner_core::robot::hal::LabelSensor;
+use planner_core::robot::body::Body;
 use rand::{Rng as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -143,7 +146,7 @@ fn random(number: u64) -> Mission {
 }
 
 fn here(mission: &Mission) -> String {
-    trace::lines(&Recording::of(mission).expect("labels that are certain are true"))
+    trace::lines(&Recording::of(mission).expect("labels that are certain are true").results)
 }
 
 #[test]
@@ -157,7 +160,7 @@ fn the_closed_loop_makes_the_trace_of_this_machine_byte_for_byte() {
             let Some(chip) = Chip::start(&[]) else { return 0 };
             for mission in missions {
                 let played = chip.fly(mission, Faults::default()).expect("it flies as here");
-                assert_eq!(trace::lines(&played.recording), here(mission), "{mission:?}");
+                assert_eq!(trace::lines(&played.recording.results), here(mission), "{mission:?}");
             }
             missions.len()
         })
@@ -173,7 +176,7 @@ fn a_bad_link_changes_nothing() {
         let Some(chip) = Chip::start(&[]) else { return };
         let mission = random(number);
         let played = chip.fly(&mission, faults).expect("it flies as here");
-        assert_eq!(trace::lines(&played.recording), here(&mission), "mission {number}");
+        assert_eq!(trace::lines(&played.recording.results), here(&mission), "mission {number}");
     });
 }
 
@@ -185,7 +188,7 @@ fn garbage_is_passed_over() {
     for mission in [random(0), random(1)] {
         chip.link.write_all(&garbage).expect("the link is open");
         let played = chip.fly(&mission, Faults::default()).expect("it flies as here");
-        assert_eq!(trace::lines(&played.recording), here(&mission));
+        assert_eq!(trace::lines(&played.recording.results), here(&mission));
     }
 }
 
@@ -208,9 +211,9 @@ fn the_log_tells_the_mission() {
     let log = chip.messages_until(1, "bisector");
     let steps = played.recording.steps.iter().zip(1..);
     let mut expected = vec![STARTED.to_owned(), "mission: Cfc, 10 steps at most".to_owned()];
-    expected.extend(steps.map(|(it, number)| step_message(number, &it.step)));
+    expected.extend(steps.map(|(step, number)| step_message(number, step)));
     expected.push("ended after 10 steps: Steps".to_owned());
-    let estimates = played.recording.estimates();
+    let estimates = played.recording.belief.estimates();
     for (name, line) in [
         ("centre", estimates.centre),
         ("maximum margin", estimates.maximum_margin),
@@ -266,7 +269,7 @@ fn a_cut_link_stops_the_mission_safely_within_the_bound_and_the_next_can_begin()
     assert_eq!(drive_enable(&writes), ["off", "on", "off"]);
     // What it asked meanwhile, nobody reads: a new cable finds it asking for a mission.
     let played = chip.fly(&mission, Faults::default()).expect("it flies as here");
-    assert_eq!(trace::lines(&played.recording), here(&mission));
+    assert_eq!(trace::lines(&played.recording.results), here(&mission));
     assert_eq!(drive_enable(&writes), ["off", "on", "off", "on", "off"]);
 }
 
@@ -280,14 +283,15 @@ impl Port for Never {
     }
 }
 
-/// A label sensor on a pin that nothing pulls up.
-struct Low;
+/// A robot whose label sensor is on a pin that nothing pulls up.
+struct AlwaysLow;
 
-impl LabelSensor for Low {
+impl Body for AlwaysLow {
     type Error = Infallible;
 
-    fn read(&mut self) -> Result<Reading, Infallible> {
-        Ok(Label::Negative.into())
+    fn perform(&mut self, motion: &Motion, pose: &mut Pose) -> Result<Option<Reading>, Infallible> {
+        *pose = motion.target;
+        Ok(motion.wants_label.then_some(Label::Negative.into()))
     }
 }
 
@@ -299,9 +303,8 @@ fn the_chip_can_read_labels_from_its_own_pin() {
         .expect("a mission for a chip");
     chip.play(&mut player, Faults::default(), 1).expect("it flies");
     let played = player.finish().expect("it ends");
-    let mut learner = mission.learner();
-    let (vehicle, _) = mission.world();
-    let mut agent = Agent::new(&mut *learner, Low, vehicle, mission.start);
+    let mut planner = mission.planner();
+    let mut agent = Agent::new(&mut *planner, AlwaysLow, mission.start);
     let mut steps = Vec::new();
     while steps.len() < mission.steps as usize {
         match agent.step() {
@@ -309,8 +312,7 @@ fn the_chip_can_read_labels_from_its_own_pin() {
             other => panic!("{other:?}"),
         }
     }
-    let flown: Vec<_> = played.recording.steps.iter().map(|it| it.step).collect();
-    assert_eq!(flown, steps);
+    assert_eq!(played.recording.steps, steps);
 }
 
 /// The program counter among all registers, as hexadecimal digits.
@@ -356,7 +358,7 @@ fn a_fault_disables_the_drive_first_then_tells_and_starts_anew() {
     assert_eq!(drive_enable(&writes), ["off", "on", "off", "off"]);
     // And it flies again.
     let played = chip.fly(&mission, Faults::default()).expect("it flies as here");
-    assert_eq!(trace::lines(&played.recording), here(&mission));
+    assert_eq!(trace::lines(&played.recording.results), here(&mission));
 }
 
 #[test]

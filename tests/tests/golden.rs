@@ -11,16 +11,16 @@ use expect_test::expect_file;
 use host_sim::campaign::standard_field;
 use host_sim::cli::arguments::Cli;
 use host_sim::cli::commands::PAPER_TITLE;
-use host_sim::mission::definition::{Algorithm, Mission};
-use host_sim::mission::recording::{Recording, recovery_name};
+use host_sim::mission::algorithm::Algorithm;
+use host_sim::mission::definition::Mission;
+use host_sim::mission::recording::Recording;
+use host_sim::mission::results::{LineError, Results};
 use host_sim::mission::scenario::{self, Overrides};
-use host_sim::report::figure::Figure;
+use host_sim::report::picture::Picture;
 use host_sim::report::text;
 use host_sim::report::trace;
-use host_sim::world::polygon::misclassified;
-use host_sim::world::truth::{Extent, NoiseModel};
-use nalgebra::Point2;
-use planner_core::belief::hypotheses::Prior;
+use host_sim::world::noise::{Extent, NoiseModel};
+use planner_core::belief::weight::Prior;
 use planner_core::planner::scc::Policy;
 
 #[test]
@@ -36,7 +36,7 @@ fn standard_scenarios() {
         let mission = scenario::read(&file, Overrides::default()).expect("a good file");
         let recording = Recording::of(&mission).expect("no contradiction");
         let name = file.file_stem().expect("a name").to_string_lossy().into_owned();
-        describe(&mut table, &name, &recording).expect("a string");
+        describe(&mut table, &name, &recording.results).expect("a string");
     }
     expect_file!["golden/scenarios.txt"].assert_eq(&table);
 }
@@ -73,10 +73,10 @@ fn hashes_of_traces_figures_and_campaigns() {
     };
     for number in 0..200 {
         let recording = Recording::of(&mission(number)).expect("trusted labels are true");
-        line(&format!("trace {number}"), &trace::lines(&recording));
+        line(&format!("trace {number}"), &trace::lines(&recording.results));
         if number % 10 < 2 {
-            line(&format!("report {number}"), &text::mission("a mission", &recording));
-            let figure = Figure::of("a mission", &recording).svg().expect("a figure");
+            line(&format!("report {number}"), &text::mission("a mission", &recording.results));
+            let figure = Picture::of("a mission", &recording).svg().expect("a figure");
             line(&format!("figure {number}"), &figure);
         }
     }
@@ -106,40 +106,38 @@ fn hashes_of_traces_figures_and_campaigns() {
 fn the_picture_in_the_readme() {
     let mission = scenario::parse("", scenario::PAPER_NOISELESS, Overrides::default());
     let recording = Recording::of(&mission.expect("a good file")).expect("noiseless");
-    let figure = Figure::of(PAPER_TITLE, &recording).svg().expect("a figure");
+    let figure = Picture::of(PAPER_TITLE, &recording).svg().expect("a figure");
     expect_file!["../../host-sim/figures/paper-noiseless.svg"].assert_eq(&figure);
 }
 
-fn describe(table: &mut String, name: &str, recording: &Recording) -> std::fmt::Result {
-    let mission = &recording.mission;
-    writeln!(table, "{name}: {}", text::line(&mission.truth))?;
-    for (recorded, number) in recording.steps.iter().zip(1..) {
-        let step = &recorded.step;
-        let at = Point2::<f64>::from(step.pose.site);
+fn describe(table: &mut String, name: &str, results: &Results) -> std::fmt::Result {
+    let truth = results.start.truth.as_ref().expect("a line");
+    writeln!(table, "{name}: {}", text::line(truth))?;
+    for step in &results.steps {
         let line = format!(
-            "{number:>4} {} {:>5} {:>5.2} {:>3.1} ({:.4}, {:.4}) {:>2} {:>6.3} bits {}",
-            step.motion.stage.map_or("--", host_sim::mission::recording::stage_name),
-            step.motion.action.0,
-            step.motion.control.w,
-            step.motion.control.v,
-            at.x,
-            at.y,
-            step.reading.map_or("-".into(), |r| format!("{:+}", r.sign())),
-            recorded.bits,
-            step.motion.recovery.map_or("", recovery_name),
+            "{:>4} {} {:>5} {:>5.2} {:>3.1} ({:.4}, {:.4}) {:>2} {:>6.3} bits {}",
+            step.step,
+            step.problem.unwrap_or("--"),
+            step.action.index,
+            step.action.w,
+            step.action.v,
+            step.pose.x,
+            step.pose.z,
+            step.label.map_or("-".into(), |label| format!("{label:+}")),
+            step.bits,
+            step.recovery.unwrap_or_default(),
         );
         writeln!(table, "{}", line.trim_end())?;
     }
-    writeln!(table, "     {} samples; ended by: {}", recording.samples(), recording.end.name())?;
-    for (name, estimate) in text::estimates(recording) {
+    writeln!(table, "     {} samples; ended by: {}", results.samples(), results.end.reason)?;
+    for (name, estimate) in text::estimates(results) {
         let Some(line) = estimate else {
             writeln!(table, "     {name}: none")?;
             continue;
         };
-        let error = line.angle_to_deg(&mission.truth);
-        let wrong = 100.0 * misclassified(mission.config.area, &mission.truth, &line);
-        let line = text::line(&line);
-        writeln!(table, "     {name}: {line}, off by {error:.3} deg and {wrong:.3} %")?;
+        let LineError { degrees, misclassified } = line.error.expect("there is a truth");
+        let (line, wrong) = (text::line(&line), 100.0 * misclassified);
+        writeln!(table, "     {name}: {line}, off by {degrees:.3} deg and {wrong:.3} %")?;
     }
     writeln!(table)
 }

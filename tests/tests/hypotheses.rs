@@ -3,16 +3,18 @@
 use std::collections::BTreeMap;
 
 use host_sim::campaign::standard_field;
-use host_sim::mission::definition::Algorithm;
-use host_sim::world::truth;
+use host_sim::mission::algorithm::Algorithm;
+use host_sim::world::World;
 use nalgebra::Point2;
-use planner_core::belief::candidates::Certainty;
+use planner_core::belief::Refused;
+use planner_core::belief::consistent_lines::Certainty;
 use planner_core::belief::estimate;
-use planner_core::belief::hypotheses::{Hypotheses, Hypothesis, Prior};
+use planner_core::belief::hypotheses::{Hypotheses, Hypothesis};
+use planner_core::belief::noise::{Noise, Reliability};
 use planner_core::belief::posterior::Posterior;
 use planner_core::belief::sample::{Label, Sample};
-use planner_core::belief::version_space::{Refused, VersionSpace};
-use planner_core::belief::weight::Reliability;
+use planner_core::belief::version_space::VersionSpace;
+use planner_core::belief::weight::Prior;
 use planner_core::geometry::lattice::Site;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -24,18 +26,14 @@ type Seen = (Sample, f64);
 
 /// A standard field's oracle and labels seen at random places of the disagreement region and
 /// elsewhere, true with probability `p`: one `p` for all, or one for each, certain ones included.
-fn mission(
-    number: u64,
-    t: usize,
-    mixed: bool,
-) -> (Vec<Sample>, Vec<Seen>, planner_core::geometry::line::Line) {
+fn mission(number: u64, t: usize, mixed: bool) -> (Vec<Sample>, Vec<Seen>, World) {
     let field = standard_field::standard(7, number, Algorithm::Cfc, 1);
     let mut rng = ChaCha8Rng::seed_from_u64(number);
     let mut seen = Vec::new();
     while seen.len() < t {
         let mut metres = || rng.random_range(0.0..standard_field::SIDE_M);
         let site = Site::try_from(Point2::new(metres(), metres())).expect("near");
-        let dull = field.space.certainty(site) != Certainty::Uncertain;
+        let dull = field.given.certainty(site) != Certainty::Uncertain;
         if dull && rng.random_range(0..4) > 0 {
             continue; // three in four of those that could tell nothing
         }
@@ -46,26 +44,26 @@ fn mission(
             i if mixed => [0.3, 0.5, 0.7, 0.95, 0.999_999, 1e-300][i % 6],
             _ => 0.7,
         };
-        let distance = field.truth.distance(Point2::from(site));
+        let distance = field.world.distance(site);
         let truth = if distance > 0.0 { Label::Positive } else { Label::Negative };
         let label = if rng.random_range(0.0..1.0) < p { truth } else { -truth };
         seen.push((Sample { site, label }, p));
     }
-    (field.space.samples().to_vec(), seen, field.truth)
+    (field.given.samples().to_vec(), seen, field.world)
 }
 
 fn table<const N: usize, const H: usize>(given: &[Sample], seen: &[Seen]) -> Hypotheses<N, H> {
-    let mut table = Hypotheses::new(given, Prior::Area).expect("an oracle");
+    let mut table = Hypotheses::new(given, Prior::Area, Noise::NONE).expect("an oracle");
     for &(sample, p) in seen {
         let reliability = Reliability::new(p).expect("a probability");
-        table.observe(sample, reliability).expect("room, and a possible label");
+        table.take(sample, reliability).expect("room, and a possible label");
     }
     table
 }
 
 /// The labels of the samples that a hypothesis stands for: those of any of its lines.
 fn sequence<const N: usize, const H: usize>(table: &Hypotheses<N, H>, h: &Hypothesis<15>) -> u64 {
-    let centre = estimate::centre(table.candidates(h)).expect("a line");
+    let centre = estimate::centre(table.lines(h)).expect("a line");
     let taken = &table.samples()[table.given().len()..];
     taken.iter().rev().fold(0, |bits, sample| {
         2 * bits + u64::from(centre.distance(Point2::from(sample.site)) > 0.0)
@@ -132,7 +130,7 @@ fn equals_brute_force_over_all_sequences() {
                 }
             }
             assert_eq!(
-                (posteriors[0].lost(), posteriors[1].lost(), table.outer_cells()),
+                (posteriors[0].pruned_mass(), posteriors[1].pruned_mass(), table.outer_cells()),
                 (0.0, 0.0, 0)
             );
             found.len()
@@ -148,17 +146,18 @@ fn the_count_stays_within_that_of_an_arrangement() {
         .into_par_iter()
         .map(|number| {
             let (given, seen, _) = mission(number, 64, false);
-            let mut table = Hypotheses::<68, 2081>::new(&given, Prior::Area).expect("an oracle");
+            let mut table =
+                Hypotheses::<68, 2081>::new(&given, Prior::Area, Noise::NONE).expect("an oracle");
             let mut edges = 0;
             for (t, &(sample, p)) in (1..).zip(&seen) {
-                table.observe(sample, Reliability::new(p).expect("p")).expect("room");
+                table.take(sample, Reliability::new(p).expect("p")).expect("room");
                 assert!(table.iter().len() <= 1 + t + t * (t - 1) / 2);
                 edges = edges.max(table.iter().map(|h| h.cell().edges().len()).max().unwrap_or(0));
             }
-            assert!(Posterior::new(&table).lost() <= 0.0, "nothing was given up");
+            assert!(Posterior::new(&table).pruned_mass() <= 0.0, "nothing was given up");
             assert_eq!(table.outer_cells(), 0);
             // The cells tile the starting polygon.
-            let sum: f64 = table.iter().map(|h| estimate::area(table.candidates(h))).sum();
+            let sum: f64 = table.iter().map(|h| estimate::area(table.lines(h))).sum();
             let whole = estimate::area(table.start());
             assert!((sum / whole - 1.0).abs() < 1e-9, "{sum} of {whole}");
             (table.iter().len(), edges)
@@ -191,11 +190,11 @@ fn a_table_begins_again_in_place() {
     let (mut again, ..) = of(0);
     for number in 1..20 {
         let (anew, given, seen) = of(number);
-        again.restart(&given, Prior::Area).expect("an oracle");
-        again.restart(&given[..2], Prior::Area).expect_err("it is left as it was");
+        again.restart(&given, Prior::Area, Noise::NONE).expect("an oracle");
+        again.restart(&given[..2], Prior::Area, Noise::NONE).expect_err("it is left as it was");
         for (sample, p) in seen {
             let reliability = Reliability::new(p).expect("a probability");
-            again.observe(sample, reliability).expect("room, and a possible label");
+            again.take(sample, reliability).expect("room, and a possible label");
         }
         assert_eq!(format!("{again:?}"), format!("{anew:?}"));
     }
@@ -221,16 +220,17 @@ fn contradictions_cancel_however_certain_each_label_is() {
     let (given, seen, _) = mission(3, 1, false);
     for p in [0.6, 0.999, 1.0 - 1e-16, 1e-9, 1e-300] {
         for n in [1, 20, 60] {
-            let mut table = Hypotheses::<128, 2>::new(&given, Prior::Sequences).expect("an oracle");
+            let mut table = Hypotheses::<128, 2>::new(&given, Prior::Sequences, Noise::NONE)
+                .expect("an oracle");
             let reliability = Reliability::new(p).expect("a probability");
             let mut see = |label| {
                 let sample = Sample { label, ..seen[0].0 };
-                table.observe(sample, reliability).expect("room");
+                table.take(sample, reliability).expect("room");
             };
             (0..n).for_each(|_| see(Label::Positive));
             (0..n).for_each(|_| see(Label::Negative));
             let posterior = Posterior::new(&table);
-            assert_eq!((table.iter().len(), posterior.lost()), (2, 0.0));
+            assert_eq!((table.iter().len(), posterior.pruned_mass()), (2, 0.0));
             for h in table.iter() {
                 let probability = posterior.probability(h);
                 assert!((probability - 0.5).abs() < 1e-6, "p = {p}, n = {n}: {probability}");
@@ -244,14 +244,14 @@ fn certain_labels_leave_the_version_space() {
     for number in 0..100 {
         let (given, seen, _) = mission(number, 30, false);
         let mut space = VersionSpace::<64>::new(&given).expect("an oracle");
-        let mut table = Hypotheses::<64, 1>::new(&given, Prior::Area).expect("an oracle");
+        let mut table =
+            Hypotheses::<64, 1>::new(&given, Prior::Area, Noise::NONE).expect("an oracle");
         for (sample, _) in seen {
-            let (alone, among) =
-                (space.insert(sample), table.observe(sample, Reliability::CERTAIN));
+            let (alone, among) = (space.insert(sample), table.take(sample, Reliability::CERTAIN));
             assert_eq!(alone.is_ok(), among.is_ok());
             let one = table.iter().next().expect("one hypothesis");
             assert_eq!(table.iter().len(), 1);
-            let corners = |edges: &[planner_core::belief::cell::Edge], samples: &[Sample]| {
+            let corners = |edges: &[planner_core::belief::edge::Edge], samples: &[Sample]| {
                 let mut sites: Vec<_> = edges
                     .iter()
                     .map(|e| {
@@ -276,7 +276,7 @@ fn labels_that_say_nothing_leave_the_prior() {
     let table = table::<24, 211>(&given, &seen);
     let posterior = Posterior::new(&table);
     for h in table.iter() {
-        let share = estimate::area(table.candidates(h)) / estimate::area(table.start());
+        let share = estimate::area(table.lines(h)) / estimate::area(table.start());
         assert!((posterior.probability(h) - share).abs() < 1e-7);
     }
     assert!(posterior.information().abs() < 1e-6);
@@ -289,13 +289,15 @@ fn the_bound_on_what_was_given_up_holds() {
         .map(|number| {
             let (given, seen, _) = mission(number, 24, false);
             let prior = if number % 2 == 0 { Prior::Area } else { Prior::Sequences };
-            let mut small = Hypotheses::<28, 24>::new(&given, prior).expect("an oracle");
-            let mut full = Hypotheses::<28, 301>::new(&given, prior).expect("an oracle");
+            let mut small =
+                Hypotheses::<28, 24>::new(&given, prior, Noise::NONE).expect("an oracle");
+            let mut full =
+                Hypotheses::<28, 301>::new(&given, prior, Noise::NONE).expect("an oracle");
             let mut most = 0.0f64;
             for &(sample, p) in &seen {
                 let reliability = Reliability::new(p).expect("p");
-                full.observe(sample, reliability).expect("room");
-                small.observe(sample, reliability).expect("room");
+                full.take(sample, reliability).expect("room");
+                small.take(sample, reliability).expect("room");
                 assert!(small.iter().len() <= 24);
                 for prior in [Prior::Area, Prior::Sequences] {
                     let (full, small) = (full.weighed_by(prior), small.weighed_by(prior));
@@ -303,7 +305,7 @@ fn the_bound_on_what_was_given_up_holds() {
                     let cells: BTreeMap<_, _> =
                         full.iter().map(|h| (sequence(&full, h), whole.probability(h))).collect();
                     let kept: f64 = small.iter().map(|h| cells[&sequence(&small, h)]).sum();
-                    let bound = Posterior::new(&small).lost();
+                    let bound = Posterior::new(&small).pruned_mass();
                     assert!(
                         bound >= 1.0 - kept - 1e-6,
                         "mission {number}: {bound} for {}",
@@ -327,11 +329,11 @@ fn a_certain_label_that_leaves_no_hypothesis_is_refused() {
     let mut table = table::<16, 79>(&given, &seen);
     let before = format!("{table:?}");
     let impossible = Sample { label: -given[0].label, ..given[0] };
-    let refused = table.observe(impossible, Reliability::CERTAIN);
+    let refused = table.take(impossible, Reliability::CERTAIN);
     assert_eq!(refused, Err(Refused::Contradiction(impossible)));
     assert_eq!(format!("{table:?}"), before);
     // The very same label with room for doubt is taken.
-    table.observe(impossible, Reliability::new(0.9).expect("p")).expect("possible");
+    table.take(impossible, Reliability::new(0.9).expect("p")).expect("possible");
     assert_eq!(Reliability::new(1.1), None);
     assert_eq!(Reliability::new(-0.1), None);
     assert_eq!(Reliability::new(f64::NAN), None);
@@ -394,7 +396,7 @@ fn areas_in_single_precision_are_as_good_as_their_units() {
             let seen: Vec<_> = seen.iter().map(|(s, p)| (moved(s), *p)).collect();
             let table = table::<36, 529>(&given, &seen);
             let off = |h: &Hypothesis<15>| {
-                let exact = estimate::area(table.candidates(h));
+                let exact = estimate::area(table.lines(h));
                 (table.log_area(h).exp() / exact - 1.0).abs() - 1e-13 / exact
             };
             table.iter().map(off).fold(0.0, f64::max)
@@ -409,26 +411,29 @@ fn areas_in_single_precision_are_as_good_as_their_units() {
 fn a_cell_that_cannot_hold_its_edges_holds_more_lines_and_says_so() {
     let mut outer = 0;
     for number in 0..200 {
-        let (given, seen, truth) = mission(number, 16, false);
+        let (given, seen, world) = mission(number, 16, false);
         let mut rng = ChaCha8Rng::seed_from_u64(number);
-        let mut table = Hypotheses::<20, 137, 4>::new(&given, Prior::Area).expect("an oracle");
-        let mut exact = Hypotheses::<20, 137>::new(&given, Prior::Area).expect("an oracle");
+        let mut table =
+            Hypotheses::<20, 137, 4>::new(&given, Prior::Area, Noise::NONE).expect("an oracle");
+        let mut exact =
+            Hypotheses::<20, 137>::new(&given, Prior::Area, Noise::NONE).expect("an oracle");
         for &(sample, p) in &seen {
             let reliability = Reliability::new(p).expect("p");
-            if table.observe(sample, reliability).is_err() {
+            if table.take(sample, reliability).is_err() {
                 break;
             }
-            exact.observe(sample, reliability).expect("room");
+            exact.take(sample, reliability).expect("room");
             // The true line is still among the lines of some hypothesis, unless that was given up.
-            let held = table.iter().any(|h| truth::agrees(&truth, table.candidates(h)));
-            let lost = Posterior::new(&table).lost();
+            let held = table.iter().any(|h| world.is_among(table.lines(h)) == Some(true));
+            let lost = Posterior::new(&table).pruned_mass();
             assert!(held || lost > 0.0, "mission {number}");
         }
         // So is every line of every exact hypothesis.
-        if Posterior::new(&table).lost() <= 0.0 {
+        if Posterior::new(&table).pruned_mass() <= 0.0 {
             for h in exact.iter().filter(|_| rng.random_range(0..4) == 0) {
-                let line = estimate::centre(exact.candidates(h)).expect("a line");
-                assert!(table.iter().any(|h| truth::agrees(&line, table.candidates(h))));
+                let line = estimate::centre(exact.lines(h)).expect("a line");
+                let world = World::divided_by(line);
+                assert!(table.iter().any(|h| world.is_among(table.lines(h)) == Some(true)));
             }
         }
         outer += u32::from(table.outer_cells());

@@ -14,10 +14,13 @@ use std::time::Duration;
 use host_sim::campaign::standard_field;
 use host_sim::hil::faults::{Faults, Spoiler};
 use host_sim::hil::player::{self, Player};
-use host_sim::mission::definition::{Algorithm, Mission};
+use host_sim::mission::algorithm::Algorithm;
+use host_sim::mission::definition::Mission;
 use host_sim::mission::recording::Recording;
 use host_sim::report::trace;
-use host_sim::world::truth::{Extent, NoiseModel, Sensor, Vehicle};
+use host_sim::world::noise::{Extent, NoiseModel};
+use host_sim::world::robot::Robot;
+use planner_core::belief::Belief as _;
 use planner_core::belief::estimate::Estimates;
 use planner_core::belief::sample::Reading;
 use planner_core::belief::version_space::NoVersionSpace;
@@ -25,10 +28,10 @@ use planner_core::geometry::line::Line;
 use planner_core::link::delivery::{Heard, Link, LinkLost, Port, Responder};
 use planner_core::link::frame::{Decoder, Envelope, FRAME, Frame, Message};
 use planner_core::link::message::{
-    self, ClockRate, Declined, LabelSource, PROTOCOL, Reply, Request, Room,
+    self, Capacity, ClockRate, Declined, LabelSource, PROTOCOL, Reply, Request,
 };
 use planner_core::link::station::{Flown, Station};
-use planner_core::robot::hal::Drive as _;
+use planner_core::motion::dynamics::Pose;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -151,8 +154,8 @@ fn fly<P: Port>(
     match setup.algorithm {
         message::Algorithm::Cfc => chip.fly(setup, &mut setup.cfc::<68>(), |_| {}),
         message::Algorithm::Scc { noise, policy, prior } => {
-            let mut planner = setup.scc::<36, 529>(noise, policy);
-            chip.fly(setup, &mut setup.prepare(&mut planner, prior), |_| {})
+            let mut planner = setup.scc::<36, 529>(policy);
+            chip.fly(setup, &mut setup.prepare(&mut planner, prior, noise), |_| {})
         }
     }
 }
@@ -186,7 +189,11 @@ fn a_thousand_missions_over_a_bad_link_end_as_over_a_good_one() {
             let here = Recording::of(&mission).expect("trusted labels are true");
             assert_eq!(player.motions(), here.steps.len(), "mission {number}: motions made");
             let there = player.finish().expect("the mission is over").recording;
-            assert_eq!(trace::lines(&there), trace::lines(&here), "mission {number}");
+            assert_eq!(
+                trace::lines(&there.results),
+                trace::lines(&here.results),
+                "mission {number}"
+            );
             frames_of_chip - (3 + here.steps.len() as u64)
         })
         .sum();
@@ -231,7 +238,7 @@ fn a_chip_declines_what_it_has_no_room_for_and_says_how_much_it_has() {
     let mut chip = chip(&network);
     let setup = chip.await_setup();
     let flown = fly(&mut chip, &setup);
-    assert!(matches!(flown, Ok(Flown::Declined(Declined::Room(_)))), "{flown:?}");
+    assert!(matches!(flown, Ok(Flown::Declined(Declined::Capacity(_)))), "{flown:?}");
     drop(chip);
     let error = network.into_inner().player.finish().expect_err("it was declined").to_string();
     assert!(error.contains("at most 32") && error.contains("529 hypotheses"), "{error}");
@@ -242,7 +249,8 @@ struct Garage {
     responder: Responder,
     mission: Mission,
     setup: message::Setup,
-    world: (Vehicle, Sensor),
+    robot: Robot,
+    pose: Pose,
     /// Motions of the last mission, and whether it has ended.
     motions: usize,
     ended: bool,
@@ -254,7 +262,8 @@ impl Garage {
             responder: Responder::new(seed),
             mission: mission.clone(),
             setup: player::setup(mission, LabelSource::Vehicle).expect("a mission for a chip"),
-            world: mission.world(),
+            robot: mission.robot(),
+            pose: mission.start,
             motions: 0,
             ended: false,
         }
@@ -268,16 +277,14 @@ impl Garage {
         };
         let reply = match request {
             Request::Ready(_) => {
-                self.world = self.mission.world();
+                (self.robot, self.pose) = (self.mission.robot(), self.mission.start);
                 (self.motions, self.ended) = (0, false);
                 Reply::Noted
             }
             Request::Move(message::Move { motion, .. }) => {
                 self.motions += 1;
-                let (vehicle, sensor) = &mut self.world;
-                let Ok(pose) = vehicle.drive(&motion);
-                let reading = motion.samples().then(|| sensor.read().expect("it cannot fail"));
-                Reply::Arrived { pose, reading }
+                let Ok(reading) = self.robot.perform(&motion, &mut self.pose);
+                Reply::Arrived { pose: self.pose, reading }
             }
             Request::End(_) => {
                 self.ended = true;
@@ -498,9 +505,9 @@ impl Liar {
         let player = Player::new(mission, LabelSource::Vehicle, 1).expect("a mission for a chip");
         let mut liar = Self { player, link: (0, 0) };
         liar.says(Request::Hello { protocol: PROTOCOL }).expect("it offers a mission");
-        let room = Room { samples: 68, hypotheses: 1 };
+        let capacity = Capacity { samples: 68, hypotheses: 1 };
         let clock = ClockRate { per_second: 1, emulated: false };
-        liar.says(Request::Ready(message::Accepted { room, clock })).expect("it takes note");
+        liar.says(Request::Ready(message::Accepted { capacity, clock })).expect("it takes note");
         liar
     }
 
@@ -524,7 +531,7 @@ fn a_player_finds_out_a_chip_that_took_in_another_reading() {
     let mission = mission(0);
     let took = message::Took::default();
     let steps = Recording::of(&mission).expect("labels are true").steps;
-    let motion = |n: usize| steps[n].step.motion;
+    let motion = |n: usize| steps[n].motion;
     let mut liar = Liar::new(&mission);
     let reply = liar.says(Request::Move(message::Move { motion: motion(0), last: None, took }));
     let Ok(Reply::Arrived { reading: Some(Reading::Side(sensed)), .. }) = reply else {
@@ -545,10 +552,15 @@ fn a_player_finds_out_a_chip_that_took_in_another_reading() {
 #[test]
 fn a_player_compares_every_estimate_to_the_last_bit() {
     let mission = mission(0);
-    let right = Estimates::of(&mission.space);
+    let right = mission.given.estimates();
     let end = |estimates| {
         let (last, took) = (None, message::Took::default());
-        Request::End(message::End { reason: message::EndReason::Steps, last, took, estimates })
+        Request::End(message::MissionEnd {
+            reason: message::EndReason::Steps,
+            last,
+            took,
+            estimates,
+        })
     };
     let judge = |estimates| {
         let mut liar = Liar::new(&mission);
@@ -643,11 +655,11 @@ fn corpus() -> Vec<Vec<u8>> {
     }
     let mut frames = frames.into_inner();
     // What no good mission says.
-    let room = Room { samples: 36, hypotheses: 529 };
+    let capacity = Capacity { samples: 36, hypotheses: 529 };
     for declined in [
         Declined::Protocol(PROTOCOL),
         Declined::Algorithm,
-        Declined::Room(room),
+        Declined::Capacity(capacity),
         Declined::Given(NoVersionSpace::NotSeparable(3)),
         Declined::Labels,
     ] {

@@ -5,20 +5,21 @@ use std::path::Path;
 use std::sync::Mutex;
 
 use host_sim::campaign::standard_field;
-use host_sim::mission::definition::{Algorithm, Known};
+use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::recording::Recording;
+use host_sim::mission::results::StepResult;
 use host_sim::mission::scenario::{self, Overrides};
 use host_sim::report::trace;
-use host_sim::world::truth as real;
+use host_sim::world::robot::Ideal;
 use nalgebra::Point2;
-use planner_core::belief::candidates::Certainty;
-use planner_core::belief::sample::Reading;
+use planner_core::belief::consistent_lines::Certainty;
 use planner_core::geometry::lattice::Site;
 use planner_core::motion::dynamics::Pose;
 use planner_core::motion::unicycle::Unicycle;
 use planner_core::planner::cfc::Cfc;
-use planner_core::planner::{Plan, Planner as _, Recovery};
-use planner_core::robot::hal::Drive as _;
+use planner_core::planner::{Plan, Planner as _};
+use planner_core::robot::body::Body as _;
+use planner_core::search::recovery::Recovery;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -34,10 +35,11 @@ fn fields_never_contradict_themselves_or_the_truth() {
         .map(|number| {
             let mission = standard_field::standard(2, number, Algorithm::Cfc, 40);
             let mut rng = ChaCha8Rng::seed_from_u64(number);
-            let truth = mission.truth;
+            let world = mission.world;
+            let truth = *world.line().expect("a line");
             let mut certain = 0;
-            let end = mission.run(|step, known| {
-                let Known::Lines(space) = known else { return };
+            let flown = mission.fly(|step, belief| {
+                let space = belief.version_space().expect("labels are true");
                 let place = format!("field {number} at {:?}", step.pose);
                 assert!(mission.config.area.contains(step.pose.site), "{place}: outside the area");
                 // What is certain is true.
@@ -45,8 +47,7 @@ fn fields_never_contradict_themselves_or_the_truth() {
                     let mut metres = || rng.random_range(0.0..standard_field::SIDE_M);
                     let q = Site::try_from(Point2::new(metres(), metres())).expect("near");
                     if let Certainty::Certain(label) = space.certainty(q) {
-                        let reading = real::reading(&truth, q);
-                        assert_eq!(reading, Reading::Side(label), "{place}: certain of {q:?}");
+                        assert!(world.agrees(q, label), "{place}: certain of {q:?}");
                         certain += 1;
                     }
                 }
@@ -62,10 +63,10 @@ fn fields_never_contradict_themselves_or_the_truth() {
                 }
                 // So no label can contradict it.
                 for sample in space.samples() {
-                    assert_eq!(real::reading(&truth, sample.site), Reading::Side(sample.label));
+                    assert!(world.agrees(sample.site, sample.label));
                 }
             });
-            assert!(end.is_ok(), "field {number}: {end:?}");
+            assert!(flown.is_ok(), "field {number}: {:?}", flown.err());
             certain
         })
         .sum();
@@ -79,8 +80,8 @@ fn every_plan_is_what_trying_all_actions_would_make_it() {
     let rungs = Mutex::new(BTreeMap::new());
     (0..cases(100, 2_000)).into_par_iter().for_each(|number| {
         let mission = standard_field::standard(12, number, Algorithm::Cfc, 60);
-        let (mut vehicle, mut sensor) = mission.world();
-        let mut planner = Cfc::new(mission.config, unicycle, mission.space.clone());
+        let mut robot = Ideal { world: mission.world };
+        let mut planner = Cfc::new(mission.config, unicycle, mission.given.clone());
         let mut pose = mission.start;
         for step in 1..=mission.steps {
             let slow = planner.problem().solve_exhaustively(&unicycle, pose).best;
@@ -106,10 +107,8 @@ fn every_plan_is_what_trying_all_actions_would_make_it() {
             }
             *rungs.lock().expect("no panic").entry(format!("{rung:?}")).or_insert(0) += 1;
             let Plan::Move(motion) = plan else { break };
-            let Ok(arrived) = vehicle.drive(&motion);
-            let reading = motion.samples().then(|| sensor.read().expect("it cannot fail"));
-            planner.observe(arrived, reading).expect("labels are true");
-            pose = arrived;
+            let Ok(reading) = robot.perform(&motion, &mut pose);
+            planner.observe(pose, reading).expect("labels are true");
         }
     });
     let rungs = rungs.into_inner().expect("no panic");
@@ -141,7 +140,7 @@ fn a_mission_comes_out_the_same_again_byte_for_byte() {
         for number in 0..50 {
             let trace = || {
                 let mission = standard_field::standard(3, number, algorithm, 40);
-                trace::lines(&Recording::of(&mission).expect("noiseless"))
+                trace::lines(&Recording::of(&mission).expect("noiseless").results)
             };
             assert_eq!(trace(), trace(), "field {number}");
         }
@@ -155,7 +154,8 @@ fn a_seed_changes_the_random_walk_and_nothing_else() {
         let overrides = Overrides { algorithm: Some(algorithm), steps: None, seed: Some(seed) };
         let mission = scenario::read(&folder.join("paper-noiseless.toml"), overrides);
         let recording = Recording::of(&mission.expect("a good file")).expect("noiseless");
-        recording.steps.iter().map(|s| s.step.pose).collect::<Vec<_>>()
+        let at = |it: &StepResult| [it.pose.x, it.pose.z, it.pose.heading].map(f64::to_bits);
+        recording.results.steps.iter().map(at).collect::<Vec<_>>()
     };
     assert_eq!(run(Algorithm::Cfc, 1), run(Algorithm::Cfc, 2));
     assert_ne!(run(Algorithm::Random, 1), run(Algorithm::Random, 2));

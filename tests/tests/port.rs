@@ -10,11 +10,11 @@ use host_sim::campaign::standard_field;
 use host_sim::hil::faults::Faults;
 use host_sim::hil::flight::{self, Chip, Timings};
 use host_sim::hil::player::Player;
-use host_sim::mission::definition::Algorithm;
+use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::recording::Recording;
 use host_sim::report::trace;
 use planner_core::link::delivery::{Link, Port};
-use planner_core::link::message::{ClockRate, End, EndReason, LabelSource};
+use planner_core::link::message::{ClockRate, EndReason, LabelSource, MissionEnd};
 use planner_core::link::station::{Flown, Station};
 use serialport::{SerialPort as _, TTYPort};
 
@@ -65,9 +65,12 @@ fn a_board_at_a_serial_port_flies_as_this_machine_does() {
     let turnarounds = flight::fly(&mut player, &chip, faults, 1).expect("the board answers");
     let played = player.finish().expect("the mission is over");
     let flown = board.join().unwrap_or_else(|cause| panic::resume_unwind(cause));
-    assert!(matches!(flown, Ok(Flown::Ended(End { reason: EndReason::Steps, .. }))), "{flown:?}");
+    assert!(
+        matches!(flown, Ok(Flown::Ended(MissionEnd { reason: EndReason::Steps, .. }))),
+        "{flown:?}"
+    );
     let timings = Timings::new(&played, &turnarounds);
     assert_eq!(timings.csv().expect("rows").lines().count(), 1 + 10);
     let here = Recording::of(&mission).expect("labels are true");
-    assert_eq!(trace::lines(&played.recording), trace::lines(&here));
+    assert_eq!(trace::lines(&played.recording.results), trace::lines(&here.results));
 }

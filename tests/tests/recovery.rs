@@ -4,12 +4,13 @@ use std::collections::{BTreeMap, HashSet};
 use std::sync::Mutex;
 
 use host_sim::campaign::standard_field;
-use host_sim::mission::definition::{Algorithm, CAPACITY};
+use host_sim::mission::algorithm::Algorithm;
+use host_sim::mission::definition::CAPACITY;
 use nalgebra::Point2;
 use planner_core::belief::sample::{Label, Reading, Sample};
 use planner_core::belief::version_space::VersionSpace;
 use planner_core::geometry::area::Area;
-use planner_core::geometry::direction::Heading;
+use planner_core::geometry::heading::Heading;
 use planner_core::geometry::lattice::Site;
 use planner_core::motion::contract;
 use planner_core::motion::dynamics::{Dynamics, Pose};
@@ -18,7 +19,7 @@ use planner_core::motion::unicycle::Unicycle;
 use planner_core::planner::cfc::{self, Cfc};
 use planner_core::planner::config::{Config, Crossing};
 use planner_core::planner::{Plan, Planner as _, StopReason};
-use planner_core::search::problem::Varrho;
+use planner_core::search::objective::Varrho;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -45,7 +46,7 @@ fn chase<D: Dynamics>(
         }
         match planner.plan(pose) {
             Plan::Stop(reason) => return Ok((Err(reason), been.len())),
-            Plan::Move(motion) if motion.samples() => return Ok((Ok(motion.target), been.len())),
+            Plan::Move(motion) if motion.wants_label => return Ok((Ok(motion.target), been.len())),
             Plan::Move(motion) => {
                 pose = motion.target;
                 planner.observe(pose, None).expect("nothing was read");
@@ -116,7 +117,7 @@ fn any(rng: &mut ChaCha8Rng) -> Any {
 fn fly<D: Dynamics>(dynamics: D, number: u64, rng: &mut ChaCha8Rng) -> StopReason {
     contract::check(&dynamics).expect("a grid of ours");
     let mission = standard_field::standard(21, number, Algorithm::Cfc, 1);
-    let mut planner = Cfc::new(mission.config, dynamics, mission.space.clone());
+    let mut planner = Cfc::new(mission.config, dynamics, mission.given.clone());
     let mut pose = Pose { heading: Heading(rng.random_range(0..=u32::MAX)), ..mission.start };
     loop {
         let (end, _) = chase(&mut planner, pose).unwrap_or_else(|Endless| {
@@ -126,7 +127,7 @@ fn fly<D: Dynamics>(dynamics: D, number: u64, rng: &mut ChaCha8Rng) -> StopReaso
             Ok(pose) => pose,
             Err(reason) => return reason,
         };
-        let label = host_sim::world::truth::reading(&mission.truth, pose.site);
+        let label = mission.world.reading(pose.site);
         assert!(label != Reading::Boundary, "a line that goes through no site");
         planner.observe(pose, Some(label)).expect("labels are true");
     }

@@ -1,29 +1,30 @@
 //! Algorithm 2: the vote against the slow way, the world's noise, and what its posterior is worth.
 
-use std::cell::Cell;
 use std::collections::BTreeMap;
-use std::rc::Rc;
 
+use host_sim::campaign::calibration::{Calibrated, Summary};
 use host_sim::campaign::ensemble::Campaign;
-use host_sim::campaign::noisy::{NoisyCampaign, Summary, limit};
 use host_sim::campaign::standard_field;
-use host_sim::mission::definition::{Algorithm, CAPACITY, HYPOTHESES, Known, Table};
+use host_sim::mission::algorithm::Algorithm;
+use host_sim::mission::definition::{CAPACITY, HYPOTHESES, Table};
 use host_sim::mission::recording::Recording;
+use host_sim::report::campaign as tables;
 use host_sim::report::trace;
-use host_sim::world::truth::{self, Extent, Flipped, NoiseModel, Probe};
+use host_sim::world::noise::{Extent, Flipped, NoiseModel, limit};
+use host_sim::world::robot::Ideal;
 use nalgebra::Point2;
-use planner_core::belief::hypotheses::Prior;
+use planner_core::belief::noise::{Noise, Reliability};
 use planner_core::belief::sample::{Label, Reading, Sample};
-use planner_core::belief::weight::Reliability;
-use planner_core::geometry::direction::Heading;
+use planner_core::belief::weight::Prior;
+use planner_core::geometry::heading::Heading;
 use planner_core::geometry::lattice::{LIMIT, Site};
-use planner_core::motion::action::Action;
+use planner_core::motion::action::{Action, Control};
 use planner_core::motion::dynamics::Pose;
 use planner_core::motion::unicycle::Unicycle;
 use planner_core::planner::config::Crossing;
-use planner_core::planner::scc::{Noise, Policy, Scc};
-use planner_core::planner::{Plan, Planner, Stage};
-use planner_core::robot::hal::LabelSensor;
+use planner_core::planner::scc::{Policy, Scc};
+use planner_core::planner::{Motion, Plan, Planner, Stage};
+use planner_core::robot::body::Body as _;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -32,10 +33,10 @@ type Planner64 = Scc<Unicycle, CAPACITY, HYPOTHESES>;
 
 /// The election the slow way: every hypothesis tries every action, and all votes are summed.
 fn slow_election(planner: &Planner64, pose: Pose) -> Option<Action> {
-    let weights = || planner.hypotheses().iter().map(|h| h.weight().exp());
+    let weights = || planner.belief().iter().map(|h| h.weight().exp());
     let most = weights().fold(0.0, f64::max);
     let mut sums: BTreeMap<Action, u64> = BTreeMap::new();
-    for (hypothesis, weight) in planner.hypotheses().iter().zip(weights()) {
+    for (hypothesis, weight) in planner.belief().iter().zip(weights()) {
         let votes = (weight / most * f64::from(1 << 20)).round() as u64;
         let search = planner.problem(hypothesis).solve_exhaustively(&Unicycle::paper(), pose);
         if let (Some(best), 1..) = (search.best, votes) {
@@ -58,10 +59,9 @@ fn a_vote_is_the_sum_over_hypotheses_computed_the_slow_way() {
             (mission.policy, mission.prior) = (policy, prior);
             let (mut from, mut before) = (mission.start, mission.table());
             let mut elections = 0;
-            let end = mission.run(|step, known| {
+            let flown = mission.fly(|step, belief| {
                 let planner = |table: Table| -> Planner64 {
-                    let (config, noise) = (mission.config, mission.noise_told());
-                    Scc::new(config, noise, policy, Unicycle::paper(), table)
+                    Scc::new(mission.config, policy, Unicycle::paper(), table)
                 };
                 // From where it was and, facing elsewhere, where it was not.
                 let elsewhere = Pose { heading: Heading(from.heading.0.wrapping_mul(77)), ..from };
@@ -81,10 +81,10 @@ fn a_vote_is_the_sum_over_hypotheses_computed_the_slow_way() {
                     }
                     elections += 1;
                 }
-                let Known::Hypotheses(table) = known else { panic!("noisy") };
+                let table = belief.hypotheses().expect("labels may err");
                 (from, before) = (step.pose, table.clone());
             });
-            assert!(end.is_ok());
+            assert!(flown.is_ok());
             elections
         })
         .sum();
@@ -104,44 +104,54 @@ fn problems_alternate_by_labels_and_the_agent_moves_on() {
             mission.noise = Some(NoiseModel { p: 0.8, extent: Extent::Band(3.0) });
             mission.policy = policy;
             let mut labels = 0;
-            let end = mission.run(|step, _| {
+            let flown = mission.fly(|step, _| {
                 assert_eq!(step.motion.stage, Some(names[labels % 2]));
                 // A place is left before the next sample.
                 assert!(step.reading.is_none() || step.motion.control.v > 0.0);
                 labels += usize::from(step.reading.is_some());
             });
-            assert!(end.is_ok() && labels > 20);
+            assert!(flown.is_ok() && labels > 20);
         }
     }
 }
 
+/// A motion that wants a label.
+const SOME_MOTION: Motion = Motion {
+    stage: None,
+    recovery: None,
+    action: Action(0),
+    control: Control { v: 0.0, w: 0.0 },
+    target: Pose { site: Site::ORIGIN, heading: Heading(0) },
+    wants_label: true,
+    examined: 0,
+    proven: true,
+};
+
 #[test]
 fn the_world_flips_labels_where_it_should_and_as_often() {
     let mission = standard_field::standard(1, 2, Algorithm::Scc, 1);
-    let truth = mission.truth;
-    let given = mission.space.samples();
+    let world = mission.world;
+    let given = mission.given.samples();
     for extent in [Extent::OutsideBalls(3.0), Extent::Band(2.0), Extent::OutsideBalls(0.0)] {
         let model = NoiseModel { p: 0.7, extent };
         let noisy =
             host_sim::mission::definition::Mission { noise: Some(model), ..mission.clone() };
-        let pose = Rc::new(Cell::new(mission.start));
-        let sensor = Probe { truth, pose: pose.clone() };
-        let rng = ChaCha8Rng::seed_from_u64(4);
+        let (body, rng) = (Ideal { world }, ChaCha8Rng::seed_from_u64(4));
         let noise = noisy.noise_told();
-        let mut sensor =
-            Flipped { sensor, model, truth, noise, given: given.to_vec(), pose: pose.clone(), rng };
+        let mut robot = Flipped { body, model, world, given: given.to_vec(), rng };
         let mut places = ChaCha8Rng::seed_from_u64(5);
         let (mut exposed, mut flipped) = (0, 0);
         for _ in 0..40_000 {
             let mut metres = || places.random_range(0.0..standard_field::SIDE_M);
             let at = Point2::new(metres(), metres());
             let site = Site::try_from(at).expect("near");
-            pose.set(Pose { site, ..mission.start });
-            let wrong = sensor.read() != Ok(truth::reading(&truth, site));
+            let mut pose = mission.start;
+            let motion = Motion { target: Pose { site, ..pose }, ..SOME_MOTION };
+            let wrong = robot.perform(&motion, &mut pose) != Ok(Some(world.reading(site)));
             let near = |s: &Sample| (Point2::<f64>::from(s.site) - at).norm();
             let safe = match extent {
                 Extent::OutsideBalls(radius) => given.iter().any(|s| near(s) < radius - 1e-3),
-                Extent::Band(half) => truth.distance(at).abs() > half + 1e-3,
+                Extent::Band(half) => world.distance(site).abs() > half + 1e-3,
             };
             assert!(!(safe && wrong), "{extent:?}: a flip at {at}");
             if !safe {
@@ -189,7 +199,7 @@ fn a_noisy_mission_comes_out_the_same_again_byte_for_byte() {
             let trace = || {
                 let mut mission = standard_field::standard(3, number, algorithm, 20);
                 mission.noise = Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.5) });
-                trace::lines(&Recording::of(&mission).expect("trusted labels are true"))
+                trace::lines(&Recording::of(&mission).expect("trusted labels are true").results)
             };
             assert_eq!(trace(), trace(), "field {number}");
         }
@@ -200,23 +210,31 @@ fn a_noisy_mission_comes_out_the_same_again_byte_for_byte() {
 fn perfect_labels_lead_as_in_the_noiseless_case() {
     for number in 0..20 {
         let mission = standard_field::standard(6, number, Algorithm::Scc, 15); // p = 1: no noise
-        let end = mission.run(|_, known| {
-            let Known::Hypotheses(table) = known else { panic!("a table") };
+        let flown = mission.fly(|_, belief| {
+            let table = belief.hypotheses().expect("a table");
             assert_eq!(table.iter().len(), 1);
             let held = table.iter().next().expect("one");
-            assert!(truth::agrees(&mission.truth, table.candidates(held)));
+            assert_eq!(mission.world.is_among(table.lines(held)), Some(true));
         });
-        assert!(end.is_ok());
+        assert!(flown.is_ok());
     }
 }
 
 fn campaign(algorithm: Algorithm, fields: u64, steps: u32, policy: Policy) -> Summary {
-    let (crossing, following) = (Crossing::default(), algorithm.following());
-    let fields = Campaign { algorithm, fields, steps, seed: 1, crossing, following };
-    let (p, trusted_radius, prior) = (0.7, 0.0, Prior::Area);
-    let summary = NoisyCampaign { fields, p, trusted_radius, policy, prior }.run();
-    let summary = summary.expect("no trusted label");
-    println!("{}", summary.report());
+    let campaign = Campaign {
+        algorithm,
+        fields,
+        steps,
+        seed: 1,
+        crossing: Crossing::default(),
+        following: algorithm.following(),
+        noise: Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.0) }),
+        policy,
+        prior: Prior::Area,
+    };
+    let ensemble = campaign.run(&Calibrated).expect("no trusted label");
+    let summary = Summary::of(&campaign, ensemble);
+    println!("{}", tables::calibration(&summary));
     summary
 }
 

@@ -3,12 +3,14 @@
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 use host_sim::campaign::standard_field;
-use host_sim::mission::definition::{Algorithm, CAPACITY, Known};
-use planner_core::belief::candidates::Certainty;
+use host_sim::mission::algorithm::Algorithm;
+use host_sim::mission::definition::CAPACITY;
+use planner_core::belief::consistent_lines::Certainty;
 use planner_core::belief::sample::{Label, Sample};
 use planner_core::belief::version_space::VersionSpace;
+use planner_core::geometry::arc::SlopeArc;
 use planner_core::geometry::area::Area;
-use planner_core::geometry::direction::{Arc, Heading};
+use planner_core::geometry::heading::Heading;
 use planner_core::geometry::lattice::{Site, Vector};
 use planner_core::motion::dynamics::{Dynamics, Pose};
 use planner_core::motion::holonomic::Holonomic;
@@ -17,7 +19,8 @@ use planner_core::planner::cfc::{self, Cfc};
 use planner_core::planner::config::{Config, Crossing};
 use planner_core::planner::{Plan, Planner as _, StopReason};
 use planner_core::search::direction_rule::ArcRule;
-use planner_core::search::problem::{LOOKS, Problem, Search, Varrho};
+use planner_core::search::objective::{LOOKS, Varrho};
+use planner_core::search::problem::{Problem, Solution};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -38,14 +41,14 @@ fn check<D: Dynamics, const N: usize>(
         ArcRule { inside: Some(arc), outside: None },
         ArcRule { inside: Some(arc.middle()), outside: None },
         ArcRule {
-            inside: Some(Arc::tracking(Vector::new(3, 5_000).expect("small"))),
+            inside: Some(SlopeArc::tracking(Vector::new(3, 5_000).expect("small"))),
             outside: Some(arc),
         },
         ArcRule::default(),
     ];
     let (mut states, mut examined) = (0, 0);
     for rule in rules {
-        let problem = Problem { ground: space.candidates(), area, varrho, rule };
+        let problem = Problem { lines: space.lines(), area, varrho, rule };
         let quick = problem.solve(dynamics, pose);
         let slow = problem.solve_exhaustively(dynamics, pose);
         assert_eq!(quick.best, slow.best, "{context}: {rule:?} from {pose:?} in {space:?}");
@@ -64,10 +67,10 @@ fn equals_exhaustive_search_along_missions() {
         let mut rng = ChaCha8Rng::seed_from_u64(number);
         let (area, unicycle) = (mission.config.area, Unicycle::paper());
         let mut from = mission.start;
-        let mut space_before = mission.space.clone();
+        let mut space_before = mission.given.clone();
         let mut step = 0;
-        let end = mission.run(|taken, known| {
-            let Known::Lines(space) = known else { return };
+        let flown = mission.fly(|taken, belief| {
+            let space = belief.version_space().expect("labels are true");
             step += 1;
             let (n, e) = check(
                 &unicycle,
@@ -87,7 +90,7 @@ fn equals_exhaustive_search_along_missions() {
                 from.heading
             };
         });
-        assert!(end.is_ok());
+        assert!(flown.is_ok());
     });
     let (states, examined): (u64, u64) = (states.into_inner(), examined.into_inner());
     let mean = examined as f64 / states as f64;
@@ -241,7 +244,7 @@ fn a_plan_has_so_many_looks_and_says_when_they_do_not_do() {
     let best = problem.solve_exhaustively(&fine, beside).best;
     let mut before = None;
     for looks in [0, 1, 10, 100, 1_000, 10_000, 100_000] {
-        let Search { best: found, examined, proven } = problem.solve_within(looks, &fine, beside);
+        let Solution { best: found, examined, proven } = problem.solve_within(looks, &fine, beside);
         let objective = found.map(|it| it.objective);
         assert!(examined <= looks && objective >= before, "{looks} looks: {found:?}");
         assert!(!proven || found == best, "{looks} looks: {found:?}");
@@ -251,7 +254,7 @@ fn a_plan_has_so_many_looks_and_says_when_they_do_not_do() {
     // A coarser grid is looked at to the end.
     let coarse = Unicycle::new(100, 1.57, 20, 1).expect("a grid");
     let Plan::Move(motion) = planner(coarse).plan(pose(700, 1)) else { panic!("it can turn") };
-    assert!(motion.proven && !motion.samples());
+    assert!(motion.proven && !motion.wants_label);
 }
 
 #[test]

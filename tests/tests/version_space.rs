@@ -1,8 +1,9 @@
 //! The version space against its slow twin: every line through two samples that agrees with all.
 
-use planner_core::belief::candidates::Certainty;
+use planner_core::belief::Refused;
+use planner_core::belief::consistent_lines::Certainty;
 use planner_core::belief::sample::{Label, Reading, Sample};
-use planner_core::belief::version_space::{NoVersionSpace, Refused, VersionSpace};
+use planner_core::belief::version_space::{NoVersionSpace, VersionSpace};
 use planner_core::geometry::lattice::Site;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -145,7 +146,7 @@ proptest! {
                 });
                 prop_assert!(samples.iter().all(collinear));
             }
-            Err(NoVersionSpace::TooMany) => prop_assert!(false, "28 fit in 32"),
+            Err(other) => prop_assert!(false, "{other}: 28 fit in 32"),
         }
     }
 
@@ -194,7 +195,7 @@ proptest! {
         let on = on.filter(|&(x, z, _)| read(x, z) == Reading::Boundary).take(20);
         for (x, z, coin) in on.chain(sites) {
             let either = if coin { Label::Positive } else { Label::Negative };
-            let observed = space.observe(clamped(scale * x, scale * z), read(x, z), either);
+            let observed = space.take(clamped(scale * x, scale * z), read(x, z), either);
             prop_assert!(observed.is_ok(), "({x}, {z}): {observed:?} in {space:?}");
         }
     }

@@ -1,24 +1,22 @@
-//! Campaigns: many standard fields on all cores, and the table of what came of them.
+//! A campaign: one mission in each of many standard fields, on all cores, and what is measured of it.
 
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
 
 use anyhow::{Context as _, Result};
 use indicatif::{ParallelProgressIterator as _, ProgressBar, ProgressStyle};
-use planner_core::belief::estimate::{self, Estimates};
-use planner_core::belief::version_space::VersionSpace;
-use planner_core::geometry::line::Line;
-use planner_core::motion::dynamics::Dynamics as _;
-use planner_core::motion::unicycle::Unicycle;
+use planner_core::belief::weight::Prior;
 use planner_core::planner::config::{Crossing, Following};
+use planner_core::planner::scc::Policy;
+use planner_core::robot::agent::Step;
 use rayon::prelude::*;
-use serde::Serialize;
 
 use crate::campaign::standard_field;
-use crate::mission::definition::{Algorithm, CAPACITY, Known, Mission};
-use crate::mission::recording::{cost, recovery_name};
-use crate::output::file;
-use crate::world::polygon::misclassified;
+use crate::mission::algorithm::Algorithm;
+use crate::mission::definition::Mission;
+use crate::mission::flight::Flown;
+use crate::mission::read_out::ReadOut;
+use crate::mission::results::{cost, recovery_name};
+use crate::world::noise::NoiseModel;
 
 /// What to run.
 #[derive(Clone, Copy, Debug)]
@@ -35,314 +33,146 @@ pub struct Campaign {
     pub crossing: Crossing,
     /// How P2 follows the boundary.
     pub following: Following,
+    /// How labels are flipped; `None` when they are true.
+    pub noise: Option<NoiseModel>,
+    /// How hypotheses choose an action together.
+    pub policy: Policy,
+    /// How they are weighed in that.
+    pub prior: Prior,
 }
 
-/// Steps at which missions are compared.
-const MARKS: [u32; 8] = [1, 2, 5, 10, 20, 30, 40, 60];
-
-/// What was known after some steps of one mission. A mission that ended earlier counts with what it
-/// knew at its end.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
-struct Mark {
-    field: u64,
-    step: u32,
-    bits: f64,
-    centre_deg: f64,
-    maximum_margin_deg: f64,
-    bisector_deg: f64,
-    centre_misclassified: f64,
-    maximum_margin_misclassified: f64,
-    bisector_misclassified: f64,
-    control_cost: f64,
-    metres: f64,
-}
-
-/// One mission's marks and how it went.
-struct Outcome {
-    marks: Vec<Mark>,
-    end: &'static str,
-    examined: u64,
-    plans: u64,
-    most_examined: u32,
-    recoveries: BTreeMap<&'static str, u64>,
-}
-
-/// Median, 90th percentile and worst.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Spread {
-    /// Half are at most this.
-    pub median: f64,
-    /// Nine in ten are at most this.
-    pub p90: f64,
-    /// The largest.
-    pub worst: f64,
-}
-
-impl Spread {
-    pub(crate) fn of(values: impl Iterator<Item = f64>) -> Self {
-        let mut values: Vec<_> = values.collect();
-        values.sort_by(f64::total_cmp);
-        // Nearest rank: the smallest value that at least this share do not exceed.
-        let rank = |tenths: usize| values[(values.len() * tenths).div_ceil(10).max(1) - 1];
-        Self { median: rank(5), p90: rank(9), worst: rank(10) }
-    }
-}
-
-/// The ensemble after some steps.
-#[derive(Clone, Debug, Serialize)]
-pub struct Row {
-    /// After how many steps.
-    pub step: u32,
-    /// Mean bits learnt, per step.
-    pub bits_per_step: f64,
-    /// Slope error of the centre, degrees.
-    pub centre_deg: Spread,
-    /// Slope error of the maximum margin, degrees.
-    pub maximum_margin_deg: Spread,
-    /// Slope error of the paper's bisector, degrees; 90 where there is none.
-    pub bisector_deg: Spread,
-    /// Share of the area the centre labels wrongly.
-    pub centre_misclassified: Spread,
-    /// Share of the area the maximum margin labels wrongly.
-    pub maximum_margin_misclassified: Spread,
-    /// Share of the area the paper's bisector labels wrongly; 1/2 where there is none.
-    pub bisector_misclassified: Spread,
-    /// Mean control cost so far.
+/// How far a mission has come.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Progress {
+    /// The field's number.
+    pub field: u64,
+    /// Steps made.
+    pub steps: u32,
+    /// Labels taken in.
+    pub labels: u32,
+    /// Control cost.
     pub control_cost: f64,
-    /// Mean metres travelled so far.
+    /// Metres travelled.
     pub metres: f64,
 }
 
-/// What a campaign came to.
-#[derive(Clone, Debug, Serialize)]
-pub struct Summary {
-    /// Who planned.
-    pub algorithm: Algorithm,
-    /// Number of standard fields.
-    pub fields: u64,
-    /// Seed of the ensemble.
-    pub seed: u64,
-    /// The ensemble as steps go by.
-    pub rows: Vec<Row>,
-    /// How many missions ended for which reason.
+/// What is measured of every mission of a campaign.
+pub trait Measure: Sync {
+    /// What is taken down at some stage of a mission.
+    type Mark: Send;
+
+    /// The stages at which missions of so many steps are compared, in rising order.
+    fn stages(&self, steps: u32) -> Vec<u32>;
+
+    /// The stage that a mission has come to.
+    fn stage(&self, progress: &Progress) -> u32;
+
+    /// What is taken down when a mission comes to one of these stages.
+    fn mark(&self, mission: &Mission, belief: &dyn ReadOut, progress: &Progress) -> Self::Mark;
+
+    /// How far a mission that ended is to be taken to have come at a stage that it did not reach;
+    /// `None` if it does not count there.
+    fn held(&self, end: &Progress, stage: u32) -> Option<Progress>;
+}
+
+/// What came of a campaign.
+#[derive(Clone, Debug)]
+pub struct Ensemble<M> {
+    /// What was taken down of each mission.
+    pub marks: Vec<Vec<M>>,
+    /// How the missions went.
+    pub tally: Tally,
+}
+
+/// How missions went.
+#[derive(Clone, Debug, Default)]
+pub struct Tally {
+    /// How many ended for which reason.
     pub ends: BTreeMap<&'static str, u64>,
     /// How many steps climbed to which rung of the recovery ladder.
     pub recoveries: BTreeMap<&'static str, u64>,
     /// Motions planned.
     pub plans: u64,
-    /// Mean number of actions whose position a plan looked at.
-    pub mean_examined: f64,
+    /// Actions whose position they looked at.
+    pub examined: u64,
     /// The most that one plan looked at.
     pub most_examined: u32,
-    /// The size of the action set.
-    pub actions: u32,
-    #[serde(skip)]
-    marks: Vec<Mark>,
+}
+
+impl Tally {
+    fn count(&mut self, step: &Step) {
+        self.plans += 1;
+        self.examined += u64::from(step.motion.examined);
+        self.most_examined = self.most_examined.max(step.motion.examined);
+        if let Some(recovery) = step.motion.recovery {
+            *self.recoveries.entry(recovery_name(recovery)).or_default() += 1;
+        }
+    }
+
+    fn add(&mut self, other: Self) {
+        for (mine, theirs) in
+            [(&mut self.ends, other.ends), (&mut self.recoveries, other.recoveries)]
+        {
+            for (name, count) in theirs {
+                *mine.entry(name).or_default() += count;
+            }
+        }
+        self.plans += other.plans;
+        self.examined += other.examined;
+        self.most_examined = self.most_examined.max(other.most_examined);
+    }
 }
 
 impl Campaign {
     /// Runs all fields on all cores, with a progress bar on a terminal.
     ///
     /// # Errors
-    /// Names the field in which a sample contradicted what was known: never, as labels are true.
-    pub fn run(&self) -> Result<Summary> {
-        let outcomes = on_all_cores(self.fields, |number| self.outcome(number))?;
-        Ok(self.summary(&outcomes))
+    /// Names the field in which a sample contradicted what was known: never, as labels are true where
+    /// they are trusted.
+    pub fn run<M: Measure>(&self, measure: &M) -> Result<Ensemble<M::Mark>> {
+        let style = "{bar:40} {pos}/{len} fields  {per_sec}  {eta} left";
+        let bar = ProgressBar::new(self.fields).with_style(ProgressStyle::with_template(style)?);
+        let of_each: Vec<_> = (0..self.fields)
+            .into_par_iter()
+            .progress_with(bar.clone())
+            .map(|number| self.measured(measure, number).with_context(|| format!("field {number}")))
+            .collect::<Result<_>>()?;
+        bar.finish_and_clear();
+        let mut ensemble = Ensemble { marks: Vec::new(), tally: Tally::default() };
+        for (marks, tally) in of_each {
+            ensemble.marks.push(marks);
+            ensemble.tally.add(tally);
+        }
+        Ok(ensemble)
     }
 
-    fn marks(&self) -> impl Iterator<Item = u32> {
-        let steps = self.steps;
-        let last = (!MARKS.contains(&steps)).then_some(steps);
-        MARKS.into_iter().filter(move |&mark| mark <= steps).chain(last)
-    }
-
-    fn outcome(&self, number: u64) -> Result<Outcome> {
+    /// The mission in the field with this number.
+    fn mission(&self, number: u64) -> Mission {
         let mut mission = standard_field::standard(self.seed, number, self.algorithm, self.steps);
         (mission.config.crossing, mission.config.following) = (self.crossing, self.following);
-        let known = |space: &VersionSpace<CAPACITY>, so_far: Mark| mark(&mission, space, so_far);
-        let mut now = known(&mission.space, Mark { field: number, ..Mark::default() });
-        let (mut marks, mut due) = (Vec::new(), self.marks().peekable());
-        let mut recoveries = BTreeMap::new();
-        let (mut examined, mut most_examined) = (0, 0);
-        let end = mission.run(|taken, now_known| {
-            let Known::Lines(space) = now_known else { return };
-            now.step += 1;
-            now.control_cost += cost(taken);
-            now.metres += f64::from(taken.motion.control.v);
-            now = known(space, now);
-            if due.next_if_eq(&now.step).is_some() {
-                marks.push(now);
+        (mission.noise, mission.policy, mission.prior) = (self.noise, self.policy, self.prior);
+        mission
+    }
+
+    fn measured<M: Measure>(&self, measure: &M, number: u64) -> Result<(Vec<M::Mark>, Tally)> {
+        let mission = self.mission(number);
+        let given = mission.given.samples().len();
+        let (mut marks, mut tally) = (Vec::new(), Tally::default());
+        let mut now = Progress { field: number, ..Progress::default() };
+        let mut stages = measure.stages(self.steps).into_iter().peekable();
+        let Flown { ending, belief } = mission.fly(|step, belief| {
+            now.steps += 1;
+            now.labels = (belief.samples().len() - given) as u32;
+            now.control_cost += cost(step.motion.control);
+            now.metres += f64::from(step.motion.control.v);
+            if stages.next_if_eq(&measure.stage(&now)).is_some() {
+                marks.push(measure.mark(&mission, belief, &now));
             }
-            examined += u64::from(taken.motion.examined);
-            most_examined = most_examined.max(taken.motion.examined);
-            if let Some(recovery) = taken.motion.recovery {
-                *recoveries.entry(recovery_name(recovery)).or_default() += 1;
-            }
+            tally.count(step);
         })?;
-        let plans = u64::from(now.step);
-        marks.extend(due.map(|step| Mark { step, ..now }));
-        Ok(Outcome { marks, end: end.name(), examined, plans, most_examined, recoveries })
-    }
-
-    fn summary(&self, outcomes: &[Outcome]) -> Summary {
-        let count = |pick: fn(&Outcome) -> &BTreeMap<&'static str, u64>| {
-            outcomes.iter().flat_map(pick).fold(BTreeMap::new(), |mut all, (&name, n)| {
-                *all.entry(name).or_default() += n;
-                all
-            })
-        };
-        let mut ends = BTreeMap::new();
-        for outcome in outcomes {
-            *ends.entry(outcome.end).or_default() += 1;
-        }
-        let plans: u64 = outcomes.iter().map(|o| o.plans).sum();
-        let examined: u64 = outcomes.iter().map(|o| o.examined).sum();
-        Summary {
-            algorithm: self.algorithm,
-            fields: self.fields,
-            seed: self.seed,
-            rows: (0..self.marks().count())
-                .map(|i| row(&outcomes.iter().map(|o| o.marks[i]).collect::<Vec<_>>()))
-                .collect(),
-            ends,
-            recoveries: count(|o| &o.recoveries),
-            plans,
-            mean_examined: examined as f64 / plans as f64,
-            most_examined: outcomes.iter().map(|o| o.most_examined).max().unwrap_or(0),
-            actions: Unicycle::paper().grid().actions(),
-            marks: outcomes.iter().flat_map(|o| o.marks.iter().copied()).collect(),
-        }
-    }
-}
-
-/// What comes of each field, on all cores, with a progress bar on a terminal.
-///
-/// # Errors
-/// Names the field whose mission failed.
-pub(crate) fn on_all_cores<T: Send>(
-    fields: u64,
-    outcome: impl Fn(u64) -> Result<T> + Sync,
-) -> Result<Vec<T>> {
-    let style = "{bar:40} {pos}/{len} fields  {per_sec}  {eta} left";
-    let bar = ProgressBar::new(fields).with_style(ProgressStyle::with_template(style)?);
-    let outcomes = (0..fields)
-        .into_par_iter()
-        .progress_with(bar.clone())
-        .map(|number| outcome(number).with_context(|| format!("field {number}")))
-        .collect();
-    bar.finish_and_clear();
-    outcomes
-}
-
-fn mark(mission: &Mission, space: &VersionSpace<CAPACITY>, so_far: Mark) -> Mark {
-    let estimates = Estimates::of(space);
-    let errors = |estimate: Option<Line>| match estimate {
-        Some(line) => (
-            line.angle_to_deg(&mission.truth),
-            misclassified(mission.config.area, &mission.truth, &line),
-        ),
-        None => (90.0, 0.5),
-    };
-    let (centre_deg, centre_misclassified) = errors(estimates.centre);
-    let (maximum_margin_deg, maximum_margin_misclassified) = errors(estimates.maximum_margin);
-    let (bisector_deg, bisector_misclassified) = errors(estimates.bisector);
-    Mark {
-        bits: libm::log2(
-            estimate::area(mission.space.candidates()) / estimate::area(space.candidates()),
-        ),
-        centre_deg,
-        maximum_margin_deg,
-        bisector_deg,
-        centre_misclassified,
-        maximum_margin_misclassified,
-        bisector_misclassified,
-        ..so_far
-    }
-}
-
-fn row(marks: &[Mark]) -> Row {
-    let spread = |pick: fn(&Mark) -> f64| Spread::of(marks.iter().map(pick));
-    let n = marks.len() as f64;
-    let mean = |pick: fn(&Mark) -> f64| marks.iter().map(pick).sum::<f64>() / n;
-    let step = marks.first().map_or(0, |m| m.step);
-    Row {
-        step,
-        bits_per_step: mean(|m| m.bits) / f64::from(step),
-        centre_deg: spread(|m| m.centre_deg),
-        maximum_margin_deg: spread(|m| m.maximum_margin_deg),
-        bisector_deg: spread(|m| m.bisector_deg),
-        centre_misclassified: spread(|m| m.centre_misclassified),
-        maximum_margin_misclassified: spread(|m| m.maximum_margin_misclassified),
-        bisector_misclassified: spread(|m| m.bisector_misclassified),
-        control_cost: mean(|m| m.control_cost),
-        metres: mean(|m| m.metres),
-    }
-}
-
-impl Summary {
-    /// The tables for people.
-    pub fn report(&self) -> String {
-        let mut text = String::new();
-        // Writing to a string cannot fail.
-        let _ = self.write_report(&mut text);
-        text
-    }
-
-    fn write_report(&self, text: &mut String) -> std::fmt::Result {
-        let who = self.algorithm.title();
-        writeln!(text, "{who}, {} standard fields, seed {}", self.fields, self.seed)?;
-        writeln!(text, "\nSlope error, degrees: median, 90th percentile, worst\n")?;
-        let titles = ["centre", "maximum margin", "bisector (paper)"];
-        let [a, b, c] = titles;
-        writeln!(text, "{:>4} {:>9}  {a:^26}  {b:^26}  {c:^26}", "step", "bits/step")?;
-        for row in &self.rows {
-            let cell = |s: Spread| format!("{:>8.3} {:>8.3} {:>8.3}", s.median, s.p90, s.worst);
-            let (step, bits) = (row.step, row.bits_per_step);
-            let spreads = [row.centre_deg, row.maximum_margin_deg, row.bisector_deg].map(cell);
-            writeln!(text, "{step:>4} {bits:>9.3}  {}", spreads.join("  "))?;
-        }
-        writeln!(
-            text,
-            "\nMisclassified area, per cent: median, 90th percentile, worst; means so far\n"
-        )?;
-        writeln!(text, "{:>4} {:>9}  {a:^26}  {b:^26}  {c:^26}  {:>8}", "step", "cost", "metres")?;
-        for row in &self.rows {
-            let cell = |s: Spread| {
-                let [median, p90, worst] = [s.median, s.p90, s.worst].map(|share| 100.0 * share);
-                format!("{median:>8.4} {p90:>8.4} {worst:>8.4}")
-            };
-            let spreads = [
-                row.centre_misclassified,
-                row.maximum_margin_misclassified,
-                row.bisector_misclassified,
-            ]
-            .map(cell)
-            .join("  ");
-            let (step, cost, metres) = (row.step, row.control_cost, row.metres);
-            writeln!(text, "{step:>4} {cost:>9.1}  {spreads}  {metres:>8.1}")?;
-        }
-        let counts = |counts: &BTreeMap<&str, u64>| {
-            let each: Vec<_> = counts.iter().map(|(name, n)| format!("{name} {n}")).collect();
-            if each.is_empty() { "none".into() } else { each.join(", ") }
-        };
-        writeln!(text, "\nEnded by: {}", counts(&self.ends))?;
-        writeln!(text, "Recoveries in {} steps: {}", self.plans, counts(&self.recoveries))?;
-        if self.algorithm != Algorithm::Random {
-            let share = 100.0 * self.mean_examined / f64::from(self.actions);
-            writeln!(
-                text,
-                "Actions examined per plan: mean {:.1} of {} ({share:.2} %), at most {}",
-                self.mean_examined, self.actions, self.most_examined
-            )?;
-        }
-        Ok(())
-    }
-
-    /// A row for each field and mark, as CSV.
-    ///
-    /// # Errors
-    /// When a row could not be written.
-    pub fn csv(&self) -> Result<String> {
-        file::csv(&self.marks)
+        let held = stages.filter_map(|stage| measure.held(&now, stage));
+        marks.extend(held.map(|progress| measure.mark(&mission, &*belief, &progress)));
+        tally.ends.insert(ending.name(), 1);
+        Ok((marks, tally))
     }
 }

@@ -9,22 +9,23 @@
 //!    d(angle) d(offset): by rejection, over lines that meet the area's circumscribed disc.
 
 use nalgebra::{Point2, Vector2};
-use planner_core::belief::hypotheses::Prior;
 use planner_core::belief::sample::{Label, Reading, Sample};
 use planner_core::belief::version_space::VersionSpace;
+use planner_core::belief::weight::Prior;
 use planner_core::geometry::area::Area;
-use planner_core::geometry::direction::Heading;
+use planner_core::geometry::heading::Heading;
 use planner_core::geometry::lattice::Site;
 use planner_core::geometry::line::Line;
 use planner_core::motion::dynamics::Pose;
 use planner_core::planner::config::{Config, Crossing};
 use planner_core::planner::scc::Policy;
-use planner_core::search::problem::Varrho;
+use planner_core::search::objective::Varrho;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use crate::mission::definition::{Algorithm, Mission};
-use crate::world::truth;
+use crate::mission::algorithm::Algorithm;
+use crate::mission::definition::Mission;
+use crate::world::{World, reading};
 
 /// Side of the standard area, metres.
 pub const SIDE_M: f64 = 20.0;
@@ -54,7 +55,7 @@ pub fn standard(seed: u64, number: u64, algorithm: Algorithm, steps: u32) -> Mis
     rng.set_stream(number);
     let turn = |rng: &mut ChaCha8Rng| rng.random_range(0.0..std::f64::consts::TAU);
     let area = area();
-    let (oracle, space) = loop {
+    let (oracle, given) = loop {
         let middle = Point2::new(rng.random_range(6.0..14.0), rng.random_range(6.0..14.0));
         let along = unit(turn(&mut rng));
         let left = Vector2::new(-along.y, along.x);
@@ -66,9 +67,9 @@ pub fn standard(seed: u64, number: u64, algorithm: Algorithm, steps: u32) -> Mis
             Sample { site: site.expect("metres from the area"), label }
         });
         if oracle.iter().all(|s| area.contains(s.site))
-            && let Ok(space) = VersionSpace::new(&oracle)
+            && let Ok(given) = VersionSpace::new(&oracle)
         {
-            break (oracle, space);
+            break (oracle, given);
         }
     };
     let heading = Heading::from_radians(turn(&mut rng)).expect("an angle");
@@ -77,9 +78,8 @@ pub fn standard(seed: u64, number: u64, algorithm: Algorithm, steps: u32) -> Mis
         let radius = half * std::f64::consts::SQRT_2;
         let normal = unit(turn(&mut rng));
         let point = Point2::new(half, half) + normal * rng.random_range(-radius..radius);
-        let agrees = |line: &Line| {
-            oracle.iter().all(|s| truth::reading(line, s.site) == Reading::Side(s.label))
-        };
+        let agrees =
+            |line: &Line| oracle.iter().all(|s| reading(line, s.site) == Reading::Side(s.label));
         if let Some(line) = Line::through(point, normal).filter(agrees) {
             break line;
         }
@@ -95,8 +95,8 @@ pub fn standard(seed: u64, number: u64, algorithm: Algorithm, steps: u32) -> Mis
             following: algorithm.following(),
         },
         start: Pose { site: oracle[0].site, heading },
-        truth,
-        space,
+        world: World::divided_by(truth),
+        given,
         noise: None,
         policy: Policy::default(),
         prior: Prior::default(),

@@ -2,12 +2,10 @@
 
 use std::path::PathBuf;
 
-use anyhow::Result;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use crate::cli::commands;
 use crate::hil::faults::Faults;
-use crate::mission::definition::Algorithm;
+use crate::mission::algorithm::Algorithm;
 use crate::mission::names::{CrossingName, FollowingName, PolicyName, PriorName};
 
 /// Simulates a robot that finds an unknown straight boundary from few samples.
@@ -17,7 +15,7 @@ use crate::mission::names::{CrossingName, FollowingName, PolicyName, PriorName};
 #[command(version)]
 pub struct Cli {
     #[command(subcommand)]
-    command: Option<Command>,
+    pub(crate) command: Option<Command>,
 }
 
 #[derive(Debug, Subcommand)]
@@ -76,9 +74,9 @@ pub(crate) struct HilArgs {
     /// The serial port that a board is at
     #[arg(long, value_name = "DEVICE")]
     pub(crate) port: Option<String>,
-    /// The port's speed, bits per second
-    #[arg(long, default_value_t = 115_200)]
-    pub(crate) baud: u32,
+    /// The port's speed, bits per second [default: 115200]
+    #[arg(long, conflicts_with = "emulator")]
+    pub(crate) baud: Option<u32>,
     /// Emulate the firmware under QEMU instead
     #[arg(
         long,
@@ -164,20 +162,4 @@ pub(crate) struct CampaignArgs {
     /// What to print
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: Format,
-}
-
-impl Cli {
-    /// Does what was asked and returns what to print.
-    ///
-    /// # Errors
-    /// One message that names the culprit.
-    pub fn execute(self) -> Result<String> {
-        match self.command {
-            None => commands::paper(),
-            Some(Command::Run(args)) => commands::run(&args),
-            Some(Command::Replay(args)) => commands::replay(&args),
-            Some(Command::Campaign(args)) => commands::campaign(&args),
-            Some(Command::Hil(args)) => commands::hil(&args),
-        }
-    }
 }

@@ -8,28 +8,52 @@ use clap::ValueEnum as _;
 use clap::builder::PossibleValue;
 use planner_core::link::message::LabelSource;
 
+use crate::campaign::accuracy::{self, Accuracy};
+use crate::campaign::calibration::{self, Calibrated};
 use crate::campaign::ensemble::Campaign;
-use crate::campaign::noisy::NoisyCampaign;
-use crate::cli::arguments::{CampaignArgs, FIRMWARE, Format, HilArgs, Labels, ReplayArgs, Run};
+use crate::cli::arguments::{
+    CampaignArgs, Cli, Command, FIRMWARE, Format, HilArgs, Labels, ReplayArgs, Run,
+};
 use crate::hil::flight::{self, Chip, Timings};
 use crate::hil::player::Player;
-use crate::mission::definition::{Algorithm, Mission};
+use crate::mission::algorithm::Algorithm;
+use crate::mission::definition::Mission;
 use crate::mission::recording::Recording;
 use crate::mission::scenario::{self, Overrides};
-use crate::output::file::{Output, json, prepare, temporary};
+use crate::output::file::{Output, csv, json, prepare, temporary};
 use crate::replay::record::Replay;
-use crate::report::figure::Figure;
-use crate::report::{text, trace};
+use crate::report::picture::Picture;
+use crate::report::{campaign as tables, text, trace};
+use crate::world::noise::{Extent, NoiseModel};
 
 /// What the bare command tells first.
 pub const PAPER_TITLE: &str = "The paper's noiseless example (Section V), Algorithm 1";
 
 const PAPER_NOISY_TITLE: &str = "The paper's noisy example (Section V), Algorithm 2";
 
+/// The speed of the firmware's serial lines, bits per second.
+const BAUD: u32 = 115_200;
+
 const CANDIDATES_TITLE: &str = "Its labels do not tell which line is true: fewest violations";
 
+impl Cli {
+    /// Does what was asked and returns what to print.
+    ///
+    /// # Errors
+    /// One message that names the culprit.
+    pub fn execute(self) -> Result<String> {
+        match self.command {
+            None => paper(),
+            Some(Command::Run(args)) => run(&args),
+            Some(Command::Replay(args)) => replay(&args),
+            Some(Command::Campaign(args)) => campaign(&args),
+            Some(Command::Hil(args)) => hil(&args),
+        }
+    }
+}
+
 /// The paper's two examples, start to end.
-pub(crate) fn paper() -> Result<String> {
+fn paper() -> Result<String> {
     fs::create_dir_all("out").context("out: expected a place to make a folder")?;
     let names = ["paper-noiseless.svg", "paper-noisy.svg", "paper-noisy-candidates.svg"];
     let places = names.map(|name| (name, Path::new("out").join(name)));
@@ -40,30 +64,30 @@ pub(crate) fn paper() -> Result<String> {
     let noisy = example(scenario::PAPER_NOISY)?;
     // All is drawn before anything is written.
     let figures = [
-        Some(Figure::of(PAPER_TITLE, &noiseless)),
-        Some(Figure::of(PAPER_NOISY_TITLE, &noisy)),
-        Figure::of_candidates(CANDIDATES_TITLE, &noisy),
+        Some(Picture::of(PAPER_TITLE, &noiseless)),
+        Some(Picture::of(PAPER_NOISY_TITLE, &noisy)),
+        Picture::of_candidates(CANDIDATES_TITLE, &noisy),
     ];
-    let drawn = figures.iter().flatten().map(Figure::svg).collect::<Result<Vec<_>>>()?;
+    let drawn = figures.iter().flatten().map(Picture::svg).collect::<Result<Vec<_>>>()?;
     for (output, svg) in outputs.into_iter().flatten().zip(drawn) {
         output.write(svg)?;
     }
     Ok(format!(
         "{}\n\n{}\nFigures in out/: {}\n",
-        text::mission(PAPER_TITLE, &noiseless),
-        text::mission(PAPER_NOISY_TITLE, &noisy),
+        text::mission(PAPER_TITLE, &noiseless.results),
+        text::mission(PAPER_NOISY_TITLE, &noisy.results),
         names.join(", ")
     ))
 }
 
-pub(crate) fn run(args: &Run) -> Result<String> {
+fn run(args: &Run) -> Result<String> {
     let mission = args.mission()?;
     let outputs = prepare(&[args.input()], args.outputs())?;
     let recording = Recording::of(&mission).with_context(|| args.name())?;
     args.tell(outputs, &recording)
 }
 
-pub(crate) fn hil(args: &HilArgs) -> Result<String> {
+fn hil(args: &HilArgs) -> Result<String> {
     let mission = args.run.mission()?;
     let elf = args.emulator.clone().unwrap_or_else(|| FIRMWARE.into());
     let (chip, board) = match &args.port {
@@ -79,7 +103,7 @@ pub(crate) fn hil(args: &HilArgs) -> Result<String> {
     let log = log.map(|log| Ok::<_, anyhow::Error>((log, temporary(&env::temp_dir())?)));
     let log = log.transpose().context("expected a place for temporary files")?;
     let chip = match &args.port {
-        Some(device) => Chip::Board { device: device.clone(), baud: args.baud },
+        Some(device) => Chip::Board { device: device.clone(), baud: args.baud.unwrap_or(BAUD) },
         None => Chip::Emulated { elf, log: log.as_ref().map(|(_, said)| said.path().to_owned()) },
     };
     let labels = match args.labels {
@@ -142,11 +166,11 @@ impl Run {
     fn tell(&self, outputs: [Option<Output>; 3], recording: &Recording) -> Result<String> {
         let [trace, figure, candidates] = outputs;
         let name = self.name();
-        let lines = trace::lines(recording);
+        let lines = trace::lines(&recording.results);
         // All is drawn before anything is written.
-        let svg = figure.as_ref().map(|_| Figure::of(&name, recording).svg()).transpose()?;
-        let fewest = candidates.as_ref().and_then(|_| Figure::of_candidates(&name, recording));
-        let fewest = fewest.map(|figure| figure.svg()).transpose()?;
+        let svg = figure.as_ref().map(|_| Picture::of(&name, recording).svg()).transpose()?;
+        let fewest = candidates.as_ref().and_then(|_| Picture::of_candidates(&name, recording));
+        let fewest = fewest.map(|picture| picture.svg()).transpose()?;
         for (output, content) in
             [(trace, Some(&lines)), (figure, svg.as_ref()), (candidates, fewest.as_ref())]
         {
@@ -155,13 +179,13 @@ impl Run {
             }
         }
         Ok(match self.format {
-            Format::Text => text::mission(&name, recording),
+            Format::Text => text::mission(&name, &recording.results),
             Format::Json => lines,
         })
     }
 }
 
-pub(crate) fn replay(args: &ReplayArgs) -> Result<String> {
+fn replay(args: &ReplayArgs) -> Result<String> {
     let [figure] =
         prepare(&[("the samples", &args.samples)], [("--figure", args.figure.as_deref())])?;
     let replay = Replay::read(&args.samples)?;
@@ -174,7 +198,7 @@ pub(crate) fn replay(args: &ReplayArgs) -> Result<String> {
     })
 }
 
-pub(crate) fn campaign(args: &CampaignArgs) -> Result<String> {
+fn campaign(args: &CampaignArgs) -> Result<String> {
     const ORACLE: usize = 4;
     scenario::check_steps("--steps", args.steps, ORACLE)?;
     let p = args.p.unwrap_or(if args.algorithm == Algorithm::Scc { 0.7 } else { 1.0 });
@@ -183,6 +207,8 @@ pub(crate) fn campaign(args: &CampaignArgs) -> Result<String> {
     let radius = args.trusted_radius.unwrap_or_default();
     let trusted_radius = scenario::trusted("--trusted-radius", radius)?;
     let [output] = prepare(&[], [("--csv", args.csv.as_deref())])?;
+    let weighs = args.algorithm.weighs(p < 1.0);
+    let extent = Extent::OutsideBalls(trusted_radius);
     let campaign = Campaign {
         algorithm: args.algorithm,
         fields: args.fields,
@@ -190,16 +216,16 @@ pub(crate) fn campaign(args: &CampaignArgs) -> Result<String> {
         seed: args.seed,
         crossing: args.crossing.unwrap_or_default().into(),
         following: args.following.map_or(args.algorithm.following(), Into::into),
+        noise: weighs.then_some(NoiseModel { p, extent }),
+        policy: args.policy.unwrap_or_default().into(),
+        prior: args.prior.unwrap_or_default().into(),
     };
-    let (table, rows, record) = if args.algorithm == Algorithm::Scc || p < 1.0 {
-        let policy = args.policy.unwrap_or_default().into();
-        let prior = args.prior.unwrap_or_default().into();
-        let noisy = NoisyCampaign { fields: campaign, p, trusted_radius, policy, prior };
-        let summary = noisy.run()?;
-        (summary.report(), summary.csv()?, json(&summary))
+    let (table, rows, record) = if weighs {
+        let summary = calibration::Summary::of(&campaign, campaign.run(&Calibrated)?);
+        (tables::calibration(&summary), csv(&summary.marks)?, json(&summary))
     } else {
-        let summary = campaign.run()?;
-        (summary.report(), summary.csv()?, json(&summary))
+        let summary = accuracy::Summary::of(&campaign, campaign.run(&Accuracy)?);
+        (tables::accuracy(&summary), csv(&summary.marks)?, json(&summary))
     };
     if let Some(output) = output {
         output.write(rows)?;

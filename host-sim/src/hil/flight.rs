@@ -1,6 +1,5 @@
 //! Hardware in the loop: a chip plans, this program plays its world.
 
-use std::fmt::Write as _;
 use std::hash::{BuildHasher as _, Hasher as _, RandomState};
 use std::io::Write as _;
 use std::path::PathBuf;
@@ -16,6 +15,7 @@ use crate::hil::faults::Faults;
 use crate::hil::player::{Played, Player};
 use crate::hil::qemu::{Emulator, NS_PER_INSTRUCTION};
 use crate::output::file::csv;
+use crate::report::table::{Column, Table};
 
 /// Where the chip is.
 #[derive(Clone, Debug)]
@@ -162,27 +162,26 @@ impl Timings {
     /// For people.
     pub fn report(&self) -> String {
         let unit = if self.emulated { "instructions" } else { "us" };
-        let mut text = format!(
-            "What each step took on the chip, {unit}, and from here:\n{:>4} {:>12} {:>12} {:>14}\n",
-            "step", "plan", "observe", "round trip ms"
-        );
         let number = |count: Option<u64>, time: Option<f64>| match (count, time) {
             (Some(count), _) => count.to_string(),
             (_, Some(time)) => format!("{time:.1}"),
             _ => "-".into(),
         };
+        let mut table = Table::new([
+            Column::right("step", 4),
+            Column::right("plan", 12),
+            Column::right("observe", 12),
+            Column::right("round trip ms", 14),
+        ]);
         for row in &self.rows {
-            // Writing to a string cannot fail.
-            let _ = writeln!(
-                text,
-                "{:>4} {:>12} {:>12} {:>14.1}",
-                row.step,
+            table.row([
+                row.step.to_string(),
                 number(row.plan_instructions, row.plan_us),
                 number(row.observe_instructions, row.observe_us),
-                row.turnaround_ms,
-            );
+                format!("{:.1}", row.turnaround_ms),
+            ]);
         }
-        text
+        format!("What each step took on the chip, {unit}, and from here:\n{table}")
     }
 }
 

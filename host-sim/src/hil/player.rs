@@ -12,15 +12,20 @@ use planner_core::geometry::line::Line;
 use planner_core::link::delivery::{Heard, Hello, Responder};
 use planner_core::link::frame::Frame;
 use planner_core::link::message::{
-    self, ClockRate, Declined, EndReason, LabelSource, PROTOCOL, Reply, Request, Room, Setup, Took,
+    self, Capacity, ClockRate, Declined, EndReason, LabelSource, PROTOCOL, Reply, Request, Setup,
+    Took,
 };
+use planner_core::motion::dynamics::Pose;
 use planner_core::planner::Motion;
 use planner_core::robot::agent::Step;
-use planner_core::robot::hal::Drive as _;
 
-use crate::mission::definition::{Algorithm, End, Learner, Mission};
+use crate::mission::algorithm::Algorithm;
+use crate::mission::definition::Mission;
+use crate::mission::flight::Flown;
+use crate::mission::planners::AnyPlanner;
 use crate::mission::recording::{Recorder, Recording};
-use crate::world::truth::{Sensor, Vehicle};
+use crate::mission::results::Ending;
+use crate::world::robot::Robot;
 
 /// A chip that has asked so often for a mission hears nothing: five times as often as it sends a request.
 const MOST_HELLOS: u32 = 5 * 16;
@@ -29,9 +34,11 @@ const MOST_HELLOS: u32 = 5 * 16;
 pub struct Player {
     setup: Setup,
     responder: Responder,
-    vehicle: Vehicle,
-    sensor: Sensor,
-    learner: Box<dyn Learner>,
+    robot: Robot,
+    /// Where it is.
+    pose: Pose,
+    /// Takes in what the chip takes in.
+    planner: AnyPlanner,
     recorder: Recorder,
     /// How often the chip has asked for a mission since it took up the last.
     hellos: u32,
@@ -41,7 +48,7 @@ pub struct Player {
     ending: Took,
     clock: Option<ClockRate>,
     /// How the mission ended, or why it came to nothing.
-    outcome: Option<Result<End>>,
+    outcome: Option<Result<Ending>>,
     /// The chip has heard that its mission is over.
     dismissed: bool,
 }
@@ -66,13 +73,12 @@ impl Player {
     /// When the mission is none that a chip can be asked to fly.
     pub fn new(mission: &Mission, labels: LabelSource, seed: u32) -> Result<Self> {
         let setup = setup(mission, labels)?;
-        let (vehicle, sensor) = mission.world();
         Ok(Self {
             setup,
             responder: Responder::new(seed),
-            vehicle,
-            sensor,
-            learner: mission.learner(),
+            robot: mission.robot(),
+            pose: mission.start,
+            planner: mission.planner(),
             recorder: Recorder::new(mission.clone()),
             hellos: 0,
             pending: None,
@@ -158,17 +164,12 @@ impl Player {
             }
             Request::Move(message::Move { motion, last, took }) => {
                 self.settle(last, took)?;
-                let Ok(pose) = self.vehicle.drive(&motion);
-                let chip_senses = self.setup.labels == LabelSource::Chip;
-                let reading = if motion.samples() && !chip_senses {
-                    let Ok(reading) = self.sensor.read();
-                    Some(reading)
-                } else {
-                    None
-                };
+                let robot_senses = self.setup.labels == LabelSource::Vehicle;
+                let made = Motion { wants_label: motion.wants_label && robot_senses, ..motion };
+                let Ok(reading) = self.robot.perform(&made, &mut self.pose);
                 self.pending = Some((motion, reading));
                 self.took.push(Took { observe: 0, ..took });
-                Ok(Reply::Arrived { pose, reading })
+                Ok(Reply::Arrived { pose: self.pose, reading })
             }
             Request::End(end) => {
                 let settled = self.settle(end.last, end.took);
@@ -180,10 +181,10 @@ impl Player {
     }
 
     /// Whether the mission ended as it can end here.
-    fn judge(&self, end: &message::End) -> Result<End> {
+    fn judge(&self, end: &message::MissionEnd) -> Result<Ending> {
         let reason = match end.reason {
-            EndReason::Steps => End::Steps,
-            EndReason::Stopped(reason) => End::Stopped(reason),
+            EndReason::Steps => Ending::Steps,
+            EndReason::Stopped(reason) => Ending::Stopped(reason),
             EndReason::Refused(refused) => bail!("the board refused what agrees: {refused}"),
             EndReason::Sensor => bail!("step {}: the board's sensor failed", self.motions()),
             EndReason::Vehicle => bail!("step {}: the vehicle failed", self.motions()),
@@ -198,20 +199,20 @@ impl Player {
         if self.setup.labels == LabelSource::Vehicle && last != sensed {
             bail!("step {}: sensed {sensed:?}, the board took in {last:?}", self.motions());
         }
-        let pose = self.vehicle.pose.get();
+        let pose = self.pose;
         if let Some(current) = self.took.last_mut() {
             current.observe = took.observe;
         }
-        if let Err(refused) = self.learner.observe(pose, last) {
+        if let Err(refused) = self.planner.observe(pose, last) {
             return Err(self.recorder.refusal(&refused));
         }
-        self.recorder.take(&Step { motion, pose, reading: last }, self.learner.known());
+        self.recorder.take(&Step { motion, pose, reading: last }, self.planner.belief());
         Ok(())
     }
 
     /// Whether the chip's estimates are those of this machine, to the last bit.
     fn compare(&self, chip: &Estimates) -> Result<()> {
-        let here = self.learner.estimates();
+        let here = self.planner.estimates();
         for (name, chip, here) in [
             ("bisector", chip.bisector, here.bisector),
             ("centre", chip.centre, here.centre),
@@ -233,7 +234,7 @@ impl Player {
     pub fn break_off(mut self) -> Result<Played> {
         let sensed = self.pending.and_then(|(_, reading)| reading);
         self.settle(sensed, Took::default())?;
-        self.outcome = Some(Ok(End::Steps));
+        self.outcome = Some(Ok(Ending::Steps));
         self.finish()
     }
 
@@ -242,11 +243,12 @@ impl Player {
     /// # Errors
     /// When it is not over, the chip declined it, or it came to nothing.
     pub fn finish(self) -> Result<Played> {
-        let Self { recorder, took, ending, clock, outcome, .. } = self;
+        let Self { recorder, planner, took, ending, clock, outcome, .. } = self;
         let unfinished = || anyhow!("the mission broke off after step {}", recorder.steps());
-        let end = outcome.unwrap_or_else(|| Err(unfinished()))?;
+        let reason = outcome.unwrap_or_else(|| Err(unfinished()))?;
         let clock = clock.ok_or_else(unfinished)?;
-        Ok(Played { recording: recorder.end(end), took, ending, clock })
+        let flown = Flown { ending: reason, belief: planner.belief().boxed() };
+        Ok(Played { recording: recorder.end(flown), took, ending, clock })
     }
 }
 
@@ -264,7 +266,7 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
         },
         Algorithm::Random => bail!("algorithm: found random, expected cfc or scc"),
     };
-    let samples = mission.space.samples();
+    let samples = mission.given.samples();
     let given = BoundedVec::from_slice(samples).map_err(|_| {
         let most = message::MOST_GIVEN;
         anyhow!("oracle: found {} points, expected at most {most} on a board", samples.len())
@@ -275,10 +277,10 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
         Algorithm::Scc => 1 + taken + taken * taken.saturating_sub(1) / 2,
         _ => 1,
     };
-    let room =
-        Room { samples: (samples.len() as u32 + taken) as u16, hypotheses: hypotheses as u16 };
+    let capacity =
+        Capacity { samples: (samples.len() as u32 + taken) as u16, hypotheses: hypotheses as u16 };
     let (steps, config, start) = (taken as u16, mission.config, mission.start);
-    Ok(Setup { protocol: PROTOCOL, algorithm, config, room, steps, start, labels, given })
+    Ok(Setup { protocol: PROTOCOL, algorithm, config, capacity, steps, start, labels, given })
 }
 
 fn decline(declined: Declined, setup: &Setup) -> anyhow::Error {
@@ -286,7 +288,7 @@ fn decline(declined: Declined, setup: &Setup) -> anyhow::Error {
         Declined::Protocol(theirs) => {
             anyhow!("the board speaks protocol {theirs}, expected {PROTOCOL}")
         }
-        Declined::Room(Room { samples, hypotheses }) => {
+        Declined::Capacity(Capacity { samples, hypotheses }) => {
             let most = usize::from(samples).saturating_sub(setup.given.len());
             anyhow!(
                 "steps: found {}, expected at most {most}: the board has room for {samples} samples \

@@ -1,9 +1,14 @@
 //! Missions: what determines one (from a scenario file or made), how it is flown in the simulated world, and
 //! the record of how it went.
 
+pub mod algorithm;
 pub mod definition;
+pub mod flight;
 pub mod names;
+pub mod planners;
 pub mod random_walk;
+pub mod read_out;
 pub mod recording;
+pub mod results;
 pub mod scenario;
 pub mod strict;

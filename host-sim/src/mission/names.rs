@@ -1,6 +1,6 @@
 //! The names of choices in scenario files and flags.
 
-use planner_core::belief::hypotheses::Prior;
+use planner_core::belief::weight::Prior;
 use planner_core::planner::config::{Crossing, Following};
 use planner_core::planner::scc::Policy;
 use serde::Deserialize;
@@ -21,7 +21,7 @@ pub enum CrossingName {
 impl From<CrossingName> for Crossing {
     fn from(name: CrossingName) -> Self {
         match name {
-            CrossingName::Anyhow => Self::Anyhow,
+            CrossingName::Anyhow => Self::Unrestricted,
             CrossingName::AlongOracle => Self::AlongOracle,
             CrossingName::AcrossBisector => Self::AcrossBisector,
         }
@@ -41,7 +41,7 @@ pub enum FollowingName {
 impl From<FollowingName> for Following {
     fn from(name: FollowingName) -> Self {
         match name {
-            FollowingName::Anyhow => Self::Anyhow,
+            FollowingName::Anyhow => Self::Unrestricted,
             FollowingName::AlongBisector => Self::AlongBisector,
         }
     }

@@ -1,107 +1,79 @@
-//! A mission as it went: each step with what was known after it.
+//! A mission that is recorded: its results grow step by step.
 
 use anyhow::{Result, anyhow};
 use nalgebra::Point2;
-use planner_core::belief::estimate::{self, Estimates};
+use planner_core::belief::Refused;
+use planner_core::belief::hypotheses::Hypothesis;
+use planner_core::belief::noise::Reliability;
 use planner_core::belief::posterior::Posterior;
-use planner_core::belief::version_space::{Refused, VersionSpace};
-use planner_core::belief::weight::Reliability;
-use planner_core::planner::{Recovery, Stage};
+use planner_core::belief::sample::Reading;
+use planner_core::belief::weight::Prior;
+use planner_core::geometry::line::Line;
 use planner_core::robot::agent::Step;
 
-use crate::mission::definition::{CAPACITY, End, Known, Mission, Table};
+use crate::mission::definition::{Mission, Table};
+use crate::mission::flight::Flown;
+use crate::mission::read_out::{Knowledge, LEVEL, ReadOut};
+use crate::mission::results::{
+    BestRecord, CredibleRecord, End, EstimateRecords, LineError, NoisyEnd, NoisyStep, Results,
+    Start, StepResult, recovery_name, stage_name,
+};
+use crate::world::World;
+use crate::world::polygon::misclassified;
 
-/// The level of the credible sets that are told.
-pub const LEVEL: f64 = 0.9;
-
-/// A step and what was known after it.
-#[derive(Clone, Debug)]
-pub struct Recorded {
-    /// The step.
-    pub step: Step,
-    /// The slopes left, as intervals of degrees: of all lines that agree with the labels, or of the
-    /// credible set.
-    pub slope_arcs: Vec<[f64; 2]>,
-    /// The intercepts left, metres; `None` when unbounded.
-    pub intercept: Option<[f64; 2]>,
-    /// Bits learnt since the start.
-    pub bits: f64,
-    /// What noisy labels add.
-    pub noisy: Option<NoisyStep>,
-}
-
-/// The distribution over hypotheses after a step, in figures.
-#[derive(Clone, Copy, Debug)]
-pub struct NoisyStep {
-    /// The sample lies in a trusted ball.
-    pub trusted: bool,
-    /// Number of hypotheses.
-    pub hypotheses: usize,
-    /// The probability given up as the table was full, at most.
-    pub pruned_mass: f64,
-    /// Entropy over the hypotheses, bits.
-    pub entropy: f64,
-}
-
-/// What was known at the end.
-#[derive(Clone, Debug)]
-pub enum Outcome {
-    /// All lines that agree with every label.
-    Lines(Box<VersionSpace<CAPACITY>>),
-    /// The distribution over hypotheses.
-    Hypotheses(Box<Table>),
-}
-
-/// A whole mission.
-#[derive(Clone, Debug)]
+/// A mission that is over: its results, and what is known in the end.
+#[derive(Debug)]
 pub struct Recording {
     /// What was asked.
     pub mission: Mission,
-    /// The steps.
-    pub steps: Vec<Recorded>,
-    /// Why it ended.
-    pub end: End,
-    /// What was known at the end.
-    pub outcome: Outcome,
+    /// The steps as the agent made them.
+    pub steps: Vec<Step>,
+    /// What came of it.
+    pub results: Results,
+    /// What is known in the end.
+    pub belief: Box<dyn ReadOut>,
 }
 
 /// A mission that is being recorded.
-#[derive(Clone, Debug)]
 pub struct Recorder {
     mission: Mission,
-    steps: Vec<Recorded>,
-    outcome: Outcome,
-    /// The measure of what was left at the start.
-    before: f64,
+    steps: Vec<Step>,
+    results: Vec<StepResult>,
 }
 
 impl Recorder {
     /// Nothing has happened yet.
-    pub fn new(mission: Mission) -> Self {
-        let outcome = if mission.is_noisy() {
-            Outcome::Hypotheses(Box::new(mission.table()))
-        } else {
-            Outcome::Lines(Box::new(mission.space.clone()))
-        };
-        let before = estimate::area(mission.space.candidates());
-        Self { mission, steps: Vec::new(), outcome, before }
+    pub const fn new(mission: Mission) -> Self {
+        Self { mission, steps: Vec::new(), results: Vec::new() }
     }
 
     /// Takes down a step and what is known after it.
-    pub fn take(&mut self, step: &Step, known: Known<'_>) {
-        let (recorded, outcome) = match known {
-            Known::Lines(space) => {
-                (lines_left(step, space, self.before), Outcome::Lines(Box::new(space.clone())))
-            }
-            Known::Hypotheses(table) => {
-                let reliability = self.mission.noise_told().at(step.pose.site, table.given());
-                let trusted = reliability == Reliability::CERTAIN;
-                let recorded = hypotheses_left(step, table, trusted);
-                (recorded, Outcome::Hypotheses(Box::new(table.clone())))
-            }
-        };
-        self.steps.push(recorded);
-        self.outcome = outcome;
+    pub fn take(&mut self, step: &Step, belief: &dyn ReadOut) {
+        let Knowledge { slope_arcs, intercept, bits, doubt } = belief.knowledge();
+        let motion = &step.motion;
+        self.steps.push(*step);
+        self.results.push(StepResult {
+            step: self.steps.len(),
+            problem: motion.stage.map(stage_name),
+            recovery: motion.recovery.map(recovery_name),
+            action: motion.into(),
+            pose: step.pose.into(),
+            label: step.reading.map(Reading::sign),
+            slope_arcs,
+            intercept,
+            bits,
+            examined: motion.examined,
+            proven: (!motion.proven).then_some(false),
+            noisy: doubt.map(|doubt| NoisyStep {
+                trusted: belief
+                    .hypotheses()
+                    .is_some_and(|it| it.reliability(step.pose.site) == Reliability::CERTAIN),
+                hypotheses: doubt.hypotheses,
+                pruned_mass: doubt.pruned_mass,
+                entropy: doubt.entropy,
+            }),
+            fact: self.mission.world.reading(step.pose.site).sign(),
+        });
     }
 
     /// Steps so far.
@@ -121,103 +93,82 @@ impl Recorder {
                     at.y,
                 )
             }
-            Refused::Full(_) => anyhow!("step {step}: {refused}"),
+            _ => anyhow!("step {step}: {refused}"),
         }
     }
 
     /// The mission is over.
-    pub fn end(self, end: End) -> Recording {
-        let Self { mission, steps, outcome, .. } = self;
-        Recording { mission, steps, end, outcome }
+    pub fn end(self, Flown { ending, belief }: Flown) -> Recording {
+        let Self { mission, steps, results } = self;
+        let world = &mission.world;
+        let error = |line: &Line| {
+            world.line().map(|truth| LineError {
+                degrees: line.angle_to_deg(truth),
+                misclassified: misclassified(mission.config.area, truth, line),
+            })
+        };
+        let end = End {
+            reason: ending.name(),
+            estimates: EstimateRecords::beside(belief.estimates(), error),
+            noisy: belief.hypotheses().and_then(|table| noisy_end(table, world)),
+        };
+        let results = Results { start: start(&mission), steps: results, end };
+        Recording { mission, steps, results, belief }
     }
 }
 
 impl Recording {
-    /// Runs a mission and records it.
+    /// Flies a mission and records it.
     ///
     /// # Errors
     /// Names the sample that the planner refused.
     pub fn of(mission: &Mission) -> Result<Self> {
         let mut recorder = Recorder::new(mission.clone());
-        match mission.run(|step, known| recorder.take(step, known)) {
-            Ok(end) => Ok(recorder.end(end)),
+        match mission.fly(|step, belief| recorder.take(step, belief)) {
+            Ok(flown) => Ok(recorder.end(flown)),
             Err(refused) => Err(recorder.refusal(&refused)),
         }
     }
+}
 
-    /// The estimates at the end. Of noisy labels, the centre is the posterior mean and the maximum
-    /// margin that of the most likely hypothesis.
-    pub fn estimates(&self) -> Estimates {
-        match &self.outcome {
-            Outcome::Lines(space) => Estimates::of(space),
-            Outcome::Hypotheses(table) => Posterior::new(table).estimates(),
-        }
-    }
-
-    /// Samples taken on the way.
-    pub fn samples(&self) -> usize {
-        self.steps.iter().filter(|s| s.step.reading.is_some()).count()
-    }
-
-    /// Metres travelled.
-    pub fn travelled(&self) -> f64 {
-        self.steps.iter().map(|s| f64::from(s.step.motion.control.v)).sum()
-    }
-
-    /// The control cost, the sum of `v^2 + w^2`.
-    pub fn cost(&self) -> f64 {
-        self.steps.iter().map(|s| cost(&s.step)).sum()
+fn start(mission: &Mission) -> Start {
+    Start {
+        algorithm: mission.algorithm,
+        seed: mission.seed,
+        varrho: mission.config.varrho.value(),
+        area: mission.config.area.into(),
+        oracle: mission.given.samples().iter().map(Into::into).collect(),
+        pose: mission.start.into(),
+        truth: mission.world.line().map(|line| (*line).into()),
+        p: mission.noise.map_or(1.0, |noise| noise.p),
+        labels_err: mission.noise.is_some(),
+        steps: mission.steps,
+        slope_arcs: mission.given.slope_arc().intervals_deg().to_vec(),
     }
 }
 
-fn lines_left(step: &Step, space: &VersionSpace<CAPACITY>, before: f64) -> Recorded {
-    Recorded {
-        step: *step,
-        slope_arcs: space.slope_arc().intervals_deg().to_vec(),
-        intercept: space.intercepts(),
-        bits: libm::log2(before / estimate::area(space.candidates())),
-        noisy: None,
-    }
-}
-
-fn hypotheses_left(step: &Step, table: &Table, trusted: bool) -> Recorded {
+fn noisy_end(table: &Table, world: &World) -> Option<NoisyEnd> {
+    let holds = |hypothesis: &Hypothesis<15>| world.is_among(table.lines(hypothesis));
+    let by_sequences = table.weighed_by(Prior::Sequences);
+    let best = Posterior::new(&by_sequences).best()?;
     let posterior = Posterior::new(table);
     let credible = posterior.credible(LEVEL);
-    Recorded {
-        step: *step,
-        slope_arcs: credible.slope_arc.intervals_deg().to_vec(),
-        intercept: credible.intercept,
-        bits: posterior.information(),
-        noisy: Some(NoisyStep {
-            trusted,
+    let members: Option<Vec<bool>> = posterior.members(&credible).map(holds).collect();
+    Some(NoisyEnd {
+        best: BestRecord {
+            slope_arcs: best.slope_arc.intervals_deg().to_vec(),
+            intercept: best.intercept,
+            probability: best.probability,
+            holds: holds(best.hypothesis),
+        },
+        credible: CredibleRecord {
+            level: credible.level,
+            slope_arcs: credible.slope_arc.intervals_deg().to_vec(),
+            intercept: credible.intercept,
+            probability: credible.probability,
+            cells: credible.cells,
             hypotheses: table.iter().len(),
-            pruned_mass: posterior.lost(),
-            entropy: posterior.entropy(),
-        }),
-    }
-}
-
-/// The control cost of a step, the paper's `|u|^2 = v^2 + w^2`.
-pub fn cost(step: &Step) -> f64 {
-    let (v, w) = (f64::from(step.motion.control.v), f64::from(step.motion.control.w));
-    v * v + w * w
-}
-
-/// The name of a one-step problem.
-pub fn stage_name(stage: Stage) -> &'static str {
-    match stage {
-        Stage::P1 => "P1",
-        Stage::P2 => "P2",
-        Stage::P3 => "P3",
-        Stage::P4 => "P4",
-    }
-}
-
-/// The name of a rung of the recovery ladder.
-pub fn recovery_name(recovery: Recovery) -> &'static str {
-    match recovery {
-        Recovery::Undirected => "undirected",
-        Recovery::Reorient => "reorient",
-        Recovery::Transit => "transit",
-    }
+            holds: members.map(|members| members.contains(&true)),
+        },
+    })
 }

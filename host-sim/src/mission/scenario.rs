@@ -5,23 +5,25 @@ use std::path::Path;
 
 use anyhow::{Result, anyhow, bail};
 use nalgebra::Point2;
+use planner_core::belief::noise::Reliability;
+use planner_core::belief::noise::trusted_radius;
 use planner_core::belief::sample::{Label, Reading, Sample};
 use planner_core::belief::version_space::{NoVersionSpace, VersionSpace};
-use planner_core::belief::weight::Reliability;
 use planner_core::geometry::area::Area;
-use planner_core::geometry::direction::Heading;
+use planner_core::geometry::heading::Heading;
 use planner_core::geometry::lattice::Site;
 use planner_core::geometry::line::Line;
 use planner_core::motion::dynamics::Pose;
 use planner_core::planner::config::{Config, Following};
-use planner_core::planner::scc::trusted_radius;
-use planner_core::search::problem::Varrho;
+use planner_core::search::objective::Varrho;
 use serde::Deserialize;
 
-use crate::mission::definition::{Algorithm, CAPACITY, Mission};
+use crate::mission::algorithm::Algorithm;
+use crate::mission::definition::{CAPACITY, Lines, Mission};
 use crate::mission::names::{CrossingName, FollowingName, PolicyName, PriorName};
 use crate::mission::strict::{Numbers, Table};
-use crate::world::truth::{self, Extent, NoiseModel};
+use crate::world::World;
+use crate::world::noise::{Extent, NoiseModel};
 
 /// The paper's noiseless example (Section V).
 pub const PAPER_NOISELESS: &str = include_str!("../../scenarios/paper-noiseless.toml");
@@ -60,7 +62,7 @@ struct File {
 }
 
 mod defaults {
-    use crate::mission::definition::Algorithm;
+    use crate::mission::algorithm::Algorithm;
 
     pub(super) fn algorithm() -> Algorithm {
         Algorithm::Cfc
@@ -207,14 +209,14 @@ fn mission(file: &File, overrides: Overrides) -> Result<Mission> {
         let found = format!("x = [{x0}, {x1}], z = [{z0}, {z1}]");
         return wrong("area", found, "each range from smaller to larger");
     };
-    let truth = truth(&file.truth.0)?;
-    let space = oracle(&file.oracle, area, &truth)?;
-    let bounding = space.cell().edges().len();
+    let world = World::divided_by(truth(&file.truth.0)?);
+    let given = oracle(&file.oracle, area, &world)?;
+    let bounding = given.cell().edges().len();
     if bounding > MOST_BOUNDING {
         let found = format!("{bounding} points that bound the line");
         return wrong("oracle", found, format!("at most {MOST_BOUNDING} that do"));
     }
-    let start = start(&file.start.0, &space, area)?;
+    let start = start(&file.start.0, &given, area)?;
     let noise = file.noise.as_ref().map(|table| noise(&table.0)).transpose()?;
     let algorithm = overrides.algorithm.unwrap_or(file.algorithm);
     let following = file.following.map_or(algorithm.following(), Following::from);
@@ -225,8 +227,8 @@ fn mission(file: &File, overrides: Overrides) -> Result<Mission> {
         seed: overrides.seed.unwrap_or(file.seed),
         config: Config { area, varrho, crossing, following },
         start,
-        truth,
-        space,
+        world,
+        given,
         noise,
         policy: file.policy.into(),
         prior: file.prior.into(),
@@ -288,11 +290,7 @@ fn truth(table: &TruthTable) -> Result<Line> {
     line.map_or_else(|| wrong("truth", found, finite), Ok)
 }
 
-fn oracle(
-    tables: &[Table<SampleTable>],
-    area: Area,
-    truth: &Line,
-) -> Result<VersionSpace<CAPACITY>> {
+fn oracle(tables: &[Table<SampleTable>], area: Area, world: &World) -> Result<Lines> {
     let mut samples = Vec::with_capacity(tables.len());
     for (i, Table(table)) in tables.iter().enumerate() {
         let field = format!("oracle[{i}]");
@@ -306,7 +304,7 @@ fn oracle(
             let found = format!("({}, {})", table.x, table.z);
             return wrong(&field, found, "a point inside the area");
         }
-        let reading = truth::reading(truth, site);
+        let reading = world.reading(site);
         if reading != Reading::Side(label) {
             let expected = format!("{}, as the truth has it", reading.sign());
             return wrong(&format!("{field}.label"), table.label, expected);
@@ -328,14 +326,15 @@ fn oracle(
         NoVersionSpace::TooMany => {
             wrong("oracle", format!("{} points", samples.len()), format!("at most {CAPACITY}"))
         }
+        other => wrong("oracle", other, "points that leave lines to find"),
     })
 }
 
-fn start(table: &StartTable, space: &VersionSpace<CAPACITY>, area: Area) -> Result<Pose> {
+fn start(table: &StartTable, given: &Lines, area: Area) -> Result<Pose> {
     let Some(heading) = Heading::from_radians(table.heading) else {
         return wrong("start.heading", table.heading, "a finite angle in radians");
     };
-    let first = Point2::<f64>::from(space.samples()[0].site);
+    let first = Point2::<f64>::from(given.samples()[0].site);
     let (x, z) = (table.x.unwrap_or(first.x), table.z.unwrap_or(first.y));
     let site = site("start", x, z)?;
     if !area.contains(site) {

@@ -7,15 +7,16 @@ use anyhow::{Context as _, Result, anyhow};
 use planner_core::belief::estimate::Estimates;
 use planner_core::belief::sample::Sample;
 use planner_core::belief::version_space::NoVersionSpace;
+use planner_core::geometry::line::Line;
 use serde::Serialize;
 
+use crate::mission::results::EstimateRecords;
 use crate::replay::hull::in_order;
 use crate::replay::sample_file::SampleFile;
 use crate::replay::separation::Separation;
 use crate::replay::shortest_pairs::bisector;
-use crate::report::figure::{Figure, Ground, Named, area_around};
+use crate::report::picture::{Dot, Ground, Named, Picture, area_around};
 use crate::report::text;
-use crate::report::trace::EstimateRecords;
 
 /// Samples that a figure shows beside those that bound the line.
 const MOST_OTHERS: usize = 2_000;
@@ -25,7 +26,9 @@ pub struct Replay {
     name: String,
     samples: Vec<Sample>,
     lines: Separation,
-    estimates: Estimates,
+    /// The centre, for the figure.
+    centre: Option<Line>,
+    estimates: EstimateRecords,
 }
 
 /// What samples determine.
@@ -74,7 +77,9 @@ impl Replay {
             centre: lines.centre(),
             maximum_margin: lines.maximum_margin(),
         };
-        Ok(Self { name: recorded.name, samples: recorded.samples, lines, estimates })
+        let centre = estimates.centre;
+        let estimates = EstimateRecords::beside(estimates, |_| None);
+        Ok(Self { name: recorded.name, samples: recorded.samples, lines, centre, estimates })
     }
 
     /// What the samples determine, in words.
@@ -107,7 +112,7 @@ impl Replay {
             matter: self.lines.support().len(),
             slope_arcs: self.lines.slope_arc().intervals_deg().to_vec(),
             intercept: self.lines.intercepts(),
-            estimates: self.estimates.into(),
+            estimates: self.estimates,
         }
     }
 
@@ -131,13 +136,14 @@ impl Replay {
         } else {
             (self.samples.clone(), None)
         };
-        let centre = Named::estimate("centre of the version space", self.estimates.centre);
-        Figure {
+        let centre = Named::estimate("centre of the version space", self.centre);
+        let dot = |s: &Sample| Dot { at: s.site.into(), label: s.label, wrong: false };
+        Picture {
             title: self.name.clone(),
             note,
             area,
-            ground: Ground::Certain(bounding),
-            samples: &shown,
+            ground: Ground::certain(area, &bounding),
+            samples: shown.iter().map(dot).collect(),
             given: 0,
             path: None,
             truth: None,

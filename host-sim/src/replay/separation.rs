@@ -2,11 +2,11 @@
 //!
 //! They depend on the convex hulls of the two labels alone, so all is found in `O(n log n)` for `n` rows.
 
-use planner_core::belief::candidates;
+use planner_core::belief::consistent_lines;
 use planner_core::belief::estimate;
 use planner_core::belief::sample::{Label, Sample};
 use planner_core::belief::version_space::NoVersionSpace;
-use planner_core::geometry::direction::Arc;
+use planner_core::geometry::arc::SlopeArc;
 use planner_core::geometry::lattice::{Site, orient};
 use planner_core::geometry::line::{Bound, Line};
 
@@ -56,17 +56,17 @@ impl Separation {
 
     /// The lines through two samples that bound the others, in cyclic order.
     pub(crate) fn bounds(&self) -> impl Iterator<Item = Bound> + Clone + '_ {
-        candidates::bounds(self.support())
+        consistent_lines::bounds(self.support())
     }
 
     /// The directions of the lines.
-    pub(crate) fn slope_arc(&self) -> Arc {
-        Arc::spanning(self.bounds().map(|bound| bound.along)).unwrap_or_default()
+    pub(crate) fn slope_arc(&self) -> SlopeArc {
+        SlopeArc::spanning(self.bounds().map(|bound| bound.along)).unwrap_or_default()
     }
 
     /// The range of the lines' intercepts in metres; `None` when it is unbounded.
     pub(crate) fn intercepts(&self) -> Option<[f64; 2]> {
-        candidates::intercepts(self.bounds())
+        consistent_lines::intercepts(self.bounds())
     }
 
     /// The mean of the lines.
@@ -206,8 +206,8 @@ mod tests {
             assert_eq!(found.intercepts(), space.intercepts(), "{samples:?}");
             let lines = [found.centre(), found.maximum_margin(), bisector(&rows)];
             let expected = [
-                estimate::centre(space.candidates()),
-                estimate::maximum_margin(space.candidates()),
+                estimate::centre(space.lines()),
+                estimate::maximum_margin(space.lines()),
                 estimate::bisector(&samples),
             ];
             assert_eq!(lines.map(bits), expected.map(bits), "{samples:?}");

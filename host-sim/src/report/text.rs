@@ -1,21 +1,11 @@
-//! What happened, in plain words and figures.
+//! A mission's results in plain words and figures.
 
 use std::fmt::Write as _;
 
-use nalgebra::Point2;
-use planner_core::belief::estimate::Estimates;
-use planner_core::belief::hypotheses::Prior;
-use planner_core::belief::posterior::Posterior;
-use planner_core::belief::sample::Reading;
-use planner_core::geometry::line::Line;
-use planner_core::planner::{Recovery, StopReason};
-use planner_core::robot::agent::Step;
-
-use crate::campaign::noisy::limit;
-use crate::mission::definition::{Algorithm, End, Table};
-use crate::mission::recording::{LEVEL, Outcome, Recorded, Recording, stage_name};
-use crate::world::polygon::misclassified;
-use crate::world::truth::{self, reading};
+use crate::mission::algorithm::Algorithm;
+use crate::mission::results::{EstimateRecords, LineRecord, NoisyEnd, Results, Start, StepResult};
+use crate::report::table::{Column, Table};
+use crate::world::noise::limit;
 
 /// Slope intervals as text.
 pub fn arcs(intervals: &[[f64; 2]]) -> String {
@@ -29,11 +19,11 @@ pub fn range(intercept: Option<[f64; 2]>) -> String {
 }
 
 /// A line as text, with its angle: `z` by `x`, or, where it is steep, `x` by `z`.
-pub fn line(line: &Line) -> String {
+pub fn line(line: &LineRecord) -> String {
     /// Beyond this slope the intercept says little.
     const STEEP: f64 = 10.0;
-    let ([a, b, c], angle) = (line.coefficients(), line.angle_deg());
-    match (line.slope(), line.intercept()) {
+    let &LineRecord { slope, intercept, angle, coefficients: [a, b, c], .. } = line;
+    match (slope, intercept) {
         (Some(slope), Some(intercept)) if slope.abs() <= STEEP => {
             format!("z = {slope:.4} x {intercept:+.4}   ({angle:.2} deg)")
         }
@@ -46,234 +36,222 @@ pub fn line(line: &Line) -> String {
     }
 }
 
-/// Names and lines of a mission's estimates, the recommended one first.
-pub fn estimates(recording: &Recording) -> [(&'static str, Option<Line>); 3] {
-    let names = match recording.outcome {
-        Outcome::Lines(_) => NAMES,
-        Outcome::Hypotheses(_) => ["posterior mean", "margin of the likeliest", BISECTOR],
-    };
-    named(names, &recording.estimates())
-}
-
 const BISECTOR: &str = "bisector (the paper's)";
 
 /// What the estimates are called that follow from all labels being true.
 pub const NAMES: [&str; 3] = ["centre of the version space", "maximum margin", BISECTOR];
 
+/// What they are called where labels may err.
+const NOISY_NAMES: [&str; 3] = ["posterior mean", "margin of the likeliest", BISECTOR];
+
 /// The estimates with these names, the recommended one first.
 pub fn named(
     [centre, margin, bisector]: [&'static str; 3],
-    estimates: &Estimates,
-) -> [(&'static str, Option<Line>); 3] {
+    estimates: &EstimateRecords,
+) -> [(&'static str, Option<LineRecord>); 3] {
     [(centre, estimates.centre), (margin, estimates.maximum_margin), (bisector, estimates.bisector)]
 }
 
-/// A step's motion in columns: number, problem, turn, drive, place.
-fn motion(number: usize, step: &Step) -> String {
-    let at = Point2::<f64>::from(step.pose.site);
-    format!(
-        "{number:>4}  {:<7} {:>8.1} {:>5.1}  {:<16}",
-        step.motion.stage.map_or("-", stage_name),
-        f64::from(step.motion.control.w).to_degrees(),
-        step.motion.control.v,
-        format!("({:.3}, {:.3})", at.x, at.y),
-    )
+/// Names and lines of a mission's estimates, the recommended one first.
+pub fn estimates(results: &Results) -> [(&'static str, Option<LineRecord>); 3] {
+    let names = if results.end.noisy.is_some() { NOISY_NAMES } else { NAMES };
+    named(names, &results.end.estimates)
 }
 
-fn note(recorded: &Recorded, flipped: bool) -> &'static str {
-    match (recorded.step.motion.recovery, recorded.step.reading) {
-        (Some(Recovery::Reorient), _) => "nothing uncertain ahead: turns in place",
-        (Some(Recovery::Transit), _) => "nothing uncertain near: drives on",
-        (_, Some(Reading::Boundary)) => "exactly on the line: no flip",
-        (Some(Recovery::Undirected), _) if flipped => "no way across: any direction; flipped",
-        (Some(Recovery::Undirected), _) => "no way across: any direction",
+/// The story of a mission: a table of steps, then the estimates beside the truth.
+pub fn mission(title: &str, results: &Results) -> String {
+    let mut text = beginning(title, &results.start);
+    let steps = if results.end.noisy.is_some() {
+        noisy_steps(&results.steps)
+    } else {
+        steps(&results.steps, &results.start)
+    };
+    let why = match results.end.reason {
+        "steps" => "all steps are taken",
+        "resolution" => "what is uncertain is thinner than the action grid can hit",
+        other => other,
+    };
+    // Writing to a string cannot fail.
+    let _ = writeln!(
+        text,
+        "{steps}\nEnded: {why}. {} samples in {} steps, {:.1} m travelled, control cost {:.1}.\n",
+        results.samples(),
+        results.steps.len(),
+        results.travelled(),
+        results.cost(),
+    );
+    if let Some(noisy) = &results.end.noisy {
+        text += &outcome(noisy);
+    }
+    text + &errors(results)
+}
+
+fn beginning(title: &str, start: &Start) -> String {
+    let mut text = format!("{title}\n");
+    let truth = start.truth.map_or("none".into(), |truth| line(&truth));
+    let oracle = start.oracle.iter().map(|s| format!("({}, {}) is {:+}", s.x, s.z, s.label));
+    // Writing to a string cannot fail.
+    let _ = writeln!(
+        text,
+        "True line, unknown to the agent: {truth}\nThe oracle's points: {}",
+        oracle.collect::<Vec<_>>().join(", ")
+    );
+    let _ = writeln!(
+        text,
+        "It starts at ({}, {}), heading {:.1} deg; slopes {} deg are possible.\n",
+        start.pose.x,
+        start.pose.z,
+        start.pose.heading.to_degrees(),
+        arcs(&start.slope_arcs),
+    );
+    if start.labels_err {
+        let each = limit(start.p);
+        let _ = writeln!(
+            text,
+            "A label is true with probability {}, so it tells {each:.3} bits at most on average, \
+             {} of them {:.2}.\n",
+            start.p,
+            start.steps,
+            f64::from(start.steps) * each,
+        );
+    }
+    text
+}
+
+/// The columns of a step's motion.
+const MOTION: [Column; 5] = [
+    Column::right("step", 4),
+    Column::left("problem", 7).apart(),
+    Column::right("turn deg", 8),
+    Column::right("go m", 5),
+    Column::left("now at m", 16).apart(),
+];
+
+fn motion(step: &StepResult) -> [String; 5] {
+    [
+        step.step.to_string(),
+        step.problem.unwrap_or("-").to_owned(),
+        format!("{:.1}", f64::from(step.action.w).to_degrees()),
+        format!("{:.1}", step.action.v),
+        format!("({:.3}, {:.3})", step.pose.x, step.pose.z),
+    ]
+}
+
+fn signed(label: Option<i8>) -> String {
+    label.map_or("-".into(), |label| format!("{label:+}"))
+}
+
+/// Of labels that are true: what they leave.
+fn steps(steps: &[StepResult], start: &Start) -> Table {
+    let left = [
+        Column::right("label", 5),
+        Column::left("slopes left, deg", 26).apart(),
+        Column::left("intercepts left, m", 19),
+        Column::right("bits", 5),
+        Column::left("", 0).apart(),
+    ];
+    let mut table = Table::new([&MOTION[..], &left].concat());
+    let mut past = start.oracle.first().map_or(0, |first| first.label);
+    for step in steps {
+        let label = step.label.filter(|label| *label != 0);
+        let flipped = label.is_some_and(|label| label != past);
+        past = label.unwrap_or(past);
+        let note = if start.algorithm == Algorithm::Random { "" } else { note(step, flipped) };
+        let left = [
+            signed(step.label),
+            arcs(&step.slope_arcs),
+            range(step.intercept),
+            format!("{:.2}", step.bits),
+            note.to_owned(),
+        ];
+        table.row(motion(step).into_iter().chain(left));
+    }
+    table
+}
+
+fn note(step: &StepResult, flipped: bool) -> &'static str {
+    match (step.recovery, step.label) {
+        (Some("reorient"), _) => "nothing uncertain ahead: turns in place",
+        (Some("transit"), _) => "nothing uncertain near: drives on",
+        (_, Some(0)) => "exactly on the line: no flip",
+        (Some("undirected"), _) if flipped => "no way across: any direction; flipped",
+        (Some("undirected"), _) => "no way across: any direction",
         _ if flipped => "the label flipped",
         _ => "",
     }
 }
 
-/// The story of a mission: a table of steps, then the estimates beside the truth.
-pub fn mission(title: &str, recording: &Recording) -> String {
-    let mut text = String::new();
-    // Writing to a string cannot fail.
-    let _ = write_mission(&mut text, title, recording);
-    text
+/// Of labels that may err: what was seen, what it says, how much.
+fn noisy_steps(steps: &[StepResult]) -> Table {
+    let said = [
+        Column::right("label", 5),
+        Column::right("in fact", 6),
+        Column::right("hypotheses", 10),
+        Column::right("entropy", 7),
+        Column::right("bits", 5),
+        Column::left("slopes of the 90 % set, deg", 0).apart(),
+    ];
+    let mut table = Table::new([&MOTION[..], &said].concat());
+    for step in steps {
+        let Some(noisy) = step.noisy else { continue };
+        let wrong = if step.label.is_some_and(|seen| seen != step.fact) { " !" } else { "  " };
+        let trusted = if noisy.trusted { "  (trusted)" } else { "" };
+        let said = [
+            signed(step.label),
+            format!("{:+}{wrong}", step.fact),
+            noisy.hypotheses.to_string(),
+            format!("{:.2}", noisy.entropy),
+            format!("{:.2}", step.bits),
+            format!("{}{trusted}", arcs(&step.slope_arcs)),
+        ];
+        table.row(motion(step).into_iter().chain(said));
+    }
+    table
 }
 
-/// A noisy mission: what was seen, what it says, how much.
-fn write_noisy_steps(text: &mut String, recording: &Recording) -> std::fmt::Result {
-    writeln!(
-        text,
-        "{:>4}  {:<7} {:>8} {:>5}  {:<16} {:>5} {:>6} {:>10} {:>7} {:>5}  {:<26}",
-        "step",
-        "problem",
-        "turn deg",
-        "go m",
-        "now at m",
-        "label",
-        "in fact",
-        "hypotheses",
-        "entropy",
-        "bits",
-        "slopes of the 90 % set, deg"
-    )?;
-    for (recorded, number) in recording.steps.iter().zip(1..) {
-        let (step, Some(noisy)) = (&recorded.step, recorded.noisy) else { continue };
-        let fact = reading(&recording.mission.truth, step.pose.site);
-        let seen = |reading: Reading| format!("{:+}", reading.sign());
-        let wrong = if step.reading.is_some_and(|seen| seen != fact) { " !" } else { "  " };
-        writeln!(
-            text,
-            "{} {:>5} {:>6} {:>10} {:>7.2} {:>5.2}  {}{}",
-            motion(number, step),
-            step.reading.map_or("-".into(), seen),
-            format!("{}{wrong}", seen(fact)),
-            noisy.hypotheses,
-            noisy.entropy,
-            recorded.bits,
-            arcs(&recorded.slope_arcs),
-            if noisy.trusted { "  (trusted)" } else { "" },
-        )?;
-    }
-    Ok(())
-}
-
-fn write_outcome(text: &mut String, recording: &Recording, table: &Table) -> std::fmt::Result {
-    let truth = |inside: bool| if inside { "holds the truth" } else { "misses the truth" };
-    let line = &recording.mission.truth;
-    let holds = |hypothesis| truth::agrees(line, table.candidates(hypothesis));
-    let by_sequences = table.weighed_by(Prior::Sequences);
-    if let Some(best) = Posterior::new(&by_sequences).best() {
-        writeln!(
-            text,
-            "Most likely hypothesis (the paper's outcome): slope {} deg, intercept {} m, \
-             probability {:.2}; {}",
-            arcs(&best.slope_arc.intervals_deg()),
-            range(best.intercept),
-            best.probability,
-            truth(holds(best.hypothesis)),
-        )?;
-    }
-    let posterior = Posterior::new(table);
-    let set = posterior.credible(LEVEL);
-    writeln!(
-        text,
-        "Credible set: slope {} deg, intercept {} m, probability {:.2} in {} of {} hypotheses; {}\n",
-        arcs(&set.slope_arc.intervals_deg()),
-        range(set.intercept),
-        set.probability,
-        set.cells,
-        table.iter().len(),
-        truth(posterior.members(&set).any(holds)),
+fn outcome(NoisyEnd { best, credible }: &NoisyEnd) -> String {
+    let truth = |holds: Option<bool>| match holds {
+        Some(true) => "; holds the truth",
+        Some(false) => "; misses the truth",
+        None => "",
+    };
+    format!(
+        "Most likely hypothesis (the paper's outcome): slope {} deg, intercept {} m, \
+         probability {:.2}{}\n\
+         Credible set: slope {} deg, intercept {} m, probability {:.2} in {} of {} hypotheses{}\n\n",
+        arcs(&best.slope_arcs),
+        range(best.intercept),
+        best.probability,
+        truth(best.holds),
+        arcs(&credible.slope_arcs),
+        range(credible.intercept),
+        credible.probability,
+        credible.cells,
+        credible.hypotheses,
+        truth(credible.holds),
     )
 }
 
-fn write_steps(text: &mut String, recording: &Recording) -> std::fmt::Result {
-    let mission = &recording.mission;
-    writeln!(
-        text,
-        "{:>4}  {:<7} {:>8} {:>5}  {:<16} {:>5}  {:<26} {:<19} {:>5}",
-        "step",
-        "problem",
-        "turn deg",
-        "go m",
-        "now at m",
-        "label",
-        "slopes left, deg",
-        "intercepts left, m",
-        "bits"
-    )?;
-    let mut past = mission.space.first_label();
-    for (recorded, number) in recording.steps.iter().zip(1..) {
-        let step = &recorded.step;
-        let mut flipped = false;
-        if let Some(Reading::Side(label)) = step.reading {
-            flipped = label != past;
-            past = label;
-        }
-        writeln!(
-            text,
-            "{} {:>5}  {:<26} {:<19} {:>5.2}  {}",
-            motion(number, step),
-            step.reading.map_or("-".into(), |r| format!("{:+}", r.sign())),
-            arcs(&recorded.slope_arcs),
-            range(recorded.intercept),
-            recorded.bits,
-            if mission.algorithm == Algorithm::Random { "" } else { note(recorded, flipped) },
-        )?;
+/// The estimates beside the truth.
+fn errors(results: &Results) -> String {
+    let mut table = Table::new([
+        Column::left("", 28),
+        Column::left("line", 36),
+        Column::right("error deg", 9),
+        Column::right("misclassified", 13),
+    ]);
+    if let Some(truth) = &results.start.truth {
+        table.row(["truth".into(), line(truth)]);
     }
-    Ok(())
-}
-
-fn write_mission(text: &mut String, title: &str, recording: &Recording) -> std::fmt::Result {
-    let mission = &recording.mission;
-    writeln!(text, "{title}")?;
-    writeln!(text, "True line, unknown to the agent: {}", line(&mission.truth))?;
-    let oracle: Vec<_> = mission
-        .space
-        .samples()
-        .iter()
-        .map(|s| {
-            let at = Point2::<f64>::from(s.site);
-            format!("({}, {}) is {:+}", at.x, at.y, s.label.sign())
-        })
-        .collect();
-    writeln!(text, "The oracle's points: {}", oracle.join(", "))?;
-    let (at, heading) = (Point2::<f64>::from(mission.start.site), mission.start.heading);
-    writeln!(
-        text,
-        "It starts at ({}, {}), heading {:.1} deg; slopes {} deg are possible.\n",
-        at.x,
-        at.y,
-        heading.radians().to_degrees(),
-        arcs(&mission.space.slope_arc().intervals_deg()),
-    )?;
-    if let Some(noise) = mission.noise {
-        let each = limit(noise.p);
-        writeln!(
-            text,
-            "A label is true with probability {}, so it tells {each:.3} bits at most on average, \
-             {} of them {:.2}.\n",
-            noise.p,
-            mission.steps,
-            f64::from(mission.steps) * each,
-        )?;
+    for (name, estimate) in estimates(results) {
+        let Some(estimate) = estimate else {
+            table.line(&format!("{name:<28} none"));
+            continue;
+        };
+        let error = estimate.error.map(|error| {
+            [format!("{:.3}", error.degrees), format!("{:.3}%", 100.0 * error.misclassified)]
+        });
+        table.row([name.into(), line(&estimate)].into_iter().chain(error.into_iter().flatten()));
     }
-    match &recording.outcome {
-        Outcome::Lines(_) => write_steps(text, recording)?,
-        Outcome::Hypotheses(_) => write_noisy_steps(text, recording)?,
-    }
-    let why = match recording.end {
-        End::Steps => "all steps are taken",
-        End::Stopped(StopReason::Resolution) => {
-            "what is uncertain is thinner than the action grid can hit"
-        }
-        End::Stopped(_) => recording.end.name(),
-    };
-    writeln!(
-        text,
-        "\nEnded: {why}. {} samples in {} steps, {:.1} m travelled, control cost {:.1}.\n",
-        recording.samples(),
-        recording.steps.len(),
-        recording.travelled(),
-        recording.cost(),
-    )?;
-    if let Outcome::Hypotheses(table) = &recording.outcome {
-        write_outcome(text, recording, table)?;
-    }
-    writeln!(text, "{:<28} {:<36} {:>9} {:>13}", "", "line", "error deg", "misclassified")?;
-    writeln!(text, "{:<28} {:<36}", "truth", line(&mission.truth))?;
-    for (name, estimate) in estimates(recording) {
-        match estimate {
-            Some(estimate) => writeln!(
-                text,
-                "{name:<28} {:<36} {:>9.3} {:>12.3}%",
-                line(&estimate),
-                estimate.angle_to_deg(&mission.truth),
-                100.0 * misclassified(mission.config.area, &mission.truth, &estimate),
-            )?,
-            None => writeln!(text, "{name:<28} none")?,
-        }
-    }
-    Ok(())
+    table.to_string()
 }

@@ -1,4 +1,65 @@
-//! What is really there: the true line, what a place reads, and shapes in metres.
+//! What is really there: what a place reads, and the line that divides the plane, if one does; robots
+//! that move and sense in it; shapes in metres.
 
+pub mod noise;
 pub mod polygon;
-pub mod truth;
+pub mod robot;
+
+use nalgebra::Point2;
+use planner_core::belief::consistent_lines::ConsistentLines;
+use planner_core::belief::sample::{Label, Reading};
+use planner_core::geometry::lattice::Site;
+use planner_core::geometry::line::Line;
+
+/// What is really there: today a straight boundary.
+#[derive(Clone, Copy, Debug)]
+pub struct World {
+    boundary: Line,
+}
+
+impl World {
+    /// A world that a line divides.
+    pub const fn divided_by(line: Line) -> Self {
+        Self { boundary: line }
+    }
+
+    /// The line that divides it, if one does.
+    pub const fn line(&self) -> Option<&Line> {
+        Some(&self.boundary)
+    }
+
+    /// The distance of a site from the boundary in metres, positive on its +1 side.
+    pub fn distance(&self, site: Site) -> f64 {
+        self.boundary.distance(Point2::from(site))
+    }
+
+    /// What a perfect sensor reads at a site.
+    pub fn reading(&self, site: Site) -> Reading {
+        side(self.distance(site))
+    }
+
+    /// Whether a label is the true one of a site.
+    pub fn agrees(&self, site: Site, label: Label) -> bool {
+        self.reading(site) == Reading::Side(label)
+    }
+
+    /// Whether its line is among the lines of a cell; `None` without a line.
+    pub fn is_among(&self, lines: ConsistentLines<'_>) -> Option<bool> {
+        self.line().map(|_| lines.support().all(|s| self.agrees(s.site, s.label)))
+    }
+}
+
+/// What a perfect sensor reads at a site if a line divides the plane.
+pub fn reading(line: &Line, site: Site) -> Reading {
+    side(line.distance(Point2::from(site)))
+}
+
+fn side(distance: f64) -> Reading {
+    if distance > 0.0 {
+        Label::Positive.into()
+    } else if distance < 0.0 {
+        Label::Negative.into()
+    } else {
+        Reading::Boundary
+    }
+}

@@ -45,7 +45,7 @@ fn a_chip_that_cannot_be_is_refused() {
     fs::write(folder.path().join("many.toml"), many).expect("a file");
     let other = env!("CARGO_BIN_EXE_host-sim");
     let other = format!("--emulator={other}");
-    let cases: [(&[&str], &[&str]); 11] = [
+    let cases: [(&[&str], &[&str]); 12] = [
         (&["m.toml"], &["--port", "--emulator"]),
         (&["m.toml", &other], &["host-sim", "firmware's ELF"]),
         (&["m.toml", "--port", "x", "--emulator"], &["--port", "--emulator"]),
@@ -53,6 +53,7 @@ fn a_chip_that_cannot_be_is_refused() {
         (&["m.toml", "--emulator"], &["release/firmware", "cargo firmware"]),
         (&["m.toml", "--emulator=m.toml"], &["m.toml", "ELF", "cargo firmware"]),
         (&["m.toml", "--port", "x", "--log", "l"], &["--log", "--port"]),
+        (&["m.toml", "--emulator", "--baud", "9600"], &["--baud", "--emulator"]),
         (&["m.toml", "--emulator", "--fault", "drop=2"], &["drop", "found 2", "[0, 1]"]),
         (&["m.toml", "--emulator", "--fault", "delay=1s"], &["delay", "found 1s", "20ms"]),
         (&["m.toml", "--emulator", "--algorithm", "random"], &["m.toml", "random", "cfc or scc"]),

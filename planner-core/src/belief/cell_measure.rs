@@ -14,18 +14,18 @@
 //! 10^-7 of itself, where [`estimate::area`](crate::belief::estimate::area), by other means and in double
 //! precision, is its slow twin.
 
-use crate::belief::candidates::Candidates;
+use crate::belief::consistent_lines::ConsistentLines;
 use crate::geometry::lattice::{UNITS_PER_METRE, Vector};
 
 /// A unit vector, and the inverse of the length that it had.
 #[derive(Clone, Copy)]
-struct Unit {
+struct UnitVector {
     x: f32,
     z: f32,
     per_length: f32,
 }
 
-impl Unit {
+impl UnitVector {
     fn of(v: Vector) -> Self {
         let (x, z) = (v.x as f32, v.z as f32);
         let per_length = inverse_sqrt(x * x + z * z);
@@ -41,15 +41,15 @@ impl Unit {
 
 /// Radian metres; 0 for a cell without area.
 #[inline(never)]
-pub(crate) fn measure(candidates: Candidates<'_>) -> f32 {
-    let mut bounds = candidates.bounds();
+pub(crate) fn measure(lines: ConsistentLines<'_>) -> f32 {
+    let mut bounds = lines.bounds();
     let Some(apex) = bounds.next() else { return 0.0 };
-    let apex_unit = Unit::of(apex.along);
+    let apex_unit = UnitVector::of(apex.along);
     // The first triangle is flat.
     let (mut last, mut last_unit, mut last_opening) = (apex, apex_unit, 2.0);
     let mut sum = 0.0;
     for bound in bounds {
-        let unit = Unit::of(bound.along);
+        let unit = UnitVector::of(bound.along);
         let opening = apex_unit.opening(unit);
         let turn = last.along.cross(bound.along) as f32 * (last_unit.per_length * unit.per_length);
         let openings = last_opening * last_unit.opening(unit) * opening;

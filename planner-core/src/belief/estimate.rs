@@ -11,9 +11,8 @@
 
 use nalgebra::{Matrix2, Point2, Vector2};
 
-use crate::belief::candidates::{Candidates, bounds};
+use crate::belief::consistent_lines::{ConsistentLines, Kept, bounds};
 use crate::belief::sample::{Label, Sample};
-use crate::belief::version_space::VersionSpace;
 use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
 use crate::geometry::line::{Bound, Line};
 
@@ -28,17 +27,6 @@ pub struct Estimates {
     pub centre: Option<Line>,
     /// The hard-margin separator.
     pub maximum_margin: Option<Line>,
-}
-
-impl Estimates {
-    /// All three.
-    pub fn of<const N: usize>(space: &VersionSpace<N>) -> Self {
-        Self {
-            bisector: bisector(space.samples()),
-            centre: centre(space.candidates()),
-            maximum_margin: maximum_margin(space.candidates()),
-        }
-    }
 }
 
 const METRE: f64 = 1.0 / UNITS_PER_METRE as f64;
@@ -61,14 +49,23 @@ pub(crate) struct Moments {
 }
 
 impl Moments {
-    /// A line with unit normal `n` and offset `r` has `n . q = r` and is +1 where `n . q > r`.
-    /// At a given angle the offsets of a cell end at `n . p` for two of its samples `p`, so an
-    /// integral over it is one round its edges. With `u` the direction of the line, `n` a quarter
-    /// turn to the left of it and `M` the integral of `n n^T` from one end of an edge to the other,
-    /// an edge adds `p . (u' - u)` to the area, `M p` to the normal and `p^T M p / 2` to the offset.
-    pub(crate) fn of(candidates: Candidates<'_>) -> Self {
-        let about = candidates.samples.first().map(|first| first.site);
-        Self::round(about, candidates.support().zip(candidates.bounds()))
+    /// The integrals over a cell, from its edges alone.
+    ///
+    /// A line with unit normal `n` and offset `r` is `n . q = r`, and +1 where `n . q > r`. Of all lines of
+    /// the cell with the same normal the offsets fill an interval, whose ends are `n . p` for two of its
+    /// samples `p`. So an integral over offsets is a difference of its values at these ends, and the
+    /// integral over the cell a sum over its edges, round it.
+    ///
+    /// An edge belongs to a sample `p` and runs from the vertex before it, of direction `u`, to the one
+    /// after it, of direction `u'`; `n` is a quarter turn to the left of the direction. With `M` the
+    /// integral of `n n^T` from the one to the other, the edge adds
+    ///
+    /// - to the area the integral of `n . p`, which is `p . (u' - u)`;
+    /// - to the normal that of `n (n . p)`, which is `M p`;
+    /// - to the offset that of `(n . p)^2 / 2`, which is `p^T M p / 2`.
+    pub(crate) fn of(lines: ConsistentLines<'_>) -> Self {
+        let about = lines.samples.first().map(|first| first.site);
+        Self::round(about, lines.support().zip(lines.bounds()))
     }
 
     /// The integral round some edges, each with the vertex after it.
@@ -123,18 +120,33 @@ impl Moments {
 
 /// The measure of the version space, radian metres: d(angle) d(offset), the measure of lines that
 /// no motion of the plane changes. Its logarithm to the base 2 falls by the bits that samples tell.
-pub fn area(candidates: Candidates<'_>) -> f64 {
-    Moments::of(candidates).area.abs()
+pub fn area(lines: ConsistentLines<'_>) -> f64 {
+    Moments::of(lines).area.abs()
 }
 
-/// The centre: the mean of the candidate lines, as unit normals with their offsets, by the measure
+/// The share of the lines, by their measure, that label a site +1.
+pub fn share_above(lines: ConsistentLines<'_>, site: Site) -> f64 {
+    let (first, last) = match lines.kept(site, Label::Positive) {
+        Kept::All => return 1.0,
+        Kept::None => return 0.0,
+        Kept::Between { first, last } => (first, last),
+    };
+    let all = lines.edges.len();
+    let kept = if first <= last { last - first + 1 } else { last + all - first + 1 };
+    let above = core::iter::once(Sample { site, label: Label::Positive });
+    let support = lines.support().cycle().skip(first).take(kept).chain(above);
+    let part = Moments::round(Some(site), support.clone().zip(bounds(support)));
+    (part.area.abs() / area(lines)).clamp(0.0, 1.0)
+}
+
+/// The centre: the mean of the lines left, as unit normals with their offsets, by the measure
 /// d(angle) d(offset).
 ///
 /// Closed form, and the same wherever the origin lies and however the axes turn. The version space
 /// is convex, so its mean agrees with every sample. `None` if the version space is too thin for
 /// double precision.
-pub fn centre(candidates: Candidates<'_>) -> Option<Line> {
-    Moments::of(candidates).mean()
+pub fn centre(lines: ConsistentLines<'_>) -> Option<Line> {
+    Moments::of(lines).mean()
 }
 
 /// [`centre`] of a cyclic list of samples, of any length. The sums are taken about a site, which had best
@@ -148,8 +160,8 @@ pub fn centre_of(about: Site, support: impl Iterator<Item = Sample> + Clone) -> 
 /// The pair is chosen by exact integer conditions, so the line is the exact one, rounded once. Only
 /// samples that still matter to the version space can support it. `O(m^4)` for `m` of them, few as they
 /// are.
-pub fn maximum_margin(candidates: Candidates<'_>) -> Option<Line> {
-    maximum_margin_of(candidates.support())
+pub fn maximum_margin(lines: ConsistentLines<'_>) -> Option<Line> {
+    maximum_margin_of(lines.support())
 }
 
 /// [`maximum_margin`] of a list of samples.

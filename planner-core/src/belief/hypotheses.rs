@@ -7,40 +7,31 @@
 //! the rest: the whole distribution, exactly, until the table is full.
 //!
 //! - *Full table.* The least likely hypotheses go, in whole, before a sample is taken in. What they
-//!   can have come to since is bounded, see [`Posterior::lost`].
+//!   can have come to since is bounded, see [`Posterior::pruned_mass`].
 //! - *A cell with more edges than it can hold* keeps the lines that the sample would have cut off: an
 //!   outer approximation, counted in [`outer_cells`](Hypotheses::outer_cells). With 15 edges it has
 //!   not been seen to happen: over the tests' missions of 64 labels a cell has 9 at most.
 //!
-//! [`Posterior::lost`]: crate::belief::posterior::Posterior::lost
+//! [`Posterior::pruned_mass`]: crate::belief::posterior::Posterior::pruned_mass
 
-use crate::belief::candidates::{Candidates, Certainty};
-use crate::belief::cell::{Cell, Edge};
+use crate::belief::Refused;
+use crate::belief::cell::LineCell;
 use crate::belief::cell_measure::measure;
+use crate::belief::consistent_lines::{Certainty, ConsistentLines};
+use crate::belief::edge::Edge;
 use crate::belief::list::List;
-use crate::belief::pruned::Lost;
+use crate::belief::noise::{Noise, Reliability};
+use crate::belief::pruned::PrunedMass;
 use crate::belief::sample::{Label, Sample, SampleBuffer};
-use crate::belief::version_space::{NoVersionSpace, Refused, VersionSpace};
-use crate::belief::weight::{Coarse, LogWeight, Reliability};
+use crate::belief::version_space::{NoVersionSpace, VersionSpace};
+use crate::belief::weight::{Coarse, LogWeight, Prior};
 use crate::geometry::lattice::Site;
-
-/// How hypotheses are weighed before any label is seen.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
-pub enum Prior {
-    /// By the measure of their lines, d(angle) d(offset): uniform over lines.
-    #[default]
-    Area,
-    /// All alike: the paper's, uniform over separable sequences.
-    Sequences,
-}
 
 /// A sequence of true labels that some line realises: the cell of the lines that do, and what it weighs
 /// if the labels seen are given. 24 bytes for `E = 15`.
 #[derive(Clone, Copy, Debug)]
 pub struct Hypothesis<const E: usize> {
-    cell: Cell<E>,
+    cell: LineCell<E>,
     /// The weight in two halves, or a hypothesis would be padded to a multiple of 8 bytes.
     high: i32,
     low: u32,
@@ -49,14 +40,14 @@ pub struct Hypothesis<const E: usize> {
 impl<const E: usize> Hypothesis<E> {
     /// What no line realises. All its bytes are zero, so that memory is filled with it at no cost of
     /// flash.
-    const NONE: Self = Self { cell: Cell::NONE, high: 0, low: 0 };
+    const NONE: Self = Self { cell: LineCell::NONE, high: 0, low: 0 };
 
-    fn new(cell: Cell<E>, LogWeight(units): LogWeight) -> Self {
+    fn new(cell: LineCell<E>, LogWeight(units): LogWeight) -> Self {
         Self { cell, high: (units >> 32) as i32, low: units as u32 }
     }
 
     /// The lines that realise it.
-    pub fn cell(&self) -> &Cell<E> {
+    pub fn cell(&self) -> &LineCell<E> {
         &self.cell
     }
 
@@ -72,8 +63,8 @@ impl<const E: usize> Hypothesis<E> {
 
 /// Up to `H` hypotheses over up to `N` samples, the given ones included; a cell has up to `E` edges.
 ///
-/// `24 H + 12 N` bytes and some 40 for `E = 15`: with the four oracle points, 3,564 bytes for all
-/// hypotheses of 16 labels (`H` = 137), 13,164 for 32 (529), 50,796 for 64 (2,081).
+/// `24 H + 12 N` bytes and some 40 for `E = 15`: with the four oracle points, 3,584 bytes for all
+/// hypotheses of 16 labels (`H` = 137), 13,184 for 32 (529), 50,816 for 64 (2,081).
 ///
 /// Weights are exact but for the logarithms of a label's odds (to 10^-10 each) and of a cell's measure
 /// (to 10^-6), however certain labels are.
@@ -81,17 +72,18 @@ impl<const E: usize> Hypothesis<E> {
 /// A table without room for one hypothesis does not compile:
 ///
 /// ```compile_fail,E0080
-/// use planner_core::belief::hypotheses::{Hypotheses, Prior};
-/// let table = Hypotheses::<16, 0>::new(&[], Prior::Area);
+/// use planner_core::belief::hypotheses::Hypotheses;
+/// let table = Hypotheses::<16, 0>::NONE;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Hypotheses<const N: usize, const H: usize, const E: usize = 15> {
     samples: SampleBuffer<N>,
     given: u8,
-    start: Cell<E>,
+    start: LineCell<E>,
     table: List<Hypothesis<E>, H>,
     prior: Prior,
-    lost: Lost,
+    noise: Noise,
+    pruned: PrunedMass,
     outer_cells: u16,
 }
 
@@ -102,22 +94,23 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
         Self {
             samples: SampleBuffer::new(),
             given: 0,
-            start: Cell::NONE,
+            start: LineCell::NONE,
             table: List::filled(Hypothesis::NONE),
             prior: Prior::Area,
-            lost: Lost::NOTHING,
+            noise: Noise { reliability: Reliability::NONE, trusted_radius: 0 },
+            pruned: PrunedMass::NOTHING,
             outer_cells: 0,
         }
     };
 
     /// The one hypothesis that the given samples leave, which are certain. `prior` weighs those that
-    /// labels will make of it.
+    /// labels will make of it, `noise` says how far these can be believed.
     ///
     /// # Errors
     /// [`NoVersionSpace`], and `TooMany` also when more than `E` of them bound the line.
-    pub fn new(given: &[Sample], prior: Prior) -> Result<Self, NoVersionSpace> {
+    pub fn new(given: &[Sample], prior: Prior, noise: Noise) -> Result<Self, NoVersionSpace> {
         let mut hypotheses = Self::NONE;
-        hypotheses.restart(given, prior)?;
+        hypotheses.restart(given, prior, noise)?;
         Ok(hypotheses)
     }
 
@@ -125,17 +118,22 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
     ///
     /// # Errors
     /// As `new`, with the table as it was.
-    pub fn restart(&mut self, given: &[Sample], prior: Prior) -> Result<(), NoVersionSpace> {
+    pub fn restart(
+        &mut self,
+        given: &[Sample],
+        prior: Prior,
+        noise: Noise,
+    ) -> Result<(), NoVersionSpace> {
         let space = VersionSpace::<N>::new(given)?;
-        let start: Cell<E> = space.cell().resized().ok_or(NoVersionSpace::TooMany)?;
+        let start: LineCell<E> = space.cell().resized().ok_or(NoVersionSpace::TooMany)?;
         self.samples = space.into_samples();
         self.given = given.len() as u8;
         self.start = start;
         self.table.clear();
         // It has room for one.
         let _ = self.table.push(Hypothesis::new(start, LogWeight::ZERO));
-        self.prior = prior;
-        self.lost = Lost::NOTHING;
+        (self.prior, self.noise) = (prior, noise);
+        self.pruned = PrunedMass::NOTHING;
         self.outer_cells = 0;
         Ok(())
     }
@@ -163,10 +161,15 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
         self.prior
     }
 
+    /// How far a label at a site can be believed.
+    pub fn reliability(&self, site: Site) -> Reliability {
+        self.noise.at(site, self.given())
+    }
+
     /// The logarithm of the measure of a hypothesis's lines, radian metres, to 10^-6; at least -96.
     #[inline(never)] // called from many places
     pub fn log_area(&self, hypothesis: &Hypothesis<E>) -> LogWeight {
-        Coarse::of(measure(self.candidates(hypothesis))).into()
+        Coarse::of(measure(self.lines(hypothesis))).into()
     }
 
     /// All samples with the labels that were seen, the given ones first.
@@ -185,13 +188,13 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
     }
 
     /// Whether another sample would be refused for want of room.
-    pub fn is_full(&self) -> bool {
+    pub(crate) fn is_full(&self) -> bool {
         self.samples.is_full()
     }
 
     /// What the given samples leave: the ground of P3 and P4.
-    pub fn start(&self) -> Candidates<'_> {
-        self.start.candidates(&self.samples)
+    pub fn start(&self) -> ConsistentLines<'_> {
+        self.start.lines(&self.samples)
     }
 
     /// The hypotheses that are held.
@@ -199,9 +202,9 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
         self.table.iter()
     }
 
-    /// The candidate lines of a hypothesis of this table.
-    pub fn candidates<'a>(&'a self, hypothesis: &'a Hypothesis<E>) -> Candidates<'a> {
-        hypothesis.cell.candidates(&self.samples)
+    /// The lines of a hypothesis of this table.
+    pub fn lines<'a>(&'a self, hypothesis: &'a Hypothesis<E>) -> ConsistentLines<'a> {
+        hypothesis.cell.lines(&self.samples)
     }
 
     /// How often a cell could not hold another edge and kept lines that it should not have.
@@ -210,12 +213,12 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
     }
 
     /// Mass given up, at most, on the scale of the weights held.
-    pub(crate) fn lost(&self) -> f64 {
-        f64::from(self.lost.mass(self.prior))
+    pub(crate) fn pruned_mass(&self) -> f64 {
+        f64::from(self.pruned.mass(self.prior))
     }
 
     fn certainty(&self, hypothesis: &Hypothesis<E>, q: Site) -> Certainty {
-        self.candidates(hypothesis).certainty(q)
+        self.lines(hypothesis).certainty(q)
     }
 
     /// Takes in a label of some reliability: splits the hypotheses that the sample cuts and weighs
@@ -225,7 +228,7 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
     /// # Errors
     /// [`Refused::Contradiction`] when a label that is certain leaves no hypothesis, and
     /// [`Refused::Full`]; the table is then as it was.
-    pub fn observe(&mut self, sample: Sample, reliability: Reliability) -> Result<(), Refused> {
+    pub fn take(&mut self, sample: Sample, reliability: Reliability) -> Result<(), Refused> {
         let (agree, disagree) = (reliability.agree(), reliability.disagree());
         let weight = |label: Label| if label == sample.label { agree } else { disagree };
         let survives = |hypothesis: &Hypothesis<E>| match self.certainty(hypothesis, sample.site) {
@@ -249,7 +252,7 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
         if !doubtful {
             self.table.retain(|hypothesis| !hypothesis.cell.edges().is_empty());
         }
-        self.lost.split(reliability);
+        self.pruned.split(reliability);
         self.rescale();
         Ok(())
     }
@@ -275,8 +278,8 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
     fn give_up(&mut self, gone: &Hypothesis<E>) {
         let (weight, area) = (gone.weight(), self.log_area(gone));
         match self.prior {
-            Prior::Area => self.lost.add(weight, weight - area),
-            Prior::Sequences => self.lost.add(weight + area, weight),
+            Prior::Area => self.pruned.add(weight, weight - area),
+            Prior::Sequences => self.pruned.add(weight + area, weight),
         }
     }
 
@@ -286,12 +289,12 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
         let (agree, disagree) = (reliability.agree(), reliability.disagree());
         let Some(site) = self.samples.get(edge.index()).map(|s| s.site) else { return };
         let Some(whole) = self.table.get_mut(k) else { return };
-        match whole.cell.candidates(&self.samples).certainty(site) {
+        match whole.cell.lines(&self.samples).certainty(site) {
             Certainty::Certain(certain) => {
                 let weight = if certain == edge.label() { agree } else { disagree };
                 match weight {
                     Some(weight) => whole.weigh(weight),
-                    None => whole.cell = Cell::NONE,
+                    None => whole.cell = LineCell::NONE,
                 }
             }
             Certainty::Uncertain => {
@@ -349,7 +352,7 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
         let most = self.table.iter().map(Hypothesis::weight).max().unwrap_or(LogWeight::ZERO);
         if most != LogWeight::ZERO {
             self.table.iter_mut().for_each(|h| h.weigh(LogWeight::ZERO - most));
-            self.lost.rescale(most);
+            self.pruned.rescale(most);
         }
     }
 }

@@ -6,14 +6,74 @@
 //! wrong there is a table of weighed cells ([`hypotheses`]), read as a distribution ([`posterior`]).
 //! Nothing here knows how the robot moves.
 
-pub mod candidates;
 pub mod cell;
 pub(crate) mod cell_measure;
+pub mod consistent_lines;
+pub mod edge;
 pub mod estimate;
 pub mod hypotheses;
 pub(crate) mod list;
+pub mod noise;
 pub mod posterior;
 pub(crate) mod pruned;
 pub mod sample;
 pub mod version_space;
 pub mod weight;
+
+use crate::belief::estimate::Estimates;
+use crate::belief::sample::{Reading, Sample};
+use crate::geometry::lattice::Site;
+
+/// What is known of the line: what planners ask, and what is read out.
+///
+/// Every answer follows from the samples taken so far and from nothing else.
+pub trait Belief {
+    /// Whether another sample would be refused for want of room.
+    fn is_full(&self) -> bool;
+
+    /// Takes in what was read at a site.
+    ///
+    /// # Errors
+    /// [`Refused`] when the reading contradicts what is known or cannot be stored.
+    fn observe(&mut self, site: Site, reading: Reading) -> Result<(), Refused>;
+
+    /// The line as far as it is known.
+    fn estimates(&self) -> Estimates;
+
+    /// What the samples told of the line beyond those given at the start, bits: the divergence of what
+    /// is known from the uniform distribution over the lines that the given samples leave.
+    fn information(&self) -> f64;
+
+    /// The chance that a label read at a site is +1, errors of the sensor included.
+    fn chance(&self, site: Site) -> f64;
+}
+
+/// Why a sample was not taken. What is known is as it was.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum Refused {
+    /// The sample lies in the region of certainty of the other label: a label was wrong, or the
+    /// boundary is not straight.
+    Contradiction(Sample),
+    /// The buffer is full.
+    Full(Sample),
+}
+
+impl core::fmt::Display for Refused {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Contradiction(s) => write!(
+                f,
+                "label {} at lattice site ({}, {}) contradicts the region of certainty it lies in",
+                s.label.sign(),
+                s.site.x(),
+                s.site.z()
+            ),
+            Self::Full(_) => f.write_str("the sample buffer is full"),
+        }
+    }
+}
+
+impl core::error::Error for Refused {}

@@ -3,13 +3,16 @@
 //! With a policy that depends on the information alone, Equation 8 comes to
 //! `weight = p^agree (1 - p)^disagree` over the samples outside the trusted balls, divided by the sum
 //! over all separable sequences. Every probability stands beside a bound on what pruning can have
-//! made of it: [`Posterior::lost`].
+//! made of it: [`Posterior::pruned_mass`].
 
-use crate::belief::candidates::{Candidates, intercepts};
-use crate::belief::estimate::{Estimates, Moments, bisector, maximum_margin};
+use crate::belief::consistent_lines::{ConsistentLines, intercepts};
+use crate::belief::estimate::{Estimates, Moments, bisector, maximum_margin, share_above};
 use crate::belief::hypotheses::{Hypotheses, Hypothesis};
+use crate::belief::sample::{Reading, Sample};
 use crate::belief::weight::LogWeight;
-use crate::geometry::direction::Arc;
+use crate::belief::{Belief, Refused};
+use crate::geometry::arc::SlopeArc;
+use crate::geometry::lattice::Site;
 use crate::geometry::line::Line;
 
 /// The distribution over the hypotheses of a table, by its prior.
@@ -29,7 +32,7 @@ pub struct Best<'a, const E: usize> {
     /// Its probability.
     pub probability: f64,
     /// The slopes of its lines.
-    pub slope_arc: Arc,
+    pub slope_arc: SlopeArc,
     /// The intercepts of its lines, metres; `None` when unbounded.
     pub intercept: Option<[f64; 2]>,
 }
@@ -44,11 +47,37 @@ pub struct Credible {
     /// Number of hypotheses.
     pub cells: usize,
     /// The arc that spans the slopes of their lines.
-    pub slope_arc: Arc,
+    pub slope_arc: SlopeArc,
     /// The range of the intercepts of their lines, metres; `None` when unbounded.
     pub intercept: Option<[f64; 2]>,
     /// The smallest weight in the set and the number of those of that weight that belong to it.
     cut: Option<(LogWeight, usize)>,
+}
+
+impl<const N: usize, const H: usize, const E: usize> Belief for Hypotheses<N, H, E> {
+    fn is_full(&self) -> bool {
+        self.is_full()
+    }
+
+    /// A reading on the boundary agrees with both sides, and tells nothing here.
+    fn observe(&mut self, site: Site, reading: Reading) -> Result<(), Refused> {
+        let Reading::Side(label) = reading else { return Ok(()) };
+        self.take(Sample { site, label }, self.reliability(site))
+    }
+
+    fn estimates(&self) -> Estimates {
+        Posterior::new(self).estimates()
+    }
+
+    fn information(&self) -> f64 {
+        Posterior::new(self).information()
+    }
+
+    fn chance(&self, site: Site) -> f64 {
+        let above = Posterior::new(self).share_above(site);
+        let p = self.reliability(site).probability();
+        above * p + (1.0 - above) * (1.0 - p)
+    }
 }
 
 impl<'a, const N: usize, const H: usize, const E: usize> Posterior<'a, N, H, E> {
@@ -66,9 +95,9 @@ impl<'a, const N: usize, const H: usize, const E: usize> Posterior<'a, N, H, E> 
 
     /// An upper bound on the probability of all that was given up as the table was full: 0 when
     /// nothing was. Every probability stated is too high by this share at most.
-    pub fn lost(&self) -> f64 {
-        let lost = self.hypotheses.lost();
-        lost / (lost + self.total)
+    pub fn pruned_mass(&self) -> f64 {
+        let pruned = self.hypotheses.pruned_mass();
+        pruned / (pruned + self.total)
     }
 
     fn most_likely(&self) -> Option<&'a Hypothesis<E>> {
@@ -81,7 +110,7 @@ impl<'a, const N: usize, const H: usize, const E: usize> Posterior<'a, N, H, E> 
     /// The most likely hypothesis, the first of equals.
     pub fn best(&self) -> Option<Best<'a, E>> {
         let hypothesis = self.most_likely()?;
-        let lines = self.hypotheses.candidates(hypothesis);
+        let lines = self.hypotheses.lines(hypothesis);
         Some(Best {
             hypothesis,
             probability: self.probability(hypothesis),
@@ -107,10 +136,10 @@ impl<'a, const N: usize, const H: usize, const E: usize> Posterior<'a, N, H, E> 
             cells += taken;
             cut = Some((weight, taken));
         }
-        let lines = || self.down_to(cut).map(|h| self.hypotheses.candidates(h));
+        let lines = || self.down_to(cut).map(|h| self.hypotheses.lines(h));
         let directions = lines().flat_map(|c| c.bounds().map(|bound| bound.along));
-        let slope_arc = Arc::spanning(directions).unwrap_or_default();
-        let intercept = intercepts(lines().flat_map(Candidates::bounds));
+        let slope_arc = SlopeArc::spanning(directions).unwrap_or_default();
+        let intercept = intercepts(lines().flat_map(ConsistentLines::bounds));
         Credible { level, probability, cells, slope_arc, intercept, cut }
     }
 
@@ -152,12 +181,18 @@ impl<'a, const N: usize, const H: usize, const E: usize> Posterior<'a, N, H, E> 
         self.hypotheses.iter().map(term).sum()
     }
 
+    /// The probability that a site lies on the +1 side.
+    pub fn share_above(&self, site: Site) -> f64 {
+        let share = |h| share_above(self.hypotheses.lines(h), site) * self.probability(h);
+        self.hypotheses.iter().map(share).sum()
+    }
+
     /// The posterior mean of the line: each hypothesis adds its centre, as unit normals with their
     /// offsets, by its probability. The mean over lines, so it needs no choice of a hypothesis and
     /// moves smoothly as labels come in: the point estimate to use.
     pub fn mean(&self) -> Option<Line> {
         let each = |hypothesis| {
-            let moments = Moments::of(self.hypotheses.candidates(hypothesis));
+            let moments = Moments::of(self.hypotheses.lines(hypothesis));
             moments.scaled(self.probability(hypothesis) / moments.area)
         };
         self.hypotheses.iter().map(each).reduce(Moments::plus)?.mean()
@@ -166,7 +201,7 @@ impl<'a, const N: usize, const H: usize, const E: usize> Posterior<'a, N, H, E> 
     /// The three estimates: the bisector of the labels as they were seen, the posterior mean, and the
     /// maximum margin of the most likely hypothesis.
     pub fn estimates(&self) -> Estimates {
-        let best = self.most_likely().map(|best| self.hypotheses.candidates(best));
+        let best = self.most_likely().map(|best| self.hypotheses.lines(best));
         Estimates {
             bisector: bisector(self.hypotheses.samples()),
             centre: self.mean(),

@@ -1,16 +1,17 @@
 //! What a full table of hypotheses gave up: a bound, in single precision and rounded up.
 
-use crate::belief::hypotheses::Prior;
-use crate::belief::weight::{LogWeight, Reliability};
+use crate::belief::noise::Reliability;
+use crate::belief::weight::LogWeight;
+use crate::belief::weight::Prior;
 
 /// Mass given up, at most, by both priors, on the scale of the weights held.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Lost {
+pub(crate) struct PrunedMass {
     area: f32,
     sequences: f32,
 }
 
-impl Lost {
+impl PrunedMass {
     pub(crate) const NOTHING: Self = Self { area: 0.0, sequences: 0.0 };
 
     pub(crate) fn mass(self, prior: Prior) -> f32 {

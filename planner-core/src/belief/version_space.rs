@@ -1,9 +1,12 @@
 //! The version space: all lines that agree with every sample, and what can be read off it.
 
-use crate::belief::candidates::{Candidates, Certainty};
-use crate::belief::cell::{Cell, Cut, CutError, Edge};
+use crate::belief::cell::{Cut, CutError, LineCell};
+use crate::belief::consistent_lines::{Certainty, ConsistentLines};
+use crate::belief::edge::Edge;
+use crate::belief::estimate::{Estimates, area, bisector, centre, maximum_margin, share_above};
 use crate::belief::sample::{Label, Reading, Sample, SampleBuffer};
-use crate::geometry::direction::Arc;
+use crate::belief::{Belief, Refused};
+use crate::geometry::arc::SlopeArc;
 use crate::geometry::lattice::Site;
 use crate::geometry::line::Bound;
 
@@ -11,6 +14,7 @@ use crate::geometry::line::Bound;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub enum NoVersionSpace {
     /// All samples lie on one line (or there are fewer than three): any line may pass.
     Collinear,
@@ -36,42 +40,15 @@ impl core::fmt::Display for NoVersionSpace {
 
 impl core::error::Error for NoVersionSpace {}
 
-/// Why a sample was not taken. The version space is as it was.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
-pub enum Refused {
-    /// The sample lies in the region of certainty of the other label: a label was wrong, or the
-    /// boundary is not straight.
-    Contradiction(Sample),
-    /// The buffer is full.
-    Full(Sample),
-}
-
-impl core::fmt::Display for Refused {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        match self {
-            Self::Contradiction(s) => write!(
-                f,
-                "label {} at lattice site ({}, {}) contradicts the region of certainty it lies in",
-                s.label.sign(),
-                s.site.x(),
-                s.site.z()
-            ),
-            Self::Full(_) => f.write_str("the sample buffer is full"),
-        }
-    }
-}
-
-impl core::error::Error for Refused {}
-
 /// All lines that agree with up to `N` samples (the field's name for the paper's "bounds").
 ///
-/// Each sample is kept; the [`Cell`] names those that still matter.
+/// Each sample is kept; the [`LineCell`] names those that still matter.
 #[derive(Clone, Debug)]
 pub struct VersionSpace<const N: usize> {
     samples: SampleBuffer<N>,
-    cell: Cell<N>,
+    /// A whole word, so that the cell begins at one.
+    given: usize,
+    cell: LineCell<N>,
 }
 
 impl<const N: usize> VersionSpace<N> {
@@ -85,24 +62,25 @@ impl<const N: usize> VersionSpace<N> {
         for &sample in samples {
             buffer.push(sample).map_err(|_| NoVersionSpace::TooMany)?;
         }
-        let Some(first) = samples.first() else {
-            return Err(NoVersionSpace::Collinear);
-        };
+        let first = samples.first().ok_or(NoVersionSpace::Collinear)?;
         let edges = || (0u8..).zip(samples).map(|(i, sample)| Edge::new(i, sample.label));
+        // Three samples that are not collinear make the first cell: the first of all, the first at another
+        // site, and the first beside the line through these.
         let a = Edge::new(0, first.label);
-        let apart = edges().zip(samples).find(|(_, sample)| sample.site != first.site);
-        let mut cell = apart
-            .and_then(|(b, _)| edges().find_map(|c| Cell::triangle(&buffer, [a, b, c])))
-            .ok_or_else(|| {
-                crossed(samples).map_or(NoVersionSpace::Collinear, NoVersionSpace::NotSeparable)
-            })?;
+        let elsewhere = edges().zip(samples).find(|(_, sample)| sample.site != first.site);
+        let triangle = elsewhere
+            .and_then(|(b, _)| edges().find_map(|c| LineCell::triangle(&buffer, [a, b, c])));
+        let Some(mut cell) = triangle else {
+            let inseparable = first_inseparable_collinear(samples);
+            return Err(inseparable.map_or(NoVersionSpace::Collinear, NoVersionSpace::NotSeparable));
+        };
         for (i, edge) in edges().enumerate() {
             cell.cut(&buffer, edge).map_err(|_| NoVersionSpace::NotSeparable(i))?;
         }
         if samples.iter().all(|s| s.label == first.label) {
             return Err(NoVersionSpace::OneLabel);
         }
-        Ok(Self { samples: buffer, cell })
+        Ok(Self { samples: buffer, given: samples.len(), cell })
     }
 
     /// The samples, in the order in which they came.
@@ -114,13 +92,13 @@ impl<const N: usize> VersionSpace<N> {
         self.samples
     }
 
-    /// Whether another sample would be refused for want of room.
-    pub fn is_full(&self) -> bool {
-        self.samples.is_full()
+    /// Those that it was made of.
+    pub fn given(&self) -> &[Sample] {
+        self.samples.get(..self.given).unwrap_or(&[])
     }
 
-    /// The polygon of candidate lines.
-    pub fn cell(&self) -> &Cell<N> {
+    /// The cell of the lines left.
+    pub fn cell(&self) -> &LineCell<N> {
         &self.cell
     }
 
@@ -148,12 +126,7 @@ impl<const N: usize> VersionSpace<N> {
     ///
     /// # Errors
     /// As [`insert`](Self::insert), never for a true reading.
-    pub fn observe(
-        &mut self,
-        site: Site,
-        reading: Reading,
-        either: Label,
-    ) -> Result<Label, Refused> {
+    pub fn take(&mut self, site: Site, reading: Reading, either: Label) -> Result<Label, Refused> {
         let label = match reading {
             Reading::Side(label) => label,
             Reading::Boundary => match self.certainty(site) {
@@ -167,35 +140,35 @@ impl<const N: usize> VersionSpace<N> {
         self.insert(Sample { site, label }).map(|_| label)
     }
 
-    /// The candidate lines, to be read off.
-    pub fn candidates(&self) -> Candidates<'_> {
-        self.cell.candidates(&self.samples)
+    /// The lines left, to be read off.
+    pub fn lines(&self) -> ConsistentLines<'_> {
+        self.cell.lines(&self.samples)
     }
 
     /// The vertices of the version space, in cyclic order.
     pub fn bounds(&self) -> impl Iterator<Item = Bound> + '_ {
-        self.candidates().bounds()
+        self.lines().bounds()
     }
 
-    /// Whether all candidate lines give a position the same label, and which.
+    /// Whether all these lines give a position the same label, and which.
     pub fn certainty(&self, q: Site) -> Certainty {
-        self.candidates().certainty(q)
+        self.lines().certainty(q)
     }
 
-    /// The directions of the candidate lines: the paper's `E_rho,t`.
-    pub fn slope_arc(&self) -> Arc {
-        self.candidates().slope_arc()
+    /// The directions of the lines left: the paper's `E_rho,t`.
+    pub fn slope_arc(&self) -> SlopeArc {
+        self.lines().slope_arc()
     }
 
-    /// The range of the candidate lines' intercepts in metres, the paper's `I_c,t`; `None` when it
+    /// The range of the lines left' intercepts in metres, the paper's `I_c,t`; `None` when it
     /// is unbounded, as a vertical line is among them.
     pub fn intercepts(&self) -> Option<[f64; 2]> {
-        self.candidates().intercepts()
+        self.lines().intercepts()
     }
 
     /// The samples that still matter: the others follow from these.
     pub fn support(&self) -> impl Iterator<Item = Sample> + Clone + '_ {
-        self.candidates().support()
+        self.lines().support()
     }
 
     /// The first sample's label: where Algorithm 1 starts.
@@ -204,17 +177,48 @@ impl<const N: usize> VersionSpace<N> {
     }
 }
 
-/// The first of these collinear samples that lies between two of the other label, or has one of the
-/// other label between itself and another: no line separates the samples up to it.
-fn crossed(samples: &[Sample]) -> Option<usize> {
-    let between = |a: &Sample, b: &Sample, c: &Sample| {
+impl<const N: usize> Belief for VersionSpace<N> {
+    fn is_full(&self) -> bool {
+        self.samples.is_full()
+    }
+
+    /// As [`take`](Self::take), with +1 for a site on the boundary.
+    fn observe(&mut self, site: Site, reading: Reading) -> Result<(), Refused> {
+        self.take(site, reading, Label::Positive).map(|_| ())
+    }
+
+    fn estimates(&self) -> Estimates {
+        Estimates {
+            bisector: bisector(self.samples()),
+            centre: centre(self.lines()),
+            maximum_margin: maximum_margin(self.lines()),
+        }
+    }
+
+    /// Each bit halves the measure of the lines that are left.
+    fn information(&self) -> f64 {
+        // Given samples that made a version space make it again.
+        let start = Self::new(self.given()).map_or(f64::NAN, |start| area(start.lines()));
+        libm::log2(start / area(self.lines()))
+    }
+
+    fn chance(&self, site: Site) -> f64 {
+        share_above(self.lines(), site)
+    }
+}
+
+/// The first of these collinear samples up to which no line separates them: it lies between two of the
+/// other label, or there is one of the other label between it and another, or at its site.
+fn first_inseparable_collinear(samples: &[Sample]) -> Option<usize> {
+    let lies_between = |b: &Sample, [a, c]: [&Sample; 2]| {
         a.label == c.label && a.label != b.label && (a.site - b.site).dot(c.site - b.site) <= 0
     };
     (1..=samples.len()).find_map(|n| {
         let (last, earlier) = samples.get(..n)?.split_last()?;
         let pairs = || earlier.iter().flat_map(|a| earlier.iter().map(move |b| (a, b)));
-        pairs()
-            .any(|(a, b)| between(a, last, b) || between(last, a, b) || between(last, a, last))
-            .then_some(n - 1)
+        let is_inseparable = |(a, b)| {
+            lies_between(last, [a, b]) || lies_between(a, [last, b]) || lies_between(a, [last; 2])
+        };
+        pairs().any(is_inseparable).then_some(n - 1)
     })
 }

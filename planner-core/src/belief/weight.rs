@@ -10,12 +10,12 @@ use core::ops::{Add, Sub};
 pub struct LogWeight(pub(crate) i64);
 
 impl LogWeight {
-    const ONE: i64 = 1 << 32;
+    pub(crate) const ONE: i64 = 1 << 32;
 
     /// The logarithm of 1.
     pub const ZERO: Self = Self(0);
 
-    fn from_log(log: f64) -> Self {
+    pub(crate) fn from_log(log: f64) -> Self {
         Self(libm::round(log * Self::ONE as f64) as i64)
     }
 
@@ -127,58 +127,16 @@ impl From<Coarse> for LogWeight {
     }
 }
 
-/// How far a label can be believed: it is true with probability `p`.
-///
-/// Held as the logarithm of the odds `p / (1 - p)`, to 10^-10, which is all that a posterior needs of
-/// it: lines that agree with a label gain so much on those that do not.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// How hypotheses are weighed before any label is seen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "wire", serde(try_from = "i64", into = "i64"))]
-pub struct Reliability {
-    log_odds: LogWeight,
-}
-
-impl Reliability {
-    /// No odds of a number are as large: a double is no smaller than `e^-745`.
-    const BEYOND: LogWeight = LogWeight(1_000 * LogWeight::ONE);
-
-    /// The label is true for certain, as within a trusted ball.
-    pub const CERTAIN: Self = Self { log_odds: Self::BEYOND };
-
-    /// A label that is true with probability `p`: 1 is certain, 0 certainly wrong, and 1/2 says
-    /// nothing. `None` outside [0, 1].
-    pub fn new(p: f64) -> Option<Self> {
-        let beyond = Self::BEYOND.value();
-        let inside = (0.0..=1.0).contains(&p);
-        inside.then(|| {
-            let log_odds = libm::log(p) - libm::log1p(-p); // infinite for 0 and 1
-            Self { log_odds: LogWeight::from_log(log_odds.clamp(-beyond, beyond)) }
-        })
-    }
-
-    /// The reliability with these odds as a logarithm in units of 2^-32; `None` if there is no such
-    /// probability.
-    pub(crate) fn from_log_odds(units: i64) -> Option<Self> {
-        let inside = units.unsigned_abs() <= Self::BEYOND.0.unsigned_abs();
-        inside.then_some(Self { log_odds: LogWeight(units) })
-    }
-
-    /// The logarithm of the odds, in units of 2^-32.
-    pub(crate) const fn log_odds(self) -> i64 {
-        self.log_odds.0
-    }
-
-    /// What lines weigh that agree with the label, relative to the likelier side; `None` when no line
-    /// can.
-    pub(crate) fn agree(self) -> Option<LogWeight> {
-        (self.log_odds.0 > -Self::BEYOND.0).then_some(LogWeight(self.log_odds.0.min(0)))
-    }
-
-    /// What lines weigh that do not agree; `None` when all must.
-    pub(crate) fn disagree(self) -> Option<LogWeight> {
-        (self.log_odds < Self::BEYOND).then_some(LogWeight(self.log_odds.0.saturating_neg().min(0)))
-    }
+pub enum Prior {
+    /// By the measure of their lines, d(angle) d(offset): uniform over lines.
+    #[default]
+    Area,
+    /// All alike: the paper's, uniform over separable sequences.
+    Sequences,
 }
 
 #[cfg(test)]
@@ -209,30 +167,5 @@ mod tests {
         // Beyond what single precision can tell.
         assert_eq!(Coarse::near(LogWeight(i64::MIN / 2)).0, Coarse::LEAST);
         assert_eq!(Coarse::near(LogWeight(i64::MAX / 2)).0, Coarse::MOST);
-    }
-
-    #[test]
-    fn odds_are_those_of_the_probability() {
-        for p in [5e-324, 1e-300, 1e-9, 0.3, 0.5, 0.7, 0.999, 1.0 - f64::EPSILON] {
-            let it = Reliability::new(p).unwrap();
-            let exact = libm::log(p) - libm::log1p(-p);
-            assert!((it.log_odds.value() - exact).abs() < 2e-10, "{p}");
-            let [agree, disagree] = [it.agree(), it.disagree()].map(Option::unwrap);
-            assert_eq!((agree - disagree, agree.max(disagree)), (it.log_odds, LogWeight::ZERO));
-            assert_eq!(Reliability::from_log_odds(it.log_odds()), Some(it));
-        }
-        let sure = Reliability::new(1.0).unwrap();
-        assert_eq!(
-            (sure, sure.agree(), sure.disagree()),
-            (Reliability::CERTAIN, Some(LogWeight::ZERO), None)
-        );
-        let wrong = Reliability::new(0.0).unwrap();
-        assert_eq!((wrong.agree(), wrong.disagree()), (None, Some(LogWeight::ZERO)));
-        for units in [i64::MIN, i64::MAX, Reliability::BEYOND.0 + 1] {
-            assert_eq!(Reliability::from_log_odds(units), None);
-        }
-        for p in [-0.1, 1.1, f64::NAN] {
-            assert_eq!(Reliability::new(p), None);
-        }
     }
 }

@@ -2,7 +2,6 @@
 
 use nalgebra::{Point2, Vector2};
 
-use crate::belief::sample::Sample;
 use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
 
 /// A line `a x + b z + c = 0` in metres, positive on the +1 side.
@@ -47,7 +46,7 @@ impl Line {
         is_one.then_some(Self { a, b, c })
     }
 
-    fn norm(&self) -> f64 {
+    pub(crate) fn norm(&self) -> f64 {
         libm::hypot(self.a, self.b)
     }
 
@@ -98,12 +97,6 @@ pub struct Bound {
 }
 
 impl Bound {
-    /// The bound through two samples that are neighbours round a cell.
-    pub fn between(p: Sample, q: Sample) -> Self {
-        let along = if p.label == q.label { q.site - p.site } else { p.site - q.site };
-        Self { through: p.site, along }
-    }
-
     /// Positive when `q` is on the +1 side, negative on the other, zero on the line. Exact.
     pub fn at(&self, q: Site) -> i64 {
         self.along.cross(q - self.through)

@@ -4,8 +4,10 @@
 //! [`lattice::orient`], says on which side of a line a site lies, exactly. Approximations in single
 //! precision only propose, with their errors stated.
 
+pub(crate) mod angle;
 pub(crate) mod approximate;
+pub mod arc;
 pub mod area;
-pub mod direction;
+pub mod heading;
 pub mod lattice;
 pub mod line;

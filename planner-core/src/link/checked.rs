@@ -1,10 +1,10 @@
 //! Values that hold an invariant cross the link as bare numbers and are checked on arrival.
 
-use crate::belief::weight::Reliability;
+use crate::belief::noise::Reliability;
 use crate::geometry::area::Area;
 use crate::geometry::lattice::{OffLattice, Site};
 use crate::geometry::line::Line;
-use crate::search::problem::Varrho;
+use crate::search::objective::Varrho;
 
 impl From<Site> for (i32, i32) {
     fn from(site: Site) -> Self {
@@ -89,6 +89,8 @@ impl TryFrom<[f64; 3]> for Line {
     type Error = OutOfRange;
 
     fn try_from([a, b, c]: [f64; 3]) -> Result<Self, OutOfRange> {
-        Self::from_coefficients(a, b, c).ok_or(OutOfRange)
+        // Checked as any coefficients are, and then taken as they are, not scaled.
+        let checked = Self::from_coefficients(a, b, c).map(|_| Self { a, b, c });
+        checked.filter(|line| line.norm().is_finite()).ok_or(OutOfRange)
     }
 }

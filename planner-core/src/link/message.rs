@@ -19,19 +19,21 @@
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
+use crate::belief::Refused;
 use crate::belief::estimate::Estimates;
-use crate::belief::hypotheses::Prior;
+use crate::belief::noise::Noise;
 use crate::belief::sample::{Reading, Sample};
-use crate::belief::version_space::{NoVersionSpace, Refused};
+use crate::belief::version_space::NoVersionSpace;
+use crate::belief::weight::Prior;
 use crate::link::frame::Message;
 use crate::motion::dynamics::Pose;
 use crate::planner::config::Config;
-use crate::planner::scc::{Noise, Policy};
+use crate::planner::scc::Policy;
 use crate::planner::{Motion, StopReason};
 
 /// The version of this protocol. The layout of [`Request::Hello`] and of its frame is that of every
 /// version from 2 on.
-pub const PROTOCOL: u16 = 2;
+pub const PROTOCOL: u16 = 3;
 
 /// Given samples that a setup can hold.
 pub const MOST_GIVEN: usize = 16;
@@ -52,7 +54,7 @@ pub enum Request {
     /// To make a motion and say what came of it.
     Move(Move),
     /// To take note that the mission is over.
-    End(End),
+    End(MissionEnd),
 }
 
 /// What the vehicle answers.
@@ -89,8 +91,8 @@ pub struct Setup {
     pub algorithm: Algorithm,
     /// What the mission fixes beforehand.
     pub config: Config,
-    /// The room asked for.
-    pub room: Room,
+    /// The capacity asked for.
+    pub capacity: Capacity,
     /// Steps at most.
     pub steps: u16,
     /// Where the vehicle is.
@@ -118,10 +120,10 @@ pub enum Algorithm {
     },
 }
 
-/// Room for a mission's memory.
+/// Capacity for a mission's memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Room {
+pub struct Capacity {
     /// Samples, the given ones included.
     pub samples: u16,
     /// Hypotheses; 1 where there is but one.
@@ -142,8 +144,8 @@ pub enum LabelSource {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Accepted {
-    /// The room there is: at least what was asked for.
-    pub room: Room,
+    /// What there is: at least what was asked for.
+    pub capacity: Capacity,
     /// The clock.
     pub clock: ClockRate,
 }
@@ -166,8 +168,8 @@ pub enum Declined {
     Protocol(u16),
     /// The chip does not have this algorithm.
     Algorithm,
-    /// The chip has this room, which is too little.
-    Room(Room),
+    /// The chip has this much, which is too little.
+    Capacity(Capacity),
     /// The given samples leave nothing to find.
     Given(NoVersionSpace),
     /// The chip has no sensor of its own.
@@ -201,7 +203,7 @@ pub struct Took {
 /// How a mission ended.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct End {
+pub struct MissionEnd {
     /// Why.
     pub reason: EndReason,
     /// As in [`Move`].
@@ -239,17 +241,18 @@ impl Message for Reply {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::belief::noise::Reliability;
     use crate::belief::sample::Label;
-    use crate::belief::weight::Reliability;
     use crate::geometry::area::Area;
-    use crate::geometry::direction::Heading;
+    use crate::geometry::heading::Heading;
     use crate::geometry::lattice::{LIMIT, Site};
     use crate::geometry::line::Line;
     use crate::link::frame::{Decoder, Envelope, FRAME, Frame};
     use crate::motion::action::{Action, Control};
+    use crate::planner::Stage;
     use crate::planner::config::{Crossing, Following};
-    use crate::planner::{Recovery, Stage};
-    use crate::search::problem::Varrho;
+    use crate::search::objective::Varrho;
+    use crate::search::recovery::Recovery;
 
     /// What a decoder makes of a frame and of what came before it.
     fn received<M: Message>(frame: &Frame) -> Option<Envelope<M>> {
@@ -281,7 +284,7 @@ mod tests {
                 crossing: Crossing::AcrossBisector,
                 following: Following::AlongBisector,
             },
-            room: Room { samples: u16::MAX, hypotheses: u16::MAX },
+            capacity: Capacity { samples: u16::MAX, hypotheses: u16::MAX },
             steps: u16::MAX,
             start: Pose { site: far(-1, -1), heading: Heading(u32::MAX) },
             labels: LabelSource::Chip,
@@ -303,6 +306,7 @@ mod tests {
             action: Action(u16::MAX),
             control: Control { v: -1.0, w: f32::MIN_POSITIVE },
             target: pose,
+            wants_label: false,
             examined: u32::MAX,
             proven: false,
         };
@@ -314,7 +318,7 @@ mod tests {
         let reason = EndReason::Refused(Refused::Contradiction(sample));
         for request in [
             Request::Move(Move { motion, last, took }),
-            Request::End(End { reason, last, took, estimates }),
+            Request::End(MissionEnd { reason, last, took, estimates }),
         ] {
             let frame = Frame::of(&Envelope::new(u32::MAX, u32::MAX, request.clone()));
             let arrived = received::<Request>(&frame).unwrap();

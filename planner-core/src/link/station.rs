@@ -1,29 +1,31 @@
 //! The chip's side of a mission: it is asked for over a link, planned here, and driven elsewhere.
 
-use core::cell::Cell;
-
+use crate::belief::Refused;
 use crate::belief::estimate::Estimates;
-use crate::belief::hypotheses::{Hypotheses, Prior};
+use crate::belief::hypotheses::Hypotheses;
+use crate::belief::noise::Noise;
 use crate::belief::sample::Reading;
-use crate::belief::version_space::{Refused, VersionSpace};
+use crate::belief::version_space::VersionSpace;
+use crate::belief::weight::Prior;
 use crate::link::delivery::{Link, LinkLost, Port};
 use crate::link::message::{
-    Accepted, ClockRate, Declined, End, EndReason, LabelSource, Move, PROTOCOL, Reply, Request,
-    Room, Setup, Took,
+    Accepted, Capacity, ClockRate, Declined, EndReason, LabelSource, MissionEnd, Move, PROTOCOL,
+    Reply, Request, Setup, Took,
 };
 use crate::motion::dynamics::Pose;
 use crate::motion::unicycle::Unicycle;
 use crate::planner::cfc::Cfc;
-use crate::planner::scc::{Noise, Policy, Scc};
+use crate::planner::scc::{Policy, Scc};
 use crate::planner::{Motion, Plan, Planner};
-use crate::robot::agent::{Agent, AgentError, Event, Step};
-use crate::robot::hal::{Drive, LabelSensor};
+use crate::robot::agent::Step;
+use crate::robot::body::Body;
+use crate::robot::hal::LabelSensor;
 
 /// A planner that was made for a setup.
 #[derive(Clone, Debug)]
 pub struct Prepared<L> {
     planner: L,
-    room: Room,
+    capacity: Capacity,
 }
 
 impl<L> Prepared<L> {
@@ -34,13 +36,15 @@ impl<L> Prepared<L> {
 }
 
 impl Setup {
-    /// Whether this much room will do for the mission, in the protocol spoken here.
-    fn check(&self, room: Room) -> Result<(), Declined> {
+    /// Whether this much will do for the mission, in the protocol spoken here.
+    fn check(&self, capacity: Capacity) -> Result<(), Declined> {
         if self.protocol != PROTOCOL {
             return Err(Declined::Protocol(PROTOCOL));
         }
-        if room.samples < self.room.samples || room.hypotheses < self.room.hypotheses {
-            return Err(Declined::Room(room));
+        if capacity.samples < self.capacity.samples
+            || capacity.hypotheses < self.capacity.hypotheses
+        {
+            return Err(Declined::Capacity(capacity));
         }
         Ok(())
     }
@@ -51,20 +55,16 @@ impl Setup {
     /// [`Declined`].
     #[inline(never)] // it is the planner's, see `seam`
     pub fn cfc<const N: usize>(&self) -> Result<Prepared<Cfc<Unicycle, N>>, Declined> {
-        let room = Room { samples: N as u16, hypotheses: 1 };
-        self.check(room)?;
+        let capacity = Capacity { samples: N as u16, hypotheses: 1 };
+        self.check(capacity)?;
         let space = VersionSpace::new(&self.given).map_err(Declined::Given)?;
-        Ok(Prepared { planner: Cfc::new(self.config, Unicycle::paper(), space), room })
+        Ok(Prepared { planner: Cfc::new(self.config, Unicycle::paper(), space), capacity })
     }
 
     /// Algorithm 2 for this mission, with the paper's unicycle and none of its samples yet: the memory
     /// for [`prepare`](Self::prepare).
-    pub fn scc<const N: usize, const H: usize>(
-        &self,
-        noise: Noise,
-        policy: Policy,
-    ) -> Scc<Unicycle, N, H> {
-        Scc::new(self.config, noise, policy, Unicycle::paper(), Hypotheses::NONE)
+    pub fn scc<const N: usize, const H: usize>(&self, policy: Policy) -> Scc<Unicycle, N, H> {
+        Scc::new(self.config, policy, Unicycle::paper(), Hypotheses::NONE)
     }
 
     /// Begins the mission in this memory, so that there is never a second planner beside it.
@@ -76,11 +76,12 @@ impl Setup {
         &self,
         planner: &'a mut Scc<Unicycle, N, H>,
         prior: Prior,
+        noise: Noise,
     ) -> Result<Prepared<&'a mut Scc<Unicycle, N, H>>, Declined> {
-        let room = Room { samples: N as u16, hypotheses: H as u16 };
-        self.check(room)?;
-        planner.restart(&self.given, prior).map_err(Declined::Given)?;
-        Ok(Prepared { planner, room })
+        let capacity = Capacity { samples: N as u16, hypotheses: H as u16 };
+        self.check(capacity)?;
+        planner.restart(&self.given, prior, noise).map_err(Declined::Given)?;
+        Ok(Prepared { planner, capacity })
     }
 }
 
@@ -104,7 +105,7 @@ pub enum Flown {
     /// It was declined.
     Declined(Declined),
     /// A mission was flown.
-    Ended(End),
+    Ended(MissionEnd),
 }
 
 impl<P: Port, S: LabelSensor> Station<P, S> {
@@ -130,7 +131,7 @@ impl<P: Port, S: LabelSensor> Station<P, S> {
         watch: impl FnMut(&Step),
     ) -> Result<Flown, LinkLost> {
         let blind = setup.labels == LabelSource::Chip && self.sensor.is_none();
-        let Prepared { planner, room } = match prepared {
+        let Prepared { planner, capacity } = match prepared {
             Ok(prepared) if !blind => prepared,
             declined => {
                 let declined = declined.as_ref().err().copied().unwrap_or(Declined::Labels);
@@ -138,82 +139,54 @@ impl<P: Port, S: LabelSensor> Station<P, S> {
                 return Ok(Flown::Declined(declined));
             }
         };
-        self.link.ask(Request::Ready(Accepted { room: *room, clock: self.clock }))?;
-        let memo = Memo::default();
-        let planner = Timed { planner, ticks: self.ticks, memo: &memo };
+        self.link.ask(Request::Ready(Accepted { capacity: *capacity, clock: self.clock }))?;
         let chip = self.sensor.as_mut().filter(|_| setup.labels == LabelSource::Chip);
-        let sensor = Labels { chip, memo: &memo };
-        let vehicle = Vehicle { link: &mut self.link, memo: &memo };
-        let mut agent = Agent::new(planner, sensor, vehicle, setup.start);
-        let reason = mission(&mut agent, setup.steps, watch)?;
-        let estimates = agent.planner.estimates();
-        let (last, took) = (memo.taken.get(), memo.took.get());
-        let end = End { reason, last, took, estimates };
+        let mut vehicle =
+            RemoteVehicle { link: &mut self.link, chip, last: None, took: Took::default() };
+        let reason = mission(planner, &mut vehicle, setup, self.ticks, watch)?;
+        let RemoteVehicle { last, mut took, .. } = vehicle;
+        let estimates = timed(self.ticks, &mut took.estimate, || seam::estimates(planner));
+        let end = MissionEnd { reason, last, took, estimates };
         self.link.ask(Request::End(end.clone()))?;
         Ok(Flown::Ended(end))
     }
 }
 
-fn mission<L: Planner, S: LabelSensor, P: Port>(
-    agent: &mut Agent<L, Labels<'_, S>, Vehicle<'_, P>>,
-    steps: u16,
+/// As [`Agent`](crate::robot::agent::Agent), against the clock: the vehicle is told what each call took.
+fn mission<L: Planner, P: Port, S: LabelSensor>(
+    planner: &mut L,
+    vehicle: &mut RemoteVehicle<'_, P, S>,
+    setup: &Setup,
+    ticks: fn() -> u32,
     mut watch: impl FnMut(&Step),
 ) -> Result<EndReason, LinkLost> {
-    for _ in 0..steps {
-        match agent.step() {
-            Ok(Event::Step(step)) => watch(&step),
-            Ok(Event::Stopped(reason)) => return Ok(EndReason::Stopped(reason)),
-            Err(AgentError::Refused(refused)) => return Ok(EndReason::Refused(refused)),
-            Err(AgentError::Sensor(NoLabel)) => return Ok(EndReason::Sensor),
-            Err(AgentError::Drive(NoMotion::Lost(lost))) => return Err(lost),
-            Err(AgentError::Drive(NoMotion::Failed)) => return Ok(EndReason::Vehicle),
+    let mut pose = setup.start;
+    for _ in 0..setup.steps {
+        let motion = match timed(ticks, &mut vehicle.took.plan, || seam::plan(planner, pose)) {
+            Plan::Move(motion) => motion,
+            Plan::Stop(reason) => return Ok(EndReason::Stopped(reason)),
+        };
+        let reading = match vehicle.perform(&motion, &mut pose) {
+            Ok(reading) => reading,
+            Err(NoArrival::Lost(lost)) => return Err(lost),
+            Err(NoArrival::Failed) => return Ok(EndReason::Vehicle),
+            Err(NoArrival::NoLabel) => return Ok(EndReason::Sensor),
+        };
+        let observe = || seam::observe(planner, pose, reading);
+        if let Err(refused) = timed(ticks, &mut vehicle.took.observe, observe) {
+            return Ok(EndReason::Refused(refused));
         }
+        watch(&Step { motion, pose, reading });
     }
     Ok(EndReason::Steps)
 }
 
-/// What planner, sensor and vehicle leave for each other.
-#[derive(Default)]
-struct Memo {
-    /// The reading that came with the vehicle's last reply.
-    arrived: Cell<Option<Reading>>,
-    /// The reading that the planner was last given.
-    taken: Cell<Option<Reading>>,
-    took: Cell<Took>,
-}
-
-/// A planner against the clock.
-struct Timed<'a, L> {
-    planner: &'a mut L,
-    ticks: fn() -> u32,
-    memo: &'a Memo,
-}
-
-impl<L: Planner> Planner for Timed<'_, L> {
-    fn plan(&mut self, pose: Pose) -> Plan {
-        let before = (self.ticks)();
-        let plan = seam::plan(self.planner, pose);
-        let took = (self.ticks)().wrapping_sub(before);
-        self.memo.took.set(Took { plan: took, ..self.memo.took.get() });
-        plan
-    }
-
-    fn observe(&mut self, pose: Pose, reading: Option<Reading>) -> Result<(), Refused> {
-        self.memo.taken.set(reading);
-        let before = (self.ticks)();
-        let observed = seam::observe(self.planner, pose, reading);
-        let took = (self.ticks)().wrapping_sub(before);
-        self.memo.took.set(Took { observe: took, ..self.memo.took.get() });
-        observed
-    }
-
-    fn estimates(&self) -> Estimates {
-        let before = (self.ticks)();
-        let estimates = seam::estimates(self.planner);
-        let took = (self.ticks)().wrapping_sub(before);
-        self.memo.took.set(Took { estimate: took, ..self.memo.took.get() });
-        estimates
-    }
+/// Does something, and takes down the ticks that it took.
+fn timed<T>(ticks: fn() -> u32, took: &mut u32, does: impl FnOnce() -> T) -> T {
+    let before = ticks();
+    let done = does();
+    *took = ticks().wrapping_sub(before);
+    done
 }
 
 /// Where the planner begins. Functions of their own also in an optimised program, so that its size, its
@@ -242,50 +215,44 @@ mod seam {
 }
 
 /// The vehicle at the other end of the link.
-struct Vehicle<'a, P> {
+struct RemoteVehicle<'a, P, S> {
     link: &'a mut Link<P>,
-    memo: &'a Memo,
+    /// The chip's own sensor, if labels come from there.
+    chip: Option<&'a mut S>,
+    /// The last reading, if the last motion wanted one.
+    last: Option<Reading>,
+    /// What the last plan and the last observation took.
+    took: Took,
 }
 
-#[derive(Debug)]
-enum NoMotion {
+/// Why a motion has no end that is known.
+enum NoArrival {
     Lost(LinkLost),
     /// The vehicle says so, or answers something that is no answer.
     Failed,
+    /// It was made, and nothing was sensed.
+    NoLabel,
 }
 
-impl<P: Port> Drive for Vehicle<'_, P> {
-    type Error = NoMotion;
+impl<P: Port, S: LabelSensor> Body for RemoteVehicle<'_, P, S> {
+    type Error = NoArrival;
 
-    fn drive(&mut self, motion: &Motion) -> Result<Pose, NoMotion> {
-        let (last, took) = (self.memo.taken.get(), self.memo.took.get());
-        match self.link.ask(Request::Move(Move { motion: *motion, last, took })) {
-            Ok(Reply::Arrived { pose, reading }) => {
-                self.memo.arrived.set(reading);
-                Ok(pose)
+    fn perform(&mut self, motion: &Motion, pose: &mut Pose) -> Result<Option<Reading>, NoArrival> {
+        let Self { last, took, .. } = *self;
+        let reading = match self.link.ask(Request::Move(Move { motion: *motion, last, took })) {
+            Ok(Reply::Arrived { pose: arrived, reading }) => {
+                *pose = arrived;
+                reading
             }
-            Ok(_) => Err(NoMotion::Failed),
-            Err(lost) => Err(NoMotion::Lost(lost)),
-        }
-    }
-}
-
-/// Labels from the chip's sensor, or else from the vehicle's reply.
-struct Labels<'a, S> {
-    chip: Option<&'a mut S>,
-    memo: &'a Memo,
-}
-
-#[derive(Debug)]
-struct NoLabel;
-
-impl<S: LabelSensor> LabelSensor for Labels<'_, S> {
-    type Error = NoLabel;
-
-    fn read(&mut self) -> Result<Reading, NoLabel> {
-        match &mut self.chip {
-            Some(sensor) => sensor.read().map_err(|_| NoLabel),
-            None => self.memo.arrived.get().ok_or(NoLabel),
-        }
+            Ok(_) => return Err(NoArrival::Failed),
+            Err(lost) => return Err(NoArrival::Lost(lost)),
+        };
+        let label = match &mut self.chip {
+            _ if !motion.wants_label => None,
+            Some(sensor) => Some(sensor.read().map_err(|_| NoArrival::NoLabel)?),
+            None => Some(reading.ok_or(NoArrival::NoLabel)?),
+        };
+        self.last = label;
+        Ok(label)
     }
 }

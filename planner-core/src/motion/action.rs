@@ -5,7 +5,6 @@
 //! `ray * speeds + speed`.
 
 use crate::geometry::lattice::UNITS_PER_METRE;
-use crate::motion::dynamics::Ray;
 
 /// The name of an action within a grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -31,7 +30,7 @@ pub struct ActionGrid {
     rays: u16,
     speeds: u16,
     speed_step_mm: u32,
-    /// One step of speed in the units of [`Ray::step`].
+    /// One step of speed in the units of a ray's step.
     step_length: i32,
 }
 
@@ -64,6 +63,9 @@ impl core::fmt::Display for BadGrid {
 impl core::error::Error for BadGrid {}
 
 impl ActionGrid {
+    /// Fractional bits of a ray's step.
+    pub const STEP_BITS: u32 = 8;
+
     /// The longest admissible motion, millimetres: what keeps a ray's steps within an `i32`.
     pub const LONGEST_MM: u32 = 100_000;
 
@@ -81,7 +83,7 @@ impl ActionGrid {
         if speed_step_mm == 0 || longest >= Self::LONGEST_MM as u64 {
             return Err(BadGrid::Reach);
         }
-        let per_metre = (UNITS_PER_METRE as u64) << Ray::STEP_BITS;
+        let per_metre = (UNITS_PER_METRE as u64) << Self::STEP_BITS;
         let step_length = ((speed_step_mm as u64 * per_metre + 500) / 1000) as i32;
         Ok(Self { rays, speeds, speed_step_mm, step_length })
     }
@@ -124,7 +126,7 @@ impl ActionGrid {
 
     /// Length of one step of speed, lattice units.
     pub(crate) const fn step_units(self) -> f32 {
-        self.step_length as f32 / (1 << Ray::STEP_BITS) as f32
+        self.step_length as f32 / (1 << Self::STEP_BITS) as f32
     }
 
     /// The name of an action.

@@ -11,7 +11,7 @@
 //! # Ok::<(), contract::Broken>(())
 //! ```
 
-use crate::geometry::direction::Heading;
+use crate::geometry::heading::Heading;
 use crate::geometry::lattice::Site;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Fan, Pose, Ray, Side};

@@ -4,7 +4,7 @@
 //! them is here: the actions grouped into [`Ray`]s, which lie as a [`Fan`]. [`Unicycle`](crate::motion::unicycle) is
 //! the paper's dynamics, [`Holonomic`](crate::motion::holonomic) another.
 
-use crate::geometry::direction::Heading;
+use crate::geometry::heading::Heading;
 use crate::geometry::lattice::{OffLattice, Site, Vector};
 use crate::motion::action::{Action, ActionGrid, Control};
 
@@ -35,7 +35,7 @@ pub struct Ray {
 
 impl Ray {
     /// Fractional bits of [`step`](Self::step).
-    pub const STEP_BITS: u32 = 8;
+    pub const STEP_BITS: u32 = ActionGrid::STEP_BITS;
 
     /// Displacement at a speed of the grid, to the nearest lattice units.
     pub const fn displacement(&self, speed: u16) -> Vector {

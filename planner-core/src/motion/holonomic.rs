@@ -1,6 +1,6 @@
 //! A holonomic integrator: any bearing, whichever way the agent faces.
 
-use crate::geometry::direction::Heading;
+use crate::geometry::heading::Heading;
 use crate::motion::action::{Action, ActionGrid, BadGrid, Control};
 use crate::motion::dynamics::{Dynamics, Fan, Pose, Ray, Side};
 

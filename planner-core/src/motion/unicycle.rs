@@ -1,6 +1,6 @@
 //! The paper's unicycle: turn, then drive.
 
-use crate::geometry::direction::Heading;
+use crate::geometry::heading::Heading;
 use crate::motion::action::{Action, ActionGrid, BadGrid, Control};
 use crate::motion::dynamics::{Dynamics, Fan, Pose, Ray, Side};
 

@@ -1,11 +1,11 @@
 //! What a mission fixes beforehand: where it may go, what motion costs, how directions are held.
 
 use crate::belief::sample::Sample;
+use crate::geometry::arc::SlopeArc;
 use crate::geometry::area::Area;
-use crate::geometry::direction::Arc;
 use crate::geometry::lattice::Vector;
 use crate::search::direction_rule::ArcRule;
-use crate::search::problem::Varrho;
+use crate::search::objective::Varrho;
 
 /// How P1 looks for the opposite label (Section III-A).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -14,7 +14,7 @@ use crate::search::problem::Varrho;
 pub enum Crossing {
     /// In any direction in which the boundary cannot run: P1 as printed.
     #[default]
-    Anyhow,
+    Unrestricted,
     /// Of these, only along the direction from the first oracle point to the second.
     AlongOracle,
     /// Of these, only at right angles to the bisector of the slope arc.
@@ -31,7 +31,7 @@ pub enum Crossing {
 pub enum Following {
     /// In any direction in which the boundary can run: P2 as printed. It takes the smallest turn
     /// into the slope arc, so it skims ground that is all but certain and learns next to nothing.
-    Anyhow,
+    Unrestricted,
     /// Of these, only along the bisector of the slope arc, as Section III-A proposes for P1.
     AlongBisector,
 }
@@ -54,19 +54,19 @@ pub struct Config {
 impl Config {
     /// The directions in which P1, or P3, looks for the opposite label when the boundary's slopes lie
     /// in an arc; `oracle` is the direction from the first oracle point to the second.
-    pub(crate) fn crossing_rule(&self, slopes: Arc, oracle: Option<Vector>) -> ArcRule {
+    pub(crate) fn crossing_rule(&self, slopes: SlopeArc, oracle: Option<Vector>) -> ArcRule {
         let inside = match self.crossing {
-            Crossing::Anyhow => None,
-            Crossing::AlongOracle => oracle.map(Arc::tracking),
-            Crossing::AcrossBisector => Some(Arc::tracking(slopes.bisector().left())),
+            Crossing::Unrestricted => None,
+            Crossing::AlongOracle => oracle.map(SlopeArc::tracking),
+            Crossing::AcrossBisector => Some(SlopeArc::tracking(slopes.bisector().left())),
         };
         ArcRule { inside, outside: Some(slopes) }
     }
 
     /// The directions in which P2, or P4, follows a boundary whose slopes lie in an arc.
-    pub(crate) fn following_rule(&self, slopes: Arc) -> ArcRule {
+    pub(crate) fn following_rule(&self, slopes: SlopeArc) -> ArcRule {
         let inside = match self.following {
-            Following::Anyhow => slopes,
+            Following::Unrestricted => slopes,
             Following::AlongBisector => slopes.middle(),
         };
         ArcRule { inside: Some(inside), outside: None }

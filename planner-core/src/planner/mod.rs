@@ -1,14 +1,21 @@
-//! The seam between a planner and the loop that runs it: `plan()`, then `observe()`; `estimates()` at any time.
+//! Planners: `plan()` gives the next motion, `observe()` takes in what came of it, and `belief()` is what is
+//! known so far.
+//!
+//! [`cfc`] is the paper's Algorithm 1, for labels that are true; [`scc`] its Algorithm 2, for labels that are
+//! sometimes wrong. [`config`] is what a mission fixes beforehand.
 
 pub mod cfc;
 pub mod config;
 pub mod scc;
+mod vote;
 
 use crate::belief::estimate::Estimates;
 use crate::belief::sample::Reading;
-use crate::belief::version_space::Refused;
+use crate::belief::{Belief, Refused};
 use crate::motion::action::{Action, Control};
-use crate::motion::dynamics::Pose;
+use crate::motion::dynamics::{Dynamics, Pose};
+use crate::search::objective::Effort;
+use crate::search::recovery::{DeadEnd, Found, Recovery};
 
 /// Which one-step problem a motion answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,19 +30,6 @@ pub enum Stage {
     P3,
     /// Explore directions in which some hypothesis has it.
     P4,
-}
-
-/// What was done as the problem itself had no feasible action.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
-pub enum Recovery {
-    /// The same problem without its rule on directions.
-    Undirected,
-    /// A turn in place; no sample is taken.
-    Reorient,
-    /// A drive through certain ground; no sample is taken.
-    Transit,
 }
 
 /// A motion to make.
@@ -53,6 +47,8 @@ pub struct Motion {
     pub control: Control,
     /// Where it leads.
     pub target: Pose,
+    /// Whether a label is to be read at its end.
+    pub wants_label: bool,
     /// Actions whose position was looked at to find it.
     pub examined: u32,
     /// Whether it is what a search of all actions would find; else the plan's looks were used up, and it
@@ -61,9 +57,24 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// Whether a sample is to be taken at its end.
-    pub fn samples(&self) -> bool {
-        !matches!(self.recovery, Some(Recovery::Reorient | Recovery::Transit))
+    /// The motion of an action that a search has found.
+    pub(crate) fn of<D: Dynamics>(
+        stage: Stage,
+        found: &Found,
+        dynamics: &D,
+        effort: Effort,
+    ) -> Self {
+        let &Found { recovery, action, target } = found;
+        Self {
+            stage: Some(stage),
+            recovery,
+            action,
+            control: dynamics.control(action),
+            target,
+            wants_label: !matches!(recovery, Some(Recovery::Reorient | Recovery::Transit)),
+            examined: effort.examined,
+            proven: effort.is_enough(),
+        }
     }
 }
 
@@ -71,6 +82,7 @@ impl Motion {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub enum StopReason {
     /// What is uncertain is thinner than the action grid can hit, or lies outside the area.
     Resolution,
@@ -85,6 +97,16 @@ pub enum StopReason {
     Undecided,
 }
 
+impl From<DeadEnd> for StopReason {
+    fn from(dead_end: DeadEnd) -> Self {
+        match dead_end {
+            DeadEnd::Resolution => Self::Resolution,
+            DeadEnd::Cornered => Self::Cornered,
+            DeadEnd::Undecided => Self::Undecided,
+        }
+    }
+}
+
 /// What to do next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -95,8 +117,11 @@ pub enum Plan {
     Stop(StopReason),
 }
 
-/// A planner: asked for a motion, told what came of it, and in the end asked for the line.
+/// A planner: asked for a motion, told what came of it, and at any time for what it knows.
 pub trait Planner {
+    /// What is known of the line.
+    type Belief: Belief + ?Sized;
+
     /// The next motion from a pose.
     fn plan(&mut self, pose: Pose) -> Plan;
 
@@ -107,11 +132,18 @@ pub trait Planner {
     /// then as it was.
     fn observe(&mut self, pose: Pose, reading: Option<Reading>) -> Result<(), Refused>;
 
+    /// What is known.
+    fn belief(&self) -> &Self::Belief;
+
     /// The line as far as it is known.
-    fn estimates(&self) -> Estimates;
+    fn estimates(&self) -> Estimates {
+        self.belief().estimates()
+    }
 }
 
 impl<T: Planner + ?Sized> Planner for &mut T {
+    type Belief = T::Belief;
+
     fn plan(&mut self, pose: Pose) -> Plan {
         T::plan(self, pose)
     }
@@ -120,7 +152,7 @@ impl<T: Planner + ?Sized> Planner for &mut T {
         T::observe(self, pose, reading)
     }
 
-    fn estimates(&self) -> Estimates {
-        T::estimates(self)
+    fn belief(&self) -> &T::Belief {
+        T::belief(self)
     }
 }

@@ -20,24 +20,26 @@
 
 use heapless::Vec;
 
-use crate::belief::candidates::Candidates;
-use crate::belief::estimate::Estimates;
-use crate::belief::hypotheses::{Hypotheses, Hypothesis, Prior};
-use crate::belief::posterior::Posterior;
+use crate::belief::Belief as _;
+use crate::belief::Refused;
+use crate::belief::consistent_lines::ConsistentLines;
+use crate::belief::hypotheses::{Hypotheses, Hypothesis};
+use crate::belief::noise::Noise;
 use crate::belief::sample::{Reading, Sample};
-use crate::belief::version_space::{NoVersionSpace, Refused};
-use crate::belief::weight::Reliability;
-use crate::geometry::lattice::Site;
+use crate::belief::version_space::NoVersionSpace;
+use crate::belief::weight::Prior;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::config::{Config, Following, first_to_second};
-use crate::planner::{Motion, Plan, Planner, Recovery, Stage, StopReason};
+use crate::planner::vote::Ballot;
+use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
 use crate::search::direction_rule::{ArcRule, ArcUnion, DirectionRule, UnionRule};
-use crate::search::problem::{Effort, LOOKS, Problem};
-use crate::search::recovery::{Found, solve_or_recover};
+use crate::search::objective::{Effort, LOOKS};
+use crate::search::problem::Problem;
+use crate::search::recovery::{DeadEnd, Found, Recovery, solve_or_recover};
 
 /// With this P2 Algorithm 2 learns the most.
-pub const FOLLOWING: Following = Following::Anyhow;
+pub const FOLLOWING: Following = Following::Unrestricted;
 
 /// Rays that all hypotheses of a vote look at together, at most: then those that were asked decide. The
 /// paper's example has been seen to need 26,000 at 60 labels.
@@ -57,42 +59,11 @@ pub enum Policy {
     MixtureOfOwn,
 }
 
-/// What is known of the noise.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
-pub struct Noise {
-    /// How far a label can be believed.
-    pub reliability: Reliability,
-    /// Within this distance of a given sample's site labels are certain, lattice units; see
-    /// [`trusted_radius`].
-    pub trusted_radius: u32,
-}
-
-impl Noise {
-    /// The reliability of a label at a site: certain in a trusted ball (the paper's `B_r(p_j)`).
-    pub fn at(&self, site: Site, given: &[Sample]) -> Reliability {
-        let radius = u64::from(self.trusted_radius);
-        let near = |s: &Sample| {
-            let apart = site - s.site;
-            apart.dot(apart).unsigned_abs() <= radius * radius
-        };
-        if radius > 0 && given.iter().any(near) { Reliability::CERTAIN } else { self.reliability }
-    }
-}
-
-/// A radius in metres as lattice units; `None` when it is negative, not finite, or 8,192 m or more.
-pub fn trusted_radius(metres: f64) -> Option<u32> {
-    let inside = Site::try_from(nalgebra::Point2::new(metres, 0.0)).ok()?;
-    u32::try_from(inside.x()).ok()
-}
-
 /// Algorithm 2 for `D`'s dynamics, with room for `N` samples, the given ones included, and `H`
 /// hypotheses.
 #[derive(Clone, Debug)]
 pub struct Scc<D, const N: usize, const H: usize> {
     config: Config,
-    noise: Noise,
     policy: Policy,
     dynamics: D,
     hypotheses: Hypotheses<N, H>,
@@ -100,27 +71,21 @@ pub struct Scc<D, const N: usize, const H: usize> {
 
 impl<D: Dynamics, const N: usize, const H: usize> Scc<D, N, H> {
     /// A planner over a table of hypotheses, whose prior weighs their votes.
-    pub fn new(
-        config: Config,
-        noise: Noise,
-        policy: Policy,
-        dynamics: D,
-        hypotheses: Hypotheses<N, H>,
-    ) -> Self {
-        Self { config, noise, policy, dynamics, hypotheses }
-    }
-
-    /// What is known of the line.
-    pub fn hypotheses(&self) -> &Hypotheses<N, H> {
-        &self.hypotheses
+    pub fn new(config: Config, policy: Policy, dynamics: D, hypotheses: Hypotheses<N, H>) -> Self {
+        Self { config, policy, dynamics, hypotheses }
     }
 
     /// Begins again, in place, with what other given samples leave: see [`Hypotheses::restart`].
     ///
     /// # Errors
     /// [`NoVersionSpace`], with the planner as it was.
-    pub fn restart(&mut self, given: &[Sample], prior: Prior) -> Result<(), NoVersionSpace> {
-        self.hypotheses.restart(given, prior)
+    pub fn restart(
+        &mut self,
+        given: &[Sample],
+        prior: Prior,
+        noise: Noise,
+    ) -> Result<(), NoVersionSpace> {
+        self.hypotheses.restart(given, prior, noise)
     }
 
     fn is_even(&self) -> bool {
@@ -129,7 +94,7 @@ impl<D: Dynamics, const N: usize, const H: usize> Scc<D, N, H> {
 
     /// The problem of a hypothesis: where it votes to go.
     pub fn problem<'a>(&'a self, hypothesis: &'a Hypothesis<15>) -> Problem<'a, ArcRule> {
-        let own = self.hypotheses.candidates(hypothesis);
+        let own = self.hypotheses.lines(hypothesis);
         let ground = match self.policy {
             Policy::MixtureOfOwn => own,
             Policy::Joint | Policy::MixtureOfStart => self.hypotheses.start(),
@@ -143,51 +108,45 @@ impl<D: Dynamics, const N: usize, const H: usize> Scc<D, N, H> {
         self.on(ground, rule)
     }
 
-    fn on<'a, R>(&self, ground: Candidates<'a>, rule: R) -> Problem<'a, R> {
-        Problem { ground, area: self.config.area, varrho: self.config.varrho, rule }
+    fn on<'a, R>(&self, lines: ConsistentLines<'a>, rule: R) -> Problem<'a, R> {
+        Problem { lines, area: self.config.area, varrho: self.config.varrho, rule }
     }
 
     /// Equation 9: the action with the most votes, and of equals the one of smallest index.
     ///
-    /// Hypotheses are asked in the order of their weight, by halves, until those that are left cannot
-    /// change the outcome.
+    /// The heaviest hypotheses are asked first, then those at least half as heavy, and so on, until the
+    /// others cannot change the outcome.
     fn elect(&self, pose: Pose, effort: &mut Effort) -> Option<Action> {
         const { assert!(H < 1 << 12, "a table's votes are counted in 32 bits") };
         let weights = || self.hypotheses.iter().map(Hypothesis::weight);
-        let most = weights().max()?;
-        // As many votes, and at most as many actions, as hypotheses: nothing is refused.
+        let heaviest = weights().max()?;
+        // As many votes as hypotheses: nothing is refused.
         let mut votes: Vec<u32, H, u16> = Vec::new();
         for weight in weights() {
-            let _ = votes.push(weight.votes(most));
+            let _ = votes.push(weight.votes(heaviest));
         }
-        let mut left: u32 = votes.iter().sum();
-        let mut ballot: Vec<(Action, u32), H, u16> = Vec::new();
-        let (mut above, mut least) = (u32::MAX, votes.iter().copied().max()?);
-        while above > 1 && effort.is_enough() {
+        let mut ballot: Ballot<H> = Ballot::new(votes.iter().sum());
+        let (mut asked_down_to, mut least) = (u32::MAX, votes.iter().copied().max()?);
+        while asked_down_to > 1 && effort.is_enough() {
             for (hypothesis, &votes) in self.hypotheses.iter().zip(&votes) {
-                if votes < least || votes >= above {
+                if votes < least || votes >= asked_down_to {
                     continue;
                 }
-                left -= votes;
                 let best = self.problem(hypothesis).find(effort, &self.dynamics, pose);
-                let Some(best) = best else { continue };
-                match ballot.iter_mut().find(|(action, _)| *action == best.action) {
-                    Some((_, sum)) => *sum += votes,
-                    None => drop(ballot.push((best.action, votes))),
-                }
-                if lead(&ballot) > left {
-                    return first(&ballot);
+                ballot.cast(votes, best.map(|best| best.action));
+                if best.is_some() && ballot.is_decided() {
+                    return ballot.winner();
                 }
             }
-            (above, least) = (least, (least / 2).max(1));
+            (asked_down_to, least) = (least, (least / 2).max(1));
         }
-        first(&ballot)
+        ballot.winner()
     }
 
-    fn find(&self, pose: Pose, effort: &mut Effort) -> Result<Found, StopReason> {
+    fn find(&self, pose: Pose, effort: &mut Effort) -> Result<Found, DeadEnd> {
         if self.policy == Policy::Joint {
             // P3 and P4 as printed: travel in no retained hypothesis's slopes, or in some one's.
-            let slopes = self.hypotheses.iter().map(|h| self.hypotheses.candidates(h).slope_arc());
+            let slopes = self.hypotheses.iter().map(|h| self.hypotheses.lines(h).slope_arc());
             let slopes: ArcUnion = slopes.collect();
             let rule = UnionRule { arcs: slopes.arcs(), among: !self.is_even() };
             return self.find_on_start(rule, pose, effort);
@@ -212,31 +171,19 @@ impl<D: Dynamics, const N: usize, const H: usize> Scc<D, N, H> {
         rule: impl DirectionRule,
         pose: Pose,
         effort: &mut Effort,
-    ) -> Result<Found, StopReason> {
+    ) -> Result<Found, DeadEnd> {
         let problem = self.on(self.hypotheses.start(), rule);
-        let mut sight = problem.sight(pose.site, self.dynamics.grid(), *effort);
-        let sight = sight.open();
-        let found = solve_or_recover(&problem, &self.dynamics, pose, sight);
-        *effort = sight.effort;
+        let mut search = problem.search(&self.dynamics, pose, *effort);
+        let search = search.open();
+        let found = solve_or_recover(&problem, search, None);
+        *effort = search.effort;
         found
     }
 }
 
-/// The action with the most votes, and of equals the one of smallest index.
-fn first(ballot: &[(Action, u32)]) -> Option<Action> {
-    let best = ballot.iter().max_by_key(|(action, votes)| (*votes, core::cmp::Reverse(*action)))?;
-    Some(best.0)
-}
-
-/// By how many votes the first leads the second.
-fn lead(ballot: &[(Action, u32)]) -> u32 {
-    let [first, second] = ballot.iter().fold([0; 2], |[first, second], &(_, votes)| {
-        if votes > first { [votes, first] } else { [first, second.max(votes)] }
-    });
-    first - second
-}
-
 impl<D: Dynamics, const N: usize, const H: usize> Planner for Scc<D, N, H> {
+    type Belief = Hypotheses<N, H>;
+
     fn plan(&mut self, pose: Pose) -> Plan {
         if self.hypotheses.is_full() {
             return Plan::Stop(StopReason::SamplesFull);
@@ -251,24 +198,17 @@ impl<D: Dynamics, const N: usize, const H: usize> Planner for Scc<D, N, H> {
             (_, false) => Stage::P4,
         };
         let mut effort = Effort::of(if self.policy == Policy::Joint { LOOKS } else { VOTE_LOOKS });
-        let Found { recovery, action, target } = match self.find(pose, &mut effort) {
-            Ok(found) => found,
-            Err(reason) => return Plan::Stop(reason),
-        };
-        let (stage, control) = (Some(stage), self.dynamics.control(action));
-        let (examined, proven) = (effort.examined, effort.is_enough());
-        Plan::Move(Motion { stage, recovery, action, control, target, examined, proven })
+        match self.find(pose, &mut effort) {
+            Ok(found) => Plan::Move(Motion::of(stage, &found, &self.dynamics, effort)),
+            Err(dead_end) => Plan::Stop(dead_end.into()),
+        }
     }
 
-    /// A reading on the boundary agrees with both sides, and tells nothing here.
     fn observe(&mut self, pose: Pose, reading: Option<Reading>) -> Result<(), Refused> {
-        let Some(Reading::Side(label)) = reading else { return Ok(()) };
-        let sample = Sample { site: pose.site, label };
-        let reliability = self.noise.at(pose.site, self.hypotheses.given());
-        self.hypotheses.observe(sample, reliability)
+        reading.map_or(Ok(()), |reading| self.hypotheses.observe(pose.site, reading))
     }
 
-    fn estimates(&self) -> Estimates {
-        Posterior::new(&self.hypotheses).estimates()
+    fn belief(&self) -> &Hypotheses<N, H> {
+        &self.hypotheses
     }
 }

@@ -1,10 +1,10 @@
-//! The loop that joins planner, sensor and drive.
+//! The loop that joins a planner to a body.
 
+use crate::belief::Refused;
 use crate::belief::sample::Reading;
-use crate::belief::version_space::Refused;
 use crate::motion::dynamics::Pose;
 use crate::planner::{Motion, Plan, Planner, StopReason};
-use crate::robot::hal::{Drive, LabelSensor};
+use crate::robot::body::Body;
 
 /// What one step came to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,41 +31,37 @@ pub struct Step {
 /// What ended a step early.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum AgentError<S, D> {
-    /// The sensor failed, after the motion.
-    Sensor(S),
-    /// The drive failed.
-    Drive(D),
+pub enum AgentError<B> {
+    /// The body failed.
+    Body(B),
     /// The planner did not take the sample.
     Refused(Refused),
 }
 
-impl<S: core::fmt::Debug, D: core::fmt::Debug> core::fmt::Display for AgentError<S, D> {
+impl<B: core::fmt::Display> core::fmt::Display for AgentError<B> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
-            Self::Sensor(error) => write!(f, "the sensor failed: {error:?}"),
-            Self::Drive(error) => write!(f, "the drive failed: {error:?}"),
+            Self::Body(error) => error.fmt(f),
             Self::Refused(refused) => refused.fmt(f),
         }
     }
 }
 
-impl<S: core::fmt::Debug, D: core::fmt::Debug> core::error::Error for AgentError<S, D> {}
+impl<B: core::error::Error> core::error::Error for AgentError<B> {}
 
-/// A planner with a sensor and a drive, at a pose.
+/// A planner with a body, at a pose.
 #[derive(Clone, Debug)]
-pub struct Agent<P, S, D> {
+pub struct Agent<P, B> {
     /// The planner.
     pub planner: P,
-    sensor: S,
-    drive: D,
+    body: B,
     pose: Pose,
 }
 
-impl<P: Planner, S: LabelSensor, D: Drive> Agent<P, S, D> {
+impl<P: Planner, B: Body> Agent<P, B> {
     /// An agent that starts at a pose.
-    pub const fn new(planner: P, sensor: S, drive: D, pose: Pose) -> Self {
-        Self { planner, sensor, drive, pose }
+    pub const fn new(planner: P, body: B, pose: Pose) -> Self {
+        Self { planner, body, pose }
     }
 
     /// Where the agent is.
@@ -73,23 +69,17 @@ impl<P: Planner, S: LabelSensor, D: Drive> Agent<P, S, D> {
         self.pose
     }
 
-    /// Plans one motion, makes it, and senses at its end.
+    /// Plans one motion, makes it, and takes in what was sensed at its end.
     ///
     /// # Errors
     /// [`AgentError`]. The pose is that of the last motion whose end is known.
-    pub fn step(&mut self) -> Result<Event, AgentError<S::Error, D::Error>> {
+    pub fn step(&mut self) -> Result<Event, AgentError<B::Error>> {
         let motion = match self.planner.plan(self.pose) {
             Plan::Move(motion) => motion,
             Plan::Stop(reason) => return Ok(Event::Stopped(reason)),
         };
-        let pose = self.drive.drive(&motion).map_err(AgentError::Drive)?;
-        self.pose = pose;
-        let reading = if motion.samples() {
-            Some(self.sensor.read().map_err(AgentError::Sensor)?)
-        } else {
-            None
-        };
-        self.planner.observe(pose, reading).map_err(AgentError::Refused)?;
-        Ok(Event::Step(Step { motion, pose, reading }))
+        let reading = self.body.perform(&motion, &mut self.pose).map_err(AgentError::Body)?;
+        self.planner.observe(self.pose, reading).map_err(AgentError::Refused)?;
+        Ok(Event::Step(Step { motion, pose: self.pose, reading }))
     }
 }

@@ -2,162 +2,226 @@
 //!
 //! The positions of one speed lie on a circle around the agent. Faster is better and turning less is:
 //! so the outermost circle comes first, on it to either side the first ray that will do, and the search
-//! ends where a circle is no better even straight ahead. What surely is certain is passed over
-//! (`sight.rs`), and as certain ground of one label is convex, a ray whose end has the label of the
-//! agent's own position is passed over for good; so is one that leaves the area, convex too, within the
+//! ends where a circle is no better even straight ahead. Rays that are known to end on certain ground are
+//! passed over (see `view`), and as certain ground of one label is convex, a ray whose end has the label of
+//! the agent's own position is passed over for good; so is one that leaves the area, convex too, within the
 //! shortest motion. What is left is settled by the exact predicate.
 
-use crate::belief::candidates::Certainty;
-use crate::geometry::direction::Heading;
+use core::num::NonZeroU32;
+
+use crate::belief::consistent_lines::Certainty;
+use crate::geometry::heading::Heading;
 use crate::motion::dynamics::{Dynamics, Pose, Ray, Side};
 use crate::search::direction_rule::DirectionRule;
-use crate::search::problem::{Candidate, Varrho};
-use crate::search::view::Sight;
+use crate::search::objective::{Choice, Effort, Varrho};
+use crate::search::view::View;
 
-/// The rays to one side of a heading.
-struct Arm {
-    pose: Pose,
-    side: Side,
-    /// The first that may lead anywhere, and up to which they may.
-    first: u32,
-    count: u32,
+/// The search of one plan: what it moves by, from where, what it sees there, and what it has cost.
+pub(crate) struct Search<'a, D> {
+    pub(crate) dynamics: &'a D,
+    pub(crate) pose: Pose,
+    pub(crate) varrho: Varrho,
+    pub(crate) view: View<'a>,
+    pub(crate) effort: Effort,
 }
 
 /// The number and side of a ray, by which ties are settled.
-type Order = (u16, Side);
+type Rank = (u16, Side);
 
-/// A candidate and the order of its ray.
-pub(crate) type Ranked = (Candidate, Order);
+/// A choice and the rank of its ray.
+type Ranked = (Choice, Rank);
 
-fn is_better(value: i64, order: Order, than: Option<Ranked>) -> bool {
-    than.is_none_or(|(best, at)| value > best.objective || (value == best.objective && order < at))
+/// What a search found.
+#[derive(Clone, Copy)]
+pub(crate) struct Findings {
+    /// The best of the actions that the rule allows.
+    pub(crate) best: Option<Ranked>,
+    /// The best of the others that came up; of all of them if `best` is `None`.
+    pub(crate) best_forbidden: Option<Ranked>,
 }
 
-impl Sight<'_> {
-    /// The best action from here when facing some heading, the same each time; at once if an earlier
-    /// search by another rule has come upon no place to go at all.
-    pub(crate) fn best<D: Dynamics, R: DirectionRule>(
-        &mut self,
-        dynamics: &D,
-        heading: Heading,
-        varrho: Varrho,
-        rule: &R,
-    ) -> Option<Candidate> {
-        if core::mem::replace(&mut self.keeps_barred, true) && self.barred.is_none() {
-            return None;
+/// The rays to one side of a heading that may still lead anywhere.
+struct Arm {
+    pose: Pose,
+    side: Side,
+    /// The turn from one to the next, at most.
+    spacing: NonZeroU32,
+    first: u32,
+    end: u32,
+}
+
+impl Arm {
+    const fn is_empty(&self) -> bool {
+        self.first >= self.end
+    }
+
+    /// Leaves rays out for good, if they are the first or the last.
+    const fn leave_out(&mut self, from: u32, to: u32) {
+        if from == self.first {
+            self.first = to;
+        } else if to >= self.end {
+            self.end = from;
         }
-        self.search(dynamics, [heading; 2], varrho, rule).map(|(candidate, _)| candidate)
+    }
+}
+
+/// What is known of the end of a ray on a circle.
+enum Verdict {
+    /// It will do, and is the best so far.
+    Best,
+    /// It will not, nor will the ends of rays that a turn of so much reaches.
+    Infeasible { turn: u32, on_inner_circles_too: bool },
+    /// None beyond it is better than the best so far, or the looks are used up.
+    NoneBetter,
+}
+
+/// What is searched for, and what has been found so far.
+struct Hunt<'r, R> {
+    rule: &'r R,
+    /// Whether the best forbidden action is wanted.
+    keeps_forbidden: bool,
+    found: Findings,
+}
+
+fn is_better(value: i64, rank: Rank, than: Option<&Ranked>) -> bool {
+    than.is_none_or(|(best, at)| value > best.objective || (value == best.objective && rank < *at))
+}
+
+impl<D: Dynamics> Search<'_, D> {
+    /// Sees what there is. A step of its own, so that all of this is made where it stays.
+    #[must_use]
+    pub(crate) fn open(&mut self) -> &mut Self {
+        self.view.open();
+        self
     }
 
-    /// On which side there is the better action: on the left of one heading or the right of another.
-    pub(crate) fn better_side<D: Dynamics, R: DirectionRule>(
+    /// The best action by a rule. `before` is what an earlier search by another rule found, if that
+    /// found no action: where there is none under any rule nothing is looked at again.
+    pub(crate) fn best<R: DirectionRule>(
         &mut self,
-        dynamics: &D,
+        rule: &R,
+        before: Option<Findings>,
+    ) -> Findings {
+        let found = match before {
+            Some(nothing @ Findings { best_forbidden: None, .. }) => return nothing,
+            Some(found) => found,
+            None => Findings { best: None, best_forbidden: None },
+        };
+        let mut hunt = Hunt { rule, keeps_forbidden: true, found };
+        self.look_around([self.pose.heading; 2], &mut hunt);
+        hunt.found
+    }
+
+    /// The best action on the left of one heading and the right of another, and on which side it is.
+    pub(crate) fn best_between<R: DirectionRule>(
+        &mut self,
         headings: [Heading; 2],
-        varrho: Varrho,
         rule: &R,
-    ) -> Option<Side> {
-        self.search(dynamics, headings, varrho, rule).map(|(_, (_, side))| side)
+    ) -> Option<(Choice, Side)> {
+        let found = Findings { best: None, best_forbidden: None };
+        let mut hunt = Hunt { rule, keeps_forbidden: false, found };
+        self.look_around(headings, &mut hunt);
+        hunt.found.best.map(|(choice, (_, side))| (choice, side))
     }
 
-    /// The best action on the left of one heading and the right of another.
-    pub(crate) fn search<D: Dynamics, R: DirectionRule>(
+    fn look_around<R: DirectionRule>(
         &mut self,
-        dynamics: &D,
         [left, right]: [Heading; 2],
-        varrho: Varrho,
-        rule: &R,
-    ) -> Option<Ranked> {
-        let (grid, fan) = (self.grid, dynamics.fan());
-        let arm = |heading, side, first, count| Arm {
-            pose: Pose { site: self.site, heading },
-            side,
-            first,
-            count,
+        hunt: &mut Hunt<'_, R>,
+    ) {
+        let (grid, fan, site) = (self.dynamics.grid(), self.dynamics.fan(), self.pose.site);
+        let spacing = NonZeroU32::new(fan.spacing.0).unwrap_or(NonZeroU32::MIN);
+        let arm = |heading, side, first, end| {
+            let pose = Pose { site, heading };
+            Arm { pose, side, spacing, first, end }
         };
         let mut arms = [
             arm(left, Side::Left, 0, u32::from(fan.left)),
             arm(right, Side::Right, 1, u32::from(fan.right) + 1),
         ];
-        let mut best: Option<Ranked> = None;
         for speed in (1..grid.speeds()).rev() {
-            let objective = |effort| varrho.objective(grid.reach_mm(speed), effort);
-            let done = arms.iter().all(|arm| arm.first >= arm.count);
-            if done || best.is_some_and(|(b, _)| objective(0) < b.objective) || !self.look(speed) {
+            let straight_ahead = || self.varrho.objective(grid.reach_mm(speed), 0);
+            let best = hunt.found.best.as_ref();
+            if arms.iter().all(Arm::is_empty)
+                || best.is_some_and(|(best, _)| straight_ahead() < best.objective)
+                || !self.view.enter_circle(speed)
+            {
                 break;
             }
             for arm in &mut arms {
-                best = self.first(dynamics, arm, speed, rule, best, objective).or(best);
+                self.search_arm(arm, speed, hunt);
             }
         }
-        best
     }
 
-    /// The first ray of an arm whose end on a circle will do, if that is better than the best so far.
-    fn first<D: Dynamics, R: DirectionRule>(
-        &mut self,
-        dynamics: &D,
-        arm: &mut Arm,
-        speed: u16,
-        rule: &R,
-        best: Option<Ranked>,
-        objective: impl Fn(u32) -> i64,
-    ) -> Option<Ranked> {
-        let spacing = dynamics.fan().spacing.0.max(1);
-        let (pose, side) = (arm.pose, arm.side);
+    /// Finds the first ray of an arm whose end on a circle will do, if that is better than the best so
+    /// far.
+    fn search_arm<R: DirectionRule>(&mut self, arm: &mut Arm, speed: u16, hunt: &mut Hunt<'_, R>) {
+        let (pose, side, spacing) = (arm.pose, arm.side, arm.spacing);
         let mut next = arm.first;
-        while next < arm.count {
-            let n = next as u16;
-            let heading = dynamics.heading(pose, side, n);
-            // How far this ray's verdict holds, and whether it does for the inner circles too.
-            let (turn, throughout) = if let Some(turn) = self.walled(heading, side) {
-                (turn, true)
-            } else if let Some((label, turn)) = self.surely(heading, side) {
-                (turn, self.here == Certainty::Certain(label))
-            } else if let Some(turn) = self.outside(heading, side) {
-                (turn, false)
-            } else {
-                self.effort.looks = self.effort.looks.checked_sub(1)?;
-                let ray = dynamics.ray(pose, side, n);
-                let (value, order) = (objective(ray.effort), (n, side));
-                if !is_better(value, order, best) {
-                    return None;
-                }
-                let action = self.grid.action(ray.index, speed);
-                let candidate = |target| (Candidate { action, target, objective: value }, order);
-                if rule.admits(ray.step) {
-                    let found = self.uncertain_end(&ray, speed).map(candidate);
-                    if found.is_some() {
-                        return found;
+        while next < arm.end {
+            match self.judge(pose, (next as u16, side), speed, hunt) {
+                Verdict::Infeasible { turn, on_inner_circles_too } => {
+                    // Rays within the turn are like this one: it is below 2^32, and a step above 2^15.
+                    let after = next + turn / spacing + 1;
+                    if on_inner_circles_too {
+                        arm.leave_out(next, after);
                     }
-                    (0, false)
-                } else if !self.keeps_barred || !is_better(value, order, self.barred) {
-                    (rule.barred(heading, ray.step, side), true)
-                } else if let Some(target) = self.uncertain_end(&ray, speed) {
-                    self.barred = Some(candidate(target));
-                    (rule.barred(heading, ray.step, side), true)
-                } else {
-                    (0, false)
+                    next = after;
                 }
-            };
-            // Rays within the turn are like this one: it is below 2^32, and a step above 2^15.
-            let after = next + turn / spacing + 1;
-            if throughout && next == arm.first {
-                arm.first = after;
-            } else if throughout && after >= arm.count {
-                arm.count = next;
+                Verdict::Best | Verdict::NoneBetter => return,
             }
-            next = after;
         }
-        None
+    }
+
+    /// The verdict on a ray from a pose, by what is seen of it if that will do, and else by its end.
+    fn judge<R: DirectionRule>(
+        &mut self,
+        pose: Pose,
+        rank: Rank,
+        speed: u16,
+        hunt: &mut Hunt<'_, R>,
+    ) -> Verdict {
+        let (n, side) = rank;
+        let heading = self.dynamics.heading(pose, side, n);
+        if let Some(turn) = self.view.leaves_area_until(heading, side) {
+            return Verdict::Infeasible { turn, on_inner_circles_too: true };
+        }
+        if let Some((label, turn)) = self.view.certain_until(heading, side) {
+            let on_inner_circles_too = self.view.own_label == Certainty::Certain(label);
+            return Verdict::Infeasible { turn, on_inner_circles_too };
+        }
+        if let Some(turn) = self.view.outside_until(heading, side) {
+            return Verdict::Infeasible { turn, on_inner_circles_too: false };
+        }
+        let Some(looks) = self.effort.looks.checked_sub(1) else { return Verdict::NoneBetter };
+        self.effort.looks = looks;
+        let grid = self.dynamics.grid();
+        let ray = self.dynamics.ray(pose, side, n);
+        let value = self.varrho.objective(grid.reach_mm(speed), ray.effort);
+        if !is_better(value, rank, hunt.found.best.as_ref()) {
+            return Verdict::NoneBetter;
+        }
+        let action = grid.action(ray.index, speed);
+        let choice = |target| (Choice { action, target, objective: value }, rank);
+        let only_this = Verdict::Infeasible { turn: 0, on_inner_circles_too: false };
+        if hunt.rule.admits(ray.step) {
+            let Some(target) = self.uncertain_end(&ray, speed) else { return only_this };
+            hunt.found.best = Some(choice(target));
+            return Verdict::Best;
+        }
+        if hunt.keeps_forbidden && is_better(value, rank, hunt.found.best_forbidden.as_ref()) {
+            let Some(target) = self.uncertain_end(&ray, speed) else { return only_this };
+            hunt.found.best_forbidden = Some(choice(target));
+        }
+        let turn = hunt.rule.forbidden_until(heading, ray.step, side);
+        Verdict::Infeasible { turn, on_inner_circles_too: true }
     }
 
     /// The pose at a ray's end, if that is inside the area and on uncertain ground.
     fn uncertain_end(&mut self, ray: &Ray, speed: u16) -> Option<Pose> {
-        let target = ray.arrive(self.site, speed).ok()?;
+        let target = ray.arrive(self.pose.site, speed).ok()?;
         self.effort.examined += 1;
-        let feasible = self.area.contains(target.site)
-            && self.ground.certainty(target.site) == Certainty::Uncertain;
-        feasible.then_some(target)
+        self.view.is_uncertain(target.site).then_some(target)
     }
 }

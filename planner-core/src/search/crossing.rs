@@ -1,89 +1,107 @@
-//! A line as it looks from the agent, and where it cuts a circle around it.
+//! A line as it looks from the agent, and where a circle around the agent crosses it.
 //!
-//! Approximate and on the safe side: what surely is on one side of the line is.
+//! Conservative: a claim about a side is always true, silence proves nothing.
 
 use crate::belief::sample::Label;
-use crate::geometry::approximate::{HALF_TURN, UNITS_PER_RADIAN, acos, sqrt};
-use crate::geometry::direction::Heading;
+use crate::geometry::angle::Angle;
+use crate::geometry::approximate::{acos, heading_of, sqrt};
+use crate::geometry::heading::Heading;
 use crate::geometry::line::Bound;
 use crate::motion::dynamics::Side;
 
-/// Room for the error of an arc cosine and of a heading: 2 10^-4 rad.
-const ROOM: i32 = 35_000;
+/// Covers the errors of an arc cosine and of a heading, some 10^-4 rad, twice.
+const MARGIN: Angle = Angle::radians(2.048_1e-4);
 
-/// Within this, and some room beside, the arc cosine of `x` falls by less than `1 + 1.75 x^2`.
+/// Within this, and some margin beside, the arc cosine of `x` falls by less than `1 + 1.75 x^2`.
 const STEEP: f32 = 0.9;
 
 /// A line as seen from the agent: at a radius `r` and a heading `t` its value is
 /// `height + r cos(t - uphill)`.
 #[derive(Clone, Copy)]
-pub(crate) struct Mark {
+pub(crate) struct SeenLine {
     /// Distance of the agent from the line in lattice units, positive on its +1 side, to 10^-5 of it.
     pub(crate) height: f32,
     /// The heading of its normal.
     pub(crate) uphill: Heading,
-    /// On the circle looked at: up to this angle to either side of uphill, it surely is on the line's
-    /// +1 side.
-    above: i32,
-    /// On the circle looked at: from this angle on it surely is on the other side.
-    below: i32,
+    crossing: Crossing,
 }
 
-impl Mark {
+/// Where a circle around the agent crosses a line: up to one angle to either side of uphill it is on the
+/// +1 side, from another on it is not; between the two is the margin.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct Crossing {
+    above: Angle,
+    below: Angle,
+}
+
+impl Crossing {
+    /// No circle has been looked at: nothing is certain.
+    const UNKNOWN: Self = Self { above: Angle::NEVER, below: Angle::WHOLE_TURN };
+    /// The circle is on the +1 side all around.
+    const ALL_ABOVE: Self = Self { above: Angle::WHOLE_TURN, below: Angle::WHOLE_TURN };
+    /// It is on the other.
+    const ALL_BELOW: Self = Self { above: Angle::NEVER, below: Angle::ZERO };
+}
+
+impl SeenLine {
     pub(crate) const fn new(height: f32, uphill: Heading) -> Self {
-        Self { height, uphill, above: -1, below: 2 * HALF_TURN }
+        Self { height, uphill, crossing: Crossing::UNKNOWN }
     }
 
+    /// A line that bounds what is known, and its value where the agent is.
     pub(crate) fn of(Bound { along, .. }: Bound, value: i64) -> Self {
         let (x, z) = (along.x as f32, along.z as f32);
-        Self::new(value as f32 / sqrt(x * x + z * z), Heading::near(along.left()))
+        Self::new(value as f32 / sqrt(x * x + z * z), heading_of(along.left()))
     }
 
     /// How far another line is from this one within a distance of the agent, at most.
     pub(crate) fn aside(&self, other: &Self, reach: f32) -> f32 {
-        let turn = ((other.uphill.0.wrapping_sub(self.uphill.0) as i32).unsigned_abs() >> 2) as f32;
-        (other.height - self.height).abs() + reach * (turn / UNITS_PER_RADIAN)
+        let turn = Angle::between(self.uphill, other.uphill).abs().in_radians();
+        (other.height - self.height).abs() + reach * turn
     }
 
-    /// Looks at a circle; `room`, in radii, is for the rounding of positions to the lattice.
-    pub(crate) fn cut(&mut self, inverse_radius: f32, room: f32) {
+    /// Looks at a circle; `margin`, in radii, is for the rounding of positions to the lattice.
+    pub(crate) fn cross(&mut self, inverse_radius: f32, margin: f32) {
         let depth = -self.height * inverse_radius;
-        if self.height == 0.0 && self.above >= 0 {
-            return; // a line through the agent cuts all circles alike
+        if self.height == 0.0 && self.crossing != Crossing::UNKNOWN {
+            return; // a line through the agent crosses all circles alike
         }
         if depth.abs() < STEEP {
             let angle = acos(depth);
-            let slack = ((1.0 + 1.75 * (depth * depth)) * (room * UNITS_PER_RADIAN)) as i32 + ROOM;
-            (self.above, self.below) = (angle - slack, angle + slack);
+            let margin = Angle::radians_times(margin, 1.0 + 1.75 * (depth * depth)) + MARGIN;
+            self.crossing = Crossing { above: angle - margin, below: angle + margin };
         } else {
-            self.cut_wide(inverse_radius, room);
+            self.cross_wide(inverse_radius, margin);
         }
     }
 
-    /// The same for any room, such as for lines that this one stands for.
-    pub(crate) fn cut_wide(&mut self, inverse_radius: f32, room: f32) {
+    /// The same for any margin, such as for lines that this one stands for.
+    #[inline(never)] // called from two places, by the other case of a small function
+    pub(crate) fn cross_wide(&mut self, inverse_radius: f32, margin: f32) {
         let depth = -self.height * inverse_radius;
-        let (most, least) = (depth + room, depth - room);
-        (self.above, self.below) = if most <= -1.0 {
-            // A line that misses the circle leaves it on one side all around.
-            (2 * HALF_TURN, 2 * HALF_TURN)
+        let (most, least) = (depth + margin, depth - margin);
+        self.crossing = if most <= -1.0 {
+            Crossing::ALL_ABOVE
         } else if least >= 1.0 {
-            (-1, -HALF_TURN)
+            Crossing::ALL_BELOW
         } else {
-            (acos(most.clamp(-1.0, 1.0)) - ROOM, acos(least.clamp(-1.0, 1.0)) + ROOM)
+            let above = acos(most.clamp(-1.0, 1.0)) - MARGIN;
+            Crossing { above, below: acos(least.clamp(-1.0, 1.0)) + MARGIN }
         };
     }
 
-    /// Which side of the line the circle surely is on at a heading, and how far a turn stays there.
-    pub(crate) fn surely(&self, heading: Heading, side: Side) -> Option<(Label, i32)> {
-        let turned = (heading.0.wrapping_sub(self.uphill.0) as i32) >> 2;
+    /// The side of the line on which the circle is at a heading, where that is certain, and how far a
+    /// turn stays there.
+    pub(crate) fn certain_until(&self, heading: Heading, side: Side) -> Option<(Label, Angle)> {
+        let Crossing { above, below } = self.crossing;
+        let turned = Angle::between(self.uphill, heading);
         let turned = if side == Side::Left { turned } else { -turned };
         let away = turned.abs();
-        if away <= self.above {
-            return Some((Label::Positive, self.above - turned));
+        if away <= above {
+            return Some((Label::Positive, above - turned));
         }
         // The other way around to uphill.
-        let around = if turned > 0 { 2 * HALF_TURN - turned } else { away };
-        (away >= self.below).then(|| (Label::Negative, around - self.below))
+        let around = if turned > Angle::ZERO { Angle::WHOLE_TURN - turned } else { away };
+        (away >= below).then(|| (Label::Negative, around - below))
     }
 }

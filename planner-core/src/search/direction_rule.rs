@@ -2,7 +2,9 @@
 
 use heapless::Vec;
 
-use crate::geometry::direction::{Arc, Heading};
+use crate::geometry::approximate::heading_of;
+use crate::geometry::arc::SlopeArc;
+use crate::geometry::heading::Heading;
 use crate::geometry::lattice::Vector;
 use crate::motion::dynamics::Side;
 
@@ -11,8 +13,9 @@ pub trait DirectionRule {
     /// Whether travel in this direction is allowed. Exact.
     fn admits(&self, direction: Vector) -> bool;
 
-    /// How far a heading that is not allowed can turn to a side and still is not, at least.
-    fn barred(&self, heading: Heading, direction: Vector, side: Side) -> u32;
+    /// How far a heading that is not allowed can turn to a side and still is not, at least, in a heading's
+    /// units.
+    fn forbidden_until(&self, heading: Heading, direction: Vector, side: Side) -> u32;
 }
 
 /// A rule by arcs. Its default admits any direction.
@@ -20,9 +23,9 @@ pub trait DirectionRule {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ArcRule {
     /// The direction must lie in this arc.
-    pub inside: Option<Arc>,
+    pub inside: Option<SlopeArc>,
     /// The direction must not lie in this arc.
-    pub outside: Option<Arc>,
+    pub outside: Option<SlopeArc>,
 }
 
 impl DirectionRule for ArcRule {
@@ -31,7 +34,7 @@ impl DirectionRule for ArcRule {
             && self.outside.is_none_or(|arc| !arc.contains(direction))
     }
 
-    fn barred(&self, heading: Heading, direction: Vector, side: Side) -> u32 {
+    fn forbidden_until(&self, heading: Heading, direction: Vector, side: Side) -> u32 {
         let end = match (self.inside.filter(|arc| !arc.contains(direction)), self.outside) {
             (Some(arc), _) => ends(arc, side).0,
             (None, Some(arc)) => ends(arc, side).1,
@@ -47,17 +50,18 @@ impl DirectionRule for ArcRule {
 /// hypotheses that nothing was pruned from leave no gaps at all.
 #[derive(Clone, Debug, Default)]
 pub struct ArcUnion {
-    arcs: Vec<Arc, 8, u8>,
+    arcs: Vec<SlopeArc, 8, u8>,
 }
 
 impl ArcUnion {
     /// The arcs, of which no two overlap.
-    pub fn arcs(&self) -> &[Arc] {
+    pub fn arcs(&self) -> &[SlopeArc] {
         &self.arcs
     }
 
-    fn join(&mut self, mut arc: Arc) {
-        let overlap = |a: &Arc, b: &Arc| a.from().cross(b.to()) >= 0 && b.from().cross(a.to()) >= 0;
+    fn join(&mut self, mut arc: SlopeArc) {
+        let overlap =
+            |a: &SlopeArc, b: &SlopeArc| a.from().cross(b.to()) >= 0 && b.from().cross(a.to()) >= 0;
         // What overlaps none of two that overlap does not overlap their union.
         self.arcs.retain(|other| {
             let apart = !overlap(other, &arc);
@@ -74,8 +78,8 @@ impl ArcUnion {
     }
 }
 
-impl FromIterator<Arc> for ArcUnion {
-    fn from_iter<I: IntoIterator<Item = Arc>>(arcs: I) -> Self {
+impl FromIterator<SlopeArc> for ArcUnion {
+    fn from_iter<I: IntoIterator<Item = SlopeArc>>(arcs: I) -> Self {
         let mut union = Self::default();
         arcs.into_iter().for_each(|arc| union.join(arc));
         union
@@ -86,13 +90,13 @@ impl FromIterator<Arc> for ArcUnion {
 #[derive(Clone, Copy, Debug)]
 pub struct UnionRule<'a> {
     /// The arcs.
-    pub arcs: &'a [Arc],
+    pub arcs: &'a [SlopeArc],
     /// Whether the direction must lie among them.
     pub among: bool,
 }
 
 impl UnionRule<'_> {
-    fn holder(&self, direction: Vector) -> Option<&Arc> {
+    fn holder(&self, direction: Vector) -> Option<&SlopeArc> {
         self.arcs.iter().find(|arc| arc.contains(direction))
     }
 }
@@ -102,7 +106,7 @@ impl DirectionRule for UnionRule<'_> {
         self.holder(direction).is_some() == self.among
     }
 
-    fn barred(&self, heading: Heading, direction: Vector, side: Side) -> u32 {
+    fn forbidden_until(&self, heading: Heading, direction: Vector, side: Side) -> u32 {
         if let Some(arc) = self.holder(direction) {
             return turn_to(heading, ends(*arc, side).1, side);
         }
@@ -111,11 +115,11 @@ impl DirectionRule for UnionRule<'_> {
     }
 }
 
-/// Room for the error of [`Heading::near`], as a binary angle: 10^-4 rad.
-const ROOM: u32 = 68_000;
+/// Covers the error of a heading.
+const MARGIN: u32 = Heading::turn_of(1e-4);
 
 /// Where a heading that turns to a side, or its opposite, enters an arc, and where it leaves it.
-fn ends(arc: Arc, side: Side) -> (Vector, Vector) {
+fn ends(arc: SlopeArc, side: Side) -> (Vector, Vector) {
     match side {
         Side::Left => (arc.from(), arc.to()),
         Side::Right => (arc.to(), arc.from()),
@@ -124,12 +128,11 @@ fn ends(arc: Arc, side: Side) -> (Vector, Vector) {
 
 /// The turn to a side until a heading points along a direction or its opposite, at least.
 fn turn_to(heading: Heading, direction: Vector, side: Side) -> u32 {
-    const HALF_TURN: u32 = 1 << 31;
-    let ahead = Heading::near(direction).0.wrapping_sub(heading.0);
+    let ahead = heading_of(direction).0.wrapping_sub(heading.0);
     let turn = match side {
         Side::Left => ahead,
         Side::Right => ahead.wrapping_neg(),
-    } % HALF_TURN;
+    } % Heading::HALF_TURN.0;
     // A turn of all but half a turn may be one of none.
-    if turn > HALF_TURN - ROOM { 0 } else { turn.saturating_sub(ROOM) }
+    if turn > Heading::HALF_TURN.0 - MARGIN { 0 } else { turn.saturating_sub(MARGIN) }
 }

@@ -9,6 +9,7 @@
 pub(crate) mod circles;
 pub(crate) mod crossing;
 pub mod direction_rule;
+pub mod objective;
 pub mod problem;
-pub(crate) mod recovery;
+pub mod recovery;
 pub(crate) mod view;

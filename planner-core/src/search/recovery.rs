@@ -12,35 +12,57 @@
 //!    motions, 16 at most) from which (1) is feasible, and that leaves the reach of uncertain ground
 //!    nowhere. Eight bearings are considered, along the bisector of the slope arc both ways, across
 //!    it both ways, and between.
-//! 5. Nothing: a [`StopReason`].
+//! 5. Nothing: there is a reason why, which the planner stops with.
 //!
 //! **It ends**, though it has no state. What is known does not change before the next sample, and each
 //! motion lowers a measure: far, the distance to uncertain ground and then the turns to the next drive;
 //! near, the turns of (3), or where it has none the motions of (4), which stay near. What is near never
 //! becomes far again.
 
-use crate::geometry::approximate::sqrt;
-use crate::geometry::direction::Heading;
+use crate::geometry::approximate::{heading_of, sqrt};
+use crate::geometry::heading::Heading;
 use crate::geometry::lattice::Vector;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Pose, Ray, Side};
-use crate::planner::{Recovery, StopReason};
+use crate::search::circles::{Findings, Search};
 use crate::search::direction_rule::{ArcRule, DirectionRule};
-use crate::search::problem::{Effort, Problem};
-use crate::search::view::Sight;
+use crate::search::problem::Problem;
 
 /// A transit among uncertain ground looks this many motions ahead. Twice as many find nothing more in
 /// 1,000 standard missions of 60 steps.
 const HORIZON: u32 = 16;
 
-/// A heading this far from a bearing drives along it, as a binary angle: 1/8 rad.
-const ALONG: u32 = 85_445_659;
+/// A heading this far from a bearing drives along it.
+const ALONG: u32 = Heading::turn_of(0.125);
 
 /// Turns in place that a leg considers one after the other, even where fewer are half a turn, if rays are
 /// so few that each turn brings others.
 const TURNS: u32 = 8;
 
-const HALF_TURN: u32 = 1 << 31;
+/// What was done as the problem itself had no feasible action.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+pub enum Recovery {
+    /// The same problem without its rule on directions.
+    Undirected,
+    /// A turn in place; no sample is taken.
+    Reorient,
+    /// A drive through certain ground; no sample is taken.
+    Transit,
+}
+
+/// Why there is no way on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum DeadEnd {
+    /// What is uncertain is thinner than the action grid can hit, or lies outside the area.
+    Resolution,
+    /// There is uncertain ground, but no motion that leads towards it: the border is in the way, or the
+    /// agent cannot turn.
+    Cornered,
+    /// A plan may look at so many rays, and none of these was a way on.
+    Undecided,
+}
 
 /// An action, where it leads, and the rung on which it was found.
 pub(crate) struct Found {
@@ -49,33 +71,34 @@ pub(crate) struct Found {
     pub(crate) target: Pose,
 }
 
-/// The problem's best action from a pose that all of this is seen from, or the ladder's.
+/// The problem's best action from where a search is, or the ladder's. `before` is what that search found
+/// by another rule, see [`Search::best`].
 ///
 /// # Errors
 /// Why there is neither.
 pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule>(
     problem: &Problem<'_, R>,
-    dynamics: &D,
-    pose: Pose,
-    sight: &mut Sight<'_>,
-) -> Result<Found, StopReason> {
+    search: &mut Search<'_, D>,
+    before: Option<Findings>,
+) -> Result<Found, DeadEnd> {
     let found = |recovery| move |(action, target)| Found { recovery, action, target };
-    if let Some(best) = sight.best(dynamics, pose.heading, problem.varrho, &problem.rule) {
+    let Findings { best, best_forbidden } = search.best(&problem.rule, before);
+    if let Some((best, _)) = best {
         return Ok(found(None)((best.action, best.target)));
     }
-    if let Some((best, _)) = sight.barred {
+    if let Some((best, _)) = best_forbidden {
         return Ok(found(Some(Recovery::Undirected))((best.action, best.target)));
     }
-    let ladder = Ladder { problem: problem.undirected(), dynamics };
+    let mut ladder = Ladder { problem: problem.undirected(), search };
     // Where nothing is in reach no turn finds anything, so that the order does not matter.
-    if let Some(turn) = ladder.reorient(sight, pose) {
+    if let Some(turn) = ladder.reorient() {
         return Ok(found(Some(Recovery::Reorient))(turn));
     }
-    let way = sight.way_out().ok_or(StopReason::Resolution)?;
-    let leg = if sight.is_far(way) {
-        ladder.leg(&mut sight.effort, pose, way).ok_or(StopReason::Cornered)
+    let way = ladder.search.view.way_out().ok_or(DeadEnd::Resolution)?;
+    let leg = if ladder.search.view.is_far(way) {
+        ladder.leg(ladder.search.pose, way).ok_or(DeadEnd::Cornered)
     } else {
-        ladder.transit(sight, pose)
+        ladder.transit()
     };
     leg.map(found(Some(Recovery::Transit)))
 }
@@ -93,88 +116,81 @@ enum Approach {
     Blocked,
 }
 
-struct Ladder<'a, D> {
+struct Ladder<'s, 'p, 'a, D> {
     /// The problem without its rule on directions.
-    problem: Problem<'a, ArcRule>,
-    dynamics: &'a D,
+    problem: Problem<'p, ArcRule>,
+    /// From where the agent is.
+    search: &'s mut Search<'a, D>,
 }
 
-impl<D: Dynamics> Ladder<'_, D> {
-    fn reorient(&self, sight: &mut Sight<'_>, pose: Pose) -> Option<Leg> {
-        let (dynamics, problem) = (self.dynamics, &self.problem);
+impl<D: Dynamics> Ladder<'_, '_, '_, D> {
+    /// The first of the fewest turns in place beyond which the undirected problem is feasible.
+    fn reorient(&mut self) -> Option<Leg> {
+        let (dynamics, pose) = (self.search.dynamics, self.search.pose);
         let left = dynamics.turn_in_place(pose, Side::Left)?;
         let right = dynamics.turn_in_place(pose, Side::Right)?;
         let sharpest = left.1.heading.0.wrapping_sub(pose.heading.0);
         // What lies ahead is known by now: after each turn, what lies beyond it.
-        let (mut to, mut turned) = ([left.1, right.1], sharpest);
-        while turned < HALF_TURN && sight.effort.is_enough() {
-            sight.effort.looks -= 1;
-            let headings = to.map(|pose| pose.heading);
-            match sight.better_side(dynamics, headings, problem.varrho, &problem.rule) {
-                Some(Side::Left) => return Some(left),
-                Some(Side::Right) => return Some(right),
+        let (mut to_left, mut to_right, mut turned) = (left.1, right.1, sharpest);
+        while turned < Heading::HALF_TURN.0 && self.search.effort.is_enough() {
+            self.search.effort.looks -= 1;
+            let headings = [to_left.heading, to_right.heading];
+            match self.search.best_between(headings, &self.problem.rule) {
+                Some((_, Side::Left)) => return Some(left),
+                Some((_, Side::Right)) => return Some(right),
                 None => {}
             }
-            let [to_left, to_right] = to;
-            to = [
-                dynamics.turn_in_place(to_left, Side::Left)?.1,
-                dynamics.turn_in_place(to_right, Side::Right)?.1,
-            ];
+            to_left = dynamics.turn_in_place(to_left, Side::Left)?.1;
+            to_right = dynamics.turn_in_place(to_right, Side::Right)?.1;
             turned = turned.saturating_add(sharpest);
         }
         None
     }
 
-    fn transit(&self, sight: &mut Sight<'_>, pose: Pose) -> Result<Leg, StopReason> {
-        let u = self.problem.ground.slope_arc().bisector();
-        let l = u.left();
-        let between = |a: Vector, b: Vector| Vector { x: a.x.midpoint(b.x), z: a.z.midpoint(b.z) };
-        let diagonal = between(u, l);
+    /// The first leg to the nearest pose from which the undirected problem is feasible, along one of eight
+    /// bearings.
+    fn transit(&mut self) -> Result<Leg, DeadEnd> {
+        let along = self.problem.lines.slope_arc().bisector();
+        let across = along.left();
+        let between = Vector { x: along.x.midpoint(across.x), z: along.z.midpoint(across.z) };
         let (mut nearest, mut horizon) = (None, HORIZON);
-        let mut otherwise = StopReason::Cornered;
-        for bearing in [u, l, diagonal, diagonal.left()] {
+        let mut otherwise = DeadEnd::Cornered;
+        for bearing in [along, across, between, between.left()] {
             for bearing in [bearing, bearing.reversed()] {
-                match self.approach(sight, pose, bearing, horizon) {
+                match self.approach(bearing, horizon) {
                     Approach::Feasible(leg, motions) => {
                         (nearest, horizon) = (Some(leg), motions - 1);
                     }
-                    Approach::Fruitless => otherwise = StopReason::Resolution,
+                    Approach::Fruitless => otherwise = DeadEnd::Resolution,
                     Approach::Blocked => {}
                 }
             }
         }
-        if !sight.effort.is_enough() {
-            otherwise = StopReason::Undecided;
+        if !self.search.effort.is_enough() {
+            otherwise = DeadEnd::Undecided;
         }
         nearest.ok_or(otherwise)
     }
 
     /// The straight drive in a direction, of at most `horizon` motions, to where the undirected problem
     /// is feasible.
-    fn approach(
-        &self,
-        sight: &mut Sight<'_>,
-        from: Pose,
-        direction: Vector,
-        horizon: u32,
-    ) -> Approach {
+    fn approach(&mut self, direction: Vector, horizon: u32) -> Approach {
         let mut first = None;
-        let mut pose = from;
+        let mut pose = self.search.pose;
         for motions in 1..=horizon {
-            let Some(leg) = self.leg(&mut sight.effort, pose, direction) else { break };
+            let Some(leg) = self.leg(pose, direction) else { break };
             let first = *first.get_or_insert(leg);
             // What turns in place lead to is known from the reorientation: nothing.
             if leg.1.site != pose.site {
-                let grid = self.dynamics.grid();
-                let mut there = self.problem.sight(leg.1.site, grid, sight.effort);
+                let mut there =
+                    self.problem.search(self.search.dynamics, leg.1, self.search.effort);
                 let there = there.open();
-                if there.way_out().is_none_or(|way| there.is_far(way)) {
+                if there.view.way_out().is_none_or(|way| there.view.is_far(way)) {
                     break;
                 }
-                let Problem { varrho, rule, .. } = &self.problem;
-                let best = there.best(self.dynamics, leg.1.heading, *varrho, rule);
-                sight.effort = there.effort;
-                if best.is_some() {
+                let found = there.best(&self.problem.rule, None);
+                self.search.effort = there.effort;
+                if found.best.is_some() {
                     return Approach::Feasible(first, motions);
                 }
             }
@@ -185,9 +201,9 @@ impl<D: Dynamics> Ladder<'_, D> {
 
     /// One motion on the way to a point: the drive that brings it nearer, or the first of the fewest
     /// turns in place after which there is one.
-    fn leg(&self, effort: &mut Effort, pose: Pose, goal: Vector) -> Option<Leg> {
-        let bearing = Heading::near(goal);
-        let coarse = self.dynamics.fan().spacing.0 / 2 > ALONG;
+    fn leg(&mut self, pose: Pose, goal: Vector) -> Option<Leg> {
+        let (dynamics, bearing) = (self.search.dynamics, heading_of(goal));
+        let coarse = dynamics.fan().spacing.0 / 2 > ALONG;
         match self.drive(pose, bearing, goal) {
             Drive::Leg(leg) => return Some(leg),
             Drive::Blocked if !coarse => return None,
@@ -195,15 +211,17 @@ impl<D: Dynamics> Ladder<'_, D> {
         }
         let off = bearing.0.wrapping_sub(pose.heading.0) as i32;
         let sides = if off > 0 { [Side::Left, Side::Right] } else { [Side::Right, Side::Left] };
-        let first = self.dynamics.turn_in_place(pose, sides[0])?;
+        let first = dynamics.turn_in_place(pose, sides[0])?;
         let sharpest = (first.1.heading.0.wrapping_sub(pose.heading.0) as i32).unsigned_abs();
         let (mut after, mut turned, mut turns) = ([pose; 2], 0_u32, 0);
-        while (turned < HALF_TURN || coarse && turns < TURNS) && effort.is_enough() {
-            effort.looks -= 1;
+        while (turned < Heading::HALF_TURN.0 || coarse && turns < TURNS)
+            && self.search.effort.is_enough()
+        {
+            self.search.effort.looks -= 1;
             for (side, after) in sides.into_iter().zip(&mut after) {
-                *after = self.dynamics.turn_in_place(*after, side)?.1;
+                *after = dynamics.turn_in_place(*after, side)?.1;
                 match self.drive(*after, bearing, goal) {
-                    Drive::Leg(_) => return self.dynamics.turn_in_place(pose, side),
+                    Drive::Leg(_) => return dynamics.turn_in_place(pose, side),
                     Drive::Blocked if !coarse => return None,
                     _ => {}
                 }
@@ -216,10 +234,10 @@ impl<D: Dynamics> Ladder<'_, D> {
     /// The fastest drive that brings a point nearer, if its bearing lies within the fan: along the
     /// nearest ray, or along the one on the other side of the bearing.
     fn drive(&self, pose: Pose, bearing: Heading, goal: Vector) -> Drive {
-        let grid = self.dynamics.grid();
-        let rays = self.dynamics.around(pose, bearing);
+        let dynamics = self.search.dynamics;
+        let (grid, rays) = (dynamics.grid(), dynamics.around(pose, bearing));
         let aside = bearing.0.wrapping_sub(rays[0].heading.0) as i32;
-        if aside.unsigned_abs() > ALONG.max(self.dynamics.fan().spacing.0 / 2) {
+        if aside.unsigned_abs() > ALONG.max(dynamics.fan().spacing.0 / 2) {
             return Drive::Beyond;
         }
         for ray in rays {

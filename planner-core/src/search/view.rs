@@ -1,145 +1,127 @@
 //! What a search sees from a position: where certain ground and the area end.
 //!
-//! The positions of one speed lie on a circle around the agent. Where all bounds of the candidates have
-//! the circle on one side, the ground there is certain; so one can turn at once to where the first of
-//! them cuts the circle.
+//! The positions of one speed lie on a circle around the agent. Where all lines that bound the uncertain
+//! ground have the circle on one side, the ground there is certain; so one can turn at once to where the
+//! circle crosses the first of them.
 
 use heapless::Vec;
 
-use crate::belief::candidates::{Candidates, Certainty};
+use crate::belief::consistent_lines::{Certainty, ConsistentLines};
 use crate::belief::sample::Label;
-use crate::geometry::approximate::HALF_TURN;
+use crate::geometry::angle::Angle;
 use crate::geometry::area::Area;
-use crate::geometry::direction::Heading;
+use crate::geometry::heading::Heading;
 use crate::geometry::lattice::{Site, Vector};
 use crate::motion::action::ActionGrid;
 use crate::motion::dynamics::Side;
-use crate::search::circles::Ranked;
-use crate::search::crossing::Mark;
-use crate::search::problem::Effort;
+use crate::search::crossing::SeenLine;
 
-/// Marks that are kept. Where there are more bounds, each mark stands for several.
-const MARKS: usize = 16;
+/// Lines that are kept. Where there are more, each stands for several.
+const MOST_LINES: usize = 16;
 
-/// More room than there is between any two headings.
-const NOTHING_IS_SURE: f32 = core::f32::consts::PI;
-
-/// A turn as a binary angle.
-fn turned(turn: i32) -> u32 {
-    (turn.max(0) as u32) << 2
-}
+/// A margin greater than there is between any two headings.
+const NOTHING_IS_CERTAIN: f32 = core::f32::consts::PI;
 
 /// All that a search sees from one position.
-pub(crate) struct Sight<'a> {
-    pub(crate) ground: Candidates<'a>,
-    pub(crate) area: Area,
-    pub(crate) site: Site,
-    pub(crate) grid: ActionGrid,
-    /// Room for the rounding of positions to the lattice and for the errors of marks, in radii: enough
-    /// for the innermost circle if the ray to this one is certain throughout.
-    room: f32,
-    /// What all candidates say of where the agent stands.
-    pub(crate) here: Certainty,
-    /// Within this distance all ground is certain, lattice units.
-    clear: f32,
-    /// The bounds of the candidates within reach, or every so-many-th of all.
-    marks: Vec<Mark, MARKS, u8>,
-    /// How far within reach the bounds are from the marks that stand for them, lattice units.
+pub(crate) struct View<'a> {
+    lines: ConsistentLines<'a>,
+    area: Area,
+    site: Site,
+    speeds: u16,
+    /// The shortest motion, lattice units.
+    step: f32,
+    /// Safety margin as a share of the radius. It covers lattice rounding and approximation errors on the
+    /// smallest circle, where they matter most: what is certain there all along a ray is so on all of it.
+    margin: f32,
+    /// What all lines say of where the agent stands.
+    pub(crate) own_label: Certainty,
+    /// Within this distance all ground is certain, lattice units, the margin taken off.
+    certain_within: f32,
+    /// The lines within reach that bound the uncertain ground, or every so-many-th of all.
+    bounds: Vec<SeenLine, MOST_LINES, u8>,
+    /// How far within reach the others are from the ones that stand for them, lattice units.
     aside: f32,
-    /// Whether some of those beyond reach lie below, or above.
+    /// Whether there are bounds beyond reach that have the agent on their -1 side, or on their +1 side.
     beyond: [bool; 2],
-    /// The sides of the area within reach, with what is outside uphill; cut with the circle looked at
+    /// The sides of the area within reach, with what is outside uphill; crossed with the present circle
     /// when it comes to them.
-    sides: Vec<Mark, 4, u8>,
-    sides_are_cut: bool,
-    /// Of the circle looked at.
+    sides: Vec<SeenLine, 4, u8>,
+    sides_are_crossed: bool,
+    /// Of the present circle.
     inverse_radius: f32,
-    /// Those within the shortest motion, as they cut its circle.
-    walls: Vec<Mark, 4, u8>,
-    /// What searches may cost, and have: with no looks left they end with the best so far.
-    pub(crate) effort: Effort,
-    /// The best action that a rule has barred: after a search that found none, the best by no rule.
-    pub(crate) barred: Option<Ranked>,
-    /// Whether searches are to keep it.
-    pub(crate) keeps_barred: bool,
+    /// The sides within the shortest motion, as they cross its circle.
+    near_sides: Vec<SeenLine, 4, u8>,
 }
 
-impl<'a> Sight<'a> {
+impl<'a> View<'a> {
     /// From a position inside the area, for motions on some grid; nothing is seen before
     /// [`open`](Self::open).
     pub(crate) fn new(
-        ground: Candidates<'a>,
+        lines: ConsistentLines<'a>,
         area: Area,
         site: Site,
         grid: ActionGrid,
-        effort: Effort,
     ) -> Self {
         // A position is rounded by 0.71 units at most.
-        let room = 3e-5 + 1.0 / grid.step_units();
-        let room = if room < 0.01 { room } else { NOTHING_IS_SURE };
+        let margin = 3e-5 + 1.0 / grid.step_units();
+        let margin = if margin < 0.01 { margin } else { NOTHING_IS_CERTAIN };
         Self {
-            ground,
+            lines,
             area,
             site,
-            grid,
-            room,
-            here: Certainty::Uncertain,
-            clear: f32::INFINITY,
-            marks: Vec::new(),
+            speeds: grid.speeds(),
+            step: grid.step_units(),
+            margin,
+            own_label: Certainty::Uncertain,
+            certain_within: 0.0,
+            bounds: Vec::new(),
             aside: 0.0,
             beyond: [false; 2],
             sides: Vec::new(),
-            sides_are_cut: false,
+            sides_are_crossed: false,
             inverse_radius: 0.0,
-            walls: Vec::new(),
-            effort,
-            barred: None,
-            keeps_barred: false,
+            near_sides: Vec::new(),
         }
     }
 
-    /// Sees what there is. A step of its own, so that all of this is made where it stays.
-    #[must_use]
-    pub(crate) fn open(&mut self) -> &mut Self {
-        let grid = self.grid;
-        let reach = f32::from(grid.speeds()) * grid.step_units() * (1.0 + self.room);
+    /// Sees what there is.
+    pub(crate) fn open(&mut self) {
+        let reach = f32::from(self.speeds) * self.step * (1.0 + self.margin);
         self.see_bounds(reach);
         self.see_sides(reach);
-        self
     }
 
     fn see_bounds(&mut self, reach: f32) {
-        let mut signs = [false; 2];
+        let (mut signs, mut nearest) = ([false; 2], f32::INFINITY);
         // Neighbours in the order of the cell look alike.
-        let stride = self.ground.edges.len().div_ceil(MARKS);
-        for (k, bound) in self.ground.bounds().enumerate() {
+        let stride = self.lines.edges.len().div_ceil(MOST_LINES);
+        for (k, bound) in self.lines.bounds().enumerate() {
             let value = bound.at(self.site);
-            let mark = Mark::of(bound, value);
+            let line = SeenLine::of(bound, value);
             let [below, above] = &mut signs;
             *below |= value < 0;
             *above |= value > 0;
-            let distance = mark.height.abs();
-            self.clear = if distance < self.clear { distance } else { self.clear };
+            let distance = line.height.abs();
+            nearest = if distance < nearest { distance } else { nearest };
             if stride > 1 && !k.is_multiple_of(stride) {
-                let aside = self.marks.last().map_or(0.0, |kept| kept.aside(&mark, reach));
+                let aside = self.bounds.last().map_or(0.0, |kept| kept.aside(&line, reach));
                 self.aside = if aside > self.aside { aside } else { self.aside };
             } else if distance < reach || stride > 1 {
                 // There are so many at most: nothing is refused.
-                let _ = self.marks.push(mark);
+                let _ = self.bounds.push(line);
             } else {
                 let [below, above] = &mut self.beyond;
                 *below |= value < 0;
                 *above |= value > 0;
             }
         }
-        self.here = match signs {
+        self.own_label = match signs {
             [true, true] => Certainty::Uncertain,
             [true, false] => Certainty::Certain(Label::Negative),
             [false, _] => Certainty::Certain(Label::Positive),
         };
-        if self.here == Certainty::Uncertain {
-            self.clear = 0.0;
-        }
+        let is_certain = self.own_label != Certainty::Uncertain;
+        self.certain_within = if is_certain { nearest / (1.0 + self.margin) } else { 0.0 };
     }
 
     fn see_sides(&mut self, reach: f32) {
@@ -147,67 +129,63 @@ impl<'a> Sight<'a> {
         let inside =
             [to.x() - site.x(), to.z() - site.z(), site.x() - from.x(), site.z() - from.z()];
         for (inside, quarters) in inside.into_iter().zip(0..) {
-            let mut side = Mark::new(-(inside as f32), Heading(quarters << 30));
+            let mut side = SeenLine::new(-(inside as f32), Heading(quarters << 30));
             // There are four: nothing is refused.
             if (inside as f32) < reach {
                 let _ = self.sides.push(side);
             }
-            let shortest = self.grid.step_units();
-            if (inside as f32) < shortest {
-                side.cut(1.0 / shortest, self.room);
-                let _ = self.walls.push(side);
+            if (inside as f32) < self.step {
+                side.cross(1.0 / self.step, self.margin);
+                let _ = self.near_sides.push(side);
             }
         }
+    }
+
+    /// Whether a position is inside the area and on uncertain ground. Exact.
+    pub(crate) fn is_uncertain(&self, site: Site) -> bool {
+        self.area.contains(site) && self.lines.certainty(site) == Certainty::Uncertain
     }
 
     /// Whether what lies this way is further than one motion reaches.
     pub(crate) fn is_far(&self, way: Vector) -> bool {
-        let reach = f32::from(self.grid.speeds() - 1) * self.grid.step_units() * (1.0 + self.room);
-        self.here != Certainty::Uncertain && way.dot(way) as f32 > reach * reach
-    }
-
-    fn inverse_radius(&self, speed: u16) -> f32 {
-        1.0 / (f32::from(speed) * self.grid.step_units())
-    }
-
-    /// Whether some ground on a circle may be uncertain.
-    fn reaches(&self, inverse_radius: f32) -> bool {
-        self.clear * inverse_radius < 1.0 + self.room
+        let reach = f32::from(self.speeds - 1) * self.step * (1.0 + self.margin);
+        self.own_label != Certainty::Uncertain && way.dot(way) as f32 > reach * reach
     }
 
     /// Looks at the circle of a speed, unless all ground up to there is certain.
-    pub(crate) fn look(&mut self, speed: u16) -> bool {
-        let inverse_radius = self.inverse_radius(speed);
-        let reaches = self.reaches(inverse_radius);
-        if reaches {
-            let room = self.room;
-            self.marks.iter_mut().for_each(|mark| mark.cut(inverse_radius, room));
+    pub(crate) fn enter_circle(&mut self, speed: u16) -> bool {
+        let inverse_radius = 1.0 / (f32::from(speed) * self.step);
+        let may_be_uncertain = self.certain_within * inverse_radius < 1.0;
+        if may_be_uncertain {
+            let margin = self.margin;
+            self.bounds.iter_mut().for_each(|line| line.cross(inverse_radius, margin));
             if self.aside > 0.0 {
                 self.widen(inverse_radius);
             }
-            (self.inverse_radius, self.sides_are_cut) = (inverse_radius, false);
+            (self.inverse_radius, self.sides_are_crossed) = (inverse_radius, false);
         }
-        reaches
+        may_be_uncertain
     }
 
-    /// Cuts again where marks stand for lines beside them.
+    /// Crosses again where lines stand for others beside them.
     #[cold]
     fn widen(&mut self, inverse_radius: f32) {
-        let room = self.room + self.aside * inverse_radius;
-        let room = if room < NOTHING_IS_SURE { room } else { NOTHING_IS_SURE };
-        self.marks.iter_mut().for_each(|mark| mark.cut_wide(inverse_radius, room));
+        let margin = self.margin + self.aside * inverse_radius;
+        let margin = if margin < NOTHING_IS_CERTAIN { margin } else { NOTHING_IS_CERTAIN };
+        self.bounds.iter_mut().for_each(|line| line.cross_wide(inverse_radius, margin));
     }
 
-    /// The label that the circle surely has at a heading, and how far a turn keeps it.
-    pub(crate) fn surely(&self, heading: Heading, side: Side) -> Option<(Label, u32)> {
-        let mut marks = self.marks.iter();
-        let (label, mut turn) = match (marks.next(), self.beyond) {
-            (Some(first), _) => first.surely(heading, side)?,
-            (None, [true, _]) => (Label::Negative, 2 * HALF_TURN),
-            (None, [false, _]) => (Label::Positive, 2 * HALF_TURN),
+    /// The label of the circle's ground at a heading, where it is certain, and how far a turn to a side
+    /// keeps it so.
+    pub(crate) fn certain_until(&self, heading: Heading, side: Side) -> Option<(Label, u32)> {
+        let mut bounds = self.bounds.iter();
+        let (label, mut turn) = match (bounds.next(), self.beyond) {
+            (Some(first), _) => first.certain_until(heading, side)?,
+            (None, [true, _]) => (Label::Negative, Angle::WHOLE_TURN),
+            (None, [false, _]) => (Label::Positive, Angle::WHOLE_TURN),
         };
-        for mark in marks {
-            let (other, least) = mark.surely(heading, side)?;
+        for line in bounds {
+            let (other, least) = line.certain_until(heading, side)?;
             if other != label {
                 return None;
             }
@@ -215,22 +193,23 @@ impl<'a> Sight<'a> {
         }
         let [below, above] = self.beyond;
         let contradicted = if label == Label::Positive { below } else { above };
-        (!contradicted).then(|| (label, turned(turn)))
+        (!contradicted).then(|| (label, turn.turn()))
     }
 
-    /// Whether the circle surely is outside the area at a heading, and how far a turn keeps it there.
-    pub(crate) fn outside(&mut self, heading: Heading, side: Side) -> Option<u32> {
-        if !self.sides_are_cut {
-            let (inverse_radius, room) = (self.inverse_radius, self.room);
-            self.sides.iter_mut().for_each(|mark| mark.cut(inverse_radius, room));
-            self.sides_are_cut = true;
+    /// How far a turn to a side keeps the circle outside the area, if it is certain to be outside at a
+    /// heading.
+    pub(crate) fn outside_until(&mut self, heading: Heading, side: Side) -> Option<u32> {
+        if !self.sides_are_crossed {
+            let (inverse_radius, margin) = (self.inverse_radius, self.margin);
+            self.sides.iter_mut().for_each(|line| line.cross(inverse_radius, margin));
+            self.sides_are_crossed = true;
         }
-        beyond(&self.sides, heading, side)
+        outside_until(&self.sides, heading, side)
     }
 
-    /// The same of all circles: who leaves a convex area does not come back.
-    pub(crate) fn walled(&self, heading: Heading, side: Side) -> Option<u32> {
-        beyond(&self.walls, heading, side)
+    /// The same of all circles: a ray that leaves a convex area does not come back.
+    pub(crate) fn leaves_area_until(&self, heading: Heading, side: Side) -> Option<u32> {
+        outside_until(&self.near_sides, heading, side)
     }
 
     /// The way to the nearest uncertain ground inside the area; `None` when there is none.
@@ -241,13 +220,15 @@ impl<'a> Sight<'a> {
         let from = [apart(self.area.min().x(), here.x()), apart(self.area.min().z(), here.z())];
         let to = [apart(self.area.max().x(), here.x()), apart(self.area.max().z(), here.z())];
         let mut nearest: Option<(f32, [f32; 2])> = None;
-        for bound in self.ground.bounds() {
-            let mark = Mark::of(bound, bound.at(here));
-            let normal = mark.uphill.unit().scaled(ONE);
+        let all_are_kept = self.bounds.len() == self.lines.edges.len();
+        for (k, bound) in self.lines.bounds().enumerate() {
+            let kept = self.bounds.get(k).filter(|_| all_are_kept);
+            let line = kept.copied().unwrap_or_else(|| SeenLine::of(bound, bound.at(here)));
+            let normal = line.uphill.unit().scaled(ONE);
             let normal = [normal.x, normal.z].map(|v| v as f32 / ONE as f32);
             let along = [-normal[1], normal[0]];
             // The line's foot, and the part of the line that is inside: foot + t along.
-            let foot = normal.map(|v| -v * mark.height);
+            let foot = normal.map(|v| -v * line.height);
             let (mut low, mut high) = (f32::NEG_INFINITY, f32::INFINITY);
             for (((foot, along), from), to) in foot.iter().zip(along).zip(from).zip(to) {
                 let (a, b) = ((from - foot) / along, (to - foot) / along);
@@ -256,7 +237,7 @@ impl<'a> Sight<'a> {
             }
             if low <= high {
                 let t = 0.0_f32.clamp(low, high);
-                let distance = mark.height * mark.height + t * t;
+                let distance = line.height * line.height + t * t;
                 if nearest.is_none_or(|(least, _)| distance < least) {
                     nearest = Some((distance, [foot[0] + t * along[0], foot[1] + t * along[1]]));
                 }
@@ -266,10 +247,10 @@ impl<'a> Sight<'a> {
     }
 }
 
-/// Whether a circle surely is beyond one of these lines at a heading, and how far a turn keeps it there.
-fn beyond(lines: &[Mark], heading: Heading, side: Side) -> Option<u32> {
-    lines.iter().find_map(|line| match line.surely(heading, side) {
-        Some((Label::Positive, turn)) => Some(turned(turn)),
+/// How far a turn keeps a circle beyond one of these sides, if it is certain to be there at a heading.
+fn outside_until(sides: &[SeenLine], heading: Heading, side: Side) -> Option<u32> {
+    sides.iter().find_map(|line| match line.certain_until(heading, side) {
+        Some((Label::Positive, turn)) => Some(turn.turn()),
         _ => None,
     })
 }

@@ -67,8 +67,8 @@ mod on_target {
             let _ = match setup.algorithm {
                 Algorithm::Cfc => station.fly(&setup, &mut setup.cfc::<N>(), |_| {}),
                 Algorithm::Scc { noise, policy, prior } => {
-                    let mut planner = setup.scc::<N, H>(noise, policy);
-                    station.fly(&setup, &mut setup.prepare(&mut planner, prior), |_| {})
+                    let mut planner = setup.scc::<N, H>(policy);
+                    station.fly(&setup, &mut setup.prepare(&mut planner, prior, noise), |_| {})
                 }
             };
         }

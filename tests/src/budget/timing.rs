@@ -1,12 +1,11 @@
 //! Time: what the planner takes for the steps of missions that a program flies in the emulator.
 //!
-//! Counted is what the functions of `remote::seam` execute, from their first instruction to their return.
+//! Counted is what the functions of `station::seam` execute, from their first instruction to their return.
 //! That leaves out what it costs to read a counter; the ticks that the program itself tells of are the
 //! same and a constant more, which is checked.
 
 use host_sim::hil::player::Played;
-use host_sim::mission::definition::End;
-use host_sim::mission::recording::Recording;
+use host_sim::mission::results::{Ending, Results};
 use planner_core::planner::StopReason;
 use rayon::prelude::*;
 use std::cmp::Reverse;
@@ -26,7 +25,7 @@ pub struct Flight {
     /// The number of the mission in its workload.
     pub number: u64,
     /// The mission as it went.
-    pub recording: Recording,
+    pub results: Results,
     /// A plan for each step, and one that found no motion if it ended so.
     pub plans: Vec<Call>,
     /// An observation for each step.
@@ -68,8 +67,8 @@ pub fn fly(elf: &[u8], workload: &Workload, missions: &[u64]) -> Vec<Flight> {
         let (plans, observations, estimates) = (of(0), of(1), of(2));
         check(&played, &plans, &observations, most.is_none());
         let lowest_stack = emulator.lowest_stack();
-        let (number, recording) = (*number, played.recording);
-        Flight { number, recording, plans, observations, estimates, lowest_stack }
+        let (number, results) = (*number, played.recording.results);
+        Flight { number, results, plans, observations, estimates, lowest_stack }
     };
     // An emulator's first mission is slow, as it has decoded nothing yet: few of them, used often.
     let share = missions.len().div_ceil(2 * rayon::current_num_threads());
@@ -80,7 +79,7 @@ pub fn fly(elf: &[u8], workload: &Workload, missions: &[u64]) -> Vec<Flight> {
 /// mission that may not be whole it has not told of the last observation, nor of a plan beyond.
 fn check(played: &Played, plans: &[Call], observations: &[Call], whole: bool) {
     let steps = played.took.len();
-    let stopped = matches!(played.recording.end, End::Stopped(_));
+    let stopped = played.recording.results.end.reason != Ending::Steps.name();
     assert_eq!(observations.len(), steps);
     if whole {
         assert_eq!(plans.len(), steps + usize::from(stopped));
@@ -108,20 +107,19 @@ impl Flight {
     }
 
     fn step_of_label(&self, labels: usize) -> Option<usize> {
-        let steps = self.recording.steps.iter().enumerate();
-        let mut sampled =
-            steps.filter(|(_, it)| it.step.reading.is_some()).map(|(number, _)| number);
+        let steps = self.results.steps.iter().enumerate();
+        let mut sampled = steps.filter(|(_, it)| it.label.is_some()).map(|(number, _)| number);
         sampled.nth(labels - 1)
     }
 
     /// Steps whose problem had no feasible action.
     pub fn recoveries(&self) -> usize {
-        self.recording.steps.iter().filter(|it| it.step.motion.recovery.is_some()).count()
+        self.results.steps.iter().filter(|it| it.recovery.is_some()).count()
     }
 
     /// Whether it ended as there was nothing left to hit.
     pub fn ended_by_resolution(&self) -> bool {
-        self.recording.end == End::Stopped(StopReason::Resolution)
+        self.results.end.reason == Ending::Stopped(StopReason::Resolution).name()
     }
 }
 

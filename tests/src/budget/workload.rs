@@ -9,10 +9,12 @@ use std::cmp::Reverse;
 use std::f64::consts::FRAC_PI_4;
 
 use host_sim::campaign::standard_field::{self, SIDE_M};
-use host_sim::mission::definition::{Algorithm, End, Mission};
-use host_sim::world::truth::{Extent, NoiseModel};
+use host_sim::mission::algorithm::Algorithm;
+use host_sim::mission::definition::Mission;
+use host_sim::mission::results::Ending;
+use host_sim::world::noise::{Extent, NoiseModel};
 use nalgebra::Point2;
-use planner_core::geometry::direction::Heading;
+use planner_core::geometry::heading::Heading;
 use planner_core::geometry::lattice::Site;
 use planner_core::motion::dynamics::Pose;
 use planner_core::planner::scc::Policy;
@@ -98,12 +100,12 @@ struct Rank {
 impl Rank {
     fn of(mission: &Mission) -> Self {
         let mut rank = Self::default();
-        let end = mission.run(|step, _| {
+        let flown = mission.fly(|step, _| {
             let examined = step.motion.examined;
             rank.last = if mission.is_noisy() { examined } else { rank.last.max(examined) };
             rank.recoveries += u32::from(step.motion.recovery.is_some());
         });
-        rank.stopped = u32::from(matches!(end, Ok(End::Stopped(_))));
+        rank.stopped = u32::from(flown.is_ok_and(|it| it.ending != Ending::Steps));
         rank
     }
 }

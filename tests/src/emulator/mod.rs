@@ -8,7 +8,7 @@
 //! | --- | --- |
 //! | `decoder` | joins the instructions, and keeps what was decoded |
 //! | `dsp` | extends, packing and multiplies |
-//! | `undone` | cases that the interpreter has but leaves open |
+//! | `missing_instructions` | cases that the interpreter has but leaves open |
 //! | `vfp`, `single` | the floating-point unit: its registers, its arithmetic |
 //! | `semihosting` | calls of the host |
 //! | `cycles`, `profile` | what it takes: cycles by a table; calls of functions that are watched |

@@ -3,14 +3,15 @@
 
 use host_sim::world::polygon::Polygon;
 use nalgebra::Point2;
-use planner_core::belief::candidates::Certainty;
+use planner_core::belief::consistent_lines::Certainty;
 use planner_core::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
 use planner_core::geometry::line::Line;
 use planner_core::motion::action::Action;
 use planner_core::motion::dynamics::{Dynamics, Pose, Ray, Side};
-use planner_core::planner::{Recovery, StopReason};
+use planner_core::planner::StopReason;
 use planner_core::search::direction_rule::ArcRule;
 use planner_core::search::problem::Problem;
+use planner_core::search::recovery::Recovery;
 
 /// Motions that a transit among uncertain ground looks ahead.
 const HORIZON: u32 = 16;
@@ -48,7 +49,7 @@ impl<D: Dynamics> Ladder<'_, D> {
             let t = (from - a).dot(&along) / along.norm_squared().max(1e-12);
             Some((a + along * t.clamp(0.0, 1.0) - from).norm())
         };
-        let all = self.problem.ground.bounds().filter_map(|bound| to(bound.into()));
+        let all = self.problem.lines.bounds().filter_map(|bound| to(bound.into()));
         all.min_by(f64::total_cmp)
     }
 
@@ -68,7 +69,7 @@ impl<D: Dynamics> Ladder<'_, D> {
 
     fn is_far(&self, site: Site, distance: f64) -> bool {
         let grid = self.dynamics.grid();
-        let certain = self.problem.ground.certainty(site) != Certainty::Uncertain;
+        let certain = self.problem.lines.certainty(site) != Certainty::Uncertain;
         certain && distance > 1.0001 * f64::from(grid.reach_m(grid.speeds() - 1))
     }
 
@@ -78,7 +79,7 @@ impl<D: Dynamics> Ladder<'_, D> {
 
     /// The best action beyond a turn: its objective, and the less the further it turns.
     fn beyond(&self, pose: Pose, side: Side) -> Option<(i64, i64)> {
-        let Problem { ground, area, varrho, .. } = self.problem;
+        let Problem { lines, area, varrho, .. } = self.problem;
         let grid = self.dynamics.grid();
         let turn = |ray: &Ray| {
             let left = ray.heading.0.wrapping_sub(pose.heading.0) as i32;
@@ -88,7 +89,7 @@ impl<D: Dynamics> Ladder<'_, D> {
         let actions = rays.flat_map(|ray| (1..grid.speeds()).map(move |speed| (ray, speed)));
         let feasible = actions.filter(|(ray, speed)| {
             ray.arrive(pose.site, *speed).is_ok_and(|it| {
-                area.contains(it.site) && ground.certainty(it.site) == Certainty::Uncertain
+                area.contains(it.site) && lines.certainty(it.site) == Certainty::Uncertain
             })
         });
         let values = feasible.map(|(ray, speed)| {
@@ -120,7 +121,7 @@ impl<D: Dynamics> Ladder<'_, D> {
     }
 
     fn transit(&self, pose: Pose) -> Rung {
-        let u = self.problem.ground.slope_arc().bisector();
+        let u = self.problem.lines.slope_arc().bisector();
         let half = |v: Vector, w: Vector| {
             Vector::new(v.x().midpoint(w.x()), v.z().midpoint(w.z())).expect("between the two")
         };

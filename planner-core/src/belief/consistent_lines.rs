@@ -1,8 +1,9 @@
-//! Candidate lines: the edges of a cell beside the samples they name, and what can be read off the two.
+//! The lines that agree with some samples: the edges of a cell beside the samples they name, and what can
+//! be read off the two.
 
-use crate::belief::cell::Edge;
+use crate::belief::edge::Edge;
 use crate::belief::sample::{Label, Sample};
-use crate::geometry::direction::Arc;
+use crate::geometry::arc::SlopeArc;
 use crate::geometry::lattice::Site;
 use crate::geometry::line::Bound;
 
@@ -17,14 +18,14 @@ pub enum Certainty {
 }
 
 impl Certainty {
-    /// What lines on both sides, given as signs, say together. They are smaller than 2^63 in size.
-    pub(crate) fn of_signs(signs: impl Iterator<Item = i64>) -> Self {
-        // The upper halves of them all, and of their opposites, for their sign bits.
+    /// What lines say together of a position where their values are these.
+    pub(crate) fn of_values(values: impl Iterator<Item = i64>) -> Self {
+        // Their sign bits, and those of their opposites: to compare 64-bit numbers costs more.
         let (mut below, mut above) = (0, 0);
-        for sign in signs {
-            below |= (sign >> 32) as i32;
-            above |= (sign.wrapping_neg() >> 32) as i32;
-            if below & above < 0 {
+        for value in values {
+            below |= upper_half(value);
+            above |= upper_half(value.wrapping_neg());
+            if (below & above) < 0 {
                 return Self::Uncertain;
             }
         }
@@ -32,17 +33,37 @@ impl Certainty {
     }
 }
 
+const fn upper_half(value: i64) -> i32 {
+    (value >> 32) as i32
+}
+
+/// The edges that stay when a cell keeps the lines that label a site in one way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kept {
+    /// All: all lines do already.
+    All,
+    /// Those from one edge to another in cyclic order; the site's own edge comes after the last.
+    Between {
+        /// Where they begin.
+        first: usize,
+        /// Where they end, itself included.
+        last: usize,
+    },
+    /// None: no line does.
+    None,
+}
+
 /// The lines that agree with some samples, each with the label that its edge gives it. The version
 /// space is such a set; so is each hypothesis.
 #[derive(Clone, Copy, Debug)]
-pub struct Candidates<'a> {
+pub struct ConsistentLines<'a> {
     /// The samples that matter, in cyclic order.
     pub edges: &'a [Edge],
     /// The buffer whose indices the edges are.
     pub samples: &'a [Sample],
 }
 
-impl<'a> Candidates<'a> {
+impl<'a> ConsistentLines<'a> {
     /// The vertex after the `k`-th edge.
     fn bound(self, k: usize) -> Option<Bound> {
         let i = *self.edges.get(k)?;
@@ -57,7 +78,7 @@ impl<'a> Candidates<'a> {
         (0..self.edges.len()).filter_map(move |k| self.bound(k))
     }
 
-    /// Whether all candidate lines give a position the same label, and which. One orientation an
+    /// Whether all these lines give a position the same label, and which. One orientation an
     /// edge, at most.
     pub fn certainty(self, q: Site) -> Certainty {
         certainty(self.edges, self.samples, q)
@@ -74,12 +95,41 @@ impl<'a> Candidates<'a> {
         })
     }
 
-    /// The directions of the candidate lines: the paper's `E_rho,t`.
-    pub fn slope_arc(self) -> Arc {
-        Arc::spanning(self.bounds().map(|bound| bound.along)).unwrap_or_default()
+    /// Which edges stay when those lines are kept that give a site this label. The vertices that agree
+    /// are consecutive, and an edge stays if the vertex at one of its ends does.
+    pub(crate) fn kept(self, site: Site, label: Label) -> Kept {
+        let mut one_disagrees = false;
+        let mut agreements = self.turns(site).map(|turn| {
+            let turn = if label == Label::Positive { turn } else { -turn };
+            one_disagrees |= turn < 0;
+            turn > 0
+        });
+        let Some(start) = agreements.next() else { return Kept::None };
+        let (mut first, mut last) = (None, None);
+        let mut before = start;
+        for k in 0..self.edges.len() {
+            let after = agreements.next().unwrap_or(start);
+            if !before && after {
+                first = Some(k);
+            }
+            if before && !after {
+                last = Some(k);
+            }
+            before = after;
+        }
+        match (first, last) {
+            _ if !one_disagrees => Kept::All,
+            (Some(first), Some(last)) => Kept::Between { first, last },
+            _ => Kept::None,
+        }
     }
 
-    /// The range of the candidate lines' intercepts in metres, the paper's `I_c,t`; `None` when it
+    /// The directions of the lines left: the paper's `E_rho,t`.
+    pub fn slope_arc(self) -> SlopeArc {
+        SlopeArc::spanning(self.bounds().map(|bound| bound.along)).unwrap_or_default()
+    }
+
+    /// The range of the lines left' intercepts in metres, the paper's `I_c,t`; `None` when it
     /// is unbounded, as a vertical line is among them.
     pub fn intercepts(self) -> Option<[f64; 2]> {
         intercepts(self.bounds())
@@ -95,22 +145,28 @@ impl<'a> Candidates<'a> {
     }
 }
 
+/// The line through two samples that are neighbours round a cell.
+pub fn bound(p: Sample, q: Sample) -> Bound {
+    let along = if p.label == q.label { q.site - p.site } else { p.site - q.site };
+    Bound { through: p.site, along }
+}
+
 /// The vertices of a set of lines whose samples that matter, in cyclic order, are these: what
-/// [`Candidates::bounds`] are for a cell, for a list of any length.
+/// [`ConsistentLines::bounds`] are for a cell, for a list of any length.
 pub fn bounds(
     support: impl Iterator<Item = Sample> + Clone,
 ) -> impl Iterator<Item = Bound> + Clone {
     let next = support.clone().cycle().skip(1);
-    support.zip(next).map(|(p, q)| Bound::between(p, q))
+    support.zip(next).map(|(p, q)| bound(p, q))
 }
 
-/// [`Candidates::certainty`], in one place and with its arguments in registers.
+/// [`ConsistentLines::certainty`], in one place and with its arguments in registers.
 #[inline(never)]
 fn certainty(edges: &[Edge], samples: &[Sample], q: Site) -> Certainty {
-    Certainty::of_signs(Candidates { edges, samples }.turns(q))
+    Certainty::of_values(ConsistentLines { edges, samples }.turns(q))
 }
 
-/// The range of intercepts between vertices of candidates, metres; `None` when a vertical line lies
+/// The range of intercepts between the vertices of a set of lines, metres; `None` when a vertical line lies
 /// among them, or there are none.
 pub fn intercepts(bounds: impl IntoIterator<Item = Bound>) -> Option<[f64; 2]> {
     let mut bounds = bounds.into_iter().peekable();

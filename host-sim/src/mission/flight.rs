@@ -1,0 +1,42 @@
+//! A mission as it is flown in the simulated world.
+
+use planner_core::belief::Refused;
+use planner_core::planner::Planner as _;
+use planner_core::robot::agent::{Agent, AgentError, Event, Step};
+
+use crate::mission::definition::Mission;
+use crate::mission::read_out::ReadOut;
+use crate::mission::results::Ending;
+
+/// A mission that was flown.
+pub struct Flown {
+    /// Why it ended.
+    pub ending: Ending,
+    /// What is known in the end.
+    pub belief: Box<dyn ReadOut>,
+}
+
+impl Mission {
+    /// Flies it; `watch` sees every step and what is known after it.
+    ///
+    /// # Errors
+    /// [`Refused`] when a sample contradicts what is known.
+    pub fn fly(&self, mut watch: impl FnMut(&Step, &dyn ReadOut)) -> Result<Flown, Refused> {
+        let mut planner = self.planner();
+        let mut robot = self.robot();
+        let mut agent = Agent::new(&mut *planner, &mut *robot, self.start);
+        let mut ending = Ending::Steps;
+        for _ in 0..self.steps {
+            match agent.step() {
+                Ok(Event::Step(step)) => watch(&step, agent.planner.belief()),
+                Ok(Event::Stopped(reason)) => {
+                    ending = Ending::Stopped(reason);
+                    break;
+                }
+                Err(AgentError::Refused(refused)) => return Err(refused),
+                Err(AgentError::Body(never)) => match never {},
+            }
+        }
+        Ok(Flown { ending, belief: agent.planner.belief().boxed() })
+    }
+}

@@ -1,0 +1,60 @@
+//! The planner of a mission, whatever it knows the line by.
+
+use planner_core::belief::Refused;
+use planner_core::belief::sample::Reading;
+use planner_core::motion::dynamics::Pose;
+use planner_core::motion::unicycle::Unicycle;
+use planner_core::planner::cfc::Cfc;
+use planner_core::planner::scc::Scc;
+use planner_core::planner::{Plan, Planner};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+use crate::mission::algorithm::Algorithm;
+use crate::mission::definition::Mission;
+use crate::mission::random_walk::RandomWalk;
+use crate::mission::read_out::ReadOut;
+
+/// A planner whose belief can be read out.
+pub type AnyPlanner = Box<dyn Planner<Belief = dyn ReadOut>>;
+
+/// A planner, with the type of its belief forgotten.
+struct Erased<P>(P);
+
+impl<P: Planner<Belief: ReadOut + Sized + 'static>> Planner for Erased<P> {
+    type Belief = dyn ReadOut;
+
+    fn plan(&mut self, pose: Pose) -> Plan {
+        self.0.plan(pose)
+    }
+
+    fn observe(&mut self, pose: Pose, reading: Option<Reading>) -> Result<(), Refused> {
+        self.0.observe(pose, reading)
+    }
+
+    fn belief(&self) -> &(dyn ReadOut + 'static) {
+        self.0.belief()
+    }
+}
+
+fn erased(planner: impl Planner<Belief: ReadOut + Sized + 'static> + 'static) -> AnyPlanner {
+    Box::new(Erased(planner))
+}
+
+impl Mission {
+    /// The planner, with the paper's unicycle, as yet without a label.
+    pub fn planner(&self) -> AnyPlanner {
+        let (dynamics, config) = (Unicycle::paper(), self.config);
+        let (area, rng) = (config.area, ChaCha8Rng::seed_from_u64(self.seed));
+        match self.algorithm {
+            Algorithm::Cfc => erased(Cfc::new(config, dynamics, self.given.clone())),
+            Algorithm::Scc => erased(Scc::new(config, self.policy, dynamics, self.table())),
+            Algorithm::Random if self.is_noisy() => {
+                erased(RandomWalk { dynamics, area, belief: self.table(), rng })
+            }
+            Algorithm::Random => {
+                erased(RandomWalk { dynamics, area, belief: self.given.clone(), rng })
+            }
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! What reports and campaigns read of a belief, beside what every planner asks of it.
+
+use std::fmt::Debug;
+
+use planner_core::belief::Belief;
+use planner_core::belief::posterior::Posterior;
+use planner_core::belief::sample::Sample;
+
+use crate::mission::definition::{Lines, Table};
+
+/// The level of the credible sets that are told.
+pub const LEVEL: f64 = 0.9;
+
+/// What is known at some stage, in figures.
+#[derive(Clone, Debug)]
+pub struct Knowledge {
+    /// The slopes left, as intervals of degrees: of all lines that agree with the labels, or of the
+    /// credible set.
+    pub slope_arcs: Vec<[f64; 2]>,
+    /// The intercepts left, metres; `None` when unbounded.
+    pub intercept: Option<[f64; 2]>,
+    /// Bits learnt since the start.
+    pub bits: f64,
+    /// The distribution over hypotheses, where labels may err.
+    pub doubt: Option<Doubt>,
+}
+
+/// A distribution over hypotheses, in figures.
+#[derive(Clone, Copy, Debug)]
+pub struct Doubt {
+    /// Number of hypotheses.
+    pub hypotheses: usize,
+    /// The probability given up as the table was full, at most.
+    pub pruned_mass: f64,
+    /// Entropy over the hypotheses, bits.
+    pub entropy: f64,
+}
+
+/// A belief that can be read out.
+pub trait ReadOut: Belief + Debug + Send {
+    /// What is known, in figures.
+    fn knowledge(&self) -> Knowledge;
+
+    /// All samples with the labels that were taken in, the given ones first.
+    fn samples(&self) -> &[Sample];
+
+    /// The lines that agree with every label, where these are true.
+    fn version_space(&self) -> Option<&Lines>;
+
+    /// The hypotheses, where labels may err.
+    fn hypotheses(&self) -> Option<&Table>;
+
+    /// A copy.
+    fn boxed(&self) -> Box<dyn ReadOut>;
+}
+
+impl ReadOut for Lines {
+    fn knowledge(&self) -> Knowledge {
+        Knowledge {
+            slope_arcs: self.slope_arc().intervals_deg().to_vec(),
+            intercept: self.intercepts(),
+            bits: self.information(),
+            doubt: None,
+        }
+    }
+
+    fn samples(&self) -> &[Sample] {
+        self.samples()
+    }
+
+    fn version_space(&self) -> Option<&Lines> {
+        Some(self)
+    }
+
+    fn hypotheses(&self) -> Option<&Table> {
+        None
+    }
+
+    fn boxed(&self) -> Box<dyn ReadOut> {
+        Box::new(self.clone())
+    }
+}
+
+impl ReadOut for Table {
+    fn knowledge(&self) -> Knowledge {
+        let posterior = Posterior::new(self);
+        let credible = posterior.credible(LEVEL);
+        Knowledge {
+            slope_arcs: credible.slope_arc.intervals_deg().to_vec(),
+            intercept: credible.intercept,
+            bits: posterior.information(),
+            doubt: Some(Doubt {
+                hypotheses: self.iter().len(),
+                pruned_mass: posterior.pruned_mass(),
+                entropy: posterior.entropy(),
+            }),
+        }
+    }
+
+    fn samples(&self) -> &[Sample] {
+        self.samples()
+    }
+
+    fn version_space(&self) -> Option<&Lines> {
+        None
+    }
+
+    fn hypotheses(&self) -> Option<&Table> {
+        Some(self)
+    }
+
+    fn boxed(&self) -> Box<dyn ReadOut> {
+        Box::new(self.clone())
+    }
+}

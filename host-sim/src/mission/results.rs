@@ -1,0 +1,363 @@
+//! A mission's results: plain data, computed once. Serialised they are the records of the trace, whose
+//! contract is in ARCHITECTURE.md; what reports tell beyond that is skipped there.
+
+use nalgebra::Point2;
+use planner_core::belief::estimate::Estimates;
+use planner_core::belief::sample::Sample;
+use planner_core::geometry::area::Area;
+use planner_core::geometry::line::Line;
+use planner_core::motion::action::Control;
+use planner_core::motion::dynamics::Pose;
+use planner_core::planner::{Motion, Stage, StopReason};
+use planner_core::search::recovery::Recovery;
+use serde::Serialize;
+
+use crate::mission::algorithm::Algorithm;
+
+/// A mission, from what it began with to what it came to.
+#[derive(Clone, Debug)]
+pub struct Results {
+    /// What it began with.
+    pub start: Start,
+    /// What happened.
+    pub steps: Vec<StepResult>,
+    /// What it came to.
+    pub end: End,
+}
+
+/// What a mission began with.
+#[derive(Clone, Debug, Serialize)]
+pub struct Start {
+    /// Who planned.
+    pub algorithm: Algorithm,
+    /// Seed of whatever was random.
+    pub seed: u64,
+    /// The weight of the control.
+    pub varrho: f64,
+    /// Where positions stayed.
+    pub area: AreaRecord,
+    /// The oracle's samples.
+    pub oracle: Vec<SampleRecord>,
+    /// Where the agent began.
+    pub pose: PoseRecord,
+    /// The true line, if there is one.
+    pub truth: Option<LineRecord>,
+    /// Labels are true with this probability.
+    pub p: f64,
+    /// Whether they may err.
+    #[serde(skip)]
+    pub labels_err: bool,
+    /// Steps at most.
+    #[serde(skip)]
+    pub steps: u32,
+    /// The slopes that the oracle's samples leave, as intervals of degrees.
+    #[serde(skip)]
+    pub slope_arcs: Vec<[f64; 2]>,
+}
+
+/// A step, and what was known after it.
+#[derive(Clone, Debug, Serialize)]
+pub struct StepResult {
+    /// Its number, from 1.
+    pub step: usize,
+    /// The one-step problem that was solved, for planners that pose one.
+    pub problem: Option<&'static str>,
+    /// The rung of the recovery ladder, if it was climbed.
+    pub recovery: Option<&'static str>,
+    /// What was done.
+    pub action: ActionRecord,
+    /// Where it ended.
+    pub pose: PoseRecord,
+    /// What was sensed there: -1, 0 on the boundary, 1; `None` if nothing was.
+    pub label: Option<i8>,
+    /// The slopes left, as intervals of degrees.
+    pub slope_arcs: Vec<[f64; 2]>,
+    /// The intercepts left, metres; `None` when unbounded.
+    pub intercept: Option<[f64; 2]>,
+    /// Bits learnt since the start.
+    pub bits: f64,
+    /// Actions whose position was looked at to find this one.
+    pub examined: u32,
+    /// `Some(false)` if it is not known to be the best.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub proven: Option<bool>,
+    /// What noisy labels add.
+    #[serde(flatten)]
+    pub noisy: Option<NoisyStep>,
+    /// What a perfect sensor reads there.
+    #[serde(skip)]
+    pub fact: i8,
+}
+
+/// The distribution over hypotheses after a step.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct NoisyStep {
+    /// The sample lies in a trusted ball.
+    pub trusted: bool,
+    /// Number of hypotheses.
+    pub hypotheses: usize,
+    /// The probability given up as the table was full, at most.
+    pub pruned_mass: f64,
+    /// Entropy over the hypotheses, bits.
+    pub entropy: f64,
+}
+
+/// What a mission came to.
+#[derive(Clone, Debug, Serialize)]
+pub struct End {
+    /// Why it ended.
+    pub reason: &'static str,
+    /// The estimates of the line.
+    pub estimates: EstimateRecords,
+    /// What noisy labels come to.
+    #[serde(flatten)]
+    pub noisy: Option<NoisyEnd>,
+}
+
+/// What noisy labels come to: the paper's outcome by the paper's prior, and the credible set by the
+/// chosen one.
+#[derive(Clone, Debug, Serialize)]
+pub struct NoisyEnd {
+    /// The paper's outcome.
+    pub best: BestRecord,
+    /// The credible set.
+    pub credible: CredibleRecord,
+}
+
+/// The most likely hypothesis.
+#[derive(Clone, Debug, Serialize)]
+pub struct BestRecord {
+    /// The slopes of its lines, as intervals of degrees.
+    pub slope_arcs: Vec<[f64; 2]>,
+    /// The intercepts of its lines, metres; `None` when unbounded.
+    pub intercept: Option<[f64; 2]>,
+    /// Its probability.
+    pub probability: f64,
+    /// Whether the true line is among its lines, if there is one.
+    #[serde(skip)]
+    pub holds: Option<bool>,
+}
+
+/// A credible set.
+#[derive(Clone, Debug, Serialize)]
+pub struct CredibleRecord {
+    /// What was asked.
+    pub level: f64,
+    /// The slopes of its lines, as intervals of degrees.
+    pub slope_arcs: Vec<[f64; 2]>,
+    /// The intercepts of its lines, metres; `None` when unbounded.
+    pub intercept: Option<[f64; 2]>,
+    /// What it holds.
+    pub probability: f64,
+    /// Number of its hypotheses.
+    pub cells: usize,
+    /// Of so many.
+    #[serde(skip)]
+    pub hypotheses: usize,
+    /// Whether the true line is among its lines, if there is one.
+    #[serde(skip)]
+    pub holds: Option<bool>,
+}
+
+/// An area, metres.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct AreaRecord {
+    /// From and to.
+    pub x: [f64; 2],
+    /// From and to.
+    pub z: [f64; 2],
+}
+
+/// A sample.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct SampleRecord {
+    /// Metres.
+    pub x: f64,
+    /// Metres.
+    pub z: f64,
+    /// -1 or 1.
+    pub label: i8,
+}
+
+/// A pose.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct PoseRecord {
+    /// Metres.
+    pub x: f64,
+    /// Metres.
+    pub z: f64,
+    /// Radians.
+    pub heading: f64,
+}
+
+/// An action.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct ActionRecord {
+    /// Its name in the grid.
+    pub index: u16,
+    /// Speed, metres per unit time.
+    pub v: f32,
+    /// Turn, radians.
+    pub w: f32,
+}
+
+/// A line; slope and intercept are `None` for a vertical one.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct LineRecord {
+    /// The paper's `rho`.
+    pub slope: Option<f64>,
+    /// The paper's `c`, metres.
+    pub intercept: Option<f64>,
+    /// Degrees.
+    pub angle: f64,
+    /// `a x + b z + c = 0` with `a^2 + b^2 = 1`.
+    #[serde(skip)]
+    pub coefficients: [f64; 3],
+    /// Beside the truth, if there is one.
+    #[serde(skip)]
+    pub error: Option<LineError>,
+}
+
+/// How far an estimate is from the true line.
+#[derive(Clone, Copy, Debug)]
+pub struct LineError {
+    /// Between the two, degrees.
+    pub degrees: f64,
+    /// The share of the area that gets the wrong label.
+    pub misclassified: f64,
+}
+
+/// The three estimates, `None` where there is none.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct EstimateRecords {
+    /// The paper's.
+    pub bisector: Option<LineRecord>,
+    /// The centre of the version space, or the posterior mean.
+    pub centre: Option<LineRecord>,
+    /// The hard-margin separator.
+    pub maximum_margin: Option<LineRecord>,
+}
+
+impl StepResult {
+    /// Its control cost.
+    pub fn cost(&self) -> f64 {
+        cost(Control { v: self.action.v, w: self.action.w })
+    }
+}
+
+/// The control cost of a motion, the paper's `|u|^2 = v^2 + w^2`.
+pub fn cost(control: Control) -> f64 {
+    let (v, w) = (f64::from(control.v), f64::from(control.w));
+    v * v + w * w
+}
+
+impl Results {
+    /// Samples taken on the way.
+    pub fn samples(&self) -> usize {
+        self.steps.iter().filter(|step| step.label.is_some()).count()
+    }
+
+    /// Metres travelled.
+    pub fn travelled(&self) -> f64 {
+        self.steps.iter().map(|step| f64::from(step.action.v)).sum()
+    }
+
+    /// The control cost.
+    pub fn cost(&self) -> f64 {
+        self.steps.iter().map(StepResult::cost).sum()
+    }
+}
+
+impl From<Area> for AreaRecord {
+    fn from(area: Area) -> Self {
+        let (min, max) = (Point2::<f64>::from(area.min()), Point2::<f64>::from(area.max()));
+        Self { x: [min.x, max.x], z: [min.y, max.y] }
+    }
+}
+
+impl From<&Sample> for SampleRecord {
+    fn from(sample: &Sample) -> Self {
+        let at = Point2::<f64>::from(sample.site);
+        Self { x: at.x, z: at.y, label: sample.label.sign() }
+    }
+}
+
+impl From<Pose> for PoseRecord {
+    fn from(pose: Pose) -> Self {
+        let at = Point2::<f64>::from(pose.site);
+        Self { x: at.x, z: at.y, heading: pose.heading.radians() }
+    }
+}
+
+impl From<&Motion> for ActionRecord {
+    fn from(motion: &Motion) -> Self {
+        Self { index: motion.action.0, v: motion.control.v, w: motion.control.w }
+    }
+}
+
+impl From<Line> for LineRecord {
+    fn from(line: Line) -> Self {
+        Self {
+            slope: line.slope(),
+            intercept: line.intercept(),
+            angle: line.angle_deg(),
+            coefficients: line.coefficients(),
+            error: None,
+        }
+    }
+}
+
+impl EstimateRecords {
+    /// The estimates, each beside the truth.
+    pub fn beside(estimates: Estimates, error: impl Fn(&Line) -> Option<LineError>) -> Self {
+        let record = |line: Line| LineRecord { error: error(&line), ..line.into() };
+        Self {
+            bisector: estimates.bisector.map(record),
+            centre: estimates.centre.map(record),
+            maximum_margin: estimates.maximum_margin.map(record),
+        }
+    }
+}
+
+/// The name of a one-step problem.
+pub fn stage_name(stage: Stage) -> &'static str {
+    match stage {
+        Stage::P1 => "P1",
+        Stage::P2 => "P2",
+        Stage::P3 => "P3",
+        Stage::P4 => "P4",
+    }
+}
+
+/// The name of a rung of the recovery ladder.
+pub fn recovery_name(recovery: Recovery) -> &'static str {
+    match recovery {
+        Recovery::Undirected => "undirected",
+        Recovery::Reorient => "reorient",
+        Recovery::Transit => "transit",
+    }
+}
+
+/// Why a mission ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    /// All steps were taken.
+    Steps,
+    /// The planner had no further motion.
+    Stopped(StopReason),
+}
+
+impl Ending {
+    /// The reason as the trace names it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Steps => "steps",
+            Self::Stopped(StopReason::Resolution) => "resolution",
+            Self::Stopped(StopReason::SamplesFull) => "samples full",
+            Self::Stopped(StopReason::OutsideArea) => "outside area",
+            Self::Stopped(StopReason::Cornered) => "cornered",
+            Self::Stopped(StopReason::Undecided) => "undecided",
+            Self::Stopped(_) => "stopped",
+        }
+    }
+}

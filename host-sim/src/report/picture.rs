@@ -1,0 +1,270 @@
+//! What a figure shows: plain data, made of a mission's results and of what is known in the end.
+
+use nalgebra::{Point2, Vector2};
+use planner_core::belief::consistent_lines::Certainty;
+use planner_core::belief::estimate;
+use planner_core::belief::posterior::Posterior;
+use planner_core::belief::sample::{Label, Reading, Sample};
+use planner_core::geometry::area::Area;
+use planner_core::geometry::lattice::{LIMIT, Site, UNITS_PER_METRE, Vector};
+use planner_core::geometry::line::Line;
+
+use crate::mission::definition::Table;
+use crate::mission::read_out::LEVEL;
+use crate::mission::recording::Recording;
+use crate::world::polygon::Polygon;
+use crate::world::reading;
+
+/// What to draw.
+#[derive(Clone, Debug)]
+pub struct Picture {
+    /// The title.
+    pub title: String,
+    /// What the legend says of the samples, if anything.
+    pub note: Option<String>,
+    /// The ground to show.
+    pub area: Area,
+    /// What is known of it.
+    pub ground: Ground,
+    /// The samples, with the labels that were seen.
+    pub samples: Vec<Dot>,
+    /// How many of them were given, not taken on the way.
+    pub given: usize,
+    /// Where a mission began, and the ends of its steps.
+    pub path: Option<(Point2<f64>, Vec<Stop>)>,
+    /// The true line, where known.
+    pub truth: Option<Line>,
+    /// Other lines, with their names.
+    pub lines: Vec<Named>,
+}
+
+/// What is known of the ground.
+#[derive(Clone, Debug)]
+pub enum Ground {
+    /// The regions of certainty, of +1 and of -1.
+    Certain([Polygon; 2]),
+    /// Patches that lines of the credible set pass through, each with the probability of these.
+    Credible(Vec<([Point2<f64>; 2], f64)>),
+    /// Nothing to show.
+    Plain,
+}
+
+/// A sample.
+#[derive(Clone, Copy, Debug)]
+pub struct Dot {
+    /// Where.
+    pub at: Point2<f64>,
+    /// The label that was seen.
+    pub label: Label,
+    /// It is known to be false.
+    pub wrong: bool,
+}
+
+/// The end of a step.
+#[derive(Clone, Copy, Debug)]
+pub struct Stop {
+    /// Where.
+    pub at: Point2<f64>,
+    /// Radians.
+    pub heading: f64,
+    /// Whether a side of the boundary was sensed there.
+    pub sensed: bool,
+}
+
+/// A line with a name for the legend.
+#[derive(Clone, Debug)]
+pub struct Named {
+    /// The name.
+    pub name: String,
+    /// The line.
+    pub line: Line,
+    /// What it is.
+    pub kind: Kind,
+    /// A short word beside it, if any.
+    pub beside: Option<String>,
+}
+
+/// What a line is, for its colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// The estimate that is recommended.
+    Estimate,
+    /// An end of the credible slopes.
+    Bound,
+    /// The plain maximum margin.
+    MaximumMargin,
+    /// What would come next.
+    SecondBest,
+    /// And then.
+    ThirdBest,
+}
+
+impl Named {
+    /// The estimate that is recommended.
+    pub fn estimate(name: &str, line: Option<Line>) -> Option<Self> {
+        let (name, kind) = (format!("estimate: {name}"), Kind::Estimate);
+        Some(Self { name, line: line?, kind, beside: None })
+    }
+}
+
+impl Ground {
+    /// The ground that samples leave certain, which bound the lines in cyclic order.
+    pub fn certain(area: Area, support: &[Sample]) -> Self {
+        let certain = |label| Polygon::certain(area, support, label);
+        Self::Certain([Label::Positive, Label::Negative].map(certain))
+    }
+
+    /// The credible set: each patch of ground with the probability of the hypotheses of the set whose
+    /// lines pass through it.
+    fn credible(area: Area, table: &Table) -> Self {
+        const PATCHES: i32 = 72;
+        let posterior = Posterior::new(table);
+        let set = posterior.credible(LEVEL);
+        let (min, max) = (Point2::<f64>::from(area.min()), Point2::<f64>::from(area.max()));
+        let size = (max - min) / f64::from(PATCHES);
+        let all = (0..PATCHES).flat_map(|i| (0..PATCHES).map(move |j| (i, j)));
+        let patch = |(i, j)| {
+            let corner = min + size.component_mul(&Vector2::new(f64::from(i), f64::from(j)));
+            let middle = Site::try_from(corner + size / 2.0).ok()?;
+            let passing = posterior
+                .members(&set)
+                .filter(|h| table.lines(h).certainty(middle) == Certainty::Uncertain);
+            let mass: f64 = passing.map(|h| posterior.probability(h)).sum();
+            (mass > 0.01).then_some(([corner, corner + size], mass))
+        };
+        Self::Credible(all.filter_map(patch).collect())
+    }
+}
+
+impl Picture {
+    /// A mission: what is certain, the path, the labels, the lines.
+    pub fn of(title: &str, recording: &Recording) -> Self {
+        let Recording { mission, results, belief, .. } = recording;
+        let area = mission.config.area;
+        let centre = belief.estimates().centre;
+        let (mut lines, mut ground) = (Vec::new(), Ground::Plain);
+        if let Some(space) = belief.version_space() {
+            lines.extend(Named::estimate("centre of the version space", centre));
+            ground = Ground::certain(area, &space.support().collect::<Vec<_>>());
+        }
+        if let Some(table) = belief.hypotheses() {
+            lines.extend(Named::estimate("posterior mean", centre));
+            lines.extend(bounding(table));
+            ground = Ground::credible(area, table);
+        }
+        let dot = |s: &Sample| Dot {
+            at: s.site.into(),
+            label: s.label,
+            wrong: !mission.world.agrees(s.site, s.label),
+        };
+        let stops = results.steps.iter().map(|step| Stop {
+            at: Point2::new(step.pose.x, step.pose.z),
+            heading: step.pose.heading,
+            sensed: step.label.is_some_and(|label| label != 0),
+        });
+        Self {
+            title: title.to_owned(),
+            note: None,
+            area,
+            ground,
+            samples: belief.samples().iter().map(dot).collect(),
+            given: mission.given.samples().len(),
+            path: Some((Point2::from(mission.start.site), stops.collect())),
+            truth: mission.world.line().copied(),
+            lines,
+        }
+    }
+
+    /// The lines that violate the fewest labels of a noisy mission, with their counts of violations,
+    /// and of the one among them that a plain maximum margin would choose.
+    pub fn of_candidates(title: &str, recording: &Recording) -> Option<Self> {
+        const KINDS: [Kind; 3] = [Kind::MaximumMargin, Kind::SecondBest, Kind::ThirdBest];
+        let table = recording.belief.hypotheses()?;
+        let taken = &table.samples()[table.given().len()..];
+        let violations = |line: &Line| {
+            taken.iter().filter(|s| reading(line, s.site) != Reading::Side(s.label)).count()
+        };
+        let mut candidates: Vec<_> = table
+            .iter()
+            .filter_map(|h| {
+                let widest = estimate::maximum_margin(table.lines(h))?;
+                let margin =
+                    table.samples().iter().map(|s| widest.distance(Point2::from(s.site)).abs());
+                Some((violations(&widest), widest, margin.fold(f64::INFINITY, f64::min)))
+            })
+            .collect();
+        candidates.sort_by(|a, b| a.0.cmp(&b.0).then(b.2.total_cmp(&a.2)));
+        let lines = candidates.into_iter().zip(KINDS).map(|((n, line, _), kind)| Named {
+            name: match kind {
+                Kind::MaximumMargin => format!("plain maximum margin; violations: {n}"),
+                _ => format!("another candidate; violations: {n}"),
+            },
+            line,
+            kind,
+            beside: Some(format!("{n}")),
+        });
+        let lines = lines.collect();
+        Some(Self { ground: Ground::Plain, path: None, lines, ..Self::of(title, recording) })
+    }
+}
+
+/// The lines at the two ends of a credible set's slopes: the paper's `l1` and `l2`.
+fn bounding(table: &Table) -> Vec<Named> {
+    let posterior = Posterior::new(table);
+    let set = posterior.credible(LEVEL);
+    let bounds = || posterior.members(&set).flat_map(|h| table.lines(h).bounds());
+    let ends = [("l1", set.slope_arc.from()), ("l2", set.slope_arc.to())];
+    let named = |(name, end): (&str, Vector)| {
+        let bound = bounds().find(|bound| bound.along.cross(end) == 0)?;
+        Some(Named {
+            name: format!("{name}, which bounds the credible slopes"),
+            line: bound.into(),
+            kind: Kind::Bound,
+            beside: Some(name.to_owned()),
+        })
+    };
+    ends.into_iter().filter_map(named).collect()
+}
+
+/// The smallest area that shows all samples with a margin, for samples without a mission. Where the lattice
+/// ends there is no margin.
+pub fn area_around(samples: &[Sample]) -> Option<Area> {
+    const END: f64 = (LIMIT - 1) as f64 / UNITS_PER_METRE as f64;
+    let places = || samples.iter().map(|s| Point2::<f64>::from(s.site));
+    let (min, max) = (places().reduce(|a, b| a.inf(&b))?, places().reduce(|a, b| a.sup(&b))?);
+    let margin = Vector2::repeat(0.1 * (max - min).amax());
+    let corner = |at: Point2<f64>| Site::try_from(at.map(|m| m.clamp(-END, END))).ok();
+    Area::new(corner(min - margin)?, corner(max + margin)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::standard_field;
+    use crate::mission::algorithm::Algorithm;
+
+    #[test]
+    fn certain_ground_is_on_one_side_of_every_bound() {
+        for number in 0..300 {
+            let mission = standard_field::standard(9, number, Algorithm::Cfc, 12);
+            let recording = Recording::of(&mission).unwrap();
+            let Some(space) = recording.belief.version_space() else { continue };
+            let support: Vec<_> = space.support().collect();
+            let area = mission.config.area;
+            for label in [Label::Positive, Label::Negative] {
+                let side = f64::from(label.sign());
+                let clipped = space.bounds().fold(Polygon::from(area), |ground, bound| {
+                    ground.clip(&Line::from(bound), side)
+                });
+                let certain = Polygon::certain(area, &support, label);
+                // Either may begin at another corner, and have one twice by rounding.
+                for (one, other) in [(&certain, &clipped), (&clipped, &certain)] {
+                    let near = |p: &Point2<f64>| other.0.iter().any(|q| (p - q).norm() < 1e-6);
+                    assert!(one.0.iter().all(near), "field {number}: {certain:?} for {clipped:?}");
+                }
+                let share = certain.area() / clipped.area();
+                assert!((share - 1.0).abs() < 1e-9, "field {number}: {share}");
+            }
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! How labels are flipped in the simulated world.
+
+use planner_core::belief::noise::{Noise, Reliability, trusted_radius};
+use planner_core::belief::sample::{Reading, Sample};
+use planner_core::motion::dynamics::Pose;
+use planner_core::planner::Motion;
+use planner_core::robot::body::Body;
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+
+use crate::world::World;
+
+/// How labels are flipped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NoiseModel {
+    /// Where labels can be wrong, they are true with this probability.
+    pub p: f64,
+    /// Where that is.
+    pub extent: Extent,
+}
+
+/// Where labels can be wrong.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Extent {
+    /// Outside balls of this radius around the oracle's points, metres.
+    OutsideBalls(f64),
+    /// Within this distance of the boundary, metres (Section II-B's `c_bar`): what a planner cannot
+    /// know.
+    Band(f64),
+}
+
+impl NoiseModel {
+    /// What a planner is told of it: of a band it can know `p` alone.
+    ///
+    /// # Panics
+    /// Never: a model holds a probability and a radius within the lattice.
+    pub fn told(&self) -> Noise {
+        let radius = match self.extent {
+            Extent::OutsideBalls(radius) => radius,
+            Extent::Band(_) => 0.0,
+        };
+        Noise {
+            reliability: Reliability::new(self.p).expect("a probability"),
+            trusted_radius: trusted_radius(radius).expect("a radius"),
+        }
+    }
+}
+
+/// A robot whose labels are sometimes flipped: a wrapper around any other.
+pub struct Flipped<B> {
+    /// The robot.
+    pub body: B,
+    /// How labels are flipped.
+    pub model: NoiseModel,
+    /// What it moves in.
+    pub world: World,
+    /// The oracle's samples.
+    pub given: Vec<Sample>,
+    /// The source of chance.
+    pub rng: ChaCha8Rng,
+}
+
+impl<B: Body> Body for Flipped<B> {
+    type Error = B::Error;
+
+    fn perform(
+        &mut self,
+        motion: &Motion,
+        pose: &mut Pose,
+    ) -> Result<Option<Reading>, Self::Error> {
+        let Some(reading) = self.body.perform(motion, pose)? else { return Ok(None) };
+        let exposed = match self.model.extent {
+            Extent::OutsideBalls(_) => {
+                self.model.told().at(pose.site, &self.given) != Reliability::CERTAIN
+            }
+            Extent::Band(half) => self.world.distance(pose.site).abs() <= half,
+        };
+        // Drawn whether it is used or not, so that a path's noise does not depend on its places.
+        let flips = self.rng.random_range(0.0..1.0) >= self.model.p;
+        Ok(Some(match reading {
+            Reading::Side(label) if exposed && flips => Reading::Side(-label),
+            reading => reading,
+        }))
+    }
+}
+
+/// Bits that a label which is true with probability `p` can tell at most: `1 - H(p)`.
+pub fn limit(p: f64) -> f64 {
+    let term = |p: f64| if p > 0.0 { p * libm::log2(p) } else { 0.0 };
+    1.0 + term(p) + term(1.0 - p)
+}

@@ -1,0 +1,28 @@
+//! A simulated robot.
+
+use std::convert::Infallible;
+
+use planner_core::belief::sample::Reading;
+use planner_core::motion::dynamics::Pose;
+use planner_core::planner::Motion;
+use planner_core::robot::body::Body;
+
+use crate::world::World;
+
+/// A robot that cannot fail.
+pub type Robot = Box<dyn Body<Error = Infallible>>;
+
+/// A robot that reaches the target of every motion and reads the true label there.
+pub struct Ideal {
+    /// What it moves in.
+    pub world: World,
+}
+
+impl Body for Ideal {
+    type Error = Infallible;
+
+    fn perform(&mut self, motion: &Motion, pose: &mut Pose) -> Result<Option<Reading>, Infallible> {
+        *pose = motion.target;
+        Ok(motion.wants_label.then(|| self.world.reading(pose.site)))
+    }
+}

@@ -1,0 +1,46 @@
+//! A sample's part in a cell, in one byte.
+
+use crate::belief::sample::{Label, Sample};
+use crate::geometry::lattice::{Site, Vector};
+
+/// A sample's part in a cell: its index in the buffer and the label the cell gives it.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub struct Edge(u8);
+
+impl Edge {
+    const NEGATIVE: u8 = 0x80;
+
+    /// The edge of the sample at `index` (below 128) when its label is `label`.
+    pub const fn new(index: u8, label: Label) -> Self {
+        match label {
+            Label::Positive => Self(index & !Self::NEGATIVE),
+            Label::Negative => Self(index | Self::NEGATIVE),
+        }
+    }
+
+    /// The sample's place in the buffer.
+    pub const fn index(self) -> usize {
+        (self.0 & !Self::NEGATIVE) as usize
+    }
+
+    /// The sample's label in this cell.
+    pub const fn label(self) -> Label {
+        if self.0 & Self::NEGATIVE == 0 { Label::Positive } else { Label::Negative }
+    }
+
+    /// What memory is filled with where there is no edge: all zeros.
+    pub(crate) const NONE: Self = Self(0);
+
+    /// The sample as seen from `q`, on the other side of it if its label is negative.
+    pub(crate) fn seen(self, samples: &[Sample], q: Site) -> Vector {
+        let seen = samples.get(self.index()).map(|s| s.site - q).unwrap_or_default();
+        if self.label() == Label::Positive { seen } else { seen.reversed() }
+    }
+}
+
+impl core::fmt::Debug for Edge {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let sign = if self.label() == Label::Positive { '+' } else { '-' };
+        write!(f, "{sign}{}", self.index())
+    }
+}

@@ -1,0 +1,132 @@
+//! How far labels can be believed, and where.
+
+use crate::belief::sample::Sample;
+use crate::belief::weight::LogWeight;
+use crate::geometry::lattice::Site;
+
+/// How far a label can be believed: it is true with probability `p`.
+///
+/// Held as the logarithm of the odds `p / (1 - p)`, to 10^-10, which is all that a posterior needs of
+/// it: lines that agree with a label gain so much on those that do not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "wire", serde(try_from = "i64", into = "i64"))]
+pub struct Reliability {
+    log_odds: LogWeight,
+}
+
+impl Reliability {
+    /// No odds of a number are as large: a double is no smaller than `e^-745`.
+    const BEYOND: LogWeight = LogWeight(1_000 * LogWeight::ONE);
+
+    /// The label is true for certain, as within a trusted ball.
+    pub const CERTAIN: Self = Self { log_odds: Self::BEYOND };
+
+    /// The label says nothing: `p` = 1/2. All zeros in memory.
+    pub const NONE: Self = Self { log_odds: LogWeight::ZERO };
+
+    /// A label that is true with probability `p`: 1 is certain, 0 certainly wrong, and 1/2 says
+    /// nothing. `None` outside [0, 1].
+    pub fn new(p: f64) -> Option<Self> {
+        let beyond = Self::BEYOND.value();
+        let inside = (0.0..=1.0).contains(&p);
+        inside.then(|| {
+            let log_odds = libm::log(p) - libm::log1p(-p); // infinite for 0 and 1
+            Self { log_odds: LogWeight::from_log(log_odds.clamp(-beyond, beyond)) }
+        })
+    }
+
+    /// The reliability with these odds as a logarithm in units of 2^-32; `None` if there is no such
+    /// probability.
+    #[cfg(any(feature = "wire", test))]
+    pub(crate) fn from_log_odds(units: i64) -> Option<Self> {
+        let inside = units.unsigned_abs() <= Self::BEYOND.0.unsigned_abs();
+        inside.then_some(Self { log_odds: LogWeight(units) })
+    }
+
+    /// The probability that the label is true.
+    pub fn probability(self) -> f64 {
+        1.0 / (1.0 + libm::exp(-self.log_odds.value()))
+    }
+
+    /// The logarithm of the odds, in units of 2^-32.
+    #[cfg(any(feature = "wire", test))]
+    pub(crate) const fn log_odds(self) -> i64 {
+        self.log_odds.0
+    }
+
+    /// What lines weigh that agree with the label, relative to the likelier side; `None` when no line
+    /// can.
+    pub(crate) fn agree(self) -> Option<LogWeight> {
+        (self.log_odds.0 > -Self::BEYOND.0).then_some(LogWeight(self.log_odds.0.min(0)))
+    }
+
+    /// What lines weigh that do not agree; `None` when all must.
+    pub(crate) fn disagree(self) -> Option<LogWeight> {
+        (self.log_odds < Self::BEYOND).then_some(LogWeight(self.log_odds.0.saturating_neg().min(0)))
+    }
+}
+
+/// What is known of the noise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+pub struct Noise {
+    /// How far a label can be believed.
+    pub reliability: Reliability,
+    /// Within this distance of a given sample's site labels are certain, lattice units; see
+    /// [`trusted_radius`].
+    pub trusted_radius: u32,
+}
+
+impl Noise {
+    /// Labels are always true.
+    pub const NONE: Self = Self { reliability: Reliability::CERTAIN, trusted_radius: 0 };
+
+    /// The reliability of a label at a site: certain in a trusted ball (the paper's `B_r(p_j)`).
+    pub fn at(&self, site: Site, given: &[Sample]) -> Reliability {
+        let radius = u64::from(self.trusted_radius);
+        let near = |s: &Sample| {
+            let apart = site - s.site;
+            apart.dot(apart).unsigned_abs() <= radius * radius
+        };
+        if radius > 0 && given.iter().any(near) { Reliability::CERTAIN } else { self.reliability }
+    }
+}
+
+/// A radius in metres as lattice units; `None` when it is negative, not finite, or 8,192 m or more.
+pub fn trusted_radius(metres: f64) -> Option<u32> {
+    let inside = Site::try_from(nalgebra::Point2::new(metres, 0.0)).ok()?;
+    u32::try_from(inside.x()).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn odds_are_those_of_the_probability() {
+        for p in [5e-324, 1e-300, 1e-9, 0.3, 0.5, 0.7, 0.999, 1.0 - f64::EPSILON] {
+            let it = Reliability::new(p).unwrap();
+            let exact = libm::log(p) - libm::log1p(-p);
+            assert!((it.log_odds.value() - exact).abs() < 2e-10, "{p}");
+            let [agree, disagree] = [it.agree(), it.disagree()].map(Option::unwrap);
+            assert_eq!((agree - disagree, agree.max(disagree)), (it.log_odds, LogWeight::ZERO));
+            assert_eq!(Reliability::from_log_odds(it.log_odds()), Some(it));
+        }
+        let sure = Reliability::new(1.0).unwrap();
+        assert_eq!(
+            (sure, sure.agree(), sure.disagree()),
+            (Reliability::CERTAIN, Some(LogWeight::ZERO), None)
+        );
+        let wrong = Reliability::new(0.0).unwrap();
+        assert_eq!((wrong.agree(), wrong.disagree()), (None, Some(LogWeight::ZERO)));
+        for units in [i64::MIN, i64::MAX, Reliability::BEYOND.0 + 1] {
+            assert_eq!(Reliability::from_log_odds(units), None);
+        }
+        for p in [-0.1, 1.1, f64::NAN] {
+            assert_eq!(Reliability::new(p), None);
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! What a motion is worth, what was chosen by that, and what it may cost to find it.
+
+use crate::motion::action::Action;
+use crate::motion::dynamics::Pose;
+
+/// Rays that a plan of Algorithm 1, or of Algorithm 2 by the joint reading, looks at at most. With the
+/// paper's grid 520 are the most that a plan of 3,000 standard missions of 60 steps needed.
+pub const LOOKS: u32 = 8_192;
+
+/// The weight of the control in the objective, in [0, 1), to six decimal places.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "wire", serde(try_from = "u32", into = "u32"))]
+pub struct Varrho {
+    pub(crate) millionths: u32,
+}
+
+impl Varrho {
+    pub(crate) const ONE: u32 = 1_000_000;
+
+    /// The paper's 0.1.
+    pub const PAPER: Self = Self { millionths: 100_000 };
+
+    /// The nearest weight; `None` outside [0, 1). From 1 on, the objective would reward standing
+    /// still.
+    pub fn new(value: f64) -> Option<Self> {
+        if !(0.0..1.0).contains(&value) {
+            return None;
+        }
+        let millionths = libm::round(value * f64::from(Self::ONE)) as u32;
+        (millionths < Self::ONE).then_some(Self { millionths })
+    }
+
+    /// The weight as a number.
+    pub fn value(self) -> f64 {
+        f64::from(self.millionths) / f64::from(Self::ONE)
+    }
+
+    /// The objective, in 10^-12 m^2: an integer, so that ties are ties.
+    pub(crate) const fn objective(self, reach_mm: u32, effort: u32) -> i64 {
+        let reach = reach_mm as i64 * reach_mm as i64;
+        let (varrho, one) = (self.millionths as i64, Self::ONE as i64);
+        (one - varrho) * reach - varrho * effort as i64
+    }
+}
+
+/// A feasible action.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Choice {
+    /// The action.
+    pub action: Action,
+    /// The pose after it.
+    pub target: Pose,
+    /// The objective, in 10^-12 m^2.
+    pub objective: i64,
+}
+
+/// What searches may still cost, and have cost.
+#[derive(Clone, Copy)]
+pub(crate) struct Effort {
+    /// Rays that may still be looked at.
+    pub(crate) looks: u32,
+    /// Actions whose position was looked at so far.
+    pub(crate) examined: u32,
+}
+
+impl Effort {
+    pub(crate) const fn of(looks: u32) -> Self {
+        Self { looks, examined: 0 }
+    }
+
+    /// Whether no search has ended for want of looks.
+    pub(crate) const fn is_enough(self) -> bool {
+        self.looks > 0
+    }
+}
