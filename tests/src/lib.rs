@@ -10,6 +10,7 @@ use rand_chacha::ChaCha8Rng;
 pub mod budget;
 pub mod debugger;
 pub mod emulator;
+pub mod link;
 pub mod program;
 pub mod twins;
 

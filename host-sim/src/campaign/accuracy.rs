@@ -22,7 +22,7 @@ pub struct Accuracy;
 
 /// What was known after some steps of one mission.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct Mark {
+pub struct Checkpoint {
     field: u64,
     step: u32,
     bits: f64,
@@ -86,11 +86,11 @@ pub struct Summary {
     pub actions: u32,
     /// Of each mission and stage.
     #[serde(skip)]
-    pub(crate) marks: Vec<Mark>,
+    pub(crate) checkpoints: Vec<Checkpoint>,
 }
 
 impl Measure for Accuracy {
-    type Mark = Mark;
+    type Checkpoint = Checkpoint;
 
     fn stages(&self, steps: u32) -> Vec<u32> {
         let last = (!STEPS.contains(&steps)).then_some(steps);
@@ -101,7 +101,12 @@ impl Measure for Accuracy {
         progress.steps
     }
 
-    fn mark(&self, mission: &Mission, belief: &dyn ReadOut, progress: &Progress) -> Mark {
+    fn checkpoint(
+        &self,
+        mission: &Mission,
+        belief: &dyn ReadOut,
+        progress: &Progress,
+    ) -> Checkpoint {
         let estimates = belief.estimates();
         let errors = |estimate: Option<Line>| match (estimate, mission.world.line()) {
             (Some(line), Some(truth)) => {
@@ -112,7 +117,7 @@ impl Measure for Accuracy {
         let (centre_deg, centre_misclassified) = errors(estimates.centre);
         let (maximum_margin_deg, maximum_margin_misclassified) = errors(estimates.maximum_margin);
         let (bisector_deg, bisector_misclassified) = errors(estimates.bisector);
-        Mark {
+        Checkpoint {
             field: progress.field,
             step: progress.steps,
             bits: belief.information(),
@@ -134,11 +139,11 @@ impl Measure for Accuracy {
 
 impl Summary {
     /// What a campaign came to.
-    pub fn of(campaign: &Campaign, ensemble: Ensemble<Mark>) -> Self {
-        let Ensemble { marks, tally } = ensemble;
+    pub fn of(campaign: &Campaign, ensemble: Ensemble<Checkpoint>) -> Self {
+        let Ensemble { checkpoints, tally } = ensemble;
         let Tally { ends, recoveries, plans, examined, most_examined } = tally;
         let stages = Accuracy.stages(campaign.steps).len();
-        let after = |stage: usize| marks.iter().map(|of| of[stage]).collect::<Vec<_>>();
+        let after = |stage: usize| checkpoints.iter().map(|of| of[stage]).collect::<Vec<_>>();
         Self {
             algorithm: campaign.algorithm,
             fields: campaign.fields,
@@ -150,16 +155,16 @@ impl Summary {
             mean_examined: examined as f64 / plans as f64,
             most_examined,
             actions: Unicycle::paper().grid().actions(),
-            marks: marks.into_iter().flatten().collect(),
+            checkpoints: checkpoints.into_iter().flatten().collect(),
         }
     }
 }
 
-fn row(marks: &[Mark]) -> Row {
-    let spread = |pick: fn(&Mark) -> f64| Spread::of(marks.iter().map(pick));
-    let n = marks.len() as f64;
-    let mean = |pick: fn(&Mark) -> f64| marks.iter().map(pick).sum::<f64>() / n;
-    let step = marks.first().map_or(0, |m| m.step);
+fn row(checkpoints: &[Checkpoint]) -> Row {
+    let spread = |pick: fn(&Checkpoint) -> f64| Spread::of(checkpoints.iter().map(pick));
+    let n = checkpoints.len() as f64;
+    let mean = |pick: fn(&Checkpoint) -> f64| checkpoints.iter().map(pick).sum::<f64>() / n;
+    let step = checkpoints.first().map_or(0, |m| m.step);
     Row {
         step,
         bits_per_step: mean(|m| m.bits) / f64::from(step),

@@ -32,7 +32,7 @@ pub struct Statement {
 
 /// What was known after some labels of one mission.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct Mark {
+pub struct Checkpoint {
     field: u64,
     labels: u32,
     bits: f64,
@@ -90,11 +90,11 @@ pub struct Summary {
     pub rows: Vec<Row>,
     /// Of each mission and stage.
     #[serde(skip)]
-    pub(crate) marks: Vec<Mark>,
+    pub(crate) checkpoints: Vec<Checkpoint>,
 }
 
 impl Measure for Calibrated {
-    type Mark = Option<Mark>;
+    type Checkpoint = Option<Checkpoint>;
 
     fn stages(&self, _: u32) -> Vec<u32> {
         LABELS.to_vec()
@@ -105,7 +105,12 @@ impl Measure for Calibrated {
     }
 
     /// `None` of a belief without hypotheses.
-    fn mark(&self, mission: &Mission, belief: &dyn ReadOut, progress: &Progress) -> Option<Mark> {
+    fn checkpoint(
+        &self,
+        mission: &Mission,
+        belief: &dyn ReadOut,
+        progress: &Progress,
+    ) -> Option<Checkpoint> {
         let table = belief.hypotheses()?;
         let by_area = table.weighed_by(Prior::Area);
         let by_area = Posterior::new(&by_area);
@@ -123,7 +128,7 @@ impl Measure for Calibrated {
             }
         };
         let error = |line: Line| mission.world.line().map(|truth| line.angle_to_deg(truth));
-        Some(Mark {
+        Some(Checkpoint {
             field: progress.field,
             labels: progress.labels,
             bits: by_area.information(),
@@ -142,33 +147,33 @@ impl Measure for Calibrated {
 
 impl Summary {
     /// What a campaign came to.
-    pub fn of(campaign: &Campaign, ensemble: Ensemble<Option<Mark>>) -> Self {
+    pub fn of(campaign: &Campaign, ensemble: Ensemble<Option<Checkpoint>>) -> Self {
         let &Campaign { algorithm, fields, seed, noise, .. } = campaign;
         let p = noise.map_or(1.0, |noise| noise.p);
-        let marks: Vec<_> = ensemble.marks.into_iter().flatten().flatten().collect();
+        let checkpoints: Vec<_> = ensemble.checkpoints.into_iter().flatten().flatten().collect();
         let rows = LABELS.iter().filter_map(|&labels| {
-            let of: Vec<_> = marks.iter().filter(|m| m.labels == labels).copied().collect();
+            let of: Vec<_> = checkpoints.iter().filter(|m| m.labels == labels).copied().collect();
             (!of.is_empty()).then(|| row(labels, &of))
         });
         let title =
             format!("{}, {fields} standard fields, seed {seed}, p = {p}", algorithm.title());
-        Self { title, p, limit: limit(p), rows: rows.collect(), marks }
+        Self { title, p, limit: limit(p), rows: rows.collect(), checkpoints }
     }
 }
 
-fn row(labels: u32, marks: &[Mark]) -> Row {
-    let n = marks.len() as f64;
-    let mean = |pick: fn(&Mark) -> f64| marks.iter().map(pick).sum::<f64>() / n;
+fn row(labels: u32, checkpoints: &[Checkpoint]) -> Row {
+    let n = checkpoints.len() as f64;
+    let mean = |pick: fn(&Checkpoint) -> f64| checkpoints.iter().map(pick).sum::<f64>() / n;
     Row {
         labels,
-        missions: marks.len() as u64,
+        missions: checkpoints.len() as u64,
         bits: mean(|m| m.bits),
         hypotheses: mean(|m| m.hypotheses as f64),
-        pruned_mass: marks.iter().map(|m| m.pruned_mass).fold(0.0, f64::max),
-        mean_deg: Spread::of(marks.iter().map(|m| m.mean_deg)),
+        pruned_mass: checkpoints.iter().map(|m| m.pruned_mass).fold(0.0, f64::max),
+        mean_deg: Spread::of(checkpoints.iter().map(|m| m.mean_deg)),
         control_cost: mean(|m| m.control_cost),
         calibration: [0, 1].map(|prior| {
-            let of = marks.iter().map(|m| m.by_prior[prior]);
+            let of = checkpoints.iter().map(|m| m.by_prior[prior]);
             calibration(&of.collect::<Vec<_>>())
         }),
     }

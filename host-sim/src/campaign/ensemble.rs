@@ -59,7 +59,7 @@ pub struct Progress {
 /// What is measured of every mission of a campaign.
 pub trait Measure: Sync {
     /// What is taken down at some stage of a mission.
-    type Mark: Send;
+    type Checkpoint: Send;
 
     /// The stages at which missions of so many steps are compared, in rising order.
     fn stages(&self, steps: u32) -> Vec<u32>;
@@ -68,7 +68,12 @@ pub trait Measure: Sync {
     fn stage(&self, progress: &Progress) -> u32;
 
     /// What is taken down when a mission comes to one of these stages.
-    fn mark(&self, mission: &Mission, belief: &dyn ReadOut, progress: &Progress) -> Self::Mark;
+    fn checkpoint(
+        &self,
+        mission: &Mission,
+        belief: &dyn ReadOut,
+        progress: &Progress,
+    ) -> Self::Checkpoint;
 
     /// How far a mission that ended is to be taken to have come at a stage that it did not reach;
     /// `None` if it does not count there.
@@ -79,7 +84,7 @@ pub trait Measure: Sync {
 #[derive(Clone, Debug)]
 pub struct Ensemble<M> {
     /// What was taken down of each mission.
-    pub marks: Vec<Vec<M>>,
+    pub checkpoints: Vec<Vec<M>>,
     /// How the missions went.
     pub tally: Tally,
 }
@@ -129,7 +134,7 @@ impl Campaign {
     /// # Errors
     /// Names the field in which a sample contradicted what was known: never, as labels are true where
     /// they are trusted.
-    pub fn run<M: Measure>(&self, measure: &M) -> Result<Ensemble<M::Mark>> {
+    pub fn run<M: Measure>(&self, measure: &M) -> Result<Ensemble<M::Checkpoint>> {
         let style = "{bar:40} {pos}/{len} fields  {per_sec}  {eta} left";
         let bar = ProgressBar::new(self.fields).with_style(ProgressStyle::with_template(style)?);
         let of_each: Vec<_> = (0..self.fields)
@@ -138,9 +143,9 @@ impl Campaign {
             .map(|number| self.measured(measure, number).with_context(|| format!("field {number}")))
             .collect::<Result<_>>()?;
         bar.finish_and_clear();
-        let mut ensemble = Ensemble { marks: Vec::new(), tally: Tally::default() };
-        for (marks, tally) in of_each {
-            ensemble.marks.push(marks);
+        let mut ensemble = Ensemble { checkpoints: Vec::new(), tally: Tally::default() };
+        for (checkpoints, tally) in of_each {
+            ensemble.checkpoints.push(checkpoints);
             ensemble.tally.add(tally);
         }
         Ok(ensemble)
@@ -154,10 +159,14 @@ impl Campaign {
         mission
     }
 
-    fn measured<M: Measure>(&self, measure: &M, number: u64) -> Result<(Vec<M::Mark>, Tally)> {
+    fn measured<M: Measure>(
+        &self,
+        measure: &M,
+        number: u64,
+    ) -> Result<(Vec<M::Checkpoint>, Tally)> {
         let mission = self.mission(number);
         let given = mission.given.samples().len();
-        let (mut marks, mut tally) = (Vec::new(), Tally::default());
+        let (mut checkpoints, mut tally) = (Vec::new(), Tally::default());
         let mut now = Progress { field: number, ..Progress::default() };
         let mut stages = measure.stages(self.steps).into_iter().peekable();
         let Flown { ending, belief } = mission.fly(|step, belief| {
@@ -166,13 +175,13 @@ impl Campaign {
             now.control_cost += cost(step.motion.control);
             now.metres += f64::from(step.motion.control.v);
             if stages.next_if_eq(&measure.stage(&now)).is_some() {
-                marks.push(measure.mark(&mission, belief, &now));
+                checkpoints.push(measure.checkpoint(&mission, belief, &now));
             }
             tally.count(step);
         })?;
         let held = stages.filter_map(|stage| measure.held(&now, stage));
-        marks.extend(held.map(|progress| measure.mark(&mission, &*belief, &progress)));
+        checkpoints.extend(held.map(|progress| measure.checkpoint(&mission, &*belief, &progress)));
         tally.ends.insert(ending.name(), 1);
-        Ok((marks, tally))
+        Ok((checkpoints, tally))
     }
 }

@@ -222,10 +222,10 @@ fn campaign(args: &CampaignArgs) -> Result<String> {
     };
     let (table, rows, record) = if weighs {
         let summary = calibration::Summary::of(&campaign, campaign.run(&Calibrated)?);
-        (tables::calibration(&summary), csv(&summary.marks)?, json(&summary))
+        (tables::calibration(&summary), csv(&summary.checkpoints)?, json(&summary))
     } else {
         let summary = accuracy::Summary::of(&campaign, campaign.run(&Accuracy)?);
-        (tables::accuracy(&summary), csv(&summary.marks)?, json(&summary))
+        (tables::accuracy(&summary), csv(&summary.checkpoints)?, json(&summary))
     };
     if let Some(output) = output {
         output.write(rows)?;

@@ -1,4 +1,4 @@
-//! Colours and marks that figures share.
+//! Colours and symbols that figures share.
 
 use std::fmt::Display;
 

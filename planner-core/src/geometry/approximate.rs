@@ -1,5 +1,5 @@
 //! Quick approximations in single precision, the same on every machine. They propose and never decide:
-//! whoever uses one leaves room for its error.
+//! whoever uses one leaves a margin for its error.
 
 use crate::geometry::angle::Angle;
 use crate::geometry::heading::Heading;

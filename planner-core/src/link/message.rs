@@ -176,6 +176,22 @@ pub enum Declined {
     Labels,
 }
 
+impl core::fmt::Display for Declined {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Protocol(version) => write!(f, "the chip speaks protocol {version}"),
+            Self::Algorithm => f.write_str("the chip does not have this algorithm"),
+            Self::Capacity(Capacity { samples, hypotheses }) => {
+                write!(f, "the chip holds {samples} samples and {hypotheses} hypotheses")
+            }
+            Self::Given(why) => why.fmt(f),
+            Self::Labels => f.write_str("the chip has no label sensor"),
+        }
+    }
+}
+
+impl core::error::Error for Declined {}
+
 /// A motion to make, with what came of the one before.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

@@ -1,0 +1,54 @@
+//! What the tests of the link share: missions of both algorithms, and a chip that flies them.
+
+use std::convert::Infallible;
+use std::time::Duration;
+
+use host_sim::campaign::standard_field;
+use host_sim::mission::algorithm::Algorithm;
+use host_sim::mission::definition::Mission;
+use host_sim::world::noise::{Extent, NoiseModel};
+use planner_core::link::delivery::{LinkLost, Port};
+use planner_core::link::message::{self};
+use planner_core::link::station::{Flown, Station};
+
+/// How long the chip waits for an answer before it asks again.
+pub const WAIT: Duration = Duration::from_millis(100);
+
+/// Of missions, faults and noise.
+pub const SEED: u64 = 4;
+
+/// Which way a frame goes.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Way {
+    /// From the vehicle.
+    ToChip,
+    /// From the chip.
+    ToVehicle,
+}
+
+/// What the firmware does with a setup.
+///
+/// # Errors
+/// As [`Station::fly`].
+pub fn fly<P: Port>(
+    chip: &mut Station<P, Infallible>,
+    setup: &message::Setup,
+) -> Result<Flown, LinkLost> {
+    match setup.algorithm {
+        message::Algorithm::Cfc => chip.fly(setup, &mut setup.cfc::<68>(), |_| {}),
+        message::Algorithm::Scc { noise, policy, prior } => {
+            let mut planner = setup.scc::<36, 529>(policy);
+            chip.fly(setup, &mut setup.prepare(&mut planner, prior, noise), |_| {})
+        }
+    }
+}
+
+/// Missions of both algorithms by turns.
+pub fn mission(number: u64) -> Mission {
+    let algorithm = if number.is_multiple_of(2) { Algorithm::Cfc } else { Algorithm::Scc };
+    let mut mission = standard_field::standard(SEED, number, algorithm, 10);
+    if algorithm == Algorithm::Scc {
+        mission.noise = Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.5) });
+    }
+    mission
+}

@@ -1,0 +1,100 @@
+//! The player finds out a chip that took in, or estimates, something else than it does.
+
+use host_sim::hil::player::Player;
+use host_sim::mission::definition::Mission;
+use host_sim::mission::recording::Recording;
+use planner_core::belief::Belief as _;
+use planner_core::belief::estimate::Estimates;
+use planner_core::belief::sample::Reading;
+use planner_core::geometry::line::Line;
+use planner_core::link::frame::{Decoder, Envelope, Frame};
+use planner_core::link::message::{
+    self, Capacity, ClockRate, LabelSource, PROTOCOL, Reply, Request,
+};
+use tests::link::mission;
+
+/// A player and what a chip of our own says to it.
+struct Liar {
+    player: Player,
+    link: (u32, u32),
+}
+
+impl Liar {
+    fn new(mission: &Mission) -> Self {
+        let player = Player::new(mission, LabelSource::Vehicle, 1).expect("a mission for a chip");
+        let mut liar = Self { player, link: (0, 0) };
+        liar.says(Request::Hello { protocol: PROTOCOL }).expect("it offers a mission");
+        let capacity = Capacity { samples: 68, hypotheses: 1 };
+        let clock = ClockRate { per_second: 1, emulated: false };
+        liar.says(Request::Ready(message::Accepted { capacity, clock })).expect("it takes note");
+        liar
+    }
+
+    fn says(&mut self, request: Request) -> anyhow::Result<Reply> {
+        self.link.1 += 1;
+        let frame = Frame::of(&Envelope::new(self.link.0, self.link.1, request));
+        let mut decoder = Decoder::default();
+        for byte in frame.bytes() {
+            let Some(answer) = self.player.hear(*byte)? else { continue };
+            let envelope = answer.bytes().iter().find_map(|byte| decoder.feed::<Reply>(*byte));
+            let envelope = envelope.expect("a whole frame");
+            self.link.0 = envelope.session;
+            return Ok(envelope.message);
+        }
+        panic!("no answer");
+    }
+}
+
+#[test]
+fn a_player_finds_out_a_chip_that_took_in_another_reading() {
+    let mission = mission(0);
+    let took = message::Took::default();
+    let steps = Recording::of(&mission).expect("labels are true").steps;
+    let motion = |n: usize| steps[n].motion;
+    let mut liar = Liar::new(&mission);
+    let reply = liar.says(Request::Move(message::Move { motion: motion(0), last: None, took }));
+    let Ok(Reply::Arrived { reading: Some(Reading::Side(sensed)), .. }) = reply else {
+        panic!("{reply:?}")
+    };
+    for last in [None, Some(Reading::Boundary), Some((-sensed).into())] {
+        let mut liar = Liar::new(&mission);
+        let moved = liar.says(Request::Move(message::Move { motion: motion(0), last: None, took }));
+        assert!(moved.is_ok());
+        let lie = liar.says(Request::Move(message::Move { motion: motion(1), last, took }));
+        let error = lie.expect_err("it was found out").to_string();
+        assert!(error.contains("step 1: sensed"), "{error}");
+    }
+    let last = Some(sensed.into());
+    assert!(liar.says(Request::Move(message::Move { motion: motion(1), last, took })).is_ok());
+}
+
+#[test]
+fn a_player_compares_every_estimate_to_the_last_bit() {
+    let mission = mission(0);
+    let right = mission.given.estimates();
+    let end = |estimates| {
+        let (last, took) = (None, message::Took::default());
+        Request::End(message::MissionEnd {
+            reason: message::EndReason::Steps,
+            last,
+            took,
+            estimates,
+        })
+    };
+    let judge = |estimates| {
+        let mut liar = Liar::new(&mission);
+        assert!(matches!(liar.says(end(estimates)), Ok(Reply::Noted)));
+        liar.player.finish().map(drop).map_err(|error| error.to_string())
+    };
+    assert_eq!(judge(right), Ok(()));
+    let [a, b, c] = right.centre.expect("a line").coefficients();
+    let near = Line::from_coefficients(a, b, f64::from_bits(c.to_bits() + 1));
+    for (wrong, name) in [
+        (Estimates { bisector: None, ..right }, "the bisector"),
+        (Estimates { centre: near, ..right }, "the centre"),
+        (Estimates { maximum_margin: right.bisector, ..right }, "the maximum margin"),
+    ] {
+        let error = judge(wrong).expect_err("it was found out");
+        assert!(error.starts_with(name), "{error}");
+    }
+}
