@@ -8,7 +8,7 @@
 //!
 //! A cell does not hold the samples: several cells can share one buffer of sites.
 
-use crate::belief::consistent_lines::{ConsistentLines, Kept};
+use crate::belief::consistent_lines::{ConsistentLines, Kept, run_length};
 use crate::belief::edge::Edge;
 use crate::belief::sample::Sample;
 use crate::geometry::lattice::orient;
@@ -106,7 +106,7 @@ impl<const E: usize> LineCell<E> {
             Kept::Between { first, last } => (first, last),
         };
         let n = self.edges().len();
-        let kept = if first <= last { last - first + 1 } else { last + n - first + 1 };
+        let kept = run_length(first, last, n);
         let mut cell = Self { len: kept as u8 + 1, ..Self::NONE };
         *cell.edges.get_mut(kept).ok_or(CutError::Full)? = edge;
         let mut k = first;

@@ -33,6 +33,11 @@ impl Certainty {
     }
 }
 
+/// How many edges there are from one to another in cyclic order, both included, of so many.
+pub(crate) const fn run_length(first: usize, last: usize, all: usize) -> usize {
+    if first <= last { last - first + 1 } else { last + all - first + 1 }
+}
+
 const fn upper_half(value: i64) -> i32 {
     (value >> 32) as i32
 }

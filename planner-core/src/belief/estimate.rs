@@ -11,7 +11,7 @@
 
 use nalgebra::{Matrix2, Point2, Vector2};
 
-use crate::belief::consistent_lines::{ConsistentLines, Kept, bounds};
+use crate::belief::consistent_lines::{ConsistentLines, Kept, bounds, run_length};
 use crate::belief::sample::{Label, Sample};
 use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
 use crate::geometry::line::{Bound, Line};
@@ -131,8 +131,7 @@ pub fn share_above(lines: ConsistentLines<'_>, site: Site) -> f64 {
         Kept::None => return 0.0,
         Kept::Between { first, last } => (first, last),
     };
-    let all = lines.edges.len();
-    let kept = if first <= last { last - first + 1 } else { last + all - first + 1 };
+    let kept = run_length(first, last, lines.edges.len());
     let above = core::iter::once(Sample { site, label: Label::Positive });
     let support = lines.support().cycle().skip(first).take(kept).chain(above);
     let part = Moments::round(Some(site), support.clone().zip(bounds(support)));

@@ -46,7 +46,7 @@ impl core::error::Error for NoVersionSpace {}
 #[derive(Clone, Debug)]
 pub struct VersionSpace<const N: usize> {
     samples: SampleBuffer<N>,
-    /// A whole word, so that the cell begins at one.
+    /// How many of them it was made of. A whole word, so that the cell begins at one.
     given: usize,
     cell: LineCell<N>,
 }
