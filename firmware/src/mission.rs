@@ -68,7 +68,7 @@ impl Board {
 
 fn log_step(number: u16, Step { motion, pose, reading }: &Step) {
     defmt::info!(
-        "step {=u16}: {} {}, action {=u16}, to x {=i32}, z {=i32}, heading {=u32:#010x}, label {}",
+        "step {=u16}: {} {}, action {=u32}, to x {=i32}, z {=i32}, heading {=u32:#010x}, label {}",
         number,
         motion.stage,
         motion.recovery,

@@ -28,7 +28,7 @@ use planner_core::planner::{Plan, Planner};
 use planner_core::search::objective::{LOOKS, Varrho};
 
 /// Actions that are tried one by one, at most.
-const FEW: u32 = 3_000;
+const FEW: u64 = 3_000;
 
 #[derive(Arbitrary, Debug)]
 struct Case {
@@ -217,12 +217,12 @@ fuzz_target!(|bytes: &[u8]| {
     let speeds = 1 + u16::from(case.speeds % 64);
     let step = u32::from(case.speed_step) % (100_000 / u32::from(speeds));
     let _ = if case.holonomic {
-        Holonomic::new(case.turn_step % 512, speeds, step)
+        Holonomic::new(u32::from(case.turn_step) % 512, speeds, step)
             .ok()
             .and_then(|it| run(&case, it, &world))
     } else {
         let sharpest = f64::from(case.sharpest % 31_416) / 10_000.0;
-        let turn_step = u32::from(case.turn_step) % 3_142;
+        let turn_step = 1_000 * (u32::from(case.turn_step) % 3_142);
         let unicycle = Unicycle::new(turn_step, sharpest, speeds, step);
         unicycle.ok().and_then(|it| run(&case, it, &world))
     };

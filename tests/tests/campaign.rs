@@ -34,7 +34,7 @@ fn algorithm_1_learns_what_it_should() {
     assert!(at(10).bits_per_step >= 0.65);
     assert!(at(10).centre_deg.median <= 1.5);
     assert!(at(20).centre_deg.median <= 0.20);
-    assert!(summary.mean_examined <= 0.05 * f64::from(summary.actions));
+    assert!(summary.mean_examined <= 0.05 * summary.actions as f64);
     // A noiseless label tells one bit at most, on average.
     assert!(summary.rows.iter().all(|row| row.bits_per_step <= 1.0));
     let random = campaign(Algorithm::Random, cfc::FOLLOWING, 20);

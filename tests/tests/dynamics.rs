@@ -26,14 +26,14 @@ fn what_the_constructors_take_keeps_the_contract() {
         }
         let sharpest = [1e-3, 0.3, FRAC_PI_2, 1.1, 3.0, PI][rng.random_range(0..6)];
         let step = [1, 10, 100, 785, 3_141, rng.random_range(1..3_141)][rng.random_range(0..6)];
-        if let Ok(it) = Unicycle::new(step, sharpest, speeds, step_mm) {
+        if let Ok(it) = Unicycle::new(1_000 * step, sharpest, speeds, step_mm) {
             assert_eq!(contract::check(&it), Ok(()), "{it:?}");
             taken += 1;
         }
     }
     assert!(taken > 200, "{taken}");
     assert_eq!(contract::check(&Unicycle::paper()), Ok(()));
-    assert_eq!(Unicycle::new(10, FRAC_PI_2, 21, 100), Ok(Unicycle::paper()));
+    assert_eq!(Unicycle::new(10_000, FRAC_PI_2, 21, 100), Ok(Unicycle::paper()));
     assert_eq!(contract::check(&Holonomic::new(65_535, 1, 1).expect("a grid")), Ok(()));
 }
 
@@ -41,16 +41,18 @@ fn what_the_constructors_take_keeps_the_contract() {
 fn what_is_no_grid_is_refused_by_what_is_wrong_with_it() {
     // A turn of nothing, a step of more than a half turn, and steps of none.
     for (step, sharpest) in
-        [(10, 1e-10), (7_000, 3.0), (3_142, PI), (0, 1.0), (10, 0.0), (10, -1.0), (10, 3.2)]
+        [(10, 1e-10), (7_000_000, 3.0), (3_141_593, PI), (0, 1.0), (10, 0.0), (10, -1.0), (10, 3.2)]
     {
         assert_eq!(Unicycle::new(step, sharpest, 21, 100), Err(BadGrid::Turn), "{step} {sharpest}");
     }
     for sharpest in [f64::NAN, f64::INFINITY] {
         assert_eq!(Unicycle::new(10, sharpest, 21, 100), Err(BadGrid::Turn), "{sharpest}");
     }
-    assert_eq!(Unicycle::new(1, PI, 21, 100), Err(BadGrid::Actions));
+    // 6,283,187 rays.
+    assert_eq!(Unicycle::new(1, PI, 684, 100), Err(BadGrid::Actions));
+    assert!(Unicycle::new(1, PI, 683, 100).is_ok());
     assert_eq!(Unicycle::new(u32::MAX, 1.0, u16::MAX, u32::MAX), Err(BadGrid::Turn));
-    for (rays, speeds) in [(0, 21), (5, 0), (65_535, 2), (257, 256)] {
+    for (rays, speeds) in [(0, 21), (5, 0), (u32::MAX, 2), (65_538, u16::MAX)] {
         assert_eq!(ActionGrid::new(rays, speeds, 100), Err(BadGrid::Actions), "{rays} {speeds}");
     }
     for (speeds, step_mm) in [(21, 0), (21, 5_000), (1, 100_000), (2, u32::MAX), (1, u32::MAX)] {
@@ -59,7 +61,8 @@ fn what_is_no_grid_is_refused_by_what_is_wrong_with_it() {
     let longest = ActionGrid::new(1, 2, 99_999).expect("a grid");
     assert_eq!(longest.reach_mm(1), 99_999);
     let _ = longest.reach_mm(u16::MAX); // it does not overflow
-    assert_eq!(ActionGrid::new(256, 256, 1).map(|it| it.actions()), Ok(65_536));
+    let most = ActionGrid::new(1 << 31, 2, 1).expect("a grid");
+    assert_eq!((most.actions(), most.split(Action(u32::MAX))), (1 << 32, (u32::MAX >> 1, 1)));
     assert!(Holonomic::new(0, 21, 100).is_err());
 }
 
@@ -98,7 +101,14 @@ fn the_rays_around_a_heading_are_the_nearest_to_either_side() {
     for bearings in [1, 2, 3, 4, 7, 72, 1_000] {
         compare(&Holonomic::new(bearings, 21, 100).expect("a grid"), &mut rng);
     }
-    for (step, sharpest) in [(10, FRAC_PI_2), (785, 1.6), (100, 0.35), (3_000, 3.0), (500, PI)] {
+    for (step, sharpest) in [
+        (10_000, FRAC_PI_2),
+        (785_000, 1.6),
+        (100_000, 0.35),
+        (3_000_000, 3.0),
+        (500_000, PI),
+        (70, 0.002),
+    ] {
         compare(&Unicycle::new(step, sharpest, 21, 100).expect("a grid"), &mut rng);
     }
 }
@@ -139,7 +149,7 @@ impl Dynamics for Faulty {
         }
     }
 
-    fn heading(&self, pose: Pose, side: Side, n: u16) -> Heading {
+    fn heading(&self, pose: Pose, side: Side, n: u32) -> Heading {
         let heading = self.0.heading(pose, side, n);
         match self.1 {
             Breaks::TurnsBack if n == 3 => self.0.heading(pose, side, 1),
@@ -150,7 +160,7 @@ impl Dynamics for Faulty {
         }
     }
 
-    fn ray(&self, pose: Pose, side: Side, n: u16) -> Ray {
+    fn ray(&self, pose: Pose, side: Side, n: u32) -> Ray {
         let ray = self.0.ray(pose, side, n);
         let heading = self.heading(pose, side, n);
         match self.1 {
@@ -189,13 +199,10 @@ impl Dynamics for Faulty {
     }
 
     fn ray_of(&self, pose: Pose, action: Action) -> Option<Ray> {
+        let ahead = self.0.fan().right;
         self.0.ray_of(pose, action).map(|ray| {
-            let (side, n) = if ray.index < 5 {
-                (Side::Right, 5 - ray.index)
-            } else {
-                (Side::Left, ray.index - 5)
-            };
-            self.ray(pose, side, n)
+            let side = if ray.index < ahead { Side::Right } else { Side::Left };
+            self.ray(pose, side, ray.index.abs_diff(ahead))
         })
     }
 }
@@ -203,7 +210,7 @@ impl Dynamics for Faulty {
 #[test]
 fn each_broken_promise_is_named() {
     // Eleven rays, 700 mrad apart and at last 200: right 5 to 1, ahead, left 1 to 5.
-    let unicycle = Unicycle::new(700, 3.0, 5, 1_000).expect("a grid");
+    let unicycle = Unicycle::new(700_000, 3.0, 5, 1_000).expect("a grid");
     assert_eq!(unicycle.fan(), Fan { left: 6, right: 5, ..unicycle.fan() });
     let check = |breaks| contract::check(&Faulty(unicycle, breaks));
     assert_eq!(check(Breaks::Nothing), Ok(()));
@@ -224,10 +231,94 @@ fn each_broken_promise_is_named() {
         assert_eq!(check(breaks), Err(broken));
     }
     assert!(matches!(check(Breaks::Overlap), Err(Broken::Spacing(Side::Right, 5))));
+    // Also of rays that are too many to look at them all.
+    let check = |breaks| contract::check(&Faulty(Unicycle::fine(), breaks));
+    assert_eq!(check(Breaks::Nothing), Ok(()));
+    assert_eq!(check(Breaks::Spacing), Err(Broken::Spacing(Side::Left, 1)));
+    assert_eq!(check(Breaks::Twice), Err(Broken::Index(Side::Left, 1)));
 }
 
 #[test]
 fn rays_are_as_many_as_a_grid_can_have() {
-    let most = Holonomic::new(65_535, 1, 1).expect("a grid");
-    assert_eq!(most.rays(pose(0)).count(), 65_535);
+    let many = Holonomic::new(65_537, 1, 1).expect("a grid");
+    assert_eq!(many.rays(pose(0)).count(), 65_537);
+    for (bearings, speeds) in [(u32::MAX, 1), (1 << 31, 2), (3 << 29, 2)] {
+        let most = Holonomic::new(bearings, speeds, 1).expect("a grid");
+        assert_eq!(contract::check(&most), Ok(()), "{bearings}");
+        let [nearest, _] = most.around(pose(0), Heading(123_456_789));
+        assert!(apart(nearest.heading, Heading(123_456_789)) < 2, "{bearings}: {nearest:?}");
+    }
+}
+
+/// Beyond 65,536 rays the contract looks at some of them: here are all that lie side by side in places.
+#[test]
+fn the_fine_fan_keeps_the_contract_and_its_rays_differ() {
+    let fine = Unicycle::fine();
+    let grid = fine.grid();
+    assert_eq!((grid.rays(), grid.actions()), (3_141_595, 65_973_495));
+    assert_eq!(contract::check(&fine), Ok(()));
+    let turns = fine.fan().right;
+    let mut rng = ChaCha8Rng::seed_from_u64(3);
+    for start in [0, 1, 1_000_000, turns - 2_000] {
+        let (pose, side) = (pose(rng.random()), if start == 1 { Side::Right } else { Side::Left });
+        for n in start..start + 2_000 {
+            let (ray, next) = (fine.ray(pose, side, n), fine.ray(pose, side, n + 1));
+            assert!(ray.heading != next.heading && ray.step != next.step, "{ray:?} {next:?}");
+            // 1 urad, or what is left of it before the last, is 683 units of a heading.
+            let apart = apart(ray.heading, next.heading);
+            assert!(apart.abs_diff(684) <= 1 || n + 1 == turns && apart > 0, "{n}: {apart}");
+            let mrad = f64::from(n) / 1_000.0;
+            assert!((f64::from(ray.effort) - mrad * mrad).abs() < 0.61, "{n}: {ray:?}");
+        }
+    }
+}
+
+#[test]
+fn the_index_of_an_action_leads_back_to_its_ray_and_speed() {
+    let (fine, pose) = (Unicycle::fine(), pose(7));
+    let last = (fine.grid().actions() - 1) as u32;
+    for index in (0..=last).step_by(9_999).chain(last - 50..=last) {
+        let (ray, speed) = fine.grid().split(Action(index));
+        assert_eq!(fine.grid().action(ray, speed), Action(index));
+        assert_eq!(fine.ray_of(pose, Action(index)).map(|it| it.index), Some(ray));
+    }
+    let Control { v, w } = fine.control(Action(last));
+    assert_eq!((v.to_bits(), w.to_bits()), (2.0_f32.to_bits(), (FRAC_PI_2 as f32).to_bits()));
+    for beyond in [last + 1, u32::MAX] {
+        assert_eq!(fine.ray_of(pose, Action(beyond)), None);
+        assert_eq!(fine.target(pose, Action(beyond)), None);
+    }
+    let _ = Unicycle::paper().control(Action(u32::MAX)); // it does not overflow
+}
+
+/// The paper's turns and their squares as they always were.
+#[test]
+fn the_papers_turns_are_multiples_of_10_mrad() {
+    let paper = Unicycle::paper();
+    for n in 0..158 {
+        let exact = f64::from(n) / 100.0;
+        let ray = paper.ray(pose(0), Side::Left, n);
+        assert_eq!(Some(ray.heading), Heading::from_radians(exact), "{n}");
+        assert_eq!((ray.index, ray.effort), (158 + n, 100 * n * n));
+        let Control { w, .. } = paper.control(paper.grid().action(ray.index, 3));
+        assert_eq!(w.to_bits(), (exact as f32).to_bits());
+    }
+    assert_eq!(paper.ray(pose(0), Side::Right, 158).heading, Heading(3 << 30));
+    assert_eq!(paper.ray(pose(0), Side::Right, 158).effort, 2_467_401);
+    assert_eq!(paper.fan().spacing, Heading(6_835_653));
+}
+
+/// Turns whose last multiple lies next to the sharpest turn, or on it but for rounding.
+#[test]
+fn a_sharpest_turn_next_to_a_multiple_keeps_the_contract() {
+    for step in [10, 70, 1_000, 333_333] {
+        for steps in [1, 2, 9, 40] {
+            let multiple = f64::from(step * steps) * 1e-6;
+            for off in [-2e-9, -1e-9, -1e-12, 0.0, 1e-12, 7e-10, 1e-9, 2e-9] {
+                if let Ok(it) = Unicycle::new(step, multiple + off, 3, 100) {
+                    assert_eq!(contract::check(&it), Ok(()), "{step} {steps} {off}");
+                }
+            }
+        }
+    }
 }

@@ -72,7 +72,7 @@ fn a_coarse_fan_does_not_turn_on_the_spot_for_ever() {
         following: cfc::FOLLOWING,
     };
     let space = VersionSpace::new(&oracle).expect("they are apart");
-    let coarse = Unicycle::new(785, core::f64::consts::FRAC_PI_2, 11, 200).expect("a grid");
+    let coarse = Unicycle::new(785_000, core::f64::consts::FRAC_PI_2, 11, 200).expect("a grid");
     let starts = (0..20).flat_map(|i| (0..20).flat_map(move |j| (0..16).map(move |k| (i, j, k))));
     let starts: Vec<_> = starts.collect();
     starts.par_iter().for_each(|&(i, j, k)| {
@@ -107,7 +107,7 @@ fn any(rng: &mut ChaCha8Rng) -> Any {
             _ => rng.random_range(0.05..core::f64::consts::PI),
         };
         let turn_step = rng.random_range(1..=(1000.0 * sharpest) as u32).max(10);
-        if let Ok(it) = Unicycle::new(turn_step, sharpest, speeds, step_mm) {
+        if let Ok(it) = Unicycle::new(1_000 * turn_step, sharpest, speeds, step_mm) {
             return Any::Turning(it);
         }
     }

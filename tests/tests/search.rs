@@ -52,7 +52,7 @@ fn check<D: Dynamics, const N: usize>(
         let quick = problem.solve(dynamics, pose);
         let slow = problem.solve_exhaustively(dynamics, pose);
         assert_eq!(quick.best, slow.best, "{context}: {rule:?} from {pose:?} in {space:?}");
-        assert_eq!(slow.examined, dynamics.grid().actions());
+        assert_eq!(u64::from(slow.examined), dynamics.grid().actions());
         states += 1;
         examined += u64::from(quick.examined);
     }
@@ -144,12 +144,12 @@ fn equals_exhaustive_search_anywhere_for_any_grid() {
         let varrho = Varrho::new(varrho).expect("in [0, 1)");
         let context = format!("seed {seed}");
         // Coarse grids have more ties, and one whose last turn falls on a multiple of its step.
-        let coarse = Unicycle::new(100, 0.5, 11, 200).expect("a grid");
+        let coarse = Unicycle::new(100_000, 0.5, 11, 200).expect("a grid");
         let round = Holonomic::new(72, 9, 250).expect("a grid");
         // On this one positions are rounded by more than any heading is sure.
-        let tiny = Unicycle::new(100, 1.0, 5, 1).expect("a grid");
+        let tiny = Unicycle::new(100_000, 1.0, 5, 1).expect("a grid");
         // On this one they are rounded by much, and headings are dense.
-        let fine = Unicycle::new(1, 0.5, 9, 4).expect("a grid");
+        let fine = Unicycle::new(1_000, 0.5, 9, 4).expect("a grid");
         let mut count = check(&coarse, &space, area, varrho, pose, &context).0;
         count += check(&round, &space, area, varrho, pose, &context).0;
         count += check(&tiny, &space, area, varrho, pose, &context).0;
@@ -162,6 +162,47 @@ fn equals_exhaustive_search_anywhere_for_any_grid() {
     let states = states.into_inner();
     println!("{states} states");
     assert!(states >= 20_000);
+}
+
+/// The finest steps and the paper's speeds, but not as far to either side, so that all can be tried.
+#[test]
+fn equals_exhaustive_search_on_rays_1_urad_apart() {
+    let fine = Unicycle::new(1, 0.006, 21, 100).expect("a grid");
+    let found = AtomicU64::new(0);
+    (0..200u64).into_par_iter().for_each(|number| {
+        let mission = standard_field::standard(13, number, Algorithm::Cfc, 40);
+        let mut rng = ChaCha8Rng::seed_from_u64(number);
+        let area = mission.config.area;
+        let flown = mission.fly(|taken, known| {
+            let space = known.version_space().expect("noiseless");
+            if rng.random_range(0..40) == 0 {
+                let context = format!("mission {number}");
+                check(&fine, space, area, Varrho::PAPER, taken.pose, &context);
+                let rule = ArcRule::default();
+                let problem = Problem { lines: space.lines(), area, varrho: Varrho::PAPER, rule };
+                found
+                    .fetch_add(u64::from(problem.solve(&fine, taken.pose).best.is_some()), Relaxed);
+            }
+        });
+        assert!(flown.is_ok());
+    });
+    let found = found.into_inner();
+    println!("{found} states have an action");
+    assert!(found >= 50);
+}
+
+/// As many rays as there can be with a speed beside standing still: numbers of rays do not overflow.
+#[test]
+fn a_search_among_2_to_the_31_rays_comes_to_an_end() {
+    let most = Holonomic::new(1 << 31, 2, 2_000).expect("a grid");
+    for number in 0..40 {
+        let mission = standard_field::standard(14, number, Algorithm::Cfc, 1);
+        let (lines, area) = (mission.given.lines(), mission.config.area);
+        let problem = Problem { lines, area, varrho: Varrho::PAPER, rule: ArcRule::default() };
+        let solution = problem.solve_within(LOOKS, &most, mission.start);
+        let found = solution.best.map(|best| lines.certainty(best.target.site));
+        assert!(found.is_none_or(|it| it == Certainty::Uncertain), "{number}: {solution:?}");
+    }
 }
 
 /// Two parabolas that face each other, `gap` off the axis: a tangent at any of these points keeps clear
@@ -187,7 +228,7 @@ fn square(half: i32) -> Area {
 
 #[test]
 fn equals_exhaustive_search_among_more_bounds_than_are_kept() {
-    let coarse = Unicycle::new(100, 0.5, 11, 200).expect("a grid");
+    let coarse = Unicycle::new(100_000, 0.5, 11, 200).expect("a grid");
     let (mut quick, mut slow) = (0, 0);
     for (reach, step, gap) in [(5, 50_000, 65_536), (15, 20_000, 512), (16, 3_000, 40_000)] {
         let space = parabolas(reach, step, gap);
@@ -199,7 +240,7 @@ fn equals_exhaustive_search_among_more_bounds_than_are_kept() {
             let (states, examined) = check(&coarse, &space, area, Varrho::PAPER, pose, context);
             let (more, also) =
                 check(&Unicycle::paper(), &space, area, Varrho::PAPER, pose, context);
-            slow += states * u64::from(coarse.grid().actions()) + more * 6657;
+            slow += states * coarse.grid().actions() + more * 6657;
             quick += examined + also;
         }
     }
@@ -229,8 +270,8 @@ fn a_plan_has_so_many_looks_and_says_when_they_do_not_do() {
         site: Site::new(0, z).expect("on the lattice"),
         heading: Heading(quarters << 30),
     };
-    let fine = Unicycle::new(1, 1.57, 20, 1).expect("a grid");
-    assert!(fine.grid().actions() > 7 * LOOKS);
+    let fine = Unicycle::new(1_000, 1.57, 20, 1).expect("a grid");
+    assert!(fine.grid().actions() > 7 * u64::from(LOOKS));
     // Facing away from the strip.
     assert_eq!(planner(fine).plan(pose(700, 1)), Plan::Stop(StopReason::Undecided));
     // Beside it: what is found first asks for a sharp turn, and all that turns less has to be looked at.
@@ -252,7 +293,7 @@ fn a_plan_has_so_many_looks_and_says_when_they_do_not_do() {
     }
     assert_eq!(before, best.map(|it| it.objective));
     // A coarser grid is looked at to the end.
-    let coarse = Unicycle::new(100, 1.57, 20, 1).expect("a grid");
+    let coarse = Unicycle::new(100_000, 1.57, 20, 1).expect("a grid");
     let Plan::Move(motion) = planner(coarse).plan(pose(700, 1)) else { panic!("it can turn") };
     assert!(motion.proven && !motion.wants_label);
 }

@@ -83,7 +83,7 @@ pub struct Summary {
     /// The most that one plan looked at.
     pub most_examined: u32,
     /// The size of the action set.
-    pub actions: u32,
+    pub actions: u64,
     /// Of each mission and stage.
     #[serde(skip)]
     pub(crate) checkpoints: Vec<Checkpoint>,

@@ -32,8 +32,8 @@ impl<D: Dynamics, B: Belief> Planner for RandomWalk<D, B> {
             return Plan::Stop(StopReason::OutsideArea);
         }
         loop {
-            let actions = self.dynamics.grid().actions();
-            let action = Action(self.rng.random_range(0..actions) as u16);
+            let last = self.dynamics.grid().actions() - 1;
+            let action = Action(self.rng.random_range(0..=last as u32));
             let target = self.dynamics.target(pose, action);
             if let Some(target) = target.filter(|target| self.area.contains(target.site)) {
                 return Plan::Move(Motion {

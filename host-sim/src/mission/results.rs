@@ -194,7 +194,7 @@ pub struct PoseRecord {
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct ActionRecord {
     /// Its name in the grid.
-    pub index: u16,
+    pub index: u32,
     /// Speed, metres per unit time.
     pub v: f32,
     /// Turn, radians.

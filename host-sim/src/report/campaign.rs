@@ -28,7 +28,7 @@ pub fn accuracy(summary: &accuracy::Summary) -> String {
         let (mean, actions) = (summary.mean_examined, summary.actions);
         format!(
             "Actions examined per plan: mean {mean:.1} of {actions} ({:.2} %), at most {}\n",
-            100.0 * mean / f64::from(actions),
+            100.0 * mean / actions as f64,
             summary.most_examined
         )
     };

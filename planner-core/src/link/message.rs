@@ -319,7 +319,7 @@ mod tests {
         let motion = Motion {
             stage: Some(Stage::P4),
             recovery: Some(Recovery::Transit),
-            action: Action(u16::MAX),
+            action: Action(u32::MAX),
             control: Control { v: -1.0, w: f32::MIN_POSITIVE },
             target: pose,
             wants_label: false,

@@ -1,4 +1,4 @@
-//! The integer-indexed action grid: a finite action set in which one `u16` names an action.
+//! The integer-indexed action grid: a finite action set in which one `u32` names an action.
 //!
 //! Actions that share a direction of travel form a *ray*, and differ in speed alone. A grid has
 //! `rays` rays of `speeds` speeds, `0, step, 2 step, ...`; the index of an action is
@@ -10,7 +10,7 @@ use crate::geometry::lattice::UNITS_PER_METRE;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
-pub struct Action(pub u16);
+pub struct Action(pub u32);
 
 /// What an action asks of the vehicle in one unit of time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,7 +27,7 @@ pub struct Control {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ActionGrid {
-    rays: u16,
+    rays: u32,
     speeds: u16,
     speed_step_mm: u32,
     /// One step of speed in the units of a ray's step.
@@ -39,7 +39,7 @@ pub struct ActionGrid {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum BadGrid {
-    /// It has no action, or more than 65,536.
+    /// It has no action, or more than 2^32.
     Actions,
     /// Its steps of speed are nothing, or one of its motions is 100 m long or longer.
     Reach,
@@ -51,10 +51,10 @@ pub enum BadGrid {
 impl core::fmt::Display for BadGrid {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str(match self {
-            Self::Actions => "an action grid has 1 to 65536 actions",
+            Self::Actions => "an action grid has 1 to 2^32 actions",
             Self::Reach => "steps of speed are 1 mm or more, and a motion is shorter than 100 m",
             Self::Turn => {
-                "a step of turning is 1 to 3141 mrad, and the sharpest turn from 0.001 to pi rad"
+                "a step of turning is 1 to 3141592 urad, and the sharpest turn from 0.001 to pi rad"
             }
         })
     }
@@ -73,9 +73,9 @@ impl ActionGrid {
     ///
     /// # Errors
     /// [`BadGrid::Actions`], [`BadGrid::Reach`].
-    pub const fn new(rays: u16, speeds: u16, speed_step_mm: u32) -> Result<Self, BadGrid> {
-        let actions = rays as u32 * speeds as u32;
-        if actions == 0 || actions > 1 << 16 {
+    pub const fn new(rays: u32, speeds: u16, speed_step_mm: u32) -> Result<Self, BadGrid> {
+        let actions = rays as u64 * speeds as u64;
+        if actions == 0 || actions > 1 << 32 {
             return Err(BadGrid::Actions);
         }
         let reach = (speeds as u64 - 1) * speed_step_mm as u64;
@@ -89,7 +89,7 @@ impl ActionGrid {
     }
 
     /// Number of directions.
-    pub const fn rays(&self) -> u16 {
+    pub const fn rays(&self) -> u32 {
         self.rays
     }
 
@@ -99,8 +99,8 @@ impl ActionGrid {
     }
 
     /// Number of actions.
-    pub const fn actions(&self) -> u32 {
-        self.rays as u32 * self.speeds as u32
+    pub const fn actions(&self) -> u64 {
+        self.rays as u64 * self.speeds as u64
     }
 
     /// The spacing of the speeds, millimetres per unit time.
@@ -130,13 +130,13 @@ impl ActionGrid {
     }
 
     /// The name of an action.
-    pub const fn action(&self, ray: u16, speed: u16) -> Action {
-        Action(ray.wrapping_mul(self.speeds).wrapping_add(speed))
+    pub const fn action(&self, ray: u32, speed: u16) -> Action {
+        Action(ray.wrapping_mul(self.speeds as u32).wrapping_add(speed as u32))
     }
 
     /// Ray and speed of an action.
-    pub const fn split(&self, action: Action) -> (u16, u16) {
-        let speeds = if self.speeds == 0 { 1 } else { self.speeds }; // never 0; spares a panic path
-        (action.0 / speeds, action.0 % speeds)
+    pub const fn split(&self, action: Action) -> (u32, u16) {
+        let speeds = if self.speeds == 0 { 1 } else { self.speeds as u32 }; // never 0; spares a panic path
+        (action.0 / speeds, (action.0 % speeds) as u16)
     }
 }

@@ -25,13 +25,13 @@ pub enum Broken {
     Count,
     /// 2: from the ray before, this one turns back or not at all, or further than the fan's spacing, or
     /// the fan's sides overlap behind it.
-    Spacing(Side, u16),
+    Spacing(Side, u32),
     /// 3: this ray asks for less effort than one before it.
-    Effort(Side, u16),
+    Effort(Side, u32),
     /// 4: this ray does not lead where its heading points, or by another length than the grid's.
-    Step(Side, u16),
+    Step(Side, u32),
     /// 5: this ray's index is not in the grid, is another ray's too, or does not lead back to it.
-    Index(Side, u16),
+    Index(Side, u32),
     /// 6: the turn in place to this side moves the agent, turns it the other way or not at all, or
     /// leaves a gap between the fans.
     TurnInPlace(Side),
@@ -69,14 +69,14 @@ impl core::error::Error for Broken {}
 const HEADINGS: u32 = 16;
 
 /// Whether the [contract](Dynamics#contract) is kept, at a position and at headings all around. A few
-/// hundred instructions for each ray and heading.
+/// hundred instructions for each ray and heading; of a side with more than 65,536 rays some 8,000 are looked
+/// at, neighbours among them.
 ///
 /// # Errors
 /// The first promise that was found [`Broken`].
 pub fn check<D: Dynamics>(dynamics: &D) -> Result<(), Broken> {
     let Fan { left, right, .. } = dynamics.fan();
-    let rays = u32::from(left) + u32::from(right);
-    if left == 0 || rays != u32::from(dynamics.grid().rays()) {
+    if left == 0 || left.checked_add(right) != Some(dynamics.grid().rays()) {
         return Err(Broken::Count);
     }
     let site = Site::new(12_345, -6_789).unwrap_or(Site::ORIGIN);
@@ -97,15 +97,16 @@ pub fn check<D: Dynamics>(dynamics: &D) -> Result<(), Broken> {
 }
 
 /// Checks the rays of one side up to the last; how far they reach.
-fn arm<D: Dynamics>(dynamics: &D, pose: Pose, side: Side, last: u16) -> Result<u32, Broken> {
+fn arm<D: Dynamics>(dynamics: &D, pose: Pose, side: Side, last: u32) -> Result<u32, Broken> {
     let ahead = dynamics.ray(pose, Side::Left, 0);
-    let (mut before, mut effort) = (0, ahead.effort);
-    for n in 0..=last {
+    let spacing = u64::from(dynamics.fan().spacing.0);
+    let (mut before, mut turned_before, mut effort) = (0, 0, ahead.effort);
+    for n in looked_at(last) {
         let ray = dynamics.ray(pose, side, n);
         let turned = turn(ahead.heading, ray.heading, side);
-        let more = turned.wrapping_sub(before);
-        let spacing = dynamics.fan().spacing.0;
-        if n == 0 && ray != ahead || n > 0 && (turned <= before || more > spacing) {
+        let (rays, more) = (n - before, turned.wrapping_sub(turned_before));
+        let is_between = more >= rays && u64::from(more) <= u64::from(rays) * spacing;
+        if n == 0 && ray != ahead || turned < turned_before || !is_between {
             return Err(Broken::Spacing(side, n));
         }
         if ray.effort < effort {
@@ -117,9 +118,23 @@ fn arm<D: Dynamics>(dynamics: &D, pose: Pose, side: Side, last: u16) -> Result<u
         if !is_named(dynamics, pose, &ray) {
             return Err(Broken::Index(side, n));
         }
-        (before, effort) = (turned, ray.effort);
+        (before, turned_before, effort) = (n, turned, ray.effort);
     }
-    Ok(before)
+    Ok(turned_before)
+}
+
+/// The rays of a side that are looked at: all up to the last; of more than 65,536 some 8,000, each second
+/// one the neighbour of the one before it, and the last two.
+fn looked_at(last: u32) -> impl Iterator<Item = u32> {
+    let leap = if last < 1 << 16 { 0 } else { 2 * (last >> 13) };
+    core::iter::successors(Some(0), move |&n: &u32| {
+        let step = if n.is_multiple_of(2) { 1 } else { 1 + leap };
+        match last - n {
+            0 => None,
+            1 => Some(last),
+            rest => Some(n + step.min(rest - 1)),
+        }
+    })
 }
 
 /// The turn to a side from one heading to another.

@@ -24,7 +24,7 @@ pub struct Pose {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Ray {
     /// Which ray of the grid.
-    pub index: u16,
+    pub index: u32,
     /// Heading of travel.
     pub heading: Heading,
     /// Displacement for one step of speed, in 2^-[`STEP_BITS`](Self::STEP_BITS) lattice units.
@@ -74,9 +74,9 @@ pub enum Side {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Fan {
     /// Rays to the left, the 0th included.
-    pub left: u16,
+    pub left: u32,
     /// Rays to the right, from the 1st.
-    pub right: u16,
+    pub right: u32,
     /// The turn from one to the next, at most.
     pub spacing: Heading,
 }
@@ -108,10 +108,10 @@ pub trait Dynamics {
     fn fan(&self) -> Fan;
 
     /// The heading of the `n`-th ray to a side of the fan; the 0th is the same on both.
-    fn heading(&self, pose: Pose, side: Side, n: u16) -> Heading;
+    fn heading(&self, pose: Pose, side: Side, n: u32) -> Heading;
 
     /// The `n`-th ray to a side of the fan.
-    fn ray(&self, pose: Pose, side: Side, n: u16) -> Ray;
+    fn ray(&self, pose: Pose, side: Side, n: u32) -> Ray;
 
     /// The rays from a pose in the order in which ties are settled: by number, left before right.
     fn rays(&self, pose: Pose) -> impl Iterator<Item = Ray> {
@@ -124,7 +124,7 @@ pub trait Dynamics {
     }
 
     /// The ray nearest to a heading, and the nearest within half a turn to the other side of it; the first
-    /// again where there is none. Some 40 headings are asked for, at most.
+    /// again where there is none. Some 70 headings are asked for, at most.
     fn around(&self, pose: Pose, heading: Heading) -> [Ray; 2] {
         let Fan { left, right, .. } = self.fan();
         let to_left = heading.0.wrapping_sub(self.heading(pose, Side::Left, 0).0);
@@ -171,13 +171,13 @@ pub trait Dynamics {
 
 /// The turn from straight ahead to the `n`-th ray of a side.
 #[inline(never)] // it is called in three places, where time does not matter
-fn turn<D: Dynamics + ?Sized>(dynamics: &D, pose: Pose, side: Side, n: u16) -> u32 {
+fn turn<D: Dynamics + ?Sized>(dynamics: &D, pose: Pose, side: Side, n: u32) -> u32 {
     let turned = dynamics.heading(pose, side, n).0.wrapping_sub(dynamics.heading(pose, side, 0).0);
     if side == Side::Left { turned } else { turned.wrapping_neg() }
 }
 
 /// The last of the numbers from 0 whose turn is at most this one; the turns grow from 0.
-fn last_within(last: u16, most: u32, turn: impl Fn(u16) -> u32) -> u16 {
+fn last_within(last: u32, most: u32, turn: impl Fn(u32) -> u32) -> u32 {
     let (mut low, mut high) = (0, last);
     while low < high {
         let middle = high - (high - low) / 2;

@@ -18,11 +18,11 @@ impl Holonomic {
     ///
     /// # Errors
     /// [`BadGrid::Actions`], [`BadGrid::Reach`].
-    pub fn new(bearings: u16, speeds: u16, speed_step_mm: u32) -> Result<Self, BadGrid> {
+    pub fn new(bearings: u32, speeds: u16, speed_step_mm: u32) -> Result<Self, BadGrid> {
         Ok(Self { grid: ActionGrid::new(bearings, speeds, speed_step_mm)? })
     }
 
-    fn bearing(&self, n: u16) -> Heading {
+    fn bearing(&self, n: u32) -> Heading {
         Heading(((u64::from(n) << 32) / u64::from(self.grid.rays().max(1))) as u32)
     }
 }
@@ -34,15 +34,15 @@ impl Dynamics for Holonomic {
 
     /// Counter-clockwise from the x axis; all cost the same.
     fn fan(&self) -> Fan {
-        let spacing = (u32::MAX / u32::from(self.grid.rays().max(1))).saturating_add(1);
+        let spacing = (u32::MAX / self.grid.rays().max(1)).saturating_add(1);
         Fan { left: self.grid.rays(), right: 0, spacing: Heading(spacing) }
     }
 
-    fn heading(&self, _: Pose, _: Side, n: u16) -> Heading {
+    fn heading(&self, _: Pose, _: Side, n: u32) -> Heading {
         self.bearing(n)
     }
 
-    fn ray(&self, _: Pose, _: Side, n: u16) -> Ray {
+    fn ray(&self, _: Pose, _: Side, n: u32) -> Ray {
         let heading = self.bearing(n);
         let step = heading.unit().scaled(self.grid.step_length());
         Ray { index: n, heading, step, effort: 0 }

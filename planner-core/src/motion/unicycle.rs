@@ -14,9 +14,9 @@ use crate::motion::dynamics::{Dynamics, Fan, Pose, Ray, Side};
 pub struct Unicycle {
     grid: ActionGrid,
     /// Turns to one side.
-    turns: u16,
-    step_mrad: u32,
-    /// The step as a binary angle with 16 fractional bits.
+    turns: u32,
+    step_urad: u32,
+    /// The step as a binary angle with 32 fractional bits.
     step: u64,
     sharpest_rad: f32,
     sharpest_mrad2: u32,
@@ -24,64 +24,100 @@ pub struct Unicycle {
 }
 
 impl Unicycle {
-    /// A unicycle whose turns are `0, step, 2 step, ...` up to `sharpest`, milliradians, to both
-    /// sides, and whose speeds are `0, step, ..., (speeds - 1) step`, millimetres per unit time.
+    /// A unicycle whose turns are `0, step, 2 step, ...` up to `sharpest`, to both sides, the step in
+    /// microradians, and whose speeds are `0, step, ..., (speeds - 1) step`, millimetres per unit time.
     ///
     /// # Errors
     /// [`BadGrid`].
-    pub fn new(
-        turn_step_mrad: u32,
+    pub const fn new(
+        turn_step_urad: u32,
         sharpest_rad: f64,
         speeds: u16,
         speed_step_mm: u32,
     ) -> Result<Self, BadGrid> {
         use core::f64::consts::PI;
-        let step = f64::from(turn_step_mrad) / 1000.0;
-        if turn_step_mrad == 0 || step > PI || !(1e-3..=PI).contains(&sharpest_rad) {
+        let makes_sense = turn_step_urad > 0
+            && turn_step_urad as f64 <= 1e6 * PI
+            && sharpest_rad >= 1e-3
+            && sharpest_rad <= PI;
+        if !makes_sense {
             return Err(BadGrid::Turn);
         }
-        // A sharpest turn that is a multiple of the step but for rounding is that multiple.
-        let turns = libm::ceil(sharpest_rad / step - 1e-9) as u16;
-        let grid = ActionGrid::new(2 * turns + 1, speeds, speed_step_mm)?;
-        Ok(Self::with_grid(grid, turn_step_mrad, sharpest_rad))
+        // Turns are half a turn at most, 2^31 units of a heading: all of this is below 2^64.
+        let sharpest = Heading((sharpest_rad * 1e6 * UNITS_PER_URAD + 0.5) as u32);
+        let step = (turn_step_urad as f64 * UNITS_PER_URAD * FRACTION + 0.5) as u64;
+        // The multiples, rounded to headings, that are less than the sharpest turn, and that turn; so one
+        // that is a multiple but for rounding is that multiple.
+        let turns = (((sharpest.0 as u64) << 32) - HALF).div_ceil(step) as u32;
+        let grid = match ActionGrid::new(2 * turns + 1, speeds, speed_step_mm) {
+            Ok(grid) => grid,
+            Err(bad) => return Err(bad),
+        };
+        let sharpest_mrad = sharpest_rad * 1000.0;
+        Ok(Self {
+            grid,
+            turns,
+            step_urad: turn_step_urad,
+            step,
+            sharpest_rad: sharpest_rad as f32,
+            sharpest_mrad2: (sharpest_mrad * sharpest_mrad + 0.5) as u32,
+            sharpest,
+        })
     }
 
     /// The paper's action set: `v` in {0, 0.1, ..., 2.0} and `w` in {-pi/2, -1.57, ..., 0, 0.01,
     /// ..., 1.57, pi/2}: 317 x 21 = 6,657 actions.
     pub const fn paper() -> Self {
-        const PAPER: Unicycle = match ActionGrid::new(317, 21, 100) {
-            Ok(grid) => Unicycle::with_grid(grid, 10, core::f64::consts::FRAC_PI_2),
+        const PAPER: Unicycle = match Unicycle::every(10_000) {
+            Ok(unicycle) => unicycle,
             Err(_) => panic!("the paper's grid is none"),
         };
         PAPER
     }
 
-    /// A sharpest turn is at most pi, so all of this is far from overflow.
-    const fn with_grid(grid: ActionGrid, step_mrad: u32, sharpest_rad: f64) -> Self {
-        let sharpest_mrad = sharpest_rad * 1000.0;
-        Self {
-            grid,
-            turns: grid.rays() / 2,
-            step_mrad,
-            step: (step_mrad as f64 * BINARY_ANGLE_PER_MRAD + 0.5) as u64,
-            sharpest_rad: sharpest_rad as f32,
-            sharpest_mrad2: (sharpest_mrad * sharpest_mrad + 0.5) as u32,
-            sharpest: Heading((sharpest_mrad * BINARY_ANGLE_PER_MRAD / 65_536.0 + 0.5) as u32),
-        }
+    /// The paper's speeds and sharpest turn with rays 1 urad apart, so that accuracy ends at the lattice
+    /// and not at the grid: 3,141,595 x 21 = 65,973,495 actions.
+    pub const fn fine() -> Self {
+        const FINE: Unicycle = match Unicycle::every(1) {
+            Ok(unicycle) => unicycle,
+            Err(_) => panic!("the fine grid is none"),
+        };
+        FINE
+    }
+
+    /// The paper's speeds and sharpest turn with other turns between.
+    const fn every(turn_step_urad: u32) -> Result<Self, BadGrid> {
+        Self::new(turn_step_urad, core::f64::consts::FRAC_PI_2, 21, 100)
     }
 
     /// The `j`-th turn to the left and its square, mrad^2.
-    const fn turn(&self, j: u16) -> (Heading, u32) {
+    const fn turn(&self, j: u32) -> (Heading, u32) {
         if j >= self.turns {
             return (self.sharpest, self.sharpest_mrad2);
         }
-        let turned = (j as u64 * self.step + (1 << 15)) >> 16;
-        (Heading(turned as u32), (j as u32 * self.step_mrad).pow(2))
+        let turned = (j as u64 * self.step + HALF) >> 32;
+        (Heading(turned as u32), square_mrad2(j * self.step_urad))
     }
 }
 
-/// A milliradian as a binary angle with 16 fractional bits.
-const BINARY_ANGLE_PER_MRAD: f64 = 281_474_976_710_656.0 / (1000.0 * core::f64::consts::TAU);
+/// The square of a turn in urad, half a turn at most, in mrad^2: exact for whole mrad, else off by 0.61 at
+/// most. Without a division, as each ray that is looked at has one.
+const fn square_mrad2(urad: u32) -> u32 {
+    /// A microradian in milliradians, with 41 fractional bits.
+    const MRAD: u64 = (1 << 41) / 1000;
+    // With 16 fractional bits, too small by up to 1.1 units: no square is larger than that of a larger turn.
+    let mrad = ((urad as u64 * MRAD) >> 25) as u32 as u64;
+    ((mrad * mrad + HALF) >> 32) as u32
+}
+
+/// A microradian in the units of a heading.
+const UNITS_PER_URAD: f64 = 4_294_967_296.0 / (1e6 * core::f64::consts::TAU);
+
+/// Fractional bits of a step, as a factor.
+const FRACTION: f64 = 4_294_967_296.0;
+
+/// One half with 32 fractional bits.
+const HALF: u64 = 1 << 31;
 
 impl Dynamics for Unicycle {
     fn grid(&self) -> ActionGrid {
@@ -89,16 +125,16 @@ impl Dynamics for Unicycle {
     }
 
     fn fan(&self) -> Fan {
-        let spacing = Heading(((self.step >> 16) as u32 + 1).min(self.sharpest.0));
+        let spacing = Heading(((self.step >> 32) as u32 + 1).min(self.sharpest.0));
         Fan { left: self.turns + 1, right: self.turns, spacing }
     }
 
-    fn heading(&self, pose: Pose, side: Side, n: u16) -> Heading {
+    fn heading(&self, pose: Pose, side: Side, n: u32) -> Heading {
         let (turn, _) = self.turn(n);
         pose.heading.turned(if side == Side::Left { turn } else { turn.mirrored() })
     }
 
-    fn ray(&self, pose: Pose, side: Side, n: u16) -> Ray {
+    fn ray(&self, pose: Pose, side: Side, n: u32) -> Ray {
         let n = n.min(self.turns);
         let (heading, (_, effort)) = (self.heading(pose, side, n), self.turn(n));
         let index = if side == Side::Left { self.turns + n } else { self.turns - n };
@@ -119,10 +155,10 @@ impl Dynamics for Unicycle {
     fn control(&self, action: Action) -> Control {
         let (ray, speed) = self.grid.split(action);
         let turn = ray.abs_diff(self.turns);
-        let w = if turn == self.turns {
+        let w = if turn >= self.turns {
             self.sharpest_rad
         } else {
-            (u32::from(turn) * self.step_mrad) as f32 / 1000.0
+            (turn * self.step_urad) as f32 / 1e6
         };
         let w = if ray < self.turns { -w } else { w };
         Control { v: self.grid.reach_m(speed), w }

@@ -26,7 +26,7 @@ pub(crate) struct Search<'a, D> {
 }
 
 /// The number and side of a ray, by which ties are settled.
-type Rank = (u16, Side);
+type Rank = (u32, Side);
 
 /// A choice and the rank of its ray.
 type Ranked = (Choice, Rank);
@@ -39,6 +39,10 @@ pub(crate) struct Findings {
     /// The best of the others that came up; of all of them if `best` is `None`.
     pub(crate) best_forbidden: Option<Ranked>,
 }
+
+/// The spacing that the search takes a fan to have at least. Taking it for wider than it is only looks at
+/// more rays; and as rays that move are at most 2^31, `next + turn / LEAST + 1` is below 2^32.
+const LEAST: NonZeroU32 = NonZeroU32::MIN.saturating_add(1);
 
 /// The rays to one side of a heading that may still lead anywhere.
 struct Arm {
@@ -130,15 +134,13 @@ impl<D: Dynamics> Search<'_, D> {
         hunt: &mut Hunt<'_, R>,
     ) {
         let (grid, fan, site) = (self.dynamics.grid(), self.dynamics.fan(), self.pose.site);
-        let spacing = NonZeroU32::new(fan.spacing.0).unwrap_or(NonZeroU32::MIN);
+        let spacing = NonZeroU32::new(fan.spacing.0).map_or(LEAST, |spacing| spacing.max(LEAST));
         let arm = |heading, side, first, end| {
             let pose = Pose { site, heading };
             Arm { pose, side, spacing, first, end }
         };
-        let mut arms = [
-            arm(left, Side::Left, 0, u32::from(fan.left)),
-            arm(right, Side::Right, 1, u32::from(fan.right) + 1),
-        ];
+        let mut arms =
+            [arm(left, Side::Left, 0, fan.left), arm(right, Side::Right, 1, fan.right + 1)];
         for speed in (1..grid.speeds()).rev() {
             let straight_ahead = || self.varrho.objective(grid.reach_mm(speed), 0);
             let best = hunt.found.best.as_ref();
@@ -160,9 +162,9 @@ impl<D: Dynamics> Search<'_, D> {
         let (pose, side, spacing) = (arm.pose, arm.side, arm.spacing);
         let mut next = arm.first;
         while next < arm.end {
-            match self.judge(pose, (next as u16, side), speed, hunt) {
+            match self.judge(pose, (next, side), speed, hunt) {
                 Verdict::Infeasible { turn, on_inner_circles_too } => {
-                    // Rays within the turn are like this one: it is below 2^32, and a step above 2^15.
+                    // Rays within the turn are like this one.
                     let after = next + turn / spacing + 1;
                     if on_inner_circles_too {
                         arm.leave_out(next, after);
