@@ -10,6 +10,7 @@ use host_sim::world::noise::{Extent, NoiseModel};
 use planner_core::link::delivery::{LinkLost, Port};
 use planner_core::link::message::{self};
 use planner_core::link::station::{Flown, Station};
+use planner_core::motion::unicycle::Grid;
 
 /// How long the chip waits for an answer before it asks again.
 pub const WAIT: Duration = Duration::from_millis(100);
@@ -43,10 +44,11 @@ pub fn fly<P: Port>(
     }
 }
 
-/// Missions of both algorithms by turns.
+/// Missions of both algorithms by turns, every fourth pair with the fine fan.
 pub fn mission(number: u64) -> Mission {
     let algorithm = if number.is_multiple_of(2) { Algorithm::Cfc } else { Algorithm::Scc };
     let mut mission = standard_field::standard(SEED, number, algorithm, 10);
+    mission.grid = if number % 8 < 6 { Grid::Paper } else { Grid::Fine };
     if algorithm == Algorithm::Scc {
         mission.noise = Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.5) });
     }

@@ -5,6 +5,7 @@ use host_sim::campaign::ensemble::Campaign;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::report::campaign as tables;
 use planner_core::belief::weight::Prior;
+use planner_core::motion::unicycle::Grid;
 use planner_core::planner::cfc;
 use planner_core::planner::config::{Crossing, Following};
 use planner_core::planner::scc::Policy;
@@ -17,6 +18,7 @@ fn campaign(algorithm: Algorithm, following: Following, steps: u32) -> Summary {
         seed: 1,
         crossing: Crossing::default(),
         following,
+        grid: Grid::Paper,
         noise: None,
         policy: Policy::default(),
         prior: Prior::default(),

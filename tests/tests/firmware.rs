@@ -28,6 +28,7 @@ use planner_core::belief::sample::{Label, Reading};
 use planner_core::link::delivery::{Link, Port};
 use planner_core::link::message::LabelSource;
 use planner_core::motion::dynamics::Pose;
+use planner_core::motion::unicycle::Grid;
 use planner_core::planner::Motion;
 use planner_core::robot::agent::{Agent, Event, Step};
 use planner_core::robot::body::Body;
@@ -135,10 +136,11 @@ fn example(text: &str) -> Mission {
     scenario::parse("", text, Overrides::default()).expect("a good scenario")
 }
 
-/// Random missions, each algorithm by turns.
+/// Random missions, each algorithm by turns, every fourth pair with the fine fan.
 fn random(number: u64) -> Mission {
     let algorithm = if number.is_multiple_of(2) { Algorithm::Cfc } else { Algorithm::Scc };
     let mut mission = standard_field::standard(6, number, algorithm, 10 + (number % 11) as u32);
+    mission.grid = if number % 8 < 6 { Grid::Paper } else { Grid::Fine };
     if algorithm == Algorithm::Scc {
         mission.noise = Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.5) });
     }

@@ -20,7 +20,7 @@ use planner_core::geometry::heading::Heading;
 use planner_core::geometry::lattice::{LIMIT, Site};
 use planner_core::motion::action::{Action, Control};
 use planner_core::motion::dynamics::Pose;
-use planner_core::motion::unicycle::Unicycle;
+use planner_core::motion::unicycle::{Grid, Unicycle};
 use planner_core::planner::config::Crossing;
 use planner_core::planner::scc::{Policy, Scc};
 use planner_core::planner::{Motion, Plan, Planner, Stage};
@@ -228,6 +228,7 @@ fn campaign(algorithm: Algorithm, fields: u64, steps: u32, policy: Policy) -> Su
         seed: 1,
         crossing: Crossing::default(),
         following: algorithm.following(),
+        grid: Grid::Paper,
         noise: Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.0) }),
         policy,
         prior: Prior::Area,

@@ -154,7 +154,7 @@ impl Summary {
             plans,
             mean_examined: examined as f64 / plans as f64,
             most_examined,
-            actions: Unicycle::paper().grid().actions(),
+            actions: Unicycle::from(campaign.grid).grid().actions(),
             checkpoints: checkpoints.into_iter().flatten().collect(),
         }
     }

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use anyhow::{Context as _, Result};
 use indicatif::{ParallelProgressIterator as _, ProgressBar, ProgressStyle};
 use planner_core::belief::weight::Prior;
+use planner_core::motion::unicycle::Grid;
 use planner_core::planner::config::{Crossing, Following};
 use planner_core::planner::scc::Policy;
 use planner_core::robot::agent::Step;
@@ -33,6 +34,8 @@ pub struct Campaign {
     pub crossing: Crossing,
     /// How P2 follows the boundary.
     pub following: Following,
+    /// The unicycle's action set.
+    pub grid: Grid,
     /// How labels are flipped; `None` when they are true.
     pub noise: Option<NoiseModel>,
     /// How hypotheses choose an action together.
@@ -155,6 +158,7 @@ impl Campaign {
     fn mission(&self, number: u64) -> Mission {
         let mut mission = standard_field::standard(self.seed, number, self.algorithm, self.steps);
         (mission.config.crossing, mission.config.following) = (self.crossing, self.following);
+        mission.grid = self.grid;
         (mission.noise, mission.policy, mission.prior) = (self.noise, self.policy, self.prior);
         mission
     }

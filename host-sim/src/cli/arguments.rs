@@ -6,7 +6,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::hil::faults::Faults;
 use crate::mission::algorithm::Algorithm;
-use crate::mission::names::{CrossingName, FollowingName, PolicyName, PriorName};
+use crate::mission::names::{CrossingName, FanName, FollowingName, PolicyName, PriorName};
 
 /// Simulates a robot that finds an unknown straight boundary from few samples.
 ///
@@ -138,6 +138,9 @@ pub(crate) struct CampaignArgs {
     /// Who plans
     #[arg(long, value_enum, default_value_t = Algorithm::Cfc)]
     pub(crate) algorithm: Algorithm,
+    /// How finely the unicycle turns
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) fan: FanName,
     /// How P1 looks for the opposite label (cfc, scc) [default: anyhow]
     #[arg(long, value_enum)]
     pub(crate) crossing: Option<CrossingName>,

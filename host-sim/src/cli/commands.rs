@@ -216,6 +216,7 @@ fn campaign(args: &CampaignArgs) -> Result<String> {
         seed: args.seed,
         crossing: args.crossing.unwrap_or_default().into(),
         following: args.following.map_or(args.algorithm.following(), Into::into),
+        grid: args.fan.into(),
         noise: weighs.then_some(NoiseModel { p, extent }),
         policy: args.policy.unwrap_or_default().into(),
         prior: args.prior.unwrap_or_default().into(),

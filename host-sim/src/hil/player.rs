@@ -279,8 +279,9 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
     };
     let capacity =
         Capacity { samples: (samples.len() as u32 + taken) as u16, hypotheses: hypotheses as u16 };
-    let (steps, config, start) = (taken as u16, mission.config, mission.start);
-    Ok(Setup { protocol: PROTOCOL, algorithm, config, capacity, steps, start, labels, given })
+    let &Mission { config, grid, start, .. } = mission;
+    let steps = taken as u16;
+    Ok(Setup { protocol: PROTOCOL, algorithm, config, grid, capacity, steps, start, labels, given })
 }
 
 fn decline(declined: Declined, setup: &Setup) -> anyhow::Error {

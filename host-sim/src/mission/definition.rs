@@ -5,6 +5,7 @@ use planner_core::belief::noise::Noise;
 use planner_core::belief::version_space::VersionSpace;
 use planner_core::belief::weight::Prior;
 use planner_core::motion::dynamics::Pose;
+use planner_core::motion::unicycle::Grid;
 use planner_core::planner::config::Config;
 use planner_core::planner::scc::Policy;
 use rand::SeedableRng;
@@ -38,6 +39,8 @@ pub struct Mission {
     pub seed: u64,
     /// Area, weight of the control, way of crossing.
     pub config: Config,
+    /// The unicycle's action set.
+    pub grid: Grid,
     /// Where the agent starts.
     pub start: Pose,
     /// What is really there.

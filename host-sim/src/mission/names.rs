@@ -1,9 +1,30 @@
 //! The names of choices in scenario files and flags.
 
 use planner_core::belief::weight::Prior;
+use planner_core::motion::unicycle::Grid;
 use planner_core::planner::config::{Crossing, Following};
 use planner_core::planner::scc::Policy;
 use serde::Deserialize;
+
+/// How finely the unicycle turns, by name.
+#[derive(Clone, Copy, Debug, Default, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum FanName {
+    /// Rays 10 mrad apart
+    #[default]
+    Paper,
+    /// Rays 1 urad apart
+    Fine,
+}
+
+impl From<FanName> for Grid {
+    fn from(name: FanName) -> Self {
+        match name {
+            FanName::Paper => Self::Paper,
+            FanName::Fine => Self::Fine,
+        }
+    }
+}
 
 /// How P1 looks for the opposite label, by name.
 #[derive(Clone, Copy, Debug, Default, Deserialize, clap::ValueEnum)]

@@ -42,9 +42,9 @@ fn erased(planner: impl Planner<Belief: ReadOut + Sized + 'static> + 'static) ->
 }
 
 impl Mission {
-    /// The planner, with the paper's unicycle, as yet without a label.
+    /// The planner, as yet without a label.
     pub fn planner(&self) -> AnyPlanner {
-        let (dynamics, config) = (Unicycle::paper(), self.config);
+        let (dynamics, config) = (Unicycle::from(self.grid), self.config);
         let (area, rng) = (config.area, ChaCha8Rng::seed_from_u64(self.seed));
         match self.algorithm {
             Algorithm::Cfc => erased(Cfc::new(config, dynamics, self.given.clone())),

@@ -20,7 +20,7 @@ use serde::Deserialize;
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::{CAPACITY, Lines, Mission};
-use crate::mission::names::{CrossingName, FollowingName, PolicyName, PriorName};
+use crate::mission::names::{CrossingName, FanName, FollowingName, PolicyName, PriorName};
 use crate::mission::strict::{Numbers, Table};
 use crate::world::World;
 use crate::world::noise::{Extent, NoiseModel};
@@ -45,6 +45,8 @@ struct File {
     seed: u64,
     #[serde(default = "defaults::varrho")]
     varrho: f64,
+    #[serde(default)]
+    fan: FanName,
     #[serde(default)]
     crossing: CrossingName,
     following: Option<FollowingName>,
@@ -226,6 +228,7 @@ fn mission(file: &File, overrides: Overrides) -> Result<Mission> {
         steps,
         seed: overrides.seed.unwrap_or(file.seed),
         config: Config { area, varrho, crossing, following },
+        grid: file.fan.into(),
         start,
         world,
         given,

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::{folder, prints};
+use crate::{GOOD, folder, prints};
 
 #[test]
 fn a_campaign_prints_tables_and_writes_rows() {
@@ -22,6 +22,30 @@ fn a_campaign_prints_tables_and_writes_rows() {
     );
     let summary: serde_json::Value = serde_json::from_str(&json).expect("JSON");
     assert_eq!((&summary["fields"], &summary["algorithm"]), (&5.into(), &"random".into()));
+}
+
+/// The flag and the scenario's key choose the action set: more actions, and turns that are no multiples of
+/// 10 mrad.
+#[test]
+fn the_fan_can_be_fine() {
+    let folder = folder();
+    let args = ["campaign", "--fields", "3", "--format", "json", "--fan"];
+    for (fan, actions) in [("paper", 6_657), ("fine", 65_973_495)] {
+        let summary = prints(folder.path(), &[&args[..], &[fan]].concat());
+        let summary: serde_json::Value = serde_json::from_str(&summary).expect("JSON");
+        assert_eq!(summary["actions"], actions);
+    }
+    let steps = |text: &str| {
+        fs::write(folder.path().join("m.toml"), text).expect("a file");
+        let trace = prints(folder.path(), &["run", "m.toml", "--format", "json"]);
+        let records = trace.lines().map(|it| serde_json::from_str(it).expect("JSON"));
+        let records: Vec<serde_json::Value> = records.collect();
+        let index = records.iter().filter_map(|it| it["action"]["index"].as_u64()).max();
+        (trace, index.expect("a step"))
+    };
+    let (trace, index) = steps(GOOD);
+    assert_eq!(steps(&format!("fan = \"paper\"\n{GOOD}")), (trace, index));
+    assert!(index < 6_657 && steps(&format!("fan = \"fine\"\n{GOOD}")).1 > 6_657);
 }
 
 #[test]

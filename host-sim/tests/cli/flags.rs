@@ -93,7 +93,10 @@ fn a_flag_that_an_algorithm_ignores_is_refused() {
     }
     // Where they have a meaning they are taken.
     let quick = ["campaign", "--fields", "2", "--steps", "3"];
-    let cases: [&[&str]; 4] = [
+    let cases: [&[&str]; 7] = [
+        &["--fan", "paper"],
+        &["--fan", "fine", "--algorithm", "scc"],
+        &["--fan", "fine", "--algorithm", "random"],
         &["--crossing", "along-oracle", "--following", "anyhow", "--p", "1"],
         &["--algorithm", "scc", "--crossing", "along-oracle", "--following", "anyhow"],
         &["--algorithm", "scc", "--policy", "joint", "--prior", "sequences", radius[0], radius[1]],

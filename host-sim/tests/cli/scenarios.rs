@@ -28,12 +28,13 @@ fn bad_noise_is_refused() {
 #[test]
 fn bad_scenarios_are_refused_by_file_and_field() {
     let folder = folder();
-    let cases: [(&str, &str, &[&str]); 22] = [
+    let cases: [(&str, &str, &[&str]); 23] = [
         ("steps = 10", "steps = ten", &["bad.toml:4"]),
         ("steps = 10", "stepz = 10", &["bad.toml:4", "stepz", "expected one of", "`steps`"]),
         ("steps = 10", "steps = 65", &["steps", "found 65", "1 to 64", "68 samples"]),
         ("steps = 10", "steps = 0", &["steps", "found 0", "1 to 64"]),
         ("steps = 10", "steps = -3", &["bad.toml:4", "-3"]),
+        ("steps = 10", "fan = \"finer\"", &["bad.toml:4", "finer", "`paper` or `fine`"]),
         ("\"cfc\"", "\"dfc\"", &["bad.toml:3", "dfc", "`cfc`"]),
         ("varrho = 0.1", "varrho = 1.0", &["varrho", "found 1", "[0, 1)"]),
         ("varrho = 0.1", "varrho = -0.1", &["varrho", "found -0.1", "[0, 1)"]),

@@ -27,13 +27,14 @@ use crate::belief::version_space::NoVersionSpace;
 use crate::belief::weight::Prior;
 use crate::link::frame::Message;
 use crate::motion::dynamics::Pose;
+use crate::motion::unicycle::Grid;
 use crate::planner::config::Config;
 use crate::planner::scc::Policy;
 use crate::planner::{Motion, StopReason};
 
 /// The version of this protocol. The layout of [`Request::Hello`] and of its frame is that of every
 /// version from 2 on.
-pub const PROTOCOL: u16 = 3;
+pub const PROTOCOL: u16 = 4;
 
 /// Given samples that a setup can hold.
 pub const MOST_GIVEN: usize = 16;
@@ -91,6 +92,8 @@ pub struct Setup {
     pub algorithm: Algorithm,
     /// What the mission fixes beforehand.
     pub config: Config,
+    /// What the vehicle can be asked to do.
+    pub grid: Grid,
     /// The capacity asked for.
     pub capacity: Capacity,
     /// Steps at most.
@@ -300,6 +303,7 @@ mod tests {
                 crossing: Crossing::AcrossBisector,
                 following: Following::AlongBisector,
             },
+            grid: Grid::Fine,
             capacity: Capacity { samples: u16::MAX, hypotheses: u16::MAX },
             steps: u16::MAX,
             start: Pose { site: far(-1, -1), heading: Heading(u32::MAX) },

@@ -49,7 +49,7 @@ impl Setup {
         Ok(())
     }
 
-    /// Algorithm 1 for this mission, with the paper's unicycle.
+    /// Algorithm 1 for this mission.
     ///
     /// # Errors
     /// [`Declined`].
@@ -58,13 +58,12 @@ impl Setup {
         let capacity = Capacity { samples: N as u16, hypotheses: 1 };
         self.check(capacity)?;
         let space = VersionSpace::new(&self.given).map_err(Declined::Given)?;
-        Ok(Prepared { planner: Cfc::new(self.config, Unicycle::paper(), space), capacity })
+        Ok(Prepared { planner: Cfc::new(self.config, self.grid.into(), space), capacity })
     }
 
-    /// Algorithm 2 for this mission, with the paper's unicycle and none of its samples yet: the memory
-    /// for [`prepare`](Self::prepare).
+    /// Algorithm 2 for this mission, with none of its samples yet: the memory for [`prepare`](Self::prepare).
     pub fn scc<const N: usize, const H: usize>(&self, policy: Policy) -> Scc<Unicycle, N, H> {
-        Scc::new(self.config, policy, Unicycle::paper(), Hypotheses::NONE)
+        Scc::new(self.config, policy, self.grid.into(), Hypotheses::NONE)
     }
 
     /// Begins the mission in this memory, so that there is never a second planner beside it.

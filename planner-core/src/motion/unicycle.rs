@@ -23,6 +23,27 @@ pub struct Unicycle {
     sharpest: Heading,
 }
 
+/// The action sets of the unicycle that have a name.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+pub enum Grid {
+    /// [`Unicycle::paper`].
+    #[default]
+    Paper,
+    /// [`Unicycle::fine`].
+    Fine,
+}
+
+impl From<Grid> for Unicycle {
+    fn from(grid: Grid) -> Self {
+        match grid {
+            Grid::Paper => Self::paper(),
+            Grid::Fine => Self::fine(),
+        }
+    }
+}
+
 impl Unicycle {
     /// A unicycle whose turns are `0, step, 2 step, ...` up to `sharpest`, to both sides, the step in
     /// microradians, and whose speeds are `0, step, ..., (speeds - 1) step`, millimetres per unit time.
