@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use crate::campaign::ensemble::{Campaign, Ensemble, Measure, Progress};
 use crate::campaign::spread::Spread;
+use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::Mission;
 use crate::mission::read_out::{LEVEL, ReadOut};
 use crate::world::noise::limit;
@@ -65,6 +66,8 @@ pub struct Row {
     pub missions: u64,
     /// Mean bits learnt.
     pub bits: f64,
+    /// The share of what so many labels can tell at most; `None` where they can tell nothing.
+    pub share: Option<f64>,
     /// Mean number of hypotheses.
     pub hypotheses: f64,
     /// The largest probability given up, at most.
@@ -82,6 +85,12 @@ pub struct Row {
 pub struct Summary {
     /// What was run.
     pub title: String,
+    /// Who planned.
+    pub algorithm: Algorithm,
+    /// Number of standard fields.
+    pub fields: u64,
+    /// Seed of the ensemble.
+    pub seed: u64,
     /// Labels are true with this probability.
     pub p: f64,
     /// Bits that a label can tell at most, on average: `1 - H(p)`.
@@ -153,21 +162,25 @@ impl Summary {
         let checkpoints: Vec<_> = ensemble.checkpoints.into_iter().flatten().flatten().collect();
         let rows = LABELS.iter().filter_map(|&labels| {
             let of: Vec<_> = checkpoints.iter().filter(|m| m.labels == labels).copied().collect();
-            (!of.is_empty()).then(|| row(labels, &of))
+            (!of.is_empty()).then(|| row(labels, limit(p), &of))
         });
         let title =
             format!("{}, {fields} standard fields, seed {seed}, p = {p}", algorithm.title());
-        Self { title, p, limit: limit(p), rows: rows.collect(), checkpoints }
+        let rows = rows.collect();
+        Self { title, algorithm, fields, seed, p, limit: limit(p), rows, checkpoints }
     }
 }
 
-fn row(labels: u32, checkpoints: &[Checkpoint]) -> Row {
+fn row(labels: u32, limit: f64, checkpoints: &[Checkpoint]) -> Row {
     let n = checkpoints.len() as f64;
     let mean = |pick: fn(&Checkpoint) -> f64| checkpoints.iter().map(pick).sum::<f64>() / n;
+    let bits = mean(|m| m.bits);
     Row {
         labels,
         missions: checkpoints.len() as u64,
-        bits: mean(|m| m.bits),
+        bits,
+        // Of nothing there is no share.
+        share: (limit > 0.0).then(|| bits / f64::from(labels) / limit),
         hypotheses: mean(|m| m.hypotheses as f64),
         pruned_mass: checkpoints.iter().map(|m| m.pruned_mass).fold(0.0, f64::max),
         mean_deg: Spread::of(checkpoints.iter().map(|m| m.mean_deg)),

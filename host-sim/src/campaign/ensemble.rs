@@ -138,8 +138,10 @@ impl Campaign {
     /// Names the field in which a sample contradicted what was known: never, as labels are true where
     /// they are trusted.
     pub fn run<M: Measure>(&self, measure: &M) -> Result<Ensemble<M::Checkpoint>> {
-        let style = "{bar:40} {pos}/{len} fields  {per_sec}  {eta} left";
-        let bar = ProgressBar::new(self.fields).with_style(ProgressStyle::with_template(style)?);
+        let style = "{msg}  {bar:40} {pos}/{len} fields  {per_sec}  {eta} left";
+        let bar = ProgressBar::new(self.fields)
+            .with_style(ProgressStyle::with_template(style)?)
+            .with_message(self.algorithm.title());
         let of_each: Vec<_> = (0..self.fields)
             .into_par_iter()
             .progress_with(bar.clone())

@@ -138,6 +138,9 @@ pub(crate) struct CampaignArgs {
     /// Who plans
     #[arg(long, value_enum, default_value_t = Algorithm::Cfc)]
     pub(crate) algorithm: Algorithm,
+    /// Who plans, one after the other on the same fields: one table shows them side by side
+    #[arg(long, value_enum, value_delimiter = ',', conflicts_with = "algorithm")]
+    pub(crate) compare: Vec<Algorithm>,
     /// How finely the unicycle turns
     #[arg(long, value_enum, default_value_t)]
     pub(crate) fan: FanName,
@@ -147,7 +150,7 @@ pub(crate) struct CampaignArgs {
     /// How P2 follows the boundary (cfc, scc) [default: along-bisector; for scc anyhow]
     #[arg(long, value_enum)]
     pub(crate) following: Option<FollowingName>,
-    /// Labels are true with this probability (scc, random) [default: 0.7 for scc, 1 else]
+    /// Labels are true with this probability (scc, margin, random) [default: 0.7 for scc, 1 else]
     #[arg(long)]
     pub(crate) p: Option<f64>,
     /// Within this distance of the oracle's points labels are certain, metres (where p is below 1) [default: 0]

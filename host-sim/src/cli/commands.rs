@@ -1,11 +1,9 @@
 //! What the commands do.
 
 use std::path::Path;
-use std::{env, fs};
+use std::{env, fs, slice};
 
 use anyhow::{Context as _, Result, bail};
-use clap::ValueEnum as _;
-use clap::builder::PossibleValue;
 use planner_core::link::message::LabelSource;
 
 use crate::campaign::accuracy::{self, Accuracy};
@@ -14,6 +12,8 @@ use crate::campaign::ensemble::Campaign;
 use crate::cli::arguments::{
     CampaignArgs, Cli, Command, FIRMWARE, Format, HilArgs, Labels, ReplayArgs, Run,
 };
+use crate::cli::compare::{self, Told};
+use crate::cli::paper;
 use crate::hil::flight::{self, Chip, Timings};
 use crate::hil::player::Player;
 use crate::mission::algorithm::Algorithm;
@@ -26,15 +26,8 @@ use crate::report::picture::Picture;
 use crate::report::{campaign as tables, text, trace};
 use crate::world::noise::{Extent, NoiseModel};
 
-/// What the bare command tells first.
-pub const PAPER_TITLE: &str = "The paper's noiseless example (Section V), Algorithm 1";
-
-const PAPER_NOISY_TITLE: &str = "The paper's noisy example (Section V), Algorithm 2";
-
 /// The speed of the firmware's serial lines, bits per second.
 const BAUD: u32 = 115_200;
-
-const CANDIDATES_TITLE: &str = "Its labels do not tell which line is true: fewest violations";
 
 impl Cli {
     /// Does what was asked and returns what to print.
@@ -43,41 +36,13 @@ impl Cli {
     /// One message that names the culprit.
     pub fn execute(self) -> Result<String> {
         match self.command {
-            None => paper(),
+            None => paper::tell(),
             Some(Command::Run(args)) => run(&args),
             Some(Command::Replay(args)) => replay(&args),
             Some(Command::Campaign(args)) => campaign(&args),
             Some(Command::Hil(args)) => hil(&args),
         }
     }
-}
-
-/// The paper's two examples, start to end.
-fn paper() -> Result<String> {
-    fs::create_dir_all("out").context("out: expected a place to make a folder")?;
-    let names = ["paper-noiseless.svg", "paper-noisy.svg", "paper-noisy-candidates.svg"];
-    let places = names.map(|name| (name, Path::new("out").join(name)));
-    let asked = places.each_ref().map(|(name, path)| (*name, Some(path.as_path())));
-    let outputs = prepare(&[], asked)?;
-    let example = |text| Recording::of(&scenario::parse("", text, Overrides::default())?);
-    let noiseless = example(scenario::PAPER_NOISELESS)?;
-    let noisy = example(scenario::PAPER_NOISY)?;
-    // All is drawn before anything is written.
-    let figures = [
-        Some(Picture::of(PAPER_TITLE, &noiseless)),
-        Some(Picture::of(PAPER_NOISY_TITLE, &noisy)),
-        Picture::of_candidates(CANDIDATES_TITLE, &noisy),
-    ];
-    let drawn = figures.iter().flatten().map(Picture::svg).collect::<Result<Vec<_>>>()?;
-    for (output, svg) in outputs.into_iter().flatten().zip(drawn) {
-        output.write(svg)?;
-    }
-    Ok(format!(
-        "{}\n\n{}\nFigures in out/: {}\n",
-        text::mission(PAPER_TITLE, &noiseless.results),
-        text::mission(PAPER_NOISY_TITLE, &noisy.results),
-        names.join(", ")
-    ))
 }
 
 fn run(args: &Run) -> Result<String> {
@@ -201,32 +166,32 @@ fn replay(args: &ReplayArgs) -> Result<String> {
 fn campaign(args: &CampaignArgs) -> Result<String> {
     const ORACLE: usize = 4;
     scenario::check_steps("--steps", args.steps, ORACLE)?;
-    let p = args.p.unwrap_or(if args.algorithm == Algorithm::Scc { 0.7 } else { 1.0 });
+    compare::check_once(&args.compare)?;
+    let planners = args.planners();
+    let p = args.p.unwrap_or(if planners.contains(&Algorithm::Scc) { 0.7 } else { 1.0 });
     let p = scenario::probability("--p", p)?;
-    args.check_meanings(p)?;
+    planners.iter().try_for_each(|&planner| args.check_meanings(planner, p))?;
     let radius = args.trusted_radius.unwrap_or_default();
     let trusted_radius = scenario::trusted("--trusted-radius", radius)?;
     let [output] = prepare(&[], [("--csv", args.csv.as_deref())])?;
-    let weighs = args.algorithm.weighs(p < 1.0);
     let extent = Extent::OutsideBalls(trusted_radius);
-    let campaign = Campaign {
-        algorithm: args.algorithm,
+    let campaign = |algorithm: Algorithm| Campaign {
+        algorithm,
         fields: args.fields,
         steps: args.steps,
         seed: args.seed,
         crossing: args.crossing.unwrap_or_default().into(),
-        following: args.following.map_or(args.algorithm.following(), Into::into),
+        following: args.following.map_or(algorithm.following(), Into::into),
         grid: args.fan.into(),
-        noise: weighs.then_some(NoiseModel { p, extent }),
+        noise: algorithm.weighs(p < 1.0).then_some(NoiseModel { p, extent }),
         policy: args.policy.unwrap_or_default().into(),
         prior: args.prior.unwrap_or_default().into(),
     };
-    let (table, rows, record) = if weighs {
-        let summary = calibration::Summary::of(&campaign, campaign.run(&Calibrated)?);
-        (tables::calibration(&summary), csv(&summary.checkpoints)?, json(&summary))
+    let Told { table, rows, record } = if args.compare.is_empty() {
+        alone(&campaign(args.algorithm))?
     } else {
-        let summary = accuracy::Summary::of(&campaign, campaign.run(&Accuracy)?);
-        (tables::accuracy(&summary), csv(&summary.checkpoints)?, json(&summary))
+        let campaigns: Vec<_> = planners.iter().map(|&planner| campaign(planner)).collect();
+        compare::fly(&campaigns, p < 1.0)?
     };
     if let Some(output) = output {
         output.write(rows)?;
@@ -237,30 +202,53 @@ fn campaign(args: &CampaignArgs) -> Result<String> {
     })
 }
 
+/// Flies one campaign.
+fn alone(campaign: &Campaign) -> Result<Told> {
+    Ok(if campaign.noise.is_some() {
+        let summary = calibration::Summary::of(campaign, campaign.run(&Calibrated)?);
+        let (table, rows) = (tables::calibration(&summary), csv(&summary.checkpoints)?);
+        Told { table, rows, record: json(&summary) }
+    } else {
+        let summary = accuracy::Summary::of(campaign, campaign.run(&Accuracy)?);
+        let (table, rows) = (tables::accuracy(&summary), csv(&summary.checkpoints)?);
+        Told { table, rows, record: json(&summary) }
+    })
+}
+
 impl CampaignArgs {
-    /// Whether every flag that was given has a meaning for the algorithm. `p` is how often labels are true.
-    fn check_meanings(&self, p: f64) -> Result<()> {
-        if p < 1.0 && self.algorithm == Algorithm::Cfc {
-            bail!("--p: found {p}, expected 1 with --algorithm cfc, which takes labels to be true");
+    /// Who plans.
+    fn planners(&self) -> &[Algorithm] {
+        if self.compare.is_empty() { slice::from_ref(&self.algorithm) } else { &self.compare }
+    }
+
+    /// Whether every flag that was given has a meaning for a planner. `p` is how often labels are true.
+    fn check_meanings(&self, planner: Algorithm, p: f64) -> Result<()> {
+        let flag = if self.compare.is_empty() { "--algorithm" } else { "--compare" };
+        let name = planner.name();
+        if p < 1.0 && !planner.weighs(true) {
+            let found = if self.p.is_some() { "" } else { ", the default with scc" };
+            bail!(
+                "--p: found {p}{found}, expected 1 with {flag} {name}, which takes labels to be true"
+            );
         }
-        let plans = self.algorithm != Algorithm::Random;
-        let weighs = self.algorithm == Algorithm::Scc;
-        for (flag, is_given, has_meaning, meant) in [
+        let plans = planner.poses_problems();
+        let weighs = planner == Algorithm::Scc;
+        // Margin sampling asks the most likely hypothesis.
+        let asks = weighs || planner == Algorithm::Margin && p < 1.0;
+        for (given, is_given, has_meaning, meant) in [
             ("--crossing", self.crossing.is_some(), plans, "--algorithm cfc or scc"),
             ("--following", self.following.is_some(), plans, "--algorithm cfc or scc"),
             ("--policy", self.policy.is_some(), weighs, "--algorithm scc"),
-            ("--prior", self.prior.is_some(), weighs, "--algorithm scc"),
+            ("--prior", self.prior.is_some(), asks, "--algorithm scc, or margin with --p below 1"),
             (
                 "--trusted-radius",
                 self.trusted_radius.is_some(),
                 p < 1.0,
-                "labels that can be wrong: --algorithm scc or random, --p below 1",
+                "labels that can be wrong: --algorithm scc, margin or random, --p below 1",
             ),
         ] {
             if is_given && !has_meaning {
-                let algorithm = self.algorithm.to_possible_value();
-                let algorithm = algorithm.as_ref().map_or("", PossibleValue::get_name);
-                bail!("{flag}: found with --algorithm {algorithm}, expected with {meant}");
+                bail!("{given}: found with {flag} {name}, expected with {meant}");
             }
         }
         Ok(())

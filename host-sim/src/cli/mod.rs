@@ -2,3 +2,5 @@
 
 pub mod arguments;
 pub mod commands;
+mod compare;
+pub mod paper;

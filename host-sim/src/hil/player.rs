@@ -264,7 +264,7 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
             policy: mission.policy,
             prior: mission.prior,
         },
-        Algorithm::Random => bail!("algorithm: found random, expected cfc or scc"),
+        other => bail!("algorithm: found {}, expected cfc or scc", other.name()),
     };
     let samples = mission.given.samples();
     let given = BoundedVec::from_slice(samples).map_err(|_| {

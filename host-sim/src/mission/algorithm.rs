@@ -1,5 +1,6 @@
 //! The planners that the simulator knows, by name.
 
+use clap::ValueEnum as _;
 use planner_core::planner::config::Following;
 use planner_core::planner::{cfc, scc};
 use serde::{Deserialize, Serialize};
@@ -12,6 +13,8 @@ pub enum Algorithm {
     Cfc,
     /// Algorithm 2, noisy labels.
     Scc,
+    /// Margin sampling, the usual rule of active learning.
+    Margin,
     /// A random walk, for scale.
     Random,
 }
@@ -22,6 +25,7 @@ impl Algorithm {
         match self {
             Self::Cfc => "Algorithm 1 (cfc)",
             Self::Scc => "Algorithm 2 (scc)",
+            Self::Margin => "margin sampling",
             Self::Random => "random walk",
         }
     }
@@ -29,7 +33,7 @@ impl Algorithm {
     /// How P2 follows the boundary unless one says: in the way that learns the most.
     pub fn following(self) -> Following {
         match self {
-            Self::Cfc | Self::Random => cfc::FOLLOWING,
+            Self::Cfc | Self::Margin | Self::Random => cfc::FOLLOWING,
             Self::Scc => scc::FOLLOWING,
         }
     }
@@ -39,7 +43,23 @@ impl Algorithm {
         match self {
             Self::Cfc => false,
             Self::Scc => true,
-            Self::Random => labels_err,
+            Self::Margin | Self::Random => labels_err,
         }
+    }
+
+    /// Whether it poses the paper's one-step problems, whose directions P1 and P2 hold.
+    pub fn poses_problems(self) -> bool {
+        match self {
+            Self::Cfc | Self::Scc => true,
+            Self::Margin | Self::Random => false,
+        }
+    }
+
+    /// What flags and files call it.
+    ///
+    /// # Panics
+    /// Never: each has a name.
+    pub fn name(self) -> String {
+        self.to_possible_value().expect("none is hidden").get_name().to_owned()
     }
 }

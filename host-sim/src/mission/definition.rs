@@ -6,7 +6,7 @@ use planner_core::belief::version_space::VersionSpace;
 use planner_core::belief::weight::Prior;
 use planner_core::motion::dynamics::Pose;
 use planner_core::motion::unicycle::Grid;
-use planner_core::planner::config::Config;
+use planner_core::planner::config::{Config, Crossing, Following};
 use planner_core::planner::scc::Policy;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -56,6 +56,17 @@ pub struct Mission {
 }
 
 impl Mission {
+    /// The same mission with the paper's algorithms as they are printed: P1 and P2 in any direction that their
+    /// slopes allow; in Algorithm 2 the most likely action of each hypothesis's own P1 or P2, as it lists them, and
+    /// all label sequences alike beforehand.
+    #[must_use]
+    pub fn as_printed(mut self) -> Self {
+        self.config.crossing = Crossing::Unrestricted;
+        self.config.following = Following::Unrestricted;
+        (self.policy, self.prior) = (Policy::MixtureOfOwn, Prior::Sequences);
+        self
+    }
+
     /// Whether what is known is a distribution over hypotheses.
     pub fn is_noisy(&self) -> bool {
         self.algorithm.weighs(self.noise.is_some())

@@ -12,6 +12,7 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::Mission;
+use crate::mission::margin::Margin;
 use crate::mission::random_walk::RandomWalk;
 use crate::mission::read_out::ReadOut;
 
@@ -49,6 +50,10 @@ impl Mission {
         match self.algorithm {
             Algorithm::Cfc => erased(Cfc::new(config, dynamics, self.given.clone())),
             Algorithm::Scc => erased(Scc::new(config, self.policy, dynamics, self.table())),
+            Algorithm::Margin if self.is_noisy() => {
+                erased(Margin { dynamics, area, belief: self.table() })
+            }
+            Algorithm::Margin => erased(Margin { dynamics, area, belief: self.given.clone() }),
             Algorithm::Random if self.is_noisy() => {
                 erased(RandomWalk { dynamics, area, belief: self.table(), rng })
             }

@@ -31,6 +31,25 @@ pub fn csv(records: &[impl Serialize]) -> Result<String> {
     Ok(String::from_utf8(writer.into_inner()?)?)
 }
 
+/// Records of several groups as CSV, under one header: a first column names the group of each.
+///
+/// # Errors
+/// When a record could not be written.
+pub fn csv_by<'a, R: Serialize + 'a>(
+    column: &str,
+    groups: impl IntoIterator<Item = (String, &'a [R])>,
+) -> Result<String> {
+    let mut text = String::new();
+    for (name, records) in groups {
+        let rows = csv(records)?;
+        let mut lines = rows.lines();
+        let header = lines.next().filter(|_| text.is_empty());
+        text.extend(header.map(|header| format!("{column},{header}\n")));
+        text.extend(lines.map(|row| format!("{name},{row}\n")));
+    }
+    Ok(text)
+}
+
 /// A temporary file, which goes with this value, and if the program is interrupted. Whoever the user's umask
 /// lets may read it.
 ///

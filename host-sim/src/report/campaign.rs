@@ -94,14 +94,12 @@ pub fn calibration(summary: &calibration::Summary) -> String {
     ]);
     for row in rows {
         let each = row.bits / f64::from(row.labels);
-        // Of nothing there is no share.
-        let share = (*limit > 0.0).then(|| 100.0 * each / limit);
         table.row([
             row.labels.to_string(),
             row.missions.to_string(),
             format!("{:.3}", row.bits),
             format!("{each:.4}"),
-            share.map_or("-".into(), |share| format!("{share:.1}%")),
+            row.share.map_or("-".into(), |share| format!("{:.1}%", 100.0 * share)),
             format!("{:.1}", row.hypotheses),
             format!("{:.4}", row.pruned_mass),
             spread(row.mean_deg, 3),

@@ -1,6 +1,8 @@
 //! What is told of a mission: text for people, a trace for programs, a figure to look at.
 
 pub mod campaign;
+pub mod comparison;
+pub mod examples;
 pub mod figure;
 pub mod legend;
 pub mod picture;

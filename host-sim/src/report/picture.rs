@@ -89,6 +89,8 @@ pub struct Named {
 pub enum Kind {
     /// The estimate that is recommended.
     Estimate,
+    /// The paper's printed estimate.
+    Printed,
     /// An end of the credible slopes.
     Bound,
     /// The plain maximum margin.
@@ -173,6 +175,22 @@ impl Picture {
             truth: mission.world.line().copied(),
             lines,
         }
+    }
+
+    /// The same with the paper's printed estimate, the bisector, before the recommended one. Of labels that may
+    /// err the paper prints none.
+    #[must_use]
+    pub fn with_printed_estimate(mut self, recording: &Recording) -> Self {
+        let belief = &recording.belief;
+        let bisector = belief.version_space().and_then(|_| belief.estimates().bisector);
+        let named = bisector.map(|line| Named {
+            name: "estimate as printed: bisector".to_owned(),
+            line,
+            kind: Kind::Printed,
+            beside: None,
+        });
+        self.lines.splice(0..0, named);
+        self
     }
 
     /// The lines that violate the fewest labels of a noisy mission, with their counts of violations,

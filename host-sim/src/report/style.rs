@@ -28,7 +28,7 @@ pub(crate) fn of_line(kind: Kind) -> RGBColor {
     match kind {
         Kind::Estimate => ESTIMATE,
         Kind::Bound => SHADE,
-        Kind::MaximumMargin => RGBColor(190, 0, 60),
+        Kind::Printed | Kind::MaximumMargin => RGBColor(190, 0, 60),
         Kind::SecondBest => RGBColor(150, 150, 150),
         Kind::ThirdBest => RGBColor(185, 185, 185),
     }

@@ -58,23 +58,56 @@ pub fn estimates(results: &Results) -> [(&'static str, Option<LineRecord>); 3] {
     named(names, &results.end.estimates)
 }
 
+/// The same, first the one that the paper prints: of labels that are true the bisector; of labels that may err it
+/// prints the most likely hypothesis, which its margin stands for.
+pub fn printed_estimates(results: &Results) -> [(&'static str, Option<LineRecord>); 3] {
+    let [centre, margin, bisector] = estimates(results);
+    if results.end.noisy.is_some() {
+        [margin, centre, bisector]
+    } else {
+        [bisector, centre, margin]
+    }
+}
+
 /// The story of a mission: a table of steps, then the estimates beside the truth.
 pub fn mission(title: &str, results: &Results) -> String {
-    let mut text = beginning(title, &results.start);
+    story(title, results) + "\n" + &end(results, estimates(results))
+}
+
+/// The story of a mission as the paper prints it, with its own estimate first.
+pub fn printed(title: &str, results: &Results) -> String {
+    let by_its_prior = if results.end.noisy.is_some() {
+        "Bits are by the paper's prior, so they are more than the labels told: it takes all sequences\n\
+         for alike, however few lines realise them.\n\n"
+    } else {
+        ""
+    };
+    story(title, results) + "\n" + by_its_prior + &end(results, printed_estimates(results))
+}
+
+/// What a mission came to, without its steps.
+pub fn outcome_alone(title: &str, results: &Results) -> String {
+    format!("{title}\n{}", end(results, estimates(results)))
+}
+
+fn story(title: &str, results: &Results) -> String {
+    let beginning = beginning(title, &results.start);
     let steps = if results.end.noisy.is_some() {
         noisy_steps(&results.steps)
     } else {
         steps(&results.steps, &results.start)
     };
+    format!("{beginning}{steps}")
+}
+
+fn end(results: &Results, estimates: [(&str, Option<LineRecord>); 3]) -> String {
     let why = match results.end.reason {
         "steps" => "all steps are taken",
         "resolution" => "what is uncertain is thinner than the action grid can hit",
         other => other,
     };
-    // Writing to a string cannot fail.
-    let _ = writeln!(
-        text,
-        "{steps}\nEnded: {why}. {} samples in {} steps, {:.1} m travelled, control cost {:.1}.\n",
+    let mut text = format!(
+        "Ended: {why}. {} samples in {} steps, {:.1} m travelled, control cost {:.1}.\n\n",
         results.samples(),
         results.steps.len(),
         results.travelled(),
@@ -83,7 +116,7 @@ pub fn mission(title: &str, results: &Results) -> String {
     if let Some(noisy) = &results.end.noisy {
         text += &outcome(noisy);
     }
-    text + &errors(results)
+    text + &errors(results.start.truth.as_ref(), estimates)
 }
 
 fn beginning(title: &str, start: &Start) -> String {
@@ -233,17 +266,17 @@ fn outcome(NoisyEnd { best, credible }: &NoisyEnd) -> String {
 }
 
 /// The estimates beside the truth.
-fn errors(results: &Results) -> String {
+fn errors(truth: Option<&LineRecord>, estimates: [(&str, Option<LineRecord>); 3]) -> String {
     let mut table = Table::new([
         Column::left("", 28),
         Column::left("line", 36),
         Column::right("error deg", 9),
         Column::right("misclassified", 13),
     ]);
-    if let Some(truth) = &results.start.truth {
+    if let Some(truth) = truth {
         table.row(["truth".into(), line(truth)]);
     }
-    for (name, estimate) in estimates(results) {
+    for (name, estimate) in estimates {
         let Some(estimate) = estimate else {
             table.line(&format!("{name:<28} none"));
             continue;

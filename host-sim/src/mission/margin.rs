@@ -1,0 +1,145 @@
+//! Margin sampling, the usual rule of active learning: what a planner made for this problem has to beat.
+//!
+//! It asks where the maximum-margin line of what is known is least sure: of all drives that stay in the area and
+//! end on uncertain ground, the one whose end is nearest to that line. Of labels that are true, ground is uncertain
+//! where the lines left disagree; of labels that may err, where those disagreed that were there at the start, and the
+//! line is the most likely hypothesis's.
+//!
+//! The rule is made for places that can be asked at will. Where no uncertain end is in reach it would wait for ever,
+//! as nothing is learnt by waiting, so it goes on without a label:
+//!
+//! 1. *Reorient*: a turn in place after which there is such a drive; to the side where it ends nearer to the line.
+//! 2. *Transit*: the drive that ends nearest to the line, on certain ground. A drive is never of length 0, so next
+//!    time other places are in reach, also where what is uncertain is thinner than the action grid.
+//! 3. In a corner that no drive leads out of: a turn to the left, until one does.
+
+use nalgebra::Point2;
+use planner_core::belief::Refused;
+use planner_core::belief::consistent_lines::Certainty;
+use planner_core::belief::sample::Reading;
+use planner_core::geometry::area::Area;
+use planner_core::geometry::lattice::Site;
+use planner_core::geometry::line::Line;
+use planner_core::motion::action::Action;
+use planner_core::motion::dynamics::{Dynamics, Pose, Side};
+use planner_core::planner::{Motion, Plan, Planner, StopReason};
+use planner_core::search::recovery::Recovery;
+
+use crate::mission::definition::{Lines, Table};
+use crate::mission::read_out::ReadOut;
+
+/// Takes the drive that ends nearest to the maximum-margin line, on uncertain ground.
+pub struct Margin<D, B> {
+    /// The action set.
+    pub dynamics: D,
+    /// Where positions stay.
+    pub area: Area,
+    /// What has been learnt on the way.
+    pub belief: B,
+}
+
+/// A drive that stays in the area.
+#[derive(Clone, Copy)]
+struct Drive {
+    action: Action,
+    target: Pose,
+    /// What its turn costs.
+    effort: u32,
+    /// Its length.
+    reach_mm: u32,
+    /// From its end to the line, metres.
+    distance: f64,
+}
+
+impl<D: Dynamics, B: ReadOut> Margin<D, B> {
+    /// The drives from a pose: by their turns, the smallest first, left before right.
+    fn drives(&self, line: &Line, pose: Pose) -> impl Iterator<Item = Drive> {
+        let grid = self.dynamics.grid();
+        self.dynamics.rays(pose).flat_map(move |ray| {
+            (1..grid.speeds()).filter_map(move |speed| {
+                let target = ray.arrive(pose.site, speed).ok()?;
+                self.area.contains(target.site).then(|| Drive {
+                    action: grid.action(ray.index, speed),
+                    target,
+                    effort: ray.effort,
+                    reach_mm: grid.reach_mm(speed),
+                    distance: line.distance(Point2::from(target.site)).abs(),
+                })
+            })
+        })
+    }
+
+    /// The drive that asks: it ends on uncertain ground.
+    fn asking(&self, line: &Line, pose: Pose) -> Option<Drive> {
+        nearest(self.drives(line, pose).filter(|drive| self.is_uncertain(drive.target.site)))
+    }
+
+    /// The turn in place after which a drive asks, nearest to the line.
+    fn reorient(&self, line: &Line, pose: Pose) -> Option<(Action, Pose)> {
+        let turns = [Side::Left, Side::Right].map(|side| self.dynamics.turn_in_place(pose, side));
+        let asking = |turn: (Action, Pose)| Some((turn, self.asking(line, turn.1)?.distance));
+        let sides = turns.into_iter().flatten().filter_map(asking);
+        sides.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(turn, _)| turn)
+    }
+
+    /// Whether lines disagree about a site: those left, or where labels may err those at the start.
+    fn is_uncertain(&self, site: Site) -> bool {
+        let left = self.belief.version_space().map(Lines::lines);
+        let lines = left.or_else(|| self.belief.hypotheses().map(Table::start));
+        lines.is_some_and(|lines| lines.certainty(site) == Certainty::Uncertain)
+    }
+}
+
+/// The drive that ends nearest to the line; of equals the one of the smaller turn, then the shorter, then the left.
+fn nearest(drives: impl Iterator<Item = Drive>) -> Option<Drive> {
+    drives.min_by(|a, b| {
+        let by_turn = || a.effort.cmp(&b.effort);
+        let by_length = || a.reach_mm.cmp(&b.reach_mm);
+        a.distance.total_cmp(&b.distance).then_with(by_turn).then_with(by_length)
+    })
+}
+
+impl<D: Dynamics, B: ReadOut> Planner for Margin<D, B> {
+    type Belief = B;
+
+    fn plan(&mut self, pose: Pose) -> Plan {
+        if self.belief.is_full() {
+            return Plan::Stop(StopReason::SamplesFull);
+        }
+        if !self.area.contains(pose.site) {
+            return Plan::Stop(StopReason::OutsideArea);
+        }
+        let Some(line) = self.belief.estimates().maximum_margin else {
+            return Plan::Stop(StopReason::Resolution);
+        };
+        let (recovery, action, target) = if let Some(drive) = self.asking(&line, pose) {
+            (None, drive.action, drive.target)
+        } else if let Some((action, target)) = self.reorient(&line, pose) {
+            (Some(Recovery::Reorient), action, target)
+        } else if let Some(drive) = nearest(self.drives(&line, pose)) {
+            (Some(Recovery::Transit), drive.action, drive.target)
+        } else if let Some((action, target)) = self.dynamics.turn_in_place(pose, Side::Left) {
+            (Some(Recovery::Reorient), action, target)
+        } else {
+            return Plan::Stop(StopReason::Cornered);
+        };
+        Plan::Move(Motion {
+            stage: None,
+            recovery,
+            action,
+            control: self.dynamics.control(action),
+            target,
+            wants_label: recovery.is_none(),
+            examined: self.dynamics.grid().actions(),
+            proven: true,
+        })
+    }
+
+    fn observe(&mut self, pose: Pose, reading: Option<Reading>) -> Result<(), Refused> {
+        reading.map_or(Ok(()), |reading| self.belief.observe(pose.site, reading))
+    }
+
+    fn belief(&self) -> &B {
+        &self.belief
+    }
+}

@@ -1,0 +1,99 @@
+//! Campaigns of several planners on the same fields, side by side: a column each.
+
+use crate::campaign::calibration::Calibration;
+use crate::campaign::{accuracy, calibration};
+use crate::mission::algorithm::Algorithm;
+use crate::report::table::{Column, Table};
+
+/// Steps, or labels, after which planners are compared; those that were flown. Else the last.
+const STAGES: [u32; 4] = [10, 20, 30, 40];
+
+/// Steps over which motion is compared.
+const MOTION: u32 = 20;
+
+/// Planners whose labels are true.
+pub fn accuracy(summaries: &[accuracy::Summary]) -> String {
+    let Some(first) = summaries.first() else { return String::new() };
+    let flown = first.rows.iter().map(|row| row.step);
+    let stages = stages(flown.clone());
+    let motion = flown.filter(|step| *step <= MOTION).last();
+    let mut table = table("step", summaries.iter().map(|summary| summary.algorithm));
+    let mut add = |name: &'static str, stages: &[u32], of: fn(&accuracy::Row) -> String| {
+        add(&mut table, name, stages, |stage| {
+            let at = |summary: &accuracy::Summary| {
+                summary.rows.iter().find(|row| row.step == stage).map(of)
+            };
+            summaries.iter().map(at).collect()
+        });
+    };
+    add("bits/step", &stages, |row| format!("{:.3}", row.bits_per_step));
+    add("centre, slope error deg", &stages, |row| format!("{:.4}", row.centre_deg.median));
+    add("centre, misclassified %", &stages, |row| {
+        format!("{:.4}", 100.0 * row.centre_misclassified.median)
+    });
+    add("control cost", motion.as_slice(), |row| format!("{:.1}", row.control_cost));
+    add("metres", motion.as_slice(), |row| format!("{:.1}", row.metres));
+    format!(
+        "{} standard fields, seed {}, true labels; errors are medians\n\n{table}",
+        first.fields, first.seed
+    )
+}
+
+/// Planners whose labels may err.
+pub fn calibration(summaries: &[calibration::Summary]) -> String {
+    let Some(first) = summaries.first() else { return String::new() };
+    let stages = stages(first.rows.iter().map(|row| row.labels));
+    let mut table = table("labels", summaries.iter().map(|summary| summary.algorithm));
+    let mut add = |name: &'static str, of: fn(&calibration::Row) -> String| {
+        add(&mut table, name, &stages, |stage| {
+            let at = |summary: &calibration::Summary| {
+                summary.rows.iter().find(|row| row.labels == stage).map(of)
+            };
+            summaries.iter().map(at).collect()
+        });
+    };
+    add("missions", |row| row.missions.to_string());
+    add("bits told", |row| format!("{:.3}", row.bits));
+    add("of what labels can tell", |row| {
+        row.share.map_or("-".into(), |share| format!("{:.1} %", 100.0 * share))
+    });
+    add("mean, slope error deg", |row| format!("{:.3}", row.mean_deg.median));
+    add("90 % set holds (states) %", |row| {
+        let [Calibration { coverage, stated, .. }, _] = &row.calibration;
+        format!("{:.1} ({:.1})", 100.0 * coverage, 100.0 * stated)
+    });
+    add("control cost", |row| format!("{:.1}", row.control_cost));
+    format!(
+        "{} standard fields, seed {}, p = {}; a label tells {:.4} bits at most; \
+         errors are medians, sets by the area prior\n\n{table}",
+        first.fields, first.seed, first.p, first.limit
+    )
+}
+
+/// Those of the stages that were flown; else the last that was.
+fn stages(flown: impl Iterator<Item = u32> + Clone) -> Vec<u32> {
+    let stages: Vec<_> = flown.clone().filter(|stage| STAGES.contains(stage)).collect();
+    if stages.is_empty() { flown.last().into_iter().collect() } else { stages }
+}
+
+/// A table with a column for each planner.
+fn table(stage: &'static str, planners: impl Iterator<Item = Algorithm>) -> Table {
+    let first = [Column::left("", 25), Column::right(stage, 6)];
+    let planners = planners.map(|planner| Column::right(planner.title(), 18));
+    Table::new(first.into_iter().chain(planners).collect::<Vec<_>>())
+}
+
+/// A row for each stage, the first with the name of what is compared. Of a planner that did not come so far
+/// there is nothing to tell.
+fn add(
+    table: &mut Table,
+    name: &str,
+    stages: &[u32],
+    figures: impl Fn(u32) -> Vec<Option<String>>,
+) {
+    for (k, &stage) in stages.iter().enumerate() {
+        let name = if k == 0 { name } else { "" };
+        let figures = figures(stage).into_iter().map(|it| it.unwrap_or("-".into()));
+        table.row([name.to_owned(), stage.to_string()].into_iter().chain(figures));
+    }
+}
