@@ -10,7 +10,7 @@ use crate::mission::names::{CrossingName, FanName, FollowingName, PolicyName, Pr
 
 /// Simulates a robot that finds an unknown straight boundary from few samples.
 ///
-/// Without a command: the paper's two examples, start to end, with figures in out/.
+/// Without a command: the paper's two examples, as printed and by default, with figures in out/.
 #[derive(Debug, Parser)]
 #[command(version)]
 pub struct Cli {
@@ -139,7 +139,13 @@ pub(crate) struct CampaignArgs {
     #[arg(long, value_enum, default_value_t = Algorithm::Cfc)]
     pub(crate) algorithm: Algorithm,
     /// Who plans, one after the other on the same fields: one table shows them side by side
-    #[arg(long, value_enum, value_delimiter = ',', conflicts_with = "algorithm")]
+    #[arg(
+        long,
+        value_enum,
+        value_name = "PLANNER,...",
+        value_delimiter = ',',
+        conflicts_with = "algorithm"
+    )]
     pub(crate) compare: Vec<Algorithm>,
     /// How finely the unicycle turns
     #[arg(long, value_enum, default_value_t)]
@@ -159,7 +165,7 @@ pub(crate) struct CampaignArgs {
     /// How hypotheses choose an action together (scc) [default: mixture-of-own]
     #[arg(long, value_enum)]
     pub(crate) policy: Option<PolicyName>,
-    /// How hypotheses are weighed in that (scc) [default: area]
+    /// How hypotheses are weighed in that (scc; margin where p is below 1) [default: area]
     #[arg(long, value_enum)]
     pub(crate) prior: Option<PriorName>,
     /// Write a row for each field and mark here

@@ -16,7 +16,7 @@ pub fn accuracy(summaries: &[accuracy::Summary]) -> String {
     let Some(first) = summaries.first() else { return String::new() };
     let flown = first.rows.iter().map(|row| row.step);
     let stages = stages(flown.clone());
-    let motion = flown.filter(|step| *step <= MOTION).last();
+    let motion = flown.filter(|step| *step <= MOTION).max();
     let mut table = table("step", summaries.iter().map(|summary| summary.algorithm));
     let mut add = |name: &'static str, stages: &[u32], of: fn(&accuracy::Row) -> String| {
         add(&mut table, name, stages, |stage| {

@@ -71,7 +71,7 @@ pub fn printed_estimates(results: &Results) -> [(&'static str, Option<LineRecord
 
 /// The story of a mission: a table of steps, then the estimates beside the truth.
 pub fn mission(title: &str, results: &Results) -> String {
-    story(title, results) + "\n" + &end(results, estimates(results))
+    story(title, results) + "\n" + &end(results, &estimates(results))
 }
 
 /// The story of a mission as the paper prints it, with its own estimate first.
@@ -82,12 +82,12 @@ pub fn printed(title: &str, results: &Results) -> String {
     } else {
         ""
     };
-    story(title, results) + "\n" + by_its_prior + &end(results, printed_estimates(results))
+    story(title, results) + "\n" + by_its_prior + &end(results, &printed_estimates(results))
 }
 
 /// What a mission came to, without its steps.
 pub fn outcome_alone(title: &str, results: &Results) -> String {
-    format!("{title}\n{}", end(results, estimates(results)))
+    format!("{title}\n{}", end(results, &estimates(results)))
 }
 
 fn story(title: &str, results: &Results) -> String {
@@ -100,7 +100,7 @@ fn story(title: &str, results: &Results) -> String {
     format!("{beginning}{steps}")
 }
 
-fn end(results: &Results, estimates: [(&str, Option<LineRecord>); 3]) -> String {
+fn end(results: &Results, estimates: &[(&str, Option<LineRecord>); 3]) -> String {
     let why = match results.end.reason {
         "steps" => "all steps are taken",
         "resolution" => "what is uncertain is thinner than the action grid can hit",
@@ -266,7 +266,7 @@ fn outcome(NoisyEnd { best, credible }: &NoisyEnd) -> String {
 }
 
 /// The estimates beside the truth.
-fn errors(truth: Option<&LineRecord>, estimates: [(&str, Option<LineRecord>); 3]) -> String {
+fn errors(truth: Option<&LineRecord>, estimates: &[(&str, Option<LineRecord>); 3]) -> String {
     let mut table = Table::new([
         Column::left("", 28),
         Column::left("line", 36),
@@ -276,7 +276,7 @@ fn errors(truth: Option<&LineRecord>, estimates: [(&str, Option<LineRecord>); 3]
     if let Some(truth) = truth {
         table.row(["truth".into(), line(truth)]);
     }
-    for (name, estimate) in estimates {
+    for &(name, estimate) in estimates {
         let Some(estimate) = estimate else {
             table.line(&format!("{name:<28} none"));
             continue;

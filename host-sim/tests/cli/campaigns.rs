@@ -2,6 +2,8 @@
 
 use std::fs;
 
+use serde_json::Value;
+
 use crate::{GOOD, folder, prints};
 
 #[test]
@@ -20,7 +22,7 @@ fn a_campaign_prints_tables_and_writes_rows() {
         folder.path(),
         &["campaign", "--fields", "5", "--algorithm", "random", "--format", "json"],
     );
-    let summary: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+    let summary: Value = serde_json::from_str(&json).expect("JSON");
     assert_eq!((&summary["fields"], &summary["algorithm"]), (&5.into(), &"random".into()));
 }
 
@@ -57,10 +59,121 @@ fn of_labels_that_tell_nothing_there_is_no_share() {
     assert_eq!(row.split_whitespace().nth(4), Some("-"), "{table}");
     assert!(!table.contains("inf") && !table.contains("NaN"), "{table}");
     let record = prints(folder.path(), &[&coin[..], &["--format", "json"]].concat());
-    let record: serde_json::Value = serde_json::from_str(&record).expect("JSON");
+    let record: Value = serde_json::from_str(&record).expect("JSON");
     assert_eq!(record["limit"], 0.0);
     // Where labels tell something it is as it was.
     let table = prints(folder.path(), &[&coin[..8], &["0.9"]].concat());
     let row = table.lines().find(|line| line.trim_start().starts_with("5 ")).expect("a row");
     assert!(row.split_whitespace().nth(4).is_some_and(|share| share.ends_with('%')), "{table}");
+}
+
+/// A figure of a comparison: its name, the stage, and how it is set from that stage's row of the record.
+type Figure<'a> = (&'a str, &'a str, &'a dyn Fn(&Value) -> String);
+
+/// The records of single campaigns are those of a comparison, and so are the rows, each led by who planned; its table
+/// tells the same figures.
+fn compares(planners: &[&str], flags: &[&str], told: &[Figure]) {
+    let folder = folder();
+    let common = [&["campaign", "--fields", "6", "--csv", "c.csv"], flags].concat();
+    let rows = || fs::read_to_string(folder.path().join("c.csv")).expect("rows");
+    let run = |more: &[&str]| {
+        let printed = prints(folder.path(), &[&common[..], more].concat());
+        let record = prints(folder.path(), &[&common[..], more, &["--format", "json"]].concat());
+        let record: Value = serde_json::from_str(&record).expect("JSON");
+        (printed, record, rows())
+    };
+    let (table, records, all) = run(&["--compare", &planners.join(",")]);
+    let mut all = all.lines();
+    let titles = all.next();
+    for (planner, record) in planners.iter().zip(records.as_array().expect("an array")) {
+        let (_, single, rows) = run(&["--algorithm", planner]);
+        assert_eq!(*record, single, "{planner}");
+        assert_eq!(record["algorithm"], *planner);
+        let mut rows = rows.lines();
+        let title = rows.next().expect("a header");
+        assert_eq!(titles.and_then(|it| it.strip_prefix("algorithm,")), Some(title));
+        for row in rows {
+            assert_eq!(all.next(), Some(&*format!("{planner},{row}")));
+        }
+    }
+    assert_eq!((all.next(), records.as_array().map(Vec::len)), (None, Some(planners.len())));
+    // The rows of a figure follow its name; those after the first begin with the stage.
+    for (name, stage, figure) in told {
+        let rows = table.lines().skip_while(|line| !line.starts_with(name));
+        let row = rows.map(|line| line.strip_prefix(name).unwrap_or(line));
+        let row = row.map(|line| line.split_whitespace().collect::<Vec<_>>());
+        let row = row.into_iter().find(|row| row.first() == Some(stage)).expect("a row");
+        let found = records.as_array().into_iter().flatten().map(|record| {
+            let at = |row: &&Value| {
+                [&row["step"], &row["labels"]].iter().any(|it| it.to_string() == **stage)
+            };
+            figure(record["rows"].as_array().expect("rows").iter().find(at).expect("a stage"))
+        });
+        assert_eq!(row[1..].join(" "), found.collect::<Vec<_>>().join(" "), "{name}: {table}");
+    }
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().expect("a number")
+}
+
+#[test]
+fn a_comparison_tells_what_single_campaigns_tell() {
+    let bits = |row: &Value| format!("{:.3}", number(&row["bits_per_step"]));
+    let slope = |row: &Value| format!("{:.4}", number(&row["centre_deg"]["median"]));
+    let area =
+        |row: &Value| format!("{:.4}", 100.0 * number(&row["centre_misclassified"]["median"]));
+    let cost = |row: &Value| format!("{:.1}", number(&row["control_cost"]));
+    let metres = |row: &Value| format!("{:.1}", number(&row["metres"]));
+    compares(
+        &["margin", "cfc", "random"],
+        &["--steps", "30"],
+        &[
+            ("bits/step", "10", &bits),
+            ("bits/step", "30", &bits),
+            ("centre, slope error deg", "20", &slope),
+            ("centre, misclassified %", "30", &area),
+            ("control cost", "20", &cost),
+            ("metres", "20", &metres),
+        ],
+    );
+    // Of few steps the last is told.
+    compares(
+        &["cfc", "random"],
+        &["--steps", "7"],
+        &[("bits/step", "7", &bits), ("metres", "7", &metres)],
+    );
+}
+
+#[test]
+fn a_comparison_in_noise_tells_what_single_campaigns_tell() {
+    let bits = |row: &Value| format!("{:.3}", number(&row["bits"]));
+    let share = |row: &Value| format!("{:.1} %", 100.0 * number(&row["share"]));
+    let slope = |row: &Value| format!("{:.3}", number(&row["mean_deg"]["median"]));
+    let holds = |row: &Value| {
+        let by_area = &row["calibration"][0];
+        let [holds, states] = ["coverage", "stated"].map(|of| 100.0 * number(&by_area[of]));
+        format!("{holds:.1} ({states:.1})")
+    };
+    let cost = |row: &Value| format!("{:.1}", number(&row["control_cost"]));
+    compares(
+        &["scc", "margin", "random"],
+        &["--steps", "24", "--p", "0.8"],
+        &[
+            ("bits told", "10", &bits),
+            ("of what labels can tell", "20", &share),
+            ("mean, slope error deg", "20", &slope),
+            ("90 % set holds (states) %", "10", &holds),
+            ("control cost", "20", &cost),
+        ],
+    );
+}
+
+#[test]
+fn labels_err_in_a_comparison_with_algorithm_2_unless_one_says() {
+    let folder = folder();
+    let quick = ["campaign", "--fields", "2", "--steps", "12", "--compare", "scc,margin"];
+    assert!(prints(folder.path(), &quick).contains("p = 0.7"));
+    let table = prints(folder.path(), &[&quick[..], &["--p", "1"]].concat());
+    assert!(table.contains("true labels") && table.contains("Algorithm 2 (scc)"), "{table}");
 }

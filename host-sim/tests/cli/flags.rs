@@ -45,7 +45,7 @@ fn a_chip_that_cannot_be_is_refused() {
     fs::write(folder.path().join("many.toml"), many).expect("a file");
     let other = env!("CARGO_BIN_EXE_host-sim");
     let other = format!("--emulator={other}");
-    let cases: [(&[&str], &[&str]); 12] = [
+    let cases: [(&[&str], &[&str]); 13] = [
         (&["m.toml"], &["--port", "--emulator"]),
         (&["m.toml", &other], &["host-sim", "firmware's ELF"]),
         (&["m.toml", "--port", "x", "--emulator"], &["--port", "--emulator"]),
@@ -57,6 +57,7 @@ fn a_chip_that_cannot_be_is_refused() {
         (&["m.toml", "--emulator", "--fault", "drop=2"], &["drop", "found 2", "[0, 1]"]),
         (&["m.toml", "--emulator", "--fault", "delay=1s"], &["delay", "found 1s", "20ms"]),
         (&["m.toml", "--emulator", "--algorithm", "random"], &["m.toml", "random", "cfc or scc"]),
+        (&["m.toml", "--emulator", "--algorithm", "margin"], &["m.toml", "margin", "cfc or scc"]),
         (&["many.toml", "--emulator"], &["many.toml", "found 21 points", "at most 16"]),
     ];
     for (args, parts) in cases {
@@ -76,12 +77,15 @@ fn a_repeated_fault_is_refused() {
 fn a_flag_that_an_algorithm_ignores_is_refused() {
     let folder = folder();
     let radius = ["--trusted-radius", "0.5"];
-    let cases: [(&[&str], &[&str], &str); 9] = [
+    let cases: [(&[&str], &[&str], &str); 12] = [
         (&[], &["--policy", "joint"], "--algorithm scc"),
         (&[], &["--prior", "area"], "--algorithm scc"),
         (&[], &radius, "labels that can be wrong"),
         (&["--algorithm", "scc", "--p", "1"], &radius, "--p below 1"),
         (&["--algorithm", "random"], &radius, "--p below 1"),
+        (&["--algorithm", "margin"], &["--crossing", "anyhow"], "--algorithm cfc or scc"),
+        (&["--algorithm", "margin", "--p", "0.7"], &["--policy", "joint"], "--algorithm scc"),
+        (&["--algorithm", "margin"], &["--prior", "area"], "margin with --p below 1"),
         (&["--algorithm", "random"], &["--crossing", "anyhow"], "--algorithm cfc or scc"),
         (&["--algorithm", "random"], &["--following", "anyhow"], "--algorithm cfc or scc"),
         (&["--algorithm", "random", "--p", "0.7"], &["--policy", "joint"], "--algorithm scc"),
@@ -93,7 +97,9 @@ fn a_flag_that_an_algorithm_ignores_is_refused() {
     }
     // Where they have a meaning they are taken.
     let quick = ["campaign", "--fields", "2", "--steps", "3"];
-    let cases: [&[&str]; 7] = [
+    let cases: [&[&str]; 9] = [
+        &["--algorithm", "margin", "--p", "0.7", "--prior", "sequences", radius[0], radius[1]],
+        &["--compare", "scc,margin", "--prior", "sequences", radius[0], radius[1]],
         &["--fan", "paper"],
         &["--fan", "fine", "--algorithm", "scc"],
         &["--fan", "fine", "--algorithm", "random"],
@@ -104,5 +110,36 @@ fn a_flag_that_an_algorithm_ignores_is_refused() {
     ];
     for flags in cases {
         prints(folder.path(), &[&quick[..], flags].concat());
+    }
+}
+
+#[test]
+fn what_cannot_be_compared_is_refused() {
+    let folder = folder();
+    let cases: [(&[&str], &[&str]); 11] = [
+        (&["cfc,margin", "--p", "0.7"], &["--p: found 0.7, expected 1", "--compare cfc"]),
+        (&["margin,scc,cfc"], &["--p: found 0.7, the default with scc", "--compare cfc"]),
+        (
+            &["cfc,margin", "--following", "anyhow"],
+            &["--following", "--compare margin", "cfc or scc"],
+        ),
+        (
+            &["scc,random", "--crossing", "anyhow"],
+            &["--crossing", "--compare random", "cfc or scc"],
+        ),
+        (&["scc,margin", "--policy", "joint"], &["--policy", "--compare margin", "scc"]),
+        (&["scc,random", "--prior", "area"], &["--prior", "--compare random", "scc"]),
+        (
+            &["cfc,random", "--trusted-radius", "1"],
+            &["--trusted-radius", "--compare cfc", "--p below 1"],
+        ),
+        (&["cfc,random,cfc"], &["--compare", "found cfc twice", "once"]),
+        (&["cfc,walk"], &["--compare", "walk", "margin"]),
+        (&[""], &["--compare"]),
+        (&["cfc,random", "--algorithm", "cfc"], &["--compare", "--algorithm"]),
+    ];
+    for (args, parts) in cases {
+        let args = [&["campaign", "--fields", "2", "--csv", "c.csv", "--compare"], args].concat();
+        refuses(folder.path(), &args, parts);
     }
 }

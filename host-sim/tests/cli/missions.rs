@@ -12,13 +12,98 @@ fn the_bare_command_tells_the_paper_s_examples() {
         assert!(story.contains(part), "{part}: {story}");
     }
     assert!(story.contains("Credible set"), "{story}");
-    for name in ["paper-noisy.svg", "paper-noisy-candidates.svg"] {
+    // As printed before by default, and the printed estimate before the others.
+    let place = |part: &str| story.find(part).unwrap_or_else(|| panic!("{part}: {story}"));
+    for [before, after] in [
+        ["Algorithm 1 as printed", "Algorithm 1, defaults"],
+        ["Algorithm 2 as printed", "Algorithm 2, defaults"],
+        ["bisector (the paper's)", "centre of the version space"],
+        ["Algorithm 2, defaults", "Side by side"],
+    ] {
+        assert!(place(before) < place(after), "{before}, {after}");
+    }
+    for name in [
+        "paper-noiseless-defaults.svg",
+        "paper-noisy.svg",
+        "paper-noisy-defaults.svg",
+        "paper-noisy-candidates.svg",
+    ] {
         assert!(folder.path().join("out").join(name).exists(), "{name}");
+        assert!(story.contains(name), "{name}");
     }
     let svg = fs::read_to_string(folder.path().join("out/paper-noiseless.svg")).expect("a figure");
     assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
     for part in ["true line", "p1", "p4", "estimate"] {
         assert!(svg.contains(part), "{part}");
+    }
+}
+
+/// The table that ends it has the figures of `run`.
+#[test]
+fn the_bare_command_s_table_tells_what_run_tells() {
+    let folder = folder();
+    let story = prints(folder.path(), &[]);
+    let (_, table) = story.split_once("Side by side").expect("a table");
+    let noisy = include_str!("../../scenarios/paper-noisy.toml");
+    let printed = "following = \"anyhow\"\nprior = \"sequences\"\nsteps = 10";
+    for (scenario, planner, estimate, key) in [
+        (GOOD.replace("steps = 10", printed), "Algorithm 1 as printed", "bisector", "bisector"),
+        (GOOD.replace("steps = 10", printed), "Algorithm 1 as printed", "centre", "centre"),
+        (GOOD.to_owned(), "Algorithm 1, defaults", "centre", "centre"),
+        (
+            noisy.replace("steps = 10", printed),
+            "Algorithm 2 as printed",
+            "margin",
+            "maximum_margin",
+        ),
+        (noisy.replace("steps = 10", printed), "Algorithm 2 as printed", "posterior", "centre"),
+        (noisy.to_owned(), "Algorithm 2, defaults", "posterior", "centre"),
+    ] {
+        fs::write(folder.path().join("m.toml"), &scenario).expect("a file");
+        let trace = prints(folder.path(), &["run", "m.toml", "--format", "json"]);
+        let records: Vec<serde_json::Value> =
+            trace.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
+        let number = |value: &serde_json::Value| value.as_f64().expect("a number");
+        let (steps, end) = (&records[1..records.len() - 1], &records[records.len() - 1]);
+        let (truth, line) = (&records[0]["truth"], &end["estimates"][key]);
+        let off = |of: &str| (number(&line[of]) - number(&truth[of])).abs();
+        let sum = |of: fn(f64, f64) -> f64| {
+            let each = |step: &serde_json::Value| {
+                of(number(&step["action"]["v"]), number(&step["action"]["w"]))
+            };
+            steps.iter().map(each).sum::<f64>()
+        };
+        let row = table.lines().find(|row| {
+            row.trim_start()
+                .strip_prefix(planner)
+                .is_some_and(|it| it.trim_start().starts_with(estimate))
+        });
+        let row: Vec<_> = row.expect("a row").split_whitespace().rev().collect();
+        let [metres, cost, _, _, intercept, slope, bits] = row[..7] else { panic!("{row:?}") };
+        assert_eq!(metres, format!("{:.1}", sum(|v, _| v)), "{row:?}");
+        assert_eq!(cost, format!("{:.1}", sum(|v, w| v * v + w * w)), "{row:?}");
+        assert_eq!(slope, format!("{:.2}", off("angle")), "{row:?}");
+        assert_eq!(intercept, format!("{:.2}", off("intercept")), "{row:?}");
+        // By the area prior, which is the one of all runs but one.
+        if !scenario.contains("noise = ") || !scenario.contains("sequences") {
+            assert_eq!(bits, format!("{:.2}", number(&steps[9]["bits"])), "{row:?}");
+        }
+    }
+}
+
+#[test]
+fn margin_sampling_flies_a_scenario() {
+    let folder = folder();
+    let noisy = include_str!("../../scenarios/paper-noisy.toml");
+    for (scenario, planner) in [(GOOD, "\"cfc\""), (noisy, "\"scc\"")] {
+        let scenario = scenario.replace(planner, "\"margin\"");
+        fs::write(folder.path().join("m.toml"), scenario).expect("a file");
+        let trace = prints(folder.path(), &["run", "m.toml", "--format", "json"]);
+        let records: Vec<serde_json::Value> =
+            trace.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
+        assert_eq!((&records[0]["algorithm"], records.len()), (&"margin".into(), 12));
+        assert!(records[1]["problem"].is_null() && records[1]["label"].is_number());
+        assert_eq!(records[1]["hypotheses"].is_number(), planner == "\"scc\"");
     }
 }
 
