@@ -130,7 +130,7 @@ impl<D: Dynamics, B: ReadOut> Planner for Margin<D, B> {
             control: self.dynamics.control(action),
             target,
             wants_label: recovery.is_none(),
-            examined: self.dynamics.grid().actions(),
+            examined: u32::try_from(self.dynamics.grid().actions()).unwrap_or(u32::MAX),
             proven: true,
         })
     }
