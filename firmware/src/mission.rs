@@ -1,7 +1,7 @@
 //! What `idle` runs: asks for a mission, flies it, logs it, and asks for the next.
 
 use planner_core::belief::sample::Reading;
-use planner_core::geometry::line::Line;
+use planner_core::geometry::local_line::LocalLine;
 use planner_core::link::message::{Algorithm, Declined, MissionEnd, Setup};
 use planner_core::link::station::{Flown, Prepared, Station};
 use planner_core::planner::Planner;
@@ -80,12 +80,20 @@ fn log_step(number: u16, Step { motion, pose, reading }: &Step) {
     );
 }
 
-/// `a x + b z + c = 0` in metres, with `a^2 + b^2 = 1`.
-fn log_line(name: &str, line: Option<Line>) {
-    match line.map(|line| line.coefficients()) {
+/// A line in axes of its own: about a site and along a direction, both on the lattice, by slope and intercept
+/// in metres.
+fn log_line(name: &str, line: Option<LocalLine>) {
+    match line {
         None => defmt::info!("{=str}: none", name),
-        Some([a, b, c]) => {
-            defmt::info!("{=str}: {=f64} x + {=f64} z + {=f64} = 0", name, a, b, c);
-        }
+        Some(line) => defmt::info!(
+            "{=str}: about x {=i32}, z {=i32}, along x {=i32}, z {=i32}: slope {=f32}, intercept {=f32}",
+            name,
+            line.about().x(),
+            line.about().z(),
+            line.along().x(),
+            line.along().z(),
+            line.slope(),
+            line.intercept(),
+        ),
     }
 }

@@ -66,8 +66,8 @@
 //! use core::convert::Infallible;
 //! use planner_core::nalgebra::Point2;
 //! use planner_core::{
-//!     Agent, Area, Belief, Cfc, Config, Crossing, Drive, Event, Heading, Label, LabelSensor, Motion,
-//!     Planner, Pose, Reading, Sample, Site, Unicycle, Varrho, Vehicle, VersionSpace, cfc,
+//!     Agent, Area, Belief, Cfc, Config, Crossing, Drive, Event, Heading, Label, LabelSensor, Line,
+//!     Motion, Planner, Pose, Reading, Sample, Site, Unicycle, Varrho, Vehicle, VersionSpace, cfc,
 //! };
 //!
 //! // A world in which z = 0.41 x + 3.5 divides the plane, and a vehicle that goes where it is told.
@@ -112,7 +112,8 @@
 //!         break;
 //!     }
 //! }
-//! let line = agent.planner.belief().estimates().centre.ok_or("no estimate")?;
+//! let centre = agent.planner.belief().estimates().centre.ok_or("no estimate")?;
+//! let line = Line::from(centre);
 //! assert!((line.slope().ok_or("vertical")? - 0.41).abs() < 0.01);
 //! assert!((line.intercept().ok_or("vertical")? - 3.5).abs() < 0.1);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -148,6 +149,7 @@ pub use crate::geometry::area::Area;
 pub use crate::geometry::heading::Heading;
 pub use crate::geometry::lattice::Site;
 pub use crate::geometry::line::Line;
+pub use crate::geometry::local_line::LocalLine;
 pub use crate::motion::dynamics::{Dynamics, Pose};
 pub use crate::motion::holonomic::Holonomic;
 pub use crate::motion::unicycle::Unicycle;

@@ -221,8 +221,17 @@ fn the_log_tells_the_mission() {
         ("maximum margin", estimates.maximum_margin),
         ("bisector", estimates.bisector),
     ] {
-        let [a, b, c] = line.expect("a line").coefficients();
-        expected.push(format!("{name}: {a:?} x + {b:?} z + {c:?} = 0"));
+        let line = line.expect("a line");
+        let (about, along) = (line.about(), line.along());
+        expected.push(format!(
+            "{name}: about x {}, z {}, along x {}, z {}: slope {:?}, intercept {:?}",
+            about.x(),
+            about.z(),
+            along.x(),
+            along.z(),
+            line.slope(),
+            line.intercept(),
+        ));
     }
     assert_eq!(log, expected);
 }

@@ -6,7 +6,7 @@ use host_sim::mission::recording::Recording;
 use planner_core::belief::Belief as _;
 use planner_core::belief::estimate::Estimates;
 use planner_core::belief::sample::Reading;
-use planner_core::geometry::line::Line;
+use planner_core::geometry::local_line::LocalLine;
 use planner_core::link::frame::{Decoder, Envelope, Frame};
 use planner_core::link::message::{
     self, Capacity, ClockRate, LabelSource, PROTOCOL, Reply, Request,
@@ -87,8 +87,9 @@ fn a_player_compares_every_estimate_to_the_last_bit() {
         liar.player.finish().map(drop).map_err(|error| error.to_string())
     };
     assert_eq!(judge(right), Ok(()));
-    let [a, b, c] = right.centre.expect("a line").coefficients();
-    let near = Line::from_coefficients(a, b, f64::from_bits(c.to_bits() + 1));
+    let centre = right.centre.expect("a line");
+    let intercept = f32::from_bits(centre.intercept().to_bits() + 1);
+    let near = LocalLine::new(centre.about(), centre.along(), centre.slope(), intercept);
     for (wrong, name) in [
         (Estimates { bisector: None, ..right }, "the bisector"),
         (Estimates { centre: near, ..right }, "the centre"),

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use planner_core::geometry::line::Line;
+use planner_core::geometry::local_line::LocalLine;
 use planner_core::motion::dynamics::Dynamics as _;
 use planner_core::motion::unicycle::Unicycle;
 use serde::Serialize;
@@ -108,12 +109,13 @@ impl Measure for Accuracy {
         progress: &Progress,
     ) -> Checkpoint {
         let estimates = belief.estimates();
-        let errors = |estimate: Option<Line>| match (estimate, mission.world.line()) {
-            (Some(line), Some(truth)) => {
-                (line.angle_to_deg(truth), misclassified(mission.config.area, truth, &line))
-            }
-            _ => (90.0, 0.5),
-        };
+        let errors =
+            |estimate: Option<LocalLine>| match (estimate.map(Line::from), mission.world.line()) {
+                (Some(line), Some(truth)) => {
+                    (line.angle_to_deg(truth), misclassified(mission.config.area, truth, &line))
+                }
+                _ => (90.0, 0.5),
+            };
         let (centre_deg, centre_misclassified) = errors(estimates.centre);
         let (maximum_margin_deg, maximum_margin_misclassified) = errors(estimates.maximum_margin);
         let (bisector_deg, bisector_misclassified) = errors(estimates.bisector);

@@ -136,7 +136,7 @@ impl Measure for Calibrated {
                 best_holds: holds(best.hypothesis),
             }
         };
-        let error = |line: Line| mission.world.line().map(|truth| line.angle_to_deg(truth));
+        let error = |line| mission.world.line().map(|truth| Line::from(line).angle_to_deg(truth));
         Some(Checkpoint {
             field: progress.field,
             labels: progress.labels,

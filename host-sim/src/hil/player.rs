@@ -8,7 +8,6 @@ use anyhow::{Result, anyhow, bail};
 use heapless::Vec as BoundedVec;
 use planner_core::belief::estimate::Estimates;
 use planner_core::belief::sample::Reading;
-use planner_core::geometry::line::Line;
 use planner_core::link::delivery::{Heard, Hello, Responder};
 use planner_core::link::frame::Frame;
 use planner_core::link::message::{
@@ -218,8 +217,7 @@ impl Player {
             ("centre", chip.centre, here.centre),
             ("maximum margin", chip.maximum_margin, here.maximum_margin),
         ] {
-            let bits = |line: Option<Line>| line.map(|it| it.coefficients().map(f64::to_bits));
-            if bits(chip) != bits(here) {
+            if chip != here {
                 bail!("the {name}: found {chip:?} on the board, expected {here:?} as here");
             }
         }

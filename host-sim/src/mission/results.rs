@@ -6,6 +6,7 @@ use planner_core::belief::estimate::Estimates;
 use planner_core::belief::sample::Sample;
 use planner_core::geometry::area::Area;
 use planner_core::geometry::line::Line;
+use planner_core::geometry::local_line::LocalLine;
 use planner_core::motion::action::Control;
 use planner_core::motion::dynamics::Pose;
 use planner_core::planner::{Motion, Stage, StopReason};
@@ -310,7 +311,10 @@ impl From<Line> for LineRecord {
 impl EstimateRecords {
     /// The estimates, each beside the truth.
     pub fn beside(estimates: Estimates, error: impl Fn(&Line) -> Option<LineError>) -> Self {
-        let record = |line: Line| LineRecord { error: error(&line), ..line.into() };
+        let record = |local: LocalLine| {
+            let line = Line::from(local);
+            LineRecord { error: error(&line), ..line.into() }
+        };
         Self {
             bisector: estimates.bisector.map(record),
             centre: estimates.centre.map(record),

@@ -7,7 +7,6 @@
 //! - The polygon's two ends, as seen from the origin, are the two lines that touch both hulls and pass between
 //!   them. All that bounds a separating line is a corner of a hull on its stretch from one of these lines to
 //!   the other, which faces the other hull.
-//! - The polygon's point nearest to the origin is as far off as the maximum margin is wide, in its direction.
 //!
 //! All is decided in integers, in a time that grows with the number of corners.
 
@@ -98,29 +97,6 @@ impl Facing {
         between.extend(stretch(&negative, right.negative, left.negative));
         between
     }
-
-    /// A direction from the origin to the point of the polygon nearest to it.
-    pub(crate) fn widest(&self) -> [i64; 2] {
-        let corners = self.differences.iter().map(|pair| wide(pair.apart()));
-        let next = corners.clone().cycle().skip(1);
-        let beside = corners.clone().zip(next).find_map(|(v, w)| {
-            let edge = [w[0] - v[0], w[1] - v[1]];
-            let left = [-edge[1], edge[0]];
-            let faces = dot(left, v) > 0 && dot(edge, v) < 0 && dot(edge, w) > 0;
-            faces.then_some(left)
-        });
-        beside.or_else(|| corners.min_by_key(|v| dot(*v, *v))).unwrap_or_default()
-    }
-}
-
-/// A vector with room for differences of differences.
-pub(crate) fn wide(v: Vector) -> [i64; 2] {
-    [v.x().into(), v.z().into()]
-}
-
-/// The scalar product.
-pub(crate) fn dot(v: [i64; 2], w: [i64; 2]) -> i64 {
-    v[0] * w[0] + v[1] * w[1]
 }
 
 /// The corners of half of the polygon of differences: on along a chain of each hull, the negative one's read

@@ -7,7 +7,7 @@ use anyhow::{Context as _, Result, anyhow};
 use planner_core::belief::estimate::Estimates;
 use planner_core::belief::sample::Sample;
 use planner_core::belief::version_space::NoVersionSpace;
-use planner_core::geometry::line::Line;
+use planner_core::geometry::local_line::LocalLine;
 use serde::Serialize;
 
 use crate::mission::results::EstimateRecords;
@@ -27,7 +27,7 @@ pub struct Replay {
     samples: Vec<Sample>,
     lines: Separation,
     /// The centre, for the figure.
-    centre: Option<Line>,
+    centre: Option<LocalLine>,
     estimates: EstimateRecords,
 }
 

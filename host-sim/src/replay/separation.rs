@@ -4,13 +4,14 @@
 
 use planner_core::belief::consistent_lines;
 use planner_core::belief::estimate;
-use planner_core::belief::sample::{Label, Sample};
+use planner_core::belief::sample::Sample;
 use planner_core::belief::version_space::NoVersionSpace;
 use planner_core::geometry::arc::SlopeArc;
-use planner_core::geometry::lattice::{Site, orient};
-use planner_core::geometry::line::{Bound, Line};
+use planner_core::geometry::lattice::orient;
+use planner_core::geometry::line::Bound;
+use planner_core::geometry::local_line::LocalLine;
 
-use crate::replay::facing::{Facing, dot, wide};
+use crate::replay::facing::Facing;
 use crate::replay::hull::Row;
 
 /// All lines that separate a record: a version space of any size.
@@ -18,10 +19,6 @@ use crate::replay::hull::Row;
 pub(crate) struct Separation {
     /// The samples that bound the lines, in cyclic order.
     support: Vec<Sample>,
-    /// Those among them that the widest strip between the labels touches.
-    touched: Vec<Sample>,
-    /// Where the record begins.
-    first: Site,
 }
 
 impl Separation {
@@ -44,9 +41,7 @@ impl Separation {
         if right.apart().cross(left.apart()) == 0 {
             return Err(NoVersionSpace::Collinear);
         }
-        let support = in_sequence(samples, hulls.between(right, left));
-        let touched = touched(&support, hulls.widest());
-        Ok(Self { support, touched, first: samples[0].site })
+        Ok(Self { support: in_sequence(samples, hulls.between(right, left)) })
     }
 
     /// The samples that bound the lines: the others follow from these.
@@ -70,13 +65,13 @@ impl Separation {
     }
 
     /// The mean of the lines.
-    pub(crate) fn centre(&self) -> Option<Line> {
-        estimate::centre_of(self.first, self.support())
+    pub(crate) fn centre(&self) -> Option<LocalLine> {
+        estimate::centre_of(&self.support)
     }
 
     /// The line in the middle of the widest strip between the labels.
-    pub(crate) fn maximum_margin(&self) -> Option<Line> {
-        estimate::maximum_margin_of(self.touched.iter().copied())
+    pub(crate) fn maximum_margin(&self) -> Option<LocalLine> {
+        estimate::maximum_margin_of(&self.support)
     }
 }
 
@@ -115,19 +110,11 @@ fn in_sequence(samples: &[Sample], mut cycle: Vec<Row>) -> Vec<Sample> {
     cycle.into_iter().map(|row| row.sample).collect()
 }
 
-/// Those of some samples that the widest strip between the labels touches, which lies across a direction.
-fn touched(support: &[Sample], across: [i64; 2]) -> Vec<Sample> {
-    let height = |s: &Sample| dot(across, wide(s.site - support[0].site));
-    let of = |label: Label| support.iter().filter(move |s| s.label == label).map(height);
-    let (top, bottom) = (of(Label::Positive).min(), of(Label::Negative).max());
-    let touches =
-        |s: &&Sample| Some(height(s)) == if s.label == Label::Positive { top } else { bottom };
-    support.iter().filter(touches).copied().collect()
-}
-
 #[cfg(test)]
 mod tests {
+    use planner_core::belief::sample::Label;
     use planner_core::belief::version_space::VersionSpace;
+    use planner_core::geometry::lattice::Site;
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 
@@ -172,10 +159,6 @@ mod tests {
         (0..rows).map(|_| one()).collect()
     }
 
-    fn bits(line: Option<Line>) -> Option<[u64; 3]> {
-        line.map(|line| line.coefficients().map(f64::to_bits))
-    }
-
     #[test]
     fn a_record_has_the_version_space_that_the_planner_would_make_of_it() {
         let mut rng = ChaCha8Rng::seed_from_u64(9);
@@ -210,7 +193,7 @@ mod tests {
                 estimate::maximum_margin(space.lines()),
                 estimate::bisector(&samples),
             ];
-            assert_eq!(lines.map(bits), expected.map(bits), "{samples:?}");
+            assert_eq!(lines, expected, "{samples:?}");
         }
         assert!(seen.iter().all(|count| *count > 1_500), "{seen:?}");
     }

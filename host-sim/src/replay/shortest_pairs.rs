@@ -3,7 +3,7 @@
 
 use planner_core::belief::estimate;
 use planner_core::belief::sample::{Label, Sample};
-use planner_core::geometry::line::Line;
+use planner_core::geometry::local_line::LocalLine;
 use rand::SeedableRng;
 use rand::seq::SliceRandom as _;
 use rand_chacha::ChaCha8Rng;
@@ -16,7 +16,7 @@ use crate::replay::hull::Row;
 type Placed = GeomWithData<[i64; 2], Row>;
 
 /// `estimate::bisector` of a separable record whose rows [in order](crate::replay::hull::in_order) are these.
-pub(crate) fn bisector(rows: &[Row]) -> Option<Line> {
+pub(crate) fn bisector(rows: &[Row]) -> Option<LocalLine> {
     let of = |label| rows.iter().copied().filter(move |row| row.sample.label == label);
     let mut negative: Vec<_> = of(Label::Negative).collect();
     // In no order, the shortest so far is soon so short that few positive samples come into question. Only arcs

@@ -8,6 +8,7 @@ use planner_core::belief::sample::{Label, Reading, Sample};
 use planner_core::geometry::area::Area;
 use planner_core::geometry::lattice::{LIMIT, Site, UNITS_PER_METRE, Vector};
 use planner_core::geometry::line::Line;
+use planner_core::geometry::local_line::LocalLine;
 
 use crate::mission::definition::Table;
 use crate::mission::read_out::LEVEL;
@@ -103,9 +104,9 @@ pub enum Kind {
 
 impl Named {
     /// The estimate that is recommended.
-    pub fn estimate(name: &str, line: Option<Line>) -> Option<Self> {
+    pub fn estimate(name: &str, line: Option<LocalLine>) -> Option<Self> {
         let (name, kind) = (format!("estimate: {name}"), Kind::Estimate);
-        Some(Self { name, line: line?, kind, beside: None })
+        Some(Self { name, line: line?.into(), kind, beside: None })
     }
 }
 
@@ -205,7 +206,7 @@ impl Picture {
         let mut candidates: Vec<_> = table
             .iter()
             .filter_map(|h| {
-                let widest = estimate::maximum_margin(table.lines(h))?;
+                let widest = Line::from(estimate::maximum_margin(table.lines(h))?);
                 let margin =
                     table.samples().iter().map(|s| widest.distance(Point2::from(s.site)).abs());
                 Some((violations(&widest), widest, margin.fold(f64::INFINITY, f64::min)))

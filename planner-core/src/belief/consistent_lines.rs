@@ -143,10 +143,14 @@ impl<'a> ConsistentLines<'a> {
     /// The samples that still matter, with the labels that the cell gives them: the others follow
     /// from these.
     pub fn support(self) -> impl Iterator<Item = Sample> + Clone + 'a {
-        self.edges.iter().filter_map(move |edge| {
-            let site = self.samples.get(edge.index())?.site;
-            Some(Sample { site, label: edge.label() })
-        })
+        (0..self.edges.len()).filter_map(move |k| self.sample(k))
+    }
+
+    /// The `k`-th of them.
+    pub(crate) fn sample(self, k: usize) -> Option<Sample> {
+        let edge = self.edges.get(k)?;
+        let site = self.samples.get(edge.index())?.site;
+        Some(Sample { site, label: edge.label() })
     }
 }
 

@@ -16,9 +16,9 @@
 
 use crate::belief::Refused;
 use crate::belief::cell::LineCell;
-use crate::belief::cell_measure::measure;
 use crate::belief::consistent_lines::{Certainty, ConsistentLines};
 use crate::belief::edge::Edge;
+use crate::belief::estimate::area;
 use crate::belief::list::List;
 use crate::belief::noise::{Noise, Reliability};
 use crate::belief::pruned::PrunedMass;
@@ -169,7 +169,7 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
     /// The logarithm of the measure of a hypothesis's lines, radian metres, to 10^-6; at least -96.
     #[inline(never)] // called from many places
     pub fn log_area(&self, hypothesis: &Hypothesis<E>) -> LogWeight {
-        Coarse::of(measure(self.lines(hypothesis))).into()
+        Coarse::of(area(self.lines(hypothesis))).into()
     }
 
     /// All samples with the labels that were seen, the given ones first.

@@ -7,16 +7,18 @@
 //! Nothing here knows how the robot moves.
 
 pub mod cell;
-pub(crate) mod cell_measure;
+
 pub mod consistent_lines;
 pub mod edge;
 pub mod estimate;
 pub mod hypotheses;
 pub(crate) mod list;
+pub(crate) mod moments;
 pub mod noise;
 pub mod posterior;
 pub(crate) mod pruned;
 pub mod sample;
+pub(crate) mod trapezoids;
 pub mod version_space;
 pub mod weight;
 

@@ -6,14 +6,15 @@
 //! made of it: [`Posterior::pruned_mass`].
 
 use crate::belief::consistent_lines::{ConsistentLines, intercepts};
-use crate::belief::estimate::{Estimates, Moments, bisector, maximum_margin, share_above};
+use crate::belief::estimate::{Estimates, area, bisector, maximum_margin, share_above};
 use crate::belief::hypotheses::{Hypotheses, Hypothesis};
+use crate::belief::moments::Moments;
 use crate::belief::sample::{Reading, Sample};
 use crate::belief::weight::LogWeight;
 use crate::belief::{Belief, Refused};
 use crate::geometry::arc::SlopeArc;
 use crate::geometry::lattice::Site;
-use crate::geometry::line::Line;
+use crate::geometry::local_line::LocalLine;
 
 /// The distribution over the hypotheses of a table, by its prior.
 ///
@@ -65,8 +66,15 @@ impl<const N: usize, const H: usize, const E: usize> Belief for Hypotheses<N, H,
         self.take(Sample { site, label }, self.reliability(site))
     }
 
+    /// The bisector of the labels as they were seen, the posterior [mean](Posterior::mean), and the maximum
+    /// margin of the most likely hypothesis.
     fn estimates(&self) -> Estimates {
-        Posterior::new(self).estimates()
+        let best = most_likely(self).map(|best| self.lines(best));
+        Estimates {
+            bisector: bisector(self.samples()),
+            centre: mean(self),
+            maximum_margin: best.and_then(maximum_margin),
+        }
     }
 
     fn information(&self) -> f64 {
@@ -100,16 +108,9 @@ impl<'a, const N: usize, const H: usize, const E: usize> Posterior<'a, N, H, E> 
         pruned / (pruned + self.total)
     }
 
-    fn most_likely(&self) -> Option<&'a Hypothesis<E>> {
-        let likelier = |best: &'a Hypothesis<E>, next: &'a Hypothesis<E>| {
-            if next.weight() > best.weight() { next } else { best }
-        };
-        self.hypotheses.iter().reduce(likelier)
-    }
-
     /// The most likely hypothesis, the first of equals.
     pub fn best(&self) -> Option<Best<'a, E>> {
-        let hypothesis = self.most_likely()?;
+        let hypothesis = most_likely(self.hypotheses)?;
         let lines = self.hypotheses.lines(hypothesis);
         Some(Best {
             hypothesis,
@@ -172,7 +173,7 @@ impl<'a, const N: usize, const H: usize, const E: usize> Posterior<'a, N, H, E> 
     /// distribution over the starting lines. Of noiseless labels it is `log2` of the share of the
     /// starting lines that are left.
     pub fn information(&self) -> f64 {
-        let start = crate::belief::estimate::area(self.hypotheses.start());
+        let start = f64::from(area(self.hypotheses.start()));
         let term = |h| {
             let p = self.probability(h);
             let share = self.hypotheses.log_area(h).exp() / start;
@@ -183,29 +184,36 @@ impl<'a, const N: usize, const H: usize, const E: usize> Posterior<'a, N, H, E> 
 
     /// The probability that a site lies on the +1 side.
     pub fn share_above(&self, site: Site) -> f64 {
-        let share = |h| share_above(self.hypotheses.lines(h), site) * self.probability(h);
+        let share =
+            |h| f64::from(share_above(self.hypotheses.lines(h), site)) * self.probability(h);
         self.hypotheses.iter().map(share).sum()
     }
 
     /// The posterior mean of the line: each hypothesis adds its centre, as unit normals with their
     /// offsets, by its probability. The mean over lines, so it needs no choice of a hypothesis and
     /// moves smoothly as labels come in: the point estimate to use.
-    pub fn mean(&self) -> Option<Line> {
-        let each = |hypothesis| {
-            let moments = Moments::of(self.hypotheses.lines(hypothesis));
-            moments.scaled(self.probability(hypothesis) / moments.area)
-        };
-        self.hypotheses.iter().map(each).reduce(Moments::plus)?.mean()
+    pub fn mean(&self) -> Option<LocalLine> {
+        mean(self.hypotheses)
     }
+}
 
-    /// The three estimates: the bisector of the labels as they were seen, the posterior mean, and the
-    /// maximum margin of the most likely hypothesis.
-    pub fn estimates(&self) -> Estimates {
-        let best = self.most_likely().map(|best| self.hypotheses.lines(best));
-        Estimates {
-            bisector: bisector(self.hypotheses.samples()),
-            centre: self.mean(),
-            maximum_margin: best.and_then(maximum_margin),
+fn most_likely<const N: usize, const H: usize, const E: usize>(
+    hypotheses: &Hypotheses<N, H, E>,
+) -> Option<&Hypothesis<E>> {
+    hypotheses.iter().reduce(|best, next| if next.weight() > best.weight() { next } else { best })
+}
+
+/// [`Posterior::mean`], in the frame of the most likely hypothesis: in single precision, and without the sum
+/// of all weights.
+fn mean<const N: usize, const H: usize, const E: usize>(
+    hypotheses: &Hypotheses<N, H, E>,
+) -> Option<LocalLine> {
+    let frame = Moments::of(hypotheses.lines(most_likely(hypotheses)?))?.frame();
+    let mut all = Moments::none(frame);
+    for hypothesis in hypotheses.iter() {
+        if let Some(moments) = Moments::of(hypotheses.lines(hypothesis)) {
+            all.add_means(&moments, hypothesis.weight().exp_single());
         }
     }
+    all.mean()
 }

@@ -198,12 +198,12 @@ impl<const N: usize> Belief for VersionSpace<N> {
     /// Each bit halves the measure of the lines that are left.
     fn information(&self) -> f64 {
         // Given samples that made a version space make it again.
-        let start = Self::new(self.given()).map_or(f64::NAN, |start| area(start.lines()));
-        libm::log2(start / area(self.lines()))
+        let start = Self::new(self.given()).map_or(f32::NAN, |start| area(start.lines()));
+        libm::log2(f64::from(start) / f64::from(area(self.lines())))
     }
 
     fn chance(&self, site: Site) -> f64 {
-        share_above(self.lines(), site)
+        share_above(self.lines(), site).into()
     }
 }
 

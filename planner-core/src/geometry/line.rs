@@ -3,6 +3,7 @@
 use nalgebra::{Point2, Vector2};
 
 use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
+use crate::geometry::local_line::LocalLine;
 
 /// A line `a x + b z + c = 0` in metres, positive on the +1 side.
 ///
@@ -11,8 +12,6 @@ use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
 /// no decision of the planner depends on one.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "wire", serde(try_from = "[f64; 3]", into = "[f64; 3]"))]
 pub struct Line {
     pub(crate) a: f64,
     pub(crate) b: f64,
@@ -118,6 +117,18 @@ impl From<Bound> for Line {
         let through = Point2::<f64>::from(bound.through);
         let (a, b) = (-f64::from(bound.along.z), f64::from(bound.along.x));
         Self { a, b, c: -(a * through.x + b * through.y) }
+    }
+}
+
+/// The line in metres from the origin.
+impl From<LocalLine> for Line {
+    fn from(local: LocalLine) -> Self {
+        let vector = |v: Vector| Vector2::new(f64::from(v.x), f64::from(v.z)).normalize();
+        let (along, left) = (vector(local.along), vector(local.along.left()));
+        let normal = left - along * f64::from(local.slope);
+        let about = Point2::<f64>::from(local.about);
+        let c = -normal.dot(&about.coords) - f64::from(local.intercept);
+        Self { a: normal.x, b: normal.y, c }
     }
 }
 

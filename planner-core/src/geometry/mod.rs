@@ -11,3 +11,4 @@ pub mod area;
 pub mod heading;
 pub mod lattice;
 pub mod line;
+pub mod local_line;

@@ -2,8 +2,8 @@
 
 use crate::belief::noise::Reliability;
 use crate::geometry::area::Area;
-use crate::geometry::lattice::{OffLattice, Site};
-use crate::geometry::line::Line;
+use crate::geometry::lattice::{OffLattice, Site, Vector};
+use crate::geometry::local_line::LocalLine;
 use crate::search::objective::Varrho;
 
 impl From<Site> for (i32, i32) {
@@ -77,20 +77,21 @@ impl TryFrom<i64> for Reliability {
     }
 }
 
-/// The coefficients as they were given, so that the line that arrives is the one that was sent, to
-/// the last bit.
-impl From<Line> for [f64; 3] {
-    fn from(line: Line) -> Self {
-        [line.a, line.b, line.c]
+/// Its site, its direction, and slope and intercept.
+impl From<LocalLine> for (Site, [i32; 2], [f32; 2]) {
+    fn from(line: LocalLine) -> Self {
+        let along = line.along();
+        (line.about(), [along.x(), along.z()], [line.slope(), line.intercept()])
     }
 }
 
-impl TryFrom<[f64; 3]> for Line {
+impl TryFrom<(Site, [i32; 2], [f32; 2])> for LocalLine {
     type Error = OutOfRange;
 
-    fn try_from([a, b, c]: [f64; 3]) -> Result<Self, OutOfRange> {
-        // Checked as any coefficients are, and then taken as they are, not scaled.
-        let checked = Self::from_coefficients(a, b, c).map(|_| Self { a, b, c });
-        checked.filter(|line| line.norm().is_finite()).ok_or(OutOfRange)
+    fn try_from(
+        (about, [x, z], [slope, intercept]): (Site, [i32; 2], [f32; 2]),
+    ) -> Result<Self, OutOfRange> {
+        let along = Vector::new(x, z).ok_or(OutOfRange)?;
+        Self::new(about, along, slope, intercept).ok_or(OutOfRange)
     }
 }

@@ -133,6 +133,7 @@ impl<P: Port> Link<P> {
 
 /// What the vehicle's end heard.
 #[derive(Debug)]
+#[expect(clippy::large_enum_variant, reason = "there is one at a time, and no heap")]
 pub enum Heard {
     /// A chip asks for a mission: [`offer`](Responder::offer) it one.
     Hello(Hello),

@@ -264,8 +264,8 @@ mod tests {
     use crate::belief::sample::Label;
     use crate::geometry::area::Area;
     use crate::geometry::heading::Heading;
-    use crate::geometry::lattice::{LIMIT, Site};
-    use crate::geometry::line::Line;
+    use crate::geometry::lattice::{LIMIT, Site, Vector};
+    use crate::geometry::local_line::LocalLine;
     use crate::link::frame::{Decoder, Envelope, FRAME, Frame};
     use crate::motion::action::{Action, Control};
     use crate::planner::Stage;
@@ -332,7 +332,9 @@ mod tests {
         };
         let took = Took { observe: u32::MAX, plan: u32::MAX, estimate: u32::MAX };
         let last = Some(Label::Positive.into());
-        let line = Line::from_coefficients(-1.0 / 3.0, 1.0 / 7.0, f64::MAX.sqrt());
+        let along = Vector::new(1 - (1 << 30), 1 - (1 << 30)).unwrap();
+        let line = LocalLine::new(far(-1, -1), along, -1.0 / 3.0, f32::MAX);
+        assert!(line.is_some());
         let estimates = Estimates { bisector: line, centre: line, maximum_margin: line };
         let sample = Sample { site: far(-1, -1), label: Label::Positive };
         let reason = EndReason::Refused(Refused::Contradiction(sample));
@@ -358,8 +360,16 @@ mod tests {
         assert!(postcard::from_bytes::<Varrho>(&bytes).is_err());
         postcard::to_slice(&i64::MAX, &mut bytes).unwrap();
         assert!(postcard::from_bytes::<Reliability>(&bytes).is_err());
-        postcard::to_slice(&[0.0, 0.0, 1.0], &mut bytes).unwrap();
-        assert!(postcard::from_bytes::<Line>(&bytes).is_err());
+        for (along, slope, intercept) in [
+            ([0, 0], 0.0, 1.0),
+            ([1 << 30, 0], 0.0, 1.0),
+            ([1, 0], 1.5, 1.0),
+            ([1, 0], f32::NAN, 1.0),
+            ([1, 0], 0.5, f32::INFINITY),
+        ] {
+            postcard::to_slice(&(far(1, 1), along, [slope, intercept]), &mut bytes).unwrap();
+            assert!(postcard::from_bytes::<LocalLine>(&bytes).is_err());
+        }
         postcard::to_slice(&[far(1, 1), far(0, 0)], &mut bytes).unwrap();
         assert!(postcard::from_bytes::<Area>(&bytes).is_err());
     }

@@ -1,4 +1,5 @@
 //! Slow twins: the same answers by other means, for tests to compare.
 
 pub mod brute;
+pub mod exact_mean;
 pub mod ladder;
