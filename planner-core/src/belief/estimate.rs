@@ -30,7 +30,7 @@ pub struct Estimates {
     pub maximum_margin: Option<LocalLine>,
 }
 
-/// The measure of the version space, radian metres, to some 10^-7 of it: d(angle) d(offset), the measure of
+/// The measure of the version space, radian metres, to 10^-6 of it: d(angle) d(offset), the measure of
 /// lines that no motion of the plane changes. Its logarithm to the base 2 falls by the bits that samples tell.
 #[inline(never)] // called from many places
 pub fn area(lines: ConsistentLines<'_>) -> f32 {

@@ -50,6 +50,8 @@ pub struct Footprint {
     pub doubles_of_plan: Vec<String>,
     /// The same of `observe`.
     pub doubles_of_observe: Vec<String>,
+    /// The same of `estimates`.
+    pub doubles_of_estimates: Vec<String>,
 }
 
 impl Footprint {
@@ -76,6 +78,7 @@ impl Footprint {
             panics: panics(&graph),
             doubles_of_plan: doubles(&graph, "plan"),
             doubles_of_observe: doubles(&graph, "observe"),
+            doubles_of_estimates: doubles(&graph, "estimates"),
         })
     }
 }
