@@ -9,6 +9,7 @@ use nalgebra::{Point2, Vector2};
 use planner_core::belief::Belief as _;
 use planner_core::belief::sample::{Label, Reading, Sample};
 use planner_core::geometry::lattice::Site;
+use planner_core::geometry::line::Line;
 use planner_core::motion::action::Action;
 use planner_core::motion::dynamics::{Dynamics as _, Pose};
 use planner_core::motion::unicycle::Unicycle;
@@ -171,14 +172,14 @@ fn of_labels_that_err_it_asks_where_the_start_leaves_doubt() {
         let mut mission = standard_field::standard(4, number, Algorithm::Margin, 12);
         mission.noise = Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.0) });
         let given = mission.given.samples().to_vec();
-        let mut line = mission.table().estimates().maximum_margin.expect("a line");
+        let mut line: Line = mission.table().estimates().maximum_margin.expect("a line").into();
         let (mut pose, mut steps) = (mission.start, 0);
         let flown = mission.fly(|step, belief| {
             let before = line;
             let distance = |site: Site| before.distance(Point2::from(site)).abs();
             let found = (step.motion.recovery, step.motion.action);
             assert_eq!(found, choice(&mission, pose, distance, &given), "field {number}");
-            line = belief.estimates().maximum_margin.expect("a line");
+            line = belief.estimates().maximum_margin.expect("a line").into();
             (pose, steps) = (step.pose, steps + 1);
         });
         assert!(flown.is_ok() && steps == 12);

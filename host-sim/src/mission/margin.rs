@@ -109,7 +109,7 @@ impl<D: Dynamics, B: ReadOut> Planner for Margin<D, B> {
         if !self.area.contains(pose.site) {
             return Plan::Stop(StopReason::OutsideArea);
         }
-        let Some(line) = self.belief.estimates().maximum_margin else {
+        let Some(line) = self.belief.estimates().maximum_margin.map(Line::from) else {
             return Plan::Stop(StopReason::Resolution);
         };
         let (recovery, action, target) = if let Some(drive) = self.asking(&line, pose) {

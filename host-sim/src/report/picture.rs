@@ -186,7 +186,7 @@ impl Picture {
         let bisector = belief.version_space().and_then(|_| belief.estimates().bisector);
         let named = bisector.map(|line| Named {
             name: "estimate as printed: bisector".to_owned(),
-            line,
+            line: line.into(),
             kind: Kind::Printed,
             beside: None,
         });
