@@ -7,8 +7,10 @@
 //! Nothing here knows how the robot moves.
 
 pub mod cell;
-
+pub(crate) mod column;
+pub mod columns;
 pub mod consistent_lines;
+pub(crate) mod directions;
 pub mod edge;
 pub mod estimate;
 pub mod hypotheses;

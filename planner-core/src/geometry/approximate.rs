@@ -83,6 +83,18 @@ pub(crate) fn heading_of(direction: Vector) -> Heading {
     heading(direction.x as f32, direction.z as f32)
 }
 
+/// The heading of a direction, to 2^-27 rad: the rough one, and the angle that is left.
+pub(crate) fn precise_heading_of(direction: Vector) -> Heading {
+    const UNITS_PER_RADIAN: f32 = (1_u32 << 31) as f32 / core::f32::consts::PI;
+    let size = direction.x.unsigned_abs() | direction.z.unsigned_abs();
+    let up = size.leading_zeros().saturating_sub(2);
+    let long = Vector { x: direction.x << up, z: direction.z << up };
+    let (x, z) = (long.x as f32, long.z as f32);
+    let rough = heading(x, z);
+    let left = 4.0 * rough.unit().left().along(long) as f32 / sqrt(x * x + z * z);
+    rough.turned(Heading((left * UNITS_PER_RADIAN) as i32 as u32))
+}
+
 /// The heading of a vector, to 10^-5 rad.
 pub(crate) fn heading(x: f32, z: f32) -> Heading {
     let (along, up) = (x.abs(), z.abs());
@@ -106,6 +118,16 @@ mod tests {
             let heading = Heading(n.wrapping_mul(2_654_435_761));
             let near = heading_of(heading.unit().scaled((1 << 30) - 1));
             assert!((near.0.wrapping_sub(heading.0) as i32).unsigned_abs() < 7_000, "{heading:?}");
+        }
+    }
+
+    #[test]
+    fn a_precise_heading_is_one_of_short_and_long_vectors() {
+        for n in 0..200_000_u32 {
+            let heading = Heading(n.wrapping_mul(2_654_435_761));
+            let v = heading.unit().scaled((1 << (10 + n % 20)) - 1);
+            let off = precise_heading_of(v).radians() - f64::from(v.z).atan2(f64::from(v.x));
+            assert!(off.sin().abs() < 7.5e-9, "{v:?}: {off}");
         }
     }
 

@@ -92,6 +92,9 @@ pub struct SinCos {
 }
 
 impl SinCos {
+    /// No direction: all zeros in memory.
+    pub(crate) const ZERO: Self = Self { cos: 0, sin: 0 };
+
     /// The vector of this direction with the given length (below 2^30), to the nearest integers.
     pub const fn scaled(self, length: i32) -> Vector {
         let length = length as i64;
@@ -99,6 +102,17 @@ impl SinCos {
             x: round_shift(self.cos as i64 * length, 30),
             z: round_shift(self.sin as i64 * length, 30),
         }
+    }
+
+    /// A quarter turn to the left.
+    pub(crate) const fn left(self) -> Self {
+        Self { cos: -self.sin, sin: self.cos }
+    }
+
+    /// How far a vector reaches in this direction, rounded down to a multiple of four and divided by four:
+    /// the upper word of the product. The vector's components may have any size.
+    pub(crate) const fn along(self, v: Vector) -> i32 {
+        ((self.cos as i64 * v.x as i64 + self.sin as i64 * v.z as i64) >> 32) as i32
     }
 }
 
