@@ -195,7 +195,7 @@ impl View {
     /// A place that is more than twice as far off as any sample, in a coordinate, is taken to be no farther.
     fn vector(self, site: Site) -> Vector {
         let most = i32::MAX >> self.shift;
-        let fit = |units: i32| units.clamp(-most, most) << self.shift;
+        let fit = |units: i32| units.max(-most).min(most) << self.shift;
         let v = site - self.from;
         Vector { x: fit(v.x), z: fit(v.z) }
     }

@@ -161,6 +161,11 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
         self.prior
     }
 
+    /// What is known of the noise.
+    pub const fn noise(&self) -> Noise {
+        self.noise
+    }
+
     /// How far a label at a site can be believed.
     pub fn reliability(&self, site: Site) -> Reliability {
         self.noise.at(site, self.given())
@@ -216,6 +221,33 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
     pub(crate) fn pruned_mass(&self) -> f64 {
         f64::from(self.pruned.mass(self.prior))
     }
+
+    /// A weight such that the hypotheses of at least that weight hold a probability, in millionths; their
+    /// set is a little larger than the smallest that does. `None` if as much has been given up.
+    pub(crate) fn lightest_within(&self, level: u32) -> Option<LogWeight> {
+        const BANDS: usize = 64;
+        let mut bands = [0.0_f32; BANDS];
+        for hypothesis in self.iter() {
+            let weight = hypothesis.weight();
+            let band = (weight.0.saturating_neg() / Self::BAND).clamp(0, BANDS as i64 - 1);
+            if let Some(band) = bands.get_mut(band as usize) {
+                *band += weight.exp_single();
+            }
+        }
+        let all = bands.iter().sum::<f32>() + self.pruned.mass(self.prior);
+        // Rounded up by more than the sums are off.
+        let due = all * (level as f32 * 1e-6 + 1e-5);
+        let mut held = 0.0;
+        let band = bands.iter().position(|band| {
+            held += band;
+            held >= due
+        })?;
+        let is_last = band + 1 == BANDS;
+        Some(LogWeight(if is_last { i64::MIN } else { -(band as i64 + 1) * Self::BAND + 1 }))
+    }
+
+    /// Weights in one band differ by a factor of `e^(1/2)` at most.
+    const BAND: i64 = LogWeight::ONE / 2;
 
     fn certainty(&self, hypothesis: &Hypothesis<E>, q: Site) -> Certainty {
         self.lines(hypothesis).certainty(q)

@@ -13,10 +13,14 @@ pub mod consistent_lines;
 pub(crate) mod directions;
 pub mod edge;
 pub mod estimate;
+pub mod forecast;
+pub mod goal;
 pub mod hypotheses;
 pub(crate) mod list;
 pub(crate) mod moments;
 pub mod noise;
+pub mod outlook;
+pub mod picture;
 pub mod posterior;
 pub(crate) mod pruned;
 pub mod sample;
@@ -25,7 +29,9 @@ pub mod version_space;
 pub mod weight;
 
 use crate::belief::estimate::Estimates;
+use crate::belief::goal::Goal;
 use crate::belief::sample::{Reading, Sample};
+use crate::geometry::area::Area;
 use crate::geometry::lattice::Site;
 
 /// What is known of the line: what planners ask, and what is read out.
@@ -47,6 +53,9 @@ pub trait Belief {
     /// What the samples told of the line beyond those given at the start, bits: the divergence of what
     /// is known from the uniform distribution over the lines that the given samples leave.
     fn information(&self) -> f64;
+
+    /// Whether the line is known well enough.
+    fn meets(&self, goal: Goal, area: Area) -> bool;
 
     /// The chance that a label read at a site is +1, errors of the sensor included.
     fn chance(&self, site: Site) -> f64;

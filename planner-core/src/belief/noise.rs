@@ -50,6 +50,13 @@ impl Reliability {
         1.0 / (1.0 + libm::exp(-self.log_odds.value()))
     }
 
+    /// As [`probability`](Self::probability), in single precision.
+    pub(crate) fn single(self) -> f32 {
+        let weight = |it: Option<LogWeight>| it.map_or(0.0, LogWeight::exp_single);
+        let (agree, disagree) = (weight(self.agree()), weight(self.disagree()));
+        agree / (agree + disagree)
+    }
+
     /// The logarithm of the odds, in units of 2^-32.
     #[cfg(any(feature = "wire", test))]
     pub(crate) const fn log_odds(self) -> i64 {

@@ -7,12 +7,14 @@
 
 use crate::belief::consistent_lines::{ConsistentLines, intercepts};
 use crate::belief::estimate::{Estimates, area, bisector, maximum_margin, share_above};
+use crate::belief::goal::Goal;
 use crate::belief::hypotheses::{Hypotheses, Hypothesis};
 use crate::belief::moments::Moments;
 use crate::belief::sample::{Reading, Sample};
 use crate::belief::weight::LogWeight;
 use crate::belief::{Belief, Refused};
 use crate::geometry::arc::SlopeArc;
+use crate::geometry::area::Area;
 use crate::geometry::lattice::Site;
 use crate::geometry::local_line::LocalLine;
 
@@ -79,6 +81,14 @@ impl<const N: usize, const H: usize, const E: usize> Belief for Hypotheses<N, H,
 
     fn information(&self) -> f64 {
         Posterior::new(self).information()
+    }
+
+    /// Of the heaviest hypotheses that hold the level together.
+    fn meets(&self, goal: Goal, area: Area) -> bool {
+        let Some(least) = self.lightest_within(goal.level) else { return false };
+        let within = self.iter().filter(|hypothesis| hypothesis.weight() >= least);
+        let bounds = within.flat_map(|hypothesis| self.lines(hypothesis).bounds());
+        goal.accuracy.is_met(bounds, area)
     }
 
     fn chance(&self, site: Site) -> f64 {

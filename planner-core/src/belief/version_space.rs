@@ -4,9 +4,11 @@ use crate::belief::cell::{Cut, CutError, LineCell};
 use crate::belief::consistent_lines::{Certainty, ConsistentLines};
 use crate::belief::edge::Edge;
 use crate::belief::estimate::{Estimates, area, bisector, centre, maximum_margin, share_above};
+use crate::belief::goal::Goal;
 use crate::belief::sample::{Label, Reading, Sample, SampleBuffer};
 use crate::belief::{Belief, Refused};
 use crate::geometry::arc::SlopeArc;
+use crate::geometry::area::Area;
 use crate::geometry::lattice::Site;
 use crate::geometry::line::Bound;
 
@@ -146,7 +148,7 @@ impl<const N: usize> VersionSpace<N> {
     }
 
     /// The vertices of the version space, in cyclic order.
-    pub fn bounds(&self) -> impl Iterator<Item = Bound> + '_ {
+    pub fn bounds(&self) -> impl Iterator<Item = Bound> + Clone + '_ {
         self.lines().bounds()
     }
 
@@ -200,6 +202,11 @@ impl<const N: usize> Belief for VersionSpace<N> {
         // Given samples that made a version space make it again.
         let start = Self::new(self.given()).map_or(f32::NAN, |start| area(start.lines()));
         libm::log2(f64::from(start) / f64::from(area(self.lines())))
+    }
+
+    /// Of all lines that are left, whatever the level.
+    fn meets(&self, goal: Goal, area: Area) -> bool {
+        goal.accuracy.is_met(self.bounds(), area)
     }
 
     fn chance(&self, site: Site) -> f64 {

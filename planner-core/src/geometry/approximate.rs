@@ -52,6 +52,11 @@ impl UnitVector {
     pub(crate) fn dot(self, other: Self) -> f32 {
         self.x * other.x + self.z * other.z
     }
+
+    /// How far a vector reaches this way, in its units.
+    pub(crate) fn along(self, v: Vector) -> f32 {
+        self.x * v.x as f32 + self.z * v.z as f32
+    }
 }
 
 /// The square root of a number that is not negative, to 10^-5 of it. Newton's method on `1 / sqrt(x)`.

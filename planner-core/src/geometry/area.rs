@@ -34,6 +34,17 @@ impl Area {
         self.max
     }
 
+    /// The site in its middle, rounded.
+    pub(crate) fn middle(&self) -> Site {
+        Site::between(self.min, self.max)
+    }
+
+    /// Half of its breadth and half of its height, lattice units; rounded up.
+    pub(crate) const fn half_sides(&self) -> [i32; 2] {
+        let (x, z) = (self.max.x() - self.min.x(), self.max.z() - self.min.z());
+        [(x + 1) / 2, (z + 1) / 2]
+    }
+
     /// Whether a position lies inside or on the border.
     pub fn contains(&self, q: Site) -> bool {
         (self.min.x()..=self.max.x()).contains(&q.x())

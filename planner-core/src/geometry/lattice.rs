@@ -64,6 +64,11 @@ impl Site {
         self.z
     }
 
+    /// The site halfway between two, rounded.
+    pub(crate) const fn between(a: Self, b: Self) -> Self {
+        Self { x: a.x.midpoint(b.x), z: a.z.midpoint(b.z) }
+    }
+
     /// The site a displacement away.
     ///
     /// # Errors

@@ -1,0 +1,171 @@
+//! What labels that may be wrong are expected to be: the exact table of hypotheses for what is known, and
+//! columns beside it to look ahead by.
+
+use crate::belief::Refused;
+use crate::belief::columns::{After, Columns};
+use crate::belief::consistent_lines::ConsistentLines;
+use crate::belief::hypotheses::Hypotheses;
+use crate::belief::noise::{Noise, Reliability};
+use crate::belief::outlook::{Foresight, Outlook, Prediction, entropy};
+use crate::belief::sample::{Label, Reading, Sample};
+use crate::belief::version_space::NoVersionSpace;
+use crate::belief::weight::Prior;
+use crate::geometry::lattice::Site;
+
+/// Directions that stand for all.
+const DIRECTIONS: usize = 16;
+
+/// Up to `H` hypotheses over up to `N` samples, and what they expect of the next labels.
+#[derive(Clone, Debug)]
+pub struct Forecast<const N: usize, const H: usize> {
+    table: Hypotheses<N, H>,
+    columns: Columns<N, DIRECTIONS>,
+}
+
+impl<const N: usize, const H: usize> Forecast<N, H> {
+    /// No sample and no hypothesis: memory to [`restart`](Self::restart) in.
+    pub const NONE: Self = Self { table: Hypotheses::NONE, columns: Columns::NONE };
+
+    /// What the given samples leave, see [`Hypotheses::new`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn new(given: &[Sample], prior: Prior, noise: Noise) -> Result<Self, NoVersionSpace> {
+        let mut forecast = Self::NONE;
+        forecast.restart(given, prior, noise)?;
+        Ok(forecast)
+    }
+
+    /// As [`new`](Self::new), in place.
+    ///
+    /// # Errors
+    /// As there, with the forecast as it was.
+    pub fn restart(
+        &mut self,
+        given: &[Sample],
+        prior: Prior,
+        noise: Noise,
+    ) -> Result<(), NoVersionSpace> {
+        self.table.restart(given, prior, noise)?;
+        self.columns.restart();
+        Ok(())
+    }
+
+    /// Takes in a label of some reliability, see [`Hypotheses::take`].
+    ///
+    /// # Errors
+    /// As there, with the forecast as it was.
+    pub fn take(&mut self, sample: Sample, reliability: Reliability) -> Result<(), Refused> {
+        self.table.take(sample, reliability)?;
+        self.columns.take(sample, reliability);
+        Ok(())
+    }
+}
+
+impl<const N: usize, const H: usize> Foresight for Forecast<N, H> {
+    type Belief = Hypotheses<N, H>;
+    type Outlook<'a> = Expected<'a, N, H>;
+
+    fn belief(&self) -> &Hypotheses<N, H> {
+        &self.table
+    }
+
+    fn observe(&mut self, site: Site, reading: Reading) -> Result<(), Refused> {
+        let Reading::Side(label) = reading else { return Ok(()) };
+        self.take(Sample { site, label }, self.table.reliability(site))
+    }
+
+    fn prepare(&mut self) {
+        self.columns.lay(&self.table);
+    }
+
+    fn outlook(&self, _: Site) -> Expected<'_, N, H> {
+        Expected { labels: Labels::of(&self.table), columns: &self.columns }
+    }
+
+    fn ground(&self) -> ConsistentLines<'_> {
+        self.table.start()
+    }
+}
+
+/// How far labels can be believed.
+#[derive(Clone, Copy, Debug)]
+struct Labels<'a, const N: usize, const H: usize> {
+    table: &'a Hypotheses<N, H>,
+    /// What one can tell outside the trusted balls, bits.
+    capacity: f32,
+}
+
+impl<'a, const N: usize, const H: usize> Labels<'a, N, H> {
+    fn of(table: &'a Hypotheses<N, H>) -> Self {
+        let capacity = 1.0 - entropy(table.noise().reliability.single());
+        Self { table, capacity }
+    }
+
+    /// How often a label at a site is true.
+    fn p(&self, site: Site) -> f32 {
+        self.table.reliability(site).single()
+    }
+
+    /// What a label is expected to tell, over what one can.
+    fn information(&self, site: Site, share: f32) -> f32 {
+        let p = self.p(site);
+        (entropy(chance(share, p)) - entropy(p)) / self.capacity
+    }
+}
+
+/// The chance of a label +1 where it is true with probability `p`.
+fn chance(share: f32, p: f32) -> f32 {
+    p * share + (1.0 - p) * (1.0 - share)
+}
+
+/// What the hypotheses expect.
+#[derive(Clone, Copy, Debug)]
+pub struct Expected<'a, const N: usize, const H: usize> {
+    labels: Labels<'a, N, H>,
+    columns: &'a Columns<N, DIRECTIONS>,
+}
+
+/// What they will expect when one more label is known.
+#[derive(Clone, Copy, Debug)]
+pub struct ExpectedAfter<'a, const N: usize, const H: usize> {
+    labels: Labels<'a, N, H>,
+    columns: After<'a, N, DIRECTIONS>,
+}
+
+impl<const N: usize, const H: usize> Prediction for Expected<'_, N, H> {
+    fn share_above(&self, site: Site) -> f32 {
+        self.columns.share_above(site)
+    }
+
+    fn information(&self, site: Site, share: f32) -> f32 {
+        self.labels.information(site, share)
+    }
+}
+
+impl<const N: usize, const H: usize> Prediction for ExpectedAfter<'_, N, H> {
+    fn share_above(&self, site: Site) -> f32 {
+        self.columns.share_above(site)
+    }
+
+    fn information(&self, site: Site, share: f32) -> f32 {
+        self.labels.information(site, share)
+    }
+}
+
+impl<'e, const N: usize, const H: usize> Outlook for Expected<'e, N, H> {
+    type After<'a>
+        = ExpectedAfter<'a, N, H>
+    where
+        Self: 'a;
+
+    fn chance(&self, site: Site, share: f32) -> f32 {
+        chance(share, self.labels.p(site))
+    }
+
+    fn after(&self, site: Site, label: Label) -> ExpectedAfter<'_, N, H> {
+        let heights = self.columns.heights(site);
+        let columns = self.columns.after(heights, label, self.labels.p(site));
+        ExpectedAfter { labels: self.labels, columns }
+    }
+}

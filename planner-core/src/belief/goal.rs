@@ -1,0 +1,125 @@
+//! When what is known of the line is enough.
+//!
+//! A goal is a promise about the lines that are left, by exact or outer bounds. With labels that are true
+//! the line is one of them, so the promise is kept. With labels that may be wrong it is about a credible
+//! set, and kept with at least the probability that the set holds.
+
+use crate::geometry::approximate::sqrt;
+use crate::geometry::arc::SlopeArc;
+use crate::geometry::area::Area;
+use crate::geometry::heading::Heading;
+use crate::geometry::lattice::{UNITS_PER_METRE, Vector};
+use crate::geometry::line::Bound;
+
+/// What a mission is to find out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+pub struct Goal {
+    /// How well the line is to be known.
+    pub accuracy: Accuracy,
+    /// The probability that the promise holds, in millionths, at least; certain where labels are true.
+    pub level: u32,
+}
+
+/// How well a line is to be known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+pub enum Accuracy {
+    /// Any two of the lines make an angle of this at most, below a quarter turn.
+    SlopeArc(Heading),
+    /// The ground on which some two of the lines disagree is this share of the area at most, in
+    /// millionths.
+    Misclassified(u32),
+}
+
+/// Points along the area at which the breadth of the uncertain ground is taken.
+const STATIONS: u16 = 16;
+
+/// What rounding may take from a promise, as a share of it.
+const ROUNDING: f32 = 1e-4;
+
+impl Accuracy {
+    /// Whether the lines between these vertices, of one cell or of several, are as near to each other.
+    /// Conservative: yes is always true.
+    pub fn is_met(self, bounds: impl Iterator<Item = Bound> + Clone, area: Area) -> bool {
+        let Some(arc) = SlopeArc::spanning(bounds.clone().map(|bound| bound.along)) else {
+            return false;
+        };
+        match self {
+            Self::SlopeArc(most) => is_narrower(arc, most),
+            Self::Misclassified(millionths) => {
+                let most = millionths as f32 * 1e-6 * (1.0 - ROUNDING);
+                is_narrower(arc, Heading(1 << 29)) && uncertain_share(arc, bounds, area) <= most
+            }
+        }
+    }
+}
+
+/// Whether an arc of slopes is narrower than a turn that is below a quarter.
+fn is_narrower(arc: SlopeArc, turn: Heading) -> bool {
+    let Vector { x: cos, z: sin } = turn.unit().scaled(1 << 29);
+    let (cross, dot) = (arc.from().cross(arc.to()) as f32, arc.from().dot(arc.to()) as f32);
+    dot > 0.0 && cross * cos as f32 <= dot * sin as f32 * (1.0 - ROUNDING)
+}
+
+/// The share of an area on which lines of a narrow arc disagree, or somewhat more.
+///
+/// In a frame at the middle of the area, its first axis along the arc's bisector, the ground lies between
+/// the highest of the lines and the lowest. Its breadth is a convex function, so the trapezoids between some
+/// points of it are no less than it is; they reach as far as there is such ground inside the area.
+fn uncertain_share(arc: SlopeArc, bounds: impl Iterator<Item = Bound> + Clone, area: Area) -> f32 {
+    const METRE: f32 = 1.0 / UNITS_PER_METRE as f32;
+    let along = arc.bisector();
+    let (x, z) = (along.x as f32, along.z as f32);
+    let length = sqrt(x * x + z * z);
+    let (cos, sin) = (x / length, z / length);
+    let (middle, half) = (area.middle(), area.half_sides().map(|side| side as f32 * METRE));
+    let lines = bounds.map(|bound| {
+        let run = along.dot(bound.along) as f32;
+        let slope = along.cross(bound.along) as f32 / run;
+        (slope, -(bound.at(middle) as f32) * (length * METRE) / run)
+    });
+    let between = |x: f32| {
+        let heights = lines.clone().map(|(slope, offset)| slope * x + offset);
+        heights.fold((f32::INFINITY, f32::NEG_INFINITY), |(a, b), it| (a.min(it), b.max(it)))
+    };
+    let (mut from, mut to) = (f32::INFINITY, f32::NEG_INFINITY);
+    let mut reaches = |x: f32| (from, to) = (from.min(x), to.max(x));
+    // The corners on which the lines disagree, and where each of these enters the area and leaves it.
+    for (right, up) in [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)] {
+        let (x, z) = (right * half[0], up * half[1]);
+        let (x, z) = (x * cos + z * sin, z * cos - x * sin);
+        let (low, high) = between(x);
+        if low <= z && z <= high {
+            reaches(x);
+        }
+    }
+    for (slope, offset) in lines.clone() {
+        // A point of the line is base + x way.
+        let base = [-sin * offset, cos * offset];
+        let way = [cos - sin * slope, sin + cos * slope];
+        let (mut low, mut high) = (f32::NEG_INFINITY, f32::INFINITY);
+        for ((base, way), half) in base.into_iter().zip(way).zip(half) {
+            let (a, b) = ((-half - base) / way, (half - base) / way);
+            low = low.max(a.min(b));
+            high = high.min(a.max(b));
+        }
+        if low <= high {
+            reaches(low);
+            reaches(high);
+        }
+    }
+    if from > to {
+        return 0.0;
+    }
+    let step = (to - from) / f32::from(STATIONS);
+    let breadth = |station: u16| {
+        let (low, high) = between(from + f32::from(station) * step);
+        high - low
+    };
+    let inner: f32 = (1..STATIONS).map(breadth).sum();
+    let ground = (inner + 0.5 * (breadth(0) + breadth(STATIONS))) * step;
+    ground / (4.0 * half[0] * half[1])
+}

@@ -1,0 +1,98 @@
+//! What a label at a place is expected to tell, and what is expected after it: what a planner looks ahead with.
+
+use crate::belief::consistent_lines::ConsistentLines;
+use crate::belief::sample::{Label, Reading};
+use crate::belief::{Belief, Refused};
+use crate::geometry::lattice::Site;
+
+/// A belief, and what it expects of labels.
+pub trait Foresight {
+    /// What is known.
+    type Belief: Belief;
+
+    /// What is expected.
+    type Outlook<'a>: Outlook
+    where
+        Self: 'a;
+
+    /// What is known.
+    fn belief(&self) -> &Self::Belief;
+
+    /// Takes in what was read at a site.
+    ///
+    /// # Errors
+    /// As [`Belief::observe`].
+    fn observe(&mut self, site: Site, reading: Reading) -> Result<(), Refused>;
+
+    /// Makes ready for what is asked next, until something is observed.
+    fn prepare(&mut self);
+
+    /// What is expected, as it is asked from a site.
+    fn outlook(&self, from: Site) -> Self::Outlook<'_>;
+
+    /// The lines on whose uncertain ground a label may tell something.
+    fn ground(&self) -> ConsistentLines<'_>;
+}
+
+/// What a label at a place is expected to be, and to tell.
+///
+/// In single precision, and the same on every machine. It says where to go; what is known is the
+/// belief's to say.
+pub trait Prediction {
+    /// The share of the lines, by their probability, that have a site on their +1 side. Where all agree it
+    /// may be beyond 0 or 1, the more the farther the site is from where they do not.
+    fn share_above(&self, site: Site) -> f32;
+
+    /// What a label is expected to tell at a site with this share above it, over what a label can tell.
+    fn information(&self, site: Site, share: f32) -> f32;
+}
+
+/// A prediction that can be asked what it will be.
+pub trait Outlook: Prediction {
+    /// The prediction when one more label is known.
+    type After<'a>: Prediction
+    where
+        Self: 'a;
+
+    /// The chance that a label read at a site with this share above it is +1.
+    fn chance(&self, site: Site, share: f32) -> f32;
+
+    /// The prediction after a label is read at a site.
+    fn after(&self, site: Site, label: Label) -> Self::After<'_>;
+}
+
+/// The entropy of a coin that shows one side with this probability, bits: to 10^-3, and near one half to as
+/// much of what it lacks of a bit.
+///
+/// It is `1 - (x/1 + x^2/6 + x^3/15 + ...) / (2 ln 2)` with `x = (2p - 1)^2`; some higher powers stand for
+/// the terms after the first.
+pub(crate) fn entropy(p: f32) -> f32 {
+    const HALF_LOG2_E: f32 = 0.5 * core::f32::consts::LOG2_E;
+    let x = (2.0 * p - 1.0) * (2.0 * p - 1.0);
+    let x2 = x * x;
+    let x4 = x2 * x2;
+    let x8 = x4 * x4;
+    let x16 = x8 * x8;
+    let x32 = x16 * x16;
+    let higher = 0.122_157_23 * x2 + 0.113_838_27 * x4;
+    let highest = 0.028_746_36 * x16 + 0.013_910_62 * (x32 * x32);
+    1.0 - HALF_LOG2_E * x - higher - highest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn entropy_is_that_of_a_coin() {
+        for n in 0..=10_000 {
+            let p = f64::from(n) / 10_000.0;
+            let term = |p: f64| if p > 0.0 { -p * p.log2() } else { 0.0 };
+            let (got, is) = (f64::from(entropy(p as f32)), term(p) + term(1.0 - p));
+            assert!((got - is).abs() < 1e-3, "{p}: {got}, {is}");
+            if (0.3..0.7).contains(&p) {
+                assert!((got - is).abs() < 4e-3 * (1.0 - is) + 1e-6, "{p}: {got}, {is}");
+            }
+        }
+    }
+}

@@ -1,0 +1,258 @@
+//! A cell of lines as a polygon: each line a point of slope and offset, in a frame at a place.
+//!
+//! In a frame whose first axis runs along the cell's bisector a line is `z = slope x + offset`, and the
+//! lines of a cell are a convex polygon, with the cell's vertices as its own. A place cuts the polygon along
+//! a straight line, so the share of the lines that have it on their +1 side is the measure of one part of
+//! it, and what a label there would leave is that part. Cross products are exact in integers, all else is
+//! single precision: it predicts, and decides nothing about certainty.
+
+use heapless::Vec;
+
+use crate::belief::consistent_lines::ConsistentLines;
+use crate::belief::outlook::{Foresight, Outlook, Prediction, entropy};
+use crate::belief::sample::{Label, Reading};
+use crate::belief::version_space::VersionSpace;
+use crate::belief::{Belief, Refused};
+use crate::geometry::approximate::{METRE, UnitVector, cross, inverse_sqrt};
+use crate::geometry::lattice::{Site, Vector};
+
+/// Vertices that a picture keeps: of a cell with more it shows so many, spread evenly.
+const VERTICES: usize = 16;
+
+/// The directions of a picture: its first axis.
+#[derive(Clone, Copy, Debug)]
+struct Axis {
+    along: Vector,
+    unit: UnitVector,
+}
+
+impl Axis {
+    /// A displacement in these axes, metres. How far to the left is exact before it is rounded.
+    fn see(&self, by: Vector) -> [f32; 2] {
+        let ahead = self.unit.along(by);
+        [ahead * METRE, cross(self.along, by) * (self.unit.per_length * METRE)]
+    }
+}
+
+/// A line in a frame: `z = slope x + offset`.
+#[derive(Clone, Copy, Debug)]
+struct Vertex {
+    slope: f32,
+    offset: f32,
+    /// The cosine of its angle to the first axis.
+    cos: f32,
+}
+
+impl Vertex {
+    /// Twice the measure of the lines between three, to some per cent where they are far apart: the density
+    /// of the measure is the cosine's third power, for which the product of the three stands.
+    fn triangle(self, b: Self, c: Self) -> f32 {
+        let determinant = (b.slope - self.slope) * (c.offset - self.offset)
+            - (c.slope - self.slope) * (b.offset - self.offset);
+        determinant * (self.cos * b.cos * c.cos)
+    }
+
+    /// How far a place lies above it.
+    fn below(self, [x, z]: [f32; 2]) -> f32 {
+        z - self.slope * x - self.offset
+    }
+
+    /// Of this line and another the one between them that passes a place, by how far it lies above the two.
+    fn between(self, above: f32, other: Self, above_other: f32) -> Self {
+        let t = above / (above - above_other);
+        Self {
+            slope: self.slope + t * (other.slope - self.slope),
+            offset: self.offset + t * (other.offset - self.offset),
+            cos: self.cos + t * (other.cos - self.cos),
+        }
+    }
+}
+
+/// The lines of a picture below a place: those between two through it, and the vertices from one on.
+struct Part {
+    start: Vertex,
+    first: usize,
+    count: usize,
+    end: Vertex,
+}
+
+/// A cell of lines as seen from a place.
+#[derive(Clone, Debug)]
+pub struct Picture {
+    origin: Site,
+    axis: Axis,
+    vertices: Vec<Vertex, VERTICES, u8>,
+    /// Twice the cell's measure, radian metres; its sign is that of the way round.
+    measure: f32,
+}
+
+impl Picture {
+    /// The picture of some lines from a site.
+    pub fn of(lines: ConsistentLines<'_>, origin: Site) -> Self {
+        let along = lines.slope_arc().bisector();
+        let axis = Axis { along, unit: UnitVector::of(along) };
+        let mut vertices = Vec::new();
+        let count = lines.edges.len().max(VERTICES);
+        let mut due = 0;
+        for bound in lines.bounds() {
+            due += VERTICES;
+            if due < count {
+                continue; // there is no room for all
+            }
+            due -= count;
+            let run = cross(bound.along, along.left());
+            let slope = cross(along, bound.along) / run;
+            let value = cross(bound.along, origin - bound.through);
+            let offset = -value * METRE / (run * axis.unit.per_length);
+            let cos = inverse_sqrt(1.0 + slope * slope);
+            let _ = vertices.push(Vertex { slope, offset, cos });
+        }
+        Self { origin, axis, vertices, measure: 0.0 }.measured()
+    }
+
+    fn measured(mut self) -> Self {
+        self.measure = match *self.vertices {
+            [apex, ref rest @ ..] => measure(apex, rest.iter()),
+            [] => 0.0,
+        };
+        self
+    }
+
+    /// The lines below a place, or above it; `None` if they are all or none.
+    fn part(&self, place: [f32; 2], label: Label) -> Option<Part> {
+        let sign = if label == Label::Positive { 1.0 } else { -1.0 };
+        let mut before = *self.vertices.last()?;
+        let mut above_before = sign * before.below(place);
+        let (mut enters, mut leaves) = (None, None);
+        for (k, &vertex) in self.vertices.iter().enumerate() {
+            let above = sign * vertex.below(place);
+            if (above > 0.0) != (above_before > 0.0) {
+                let crossing = Some((k, before.between(above_before, vertex, above)));
+                *(if above > 0.0 { &mut enters } else { &mut leaves }) = crossing;
+            }
+            (before, above_before) = (vertex, above);
+        }
+        let ((first, start), (after, end)) = enters.zip(leaves)?;
+        let all = self.vertices.len();
+        let count = if after > first { after - first } else { after + all - first };
+        Some(Part { start, first, count, end })
+    }
+
+    /// The vertices of a part but for its start.
+    fn rest<'a>(&'a self, part: &'a Part) -> impl Iterator<Item = &'a Vertex> {
+        let (before, from) = self.vertices.split_at_checked(part.first).unwrap_or_default();
+        let wrapped = part.count.saturating_sub(from.len());
+        let from = from.get(..part.count).unwrap_or(from);
+        let before = before.get(..wrapped).unwrap_or(before);
+        from.iter().chain(before).chain(core::slice::from_ref(&part.end))
+    }
+
+    /// The share above a place on whose side all lines agree: beyond 0 or 1 by its distance from the
+    /// nearest of them over their breadth there.
+    fn beyond(&self, place: [f32; 2]) -> f32 {
+        let (mut least, mut most) = (f32::INFINITY, f32::NEG_INFINITY);
+        for vertex in &self.vertices {
+            let above = vertex.below(place);
+            least = if above < least { above } else { least };
+            most = if above > most { above } else { most };
+        }
+        let breadth = most - least + f32::MIN_POSITIVE;
+        if least >= 0.0 { 1.0 + least / breadth } else { most / breadth }
+    }
+}
+
+/// Twice the measure of a polygon of lines, from one of them to the others in turn.
+fn measure<'a>(apex: Vertex, rest: impl Iterator<Item = &'a Vertex>) -> f32 {
+    let (_, sum) = rest
+        .fold((apex, 0.0), |(before, sum), vertex| (*vertex, sum + apex.triangle(before, *vertex)));
+    sum
+}
+
+impl<const N: usize> Foresight for VersionSpace<N> {
+    type Belief = Self;
+    type Outlook<'a> = Picture;
+
+    fn belief(&self) -> &Self {
+        self
+    }
+
+    fn observe(&mut self, site: Site, reading: Reading) -> Result<(), Refused> {
+        Belief::observe(self, site, reading)
+    }
+
+    fn prepare(&mut self) {}
+
+    fn outlook(&self, from: Site) -> Picture {
+        Picture::of(self.lines(), from)
+    }
+
+    fn ground(&self) -> ConsistentLines<'_> {
+        self.lines()
+    }
+}
+
+impl Prediction for Picture {
+    fn share_above(&self, site: Site) -> f32 {
+        let place = self.axis.see(site - self.origin);
+        let Some(part) = self.part(place, Label::Positive) else { return self.beyond(place) };
+        (measure(part.start, self.rest(&part)) / self.measure).clamp(0.0, 1.0)
+    }
+
+    fn information(&self, _: Site, share: f32) -> f32 {
+        entropy(share)
+    }
+}
+
+impl Outlook for Picture {
+    type After<'a> = Self;
+
+    fn chance(&self, _: Site, share: f32) -> f32 {
+        share
+    }
+
+    fn after(&self, site: Site, label: Label) -> Self {
+        let [x, z] = self.axis.see(site - self.origin);
+        let mut vertices = Vec::new();
+        if let Some(part) = self.part([x, z], label) {
+            // A part has a vertex more than the whole at most: a full picture loses its last.
+            for vertex in core::iter::once(&part.start).chain(self.rest(&part)).take(VERTICES) {
+                let offset = vertex.offset + vertex.slope * x - z;
+                let _ = vertices.push(Vertex { offset, ..*vertex });
+            }
+        }
+        Self { origin: site, axis: self.axis, vertices, measure: 0.0 }.measured()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Point2;
+
+    use super::*;
+    use crate::belief::sample::Sample;
+    use crate::belief::version_space::VersionSpace;
+
+    fn at(x: f64, z: f64) -> Site {
+        Site::try_from(Point2::new(x, z)).unwrap()
+    }
+
+    #[test]
+    fn shares_are_those_of_the_version_space() {
+        let samples =
+            [(2.0, 1.0, -1), (2.0, 8.0, 1), (18.0, 16.0, 1), (18.0, 5.0, -1)].map(|(x, z, y)| {
+                Sample {
+                    site: at(x, z),
+                    label: if y > 0 { Label::Positive } else { Label::Negative },
+                }
+            });
+        let space = VersionSpace::<16>::new(&samples).unwrap();
+        let picture = Picture::of(space.lines(), at(2.0, 1.0));
+        for x in 0..20 {
+            for z in 0..20 {
+                let site = at(f64::from(x), f64::from(z));
+                let (got, is) = (picture.share_above(site), space.chance(site));
+                assert!((f64::from(got) - f64::from(is)).abs() < 0.1, "{x} {z}: {got} {is}");
+            }
+        }
+    }
+}
