@@ -21,6 +21,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::belief::Refused;
 use crate::belief::estimate::Estimates;
+use crate::belief::goal::Goal;
 use crate::belief::noise::Noise;
 use crate::belief::sample::{Reading, Sample};
 use crate::belief::version_space::NoVersionSpace;
@@ -120,6 +121,15 @@ pub enum Algorithm {
         policy: Policy,
         /// How they are weighed.
         prior: Prior,
+    },
+    /// Look-ahead.
+    Lookahead {
+        /// Ends of motions that a plan asks, at most.
+        evaluations: u32,
+        /// What is enough to know, if the mission is to end there.
+        goal: Option<Goal>,
+        /// What is known of the noise, and how hypotheses are weighed, if labels may be wrong.
+        noise: Option<(Noise, Prior)>,
     },
 }
 

@@ -2,10 +2,12 @@
 
 use crate::belief::Refused;
 use crate::belief::estimate::Estimates;
+use crate::belief::forecast::Forecast;
+use crate::belief::goal::Goal;
 use crate::belief::hypotheses::Hypotheses;
 use crate::belief::noise::Noise;
-use crate::belief::sample::Reading;
-use crate::belief::version_space::VersionSpace;
+use crate::belief::sample::{Reading, Sample};
+use crate::belief::version_space::{NoVersionSpace, VersionSpace};
 use crate::belief::weight::Prior;
 use crate::link::delivery::{Link, LinkLost, Port};
 use crate::link::message::{
@@ -15,6 +17,7 @@ use crate::link::message::{
 use crate::motion::dynamics::Pose;
 use crate::motion::unicycle::Unicycle;
 use crate::planner::cfc::Cfc;
+use crate::planner::lookahead::Lookahead;
 use crate::planner::scc::{Policy, Scc};
 use crate::planner::{Motion, Plan, Planner};
 use crate::robot::agent::Step;
@@ -61,9 +64,38 @@ impl Setup {
         Ok(Prepared { planner: Cfc::new(self.config, self.grid.into(), space), capacity })
     }
 
+    /// Look-ahead for this mission, with labels that are true.
+    ///
+    /// # Errors
+    /// [`Declined`].
+    #[inline(never)] // it is the planner's, see `seam`
+    pub fn lookahead<const N: usize>(
+        &self,
+        evaluations: u32,
+        goal: Option<Goal>,
+    ) -> Result<Prepared<Lookahead<Unicycle, VersionSpace<N>>>, Declined> {
+        let capacity = Capacity { samples: N as u16, hypotheses: 1 };
+        self.check(capacity)?;
+        let space = VersionSpace::new(&self.given).map_err(Declined::Given)?;
+        let planner = Lookahead::new(self.config, self.grid.into(), space);
+        let planner = planner.within(evaluations).until(goal);
+        Ok(Prepared { planner, capacity })
+    }
+
     /// Algorithm 2 for this mission, with none of its samples yet: the memory for [`prepare`](Self::prepare).
     pub fn scc<const N: usize, const H: usize>(&self, policy: Policy) -> Scc<Unicycle, N, H> {
         Scc::new(self.config, policy, self.grid.into(), Hypotheses::NONE)
+    }
+
+    /// Look-ahead with labels that may be wrong, with none of its samples yet: the memory for
+    /// [`prepare`](Self::prepare).
+    pub fn forecast<const N: usize, const H: usize>(
+        &self,
+        evaluations: u32,
+        goal: Option<Goal>,
+    ) -> Lookahead<Unicycle, Forecast<N, H>> {
+        let planner = Lookahead::new(self.config, self.grid.into(), Forecast::NONE);
+        planner.within(evaluations).until(goal)
     }
 
     /// Begins the mission in this memory, so that there is never a second planner beside it.
@@ -71,16 +103,59 @@ impl Setup {
     /// # Errors
     /// [`Declined`].
     #[inline(never)] // it is the planner's, see `seam`
-    pub fn prepare<'a, const N: usize, const H: usize>(
+    pub fn prepare<'a, R: Restart>(
         &self,
-        planner: &'a mut Scc<Unicycle, N, H>,
+        planner: &'a mut R,
         prior: Prior,
         noise: Noise,
-    ) -> Result<Prepared<&'a mut Scc<Unicycle, N, H>>, Declined> {
-        let capacity = Capacity { samples: N as u16, hypotheses: H as u16 };
+    ) -> Result<Prepared<&'a mut R>, Declined> {
+        let capacity = R::CAPACITY;
         self.check(capacity)?;
         planner.restart(&self.given, prior, noise).map_err(Declined::Given)?;
         Ok(Prepared { planner, capacity })
+    }
+}
+
+/// A planner that is too large to be made elsewhere and moved: it begins where it is.
+pub trait Restart: Planner {
+    /// What it has room for.
+    const CAPACITY: Capacity;
+
+    /// Begins again with what given samples leave.
+    ///
+    /// # Errors
+    /// [`NoVersionSpace`], with the planner as it was.
+    fn restart(
+        &mut self,
+        given: &[Sample],
+        prior: Prior,
+        noise: Noise,
+    ) -> Result<(), NoVersionSpace>;
+}
+
+impl<const N: usize, const H: usize> Restart for Scc<Unicycle, N, H> {
+    const CAPACITY: Capacity = Capacity { samples: N as u16, hypotheses: H as u16 };
+
+    fn restart(
+        &mut self,
+        given: &[Sample],
+        prior: Prior,
+        noise: Noise,
+    ) -> Result<(), NoVersionSpace> {
+        self.restart(given, prior, noise)
+    }
+}
+
+impl<const N: usize, const H: usize> Restart for Lookahead<Unicycle, Forecast<N, H>> {
+    const CAPACITY: Capacity = Capacity { samples: N as u16, hypotheses: H as u16 };
+
+    fn restart(
+        &mut self,
+        given: &[Sample],
+        prior: Prior,
+        noise: Noise,
+    ) -> Result<(), NoVersionSpace> {
+        self.foresight().restart(given, prior, noise)
     }
 }
 

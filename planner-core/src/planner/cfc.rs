@@ -122,8 +122,8 @@ impl<D: Dynamics, const N: usize> Planner for Cfc<D, N> {
         let (found, phase, effort) = self.find(pose);
         self.phase = phase;
         let stage = match phase {
-            Phase::Crossing => Stage::P1,
-            Phase::Following => Stage::P2,
+            Phase::Crossing => Some(Stage::P1),
+            Phase::Following => Some(Stage::P2),
         };
         match found {
             Ok(found) => Plan::Move(Motion::of(stage, &found, &self.dynamics, effort)),

@@ -6,6 +6,7 @@
 
 pub mod cfc;
 pub mod config;
+pub mod lookahead;
 pub mod scc;
 mod vote;
 
@@ -59,14 +60,14 @@ pub struct Motion {
 impl Motion {
     /// The motion of an action that a search has found.
     pub(crate) fn of<D: Dynamics>(
-        stage: Stage,
+        stage: Option<Stage>,
         found: &Found,
         dynamics: &D,
         effort: Effort,
     ) -> Self {
         let &Found { recovery, action, target } = found;
         Self {
-            stage: Some(stage),
+            stage,
             recovery,
             action,
             control: dynamics.control(action),
@@ -93,6 +94,8 @@ pub enum StopReason {
     /// There is uncertain ground, but no motion that leads towards it: the border is in the way, or the
     /// agent cannot turn.
     Cornered,
+    /// The line is known as well as was asked for.
+    Known,
     /// A plan may look at so many rays, and none of these was a way on.
     Undecided,
 }

@@ -199,7 +199,7 @@ impl<D: Dynamics, const N: usize, const H: usize> Planner for Scc<D, N, H> {
         };
         let mut effort = Effort::of(if self.policy == Policy::Joint { LOOKS } else { VOTE_LOOKS });
         match self.find(pose, &mut effort) {
-            Ok(found) => Plan::Move(Motion::of(stage, &found, &self.dynamics, effort)),
+            Ok(found) => Plan::Move(Motion::of(Some(stage), &found, &self.dynamics, effort)),
             Err(dead_end) => Plan::Stop(dead_end.into()),
         }
     }

@@ -9,6 +9,7 @@
 pub(crate) mod circles;
 pub(crate) mod crossing;
 pub mod direction_rule;
+pub(crate) mod lookout;
 pub mod objective;
 pub mod problem;
 pub mod recovery;

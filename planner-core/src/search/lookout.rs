@@ -1,0 +1,247 @@
+//! The search for the places where a label is expected to tell the most.
+//!
+//! A label tells most where it is as likely to be +1 as -1, and these places form a curve. So on each of
+//! some circles the share of the lines above is asked at a few rays of the fan; between two rays on
+//! different sides of one half the one that comes nearest to it is found by false position. Every place that
+//! is asked on the way is a prospect.
+
+use core::num::NonZeroU32;
+
+use heapless::Vec;
+
+use crate::belief::consistent_lines::{Certainty, ConsistentLines};
+use crate::belief::outlook::Prediction;
+use crate::geometry::area::Area;
+use crate::geometry::lattice::UNITS_PER_METRE;
+use crate::motion::action::Action;
+use crate::motion::dynamics::{Dynamics, Fan, Pose, Ray, Side};
+use crate::search::objective::Varrho;
+
+/// Rays of a circle that are asked first are a twelfth of a turn apart, about.
+const PROBES_PER_TURN: u32 = 12;
+
+/// A share is as good as one half when it is this near to it.
+const NEAR_HALF: f32 = 0.02;
+
+/// False position goes at least this share of the way from either end.
+const LEAST_STEP: f32 = 1.0 / 64.0;
+
+/// Prospects that are kept to be looked at more closely.
+const PROSPECTS: usize = 4;
+
+/// How far apart they are, lattice units.
+const APART: i64 = UNITS_PER_METRE as i64 / 4;
+
+/// A motion that may be made, and what the label at its end is worth.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Prospect {
+    pub(crate) action: Action,
+    pub(crate) target: Pose,
+    /// The share of the lines above its end.
+    pub(crate) share: f32,
+    /// What the label there is expected to tell, over what one can tell, less the weighed cost.
+    pub(crate) worth: f32,
+}
+
+/// A second label worth as much is as good as any, so the search for it ends.
+pub(crate) const ENOUGH: f32 = 0.98;
+
+/// What a look is for.
+pub(crate) enum Sought<'a> {
+    /// The best prospects whose ends these lines disagree on.
+    Prospects(&'a mut Prospects, ConsistentLines<'a>),
+    /// What the best of them is worth.
+    Worth(&'a mut f32),
+}
+
+impl Sought<'_> {
+    /// Takes in a prospect; whether to go on.
+    fn find(&mut self, new: Prospect) -> bool {
+        match self {
+            Self::Prospects(prospects, lines) => {
+                prospects.add(new, *lines);
+                true
+            }
+            Self::Worth(most) => {
+                if new.worth > **most {
+                    **most = if new.worth < ENOUGH { new.worth } else { ENOUGH };
+                }
+                **most < ENOUGH
+            }
+        }
+    }
+}
+
+/// What motions there are, where they may lead, what they cost, and how many ends may still be asked.
+pub(crate) struct Lookout<'a, D> {
+    pub(crate) dynamics: &'a D,
+    pub(crate) area: Area,
+    pub(crate) varrho: Varrho,
+    pub(crate) evaluations: u32,
+}
+
+/// A ray, numbered from the right to the left with 0 straight ahead, and the share above its end.
+#[derive(Clone, Copy)]
+struct Probe {
+    ray: i64,
+    share: f32,
+}
+
+impl<D: Dynamics> Lookout<'_, D> {
+    /// What a motion costs: its squared control, weighed.
+    pub(crate) fn cost(&self, reach_mm: u32, effort: u32) -> f32 {
+        let reach = reach_mm as f32;
+        let weight = self.varrho.millionths as f32 * 1e-12;
+        weight * (reach * reach + effort as f32)
+    }
+
+    /// Looks at so many circles, evenly spaced, the innermost first. Ends before when a prospect is enough,
+    /// or no more ends may be asked.
+    pub(crate) fn look<P: Prediction>(
+        &mut self,
+        prediction: &P,
+        pose: Pose,
+        circles: u16,
+        sought: &mut Sought<'_>,
+    ) {
+        let fastest = u32::from(self.dynamics.grid().speeds().saturating_sub(1));
+        let circles = NonZeroU32::new(u32::from(circles).min(fastest)).unwrap_or(NonZeroU32::MIN);
+        for k in 1..=circles.get() {
+            let speed = (fastest * k + circles.get() - 1) / circles;
+            let speed = speed as u16;
+            if self.circle(prediction, pose, speed, sought).is_none() {
+                return;
+            }
+        }
+    }
+
+    fn ray(&self, pose: Pose, number: i64) -> Ray {
+        let side = if number < 0 { Side::Right } else { Side::Left };
+        self.dynamics.ray(pose, side, number.unsigned_abs() as u32)
+    }
+
+    /// Asks the end of a ray. `None` when that is the last to be asked, or off the lattice.
+    fn ask<P: Prediction>(
+        &mut self,
+        prediction: &P,
+        pose: Pose,
+        (number, speed): (i64, u16),
+        sought: &mut Sought<'_>,
+    ) -> Option<Probe> {
+        self.evaluations = self.evaluations.checked_sub(1)?;
+        let ray = self.ray(pose, number);
+        let target = ray.arrive(pose.site, speed).ok()?;
+        let share = prediction.share_above(target.site);
+        if share > 0.0 && share < 1.0 && self.area.contains(target.site) {
+            let grid = self.dynamics.grid();
+            let cost = self.cost(grid.reach_mm(speed), ray.effort);
+            let worth = prediction.information(target.site, share) - cost;
+            let action = grid.action(ray.index, speed);
+            if !sought.find(Prospect { action, target, share, worth }) {
+                return None;
+            }
+        }
+        Some(Probe { ray: number, share })
+    }
+
+    /// Looks at the circle of one speed.
+    fn circle<P: Prediction>(
+        &mut self,
+        prediction: &P,
+        pose: Pose,
+        speed: u16,
+        sought: &mut Sought<'_>,
+    ) -> Option<()> {
+        let Fan { left, right, spacing } = self.dynamics.fan();
+        let (first, count) = (-i64::from(right), left.saturating_add(right).saturating_sub(1));
+        let turns = u64::from(spacing.0) * u64::from(count) * u64::from(PROBES_PER_TURN);
+        let steps = ((turns + (1 << 31)) >> 32) as u32;
+        let steps = NonZeroU32::new(steps).unwrap_or(NonZeroU32::MIN);
+        let stride = count / steps;
+        let mut before = self.ask(prediction, pose, (first, speed), sought)?;
+        for step in 1..=steps.get() {
+            let offset = if step == steps.get() { count } else { step * stride };
+            let number = first + i64::from(offset);
+            let after = self.ask(prediction, pose, (number, speed), sought)?;
+            if (before.share < 0.5) != (after.share < 0.5) {
+                self.close_in(prediction, pose, speed, [before, after], sought)?;
+            }
+            before = after;
+        }
+        Some(())
+    }
+
+    /// Comes as near to one half as the rays between two on different sides of it do.
+    fn close_in<P: Prediction>(
+        &mut self,
+        prediction: &P,
+        pose: Pose,
+        speed: u16,
+        [mut a, mut b]: [Probe; 2],
+        sought: &mut Sought<'_>,
+    ) -> Option<()> {
+        // How far from one half: the method of Illinois, which halves an end that stays.
+        let (mut off_a, mut off_b) = (a.share - 0.5, b.share - 0.5);
+        let mut stayed = None;
+        while b.ray - a.ray > 1 {
+            let part = (off_a / (off_a - off_b)).clamp(LEAST_STEP, 1.0 - LEAST_STEP);
+            let middle = a.ray + i64::from((part * (b.ray - a.ray) as u32 as f32) as u32);
+            let middle = middle.max(a.ray + 1).min(b.ray - 1);
+            let probe = self.ask(prediction, pose, (middle, speed), sought)?;
+            let off = probe.share - 0.5;
+            if off.abs() < NEAR_HALF {
+                break;
+            }
+            let left = (off < 0.0) == (off_a < 0.0);
+            if left {
+                (a, off_a) = (probe, off);
+                off_b *= if stayed == Some(Side::Left) { 0.5 } else { 1.0 };
+                stayed = Some(Side::Left);
+            } else {
+                (b, off_b) = (probe, off);
+                off_a *= if stayed == Some(Side::Right) { 0.5 } else { 1.0 };
+                stayed = Some(Side::Right);
+            }
+        }
+        Some(())
+    }
+}
+
+/// The best prospects, some way apart, the best first.
+pub(crate) struct Prospects {
+    list: Vec<Prospect, PROSPECTS, u8>,
+}
+
+impl Prospects {
+    pub(crate) const fn new() -> Self {
+        Self { list: Vec::new() }
+    }
+
+    pub(crate) fn as_slice(&self) -> &[Prospect] {
+        &self.list
+    }
+
+    /// Takes in a prospect if it is among the best, and lines disagree on its end.
+    fn add(&mut self, new: Prospect, lines: ConsistentLines<'_>) {
+        let is_near = |old: &Prospect| {
+            let apart = old.target.site - new.target.site;
+            apart.dot(apart) < APART * APART
+        };
+        let rank = self.list.iter().take_while(|old| old.worth >= new.worth).count();
+        let (better, _) = self.list.split_at_checked(rank).unwrap_or_default();
+        if rank >= PROSPECTS
+            || better.iter().any(is_near)
+            || lines.certainty(new.target.site) != Certainty::Uncertain
+        {
+            return;
+        }
+        // What does not find room is the worst.
+        let mut list = Vec::new();
+        let (better, worse) = self.list.split_at_checked(rank).unwrap_or_default();
+        let worse = worse.iter().filter(|old| !is_near(old));
+        for prospect in better.iter().chain([&new]).chain(worse) {
+            let _ = list.push(*prospect);
+        }
+        self.list = list;
+    }
+}
