@@ -12,11 +12,11 @@ use stm32f4xx_hal::gpio::{Input, PB1};
 use crate::serial::Serial;
 use crate::stop::Enable;
 
-/// Samples that Algorithm 1 can hold: 64 labels beside four given ones.
-const CFC_SAMPLES: usize = 68;
+/// Samples that a mission with true labels can hold: 64 labels beside four given ones.
+const TRUE_SAMPLES: usize = 68;
 
-/// Samples that Algorithm 2 can hold: 32 labels beside four given ones.
-const SCC_SAMPLES: usize = 36;
+/// Samples that a mission with doubtful labels can hold: 32 labels beside four given ones.
+const DOUBTFUL_SAMPLES: usize = 36;
 
 /// All hypotheses that 32 labels can come to.
 const HYPOTHESES: usize = 529;
@@ -32,9 +32,17 @@ impl Board {
         loop {
             let setup = self.station.await_setup();
             match setup.algorithm {
-                Algorithm::Cfc => self.fly(&setup, &mut setup.cfc::<CFC_SAMPLES>()),
+                Algorithm::Cfc => self.fly(&setup, &mut setup.cfc::<TRUE_SAMPLES>()),
+                Algorithm::Lookahead { evaluations, goal, noise: None } => {
+                    self.fly(&setup, &mut setup.lookahead::<TRUE_SAMPLES>(evaluations, goal));
+                }
+                Algorithm::Lookahead { evaluations, goal, noise: Some((noise, prior)) } => {
+                    let mut planner =
+                        setup.forecast::<DOUBTFUL_SAMPLES, HYPOTHESES>(evaluations, goal);
+                    self.fly(&setup, &mut setup.prepare(&mut planner, prior, noise));
+                }
                 Algorithm::Scc { noise, policy, prior } => {
-                    let mut planner = setup.scc::<SCC_SAMPLES, HYPOTHESES>(policy);
+                    let mut planner = setup.scc::<DOUBTFUL_SAMPLES, HYPOTHESES>(policy);
                     self.fly(&setup, &mut setup.prepare(&mut planner, prior, noise));
                 }
             }

@@ -37,6 +37,13 @@ pub fn fly<P: Port>(
 ) -> Result<Flown, LinkLost> {
     match setup.algorithm {
         message::Algorithm::Cfc => chip.fly(setup, &mut setup.cfc::<68>(), |_| {}),
+        message::Algorithm::Lookahead { evaluations, goal, noise: None } => {
+            chip.fly(setup, &mut setup.lookahead::<68>(evaluations, goal), |_| {})
+        }
+        message::Algorithm::Lookahead { evaluations, goal, noise: Some((noise, prior)) } => {
+            let mut planner = setup.forecast::<36, 529>(evaluations, goal);
+            chip.fly(setup, &mut setup.prepare(&mut planner, prior, noise), |_| {})
+        }
         message::Algorithm::Scc { noise, policy, prior } => {
             let mut planner = setup.scc::<36, 529>(policy);
             chip.fly(setup, &mut setup.prepare(&mut planner, prior, noise), |_| {})

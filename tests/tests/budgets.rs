@@ -11,6 +11,7 @@ use std::io::{self, Write as _};
 use std::{fs, path::Path};
 
 use host_sim::mission::algorithm::Algorithm;
+use planner_core::motion::unicycle::Grid;
 use planner_core::planner::scc::Policy;
 use tests::LONG;
 use tests::budget::footprint::{self, Footprint};
@@ -202,6 +203,7 @@ const CFC: Workload = Workload {
     searched: 4_000,
     sought: 4,
     calls: None,
+    grid: Grid::Paper,
 };
 
 fn time_small(books: &mut Books, elf: &[u8]) -> u32 {

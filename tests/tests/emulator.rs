@@ -15,6 +15,7 @@ use host_sim::mission::recording::Recording;
 use host_sim::mission::scenario::{self, Overrides};
 use host_sim::report::trace;
 use host_sim::world::noise::{Extent, NoiseModel};
+use planner_core::motion::unicycle::Grid;
 use planner_core::planner::scc::Policy;
 use rayon::prelude::*;
 use tests::budget::timing;
@@ -140,6 +141,7 @@ fn qemu_executes_as_many_instructions() {
         searched: 0,
         sought: 0,
         calls: None,
+        grid: Grid::Paper,
     };
     let (_, told) = missions::fly_and_record(&mut Emulator::load(&elf, core), &workload.mission(3))
         .expect("it flies as the host");

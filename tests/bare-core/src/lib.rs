@@ -4,9 +4,10 @@
 //!
 //! | binary | flies | holds |
 //! | --- | --- | --- |
-//! | `small` | Algorithm 1 | 16 samples |
-//! | `standard` | both algorithms | 32 labels beside 4 given, all 529 hypotheses |
-//! | `large` | both algorithms | 64 labels beside 4 given, all 2,081 hypotheses |
+//! | `alone` | Algorithm 1 | 16 samples |
+//! | `small` | Algorithm 1, look-ahead for true labels | 16 samples |
+//! | `standard` | all algorithms | 32 labels beside 4 given, all 529 hypotheses |
+//! | `large` | all algorithms | 64 labels beside 4 given, all 2,081 hypotheses |
 //! | `panicking` | nothing | a panic: that of an index |
 //!
 //! It is built for Arm and for RISC-V (`riscv32imac`), there for its size alone.
@@ -19,7 +20,7 @@ mod port;
 #[cfg(all(target_os = "none", target_arch = "arm"))]
 pub use cortex_m_rt::entry;
 #[cfg(target_os = "none")]
-pub use on_target::{any, cfc, panicking};
+pub use on_target::{any, cfc, panicking, true_labels};
 #[cfg(all(target_os = "none", target_arch = "riscv32"))]
 pub use riscv_rt::entry;
 
@@ -51,14 +52,34 @@ mod on_target {
             let setup = station.await_setup();
             let mut planner = match setup.algorithm {
                 Algorithm::Cfc => setup.cfc::<N>(),
-                Algorithm::Scc { .. } => Err(Declined::Algorithm),
+                _ => Err(Declined::Algorithm),
             };
             // How it ended is the host's to judge.
             let _ = station.fly(&setup, &mut planner, |_| {});
         }
     }
 
-    /// Flies missions of both algorithms with room for `N` samples and `H` hypotheses.
+    /// Flies missions with true labels, of Algorithm 1 and of look-ahead, with room for `N` samples.
+    pub fn true_labels<const N: usize>() -> ! {
+        let streams = open();
+        let mut station = station(&streams);
+        loop {
+            let setup = station.await_setup();
+            let _ = match setup.algorithm {
+                Algorithm::Lookahead { evaluations, goal, noise: None } => {
+                    station.fly(&setup, &mut setup.lookahead::<N>(evaluations, goal), |_| {})
+                }
+                algorithm => {
+                    let cfc = setup.cfc::<N>();
+                    let is_cfc = algorithm == Algorithm::Cfc;
+                    let mut cfc = if is_cfc { cfc } else { Err(Declined::Algorithm) };
+                    station.fly(&setup, &mut cfc, |_| {})
+                }
+            };
+        }
+    }
+
+    /// Flies missions of all algorithms with room for `N` samples and `H` hypotheses.
     pub fn any<const N: usize, const H: usize>() -> ! {
         let streams = open();
         let mut station = station(&streams);
@@ -66,6 +87,13 @@ mod on_target {
             let setup = station.await_setup();
             let _ = match setup.algorithm {
                 Algorithm::Cfc => station.fly(&setup, &mut setup.cfc::<N>(), |_| {}),
+                Algorithm::Lookahead { evaluations, goal, noise: None } => {
+                    station.fly(&setup, &mut setup.lookahead::<N>(evaluations, goal), |_| {})
+                }
+                Algorithm::Lookahead { evaluations, goal, noise: Some((noise, prior)) } => {
+                    let mut planner = setup.forecast::<N, H>(evaluations, goal);
+                    station.fly(&setup, &mut setup.prepare(&mut planner, prior, noise), |_| {})
+                }
                 Algorithm::Scc { noise, policy, prior } => {
                     let mut planner = setup.scc::<N, H>(policy);
                     station.fly(&setup, &mut setup.prepare(&mut planner, prior, noise), |_| {})

@@ -17,6 +17,7 @@ use nalgebra::Point2;
 use planner_core::geometry::heading::Heading;
 use planner_core::geometry::lattice::Site;
 use planner_core::motion::dynamics::Pose;
+use planner_core::motion::unicycle::Grid;
 use planner_core::planner::scc::Policy;
 use rayon::prelude::*;
 
@@ -39,6 +40,8 @@ pub struct Workload {
     pub sought: usize,
     /// Calls of the planner after which a mission is broken off, if it is: estimates take long.
     pub calls: Option<usize>,
+    /// The fan.
+    pub grid: Grid,
 }
 
 impl Workload {
@@ -66,8 +69,10 @@ impl Workload {
     /// The mission with a number.
     pub fn mission(&self, number: u64) -> Mission {
         let mut mission = standard_field::standard(SEED, number, self.algorithm, self.steps);
-        mission.policy = self.policy;
-        if self.algorithm == Algorithm::Scc {
+        (mission.policy, mission.grid) = (self.policy, self.grid);
+        if self.algorithm == Algorithm::Scc
+            || self.algorithm == Algorithm::Lookahead && self.policy == Policy::MixtureOfStart
+        {
             mission.noise = Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.5) });
         }
         if number >= self.random && number % 2 == 1 {

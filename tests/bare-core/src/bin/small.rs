@@ -1,11 +1,11 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 #![forbid(unsafe_code)]
-//! Algorithm 1 with 16 samples.
+//! Algorithm 1 and look-ahead with 16 samples, for labels that are true.
 
 #[cfg(target_os = "none")]
 #[bare_core::entry]
 fn main() -> ! {
-    bare_core::cfc::<16>()
+    bare_core::true_labels::<16>()
 }
 
 /// On a host there is nothing to run.

@@ -1,0 +1,13 @@
+#![cfg_attr(target_os = "none", no_std, no_main)]
+#![forbid(unsafe_code)]
+//! Algorithm 1 alone, with 16 samples.
+
+#[cfg(target_os = "none")]
+#[bare_core::entry]
+fn main() -> ! {
+    bare_core::cfc::<16>()
+}
+
+/// On a host there is nothing to run.
+#[cfg(not(target_os = "none"))]
+fn main() {}
