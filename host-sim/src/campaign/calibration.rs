@@ -1,5 +1,6 @@
 //! What labels that may err tell of what they can tell, and whether the probabilities that are stated hold.
 
+use planner_core::belief::Belief as _;
 use planner_core::belief::hypotheses::Hypothesis;
 use planner_core::belief::posterior::Posterior;
 use planner_core::belief::weight::Prior;
@@ -9,7 +10,7 @@ use serde::Serialize;
 use crate::campaign::ensemble::{Campaign, Ensemble, Measure, Progress};
 use crate::campaign::spread::Spread;
 use crate::mission::algorithm::Algorithm;
-use crate::mission::definition::Mission;
+use crate::mission::definition::{Mission, Table};
 use crate::mission::read_out::{LEVEL, ReadOut};
 use crate::world::noise::limit;
 
@@ -37,6 +38,7 @@ pub struct Checkpoint {
     field: u64,
     labels: u32,
     bits: f64,
+    expected_bits: f64,
     hypotheses: usize,
     pruned_mass: f64,
     mean_deg: f64,
@@ -68,6 +70,11 @@ pub struct Row {
     pub bits: f64,
     /// The share of what so many labels can tell at most; `None` where they can tell nothing.
     pub share: Option<f64>,
+    /// What these labels were expected to tell, each where it was read and by what was known then: the mean of
+    /// `bits` without the chance in single labels.
+    pub expected_bits: f64,
+    /// The same as a share.
+    pub expected_share: Option<f64>,
     /// Mean number of hypotheses.
     pub hypotheses: f64,
     /// The largest probability given up, at most.
@@ -141,6 +148,7 @@ impl Measure for Calibrated {
             field: progress.field,
             labels: progress.labels,
             bits: by_area.information(),
+            expected_bits: expected(mission, table),
             hypotheses: table.iter().len(),
             pruned_mass: by_area.pruned_mass(),
             mean_deg: by_area.mean().and_then(error).unwrap_or(90.0),
@@ -171,16 +179,32 @@ impl Summary {
     }
 }
 
+/// What the labels of a table were expected to tell, by the exact distribution before each.
+fn expected(mission: &Mission, table: &Table) -> f64 {
+    let mut known = mission.table();
+    let given = known.samples().len();
+    let told = table.samples().iter().skip(given).map(|&sample| {
+        let reliability = known.reliability(sample.site);
+        let told = limit(reliability.probability()) - limit(known.chance(sample.site));
+        known.take(sample, reliability).expect("taken in once already");
+        told
+    });
+    told.sum()
+}
+
 fn row(labels: u32, limit: f64, checkpoints: &[Checkpoint]) -> Row {
     let n = checkpoints.len() as f64;
     let mean = |pick: fn(&Checkpoint) -> f64| checkpoints.iter().map(pick).sum::<f64>() / n;
-    let bits = mean(|m| m.bits);
+    let (bits, expected_bits) = (mean(|m| m.bits), mean(|m| m.expected_bits));
+    // Of nothing there is no share.
+    let share = |bits: f64| (limit > 0.0).then(|| bits / f64::from(labels) / limit);
     Row {
         labels,
         missions: checkpoints.len() as u64,
         bits,
-        // Of nothing there is no share.
-        share: (limit > 0.0).then(|| bits / f64::from(labels) / limit),
+        share: share(bits),
+        expected_bits,
+        expected_share: share(expected_bits),
         hypotheses: mean(|m| m.hypotheses as f64),
         pruned_mass: checkpoints.iter().map(|m| m.pruned_mass).fold(0.0, f64::max),
         mean_deg: Spread::of(checkpoints.iter().map(|m| m.mean_deg)),

@@ -20,7 +20,6 @@ use planner_core::motion::dynamics::Pose;
 use planner_core::motion::unicycle::Grid;
 use planner_core::planner::config::{Config, Crossing};
 use planner_core::planner::scc::Policy;
-use planner_core::search::objective::Varrho;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -91,7 +90,7 @@ pub fn standard(seed: u64, number: u64, algorithm: Algorithm, steps: u32) -> Mis
         seed: seed ^ number.rotate_left(32),
         config: Config {
             area,
-            varrho: Varrho::PAPER,
+            varrho: algorithm.varrho(),
             crossing: Crossing::default(),
             following: algorithm.following(),
         },
@@ -102,5 +101,6 @@ pub fn standard(seed: u64, number: u64, algorithm: Algorithm, steps: u32) -> Mis
         noise: None,
         policy: Policy::default(),
         prior: Prior::default(),
+        goal: None,
     }
 }

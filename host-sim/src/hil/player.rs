@@ -15,7 +15,7 @@ use planner_core::link::message::{
     Took,
 };
 use planner_core::motion::dynamics::Pose;
-use planner_core::planner::Motion;
+use planner_core::planner::{Motion, lookahead};
 use planner_core::robot::agent::Step;
 
 use crate::mission::algorithm::Algorithm;
@@ -262,7 +262,12 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
             policy: mission.policy,
             prior: mission.prior,
         },
-        other => bail!("algorithm: found {}, expected cfc or scc", other.name()),
+        Algorithm::Lookahead => message::Algorithm::Lookahead {
+            evaluations: lookahead::EVALUATIONS,
+            goal: mission.goal,
+            noise: mission.noise.map(|model| (model.told(), mission.prior)),
+        },
+        other => bail!("algorithm: found {}, expected cfc, scc or lookahead", other.name()),
     };
     let samples = mission.given.samples();
     let given = BoundedVec::from_slice(samples).map_err(|_| {
@@ -272,7 +277,7 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
     // Labels that are all certain make no second hypothesis; of t others there are at most so many.
     let taken = mission.steps;
     let hypotheses = match mission.algorithm {
-        Algorithm::Scc => 1 + taken + taken * taken.saturating_sub(1) / 2,
+        _ if mission.is_noisy() => 1 + taken + taken * taken.saturating_sub(1) / 2,
         _ => 1,
     };
     let capacity =

@@ -2,7 +2,8 @@
 
 use clap::ValueEnum as _;
 use planner_core::planner::config::Following;
-use planner_core::planner::{cfc, scc};
+use planner_core::planner::{cfc, lookahead, scc};
+use planner_core::search::objective::Varrho;
 use serde::{Deserialize, Serialize};
 
 /// Who plans.
@@ -13,6 +14,8 @@ pub enum Algorithm {
     Cfc,
     /// Algorithm 2, noisy labels.
     Scc,
+    /// Two labels ahead.
+    Lookahead,
     /// Margin sampling, the usual rule of active learning.
     Margin,
     /// A random walk, for scale.
@@ -25,6 +28,7 @@ impl Algorithm {
         match self {
             Self::Cfc => "Algorithm 1 (cfc)",
             Self::Scc => "Algorithm 2 (scc)",
+            Self::Lookahead => "look-ahead",
             Self::Margin => "margin sampling",
             Self::Random => "random walk",
         }
@@ -33,8 +37,16 @@ impl Algorithm {
     /// How P2 follows the boundary unless one says: in the way that learns the most.
     pub fn following(self) -> Following {
         match self {
-            Self::Cfc | Self::Margin | Self::Random => cfc::FOLLOWING,
+            Self::Cfc | Self::Lookahead | Self::Margin | Self::Random => cfc::FOLLOWING,
             Self::Scc => scc::FOLLOWING,
+        }
+    }
+
+    /// The weight of the control unless one says.
+    pub fn varrho(self) -> Varrho {
+        match self {
+            Self::Lookahead => lookahead::VARRHO,
+            Self::Cfc | Self::Scc | Self::Margin | Self::Random => Varrho::PAPER,
         }
     }
 
@@ -43,7 +55,7 @@ impl Algorithm {
         match self {
             Self::Cfc => false,
             Self::Scc => true,
-            Self::Margin | Self::Random => labels_err,
+            Self::Lookahead | Self::Margin | Self::Random => labels_err,
         }
     }
 
@@ -51,7 +63,7 @@ impl Algorithm {
     pub fn poses_problems(self) -> bool {
         match self {
             Self::Cfc | Self::Scc => true,
-            Self::Margin | Self::Random => false,
+            Self::Lookahead | Self::Margin | Self::Random => false,
         }
     }
 

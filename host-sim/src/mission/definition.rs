@@ -1,5 +1,7 @@
 //! What a mission is, and how it is flown in the simulated world.
 
+use planner_core::belief::forecast::Forecast;
+use planner_core::belief::goal::Goal;
 use planner_core::belief::hypotheses::Hypotheses;
 use planner_core::belief::noise::Noise;
 use planner_core::belief::version_space::VersionSpace;
@@ -51,8 +53,10 @@ pub struct Mission {
     pub noise: Option<NoiseModel>,
     /// How hypotheses choose an action together (Algorithm 2).
     pub policy: Policy,
-    /// How hypotheses are weighed beforehand (Algorithm 2).
+    /// How hypotheses are weighed beforehand (Algorithm 2, look-ahead).
     pub prior: Prior,
+    /// What is enough to know, if the mission is to end there (look-ahead).
+    pub goal: Option<Goal>,
 }
 
 impl Mission {
@@ -83,6 +87,15 @@ impl Mission {
     /// When more than 15 of the oracle's points bound the line, which scenario files are refused for.
     pub fn table(&self) -> Table {
         Table::new(self.given.samples(), self.prior, self.noise_told())
+            .expect("15 points bound the line at most")
+    }
+
+    /// The table with what it expects of labels.
+    ///
+    /// # Panics
+    /// As [`table`](Self::table).
+    pub fn forecast(&self) -> Forecast<CAPACITY, HYPOTHESES> {
+        Forecast::new(self.given.samples(), self.prior, self.noise_told())
             .expect("15 points bound the line at most")
     }
 

@@ -5,6 +5,7 @@ use planner_core::belief::sample::Reading;
 use planner_core::motion::dynamics::Pose;
 use planner_core::motion::unicycle::Unicycle;
 use planner_core::planner::cfc::Cfc;
+use planner_core::planner::lookahead::Lookahead;
 use planner_core::planner::scc::Scc;
 use planner_core::planner::{Plan, Planner};
 use rand::SeedableRng;
@@ -50,6 +51,12 @@ impl Mission {
         match self.algorithm {
             Algorithm::Cfc => erased(Cfc::new(config, dynamics, self.given.clone())),
             Algorithm::Scc => erased(Scc::new(config, self.policy, dynamics, self.table())),
+            Algorithm::Lookahead if self.is_noisy() => {
+                erased(Lookahead::new(config, dynamics, self.forecast()).until(self.goal))
+            }
+            Algorithm::Lookahead => {
+                erased(Lookahead::new(config, dynamics, self.given.clone()).until(self.goal))
+            }
             Algorithm::Margin if self.is_noisy() => {
                 erased(Margin { dynamics, area, belief: self.table() })
             }

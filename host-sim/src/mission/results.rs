@@ -359,6 +359,7 @@ impl Ending {
             Self::Stopped(StopReason::Resolution) => "resolution",
             Self::Stopped(StopReason::SamplesFull) => "samples full",
             Self::Stopped(StopReason::OutsideArea) => "outside area",
+            Self::Stopped(StopReason::Known) => "known",
             Self::Stopped(StopReason::Cornered) => "cornered",
             Self::Stopped(StopReason::Undecided) => "undecided",
             Self::Stopped(_) => "stopped",

@@ -235,6 +235,7 @@ fn mission(file: &File, overrides: Overrides) -> Result<Mission> {
         noise,
         policy: file.policy.into(),
         prior: file.prior.into(),
+        goal: None,
     })
 }
 

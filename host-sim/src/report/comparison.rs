@@ -57,6 +57,9 @@ pub fn calibration(summaries: &[calibration::Summary]) -> String {
     add("of what labels can tell", |row| {
         row.share.map_or("-".into(), |share| format!("{:.1} %", 100.0 * share))
     });
+    add("of what they can, expected", |row| {
+        row.expected_share.map_or("-".into(), |share| format!("{:.1} %", 100.0 * share))
+    });
     add("mean, slope error deg", |row| format!("{:.3}", row.mean_deg.median));
     add("90 % set holds (states) %", |row| {
         let [Calibration { coverage, stated, .. }, _] = &row.calibration;

@@ -34,14 +34,14 @@ fn the_fan_can_be_fine() {
     let args = ["campaign", "--fields", "3", "--format", "json", "--fan"];
     for (fan, actions) in [("paper", 6_657), ("fine", 65_973_495)] {
         let summary = prints(folder.path(), &[&args[..], &[fan]].concat());
-        let summary: serde_json::Value = serde_json::from_str(&summary).expect("JSON");
+        let summary: Value = serde_json::from_str(&summary).expect("JSON");
         assert_eq!(summary["actions"], actions);
     }
     let steps = |text: &str| {
         fs::write(folder.path().join("m.toml"), text).expect("a file");
         let trace = prints(folder.path(), &["run", "m.toml", "--format", "json"]);
         let records = trace.lines().map(|it| serde_json::from_str(it).expect("JSON"));
-        let records: Vec<serde_json::Value> = records.collect();
+        let records: Vec<Value> = records.collect();
         let index = records.iter().filter_map(|it| it["action"]["index"].as_u64()).max();
         (trace, index.expect("a step"))
     };
