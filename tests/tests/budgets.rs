@@ -18,7 +18,7 @@ use tests::budget::footprint::{self, Footprint};
 use tests::budget::hardest::Hardest;
 use tests::budget::table::Budgets;
 use tests::budget::timing::{self, Flight, Took};
-use tests::budget::workload::Workload;
+use tests::budget::workload::{DOUBT, Workload};
 use tests::emulator::Call;
 use tests::program::build;
 use tests::program::image::Image;
@@ -28,8 +28,8 @@ const CHIP: &str = "thumbv7em-none-eabihf";
 const OTHERS: [&str; 2] = ["thumbv6m-none-eabi", "riscv32imac-unknown-none-elf"];
 
 /// The programs, and how many of them a plain run looks at.
-const PROGRAMS: [&str; 3] = ["small", "standard", "large"];
-const LOOKED_AT: usize = if LONG { 3 } else { 2 };
+const PROGRAMS: [&str; 4] = ["alone", "small", "standard", "large"];
+const LOOKED_AT: usize = if LONG { 4 } else { 3 };
 
 const MEMORY_X: &str = include_str!("../../memory.x");
 
@@ -69,6 +69,7 @@ fn every_figure_keeps_its_budget() {
             let elf = bare(name);
             let (bound, fits) = size(&mut books.budgets, name, &elf);
             let stack = match *name {
+                "alone" => 0, // what it does is measured in `small`
                 "small" => time_small(&mut books, &elf),
                 "standard" => time_standard(&mut books, &elf),
                 _ => time_large(&mut books, &elf, fits),
@@ -204,12 +205,25 @@ const CFC: Workload = Workload {
     sought: 4,
     calls: None,
     grid: Grid::Paper,
+    noise: None,
 };
+
+const LOOKAHEAD: Workload =
+    Workload { algorithm: Algorithm::Lookahead, random: 100, searched: 2_000, sought: 6, ..CFC };
 
 fn time_small(books: &mut Books, elf: &[u8]) -> u32 {
     let flown = Flown::of(books, elf, "small", CFC);
     flown.record_all(books, "small", "");
-    flown.stack()
+    let mut stack = flown.stack();
+    for (figure, name, grid) in [
+        ("lookahead_plan", "small, look-ahead, paper's fan", Grid::Paper),
+        ("lookahead_fine_plan", "small, look-ahead, fine fan", Grid::Fine),
+    ] {
+        let flown = Flown::of(books, elf, name, Workload { grid, ..LOOKAHEAD });
+        flown.record(books, ["small", figure], |it| &it.plans);
+        stack = stack.max(flown.stack());
+    }
+    stack
 }
 
 fn time_standard(books: &mut Books, elf: &[u8]) -> u32 {
@@ -217,7 +231,18 @@ fn time_standard(books: &mut Books, elf: &[u8]) -> u32 {
     let flown = Flown::of(books, elf, "standard, Algorithm 1", cfc);
     flown.record_all(books, "standard", "cfc_");
     let mut stack = flown.stack();
-    let scc = Workload { algorithm: Algorithm::Scc, searched: 400, ..CFC };
+    for (figure, name, grid, noise) in [
+        ("lookahead_plan", "standard, look-ahead, paper's fan", Grid::Paper, None),
+        ("lookahead_fine_plan", "standard, look-ahead, fine fan", Grid::Fine, None),
+        ("forecast_plan", "standard, look-ahead, noise", Grid::Fine, DOUBT),
+    ] {
+        let workload =
+            Workload { steps: 32, random: 20, searched: 1_000, grid, noise, ..LOOKAHEAD };
+        let flown = Flown::of(books, elf, name, workload);
+        flown.record(books, ["standard", figure], |it| &it.plans);
+        stack = stack.max(flown.stack());
+    }
+    let scc = Workload { algorithm: Algorithm::Scc, searched: 400, noise: DOUBT, ..CFC };
     for (figure, name, policy) in [
         ("joint_plan_at_10", "standard, joint, 10 labels", Policy::Joint),
         ("mixture_plan_at_10", "standard, mixture, 10 labels", Policy::MixtureOfOwn),
@@ -247,7 +272,14 @@ fn time_large(books: &mut Books, elf: &[u8], fits: bool) -> u32 {
         return flown.stack(); // the other algorithm would run into the end of RAM
     }
     // For the stack: what all 2,081 hypotheses take of it does not grow with the labels.
-    let scc = Workload { algorithm: Algorithm::Scc, steps: 4, random: 4, searched: 0, ..CFC };
+    let scc = Workload {
+        algorithm: Algorithm::Scc,
+        steps: 4,
+        random: 4,
+        searched: 0,
+        noise: DOUBT,
+        ..CFC
+    };
     flown.stack().max(Flown::of(books, elf, "large, Algorithm 2", scc).stack())
 }
 

@@ -142,6 +142,7 @@ fn qemu_executes_as_many_instructions() {
         sought: 0,
         calls: None,
         grid: Grid::Paper,
+        noise: None,
     };
     let (_, told) = missions::fly_and_record(&mut Emulator::load(&elf, core), &workload.mission(3))
         .expect("it flies as the host");

@@ -119,6 +119,7 @@ impl Picture {
     }
 
     /// The lines below a place, or above it; `None` if they are all or none.
+    #[inline(never)] // called from two places, and not small
     fn part(&self, place: [f32; 2], label: Label) -> Option<Part> {
         let sign = if label == Label::Positive { 1.0 } else { -1.0 };
         let mut before = *self.vertices.last()?;
@@ -162,6 +163,7 @@ impl Picture {
 }
 
 /// Twice the measure of a polygon of lines, from one of them to the others in turn.
+#[inline]
 fn measure<'a>(apex: Vertex, rest: impl Iterator<Item = &'a Vertex>) -> f32 {
     let (_, sum) = rest
         .fold((apex, 0.0), |(before, sum), vertex| (*vertex, sum + apex.triangle(before, *vertex)));

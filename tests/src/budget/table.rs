@@ -205,7 +205,7 @@ fn array(lines: &[String]) -> Array {
 
 /// The committed figures as a table: a column for each program, cycles as time beside instructions.
 fn table(document: &DocumentMut) -> String {
-    let programs = ["small", "standard", "large", "firmware"];
+    let programs = ["alone", "small", "standard", "large", "firmware"];
     let read = |program: &str, name: &str| {
         document.get(program)?.get(name)?.get("committed")?.as_integer()
     };
@@ -221,7 +221,8 @@ fn table(document: &DocumentMut) -> String {
             }
         }
     }
-    let mut table = format!("| | {} |\n| --- |{}\n", programs.join(" | "), " ---: |".repeat(4));
+    let mut table =
+        format!("| | {} |\n| --- |{}\n", programs.join(" | "), " ---: |".repeat(programs.len()));
     for name in names {
         let _ = write!(table, "| {} |", name.replace('_', " "));
         for program in programs {

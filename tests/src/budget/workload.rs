@@ -42,7 +42,13 @@ pub struct Workload {
     pub calls: Option<usize>,
     /// The fan.
     pub grid: Grid,
+    /// How labels are flipped, if they are.
+    pub noise: Option<NoiseModel>,
 }
+
+/// Seven labels in ten are true, and all near the oracle's points.
+pub const DOUBT: Option<NoiseModel> =
+    Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.5) });
 
 impl Workload {
     /// The numbers of the missions that are drawn at random, and of those sought.
@@ -70,11 +76,7 @@ impl Workload {
     pub fn mission(&self, number: u64) -> Mission {
         let mut mission = standard_field::standard(SEED, number, self.algorithm, self.steps);
         (mission.policy, mission.grid) = (self.policy, self.grid);
-        if self.algorithm == Algorithm::Scc
-            || self.algorithm == Algorithm::Lookahead && self.policy == Policy::MixtureOfStart
-        {
-            mission.noise = Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.5) });
-        }
+        mission.noise = self.noise;
         if number >= self.random && number % 2 == 1 {
             mission.start = facing_out(number / 2 % 4);
         }
@@ -96,7 +98,7 @@ fn facing_out(corner: u64) -> Pose {
 /// What makes a mission hard.
 #[derive(Clone, Copy, Debug, Default)]
 struct Rank {
-    /// The most that a plan looked at; with hypotheses, that the last did, when they are the most.
+    /// The most that a plan looked at; of a vote, that the last did, when hypotheses are the most.
     last: u32,
     recoveries: u32,
     stopped: u32,
@@ -107,7 +109,11 @@ impl Rank {
         let mut rank = Self::default();
         let flown = mission.fly(|step, _| {
             let examined = step.motion.examined;
-            rank.last = if mission.is_noisy() { examined } else { rank.last.max(examined) };
+            rank.last = if mission.algorithm == Algorithm::Scc {
+                examined
+            } else {
+                rank.last.max(examined)
+            };
             rank.recoveries += u32::from(step.motion.recovery.is_some());
         });
         rank.stopped = u32::from(flown.is_ok_and(|it| it.ending != Ending::Steps));
