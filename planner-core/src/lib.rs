@@ -26,6 +26,10 @@
 //! orient(a, b, q) = (b.x - a.x)(q.z - a.z) - (b.z - a.z)(q.x - a.x)
 //! ```
 //!
+//! Where to go next? Where a label would tell the most: where half of the lines left say +1. Look-ahead
+//! ([`planner::lookahead`]) finds such places among the ends of the robot's motions, two labels deep, and learns
+//! nearly a bit a step; the paper's two algorithms follow the boundary by rules of direction.
+//!
 //! # What follows
 //!
 //! - **Certainty is exact.** A position that all lines left label alike lies in a *region of
@@ -53,7 +57,7 @@
 //! | [`belief`] | what is known of the line; behind the trait [`Belief`] |
 //! | [`motion`] | how the robot moves; behind the trait [`Dynamics`] |
 //! | [`search`] | the best action for what is known |
-//! | [`planner`] | Algorithm 1 ([`Cfc`]), for labels that are true, and Algorithm 2 ([`Scc`]), for labels that are sometimes wrong; behind the trait [`Planner`] |
+//! | [`planner`] | look-ahead ([`Lookahead`]), for labels that are true or sometimes wrong, and the paper's Algorithm 1 ([`Cfc`]) and Algorithm 2 ([`Scc`]); behind the trait [`Planner`] |
 //! | [`robot`] | what you implement, [`Drive`] and [`LabelSensor`], and the loop that joins it to a planner, [`Agent`] |
 //! | `link` | with the feature `wire`: a mission whose planner and vehicle are apart |
 //!
@@ -125,7 +129,7 @@
 //!   error ([`belief::Refused`]) and leaves the planner as it was.
 //! - Positions lie within 8,192 m of the origin, one motion is shorter than 100 m, and a buffer holds
 //!   3 to 128 samples.
-//! - The boundary is one straight line. P1 and P2 look one step ahead.
+//! - The boundary is one straight line. P1 and P2 look one step ahead, look-ahead two.
 
 pub mod belief;
 pub mod geometry;
@@ -138,6 +142,8 @@ pub mod search;
 
 pub use nalgebra;
 
+pub use crate::belief::forecast::Forecast;
+pub use crate::belief::goal::Goal;
 pub use crate::belief::hypotheses::Hypotheses;
 pub use crate::belief::noise::{Noise, Reliability};
 pub use crate::belief::posterior::Posterior;
@@ -155,6 +161,7 @@ pub use crate::motion::holonomic::Holonomic;
 pub use crate::motion::unicycle::Unicycle;
 pub use crate::planner::cfc::{self, Cfc};
 pub use crate::planner::config::{Config, Crossing, Following};
+pub use crate::planner::lookahead::{self, Lookahead};
 pub use crate::planner::scc::{self, Policy, Scc};
 pub use crate::planner::{Motion, Plan, Planner, StopReason};
 pub use crate::robot::agent::{Agent, Event, Step};

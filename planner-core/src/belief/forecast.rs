@@ -153,7 +153,7 @@ impl<const N: usize, const H: usize> Prediction for ExpectedAfter<'_, N, H> {
     }
 }
 
-impl<'e, const N: usize, const H: usize> Outlook for Expected<'e, N, H> {
+impl<const N: usize, const H: usize> Outlook for Expected<'_, N, H> {
     type After<'a>
         = ExpectedAfter<'a, N, H>
     where

@@ -4,7 +4,8 @@
 //! The lines that agree with some labels are a convex *cell*, held as a cyclic list of sample indices
 //! ([`cell`]). For labels that are true there is one cell, the [`version_space`]; for labels that may be
 //! wrong there is a table of weighed cells ([`hypotheses`]), read as a distribution ([`posterior`]).
-//! Nothing here knows how the robot moves.
+//! What the next labels are expected to tell is an [`outlook`]: a [`picture`] of the one cell, or [`columns`] beside the
+//! table in a [`forecast`]. When that is enough says a [`goal`]. Nothing here knows how the robot moves.
 
 pub mod cell;
 pub(crate) mod column;

@@ -253,7 +253,7 @@ mod tests {
             for z in 0..20 {
                 let site = at(f64::from(x), f64::from(z));
                 let (got, is) = (picture.share_above(site), space.chance(site));
-                assert!((f64::from(got) - f64::from(is)).abs() < 0.1, "{x} {z}: {got} {is}");
+                assert!((f64::from(got) - is).abs() < 0.1, "{x} {z}: {got} {is}");
             }
         }
     }

@@ -1,8 +1,9 @@
 //! Planners: `plan()` gives the next motion, `observe()` takes in what came of it, and `belief()` is what is
 //! known so far.
 //!
-//! [`cfc`] is the paper's Algorithm 1, for labels that are true; [`scc`] its Algorithm 2, for labels that are
-//! sometimes wrong. [`config`] is what a mission fixes beforehand.
+//! [`lookahead`] asks where labels are expected to tell the most, be they true or sometimes wrong. [`cfc`] is the
+//! paper's Algorithm 1, for labels that are true; [`scc`] its Algorithm 2, for labels that are sometimes wrong.
+//! [`config`] is what a mission fixes beforehand.
 
 pub mod cfc;
 pub mod config;
