@@ -209,7 +209,7 @@ const CFC: Workload = Workload {
 };
 
 const LOOKAHEAD: Workload =
-    Workload { algorithm: Algorithm::Lookahead, random: 100, searched: 2_000, sought: 6, ..CFC };
+    Workload { algorithm: Algorithm::Lookahead, random: 40, searched: 2_000, sought: 3, ..CFC };
 
 fn time_small(books: &mut Books, elf: &[u8]) -> u32 {
     let flown = Flown::of(books, elf, "small", CFC);
@@ -237,7 +237,7 @@ fn time_standard(books: &mut Books, elf: &[u8]) -> u32 {
         ("forecast_plan", "standard, look-ahead, noise", Grid::Fine, DOUBT),
     ] {
         let workload =
-            Workload { steps: 32, random: 20, searched: 1_000, grid, noise, ..LOOKAHEAD };
+            Workload { steps: 32, random: 10, searched: 1_000, grid, noise, ..LOOKAHEAD };
         let flown = Flown::of(books, elf, name, workload);
         flown.record(books, ["standard", figure], |it| &it.plans);
         stack = stack.max(flown.stack());
