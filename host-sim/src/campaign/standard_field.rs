@@ -17,7 +17,6 @@ use planner_core::geometry::heading::Heading;
 use planner_core::geometry::lattice::Site;
 use planner_core::geometry::line::Line;
 use planner_core::motion::dynamics::Pose;
-use planner_core::motion::unicycle::Grid;
 use planner_core::planner::config::{Config, Crossing};
 use planner_core::planner::scc::Policy;
 use rand::{RngExt, SeedableRng};
@@ -94,7 +93,7 @@ pub fn standard(seed: u64, number: u64, algorithm: Algorithm, steps: u32) -> Mis
             crossing: Crossing::default(),
             following: algorithm.following(),
         },
-        grid: Grid::default(),
+        grid: algorithm.grid(),
         start: Pose { site: oracle[0].site, heading },
         world: World::divided_by(truth),
         given,

@@ -10,7 +10,8 @@ use crate::mission::names::{CrossingName, FanName, FollowingName, PolicyName, Pr
 
 /// Simulates a robot that finds an unknown straight boundary from few samples.
 ///
-/// Without a command: the paper's two examples, as printed and by default, with figures in out/.
+/// Without a command: the paper's two examples, as printed, by default and by look-ahead, with
+/// figures in out/.
 #[derive(Debug, Parser)]
 #[command(version)]
 pub struct Cli {
@@ -147,16 +148,16 @@ pub(crate) struct CampaignArgs {
         conflicts_with = "algorithm"
     )]
     pub(crate) compare: Vec<Algorithm>,
-    /// How finely the unicycle turns
-    #[arg(long, value_enum, default_value_t)]
-    pub(crate) fan: FanName,
+    /// How finely the unicycle turns [default: paper; for lookahead fine]
+    #[arg(long, value_enum)]
+    pub(crate) fan: Option<FanName>,
     /// How P1 looks for the opposite label (cfc, scc) [default: anyhow]
     #[arg(long, value_enum)]
     pub(crate) crossing: Option<CrossingName>,
     /// How P2 follows the boundary (cfc, scc) [default: along-bisector; for scc anyhow]
     #[arg(long, value_enum)]
     pub(crate) following: Option<FollowingName>,
-    /// Labels are true with this probability (scc, margin, random) [default: 0.7 for scc, 1 else]
+    /// Labels are true with this probability (scc, lookahead, margin, random) [default: 0.7 for scc, 1 else]
     #[arg(long)]
     pub(crate) p: Option<f64>,
     /// Within this distance of the oracle's points labels are certain, metres (where p is below 1) [default: 0]
@@ -165,7 +166,7 @@ pub(crate) struct CampaignArgs {
     /// How hypotheses choose an action together (scc) [default: mixture-of-own]
     #[arg(long, value_enum)]
     pub(crate) policy: Option<PolicyName>,
-    /// How hypotheses are weighed in that (scc; margin where p is below 1) [default: area]
+    /// How hypotheses are weighed in that (scc; lookahead and margin where p is below 1) [default: area]
     #[arg(long, value_enum)]
     pub(crate) prior: Option<PriorName>,
     /// Write a row for each field and mark here

@@ -5,6 +5,7 @@ use std::{env, fs, slice};
 
 use anyhow::{Context as _, Result, bail};
 use planner_core::link::message::LabelSource;
+use planner_core::motion::unicycle::Grid;
 
 use crate::campaign::accuracy::{self, Accuracy};
 use crate::campaign::calibration::{self, Calibrated};
@@ -182,7 +183,7 @@ fn campaign(args: &CampaignArgs) -> Result<String> {
         seed: args.seed,
         crossing: args.crossing.unwrap_or_default().into(),
         following: args.following.map_or(algorithm.following(), Into::into),
-        grid: args.fan.into(),
+        grid: args.grid(algorithm),
         noise: algorithm.weighs(p < 1.0).then_some(NoiseModel { p, extent }),
         policy: args.policy.unwrap_or_default().into(),
         prior: args.prior.unwrap_or_default().into(),
@@ -221,6 +222,11 @@ impl CampaignArgs {
         if self.compare.is_empty() { slice::from_ref(&self.algorithm) } else { &self.compare }
     }
 
+    /// How finely a planner's unicycle turns.
+    fn grid(&self, planner: Algorithm) -> Grid {
+        self.fan.map_or(planner.grid(), Into::into)
+    }
+
     /// Whether every flag that was given has a meaning for a planner. `p` is how often labels are true.
     fn check_meanings(&self, planner: Algorithm, p: f64) -> Result<()> {
         let flag = if self.compare.is_empty() { "--algorithm" } else { "--compare" };
@@ -231,20 +237,29 @@ impl CampaignArgs {
                 "--p: found {p}{found}, expected 1 with {flag} {name}, which takes labels to be true"
             );
         }
+        if !planner.copes_with(self.grid(planner)) {
+            bail!("--fan: found fine with {flag} {name}, expected paper, as it tries every action");
+        }
         let plans = planner.poses_problems();
         let weighs = planner == Algorithm::Scc;
-        // Margin sampling asks the most likely hypothesis.
-        let asks = weighs || planner == Algorithm::Margin && p < 1.0;
+        // Look-ahead predicts from hypotheses, margin sampling asks the most likely one.
+        let reads = matches!(planner, Algorithm::Lookahead | Algorithm::Margin);
+        let asks = weighs || reads && p < 1.0;
         for (given, is_given, has_meaning, meant) in [
             ("--crossing", self.crossing.is_some(), plans, "--algorithm cfc or scc"),
             ("--following", self.following.is_some(), plans, "--algorithm cfc or scc"),
             ("--policy", self.policy.is_some(), weighs, "--algorithm scc"),
-            ("--prior", self.prior.is_some(), asks, "--algorithm scc, or margin with --p below 1"),
+            (
+                "--prior",
+                self.prior.is_some(),
+                asks,
+                "--algorithm scc, or lookahead or margin with --p below 1",
+            ),
             (
                 "--trusted-radius",
                 self.trusted_radius.is_some(),
                 p < 1.0,
-                "labels that can be wrong: --algorithm scc, margin or random, --p below 1",
+                "labels that can be wrong: --algorithm scc, lookahead, margin or random, --p below 1",
             ),
         ] {
             if is_given && !has_meaning {

@@ -1,6 +1,7 @@
 //! The planners that the simulator knows, by name.
 
 use clap::ValueEnum as _;
+use planner_core::motion::unicycle::Grid;
 use planner_core::planner::config::Following;
 use planner_core::planner::{cfc, lookahead, scc};
 use planner_core::search::objective::Varrho;
@@ -48,6 +49,19 @@ impl Algorithm {
             Self::Lookahead => lookahead::VARRHO,
             Self::Cfc | Self::Scc | Self::Margin | Self::Random => Varrho::PAPER,
         }
+    }
+
+    /// How finely the unicycle turns unless one says: look-ahead needs no more looks for more rays.
+    pub fn grid(self) -> Grid {
+        match self {
+            Self::Lookahead => Grid::Fine,
+            Self::Cfc | Self::Scc | Self::Margin | Self::Random => Grid::Paper,
+        }
+    }
+
+    /// Whether it can fly with an action set: margin sampling tries every action.
+    pub fn copes_with(self, grid: Grid) -> bool {
+        self != Self::Margin || grid == Grid::Paper
     }
 
     /// Whether what it knows of labels is a distribution over hypotheses.

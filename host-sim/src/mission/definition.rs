@@ -71,6 +71,14 @@ impl Mission {
         self
     }
 
+    /// The same mission flown by look-ahead, with its own weight of the control and fan.
+    #[must_use]
+    pub fn by_lookahead(mut self) -> Self {
+        self.algorithm = Algorithm::Lookahead;
+        (self.config.varrho, self.grid) = (self.algorithm.varrho(), self.algorithm.grid());
+        self
+    }
+
     /// Whether what is known is a distribution over hypotheses.
     pub fn is_noisy(&self) -> bool {
         self.algorithm.weighs(self.noise.is_some())

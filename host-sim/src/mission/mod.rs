@@ -12,4 +12,5 @@ pub mod read_out;
 pub mod recording;
 pub mod results;
 pub mod scenario;
+pub mod stop;
 pub mod strict;

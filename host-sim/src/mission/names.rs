@@ -7,11 +7,10 @@ use planner_core::planner::scc::Policy;
 use serde::Deserialize;
 
 /// How finely the unicycle turns, by name.
-#[derive(Clone, Copy, Debug, Default, Deserialize, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum FanName {
     /// Rays 10 mrad apart
-    #[default]
     Paper,
     /// Rays 1 urad apart
     Fine,

@@ -18,6 +18,7 @@ use crate::mission::results::{
     BestRecord, CredibleRecord, End, EstimateRecords, LineError, NoisyEnd, NoisyStep, Results,
     Start, StepResult, recovery_name, stage_name,
 };
+use crate::mission::stop::GoalRecord;
 use crate::world::World;
 use crate::world::polygon::misclassified;
 
@@ -111,6 +112,7 @@ impl Recorder {
             reason: ending.name(),
             estimates: EstimateRecords::beside(belief.estimates(), error),
             noisy: belief.hypotheses().and_then(|table| noisy_end(table, world)),
+            goal: GoalRecord::of(&mission, &*belief),
         };
         let results = Results { start: start(&mission), steps: results, end };
         Recording { mission, steps, results, belief }

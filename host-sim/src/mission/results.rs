@@ -14,6 +14,7 @@ use planner_core::search::recovery::Recovery;
 use serde::Serialize;
 
 use crate::mission::algorithm::Algorithm;
+use crate::mission::stop::GoalRecord;
 
 /// A mission, from what it began with to what it came to.
 #[derive(Clone, Debug)]
@@ -113,6 +114,9 @@ pub struct End {
     /// What noisy labels come to.
     #[serde(flatten)]
     pub noisy: Option<NoisyEnd>,
+    /// What it was to find out, if it was to end there.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub goal: Option<GoalRecord>,
 }
 
 /// What noisy labels come to: the paper's outcome by the paper's prior, and the credible set by the

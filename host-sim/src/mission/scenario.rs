@@ -1,9 +1,8 @@
 //! Scenario files: what a mission is, in TOML. The contract is in ARCHITECTURE.md.
 
-use std::fmt::Display;
 use std::path::Path;
 
-use anyhow::{Result, anyhow, bail};
+use anyhow::{Result, anyhow};
 use nalgebra::Point2;
 use planner_core::belief::noise::Reliability;
 use planner_core::belief::noise::trusted_radius;
@@ -14,6 +13,7 @@ use planner_core::geometry::heading::Heading;
 use planner_core::geometry::lattice::Site;
 use planner_core::geometry::line::Line;
 use planner_core::motion::dynamics::Pose;
+use planner_core::motion::unicycle::Grid;
 use planner_core::planner::config::{Config, Following};
 use planner_core::search::objective::Varrho;
 use serde::Deserialize;
@@ -21,7 +21,8 @@ use serde::Deserialize;
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::{CAPACITY, Lines, Mission};
 use crate::mission::names::{CrossingName, FanName, FollowingName, PolicyName, PriorName};
-use crate::mission::strict::{Numbers, Table};
+use crate::mission::stop::StopTable;
+use crate::mission::strict::{Numbers, Table, wrong};
 use crate::world::World;
 use crate::world::noise::{Extent, NoiseModel};
 
@@ -43,10 +44,8 @@ struct File {
     steps: u32,
     #[serde(default = "defaults::seed")]
     seed: u64,
-    #[serde(default = "defaults::varrho")]
-    varrho: f64,
-    #[serde(default)]
-    fan: FanName,
+    varrho: Option<f64>,
+    fan: Option<FanName>,
     #[serde(default)]
     crossing: CrossingName,
     following: Option<FollowingName>,
@@ -55,6 +54,7 @@ struct File {
     #[serde(default)]
     prior: PriorName,
     noise: Option<Table<NoiseTable>>,
+    stop: Option<Table<StopTable>>,
     #[serde(default)]
     area: Table<AreaTable>,
     #[serde(default)]
@@ -74,9 +74,6 @@ mod defaults {
     }
     pub(super) fn seed() -> u64 {
         1
-    }
-    pub(super) fn varrho() -> f64 {
-        0.1
     }
 }
 
@@ -163,10 +160,6 @@ pub fn parse(name: &str, text: &str, overrides: Overrides) -> Result<Mission> {
     mission(&file, overrides).map_err(|error| anyhow!("{name}: {error:#}"))
 }
 
-fn wrong<T>(field: &str, found: impl Display, expected: impl Display) -> Result<T> {
-    bail!("{field}: found {found}, expected {expected}")
-}
-
 /// Whether this many steps fit beside the oracle's samples.
 ///
 /// # Errors
@@ -202,9 +195,13 @@ fn site(field: &str, x: f64, z: f64) -> Result<Site> {
 fn mission(file: &File, overrides: Overrides) -> Result<Mission> {
     let steps = overrides.steps.unwrap_or(file.steps);
     check_steps("steps", steps, file.oracle.len())?;
-    let Some(varrho) = Varrho::new(file.varrho) else {
-        return wrong("varrho", file.varrho, "a weight in [0, 1), to six decimal places");
-    };
+    let algorithm = overrides.algorithm.unwrap_or(file.algorithm);
+    let varrho = file.varrho.map_or_else(|| Ok(algorithm.varrho()), varrho)?;
+    let grid = file.fan.map_or(algorithm.grid(), Grid::from);
+    if !algorithm.copes_with(grid) {
+        let found = format!("\"fine\" with algorithm {}", algorithm.name());
+        return wrong("fan", found, "\"paper\", as it tries every action");
+    }
     let AreaTable { x: Numbers([x0, x1]), z: Numbers([z0, z1]) } = file.area.0;
     let corners = (site("area", x0, z0)?, site("area", x1, z1)?);
     let Some(area) = Area::new(corners.0, corners.1) else {
@@ -220,7 +217,7 @@ fn mission(file: &File, overrides: Overrides) -> Result<Mission> {
     }
     let start = start(&file.start.0, &given, area)?;
     let noise = file.noise.as_ref().map(|table| noise(&table.0)).transpose()?;
-    let algorithm = overrides.algorithm.unwrap_or(file.algorithm);
+    let goal = file.stop.as_ref().map(|table| table.0.goal(algorithm, noise.is_some()));
     let following = file.following.map_or(algorithm.following(), Following::from);
     let crossing = file.crossing.into();
     Ok(Mission {
@@ -228,15 +225,20 @@ fn mission(file: &File, overrides: Overrides) -> Result<Mission> {
         steps,
         seed: overrides.seed.unwrap_or(file.seed),
         config: Config { area, varrho, crossing, following },
-        grid: file.fan.into(),
+        grid,
         start,
         world,
         given,
         noise,
         policy: file.policy.into(),
         prior: file.prior.into(),
-        goal: None,
+        goal: goal.transpose()?,
     })
+}
+
+fn varrho(weight: f64) -> Result<Varrho> {
+    let expected = "a weight in [0, 1), to six decimal places";
+    Varrho::new(weight).map_or_else(|| wrong("varrho", weight, expected), Ok)
 }
 
 fn noise(table: &NoiseTable) -> Result<NoiseModel> {

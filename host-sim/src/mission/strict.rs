@@ -1,12 +1,22 @@
 //! Shapes of values in scenario files, taken literally. By itself serde takes an array for a table, its fields
 //! in order, and of an array with too many elements the first.
 
-use std::fmt;
+use std::fmt::{self, Display};
 use std::marker::PhantomData;
 
+use anyhow::bail;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
+
+/// Refuses a value by the name of its field.
+pub(crate) fn wrong<T>(
+    field: &str,
+    found: impl Display,
+    expected: impl Display,
+) -> anyhow::Result<T> {
+    bail!("{field}: found {found}, expected {expected}")
+}
 
 /// A table.
 #[derive(Default)]

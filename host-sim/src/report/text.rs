@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::results::{EstimateRecords, LineRecord, NoisyEnd, Results, Start, StepResult};
+use crate::mission::stop::GoalRecord;
 use crate::report::table::{Column, Table};
 use crate::world::noise::limit;
 
@@ -103,20 +104,46 @@ fn story(title: &str, results: &Results) -> String {
 fn end(results: &Results, estimates: &[(&str, Option<LineRecord>); 3]) -> String {
     let why = match results.end.reason {
         "steps" => "all steps are taken",
+        "known" => "what was asked for is known",
         "resolution" => "what is uncertain is thinner than the action grid can hit",
         other => other,
     };
     let mut text = format!(
-        "Ended: {why}. {} samples in {} steps, {:.1} m travelled, control cost {:.1}.\n\n",
+        "Ended: {why}. {} samples in {} steps, {:.1} m travelled, control cost {:.1}.\n",
         results.samples(),
         results.steps.len(),
         results.travelled(),
         results.cost(),
     );
+    if let Some(goal) = &results.end.goal {
+        text += &promise(goal);
+    }
+    text.push('\n');
     if let Some(noisy) = &results.end.noisy {
         text += &outcome(noisy);
     }
     text + &errors(results.start.truth.as_ref(), estimates)
+}
+
+/// What is known for sure, or as surely as was asked.
+fn promise(goal: &GoalRecord) -> String {
+    let &GoalRecord { slope_arc_deg, misclassified, level, is_met } = goal;
+    let sure = level.map_or(String::new(), |level| format!(" with probability {level} at least"));
+    let known = if is_met { "Known" } else { "Not known yet" };
+    let lines = if level.is_some() {
+        "the line is one of a set of which any two"
+    } else {
+        "any two of the lines left"
+    };
+    let percent = |share: f64| (share * 1e8).round() / 1e6;
+    let what = match (slope_arc_deg, misclassified) {
+        (Some(degrees), _) => format!("differ by {degrees} deg at most"),
+        (_, share) => {
+            let percent = percent(share.unwrap_or_default());
+            format!("disagree on no more than {percent} % of the area")
+        }
+    };
+    format!("{known}{sure}: {lines} {what}.\n")
 }
 
 fn beginning(title: &str, start: &Start) -> String {

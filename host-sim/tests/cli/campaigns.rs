@@ -31,12 +31,25 @@ fn a_campaign_prints_tables_and_writes_rows() {
 #[test]
 fn the_fan_can_be_fine() {
     let folder = folder();
-    let args = ["campaign", "--fields", "3", "--format", "json", "--fan"];
-    for (fan, actions) in [("paper", 6_657), ("fine", 65_973_495)] {
-        let summary = prints(folder.path(), &[&args[..], &[fan]].concat());
-        let summary: Value = serde_json::from_str(&summary).expect("JSON");
-        assert_eq!(summary["actions"], actions);
+    let summaries = |flags: &[&str]| -> Value {
+        let args = ["campaign", "--fields", "3", "--format", "json"];
+        let summary = prints(folder.path(), &[&args[..], flags].concat());
+        serde_json::from_str(&summary).expect("JSON")
+    };
+    // Unless one says each planner has its own.
+    let cases: [(&[&str], u64); 5] = [
+        (&["--fan", "paper"], 6_657),
+        (&["--fan", "fine"], 65_973_495),
+        (&[], 6_657),
+        (&["--algorithm", "lookahead"], 65_973_495),
+        (&["--algorithm", "lookahead", "--fan", "paper"], 6_657),
+    ];
+    for (flags, actions) in cases {
+        assert_eq!(summaries(flags)["actions"], actions, "{flags:?}");
     }
+    let compared = summaries(&["--compare", "cfc,lookahead,margin"]);
+    let actions = [0, 1, 2].map(|k| compared[k]["actions"].as_u64());
+    assert_eq!(actions, [6_657, 65_973_495, 6_657].map(Some));
     let steps = |text: &str| {
         fs::write(folder.path().join("m.toml"), text).expect("a file");
         let trace = prints(folder.path(), &["run", "m.toml", "--format", "json"]);
@@ -126,7 +139,7 @@ fn a_comparison_tells_what_single_campaigns_tell() {
     let cost = |row: &Value| format!("{:.1}", number(&row["control_cost"]));
     let metres = |row: &Value| format!("{:.1}", number(&row["metres"]));
     compares(
-        &["margin", "cfc", "random"],
+        &["margin", "cfc", "lookahead", "random"],
         &["--steps", "30"],
         &[
             ("bits/step", "10", &bits),
@@ -157,7 +170,7 @@ fn a_comparison_in_noise_tells_what_single_campaigns_tell() {
     };
     let cost = |row: &Value| format!("{:.1}", number(&row["control_cost"]));
     compares(
-        &["scc", "margin", "random"],
+        &["scc", "lookahead", "margin", "random"],
         &["--steps", "24", "--p", "0.8"],
         &[
             ("bits told", "10", &bits),

@@ -56,8 +56,14 @@ fn a_chip_that_cannot_be_is_refused() {
         (&["m.toml", "--emulator", "--baud", "9600"], &["--baud", "--emulator"]),
         (&["m.toml", "--emulator", "--fault", "drop=2"], &["drop", "found 2", "[0, 1]"]),
         (&["m.toml", "--emulator", "--fault", "delay=1s"], &["delay", "found 1s", "20ms"]),
-        (&["m.toml", "--emulator", "--algorithm", "random"], &["m.toml", "random", "cfc or scc"]),
-        (&["m.toml", "--emulator", "--algorithm", "margin"], &["m.toml", "margin", "cfc or scc"]),
+        (
+            &["m.toml", "--emulator", "--algorithm", "random"],
+            &["m.toml", "random", "scc or lookahead"],
+        ),
+        (
+            &["m.toml", "--emulator", "--algorithm", "margin"],
+            &["m.toml", "margin", "scc or lookahead"],
+        ),
         (&["many.toml", "--emulator"], &["many.toml", "found 21 points", "at most 16"]),
     ];
     for (args, parts) in cases {
@@ -77,7 +83,7 @@ fn a_repeated_fault_is_refused() {
 fn a_flag_that_an_algorithm_ignores_is_refused() {
     let folder = folder();
     let radius = ["--trusted-radius", "0.5"];
-    let cases: [(&[&str], &[&str], &str); 12] = [
+    let cases: [(&[&str], &[&str], &str); 17] = [
         (&[], &["--policy", "joint"], "--algorithm scc"),
         (&[], &["--prior", "area"], "--algorithm scc"),
         (&[], &radius, "labels that can be wrong"),
@@ -86,6 +92,11 @@ fn a_flag_that_an_algorithm_ignores_is_refused() {
         (&["--algorithm", "margin"], &["--crossing", "anyhow"], "--algorithm cfc or scc"),
         (&["--algorithm", "margin", "--p", "0.7"], &["--policy", "joint"], "--algorithm scc"),
         (&["--algorithm", "margin"], &["--prior", "area"], "margin with --p below 1"),
+        (&["--algorithm", "margin"], &["--fan", "fine"], "expected paper, as it tries every"),
+        (&["--algorithm", "lookahead"], &["--prior", "area"], "lookahead or margin with --p below"),
+        (&["--algorithm", "lookahead"], &["--crossing", "anyhow"], "--algorithm cfc or scc"),
+        (&["--algorithm", "lookahead"], &["--following", "anyhow"], "--algorithm cfc or scc"),
+        (&["--algorithm", "lookahead", "--p", "0.7"], &["--policy", "joint"], "--algorithm scc"),
         (&["--algorithm", "random"], &["--crossing", "anyhow"], "--algorithm cfc or scc"),
         (&["--algorithm", "random"], &["--following", "anyhow"], "--algorithm cfc or scc"),
         (&["--algorithm", "random", "--p", "0.7"], &["--policy", "joint"], "--algorithm scc"),
@@ -93,13 +104,15 @@ fn a_flag_that_an_algorithm_ignores_is_refused() {
     ];
     for (who, flag, meant) in cases {
         let args = [&["campaign", "--fields", "2", "--csv", "c.csv"], who, flag].concat();
-        refuses(folder.path(), &args, &[flag[0], "found with --algorithm", meant]);
+        refuses(folder.path(), &args, &[flag[0], "found ", "with --algorithm", meant]);
     }
     // Where they have a meaning they are taken.
     let quick = ["campaign", "--fields", "2", "--steps", "3"];
-    let cases: [&[&str]; 9] = [
+    let cases: [&[&str]; 11] = [
         &["--algorithm", "margin", "--p", "0.7", "--prior", "sequences", radius[0], radius[1]],
         &["--compare", "scc,margin", "--prior", "sequences", radius[0], radius[1]],
+        &["--algorithm", "lookahead", "--p", "0.7", "--prior", "area", radius[0], radius[1]],
+        &["--algorithm", "lookahead", "--fan", "paper"],
         &["--fan", "paper"],
         &["--fan", "fine", "--algorithm", "scc"],
         &["--fan", "fine", "--algorithm", "random"],
@@ -116,7 +129,7 @@ fn a_flag_that_an_algorithm_ignores_is_refused() {
 #[test]
 fn what_cannot_be_compared_is_refused() {
     let folder = folder();
-    let cases: [(&[&str], &[&str]); 11] = [
+    let cases: [(&[&str], &[&str]); 13] = [
         (&["cfc,margin", "--p", "0.7"], &["--p: found 0.7, expected 1", "--compare cfc"]),
         (&["margin,scc,cfc"], &["--p: found 0.7, the default with scc", "--compare cfc"]),
         (
@@ -132,6 +145,14 @@ fn what_cannot_be_compared_is_refused() {
         (
             &["cfc,random", "--trusted-radius", "1"],
             &["--trusted-radius", "--compare cfc", "--p below 1"],
+        ),
+        (
+            &["lookahead,margin", "--fan", "fine"],
+            &["--fan: found fine with --compare margin, expected paper"],
+        ),
+        (
+            &["lookahead,random", "--p", "0.7", "--prior", "area"],
+            &["--prior", "--compare random", "lookahead or margin"],
         ),
         (&["cfc,random,cfc"], &["--compare", "found cfc twice", "once"]),
         (&["cfc,walk"], &["--compare", "walk", "margin"]),

@@ -13,6 +13,7 @@ mod missions;
 mod outputs;
 mod samples;
 mod scenarios;
+mod stopping;
 
 const GOOD: &str = include_str!("../../scenarios/paper-noiseless.toml");
 

@@ -16,6 +16,7 @@ fn the_bare_command_tells_the_paper_s_examples() {
     let place = |part: &str| story.find(part).unwrap_or_else(|| panic!("{part}: {story}"));
     for [before, after] in [
         ["Algorithm 1 as printed", "Algorithm 1, defaults"],
+        ["Algorithm 1, defaults", "example (Section V), look-ahead"],
         ["Algorithm 2 as printed", "Algorithm 2, defaults"],
         ["bisector (the paper's)", "centre of the version space"],
         ["Algorithm 2, defaults", "Side by side"],
@@ -24,8 +25,10 @@ fn the_bare_command_tells_the_paper_s_examples() {
     }
     for name in [
         "paper-noiseless-defaults.svg",
+        "paper-noiseless-lookahead.svg",
         "paper-noisy.svg",
         "paper-noisy-defaults.svg",
+        "paper-noisy-lookahead.svg",
         "paper-noisy-candidates.svg",
     ] {
         assert!(folder.path().join("out").join(name).exists(), "{name}");
@@ -46,6 +49,10 @@ fn the_bare_command_s_table_tells_what_run_tells() {
     let (_, table) = story.split_once("Side by side").expect("a table");
     let noisy = include_str!("../../scenarios/paper-noisy.toml");
     let printed = "following = \"anyhow\"\nprior = \"sequences\"\nsteps = 10";
+    let by_lookahead = |scenario: &str| {
+        let scenario = scenario.replace("varrho = 0.1\n", "");
+        scenario.replace("\"cfc\"", "\"lookahead\"").replace("\"scc\"", "\"lookahead\"")
+    };
     for (scenario, planner, estimate, key) in [
         (GOOD.replace("steps = 10", printed), "Algorithm 1 as printed", "bisector", "bisector"),
         (GOOD.replace("steps = 10", printed), "Algorithm 1 as printed", "centre", "centre"),
@@ -58,6 +65,8 @@ fn the_bare_command_s_table_tells_what_run_tells() {
         ),
         (noisy.replace("steps = 10", printed), "Algorithm 2 as printed", "posterior", "centre"),
         (noisy.to_owned(), "Algorithm 2, defaults", "posterior", "centre"),
+        (by_lookahead(GOOD), "look-ahead", "centre", "centre"),
+        (by_lookahead(noisy), "look-ahead", "posterior", "centre"),
     ] {
         fs::write(folder.path().join("m.toml"), &scenario).expect("a file");
         let trace = prints(folder.path(), &["run", "m.toml", "--format", "json"]);

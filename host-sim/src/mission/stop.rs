@@ -1,0 +1,122 @@
+//! What is enough to know, as scenario files ask for it and results promise it.
+//!
+//! A promise is kept if it is asked a little more strictly than it was made: single precision takes less than that
+//! from it.
+
+use anyhow::Result;
+use planner_core::belief::goal::{Accuracy, Goal};
+use planner_core::geometry::heading::Heading;
+use serde::{Deserialize, Serialize};
+
+use crate::mission::algorithm::Algorithm;
+use crate::mission::definition::Mission;
+use crate::mission::read_out::{LEVEL, ReadOut};
+use crate::mission::strict::wrong;
+
+/// A heading's units in a degree.
+const UNITS_PER_DEGREE: f64 = 4_294_967_296.0 / 360.0;
+
+/// What a turn is asked more strictly by, in a heading's units: unit vectors are good to 2^-29.
+const TURN_OFF: u32 = 4;
+
+/// What a share of the area is asked more strictly by, in millionths.
+const SHARE_OFF: u32 = 1;
+
+/// The largest level, and what one is told in.
+const MOST_LEVEL: f64 = 0.9999;
+const MILLION: f64 = 1e6;
+
+/// `[stop]` of a scenario file.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct StopTable {
+    slope_arc_deg: Option<f64>,
+    misclassified: Option<f64>,
+    level: Option<f64>,
+}
+
+impl StopTable {
+    /// The goal that it asks for.
+    ///
+    /// # Errors
+    /// Names the field, what was found and what was expected.
+    pub(crate) fn goal(&self, algorithm: Algorithm, labels_err: bool) -> Result<Goal> {
+        if algorithm != Algorithm::Lookahead {
+            let found = format!("with algorithm {}", algorithm.name());
+            return wrong("stop", found, "with algorithm lookahead");
+        }
+        let accuracy = match (self.slope_arc_deg, self.misclassified) {
+            (Some(degrees), None) if (1e-5..90.0).contains(&degrees) => {
+                let units = (degrees * UNITS_PER_DEGREE) as u32;
+                Accuracy::SlopeArc(Heading(units - TURN_OFF))
+            }
+            (Some(degrees), None) => {
+                return wrong(
+                    "stop.slope_arc_deg",
+                    degrees,
+                    "degrees, at least 0.00001 and below 90",
+                );
+            }
+            (None, Some(share)) if (1e-5..1.0).contains(&share) => {
+                // What is written with six decimal places is so many millionths.
+                let millionths = (share * MILLION + 1e-6) as u32;
+                Accuracy::Misclassified(millionths - SHARE_OFF)
+            }
+            (None, Some(share)) => {
+                let expected = "a share of the area, at least 0.00001 and below 1";
+                return wrong("stop.misclassified", share, expected);
+            }
+            (Some(_), Some(_)) => {
+                return wrong("stop", "both slope_arc_deg and misclassified", "one of them");
+            }
+            (None, None) => return wrong("stop", "neither", "slope_arc_deg or misclassified"),
+        };
+        let level = match self.level {
+            Some(level) if !labels_err => {
+                let expected = "none without noise, as what true labels leave is certain";
+                return wrong("stop.level", level, expected);
+            }
+            None if !labels_err => 1.0,
+            None => LEVEL,
+            Some(level) if (1e-6..=MOST_LEVEL).contains(&level) => level,
+            Some(level) => {
+                let expected = format!("a probability above 0, {MOST_LEVEL} at most");
+                return wrong("stop.level", level, expected);
+            }
+        };
+        Ok(Goal { accuracy, level: (level * MILLION).round() as u32 })
+    }
+}
+
+/// What a mission was to find out, and whether it did.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct GoalRecord {
+    /// Any two of the lines left make an angle of so many degrees at most.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub slope_arc_deg: Option<f64>,
+    /// The ground on which some two of the lines left disagree is this share of the area at most.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub misclassified: Option<f64>,
+    /// With this probability at least; `None` where labels are true.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub level: Option<f64>,
+    /// Whether that is known in the end.
+    pub is_met: bool,
+}
+
+impl GoalRecord {
+    /// What a mission was to find out, beside what is known in the end.
+    pub fn of(mission: &Mission, belief: &dyn ReadOut) -> Option<Self> {
+        let goal = mission.goal?;
+        let (slope_arc_deg, misclassified) = match goal.accuracy {
+            Accuracy::SlopeArc(turn) => {
+                let degrees = f64::from(turn.0 + TURN_OFF) / UNITS_PER_DEGREE;
+                (Some((degrees * MILLION).round() / MILLION), None)
+            }
+            Accuracy::Misclassified(share) => (None, Some(f64::from(share + SHARE_OFF) / MILLION)),
+        };
+        let level = mission.is_noisy().then(|| f64::from(goal.level) / MILLION);
+        let is_met = belief.meets(goal, mission.config.area);
+        Some(Self { slope_arc_deg, misclassified, level, is_met })
+    }
+}
