@@ -27,10 +27,8 @@ pub fn accuracy(summaries: &[accuracy::Summary]) -> String {
         });
     };
     add("bits/step", &stages, |row| format!("{:.3}", row.bits_per_step));
-    add("centre, slope error deg", &stages, |row| format!("{:.4}", row.centre_deg.median));
-    add("centre, misclassified %", &stages, |row| {
-        format!("{:.4}", 100.0 * row.centre_misclassified.median)
-    });
+    add("centre, slope error deg", &stages, |row| small(row.centre_deg.median));
+    add("centre, misclassified %", &stages, |row| small(100.0 * row.centre_misclassified.median));
     add("control cost", motion.as_slice(), |row| format!("{:.1}", row.control_cost));
     add("metres", motion.as_slice(), |row| format!("{:.1}", row.metres));
     format!(
@@ -71,6 +69,11 @@ pub fn calibration(summaries: &[calibration::Summary]) -> String {
          errors are medians, sets by the area prior\n\n{table}",
         first.fields, first.seed, first.p, first.limit
     )
+}
+
+/// An error, which may be very small.
+fn small(error: f64) -> String {
+    if error < 0.001 { format!("{error:.1e}") } else { format!("{error:.4}") }
 }
 
 /// Those of the stages that were flown; else the last that was.

@@ -133,9 +133,10 @@ fn number(value: &Value) -> f64 {
 #[test]
 fn a_comparison_tells_what_single_campaigns_tell() {
     let bits = |row: &Value| format!("{:.3}", number(&row["bits_per_step"]));
-    let slope = |row: &Value| format!("{:.4}", number(&row["centre_deg"]["median"]));
-    let area =
-        |row: &Value| format!("{:.4}", 100.0 * number(&row["centre_misclassified"]["median"]));
+    // What is very small has its leading digits all the same.
+    let small = |it: f64| if it < 0.001 { format!("{it:.1e}") } else { format!("{it:.4}") };
+    let slope = |row: &Value| small(number(&row["centre_deg"]["median"]));
+    let area = |row: &Value| small(100.0 * number(&row["centre_misclassified"]["median"]));
     let cost = |row: &Value| format!("{:.1}", number(&row["control_cost"]));
     let metres = |row: &Value| format!("{:.1}", number(&row["metres"]));
     compares(
