@@ -1,4 +1,4 @@
-//! What the tests of the link share: missions of both algorithms, and a chip that flies them.
+//! What the tests of the link share: missions of every algorithm, and a chip that flies them.
 
 use std::convert::Infallible;
 use std::time::Duration;
@@ -51,12 +51,23 @@ pub fn fly<P: Port>(
     }
 }
 
-/// Missions of both algorithms by turns, every fourth pair with the fine fan.
+/// Missions of all that a chip flies by turns: every third by look-ahead, of these every other with labels that
+/// may be wrong, the others by both algorithms; every fourth pair with the fine fan.
 pub fn mission(number: u64) -> Mission {
-    let algorithm = if number.is_multiple_of(2) { Algorithm::Cfc } else { Algorithm::Scc };
-    let mut mission = standard_field::standard(SEED, number, algorithm, 10);
+    by_turns(SEED, number, 10)
+}
+
+/// As [`mission`], of another seed and with so many steps.
+pub fn by_turns(seed: u64, number: u64, steps: u32) -> Mission {
+    let is_even = number.is_multiple_of(2);
+    let algorithm = match (number % 3, is_even) {
+        (2, _) => Algorithm::Lookahead,
+        (_, true) => Algorithm::Cfc,
+        (_, false) => Algorithm::Scc,
+    };
+    let mut mission = standard_field::standard(seed, number, algorithm, steps);
     mission.grid = if number % 8 < 6 { Grid::Paper } else { Grid::Fine };
-    if algorithm == Algorithm::Scc {
+    if !is_even {
         mission.noise = Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.5) });
     }
     mission

@@ -24,14 +24,23 @@ use tests::emulator::missions::{self, CORES};
 use tests::emulator::{Core, Emulator};
 use tests::program::build;
 
-/// The paper's two examples, then random fields, each algorithm by turns.
+/// The paper's two examples, then random fields: both algorithms and look-ahead with true labels, with the paper's
+/// fan and the fine one, and with labels that may be wrong, by turns.
 fn missions() -> Vec<Mission> {
     let example = |text| scenario::parse("", text, Overrides::default()).expect("a good scenario");
     let mut missions = vec![example(scenario::PAPER_NOISELESS), example(scenario::PAPER_NOISY)];
-    for number in 0..20 {
-        let mut mission = standard_field::standard(5, number, Algorithm::Cfc, 20);
-        if number % 2 == 1 {
-            mission = standard_field::standard(5, number, Algorithm::Scc, 8);
+    for number in 0..40 {
+        let (algorithm, is_noisy, grid) = match number % 4 {
+            0 => (Algorithm::Cfc, false, Grid::Paper),
+            1 => (Algorithm::Scc, true, Grid::Paper),
+            2 if number % 8 == 2 => (Algorithm::Lookahead, false, Grid::Paper),
+            2 => (Algorithm::Lookahead, false, Grid::Fine),
+            _ => (Algorithm::Lookahead, true, Grid::Paper),
+        };
+        let steps = if is_noisy { 8 } else { 20 };
+        let mut mission = standard_field::standard(5, number, algorithm, steps);
+        mission.grid = grid;
+        if is_noisy {
             mission.noise = Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.5) });
         }
         missions.push(mission);
@@ -83,7 +92,7 @@ fn a_mission_leaves_nothing_behind() {
     let missions = missions();
     let [first, second] = [(); 2].map(|()| {
         let fly = |mission| missions::fly(&mut emulator, mission).expect("it flies as the host");
-        missions[..4]
+        missions[..6]
             .iter()
             .map(fly)
             .map(|it| trace::lines(&it.recording.results))
@@ -93,7 +102,7 @@ fn a_mission_leaves_nothing_behind() {
 }
 
 #[test]
-fn the_small_program_has_one_algorithm_and_says_so() {
+fn the_small_program_flies_with_true_labels_and_says_so() {
     let (core, target) = CORES[0];
     assert_eq!(core, Core::M4F);
     let Some(program) = missions::build(env!("CARGO_TARGET_TMPDIR"), target) else { return };
@@ -101,12 +110,17 @@ fn the_small_program_has_one_algorithm_and_says_so() {
     let refusal = |emulator: &mut Emulator, mission: &Mission| {
         missions::fly(emulator, mission).expect_err("it is declined").to_string()
     };
-    let noisy = standard_field::standard(5, 1, Algorithm::Scc, 8);
+    let mut noisy = standard_field::standard(5, 1, Algorithm::Lookahead, 8);
+    noisy.noise = Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.5) });
     assert!(refusal(&mut emulator, &noisy).contains("algorithm"));
-    let long = standard_field::standard(5, 1, Algorithm::Cfc, 13);
-    assert!(refusal(&mut emulator, &long).contains("at most 12"));
-    let fits = standard_field::standard(5, 1, Algorithm::Cfc, 12);
-    assert!(missions::fly(&mut emulator, &fits).is_ok());
+    noisy.algorithm = Algorithm::Scc;
+    assert!(refusal(&mut emulator, &noisy).contains("algorithm"));
+    for algorithm in [Algorithm::Cfc, Algorithm::Lookahead] {
+        let long = standard_field::standard(5, 1, algorithm, 13);
+        assert!(refusal(&mut emulator, &long).contains("at most 12"));
+        let fits = standard_field::standard(5, 1, algorithm, 12);
+        assert!(missions::fly(&mut emulator, &fits).is_ok());
+    }
 }
 
 /// What a function executed at each call, by a log of program counters.

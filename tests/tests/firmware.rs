@@ -12,23 +12,19 @@ use std::time::{Duration, Instant};
 use std::{fs, thread};
 
 use defmt_decoder::{DecodeError, Table};
-use host_sim::campaign::standard_field;
 use host_sim::hil::cable::Cable;
 use host_sim::hil::faults::Faults;
 use host_sim::hil::flight;
 use host_sim::hil::player::{Played, Player};
 use host_sim::hil::qemu::Emulator;
-use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::Mission;
 use host_sim::mission::recording::Recording;
 use host_sim::mission::scenario::{self, Overrides};
 use host_sim::report::trace;
-use host_sim::world::noise::{Extent, NoiseModel};
 use planner_core::belief::sample::{Label, Reading};
 use planner_core::link::delivery::{Link, Port};
 use planner_core::link::message::LabelSource;
 use planner_core::motion::dynamics::Pose;
-use planner_core::motion::unicycle::Grid;
 use planner_core::planner::Motion;
 use planner_core::robot::agent::{Agent, Event, Step};
 use planner_core::robot::body::Body;
@@ -38,6 +34,7 @@ use rayon::prelude::*;
 use tempfile::{NamedTempFile, TempPath};
 use tests::budget::footprint::{self, Footprint};
 use tests::debugger::{self, Debugger};
+use tests::link::by_turns;
 use tests::program::build;
 use tests::program::image::Image;
 
@@ -136,15 +133,9 @@ fn example(text: &str) -> Mission {
     scenario::parse("", text, Overrides::default()).expect("a good scenario")
 }
 
-/// Random missions, each algorithm by turns, every fourth pair with the fine fan.
+/// Random missions of all that the firmware flies, by turns.
 fn random(number: u64) -> Mission {
-    let algorithm = if number.is_multiple_of(2) { Algorithm::Cfc } else { Algorithm::Scc };
-    let mut mission = standard_field::standard(6, number, algorithm, 10 + (number % 11) as u32);
-    mission.grid = if number % 8 < 6 { Grid::Paper } else { Grid::Fine };
-    if algorithm == Algorithm::Scc {
-        mission.noise = Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.5) });
-    }
-    mission
+    by_turns(6, number, 10 + (number % 11) as u32)
 }
 
 fn here(mission: &Mission) -> String {
