@@ -200,3 +200,171 @@ impl<D: Dynamics, B: Foresight> Planner for Lookahead<D, B> {
         self.foresight.belief()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Point2;
+
+    use super::*;
+    use crate::belief::consistent_lines::Certainty;
+    use crate::belief::forecast::Forecast;
+    use crate::belief::goal::Accuracy;
+    use crate::belief::noise::{Noise, Reliability};
+    use crate::belief::sample::Sample;
+    use crate::belief::version_space::VersionSpace;
+    use crate::belief::weight::Prior;
+    use crate::geometry::area::Area;
+    use crate::geometry::heading::Heading;
+    use crate::geometry::lattice::Site;
+    use crate::motion::unicycle::Unicycle;
+    use crate::planner::cfc;
+    use crate::planner::config::Crossing;
+
+    fn at(x: f64, z: f64) -> Site {
+        Site::try_from(Point2::new(x, z)).unwrap()
+    }
+
+    fn config() -> Config {
+        Config {
+            area: Area::new(at(0.0, 0.0), at(20.0, 20.0)).unwrap(),
+            varrho: VARRHO,
+            crossing: Crossing::default(),
+            following: cfc::FOLLOWING,
+        }
+    }
+
+    /// A line through the middle of the area, and the oracle's points about it.
+    #[derive(Clone, Copy)]
+    struct Field {
+        angle: f64,
+    }
+
+    impl Field {
+        fn site(self, along: f64, off: f64) -> Site {
+            let (sin, cos) = libm::sincos(self.angle);
+            at(10.0 + along * cos - off * sin, 10.0 + along * sin + off * cos)
+        }
+
+        fn label(self, site: Site) -> Label {
+            let (sin, cos) = libm::sincos(self.angle);
+            let by = Point2::<f64>::from(site) - Point2::new(10.0, 10.0);
+            // The line lies a little off the middle.
+            if by.y * cos - by.x * sin > 0.3 { Label::Positive } else { Label::Negative }
+        }
+
+        fn given(self) -> [Sample; 4] {
+            [(-6.0, -2.0), (-5.0, 3.0), (6.0, 2.5), (5.0, -3.5)].map(|(along, off)| {
+                let site = self.site(along, off);
+                Sample { site, label: self.label(site) }
+            })
+        }
+
+        fn start(self) -> Pose {
+            let heading = Heading::from_radians(7.0 * self.angle).unwrap();
+            Pose { site: self.given()[0].site, heading }
+        }
+
+        fn true_labels<const N: usize>(self) -> Lookahead<Unicycle, VersionSpace<N>> {
+            let space = VersionSpace::new(&self.given()).unwrap();
+            Lookahead::new(config(), Unicycle::paper(), space)
+        }
+
+        fn doubtful(self) -> Lookahead<Unicycle, Forecast<36, 529>> {
+            let noise = Noise { reliability: Reliability::new(0.8).unwrap(), trusted_radius: 0 };
+            let forecast = Forecast::new(&self.given(), Prior::Area, noise).unwrap();
+            Lookahead::new(config(), Unicycle::paper(), forecast)
+        }
+
+        /// Makes so many steps with true labels, and has each looked at before.
+        fn fly<B: Foresight>(
+            self,
+            mut planner: Lookahead<Unicycle, B>,
+            steps: u32,
+            mut look: impl FnMut(&mut Lookahead<Unicycle, B>, Pose),
+        ) {
+            let mut pose = self.start();
+            for _ in 0..steps {
+                look(&mut planner, pose);
+                let Plan::Move(motion) = planner.plan(pose) else { panic!("no motion") };
+                pose = motion.target;
+                let reading = motion.wants_label.then(|| self.label(pose.site).into());
+                planner.observe(pose, reading).unwrap();
+            }
+        }
+    }
+
+    fn fields() -> impl Iterator<Item = Field> {
+        (0..24).map(|number| Field { angle: 0.27 * f64::from(number) })
+    }
+
+    /// The budget is kept, and the worth of what is decided never falls as it grows.
+    fn is_anytime<B: Foresight + Clone>(planner: &Lookahead<Unicycle, B>, pose: Pose) {
+        let mut planner = planner.clone();
+        planner.foresight.prepare();
+        let mut before = f32::NEG_INFINITY;
+        for evaluations in [0, 1, 2, 5, 10, 20, 50, 100, 150, 200, 300, 400, 512, 1_000, 5_000] {
+            let dynamics = &planner.dynamics;
+            let Config { area, varrho, .. } = planner.config;
+            let mut lookout = Lookout { dynamics, area, varrho, evaluations };
+            let decision = planner.decide(&mut lookout, pose);
+            assert!(lookout.evaluations <= evaluations);
+            let worth = decision.map_or(f32::NEG_INFINITY, |decision| decision.worth);
+            assert!(worth >= before, "{worth} with {evaluations}, {before} with fewer, {pose:?}");
+            before = worth;
+            if let Plan::Move(motion) = planner.clone().within(evaluations).plan(pose) {
+                let ladder = if worth > f32::NEG_INFINITY { evaluations } else { u32::MAX };
+                assert!(motion.examined <= ladder);
+            }
+        }
+    }
+
+    #[test]
+    fn more_evaluations_are_never_worse() {
+        for field in fields() {
+            field.fly(field.true_labels::<64>(), 16, |planner, pose| is_anytime(planner, pose));
+        }
+        for field in fields().step_by(6) {
+            field.fly(field.doubtful(), 8, |planner, pose| is_anytime(planner, pose));
+        }
+    }
+
+    #[test]
+    fn a_plan_is_the_same_each_time_and_asks_on_uncertain_ground_alone() {
+        fn look<B: Foresight + Clone>(planner: &mut Lookahead<Unicycle, B>, pose: Pose) {
+            let plan = planner.plan(pose);
+            assert_eq!(plan, planner.plan(pose));
+            assert_eq!(plan, planner.clone().plan(pose));
+            let Plan::Move(motion) = plan else { panic!("no motion") };
+            let target = motion.target.site;
+            assert!(config().area.contains(target));
+            let certainty = planner.foresight.ground().certainty(target);
+            assert!(!motion.wants_label || certainty == Certainty::Uncertain);
+        }
+        for field in fields() {
+            field.fly(field.true_labels::<64>(), 20, look);
+            field.fly(field.doubtful(), 6, look);
+        }
+    }
+
+    #[test]
+    fn it_stops_when_it_should() {
+        for field in fields() {
+            let start = field.start();
+            let outside = Pose { site: at(-1.0, 10.0), ..start };
+            let arc = |deg: f64| {
+                let most = Heading::from_radians(deg.to_radians()).unwrap();
+                Some(Goal { accuracy: Accuracy::SlopeArc(most), level: 900_000 })
+            };
+            let stops = |plan, reason| assert_eq!(plan, Plan::Stop(reason));
+            stops(field.true_labels::<64>().plan(outside), StopReason::OutsideArea);
+            stops(field.doubtful().plan(outside), StopReason::OutsideArea);
+            stops(field.true_labels::<4>().plan(start), StopReason::SamplesFull);
+            // What is known is known also where there is no more room, and outside.
+            stops(field.true_labels::<4>().until(arc(89.0)).plan(outside), StopReason::Known);
+            stops(field.doubtful().until(arc(89.0)).plan(start), StopReason::Known);
+            let few = |it: Plan| assert!(matches!(it, Plan::Move(_)));
+            few(field.true_labels::<64>().until(arc(5.0)).plan(start));
+            few(field.doubtful().until(arc(5.0)).plan(start));
+        }
+    }
+}
