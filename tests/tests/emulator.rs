@@ -20,6 +20,7 @@ use planner_core::planner::scc::Policy;
 use rayon::prelude::*;
 use tests::budget::timing;
 use tests::budget::workload::Workload;
+use tests::cases;
 use tests::emulator::missions::{self, CORES};
 use tests::emulator::{Core, Emulator};
 use tests::program::build;
@@ -29,7 +30,8 @@ use tests::program::build;
 fn missions() -> Vec<Mission> {
     let example = |text| scenario::parse("", text, Overrides::default()).expect("a good scenario");
     let mut missions = vec![example(scenario::PAPER_NOISELESS), example(scenario::PAPER_NOISY)];
-    for number in 0..40 {
+    // Most of the time goes into looking ahead: the long runs have more of it.
+    for number in 0..cases(12, 40) {
         let (algorithm, is_noisy, grid) = match number % 4 {
             0 => (Algorithm::Cfc, false, Grid::Paper),
             1 => (Algorithm::Scc, true, Grid::Paper),
