@@ -39,8 +39,8 @@ fn slope_arc() -> Accuracy {
 }
 
 /// Labels that may be wrong everywhere: near the oracle's points they would tell more.
-fn noise(p: f64) -> Option<NoiseModel> {
-    Some(NoiseModel { p, extent: Extent::OutsideBalls(0.0) })
+fn noise(p: f64) -> NoiseModel {
+    NoiseModel { p, extent: Extent::OutsideBalls(0.0) }
 }
 
 /// How a mission to a goal ended, and what is known then.
@@ -103,7 +103,7 @@ fn labels_that_may_be_wrong_keep_promises_as_often_as_stated() {
             .into_par_iter()
             .filter_map(|number| {
                 let mut mission = mission(number, 64, slope_arc());
-                mission.noise = noise(p);
+                mission.noise = Some(noise(p));
                 let (ending, belief) = flown(&mission);
                 if ending != "known" {
                     return None;
@@ -136,7 +136,7 @@ fn mixed(number: u64) -> [[f64; 2]; 3] {
     let mut rng = ChaCha8Rng::seed_from_u64(number);
     let mut mission = standard_field::standard(32, number, Algorithm::Lookahead, 40);
     // What the planner believes of labels that nobody tells it about.
-    mission.noise = noise(0.8);
+    mission.noise = Some(noise(0.8));
     let mut known: Table = mission.table();
     let dynamics = Unicycle::from(Grid::Paper);
     let mut planner = Lookahead::new(mission.config, dynamics, mission.forecast());
@@ -224,7 +224,7 @@ fn labels_that_may_be_wrong_teach_what_they_should() {
     let reliabilities: &[f64] = if LONG { &[0.6, 0.7, 0.8, 0.9, 0.99] } else { &[0.7, 0.9] };
     for seed in if LONG { 1..=2 } else { 1..=1 } {
         for &p in reliabilities {
-            let campaign = campaign(seed, 45, Grid::Paper, noise(p));
+            let campaign = campaign(seed, 36, Grid::Fine, Some(noise(p)));
             let ensemble = campaign.run(&Calibrated).expect("labels that are certain are true");
             let summary = calibration::Summary::of(&campaign, ensemble);
             println!("{}", tables::calibration(&summary));
@@ -235,7 +235,7 @@ fn labels_that_may_be_wrong_teach_what_they_should() {
                 println!("seed {seed}, p = {p}, {labels} labels: {told:.4} of what they can tell");
                 assert!(told >= share * CHANCE, "seed {seed}, p = {p}, {labels}: {told}");
             }
-            if p == 0.7 && LONG {
+            if LONG && (0.65..0.75).contains(&p) {
                 assert!(at(30).bits >= 3.4 && at(30).control_cost <= 45.0, "seed {seed}");
             }
         }
