@@ -60,6 +60,7 @@ impl Accuracy {
 /// Whether an arc of slopes is narrower than a turn that is below a quarter.
 fn is_narrower(arc: SlopeArc, turn: Heading) -> bool {
     let Vector { x: cos, z: sin } = turn.unit().scaled(1 << 29);
+    let sin = sin.saturating_sub(2); // by as much as it may be rounded up
     let (cross, dot) = (arc.from().cross(arc.to()) as f32, arc.from().dot(arc.to()) as f32);
     dot > 0.0 && cross * cos as f32 <= dot * sin as f32 * (1.0 - ROUNDING)
 }
@@ -115,9 +116,11 @@ fn uncertain_share(arc: SlopeArc, bounds: impl Iterator<Item = Bound> + Clone, a
         return 0.0;
     }
     let step = (to - from) / f32::from(STATIONS);
+    // What heights anywhere in the area are rounded by, at most.
+    let rounding = 8.0 * f32::EPSILON * (half[0] + half[1]);
     let breadth = |station: u16| {
         let (low, high) = between(from + f32::from(station) * step);
-        high - low
+        high - low + rounding
     };
     let inner: f32 = (1..STATIONS).map(breadth).sum();
     let ground = (inner + 0.5 * (breadth(0) + breadth(STATIONS))) * step;
