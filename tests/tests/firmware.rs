@@ -40,8 +40,8 @@ use tests::program::image::Image;
 
 const TARGET: &str = "thumbv7em-none-eabihf";
 
-/// For anything that the chip does within two seconds.
-const PATIENCE: Duration = Duration::from_secs(20);
+/// For anything that the chip does within two seconds of its own, where a busy machine gives it few.
+const PATIENCE: Duration = Duration::from_secs(60);
 
 /// The first message. Under emulation the chip has no record of why it started, and no clock tree.
 const STARTED: &str = "started: Other, clock: Emulated";
@@ -73,8 +73,8 @@ impl Chip {
         player.finish()
     }
 
-    /// The log so far.
-    fn messages(&self) -> Vec<String> {
+    /// The log so far, each message after the chip's time of it in milliseconds.
+    fn log(&self) -> Vec<(u32, String)> {
         let elf = fs::read(firmware().expect("it runs")).expect("cargo left an ELF");
         let table = Table::parse(&elf).expect("the ELF is sound").expect("it logs");
         let mut decoder = table.new_stream_decoder();
@@ -82,14 +82,22 @@ impl Chip {
         let mut messages = Vec::new();
         loop {
             match decoder.decode() {
-                Ok(frame) => messages.push(frame.display_message().to_string()),
+                Ok(frame) => {
+                    let time = frame.display_timestamp().expect("all have one").to_string();
+                    let at = time.replace('.', "").parse().expect("seconds, three decimals");
+                    messages.push((at, frame.display_message().to_string()));
+                }
                 Err(DecodeError::UnexpectedEof) => return messages,
-                Err(DecodeError::Malformed) => messages.push("(malformed)".to_owned()),
+                Err(DecodeError::Malformed) => messages.push((0, "(malformed)".to_owned())),
             }
         }
     }
 
-    /// The log up to the `n`-th message that begins so.
+    fn messages(&self) -> Vec<String> {
+        self.log().into_iter().map(|(_, message)| message).collect()
+    }
+
+    /// The messages up to the `n`-th that begins so.
     fn messages_until(&self, n: usize, beginning: &str) -> Vec<String> {
         let since = Instant::now();
         loop {
@@ -260,14 +268,13 @@ fn a_cut_link_stops_the_mission_safely_within_the_bound_and_the_next_can_begin()
             chip.link.write_all(frame.bytes()).expect("the link is open");
         }
     }
-    let cut = Instant::now();
-    let log = chip.messages_until(1, "stopped");
-    let took = cut.elapsed();
-    assert_eq!(log.last().expect("it says so"), "stopped after 3 steps: Silent");
-    // Each wait ends on a beat of 10 ms after 100 ms.
-    let bound = Duration::from_millis(110) * u32::from(Link::<Never>::ATTEMPTS);
-    assert!(took < bound + Duration::from_secs(2), "{took:?}");
-    println!("a cut link: stopped after {took:?}, by the chip's clock within {bound:?}");
+    chip.messages_until(1, "stopped");
+    let [.., (cut, _), (stopped, last)] = &chip.log()[..] else { panic!("a step before it stops") };
+    assert_eq!(last, "stopped after 3 steps: Silent");
+    // By the chip's clock. The plan takes less than a beat of 10 ms; each wait ends on one, after 100 ms.
+    let (took, bound) = (stopped - cut, 10 + 110 * u32::from(Link::<Never>::ATTEMPTS));
+    assert!((bound / 2..=bound).contains(&took), "{took} ms");
+    println!("a cut link: stopped after {took} ms by the chip's clock, within {bound} ms");
     assert_eq!(drive_enable(&writes), ["off", "on", "off"]);
     // What it asked meanwhile, nobody reads: a new cable finds it asking for a mission.
     let played = chip.fly(&mission, Faults::default()).expect("it flies as here");
