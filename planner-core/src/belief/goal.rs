@@ -4,11 +4,11 @@
 //! the line is one of them, so the promise is kept. With labels that may be wrong it is about a credible
 //! set, and kept with at least the probability that the set holds.
 
-use crate::geometry::approximate::sqrt;
+use crate::geometry::approximate::{METRE, cross, single, sqrt};
 use crate::geometry::arc::SlopeArc;
 use crate::geometry::area::Area;
 use crate::geometry::heading::Heading;
-use crate::geometry::lattice::{UNITS_PER_METRE, Vector};
+use crate::geometry::lattice::Vector;
 use crate::geometry::line::Bound;
 
 /// What a mission is to find out.
@@ -61,7 +61,7 @@ impl Accuracy {
 fn is_narrower(arc: SlopeArc, turn: Heading) -> bool {
     let Vector { x: cos, z: sin } = turn.unit().scaled(1 << 29);
     let sin = sin.saturating_sub(2); // by as much as it may be rounded up
-    let (cross, dot) = (arc.from().cross(arc.to()) as f32, arc.from().dot(arc.to()) as f32);
+    let (cross, dot) = (cross(arc.from(), arc.to()), single(arc.from().dot(arc.to())));
     dot > 0.0 && cross * cos as f32 <= dot * sin as f32 * (1.0 - ROUNDING)
 }
 
@@ -71,16 +71,15 @@ fn is_narrower(arc: SlopeArc, turn: Heading) -> bool {
 /// the highest of the lines and the lowest. Its breadth is a convex function, so the trapezoids between some
 /// points of it are no less than it is; they reach as far as there is such ground inside the area.
 fn uncertain_share(arc: SlopeArc, bounds: impl Iterator<Item = Bound> + Clone, area: Area) -> f32 {
-    const METRE: f32 = 1.0 / UNITS_PER_METRE as f32;
     let along = arc.bisector();
     let (x, z) = (along.x as f32, along.z as f32);
     let length = sqrt(x * x + z * z);
     let (cos, sin) = (x / length, z / length);
     let (middle, half) = (area.middle(), area.half_sides().map(|side| side as f32 * METRE));
     let lines = bounds.map(|bound| {
-        let run = along.dot(bound.along) as f32;
-        let slope = along.cross(bound.along) as f32 / run;
-        (slope, -(bound.at(middle) as f32) * (length * METRE) / run)
+        let run = single(along.dot(bound.along));
+        let slope = cross(along, bound.along) / run;
+        (slope, -single(bound.at(middle)) * (length * METRE) / run)
     });
     let between = |x: f32| {
         let heights = lines.clone().map(|(slope, offset)| slope * x + offset);

@@ -4,7 +4,7 @@
 
 use crate::belief::sample::Label;
 use crate::geometry::angle::Angle;
-use crate::geometry::approximate::{acos, heading_of, sqrt};
+use crate::geometry::approximate::{acos, heading_of, single, sqrt};
 use crate::geometry::heading::Heading;
 use crate::geometry::line::Bound;
 use crate::motion::dynamics::Side;
@@ -51,7 +51,7 @@ impl SeenLine {
     /// A line that bounds what is known, and its value where the agent is.
     pub(crate) fn of(Bound { along, .. }: Bound, value: i64) -> Self {
         let (x, z) = (along.x as f32, along.z as f32);
-        Self::new(value as f32 / sqrt(x * x + z * z), heading_of(along.left()))
+        Self::new(single(value) / sqrt(x * x + z * z), heading_of(along.left()))
     }
 
     /// How far another line is from this one within a distance of the agent, at most.

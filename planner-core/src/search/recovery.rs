@@ -19,7 +19,7 @@
 //! near, the turns of (3), or where it has none the motions of (4), which stay near. What is near never
 //! becomes far again.
 
-use crate::geometry::approximate::{heading_of, sqrt};
+use crate::geometry::approximate::{heading_of, single, sqrt};
 use crate::geometry::heading::Heading;
 use crate::geometry::lattice::Vector;
 use crate::motion::action::Action;
@@ -266,8 +266,8 @@ enum Drive {
 /// Whether a drive brings a point nearer by an eighth of its own length at least.
 fn nears(ray: &Ray, speed: u16, goal: Vector) -> bool {
     let drive = ray.displacement(speed);
-    let square = |v: Vector| v.dot(v) as f32;
+    let square = |v: Vector| single(v.dot(v));
     // |goal - drive| <= |goal| - |drive| / 8 follows from this.
     let length = sqrt(square(drive));
-    drive.dot(goal) as f32 >= length * (length / 2.0 + sqrt(square(goal)) / 8.0)
+    single(drive.dot(goal)) >= length * (length / 2.0 + sqrt(square(goal)) / 8.0)
 }

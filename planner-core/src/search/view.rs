@@ -9,6 +9,7 @@ use heapless::Vec;
 use crate::belief::consistent_lines::{Certainty, ConsistentLines};
 use crate::belief::sample::Label;
 use crate::geometry::angle::Angle;
+use crate::geometry::approximate::single;
 use crate::geometry::area::Area;
 use crate::geometry::heading::Heading;
 use crate::geometry::lattice::{Site, Vector};
@@ -149,7 +150,7 @@ impl<'a> View<'a> {
     /// Whether what lies this way is further than one motion reaches.
     pub(crate) fn is_far(&self, way: Vector) -> bool {
         let reach = f32::from(self.speeds - 1) * self.step * (1.0 + self.margin);
-        self.own_label != Certainty::Uncertain && way.dot(way) as f32 > reach * reach
+        self.own_label != Certainty::Uncertain && single(way.dot(way)) > reach * reach
     }
 
     /// Looks at the circle of a speed, unless all ground up to there is certain.
