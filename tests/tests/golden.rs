@@ -48,10 +48,16 @@ fn hash(text: &str) -> u64 {
     })
 }
 
-/// A random mission of each algorithm by turns, with noise and without.
+/// Missions from this number on are look-ahead's.
+const LOOKAHEAD: u64 = 200;
+
+/// A random mission of each other algorithm by turns, with noise and without.
 fn mission(number: u64) -> Mission {
     let algorithms = [Algorithm::Cfc, Algorithm::Scc, Algorithm::Random, Algorithm::Random];
-    let algorithm = algorithms[number as usize % 4];
+    let algorithm = match number {
+        LOOKAHEAD.. => Algorithm::Lookahead,
+        _ => algorithms[number as usize % 4],
+    };
     let steps = 10 + (number % 50) as u32;
     let mut mission = standard_field::standard(17, number, algorithm, steps);
     if algorithm == Algorithm::Scc || number % 4 == 3 {
@@ -71,7 +77,7 @@ fn hashes_of_traces_figures_and_campaigns() {
     let mut line = |name: &str, text: &str| {
         let _ = writeln!(table, "{:016x}  {:>7} bytes  {name}", hash(text), text.len());
     };
-    for number in 0..200 {
+    for number in 0..LOOKAHEAD + 24 {
         let recording = Recording::of(&mission(number)).expect("trusted labels are true");
         line(&format!("trace {number}"), &trace::lines(&recording.results));
         if number % 10 < 2 {
@@ -92,6 +98,9 @@ fn hashes_of_traces_figures_and_campaigns() {
         "campaign --fields 20 --steps 36 --algorithm scc --format json",
         "campaign --fields 20 --steps 36 --algorithm scc --policy joint --prior sequences",
         "campaign --fields 20 --steps 12 --algorithm random --p 0.8 --format json",
+        "campaign --fields 40 --steps 40 --algorithm lookahead --format json",
+        "campaign --fields 10 --steps 24 --algorithm lookahead --p 0.8 --format json",
+        "campaign --fields 20 --steps 12 --compare cfc,lookahead,margin",
     ] {
         line(args, &run(args));
     }
