@@ -1,18 +1,22 @@
 //! What look-ahead predicts by, and what it promises, against slow twins: pictures against the exact shares of
-//! version spaces, goals against areas clipped in double precision.
+//! version spaces, forecasts against tables and entropies in double precision, goals against areas clipped in that.
 
 use std::f64::consts::PI;
 
 use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
-use host_sim::mission::definition::Lines;
+use host_sim::mission::definition::{Lines, Mission};
+use host_sim::world::noise::{Extent, NoiseModel};
 use host_sim::world::polygon::Polygon;
 use nalgebra::Point2;
 use planner_core::belief::Belief as _;
 use planner_core::belief::consistent_lines::Certainty;
+use planner_core::belief::forecast::Forecast;
 use planner_core::belief::goal::Accuracy;
+use planner_core::belief::noise::Reliability;
 use planner_core::belief::outlook::{Foresight as _, Outlook as _, Prediction as _};
-use planner_core::belief::sample::{Label, Sample};
+use planner_core::belief::posterior::Posterior;
+use planner_core::belief::sample::{Label, Reading, Sample};
 use planner_core::geometry::area::Area;
 use planner_core::geometry::heading::Heading;
 use planner_core::geometry::lattice::Site;
@@ -106,6 +110,119 @@ fn where_all_agree_shares_are_beyond() {
                 };
                 assert!(agrees, "field {number}, {steps} steps: {share}");
             }
+        }
+    }
+}
+
+/// A standard field whose labels may be wrong outside half a metre from the given points.
+fn doubtful(number: u64, p: f64) -> Mission {
+    let mut mission = standard_field::standard(8, number, Algorithm::Lookahead, 1);
+    mission.noise = Some(NoiseModel { p, extent: Extent::OutsideBalls(0.5) });
+    mission
+}
+
+/// A site of the area, every fourth in the ball about a given point.
+fn any_site(rng: &mut ChaCha8Rng, mission: &Mission) -> Site {
+    let mut metres = || rng.random_range(0.0..standard_field::SIDE_M);
+    let far = Point2::new(metres(), metres());
+    let given = Point2::<f64>::from(mission.given.samples()[rng.random_range(0..4)].site);
+    let near = given + (far - given) * 0.01;
+    Site::try_from(if rng.random_range(0..4) == 0 { near } else { far }).expect("on the lattice")
+}
+
+/// So many labels, true or false, that are possible.
+fn labelled<const N: usize, const H: usize>(
+    forecast: &mut Forecast<N, H>,
+    mission: &Mission,
+    rng: &mut ChaCha8Rng,
+    labels: usize,
+) {
+    let most = forecast.belief().taken() + labels;
+    while forecast.belief().taken() < most {
+        let site = any_site(rng, mission);
+        let label = if rng.random_bool(0.5) { Label::Positive } else { Label::Negative };
+        let _ = forecast.observe(site, Reading::Side(label)); // a trusted ball may refuse it
+        forecast.observe(site, Reading::Boundary).expect("it tells nothing");
+    }
+}
+
+#[test]
+fn forecasts_are_those_of_the_table_and_of_how_far_labels_can_be_believed() {
+    let term = |p: f64| if p > 0.0 { -p * p.log2() } else { 0.0 };
+    let coin = |p: f64| term(p) + term(1.0 - p);
+    let mut rng = ChaCha8Rng::seed_from_u64(13);
+    let (mut asked, mut trusted, mut sums, mut most) = (0, 0, [0.0; 2], [0.0_f64; 3]);
+    for number in 0..cases(60, 600) {
+        let p = [0.6, 0.7, 0.9, 0.99][number as usize % 4];
+        let mission = doubtful(number, p);
+        let mut forecast = mission.forecast();
+        labelled(&mut forecast, &mission, &mut rng, number as usize % 12);
+        forecast.prepare();
+        let outlook = forecast.outlook(mission.start.site);
+        let mut table = mission.table();
+        for &Sample { site, label } in &forecast.belief().samples()[table.given().len()..] {
+            table.take(Sample { site, label }, table.reliability(site)).expect("as the forecast");
+        }
+        let posterior = Posterior::new(&table);
+        for _ in 0..12 {
+            let [site, next] = [(); 2].map(|()| any_site(&mut rng, &mission));
+            assert_eq!(forecast.ground().certainty(site), mission.given.certainty(site));
+            let is_trusted = table.reliability(site) == Reliability::CERTAIN;
+            let p_here = if is_trusted { 1.0 } else { p };
+            let share = outlook.share_above(site);
+            let chance = p_here * f64::from(share) + (1.0 - p_here) * (1.0 - f64::from(share));
+            let told = (coin(chance) - coin(p_here)) / (1.0 - coin(p));
+            let context = format!("field {number}, p {p}, trusted {is_trusted}, share {share}");
+            assert!((f64::from(outlook.chance(site, share)) - chance).abs() < 1e-6, "{context}");
+            let (off, exact) = (f64::from(share), posterior.share_above(site));
+            sums[0] += (off - exact).abs();
+            most[0] = most[0].max((off - exact).abs());
+            // A label that is next to impossible tells nothing, for want of digits.
+            let label = if chance > 0.5 { Label::Positive } else { Label::Negative };
+            let after = outlook.after(site, label);
+            for got in [outlook.information(site, share), after.information(site, share)] {
+                let off = (f64::from(got) - told).abs();
+                // Two entropies to 10^-3 bits, near one half to as much of what they lack of a bit.
+                let bound = if p_here < 0.75 { 0.01 } else { 2e-3 / (1.0 - coin(p)) };
+                assert!(off < bound, "{context}: {got} for {told}");
+                most[1] = most[1].max(off);
+            }
+            let mut known = table.clone();
+            if known.take(Sample { site, label }, table.reliability(site)).is_ok() {
+                let exact = Posterior::new(&known).share_above(next);
+                let off = (f64::from(after.share_above(next)) - exact).abs();
+                sums[1] += off;
+                most[2] = most[2].max(off);
+            }
+            (asked, trusted) = (asked + 1, trusted + u32::from(is_trusted));
+        }
+    }
+    let mean = sums.map(|sum| sum / f64::from(asked));
+    println!("{asked} places, {trusted} trusted: shares {mean:.4?} off, {most:.4?} at most");
+    assert!(mean[0] < 0.003 && mean[1] < 0.003 && most[0] < 0.1 && most[2] < 0.13, "{mean:?}");
+    assert!(trusted > 100);
+}
+
+#[test]
+fn a_forecast_begins_again_in_place() {
+    let mut rng = ChaCha8Rng::seed_from_u64(14);
+    let mut again = doubtful(0, 0.7).forecast();
+    for number in 0..20 {
+        let mission = doubtful(number, 0.8);
+        labelled(&mut again, &mission, &mut rng, 5);
+        let given = mission.given.samples();
+        again.restart(given, mission.prior, mission.noise_told()).expect("an oracle");
+        again.restart(&given[..2], mission.prior, mission.noise_told()).expect_err("two points");
+        let mut anew = mission.forecast();
+        let mut same = rng.clone();
+        labelled(&mut again, &mission, &mut rng, 3);
+        labelled(&mut anew, &mission, &mut same, 3);
+        again.prepare();
+        anew.prepare();
+        let [again, anew] = [&again, &anew].map(|it| it.outlook(mission.start.site));
+        for _ in 0..20 {
+            let site = any_site(&mut rng, &mission);
+            assert_eq!(again.share_above(site), anew.share_above(site), "field {number}");
         }
     }
 }
