@@ -262,7 +262,7 @@ mod tests {
     /// there is space enough the list is full.
     #[test]
     fn prospects_are_the_best_some_way_apart() {
-        let metre = UNITS_PER_METRE as i32;
+        let metre = UNITS_PER_METRE;
         let given =
             [(0, 0, false), (0, 4, true), (9, 5, true), (10, 0, false)].map(|(x, z, above)| {
                 let label = if above { Label::Positive } else { Label::Negative };
