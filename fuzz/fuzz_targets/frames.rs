@@ -87,6 +87,17 @@ fuzz_target!(|bytes: &[u8]| {
                         fly(prepared.planner(), &setup);
                     }
                 }
+                Algorithm::Lookahead { evaluations, goal, noise: None } => {
+                    if let Ok(mut prepared) = setup.lookahead::<16>(evaluations, goal) {
+                        fly(prepared.planner(), &setup);
+                    }
+                }
+                Algorithm::Lookahead { evaluations, goal, noise: Some((noise, prior)) } => {
+                    let mut planner = setup.forecast::<24, 40>(evaluations, goal);
+                    if let Ok(mut prepared) = setup.prepare(&mut planner, prior, noise) {
+                        fly(prepared.planner(), &setup);
+                    }
+                }
                 Algorithm::Scc { noise, policy, prior } => {
                     let mut planner = setup.scc::<24, 40>(policy);
                     if let Ok(mut prepared) = setup.prepare(&mut planner, prior, noise) {

@@ -1,19 +1,22 @@
 #![no_main]
 //! The planner's calls in any order, on any grid that the constructors take, with labels of a line or of
 //! none: nothing overflows, positions stay in the area, true labels are never refused, what is certain
-//! is true, and what the search finds is what trying every action finds.
+//! is true, what the search finds is what trying every action finds, and look-ahead repeats itself, asks on
+//! uncertain ground alone and promises no more than is known.
 
 use arbitrary::{Arbitrary, Unstructured};
 use libfuzzer_sys::fuzz_target;
-use planner_core::belief::Refused;
 use planner_core::belief::consistent_lines::Certainty;
+use planner_core::belief::forecast::Forecast;
+use planner_core::belief::goal::{Accuracy, Goal};
 use planner_core::belief::hypotheses::Hypotheses;
-use planner_core::belief::noise::Noise;
-use planner_core::belief::noise::Reliability;
+use planner_core::belief::noise::{Noise, Reliability};
+use planner_core::belief::outlook::Foresight;
 use planner_core::belief::posterior::Posterior;
 use planner_core::belief::sample::{Label, Reading, Sample};
 use planner_core::belief::version_space::VersionSpace;
 use planner_core::belief::weight::Prior;
+use planner_core::belief::{Belief, Refused};
 use planner_core::geometry::area::Area;
 use planner_core::geometry::heading::Heading;
 use planner_core::geometry::lattice::{Site, orient};
@@ -23,8 +26,9 @@ use planner_core::motion::holonomic::Holonomic;
 use planner_core::motion::unicycle::Unicycle;
 use planner_core::planner::cfc::Cfc;
 use planner_core::planner::config::{Config, Crossing, Following};
+use planner_core::planner::lookahead::{EVALUATIONS, Lookahead};
 use planner_core::planner::scc::{Policy, Scc};
-use planner_core::planner::{Plan, Planner};
+use planner_core::planner::{Motion, Plan, Planner, StopReason};
 use planner_core::search::objective::{LOOKS, Varrho};
 
 /// Actions that are tried one by one, at most.
@@ -107,7 +111,36 @@ fn run<D: Dynamics + Copy>(case: &Case, dynamics: D, world: &World) -> Option<()
     };
     let (x, z, heading) = case.start;
     let start = Pose { site: world.site(x.into(), z.into())?, heading: Heading(heading) };
-    fly_true(case, Cfc::new(config, dynamics, space), world, start, &config, dynamics);
+    let cfc = Cfc::new(config, dynamics, space.clone());
+    fly_true(case, cfc, world, start, &config, |planner, pose| {
+        let few = dynamics.grid().actions() <= FEW && config.area.contains(pose.site);
+        let slow = few.then(|| planner.problem().solve_exhaustively(&dynamics, pose).best);
+        let quick = few.then(|| planner.problem().solve(&dynamics, pose).best);
+        assert_eq!(quick, slow, "from {pose:?}");
+        let plan = planner.plan(pose);
+        assert!(!matches!(plan, Plan::Move(motion) if motion.examined > LOOKS));
+        plan
+    });
+    // Bytes that mean something else as well, so that there are no more of them.
+    let accuracy = if case.follows_bisector {
+        Accuracy::SlopeArc(Heading(case.varrho % (1 << 30)))
+    } else {
+        Accuracy::Misclassified(case.varrho % 1_000_000)
+    };
+    let goal = Goal { accuracy, level: 500_000 + case.start.2 % 500_000 };
+    for goal in [None, Some(goal)] {
+        let planner = Lookahead::new(config, dynamics, space.clone()).until(goal);
+        fly_true(case, planner, world, start, &config, |planner, pose| {
+            let plan = look_ahead(planner, pose);
+            let known = plan == Plan::Stop(StopReason::Known);
+            assert_eq!(known, goal.is_some_and(|it| planner.belief().meets(it, config.area)));
+            if let (true, Accuracy::SlopeArc(most)) = (known, accuracy) {
+                let width = planner.belief().slope_arc().width_deg();
+                assert!(width <= most.radians().to_degrees(), "{width} of {most:?}");
+            }
+            plan
+        });
+    }
     let reliability = Reliability::new(case.p)?;
     for (policy, prior) in [
         (Policy::Joint, Prior::Area),
@@ -116,29 +149,41 @@ fn run<D: Dynamics + Copy>(case: &Case, dynamics: D, world: &World) -> Option<()
     ] {
         let noise = Noise { reliability, trusted_radius: case.trusted_radius };
         let table = Hypotheses::<16, 24>::new(&oracle, prior, noise).ok()?;
-        fly_any(case, Scc::new(config, policy, dynamics, table), world, start, &config);
+        let scc = Scc::new(config, policy, dynamics, table);
+        fly_any(case, scc, world, start, &config, |planner, pose| planner.plan(pose));
+        let forecast = Forecast::<16, 24>::new(&oracle, prior, noise).ok()?;
+        let planner = Lookahead::new(config, dynamics, forecast).until(Some(goal));
+        fly_any(case, planner, world, start, &config, look_ahead);
     }
     Some(())
 }
 
-/// Algorithm 1 with labels that are true.
-fn fly_true<D: Dynamics>(
+/// A plan of look-ahead: the same each time, and if a label is wanted, on uncertain ground.
+fn look_ahead<D: Dynamics, B: Foresight>(planner: &mut Lookahead<D, B>, pose: Pose) -> Plan {
+    let plan = planner.plan(pose);
+    assert_eq!(plan, planner.plan(pose), "from {pose:?}");
+    if let Plan::Move(Motion { target, wants_label, examined, .. }) = plan {
+        let certainty = planner.foresight().ground().certainty(target.site);
+        assert!(!wants_label || certainty == Certainty::Uncertain, "to {target:?}");
+        assert!(examined <= EVALUATIONS);
+    }
+    plan
+}
+
+/// A planner whose labels are true.
+fn fly_true<P: Planner<Belief = VersionSpace<16>>>(
     case: &Case,
-    mut planner: Cfc<D, 16>,
+    mut planner: P,
     world: &World,
     mut pose: Pose,
     config: &Config,
-    dynamics: D,
+    mut plan: impl FnMut(&mut P, Pose) -> Plan,
 ) {
     for step in &case.steps {
         let reading = match step {
             Step::Fly { .. } | Step::Pass => {
-                let few = dynamics.grid().actions() <= FEW && config.area.contains(pose.site);
-                let slow = few.then(|| planner.problem().solve_exhaustively(&dynamics, pose).best);
-                let quick = few.then(|| planner.problem().solve(&dynamics, pose).best);
-                assert_eq!(quick, slow, "from {pose:?}");
-                let Plan::Move(motion) = planner.plan(pose) else { return };
-                assert!(config.area.contains(motion.target.site) && motion.examined <= LOOKS);
+                let Plan::Move(motion) = plan(&mut planner, pose) else { return };
+                assert!(config.area.contains(motion.target.site));
                 pose = motion.target;
                 let reads = motion.wants_label && !matches!(step, Step::Pass);
                 reads.then(|| world.reading(pose.site))
@@ -163,18 +208,19 @@ fn fly_true<D: Dynamics>(
     let _ = planner.estimates();
 }
 
-/// Algorithm 2 with labels of any kind.
-fn fly_any<D: Dynamics>(
+/// A planner whose labels are of any kind.
+fn fly_any<P: Planner<Belief = Hypotheses<16, 24>>>(
     case: &Case,
-    mut planner: Scc<D, 16, 24>,
+    mut planner: P,
     world: &World,
     mut pose: Pose,
     config: &Config,
+    mut plan: impl FnMut(&mut P, Pose) -> Plan,
 ) {
     for step in &case.steps {
         let reading = match step {
             Step::Fly { .. } | Step::Pass => {
-                let Plan::Move(motion) = planner.plan(pose) else { return };
+                let Plan::Move(motion) = plan(&mut planner, pose) else { return };
                 assert!(config.area.contains(motion.target.site));
                 pose = motion.target;
                 let lies = matches!(step, Step::Fly { lies: true });

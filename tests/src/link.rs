@@ -7,8 +7,10 @@ use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::Mission;
 use host_sim::world::noise::{Extent, NoiseModel};
+use planner_core::belief::goal::{Accuracy, Goal};
+use planner_core::geometry::heading::Heading;
 use planner_core::link::delivery::{LinkLost, Port};
-use planner_core::link::message::{self};
+use planner_core::link::message;
 use planner_core::link::station::{Flown, Station};
 use planner_core::motion::unicycle::Grid;
 
@@ -70,5 +72,24 @@ pub fn by_turns(seed: u64, number: u64, steps: u32) -> Mission {
     if !is_even {
         mission.noise = Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.5) });
     }
+    mission
+}
+
+/// Missions by look-ahead that are to end when enough is known, as most of them do within their steps: the slopes or
+/// the uncertain ground of true labels and of labels that may be wrong, by turns.
+///
+/// # Panics
+/// Never: its angles are finite.
+pub fn stopping(number: u64) -> Mission {
+    let mut mission = standard_field::standard(SEED, number, Algorithm::Lookahead, 18);
+    let is_noisy = number % 4 >= 2;
+    mission.noise = is_noisy.then_some(NoiseModel { p: 0.9, extent: Extent::OutsideBalls(0.5) });
+    let (degrees, share) = if is_noisy { (10.0, 100_000) } else { (1.0, 5_000) };
+    let accuracy = if number.is_multiple_of(2) {
+        Accuracy::SlopeArc(Heading::from_radians(f64::to_radians(degrees)).expect("an angle"))
+    } else {
+        Accuracy::Misclassified(share)
+    };
+    mission.goal = Some(Goal { accuracy, level: 900_000 });
     mission
 }

@@ -15,6 +15,8 @@ use host_sim::mission::recording::Recording;
 use host_sim::mission::scenario::{self, Overrides};
 use host_sim::report::trace;
 use host_sim::world::noise::{Extent, NoiseModel};
+use planner_core::belief::goal::{Accuracy, Goal};
+use planner_core::geometry::heading::Heading;
 use planner_core::motion::unicycle::Grid;
 use planner_core::planner::scc::Policy;
 use rayon::prelude::*;
@@ -26,7 +28,8 @@ use tests::emulator::{Core, Emulator};
 use tests::program::build;
 
 /// The paper's two examples, then random fields: both algorithms and look-ahead with true labels, with the paper's
-/// fan and the fine one, and with labels that may be wrong, by turns.
+/// fan and the fine one, and with labels that may be wrong, by turns. Half of those by look-ahead end when enough is
+/// known.
 fn missions() -> Vec<Mission> {
     let example = |text| scenario::parse("", text, Overrides::default()).expect("a good scenario");
     let mut missions = vec![example(scenario::PAPER_NOISELESS), example(scenario::PAPER_NOISY)];
@@ -45,6 +48,14 @@ fn missions() -> Vec<Mission> {
         if is_noisy {
             mission.noise = Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.5) });
         }
+        let accuracy = match number % 16 {
+            2 => Some(Accuracy::Misclassified(3_000)),
+            3 => Some(Accuracy::Misclassified(400_000)),
+            6 => Heading::from_radians(0.5_f64.to_radians()).map(Accuracy::SlopeArc),
+            7 => Heading::from_radians(45_f64.to_radians()).map(Accuracy::SlopeArc),
+            _ => None,
+        };
+        mission.goal = accuracy.map(|accuracy| Goal { accuracy, level: 500_000 });
         missions.push(mission);
     }
     missions
@@ -65,6 +76,8 @@ fn every_machine_makes_the_same_traces() {
         trace::lines(&Recording::of(mission).expect("labels that are certain are true").results)
     };
     let host: Vec<String> = missions.iter().map(here).collect();
+    let known = host.iter().filter(|trace| trace.contains("\"reason\":\"known\"")).count();
+    assert!(known >= 3, "{known} end when enough is known");
     let mut hashes = vec![("host", hash(&host))];
     for (core, target) in CORES {
         let Some(program) = missions::build(env!("CARGO_TARGET_TMPDIR"), target) else { continue };

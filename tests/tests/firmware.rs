@@ -17,8 +17,10 @@ use host_sim::hil::faults::Faults;
 use host_sim::hil::flight;
 use host_sim::hil::player::{Played, Player};
 use host_sim::hil::qemu::Emulator;
+use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::Mission;
 use host_sim::mission::recording::Recording;
+use host_sim::mission::results::Results;
 use host_sim::mission::scenario::{self, Overrides};
 use host_sim::report::trace;
 use planner_core::belief::sample::{Label, Reading};
@@ -167,6 +169,31 @@ fn the_closed_loop_makes_the_trace_of_this_machine_byte_for_byte() {
         })
         .sum();
     println!("{flown} closed loops under QEMU made the traces of this machine");
+}
+
+/// Scenarios with a table `[stop]`: the chip says why it ends, and logs it.
+#[test]
+fn the_chip_stops_when_enough_is_known() {
+    let Some(chip) = Chip::start(&[]) else { return };
+    let overrides =
+        Overrides { algorithm: Some(Algorithm::Lookahead), steps: Some(32), seed: None };
+    for (number, (text, stop)) in (1..).zip([
+        (scenario::PAPER_NOISELESS, "slope_arc_deg = 0.5"),
+        (scenario::PAPER_NOISELESS, "misclassified = 0.001"),
+        (scenario::PAPER_NOISY, "slope_arc_deg = 5.0"),
+        (scenario::PAPER_NOISY, "misclassified = 0.05\nlevel = 0.8"),
+    ]) {
+        let text = format!("{}\n[stop]\n{stop}\n", text.replace("p = 0.7", "p = 0.9"));
+        let mission = scenario::parse("", &text, overrides).expect("a good scenario");
+        let played = chip.fly(&mission, Faults::default()).expect("it flies as here");
+        let Results { steps, end, .. } = &played.recording.results;
+        assert_eq!((end.reason, end.goal.map(|goal| goal.is_met)), ("known", Some(true)), "{stop}");
+        assert!((5..32).contains(&steps.len()), "{stop}: {} steps", steps.len());
+        assert_eq!(trace::lines(&played.recording.results), here(&mission), "{stop}");
+        let log = chip.messages_until(number, "bisector");
+        let ended = format!("ended after {} steps: Stopped(Known)", steps.len());
+        assert_eq!(log[log.len() - 4], ended, "{stop}");
+    }
 }
 
 #[test]

@@ -6,23 +6,25 @@ use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::world::World;
 use nalgebra::Point2;
-use planner_core::belief::Refused;
 use planner_core::belief::consistent_lines::Certainty;
 use planner_core::belief::estimate;
+use planner_core::belief::goal::{Accuracy, Goal};
 use planner_core::belief::hypotheses::{Hypotheses, Hypothesis};
 use planner_core::belief::noise::{Noise, Reliability};
 use planner_core::belief::posterior::Posterior;
 use planner_core::belief::sample::{Label, Sample};
 use planner_core::belief::version_space::VersionSpace;
 use planner_core::belief::weight::Prior;
+use planner_core::belief::{Belief as _, Refused};
+use planner_core::geometry::heading::Heading;
 use planner_core::geometry::lattice::Site;
 use planner_core::geometry::line::Line;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
-use tests::cases;
 use tests::twins::brute;
 use tests::twins::exact_mean::Separating;
+use tests::{cases, wide};
 
 /// A label at a place, seen with some reliability.
 type Seen = (Sample, f64);
@@ -375,6 +377,94 @@ fn a_credible_set_is_the_smallest() {
             }
         }
     }
+}
+
+/// The narrowest slope arc that a table promises with a level in millionths, radians; `None` if it promises none
+/// below a quarter turn.
+fn promised<const N: usize, const H: usize>(table: &Hypotheses<N, H>, level: u32) -> Option<f64> {
+    let is_met = |units: &u32| {
+        let accuracy = Accuracy::SlopeArc(Heading(*units));
+        table.meets(Goal { accuracy, level }, standard_field::area())
+    };
+    let (mut no, mut yes) = (0, (1 << 30) - 1);
+    if !is_met(&yes) {
+        return None;
+    }
+    while yes - no > 1 {
+        let middle = no + (yes - no) / 2;
+        *(if is_met(&middle) { &mut yes } else { &mut no }) = middle;
+    }
+    Some(Heading(yes).radians())
+}
+
+/// The arc that spans the slopes of all hypotheses of a logarithmic weight at least, radians.
+fn spanned<const N: usize, const H: usize>(table: &Hypotheses<N, H>, least: f64) -> f64 {
+    let within = table.iter().filter(|h| h.weight().value() >= least);
+    let along: Vec<_> = within.flat_map(|h| table.lines(h).bounds()).map(|it| it.along).collect();
+    let angles = along.iter().map(|v| {
+        let ([a, b], [c, d]) = (wide(along[0]), wide(*v));
+        ((a * d - b * c) as f64).atan2((a * c + b * d) as f64)
+    });
+    let (least, most) = angles.fold((0.0_f64, 0.0_f64), |(a, b), it| (a.min(it), b.max(it)));
+    most - least
+}
+
+/// A goal is asked of the heaviest hypotheses that hold its level: of all that the smallest such set has, and of none
+/// that is lighter than its lightest by more than a band of weights. What was given up is in no set.
+#[test]
+fn a_goal_is_met_by_the_heaviest_that_hold_its_level() {
+    /// Of a table; how many promises there were, sharp ones, and levels that nothing holds.
+    fn check<const H: usize>(number: u64, table: &Hypotheses<20, H>) -> [u32; 3] {
+        let mut counts = [0; 3];
+        let mut weights: Vec<_> = table.iter().map(|h| h.weight().value()).collect();
+        weights.sort_by(|a, b| b.total_cmp(a));
+        let held: f64 = weights.iter().map(|log| log.exp()).sum();
+        let all = held / (1.0 - Posterior::new(table).pruned_mass());
+        // The lightest of the fewest, by falling weight, that hold a share of all there was.
+        let lightest = |share: f64| {
+            let mut sum = 0.0;
+            weights.iter().find(|log| {
+                sum += log.exp();
+                sum >= share * all
+            })
+        };
+        for level in [0, 300_000, 500_000, 800_000, 900_000, 990_000, 999_000, 999_900] {
+            let share = f64::from(level) * 1e-6;
+            let got = promised(table, level);
+            let case = format!("mission {number}, {H} slots, level {level}: {got:?}");
+            // Sums are single precision, and rounded up.
+            let [few, many] = [share - 1e-6, share + 1.2e-5].map(lightest);
+            let (Some(few), Some(got)) = (few, got) else {
+                let is_right = got.is_none() && (many.is_none() || spanned(table, -1e9) > 1.5);
+                assert!(is_right, "{case}");
+                counts[2] += u32::from(few.is_none());
+                continue;
+            };
+            let least = spanned(table, *few);
+            let most = many.map_or(f64::INFINITY, |many| spanned(table, many - 0.5));
+            let slack = 1e-8 + 2e-4 * most;
+            assert!(least - 1e-8 <= got && got <= most + slack, "{case}, {least} to {most}");
+            counts[0] += 1;
+            counts[1] += u32::from(most - least <= slack && most < spanned(table, -1e9) - slack);
+        }
+        counts
+    }
+    let sum = |a: [u32; 3], b: [u32; 3]| [0, 1, 2].map(|k| a[k] + b[k]);
+    let [promises, sharp, none] = (0..cases(100, 1_000))
+        .into_par_iter()
+        .map(|number| {
+            let (given, seen, _) = mission(number, 16, number % 2 == 0);
+            let full = table::<20, 137>(&given, &seen);
+            let small = table::<20, 24>(&given, &seen);
+            let both = [Prior::Area, Prior::Sequences].map(|prior| {
+                let (full, small) = (full.weighed_by(prior), small.weighed_by(prior));
+                sum(check(number, &full), check(number, &small))
+            });
+            sum(both[0], both[1])
+        })
+        .reduce(|| [0; 3], sum);
+    println!("{promises} promises, {sharp} of one set alone; {none} levels that were given up");
+    assert!(sharp > 500 && none > 100);
 }
 
 /// Areas in single precision against exact ones.

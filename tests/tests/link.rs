@@ -19,14 +19,15 @@ use planner_core::belief::version_space::NoVersionSpace;
 use planner_core::link::delivery::{Link, LinkLost, Port};
 use planner_core::link::frame::{Decoder, Envelope, FRAME, Frame, Message};
 use planner_core::link::message::{
-    Capacity, ClockRate, Declined, LabelSource, PROTOCOL, Reply, Request,
+    Capacity, ClockRate, Declined, EndReason, LabelSource, PROTOCOL, Reply, Request,
 };
 use planner_core::link::station::{Flown, Station};
+use planner_core::planner::StopReason;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use tests::link::{SEED, WAIT, Way, fly, mission};
+use tests::link::{SEED, WAIT, Way, fly, mission, stopping};
 
 /// A network in virtual time with the vehicle at its other end.
 struct Network {
@@ -183,6 +184,40 @@ fn a_cut_link_ends_every_mission_within_the_bound_and_with_no_motion_after_it() 
         };
         assert_eq!(player.motions() as u64, heard.saturating_sub(2), "mission {number}");
     });
+}
+
+/// The chip has the goal from the link, and ends at the step at which the host does.
+#[test]
+fn a_mission_ends_on_the_chip_when_enough_is_known_as_it_does_here() {
+    let endings: Vec<_> = (0..80u64)
+        .into_par_iter()
+        .map(|number| {
+            let mission = stopping(number);
+            let network = RefCell::new(Network::new(&mission, Faults::default()));
+            let mut chip = chip(&network);
+            let setup = chip.await_setup();
+            let flown = fly(&mut chip, &setup);
+            let Ok(Flown::Ended(end)) = flown else { panic!("mission {number}: {flown:?}") };
+            drop(chip);
+            let here = Recording::of(&mission).expect("labels that are certain are true");
+            let there = network.into_inner().player.finish().expect("the mission is over");
+            assert_eq!(
+                trace::lines(&there.recording.results),
+                trace::lines(&here.results),
+                "mission {number}"
+            );
+            let is_known = end.reason == EndReason::Stopped(StopReason::Known);
+            assert_eq!(is_known, here.results.end.reason == "known", "mission {number}");
+            assert_eq!(is_known, here.steps.len() < mission.steps as usize, "mission {number}");
+            (number % 4, is_known)
+        })
+        .collect();
+    for kind in 0..4 {
+        let known = endings.iter().filter(|it| **it == (kind, true)).count();
+        println!("kind {kind}: {known} of 20 missions ended as the line was known");
+        assert!(known >= 5, "kind {kind}: {known}");
+    }
+    assert!(endings.iter().any(|(_, is_known)| !is_known), "some end by their steps");
 }
 
 #[test]

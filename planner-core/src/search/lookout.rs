@@ -245,3 +245,67 @@ impl Prospects {
         self.list = list;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::belief::sample::{Label, Sample};
+    use crate::belief::version_space::VersionSpace;
+    use crate::geometry::heading::Heading;
+    use crate::geometry::lattice::Site;
+
+    fn at(x: i32, z: i32) -> Site {
+        Site::new(x, z).unwrap()
+    }
+
+    /// Of many in no order those that are kept are uncertain, the best of all first and no two near each other; where
+    /// there is space enough the list is full.
+    #[test]
+    fn prospects_are_the_best_some_way_apart() {
+        let metre = UNITS_PER_METRE;
+        let given =
+            [(0, 0, false), (0, 4, true), (9, 5, true), (10, 0, false)].map(|(x, z, above)| {
+                let label = if above { Label::Positive } else { Label::Negative };
+                Sample { site: at(x * metre, z * metre), label }
+            });
+        let space = VersionSpace::<4>::new(&given).unwrap();
+        let mut state = 1_u64;
+        let mut random = |below: u64| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            ((state >> 33) % below) as i32
+        };
+        let mut full = 0;
+        for case in 0..500 {
+            let mut prospects = Prospects::new();
+            let mut offered = Vec::<Prospect, 24>::new();
+            // Within 20 cm, so that all are near each other, up to 5 m.
+            let breadth = metre as u64 * [1, 3, 10, 25][case % 4] / 5;
+            for _ in 0..24 {
+                let site = at(3 * metre + random(breadth), metre + random(breadth));
+                let target = Pose { site, heading: Heading(0) };
+                let worth = random(1_000) as f32 / 1_000.0;
+                let new = Prospect { action: Action(0), target, share: 0.5, worth };
+                prospects.add(new, space.lines());
+                let _ = offered.push(new);
+            }
+            let kept = prospects.as_slice();
+            let apart = |a: &Prospect, b: &Prospect| {
+                let off = a.target.site - b.target.site;
+                f64::from(off.x).hypot(f64::from(off.z)) / f64::from(metre)
+            };
+            for (k, one) in kept.iter().enumerate() {
+                assert_eq!(space.lines().certainty(one.target.site), Certainty::Uncertain);
+                for better in &kept[..k] {
+                    assert!(better.worth >= one.worth, "case {case}");
+                    assert!(apart(one, better) >= 0.25, "case {case}");
+                }
+            }
+            let is_uncertain =
+                |it: &&Prospect| space.certainty(it.target.site) == Certainty::Uncertain;
+            let best = offered.iter().filter(is_uncertain).map(|it| it.worth).reduce(f32::max);
+            assert_eq!(kept.first().map(|it| it.worth), best, "case {case}");
+            full += usize::from(kept.len() == PROSPECTS && case % 4 == 3);
+        }
+        assert!(full > 120, "{full} of 125");
+    }
+}
