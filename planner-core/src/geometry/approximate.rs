@@ -11,13 +11,17 @@ pub(crate) const METRE: f32 = 1.0 / UNITS_PER_METRE as f32;
 /// The [cross product](Vector::cross) to 2 10^-7 of it, however small it is beside the vectors.
 #[inline(never)] // in many places, and not for speed
 pub(crate) fn cross(a: Vector, b: Vector) -> f32 {
-    single(a.cross(b))
+    rounded(a.cross(b))
 }
 
 /// An integer to 2 10^-7 of it. Some ten instructions, where the run-time's own conversion takes four times
 /// as many.
 #[inline(never)] // as above
 pub(crate) const fn single(value: i64) -> f32 {
+    rounded(value)
+}
+
+const fn rounded(value: i64) -> f32 {
     let size = value.unsigned_abs();
     let size = (size >> 32) as u32 as f32 * 4_294_967_296.0 + size as u32 as f32;
     if value < 0 { -size } else { size }
