@@ -253,12 +253,12 @@ fn time_standard(books: &mut Books, elf: &[u8]) -> u32 {
         flown.record(books, ["standard", figure], |it| it.plan_at_label(10));
         stack = stack.max(flown.stack());
     }
-    let scc = Workload { policy: Policy::Joint, steps: 32, searched: 0, ..scc };
-    let workload = Workload { calls: Some(64), ..scc };
+    let scc = Workload { policy: Policy::Joint, steps: 32, ..scc };
+    let workload = Workload { random: 100, searched: 1_000, calls: Some(64), ..scc };
     let flown = Flown::of(books, elf, "standard, 32 labels", workload);
     flown.record(books, ["standard", "scc_observe_at_32"], |it| it.observation_of_label(32));
     // Seven million instructions each.
-    let workload = Workload { random: 60, ..scc };
+    let workload = Workload { random: 60, searched: 0, ..scc };
     let flown = Flown::of(books, elf, "standard, estimates", workload);
     flown.record(books, ["standard", "scc_estimate_at_32"], |it| &it.estimates);
     stack.max(flown.stack())

@@ -43,7 +43,7 @@ use tests::program::image::Image;
 const TARGET: &str = "thumbv7em-none-eabihf";
 
 /// For anything that the chip does within two seconds of its own, where a busy machine gives it few.
-const PATIENCE: Duration = Duration::from_secs(60);
+const PATIENCE: Duration = Duration::from_mins(1);
 
 /// The first message. Under emulation the chip has no record of why it started, and no clock tree.
 const STARTED: &str = "started: Other, clock: Emulated";

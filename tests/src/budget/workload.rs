@@ -2,7 +2,7 @@
 //!
 //! In a long run standard fields drawn at random give the median. For the worst case there are besides, of
 //! many more such fields that are flown on the host, those whose plans look at the most actions, those that
-//! most often find none and recover, and those that end as there is none left. Every other of these starts
+//! most often find none and recover, those that end as there is none left, and those with the most hypotheses. Every other of these starts
 //! in a corner of the area, facing out of it. Any other run flies the hardest that are known.
 
 use std::cmp::Reverse;
@@ -60,8 +60,12 @@ impl Workload {
             .map(|number| (number, Rank::of(&self.mission(number))))
             .collect();
         let mut sought = Vec::new();
-        let ranks: [fn(&Rank) -> u32; 3] =
-            [|it| it.last, |it| it.recoveries, |it| it.stopped * (1 + it.recoveries)];
+        let ranks: [fn(&Rank) -> u32; 4] = [
+            |it| it.last,
+            |it| it.recoveries,
+            |it| it.stopped * (1 + it.recoveries),
+            |it| it.hypotheses,
+        ];
         for rank in ranks {
             flown.sort_by_key(|(number, it)| (Reverse(rank(it)), *number));
             let best = flown.iter().filter(|(_, it)| rank(it) > 0).take(self.sought);
@@ -102,6 +106,8 @@ struct Rank {
     last: u32,
     recoveries: u32,
     stopped: u32,
+    /// Those of Algorithm 2 in the end.
+    hypotheses: u32,
 }
 
 impl Rank {
@@ -116,7 +122,10 @@ impl Rank {
             };
             rank.recoveries += u32::from(step.motion.recovery.is_some());
         });
-        rank.stopped = u32::from(flown.is_ok_and(|it| it.ending != Ending::Steps));
+        let Ok(flown) = flown else { return rank };
+        rank.stopped = u32::from(flown.ending != Ending::Steps);
+        let table = flown.belief.hypotheses().filter(|_| mission.algorithm == Algorithm::Scc);
+        rank.hypotheses = table.map_or(0, |table| table.iter().len() as u32);
         rank
     }
 }
