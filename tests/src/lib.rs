@@ -1,6 +1,6 @@
 //! What the cross-crate tests share: adversarial sites and the slow twin of the version space;
 //! programs for a chip ([`program`]), a core to run them on ([`emulator`]), what they may take
-//! ([`budget`]); a debugger for QEMU ([`debugger`]).
+//! ([`budget`]); a debugger for QEMU ([`debugger`]); beliefs to ask ([`known`]).
 
 use planner_core::belief::sample::{Label, Sample};
 use planner_core::geometry::lattice::{LIMIT, Site, Vector};
@@ -10,6 +10,7 @@ use rand_chacha::ChaCha8Rng;
 pub mod budget;
 pub mod debugger;
 pub mod emulator;
+pub mod known;
 pub mod link;
 pub mod program;
 pub mod twins;

@@ -2,69 +2,25 @@
 
 use std::collections::BTreeMap;
 
-use host_sim::campaign::standard_field;
-use host_sim::mission::algorithm::Algorithm;
 use host_sim::world::World;
 use nalgebra::Point2;
-use planner_core::belief::consistent_lines::Certainty;
+use planner_core::belief::Refused;
 use planner_core::belief::estimate;
-use planner_core::belief::goal::{Accuracy, Goal};
 use planner_core::belief::hypotheses::{Hypotheses, Hypothesis};
 use planner_core::belief::noise::{Noise, Reliability};
 use planner_core::belief::posterior::Posterior;
 use planner_core::belief::sample::{Label, Sample};
 use planner_core::belief::version_space::VersionSpace;
 use planner_core::belief::weight::Prior;
-use planner_core::belief::{Belief as _, Refused};
-use planner_core::geometry::heading::Heading;
 use planner_core::geometry::lattice::Site;
 use planner_core::geometry::line::Line;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
+use tests::cases;
+use tests::known::{Seen, labelled, table};
 use tests::twins::brute;
 use tests::twins::exact_mean::Separating;
-use tests::{cases, wide};
-
-/// A label at a place, seen with some reliability.
-type Seen = (Sample, f64);
-
-/// A standard field's oracle and labels seen at random places of the disagreement region and
-/// elsewhere, true with probability `p`: one `p` for all, or one for each, certain ones included.
-fn mission(number: u64, t: usize, mixed: bool) -> (Vec<Sample>, Vec<Seen>, World) {
-    let field = standard_field::standard(7, number, Algorithm::Cfc, 1);
-    let mut rng = ChaCha8Rng::seed_from_u64(number);
-    let mut seen = Vec::new();
-    while seen.len() < t {
-        let mut metres = || rng.random_range(0.0..standard_field::SIDE_M);
-        let site = Site::try_from(Point2::new(metres(), metres())).expect("near");
-        let dull = field.given.certainty(site) != Certainty::Uncertain;
-        if dull && rng.random_range(0..4) > 0 {
-            continue; // three in four of those that could tell nothing
-        }
-        // A certain label, true or false, is as good as a trusted ball, and leaves few hypotheses.
-        let p = match rng.random_range(0..24) {
-            0 if mixed => 0.0,
-            1 if mixed => 1.0,
-            i if mixed => [0.3, 0.5, 0.7, 0.95, 0.999_999, 1e-300][i % 6],
-            _ => 0.7,
-        };
-        let distance = field.world.distance(site);
-        let truth = if distance > 0.0 { Label::Positive } else { Label::Negative };
-        let label = if rng.random_range(0.0..1.0) < p { truth } else { -truth };
-        seen.push((Sample { site, label }, p));
-    }
-    (field.given.samples().to_vec(), seen, field.world)
-}
-
-fn table<const N: usize, const H: usize>(given: &[Sample], seen: &[Seen]) -> Hypotheses<N, H> {
-    let mut table = Hypotheses::new(given, Prior::Area, Noise::NONE).expect("an oracle");
-    for &(sample, p) in seen {
-        let reliability = Reliability::new(p).expect("a probability");
-        table.take(sample, reliability).expect("room, and a possible label");
-    }
-    table
-}
 
 /// The labels of the samples that a hypothesis stands for: those of any of its lines.
 fn sequence<const N: usize, const H: usize>(table: &Hypotheses<N, H>, h: &Hypothesis<15>) -> u64 {
@@ -112,7 +68,7 @@ fn equals_brute_force_over_all_sequences() {
         .into_par_iter()
         .map(|number| {
             let t = 1 + number as usize % 12;
-            let (given, seen, _) = mission(number, t, number % 3 != 0);
+            let (given, seen, _) = labelled(number, t, number % 3 != 0);
             let table = table::<16, 79>(&given, &seen);
             let exact = brute_force(&given, &seen);
             let tables = [Prior::Area, Prior::Sequences].map(|prior| table.weighed_by(prior));
@@ -150,7 +106,7 @@ fn the_count_stays_within_that_of_an_arrangement() {
     let most: Vec<_> = (0..40u64)
         .into_par_iter()
         .map(|number| {
-            let (given, seen, _) = mission(number, 64, false);
+            let (given, seen, _) = labelled(number, 64, false);
             let mut table =
                 Hypotheses::<68, 2081>::new(&given, Prior::Area, Noise::NONE).expect("an oracle");
             let mut edges = 0;
@@ -176,7 +132,7 @@ fn the_count_stays_within_that_of_an_arrangement() {
 #[test]
 fn thirty_labels_fit_466_slots_without_pruning() {
     for number in 0..100 {
-        let (given, seen, _) = mission(number, 30, false);
+        let (given, seen, _) = labelled(number, 30, false);
         let small = table::<34, 466>(&given, &seen);
         let large = table::<34, 600>(&given, &seen);
         assert_eq!(
@@ -190,7 +146,7 @@ fn thirty_labels_fit_466_slots_without_pruning() {
 fn a_table_begins_again_in_place() {
     // Small enough that something is given up.
     let of = |number| {
-        let (given, seen, _) = mission(number, 12, false);
+        let (given, seen, _) = labelled(number, 12, false);
         (table::<20, 30>(&given, &seen), given, seen)
     };
     let (mut again, ..) = of(0);
@@ -223,7 +179,7 @@ fn tables_are_as_small_as_they_should_be() {
 /// Labels that are all but certain and contradict each other: as many of each kind leave one half.
 #[test]
 fn contradictions_cancel_however_certain_each_label_is() {
-    let (given, seen, _) = mission(3, 1, false);
+    let (given, seen, _) = labelled(3, 1, false);
     for p in [0.6, 0.999, 1.0 - 1e-16, 1e-9, 1e-300] {
         for n in [1, 20, 60] {
             let mut table = Hypotheses::<128, 2>::new(&given, Prior::Sequences, Noise::NONE)
@@ -248,7 +204,7 @@ fn contradictions_cancel_however_certain_each_label_is() {
 #[test]
 fn certain_labels_leave_the_version_space() {
     for number in 0..100 {
-        let (given, seen, _) = mission(number, 30, false);
+        let (given, seen, _) = labelled(number, 30, false);
         let mut space = VersionSpace::<64>::new(&given).expect("an oracle");
         let mut table =
             Hypotheses::<64, 1>::new(&given, Prior::Area, Noise::NONE).expect("an oracle");
@@ -277,7 +233,7 @@ fn certain_labels_leave_the_version_space() {
 
 #[test]
 fn labels_that_say_nothing_leave_the_prior() {
-    let (given, seen, _) = mission(3, 20, false);
+    let (given, seen, _) = labelled(3, 20, false);
     let seen: Vec<_> = seen.into_iter().map(|(sample, _)| (sample, 0.5)).collect();
     let table = table::<24, 211>(&given, &seen);
     let posterior = Posterior::new(&table);
@@ -293,7 +249,7 @@ fn the_bound_on_what_was_given_up_holds() {
     let worst = (0..200u64)
         .into_par_iter()
         .map(|number| {
-            let (given, seen, _) = mission(number, 24, false);
+            let (given, seen, _) = labelled(number, 24, false);
             let prior = if number % 2 == 0 { Prior::Area } else { Prior::Sequences };
             let mut small =
                 Hypotheses::<28, 24>::new(&given, prior, Noise::NONE).expect("an oracle");
@@ -331,7 +287,7 @@ fn the_bound_on_what_was_given_up_holds() {
 
 #[test]
 fn a_certain_label_that_leaves_no_hypothesis_is_refused() {
-    let (given, seen, _) = mission(5, 10, false);
+    let (given, seen, _) = labelled(5, 10, false);
     let mut table = table::<16, 79>(&given, &seen);
     let before = format!("{table:?}");
     let impossible = Sample { label: -given[0].label, ..given[0] };
@@ -348,7 +304,7 @@ fn a_certain_label_that_leaves_no_hypothesis_is_refused() {
 #[test]
 fn a_credible_set_is_the_smallest() {
     for number in 0..100 {
-        let (given, seen, _) = mission(number, 12, number % 2 == 0);
+        let (given, seen, _) = labelled(number, 12, number % 2 == 0);
         let table = table::<16, 79>(&given, &seen);
         for prior in [Prior::Area, Prior::Sequences] {
             let table = table.weighed_by(prior);
@@ -379,101 +335,13 @@ fn a_credible_set_is_the_smallest() {
     }
 }
 
-/// The narrowest slope arc that a table promises with a level in millionths, radians; `None` if it promises none
-/// below a quarter turn.
-fn promised<const N: usize, const H: usize>(table: &Hypotheses<N, H>, level: u32) -> Option<f64> {
-    let is_met = |units: &u32| {
-        let accuracy = Accuracy::SlopeArc(Heading(*units));
-        table.meets(Goal { accuracy, level }, standard_field::area())
-    };
-    let (mut no, mut yes) = (0, (1 << 30) - 1);
-    if !is_met(&yes) {
-        return None;
-    }
-    while yes - no > 1 {
-        let middle = no + (yes - no) / 2;
-        *(if is_met(&middle) { &mut yes } else { &mut no }) = middle;
-    }
-    Some(Heading(yes).radians())
-}
-
-/// The arc that spans the slopes of all hypotheses of a logarithmic weight at least, radians.
-fn spanned<const N: usize, const H: usize>(table: &Hypotheses<N, H>, least: f64) -> f64 {
-    let within = table.iter().filter(|h| h.weight().value() >= least);
-    let along: Vec<_> = within.flat_map(|h| table.lines(h).bounds()).map(|it| it.along).collect();
-    let angles = along.iter().map(|v| {
-        let ([a, b], [c, d]) = (wide(along[0]), wide(*v));
-        ((a * d - b * c) as f64).atan2((a * c + b * d) as f64)
-    });
-    let (least, most) = angles.fold((0.0_f64, 0.0_f64), |(a, b), it| (a.min(it), b.max(it)));
-    most - least
-}
-
-/// A goal is asked of the heaviest hypotheses that hold its level: of all that the smallest such set has, and of none
-/// that is lighter than its lightest by more than a band of weights. What was given up is in no set.
-#[test]
-fn a_goal_is_met_by_the_heaviest_that_hold_its_level() {
-    /// Of a table; how many promises there were, sharp ones, and levels that nothing holds.
-    fn check<const H: usize>(number: u64, table: &Hypotheses<20, H>) -> [u32; 3] {
-        let mut counts = [0; 3];
-        let mut weights: Vec<_> = table.iter().map(|h| h.weight().value()).collect();
-        weights.sort_by(|a, b| b.total_cmp(a));
-        let held: f64 = weights.iter().map(|log| log.exp()).sum();
-        let all = held / (1.0 - Posterior::new(table).pruned_mass());
-        // The lightest of the fewest, by falling weight, that hold a share of all there was.
-        let lightest = |share: f64| {
-            let mut sum = 0.0;
-            weights.iter().find(|log| {
-                sum += log.exp();
-                sum >= share * all
-            })
-        };
-        for level in [0, 300_000, 500_000, 800_000, 900_000, 990_000, 999_000, 999_900] {
-            let share = f64::from(level) * 1e-6;
-            let got = promised(table, level);
-            let case = format!("mission {number}, {H} slots, level {level}: {got:?}");
-            // Sums are single precision, and rounded up.
-            let [few, many] = [share - 1e-6, share + 1.2e-5].map(lightest);
-            let (Some(few), Some(got)) = (few, got) else {
-                let is_right = got.is_none() && (many.is_none() || spanned(table, -1e9) > 1.5);
-                assert!(is_right, "{case}");
-                counts[2] += u32::from(few.is_none());
-                continue;
-            };
-            let least = spanned(table, *few);
-            let most = many.map_or(f64::INFINITY, |many| spanned(table, many - 0.5));
-            let slack = 1e-8 + 2e-4 * most;
-            assert!(least - 1e-8 <= got && got <= most + slack, "{case}, {least} to {most}");
-            counts[0] += 1;
-            counts[1] += u32::from(most - least <= slack && most < spanned(table, -1e9) - slack);
-        }
-        counts
-    }
-    let sum = |a: [u32; 3], b: [u32; 3]| [0, 1, 2].map(|k| a[k] + b[k]);
-    let [promises, sharp, none] = (0..cases(100, 1_000))
-        .into_par_iter()
-        .map(|number| {
-            let (given, seen, _) = mission(number, 16, number % 2 == 0);
-            let full = table::<20, 137>(&given, &seen);
-            let small = table::<20, 24>(&given, &seen);
-            let both = [Prior::Area, Prior::Sequences].map(|prior| {
-                let (full, small) = (full.weighed_by(prior), small.weighed_by(prior));
-                sum(check(number, &full), check(number, &small))
-            });
-            sum(both[0], both[1])
-        })
-        .reduce(|| [0; 3], sum);
-    println!("{promises} promises, {sharp} of one set alone; {none} levels that were given up");
-    assert!(sharp > 500 && none > 100);
-}
-
 /// Areas in single precision against exact ones.
 #[test]
 fn areas_in_single_precision_are_as_good_as_their_units() {
     let worst = (0..cases(40, 400))
         .into_par_iter()
         .map(|number| {
-            let (given, mut seen, _) = mission(number, 32, false);
+            let (given, mut seen, _) = labelled(number, 32, false);
             for k in (2..32).step_by(3) {
                 // A hair's breadth beside the one before, for slivers.
                 let near = seen[k - 1].0.site;
@@ -505,7 +373,7 @@ fn areas_in_single_precision_are_as_good_as_their_units() {
 fn a_cell_that_cannot_hold_its_edges_holds_more_lines_and_says_so() {
     let mut outer = 0;
     for number in 0..200 {
-        let (given, seen, world) = mission(number, 16, false);
+        let (given, seen, world) = labelled(number, 16, false);
         let mut rng = ChaCha8Rng::seed_from_u64(number);
         let mut table =
             Hypotheses::<20, 137, 4>::new(&given, Prior::Area, Noise::NONE).expect("an oracle");

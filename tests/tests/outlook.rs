@@ -1,5 +1,5 @@
-//! What look-ahead predicts by, and what it promises, against slow twins: pictures against the exact shares of
-//! version spaces, forecasts against tables and entropies in double precision, goals against areas clipped in that.
+//! What look-ahead predicts by, against slow twins: pictures against the exact shares of version spaces, forecasts
+//! against tables and entropies in double precision.
 
 use std::f64::consts::PI;
 
@@ -7,33 +7,20 @@ use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::{Lines, Mission};
 use host_sim::world::noise::{Extent, NoiseModel};
-use host_sim::world::polygon::Polygon;
 use nalgebra::Point2;
 use planner_core::belief::Belief as _;
 use planner_core::belief::consistent_lines::Certainty;
 use planner_core::belief::forecast::Forecast;
-use planner_core::belief::goal::Accuracy;
 use planner_core::belief::noise::Reliability;
 use planner_core::belief::outlook::{Foresight as _, Outlook as _, Prediction as _};
 use planner_core::belief::posterior::Posterior;
 use planner_core::belief::sample::{Label, Reading, Sample};
-use planner_core::geometry::area::Area;
-use planner_core::geometry::heading::Heading;
 use planner_core::geometry::lattice::Site;
-use planner_core::geometry::line::{Bound, Line};
+use planner_core::geometry::line::Line;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tests::cases;
-
-/// What is known on standard fields after so many steps of look-ahead, and where the agent then is.
-fn spaces(steps: u32) -> impl Iterator<Item = (u64, Lines, Site)> {
-    (0..cases(25, 250)).map(move |number| {
-        let mission = standard_field::standard(7, number, Algorithm::Lookahead, steps);
-        let mut at = mission.start.site;
-        let flown = mission.fly(|step, _| at = step.pose.site).expect("labels are true");
-        (number, flown.belief.version_space().expect("labels are true").clone(), at)
-    })
-}
+use tests::known::spaces;
 
 /// A site within reach whose label is uncertain, if one of some comes up: by the sides of a line that is left.
 fn uncertain_site(space: &Lines, from: Site, rng: &mut ChaCha8Rng) -> Option<Site> {
@@ -226,123 +213,4 @@ fn a_forecast_begins_again_in_place() {
             assert_eq!(bits[0], bits[1], "field {number}");
         }
     }
-}
-
-/// The share of the area on which lines that are left disagree: what is left when the ground above all and the
-/// ground below all are clipped off.
-fn disagreed(space: &Lines, area: Area) -> f64 {
-    let all = Polygon::from(area).area();
-    let certain = [1.0, -1.0].map(|side| {
-        let clip = |ground: Polygon, bound| ground.clip(&Line::from(bound), side);
-        space.bounds().fold(Polygon::from(area), clip).area()
-    });
-    1.0 - (certain[0] + certain[1]) / all
-}
-
-/// Lines between two that run along each other, thick or thin, through an area, along its border or beside it; the
-/// promise may be too large by what the strip's ends are cut off by, and not too small by a millionth.
-#[test]
-fn the_share_of_a_strip_is_not_promised_too_small() {
-    let mut rng = ChaCha8Rng::seed_from_u64(15);
-    let at = |x: f64, z: f64| Site::try_from(Point2::new(x, z)).expect("on the lattice");
-    let (mut inside, mut all, mut none) = (0, 0, 0);
-    for number in 0..cases(3_000, 30_000) {
-        let [x, z] = [(); 2].map(|()| rng.random_range(4.0..20.0));
-        let area = Area::new(at(-x, -z), at(x, z)).expect("it has an inside");
-        // Every other is in line with a side, so that nothing is cut off.
-        let is_upright = number % 2 == 0;
-        let quarters = f64::from(rng.random_range(0..4));
-        let angle = PI / 2.0 * if is_upright { quarters } else { rng.random_range(0.0..4.0) };
-        let (sin, cos) = angle.sin_cos();
-        let (middle, half) =
-            (rng.random_range(-30.0..30.0), 10_f64.powf(rng.random_range(-3.0..1.5)));
-        let run = if is_upright { 5_000.0 } else { rng.random_range(10.0..300.0) };
-        let samples =
-            [(-run, -half), (-run, half), (run, half), (run, -half)].map(|(run, side)| {
-                let (off, label) = (middle + side, side > 0.0);
-                let label = if label { Label::Positive } else { Label::Negative };
-                Sample { site: at(run * cos - off * sin, run * sin + off * cos), label }
-            });
-        let space = Lines::new(&samples).expect("lines are left");
-        let share = disagreed(&space, area);
-        let is_met = |millionths: f64| {
-            Accuracy::Misclassified(millionths as u32).is_met(space.bounds(), area)
-        };
-        let is_narrow = space.slope_arc().width_deg() < 44.0;
-        let context = format!("strip {number} of {half} m: {share} of the area");
-        if share > 1e-6 {
-            assert!(!is_met((share * 1e6).ceil() - 1.0), "{context}");
-            let most = if is_upright { 1.001 * share } else { 2.0 * share } + half * 1e-3 + 1e-5;
-            let is_through = is_upright && is_narrow && middle.abs() + half < x.min(z);
-            assert!(!is_through || is_met(most * 1e6), "{context}");
-            all += u32::from(share > 0.999_999);
-            inside += u32::from(is_through);
-        } else if share < 1e-12 && is_narrow {
-            assert!(is_met(1.0), "{context}");
-            none += 1;
-        }
-    }
-    println!("{inside} strips through the area, {all} over all of it, {none} beside it");
-    assert!(inside > 300 && all > 10 && none > 300);
-}
-
-/// Of two directions, from some ten millionths of a degree to 80 degrees: never a heading's unit too little, and a
-/// ten-thousandth too much.
-#[test]
-fn slopes_are_promised_to_the_last_digit() {
-    let mut rng = ChaCha8Rng::seed_from_u64(16);
-    let (through, area) = (Site::ORIGIN, standard_field::area());
-    let site = |x: i32, z: i32| Site::new(x, z).expect("on the lattice");
-    for number in 0..cases(20_000, 200_000) {
-        let length = rng.random_range(1 << 27..1 << 28);
-        let rise = 10_f64.powf(rng.random_range(1.5..9.0)) as i32;
-        let (x, z) =
-            if rise > length { (length / (rise / length), length) } else { (length, rise) };
-        let along = [site(length, 0), site(x, z)].map(|to| to - Site::ORIGIN);
-        let bounds = along.map(|along| Bound { through, along });
-        let width = f64::from(z).atan2(f64::from(x));
-        let units = width * 4_294_967_296.0 / (2.0 * PI);
-        let is_met = |units: f64| {
-            Accuracy::SlopeArc(Heading(units as u32)).is_met(bounds.iter().copied(), area)
-        };
-        for less in 1..4 {
-            let units = units.ceil() - f64::from(less);
-            assert!(units < 1.0 || !is_met(units), "case {number}: {width} rad");
-        }
-        assert!(is_met(1.000_11 * units + 30.0), "case {number}: {width} rad");
-    }
-}
-
-#[test]
-fn goals_are_met_when_they_are_and_not_before() {
-    let (mut met, mut beyond) = (0, 0);
-    for steps in [2, 5, 8, 12, 16, 20] {
-        for (number, space, _) in spaces(steps) {
-            let area = standard_field::area();
-            let share = disagreed(&space, area);
-            for factor in [0.5, 0.9, 0.999, 1.01, 1.1, 1.5] {
-                let millionths = (share * factor * 1e6).floor();
-                let is_met =
-                    Accuracy::Misclassified(millionths as u32).is_met(space.bounds(), area);
-                // Below some ten millionths the twin itself has lost its digits; what much ground is cut off by at
-                // the border may be half of it again.
-                let is_narrow = space.slope_arc().width_deg() < 40.0 && share < 0.1;
-                assert!(!is_met || factor > 0.99 || millionths < 20.0, "field {number}: {share}");
-                let is_sharp = is_narrow && millionths > 20.0;
-                assert!(is_met || factor < 1.4 || !is_sharp, "field {number}: {share}, {factor}");
-                met += u32::from(is_met);
-            }
-            let width = space.slope_arc().width_deg().to_radians();
-            for (factor, is_right) in [(0.9, false), (0.9999, false), (1.001, true), (2.0, true)] {
-                let Some(most) = Heading::from_radians(width * factor) else { continue };
-                if width * factor > 1.5 || most.0 < 10_000 {
-                    continue;
-                }
-                let is_met = Accuracy::SlopeArc(most).is_met(space.bounds(), area);
-                assert_eq!(is_met, is_right, "field {number}, {steps} steps, {factor}");
-                beyond += u32::from(!is_met);
-            }
-        }
-    }
-    assert!(met > 50 && beyond > 50, "{met}, {beyond}");
 }

@@ -8,7 +8,7 @@ use host_sim::world::noise::{Extent, NoiseModel};
 use planner_core::belief::sample::{Label, Sample};
 use planner_core::geometry::area::Area;
 use planner_core::geometry::heading::Heading;
-use planner_core::geometry::lattice::Site;
+use planner_core::geometry::lattice::{Site, UNITS_PER_METRE};
 use planner_core::motion::dynamics::Pose;
 use planner_core::motion::unicycle::Grid;
 use planner_core::planner::Plan;
@@ -17,9 +17,8 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use tests::cases;
 
-/// Steps of a mission, lattice units in a metre, and the seed of fields and labels.
+/// Steps of a mission, and the seed of fields and labels.
 const STEPS: u32 = 36;
-const METRE: i32 = 1 << 16;
 const SEED: u64 = 5;
 
 /// The same mission otherwise: turned by quarters about the origin, then moved, its labels swapped or not.
@@ -109,7 +108,7 @@ fn of_fields(view: View, noisy: bool) -> Vec<f64> {
 /// Only differences of positions matter: not a digit is lost far from the origin.
 #[test]
 fn moved_it_plans_the_very_same() {
-    for by in [[6_000 * METRE, -5_000 * METRE], [-12_345, 67_891]] {
+    for by in [[6_000 * UNITS_PER_METRE, -5_000 * UNITS_PER_METRE], [-12_345, 67_891]] {
         for noisy in [false, true] {
             let view = View { by, ..View::SAME };
             let apart = of_fields(view, noisy);
@@ -127,7 +126,8 @@ fn turned_or_with_its_labels_swapped_it_plans_the_same_but_for_rounding() {
     for view in turned.into_iter().chain([swapped]) {
         for (noisy, most) in [(false, 0.005), (true, 0.03)] {
             let apart = of_fields(view, noisy);
-            let other = apart.iter().filter(|off| **off > f64::from(METRE) * 0.01).count();
+            let other =
+                apart.iter().filter(|off| **off > f64::from(UNITS_PER_METRE) * 0.01).count();
             let share = other as f64 / apart.len() as f64;
             println!("{view:?}, noisy {noisy}: {other} of {} plans 1 cm apart", apart.len());
             assert!(share <= most, "seed {SEED}, {view:?}, noisy {noisy}: {share}");

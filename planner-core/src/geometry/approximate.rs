@@ -14,13 +14,13 @@ pub(crate) fn cross(a: Vector, b: Vector) -> f32 {
     rounded(a.cross(b))
 }
 
-/// An integer to 2 10^-7 of it. Some ten instructions, where the run-time's own conversion takes four times
-/// as many.
+/// An integer to 2 10^-7 of it.
 #[inline(never)] // as above
 pub(crate) const fn single(value: i64) -> f32 {
     rounded(value)
 }
 
+/// The same in line. Some ten instructions, where the run-time's own conversion takes four times as many.
 const fn rounded(value: i64) -> f32 {
     let size = value.unsigned_abs();
     let size = (size >> 32) as u32 as f32 * 4_294_967_296.0 + size as u32 as f32;

@@ -2,8 +2,9 @@
 //!
 //! In a long run standard fields drawn at random give the median. For the worst case there are besides, of
 //! many more such fields that are flown on the host, those whose plans look at the most actions, those that
-//! most often find none and recover, those that end as there is none left, and those with the most hypotheses. Every other of these starts
-//! in a corner of the area, facing out of it. Any other run flies the hardest that are known.
+//! most often find none and recover, those that end as there is none left, and those with the most hypotheses.
+//! Every other of these starts in a corner of the area, facing out of it. Any other run flies the hardest that
+//! are known.
 
 use std::cmp::Reverse;
 use std::f64::consts::FRAC_PI_4;

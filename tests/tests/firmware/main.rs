@@ -3,20 +3,16 @@
 //!
 //! Without QEMU or the target's standard library the tests say so and pass; with `CI` set they fail.
 
-use std::convert::Infallible;
-use std::io::{Read as _, Write as _};
-use std::net::TcpStream;
-use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
-use std::time::{Duration, Instant};
-use std::{fs, thread};
+mod chip;
 
-use defmt_decoder::{DecodeError, Table};
-use host_sim::hil::cable::Cable;
+use std::convert::Infallible;
+use std::fs;
+use std::io::{Read as _, Write as _};
+use std::path::Path;
+
 use host_sim::hil::faults::Faults;
 use host_sim::hil::flight;
-use host_sim::hil::player::{Played, Player};
-use host_sim::hil::qemu::Emulator;
+use host_sim::hil::player::Player;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::Mission;
 use host_sim::mission::recording::Recording;
@@ -33,111 +29,16 @@ use planner_core::robot::body::Body;
 use rand::{Rng as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
-use tempfile::{NamedTempFile, TempPath};
+use tempfile::NamedTempFile;
 use tests::budget::footprint::{self, Footprint};
 use tests::debugger::{self, Debugger};
 use tests::link::by_turns;
-use tests::program::build;
 use tests::program::image::Image;
 
-const TARGET: &str = "thumbv7em-none-eabihf";
-
-/// For anything that the chip does within two seconds of its own, where a busy machine gives it few.
-const PATIENCE: Duration = Duration::from_mins(1);
+use crate::chip::{Chip, firmware};
 
 /// The first message. Under emulation the chip has no record of why it started, and no clock tree.
 const STARTED: &str = "started: Other, clock: Emulated";
-
-/// A chip that runs.
-struct Chip {
-    _emulator: Emulator,
-    link: TcpStream,
-    log: TempPath,
-}
-
-impl Chip {
-    /// Starts the firmware, with further arguments for QEMU; `None` where that cannot be.
-    fn start(more: &[&str]) -> Option<Self> {
-        let elf = firmware()?;
-        let log = NamedTempFile::new().expect("a temporary file").into_temp_path();
-        let (emulator, link) = Emulator::start(elf, Some(&log), more).expect("QEMU runs it");
-        Some(Self { _emulator: emulator, link, log })
-    }
-
-    fn play(&self, player: &mut Player, faults: Faults, seed: u64) -> anyhow::Result<()> {
-        let [reader, port] = [(); 2].map(|()| self.link.try_clone().expect("a socket"));
-        flight::play(player, Cable::new(reader, port, faults, seed)).map(drop)
-    }
-
-    fn fly(&self, mission: &Mission, faults: Faults) -> anyhow::Result<Played> {
-        let mut player = Player::new(mission, LabelSource::Vehicle, flight::start_number())?;
-        self.play(&mut player, faults, mission.seed)?;
-        player.finish()
-    }
-
-    /// The log so far, each message after the chip's time of it in milliseconds.
-    fn log(&self) -> Vec<(u32, String)> {
-        let elf = fs::read(firmware().expect("it runs")).expect("cargo left an ELF");
-        let table = Table::parse(&elf).expect("the ELF is sound").expect("it logs");
-        let mut decoder = table.new_stream_decoder();
-        decoder.received(&fs::read(&self.log).expect("QEMU writes it"));
-        let mut messages = Vec::new();
-        loop {
-            match decoder.decode() {
-                Ok(frame) => {
-                    let time = frame.display_timestamp().expect("all have one").to_string();
-                    let at = time.replace('.', "").parse().expect("seconds, three decimals");
-                    messages.push((at, frame.display_message().to_string()));
-                }
-                Err(DecodeError::UnexpectedEof) => return messages,
-                Err(DecodeError::Malformed) => messages.push((0, "(malformed)".to_owned())),
-            }
-        }
-    }
-
-    fn messages(&self) -> Vec<String> {
-        self.log().into_iter().map(|(_, message)| message).collect()
-    }
-
-    /// The messages up to the `n`-th that begins so.
-    fn messages_until(&self, n: usize, beginning: &str) -> Vec<String> {
-        let since = Instant::now();
-        loop {
-            let messages = self.messages();
-            if messages.iter().filter(|it| it.starts_with(beginning)).count() >= n {
-                return messages;
-            }
-            assert!(since.elapsed() < PATIENCE, "no {beginning:?} in {messages:#?}");
-            thread::sleep(Duration::from_millis(10));
-        }
-    }
-}
-
-/// The firmware, built once; `None`, and a visible line, where it cannot be built or run.
-fn firmware() -> Option<&'static Path> {
-    static ELF: OnceLock<Option<PathBuf>> = OnceLock::new();
-    let build = || {
-        if !build::can_build(TARGET) {
-            build::skip(
-                env!("CARGO_TARGET_TMPDIR"),
-                "firmware under QEMU",
-                "the target thumbv7em-none-eabihf is not installed",
-            );
-            return None;
-        }
-        if !build::has_tool("qemu-system-arm") {
-            build::skip(
-                env!("CARGO_TARGET_TMPDIR"),
-                "firmware under QEMU",
-                "qemu-system-arm is not on PATH",
-            );
-            return None;
-        }
-        let folder = build::build(env!("CARGO_TARGET_TMPDIR"), "firmware", TARGET);
-        Some(folder.unwrap_or_else(|errors| panic!("{errors}")).join("firmware"))
-    };
-    ELF.get_or_init(build).as_deref()
-}
 
 fn example(text: &str) -> Mission {
     scenario::parse("", text, Overrides::default()).expect("a good scenario")
@@ -407,7 +308,7 @@ fn the_stack_stays_within_its_bound() {
     let image = Image::read(&fs::read(firmware().expect("it runs")).expect("cargo left an ELF"));
     let bound = Footprint::of(&image).expect("a graph").stack as usize;
     // QEMU's RAM begins as zeros: what lies between statics and stack still is.
-    let size = footprint::ram(include_str!("../../memory.x")).expect("memory.x says how much");
+    let size = footprint::ram(include_str!("../../../memory.x")).expect("memory.x says how much");
     let mut debugger = Debugger::connect(port);
     let between = debugger.memory(0x2000_0000 + image.statics(), size - image.statics());
     let used = between.iter().skip_while(|byte| **byte == 0).count();
