@@ -9,7 +9,7 @@ use core::num::NonZeroU32;
 
 use heapless::Vec;
 
-use crate::belief::consistent_lines::{Certainty, ConsistentLines};
+use crate::belief::consistent_lines::ConsistentLines;
 use crate::belief::outlook::Prediction;
 use crate::geometry::area::Area;
 use crate::geometry::lattice::UNITS_PER_METRE;
@@ -231,7 +231,7 @@ impl Prospects {
         let (better, _) = self.list.split_at_checked(rank).unwrap_or_default();
         if rank >= PROSPECTS
             || better.iter().any(is_near)
-            || lines.certainty(new.target.site) != Certainty::Uncertain
+            || !lines.can_cut(new.target.site)
         {
             return;
         }

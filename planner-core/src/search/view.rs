@@ -142,9 +142,9 @@ impl<'a> View<'a> {
         }
     }
 
-    /// Whether a position is inside the area and on uncertain ground. Exact.
+    /// Whether a position is inside the area, and a label there can tell something. Exact.
     pub(crate) fn is_uncertain(&self, site: Site) -> bool {
-        self.area.contains(site) && self.lines.certainty(site) == Certainty::Uncertain
+        self.area.contains(site) && self.lines.can_cut(site)
     }
 
     /// Whether what lies this way is further than one motion reaches.
