@@ -116,9 +116,6 @@ impl<D: Dynamics, const N: usize> Planner for Cfc<D, N> {
         if self.space.is_full() {
             return Plan::Stop(StopReason::SamplesFull);
         }
-        if !self.config.area.contains(pose.site) {
-            return Plan::Stop(StopReason::OutsideArea);
-        }
         let (found, phase, effort) = self.find(pose);
         self.phase = phase;
         let stage = match phase {
@@ -266,14 +263,33 @@ mod tests {
     }
 
     #[test]
-    fn a_full_buffer_and_a_place_outside_end_the_mission() {
+    fn a_full_buffer_ends_the_mission() {
         let mut planner = planner::<5>();
-        assert_eq!(planner.plan(pose(-1.0, 5.0)), Plan::Stop(StopReason::OutsideArea));
         assert!(matches!(planner.plan(pose(1.0, 1.0)), Plan::Move(_)));
         see(&mut planner, 4.0, 3.0, Label::Negative);
         assert_eq!(planner.plan(pose(4.0, 3.0)), Plan::Stop(StopReason::SamplesFull));
         let refused = planner.observe(pose(4.0, 4.0), Some(Label::Negative.into()));
         assert!(matches!(refused, Err(Refused::Full(_))));
+    }
+
+    #[test]
+    fn from_outside_it_comes_back() {
+        let mut planner = planner::<16>();
+        let area = planner.config.area;
+        for n in 0..400_u32 {
+            let (sin, cos) = libm::sincos(f64::from(n));
+            let heading = crate::geometry::heading::Heading(n.wrapping_mul(2_654_435_761));
+            let off = 7.1 + f64::from(n) / 10.0;
+            let mut pose = Pose { heading, ..pose(5.0 + off * cos, 5.0 + off * sin) };
+            // Two turns, and drives of two metres by an eighth of which it comes nearer at least.
+            let mut motions = 0;
+            while !area.contains(pose.site) {
+                let Plan::Move(motion) = planner.plan(pose) else { panic!("{n}: no way back") };
+                assert!(!motion.wants_label || area.contains(motion.target.site));
+                (pose, motions) = (motion.target, motions + 1);
+                assert!(motions <= 3 + n / 10, "{n}: {motions}");
+            }
+        }
     }
 
     #[test]

@@ -171,9 +171,6 @@ impl<D: Dynamics, B: Foresight> Planner for Lookahead<D, B> {
         if self.belief().is_full() {
             return Plan::Stop(StopReason::SamplesFull);
         }
-        if !area.contains(pose.site) {
-            return Plan::Stop(StopReason::OutsideArea);
-        }
         self.foresight.prepare();
         let (dynamics, evaluations) = (&self.dynamics, self.evaluations);
         let mut lookout = Lookout { dynamics, area, varrho, evaluations };
@@ -357,8 +354,6 @@ mod tests {
                 Some(Goal { accuracy: Accuracy::SlopeArc(most), level: 900_000 })
             };
             let stops = |plan, reason| assert_eq!(plan, Plan::Stop(reason));
-            stops(field.true_labels::<64>().plan(outside), StopReason::OutsideArea);
-            stops(field.doubtful().plan(outside), StopReason::OutsideArea);
             stops(field.true_labels::<4>().plan(start), StopReason::SamplesFull);
             // What is known is known also where there is no more room, and outside.
             stops(field.true_labels::<4>().until(arc(89.0)).plan(outside), StopReason::Known);
@@ -366,6 +361,8 @@ mod tests {
             let few = |it: Plan| assert!(matches!(it, Plan::Move(_)));
             few(field.true_labels::<64>().until(arc(5.0)).plan(start));
             few(field.doubtful().until(arc(5.0)).plan(start));
+            few(field.true_labels::<64>().plan(outside));
+            few(field.doubtful().plan(outside));
         }
     }
 }

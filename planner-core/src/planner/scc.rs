@@ -188,9 +188,6 @@ impl<D: Dynamics, const N: usize, const H: usize> Planner for Scc<D, N, H> {
         if self.hypotheses.is_full() {
             return Plan::Stop(StopReason::SamplesFull);
         }
-        if !self.config.area.contains(pose.site) {
-            return Plan::Stop(StopReason::OutsideArea);
-        }
         let stage = match (self.policy, self.is_even()) {
             (Policy::MixtureOfOwn, true) => Stage::P1,
             (Policy::MixtureOfOwn, false) => Stage::P2,

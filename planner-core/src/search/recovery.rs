@@ -14,10 +14,13 @@
 //!    it both ways, and between.
 //! 5. Nothing: there is a reason why, which the planner stops with.
 //!
+//! From outside the area, where an error has brought it, (1) and (3) may lead back inside. Else it drives
+//! towards the middle of the area, or turns until it can.
+//!
 //! **It ends**, though it has no state. What is known does not change before the next sample, and each
 //! motion lowers a measure: far, the distance to uncertain ground and then the turns to the next drive;
 //! near, the turns of (3), or where it has none the motions of (4), which stay near. What is near never
-//! becomes far again.
+//! becomes far again. Outside, the distance to the middle and then the turns; inside, no motion leads out.
 
 use crate::geometry::approximate::{heading_of, single, sqrt};
 use crate::geometry::heading::Heading;
@@ -62,6 +65,8 @@ pub(crate) enum DeadEnd {
     Cornered,
     /// A plan may look at so many rays, and none of these was a way on.
     Undecided,
+    /// The agent is outside the area, and no motion leads back.
+    Outside,
 }
 
 /// An action, where it leads, and the rung on which it was found.
@@ -95,7 +100,10 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule>(
         return Ok(found(Some(Recovery::Reorient))(turn));
     }
     let way = ladder.search.view.way_out().ok_or(DeadEnd::Resolution)?;
-    let leg = if ladder.search.view.is_far(way) {
+    let (area, pose) = (problem.area, ladder.search.pose);
+    let leg = if !area.contains(pose.site) {
+        ladder.leg(pose, area.middle() - pose.site).ok_or(DeadEnd::Outside)
+    } else if ladder.search.view.is_far(way) {
         ladder.leg(ladder.search.pose, way).ok_or(DeadEnd::Cornered)
     } else {
         ladder.transit()
@@ -242,9 +250,11 @@ impl<D: Dynamics> Ladder<'_, '_, '_, D> {
         }
         for ray in rays {
             for speed in (1..grid.speeds()).rev().filter(|speed| nears(&ray, *speed, goal)) {
-                if let Ok(target) = ray.arrive(pose.site, speed)
-                    && self.problem.area.contains(target.site)
-                {
+                let stays = |target: &Pose| {
+                    self.problem.area.contains(target.site)
+                        || !self.problem.area.contains(pose.site)
+                };
+                if let Some(target) = ray.arrive(pose.site, speed).ok().filter(stays) {
                     return Drive::Leg((grid.action(ray.index, speed), target));
                 }
             }

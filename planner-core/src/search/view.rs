@@ -55,7 +55,7 @@ pub(crate) struct View<'a> {
 }
 
 impl<'a> View<'a> {
-    /// From a position inside the area, for motions on some grid; nothing is seen before
+    /// From a position, for motions on some grid; nothing is seen before
     /// [`open`](Self::open).
     pub(crate) fn new(
         lines: ConsistentLines<'a>,
@@ -135,7 +135,8 @@ impl<'a> View<'a> {
             if (inside as f32) < reach {
                 let _ = self.sides.push(side);
             }
-            if (inside as f32) < self.step {
+            // From beyond it a longer motion may come back to this side.
+            if inside >= 0 && (inside as f32) < self.step {
                 side.cross(1.0 / self.step, self.margin);
                 let _ = self.near_sides.push(side);
             }
