@@ -9,6 +9,7 @@ use planner_core::belief::hypotheses::Hypotheses;
 use planner_core::belief::noise::Noise;
 use planner_core::belief::noise::Reliability;
 use planner_core::belief::sample::{Label, Sample};
+use planner_core::belief::tolerance::Tolerance;
 use planner_core::belief::version_space::VersionSpace;
 use planner_core::belief::weight::Prior;
 use planner_core::geometry::area::Area;
@@ -39,6 +40,7 @@ fn config() -> Config {
         varrho: Varrho::PAPER,
         crossing: Crossing::default(),
         following: cfc::FOLLOWING,
+        tolerance: Tolerance::NONE,
     }
 }
 

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use anyhow::{Context as _, Result};
 use indicatif::{ParallelProgressIterator as _, ProgressBar, ProgressStyle};
+use planner_core::belief::tolerance::Tolerance;
 use planner_core::belief::weight::Prior;
 use planner_core::motion::unicycle::Grid;
 use planner_core::planner::config::{Crossing, Following};
@@ -17,6 +18,8 @@ use crate::mission::definition::Mission;
 use crate::mission::flight::Flown;
 use crate::mission::read_out::ReadOut;
 use crate::mission::results::{cost, recovery_name};
+use crate::mission::scenario;
+use crate::world::errors::Errors;
 use crate::world::noise::NoiseModel;
 
 /// What to run.
@@ -38,6 +41,10 @@ pub struct Campaign {
     pub grid: Grid,
     /// How labels are flipped; `None` when they are true.
     pub noise: Option<NoiseModel>,
+    /// How robots err.
+    pub errors: Errors,
+    /// What planners are told of that.
+    pub tolerance: Tolerance,
     /// How hypotheses choose an action together.
     pub policy: Policy,
     /// How they are weighed in that.
@@ -160,7 +167,8 @@ impl Campaign {
     fn mission(&self, number: u64) -> Mission {
         let mut mission = standard_field::standard(self.seed, number, self.algorithm, self.steps);
         (mission.config.crossing, mission.config.following) = (self.crossing, self.following);
-        mission.grid = self.grid;
+        (mission.grid, mission.errors) = (self.grid, self.errors);
+        mission.config.tolerance = self.tolerance;
         (mission.noise, mission.policy, mission.prior) = (self.noise, self.policy, self.prior);
         mission
     }
@@ -171,6 +179,8 @@ impl Campaign {
         number: u64,
     ) -> Result<(Vec<M::Checkpoint>, Tally)> {
         let mission = self.mission(number);
+        let (tolerance, area) = (mission.config.tolerance, mission.config.area);
+        scenario::check_tolerance("--tolerance", tolerance, &mission.given, area)?;
         let given = mission.given.samples().len();
         let (mut checkpoints, mut tally) = (Vec::new(), Tally::default());
         let mut now = Progress { field: number, ..Progress::default() };

@@ -90,15 +90,14 @@ impl From<Tolerance> for u32 {
     }
 }
 
-/// A tolerance of more than 1,024 m, or under which the given samples leave nothing to be found: their lines
-/// span all directions but for 4 degrees, or a label would be shifted out of sight.
+/// A tolerance of more than 1,024 m.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct TooMuch;
 
 impl core::fmt::Display for TooMuch {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str("positions are so uncertain that labels tell nothing")
+        f.write_str("a tolerance is 1,024 m at most")
     }
 }
 

@@ -6,7 +6,7 @@ use crate::belief::edge::Edge;
 use crate::belief::estimate::{Estimates, area, bisector, centre, maximum_margin, share_above};
 use crate::belief::goal::Goal;
 use crate::belief::sample::{Label, Reading, Sample, SampleBuffer};
-use crate::belief::tolerance::{Tolerance, TooMuch};
+use crate::belief::tolerance::Tolerance;
 use crate::belief::{Belief, Refused};
 use crate::geometry::arc::SlopeArc;
 use crate::geometry::area::Area;
@@ -28,6 +28,9 @@ pub enum NoVersionSpace {
     NotSeparable(usize),
     /// There are more samples than the buffer holds.
     TooMany,
+    /// The samples leave lines of so many directions that further ones, whose positions err, would tell
+    /// nothing.
+    TooVague,
 }
 
 impl core::fmt::Display for NoVersionSpace {
@@ -37,6 +40,7 @@ impl core::fmt::Display for NoVersionSpace {
             Self::OneLabel => f.write_str("the samples share one label"),
             Self::NotSeparable(i) => write!(f, "no line separates the samples 0 to {i}"),
             Self::TooMany => f.write_str("there are more samples than the buffer holds"),
+            Self::TooVague => f.write_str("positions err too much for what the samples leave open"),
         }
     }
 }
@@ -94,9 +98,9 @@ impl<const N: usize> VersionSpace<N> {
     /// they are.
     ///
     /// # Errors
-    /// [`TooMuch`]: under this tolerance labels would tell nothing.
-    pub fn within(self, tolerance: Tolerance) -> Result<Self, TooMuch> {
-        let shift = tolerance.shift(self.slope_arc()).ok_or(TooMuch)?;
+    /// [`NoVersionSpace::TooVague`].
+    pub fn within(self, tolerance: Tolerance) -> Result<Self, NoVersionSpace> {
+        let shift = tolerance.shift(self.slope_arc()).ok_or(NoVersionSpace::TooVague)?;
         Ok(Self { tolerance, shift, ..self })
     }
 

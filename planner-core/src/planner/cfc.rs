@@ -78,7 +78,7 @@ impl<D: Dynamics, const N: usize> Cfc<D, N> {
     }
 
     fn problem_of(&self, phase: Phase, slopes: SlopeArc) -> Problem<'_, ArcRule> {
-        let Config { area, varrho, .. } = self.config;
+        let (area, varrho) = (self.config.ground(), self.config.varrho);
         let rule = match phase {
             Phase::Crossing => {
                 self.config.crossing_rule(slopes, first_to_second(self.space.samples()))
@@ -158,6 +158,7 @@ mod tests {
 
     use super::*;
     use crate::belief::sample::Sample;
+    use crate::belief::tolerance::Tolerance;
     use crate::geometry::area::Area;
     use crate::geometry::lattice::Site;
     use crate::motion::unicycle::Unicycle;
@@ -185,6 +186,7 @@ mod tests {
             varrho: Varrho::PAPER,
             crossing: Crossing::default(),
             following: FOLLOWING,
+            tolerance: Tolerance::NONE,
         };
         let space = VersionSpace::new(&corners.map(sample)).unwrap();
         Cfc::new(config, Unicycle::paper(), space)

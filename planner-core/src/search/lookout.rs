@@ -229,10 +229,7 @@ impl Prospects {
         };
         let rank = self.list.iter().take_while(|old| old.worth >= new.worth).count();
         let (better, _) = self.list.split_at_checked(rank).unwrap_or_default();
-        if rank >= PROSPECTS
-            || better.iter().any(is_near)
-            || !lines.can_cut(new.target.site)
-        {
+        if rank >= PROSPECTS || better.iter().any(is_near) || !lines.can_cut(new.target.site) {
             return;
         }
         // What does not find room is the worst.

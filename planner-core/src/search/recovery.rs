@@ -87,26 +87,26 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule>(
     before: Option<Findings>,
 ) -> Result<Found, DeadEnd> {
     let found = |recovery| move |(action, target)| Found { recovery, action, target };
-    let Findings { best, best_forbidden } = search.best(&problem.rule, before);
+    let (area, pose) = (problem.area, search.pose);
+    let mut ladder = Ladder { problem: problem.undirected(), search };
+    // Before the search has used up its looks.
+    let home = (!area.contains(pose.site)).then(|| ladder.leg(pose, area.middle() - pose.site));
+    let Findings { best, best_forbidden } = ladder.search.best(&problem.rule, before);
     if let Some((best, _)) = best {
         return Ok(found(None)((best.action, best.target)));
     }
     if let Some((best, _)) = best_forbidden {
         return Ok(found(Some(Recovery::Undirected))((best.action, best.target)));
     }
-    let mut ladder = Ladder { problem: problem.undirected(), search };
     // Where nothing is in reach no turn finds anything, so that the order does not matter.
     if let Some(turn) = ladder.reorient() {
         return Ok(found(Some(Recovery::Reorient))(turn));
     }
     let way = ladder.search.view.way_out().ok_or(DeadEnd::Resolution)?;
-    let (area, pose) = (problem.area, ladder.search.pose);
-    let leg = if !area.contains(pose.site) {
-        ladder.leg(pose, area.middle() - pose.site).ok_or(DeadEnd::Outside)
-    } else if ladder.search.view.is_far(way) {
-        ladder.leg(ladder.search.pose, way).ok_or(DeadEnd::Cornered)
-    } else {
-        ladder.transit()
+    let leg = match home {
+        Some(home) => home.ok_or(DeadEnd::Outside),
+        None if ladder.search.view.is_far(way) => ladder.leg(pose, way).ok_or(DeadEnd::Cornered),
+        None => ladder.transit(),
     };
     leg.map(found(Some(Recovery::Transit)))
 }
