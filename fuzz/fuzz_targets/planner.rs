@@ -114,7 +114,7 @@ fn run<D: Dynamics + Copy>(case: &Case, dynamics: D, world: &World) -> Option<()
         (Policy::MixtureOfStart, Prior::Sequences),
         (Policy::MixtureOfOwn, Prior::Area),
     ] {
-        let noise = Noise { reliability, trusted_radius: case.trusted_radius };
+        let noise = Noise { reliability, trusted_radius: case.trusted_radius, tolerance: Tolerance::NONE };
         let table = Hypotheses::<16, 24>::new(&oracle, prior, noise).ok()?;
         fly_any(case, Scc::new(config, policy, dynamics, table), world, start, &config);
     }

@@ -106,7 +106,7 @@ fn step(criterion: &mut Criterion) {
 fn noisy(labels: usize) -> (Scc<Unicycle, 36, 529>, Pose) {
     let (planner, start) = states().swap_remove(0);
     let reliability = Reliability::new(0.7).expect("a probability");
-    let noise = Noise { reliability, trusted_radius: 0 };
+    let noise = Noise { reliability, trusted_radius: 0, tolerance: Tolerance::NONE };
     let hypotheses =
         Hypotheses::new(planner.belief().samples(), Prior::Area, noise).expect("an oracle");
     let config = Config { following: scc::FOLLOWING, ..config() };

@@ -188,7 +188,7 @@ fn a_trusted_ball_ends_where_it_should_whatever_its_radius() {
         (3_037_000_500, corner, corner, true),
         (u32::MAX, corner, corner, true),
     ] {
-        let noise = Noise { reliability, trusted_radius: radius };
+        let noise = Noise { reliability, trusted_radius: radius, tolerance: Tolerance::NONE };
         let is_trusted = noise.at(at(x, z), &given) == Reliability::CERTAIN;
         assert_eq!(is_trusted, trusted, "{radius} at ({x}, {z})");
     }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use anyhow::{Context as _, Result};
 use indicatif::{ParallelProgressIterator as _, ProgressBar, ProgressStyle};
+use planner_core::belief::sample::Reading;
 use planner_core::belief::tolerance::Tolerance;
 use planner_core::belief::weight::Prior;
 use planner_core::motion::unicycle::Grid;
@@ -181,13 +182,12 @@ impl Campaign {
         let mission = self.mission(number);
         let (tolerance, area) = (mission.config.tolerance, mission.config.area);
         scenario::check_tolerance("--tolerance", tolerance, &mission.given, area)?;
-        let given = mission.given.samples().len();
         let (mut checkpoints, mut tally) = (Vec::new(), Tally::default());
         let mut now = Progress { field: number, ..Progress::default() };
         let mut stages = measure.stages(self.steps).into_iter().peekable();
         let Flown { ending, belief } = mission.fly(|step, belief| {
             now.steps += 1;
-            now.labels = (belief.samples().len() - given) as u32;
+            now.labels += u32::from(matches!(step.reading, Some(Reading::Side(_))));
             now.control_cost += cost(step.motion.control);
             now.metres += f64::from(step.motion.control.v);
             if stages.next_if_eq(&measure.stage(&now)).is_some() {

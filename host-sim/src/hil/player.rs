@@ -266,7 +266,7 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
         Algorithm::Lookahead => message::Algorithm::Lookahead {
             evaluations: lookahead::EVALUATIONS,
             goal: mission.goal,
-            noise: mission.noise.map(|model| (model.told(), mission.prior)),
+            noise: mission.noise.map(|_| (mission.noise_told(), mission.prior)),
         },
         other => bail!("algorithm: found {}, expected cfc, scc or lookahead", other.name()),
     };

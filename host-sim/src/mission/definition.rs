@@ -89,7 +89,9 @@ impl Mission {
 
     /// What a planner is told of the noise.
     pub fn noise_told(&self) -> Noise {
-        self.noise.map_or(Noise::NONE, |model| model.told())
+        let tolerance = self.config.tolerance;
+        let exact = Noise { tolerance, ..Noise::NONE };
+        self.noise.map_or(exact, |model| model.told(tolerance))
     }
 
     /// The table before the first label.

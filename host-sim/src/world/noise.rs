@@ -4,6 +4,7 @@ use std::convert::Infallible;
 
 use planner_core::belief::noise::{Noise, Reliability, trusted_radius};
 use planner_core::belief::sample::{Reading, Sample};
+use planner_core::belief::tolerance::Tolerance;
 use planner_core::motion::dynamics::Pose;
 use planner_core::planner::Motion;
 use planner_core::robot::body::Body;
@@ -37,7 +38,7 @@ impl NoiseModel {
     ///
     /// # Panics
     /// Never: a model holds a probability and a radius within the lattice.
-    pub fn told(&self) -> Noise {
+    pub fn told(&self, tolerance: Tolerance) -> Noise {
         let radius = match self.extent {
             Extent::OutsideBalls(radius) => radius,
             Extent::Band(_) => 0.0,
@@ -45,6 +46,7 @@ impl NoiseModel {
         Noise {
             reliability: Reliability::new(self.p).expect("a probability"),
             trusted_radius: trusted_radius(radius).expect("a radius"),
+            tolerance,
         }
     }
 }
@@ -71,7 +73,7 @@ impl Body for Flipped {
         let place = self.body.true_pose().unwrap_or(*pose).site;
         let exposed = match self.model.extent {
             Extent::OutsideBalls(_) => {
-                self.model.told().at(place, &self.given) != Reliability::CERTAIN
+                self.model.told(Tolerance::NONE).at(place, &self.given) != Reliability::CERTAIN
             }
             Extent::Band(half) => self.world.distance(place).abs() <= half,
         };

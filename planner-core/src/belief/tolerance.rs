@@ -76,6 +76,18 @@ impl Tolerance {
     }
 }
 
+impl Tolerance {
+    /// Where the probability of being on the other side of a line has fallen to a quarter, at right angles to the
+    /// middle of these slopes: the tolerance is three standard deviations.
+    pub(crate) fn step(self, slopes: SlopeArc) -> Vector {
+        const QUARTER: f32 = 0.674_49 / 3.0;
+        let middle = slopes.bisector().left();
+        let unit = UnitVector::of(middle);
+        let [x, z] = [unit.x, unit.z].map(|v| v * (QUARTER * self.units as f32));
+        Vector { x: x as i32, z: z as i32 }
+    }
+}
+
 impl TryFrom<u32> for Tolerance {
     type Error = TooMuch;
 

@@ -304,7 +304,7 @@ mod tests {
         Setup {
             protocol: u16::MAX,
             algorithm: Algorithm::Scc {
-                noise: Noise { reliability, trusted_radius: u32::MAX },
+                noise: Noise { reliability, trusted_radius: u32::MAX, tolerance: Tolerance::NONE },
                 policy: Policy::MixtureOfOwn,
                 prior: Prior::Sequences,
             },

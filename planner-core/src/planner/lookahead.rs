@@ -273,7 +273,11 @@ mod tests {
         }
 
         fn doubtful(self) -> Lookahead<Unicycle, Forecast<36, 529>> {
-            let noise = Noise { reliability: Reliability::new(0.8).unwrap(), trusted_radius: 0 };
+            let noise = Noise {
+                reliability: Reliability::new(0.8).unwrap(),
+                trusted_radius: 0,
+                tolerance: Tolerance::NONE,
+            };
             let forecast = Forecast::new(&self.given(), Prior::Area, noise).unwrap();
             Lookahead::new(config(), Unicycle::paper(), forecast)
         }
