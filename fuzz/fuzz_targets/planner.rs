@@ -147,7 +147,7 @@ fn run<D: Dynamics + Copy>(case: &Case, dynamics: D, world: &World) -> Option<()
         (Policy::MixtureOfStart, Prior::Sequences),
         (Policy::MixtureOfOwn, Prior::Area),
     ] {
-        let noise = Noise { reliability, trusted_radius: case.trusted_radius };
+        let noise = Noise { reliability, trusted_radius: case.trusted_radius, tolerance: Tolerance::NONE };
         let table = Hypotheses::<16, 24>::new(&oracle, prior, noise).ok()?;
         let scc = Scc::new(config, policy, dynamics, table);
         fly_any(case, scc, world, start, &config, |planner, pose| planner.plan(pose));

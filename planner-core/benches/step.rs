@@ -9,6 +9,7 @@ use planner_core::belief::hypotheses::Hypotheses;
 use planner_core::belief::noise::Noise;
 use planner_core::belief::noise::Reliability;
 use planner_core::belief::sample::{Label, Sample};
+use planner_core::belief::tolerance::Tolerance;
 use planner_core::belief::version_space::VersionSpace;
 use planner_core::belief::weight::Prior;
 use planner_core::geometry::area::Area;
@@ -39,6 +40,7 @@ fn config() -> Config {
         varrho: Varrho::PAPER,
         crossing: Crossing::default(),
         following: cfc::FOLLOWING,
+        tolerance: Tolerance::NONE,
     }
 }
 
@@ -104,7 +106,7 @@ fn step(criterion: &mut Criterion) {
 fn noisy(labels: usize) -> (Scc<Unicycle, 36, 529>, Pose) {
     let (planner, start) = states().swap_remove(0);
     let reliability = Reliability::new(0.7).expect("a probability");
-    let noise = Noise { reliability, trusted_radius: 0 };
+    let noise = Noise { reliability, trusted_radius: 0, tolerance: Tolerance::NONE };
     let hypotheses =
         Hypotheses::new(planner.belief().samples(), Prior::Area, noise).expect("an oracle");
     let config = Config { following: scc::FOLLOWING, ..config() };

@@ -69,6 +69,7 @@
 //! use core::cell::Cell;
 //! use core::convert::Infallible;
 //! use planner_core::nalgebra::Point2;
+//! use planner_core::belief::tolerance::Tolerance;
 //! use planner_core::{
 //!     Agent, Area, Belief, Cfc, Config, Crossing, Drive, Event, Heading, Label, LabelSensor, Line,
 //!     Motion, Planner, Pose, Reading, Sample, Site, Unicycle, Varrho, Vehicle, VersionSpace, cfc,
@@ -104,6 +105,7 @@
 //!     varrho: Varrho::PAPER,
 //!     crossing: Crossing::default(),
 //!     following: cfc::FOLLOWING,
+//!     tolerance: Tolerance::NONE, // positions are where they are reported to be
 //! };
 //! let start = Pose { site: oracle[0].site, heading: Heading(0) };
 //! let world = World(Cell::new(start));

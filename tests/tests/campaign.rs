@@ -4,6 +4,8 @@ use host_sim::campaign::accuracy::{Accuracy, Row, Summary};
 use host_sim::campaign::ensemble::Campaign;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::report::campaign as tables;
+use host_sim::world::errors::Errors;
+use planner_core::belief::tolerance::Tolerance;
 use planner_core::belief::weight::Prior;
 use planner_core::motion::unicycle::Grid;
 use planner_core::planner::cfc;
@@ -20,6 +22,8 @@ fn campaign(algorithm: Algorithm, following: Following, steps: u32) -> Summary {
         following,
         grid: Grid::Paper,
         noise: None,
+        errors: Errors::default(),
+        tolerance: Tolerance::NONE,
         policy: Policy::default(),
         prior: Prior::default(),
     };

@@ -8,12 +8,14 @@ use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::{Mission, Table};
 use host_sim::mission::read_out::ReadOut;
 use host_sim::report::campaign as tables;
+use host_sim::world::errors::Errors;
 use host_sim::world::noise::{Extent, NoiseModel, limit};
 use host_sim::world::polygon::misclassified;
 use planner_core::belief::goal::{Accuracy, Goal};
 use planner_core::belief::noise::Reliability;
 use planner_core::belief::posterior::Posterior;
 use planner_core::belief::sample::{Label, Sample};
+use planner_core::belief::tolerance::Tolerance;
 use planner_core::belief::weight::Prior;
 use planner_core::geometry::heading::Heading;
 use planner_core::geometry::line::Line;
@@ -187,8 +189,11 @@ fn campaign(seed: u64, steps: u32, grid: Grid, noise: Option<NoiseModel>) -> Cam
         seed,
         crossing: Crossing::default(),
         following: Algorithm::Lookahead.following(),
+        tolerance: Tolerance::NONE,
         grid,
         noise,
+        errors: Errors::default(),
+        tolerance: Tolerance::NONE,
         policy: Policy::default(),
         prior: Prior::default(),
     }

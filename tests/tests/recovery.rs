@@ -8,6 +8,7 @@ use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::CAPACITY;
 use nalgebra::Point2;
 use planner_core::belief::sample::{Label, Reading, Sample};
+use planner_core::belief::tolerance::Tolerance;
 use planner_core::belief::version_space::VersionSpace;
 use planner_core::geometry::area::Area;
 use planner_core::geometry::heading::Heading;
@@ -70,6 +71,7 @@ fn a_coarse_fan_does_not_turn_on_the_spot_for_ever() {
         varrho: Varrho::PAPER,
         crossing: Crossing::default(),
         following: cfc::FOLLOWING,
+        tolerance: Tolerance::NONE,
     };
     let space = VersionSpace::new(&oracle).expect("they are apart");
     let coarse = Unicycle::new(785_000, core::f64::consts::FRAC_PI_2, 11, 200).expect("a grid");

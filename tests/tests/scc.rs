@@ -10,11 +10,13 @@ use host_sim::mission::definition::{CAPACITY, HYPOTHESES, Table};
 use host_sim::mission::recording::Recording;
 use host_sim::report::campaign as tables;
 use host_sim::report::trace;
+use host_sim::world::errors::Errors;
 use host_sim::world::noise::{Extent, Flipped, NoiseModel, limit};
 use host_sim::world::robot::Ideal;
 use nalgebra::Point2;
 use planner_core::belief::noise::{Noise, Reliability};
 use planner_core::belief::sample::{Label, Reading, Sample};
+use planner_core::belief::tolerance::Tolerance;
 use planner_core::belief::weight::Prior;
 use planner_core::geometry::heading::Heading;
 use planner_core::geometry::lattice::{LIMIT, Site};
@@ -138,7 +140,7 @@ fn the_world_flips_labels_where_it_should_and_as_often() {
             host_sim::mission::definition::Mission { noise: Some(model), ..mission.clone() };
         let (body, rng) = (Ideal { world }, ChaCha8Rng::seed_from_u64(4));
         let noise = noisy.noise_told();
-        let mut robot = Flipped { body, model, world, given: given.to_vec(), rng };
+        let mut robot = Flipped { body: Box::new(body), model, world, given: given.to_vec(), rng };
         let mut places = ChaCha8Rng::seed_from_u64(5);
         let (mut exposed, mut flipped) = (0, 0);
         for _ in 0..40_000 {
@@ -186,7 +188,7 @@ fn a_trusted_ball_ends_where_it_should_whatever_its_radius() {
         (3_037_000_500, corner, corner, true),
         (u32::MAX, corner, corner, true),
     ] {
-        let noise = Noise { reliability, trusted_radius: radius };
+        let noise = Noise { reliability, trusted_radius: radius, tolerance: Tolerance::NONE };
         let is_trusted = noise.at(at(x, z), &given) == Reliability::CERTAIN;
         assert_eq!(is_trusted, trusted, "{radius} at ({x}, {z})");
     }
@@ -228,6 +230,8 @@ fn campaign(algorithm: Algorithm, fields: u64, steps: u32, policy: Policy) -> Su
         seed: 1,
         crossing: Crossing::default(),
         following: algorithm.following(),
+        errors: Errors::default(),
+        tolerance: Tolerance::NONE,
         grid: Grid::Paper,
         noise: Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.0) }),
         policy,

@@ -7,6 +7,7 @@ use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::CAPACITY;
 use planner_core::belief::consistent_lines::Certainty;
 use planner_core::belief::sample::{Label, Sample};
+use planner_core::belief::tolerance::Tolerance;
 use planner_core::belief::version_space::VersionSpace;
 use planner_core::geometry::arc::SlopeArc;
 use planner_core::geometry::area::Area;
@@ -264,6 +265,7 @@ fn a_plan_has_so_many_looks_and_says_when_they_do_not_do() {
         varrho: Varrho::PAPER,
         crossing: Crossing::default(),
         following: cfc::FOLLOWING,
+        tolerance: Tolerance::NONE,
     };
     let planner = |dynamics| Cfc::new(config, dynamics, space.clone().expect("they are apart"));
     let pose = |z, quarters: u32| Pose {

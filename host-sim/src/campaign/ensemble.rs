@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use anyhow::{Context as _, Result};
 use indicatif::{ParallelProgressIterator as _, ProgressBar, ProgressStyle};
+use planner_core::belief::sample::Reading;
+use planner_core::belief::tolerance::Tolerance;
 use planner_core::belief::weight::Prior;
 use planner_core::motion::unicycle::Grid;
 use planner_core::planner::config::{Crossing, Following};
@@ -17,6 +19,8 @@ use crate::mission::definition::Mission;
 use crate::mission::flight::Flown;
 use crate::mission::read_out::ReadOut;
 use crate::mission::results::{cost, recovery_name};
+use crate::mission::scenario;
+use crate::world::errors::Errors;
 use crate::world::noise::NoiseModel;
 
 /// What to run.
@@ -38,6 +42,10 @@ pub struct Campaign {
     pub grid: Grid,
     /// How labels are flipped; `None` when they are true.
     pub noise: Option<NoiseModel>,
+    /// How robots err.
+    pub errors: Errors,
+    /// What planners are told of that.
+    pub tolerance: Tolerance,
     /// How hypotheses choose an action together.
     pub policy: Policy,
     /// How they are weighed in that.
@@ -160,7 +168,8 @@ impl Campaign {
     fn mission(&self, number: u64) -> Mission {
         let mut mission = standard_field::standard(self.seed, number, self.algorithm, self.steps);
         (mission.config.crossing, mission.config.following) = (self.crossing, self.following);
-        mission.grid = self.grid;
+        (mission.grid, mission.errors) = (self.grid, self.errors);
+        mission.config.tolerance = self.tolerance;
         (mission.noise, mission.policy, mission.prior) = (self.noise, self.policy, self.prior);
         mission
     }
@@ -171,13 +180,14 @@ impl Campaign {
         number: u64,
     ) -> Result<(Vec<M::Checkpoint>, Tally)> {
         let mission = self.mission(number);
-        let given = mission.given.samples().len();
+        let (tolerance, area) = (mission.config.tolerance, mission.config.area);
+        scenario::check_tolerance("--tolerance", tolerance, &mission.given, area)?;
         let (mut checkpoints, mut tally) = (Vec::new(), Tally::default());
         let mut now = Progress { field: number, ..Progress::default() };
         let mut stages = measure.stages(self.steps).into_iter().peekable();
         let Flown { ending, belief } = mission.fly(|step, belief| {
             now.steps += 1;
-            now.labels = (belief.samples().len() - given) as u32;
+            now.labels += u32::from(matches!(step.reading, Some(Reading::Side(_))));
             now.control_cost += cost(step.motion.control);
             now.metres += f64::from(step.motion.control.v);
             if stages.next_if_eq(&measure.stage(&now)).is_some() {

@@ -10,6 +10,7 @@
 
 use nalgebra::{Point2, Vector2};
 use planner_core::belief::sample::{Label, Reading, Sample};
+use planner_core::belief::tolerance::Tolerance;
 use planner_core::belief::version_space::VersionSpace;
 use planner_core::belief::weight::Prior;
 use planner_core::geometry::area::Area;
@@ -24,6 +25,7 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::Mission;
+use crate::world::errors::Errors;
 use crate::world::{World, reading};
 
 /// Side of the standard area, metres.
@@ -92,12 +94,14 @@ pub fn standard(seed: u64, number: u64, algorithm: Algorithm, steps: u32) -> Mis
             varrho: algorithm.varrho(),
             crossing: Crossing::default(),
             following: algorithm.following(),
+            tolerance: Tolerance::NONE,
         },
         grid: algorithm.grid(),
         start: Pose { site: oracle[0].site, heading },
         world: World::divided_by(truth),
         given,
         noise: None,
+        errors: Errors::default(),
         policy: Policy::default(),
         prior: Prior::default(),
         goal: None,

@@ -163,6 +163,15 @@ pub(crate) struct CampaignArgs {
     /// Within this distance of the oracle's points labels are certain, metres (where p is below 1) [default: 0]
     #[arg(long)]
     pub(crate) trusted_radius: Option<f64>,
+    /// Standard deviation of the positions that robots report, metres an axis
+    #[arg(long, value_name = "METRES", default_value_t = 0.0)]
+    pub(crate) position_error: f64,
+    /// Standard deviation of where motions end, metres an axis
+    #[arg(long, value_name = "METRES", default_value_t = 0.0)]
+    pub(crate) motion_error: f64,
+    /// How far off planners are told that positions are, at most, metres [default: 3 times the position error]
+    #[arg(long, value_name = "METRES")]
+    pub(crate) tolerance: Option<f64>,
     /// How hypotheses choose an action together (scc) [default: mixture-of-own]
     #[arg(long, value_enum)]
     pub(crate) policy: Option<PolicyName>,

@@ -25,6 +25,7 @@ use crate::output::file::{Output, csv, json, prepare, temporary};
 use crate::replay::record::Replay;
 use crate::report::picture::Picture;
 use crate::report::{campaign as tables, text, trace};
+use crate::world::errors::Errors;
 use crate::world::noise::{Extent, NoiseModel};
 
 /// The speed of the firmware's serial lines, bits per second.
@@ -113,6 +114,9 @@ impl Run {
         if self.candidates.is_some() && !mission.is_noisy() {
             bail!("--candidates: found a mission without noise, expected one with noisy labels");
         }
+        if let Some(warning) = mission.warning() {
+            eprintln!("{}: {warning}", self.name());
+        }
         Ok(mission)
     }
 
@@ -174,6 +178,12 @@ fn campaign(args: &CampaignArgs) -> Result<String> {
     planners.iter().try_for_each(|&planner| args.check_meanings(planner, p))?;
     let radius = args.trusted_radius.unwrap_or_default();
     let trusted_radius = scenario::trusted("--trusted-radius", radius)?;
+    let errors = Errors {
+        position: scenario::deviation("--position-error", args.position_error)?,
+        motion: scenario::deviation("--motion-error", args.motion_error)?,
+        ..Errors::default()
+    };
+    let tolerance = scenario::tolerance("--tolerance", args.tolerance, errors)?;
     let [output] = prepare(&[], [("--csv", args.csv.as_deref())])?;
     let extent = Extent::OutsideBalls(trusted_radius);
     let campaign = |algorithm: Algorithm| Campaign {
@@ -185,6 +195,8 @@ fn campaign(args: &CampaignArgs) -> Result<String> {
         following: args.following.map_or(algorithm.following(), Into::into),
         grid: args.grid(algorithm),
         noise: algorithm.weighs(p < 1.0).then_some(NoiseModel { p, extent }),
+        errors,
+        tolerance,
         policy: args.policy.unwrap_or_default().into(),
         prior: args.prior.unwrap_or_default().into(),
     };

@@ -33,7 +33,7 @@ const MOST_HELLOS: u32 = 5 * 16;
 pub struct Player {
     setup: Setup,
     responder: Responder,
-    robot: Robot,
+    robot: Box<dyn Robot>,
     /// Where it is.
     pose: Pose,
     /// Takes in what the chip takes in.
@@ -205,7 +205,8 @@ impl Player {
         if let Err(refused) = self.planner.observe(pose, last) {
             return Err(self.recorder.refusal(&refused));
         }
-        self.recorder.take(&Step { motion, pose, reading: last }, self.planner.belief());
+        let step = Step { motion, pose, reading: last };
+        self.recorder.take(&step, self.robot.true_pose(), self.planner.belief());
         Ok(())
     }
 
@@ -265,7 +266,7 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
         Algorithm::Lookahead => message::Algorithm::Lookahead {
             evaluations: lookahead::EVALUATIONS,
             goal: mission.goal,
-            noise: mission.noise.map(|model| (model.told(), mission.prior)),
+            noise: mission.noise.map(|_| (mission.noise_told(), mission.prior)),
         },
         other => bail!("algorithm: found {}, expected cfc, scc or lookahead", other.name()),
     };

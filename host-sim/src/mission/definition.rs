@@ -15,6 +15,7 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::mission::algorithm::Algorithm;
 use crate::world::World;
+use crate::world::errors::{CUT, Erring, Errors};
 use crate::world::noise::{Flipped, NoiseModel};
 use crate::world::robot::{Ideal, Robot};
 
@@ -51,6 +52,8 @@ pub struct Mission {
     pub given: Lines,
     /// How labels are flipped; `None` when they are true.
     pub noise: Option<NoiseModel>,
+    /// How the robot errs.
+    pub errors: Errors,
     /// How hypotheses choose an action together (Algorithm 2).
     pub policy: Policy,
     /// How hypotheses are weighed beforehand (Algorithm 2, look-ahead).
@@ -86,7 +89,9 @@ impl Mission {
 
     /// What a planner is told of the noise.
     pub fn noise_told(&self) -> Noise {
-        self.noise.map_or(Noise::NONE, |model| model.told())
+        let tolerance = self.config.tolerance;
+        let exact = Noise { tolerance, ..Noise::NONE };
+        self.noise.map_or(exact, |model| model.told(tolerance))
     }
 
     /// The table before the first label.
@@ -107,12 +112,41 @@ impl Mission {
             .expect("15 points bound the line at most")
     }
 
+    /// What its planner risks, if that is not told how far positions err.
+    pub fn warning(&self) -> Option<String> {
+        let needs = CUT * self.errors.position;
+        let told = self.config.tolerance.metres();
+        (told < needs && !self.is_noisy()).then(|| {
+            format!(
+                "warning: tolerance: {told} m with positions that err by up to {needs} m: true labels may be \
+                 refused, or cut the true line off"
+            )
+        })
+    }
+
+    /// What the oracle's points leave open, for samples whose positions err by the tolerance at most.
+    ///
+    /// # Panics
+    /// When the tolerance is too much for them, which scenario files are refused for.
+    pub fn lines(&self) -> Lines {
+        let lines = self.given.clone().within(self.config.tolerance);
+        lines.expect("the tolerance leaves something to find")
+    }
+
     /// The robot, ready to be moved from its start.
-    pub fn robot(&self) -> Robot {
-        let body = Ideal { world: self.world };
-        let Some(model) = self.noise else { return Box::new(body) };
-        let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
-        rng.set_stream(1); // the random walk has stream 0
+    pub fn robot(&self) -> Box<dyn Robot> {
+        let rng = |stream| {
+            let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
+            rng.set_stream(stream); // the random walk has stream 0
+            rng
+        };
+        let body: Box<dyn Robot> = if self.errors == Errors::default() {
+            Box::new(Ideal { world: self.world })
+        } else {
+            Box::new(Erring::new(self.world, self.errors, self.start, rng(2)))
+        };
+        let Some(model) = self.noise else { return body };
+        let rng = rng(1);
         let given = self.given.samples().to_vec();
         Box::new(Flipped { body, model, world: self.world, given, rng })
     }

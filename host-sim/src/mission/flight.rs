@@ -1,6 +1,7 @@
 //! A mission as it is flown in the simulated world.
 
 use planner_core::belief::Refused;
+use planner_core::motion::dynamics::Pose;
 use planner_core::planner::Planner as _;
 use planner_core::robot::agent::{Agent, AgentError, Event, Step};
 
@@ -22,13 +23,26 @@ impl Mission {
     /// # Errors
     /// [`Refused`] when a sample contradicts what is known.
     pub fn fly(&self, mut watch: impl FnMut(&Step, &dyn ReadOut)) -> Result<Flown, Refused> {
+        self.fly_in_sight(|step, _, belief| watch(step, belief))
+    }
+
+    /// As [`fly`](Self::fly), for one who sees too where the robot truly is, if it errs.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn fly_in_sight(
+        &self,
+        mut watch: impl FnMut(&Step, Option<Pose>, &dyn ReadOut),
+    ) -> Result<Flown, Refused> {
         let mut planner = self.planner();
         let mut robot = self.robot();
         let mut agent = Agent::new(&mut *planner, &mut *robot, self.start);
         let mut ending = Ending::Steps;
         for _ in 0..self.steps {
             match agent.step() {
-                Ok(Event::Step(step)) => watch(&step, agent.planner.belief()),
+                Ok(Event::Step(step)) => {
+                    watch(&step, agent.body().true_pose(), agent.planner.belief());
+                }
                 Ok(Event::Stopped(reason)) => {
                     ending = Ending::Stopped(reason);
                     break;

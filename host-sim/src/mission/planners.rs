@@ -49,24 +49,22 @@ impl Mission {
         let (dynamics, config) = (Unicycle::from(self.grid), self.config);
         let (area, rng) = (config.area, ChaCha8Rng::seed_from_u64(self.seed));
         match self.algorithm {
-            Algorithm::Cfc => erased(Cfc::new(config, dynamics, self.given.clone())),
+            Algorithm::Cfc => erased(Cfc::new(config, dynamics, self.lines())),
             Algorithm::Scc => erased(Scc::new(config, self.policy, dynamics, self.table())),
             Algorithm::Lookahead if self.is_noisy() => {
                 erased(Lookahead::new(config, dynamics, self.forecast()).until(self.goal))
             }
             Algorithm::Lookahead => {
-                erased(Lookahead::new(config, dynamics, self.given.clone()).until(self.goal))
+                erased(Lookahead::new(config, dynamics, self.lines()).until(self.goal))
             }
             Algorithm::Margin if self.is_noisy() => {
                 erased(Margin { dynamics, area, belief: self.table() })
             }
-            Algorithm::Margin => erased(Margin { dynamics, area, belief: self.given.clone() }),
+            Algorithm::Margin => erased(Margin { dynamics, area, belief: self.lines() }),
             Algorithm::Random if self.is_noisy() => {
                 erased(RandomWalk { dynamics, area, belief: self.table(), rng })
             }
-            Algorithm::Random => {
-                erased(RandomWalk { dynamics, area, belief: self.given.clone(), rng })
-            }
+            Algorithm::Random => erased(RandomWalk { dynamics, area, belief: self.lines(), rng }),
         }
     }
 }

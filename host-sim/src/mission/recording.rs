@@ -9,6 +9,7 @@ use planner_core::belief::posterior::Posterior;
 use planner_core::belief::sample::Reading;
 use planner_core::belief::weight::Prior;
 use planner_core::geometry::line::Line;
+use planner_core::motion::dynamics::Pose;
 use planner_core::robot::agent::Step;
 
 use crate::mission::definition::{Mission, Table};
@@ -48,8 +49,8 @@ impl Recorder {
         Self { mission, steps: Vec::new(), results: Vec::new() }
     }
 
-    /// Takes down a step and what is known after it.
-    pub fn take(&mut self, step: &Step, belief: &dyn ReadOut) {
+    /// Takes down a step, where the robot truly is after it, if it errs, and what is known.
+    pub fn take(&mut self, step: &Step, true_pose: Option<Pose>, belief: &dyn ReadOut) {
         let Knowledge { slope_arcs, intercept, bits, doubt } = belief.knowledge();
         let motion = &step.motion;
         self.steps.push(*step);
@@ -59,6 +60,7 @@ impl Recorder {
             recovery: motion.recovery.map(recovery_name),
             action: motion.into(),
             pose: step.pose.into(),
+            true_pose: true_pose.map(Into::into),
             label: step.reading.map(Reading::sign),
             slope_arcs,
             intercept,
@@ -73,7 +75,7 @@ impl Recorder {
                 pruned_mass: doubt.pruned_mass,
                 entropy: doubt.entropy,
             }),
-            fact: self.mission.world.reading(step.pose.site).sign(),
+            fact: self.mission.world.reading(true_pose.unwrap_or(step.pose).site).sign(),
         });
     }
 
@@ -126,7 +128,7 @@ impl Recording {
     /// Names the sample that the planner refused.
     pub fn of(mission: &Mission) -> Result<Self> {
         let mut recorder = Recorder::new(mission.clone());
-        match mission.fly(|step, belief| recorder.take(step, belief)) {
+        match mission.fly_in_sight(|step, truth, belief| recorder.take(step, truth, belief)) {
             Ok(flown) => Ok(recorder.end(flown)),
             Err(refused) => Err(recorder.refusal(&refused)),
         }

@@ -70,6 +70,9 @@ pub struct StepResult {
     pub action: ActionRecord,
     /// Where it ended.
     pub pose: PoseRecord,
+    /// Where the robot truly was, if it errs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub true_pose: Option<PoseRecord>,
     /// What was sensed there: -1, 0 on the boundary, 1; `None` if nothing was.
     pub label: Option<i8>,
     /// The slopes left, as intervals of degrees.

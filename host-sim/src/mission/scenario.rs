@@ -7,6 +7,7 @@ use nalgebra::Point2;
 use planner_core::belief::noise::Reliability;
 use planner_core::belief::noise::trusted_radius;
 use planner_core::belief::sample::{Label, Reading, Sample};
+use planner_core::belief::tolerance::Tolerance;
 use planner_core::belief::version_space::{NoVersionSpace, VersionSpace};
 use planner_core::geometry::area::Area;
 use planner_core::geometry::heading::Heading;
@@ -24,6 +25,7 @@ use crate::mission::names::{CrossingName, FanName, FollowingName, PolicyName, Pr
 use crate::mission::stop::StopTable;
 use crate::mission::strict::{Numbers, Table, wrong};
 use crate::world::World;
+use crate::world::errors::{CUT, Errors};
 use crate::world::noise::{Extent, NoiseModel};
 
 /// The paper's noiseless example (Section V).
@@ -54,6 +56,9 @@ struct File {
     #[serde(default)]
     prior: PriorName,
     noise: Option<Table<NoiseTable>>,
+    #[serde(default)]
+    errors: Table<ErrorsTable>,
+    tolerance: Option<f64>,
     stop: Option<Table<StopTable>>,
     #[serde(default)]
     area: Table<AreaTable>,
@@ -83,6 +88,16 @@ struct NoiseTable {
     p: f64,
     trusted_radius: Option<f64>,
     band: Option<f64>,
+}
+
+/// Standard deviations, metres and radians.
+#[derive(Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct ErrorsTable {
+    motion: f64,
+    turn: f64,
+    position: f64,
+    heading: f64,
 }
 
 #[derive(Deserialize)]
@@ -216,6 +231,9 @@ fn mission(file: &File, overrides: Overrides) -> Result<Mission> {
         return wrong("oracle", found, format!("at most {MOST_BOUNDING} that do"));
     }
     let start = start(&file.start.0, &given, area)?;
+    let errors = errors(&file.errors.0)?;
+    let tolerance = tolerance("tolerance", file.tolerance, errors)?;
+    check_tolerance("tolerance", tolerance, &given, area)?;
     let noise = file.noise.as_ref().map(|table| noise(&table.0)).transpose()?;
     let goal = file.stop.as_ref().map(|table| table.0.goal(algorithm, noise.is_some()));
     let following = file.following.map_or(algorithm.following(), Following::from);
@@ -224,12 +242,13 @@ fn mission(file: &File, overrides: Overrides) -> Result<Mission> {
         algorithm,
         steps,
         seed: overrides.seed.unwrap_or(file.seed),
-        config: Config { area, varrho, crossing, following },
+        config: Config { area, varrho, crossing, following, tolerance },
         grid,
         start,
         world,
         given,
         noise,
+        errors,
         policy: file.policy.into(),
         prior: file.prior.into(),
         goal: goal.transpose()?,
@@ -239,6 +258,70 @@ fn mission(file: &File, overrides: Overrides) -> Result<Mission> {
 fn varrho(weight: f64) -> Result<Varrho> {
     let expected = "a weight in [0, 1), to six decimal places";
     Varrho::new(weight).map_or_else(|| wrong("varrho", weight, expected), Ok)
+}
+
+fn errors(table: &ErrorsTable) -> Result<Errors> {
+    let &ErrorsTable { motion, turn, position, heading } = table;
+    for (name, value) in [("motion", motion), ("position", position)] {
+        deviation(&format!("errors.{name}"), value)?;
+    }
+    for (name, value) in [("turn", turn), ("heading", heading)] {
+        if !(0.0..=1.0).contains(&value) {
+            let expected = "a standard deviation in radians, 0 to 1";
+            return wrong(&format!("errors.{name}"), value, expected);
+        }
+    }
+    Ok(Errors { motion, turn, position, heading })
+}
+
+/// Whether this is a standard deviation of a place.
+///
+/// # Errors
+/// Names `field` and the number.
+pub fn deviation(field: &str, metres: f64) -> Result<f64> {
+    if !(0.0..=100.0).contains(&metres) {
+        return wrong(field, metres, "a standard deviation in metres, 0 to 100");
+    }
+    Ok(metres)
+}
+
+/// The tolerance that a planner is told: as given, else what covers a robot's errors.
+///
+/// # Errors
+/// Names `field` and the number.
+pub fn tolerance(field: &str, metres: Option<f64>, errors: Errors) -> Result<Tolerance> {
+    let metres = metres.unwrap_or(CUT * errors.position);
+    Tolerance::new(metres)
+        .map_or_else(|| wrong(field, metres, "a distance in metres, 0 to 1024"), Ok)
+}
+
+/// Whether something is left to find out under a tolerance.
+///
+/// # Errors
+/// Names `field`, and what the tolerance is too much for.
+pub fn check_tolerance(field: &str, tolerance: Tolerance, given: &Lines, area: Area) -> Result<()> {
+    let found = || format!("{} m", tolerance.metres());
+    if area.inset(tolerance.units()).is_none() {
+        return wrong(field, found(), "less than half the breadth of the area");
+    }
+    let of = |label| {
+        given
+            .samples()
+            .iter()
+            .filter(move |s| s.label == label)
+            .map(|s| Point2::<f64>::from(s.site))
+    };
+    let apart = of(Label::Negative)
+        .flat_map(|n| of(Label::Positive).map(move |p| (p - n).norm()))
+        .fold(0.0, f64::max);
+    if tolerance.metres() >= apart || given.clone().within(tolerance).is_err() {
+        let expected = format!(
+            "less than the oracle's points of different labels are apart, {apart:.3} m, and directions of the line \
+             to within 88 degrees of their middle"
+        );
+        return wrong(field, found(), expected);
+    }
+    Ok(())
 }
 
 fn noise(table: &NoiseTable) -> Result<NoiseModel> {

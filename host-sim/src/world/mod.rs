@@ -1,6 +1,7 @@
 //! What is really there: what a place reads, and the line that divides the plane, if one does; robots
 //! that move and sense in it; shapes in metres.
 
+pub mod errors;
 pub mod noise;
 pub mod polygon;
 pub mod robot;

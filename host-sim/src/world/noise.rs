@@ -1,7 +1,10 @@
 //! How labels are flipped in the simulated world.
 
+use std::convert::Infallible;
+
 use planner_core::belief::noise::{Noise, Reliability, trusted_radius};
 use planner_core::belief::sample::{Reading, Sample};
+use planner_core::belief::tolerance::Tolerance;
 use planner_core::motion::dynamics::Pose;
 use planner_core::planner::Motion;
 use planner_core::robot::body::Body;
@@ -9,6 +12,7 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use crate::world::World;
+use crate::world::robot::Robot;
 
 /// How labels are flipped.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,7 +38,7 @@ impl NoiseModel {
     ///
     /// # Panics
     /// Never: a model holds a probability and a radius within the lattice.
-    pub fn told(&self) -> Noise {
+    pub fn told(&self, tolerance: Tolerance) -> Noise {
         let radius = match self.extent {
             Extent::OutsideBalls(radius) => radius,
             Extent::Band(_) => 0.0,
@@ -42,14 +46,15 @@ impl NoiseModel {
         Noise {
             reliability: Reliability::new(self.p).expect("a probability"),
             trusted_radius: trusted_radius(radius).expect("a radius"),
+            tolerance,
         }
     }
 }
 
 /// A robot whose labels are sometimes flipped: a wrapper around any other.
-pub struct Flipped<B> {
+pub struct Flipped {
     /// The robot.
-    pub body: B,
+    pub body: Box<dyn Robot>,
     /// How labels are flipped.
     pub model: NoiseModel,
     /// What it moves in.
@@ -60,20 +65,17 @@ pub struct Flipped<B> {
     pub rng: ChaCha8Rng,
 }
 
-impl<B: Body> Body for Flipped<B> {
-    type Error = B::Error;
+impl Body for Flipped {
+    type Error = Infallible;
 
-    fn perform(
-        &mut self,
-        motion: &Motion,
-        pose: &mut Pose,
-    ) -> Result<Option<Reading>, Self::Error> {
+    fn perform(&mut self, motion: &Motion, pose: &mut Pose) -> Result<Option<Reading>, Infallible> {
         let Some(reading) = self.body.perform(motion, pose)? else { return Ok(None) };
+        let place = self.body.true_pose().unwrap_or(*pose).site;
         let exposed = match self.model.extent {
             Extent::OutsideBalls(_) => {
-                self.model.told().at(pose.site, &self.given) != Reliability::CERTAIN
+                self.model.told(Tolerance::NONE).at(place, &self.given) != Reliability::CERTAIN
             }
-            Extent::Band(half) => self.world.distance(pose.site).abs() <= half,
+            Extent::Band(half) => self.world.distance(place).abs() <= half,
         };
         // Drawn whether it is used or not, so that a path's noise does not depend on its places.
         let flips = self.rng.random_range(0.0..1.0) >= self.model.p;
@@ -81,6 +83,12 @@ impl<B: Body> Body for Flipped<B> {
             Reading::Side(label) if exposed && flips => Reading::Side(-label),
             reading => reading,
         }))
+    }
+}
+
+impl Robot for Flipped {
+    fn true_pose(&self) -> Option<Pose> {
+        self.body.true_pose()
     }
 }
 

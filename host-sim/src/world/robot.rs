@@ -1,4 +1,4 @@
-//! A simulated robot.
+//! Simulated robots.
 
 use std::convert::Infallible;
 
@@ -10,7 +10,10 @@ use planner_core::robot::body::Body;
 use crate::world::World;
 
 /// A robot that cannot fail.
-pub type Robot = Box<dyn Body<Error = Infallible>>;
+pub trait Robot: Body<Error = Infallible> {
+    /// Where it truly is; `None` if that is where it says.
+    fn true_pose(&self) -> Option<Pose>;
+}
 
 /// A robot that reaches the target of every motion and reads the true label there.
 pub struct Ideal {
@@ -24,5 +27,11 @@ impl Body for Ideal {
     fn perform(&mut self, motion: &Motion, pose: &mut Pose) -> Result<Option<Reading>, Infallible> {
         *pose = motion.target;
         Ok(motion.wants_label.then(|| self.world.reading(pose.site)))
+    }
+}
+
+impl Robot for Ideal {
+    fn true_pose(&self) -> Option<Pose> {
+        None
     }
 }

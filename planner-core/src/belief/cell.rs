@@ -11,7 +11,7 @@
 use crate::belief::consistent_lines::{ConsistentLines, Kept, run_length};
 use crate::belief::edge::Edge;
 use crate::belief::sample::Sample;
-use crate::geometry::lattice::orient;
+use crate::geometry::lattice::{Vector, orient};
 
 /// What a sample did to a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,7 +91,7 @@ impl<const E: usize> LineCell<E> {
 
     /// The lines, beside the samples that the edges name.
     pub fn lines<'a>(&'a self, samples: &'a [Sample]) -> ConsistentLines<'a> {
-        ConsistentLines { edges: self.edges(), samples }
+        ConsistentLines { edges: self.edges(), samples, shift: Vector::default() }
     }
 
     /// Keeps the lines that agree with the edge's sample. One orientation an edge, exact.

@@ -4,7 +4,7 @@
 use crate::belief::edge::Edge;
 use crate::belief::sample::{Label, Sample};
 use crate::geometry::arc::SlopeArc;
-use crate::geometry::lattice::Site;
+use crate::geometry::lattice::{Site, Vector};
 use crate::geometry::line::Bound;
 
 /// What the lines of a cell say about a position.
@@ -66,6 +66,9 @@ pub struct ConsistentLines<'a> {
     pub edges: &'a [Edge],
     /// The buffer whose indices the edges are.
     pub samples: &'a [Sample],
+    /// By how much a further sample of label +1 is shifted as it is taken in, and one of label -1 the other
+    /// way: see [`Tolerance`](crate::belief::tolerance::Tolerance).
+    pub shift: Vector,
 }
 
 impl<'a> ConsistentLines<'a> {
@@ -87,6 +90,23 @@ impl<'a> ConsistentLines<'a> {
     /// edge, at most.
     pub fn certainty(self, q: Site) -> Certainty {
         certainty(self.edges, self.samples, q)
+    }
+
+    /// Whether a label read at a position can tell something: not all lines agree there, and they do not give
+    /// the label as well where it would be taken in.
+    pub fn can_cut(self, q: Site) -> bool {
+        self.certainty(q) == Certainty::Uncertain
+            && (self.shift == Vector::default()
+                || [Label::Positive, Label::Negative].into_iter().any(|label| {
+                    let place = self.place(q, label);
+                    place.is_some_and(|place| self.certainty(place) != Certainty::Certain(label))
+                }))
+    }
+
+    /// Where a label read at a position is taken in; `None` off the lattice, where it tells nothing.
+    pub(crate) fn place(self, q: Site, label: Label) -> Option<Site> {
+        let towards = label == Label::Positive;
+        q.step(if towards { self.shift } else { self.shift.reversed() }).ok()
     }
 
     /// On which side of the vertex before each edge a position lies: [`Bound::at`], by the turn from
@@ -172,7 +192,8 @@ pub fn bounds(
 /// [`ConsistentLines::certainty`], in one place and with its arguments in registers.
 #[inline(never)]
 fn certainty(edges: &[Edge], samples: &[Sample], q: Site) -> Certainty {
-    Certainty::of_values(ConsistentLines { edges, samples }.turns(q))
+    let shift = Vector::default();
+    Certainty::of_values(ConsistentLines { edges, samples, shift }.turns(q))
 }
 
 /// The range of intercepts between the vertices of a set of lines, metres; `None` when a vertical line lies

@@ -14,6 +14,8 @@
 //!
 //! [`Posterior::pruned_mass`]: crate::belief::posterior::Posterior::pruned_mass
 
+use heapless::Vec;
+
 use crate::belief::Refused;
 use crate::belief::cell::LineCell;
 use crate::belief::consistent_lines::{Certainty, ConsistentLines};
@@ -23,9 +25,10 @@ use crate::belief::list::List;
 use crate::belief::noise::{Noise, Reliability};
 use crate::belief::pruned::PrunedMass;
 use crate::belief::sample::{Label, Sample, SampleBuffer};
+use crate::belief::tolerance::Tolerance;
 use crate::belief::version_space::{NoVersionSpace, VersionSpace};
 use crate::belief::weight::{Coarse, LogWeight, Prior};
-use crate::geometry::lattice::Site;
+use crate::geometry::lattice::{Site, Vector};
 
 /// A sequence of true labels that some line realises: the cell of the lines that do, and what it weighs
 /// if the labels seen are given. 24 bytes for `E = 15`.
@@ -97,7 +100,11 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
             start: LineCell::NONE,
             table: List::filled(Hypothesis::NONE),
             prior: Prior::Area,
-            noise: Noise { reliability: Reliability::NONE, trusted_radius: 0 },
+            noise: Noise {
+                reliability: Reliability::NONE,
+                trusted_radius: 0,
+                tolerance: Tolerance::NONE,
+            },
             pruned: PrunedMass::NOTHING,
             outer_cells: 0,
         }
@@ -251,6 +258,46 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
 
     fn certainty(&self, hypothesis: &Hypothesis<E>, q: Site) -> Certainty {
         self.lines(hypothesis).certainty(q)
+    }
+
+    /// As what a label that is read at a site is taken in.
+    ///
+    /// Where positions err, a line is less likely to have told the label the nearer to the site it passes. Two
+    /// labels say so in three steps, one on each side of it.
+    pub(crate) fn parts(&self, site: Site, label: Label) -> Vec<(Sample, Reliability), 2, u8> {
+        let (tolerance, reliability) = (self.noise.tolerance, self.reliability(site));
+        let mut parts = Vec::new();
+        let mut add = |shift: Vector, reliability| {
+            if let Ok(site) = site.step(shift) {
+                let _ = parts.push((Sample { site, label }, reliability)); // there are two at most
+            }
+        };
+        if tolerance == Tolerance::NONE {
+            add(Vector::default(), reliability);
+            return parts;
+        }
+        let towards =
+            |shift: Vector| if label == Label::Positive { shift } else { shift.reversed() };
+        if reliability == Reliability::CERTAIN {
+            let shift = tolerance.shift(self.start().slope_arc());
+            shift.map(towards).into_iter().for_each(|shift| add(shift, reliability));
+            return parts;
+        }
+        let heaviest = self.iter().max_by_key(|it| it.weight());
+        let slopes = heaviest.map_or(self.start(), |it| self.lines(it)).slope_arc();
+        let shift = towards(tolerance.step(slopes));
+        let [near, far] = reliability.halves();
+        add(shift, near);
+        add(shift.reversed(), far);
+        parts
+    }
+
+    /// Takes in a label that is read at a site, as far as it can be believed there.
+    ///
+    /// # Errors
+    /// As [`take`](Self::take).
+    pub fn read(&mut self, site: Site, label: Label) -> Result<(), Refused> {
+        self.parts(site, label).into_iter().try_for_each(|(sample, by)| self.take(sample, by))
     }
 
     /// Takes in a label of some reliability: splits the hypotheses that the sample cuts and weighs

@@ -5,7 +5,8 @@
 //! ([`cell`]). For labels that are true there is one cell, the [`version_space`]; for labels that may be
 //! wrong there is a table of weighed cells ([`hypotheses`]), read as a distribution ([`posterior`]).
 //! What the next labels are expected to tell is an [`outlook`]: a [`picture`] of the one cell, or [`columns`] beside the
-//! table in a [`forecast`]. When that is enough says a [`goal`]. Nothing here knows how the robot moves.
+//! table in a [`forecast`]. When that is enough says a [`goal`], and what
+//! a position that errs is good for a [`tolerance`]. Nothing here knows how the robot moves.
 
 pub mod cell;
 pub(crate) mod column;
@@ -25,6 +26,7 @@ pub mod picture;
 pub mod posterior;
 pub(crate) mod pruned;
 pub mod sample;
+pub mod tolerance;
 pub(crate) mod trapezoids;
 pub mod version_space;
 pub mod weight;

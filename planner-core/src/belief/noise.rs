@@ -1,7 +1,8 @@
 //! How far labels can be believed, and where.
 
 use crate::belief::sample::Sample;
-use crate::belief::weight::LogWeight;
+use crate::belief::tolerance::Tolerance;
+use crate::belief::weight::{Coarse, LogWeight};
 use crate::geometry::lattice::Site;
 
 /// How far a label can be believed: it is true with probability `p`.
@@ -57,6 +58,12 @@ impl Reliability {
         agree / (agree + disagree)
     }
 
+    /// Two reliabilities that come to this one together: of what half a label says, and of the rest.
+    pub(crate) fn halves(self) -> [Self; 2] {
+        let half = LogWeight::from(Coarse::of(0.5 / (1.0 - self.single())));
+        [half, self.log_odds - half].map(|log_odds| Self { log_odds })
+    }
+
     /// The logarithm of the odds, in units of 2^-32.
     #[cfg(any(feature = "wire", test))]
     pub(crate) const fn log_odds(self) -> i64 {
@@ -85,11 +92,14 @@ pub struct Noise {
     /// Within this distance of a given sample's site labels are certain, lattice units; see
     /// [`trusted_radius`].
     pub trusted_radius: u32,
+    /// How far a position may be from where it is reported; three standard deviations.
+    pub tolerance: Tolerance,
 }
 
 impl Noise {
     /// Labels are always true.
-    pub const NONE: Self = Self { reliability: Reliability::CERTAIN, trusted_radius: 0 };
+    pub const NONE: Self =
+        Self { reliability: Reliability::CERTAIN, trusted_radius: 0, tolerance: Tolerance::NONE };
 
     /// The reliability of a label at a site: certain in a trusted ball (the paper's `B_r(p_j)`).
     pub fn at(&self, site: Site, given: &[Sample]) -> Reliability {

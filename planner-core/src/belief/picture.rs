@@ -90,6 +90,8 @@ struct Part {
 pub struct Picture {
     origin: Site,
     axis: Axis,
+    /// Where a label +1 is taken in, from where it is read: see [`ConsistentLines::shift`].
+    shift: Vector,
     vertices: Vec<Vertex, VERTICES, u8>,
     /// The cell's measure, radian metres; its sign is that of the way round.
     measure: f32,
@@ -115,7 +117,7 @@ impl Picture {
             let offset = -value * METRE / (run * axis.unit.per_length);
             let _ = vertices.push(Vertex::new(slope, offset));
         }
-        Self { origin, axis, vertices, measure: 0.0 }.measured()
+        Self { origin, axis, shift: lines.shift, vertices, measure: 0.0 }.measured()
     }
 
     fn measured(mut self) -> Self {
@@ -154,6 +156,19 @@ impl Picture {
         let from = from.get(..part.count).unwrap_or(from);
         let before = before.get(..wrapped).unwrap_or(before);
         from.iter().chain(before).chain(core::slice::from_ref(&part.end))
+    }
+
+    /// The place at which a label is taken in that is read at a site.
+    fn place(&self, site: Site, label: Label) -> [f32; 2] {
+        let by = site - self.origin;
+        let shift = if label == Label::Positive { self.shift } else { self.shift.reversed() };
+        self.axis.see(Vector { x: by.x.saturating_add(shift.x), z: by.z.saturating_add(shift.z) })
+    }
+
+    /// The share above a place.
+    fn share(&self, place: [f32; 2]) -> f32 {
+        let Some(part) = self.part(place, Label::Positive) else { return self.beyond(place) };
+        (measure(part.start, self.rest(&part)) / self.measure).clamp(0.0, 1.0)
     }
 
     /// The share above a place on whose side all lines agree: beyond 0 or 1 by its distance from the
@@ -203,13 +218,17 @@ impl<const N: usize> Foresight for VersionSpace<N> {
 
 impl Prediction for Picture {
     fn share_above(&self, site: Site) -> f32 {
-        let place = self.axis.see(site - self.origin);
-        let Some(part) = self.part(place, Label::Positive) else { return self.beyond(place) };
-        (measure(part.start, self.rest(&part)) / self.measure).clamp(0.0, 1.0)
+        self.share(self.axis.see(site - self.origin))
     }
 
-    fn information(&self, _: Site, share: f32) -> f32 {
-        entropy(share)
+    fn information(&self, site: Site, share: f32) -> f32 {
+        if self.shift == Vector::default() {
+            return entropy(share);
+        }
+        // What either label leaves is more than what agrees with it at the site.
+        let left = |label| self.share(self.place(site, label)).clamp(0.0, 1.0);
+        let bits = |chance: f32, left: f32| -chance * libm::log2f(left.max(chance));
+        bits(share, left(Label::Positive)) + bits(1.0 - share, 1.0 - left(Label::Negative))
     }
 }
 
@@ -222,15 +241,21 @@ impl Outlook for Picture {
 
     fn after(&self, site: Site, label: Label) -> Self {
         let [x, z] = self.axis.see(site - self.origin);
-        let mut vertices = Vec::new();
-        if let Some(part) = self.part([x, z], label) {
+        let mut after = Self { origin: site, vertices: Vec::new(), measure: 0.0, ..*self };
+        let mut add = |vertex: &Vertex| {
+            let offset = vertex.offset + vertex.slope * x - z;
             // A part has a vertex more than the whole at most: a full picture loses its last.
-            for vertex in core::iter::once(&part.start).chain(self.rest(&part)).take(VERTICES) {
-                let offset = vertex.offset + vertex.slope * x - z;
-                let _ = vertices.push(Vertex { offset, ..*vertex });
+            let _ = after.vertices.push(Vertex { offset, ..*vertex });
+        };
+        match self.part(self.place(site, label), label) {
+            Some(part) => {
+                add(&part.start);
+                self.rest(&part).for_each(add);
             }
+            // Taken in where all lines agree, it tells nothing.
+            None => self.vertices.iter().for_each(add),
         }
-        Self { origin: site, axis: self.axis, vertices, measure: 0.0 }.measured()
+        after.measured()
     }
 }
 

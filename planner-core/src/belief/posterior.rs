@@ -10,7 +10,7 @@ use crate::belief::estimate::{Estimates, area, bisector, maximum_margin, share_a
 use crate::belief::goal::Goal;
 use crate::belief::hypotheses::{Hypotheses, Hypothesis};
 use crate::belief::moments::Moments;
-use crate::belief::sample::{Reading, Sample};
+use crate::belief::sample::Reading;
 use crate::belief::weight::LogWeight;
 use crate::belief::{Belief, Refused};
 use crate::geometry::arc::SlopeArc;
@@ -65,7 +65,7 @@ impl<const N: usize, const H: usize, const E: usize> Belief for Hypotheses<N, H,
     /// A reading on the boundary agrees with both sides, and tells nothing here.
     fn observe(&mut self, site: Site, reading: Reading) -> Result<(), Refused> {
         let Reading::Side(label) = reading else { return Ok(()) };
-        self.take(Sample { site, label }, self.reliability(site))
+        self.read(site, label)
     }
 
     /// The bisector of the labels as they were seen, the posterior [mean](Posterior::mean), and the maximum

@@ -6,10 +6,11 @@ use crate::belief::edge::Edge;
 use crate::belief::estimate::{Estimates, area, bisector, centre, maximum_margin, share_above};
 use crate::belief::goal::Goal;
 use crate::belief::sample::{Label, Reading, Sample, SampleBuffer};
+use crate::belief::tolerance::Tolerance;
 use crate::belief::{Belief, Refused};
 use crate::geometry::arc::SlopeArc;
 use crate::geometry::area::Area;
-use crate::geometry::lattice::Site;
+use crate::geometry::lattice::{Site, Vector};
 use crate::geometry::line::Bound;
 
 /// Why samples do not make a version space.
@@ -27,6 +28,9 @@ pub enum NoVersionSpace {
     NotSeparable(usize),
     /// There are more samples than the buffer holds.
     TooMany,
+    /// The samples leave lines of so many directions that further ones, whose positions err, would tell
+    /// nothing.
+    TooVague,
 }
 
 impl core::fmt::Display for NoVersionSpace {
@@ -36,6 +40,7 @@ impl core::fmt::Display for NoVersionSpace {
             Self::OneLabel => f.write_str("the samples share one label"),
             Self::NotSeparable(i) => write!(f, "no line separates the samples 0 to {i}"),
             Self::TooMany => f.write_str("there are more samples than the buffer holds"),
+            Self::TooVague => f.write_str("positions err too much for what the samples leave open"),
         }
     }
 }
@@ -51,6 +56,9 @@ pub struct VersionSpace<const N: usize> {
     /// How many of them it was made of. A whole word, so that the cell begins at one.
     given: usize,
     cell: LineCell<N>,
+    /// How far off a position may be, and by how much that shifts the next sample.
+    tolerance: Tolerance,
+    shift: Vector,
 }
 
 impl<const N: usize> VersionSpace<N> {
@@ -82,7 +90,23 @@ impl<const N: usize> VersionSpace<N> {
         if samples.iter().all(|s| s.label == first.label) {
             return Err(NoVersionSpace::OneLabel);
         }
-        Ok(Self { samples: buffer, given: samples.len(), cell })
+        let (tolerance, shift) = (Tolerance::NONE, Vector::default());
+        Ok(Self { samples: buffer, given: samples.len(), cell, tolerance, shift })
+    }
+
+    /// The same, for further samples whose positions may be off by so much. Those it was made of are where
+    /// they are.
+    ///
+    /// # Errors
+    /// [`NoVersionSpace::TooVague`].
+    pub fn within(self, tolerance: Tolerance) -> Result<Self, NoVersionSpace> {
+        let shift = tolerance.shift(self.slope_arc()).ok_or(NoVersionSpace::TooVague)?;
+        Ok(Self { tolerance, shift, ..self })
+    }
+
+    /// How far off a position may be.
+    pub const fn tolerance(&self) -> Tolerance {
+        self.tolerance
     }
 
     /// The samples, in the order in which they came.
@@ -104,7 +128,7 @@ impl<const N: usize> VersionSpace<N> {
         &self.cell
     }
 
-    /// Takes a sample. One orientation an edge.
+    /// Takes a sample as it is. One orientation an edge.
     ///
     /// # Errors
     /// [`Refused`], with the version space as it was.
@@ -126,6 +150,8 @@ impl<const N: usize> VersionSpace<N> {
     /// where all lines agree it tells nothing and is passed over, and is true as long as one of them
     /// passes here.
     ///
+    /// Under a [tolerance](Self::within) the sample is taken in where it is true of any position within it.
+    ///
     /// # Errors
     /// As [`insert`](Self::insert), never for a true reading.
     pub fn take(&mut self, site: Site, reading: Reading, either: Label) -> Result<Label, Refused> {
@@ -139,12 +165,18 @@ impl<const N: usize> VersionSpace<N> {
                 Certainty::Certain(label) => -label,
             },
         };
-        self.insert(Sample { site, label }).map(|_| label)
+        if let Some(site) = self.lines().place(site, label)
+            && self.insert(Sample { site, label })? == Cut::Smaller
+        {
+            // Arcs only narrow: there is always one.
+            self.shift = self.tolerance.shift(self.slope_arc()).unwrap_or(self.shift);
+        }
+        Ok(label)
     }
 
     /// The lines left, to be read off.
     pub fn lines(&self) -> ConsistentLines<'_> {
-        self.cell.lines(&self.samples)
+        ConsistentLines { shift: self.shift, ..self.cell.lines(&self.samples) }
     }
 
     /// The vertices of the version space, in cyclic order.

@@ -41,8 +41,8 @@ pub(crate) fn inverse_sqrt(x: f32) -> f32 {
 /// A unit vector, and the inverse of the length that it had.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct UnitVector {
-    x: f32,
-    z: f32,
+    pub(crate) x: f32,
+    pub(crate) z: f32,
     pub(crate) per_length: f32,
 }
 

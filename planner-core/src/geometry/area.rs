@@ -24,6 +24,17 @@ impl Area {
         (min.x() < max.x() && min.z() < max.z()).then_some(Self { min, max })
     }
 
+    /// The part that is at least so many lattice units away from the border: where to aim if motions end that
+    /// far off. `None` if that has no inside.
+    pub fn inset(&self, margin: u32) -> Option<Self> {
+        let margin = i32::try_from(margin).ok()?;
+        let inwards = |site: Site, by: i32| {
+            let (x, z) = (site.x().checked_add(by)?, site.z().checked_add(by)?);
+            Site::new(x, z).ok()
+        };
+        Self::new(inwards(self.min, margin)?, inwards(self.max, -margin)?)
+    }
+
     /// The corner of smallest coordinates.
     pub const fn min(&self) -> Site {
         self.min

@@ -35,7 +35,7 @@ use crate::planner::{Motion, StopReason};
 
 /// The version of this protocol. The layout of [`Request::Hello`] and of its frame is that of every
 /// version from 2 on.
-pub const PROTOCOL: u16 = 4;
+pub const PROTOCOL: u16 = 5;
 
 /// Given samples that a setup can hold.
 pub const MOST_GIVEN: usize = 16;
@@ -272,6 +272,7 @@ mod tests {
     use super::*;
     use crate::belief::noise::Reliability;
     use crate::belief::sample::Label;
+    use crate::belief::tolerance::Tolerance;
     use crate::geometry::area::Area;
     use crate::geometry::heading::Heading;
     use crate::geometry::lattice::{LIMIT, Site, Vector};
@@ -303,7 +304,7 @@ mod tests {
         Setup {
             protocol: u16::MAX,
             algorithm: Algorithm::Scc {
-                noise: Noise { reliability, trusted_radius: u32::MAX },
+                noise: Noise { reliability, trusted_radius: u32::MAX, tolerance: Tolerance::NONE },
                 policy: Policy::MixtureOfOwn,
                 prior: Prior::Sequences,
             },
@@ -312,6 +313,7 @@ mod tests {
                 varrho: Varrho::new(0.999_999).unwrap(),
                 crossing: Crossing::AcrossBisector,
                 following: Following::AlongBisector,
+                tolerance: Tolerance::NONE,
             },
             grid: Grid::Fine,
             capacity: Capacity { samples: u16::MAX, hypotheses: u16::MAX },

@@ -52,6 +52,12 @@ impl Setup {
         Ok(())
     }
 
+    /// What its given samples leave.
+    fn space<const N: usize>(&self) -> Result<VersionSpace<N>, Declined> {
+        let space = VersionSpace::new(&self.given);
+        space.and_then(|space| space.within(self.config.tolerance)).map_err(Declined::Given)
+    }
+
     /// Algorithm 1 for this mission.
     ///
     /// # Errors
@@ -60,7 +66,7 @@ impl Setup {
     pub fn cfc<const N: usize>(&self) -> Result<Prepared<Cfc<Unicycle, N>>, Declined> {
         let capacity = Capacity { samples: N as u16, hypotheses: 1 };
         self.check(capacity)?;
-        let space = VersionSpace::new(&self.given).map_err(Declined::Given)?;
+        let space = self.space()?;
         Ok(Prepared { planner: Cfc::new(self.config, self.grid.into(), space), capacity })
     }
 
@@ -76,7 +82,7 @@ impl Setup {
     ) -> Result<Prepared<Lookahead<Unicycle, VersionSpace<N>>>, Declined> {
         let capacity = Capacity { samples: N as u16, hypotheses: 1 };
         self.check(capacity)?;
-        let space = VersionSpace::new(&self.given).map_err(Declined::Given)?;
+        let space = self.space()?;
         let planner = Lookahead::new(self.config, self.grid.into(), space);
         let planner = planner.within(evaluations).until(goal);
         Ok(Prepared { planner, capacity })

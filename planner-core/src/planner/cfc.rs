@@ -78,7 +78,7 @@ impl<D: Dynamics, const N: usize> Cfc<D, N> {
     }
 
     fn problem_of(&self, phase: Phase, slopes: SlopeArc) -> Problem<'_, ArcRule> {
-        let Config { area, varrho, .. } = self.config;
+        let (area, varrho) = (self.config.ground(), self.config.varrho);
         let rule = match phase {
             Phase::Crossing => {
                 self.config.crossing_rule(slopes, first_to_second(self.space.samples()))
@@ -115,9 +115,6 @@ impl<D: Dynamics, const N: usize> Planner for Cfc<D, N> {
     fn plan(&mut self, pose: Pose) -> Plan {
         if self.space.is_full() {
             return Plan::Stop(StopReason::SamplesFull);
-        }
-        if !self.config.area.contains(pose.site) {
-            return Plan::Stop(StopReason::OutsideArea);
         }
         let (found, phase, effort) = self.find(pose);
         self.phase = phase;
@@ -161,6 +158,7 @@ mod tests {
 
     use super::*;
     use crate::belief::sample::Sample;
+    use crate::belief::tolerance::Tolerance;
     use crate::geometry::area::Area;
     use crate::geometry::lattice::Site;
     use crate::motion::unicycle::Unicycle;
@@ -188,6 +186,7 @@ mod tests {
             varrho: Varrho::PAPER,
             crossing: Crossing::default(),
             following: FOLLOWING,
+            tolerance: Tolerance::NONE,
         };
         let space = VersionSpace::new(&corners.map(sample)).unwrap();
         Cfc::new(config, Unicycle::paper(), space)
@@ -266,14 +265,33 @@ mod tests {
     }
 
     #[test]
-    fn a_full_buffer_and_a_place_outside_end_the_mission() {
+    fn a_full_buffer_ends_the_mission() {
         let mut planner = planner::<5>();
-        assert_eq!(planner.plan(pose(-1.0, 5.0)), Plan::Stop(StopReason::OutsideArea));
         assert!(matches!(planner.plan(pose(1.0, 1.0)), Plan::Move(_)));
         see(&mut planner, 4.0, 3.0, Label::Negative);
         assert_eq!(planner.plan(pose(4.0, 3.0)), Plan::Stop(StopReason::SamplesFull));
         let refused = planner.observe(pose(4.0, 4.0), Some(Label::Negative.into()));
         assert!(matches!(refused, Err(Refused::Full(_))));
+    }
+
+    #[test]
+    fn from_outside_it_comes_back() {
+        let mut planner = planner::<16>();
+        let area = planner.config.area;
+        for n in 0..400_u32 {
+            let (sin, cos) = libm::sincos(f64::from(n));
+            let heading = crate::geometry::heading::Heading(n.wrapping_mul(2_654_435_761));
+            let off = 7.1 + f64::from(n) / 10.0;
+            let mut pose = Pose { heading, ..pose(5.0 + off * cos, 5.0 + off * sin) };
+            // Two turns, and drives of two metres by an eighth of which it comes nearer at least.
+            let mut motions = 0;
+            while !area.contains(pose.site) {
+                let Plan::Move(motion) = planner.plan(pose) else { panic!("{n}: no way back") };
+                assert!(!motion.wants_label || area.contains(motion.target.site));
+                (pose, motions) = (motion.target, motions + 1);
+                assert!(motions <= 3 + n / 10, "{n}: {motions}");
+            }
+        }
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! What a mission fixes beforehand: where it may go, what motion costs, how directions are held.
 
 use crate::belief::sample::Sample;
+use crate::belief::tolerance::Tolerance;
 use crate::geometry::arc::SlopeArc;
 use crate::geometry::area::Area;
 use crate::geometry::lattice::Vector;
@@ -49,9 +50,17 @@ pub struct Config {
     pub crossing: Crossing,
     /// How P2 follows the boundary.
     pub following: Following,
+    /// How far a position may be from where it is reported: motions keep so far from the area's border. A
+    /// [version space](crate::belief::version_space::VersionSpace::within) is told besides.
+    pub tolerance: Tolerance,
 }
 
 impl Config {
+    /// Where motions may end: the area but for a margin, if that leaves any of it.
+    pub(crate) fn ground(&self) -> Area {
+        self.area.inset(self.tolerance.units()).unwrap_or(self.area)
+    }
+
     /// The directions in which P1, or P3, looks for the opposite label when the boundary's slopes lie
     /// in an arc; `oracle` is the direction from the first oracle point to the second.
     pub(crate) fn crossing_rule(&self, slopes: SlopeArc, oracle: Option<Vector>) -> ArcRule {

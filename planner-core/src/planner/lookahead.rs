@@ -21,13 +21,14 @@ use crate::belief::Refused;
 use crate::belief::goal::Goal;
 use crate::belief::outlook::{Foresight, Outlook, Prediction};
 use crate::belief::sample::{Label, Reading};
+use crate::belief::tolerance::Tolerance;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Pose, Side};
 use crate::planner::config::Config;
 use crate::planner::{Motion, Plan, Planner, StopReason};
 use crate::search::direction_rule::ArcRule;
 use crate::search::lookout::{ENOUGH, Lookout, Prospect, Prospects, Sought};
-use crate::search::objective::{Effort, Varrho};
+use crate::search::objective::{Effort, LOOKS, Varrho};
 use crate::search::problem::Problem;
 use crate::search::recovery::{DeadEnd, Found, solve_or_recover};
 
@@ -45,7 +46,7 @@ const SECOND_CIRCLES: u16 = 3;
 /// Where no label is worth as much, turns in place are considered.
 const POOR: f32 = 0.9;
 
-/// Rays that the recovery ladder looks at, at most.
+/// Rays that the recovery ladder looks at, at most, where positions do not err.
 const LADDER_LOOKS: u32 = 128;
 
 /// Looks two labels ahead, with `D`'s dynamics and what `B` knows and expects.
@@ -139,10 +140,13 @@ impl<D: Dynamics, B: Foresight> Lookahead<D, B> {
 
     /// What the ladder finds where no label is in reach.
     fn recover(&self, pose: Pose) -> (Result<Found, DeadEnd>, Effort) {
-        let Config { area, varrho, .. } = self.config;
+        let (area, varrho) = (self.config.ground(), self.config.varrho);
         let rule = ArcRule::default();
         let problem = Problem { lines: self.foresight.ground(), area, varrho, rule };
-        let mut search = problem.search(&self.dynamics, pose, Effort::of(LADDER_LOOKS));
+        // With a tolerance it comes here often, and rays are passed over by turns that get smaller.
+        let exact = self.config.tolerance == Tolerance::NONE;
+        let effort = Effort::of(if exact { LADDER_LOOKS } else { LOOKS });
+        let mut search = problem.search(&self.dynamics, pose, effort);
         let search = search.open();
         let found = solve_or_recover(&problem, search, None);
         (found, search.effort)
@@ -164,15 +168,12 @@ impl<D: Dynamics, B: Foresight> Planner for Lookahead<D, B> {
     type Belief = B::Belief;
 
     fn plan(&mut self, pose: Pose) -> Plan {
-        let Config { area, varrho, .. } = self.config;
-        if self.goal.is_some_and(|goal| self.belief().meets(goal, area)) {
+        let (area, varrho) = (self.config.ground(), self.config.varrho);
+        if self.goal.is_some_and(|goal| self.belief().meets(goal, self.config.area)) {
             return Plan::Stop(StopReason::Known);
         }
         if self.belief().is_full() {
             return Plan::Stop(StopReason::SamplesFull);
-        }
-        if !area.contains(pose.site) {
-            return Plan::Stop(StopReason::OutsideArea);
         }
         self.foresight.prepare();
         let (dynamics, evaluations) = (&self.dynamics, self.evaluations);
@@ -231,6 +232,7 @@ mod tests {
             varrho: VARRHO,
             crossing: Crossing::default(),
             following: cfc::FOLLOWING,
+            tolerance: Tolerance::NONE,
         }
     }
 
@@ -271,7 +273,11 @@ mod tests {
         }
 
         fn doubtful(self) -> Lookahead<Unicycle, Forecast<36, 529>> {
-            let noise = Noise { reliability: Reliability::new(0.8).unwrap(), trusted_radius: 0 };
+            let noise = Noise {
+                reliability: Reliability::new(0.8).unwrap(),
+                trusted_radius: 0,
+                tolerance: Tolerance::NONE,
+            };
             let forecast = Forecast::new(&self.given(), Prior::Area, noise).unwrap();
             Lookahead::new(config(), Unicycle::paper(), forecast)
         }
@@ -357,8 +363,6 @@ mod tests {
                 Some(Goal { accuracy: Accuracy::SlopeArc(most), level: 900_000 })
             };
             let stops = |plan, reason| assert_eq!(plan, Plan::Stop(reason));
-            stops(field.true_labels::<64>().plan(outside), StopReason::OutsideArea);
-            stops(field.doubtful().plan(outside), StopReason::OutsideArea);
             stops(field.true_labels::<4>().plan(start), StopReason::SamplesFull);
             // What is known is known also where there is no more room, and outside.
             stops(field.true_labels::<4>().until(arc(89.0)).plan(outside), StopReason::Known);
@@ -366,6 +370,8 @@ mod tests {
             let few = |it: Plan| assert!(matches!(it, Plan::Move(_)));
             few(field.true_labels::<64>().until(arc(5.0)).plan(start));
             few(field.doubtful().until(arc(5.0)).plan(start));
+            few(field.true_labels::<64>().plan(outside));
+            few(field.doubtful().plan(outside));
         }
     }
 }

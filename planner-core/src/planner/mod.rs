@@ -90,7 +90,7 @@ pub enum StopReason {
     Resolution,
     /// The sample buffer is full.
     SamplesFull,
-    /// The agent stands outside the mission area.
+    /// The agent is outside the mission area, and no motion leads back.
     OutsideArea,
     /// There is uncertain ground, but no motion that leads towards it: the border is in the way, or the
     /// agent cannot turn.
@@ -107,6 +107,7 @@ impl From<DeadEnd> for StopReason {
             DeadEnd::Resolution => Self::Resolution,
             DeadEnd::Cornered => Self::Cornered,
             DeadEnd::Undecided => Self::Undecided,
+            DeadEnd::Outside => Self::OutsideArea,
         }
     }
 }

@@ -109,7 +109,7 @@ impl<D: Dynamics, const N: usize, const H: usize> Scc<D, N, H> {
     }
 
     fn on<'a, R>(&self, lines: ConsistentLines<'a>, rule: R) -> Problem<'a, R> {
-        Problem { lines, area: self.config.area, varrho: self.config.varrho, rule }
+        Problem { lines, area: self.config.ground(), varrho: self.config.varrho, rule }
     }
 
     /// Equation 9: the action with the most votes, and of equals the one of smallest index.
@@ -187,9 +187,6 @@ impl<D: Dynamics, const N: usize, const H: usize> Planner for Scc<D, N, H> {
     fn plan(&mut self, pose: Pose) -> Plan {
         if self.hypotheses.is_full() {
             return Plan::Stop(StopReason::SamplesFull);
-        }
-        if !self.config.area.contains(pose.site) {
-            return Plan::Stop(StopReason::OutsideArea);
         }
         let stage = match (self.policy, self.is_even()) {
             (Policy::MixtureOfOwn, true) => Stage::P1,

@@ -69,6 +69,16 @@ impl<P: Planner, B: Body> Agent<P, B> {
         self.pose
     }
 
+    /// What it moves.
+    pub const fn body(&self) -> &B {
+        &self.body
+    }
+
+    /// Says where the agent is, as after a drive that failed: the mission goes on from there.
+    pub const fn relocate(&mut self, pose: Pose) {
+        self.pose = pose;
+    }
+
     /// Plans one motion, makes it, and takes in what was sensed at its end.
     ///
     /// # Errors

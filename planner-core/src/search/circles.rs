@@ -206,24 +206,33 @@ impl<D: Dynamics> Search<'_, D> {
         }
         let action = grid.action(ray.index, speed);
         let choice = |target| (Choice { action, target, objective: value }, rank);
-        let only_this = Verdict::Infeasible { turn: 0, on_inner_circles_too: false };
         if hunt.rule.admits(ray.step) {
-            let Some(target) = self.uncertain_end(&ray, speed) else { return only_this };
+            let target = match self.worthwhile_end(&ray, speed) {
+                Ok(target) => target,
+                Err(turn) => return Verdict::Infeasible { turn, on_inner_circles_too: false },
+            };
             hunt.found.best = Some(choice(target));
             return Verdict::Best;
         }
         if hunt.keeps_forbidden && is_better(value, rank, hunt.found.best_forbidden.as_ref()) {
-            let Some(target) = self.uncertain_end(&ray, speed) else { return only_this };
+            let target = match self.worthwhile_end(&ray, speed) {
+                Ok(target) => target,
+                Err(turn) => return Verdict::Infeasible { turn, on_inner_circles_too: false },
+            };
             hunt.found.best_forbidden = Some(choice(target));
         }
         let turn = hunt.rule.forbidden_until(heading, ray.step, side);
         Verdict::Infeasible { turn, on_inner_circles_too: true }
     }
 
-    /// The pose at a ray's end, if that is inside the area and on uncertain ground.
-    fn uncertain_end(&mut self, ray: &Ray, speed: u16) -> Option<Pose> {
-        let target = ray.arrive(self.pose.site, speed).ok()?;
+    /// The pose at a ray's end, if that is inside the area and a label there can tell something; else a turn
+    /// within which it is the same.
+    fn worthwhile_end(&mut self, ray: &Ray, speed: u16) -> Result<Pose, u32> {
+        let target = ray.arrive(self.pose.site, speed).map_err(|_| 0_u32)?;
         self.effort.examined += 1;
-        self.view.is_uncertain(target.site).then_some(target)
+        if self.view.is_uncertain(target.site) {
+            return Ok(target);
+        }
+        Err(self.view.tells_nothing_until(target.site))
     }
 }

@@ -9,7 +9,7 @@ use core::num::NonZeroU32;
 
 use heapless::Vec;
 
-use crate::belief::consistent_lines::{Certainty, ConsistentLines};
+use crate::belief::consistent_lines::ConsistentLines;
 use crate::belief::outlook::Prediction;
 use crate::geometry::area::Area;
 use crate::geometry::lattice::UNITS_PER_METRE;
@@ -229,10 +229,7 @@ impl Prospects {
         };
         let rank = self.list.iter().take_while(|old| old.worth >= new.worth).count();
         let (better, _) = self.list.split_at_checked(rank).unwrap_or_default();
-        if rank >= PROSPECTS
-            || better.iter().any(is_near)
-            || lines.certainty(new.target.site) != Certainty::Uncertain
-        {
+        if rank >= PROSPECTS || better.iter().any(is_near) || !lines.can_cut(new.target.site) {
             return;
         }
         // What does not find room is the worst.

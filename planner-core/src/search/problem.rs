@@ -14,7 +14,7 @@
 //! - **By the rule.** Directions that it forbids are passed over in the same way
 //!   ([`direction_rule`](crate::search::direction_rule)).
 
-use crate::belief::consistent_lines::{Certainty, ConsistentLines};
+use crate::belief::consistent_lines::ConsistentLines;
 use crate::geometry::area::Area;
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::search::circles::Search;
@@ -111,7 +111,7 @@ impl<'a, R: DirectionRule> Problem<'a, R> {
                     speed > 0
                         && self.area.contains(target.site)
                         && self.rule.admits(ray.step)
-                        && self.lines.certainty(target.site) == Certainty::Uncertain
+                        && self.lines.can_cut(target.site)
                 };
                 if solution.best.is_none_or(|b| objective > b.objective)
                     && let Some(target) = ray.arrive(pose.site, speed).ok().filter(feasible)

@@ -14,10 +14,13 @@
 //!    it both ways, and between.
 //! 5. Nothing: there is a reason why, which the planner stops with.
 //!
+//! From outside the area, where an error has brought it, (1) and (3) may lead back inside. Else it drives
+//! towards the middle of the area, or turns until it can.
+//!
 //! **It ends**, though it has no state. What is known does not change before the next sample, and each
 //! motion lowers a measure: far, the distance to uncertain ground and then the turns to the next drive;
 //! near, the turns of (3), or where it has none the motions of (4), which stay near. What is near never
-//! becomes far again.
+//! becomes far again. Outside, the distance to the middle and then the turns; inside, no motion leads out.
 
 use crate::geometry::approximate::{heading_of, single, sqrt};
 use crate::geometry::heading::Heading;
@@ -62,6 +65,8 @@ pub(crate) enum DeadEnd {
     Cornered,
     /// A plan may look at so many rays, and none of these was a way on.
     Undecided,
+    /// The agent is outside the area, and no motion leads back.
+    Outside,
 }
 
 /// An action, where it leads, and the rung on which it was found.
@@ -82,23 +87,26 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule>(
     before: Option<Findings>,
 ) -> Result<Found, DeadEnd> {
     let found = |recovery| move |(action, target)| Found { recovery, action, target };
-    let Findings { best, best_forbidden } = search.best(&problem.rule, before);
+    let (area, pose) = (problem.area, search.pose);
+    let mut ladder = Ladder { problem: problem.undirected(), search };
+    // Before the search has used up its looks.
+    let home = (!area.contains(pose.site)).then(|| ladder.leg(pose, area.middle() - pose.site));
+    let Findings { best, best_forbidden } = ladder.search.best(&problem.rule, before);
     if let Some((best, _)) = best {
         return Ok(found(None)((best.action, best.target)));
     }
     if let Some((best, _)) = best_forbidden {
         return Ok(found(Some(Recovery::Undirected))((best.action, best.target)));
     }
-    let mut ladder = Ladder { problem: problem.undirected(), search };
     // Where nothing is in reach no turn finds anything, so that the order does not matter.
     if let Some(turn) = ladder.reorient() {
         return Ok(found(Some(Recovery::Reorient))(turn));
     }
     let way = ladder.search.view.way_out().ok_or(DeadEnd::Resolution)?;
-    let leg = if ladder.search.view.is_far(way) {
-        ladder.leg(ladder.search.pose, way).ok_or(DeadEnd::Cornered)
-    } else {
-        ladder.transit()
+    let leg = match home {
+        Some(home) => home.ok_or(DeadEnd::Outside),
+        None if ladder.search.view.is_far(way) => ladder.leg(pose, way).ok_or(DeadEnd::Cornered),
+        None => ladder.transit(),
     };
     leg.map(found(Some(Recovery::Transit)))
 }
@@ -242,9 +250,11 @@ impl<D: Dynamics> Ladder<'_, '_, '_, D> {
         }
         for ray in rays {
             for speed in (1..grid.speeds()).rev().filter(|speed| nears(&ray, *speed, goal)) {
-                if let Ok(target) = ray.arrive(pose.site, speed)
-                    && self.problem.area.contains(target.site)
-                {
+                let stays = |target: &Pose| {
+                    self.problem.area.contains(target.site)
+                        || !self.problem.area.contains(pose.site)
+                };
+                if let Some(target) = ray.arrive(pose.site, speed).ok().filter(stays) {
                     return Drive::Leg((grid.action(ray.index, speed), target));
                 }
             }

@@ -9,7 +9,7 @@ use heapless::Vec;
 use crate::belief::consistent_lines::{Certainty, ConsistentLines};
 use crate::belief::sample::Label;
 use crate::geometry::angle::Angle;
-use crate::geometry::approximate::single;
+use crate::geometry::approximate::{UnitVector, single};
 use crate::geometry::area::Area;
 use crate::geometry::heading::Heading;
 use crate::geometry::lattice::{Site, Vector};
@@ -55,7 +55,7 @@ pub(crate) struct View<'a> {
 }
 
 impl<'a> View<'a> {
-    /// From a position inside the area, for motions on some grid; nothing is seen before
+    /// From a position, for motions on some grid; nothing is seen before
     /// [`open`](Self::open).
     pub(crate) fn new(
         lines: ConsistentLines<'a>,
@@ -135,16 +135,36 @@ impl<'a> View<'a> {
             if (inside as f32) < reach {
                 let _ = self.sides.push(side);
             }
-            if (inside as f32) < self.step {
+            // From beyond it a longer motion may come back to this side.
+            if inside >= 0 && (inside as f32) < self.step {
                 side.cross(1.0 / self.step, self.margin);
                 let _ = self.near_sides.push(side);
             }
         }
     }
 
-    /// Whether a position is inside the area and on uncertain ground. Exact.
+    /// Whether a position is inside the area, and a label there can tell something. Exact.
     pub(crate) fn is_uncertain(&self, site: Site) -> bool {
-        self.area.contains(site) && self.lines.certainty(site) == Certainty::Uncertain
+        self.area.contains(site) && self.lines.can_cut(site)
+    }
+
+    /// How far a turn keeps the circle where a label tells nothing because positions err, if it does at a
+    /// position: as long as no line comes nearer than a sample is shifted beyond it. A turn of an angle moves a
+    /// position by the angle's share of the radius at most.
+    pub(crate) fn tells_nothing_until(&self, site: Site) -> u32 {
+        let shift = self.lines.shift;
+        if shift == Vector::default() {
+            return 0;
+        }
+        let slack = self.lines.bounds().map(|bound| {
+            let per_length = UnitVector::of(bound.along).per_length;
+            let (shifted, value) = (bound.along.cross(shift), bound.at(site));
+            (single(shifted) - single(value).abs()) * per_length
+        });
+        let least = slack.fold(f32::INFINITY, |a, b| if b < a { b } else { a });
+        // Less for rounding, and no more than a radian.
+        let turn = (0.999 * least - 2.0) * self.inverse_radius;
+        Angle::radians(if turn < 1.0 { turn } else { 1.0 }).turn()
     }
 
     /// Whether what lies this way is further than one motion reaches.

@@ -1,0 +1,127 @@
+//! A robot that errs: its motions end elsewhere than they should, and it is elsewhere than it says.
+
+use std::convert::Infallible;
+
+use nalgebra::{Point2, Vector2};
+use planner_core::belief::sample::Reading;
+use planner_core::geometry::heading::Heading;
+use planner_core::geometry::lattice::Site;
+use planner_core::motion::dynamics::Pose;
+use planner_core::planner::Motion;
+use planner_core::robot::body::Body;
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+
+use crate::world::World;
+use crate::world::robot::Robot;
+
+/// Gaussian errors are cut at so many standard deviations.
+pub const CUT: f64 = 3.0;
+
+/// How a robot errs: standard deviations, metres an axis and radians.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Errors {
+    /// Of where a drive ends.
+    pub motion: f64,
+    /// Of how far a motion turns.
+    pub turn: f64,
+    /// Of the position that is reported.
+    pub position: f64,
+    /// Of the heading that is reported.
+    pub heading: f64,
+}
+
+/// A robot that errs, and reads the true label where it truly is.
+pub struct Erring {
+    world: World,
+    errors: Errors,
+    rng: ChaCha8Rng,
+    truth: Pose,
+}
+
+impl Erring {
+    /// A robot that reports a pose at the start: it is as far from there as from any other it reports.
+    pub fn new(world: World, errors: Errors, start: Pose, mut rng: ChaCha8Rng) -> Self {
+        let truth = displaced(start, spread(&mut rng, errors.position), 0.0);
+        Self { world, errors, rng, truth }
+    }
+}
+
+impl Body for Erring {
+    type Error = Infallible;
+
+    /// Turns and drives from where it truly is by as much as the motion does from where it is taken to be, and by
+    /// its errors.
+    fn perform(&mut self, motion: &Motion, pose: &mut Pose) -> Result<Option<Reading>, Infallible> {
+        let Self { errors, truth, .. } = *self;
+        let turn = Heading(motion.target.heading.0.wrapping_sub(pose.heading.0)).radians();
+        let drive = metres(motion.target.site) - metres(pose.site);
+        let off = Heading(truth.heading.0.wrapping_sub(pose.heading.0)).radians();
+        let turned = gauss(&mut self.rng, errors.turn);
+        let slipped = spread(&mut self.rng, errors.motion);
+        let moves = drive != Vector2::zeros();
+        let drive = rotated(drive, off + turned) + if moves { slipped } else { Vector2::zeros() };
+        self.truth = displaced(truth, drive, turn + turned);
+        let reported = spread(&mut self.rng, errors.position);
+        *pose = displaced(self.truth, reported, gauss(&mut self.rng, errors.heading));
+        Ok(motion.wants_label.then(|| self.world.reading(self.truth.site)))
+    }
+}
+
+impl Robot for Erring {
+    fn true_pose(&self) -> Option<Pose> {
+        Some(self.truth)
+    }
+}
+
+fn metres(site: Site) -> Point2<f64> {
+    Point2::from(site)
+}
+
+fn rotated(v: Vector2<f64>, angle: f64) -> Vector2<f64> {
+    let (sin, cos) = libm::sincos(angle);
+    Vector2::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y)
+}
+
+/// A pose some way off; where that is off the lattice, at the same site.
+fn displaced(pose: Pose, by: Vector2<f64>, turn: f64) -> Pose {
+    let site = Site::try_from(metres(pose.site) + by).unwrap_or(pose.site);
+    let turn = Heading::from_radians(turn).unwrap_or(Heading(0));
+    Pose { site, heading: pose.heading.turned(turn) }
+}
+
+/// Two independent errors: no further than the cut off.
+fn spread(rng: &mut ChaCha8Rng, deviation: f64) -> Vector2<f64> {
+    loop {
+        // Box and Muller, by libm: the same on every machine.
+        let radius = libm::sqrt(-2.0 * libm::log(1.0 - rng.random_range(0.0..1.0)));
+        let (sin, cos) = libm::sincos(rng.random_range(0.0..std::f64::consts::TAU));
+        if radius <= CUT {
+            return Vector2::new(cos, sin) * (radius * deviation);
+        }
+    }
+}
+
+/// One error.
+fn gauss(rng: &mut ChaCha8Rng, deviation: f64) -> f64 {
+    spread(rng, deviation).x
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng as _;
+
+    use super::*;
+
+    #[test]
+    fn errors_have_their_deviation_and_their_cut() {
+        let mut rng = ChaCha8Rng::seed_from_u64(3);
+        let drawn: Vec<_> = (0..100_000).map(|_| spread(&mut rng, 0.5)).collect();
+        let mean = drawn.iter().sum::<Vector2<f64>>() / 1e5;
+        let square = drawn.iter().map(|v| v.x * v.x).sum::<f64>() / 1e5;
+        assert!(mean.norm() < 0.01, "{mean}");
+        // The cut takes 1 % of the drawn, and a little of the deviation.
+        assert!((square.sqrt() - 0.5).abs() < 0.02, "{}", square.sqrt());
+        assert!(drawn.iter().all(|v| v.norm() <= 0.5 * CUT));
+    }
+}

@@ -1,0 +1,168 @@
+//! Positions that err: how a sample is taken in whose true place is near the one that was reported.
+//!
+//! Let the true position be within `e` of the reported `q`, and the unit normals `n` of all lines that are
+//! left, which point to their +1 sides, within `d` of the middle one `b`. A line that has the true position
+//! on its +1 side has `q` no further than `e` on its other. Of the place `q + (e / cos d) b` it is
+//!
+//! ```text
+//!   n . (q + (e / cos d) b) + c  >=  -e + (e / cos d) (n . b)  >=  -e + e  =  0
+//! ```
+//!
+//! so the label is true there whichever of the positions within `e` is the true one. A label +1 is taken
+//! in at the place *shifted* by this, a label -1 at the one shifted as far the other way, each as an exact
+//! sample: the truth is never cut off, and cells stay what they are. As the lines' arc narrows, `d` falls and
+//! the shift comes down to the tolerance.
+
+use crate::geometry::approximate::UnitVector;
+use crate::geometry::arc::SlopeArc;
+use crate::geometry::lattice::{UNITS_PER_METRE, Vector};
+
+/// How far a position may be from where it is reported to be.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "wire", serde(try_from = "u32", into = "u32"))]
+pub struct Tolerance {
+    /// Lattice units.
+    units: u32,
+}
+
+/// The largest tolerance, lattice units: 1,024 m.
+const MOST: u32 = 1 << 26;
+
+/// The longest shift, lattice units: 4,096 m.
+const FARTHEST: f32 = (1 << 28) as f32;
+
+/// What half the square of the sum of an arc's two unit normals, `1 + cos 2d`, is at least: arcs up to 88 degrees
+/// to either side of their middle have a shift. Rounding moves it by 10^-6 there.
+const LEAST: f32 = 2.4e-3;
+
+impl Tolerance {
+    /// Positions are where they are reported to be.
+    pub const NONE: Self = Self { units: 0 };
+
+    /// A tolerance in metres, rounded up to lattice units; `None` unless it is at least 0 and at most 1,024.
+    pub fn new(metres: f64) -> Option<Self> {
+        let units = libm::ceil(metres * f64::from(UNITS_PER_METRE));
+        (0.0..=f64::from(MOST)).contains(&units).then_some(Self { units: units as u32 })
+    }
+
+    /// The tolerance in metres.
+    pub fn metres(self) -> f64 {
+        f64::from(self.units) / f64::from(UNITS_PER_METRE)
+    }
+
+    /// The tolerance in lattice units.
+    pub const fn units(self) -> u32 {
+        self.units
+    }
+
+    /// By how much a sample of label +1 is shifted when the lines' slopes are these; `None` where they
+    /// span so much that it would be shifted out of sight.
+    pub fn shift(self, slopes: SlopeArc) -> Option<Vector> {
+        if self == Self::NONE {
+            return Some(Vector { x: 0, z: 0 });
+        }
+        let [from, to] = [slopes.from(), slopes.to()].map(|along| UnitVector::of(along.left()));
+        let sum = [from.x + to.x, from.z + to.z];
+        // `|sum|` is `2 cos d`, so this is `(e / cos d) b`, with a thousandth and two units for rounding.
+        let half_square = 0.5 * (sum[0] * sum[0] + sum[1] * sum[1]);
+        if half_square < LEAST {
+            return None;
+        }
+        let scale = (self.units as f32 + 2.0) * (1.0 + 1.0 / 1024.0) / half_square;
+        let [x, z] = sum.map(|v| v * scale);
+        (x.abs() < FARTHEST && z.abs() < FARTHEST).then_some(Vector { x: x as i32, z: z as i32 })
+    }
+}
+
+impl Tolerance {
+    /// Where the probability of being on the other side of a line has fallen to a quarter, at right angles to the
+    /// middle of these slopes: the tolerance is three standard deviations.
+    pub(crate) fn step(self, slopes: SlopeArc) -> Vector {
+        const QUARTER: f32 = 0.674_49 / 3.0;
+        let middle = slopes.bisector().left();
+        let unit = UnitVector::of(middle);
+        let [x, z] = [unit.x, unit.z].map(|v| v * (QUARTER * self.units as f32));
+        Vector { x: x as i32, z: z as i32 }
+    }
+}
+
+impl TryFrom<u32> for Tolerance {
+    type Error = TooMuch;
+
+    fn try_from(units: u32) -> Result<Self, TooMuch> {
+        if units <= MOST { Ok(Self { units }) } else { Err(TooMuch) }
+    }
+}
+
+impl From<Tolerance> for u32 {
+    fn from(tolerance: Tolerance) -> Self {
+        tolerance.units
+    }
+}
+
+/// A tolerance of more than 1,024 m.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct TooMuch;
+
+impl core::fmt::Display for TooMuch {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str("a tolerance is 1,024 m at most")
+    }
+}
+
+impl core::error::Error for TooMuch {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whatever normal of the arc a line has, the shift is at least the tolerance along it, and hardly more along
+    /// the outermost.
+    #[test]
+    fn a_shift_is_enough_for_every_line_of_the_arc_and_no_more() {
+        let mut state = 7_u64;
+        let mut random = |most: u64| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (state >> 33) % most
+        };
+        for round in 0..20_000 {
+            let (angle, half) = (random(6_283) as f64 / 1e3, random(1_500) as f64 / 1e3);
+            let unit = |at: f64| {
+                let (sin, cos) = libm::sincos(at);
+                Vector { x: (cos * 1e9) as i32, z: (sin * 1e9) as i32 }
+            };
+            let slopes = SlopeArc::new(unit(angle - half), unit(angle + half));
+            let tolerance = Tolerance { units: 1 + random(1 << 20) as u32 };
+            let shift = tolerance.shift(slopes).unwrap();
+            let along = |at: f64| {
+                let (sin, cos) = libm::sincos(at);
+                f64::from(shift.z) * cos - f64::from(shift.x) * sin
+            };
+            let e = f64::from(tolerance.units);
+            for k in 0..=10 {
+                let at = angle + half * (f64::from(k) / 5.0 - 1.0);
+                assert!(along(at) >= e, "{round}: {} of {e}", along(at));
+            }
+            let most = e * 1.002 + 4.0;
+            assert!(along(angle - half) < most && along(angle + half) < most, "{round}");
+        }
+    }
+
+    #[test]
+    fn nothing_is_shifted_without_a_tolerance_and_nothing_out_of_sight() {
+        let v = |x, z| Vector { x, z };
+        let wide = SlopeArc::new(v(1 << 20, 1 << 10), v(-(1 << 20), 1 << 10));
+        assert_eq!(Tolerance::NONE.shift(wide), Some(v(0, 0)));
+        assert_eq!(Tolerance { units: 100 }.shift(wide), None);
+        let narrow = SlopeArc::new(v(1 << 20, 0), v(1 << 20, 1));
+        assert!(Tolerance { units: MOST }.shift(narrow).is_some());
+        assert_eq!(Tolerance::new(-0.1), None);
+        assert_eq!(Tolerance::new(f64::NAN), None);
+        assert_eq!(Tolerance::new(1024.1), None);
+        assert_eq!(Tolerance::new(0.15).map(|it| it.units), Some(9_831));
+        assert_eq!(Tolerance::try_from(MOST + 1), Err(TooMuch));
+    }
+}
