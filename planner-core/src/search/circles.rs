@@ -23,6 +23,8 @@ pub(crate) struct Search<'a, D> {
     pub(crate) varrho: Varrho,
     pub(crate) view: View<'a>,
     pub(crate) effort: Effort,
+    /// Whether there was an end on uncertain ground with the border in the way.
+    pub(crate) is_hemmed_in: bool,
 }
 
 /// The number and side of a ray, by which ties are settled.
@@ -43,6 +45,10 @@ pub(crate) struct Findings {
 /// The spacing that the search takes a fan to have at least. Taking it for wider than it is only looks at
 /// more rays; and as rays that move are at most 2^31, `next + turn / LEAST + 1` is below 2^32.
 const LEAST: NonZeroU32 = NonZeroU32::MIN.saturating_add(1);
+
+/// Rays this near to one that leads to the border are taken to lead there too. Less than the 10 mrad of the paper's
+/// fan, so that only finer ones lose an action to it, near the border; they would use up a plan's looks there.
+const HEMMED_IN: u32 = Heading::turn_of(0.004);
 
 /// The rays to one side of a heading that may still lead anywhere.
 struct Arm {
@@ -150,6 +156,11 @@ impl<D: Dynamics> Search<'_, D> {
             {
                 break;
             }
+            if let Some([left, right]) = self.dynamics.rays_at(speed) {
+                let [on_left, on_right] = &mut arms;
+                on_left.end = on_left.end.min(left);
+                on_right.end = on_right.end.min(right.saturating_add(1));
+            }
             for arm in &mut arms {
                 self.search_arm(arm, speed, hunt);
             }
@@ -206,24 +217,38 @@ impl<D: Dynamics> Search<'_, D> {
         }
         let action = grid.action(ray.index, speed);
         let choice = |target| (Choice { action, target, objective: value }, rank);
-        let only_this = Verdict::Infeasible { turn: 0, on_inner_circles_too: false };
+        let only_these = |turn| Verdict::Infeasible { turn, on_inner_circles_too: false };
         if hunt.rule.admits(ray.step) {
-            let Some(target) = self.uncertain_end(&ray, speed) else { return only_this };
+            let target = match self.uncertain_end(pose, &ray, speed) {
+                Ok(target) => target,
+                Err(turn) => return only_these(turn),
+            };
             hunt.found.best = Some(choice(target));
             return Verdict::Best;
         }
         if hunt.keeps_forbidden && is_better(value, rank, hunt.found.best_forbidden.as_ref()) {
-            let Some(target) = self.uncertain_end(&ray, speed) else { return only_this };
+            let target = match self.uncertain_end(pose, &ray, speed) {
+                Ok(target) => target,
+                Err(turn) => return only_these(turn),
+            };
             hunt.found.best_forbidden = Some(choice(target));
         }
         let turn = hunt.rule.forbidden_until(heading, ray.step, side);
         Verdict::Infeasible { turn, on_inner_circles_too: true }
     }
 
-    /// The pose at a ray's end, if that is inside the area and on uncertain ground.
-    fn uncertain_end(&mut self, ray: &Ray, speed: u16) -> Option<Pose> {
-        let target = ray.arrive(self.pose.site, speed).ok()?;
+    /// The pose at a ray's end, if that is inside the area and on uncertain ground, and the way there and what may
+    /// come of it inside too; else the turn within which the search takes no other ray for better.
+    fn uncertain_end(&mut self, pose: Pose, ray: &Ray, speed: u16) -> Result<Pose, u32> {
+        let target = self.dynamics.arrive(pose, ray, speed).map_err(|_| 0_u32)?;
         self.effort.examined += 1;
-        self.view.is_uncertain(target.site).then_some(target)
+        if !self.view.is_uncertain(target.site) {
+            return Err(0);
+        }
+        if !self.dynamics.keeps_inside(pose, target, self.view.area()) {
+            self.is_hemmed_in = true;
+            return Err(HEMMED_IN);
+        }
+        Ok(target)
     }
 }

@@ -14,6 +14,8 @@
 //!    it both ways, and between.
 //! 5. Nothing: there is a reason why, which the planner stops with.
 //!
+//! A vehicle that cannot turn on the spot has, in the place of 2 to 4, a way of several motions (`manoeuvre`).
+//!
 //! **It ends**, though it has no state. What is known does not change before the next sample, and each
 //! motion lowers a measure: far, the distance to uncertain ground and then the turns to the next drive;
 //! near, the turns of (3), or where it has none the motions of (4), which stay near. What is near never
@@ -25,7 +27,9 @@ use crate::geometry::lattice::Vector;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Pose, Ray, Side};
 use crate::search::circles::{Findings, Search};
+use crate::search::dead_end::DeadEnd;
 use crate::search::direction_rule::{ArcRule, DirectionRule};
+use crate::search::manoeuvre::manoeuvre;
 use crate::search::problem::Problem;
 
 /// A transit among uncertain ground looks this many motions ahead. Twice as many find nothing more in
@@ -50,18 +54,6 @@ pub enum Recovery {
     Reorient,
     /// A drive through certain ground; no sample is taken.
     Transit,
-}
-
-/// Why there is no way on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum DeadEnd {
-    /// What is uncertain is thinner than the action grid can hit, or lies outside the area.
-    Resolution,
-    /// There is uncertain ground, but no motion that leads towards it: the border is in the way, or the
-    /// agent cannot turn.
-    Cornered,
-    /// A plan may look at so many rays, and none of these was a way on.
-    Undecided,
 }
 
 /// An action, where it leads, and the rung on which it was found.
@@ -90,6 +82,10 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule>(
         return Ok(found(Some(Recovery::Undirected))((best.action, best.target)));
     }
     let mut ladder = Ladder { problem: problem.undirected(), search };
+    if goes_round(ladder.search.dynamics, ladder.search.pose) {
+        ladder.search.view.way_out().ok_or(DeadEnd::Resolution)?;
+        return manoeuvre(&ladder.problem, ladder.search).map(found(Some(Recovery::Transit)));
+    }
     // Where nothing is in reach no turn finds anything, so that the order does not matter.
     if let Some(turn) = ladder.reorient() {
         return Ok(found(Some(Recovery::Reorient))(turn));
@@ -101,6 +97,11 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule>(
         ladder.transit()
     };
     leg.map(found(Some(Recovery::Transit)))
+}
+
+/// Whether a vehicle has to go round in order to turn.
+fn goes_round<D: Dynamics>(dynamics: &D, pose: Pose) -> bool {
+    dynamics.orbit(pose, Side::Left).is_some()
 }
 
 /// An action and where it leads.
@@ -242,7 +243,7 @@ impl<D: Dynamics> Ladder<'_, '_, '_, D> {
         }
         for ray in rays {
             for speed in (1..grid.speeds()).rev().filter(|speed| nears(&ray, *speed, goal)) {
-                if let Ok(target) = ray.arrive(pose.site, speed)
+                if let Ok(target) = dynamics.arrive(pose, &ray, speed)
                     && self.problem.area.contains(target.site)
                 {
                     return Drive::Leg((grid.action(ray.index, speed), target));
