@@ -94,6 +94,7 @@ pub fn standard(seed: u64, number: u64, algorithm: Algorithm, steps: u32) -> Mis
             following: algorithm.following(),
         },
         grid: algorithm.grid(),
+        vehicle: None,
         start: Pose { site: oracle[0].site, heading },
         world: World::divided_by(truth),
         given,
