@@ -1,15 +1,20 @@
 //! Dynamics: what the constructors take keeps the contract, what they refuse is named, and a broken
 //! promise is found out.
 
+use nalgebra::Point2;
+use planner_core::geometry::area::Area;
 use planner_core::geometry::heading::Heading;
 use planner_core::geometry::lattice::{Site, Vector};
 use planner_core::motion::action::{Action, ActionGrid, BadGrid, Control};
+use planner_core::motion::boat::Boat;
+use planner_core::motion::car::{Car, Shape};
 use planner_core::motion::contract::{self, Broken};
-use planner_core::motion::dynamics::{Dynamics, Fan, Pose, Ray, Side};
+use planner_core::motion::dynamics::{Dynamics, Fan, Orbit, Pose, Ray, Side};
 use planner_core::motion::holonomic::Holonomic;
 use planner_core::motion::unicycle::Unicycle;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use tests::cases;
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -320,5 +325,212 @@ fn a_sharpest_turn_next_to_a_multiple_keeps_the_contract() {
                 }
             }
         }
+    }
+}
+
+/// Any car that the constructor takes, from a model's to a ship's.
+fn any_car(rng: &mut ChaCha8Rng) -> Result<Car, BadGrid> {
+    Car::new(Shape {
+        radius_mm: [50, 1_000, 3_000, 5_000, 40_000, 2_000_000, rng.random_range(1..20_000)]
+            [rng.random_range(0..7)],
+        shortest_mm: [0, 1, 500, rng.random_range(0..3_000)][rng.random_range(0..4)],
+        turn_step_urad: [1, 1_000, 10_000, 20_000, rng.random_range(1..90_000)]
+            [rng.random_range(0..5)],
+        speeds: [2, 5, 21, 200][rng.random_range(0..4)],
+        speed_step_mm: [1, 100, 1_000, rng.random_range(1..5_000)][rng.random_range(0..4)],
+    })
+}
+
+#[test]
+fn cars_and_boats_keep_the_contract() {
+    let mut rng = ChaCha8Rng::seed_from_u64(4);
+    let (mut cars, mut boats) = (0, 0);
+    for _ in 0..cases(400, 20_000) {
+        if let Ok(car) = any_car(&mut rng) {
+            assert_eq!(contract::check(&car), Ok(()), "{car:?}");
+            cars += 1;
+        }
+        let sharpest = [1e-3, 0.349_066, FRAC_PI_2, 3.0, PI][rng.random_range(0..5)];
+        let speeds = [1, 2, 21][rng.random_range(0..3)];
+        let (turn, step) = (rng.random_range(1_000..200_000), rng.random_range(1..4_000));
+        let steps = Unicycle::new(turn, sharpest, speeds, step);
+        if let Ok(boat) = steps.and_then(Boat::new) {
+            assert_eq!(contract::check(&boat), Ok(()), "{boat:?}");
+            boats += 1;
+        }
+    }
+    println!("{cars} cars, {boats} boats");
+    assert!(cars > 100 && boats > 100);
+}
+
+#[test]
+fn what_cannot_go_round_is_no_car() {
+    let good = Shape {
+        radius_mm: 3_000,
+        shortest_mm: 500,
+        turn_step_urad: 10_000,
+        speeds: 21,
+        speed_step_mm: 100,
+    };
+    assert!(Car::new(good).is_ok());
+    for (bad, why) in [
+        (Shape { radius_mm: 0, ..good }, BadGrid::Circle),
+        (Shape { radius_mm: Car::WIDEST_MM, ..good }, BadGrid::Circle),
+        (Shape { shortest_mm: 2_001, ..good }, BadGrid::Circle),
+        (Shape { speeds: 1, ..good }, BadGrid::Circle),
+        // 0.34 rad is the sharpest chord of 2 m.
+        (Shape { turn_step_urad: 350_000, ..good }, BadGrid::Circle),
+        (Shape { turn_step_urad: 0, ..good }, BadGrid::Turn),
+        (Shape { turn_step_urad: 785_399, ..good }, BadGrid::Turn),
+        (Shape { speed_step_mm: 0, ..good }, BadGrid::Reach),
+        (Shape { speed_step_mm: 5_000, ..good }, BadGrid::Reach),
+        (Shape { speeds: 0, ..good }, BadGrid::Actions),
+    ] {
+        assert_eq!(Car::new(bad).map(|_| ()), Err(why), "{bad:?}");
+    }
+    let still = Unicycle::new(10_000, 0.35, 1, 100).expect("a grid");
+    assert_eq!(Boat::new(still), Err(BadGrid::Circle));
+    let ship = Unicycle::new(1_000, 0.001, 2, 90_000).expect("a grid");
+    assert_eq!(Boat::new(ship), Err(BadGrid::Circle));
+}
+
+/// Points of an arc in metres: integrated by the midpoint rule from the control that is asked of the vehicle.
+fn drive(from: Pose, control: Control) -> (Vec<Point2<f64>>, f64) {
+    const PARTS: u32 = 400;
+    let (mut at, mut heading) = (Point2::<f64>::from(from.site), from.heading.radians());
+    let part = f64::from(PARTS);
+    let (v, w) = (f64::from(control.v) / part, f64::from(control.w) / part);
+    let mut points = vec![at];
+    for _ in 0..PARTS {
+        let (sin, cos) = (heading + w / 2.0).sin_cos();
+        at += nalgebra::Vector2::new(v * cos, v * sin);
+        heading += w;
+        points.push(at);
+    }
+    (points, heading)
+}
+
+/// Every motion of a car is the arc that its control makes; of a curvature that it can drive; it is inside an area
+/// that has its corner; and no ray beyond the last of a speed would be.
+#[test]
+fn a_cars_motions_are_arcs_that_it_can_drive() {
+    let mut rng = ChaCha8Rng::seed_from_u64(5);
+    let (mut arcs, mut tight, mut bulges) = (0, 0, 0);
+    while arcs < cases(4_000, 200_000) {
+        let Ok(car) = any_car(&mut rng) else { continue };
+        let (grid, shape) = (car.grid(), car.shape());
+        let pose = pose(rng.random());
+        let ray = rng.random_range(0..grid.rays());
+        let speed = rng.random_range(0..grid.speeds());
+        let side = if ray < car.fan().right { Side::Right } else { Side::Left };
+        let n = ray.abs_diff(car.fan().right);
+        let action = grid.action(ray, speed);
+        let chord = f64::from(grid.reach_mm(speed)) / 1000.0;
+        let radius = f64::from(shape.radius_mm) / 1000.0;
+        let phi = f64::from(n) * f64::from(shape.turn_step_urad) * 1e-6;
+        // By the curvature alone, but for an angle within 30 nrad of the limit.
+        let curvature = 2.0 * phi.sin() / chord;
+        let can = chord * 1000.0 > f64::from(shape.shortest_mm) - 0.5
+            && speed > 0
+            && curvature * radius <= 1.0
+            && phi <= PI / 4.0;
+        let is_on_the_limit = (phi.sin() - chord / 2.0 / radius).abs() < 3e-8;
+        let Some(target) = car.target(pose, action) else {
+            assert!(!can || is_on_the_limit, "{car:?} {n} {speed}: {curvature}");
+            continue;
+        };
+        assert!(can, "{car:?} {n} {speed}: {curvature}");
+        tight += u32::from(curvature * radius > 0.9);
+        let control = car.control(action);
+        let (points, heading) = drive(pose, control);
+        let end = Point2::<f64>::from(target.site);
+        let off = (points[points.len() - 1] - end).norm();
+        let rounding = 3e-5 * (1.0 + f64::from(speed) / 256.0) + 1e-6 * chord;
+        assert!(off < rounding + 2e-6 * chord, "{car:?}, {control:?}: off by {off} m");
+        assert!((heading - target.heading.radians()).sin().abs() < 1e-6);
+        assert_eq!(control.w < 0.0, side == Side::Right);
+        let length: f64 = points.windows(2).map(|ends| (ends[1] - ends[0]).norm()).sum();
+        if control.w != 0.0 {
+            assert!(f64::from(control.w).abs() / length * radius <= 1.0 + 1e-6);
+        }
+        // Of a triangle with both ends and the corner each point lies on the inner side of each edge.
+        let corner = car.corner(pose, target);
+        assert_eq!(corner.is_some(), n > 0);
+        let corner = corner.unwrap_or(Vector::new(0, 0).expect("small"));
+        let metres =
+            |v: Vector| nalgebra::Vector2::new(f64::from(v.x()), f64::from(v.z())) / 65_536.0;
+        let corner = Point2::from(pose.site) + metres(corner);
+        if n > 0 {
+            let start = Point2::<f64>::from(pose.site);
+            let sign = if side == Side::Left { 1.0 } else { -1.0 };
+            for [a, b] in [[start, corner], [corner, end], [end, start]] {
+                for p in &points {
+                    let (along, to) = (b - a, p - a);
+                    let inner = sign * (along.x * to.y - along.y * to.x) / along.norm().max(1e-9);
+                    assert!(inner > -2.0 * rounding - 4e-6 * chord, "{car:?} {n} {speed}: {inner}");
+                    bulges += 1;
+                }
+            }
+        }
+        arcs += 1;
+    }
+    println!("{arcs} arcs, {tight} of them tight; {bulges} points within their triangles");
+    assert!(tight > 50 && bulges > 100_000);
+}
+
+/// How many poses are not safe, and how many are; a circle from each of these lies inside.
+fn compare<D: Dynamics>(it: &D, area: Area, rng: &mut ChaCha8Rng) -> [u32; 2] {
+    let mut count = [0; 2];
+    for _ in 0..cases(300, 20_000) {
+        let mut any = || rng.random_range(0..=20 << 16);
+        let site = Site::new(any(), any()).expect("near");
+        let from = Pose { site, heading: Heading(rng.random()) };
+        let goes_round = |side| {
+            let (mut pose, mut turned, mut inside) = (from, 0.0, true);
+            while turned < 2.0 * std::f64::consts::TAU {
+                let Orbit { action, .. } = it.orbit(pose, side).expect("it has one");
+                let after = it.target(pose, action).expect("an action");
+                let (points, _) = drive(pose, it.control(action));
+                // A boat turns before it drives.
+                let points = if it.corner(pose, after).is_some() { points } else { vec![] };
+                let mut within = |p: Point2<f64>| {
+                    inside &= (0.0..=20.0).contains(&p.x) && (0.0..=20.0).contains(&p.y);
+                };
+                points.into_iter().for_each(&mut within);
+                within(after.site.into());
+                turned += (after.heading.radians() - pose.heading.radians()).sin().abs();
+                pose = after;
+            }
+            inside
+        };
+        let stays = [Side::Left, Side::Right].map(goes_round);
+        let is_safe = it.keeps_inside(from, from, area);
+        assert!(!is_safe || stays.contains(&true), "{from:?}");
+        assert!(!is_safe || it.is_safe(from, area));
+        count[usize::from(is_safe)] += 1;
+    }
+    count
+}
+
+/// Whoever is safe stays inside for ever, round and round, and whoever is not leaves the area on both circles.
+#[test]
+fn who_is_safe_can_go_round() {
+    let corner = |x, z| Site::new(x << 16, z << 16).expect("near");
+    let area = Area::new(corner(0, 0), corner(20, 20)).expect("an area");
+    let mut rng = ChaCha8Rng::seed_from_u64(6);
+    for radius_mm in [300, 1_000, 3_000, 5_000] {
+        let car = Car::new(Shape {
+            radius_mm,
+            shortest_mm: 500,
+            turn_step_urad: 10_000,
+            speeds: 21,
+            speed_step_mm: 100,
+        });
+        println!("{radius_mm} mm: {:?}", compare(&car.expect("a car"), area, &mut rng));
+    }
+    for step_mm in [100, 800] {
+        let steps = Unicycle::new(10_000, 20f64.to_radians(), 3, step_mm).expect("a grid");
+        let boat = Boat::new(steps).expect("a boat");
+        println!("boat of {step_mm} mm: {:?}", compare(&boat, area, &mut rng));
     }
 }

@@ -320,7 +320,7 @@ fn motions_are_those_of_the_unicycle() {
                 let control = unicycle.control(grid.action(ray.index, speed));
                 let angle = heading.radians() + f64::from(control.w);
                 let reach = f64::from(control.v) * 65_536.0;
-                let target = ray.arrive(from, speed).expect("near");
+                let target = unicycle.arrive(pose, &ray, speed).expect("near");
                 let off = |got: i32, start: i32, exact: f64| (f64::from(got - start) - exact).abs();
                 assert!(off(target.site.x(), from.x(), reach * angle.cos()) < 0.6, "{control:?}");
                 assert!(off(target.site.z(), from.z(), reach * angle.sin()) < 0.6, "{control:?}");

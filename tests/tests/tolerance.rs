@@ -29,7 +29,8 @@ fn fly(algorithm: Algorithm, errors: Errors, count: u64) -> (Vec<String>, Vec<f6
         assert!(holds, "field {number}: {algorithm:?} lost the truth");
         let centre = flown.belief.estimates().centre.expect("a line");
         let truth = mission.world.line().expect("a line divides it");
-        let early = (flown.ending != Ending::Steps).then(|| format!("{number}: {:?}", flown.ending));
+        let early =
+            (flown.ending != Ending::Steps).then(|| format!("{number}: {:?}", flown.ending));
         (early, planner_core::geometry::line::Line::from(centre).angle_to_deg(truth))
     };
     let all: Vec<_> = (0..count).into_par_iter().map(each).collect();
@@ -57,7 +58,10 @@ fn motions_that_err_change_little() {
         for motion in [0.01, 0.05, 0.3] {
             let errors = Errors { motion, turn: 0.02, heading: 0.01, ..Errors::default() };
             let (early, degrees) = fly(algorithm, errors, cases(100, 1_000));
-            println!("{algorithm:?}, {motion} m: {:.3} deg; early {early:?}", degrees[degrees.len() / 2]);
+            println!(
+                "{algorithm:?}, {motion} m: {:.3} deg; early {early:?}",
+                degrees[degrees.len() / 2]
+            );
             assert!(early.is_empty(), "{algorithm:?}, {motion} m: {early:?}");
         }
     }

@@ -97,6 +97,7 @@ pub fn standard(seed: u64, number: u64, algorithm: Algorithm, steps: u32) -> Mis
             tolerance: Tolerance::NONE,
         },
         grid: algorithm.grid(),
+        vehicle: None,
         start: Pose { site: oracle[0].site, heading },
         world: World::divided_by(truth),
         given,

@@ -270,6 +270,9 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
         },
         other => bail!("algorithm: found {}, expected cfc, scc or lookahead", other.name()),
     };
+    if mission.vehicle.is_some() {
+        bail!("vehicle: found another than the paper's unicycle, expected none on a board");
+    }
     let samples = mission.given.samples();
     let given = BoundedVec::from_slice(samples).map_err(|_| {
         let most = message::MOST_GIVEN;

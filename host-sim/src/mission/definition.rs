@@ -14,6 +14,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use crate::mission::algorithm::Algorithm;
+use crate::mission::vehicle::Vehicle;
 use crate::world::World;
 use crate::world::errors::{CUT, Erring, Errors};
 use crate::world::noise::{Flipped, NoiseModel};
@@ -44,6 +45,8 @@ pub struct Mission {
     pub config: Config,
     /// The unicycle's action set.
     pub grid: Grid,
+    /// What moves instead, if it is not that unicycle.
+    pub vehicle: Option<Vehicle>,
     /// Where the agent starts.
     pub start: Pose,
     /// What is really there.

@@ -57,9 +57,12 @@ impl<D: Dynamics, B: ReadOut> Margin<D, B> {
         let grid = self.dynamics.grid();
         self.dynamics.rays(pose).flat_map(move |ray| {
             (1..grid.speeds()).filter_map(move |speed| {
-                let target = ray.arrive(pose.site, speed).ok()?;
-                self.area.contains(target.site).then(|| Drive {
-                    action: grid.action(ray.index, speed),
+                let action = grid.action(ray.index, speed);
+                let target = self.dynamics.target(pose, action)?;
+                let is_inside = self.area.contains(target.site)
+                    && self.dynamics.keeps_inside(pose, target, self.area);
+                is_inside.then(|| Drive {
+                    action,
                     target,
                     effort: ray.effort,
                     reach_mm: grid.reach_mm(speed),

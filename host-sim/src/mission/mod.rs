@@ -14,3 +14,4 @@ pub mod results;
 pub mod scenario;
 pub mod stop;
 pub mod strict;
+pub mod vehicle;

@@ -2,7 +2,7 @@
 
 use planner_core::belief::Refused;
 use planner_core::belief::sample::Reading;
-use planner_core::motion::dynamics::Pose;
+use planner_core::motion::dynamics::{Dynamics, Pose};
 use planner_core::motion::unicycle::Unicycle;
 use planner_core::planner::cfc::Cfc;
 use planner_core::planner::lookahead::Lookahead;
@@ -16,6 +16,7 @@ use crate::mission::definition::Mission;
 use crate::mission::margin::Margin;
 use crate::mission::random_walk::RandomWalk;
 use crate::mission::read_out::ReadOut;
+use crate::mission::vehicle::Vehicle;
 
 /// A planner whose belief can be read out.
 pub type AnyPlanner = Box<dyn Planner<Belief = dyn ReadOut>>;
@@ -46,7 +47,16 @@ fn erased(planner: impl Planner<Belief: ReadOut + Sized + 'static> + 'static) ->
 impl Mission {
     /// The planner, as yet without a label.
     pub fn planner(&self) -> AnyPlanner {
-        let (dynamics, config) = (Unicycle::from(self.grid), self.config);
+        match self.vehicle {
+            None => self.planner_of(Unicycle::from(self.grid)),
+            Some(Vehicle::Unicycle(unicycle)) => self.planner_of(unicycle),
+            Some(Vehicle::Boat(boat)) => self.planner_of(boat),
+            Some(Vehicle::Car(car)) => self.planner_of(car),
+        }
+    }
+
+    fn planner_of(&self, dynamics: impl Dynamics + 'static) -> AnyPlanner {
+        let config = self.config;
         let (area, rng) = (config.area, ChaCha8Rng::seed_from_u64(self.seed));
         match self.algorithm {
             Algorithm::Cfc => erased(Cfc::new(config, dynamics, self.lines())),

@@ -34,8 +34,11 @@ impl<D: Dynamics, B: Belief> Planner for RandomWalk<D, B> {
         loop {
             let last = self.dynamics.grid().actions() - 1;
             let action = Action(self.rng.random_range(0..=last as u32));
-            let target = self.dynamics.target(pose, action);
-            if let Some(target) = target.filter(|target| self.area.contains(target.site)) {
+            let target = self.dynamics.target(pose, action).filter(|target| {
+                self.area.contains(target.site)
+                    && self.dynamics.keeps_inside(pose, *target, self.area)
+            });
+            if let Some(target) = target {
                 return Plan::Move(Motion {
                     stage: None,
                     recovery: None,

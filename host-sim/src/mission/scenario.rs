@@ -24,6 +24,7 @@ use crate::mission::definition::{CAPACITY, Lines, Mission};
 use crate::mission::names::{CrossingName, FanName, FollowingName, PolicyName, PriorName};
 use crate::mission::stop::StopTable;
 use crate::mission::strict::{Numbers, Table, wrong};
+use crate::mission::vehicle::VehicleTable;
 use crate::world::World;
 use crate::world::errors::{CUT, Errors};
 use crate::world::noise::{Extent, NoiseModel};
@@ -48,6 +49,7 @@ struct File {
     seed: u64,
     varrho: Option<f64>,
     fan: Option<FanName>,
+    vehicle: Option<Table<VehicleTable>>,
     #[serde(default)]
     crossing: CrossingName,
     following: Option<FollowingName>,
@@ -217,6 +219,9 @@ fn mission(file: &File, overrides: Overrides) -> Result<Mission> {
         let found = format!("\"fine\" with algorithm {}", algorithm.name());
         return wrong("fan", found, "\"paper\", as it tries every action");
     }
+    let has_fan = file.fan.is_some();
+    let vehicle = file.vehicle.as_ref().map(|it| it.0.vehicle(algorithm, has_fan, grid));
+    let vehicle = vehicle.transpose()?.flatten();
     let AreaTable { x: Numbers([x0, x1]), z: Numbers([z0, z1]) } = file.area.0;
     let corners = (site("area", x0, z0)?, site("area", x1, z1)?);
     let Some(area) = Area::new(corners.0, corners.1) else {
@@ -244,6 +249,7 @@ fn mission(file: &File, overrides: Overrides) -> Result<Mission> {
         seed: overrides.seed.unwrap_or(file.seed),
         config: Config { area, varrho, crossing, following, tolerance },
         grid,
+        vehicle,
         start,
         world,
         given,

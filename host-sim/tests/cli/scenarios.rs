@@ -65,6 +65,64 @@ fn bad_scenarios_are_refused_by_file_and_field() {
     }
 }
 
+#[test]
+fn bad_vehicles_are_refused() {
+    let folder = folder();
+    let cases: [(&str, &str, &[&str]); 17] = [
+        ("", "{ kind = \"tank\" }", &["bad.toml:1", "tank", "`car`"]),
+        ("", "[\"car\", 3.0]", &["bad.toml:1", "a table"]),
+        ("", "{ radius = 3.0 }", &["bad.toml:1", "missing field `kind`"]),
+        ("", "{ kind = \"car\", wheels = 3 }", &["bad.toml:1", "wheels", "expected one of"]),
+        ("", "{ kind = \"car\" }", &["vehicle.radius", "found none", "turning circle"]),
+        ("", "{ kind = \"car\", radius = 3.0, sharpest = 1.0 }", &["vehicle.sharpest", "a car"]),
+        ("", "{ kind = \"boat\", radius = 3.0 }", &["vehicle.radius", "a boat"]),
+        ("", "{ kind = \"unicycle\", shortest = 3.0 }", &["vehicle.shortest", "a unicycle"]),
+        ("", "{ kind = \"car\", radius = 5000.0 }", &["vehicle", "below 2048 m"]),
+        ("", "{ kind = \"car\", radius = nan }", &["vehicle.radius", "found NaN", "metres"]),
+        ("", "{ kind = \"car\", radius = 3.0, shortest = 2.1 }", &["vehicle", "goes round it"]),
+        ("", "{ kind = \"boat\", reach = 2.05 }", &["vehicle.reach", "found 2.05", "steps"]),
+        ("", "{ kind = \"boat\", step = 0.0 }", &["vehicle.step", "found 0", "millimetre"]),
+        ("", "{ kind = \"boat\", sharpest = 4.0 }", &["vehicle", "0.001 to pi rad"]),
+        ("", "{ kind = \"unicycle\", turn_step = 1e-9 }", &["vehicle.turn_step", "microradian"]),
+        ("fan = \"fine\"", "{ kind = \"boat\", turn_step = 0.01 }", &["vehicle.turn_step", "fan"]),
+        ("", "{ kind = \"boat\" }", &["vehicle", "with random", "cfc, scc or lookahead"]),
+    ];
+    for (before, vehicle, parts) in cases {
+        let good = if parts.contains(&"with random") {
+            GOOD.replace("\"cfc\"", "\"random\"")
+        } else {
+            GOOD.to_owned()
+        };
+        let bad = format!("vehicle = {vehicle}\n{before}\n{good}");
+        fs::write(folder.path().join("bad.toml"), bad).expect("a file");
+        refuses(folder.path(), &["run", "bad.toml"], &[&["bad.toml"], parts].concat());
+    }
+}
+
+/// The paper's unicycle may be spelt out; a car needs its radius alone.
+#[test]
+fn a_vehicle_flies() {
+    let folder = folder();
+    let trace = |vehicle: &str| {
+        let text = format!("{vehicle}\n{GOOD}");
+        fs::write(folder.path().join("good.toml"), text).expect("a file");
+        prints(folder.path(), &["run", "good.toml", "--format", "json"])
+    };
+    let paper = trace("");
+    let spelt = "reach = 2.0, step = 0.1, sharpest = 1.5707963267948966, turn_step = 0.01";
+    assert_eq!(trace(&format!("vehicle = {{ kind = \"unicycle\", {spelt} }}")), paper);
+    let mut traces = vec![paper];
+    for vehicle in [
+        "{ kind = \"unicycle\", reach = 3.0 }",
+        "{ kind = \"boat\", sharpest = 0.35 }",
+        "{ kind = \"car\", radius = 1.0, shortest = 0.5 }",
+    ] {
+        let flown = trace(&format!("vehicle = {vehicle}"));
+        assert!(flown.contains("\"reason\":\"steps\"") && !traces.contains(&flown), "{flown}");
+        traces.push(flown);
+    }
+}
+
 /// Oracle points as position and label.
 type Points<'a> = &'a [(f64, f64, i8)];
 

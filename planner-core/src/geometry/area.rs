@@ -56,6 +56,12 @@ impl Area {
         [(x + 1) / 2, (z + 1) / 2]
     }
 
+    /// Whether all of a disc lies inside or on the border; the radius in lattice units, below 2^30.
+    pub fn contains_disc(&self, centre: Site, radius: i32) -> bool {
+        let (from, to) = (centre - self.min, self.max - centre);
+        [from.x, from.z, to.x, to.z].into_iter().all(|inside| inside >= radius)
+    }
+
     /// Whether a position lies inside or on the border.
     pub fn contains(&self, q: Site) -> bool {
         (self.min.x()..=self.max.x()).contains(&q.x())

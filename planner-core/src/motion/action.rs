@@ -19,7 +19,7 @@ pub struct Action(pub u32);
 pub struct Control {
     /// Speed, metres per unit time.
     pub v: f32,
-    /// Turn before the drive, radians; positive to the left.
+    /// Turn before the drive, or all along it for a [car](crate::motion::car), radians; positive to the left.
     pub w: f32,
 }
 
@@ -46,6 +46,9 @@ pub enum BadGrid {
     /// Its step of turning is nothing or more than half a turn, or its sharpest turn is less than a
     /// milliradian or more than half a turn.
     Turn,
+    /// Its turning circle is nothing, or of 2,048 m or more, or its motions are too short or its steps of turning
+    /// too large to go round it.
+    Circle,
 }
 
 impl core::fmt::Display for BadGrid {
@@ -55,6 +58,9 @@ impl core::fmt::Display for BadGrid {
             Self::Reach => "steps of speed are 1 mm or more, and a motion is shorter than 100 m",
             Self::Turn => {
                 "a step of turning is 1 to 3141592 urad, and the sharpest turn from 0.001 to pi rad"
+            }
+            Self::Circle => {
+                "a turning circle's radius is 1 mm or more and below 2048 m, and some motion goes round it"
             }
         })
     }

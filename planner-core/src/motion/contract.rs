@@ -12,7 +12,7 @@
 //! ```
 
 use crate::geometry::heading::Heading;
-use crate::geometry::lattice::Site;
+use crate::geometry::lattice::{Site, Vector};
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Fan, Pose, Ray, Side};
 
@@ -35,6 +35,14 @@ pub enum Broken {
     /// 6: the turn in place to this side moves the agent, turns it the other way or not at all, or
     /// leaves a gap between the fans.
     TurnInPlace(Side),
+    /// 7: at this speed there are more rays than at a faster one, or at the fastest not all, or an action of it has
+    /// no ray or should have none.
+    Speeds(u16),
+    /// 8: this ray does not lead a displacement away, or its tangents do not meet in its corner.
+    Arrival(Side, u32),
+    /// 9: the orbit to this side is missing where there is one to the other, turns the other way or not at all, or
+    /// leaves its radius within a round.
+    Orbit(Side),
 }
 
 impl core::fmt::Display for Broken {
@@ -58,6 +66,15 @@ impl core::fmt::Display for Broken {
             }
             Self::TurnInPlace(side) => {
                 write!(f, "the turn in place to the {side:?} is none, or leaves a gap")
+            }
+            Self::Speeds(speed) => {
+                write!(f, "speed {speed} has not the rays that it says, or more than a faster one")
+            }
+            Self::Arrival(side, n) => {
+                write!(f, "ray {n} to the {side:?} does not arrive where its chord and corner say")
+            }
+            Self::Orbit(side) => {
+                write!(f, "the orbit to the {side:?} is none, or leaves its radius within a round")
             }
         }
     }
@@ -91,7 +108,9 @@ pub fn check<D: Dynamics>(dynamics: &D) -> Result<(), Broken> {
         }
         for (side, most) in [(Side::Left, left), (Side::Right, right)] {
             turn_in_place(dynamics, pose, side, most)?;
+            orbit(dynamics, pose, side)?;
         }
+        speeds(dynamics, pose)?;
     }
     Ok(())
 }
@@ -117,6 +136,9 @@ fn arm<D: Dynamics>(dynamics: &D, pose: Pose, side: Side, last: u32) -> Result<u
         }
         if !is_named(dynamics, pose, &ray) {
             return Err(Broken::Index(side, n));
+        }
+        if !arrives(dynamics, pose, &ray) {
+            return Err(Broken::Arrival(side, n));
         }
         (before, turned_before, effort) = (n, turned, ray.effort);
     }
@@ -147,18 +169,110 @@ fn turn(from: Heading, to: Heading, side: Side) -> u32 {
 
 /// Whether a ray's step has the heading and the length that it should, to a few units.
 fn leads_ahead<D: Dynamics>(dynamics: &D, ray: &Ray) -> bool {
-    const FEW: i32 = 4;
     let exact = ray.heading.unit().scaled(dynamics.grid().step_length());
-    let near = |a: i32, b: i32| a.checked_sub(b).is_some_and(|off| off.abs() <= FEW);
+    let near = |a: i32, b: i32| a.checked_sub(b).is_some_and(|off| i64::from(off).abs() <= FEW);
     near(ray.step.x, exact.x) && near(ray.step.z, exact.z)
 }
 
-/// Whether all actions of a ray lead back to it: as indices are below their number, and each gives its
-/// own ray back, none is used twice.
+/// Whether the actions of a ray at the slowest speed and the fastest lead back to it, where it has them: as
+/// indices are below their number, and each gives its own ray back, none is used twice.
 fn is_named<D: Dynamics>(dynamics: &D, pose: Pose, ray: &Ray) -> bool {
     let grid = dynamics.grid();
-    let back = |speed| dynamics.ray_of(pose, grid.action(ray.index, speed)) == Some(*ray);
-    ray.index < grid.rays() && back(0) && back(grid.speeds() - 1)
+    let back = |speed| dynamics.ray_of(pose, grid.action(ray.index, speed));
+    let is_itself = |it: Ray| it == *ray;
+    let slowest_is_none = dynamics.rays_at(0).is_some() && back(0).is_none();
+    ray.index < grid.rays()
+        && (slowest_is_none || back(0).is_some_and(is_itself))
+        && (grid.speeds() == 1 || back(grid.speeds() - 1).is_some_and(is_itself))
+}
+
+/// Off by so many lattice units at most, for rounding.
+const FEW: i64 = 4;
+
+/// Whether the fastest motion along a ray ends where it should, and its tangents meet in its corner.
+fn arrives<D: Dynamics>(dynamics: &D, pose: Pose, ray: &Ray) -> bool {
+    const UNIT: i32 = 1 << 29;
+    let speed = dynamics.grid().speeds() - 1;
+    let Ok(end) = dynamics.arrive(pose, ray, speed) else { return false };
+    let by = end.site - pose.site;
+    let leads = |heading: Heading, v: Vector| {
+        let unit = heading.unit().scaled(UNIT);
+        unit.cross(v).abs() <= FEW * i64::from(UNIT) && unit.dot(v) >= -FEW * i64::from(UNIT)
+    };
+    let meets = |corner: Vector| {
+        let rest = Vector { x: by.x.wrapping_sub(corner.x), z: by.z.wrapping_sub(corner.z) };
+        leads(pose.heading, corner) && leads(end.heading, rest)
+    };
+    by == ray.displacement(speed) && dynamics.corner(pose, end).is_none_or(meets)
+}
+
+/// Checks which rays speeds have.
+fn speeds<D: Dynamics>(dynamics: &D, pose: Pose) -> Result<(), Broken> {
+    let (grid, Fan { left, right, .. }) = (dynamics.grid(), dynamics.fan());
+    let fastest = u32::from(grid.speeds() - 1);
+    let [mut most_left, mut most_right] = [left, right];
+    for slower in looked_at(fastest) {
+        let speed = (fastest - slower) as u16;
+        let Some([on_left, on_right]) = dynamics.rays_at(speed) else { continue };
+        let all = slower > 0 || fastest == 0 || [on_left, on_right] == [left, right];
+        if !all || on_left > most_left || on_right > most_right {
+            return Err(Broken::Speeds(speed));
+        }
+        for (side, last, count) in
+            [(Side::Left, left - 1, on_left), (Side::Right, right, on_right.saturating_add(1))]
+        {
+            for n in [count.wrapping_sub(1), count] {
+                let ray = (n <= last).then(|| dynamics.ray(pose, side, n));
+                let exists = n < count && (n > 0 || on_left > 0);
+                let is_known =
+                    |ray: Ray| dynamics.ray_of(pose, grid.action(ray.index, speed)).is_some();
+                if ray.is_some_and(|ray| is_known(ray) != exists) {
+                    return Err(Broken::Speeds(speed));
+                }
+            }
+        }
+        [most_left, most_right] = [on_left, on_right];
+    }
+    Ok(())
+}
+
+/// Goes round an orbit.
+fn orbit<D: Dynamics>(dynamics: &D, from: Pose, side: Side) -> Result<(), Broken> {
+    /// Motions of a round at most.
+    const MOST: u32 = 1 << 16;
+    let other = if side == Side::Left { Side::Right } else { Side::Left };
+    let Some(orbit) = dynamics.orbit(from, side) else {
+        let none = dynamics.orbit(from, other).is_none();
+        return if none { Ok(()) } else { Err(Broken::Orbit(side)) };
+    };
+    let is_within = |v: Vector, radius: i32| {
+        let off =
+            Vector { x: v.x.wrapping_sub(orbit.centre.x), z: v.z.wrapping_sub(orbit.centre.z) };
+        off.dot(off) <= (i64::from(radius) + FEW).pow(2)
+    };
+    let (mut pose, mut turned, mut radius) = (from, 0_u32, orbit.radius);
+    for _ in 0..MOST {
+        let action = dynamics.orbit(pose, side).map(|orbit| orbit.action);
+        let after = action.and_then(|action| dynamics.target(pose, action));
+        let Some(after) = after else { break };
+        let more = turn(pose.heading, after.heading, side);
+        let by = pose.site - from.site;
+        let corner = dynamics.corner(pose, after);
+        let corner = corner.map_or(by, |it| Vector { x: by.x + it.x, z: by.z + it.z });
+        if more == 0 || more > Heading::HALF_TURN.0 || after.site == pose.site {
+            break;
+        }
+        if !is_within(after.site - from.site, radius) || !is_within(corner, radius) {
+            break;
+        }
+        radius = orbit.radius.saturating_add(orbit.margin);
+        let (all, is_round) = turned.overflowing_add(more);
+        if is_round {
+            return Ok(());
+        }
+        (pose, turned) = (after, all);
+    }
+    Err(Broken::Orbit(side))
 }
 
 fn turn_in_place<D: Dynamics>(

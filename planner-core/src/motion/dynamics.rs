@@ -3,7 +3,12 @@
 //! The general one-step problem has any `phi` and any finite action set. What the search needs of
 //! them is here: the actions grouped into [`Ray`]s, which lie as a [`Fan`]. [`Unicycle`](crate::motion::unicycle) is
 //! the paper's dynamics, [`Holonomic`](crate::motion::holonomic) another.
+//!
+//! A vehicle that cannot turn on the spot has an [`Orbit`] to either side, the circle that it goes round by
+//! repeating one action: where that lies inside the area it is never cornered. [`Car`](crate::motion::car) drives
+//! along arcs, [`Boat`](crate::motion::boat) turns a little a step.
 
+use crate::geometry::area::Area;
 use crate::geometry::heading::Heading;
 use crate::geometry::lattice::{OffLattice, Site, Vector};
 use crate::motion::action::{Action, ActionGrid, Control};
@@ -19,7 +24,8 @@ pub struct Pose {
     pub heading: Heading,
 }
 
-/// The actions that share a direction of travel from a pose.
+/// The actions that share a direction of travel from a pose: that of the chord, for a vehicle that drives along
+/// arcs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Ray {
@@ -47,15 +53,6 @@ impl Ray {
             z: k.wrapping_mul(self.step.z).wrapping_add(HALF) >> Self::STEP_BITS,
         }
     }
-
-    /// The pose after travelling this ray at a speed of the grid.
-    ///
-    /// # Errors
-    /// [`OffLattice`] when that is beyond the lattice.
-    pub fn arrive(&self, from: Site, speed: u16) -> Result<Pose, OffLattice> {
-        let site = from.step(self.displacement(speed))?;
-        Ok(Pose { site, heading: self.heading })
-    }
 }
 
 /// To which side of straight ahead a ray lies.
@@ -81,6 +78,28 @@ pub struct Fan {
     pub spacing: Heading,
 }
 
+/// The circle that a vehicle goes round by repeating one action, as seen from a pose on it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Orbit {
+    /// The action that is repeated.
+    pub action: Action,
+    /// Its centre from the pose's position, lattice units.
+    pub centre: Vector,
+    /// Within this distance of the centre all of the way lies, its [corners](Dynamics::corner) too; lattice units.
+    pub radius: i32,
+    /// How far rounding to the lattice may move the centre in one round; lattice units.
+    pub margin: i32,
+}
+
+impl Orbit {
+    /// Whether a disc about its centre lies inside the area, seen from a position on it; the disc's radius is in
+    /// lattice units.
+    pub fn is_inside(&self, site: Site, area: Area, radius: i32) -> bool {
+        site.step(self.centre).is_ok_and(|centre| area.contains_disc(centre, radius))
+    }
+}
+
 /// The agent's known dynamics over its finite action set (Section II-A's `phi` and `U`).
 ///
 /// An action's squared control is its squared reach plus its ray's effort,
@@ -100,6 +119,17 @@ pub struct Fan {
 /// 5. Indices are those of the grid, each once, and [`ray_of`](Self::ray_of) gives the ray back.
 /// 6. A turn in place keeps the position, turns to its side by less than a whole turn, and by no more
 ///    than the fan reaches to that side, so that the fans before and after leave no gap.
+/// 7. [`rays_at`](Self::rays_at) is the whole fan at the fastest speed, never grows as the speed falls, and
+///    [`ray_of`](Self::ray_of) knows just the actions that it has.
+/// 8. [`arrive`](Self::arrive) leads one [`displacement`](Ray::displacement) from the pose. The way there lies in the
+///    triangle of its ends and its [`corner`](Self::corner), where its tangents meet; in the straight line if it has
+///    none.
+/// 9. There is an [`orbit`](Self::orbit) to both sides or to none. Repeating its action turns to its side and stays
+///    within its radius, and within its radius and margin for a round.
+///
+/// 1 to 5, 7 and 8 are what the search for the best action needs, of each algorithm. Where no action asks on uncertain
+/// ground, the recovery ladder needs 6 or 9, unless the fan reaches all around: a vehicle that has neither ends its
+/// mission there.
 pub trait Dynamics {
     /// The action set.
     fn grid(&self) -> ActionGrid;
@@ -121,6 +151,54 @@ pub trait Dynamics {
             let on_right = (1..=right).contains(&n).then(|| self.ray(pose, Side::Right, n));
             on_left.into_iter().chain(on_right)
         })
+    }
+
+    /// How many rays a speed has, to the left with the 0th, and to the right: fewer than the fan, if a short motion
+    /// cannot turn as far as a long one. `None`: all of the fan.
+    fn rays_at(&self, _speed: u16) -> Option<[u32; 2]> {
+        None
+    }
+
+    /// Where a ray from a pose leads at a speed. It faces the way it has travelled, unless one says.
+    ///
+    /// # Errors
+    /// [`OffLattice`] when that is beyond the lattice.
+    fn arrive(&self, pose: Pose, ray: &Ray, speed: u16) -> Result<Pose, OffLattice> {
+        let site = pose.site.step(ray.displacement(speed))?;
+        Ok(Pose { site, heading: ray.heading })
+    }
+
+    /// Where the tangents at the two ends of a motion meet, seen from its beginning: a convex area that has both
+    /// ends and this place in it has all of the way. `None` when the way is straight.
+    fn corner(&self, _from: Pose, _to: Pose) -> Option<Vector> {
+        None
+    }
+
+    /// The smallest circle that the agent can go round to a side, or nearly. `None` when it has no need to, as it
+    /// turns in place or leaves in any direction.
+    fn orbit(&self, _pose: Pose, _side: Side) -> Option<Orbit> {
+        None
+    }
+
+    /// Whether one of the orbits from a pose lies inside the area, so that the agent can stay there for ever.
+    fn is_safe(&self, pose: Pose, area: Area) -> bool {
+        has_orbit_inside(self, pose, area, |orbit| orbit.radius)
+    }
+
+    /// Whether a motion to a place inside the area stays there, and ends where it is safe, with a margin
+    /// for the rounding of a round.
+    fn keeps_inside(&self, from: Pose, to: Pose, area: Area) -> bool {
+        self.bulges_inside(from, to, area)
+            && has_orbit_inside(self, to, area, |orbit| orbit.radius.saturating_add(orbit.margin))
+    }
+
+    /// Whether all of a motion to a place inside the area stays there, or it begins outside.
+    fn bulges_inside(&self, from: Pose, to: Pose, area: Area) -> bool {
+        let is_inside = |by| {
+            from.site.step(by).is_ok_and(|corner| area.contains(corner))
+                || !area.contains(from.site)
+        };
+        self.corner(from, to).is_none_or(is_inside)
     }
 
     /// The ray nearest to a heading, and the nearest within half a turn to the other side of it; the first
@@ -165,8 +243,21 @@ pub trait Dynamics {
     /// The pose after an action; `None` when there is no such action or it leads off the lattice.
     fn target(&self, pose: Pose, action: Action) -> Option<Pose> {
         let (_, speed) = self.grid().split(action);
-        self.ray_of(pose, action)?.arrive(pose.site, speed).ok()
+        let ray = self.ray_of(pose, action)?;
+        self.arrive(pose, &ray, speed).ok()
     }
+}
+
+/// Whether the agent needs no orbit, or the disc of one of so large a radius lies inside the area.
+fn has_orbit_inside<D: Dynamics + ?Sized>(
+    dynamics: &D,
+    pose: Pose,
+    area: Area,
+    radius: impl Fn(&Orbit) -> i32,
+) -> bool {
+    let fits = |orbit: Orbit| orbit.is_inside(pose.site, area, radius(&orbit));
+    dynamics.orbit(pose, Side::Left).is_none_or(fits)
+        || dynamics.orbit(pose, Side::Right).is_none_or(fits)
 }
 
 /// The turn from straight ahead to the `n`-th ray of a side.

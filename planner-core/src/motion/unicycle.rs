@@ -111,6 +111,11 @@ impl Unicycle {
         Self::new(turn_step_urad, core::f64::consts::FRAC_PI_2, 21, 100)
     }
 
+    /// The sharpest turn to one side.
+    pub const fn sharpest(&self) -> Heading {
+        self.sharpest
+    }
+
     /// The `j`-th turn to the left and its square, mrad^2.
     const fn turn(&self, j: u32) -> (Heading, u32) {
         if j >= self.turns {
@@ -123,7 +128,7 @@ impl Unicycle {
 
 /// The square of a turn in urad, half a turn at most, in mrad^2: exact for whole mrad, else off by 0.61 at
 /// most. Without a division, as each ray that is looked at has one.
-const fn square_mrad2(urad: u32) -> u32 {
+pub(super) const fn square_mrad2(urad: u32) -> u32 {
     /// A microradian in milliradians, with 41 fractional bits.
     const MRAD: u64 = (1 << 41) / 1000;
     // With 16 fractional bits, too small by up to 1.1 units: no square is larger than that of a larger turn.
@@ -132,13 +137,13 @@ const fn square_mrad2(urad: u32) -> u32 {
 }
 
 /// A microradian in the units of a heading.
-const UNITS_PER_URAD: f64 = 4_294_967_296.0 / (1e6 * core::f64::consts::TAU);
+pub(super) const UNITS_PER_URAD: f64 = 4_294_967_296.0 / (1e6 * core::f64::consts::TAU);
 
 /// Fractional bits of a step, as a factor.
-const FRACTION: f64 = 4_294_967_296.0;
+pub(super) const FRACTION: f64 = 4_294_967_296.0;
 
 /// One half with 32 fractional bits.
-const HALF: u64 = 1 << 31;
+pub(super) const HALF: u64 = 1 << 31;
 
 impl Dynamics for Unicycle {
     fn grid(&self) -> ActionGrid {

@@ -18,10 +18,11 @@ use crate::geometry::arc::SlopeArc;
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::config::{Config, Following, first_to_second};
 use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
+use crate::search::dead_end::DeadEnd;
 use crate::search::direction_rule::ArcRule;
 use crate::search::objective::{Choice, Effort, LOOKS};
 use crate::search::problem::Problem;
-use crate::search::recovery::{DeadEnd, Found, solve_or_recover};
+use crate::search::recovery::{Found, solve_or_recover};
 
 /// With this P2 Algorithm 1 learns the most.
 pub const FOLLOWING: Following = Following::AlongBisector;

@@ -26,11 +26,12 @@ use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Pose, Side};
 use crate::planner::config::Config;
 use crate::planner::{Motion, Plan, Planner, StopReason};
+use crate::search::dead_end::DeadEnd;
 use crate::search::direction_rule::ArcRule;
 use crate::search::lookout::{ENOUGH, Lookout, Prospect, Prospects, Sought};
 use crate::search::objective::{Effort, LOOKS, Varrho};
 use crate::search::problem::Problem;
-use crate::search::recovery::{DeadEnd, Found, solve_or_recover};
+use crate::search::recovery::{Found, solve_or_recover};
 
 /// The weight of the control that serves it best: in shares of a label for a unit of `|u|^2`.
 pub const VARRHO: Varrho = Varrho { millionths: 2_000 };

@@ -16,8 +16,9 @@ use crate::belief::sample::Reading;
 use crate::belief::{Belief, Refused};
 use crate::motion::action::{Action, Control};
 use crate::motion::dynamics::{Dynamics, Pose};
+use crate::search::dead_end::DeadEnd;
 use crate::search::objective::Effort;
-use crate::search::recovery::{DeadEnd, Found, Recovery};
+use crate::search::recovery::{Found, Recovery};
 
 /// Which one-step problem a motion answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

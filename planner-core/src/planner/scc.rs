@@ -33,10 +33,11 @@ use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::config::{Config, Following, first_to_second};
 use crate::planner::vote::Ballot;
 use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
+use crate::search::dead_end::DeadEnd;
 use crate::search::direction_rule::{ArcRule, ArcUnion, DirectionRule, UnionRule};
 use crate::search::objective::{Effort, LOOKS};
 use crate::search::problem::Problem;
-use crate::search::recovery::{DeadEnd, Found, Recovery, solve_or_recover};
+use crate::search::recovery::{Found, Recovery, solve_or_recover};
 
 /// With this P2 Algorithm 2 learns the most.
 pub const FOLLOWING: Following = Following::Unrestricted;

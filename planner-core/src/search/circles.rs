@@ -23,6 +23,8 @@ pub(crate) struct Search<'a, D> {
     pub(crate) varrho: Varrho,
     pub(crate) view: View<'a>,
     pub(crate) effort: Effort,
+    /// Whether there was an end on uncertain ground with the border in the way.
+    pub(crate) is_hemmed_in: bool,
 }
 
 /// The number and side of a ray, by which ties are settled.
@@ -43,6 +45,10 @@ pub(crate) struct Findings {
 /// The spacing that the search takes a fan to have at least. Taking it for wider than it is only looks at
 /// more rays; and as rays that move are at most 2^31, `next + turn / LEAST + 1` is below 2^32.
 const LEAST: NonZeroU32 = NonZeroU32::MIN.saturating_add(1);
+
+/// Rays this near to one that leads to the border are taken to lead there too. Less than the 10 mrad of the paper's
+/// fan, so that only finer ones lose an action to it, near the border; they would use up a plan's looks there.
+const HEMMED_IN: u32 = Heading::turn_of(0.004);
 
 /// The rays to one side of a heading that may still lead anywhere.
 struct Arm {
@@ -150,6 +156,11 @@ impl<D: Dynamics> Search<'_, D> {
             {
                 break;
             }
+            if let Some([left, right]) = self.dynamics.rays_at(speed) {
+                let [on_left, on_right] = &mut arms;
+                on_left.end = on_left.end.min(left);
+                on_right.end = on_right.end.min(right.saturating_add(1));
+            }
             for arm in &mut arms {
                 self.search_arm(arm, speed, hunt);
             }
@@ -206,18 +217,19 @@ impl<D: Dynamics> Search<'_, D> {
         }
         let action = grid.action(ray.index, speed);
         let choice = |target| (Choice { action, target, objective: value }, rank);
+        let only_these = |turn| Verdict::Infeasible { turn, on_inner_circles_too: false };
         if hunt.rule.admits(ray.step) {
-            let target = match self.worthwhile_end(&ray, speed) {
+            let target = match self.worthwhile_end(pose, &ray, speed) {
                 Ok(target) => target,
-                Err(turn) => return Verdict::Infeasible { turn, on_inner_circles_too: false },
+                Err(turn) => return only_these(turn),
             };
             hunt.found.best = Some(choice(target));
             return Verdict::Best;
         }
         if hunt.keeps_forbidden && is_better(value, rank, hunt.found.best_forbidden.as_ref()) {
-            let target = match self.worthwhile_end(&ray, speed) {
+            let target = match self.worthwhile_end(pose, &ray, speed) {
                 Ok(target) => target,
-                Err(turn) => return Verdict::Infeasible { turn, on_inner_circles_too: false },
+                Err(turn) => return only_these(turn),
             };
             hunt.found.best_forbidden = Some(choice(target));
         }
@@ -225,14 +237,18 @@ impl<D: Dynamics> Search<'_, D> {
         Verdict::Infeasible { turn, on_inner_circles_too: true }
     }
 
-    /// The pose at a ray's end, if that is inside the area and a label there can tell something; else a turn
-    /// within which it is the same.
-    fn worthwhile_end(&mut self, ray: &Ray, speed: u16) -> Result<Pose, u32> {
-        let target = ray.arrive(self.pose.site, speed).map_err(|_| 0_u32)?;
+    /// The pose at a ray's end, if that is inside the area and a label there can tell something, and the way there
+    /// and what may come of it stay inside too; else the turn within which the search takes no other ray for better.
+    fn worthwhile_end(&mut self, pose: Pose, ray: &Ray, speed: u16) -> Result<Pose, u32> {
+        let target = self.dynamics.arrive(pose, ray, speed).map_err(|_| 0_u32)?;
         self.effort.examined += 1;
-        if self.view.is_uncertain(target.site) {
-            return Ok(target);
+        if !self.view.is_uncertain(target.site) {
+            return Err(self.view.tells_nothing_until(target.site));
         }
-        Err(self.view.tells_nothing_until(target.site))
+        if !self.dynamics.keeps_inside(pose, target, self.view.area()) {
+            self.is_hemmed_in = true;
+            return Err(HEMMED_IN);
+        }
+        Ok(target)
     }
 }

@@ -130,9 +130,13 @@ impl<D: Dynamics> Lookout<'_, D> {
     ) -> Option<Probe> {
         self.evaluations = self.evaluations.checked_sub(1)?;
         let ray = self.ray(pose, number);
-        let target = ray.arrive(pose.site, speed).ok()?;
+        let target = self.dynamics.arrive(pose, &ray, speed).ok()?;
         let share = prediction.share_above(target.site);
-        if share > 0.0 && share < 1.0 && self.area.contains(target.site) {
+        if share > 0.0
+            && share < 1.0
+            && self.area.contains(target.site)
+            && self.dynamics.keeps_inside(pose, target, self.area)
+        {
             let grid = self.dynamics.grid();
             let cost = self.cost(grid.reach_mm(speed), ray.effort);
             let worth = prediction.information(target.site, share) - cost;
@@ -153,6 +157,10 @@ impl<D: Dynamics> Lookout<'_, D> {
         sought: &mut Sought<'_>,
     ) -> Option<()> {
         let Fan { left, right, spacing } = self.dynamics.fan();
+        let [left, right] = self.dynamics.rays_at(speed).unwrap_or([left, right]);
+        if left == 0 {
+            return Some(());
+        }
         let (first, count) = (-i64::from(right), left.saturating_add(right).saturating_sub(1));
         let turns = u64::from(spacing.0) * u64::from(count) * u64::from(PROBES_PER_TURN);
         let steps = ((turns + (1 << 31)) >> 32) as u32;
@@ -246,6 +254,7 @@ impl Prospects {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::belief::consistent_lines::Certainty;
     use crate::belief::sample::{Label, Sample};
     use crate::belief::version_space::VersionSpace;
     use crate::geometry::heading::Heading;

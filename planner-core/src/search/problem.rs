@@ -1,7 +1,8 @@
 //! The one-step problems P1 to P4 (Section III) and their exact search.
 //!
 //! Maximise `|zeta' - zeta|^2 - varrho |u|^2` over the action set, subject to `zeta'` inside the
-//! area and outside both regions of certainty, and to a rule on the direction of travel. Ties go to
+//! area and outside both regions of certainty, and to a rule on the direction of travel. A vehicle that cannot turn on
+//! the spot must also be able to stay inside after it. Ties go to
 //! the smaller turn, then to the left. The agent moves: standing still would sample a place again,
 //! which the regions of certainty exclude but for P3 and P4, whose regions are those of the start.
 //!
@@ -96,7 +97,7 @@ impl<'a, R: DirectionRule> Problem<'a, R> {
         'a: 'd,
     {
         let view = View::new(self.lines, self.area, pose.site, dynamics.grid());
-        Search { dynamics, pose, varrho: self.varrho, view, effort }
+        Search { dynamics, pose, varrho: self.varrho, view, effort, is_hemmed_in: false }
     }
 
     /// Solves the problem by trying every action: the slow twin of [`solve`](Self::solve).
@@ -107,16 +108,17 @@ impl<'a, R: DirectionRule> Problem<'a, R> {
             for speed in 0..grid.speeds() {
                 solution.examined += 1;
                 let objective = self.varrho.objective(grid.reach_mm(speed), ray.effort);
+                let action = grid.action(ray.index, speed);
                 let feasible = |target: &Pose| {
                     speed > 0
                         && self.area.contains(target.site)
+                        && dynamics.keeps_inside(pose, *target, self.area)
                         && self.rule.admits(ray.step)
                         && self.lines.can_cut(target.site)
                 };
                 if solution.best.is_none_or(|b| objective > b.objective)
-                    && let Some(target) = ray.arrive(pose.site, speed).ok().filter(feasible)
+                    && let Some(target) = dynamics.target(pose, action).filter(feasible)
                 {
-                    let action = grid.action(ray.index, speed);
                     solution.best = Some(Choice { action, target, objective });
                 }
             }

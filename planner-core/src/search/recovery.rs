@@ -16,6 +16,7 @@
 //!
 //! From outside the area, where an error has brought it, (1) and (3) may lead back inside. Else it drives
 //! towards the middle of the area, or turns until it can.
+//! A vehicle that cannot turn on the spot has, in the place of 2 to 4, a way of several motions (`manoeuvre`).
 //!
 //! **It ends**, though it has no state. What is known does not change before the next sample, and each
 //! motion lowers a measure: far, the distance to uncertain ground and then the turns to the next drive;
@@ -28,7 +29,9 @@ use crate::geometry::lattice::Vector;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Pose, Ray, Side};
 use crate::search::circles::{Findings, Search};
+use crate::search::dead_end::DeadEnd;
 use crate::search::direction_rule::{ArcRule, DirectionRule};
+use crate::search::manoeuvre::manoeuvre;
 use crate::search::problem::Problem;
 
 /// A transit among uncertain ground looks this many motions ahead. Twice as many find nothing more in
@@ -53,20 +56,6 @@ pub enum Recovery {
     Reorient,
     /// A drive through certain ground; no sample is taken.
     Transit,
-}
-
-/// Why there is no way on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum DeadEnd {
-    /// What is uncertain is thinner than the action grid can hit, or lies outside the area.
-    Resolution,
-    /// There is uncertain ground, but no motion that leads towards it: the border is in the way, or the
-    /// agent cannot turn.
-    Cornered,
-    /// A plan may look at so many rays, and none of these was a way on.
-    Undecided,
-    /// The agent is outside the area, and no motion leads back.
-    Outside,
 }
 
 /// An action, where it leads, and the rung on which it was found.
@@ -98,6 +87,10 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule>(
     if let Some((best, _)) = best_forbidden {
         return Ok(found(Some(Recovery::Undirected))((best.action, best.target)));
     }
+    if goes_round(ladder.search.dynamics, ladder.search.pose) {
+        ladder.search.view.way_out().ok_or(DeadEnd::Resolution)?;
+        return manoeuvre(&ladder.problem, ladder.search).map(found(Some(Recovery::Transit)));
+    }
     // Where nothing is in reach no turn finds anything, so that the order does not matter.
     if let Some(turn) = ladder.reorient() {
         return Ok(found(Some(Recovery::Reorient))(turn));
@@ -109,6 +102,11 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule>(
         None => ladder.transit(),
     };
     leg.map(found(Some(Recovery::Transit)))
+}
+
+/// Whether a vehicle has to go round in order to turn.
+fn goes_round<D: Dynamics>(dynamics: &D, pose: Pose) -> bool {
+    dynamics.orbit(pose, Side::Left).is_some()
 }
 
 /// An action and where it leads.
@@ -254,7 +252,7 @@ impl<D: Dynamics> Ladder<'_, '_, '_, D> {
                     self.problem.area.contains(target.site)
                         || !self.problem.area.contains(pose.site)
                 };
-                if let Some(target) = ray.arrive(pose.site, speed).ok().filter(stays) {
+                if let Some(target) = dynamics.arrive(pose, &ray, speed).ok().filter(stays) {
                     return Drive::Leg((grid.action(ray.index, speed), target));
                 }
             }

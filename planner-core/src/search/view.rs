@@ -143,6 +143,17 @@ impl<'a> View<'a> {
         }
     }
 
+    /// Where positions stay.
+    pub(crate) const fn area(&self) -> Area {
+        self.area
+    }
+
+    /// How far one can travel with no uncertain ground in reach, lattice units; negative if some may be.
+    pub(crate) fn out_of_reach_for(&self) -> f32 {
+        let reach = f32::from(self.speeds) * self.step * (1.0 + self.margin);
+        0.999 * self.certain_within - reach
+    }
+
     /// Whether a position is inside the area, and a label there can tell something. Exact.
     pub(crate) fn is_uncertain(&self, site: Site) -> bool {
         self.area.contains(site) && self.lines.can_cut(site)

@@ -88,7 +88,7 @@ impl<D: Dynamics> Ladder<'_, D> {
         let rays = self.dynamics.rays(pose).filter(|ray| turn(ray) >= 0);
         let actions = rays.flat_map(|ray| (1..grid.speeds()).map(move |speed| (ray, speed)));
         let feasible = actions.filter(|(ray, speed)| {
-            ray.arrive(pose.site, *speed).is_ok_and(|it| {
+            self.dynamics.arrive(pose, ray, *speed).is_ok_and(|it| {
                 area.contains(it.site) && lines.certainty(it.site) == Certainty::Uncertain
             })
         });
@@ -205,7 +205,7 @@ impl<D: Dynamics> Ladder<'_, D> {
         let across = rays.iter().find(|(off, _)| (*off > 0.0) != (nearest > 0.0));
         rays.first().into_iter().chain(across).find_map(|(off, ray)| {
             (1..grid.speeds()).rev().find_map(|speed| {
-                let target = ray.arrive(pose.site, speed).ok()?;
+                let target = self.dynamics.arrive(pose, ray, speed).ok()?;
                 let reach = f64::from(grid.reach_mm(speed)) / 1000.0;
                 let goal = f64::hypot(direction.x().into(), direction.z().into())
                     / f64::from(UNITS_PER_METRE);

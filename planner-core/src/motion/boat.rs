@@ -1,0 +1,99 @@
+//! A boat: turns a little and drives, a step at a time, and never on the spot.
+
+use crate::geometry::heading::Heading;
+use crate::geometry::lattice::{UNITS_PER_METRE, Vector};
+use crate::motion::action::{Action, ActionGrid, BadGrid, Control};
+use crate::motion::dynamics::{Dynamics, Fan, Orbit, Pose, Ray, Side};
+use crate::motion::unicycle::Unicycle;
+
+/// A [`Unicycle`] that cannot turn on the spot: each step turns by at most its sharpest turn, then drives one step of
+/// speed at least.
+///
+/// Of its own steps the smallest circle is that of the sharpest turn and the slowest speed, a polygon with the
+/// circumradius `v / (2 sin(w / 2))`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Boat {
+    steps: Unicycle,
+    half_turn: Heading,
+    /// Lattice units.
+    radius: i32,
+    margin: i32,
+}
+
+/// Half of the fixed point in which sines are here.
+const ONE: i32 = 1 << 29;
+
+/// The circle is smaller than this, lattice units.
+const MOST: i64 = 4_096 * UNITS_PER_METRE as i64;
+
+impl Boat {
+    /// A boat with a unicycle's steps.
+    ///
+    /// # Errors
+    /// [`BadGrid::Circle`].
+    pub fn new(steps: Unicycle) -> Result<Self, BadGrid> {
+        let (grid, sharpest) = (steps.grid(), steps.sharpest());
+        let half_turn = Heading(sharpest.0 / 2);
+        let Vector { z: sin, .. } = half_turn.unit().scaled(ONE);
+        let step = i64::from(grid.step_length()) * i64::from(ONE);
+        let radius = step.checked_div(sin.into()).ok_or(BadGrid::Circle)? >> (Ray::STEP_BITS + 1);
+        // A position is rounded by less than a unit, a step by much less.
+        let margin = 2 * (i64::from(u32::MAX / sharpest.0.max(1)) + 2);
+        if grid.speeds() < 2 || radius + margin >= MOST {
+            return Err(BadGrid::Circle);
+        }
+        Ok(Self { steps, half_turn, radius: radius as i32 + 2, margin: margin as i32 })
+    }
+}
+
+impl Dynamics for Boat {
+    fn grid(&self) -> ActionGrid {
+        self.steps.grid()
+    }
+
+    fn fan(&self) -> Fan {
+        self.steps.fan()
+    }
+
+    fn heading(&self, pose: Pose, side: Side, n: u32) -> Heading {
+        self.steps.heading(pose, side, n)
+    }
+
+    fn ray(&self, pose: Pose, side: Side, n: u32) -> Ray {
+        self.steps.ray(pose, side, n)
+    }
+
+    /// Standing still is none of its motions.
+    fn rays_at(&self, speed: u16) -> Option<[u32; 2]> {
+        (speed == 0).then_some([0; 2])
+    }
+
+    fn orbit(&self, pose: Pose, side: Side) -> Option<Orbit> {
+        let last = self.steps.fan().right;
+        let half_turn = match side {
+            Side::Left => self.half_turn,
+            Side::Right => self.half_turn.mirrored(),
+        };
+        let left = pose.heading.turned(half_turn).unit().left().scaled(self.radius);
+        let (ray, centre) = match side {
+            Side::Left => (2 * last, left),
+            Side::Right => (0, left.reversed()),
+        };
+        let action = self.grid().action(ray, 1);
+        Some(Orbit { action, centre, radius: self.radius, margin: self.margin })
+    }
+
+    fn turn_in_place(&self, _: Pose, _: Side) -> Option<(Action, Pose)> {
+        None
+    }
+
+    fn ray_of(&self, pose: Pose, action: Action) -> Option<Ray> {
+        let (_, speed) = self.grid().split(action);
+        self.steps.ray_of(pose, action).filter(|_| speed > 0)
+    }
+
+    fn control(&self, action: Action) -> Control {
+        self.steps.control(action)
+    }
+}

@@ -1,0 +1,275 @@
+//! A car: arcs of at most some curvature, forward only.
+
+use crate::geometry::angle::Angle;
+use crate::geometry::approximate::acos;
+use crate::geometry::heading::Heading;
+use crate::geometry::lattice::{OffLattice, UNITS_PER_METRE, Vector};
+use crate::motion::action::{Action, ActionGrid, BadGrid, Control};
+use crate::motion::dynamics::{Dynamics, Fan, Orbit, Pose, Ray, Side};
+use crate::motion::unicycle::{FRACTION, HALF, UNITS_PER_URAD, square_mrad2};
+
+/// A vehicle that drives along circular arcs, forward only, and does not turn on the spot: a car, a ship, an
+/// aeroplane.
+///
+/// A motion is named by its *chord*, the straight line from its beginning to its end: a ray is a chord at an angle
+/// `phi` to the heading, a speed is the chord's length `c`. The arc that has both turns the vehicle by `2 phi` in
+/// all, with the curvature `2 sin(phi) / c`. So a turning circle of radius `R` allows the chords of length
+/// `c >= 2 R sin |phi|`: a shorter motion has fewer rays of the same fan. No chord lies further from the heading than
+/// [`SHARPEST`](Self::SHARPEST), an arc of a quarter turn, and none is shorter than the shortest motion.
+///
+/// Its effort is the square of its whole turn, `(2 phi)^2`; the square of its reach is the chord's, not the arc's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Car {
+    grid: ActionGrid,
+    shape: Shape,
+    /// The slowest speed that moves.
+    slowest: u16,
+    /// Rays to one side of the one ahead.
+    turns: u32,
+    /// The step of chords as a binary angle with 32 fractional bits.
+    step: u64,
+    /// The circle that it can go round: its speed, its ray, and in lattice units its radius, that of the polygon of
+    /// tangents about it, and how far rounding may move it in one round.
+    orbit_speed: u16,
+    orbit_turn: u32,
+    orbit_radius: i32,
+    tangents_radius: i32,
+    margin: i32,
+}
+
+/// What a [`Car`] can do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Shape {
+    /// Radius of the turning circle, millimetres.
+    pub radius_mm: u32,
+    /// The shortest motion, millimetres.
+    pub shortest_mm: u32,
+    /// The angle from one chord to the next, microradians.
+    pub turn_step_urad: u32,
+    /// Speeds, standing still included though it does not.
+    pub speeds: u16,
+    /// From one speed to the next, millimetres per unit time.
+    pub speed_step_mm: u32,
+}
+
+/// Fractional bits of sines here, as a factor.
+const ONE: i32 = 1 << 29;
+
+/// What the arc sine's error and that of the sines come to at most, units of a heading.
+const GUARD: u32 = 16;
+
+impl Car {
+    /// The greatest angle between heading and chord: an eighth of a turn, whose arc is a quarter turn.
+    pub const SHARPEST: Heading = Heading(1 << 29);
+
+    /// Turning circles are smaller than this, millimetres.
+    pub const WIDEST_MM: u32 = 2_048_000;
+
+    /// A circle is gone round by motions that turn by twice this, or by the shortest: few are needed, and the
+    /// polygon of their tangents is not much wider than the circle.
+    pub const ORBIT: Heading = Heading(Heading::turn_of(0.26));
+
+    /// A car of this shape.
+    ///
+    /// # Errors
+    /// [`BadGrid`].
+    pub fn new(shape: Shape) -> Result<Self, BadGrid> {
+        let Shape { radius_mm, shortest_mm, turn_step_urad, speeds, speed_step_mm } = shape;
+        let grid = ActionGrid::new(1, speeds, speed_step_mm)?;
+        if turn_step_urad == 0 || turn_step_urad > 785_398 {
+            return Err(BadGrid::Turn);
+        }
+        let slowest = shortest_mm.div_ceil(speed_step_mm).max(1);
+        if radius_mm == 0 || radius_mm >= Self::WIDEST_MM || slowest >= u32::from(speeds) {
+            return Err(BadGrid::Circle);
+        }
+        let step = u64::from(turn_step_urad) * STEP_PER_URAD;
+        let mut car = Self {
+            grid,
+            shape,
+            slowest: slowest as u16,
+            turns: u32::MAX,
+            step,
+            orbit_speed: 0,
+            orbit_turn: 0,
+            orbit_radius: 0,
+            tangents_radius: 0,
+            margin: 0,
+        };
+        car.turns = car.turns_at(speeds - 1);
+        car.grid = ActionGrid::new(2 * car.turns + 1, speeds, speed_step_mm)?;
+        car.find_orbit()
+    }
+
+    /// What it can do.
+    pub const fn shape(&self) -> Shape {
+        self.shape
+    }
+
+    fn find_orbit(mut self) -> Result<Self, BadGrid> {
+        let Shape { radius_mm, speed_step_mm, speeds, .. } = self.shape;
+        let (sin, _) = sin_cos(Self::ORBIT);
+        let chord_mm = (2 * u64::from(radius_mm) * sin as u64) >> 29;
+        let speed = (chord_mm / u64::from(speed_step_mm)) as u32;
+        let speed = speed.max(u32::from(self.slowest)).min(u32::from(speeds) - 1) as u16;
+        (self.orbit_speed, self.orbit_turn) = (speed, self.turns_at(speed));
+        let turn = self.turn(self.orbit_turn);
+        let (sin, cos) = sin_cos(turn);
+        let chord = i64::from(speed) * i64::from(self.grid.step_length());
+        let per = |a: i64, b: i32| (a * i64::from(ONE)).checked_div(i64::from(b));
+        // No turn, no circle: nothing divides by it.
+        let radius = per(chord, sin).ok_or(BadGrid::Circle)? >> (Ray::STEP_BITS + 1);
+        let tangents = per(radius, cos).ok_or(BadGrid::Circle)? + 2;
+        let rounds = i64::from(u32::MAX / turn.0.max(1) / 2) + 2;
+        let margin = rounds * (2 + (i64::from(speed) >> Ray::STEP_BITS));
+        if tangents + margin >= MOST {
+            return Err(BadGrid::Circle);
+        }
+        (self.orbit_radius, self.tangents_radius) = (radius as i32, tangents as i32);
+        self.margin = margin as i32;
+        Ok(self)
+    }
+
+    /// The `n`-th chord's angle to the heading.
+    const fn turn(&self, n: u32) -> Heading {
+        Heading(((n as u64 * self.step + HALF) >> 32) as u32)
+    }
+
+    /// Rays to one side of the one ahead, at a speed.
+    fn turns_at(&self, speed: u16) -> u32 {
+        let limit = u64::from(self.limit(speed).0) + 1;
+        let turns = ((limit << 32) - HALF - 1).checked_div(self.step).unwrap_or(0);
+        (turns as u32).min(self.turns)
+    }
+
+    /// The greatest angle of a chord of this length: the arc sine of `c / 2R`, less its error.
+    fn limit(&self, speed: u16) -> Heading {
+        let sine = (u64::from(self.grid.reach_mm(speed)) * ONE as u64)
+            .checked_div(2 * u64::from(self.shape.radius_mm))
+            .unwrap_or(0);
+        let (sharpest, _) = sin_cos(Self::SHARPEST);
+        if sine >= sharpest as u64 {
+            return Self::SHARPEST;
+        }
+        // A guess that is off by 10^-4 rad, and one step of Newton's.
+        let sine = sine as i32;
+        let guess = Angle::QUARTER_TURN - acos(sine as f32 / ONE as f32);
+        let guess = guess.turn();
+        let (sin, cos) = sin_cos(Heading(guess));
+        let off = (i64::from(sine - sin) * i64::from(ONE)).checked_div(cos.into()).unwrap_or(0);
+        let off = (off * UNITS_PER_RADIAN) >> 29;
+        Heading((i64::from(guess) + off - i64::from(GUARD)).max(0) as u32)
+    }
+}
+
+/// Sine and cosine, in parts of [`ONE`].
+const fn sin_cos(heading: Heading) -> (i32, i32) {
+    let Vector { x, z } = heading.unit().scaled(ONE);
+    (z, x)
+}
+
+/// The arc's length over its chord's: an angle's over its sine, by its square; to 10^-6 up to an eighth of a turn.
+fn per_sine(square: f32) -> f32 {
+    let rest = 2.1e-4 + square * 2.2e-5;
+    1.0 + square * (1.0 / 6.0 + square * (7.0 / 360.0 + square * (31.0 / 15_120.0 + square * rest)))
+}
+
+/// A turning circle, and what it needs beside it, is smaller than this, lattice units.
+const MOST: i64 = 4_096 * UNITS_PER_METRE as i64;
+
+/// A step of one microradian.
+const STEP_PER_URAD: u64 = (UNITS_PER_URAD * FRACTION + 0.5) as u64;
+
+/// Units of a heading in a radian.
+const UNITS_PER_RADIAN: i64 = (UNITS_PER_URAD * 1e6 + 0.5) as i64;
+
+impl Dynamics for Car {
+    fn grid(&self) -> ActionGrid {
+        self.grid
+    }
+
+    fn fan(&self) -> Fan {
+        let spacing = Heading((self.step >> 32) as u32 + 1);
+        Fan { left: self.turns + 1, right: self.turns, spacing }
+    }
+
+    fn heading(&self, pose: Pose, side: Side, n: u32) -> Heading {
+        let turn = self.turn(n);
+        pose.heading.turned(if side == Side::Left { turn } else { turn.mirrored() })
+    }
+
+    fn ray(&self, pose: Pose, side: Side, n: u32) -> Ray {
+        let n = n.min(self.turns);
+        let heading = self.heading(pose, side, n);
+        let index = if side == Side::Left { self.turns + n } else { self.turns - n };
+        let effort = square_mrad2(2 * n * self.shape.turn_step_urad);
+        Ray { index, heading, step: heading.unit().scaled(self.grid.step_length()), effort }
+    }
+
+    fn rays_at(&self, speed: u16) -> Option<[u32; 2]> {
+        Some(if speed < self.slowest {
+            [0, 0]
+        } else {
+            let turns = self.turns_at(speed);
+            [turns + 1, turns]
+        })
+    }
+
+    fn arrive(&self, pose: Pose, ray: &Ray, speed: u16) -> Result<Pose, OffLattice> {
+        let site = pose.site.step(ray.displacement(speed))?;
+        // The arc turns as far beyond its chord as the chord does from the heading.
+        let turn = ray.heading.turned(pose.heading.mirrored());
+        Ok(Pose { site, heading: ray.heading.turned(turn) })
+    }
+
+    fn corner(&self, from: Pose, to: Pose) -> Option<Vector> {
+        let turn = to.heading.0.wrapping_sub(from.heading.0) as i32;
+        if turn == 0 {
+            return None;
+        }
+        let chord = to.site - from.site;
+        let (sin, cos) = sin_cos(Heading((turn / 2) as u32));
+        // An eighth of a turn at most, so the tangent is 1 at most.
+        let tangent = (i64::from(sin) * i64::from(ONE)).checked_div(cos.into()).unwrap_or(0);
+        let tangent = tangent.clamp(-i64::from(ONE), ONE.into());
+        // Half the chord, and from there to the side that it turns away from.
+        let half = |along: i32, aside: i32| {
+            ((i64::from(along) * i64::from(ONE) + tangent * i64::from(aside)) >> 30) as i32
+        };
+        Some(Vector { x: half(chord.x, chord.z), z: half(chord.z, -chord.x) })
+    }
+
+    fn orbit(&self, pose: Pose, side: Side) -> Option<Orbit> {
+        let left = pose.heading.unit().left().scaled(self.orbit_radius);
+        let (ray, centre) = match side {
+            Side::Left => (self.turns + self.orbit_turn, left),
+            Side::Right => (self.turns - self.orbit_turn, left.reversed()),
+        };
+        let action = self.grid.action(ray, self.orbit_speed);
+        Some(Orbit { action, centre, radius: self.tangents_radius, margin: self.margin })
+    }
+
+    fn turn_in_place(&self, _: Pose, _: Side) -> Option<(Action, Pose)> {
+        None
+    }
+
+    fn ray_of(&self, pose: Pose, action: Action) -> Option<Ray> {
+        let (index, speed) = self.grid.split(action);
+        let side = if index >= self.turns { Side::Left } else { Side::Right };
+        let n = index.abs_diff(self.turns);
+        let exists = speed >= self.slowest && n <= self.turns_at(speed);
+        exists.then(|| self.ray(pose, side, n))
+    }
+
+    /// The arc's length, and the whole turn along it.
+    fn control(&self, action: Action) -> Control {
+        let (ray, speed) = self.grid.split(action);
+        let n = ray.abs_diff(self.turns).min(self.turns);
+        let phi = (n * self.shape.turn_step_urad) as f32 / 1e6;
+        let longer = per_sine(phi * phi);
+        let w = if ray < self.turns { -2.0 * phi } else { 2.0 * phi };
+        Control { v: longer * self.grid.reach_m(speed), w }
+    }
+}

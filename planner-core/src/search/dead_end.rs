@@ -1,0 +1,15 @@
+//! Why a search for a way on has found none.
+
+/// Why there is no way on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum DeadEnd {
+    /// What is uncertain is thinner than the action grid can hit, or lies outside the area.
+    Resolution,
+    /// There is uncertain ground, but no motion that leads towards it: the border is in the way, or the
+    /// agent cannot turn.
+    Cornered,
+    /// A plan may look at so many rays, and none of these was a way on.
+    Undecided,
+    /// The agent is outside the area, and no motion leads back.
+    Outside,
+}

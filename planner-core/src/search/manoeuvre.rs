@@ -1,0 +1,245 @@
+//! The way to where a label can be asked, for a vehicle that cannot turn on the spot.
+//!
+//! It holds its circle to one side for some motions, until it has gone round at most, and drives straight on from
+//! there for some more: `L..L S..S` or `R..R S..S`. After each of these motions it sees whether the problem is
+//! feasible there, and the first motion of the fewest is the one to make. Where there is none it looks at *long* ways,
+//! which after up to eight straight motions go round to either side once more, as the shortest paths of a car do
+//! (Dubins, 1957): `L..L S..S R..R` and the like. So that it is never cornered for want of caution, each motion ends
+//! [safe](Dynamics::keeps_inside); only where it is not safe to begin with, or outside, it may take some that do not,
+//! and if nothing is feasible on any such way, it goes where it is safe.
+//!
+//! **It ends**, though it has no state. What is left of a way is a way too, of one motion less: so each motion lowers
+//! the number of motions to where a label can be asked, by a short way, or as long as there is none, by a long one, or
+//! as long as there is none either, of those to where it is safe; and what is safe never becomes unsafe again.
+
+use crate::belief::consistent_lines::Certainty;
+use crate::geometry::approximate::{single, sqrt};
+use crate::motion::action::Action;
+use crate::motion::dynamics::{Dynamics, Orbit, Pose, Side};
+use crate::search::circles::Search;
+use crate::search::dead_end::DeadEnd;
+use crate::search::direction_rule::ArcRule;
+use crate::search::objective::Effort;
+use crate::search::problem::Problem;
+
+/// A way has so many motions at most.
+const MOST: u32 = 1_024;
+
+/// Rays that all this looks at, at most.
+const LOOKS: u32 = 65_536;
+
+/// Straight motions of a long way at most.
+const STRAIGHT: u32 = 8;
+
+/// An action and where it leads.
+type Leg = (Action, Pose);
+
+/// The first motion of a way, and the number of its motions.
+type Way = (Leg, u32);
+
+/// Where all ways begin.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Start {
+    /// Inside the area, with a circle to one side to stay on for ever.
+    Safe,
+    /// Inside, with none.
+    Unsafe,
+    /// Outside: motions may be so too.
+    Outside,
+}
+
+struct Manoeuvre<'d, 'p, 'a, D> {
+    problem: &'p Problem<'a, ArcRule>,
+    dynamics: &'d D,
+    effort: Effort,
+    /// The shortest way to where the problem is feasible.
+    shortest: Option<Way>,
+    /// From where it is not safe: the shortest way to where it is.
+    escape: Option<Way>,
+    start: Start,
+    /// Whether uncertain ground was in reach somewhere.
+    comes_near: bool,
+    is_hemmed_in: bool,
+    looks_at_long_ways: bool,
+}
+
+/// The first motion of the shortest way to where the problem, without its rule, is feasible.
+///
+/// Cost: for each motion of a round, and each straight one beyond near uncertain ground, one search; where that finds
+/// nothing, one for each motion of the long ways, up to 65,536 looks in all.
+///
+/// # Errors
+/// Why there is none.
+pub(crate) fn manoeuvre<D: Dynamics>(
+    problem: &Problem<'_, ArcRule>,
+    search: &mut Search<'_, D>,
+) -> Result<Leg, DeadEnd> {
+    let (dynamics, from) = (search.dynamics, search.pose);
+    let mut it = Manoeuvre {
+        problem,
+        dynamics,
+        effort: Effort { looks: LOOKS, ..search.effort },
+        shortest: None,
+        escape: None,
+        start: match problem.area.contains(from.site) {
+            true if dynamics.is_safe(from, problem.area) => Start::Safe,
+            true => Start::Unsafe,
+            false => Start::Outside,
+        },
+        comes_near: search.view.own_label == Certainty::Uncertain,
+        is_hemmed_in: search.is_hemmed_in,
+        looks_at_long_ways: false,
+    };
+    for long in [false, true] {
+        it.looks_at_long_ways = long;
+        if it.shortest.is_none() {
+            it.drive_on(from, None, 0, search.view.out_of_reach_for());
+            for side in [Side::Left, Side::Right] {
+                it.go_round(from, side, (None, 0), true);
+            }
+        }
+    }
+    search.effort = it.effort;
+    match it.shortest.or(it.escape) {
+        Some((first, _)) => Ok(first),
+        None if !it.effort.is_enough() => Err(DeadEnd::Undecided),
+        None if it.start == Start::Outside => Err(DeadEnd::Outside),
+        None if it.start == Start::Safe && it.comes_near && !it.is_hemmed_in => {
+            Err(DeadEnd::Resolution)
+        }
+        None => Err(DeadEnd::Cornered),
+    }
+}
+
+impl<D: Dynamics> Manoeuvre<'_, '_, '_, D> {
+    /// Whether a way of so many motions is worth knowing.
+    fn is_short(&self, motions: u32) -> bool {
+        motions < self.shortest.map_or(MOST, |(_, least)| least) && self.effort.is_enough()
+    }
+
+    /// Goes round to a side, after so many motions that began with `first`; drives straight on after each motion, if
+    /// that is wanted.
+    fn go_round(
+        &mut self,
+        from: Pose,
+        side: Side,
+        (first, before): (Option<Leg>, u32),
+        and_on: bool,
+    ) {
+        let (mut pose, mut first, mut turned, mut motions) = (from, first, 0_u32, before);
+        loop {
+            motions += 1;
+            let Some(orbit) = self.dynamics.orbit(pose, side) else { return };
+            let Some(after) = self.dynamics.target(pose, orbit.action) else { return };
+            let is_inside = self.start == Start::Outside
+                || self.problem.area.contains(after.site)
+                    && self.dynamics.bulges_inside(pose, after, self.problem.area)
+                    && self.may_hold(pose, after, side);
+            let less = turned;
+            turned = match side {
+                Side::Left => after.heading.0.wrapping_sub(from.heading.0),
+                Side::Right => from.heading.0.wrapping_sub(after.heading.0),
+            };
+            // Beyond a whole turn there is nothing new.
+            if !is_inside || turned <= less || !self.is_short(motions) {
+                return;
+            }
+            let first = *first.get_or_insert((orbit.action, after));
+            pose = after;
+            let Some(free) = self.look(pose, (first, motions)) else { return };
+            if and_on {
+                self.drive_on(pose, Some(first), motions, free);
+            }
+        }
+    }
+
+    /// Whether one more motion round to a side leaves it safe, if it is: on the circle that it goes round, whatever
+    /// rounding has moved that by, or with a margin.
+    fn may_hold(&self, pose: Pose, after: Pose, side: Side) -> bool {
+        let (dynamics, area) = (self.dynamics, self.problem.area);
+        let fits = |orbit: Orbit| orbit.is_inside(after.site, area, orbit.radius);
+        !dynamics.is_safe(pose, area)
+            || dynamics.keeps_inside(pose, after, area)
+            || dynamics.orbit(after, side).is_some_and(fits)
+    }
+
+    /// Drives straight on, after so many motions that began with `first`. No uncertain ground is in reach for a
+    /// distance.
+    fn drive_on(&mut self, from: Pose, first: Option<Leg>, before: u32, mut free: f32) {
+        let (mut pose, mut first, mut motions) = (from, first, before);
+        while let Some(leg) = self.straight(pose) {
+            motions += 1;
+            if !self.is_short(motions) {
+                return;
+            }
+            let first = *first.get_or_insert(leg);
+            let by = leg.1.site - pose.site;
+            free -= sqrt(single(by.dot(by)));
+            pose = leg.1;
+            if free > 0.0 {
+                self.note_escape(pose, (first, motions));
+            } else {
+                let Some(next) = self.look(pose, (first, motions)) else { return };
+                free = next;
+            }
+            if self.looks_at_long_ways {
+                for side in [Side::Left, Side::Right] {
+                    self.go_round(pose, side, (Some(first), motions), false);
+                }
+                if motions - before == STRAIGHT {
+                    return;
+                }
+            }
+        }
+    }
+
+    /// The fastest drive straight ahead that ends safe, or from where it is not safe, inside.
+    fn straight(&self, pose: Pose) -> Option<Leg> {
+        let (dynamics, area) = (self.dynamics, self.problem.area);
+        let grid = dynamics.grid();
+        let ray = dynamics.ray(pose, Side::Left, 0);
+        let fastest = |may_end: &dyn Fn(Pose) -> bool| {
+            (1..grid.speeds()).rev().find_map(|speed| {
+                let exists = dynamics.rays_at(speed).is_none_or(|[left, _]| left > 0);
+                let target = exists.then(|| dynamics.arrive(pose, &ray, speed).ok()).flatten()?;
+                let is_inside = self.start == Start::Outside || area.contains(target.site);
+                (is_inside && may_end(target)).then(|| (grid.action(ray.index, speed), target))
+            })
+        };
+        fastest(&|target| area.contains(target.site) && dynamics.keeps_inside(pose, target, area))
+            .or_else(|| if dynamics.is_safe(pose, area) { None } else { fastest(&|_| true) })
+    }
+
+    /// Sees whether the problem is feasible at the end of a way: then it is the shortest, and there is nothing to
+    /// go on for. Else how far from there no uncertain ground is in reach.
+    fn look(&mut self, pose: Pose, way: Way) -> Option<f32> {
+        self.note_escape(pose, way);
+        self.effort.looks = self.effort.looks.saturating_sub(1);
+        let mut there = self.problem.search(self.dynamics, pose, self.effort);
+        let there = there.open();
+        let free = there.view.out_of_reach_for();
+        if free > 0.0 {
+            return Some(free);
+        }
+        self.comes_near = true;
+        let best = there.best_between([pose.heading; 2], &self.problem.rule);
+        self.effort = there.effort;
+        self.is_hemmed_in |= there.is_hemmed_in;
+        if best.is_some() {
+            self.shortest = Some(way);
+            return None;
+        }
+        Some(free)
+    }
+
+    fn note_escape(&mut self, pose: Pose, way: Way) {
+        let (_, motions) = way;
+        if self.start != Start::Safe
+            && self.escape.is_none_or(|(_, least)| motions < least)
+            && self.problem.area.contains(pose.site)
+            && self.dynamics.keeps_inside(pose, pose, self.problem.area)
+        {
+            self.escape = Some(way);
+        }
+    }
+}
