@@ -30,7 +30,7 @@ struct Garage {
     responder: Responder,
     mission: Mission,
     setup: message::Setup,
-    robot: Robot,
+    robot: Box<dyn Robot>,
     pose: Pose,
     /// Motions of the last mission, and whether it has ended.
     motions: usize,
