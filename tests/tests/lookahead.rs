@@ -193,7 +193,6 @@ fn campaign(seed: u64, steps: u32, grid: Grid, noise: Option<NoiseModel>) -> Cam
         grid,
         noise,
         errors: Errors::default(),
-        tolerance: Tolerance::NONE,
         policy: Policy::default(),
         prior: Prior::default(),
     }
