@@ -141,7 +141,7 @@ fn fly_by<D: Dynamics + Copy + Debug>(
     mut planner: impl Planner<Belief = VersionSpace<CAPACITY>>,
 ) -> Flown {
     let (mut pose, mut motions, mut labels, mut been) = (field.start, 0, 0, HashSet::new());
-    let was_safe = |pose| dynamics.is_safe(pose, field.area);
+    let was_safe = |pose| dynamics.is_safe(pose, &field.area);
     let end = loop {
         if labels == LABELS {
             break None;

@@ -36,7 +36,7 @@ impl<D: Dynamics, B: Belief> Planner for RandomWalk<D, B> {
             let action = Action(self.rng.random_range(0..=last as u32));
             let target = self.dynamics.target(pose, action).filter(|target| {
                 self.area.contains(target.site)
-                    && self.dynamics.keeps_inside(pose, *target, self.area)
+                    && self.dynamics.keeps_inside(pose, *target, &self.area)
             });
             if let Some(target) = target {
                 return Plan::Move(Motion {

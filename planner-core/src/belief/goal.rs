@@ -10,6 +10,7 @@ use crate::geometry::area::Area;
 use crate::geometry::heading::Heading;
 use crate::geometry::lattice::Vector;
 use crate::geometry::line::Bound;
+use crate::geometry::region::Region;
 
 /// What a mission is to find out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,6 +21,20 @@ pub struct Goal {
     pub accuracy: Accuracy,
     /// The probability that the promise holds, in millionths, at least; certain where labels are true.
     pub level: u32,
+}
+
+impl Goal {
+    /// The same for the rectangle around an area: shares of it are less.
+    #[must_use]
+    pub fn in_bounds_of<G: Region>(self, area: &G) -> Self {
+        let accuracy = match self.accuracy {
+            Accuracy::Misclassified(millionths) => {
+                Accuracy::Misclassified((millionths as f32 * area.share_of_bounds()) as u32)
+            }
+            accuracy @ Accuracy::SlopeArc(_) => accuracy,
+        };
+        Self { accuracy, ..self }
+    }
 }
 
 /// How well a line is to be known.

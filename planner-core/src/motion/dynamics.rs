@@ -8,9 +8,9 @@
 //! repeating one action: where that lies inside the area it is never cornered. [`Car`](crate::motion::car) drives
 //! along arcs, [`Boat`](crate::motion::boat) turns a little a step.
 
-use crate::geometry::area::Area;
 use crate::geometry::heading::Heading;
 use crate::geometry::lattice::{OffLattice, Site, Vector};
+use crate::geometry::region::Region;
 use crate::motion::action::{Action, ActionGrid, Control};
 
 /// Where the agent is and where it faces: the state.
@@ -95,7 +95,7 @@ pub struct Orbit {
 impl Orbit {
     /// Whether a disc about its centre lies inside the area, seen from a position on it; the disc's radius is in
     /// lattice units.
-    pub fn is_inside(&self, site: Site, area: Area, radius: i32) -> bool {
+    pub fn is_inside<G: Region>(&self, site: Site, area: &G, radius: i32) -> bool {
         site.step(self.centre).is_ok_and(|centre| area.contains_disc(centre, radius))
     }
 }
@@ -181,24 +181,27 @@ pub trait Dynamics {
     }
 
     /// Whether one of the orbits from a pose lies inside the area, so that the agent can stay there for ever.
-    fn is_safe(&self, pose: Pose, area: Area) -> bool {
+    fn is_safe<G: Region>(&self, pose: Pose, area: &G) -> bool {
         has_orbit_inside(self, pose, area, |orbit| orbit.radius)
     }
 
     /// Whether a motion to a place inside the area stays there, and ends where it is safe, with a margin
     /// for the rounding of a round.
-    fn keeps_inside(&self, from: Pose, to: Pose, area: Area) -> bool {
-        self.bulges_inside(from, to, area)
+    fn keeps_inside<G: Region>(&self, from: Pose, to: Pose, area: &G) -> bool {
+        self.stays_inside(from, to, area)
             && has_orbit_inside(self, to, area, |orbit| orbit.radius.saturating_add(orbit.margin))
     }
 
-    /// Whether all of a motion to a place inside the area stays there, or it begins outside.
-    fn bulges_inside(&self, from: Pose, to: Pose, area: Area) -> bool {
-        let is_inside = |by| {
-            from.site.step(by).is_ok_and(|corner| area.contains(corner))
-                || !area.contains(from.site)
+    /// Whether all of a motion to a place inside the area stays there, or it begins outside; and it touches no
+    /// keep-out.
+    fn stays_inside<G: Region>(&self, from: Pose, to: Pose, area: &G) -> bool {
+        let Some(corner) = self.corner(from, to) else {
+            return area.lets_pass(&[from.site, to.site]);
         };
-        self.corner(from, to).is_none_or(is_inside)
+        from.site.step(corner).is_ok_and(|corner| {
+            (area.encloses(corner) || !area.encloses(from.site))
+                && area.lets_pass(&[from.site, corner, to.site])
+        })
     }
 
     /// The ray nearest to a heading, and the nearest within half a turn to the other side of it; the first
@@ -249,10 +252,10 @@ pub trait Dynamics {
 }
 
 /// Whether the agent needs no orbit, or the disc of one of so large a radius lies inside the area.
-fn has_orbit_inside<D: Dynamics + ?Sized>(
+fn has_orbit_inside<D: Dynamics + ?Sized, G: Region>(
     dynamics: &D,
     pose: Pose,
-    area: Area,
+    area: &G,
     radius: impl Fn(&Orbit) -> i32,
 ) -> bool {
     let fits = |orbit: Orbit| orbit.is_inside(pose.site, area, radius(&orbit));

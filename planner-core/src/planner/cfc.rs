@@ -15,6 +15,8 @@ use crate::belief::consistent_lines::Certainty;
 use crate::belief::sample::{Label, Reading};
 use crate::belief::version_space::VersionSpace;
 use crate::geometry::arc::SlopeArc;
+use crate::geometry::area::Area;
+use crate::geometry::region::Region;
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::config::{Config, Following, first_to_second};
 use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
@@ -52,8 +54,8 @@ pub enum Phase {
 
 /// Algorithm 1 for `D`'s dynamics with room for `N` samples, the oracle's included.
 #[derive(Clone, Debug)]
-pub struct Cfc<D, const N: usize> {
-    config: Config,
+pub struct Cfc<D, const N: usize, G = Area> {
+    config: Config<G>,
     dynamics: D,
     space: VersionSpace<N>,
     phase: Phase,
@@ -61,9 +63,9 @@ pub struct Cfc<D, const N: usize> {
     past: Label,
 }
 
-impl<D: Dynamics, const N: usize> Cfc<D, N> {
+impl<D: Dynamics, const N: usize, G: Region> Cfc<D, N, G> {
     /// A planner that knows the oracle's samples; its past label is that of the first of them.
-    pub fn new(config: Config, dynamics: D, space: VersionSpace<N>) -> Self {
+    pub fn new(config: Config<G>, dynamics: D, space: VersionSpace<N>) -> Self {
         let past = space.first_label();
         Self { config, dynamics, space, phase: Phase::Crossing, past }
     }
@@ -74,11 +76,11 @@ impl<D: Dynamics, const N: usize> Cfc<D, N> {
     }
 
     /// The one-step problem of the present phase.
-    pub fn problem(&self) -> Problem<'_, ArcRule> {
+    pub fn problem(&self) -> Problem<'_, ArcRule, G> {
         self.problem_of(self.phase, self.space.slope_arc())
     }
 
-    fn problem_of(&self, phase: Phase, slopes: SlopeArc) -> Problem<'_, ArcRule> {
+    fn problem_of(&self, phase: Phase, slopes: SlopeArc) -> Problem<'_, ArcRule, G> {
         let (area, varrho) = (self.config.ground(), self.config.varrho);
         let rule = match phase {
             Phase::Crossing => {
@@ -110,7 +112,7 @@ impl<D: Dynamics, const N: usize> Cfc<D, N> {
     }
 }
 
-impl<D: Dynamics, const N: usize> Planner for Cfc<D, N> {
+impl<D: Dynamics, const N: usize, G: Region> Planner for Cfc<D, N, G> {
     type Belief = VersionSpace<N>;
 
     fn plan(&mut self, pose: Pose) -> Plan {
@@ -160,7 +162,6 @@ mod tests {
     use super::*;
     use crate::belief::sample::Sample;
     use crate::belief::tolerance::Tolerance;
-    use crate::geometry::area::Area;
     use crate::geometry::lattice::Site;
     use crate::motion::unicycle::Unicycle;
     use crate::planner::config::Crossing;

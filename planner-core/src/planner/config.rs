@@ -5,6 +5,7 @@ use crate::belief::tolerance::Tolerance;
 use crate::geometry::arc::SlopeArc;
 use crate::geometry::area::Area;
 use crate::geometry::lattice::Vector;
+use crate::geometry::region::Region;
 use crate::search::direction_rule::ArcRule;
 use crate::search::objective::Varrho;
 
@@ -41,9 +42,9 @@ pub enum Following {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
-pub struct Config {
+pub struct Config<G = Area> {
     /// Where positions must stay.
-    pub area: Area,
+    pub area: G,
     /// The weight of the control in the objective.
     pub varrho: Varrho,
     /// How P1 looks for the opposite label.
@@ -55,9 +56,9 @@ pub struct Config {
     pub tolerance: Tolerance,
 }
 
-impl Config {
+impl<G: Region> Config<G> {
     /// Where motions may end: the area but for a margin, if that leaves any of it.
-    pub(crate) fn ground(&self) -> Area {
+    pub(crate) fn ground(&self) -> G {
         self.area.inset(self.tolerance.units()).unwrap_or(self.area)
     }
 

@@ -22,6 +22,8 @@ use crate::belief::goal::Goal;
 use crate::belief::outlook::{Foresight, Outlook, Prediction};
 use crate::belief::sample::{Label, Reading};
 use crate::belief::tolerance::Tolerance;
+use crate::geometry::area::Area;
+use crate::geometry::region::Region;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Pose, Side};
 use crate::planner::config::Config;
@@ -54,8 +56,8 @@ const LADDER_LOOKS: u32 = 128;
 ///
 /// Of its [`Config`] it takes the area and `varrho`, for which [`VARRHO`] is a good choice.
 #[derive(Clone, Debug)]
-pub struct Lookahead<D, B> {
-    config: Config,
+pub struct Lookahead<D, B, G = Area> {
+    config: Config<G>,
     dynamics: D,
     foresight: B,
     evaluations: u32,
@@ -70,9 +72,9 @@ struct Decision {
     wants_label: bool,
 }
 
-impl<D: Dynamics, B: Foresight> Lookahead<D, B> {
+impl<D: Dynamics, B: Foresight, G: Region> Lookahead<D, B, G> {
     /// A planner with what is known so far.
-    pub const fn new(config: Config, dynamics: D, foresight: B) -> Self {
+    pub const fn new(config: Config<G>, dynamics: D, foresight: B) -> Self {
         Self { config, dynamics, foresight, evaluations: EVALUATIONS, goal: None }
     }
 
@@ -94,7 +96,7 @@ impl<D: Dynamics, B: Foresight> Lookahead<D, B> {
     }
 
     /// The motion that is worth the most; `None` if no label is in reach.
-    fn decide(&self, lookout: &mut Lookout<'_, D>, pose: Pose) -> Option<Decision> {
+    fn decide(&self, lookout: &mut Lookout<'_, D, G>, pose: Pose) -> Option<Decision> {
         let outlook = self.foresight.outlook(pose.site);
         let mut prospects = Prospects::new();
         let all = self.dynamics.grid().speeds();
@@ -155,8 +157,8 @@ impl<D: Dynamics, B: Foresight> Lookahead<D, B> {
 }
 
 /// What the best label after one more motion is worth; nothing if there is none.
-fn second<D: Dynamics, P: Prediction>(
-    lookout: &mut Lookout<'_, D>,
+fn second<D: Dynamics, P: Prediction, G: Region>(
+    lookout: &mut Lookout<'_, D, G>,
     prediction: &P,
     pose: Pose,
 ) -> f32 {
@@ -165,12 +167,13 @@ fn second<D: Dynamics, P: Prediction>(
     most
 }
 
-impl<D: Dynamics, B: Foresight> Planner for Lookahead<D, B> {
+impl<D: Dynamics, B: Foresight, G: Region> Planner for Lookahead<D, B, G> {
     type Belief = B::Belief;
 
     fn plan(&mut self, pose: Pose) -> Plan {
         let (area, varrho) = (self.config.ground(), self.config.varrho);
-        if self.goal.is_some_and(|goal| self.belief().meets(goal, self.config.area)) {
+        let (whole, belief) = (&self.config.area, self.belief());
+        if self.goal.is_some_and(|it| belief.meets(it.in_bounds_of(whole), whole.bounds())) {
             return Plan::Stop(StopReason::Known);
         }
         if self.belief().is_full() {
@@ -216,7 +219,6 @@ mod tests {
     use crate::belief::sample::Sample;
     use crate::belief::version_space::VersionSpace;
     use crate::belief::weight::Prior;
-    use crate::geometry::area::Area;
     use crate::geometry::heading::Heading;
     use crate::geometry::lattice::Site;
     use crate::motion::unicycle::Unicycle;

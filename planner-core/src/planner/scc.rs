@@ -28,6 +28,8 @@ use crate::belief::noise::Noise;
 use crate::belief::sample::{Reading, Sample};
 use crate::belief::version_space::NoVersionSpace;
 use crate::belief::weight::Prior;
+use crate::geometry::area::Area;
+use crate::geometry::region::Region;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::config::{Config, Following, first_to_second};
@@ -63,16 +65,21 @@ pub enum Policy {
 /// Algorithm 2 for `D`'s dynamics, with room for `N` samples, the given ones included, and `H`
 /// hypotheses.
 #[derive(Clone, Debug)]
-pub struct Scc<D, const N: usize, const H: usize> {
-    config: Config,
+pub struct Scc<D, const N: usize, const H: usize, G = Area> {
+    config: Config<G>,
     policy: Policy,
     dynamics: D,
     hypotheses: Hypotheses<N, H>,
 }
 
-impl<D: Dynamics, const N: usize, const H: usize> Scc<D, N, H> {
+impl<D: Dynamics, const N: usize, const H: usize, G: Region> Scc<D, N, H, G> {
     /// A planner over a table of hypotheses, whose prior weighs their votes.
-    pub fn new(config: Config, policy: Policy, dynamics: D, hypotheses: Hypotheses<N, H>) -> Self {
+    pub fn new(
+        config: Config<G>,
+        policy: Policy,
+        dynamics: D,
+        hypotheses: Hypotheses<N, H>,
+    ) -> Self {
         Self { config, policy, dynamics, hypotheses }
     }
 
@@ -94,7 +101,7 @@ impl<D: Dynamics, const N: usize, const H: usize> Scc<D, N, H> {
     }
 
     /// The problem of a hypothesis: where it votes to go.
-    pub fn problem<'a>(&'a self, hypothesis: &'a Hypothesis<15>) -> Problem<'a, ArcRule> {
+    pub fn problem<'a>(&'a self, hypothesis: &'a Hypothesis<15>) -> Problem<'a, ArcRule, G> {
         let own = self.hypotheses.lines(hypothesis);
         let ground = match self.policy {
             Policy::MixtureOfOwn => own,
@@ -109,7 +116,7 @@ impl<D: Dynamics, const N: usize, const H: usize> Scc<D, N, H> {
         self.on(ground, rule)
     }
 
-    fn on<'a, R>(&self, lines: ConsistentLines<'a>, rule: R) -> Problem<'a, R> {
+    fn on<'a, R>(&self, lines: ConsistentLines<'a>, rule: R) -> Problem<'a, R, G> {
         Problem { lines, area: self.config.ground(), varrho: self.config.varrho, rule }
     }
 
@@ -182,7 +189,7 @@ impl<D: Dynamics, const N: usize, const H: usize> Scc<D, N, H> {
     }
 }
 
-impl<D: Dynamics, const N: usize, const H: usize> Planner for Scc<D, N, H> {
+impl<D: Dynamics, const N: usize, const H: usize, G: Region> Planner for Scc<D, N, H, G> {
     type Belief = Hypotheses<N, H>;
 
     fn plan(&mut self, pose: Pose) -> Plan {

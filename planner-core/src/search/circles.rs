@@ -11,17 +11,18 @@ use core::num::NonZeroU32;
 
 use crate::belief::consistent_lines::Certainty;
 use crate::geometry::heading::Heading;
+use crate::geometry::region::Region;
 use crate::motion::dynamics::{Dynamics, Pose, Ray, Side};
 use crate::search::direction_rule::DirectionRule;
 use crate::search::objective::{Choice, Effort, Varrho};
 use crate::search::view::View;
 
 /// The search of one plan: what it moves by, from where, what it sees there, and what it has cost.
-pub(crate) struct Search<'a, D> {
+pub(crate) struct Search<'a, D, G> {
     pub(crate) dynamics: &'a D,
     pub(crate) pose: Pose,
     pub(crate) varrho: Varrho,
-    pub(crate) view: View<'a>,
+    pub(crate) view: View<'a, G>,
     pub(crate) effort: Effort,
     /// Whether there was an end on uncertain ground with the border in the way.
     pub(crate) is_hemmed_in: bool,
@@ -97,7 +98,7 @@ fn is_better(value: i64, rank: Rank, than: Option<&Ranked>) -> bool {
     than.is_none_or(|(best, at)| value > best.objective || (value == best.objective && rank < *at))
 }
 
-impl<D: Dynamics> Search<'_, D> {
+impl<D: Dynamics, G: Region> Search<'_, D, G> {
     /// Sees what there is. A step of its own, so that all of this is made where it stays.
     #[must_use]
     pub(crate) fn open(&mut self) -> &mut Self {

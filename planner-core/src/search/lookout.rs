@@ -11,8 +11,8 @@ use heapless::Vec;
 
 use crate::belief::consistent_lines::ConsistentLines;
 use crate::belief::outlook::Prediction;
-use crate::geometry::area::Area;
 use crate::geometry::lattice::UNITS_PER_METRE;
+use crate::geometry::region::Region;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Fan, Pose, Ray, Side};
 use crate::search::objective::Varrho;
@@ -73,9 +73,9 @@ impl Sought<'_> {
 }
 
 /// What motions there are, where they may lead, what they cost, and how many ends may still be asked.
-pub(crate) struct Lookout<'a, D> {
+pub(crate) struct Lookout<'a, D, G> {
     pub(crate) dynamics: &'a D,
-    pub(crate) area: Area,
+    pub(crate) area: G,
     pub(crate) varrho: Varrho,
     pub(crate) evaluations: u32,
 }
@@ -87,7 +87,7 @@ struct Probe {
     share: f32,
 }
 
-impl<D: Dynamics> Lookout<'_, D> {
+impl<D: Dynamics, G: Region> Lookout<'_, D, G> {
     /// What a motion costs: its squared control, weighed.
     pub(crate) fn cost(&self, reach_mm: u32, effort: u32) -> f32 {
         let reach = reach_mm as f32;
@@ -135,7 +135,7 @@ impl<D: Dynamics> Lookout<'_, D> {
         if share > 0.0
             && share < 1.0
             && self.area.contains(target.site)
-            && self.dynamics.keeps_inside(pose, target, self.area)
+            && self.dynamics.keeps_inside(pose, target, &self.area)
         {
             let grid = self.dynamics.grid();
             let cost = self.cost(grid.reach_mm(speed), ray.effort);

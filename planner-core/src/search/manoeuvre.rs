@@ -14,6 +14,7 @@
 
 use crate::belief::consistent_lines::Certainty;
 use crate::geometry::approximate::{single, sqrt};
+use crate::geometry::region::Region;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Orbit, Pose, Side};
 use crate::search::circles::Search;
@@ -48,8 +49,8 @@ enum Start {
     Outside,
 }
 
-struct Manoeuvre<'d, 'p, 'a, D> {
-    problem: &'p Problem<'a, ArcRule>,
+struct Manoeuvre<'d, 'p, 'a, D, G> {
+    problem: &'p Problem<'a, ArcRule, G>,
     dynamics: &'d D,
     effort: Effort,
     /// The shortest way to where the problem is feasible.
@@ -70,9 +71,9 @@ struct Manoeuvre<'d, 'p, 'a, D> {
 ///
 /// # Errors
 /// Why there is none.
-pub(crate) fn manoeuvre<D: Dynamics>(
-    problem: &Problem<'_, ArcRule>,
-    search: &mut Search<'_, D>,
+pub(crate) fn manoeuvre<D: Dynamics, G: Region>(
+    problem: &Problem<'_, ArcRule, G>,
+    search: &mut Search<'_, D, G>,
 ) -> Result<Leg, DeadEnd> {
     let (dynamics, from) = (search.dynamics, search.pose);
     let mut it = Manoeuvre {
@@ -82,7 +83,7 @@ pub(crate) fn manoeuvre<D: Dynamics>(
         shortest: None,
         escape: None,
         start: match problem.area.contains(from.site) {
-            true if dynamics.is_safe(from, problem.area) => Start::Safe,
+            true if dynamics.is_safe(from, &problem.area) => Start::Safe,
             true => Start::Unsafe,
             false => Start::Outside,
         },
@@ -111,7 +112,7 @@ pub(crate) fn manoeuvre<D: Dynamics>(
     }
 }
 
-impl<D: Dynamics> Manoeuvre<'_, '_, '_, D> {
+impl<D: Dynamics, G: Region> Manoeuvre<'_, '_, '_, D, G> {
     /// Whether a way of so many motions is worth knowing.
     fn is_short(&self, motions: u32) -> bool {
         motions < self.shortest.map_or(MOST, |(_, least)| least) && self.effort.is_enough()
@@ -133,7 +134,7 @@ impl<D: Dynamics> Manoeuvre<'_, '_, '_, D> {
             let Some(after) = self.dynamics.target(pose, orbit.action) else { return };
             let is_inside = self.start == Start::Outside
                 || self.problem.area.contains(after.site)
-                    && self.dynamics.bulges_inside(pose, after, self.problem.area)
+                    && self.dynamics.stays_inside(pose, after, &self.problem.area)
                     && self.may_hold(pose, after, side);
             let less = turned;
             turned = match side {
@@ -156,7 +157,7 @@ impl<D: Dynamics> Manoeuvre<'_, '_, '_, D> {
     /// Whether one more motion round to a side leaves it safe, if it is: on the circle that it goes round, whatever
     /// rounding has moved that by, or with a margin.
     fn may_hold(&self, pose: Pose, after: Pose, side: Side) -> bool {
-        let (dynamics, area) = (self.dynamics, self.problem.area);
+        let (dynamics, area) = (self.dynamics, &self.problem.area);
         let fits = |orbit: Orbit| orbit.is_inside(after.site, area, orbit.radius);
         !dynamics.is_safe(pose, area)
             || dynamics.keeps_inside(pose, after, area)
@@ -195,7 +196,7 @@ impl<D: Dynamics> Manoeuvre<'_, '_, '_, D> {
 
     /// The fastest drive straight ahead that ends safe, or from where it is not safe, inside.
     fn straight(&self, pose: Pose) -> Option<Leg> {
-        let (dynamics, area) = (self.dynamics, self.problem.area);
+        let (dynamics, area) = (self.dynamics, &self.problem.area);
         let grid = dynamics.grid();
         let ray = dynamics.ray(pose, Side::Left, 0);
         let fastest = |may_end: &dyn Fn(Pose) -> bool| {
@@ -207,7 +208,13 @@ impl<D: Dynamics> Manoeuvre<'_, '_, '_, D> {
             })
         };
         fastest(&|target| area.contains(target.site) && dynamics.keeps_inside(pose, target, area))
-            .or_else(|| if dynamics.is_safe(pose, area) { None } else { fastest(&|_| true) })
+            .or_else(|| {
+                if dynamics.is_safe(pose, area) {
+                    None
+                } else {
+                    fastest(&|target| dynamics.stays_inside(pose, target, area))
+                }
+            })
     }
 
     /// Sees whether the problem is feasible at the end of a way: then it is the shortest, and there is nothing to
@@ -237,7 +244,7 @@ impl<D: Dynamics> Manoeuvre<'_, '_, '_, D> {
         if self.start != Start::Safe
             && self.escape.is_none_or(|(_, least)| motions < least)
             && self.problem.area.contains(pose.site)
-            && self.dynamics.keeps_inside(pose, pose, self.problem.area)
+            && self.dynamics.keeps_inside(pose, pose, &self.problem.area)
         {
             self.escape = Some(way);
         }

@@ -17,6 +17,7 @@
 
 use crate::belief::consistent_lines::ConsistentLines;
 use crate::geometry::area::Area;
+use crate::geometry::region::Region;
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::search::circles::Search;
 use crate::search::direction_rule::{ArcRule, DirectionRule};
@@ -25,11 +26,11 @@ use crate::search::view::View;
 
 /// A one-step problem at some stage of a mission.
 #[derive(Clone, Copy, Debug)]
-pub struct Problem<'a, R> {
+pub struct Problem<'a, R, G = Area> {
     /// The lines that are left: the ground of which they agree is the one to stay out of.
     pub lines: ConsistentLines<'a>,
     /// Where positions must stay.
-    pub area: Area,
+    pub area: G,
     /// The weight of the control.
     pub varrho: Varrho,
     /// Where travel may go.
@@ -48,9 +49,9 @@ pub struct Solution {
     pub proven: bool,
 }
 
-impl<'a, R: DirectionRule> Problem<'a, R> {
+impl<'a, R: DirectionRule, G: Region> Problem<'a, R, G> {
     /// The same problem without its rule.
-    pub fn undirected(&self) -> Problem<'a, ArcRule> {
+    pub fn undirected(&self) -> Problem<'a, ArcRule, G> {
         let rule = ArcRule::default();
         Problem { lines: self.lines, area: self.area, varrho: self.varrho, rule }
     }
@@ -92,7 +93,7 @@ impl<'a, R: DirectionRule> Problem<'a, R> {
         dynamics: &'d D,
         pose: Pose,
         effort: Effort,
-    ) -> Search<'d, D>
+    ) -> Search<'d, D, G>
     where
         'a: 'd,
     {
@@ -112,7 +113,7 @@ impl<'a, R: DirectionRule> Problem<'a, R> {
                 let feasible = |target: &Pose| {
                     speed > 0
                         && self.area.contains(target.site)
-                        && dynamics.keeps_inside(pose, *target, self.area)
+                        && dynamics.keeps_inside(pose, *target, &self.area)
                         && self.rule.admits(ray.step)
                         && self.lines.can_cut(target.site)
                 };

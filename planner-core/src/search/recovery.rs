@@ -14,8 +14,10 @@
 //!    it both ways, and between.
 //! 5. Nothing: there is a reason why, which the planner stops with.
 //!
+//! Where keep-outs are in the way of (2) it goes round them (`detour`).
+//!
 //! From outside the area, where an error has brought it, (1) and (3) may lead back inside. Else it drives
-//! towards the middle of the area, or turns until it can.
+//! towards the middle of the area, or away from the keep-out that it is too near to, or turns until it can.
 //! A vehicle that cannot turn on the spot has, in the place of 2 to 4, a way of several motions (`manoeuvre`).
 //!
 //! **It ends**, though it has no state. What is known does not change before the next sample, and each
@@ -26,10 +28,12 @@
 use crate::geometry::approximate::{heading_of, single, sqrt};
 use crate::geometry::heading::Heading;
 use crate::geometry::lattice::Vector;
+use crate::geometry::region::Region;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Pose, Ray, Side};
 use crate::search::circles::{Findings, Search};
 use crate::search::dead_end::DeadEnd;
+use crate::search::detour::{self, Way};
 use crate::search::direction_rule::{ArcRule, DirectionRule};
 use crate::search::manoeuvre::manoeuvre;
 use crate::search::problem::Problem;
@@ -70,16 +74,16 @@ pub(crate) struct Found {
 ///
 /// # Errors
 /// Why there is neither.
-pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule>(
-    problem: &Problem<'_, R>,
-    search: &mut Search<'_, D>,
+pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule, G: Region>(
+    problem: &Problem<'_, R, G>,
+    search: &mut Search<'_, D, G>,
     before: Option<Findings>,
 ) -> Result<Found, DeadEnd> {
     let found = |recovery| move |(action, target)| Found { recovery, action, target };
     let (area, pose) = (problem.area, search.pose);
     let mut ladder = Ladder { problem: problem.undirected(), search };
     // Before the search has used up its looks.
-    let home = (!area.contains(pose.site)).then(|| ladder.leg(pose, area.middle() - pose.site));
+    let home = (!area.contains(pose.site)).then(|| ladder.leg(pose, area.way_home(pose.site)));
     let Findings { best, best_forbidden } = ladder.search.best(&problem.rule, before);
     if let Some((best, _)) = best {
         return Ok(found(None)((best.action, best.target)));
@@ -96,10 +100,13 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule>(
         return Ok(found(Some(Recovery::Reorient))(turn));
     }
     let way = ladder.search.view.way_out().ok_or(DeadEnd::Resolution)?;
-    let leg = match home {
-        Some(home) => home.ok_or(DeadEnd::Outside),
-        None if ladder.search.view.is_far(way) => ladder.leg(pose, way).ok_or(DeadEnd::Cornered),
-        None => ladder.transit(),
+    let leg = match (home, detour::begin(&ladder.search.view, pose.site, way)) {
+        (Some(home), _) => home.ok_or(DeadEnd::Outside),
+        (None, Some(Way::Round(way))) => ladder.leg(pose, way).ok_or(DeadEnd::Cornered),
+        (None, Some(Way::Straight(way))) if ladder.search.view.is_far(way) => {
+            ladder.leg(pose, way).ok_or(DeadEnd::Cornered)
+        }
+        (None, _) => ladder.transit(),
     };
     leg.map(found(Some(Recovery::Transit)))
 }
@@ -122,14 +129,14 @@ enum Approach {
     Blocked,
 }
 
-struct Ladder<'s, 'p, 'a, D> {
+struct Ladder<'s, 'p, 'a, D, G> {
     /// The problem without its rule on directions.
-    problem: Problem<'p, ArcRule>,
+    problem: Problem<'p, ArcRule, G>,
     /// From where the agent is.
-    search: &'s mut Search<'a, D>,
+    search: &'s mut Search<'a, D, G>,
 }
 
-impl<D: Dynamics> Ladder<'_, '_, '_, D> {
+impl<D: Dynamics, G: Region> Ladder<'_, '_, '_, D, G> {
     /// The first of the fewest turns in place beyond which the undirected problem is feasible.
     fn reorient(&mut self) -> Option<Leg> {
         let (dynamics, pose) = (self.search.dynamics, self.search.pose);
@@ -248,9 +255,10 @@ impl<D: Dynamics> Ladder<'_, '_, '_, D> {
         }
         for ray in rays {
             for speed in (1..grid.speeds()).rev().filter(|speed| nears(&ray, *speed, goal)) {
+                let area = &self.problem.area;
                 let stays = |target: &Pose| {
-                    self.problem.area.contains(target.site)
-                        || !self.problem.area.contains(pose.site)
+                    (area.contains(target.site) || !area.contains(pose.site))
+                        && dynamics.stays_inside(pose, *target, area)
                 };
                 if let Some(target) = dynamics.arrive(pose, &ray, speed).ok().filter(stays) {
                     return Drive::Leg((grid.action(ray.index, speed), target));

@@ -9,10 +9,11 @@ use heapless::Vec;
 use crate::belief::consistent_lines::{Certainty, ConsistentLines};
 use crate::belief::sample::Label;
 use crate::geometry::angle::Angle;
-use crate::geometry::approximate::{UnitVector, single};
-use crate::geometry::area::Area;
+use crate::geometry::approximate::{UnitVector, single, sqrt};
 use crate::geometry::heading::Heading;
 use crate::geometry::lattice::{Site, Vector};
+use crate::geometry::line::Bound;
+use crate::geometry::region::Region;
 use crate::motion::action::ActionGrid;
 use crate::motion::dynamics::Side;
 use crate::search::crossing::SeenLine;
@@ -24,9 +25,9 @@ const MOST_LINES: usize = 16;
 const NOTHING_IS_CERTAIN: f32 = core::f32::consts::PI;
 
 /// All that a search sees from one position.
-pub(crate) struct View<'a> {
+pub(crate) struct View<'a, G> {
     lines: ConsistentLines<'a>,
-    area: Area,
+    area: G,
     site: Site,
     speeds: u16,
     /// The shortest motion, lattice units.
@@ -54,15 +55,10 @@ pub(crate) struct View<'a> {
     near_sides: Vec<SeenLine, 4, u8>,
 }
 
-impl<'a> View<'a> {
+impl<'a, G: Region> View<'a, G> {
     /// From a position, for motions on some grid; nothing is seen before
     /// [`open`](Self::open).
-    pub(crate) fn new(
-        lines: ConsistentLines<'a>,
-        area: Area,
-        site: Site,
-        grid: ActionGrid,
-    ) -> Self {
+    pub(crate) fn new(lines: ConsistentLines<'a>, area: G, site: Site, grid: ActionGrid) -> Self {
         // A position is rounded by 0.71 units at most.
         let margin = 3e-5 + 1.0 / grid.step_units();
         let margin = if margin < 0.01 { margin } else { NOTHING_IS_CERTAIN };
@@ -126,26 +122,40 @@ impl<'a> View<'a> {
     }
 
     fn see_sides(&mut self, reach: f32) {
-        let (from, to, site) = (self.area.min(), self.area.max(), self.site);
+        let Self { area, site, step, margin, sides, near_sides, .. } = self;
+        let (area, site, step) = (&*area, *site, *step);
+        let mut see = |mut side: SeenLine, has_us_inside: bool| {
+            // Beyond four the others pass nothing over: the exact predicate is left.
+            if -side.height < reach {
+                let _ = sides.push(side);
+            }
+            // From beyond it a longer motion may come back to this side.
+            if has_us_inside && -side.height < step {
+                side.cross(1.0 / step, *margin);
+                let _ = near_sides.push(side);
+            }
+        };
+        for side in area.sides() {
+            let inside = side.at(site);
+            let outwards = Bound { through: side.from, along: side.along.reversed() };
+            see(SeenLine::of(outwards, -inside), inside >= 0);
+        }
+        let (from, to) = (area.bounds().min(), area.bounds().max());
         let inside =
             [to.x() - site.x(), to.z() - site.z(), site.x() - from.x(), site.z() - from.z()];
         for (inside, quarters) in inside.into_iter().zip(0..) {
-            let mut side = SeenLine::new(-(inside as f32), Heading(quarters << 30));
-            // There are four: nothing is refused.
-            if (inside as f32) < reach {
-                let _ = self.sides.push(side);
-            }
-            // From beyond it a longer motion may come back to this side.
-            if inside >= 0 && (inside as f32) < self.step {
-                side.cross(1.0 / self.step, self.margin);
-                let _ = self.near_sides.push(side);
-            }
+            see(SeenLine::new(-(inside as f32), Heading(quarters << 30)), inside >= 0);
         }
     }
 
     /// Where positions stay.
-    pub(crate) const fn area(&self) -> Area {
-        self.area
+    pub(crate) const fn area(&self) -> &G {
+        &self.area
+    }
+
+    /// The shortest motion, lattice units.
+    pub(crate) const fn step(&self) -> f32 {
+        self.step
     }
 
     /// How far one can travel with no uncertain ground in reach, lattice units; negative if some may be.
@@ -246,13 +256,22 @@ impl<'a> View<'a> {
 
     /// The way to the nearest uncertain ground inside the area; `None` when there is none.
     pub(crate) fn way_out(&self) -> Option<Vector> {
+        self.way_out_from(self.site, |_| true).map(|(way, _)| way)
+    }
+
+    /// The same from a position, of the ways that are open, and its length.
+    pub(crate) fn way_out_from(
+        &self,
+        here: Site,
+        is_open: impl Fn(Vector) -> bool,
+    ) -> Option<(Vector, f32)> {
         const ONE: i32 = 1 << 30;
-        let here = self.site;
+        let bounds = self.area.bounds();
         let apart = |a: i32, b: i32| (a - b) as f32;
-        let from = [apart(self.area.min().x(), here.x()), apart(self.area.min().z(), here.z())];
-        let to = [apart(self.area.max().x(), here.x()), apart(self.area.max().z(), here.z())];
-        let mut nearest: Option<(f32, [f32; 2])> = None;
-        let all_are_kept = self.bounds.len() == self.lines.edges.len();
+        let from = [apart(bounds.min().x(), here.x()), apart(bounds.min().z(), here.z())];
+        let to = [apart(bounds.max().x(), here.x()), apart(bounds.max().z(), here.z())];
+        let mut nearest: Option<(Vector, f32)> = None;
+        let all_are_kept = here == self.site && self.bounds.len() == self.lines.edges.len();
         for (k, bound) in self.lines.bounds().enumerate() {
             let kept = self.bounds.get(k).filter(|_| all_are_kept);
             let line = kept.copied().unwrap_or_else(|| SeenLine::of(bound, bound.at(here)));
@@ -267,15 +286,24 @@ impl<'a> View<'a> {
                 low = low.max(a.min(b));
                 high = high.min(a.max(b));
             }
+            for side in self.area.sides() {
+                let way = [side.along.x as f32, side.along.z as f32];
+                let cross = |v: [f32; 2]| way[0] * v[1] - way[1] * v[0];
+                let t = -(single(side.at(here)) + cross(foot)) / cross(along);
+                (low, high) =
+                    if cross(along) > 0.0 { (low.max(t), high) } else { (low, high.min(t)) };
+            }
             if low <= high {
                 let t = 0.0_f32.clamp(low, high);
                 let distance = line.height * line.height + t * t;
-                if nearest.is_none_or(|(least, _)| distance < least) {
-                    nearest = Some((distance, [foot[0] + t * along[0], foot[1] + t * along[1]]));
+                let way = [foot[0] + t * along[0], foot[1] + t * along[1]];
+                let way = Vector { x: way[0] as i32, z: way[1] as i32 };
+                if nearest.is_none_or(|(_, least)| distance < least) && is_open(way) {
+                    nearest = Some((way, distance));
                 }
             }
         }
-        nearest.map(|(_, [x, z])| Vector { x: x as i32, z: z as i32 })
+        nearest.map(|(way, square)| (way, sqrt(square)))
     }
 }
 

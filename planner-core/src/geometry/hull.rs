@@ -1,0 +1,125 @@
+//! Small convex hulls, and whether two of them keep apart: exact.
+//!
+//! A hull is given by its corners in order. One corner is a point, two are a segment: what a straight motion sweeps,
+//! a wall, the middle of a disc.
+
+use crate::geometry::lattice::{Site, orient};
+
+/// The corners of a convex hull, counter-clockwise, `C` at most.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Hull<const C: usize> {
+    corners: [Site; C],
+    count: u8,
+}
+
+/// These corners are not those of a convex polygon, or too many.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum NoHull {
+    /// There are none.
+    Empty,
+    /// There is room for so many.
+    TooMany(usize),
+    /// Polygons have their corners in order around them, each of them turning to the same side.
+    NotConvex,
+}
+
+impl core::fmt::Display for NoHull {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Empty => f.write_str("no corners"),
+            Self::TooMany(most) => write!(f, "more than {most} corners"),
+            Self::NotConvex => f.write_str(
+                "not convex: corners go round in order, all turn the same way, no three are in line",
+            ),
+        }
+    }
+}
+
+impl core::error::Error for NoHull {}
+
+impl<const C: usize> Hull<C> {
+    /// The hull with these corners, in either order around it.
+    ///
+    /// # Errors
+    /// [`NoHull`] says what is wrong with them.
+    pub fn new(corners: &[Site]) -> Result<Self, NoHull> {
+        let mut all = [Site::ORIGIN; C];
+        let room = all.get_mut(..corners.len()).ok_or(NoHull::TooMany(C))?;
+        room.copy_from_slice(corners);
+        let count = u8::try_from(corners.len()).map_err(|_| NoHull::TooMany(u8::MAX.into()))?;
+        match *corners {
+            [] => return Err(NoHull::Empty),
+            [_] => {}
+            [a, b] if a != b => {}
+            [a, b, c, ..] if goes_round(corners, orient(a, b, c).signum()) => {
+                if orient(a, b, c) < 0 {
+                    room.reverse();
+                }
+            }
+            _ => return Err(NoHull::NotConvex),
+        }
+        Ok(Self { corners: all, count })
+    }
+
+    /// Its corners.
+    pub fn corners(&self) -> &[Site] {
+        self.corners.get(..usize::from(self.count)).unwrap_or_default()
+    }
+}
+
+/// Whether all other corners lie strictly on one side of each edge.
+fn goes_round(corners: &[Site], side: i64) -> bool {
+    side != 0
+        && edges(corners).all(|(a, b)| {
+            let others = corners.iter().filter(|c| **c != a && **c != b);
+            others.clone().count() + 2 == corners.len()
+                && others.into_iter().all(|c| orient(a, b, *c).signum() == side)
+        })
+}
+
+/// A hull's edges in order. Those of a point and a segment run to and fro.
+pub(crate) fn edges(corners: &[Site]) -> impl Iterator<Item = (Site, Site)> + Clone {
+    corners.iter().copied().zip(corners.iter().copied().cycle().skip(1))
+}
+
+/// Whether all of one hull is further than `by` lattice units from all of another. Corners go round in either order.
+///
+/// Cost: each corner of one with each edge of the other, two or three multiplications of 64 bits each.
+pub fn are_apart(a: &[Site], b: &[Site], by: u32) -> bool {
+    // The nearest points of hulls that do not meet are a corner of one and a point of the other's edge.
+    !meet(a, b)
+        && a.iter().all(|corner| edges(b).all(|edge| is_further(*corner, edge, by)))
+        && b.iter().all(|corner| edges(a).all(|edge| is_further(*corner, edge, by)))
+}
+
+/// Whether edges cross, or one hull lies inside the other. A corner on an edge is left to the distances.
+fn meet(a: &[Site], b: &[Site]) -> bool {
+    let apart = |(p, q), r, s| orient(p, q, r).signum() * orient(p, q, s).signum() < 0;
+    edges(a).any(|(p, q)| edges(b).any(|(r, s)| apart((p, q), r, s) && apart((r, s), p, q)))
+        || a.first().is_some_and(|first| encloses(b, *first))
+        || b.first().is_some_and(|first| encloses(a, *first))
+}
+
+/// Whether a position lies strictly inside a hull.
+fn encloses(corners: &[Site], q: Site) -> bool {
+    [1, -1].iter().any(|side| edges(corners).all(|(a, b)| orient(a, b, q).signum() == *side))
+}
+
+/// Whether a position is further than `by` from a segment. Differences are below 2^30, so that squares of their
+/// products are below 2^124.
+fn is_further(q: Site, (from, to): (Site, Site), by: u32) -> bool {
+    let (along, way) = (to - from, q - from);
+    let (length, reach) = (along.dot(along), along.dot(way));
+    let by = u128::from(by) * u128::from(by);
+    let square = |a: i64| u128::from(a.unsigned_abs()) * u128::from(a.unsigned_abs());
+    if reach <= 0 || length == 0 {
+        u128::from(way.dot(way).unsigned_abs()) > by
+    } else if reach >= length {
+        let rest = q - to;
+        u128::from(rest.dot(rest).unsigned_abs()) > by
+    } else {
+        square(along.cross(way)) > by * u128::from(length.unsigned_abs())
+    }
+}

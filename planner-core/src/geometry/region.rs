@@ -1,0 +1,119 @@
+//! Where motions may go: a convex area, but for keep-outs.
+
+use crate::geometry::area::Area;
+use crate::geometry::hull::are_apart;
+use crate::geometry::lattice::{Site, Vector};
+
+/// Where motions may go: a convex area, but for convex places that none of them touches.
+///
+/// [`Area`], a rectangle with nothing in it, costs nothing of what is for more;
+/// [`Terrain`](crate::geometry::terrain::Terrain) is a convex polygon with keep-outs.
+pub trait Region: Copy {
+    /// The smallest rectangle around it.
+    fn bounds(&self) -> Area;
+
+    /// What of its rectangle belongs to it, as a share: 1, or less.
+    fn share_of_bounds(&self) -> f32 {
+        1.0
+    }
+
+    /// Where to go from a position that is outside, to come inside sooner or later.
+    fn way_home(&self, from: Site) -> Vector {
+        self.bounds().middle() - from
+    }
+
+    /// The part that is further than so many lattice units from the border and from all keep-outs: where to aim if
+    /// motions end that far off. `None` if its rectangle has no such part.
+    #[must_use]
+    fn inset(&self, margin: u32) -> Option<Self>;
+
+    /// The sides that cut its rectangle.
+    fn sides(&self) -> impl Iterator<Item = HalfPlane> {
+        core::iter::empty()
+    }
+
+    /// What no motion touches.
+    fn keep_outs(&self) -> impl Iterator<Item = KeepOut<'_>> {
+        core::iter::empty()
+    }
+
+    /// Whether a position lies inside the area's border or on it, be it in a keep-out or not.
+    fn encloses(&self, q: Site) -> bool {
+        self.bounds().contains(q) && self.sides().all(|side| side.at(q) >= 0)
+    }
+
+    /// Whether the agent may be at a position.
+    fn contains(&self, q: Site) -> bool {
+        self.encloses(q) && self.keep_outs().all(|it| it.is_clear_of(&[q], 0))
+    }
+
+    /// Whether all of a disc is where the agent may be; the radius in lattice units, below 2^30.
+    fn contains_disc(&self, centre: Site, radius: i32) -> bool {
+        self.bounds().contains_disc(centre, radius)
+            && self.sides().all(|side| side.at(centre) >= side.offset_of(radius))
+            && self.keep_outs().all(|it| it.is_clear_of(&[centre], radius.unsigned_abs()))
+    }
+
+    /// Whether what a motion sweeps, the hull of these positions, touches no keep-out; nor comes as near as that
+    /// from the outside of it.
+    ///
+    /// A motion that begins too near one already, as an error has brought it there, may go on as long as it stays
+    /// out of the keep-out itself.
+    fn lets_pass(&self, swept: &[Site]) -> bool {
+        self.keep_outs().all(|it| it.lets_pass(swept))
+    }
+}
+
+/// Positions to the left of a line, some way from it at least.
+#[derive(Clone, Copy, Debug)]
+pub struct HalfPlane {
+    /// On the line.
+    pub from: Site,
+    /// Its direction, with the inside to the left.
+    pub along: Vector,
+    /// The length of `along`, rounded up.
+    pub length: u32,
+    /// How far positions stay from the line, lattice units.
+    pub margin: u32,
+}
+
+impl HalfPlane {
+    /// Not negative inside and on the border.
+    pub fn at(&self, q: Site) -> i64 {
+        self.along.cross(q - self.from) - i64::from(self.margin) * i64::from(self.length)
+    }
+
+    /// By how much that is more a distance further in, or somewhat more; lattice units, below 2^30.
+    pub fn offset_of(&self, distance: i32) -> i64 {
+        i64::from(distance) * i64::from(self.length)
+    }
+}
+
+/// What no motion touches: all within a distance of a convex hull. A disc is what is within its radius of a point.
+#[derive(Clone, Copy, Debug)]
+pub struct KeepOut<'a> {
+    /// The hull's corners.
+    pub corners: &'a [Site],
+    /// The distance, lattice units.
+    pub radius: u32,
+    /// How far motions stay from it besides, lattice units.
+    pub margin: u32,
+}
+
+impl KeepOut<'_> {
+    /// Whether a hull stays clear of it, by this and the margin at least.
+    pub fn is_clear_of(&self, hull: &[Site], by: u32) -> bool {
+        let by = self.radius.saturating_add(self.margin).saturating_add(by);
+        are_apart(self.corners, hull, by)
+    }
+
+    fn lets_pass(&self, swept: &[Site]) -> bool {
+        let start = swept.get(..1).unwrap_or_default();
+        if self.is_clear_of(swept, 0) {
+            return true;
+        }
+        let begins = |apart: u32| are_apart(self.corners, start, apart);
+        let is_near = !begins(self.radius.saturating_add(self.margin));
+        is_near && (!begins(self.radius) || are_apart(self.corners, swept, self.radius))
+    }
+}

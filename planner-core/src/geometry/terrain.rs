@@ -1,0 +1,174 @@
+//! A convex polygon with keep-outs.
+
+use crate::geometry::area::Area;
+use crate::geometry::hull::{Hull, NoHull, edges};
+use crate::geometry::lattice::{LIMIT, Site, Vector};
+use crate::geometry::region::{HalfPlane, KeepOut, Region};
+
+/// A convex polygon, but for keep-outs; `C` corners each and `K` keep-outs at most.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Terrain<const C: usize, const K: usize> {
+    polygon: Hull<C>,
+    bounds: Area,
+    /// Those of the polygon's edges, rounded up.
+    lengths: [u32; C],
+    keep_outs: [Option<RoundedHull<C>>; K],
+    /// How far positions stay from the border and from keep-outs besides.
+    margin: u32,
+}
+
+/// All within a distance of a hull, in lattice units below 2^30: a disc, if that is a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct RoundedHull<const C: usize> {
+    /// The hull.
+    pub hull: Hull<C>,
+    /// The distance.
+    pub radius: u32,
+}
+
+/// There is no such terrain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum NoTerrain {
+    /// The area is no polygon.
+    Area(NoHull),
+    /// There is room for so many keep-outs.
+    TooManyKeepOuts(usize),
+    /// A keep-out is too large for the lattice; the first is number 0.
+    KeepOut(usize),
+}
+
+impl core::fmt::Display for NoTerrain {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Area(why) => why.fmt(f),
+            Self::TooManyKeepOuts(most) => write!(f, "more than {most} keep-outs"),
+            Self::KeepOut(number) => write!(f, "keep-out {number} is larger than the lattice"),
+        }
+    }
+}
+
+impl core::error::Error for NoTerrain {}
+
+impl<const C: usize, const K: usize> Terrain<C, K> {
+    /// A polygon, and what is kept out of.
+    ///
+    /// # Errors
+    /// [`NoTerrain`] says what is wrong with them.
+    pub fn new(polygon: Hull<C>, keep_outs: &[RoundedHull<C>]) -> Result<Self, NoTerrain> {
+        let bounds = bounds_of(polygon.corners()).ok_or(NoTerrain::Area(NoHull::NotConvex))?;
+        let mut lengths = [0; C];
+        for (length, (from, to)) in lengths.iter_mut().zip(edges(polygon.corners())) {
+            let along = to - from;
+            *length = length_of(along);
+        }
+        let mut kept = [None; K];
+        let too_many = NoTerrain::TooManyKeepOuts(K);
+        let places = kept.get_mut(..keep_outs.len()).ok_or(too_many)?;
+        for (number, (place, keep_out)) in places.iter_mut().zip(keep_outs).enumerate() {
+            if keep_out.radius >= LIMIT.unsigned_abs() {
+                return Err(NoTerrain::KeepOut(number));
+            }
+            *place = Some(*keep_out);
+        }
+        Ok(Self { polygon, bounds, lengths, keep_outs: kept, margin: 0 })
+    }
+
+    /// Its corners, counter-clockwise.
+    pub fn corners(&self) -> &[Site] {
+        self.polygon.corners()
+    }
+
+    /// What is kept out of.
+    pub fn hulls(&self) -> impl Iterator<Item = &RoundedHull<C>> {
+        self.keep_outs.iter().flatten()
+    }
+
+    /// The middle of its corners, which is inside.
+    fn middle(&self) -> Site {
+        middle_of(self.corners())
+    }
+}
+
+/// A rectangle with nothing in it; `None` if polygons have less than four corners here.
+impl<const C: usize, const K: usize> Terrain<C, K> {
+    /// As a rectangle is.
+    pub fn of(area: Area) -> Option<Self> {
+        let (min, max) = (area.min(), area.max());
+        let corner = |x, z| Site::new(x, z).ok();
+        let corners = [min, corner(max.x(), min.z())?, max, corner(min.x(), max.z())?];
+        Self::new(Hull::new(&corners).ok()?, &[]).ok()
+    }
+}
+
+/// The rectangle around positions; `None` unless it has an inside.
+fn bounds_of(corners: &[Site]) -> Option<Area> {
+    let xs = || corners.iter().map(|corner| corner.x());
+    let zs = || corners.iter().map(|corner| corner.z());
+    let min = Site::new(xs().min()?, zs().min()?).ok()?;
+    let max = Site::new(xs().max()?, zs().max()?).ok()?;
+    let has_inside = corners.len() > 2;
+    Area::new(min, max).filter(|_| has_inside)
+}
+
+fn middle_of(corners: &[Site]) -> Site {
+    let count = corners.len().max(1) as i64;
+    let mean = |coordinates: i64| coordinates.checked_div(count).unwrap_or(0) as i32;
+    let x = mean(corners.iter().map(|corner| i64::from(corner.x())).sum());
+    let z = mean(corners.iter().map(|corner| i64::from(corner.z())).sum());
+    Site::new(x, z).unwrap_or(Site::ORIGIN)
+}
+
+/// A vector's length, rounded up.
+fn length_of(v: Vector) -> u32 {
+    let square = v.dot(v).unsigned_abs();
+    let root = square.isqrt();
+    (root + u64::from(root * root < square)) as u32
+}
+
+impl<const C: usize, const K: usize> Region for Terrain<C, K> {
+    fn bounds(&self) -> Area {
+        self.bounds
+    }
+
+    fn share_of_bounds(&self) -> f32 {
+        let middle = self.middle();
+        let twice = |(a, b): (Site, Site)| (a - middle).cross(b - middle) as f32;
+        let [x, z] = self.bounds.half_sides();
+        edges(self.corners()).map(twice).sum::<f32>() / (8.0 * x as f32 * z as f32)
+    }
+
+    fn way_home(&self, from: Site) -> Vector {
+        let is_in = |it: &KeepOut<'_>| !it.is_clear_of(&[from], 0);
+        self.keep_outs().find(is_in).map_or_else(
+            || self.middle() - from,
+            |it| match from - middle_of(it.corners) {
+                Vector { x: 0, z: 0 } => self.middle() - from,
+                away => away,
+            },
+        )
+    }
+
+    fn inset(&self, margin: u32) -> Option<Self> {
+        let bounds = self.bounds.inset(margin)?;
+        Some(Self { bounds, margin: self.margin.saturating_add(margin), ..*self })
+    }
+
+    fn sides(&self) -> impl Iterator<Item = HalfPlane> {
+        edges(self.corners()).zip(self.lengths).filter_map(|((from, to), length)| {
+            let along = to - from;
+            let cuts = along.x != 0 && along.z != 0;
+            cuts.then_some(HalfPlane { from, along, length, margin: self.margin })
+        })
+    }
+
+    fn keep_outs(&self) -> impl Iterator<Item = KeepOut<'_>> {
+        self.hulls().map(|RoundedHull { hull, radius }| KeepOut {
+            corners: hull.corners(),
+            radius: *radius,
+            margin: self.margin,
+        })
+    }
+}

@@ -1,0 +1,112 @@
+//! The way to uncertain ground, round keep-outs.
+//!
+//! Around each keep-out there are eight waypoints, the corners of an octagon that holds it with some space to spare.
+//! Of the shortest way from the agent, by waypoints that see each other, to where a straight way leads to uncertain
+//! ground (Dijkstra, 1959), the first leg is the one to make. A motion may end a step short of a waypoint: the space
+//! is two steps, and waypoints see each other past keep-outs that are a step away, so that from there the next one
+//! is in sight.
+
+use heapless::Vec;
+
+use crate::geometry::approximate::{single, sqrt};
+use crate::geometry::heading::Heading;
+use crate::geometry::lattice::{Site, Vector};
+use crate::geometry::region::{KeepOut, Region};
+use crate::search::view::View;
+
+/// Waypoints that are considered: those of the first keep-outs.
+const MOST: usize = 64;
+
+/// How to get to uncertain ground.
+pub(crate) enum Way {
+    /// Straight on.
+    Straight(Vector),
+    /// By a waypoint.
+    Round(Vector),
+}
+
+struct Waypoint {
+    site: Site,
+    /// The length of the shortest way there that is known.
+    length: f32,
+    /// With what that begins.
+    first: Vector,
+    is_settled: bool,
+}
+
+/// With what the shortest way from a position to uncertain ground begins; `straight` is the nearest, be it in sight or
+/// not. `None` if no way leads there.
+pub(crate) fn begin<G: Region>(view: &View<'_, G>, from: Site, straight: Vector) -> Option<Way> {
+    let area = view.area();
+    if area.keep_outs().next().is_none() {
+        return Some(Way::Straight(straight));
+    }
+    let way_out = |site: Site| {
+        view.way_out_from(site, |way| site.step(way).is_ok_and(|end| area.lets_pass(&[site, end])))
+    };
+    let mut best = way_out(from).map(|(way, length)| (Way::Straight(way), length));
+    let mut waypoints: Vec<Waypoint, MOST, u8> = Vec::new();
+    let step = view.step();
+    for keep_out in area.keep_outs() {
+        for site in octagon(&keep_out, 2.0 * step).into_iter().flatten() {
+            if area.contains(site) {
+                let way = site - from;
+                let is_open = area.lets_pass(&[from, site]) && distance(way) > step;
+                let length = if is_open { distance(way) } else { f32::INFINITY };
+                let _ = waypoints.push(Waypoint { site, length, first: way, is_settled: false });
+            }
+        }
+    }
+    let clear = |a: Site, b: Site| area.keep_outs().all(|it| it.is_clear_of(&[a, b], step as u32));
+    // Each is settled once at most.
+    for _ in 0..MOST {
+        let open = waypoints.iter_mut().filter(|it| !it.is_settled && it.length < f32::INFINITY);
+        let nearest = open.reduce(|a, b| if b.length < a.length { b } else { a });
+        let Some(nearest) = nearest.filter(|it| best.as_ref().is_none_or(|b| it.length < b.1))
+        else {
+            break;
+        };
+        nearest.is_settled = true;
+        let (site, length, first) = (nearest.site, nearest.length, nearest.first);
+        if let Some((_, rest)) = way_out(site)
+            && best.as_ref().is_none_or(|(_, least)| length + rest < *least)
+        {
+            best = Some((Way::Round(first), length + rest));
+        }
+        for other in &mut waypoints {
+            let through = length + distance(other.site - site);
+            if through < other.length && clear(site, other.site) {
+                (other.length, other.first) = (through, first);
+            }
+        }
+    }
+    best.map(|(way, _)| way)
+}
+
+fn distance(way: Vector) -> f32 {
+    sqrt(single(way.dot(way)))
+}
+
+/// The corners of the octagon that holds a keep-out with so much space to spare; those beyond the lattice are left out.
+fn octagon(keep_out: &KeepOut<'_>, space: f32) -> [Option<Site>; 8] {
+    const ONE: i32 = 1 << 29;
+    const EIGHTH: f32 = core::f32::consts::FRAC_1_SQRT_2;
+    let Some(&about) = keep_out.corners.first() else { return [None; 8] };
+    let away = keep_out.radius.saturating_add(keep_out.margin) as f32 + space;
+    let normal = |k: u32| {
+        let Vector { x, z } = Heading(k << 29).unit().scaled(ONE);
+        [x as f32 / ONE as f32, z as f32 / ONE as f32]
+    };
+    let height = |k: u32| {
+        let [x, z] = normal(k % 8);
+        let reach = |corner: &Site| x * (*corner - about).x as f32 + z * (*corner - about).z as f32;
+        keep_out.corners.iter().map(reach).fold(f32::NEG_INFINITY, f32::max) + away
+    };
+    core::array::from_fn(|k| {
+        let k = k as u32;
+        let ([x, z], here) = (normal(k), height(k));
+        let aside = (height(k + 1) - here * EIGHTH) / EIGHTH;
+        let by = [here * x - aside * z, here * z + aside * x];
+        about.step(Vector { x: by[0] as i32, z: by[1] as i32 }).ok()
+    })
+}
