@@ -92,15 +92,14 @@ impl<'a> ConsistentLines<'a> {
         certainty(self.edges, self.samples, q)
     }
 
-    /// Whether a label read at a position can tell something: not all lines agree there, and they do not give
-    /// the label as well where it would be taken in.
+    /// Whether a label read at a position can tell something: not all lines agree there, nor do they where one of
+    /// the two labels would be taken in.
     pub fn can_cut(self, q: Site) -> bool {
-        self.certainty(q) == Certainty::Uncertain
+        let is_uncertain =
+            |by| q.step(by).is_ok_and(|place| self.certainty(place) == Certainty::Uncertain);
+        is_uncertain(Vector::default())
             && (self.shift == Vector::default()
-                || [Label::Positive, Label::Negative].into_iter().any(|label| {
-                    let place = self.place(q, label);
-                    place.is_some_and(|place| self.certainty(place) != Certainty::Certain(label))
-                }))
+                || [self.shift, self.shift.reversed()].into_iter().any(is_uncertain))
     }
 
     /// Where a label read at a position is taken in; `None` off the lattice, where it tells nothing.
@@ -150,6 +149,7 @@ impl<'a> ConsistentLines<'a> {
     }
 
     /// The directions of the lines left: the paper's `E_rho,t`.
+    #[inline(never)] // in several places, and not for speed
     pub fn slope_arc(self) -> SlopeArc {
         SlopeArc::spanning(self.bounds().map(|bound| bound.along)).unwrap_or_default()
     }

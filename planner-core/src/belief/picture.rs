@@ -149,6 +149,12 @@ impl Picture {
         Some(Part { start, first, count, end })
     }
 
+    /// What a label leaves that is taken in where all lines agree: everything.
+    fn whole(&self) -> Option<Part> {
+        let (start, end) = (*self.vertices.first()?, *self.vertices.last()?);
+        Some(Part { start, first: 1, count: self.vertices.len() - 2, end })
+    }
+
     /// The vertices of a part but for its start.
     fn rest<'a>(&'a self, part: &'a Part) -> impl Iterator<Item = &'a Vertex> {
         let (before, from) = self.vertices.split_at_checked(part.first).unwrap_or_default();
@@ -225,10 +231,11 @@ impl Prediction for Picture {
         if self.shift == Vector::default() {
             return entropy(share);
         }
-        // What either label leaves is more than what agrees with it at the site.
-        let left = |label| self.share(self.place(site, label)).clamp(0.0, 1.0);
-        let bits = |chance: f32, left: f32| -chance * libm::log2f(left.max(chance));
-        bits(share, left(Label::Positive)) + bits(1.0 - share, 1.0 - left(Label::Negative))
+        // Either label leaves more than what agrees with it at the site. Of the share that both leave nothing is
+        // told: for halves that is `1 - log2(1 + both)`, which is near to this.
+        let [most, least] = [Label::Positive, Label::Negative]
+            .map(|label| self.share(self.place(site, label)).clamp(0.0, 1.0));
+        entropy(share) * (1.0 - (most - least))
     }
 }
 
@@ -242,18 +249,13 @@ impl Outlook for Picture {
     fn after(&self, site: Site, label: Label) -> Self {
         let [x, z] = self.axis.see(site - self.origin);
         let mut after = Self { origin: site, vertices: Vec::new(), measure: 0.0, ..*self };
-        let mut add = |vertex: &Vertex| {
-            let offset = vertex.offset + vertex.slope * x - z;
-            // A part has a vertex more than the whole at most: a full picture loses its last.
-            let _ = after.vertices.push(Vertex { offset, ..*vertex });
-        };
-        match self.part(self.place(site, label), label) {
-            Some(part) => {
-                add(&part.start);
-                self.rest(&part).for_each(add);
+        let part = self.part(self.place(site, label), label).or_else(|| self.whole());
+        if let Some(part) = &part {
+            for vertex in core::iter::once(&part.start).chain(self.rest(part)).take(VERTICES) {
+                let offset = vertex.offset + vertex.slope * x - z;
+                // A part has a vertex more than the whole at most: a full picture loses its last.
+                let _ = after.vertices.push(Vertex { offset, ..*vertex });
             }
-            // Taken in where all lines agree, it tells nothing.
-            None => self.vertices.iter().for_each(add),
         }
         after.measured()
     }

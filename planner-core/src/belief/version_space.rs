@@ -100,7 +100,7 @@ impl<const N: usize> VersionSpace<N> {
     /// # Errors
     /// [`NoVersionSpace::TooVague`].
     pub fn within(self, tolerance: Tolerance) -> Result<Self, NoVersionSpace> {
-        let shift = tolerance.shift(self.slope_arc()).ok_or(NoVersionSpace::TooVague)?;
+        let shift = self.shift_by(tolerance).ok_or(NoVersionSpace::TooVague)?;
         Ok(Self { tolerance, shift, ..self })
     }
 
@@ -167,11 +167,18 @@ impl<const N: usize> VersionSpace<N> {
         };
         if let Some(site) = self.lines().place(site, label)
             && self.insert(Sample { site, label })? == Cut::Smaller
+            && self.tolerance != Tolerance::NONE
         {
             // Arcs only narrow: there is always one.
-            self.shift = self.tolerance.shift(self.slope_arc()).unwrap_or(self.shift);
+            self.shift = self.shift_by(self.tolerance).unwrap_or(self.shift);
         }
         Ok(label)
+    }
+
+    /// By how much a tolerance shifts the next sample.
+    #[inline(never)] // from two places, and not for speed
+    fn shift_by(&self, tolerance: Tolerance) -> Option<Vector> {
+        tolerance.shift(self.slope_arc())
     }
 
     /// The lines left, to be read off.

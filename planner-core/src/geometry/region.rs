@@ -12,7 +12,7 @@ pub trait Region: Copy {
     /// The smallest rectangle around it.
     fn bounds(&self) -> Area;
 
-    /// What of its rectangle belongs to it, as a share: 1, or less.
+    /// What of its rectangle belongs to it, be it [inset](Self::inset) or not, as a share: 1, or less.
     fn share_of_bounds(&self) -> f32 {
         1.0
     }

@@ -136,8 +136,8 @@ impl<const C: usize, const K: usize> Region for Terrain<C, K> {
     fn share_of_bounds(&self) -> f32 {
         let middle = self.middle();
         let twice = |(a, b): (Site, Site)| (a - middle).cross(b - middle) as f32;
-        let [x, z] = self.bounds.half_sides();
-        edges(self.corners()).map(twice).sum::<f32>() / (8.0 * x as f32 * z as f32)
+        let [x, z] = self.bounds.half_sides().map(|half| half as f32 + self.margin as f32);
+        edges(self.corners()).map(twice).sum::<f32>() / (8.0 * x * z)
     }
 
     fn way_home(&self, from: Site) -> Vector {

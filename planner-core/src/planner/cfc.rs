@@ -67,7 +67,7 @@ impl<D: Dynamics, const N: usize, G: Region> Cfc<D, N, G> {
     /// A planner that knows the oracle's samples; its past label is that of the first of them.
     pub fn new(config: Config<G>, dynamics: D, space: VersionSpace<N>) -> Self {
         let past = space.first_label();
-        Self { config, dynamics, space, phase: Phase::Crossing, past }
+        Self { config: config.inset(), dynamics, space, phase: Phase::Crossing, past }
     }
 
     /// Where the algorithm stands.
@@ -81,7 +81,7 @@ impl<D: Dynamics, const N: usize, G: Region> Cfc<D, N, G> {
     }
 
     fn problem_of(&self, phase: Phase, slopes: SlopeArc) -> Problem<'_, ArcRule, G> {
-        let (area, varrho) = (self.config.ground(), self.config.varrho);
+        let (area, varrho) = (self.config.area, self.config.varrho);
         let rule = match phase {
             Phase::Crossing => {
                 self.config.crossing_rule(slopes, first_to_second(self.space.samples()))

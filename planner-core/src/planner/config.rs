@@ -57,9 +57,9 @@ pub struct Config<G = Area> {
 }
 
 impl<G: Region> Config<G> {
-    /// Where motions may end: the area but for a margin, if that leaves any of it.
-    pub(crate) fn ground(&self) -> G {
-        self.area.inset(self.tolerance.units()).unwrap_or(self.area)
+    /// The same for the area that motions may aim for: all but a margin of the tolerance, if that leaves any.
+    pub(crate) fn inset(self) -> Self {
+        Self { area: self.area.inset(self.tolerance.units()).unwrap_or(self.area), ..self }
     }
 
     /// The directions in which P1, or P3, looks for the opposite label when the boundary's slopes lie

@@ -58,6 +58,8 @@ const LADDER_LOOKS: u32 = 128;
 #[derive(Clone, Debug)]
 pub struct Lookahead<D, B, G = Area> {
     config: Config<G>,
+    /// The rectangle around all of the area.
+    bounds: Area,
     dynamics: D,
     foresight: B,
     evaluations: u32,
@@ -74,8 +76,9 @@ struct Decision {
 
 impl<D: Dynamics, B: Foresight, G: Region> Lookahead<D, B, G> {
     /// A planner with what is known so far.
-    pub const fn new(config: Config<G>, dynamics: D, foresight: B) -> Self {
-        Self { config, dynamics, foresight, evaluations: EVALUATIONS, goal: None }
+    pub fn new(config: Config<G>, dynamics: D, foresight: B) -> Self {
+        let (bounds, config) = (config.area.bounds(), config.inset());
+        Self { config, bounds, dynamics, foresight, evaluations: EVALUATIONS, goal: None }
     }
 
     /// The same, with so many ends of motions to ask for a plan at most instead of [`EVALUATIONS`].
@@ -87,7 +90,7 @@ impl<D: Dynamics, B: Foresight, G: Region> Lookahead<D, B, G> {
     /// The same, to stop when the line is known so well.
     #[must_use]
     pub fn until(self, goal: Option<Goal>) -> Self {
-        Self { goal, ..self }
+        Self { goal: goal.map(|goal| goal.in_bounds_of(&self.config.area)), ..self }
     }
 
     /// What is known and expected: to begin again with, or to take in a label of a reliability of its own.
@@ -143,7 +146,7 @@ impl<D: Dynamics, B: Foresight, G: Region> Lookahead<D, B, G> {
 
     /// What the ladder finds where no label is in reach.
     fn recover(&self, pose: Pose) -> (Result<Found, DeadEnd>, Effort) {
-        let (area, varrho) = (self.config.ground(), self.config.varrho);
+        let (area, varrho) = (self.config.area, self.config.varrho);
         let rule = ArcRule::default();
         let problem = Problem { lines: self.foresight.ground(), area, varrho, rule };
         // With a tolerance it comes here often, and rays are passed over by turns that get smaller.
@@ -171,9 +174,8 @@ impl<D: Dynamics, B: Foresight, G: Region> Planner for Lookahead<D, B, G> {
     type Belief = B::Belief;
 
     fn plan(&mut self, pose: Pose) -> Plan {
-        let (area, varrho) = (self.config.ground(), self.config.varrho);
-        let (whole, belief) = (&self.config.area, self.belief());
-        if self.goal.is_some_and(|it| belief.meets(it.in_bounds_of(whole), whole.bounds())) {
+        let (area, varrho) = (self.config.area, self.config.varrho);
+        if self.goal.is_some_and(|goal| self.belief().meets(goal, self.bounds)) {
             return Plan::Stop(StopReason::Known);
         }
         if self.belief().is_full() {

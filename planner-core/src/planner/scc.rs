@@ -80,7 +80,7 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Region> Scc<D, N, H, G> {
         dynamics: D,
         hypotheses: Hypotheses<N, H>,
     ) -> Self {
-        Self { config, policy, dynamics, hypotheses }
+        Self { config: config.inset(), policy, dynamics, hypotheses }
     }
 
     /// Begins again, in place, with what other given samples leave: see [`Hypotheses::restart`].
@@ -117,7 +117,7 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Region> Scc<D, N, H, G> {
     }
 
     fn on<'a, R>(&self, lines: ConsistentLines<'a>, rule: R) -> Problem<'a, R, G> {
-        Problem { lines, area: self.config.ground(), varrho: self.config.varrho, rule }
+        Problem { lines, area: self.config.area, varrho: self.config.varrho, rule }
     }
 
     /// Equation 9: the action with the most votes, and of equals the one of smallest index.

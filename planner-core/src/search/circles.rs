@@ -244,7 +244,7 @@ impl<D: Dynamics, G: Region> Search<'_, D, G> {
         let target = self.dynamics.arrive(pose, ray, speed).map_err(|_| 0_u32)?;
         self.effort.examined += 1;
         if !self.view.is_uncertain(target.site) {
-            return Err(self.view.tells_nothing_until(target.site));
+            return Err(self.view.passed_over());
         }
         if !self.dynamics.keeps_inside(pose, target, self.view.area()) {
             self.is_hemmed_in = true;

@@ -9,7 +9,7 @@ use heapless::Vec;
 use crate::belief::consistent_lines::{Certainty, ConsistentLines};
 use crate::belief::sample::Label;
 use crate::geometry::angle::Angle;
-use crate::geometry::approximate::{UnitVector, single, sqrt};
+use crate::geometry::approximate::{single, sqrt};
 use crate::geometry::heading::Heading;
 use crate::geometry::lattice::{Site, Vector};
 use crate::geometry::line::Bound;
@@ -169,22 +169,11 @@ impl<'a, G: Region> View<'a, G> {
         self.area.contains(site) && self.lines.can_cut(site)
     }
 
-    /// How far a turn keeps the circle where a label tells nothing because positions err, if it does at a
-    /// position: as long as no line comes nearer than a sample is shifted beyond it. A turn of an angle moves a
-    /// position by the angle's share of the radius at most.
-    pub(crate) fn tells_nothing_until(&self, site: Site) -> u32 {
-        let shift = self.lines.shift;
-        if shift == Vector::default() {
-            return 0;
-        }
-        let slack = self.lines.bounds().map(|bound| {
-            let per_length = UnitVector::of(bound.along).per_length;
-            let (shifted, value) = (bound.along.cross(shift), bound.at(site));
-            (single(shifted) - single(value).abs()) * per_length
-        });
-        let least = slack.fold(f32::INFINITY, |a, b| if b < a { b } else { a });
-        // Less for rounding, and no more than a radian.
-        let turn = (0.999 * least - 2.0) * self.inverse_radius;
+    /// How far a turn passes over where a label tells nothing because positions err: half of what these err by.
+    pub(crate) fn passed_over(&self) -> u32 {
+        let Vector { x, z } = self.lines.shift;
+        let shift = (x as f32).abs().max((z as f32).abs());
+        let turn = 0.25 * shift * self.inverse_radius;
         Angle::radians(if turn < 1.0 { turn } else { 1.0 }).turn()
     }
 
