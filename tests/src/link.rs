@@ -12,6 +12,7 @@ use planner_core::geometry::heading::Heading;
 use planner_core::link::delivery::{LinkLost, Port};
 use planner_core::link::message;
 use planner_core::link::station::{Flown, Station};
+use planner_core::motion::any_vehicle::AnyVehicle;
 use planner_core::motion::unicycle::Grid;
 
 /// How long the chip waits for an answer before it asks again.
@@ -37,17 +38,21 @@ pub fn fly<P: Port>(
     chip: &mut Station<P, Infallible>,
     setup: &message::Setup,
 ) -> Result<Flown, LinkLost> {
+    let vehicle: AnyVehicle = match setup.dynamics() {
+        Ok(vehicle) => vehicle,
+        Err(declined) => return chip.decline(declined),
+    };
     match setup.algorithm {
-        message::Algorithm::Cfc => chip.fly(setup, &mut setup.cfc::<68>(), |_| {}),
+        message::Algorithm::Cfc => chip.fly(setup, &mut setup.cfc::<_, 68>(vehicle), |_| {}),
         message::Algorithm::Lookahead { evaluations, goal, noise: None } => {
-            chip.fly(setup, &mut setup.lookahead::<68>(evaluations, goal), |_| {})
+            chip.fly(setup, &mut setup.lookahead::<_, 68>(vehicle, evaluations, goal), |_| {})
         }
         message::Algorithm::Lookahead { evaluations, goal, noise: Some((noise, prior)) } => {
-            let mut planner = setup.forecast::<36, 529>(evaluations, goal);
+            let mut planner = setup.forecast::<_, 36, 529>(vehicle, evaluations, goal);
             chip.fly(setup, &mut setup.prepare(&mut planner, prior, noise), |_| {})
         }
         message::Algorithm::Scc { noise, policy, prior } => {
-            let mut planner = setup.scc::<36, 529>(policy);
+            let mut planner = setup.scc::<_, 36, 529>(vehicle, policy);
             chip.fly(setup, &mut setup.prepare(&mut planner, prior, noise), |_| {})
         }
     }
@@ -68,7 +73,7 @@ pub fn by_turns(seed: u64, number: u64, steps: u32) -> Mission {
         (_, false) => Algorithm::Scc,
     };
     let mut mission = standard_field::standard(seed, number, algorithm, steps);
-    mission.grid = if number % 8 < 6 { Grid::Paper } else { Grid::Fine };
+    mission.vehicle = if number % 8 < 6 { Grid::Paper } else { Grid::Fine }.into();
     if !is_even {
         mission.noise = Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.5) });
     }

@@ -44,7 +44,7 @@ fn missions() -> Vec<Mission> {
         };
         let steps = if is_noisy { 8 } else { 20 };
         let mut mission = standard_field::standard(5, number, algorithm, steps);
-        mission.grid = grid;
+        mission.vehicle = grid.into();
         if is_noisy {
             mission.noise = Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.5) });
         }
@@ -170,7 +170,7 @@ fn qemu_executes_as_many_instructions() {
         searched: 0,
         sought: 0,
         calls: None,
-        grid: Grid::Paper,
+        vehicle: Grid::Paper.into(),
         noise: None,
     };
     let (_, told) = missions::fly_and_record(&mut Emulator::load(&elf, core), &workload.mission(3))

@@ -5,6 +5,7 @@ use crate::belief::tolerance::Tolerance;
 use crate::geometry::arc::SlopeArc;
 use crate::geometry::area::Area;
 use crate::geometry::lattice::Vector;
+use crate::motion::dynamics::{Dynamics, NoRoom};
 use crate::search::direction_rule::ArcRule;
 use crate::search::objective::Varrho;
 
@@ -56,6 +57,14 @@ pub struct Config {
 }
 
 impl Config {
+    /// Whether a vehicle can move where motions may end.
+    ///
+    /// # Errors
+    /// [`NoRoom`].
+    pub fn admits<D: Dynamics>(&self, dynamics: &D) -> Result<(), NoRoom> {
+        dynamics.fits(self.ground())
+    }
+
     /// Where motions may end: the area but for a margin, if that leaves any of it.
     pub(crate) fn ground(&self) -> Area {
         self.area.inset(self.tolerance.units()).unwrap_or(self.area)
