@@ -6,14 +6,18 @@ use std::time::Duration;
 use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::Mission;
+use host_sim::world::errors::Errors;
 use host_sim::world::noise::{Extent, NoiseModel};
 use planner_core::belief::goal::{Accuracy, Goal};
+use planner_core::belief::tolerance::Tolerance;
 use planner_core::geometry::heading::Heading;
 use planner_core::link::delivery::{LinkLost, Port};
 use planner_core::link::message;
 use planner_core::link::station::{Flown, Station};
 use planner_core::motion::any_vehicle::AnyVehicle;
-use planner_core::motion::unicycle::Grid;
+use planner_core::motion::boat::Boat;
+use planner_core::motion::car::{self, Car};
+use planner_core::motion::unicycle::{Grid, Unicycle};
 
 /// How long the chip waits for an answer before it asks again.
 pub const WAIT: Duration = Duration::from_millis(100);
@@ -96,5 +100,43 @@ pub fn stopping(number: u64) -> Mission {
         Accuracy::Misclassified(share)
     };
     mission.goal = Some(Goal { accuracy, level: 900_000 });
+    mission
+}
+
+/// Missions of every vehicle by every algorithm: 12 are all pairs of these; every second four of them with a robot
+/// that errs, and a tolerance for that.
+///
+/// # Panics
+/// Never: these are vehicles.
+pub fn of_any_vehicle(number: u64, steps: u32) -> Mission {
+    const TURN_STEP_URAD: u32 = 7_000;
+    let (algorithm, is_noisy) = [
+        (Algorithm::Cfc, false),
+        (Algorithm::Scc, true),
+        (Algorithm::Lookahead, false),
+        (Algorithm::Lookahead, true),
+    ][number as usize % 4];
+    let mut mission = standard_field::standard(SEED + 3, number, algorithm, steps);
+    let steps_of = |sharpest: f64| Unicycle::new(TURN_STEP_URAD, sharpest, 17, 150);
+    let made = match number % 3 {
+        0 => steps_of(1.2).map(AnyVehicle::Unicycle),
+        1 => steps_of(0.349).and_then(Boat::new).map(AnyVehicle::Boat),
+        _ => Car::new(car::Shape {
+            radius_mm: 1_500,
+            shortest_mm: 400,
+            turn_step_urad: TURN_STEP_URAD,
+            speeds: 21,
+            speed_step_mm: 100,
+        })
+        .map(AnyVehicle::Car),
+    };
+    mission.vehicle = made.expect("a vehicle");
+    if is_noisy {
+        mission.noise = Some(NoiseModel { p: 0.8, extent: Extent::OutsideBalls(0.5) });
+    }
+    if number / 4 % 2 == 1 {
+        mission.errors = Errors { motion: 0.05, turn: 0.02, position: 0.05, heading: 0.01 };
+        mission.config.tolerance = Tolerance::new(0.15).expect("a length");
+    }
     mission
 }
