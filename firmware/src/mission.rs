@@ -1,7 +1,9 @@
 //! What `idle` runs: asks for a mission, flies it, logs it, and asks for the next.
 
+use planner_core::AnyVehicle;
 use planner_core::belief::sample::Reading;
 use planner_core::geometry::local_line::LocalLine;
+use planner_core::link::delivery::LinkLost;
 use planner_core::link::message::{Algorithm, Declined, MissionEnd, Setup};
 use planner_core::link::station::{Flown, Prepared, Station};
 use planner_core::planner::Planner;
@@ -31,27 +33,37 @@ impl Board {
     pub(crate) fn run(&mut self) -> ! {
         loop {
             let setup = self.station.await_setup();
-            match setup.algorithm {
-                Algorithm::Cfc => self.fly(&setup, &mut setup.cfc::<TRUE_SAMPLES>()),
-                Algorithm::Lookahead { evaluations, goal, noise: None } => {
-                    self.fly(&setup, &mut setup.lookahead::<TRUE_SAMPLES>(evaluations, goal));
-                }
-                Algorithm::Lookahead { evaluations, goal, noise: Some((noise, prior)) } => {
-                    let mut planner =
-                        setup.forecast::<DOUBTFUL_SAMPLES, HYPOTHESES>(evaluations, goal);
-                    self.fly(&setup, &mut setup.prepare(&mut planner, prior, noise));
-                }
-                Algorithm::Scc { noise, policy, prior } => {
-                    let mut planner = setup.scc::<DOUBTFUL_SAMPLES, HYPOTHESES>(policy);
-                    self.fly(&setup, &mut setup.prepare(&mut planner, prior, noise));
-                }
+            defmt::info!("mission: {}, {=u16} steps at most", setup.algorithm, setup.steps);
+            match setup.dynamics() {
+                Ok(vehicle) => self.fly_with(&setup, vehicle),
+                Err(declined) => log_end(0, &self.station.decline(declined)),
+            }
+        }
+    }
+
+    fn fly_with(&mut self, setup: &Setup, vehicle: AnyVehicle) {
+        match setup.algorithm {
+            Algorithm::Cfc => self.fly(setup, &mut setup.cfc::<_, TRUE_SAMPLES>(vehicle)),
+            Algorithm::Lookahead { evaluations, goal, noise: None } => {
+                self.fly(
+                    setup,
+                    &mut setup.lookahead::<_, TRUE_SAMPLES>(vehicle, evaluations, goal),
+                );
+            }
+            Algorithm::Lookahead { evaluations, goal, noise: Some((noise, prior)) } => {
+                let mut planner =
+                    setup.forecast::<_, DOUBTFUL_SAMPLES, HYPOTHESES>(vehicle, evaluations, goal);
+                self.fly(setup, &mut setup.prepare(&mut planner, prior, noise));
+            }
+            Algorithm::Scc { noise, policy, prior } => {
+                let mut planner = setup.scc::<_, DOUBTFUL_SAMPLES, HYPOTHESES>(vehicle, policy);
+                self.fly(setup, &mut setup.prepare(&mut planner, prior, noise));
             }
         }
     }
 
     /// The drive is enabled for as long as this takes.
     fn fly<L: Planner>(&mut self, setup: &Setup, planner: &mut Result<Prepared<L>, Declined>) {
-        defmt::info!("mission: {}, {=u16} steps at most", setup.algorithm, setup.steps);
         if planner.is_ok() {
             self.enable.on();
         }
@@ -61,16 +73,20 @@ impl Board {
             log_step(steps, step);
         });
         self.enable.off();
-        match flown {
-            Ok(Flown::Ended(MissionEnd { reason, estimates, .. })) => {
-                defmt::info!("ended after {=u16} steps: {}", steps, reason);
-                log_line("centre", estimates.centre);
-                log_line("maximum margin", estimates.maximum_margin);
-                log_line("bisector", estimates.bisector);
-            }
-            Ok(Flown::Declined(declined)) => defmt::warn!("declined: {}", declined),
-            Err(lost) => defmt::error!("stopped after {=u16} steps: {}", steps, lost),
+        log_end(steps, &flown);
+    }
+}
+
+fn log_end(steps: u16, flown: &Result<Flown, LinkLost>) {
+    match flown {
+        Ok(Flown::Ended(MissionEnd { reason, estimates, .. })) => {
+            defmt::info!("ended after {=u16} steps: {}", steps, reason);
+            log_line("centre", estimates.centre);
+            log_line("maximum margin", estimates.maximum_margin);
+            log_line("bisector", estimates.bisector);
         }
+        Ok(Flown::Declined(declined)) => defmt::warn!("declined: {}", declined),
+        Err(lost) => defmt::error!("stopped after {=u16} steps: {}", steps, lost),
     }
 }
 

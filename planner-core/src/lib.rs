@@ -158,6 +158,7 @@ pub use crate::geometry::heading::Heading;
 pub use crate::geometry::lattice::Site;
 pub use crate::geometry::line::Line;
 pub use crate::geometry::local_line::LocalLine;
+pub use crate::motion::any_vehicle::AnyVehicle;
 pub use crate::motion::dynamics::{Dynamics, Pose};
 pub use crate::motion::holonomic::Holonomic;
 pub use crate::motion::unicycle::Unicycle;

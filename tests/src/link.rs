@@ -6,13 +6,18 @@ use std::time::Duration;
 use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::Mission;
+use host_sim::world::errors::Errors;
 use host_sim::world::noise::{Extent, NoiseModel};
 use planner_core::belief::goal::{Accuracy, Goal};
+use planner_core::belief::tolerance::Tolerance;
 use planner_core::geometry::heading::Heading;
 use planner_core::link::delivery::{LinkLost, Port};
 use planner_core::link::message;
 use planner_core::link::station::{Flown, Station};
-use planner_core::motion::unicycle::Grid;
+use planner_core::motion::any_vehicle::AnyVehicle;
+use planner_core::motion::boat::Boat;
+use planner_core::motion::car::{self, Car};
+use planner_core::motion::unicycle::{Grid, Unicycle};
 
 /// How long the chip waits for an answer before it asks again.
 pub const WAIT: Duration = Duration::from_millis(100);
@@ -37,17 +42,21 @@ pub fn fly<P: Port>(
     chip: &mut Station<P, Infallible>,
     setup: &message::Setup,
 ) -> Result<Flown, LinkLost> {
+    let vehicle: AnyVehicle = match setup.dynamics() {
+        Ok(vehicle) => vehicle,
+        Err(declined) => return chip.decline(declined),
+    };
     match setup.algorithm {
-        message::Algorithm::Cfc => chip.fly(setup, &mut setup.cfc::<68>(), |_| {}),
+        message::Algorithm::Cfc => chip.fly(setup, &mut setup.cfc::<_, 68>(vehicle), |_| {}),
         message::Algorithm::Lookahead { evaluations, goal, noise: None } => {
-            chip.fly(setup, &mut setup.lookahead::<68>(evaluations, goal), |_| {})
+            chip.fly(setup, &mut setup.lookahead::<_, 68>(vehicle, evaluations, goal), |_| {})
         }
         message::Algorithm::Lookahead { evaluations, goal, noise: Some((noise, prior)) } => {
-            let mut planner = setup.forecast::<36, 529>(evaluations, goal);
+            let mut planner = setup.forecast::<_, 36, 529>(vehicle, evaluations, goal);
             chip.fly(setup, &mut setup.prepare(&mut planner, prior, noise), |_| {})
         }
         message::Algorithm::Scc { noise, policy, prior } => {
-            let mut planner = setup.scc::<36, 529>(policy);
+            let mut planner = setup.scc::<_, 36, 529>(vehicle, policy);
             chip.fly(setup, &mut setup.prepare(&mut planner, prior, noise), |_| {})
         }
     }
@@ -68,7 +77,7 @@ pub fn by_turns(seed: u64, number: u64, steps: u32) -> Mission {
         (_, false) => Algorithm::Scc,
     };
     let mut mission = standard_field::standard(seed, number, algorithm, steps);
-    mission.grid = if number % 8 < 6 { Grid::Paper } else { Grid::Fine };
+    mission.vehicle = if number % 8 < 6 { Grid::Paper } else { Grid::Fine }.into();
     if !is_even {
         mission.noise = Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.5) });
     }
@@ -91,5 +100,43 @@ pub fn stopping(number: u64) -> Mission {
         Accuracy::Misclassified(share)
     };
     mission.goal = Some(Goal { accuracy, level: 900_000 });
+    mission
+}
+
+/// Missions of every vehicle by every algorithm: 12 are all pairs of these; every second four of them with a robot
+/// that errs, and a tolerance for that.
+///
+/// # Panics
+/// Never: these are vehicles.
+pub fn of_any_vehicle(number: u64, steps: u32) -> Mission {
+    const TURN_STEP_URAD: u32 = 7_000;
+    let (algorithm, is_noisy) = [
+        (Algorithm::Cfc, false),
+        (Algorithm::Scc, true),
+        (Algorithm::Lookahead, false),
+        (Algorithm::Lookahead, true),
+    ][number as usize % 4];
+    let mut mission = standard_field::standard(SEED + 3, number, algorithm, steps);
+    let steps_of = |sharpest: f64| Unicycle::new(TURN_STEP_URAD, sharpest, 17, 150);
+    let made = match number % 3 {
+        0 => steps_of(1.2).map(AnyVehicle::Unicycle),
+        1 => steps_of(0.349).and_then(Boat::new).map(AnyVehicle::Boat),
+        _ => Car::new(car::Shape {
+            radius_mm: 1_500,
+            shortest_mm: 400,
+            turn_step_urad: TURN_STEP_URAD,
+            speeds: 21,
+            speed_step_mm: 100,
+        })
+        .map(AnyVehicle::Car),
+    };
+    mission.vehicle = made.expect("a vehicle");
+    if is_noisy {
+        mission.noise = Some(NoiseModel { p: 0.8, extent: Extent::OutsideBalls(0.5) });
+    }
+    if number / 4 % 2 == 1 {
+        mission.errors = Errors { motion: 0.05, turn: 0.02, position: 0.05, heading: 0.01 };
+        mission.config.tolerance = Tolerance::new(0.15).expect("a length");
+    }
     mission
 }

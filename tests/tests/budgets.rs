@@ -11,7 +11,8 @@ use std::io::{self, Write as _};
 use std::{fs, path::Path};
 
 use host_sim::mission::algorithm::Algorithm;
-use planner_core::motion::unicycle::Grid;
+use planner_core::motion::any_vehicle::AnyVehicle;
+use planner_core::motion::unicycle::{Grid, Unicycle};
 use planner_core::planner::scc::Policy;
 use tests::LONG;
 use tests::budget::footprint::{self, Footprint};
@@ -204,7 +205,7 @@ const CFC: Workload = Workload {
     searched: 4_000,
     sought: 4,
     calls: None,
-    grid: Grid::Paper,
+    vehicle: AnyVehicle::Unicycle(Unicycle::paper()),
     noise: None,
 };
 
@@ -219,7 +220,7 @@ fn time_small(books: &mut Books, elf: &[u8]) -> u32 {
         ("lookahead_plan", "small, look-ahead, paper's fan", Grid::Paper),
         ("lookahead_fine_plan", "small, look-ahead, fine fan", Grid::Fine),
     ] {
-        let flown = Flown::of(books, elf, name, Workload { grid, ..LOOKAHEAD });
+        let flown = Flown::of(books, elf, name, Workload { vehicle: grid.into(), ..LOOKAHEAD });
         flown.record(books, ["small", figure], |it| &it.plans);
         stack = stack.max(flown.stack());
     }
@@ -236,8 +237,14 @@ fn time_standard(books: &mut Books, elf: &[u8]) -> u32 {
         ("lookahead_fine_plan", "standard, look-ahead, fine fan", Grid::Fine, None),
         ("forecast_plan", "standard, look-ahead, noise", Grid::Fine, DOUBT),
     ] {
-        let workload =
-            Workload { steps: 32, random: 10, searched: 1_000, grid, noise, ..LOOKAHEAD };
+        let workload = Workload {
+            steps: 32,
+            random: 10,
+            searched: 1_000,
+            vehicle: grid.into(),
+            noise,
+            ..LOOKAHEAD
+        };
         let flown = Flown::of(books, elf, name, workload);
         flown.record(books, ["standard", figure], |it| &it.plans);
         stack = stack.max(flown.stack());

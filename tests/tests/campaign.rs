@@ -20,7 +20,7 @@ fn campaign(algorithm: Algorithm, following: Following, steps: u32) -> Summary {
         seed: 1,
         crossing: Crossing::default(),
         following,
-        grid: Grid::Paper,
+        vehicle: Grid::Paper.into(),
         noise: None,
         errors: Errors::default(),
         tolerance: Tolerance::NONE,

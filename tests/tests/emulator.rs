@@ -25,7 +25,13 @@ use tests::budget::workload::Workload;
 use tests::cases;
 use tests::emulator::missions::{self, CORES};
 use tests::emulator::{Core, Emulator};
+use tests::link::of_any_vehicle;
 use tests::program::build;
+
+/// Missions of every vehicle by every algorithm, of some with robots that err.
+fn vehicles() -> Vec<Mission> {
+    (0..cases(12, 24)).map(|number| of_any_vehicle(number, 8)).collect()
+}
 
 /// The paper's two examples, then random fields: both algorithms and look-ahead with true labels, with the paper's
 /// fan and the fine one, and with labels that may be wrong, by turns. Half of those by look-ahead end when enough is
@@ -44,7 +50,7 @@ fn missions() -> Vec<Mission> {
         };
         let steps = if is_noisy { 8 } else { 20 };
         let mut mission = standard_field::standard(5, number, algorithm, steps);
-        mission.grid = grid;
+        mission.vehicle = grid.into();
         if is_noisy {
             mission.noise = Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.5) });
         }
@@ -71,17 +77,26 @@ fn hash(traces: &[String]) -> u64 {
 
 #[test]
 fn every_machine_makes_the_same_traces() {
-    let missions = missions();
+    let known = compare("standard", &missions());
+    assert!(known >= 3, "{known} end when enough is known");
+}
+
+#[test]
+fn every_machine_makes_the_same_traces_of_every_vehicle_and_of_robots_that_err() {
+    compare("vehicles", &vehicles());
+}
+
+/// Flies missions here and with a program on each core; how many of them end when enough is known.
+fn compare(name: &str, missions: &[Mission]) -> usize {
     let here = |mission: &Mission| {
         trace::lines(&Recording::of(mission).expect("labels that are certain are true").results)
     };
     let host: Vec<String> = missions.iter().map(here).collect();
     let known = host.iter().filter(|trace| trace.contains("\"reason\":\"known\"")).count();
-    assert!(known >= 3, "{known} end when enough is known");
     let mut hashes = vec![("host", hash(&host))];
     for (core, target) in CORES {
         let Some(program) = missions::build(env!("CARGO_TARGET_TMPDIR"), target) else { continue };
-        let elf = program("standard");
+        let elf = program(name);
         let there = |mission: &Mission| {
             let mut emulator = Emulator::load(&elf, core);
             let played = missions::fly(&mut emulator, mission).expect("it flies as the host");
@@ -97,6 +112,7 @@ fn every_machine_makes_the_same_traces() {
         println!("{hash:016x}  {machine}");
     }
     assert!(hashes.iter().all(|(_, hash)| *hash == hashes[0].1));
+    known
 }
 
 #[test]
@@ -170,7 +186,7 @@ fn qemu_executes_as_many_instructions() {
         searched: 0,
         sought: 0,
         calls: None,
-        grid: Grid::Paper,
+        vehicle: Grid::Paper.into(),
         noise: None,
     };
     let (_, told) = missions::fly_and_record(&mut Emulator::load(&elf, core), &workload.mission(3))

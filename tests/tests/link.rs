@@ -11,7 +11,7 @@ use std::fmt::Debug;
 use std::time::Duration;
 
 use host_sim::hil::faults::{Faults, Spoiler};
-use host_sim::hil::player::Player;
+use host_sim::hil::player::{self, Player};
 use host_sim::mission::definition::Mission;
 use host_sim::mission::recording::Recording;
 use host_sim::report::trace;
@@ -19,15 +19,20 @@ use planner_core::belief::version_space::NoVersionSpace;
 use planner_core::link::delivery::{Link, LinkLost, Port};
 use planner_core::link::frame::{Decoder, Envelope, FRAME, Frame, Message};
 use planner_core::link::message::{
-    Capacity, ClockRate, Declined, EndReason, LabelSource, PROTOCOL, Reply, Request,
+    Capacity, ClockRate, Declined, EndReason, LabelSource, PROTOCOL, Reply, Request, Setup,
 };
 use planner_core::link::station::{Flown, Station};
+use planner_core::motion::action::BadGrid;
+use planner_core::motion::any_vehicle::{AnyVehicle, NoVehicle, Shape};
+use planner_core::motion::car;
+use planner_core::motion::dynamics::NoRoom;
+use planner_core::motion::unicycle::Unicycle;
 use planner_core::planner::StopReason;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use tests::link::{SEED, WAIT, Way, fly, mission, stopping};
+use tests::link::{SEED, WAIT, Way, fly, mission, of_any_vehicle, stopping};
 
 /// A network in virtual time with the vehicle at its other end.
 struct Network {
@@ -157,6 +162,60 @@ fn a_thousand_missions_over_a_bad_link_end_as_over_a_good_one() {
     assert!(asked > 1000, "the link was not bad");
 }
 
+/// What errs is the vehicle, so a chip is told what it would be told here.
+#[test]
+fn every_vehicle_flies_over_the_link_as_here_and_so_do_robots_that_err() {
+    let ends: Vec<_> = (0..240)
+        .into_par_iter()
+        .map(|number| {
+            let mission = of_any_vehicle(number, 10);
+            let network = RefCell::new(Network::new(&mission, Faults::default()));
+            let mut chip = chip(&network);
+            let setup = chip.await_setup();
+            let flown = fly(&mut chip, &setup);
+            assert!(matches!(flown, Ok(Flown::Ended(_))), "mission {number}: {flown:?}");
+            drop(chip);
+            let there = network.into_inner().player.finish().expect("the mission is over");
+            let there = trace::lines(&there.recording.results);
+            let here = Recording::of(&mission).expect("labels that are certain are true");
+            assert_eq!(there, trace::lines(&here.results), "mission {number}");
+            let errs = number / 4 % 2 == 1 && !here.steps.is_empty();
+            assert_eq!(there.contains("\"true_pose\""), errs, "mission {number}");
+            here.results.end.reason
+        })
+        .collect();
+    let by_steps = ends.iter().filter(|reason| **reason == "steps").count();
+    println!("{by_steps} of {} missions ended by their steps", ends.len());
+    assert!(by_steps > 200);
+}
+
+/// What a chip is asked to fly with and does not have: it says why, and asks for the next mission.
+#[test]
+fn a_chip_declines_what_is_no_vehicle_of_its_own() {
+    let mission = of_any_vehicle(2, 10);
+    let good = player::setup(&mission, LabelSource::Vehicle).expect("a mission for a chip");
+    let Shape::Car(shape) = good.vehicle else { panic!("{:?}", good.vehicle) };
+    let car = |shape| Setup { vehicle: Shape::Car(shape), ..good.clone() };
+    let no_car = car(car::Shape { radius_mm: 0, ..shape });
+    let wide = car(car::Shape { radius_mm: 12_000, ..shape });
+    let later = Setup { protocol: PROTOCOL + 1, ..good.clone() };
+    let by_any = |setup: &Setup| setup.dynamics::<AnyVehicle>().map(Shape::from);
+    assert_eq!(by_any(&good), Ok(good.vehicle));
+    assert_eq!(good.dynamics::<Unicycle>(), Err(Declined::Vehicle(NoVehicle::Kind)));
+    assert_eq!(by_any(&no_car), Err(Declined::Vehicle(NoVehicle::Grid(BadGrid::Circle))));
+    assert!(matches!(by_any(&wide), Err(Declined::Vehicle(NoVehicle::Room(_)))));
+    assert_eq!(by_any(&later), Err(Declined::Protocol(PROTOCOL)));
+
+    let network = RefCell::new(Network::new(&mission, Faults::default()));
+    let mut chip = chip(&network);
+    let setup = chip.await_setup();
+    let declined = setup.dynamics::<Unicycle>().expect_err("it has no car");
+    assert!(matches!(chip.decline(declined), Ok(Flown::Declined(_))));
+    drop(chip);
+    let error = network.into_inner().player.finish().expect_err("it was declined").to_string();
+    assert!(error.contains("vehicle") && error.contains("of this kind"), "{error}");
+}
+
 #[test]
 fn a_cut_link_ends_every_mission_within_the_bound_and_with_no_motion_after_it() {
     let bound = WAIT * u32::from(Link::<Plug<'_>>::ATTEMPTS);
@@ -255,8 +314,8 @@ fn corpus() -> Vec<Vec<u8>> {
         }
     }
     let frames = RefCell::new(Vec::new());
-    for number in 0..20 {
-        let mission = mission(number);
+    let missions = (0..20).map(mission).chain((0..6).map(|number| of_any_vehicle(number, 6)));
+    for mission in missions {
         let network = RefCell::new(Network::new(&mission, Faults::default()));
         let clock = ClockRate { per_second: 168_000_000, emulated: true };
         let link = Link::new(Tap(Plug(&network), &frames));
@@ -273,6 +332,7 @@ fn corpus() -> Vec<Vec<u8>> {
         Declined::Capacity(capacity),
         Declined::Given(NoVersionSpace::NotSeparable(3)),
         Declined::Labels,
+        Declined::Vehicle(NoVehicle::Room(NoRoom { across_mm: u32::MAX })),
     ] {
         frames.push(Frame::of(&Envelope::new(5, 6, Request::Declined(declined))).bytes().to_vec());
     }

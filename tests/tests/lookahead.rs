@@ -53,7 +53,7 @@ fn flown(mission: &Mission) -> (&'static str, Box<dyn ReadOut>) {
 
 fn mission(number: u64, steps: u32, accuracy: Accuracy) -> Mission {
     let mut mission = standard_field::standard(31, number, Algorithm::Lookahead, steps);
-    mission.grid = Grid::Fine;
+    mission.vehicle = Grid::Fine.into();
     mission.goal = Some(Goal { accuracy, level: LEVEL });
     mission
 }
@@ -190,7 +190,7 @@ fn campaign(seed: u64, steps: u32, grid: Grid, noise: Option<NoiseModel>) -> Cam
         crossing: Crossing::default(),
         following: Algorithm::Lookahead.following(),
         tolerance: Tolerance::NONE,
-        grid,
+        vehicle: grid.into(),
         noise,
         errors: Errors::default(),
         policy: Policy::default(),

@@ -16,6 +16,7 @@ use host_sim::report::trace;
 use planner_core::link::delivery::{Link, Port};
 use planner_core::link::message::{ClockRate, EndReason, LabelSource, MissionEnd};
 use planner_core::link::station::{Flown, Station};
+use planner_core::motion::unicycle::Unicycle;
 use serialport::{SerialPort as _, TTYPort};
 
 const WAIT: Duration = Duration::from_millis(100);
@@ -56,7 +57,8 @@ fn a_board_at_a_serial_port_flies_as_this_machine_does() {
         let clock = ClockRate { per_second: 1_000_000, emulated: false };
         let mut board = Station::<_, Infallible> { link, sensor: None, ticks: || 0, clock };
         let setup = board.await_setup();
-        board.fly(&setup, &mut setup.cfc::<68>(), |_| {})
+        let unicycle: Unicycle = setup.dynamics().expect("it has one");
+        board.fly(&setup, &mut setup.cfc::<_, 68>(unicycle), |_| {})
     });
     let mission = standard_field::standard(4, 1, Algorithm::Cfc, 10);
     let mut player = Player::new(&mission, LabelSource::Vehicle, 1).expect("a mission for a chip");

@@ -232,7 +232,7 @@ fn campaign(algorithm: Algorithm, fields: u64, steps: u32, policy: Policy) -> Su
         following: algorithm.following(),
         errors: Errors::default(),
         tolerance: Tolerance::NONE,
-        grid: Grid::Paper,
+        vehicle: Grid::Paper.into(),
         noise: Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.0) }),
         policy,
         prior: Prior::Area,

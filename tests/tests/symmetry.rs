@@ -97,7 +97,7 @@ fn of_fields(view: View, noisy: bool) -> Vec<f64> {
     let fields = if noisy { cases(12, 100) } else { cases(60, 500) };
     let fly = |number: u64| {
         let mut mission = standard_field::standard(SEED, number, Algorithm::Lookahead, STEPS);
-        mission.grid = if number.is_multiple_of(2) { Grid::Paper } else { Grid::Fine };
+        mission.vehicle = if number.is_multiple_of(2) { Grid::Paper } else { Grid::Fine }.into();
         let model = NoiseModel { p: 0.8, extent: Extent::OutsideBalls(0.5) };
         mission.noise = noisy.then_some(model);
         apart(&mission, view)

@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use planner_core::geometry::line::Line;
 use planner_core::geometry::local_line::LocalLine;
 use planner_core::motion::dynamics::Dynamics as _;
-use planner_core::motion::unicycle::Unicycle;
 use serde::Serialize;
 
 use crate::campaign::ensemble::{Campaign, Ensemble, Measure, Progress, Tally};
@@ -156,7 +155,7 @@ impl Summary {
             plans,
             mean_examined: examined as f64 / plans as f64,
             most_examined,
-            actions: Unicycle::from(campaign.grid).grid().actions(),
+            actions: campaign.vehicle.grid().actions(),
             checkpoints: checkpoints.into_iter().flatten().collect(),
         }
     }

@@ -7,7 +7,7 @@ use indicatif::{ParallelProgressIterator as _, ProgressBar, ProgressStyle};
 use planner_core::belief::sample::Reading;
 use planner_core::belief::tolerance::Tolerance;
 use planner_core::belief::weight::Prior;
-use planner_core::motion::unicycle::Grid;
+use planner_core::motion::any_vehicle::AnyVehicle;
 use planner_core::planner::config::{Crossing, Following};
 use planner_core::planner::scc::Policy;
 use planner_core::robot::agent::Step;
@@ -20,6 +20,7 @@ use crate::mission::flight::Flown;
 use crate::mission::read_out::ReadOut;
 use crate::mission::results::{cost, recovery_name};
 use crate::mission::scenario;
+use crate::mission::vehicle::{self, Source};
 use crate::world::errors::Errors;
 use crate::world::noise::NoiseModel;
 
@@ -38,8 +39,8 @@ pub struct Campaign {
     pub crossing: Crossing,
     /// How P2 follows the boundary.
     pub following: Following,
-    /// The unicycle's action set.
-    pub grid: Grid,
+    /// What moves.
+    pub vehicle: AnyVehicle,
     /// How labels are flipped; `None` when they are true.
     pub noise: Option<NoiseModel>,
     /// How robots err.
@@ -143,9 +144,10 @@ impl Campaign {
     /// Runs all fields on all cores, with a progress bar on a terminal.
     ///
     /// # Errors
-    /// Names the field in which a sample contradicted what was known: never, as labels are true where
-    /// they are trusted.
+    /// When the vehicle cannot move in the standard area. Names the field in which a sample contradicted what was
+    /// known: never, as labels are true where they are trusted.
     pub fn run<M: Measure>(&self, measure: &M) -> Result<Ensemble<M::Checkpoint>> {
+        vehicle::check_room(Source::Flags, &self.vehicle, &self.mission(0).config)?;
         let style = "{msg}  {bar:40} {pos}/{len} fields  {per_sec}  {eta} left";
         let bar = ProgressBar::new(self.fields)
             .with_style(ProgressStyle::with_template(style)?)
@@ -168,7 +170,7 @@ impl Campaign {
     fn mission(&self, number: u64) -> Mission {
         let mut mission = standard_field::standard(self.seed, number, self.algorithm, self.steps);
         (mission.config.crossing, mission.config.following) = (self.crossing, self.following);
-        (mission.grid, mission.errors) = (self.grid, self.errors);
+        (mission.vehicle, mission.errors) = (self.vehicle, self.errors);
         mission.config.tolerance = self.tolerance;
         (mission.noise, mission.policy, mission.prior) = (self.noise, self.policy, self.prior);
         mission

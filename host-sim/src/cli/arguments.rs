@@ -7,6 +7,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use crate::hil::faults::Faults;
 use crate::mission::algorithm::Algorithm;
 use crate::mission::names::{CrossingName, FanName, FollowingName, PolicyName, PriorName};
+use crate::mission::vehicle::VehicleTable;
 
 /// Simulates a robot that finds an unknown straight boundary from few samples.
 ///
@@ -148,9 +149,11 @@ pub(crate) struct CampaignArgs {
         conflicts_with = "algorithm"
     )]
     pub(crate) compare: Vec<Algorithm>,
-    /// How finely the unicycle turns [default: paper; for lookahead fine]
+    /// How finely the vehicle turns [default: paper; for lookahead fine]
     #[arg(long, value_enum)]
     pub(crate) fan: Option<FanName>,
+    #[command(flatten)]
+    pub(crate) vehicle: VehicleTable,
     /// How P1 looks for the opposite label (cfc, scc) [default: anyhow]
     #[arg(long, value_enum)]
     pub(crate) crossing: Option<CrossingName>,

@@ -5,6 +5,7 @@ use std::{env, fs, slice};
 
 use anyhow::{Context as _, Result, bail};
 use planner_core::link::message::LabelSource;
+use planner_core::motion::any_vehicle::AnyVehicle;
 use planner_core::motion::unicycle::Grid;
 
 use crate::campaign::accuracy::{self, Accuracy};
@@ -21,6 +22,7 @@ use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::Mission;
 use crate::mission::recording::Recording;
 use crate::mission::scenario::{self, Overrides};
+use crate::mission::vehicle::Source;
 use crate::output::file::{Output, csv, json, prepare, temporary};
 use crate::replay::record::Replay;
 use crate::report::picture::Picture;
@@ -186,24 +188,27 @@ fn campaign(args: &CampaignArgs) -> Result<String> {
     let tolerance = scenario::tolerance("--tolerance", args.tolerance, errors)?;
     let [output] = prepare(&[], [("--csv", args.csv.as_deref())])?;
     let extent = Extent::OutsideBalls(trusted_radius);
-    let campaign = |algorithm: Algorithm| Campaign {
-        algorithm,
-        fields: args.fields,
-        steps: args.steps,
-        seed: args.seed,
-        crossing: args.crossing.unwrap_or_default().into(),
-        following: args.following.map_or(algorithm.following(), Into::into),
-        grid: args.grid(algorithm),
-        noise: algorithm.weighs(p < 1.0).then_some(NoiseModel { p, extent }),
-        errors,
-        tolerance,
-        policy: args.policy.unwrap_or_default().into(),
-        prior: args.prior.unwrap_or_default().into(),
+    let campaign = |algorithm: Algorithm| {
+        Ok::<_, anyhow::Error>(Campaign {
+            algorithm,
+            fields: args.fields,
+            steps: args.steps,
+            seed: args.seed,
+            crossing: args.crossing.unwrap_or_default().into(),
+            following: args.following.map_or(algorithm.following(), Into::into),
+            vehicle: args.moving(algorithm)?,
+            noise: algorithm.weighs(p < 1.0).then_some(NoiseModel { p, extent }),
+            errors,
+            tolerance,
+            policy: args.policy.unwrap_or_default().into(),
+            prior: args.prior.unwrap_or_default().into(),
+        })
     };
     let Told { table, rows, record } = if args.compare.is_empty() {
-        alone(&campaign(args.algorithm))?
+        alone(&campaign(args.algorithm)?)?
     } else {
-        let campaigns: Vec<_> = planners.iter().map(|&planner| campaign(planner)).collect();
+        let campaigns: Vec<_> =
+            planners.iter().map(|&planner| campaign(planner)).collect::<Result<_>>()?;
         compare::fly(&campaigns, p < 1.0)?
     };
     if let Some(output) = output {
@@ -234,7 +239,12 @@ impl CampaignArgs {
         if self.compare.is_empty() { slice::from_ref(&self.algorithm) } else { &self.compare }
     }
 
-    /// How finely a planner's unicycle turns.
+    /// What moves when this one plans.
+    fn moving(&self, planner: Algorithm) -> Result<AnyVehicle> {
+        self.vehicle.vehicle(Source::Flags, planner, self.fan.is_some(), self.grid(planner))
+    }
+
+    /// How finely a planner's vehicle turns.
     fn grid(&self, planner: Algorithm) -> Grid {
         self.fan.map_or(planner.grid(), Into::into)
     }

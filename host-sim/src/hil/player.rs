@@ -270,9 +270,6 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
         },
         other => bail!("algorithm: found {}, expected cfc, scc or lookahead", other.name()),
     };
-    if mission.vehicle.is_some() {
-        bail!("vehicle: found another than the paper's unicycle, expected none on a board");
-    }
     let samples = mission.given.samples();
     let given = BoundedVec::from_slice(samples).map_err(|_| {
         let most = message::MOST_GIVEN;
@@ -286,9 +283,9 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
     };
     let capacity =
         Capacity { samples: (samples.len() as u32 + taken) as u16, hypotheses: hypotheses as u16 };
-    let &Mission { config, grid, start, .. } = mission;
-    let steps = taken as u16;
-    Ok(Setup { protocol: PROTOCOL, algorithm, config, grid, capacity, steps, start, labels, given })
+    let &Mission { config, start, .. } = mission;
+    let (protocol, vehicle, steps) = (PROTOCOL, mission.vehicle.into(), taken as u16);
+    Ok(Setup { protocol, algorithm, config, vehicle, capacity, steps, start, labels, given })
 }
 
 fn decline(declined: Declined, setup: &Setup) -> anyhow::Error {
@@ -307,6 +304,7 @@ fn decline(declined: Declined, setup: &Setup) -> anyhow::Error {
         }
         Declined::Algorithm => anyhow!("algorithm: declined by the board, which has another"),
         Declined::Given(error) => anyhow!("oracle: declined by the board: {error}"),
+        Declined::Vehicle(why) => anyhow!("vehicle: declined by the board: expected {why}"),
         Declined::Labels => anyhow!("--labels: found chip, but this board has no label sensor"),
     }
 }

@@ -6,15 +6,14 @@ use planner_core::belief::hypotheses::Hypotheses;
 use planner_core::belief::noise::Noise;
 use planner_core::belief::version_space::VersionSpace;
 use planner_core::belief::weight::Prior;
+use planner_core::motion::any_vehicle::AnyVehicle;
 use planner_core::motion::dynamics::Pose;
-use planner_core::motion::unicycle::Grid;
 use planner_core::planner::config::{Config, Crossing, Following};
 use planner_core::planner::scc::Policy;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use crate::mission::algorithm::Algorithm;
-use crate::mission::vehicle::Vehicle;
 use crate::world::World;
 use crate::world::errors::{CUT, Erring, Errors};
 use crate::world::noise::{Flipped, NoiseModel};
@@ -43,10 +42,8 @@ pub struct Mission {
     pub seed: u64,
     /// Area, weight of the control, way of crossing.
     pub config: Config,
-    /// The unicycle's action set.
-    pub grid: Grid,
-    /// What moves instead, if it is not that unicycle.
-    pub vehicle: Option<Vehicle>,
+    /// What moves.
+    pub vehicle: AnyVehicle,
     /// Where the agent starts.
     pub start: Pose,
     /// What is really there.
@@ -77,11 +74,12 @@ impl Mission {
         self
     }
 
-    /// The same mission flown by look-ahead, with its own weight of the control and fan.
+    /// The same mission flown by look-ahead, with its own weight of the control and the unicycle of its own fan.
     #[must_use]
     pub fn by_lookahead(mut self) -> Self {
         self.algorithm = Algorithm::Lookahead;
-        (self.config.varrho, self.grid) = (self.algorithm.varrho(), self.algorithm.grid());
+        (self.config.varrho, self.vehicle) =
+            (self.algorithm.varrho(), self.algorithm.grid().into());
         self
     }
 

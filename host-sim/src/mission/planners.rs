@@ -2,8 +2,8 @@
 
 use planner_core::belief::Refused;
 use planner_core::belief::sample::Reading;
+use planner_core::motion::any_vehicle::AnyVehicle;
 use planner_core::motion::dynamics::{Dynamics, Pose};
-use planner_core::motion::unicycle::Unicycle;
 use planner_core::planner::cfc::Cfc;
 use planner_core::planner::lookahead::Lookahead;
 use planner_core::planner::scc::Scc;
@@ -16,7 +16,6 @@ use crate::mission::definition::Mission;
 use crate::mission::margin::Margin;
 use crate::mission::random_walk::RandomWalk;
 use crate::mission::read_out::ReadOut;
-use crate::mission::vehicle::Vehicle;
 
 /// A planner whose belief can be read out.
 pub type AnyPlanner = Box<dyn Planner<Belief = dyn ReadOut>>;
@@ -48,10 +47,9 @@ impl Mission {
     /// The planner, as yet without a label.
     pub fn planner(&self) -> AnyPlanner {
         match self.vehicle {
-            None => self.planner_of(Unicycle::from(self.grid)),
-            Some(Vehicle::Unicycle(unicycle)) => self.planner_of(unicycle),
-            Some(Vehicle::Boat(boat)) => self.planner_of(boat),
-            Some(Vehicle::Car(car)) => self.planner_of(car),
+            AnyVehicle::Unicycle(unicycle) => self.planner_of(unicycle),
+            AnyVehicle::Boat(boat) => self.planner_of(boat),
+            AnyVehicle::Car(car) => self.planner_of(car),
         }
     }
 

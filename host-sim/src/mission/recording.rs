@@ -9,7 +9,9 @@ use planner_core::belief::posterior::Posterior;
 use planner_core::belief::sample::Reading;
 use planner_core::belief::weight::Prior;
 use planner_core::geometry::line::Line;
+use planner_core::motion::any_vehicle::AnyVehicle;
 use planner_core::motion::dynamics::Pose;
+use planner_core::motion::unicycle::Grid;
 use planner_core::robot::agent::Step;
 
 use crate::mission::definition::{Mission, Table};
@@ -136,12 +138,14 @@ impl Recording {
 }
 
 fn start(mission: &Mission) -> Start {
+    let is_of_a_fan = [Grid::Paper, Grid::Fine].map(AnyVehicle::from).contains(&mission.vehicle);
     Start {
         algorithm: mission.algorithm,
         seed: mission.seed,
         varrho: mission.config.varrho.value(),
         area: mission.config.area.into(),
         oracle: mission.given.samples().iter().map(Into::into).collect(),
+        vehicle: (!is_of_a_fan).then(|| mission.vehicle.into()),
         pose: mission.start.into(),
         truth: mission.world.line().map(|line| (*line).into()),
         p: mission.noise.map_or(1.0, |noise| noise.p),

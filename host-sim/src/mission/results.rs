@@ -15,6 +15,7 @@ use serde::Serialize;
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::stop::GoalRecord;
+use crate::mission::vehicle::VehicleTable;
 
 /// A mission, from what it began with to what it came to.
 #[derive(Clone, Debug)]
@@ -40,6 +41,9 @@ pub struct Start {
     pub area: AreaRecord,
     /// The oracle's samples.
     pub oracle: Vec<SampleRecord>,
+    /// What moved, unless it is the unicycle of a fan.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub vehicle: Option<VehicleTable>,
     /// Where the agent began.
     pub pose: PoseRecord,
     /// The true line, if there is one.

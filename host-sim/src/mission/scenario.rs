@@ -24,7 +24,7 @@ use crate::mission::definition::{CAPACITY, Lines, Mission};
 use crate::mission::names::{CrossingName, FanName, FollowingName, PolicyName, PriorName};
 use crate::mission::stop::StopTable;
 use crate::mission::strict::{Numbers, Table, wrong};
-use crate::mission::vehicle::VehicleTable;
+use crate::mission::vehicle::{self, Source, VehicleTable};
 use crate::world::World;
 use crate::world::errors::{CUT, Errors};
 use crate::world::noise::{Extent, NoiseModel};
@@ -220,8 +220,10 @@ fn mission(file: &File, overrides: Overrides) -> Result<Mission> {
         return wrong("fan", found, "\"paper\", as it tries every action");
     }
     let has_fan = file.fan.is_some();
-    let vehicle = file.vehicle.as_ref().map(|it| it.0.vehicle(algorithm, has_fan, grid));
-    let vehicle = vehicle.transpose()?.flatten();
+    let vehicle = file.vehicle.as_ref().map_or_else(
+        || Ok(grid.into()),
+        |it| it.0.vehicle(Source::File, algorithm, has_fan, grid),
+    )?;
     let AreaTable { x: Numbers([x0, x1]), z: Numbers([z0, z1]) } = file.area.0;
     let corners = (site("area", x0, z0)?, site("area", x1, z1)?);
     let Some(area) = Area::new(corners.0, corners.1) else {
@@ -240,15 +242,16 @@ fn mission(file: &File, overrides: Overrides) -> Result<Mission> {
     let tolerance = tolerance("tolerance", file.tolerance, errors)?;
     check_tolerance("tolerance", tolerance, &given, area)?;
     let noise = file.noise.as_ref().map(|table| noise(&table.0)).transpose()?;
-    let goal = file.stop.as_ref().map(|table| table.0.goal(algorithm, noise.is_some()));
     let following = file.following.map_or(algorithm.following(), Following::from);
     let crossing = file.crossing.into();
+    let config = Config { area, varrho, crossing, following, tolerance };
+    vehicle::check_room(Source::File, &vehicle, &config)?;
+    let goal = file.stop.as_ref().map(|table| table.0.goal(algorithm, noise.is_some()));
     Ok(Mission {
         algorithm,
         steps,
         seed: overrides.seed.unwrap_or(file.seed),
-        config: Config { area, varrho, crossing, following, tolerance },
-        grid,
+        config,
         vehicle,
         start,
         world,

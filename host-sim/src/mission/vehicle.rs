@@ -1,12 +1,16 @@
-//! The vehicle of a mission, as scenario files describe it.
+//! The vehicle of a mission, as scenario files, flags and traces describe it.
 
 use anyhow::Result;
+use nalgebra::Point2;
+use planner_core::geometry::area::Area;
 use planner_core::motion::action::BadGrid;
+use planner_core::motion::any_vehicle::{AnyVehicle, Shape};
 use planner_core::motion::boat::Boat;
-use planner_core::motion::car::{Car, Shape};
+use planner_core::motion::car::{self, Car};
 use planner_core::motion::dynamics::Dynamics as _;
-use planner_core::motion::unicycle::{Grid, Unicycle};
-use serde::Deserialize;
+use planner_core::motion::unicycle::{self, Grid, Unicycle};
+use planner_core::planner::config::Config;
+use serde::{Deserialize, Serialize};
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::strict::wrong;
@@ -14,88 +18,126 @@ use crate::mission::strict::wrong;
 /// Actions that margin sampling and the random walk try one by one, at most.
 const MOST_TRIED: u64 = 1_000_000;
 
-/// What moves, if it is not the paper's unicycle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Vehicle {
-    /// Turns on the spot, then drives.
-    Unicycle(Unicycle),
-    /// Turns a little and drives, a step at a time, and never on the spot.
-    Boat(Boat),
-    /// Drives along arcs of at most some curvature.
-    Car(Car),
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+/// What kind of vehicle moves.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
-enum Kind {
+pub enum Kind {
+    /// Turns on the spot, then drives
+    #[default]
     Unicycle,
+    /// Does the same, but cannot turn on the spot
     Boat,
+    /// Drives along arcs, with a turning circle
     Car,
 }
 
-/// `vehicle` of a scenario file. Lengths in metres, angles in radians.
-#[derive(Deserialize)]
+/// `vehicle` of a scenario file and of a trace, and flags. Lengths in metres, angles in radians.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize, clap::Args)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct VehicleTable {
-    kind: Kind,
+pub struct VehicleTable {
+    /// What moves
+    #[arg(long = "vehicle", value_enum, value_name = "KIND", default_value_t)]
+    pub(crate) kind: Kind,
+    /// The longest motion, metres [default: 2]
+    #[arg(long, value_name = "METRES")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     reach: Option<f64>,
+    /// From one length of motions to the next, metres [default: 0.1]
+    #[arg(long = "speed-step", value_name = "METRES")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     step: Option<f64>,
+    /// The sharpest turn (unicycle, boat), radians [default: pi/2]
+    #[arg(long, value_name = "RADIANS")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     sharpest: Option<f64>,
+    /// From one direction to the next, radians [default: the fan's]
+    #[arg(long, value_name = "RADIANS")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     turn_step: Option<f64>,
+    /// Radius of the turning circle (car), metres
+    #[arg(long, value_name = "METRES")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     radius: Option<f64>,
+    /// The shortest motion (car), metres [default: a step]
+    #[arg(long, value_name = "METRES")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     shortest: Option<f64>,
 }
 
+/// Where a vehicle's numbers stand, which gives them their names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// A scenario file.
+    File,
+    /// The command line.
+    Flags,
+}
+
+impl Source {
+    /// What a number is called there.
+    fn name(self, key: &str) -> String {
+        match (self, key) {
+            (Self::File, "kind") => "vehicle".to_owned(),
+            (Self::File, _) => format!("vehicle.{key}"),
+            (Self::Flags, "kind") => "--vehicle".to_owned(),
+            (Self::Flags, "step") => "--speed-step".to_owned(),
+            (Self::Flags, _) => format!("--{}", key.replace('_', "-")),
+        }
+    }
+}
+
 impl VehicleTable {
-    /// The vehicle; `None` if it is the one of the fan's grid. `fan` is what the file says, `grid` what is flown with
-    /// unless it says otherwise.
+    /// The vehicle. `has_fan` tells whether a fan was asked for, `grid` what is flown with unless the table says
+    /// otherwise.
     ///
     /// # Errors
     /// Names the field, what was found and what was expected.
-    pub(crate) fn vehicle(
+    pub fn vehicle(
         &self,
+        source: Source,
         algorithm: Algorithm,
         has_fan: bool,
         grid: Grid,
-    ) -> Result<Option<Vehicle>> {
+    ) -> Result<AnyVehicle> {
+        let name = |key| source.name(key);
         if has_fan && self.turn_step.is_some() {
-            return wrong("vehicle.turn_step", "a fan too", "one of them");
+            return wrong(&name("turn_step"), "a fan too", "one of them");
         }
-        self.check_keys()?;
+        self.check_keys(source)?;
         let default = if grid == Grid::Fine { 1e-6 } else { 0.01 };
-        let turn_step_urad = whole("vehicle.turn_step", self.turn_step.unwrap_or(default), 1e6)?;
+        let turn_step_urad = whole(&name("turn_step"), self.turn_step.unwrap_or(default), 1e6)?;
         let step = self.step.unwrap_or(0.1);
-        let speed_step_mm = whole("vehicle.step", step, 1e3)?;
-        let reach_mm = whole("vehicle.reach", self.reach.unwrap_or(2.0), 1e3)?;
+        let speed_step_mm = whole(&name("step"), step, 1e3)?;
+        let reach_mm = whole(&name("reach"), self.reach.unwrap_or(2.0), 1e3)?;
         let steps = u16::try_from(reach_mm / speed_step_mm).unwrap_or(u16::MAX);
         if reach_mm % speed_step_mm != 0 || steps == u16::MAX {
             let found = format!("{} with steps of {step}", f64::from(reach_mm) / 1e3);
-            return wrong("vehicle.reach", found, "1 to 65534 steps");
+            return wrong(&name("reach"), found, "1 to 65534 steps");
         }
         let speeds = steps + 1;
         let sharpest = self.sharpest.unwrap_or(std::f64::consts::FRAC_PI_2);
         let unicycle = || Unicycle::new(turn_step_urad, sharpest, speeds, speed_step_mm);
         let made = match self.kind {
-            Kind::Unicycle => unicycle().map(Vehicle::Unicycle),
-            Kind::Boat => unicycle().and_then(Boat::new).map(Vehicle::Boat),
+            Kind::Unicycle => unicycle().map(AnyVehicle::Unicycle),
+            Kind::Boat => unicycle().and_then(Boat::new).map(AnyVehicle::Boat),
             Kind::Car => {
                 let Some(radius) = self.radius else {
-                    return wrong("vehicle.radius", "none", "the radius of its turning circle");
+                    return wrong(&name("radius"), "none", "the radius of its turning circle");
                 };
-                let shortest_mm = whole("vehicle.shortest", self.shortest.unwrap_or(step), 1e3)?;
-                let radius_mm = whole("vehicle.radius", radius, 1e3)?;
-                Car::new(Shape { radius_mm, shortest_mm, turn_step_urad, speeds, speed_step_mm })
-                    .map(Vehicle::Car)
+                let shortest_mm = whole(&name("shortest"), self.shortest.unwrap_or(step), 1e3)?;
+                let radius_mm = whole(&name("radius"), radius, 1e3)?;
+                let shape =
+                    car::Shape { radius_mm, shortest_mm, turn_step_urad, speeds, speed_step_mm };
+                Car::new(shape).map(AnyVehicle::Car)
             }
         };
-        let vehicle = made.or_else(|bad: BadGrid| wrong("vehicle", "no such vehicle", bad))?;
-        vehicle.suits(algorithm)?;
-        let is_of_grid = vehicle == Vehicle::Unicycle(Unicycle::from(grid));
-        Ok((!is_of_grid).then_some(vehicle))
+        let made = made.or_else(|bad: BadGrid| wrong(&name("kind"), "no such vehicle", bad))?;
+        check_suits(&name("kind"), &made, algorithm)?;
+        Ok(made)
     }
 
     /// Whether each key means something for its kind.
-    fn check_keys(&self) -> Result<()> {
+    fn check_keys(&self, source: Source) -> Result<()> {
         let is_car = self.kind == Kind::Car;
         for (key, is_there, means) in [
             ("sharpest", self.sharpest.is_some(), !is_car),
@@ -103,31 +145,75 @@ impl VehicleTable {
             ("shortest", self.shortest.is_some(), is_car),
         ] {
             if is_there && !means {
-                let kind = format!("{:?}", self.kind).to_lowercase();
-                return wrong(&format!("vehicle.{key}"), format!("a {kind}"), "a kind that has it");
+                let kind = format!("a {:?}", self.kind).to_lowercase();
+                return wrong(&source.name(key), kind, "a kind that has it");
             }
         }
         Ok(())
     }
 }
 
-impl Vehicle {
-    fn suits(&self, algorithm: Algorithm) -> Result<()> {
-        let tries = matches!(algorithm, Algorithm::Margin | Algorithm::Random);
-        match self {
-            Self::Boat(_) | Self::Car(_) if tries => {
-                let found = format!("one that cannot turn on the spot, with {}", algorithm.name());
-                wrong("vehicle", found, "cfc, scc or lookahead, which see to it that it can go on")
+impl From<AnyVehicle> for VehicleTable {
+    fn from(vehicle: AnyVehicle) -> Self {
+        let grid = vehicle.grid();
+        let metres = |mm: u32| f64::from(mm) / 1e3;
+        let (turn_step_urad, kind) = match vehicle.into() {
+            Shape::Unicycle(it) => (it.turn_step_urad, Kind::Unicycle),
+            Shape::Boat(it) => (it.turn_step_urad, Kind::Boat),
+            Shape::Car(it) => (it.turn_step_urad, Kind::Car),
+        };
+        let (sharpest, car) = match vehicle.into() {
+            Shape::Unicycle(unicycle::Shape { sharpest, .. })
+            | Shape::Boat(unicycle::Shape { sharpest, .. }) => {
+                // Half a turn is to the left.
+                (Some(sharpest.radians().abs()), None)
             }
-            Self::Unicycle(it)
-                if algorithm == Algorithm::Margin && it.grid().actions() > MOST_TRIED =>
-            {
-                let found = format!("{} actions with margin", it.grid().actions());
-                wrong("vehicle", found, format!("at most {MOST_TRIED}, as it tries every action"))
-            }
-            _ => Ok(()),
+            Shape::Car(shape) => (None, Some(shape)),
+        };
+        Self {
+            kind,
+            reach: Some(metres(grid.reach_mm(grid.speeds() - 1))),
+            step: Some(metres(grid.speed_step_mm())),
+            sharpest,
+            turn_step: Some(f64::from(turn_step_urad) / 1e6),
+            radius: car.map(|shape| metres(shape.radius_mm)),
+            shortest: car.map(|shape| metres(shape.shortest_mm)),
         }
     }
+}
+
+/// Whether a planner sees to it that a vehicle can go on.
+fn check_suits(name: &str, vehicle: &AnyVehicle, algorithm: Algorithm) -> Result<()> {
+    let tries = matches!(algorithm, Algorithm::Margin | Algorithm::Random);
+    match vehicle {
+        AnyVehicle::Boat(_) | AnyVehicle::Car(_) if tries => {
+            let found = format!("one that cannot turn on the spot, with {}", algorithm.name());
+            wrong(name, found, "cfc, scc or lookahead, which see to it that it can go on")
+        }
+        AnyVehicle::Unicycle(it)
+            if algorithm == Algorithm::Margin && it.grid().actions() > MOST_TRIED =>
+        {
+            let found = format!("{} actions with margin", it.grid().actions());
+            wrong(name, found, format!("at most {MOST_TRIED}, as it tries every action"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Whether a vehicle can move in its area.
+///
+/// # Errors
+/// Names the vehicle, the area, and how much it needs.
+pub fn check_room(source: Source, vehicle: &AnyVehicle, config: &Config) -> Result<()> {
+    config.admits(vehicle).or_else(|none| {
+        wrong(&source.name("kind"), of_area(config.area, config.tolerance.metres()), none)
+    })
+}
+
+fn of_area(area: Area, margin: f64) -> String {
+    let [min, max] = [area.min(), area.max()].map(Point2::<f64>::from);
+    let less = if margin > 0.0 { format!(", less {margin} m all around") } else { String::new() };
+    format!("an area of {} m x {} m{less}", max.x - min.x, max.y - min.y)
 }
 
 /// A length or an angle in its thousandths or millionths.

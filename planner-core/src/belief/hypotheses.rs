@@ -297,7 +297,7 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
     /// # Errors
     /// As [`take`](Self::take).
     pub fn read(&mut self, site: Site, label: Label) -> Result<(), Refused> {
-        self.parts(site, label).into_iter().try_for_each(|(sample, by)| self.take(sample, by))
+        self.parts(site, label).iter().try_for_each(|&(sample, by)| self.take(sample, by))
     }
 
     /// Takes in a label of some reliability: splits the hypotheses that the sample cuts and weighs

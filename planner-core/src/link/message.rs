@@ -27,8 +27,8 @@ use crate::belief::sample::{Reading, Sample};
 use crate::belief::version_space::NoVersionSpace;
 use crate::belief::weight::Prior;
 use crate::link::frame::Message;
+use crate::motion::any_vehicle::{NoVehicle, Shape};
 use crate::motion::dynamics::Pose;
-use crate::motion::unicycle::Grid;
 use crate::planner::config::Config;
 use crate::planner::scc::Policy;
 use crate::planner::{Motion, StopReason};
@@ -93,8 +93,9 @@ pub struct Setup {
     pub algorithm: Algorithm,
     /// What the mission fixes beforehand.
     pub config: Config,
-    /// What the vehicle can be asked to do.
-    pub grid: Grid,
+    /// What the vehicle can be asked to do. Whether there is such a vehicle is for the
+    /// [chip](Setup::dynamics) to say: it need know no kind but its own.
+    pub vehicle: Shape,
     /// The capacity asked for.
     pub capacity: Capacity,
     /// Steps at most.
@@ -187,6 +188,8 @@ pub enum Declined {
     Given(NoVersionSpace),
     /// The chip has no sensor of its own.
     Labels,
+    /// The chip cannot plan for this vehicle.
+    Vehicle(NoVehicle),
 }
 
 impl core::fmt::Display for Declined {
@@ -199,6 +202,7 @@ impl core::fmt::Display for Declined {
             }
             Self::Given(why) => why.fmt(f),
             Self::Labels => f.write_str("the chip has no label sensor"),
+            Self::Vehicle(why) => why.fmt(f),
         }
     }
 }
@@ -279,6 +283,7 @@ mod tests {
     use crate::geometry::local_line::LocalLine;
     use crate::link::frame::{Decoder, Envelope, FRAME, Frame};
     use crate::motion::action::{Action, Control};
+    use crate::motion::car;
     use crate::planner::Stage;
     use crate::planner::config::{Crossing, Following};
     use crate::search::objective::Varrho;
@@ -315,7 +320,13 @@ mod tests {
                 following: Following::AlongBisector,
                 tolerance: Tolerance::NONE,
             },
-            grid: Grid::Fine,
+            vehicle: Shape::Car(car::Shape {
+                radius_mm: u32::MAX,
+                shortest_mm: u32::MAX,
+                turn_step_urad: u32::MAX,
+                speeds: u16::MAX,
+                speed_step_mm: u32::MAX,
+            }),
             capacity: Capacity { samples: u16::MAX, hypotheses: u16::MAX },
             steps: u16::MAX,
             start: Pose { site: far(-1, -1), heading: Heading(u32::MAX) },

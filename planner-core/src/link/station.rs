@@ -14,8 +14,8 @@ use crate::link::message::{
     Accepted, Capacity, ClockRate, Declined, EndReason, LabelSource, MissionEnd, Move, PROTOCOL,
     Reply, Request, Setup, Took,
 };
-use crate::motion::dynamics::Pose;
-use crate::motion::unicycle::Unicycle;
+use crate::motion::any_vehicle::{NoVehicle, Shape};
+use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::cfc::Cfc;
 use crate::planner::lookahead::Lookahead;
 use crate::planner::scc::{Policy, Scc};
@@ -39,11 +39,25 @@ impl<L> Prepared<L> {
 }
 
 impl Setup {
-    /// Whether this much will do for the mission, in the protocol spoken here.
-    fn check(&self, capacity: Capacity) -> Result<(), Declined> {
+    /// The dynamics to plan with, of those that the chip has:
+    /// [`AnyVehicle`](crate::motion::any_vehicle::AnyVehicle), or the
+    /// [`Unicycle`](crate::motion::unicycle::Unicycle) alone. What is refused here no planner was made for, so it
+    /// goes to [`decline`](Station::decline).
+    ///
+    /// # Errors
+    /// [`Declined`].
+    pub fn dynamics<D: Known>(&self) -> Result<D, Declined> {
         if self.protocol != PROTOCOL {
             return Err(Declined::Protocol(PROTOCOL));
         }
+        let dynamics = D::try_from(self.vehicle).map_err(Declined::Vehicle)?;
+        let fits = self.config.admits(&dynamics);
+        fits.map_err(|none| Declined::Vehicle(NoVehicle::Room(none)))?;
+        Ok(dynamics)
+    }
+
+    /// Whether this much will do for the mission.
+    fn check(&self, capacity: Capacity) -> Result<(), Declined> {
         if capacity.samples < self.capacity.samples
             || capacity.hypotheses < self.capacity.hypotheses
         {
@@ -63,11 +77,14 @@ impl Setup {
     /// # Errors
     /// [`Declined`].
     #[inline(never)] // it is the planner's, see `seam`
-    pub fn cfc<const N: usize>(&self) -> Result<Prepared<Cfc<Unicycle, N>>, Declined> {
+    pub fn cfc<D: Dynamics, const N: usize>(
+        &self,
+        dynamics: D,
+    ) -> Result<Prepared<Cfc<D, N>>, Declined> {
         let capacity = Capacity { samples: N as u16, hypotheses: 1 };
         self.check(capacity)?;
         let space = self.space()?;
-        Ok(Prepared { planner: Cfc::new(self.config, self.grid.into(), space), capacity })
+        Ok(Prepared { planner: Cfc::new(self.config, dynamics, space), capacity })
     }
 
     /// Look-ahead for this mission, with labels that are true.
@@ -75,32 +92,38 @@ impl Setup {
     /// # Errors
     /// [`Declined`].
     #[inline(never)] // it is the planner's, see `seam`
-    pub fn lookahead<const N: usize>(
+    pub fn lookahead<D: Dynamics, const N: usize>(
         &self,
+        dynamics: D,
         evaluations: u32,
         goal: Option<Goal>,
-    ) -> Result<Prepared<Lookahead<Unicycle, VersionSpace<N>>>, Declined> {
+    ) -> Result<Prepared<Lookahead<D, VersionSpace<N>>>, Declined> {
         let capacity = Capacity { samples: N as u16, hypotheses: 1 };
         self.check(capacity)?;
         let space = self.space()?;
-        let planner = Lookahead::new(self.config, self.grid.into(), space);
+        let planner = Lookahead::new(self.config, dynamics, space);
         let planner = planner.within(evaluations).until(goal);
         Ok(Prepared { planner, capacity })
     }
 
     /// Algorithm 2 for this mission, with none of its samples yet: the memory for [`prepare`](Self::prepare).
-    pub fn scc<const N: usize, const H: usize>(&self, policy: Policy) -> Scc<Unicycle, N, H> {
-        Scc::new(self.config, policy, self.grid.into(), Hypotheses::NONE)
+    pub fn scc<D: Dynamics, const N: usize, const H: usize>(
+        &self,
+        dynamics: D,
+        policy: Policy,
+    ) -> Scc<D, N, H> {
+        Scc::new(self.config, policy, dynamics, Hypotheses::NONE)
     }
 
     /// Look-ahead with labels that may be wrong, with none of its samples yet: the memory for
     /// [`prepare`](Self::prepare).
-    pub fn forecast<const N: usize, const H: usize>(
+    pub fn forecast<D: Dynamics, const N: usize, const H: usize>(
         &self,
+        dynamics: D,
         evaluations: u32,
         goal: Option<Goal>,
-    ) -> Lookahead<Unicycle, Forecast<N, H>> {
-        let planner = Lookahead::new(self.config, self.grid.into(), Forecast::NONE);
+    ) -> Lookahead<D, Forecast<N, H>> {
+        let planner = Lookahead::new(self.config, dynamics, Forecast::NONE);
         planner.within(evaluations).until(goal)
     }
 
@@ -122,6 +145,11 @@ impl Setup {
     }
 }
 
+/// Dynamics that a chip has, of all that a setup can ask for.
+pub trait Known: Dynamics + TryFrom<Shape, Error = NoVehicle> {}
+
+impl<D: Dynamics + TryFrom<Shape, Error = NoVehicle>> Known for D {}
+
 /// A planner that is too large to be made elsewhere and moved: it begins where it is.
 pub trait Restart: Planner {
     /// What it has room for.
@@ -139,7 +167,7 @@ pub trait Restart: Planner {
     ) -> Result<(), NoVersionSpace>;
 }
 
-impl<const N: usize, const H: usize> Restart for Scc<Unicycle, N, H> {
+impl<D: Dynamics, const N: usize, const H: usize> Restart for Scc<D, N, H> {
     const CAPACITY: Capacity = Capacity { samples: N as u16, hypotheses: H as u16 };
 
     fn restart(
@@ -152,7 +180,7 @@ impl<const N: usize, const H: usize> Restart for Scc<Unicycle, N, H> {
     }
 }
 
-impl<const N: usize, const H: usize> Restart for Lookahead<Unicycle, Forecast<N, H>> {
+impl<D: Dynamics, const N: usize, const H: usize> Restart for Lookahead<D, Forecast<N, H>> {
     const CAPACITY: Capacity = Capacity { samples: N as u16, hypotheses: H as u16 };
 
     fn restart(
@@ -199,6 +227,15 @@ impl<P: Port, S: LabelSensor> Station<P, S> {
         }
     }
 
+    /// Asks for another setup.
+    ///
+    /// # Errors
+    /// [`LinkLost`].
+    pub fn decline(&mut self, declined: Declined) -> Result<Flown, LinkLost> {
+        self.link.ask(Request::Declined(declined))?;
+        Ok(Flown::Declined(declined))
+    }
+
     /// Flies the mission of a setup with the planner that was made for it, in place: planners are large.
     /// `watch` sees every step.
     ///
@@ -214,9 +251,7 @@ impl<P: Port, S: LabelSensor> Station<P, S> {
         let Prepared { planner, capacity } = match prepared {
             Ok(prepared) if !blind => prepared,
             declined => {
-                let declined = declined.as_ref().err().copied().unwrap_or(Declined::Labels);
-                self.link.ask(Request::Declined(declined))?;
-                return Ok(Flown::Declined(declined));
+                return self.decline(declined.as_ref().err().copied().unwrap_or(Declined::Labels));
             }
         };
         self.link.ask(Request::Ready(Accepted { capacity: *capacity, clock: self.clock }))?;

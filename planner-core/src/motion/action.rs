@@ -37,6 +37,7 @@ pub struct ActionGrid {
 /// Why there is no such grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum BadGrid {
     /// It has no action, or more than 2^32.

@@ -45,6 +45,11 @@ impl Boat {
         }
         Ok(Self { steps, half_turn, radius: radius as i32 + 2, margin: margin as i32 })
     }
+
+    /// A unicycle with its steps.
+    pub const fn steps(&self) -> Unicycle {
+        self.steps
+    }
 }
 
 impl Dynamics for Boat {

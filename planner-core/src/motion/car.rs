@@ -6,7 +6,7 @@ use crate::geometry::heading::Heading;
 use crate::geometry::lattice::{OffLattice, UNITS_PER_METRE, Vector};
 use crate::motion::action::{Action, ActionGrid, BadGrid, Control};
 use crate::motion::dynamics::{Dynamics, Fan, Orbit, Pose, Ray, Side};
-use crate::motion::unicycle::{FRACTION, HALF, UNITS_PER_URAD, square_mrad2};
+use crate::motion::unicycle::{HALF, STEP_PER_URAD, UNITS_PER_URAD, square_mrad2};
 
 /// A vehicle that drives along circular arcs, forward only, and does not turn on the spot: a car, a ship, an
 /// aeroplane.
@@ -41,6 +41,7 @@ pub struct Car {
 /// What a [`Car`] can do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub struct Shape {
     /// Radius of the turning circle, millimetres.
     pub radius_mm: u32,
@@ -178,9 +179,6 @@ fn per_sine(square: f32) -> f32 {
 
 /// A turning circle, and what it needs beside it, is smaller than this, lattice units.
 const MOST: i64 = 4_096 * UNITS_PER_METRE as i64;
-
-/// A step of one microradian.
-const STEP_PER_URAD: u64 = (UNITS_PER_URAD * FRACTION + 0.5) as u64;
 
 /// Units of a heading in a radian.
 const UNITS_PER_RADIAN: i64 = (UNITS_PER_URAD * 1e6 + 0.5) as i64;

@@ -8,8 +8,9 @@
 //! repeating one action: where that lies inside the area it is never cornered. [`Car`](crate::motion::car) drives
 //! along arcs, [`Boat`](crate::motion::boat) turns a little a step.
 
+use crate::geometry::area::Area;
 use crate::geometry::heading::Heading;
-use crate::geometry::lattice::{OffLattice, Site, Vector};
+use crate::geometry::lattice::{OffLattice, Site, UNITS_PER_METRE, Vector};
 use crate::geometry::region::Region;
 use crate::motion::action::{Action, ActionGrid, Control};
 
@@ -100,6 +101,23 @@ impl Orbit {
     }
 }
 
+/// An area is too small for a vehicle's circle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+pub struct NoRoom {
+    /// What the circle takes from side to side, millimetres.
+    pub across_mm: u32,
+}
+
+impl core::fmt::Display for NoRoom {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        write!(f, "an area with room for a turning circle {} mm across", self.across_mm)
+    }
+}
+
+impl core::error::Error for NoRoom {}
+
 /// The agent's known dynamics over its finite action set (Section II-A's `phi` and `U`).
 ///
 /// An action's squared control is its squared reach plus its ray's effort,
@@ -178,6 +196,18 @@ pub trait Dynamics {
     /// turns in place or leaves in any direction.
     fn orbit(&self, _pose: Pose, _side: Side) -> Option<Orbit> {
         None
+    }
+
+    /// Whether its circle fits an area somewhere; if not, no motion there leaves it a way to go on.
+    ///
+    /// # Errors
+    /// [`NoRoom`].
+    fn fits(&self, area: Area) -> Result<(), NoRoom> {
+        let pose = Pose { site: area.middle(), heading: Heading(0) };
+        let Some(orbit) = self.orbit(pose, Side::Left) else { return Ok(()) };
+        let radius = orbit.radius.saturating_add(orbit.margin).unsigned_abs();
+        let across_mm = (u64::from(radius) * 2_000).div_ceil(UNITS_PER_METRE as u64) as u32;
+        area.inset(radius).map(drop).ok_or(NoRoom { across_mm })
     }
 
     /// Whether one of the orbits from a pose lies inside the area, so that the agent can stay there for ever.

@@ -23,10 +23,24 @@ pub struct Unicycle {
     sharpest: Heading,
 }
 
+/// What a [`Unicycle`] can do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+pub struct Shape {
+    /// The angle from one turn to the next, microradians.
+    pub turn_step_urad: u32,
+    /// The sharpest turn to one side.
+    pub sharpest: Heading,
+    /// Speeds, standing still included.
+    pub speeds: u16,
+    /// From one speed to the next, millimetres per unit time.
+    pub speed_step_mm: u32,
+}
+
 /// The action sets of the unicycle that have a name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub enum Grid {
     /// [`Unicycle::paper`].
     #[default]
@@ -56,17 +70,28 @@ impl Unicycle {
         speeds: u16,
         speed_step_mm: u32,
     ) -> Result<Self, BadGrid> {
-        use core::f64::consts::PI;
+        // No angle is a turn of nothing, which is none.
+        let is_angle = sharpest_rad >= 0.0 && sharpest_rad <= core::f64::consts::PI;
+        let turn = if is_angle { sharpest_rad } else { 0.0 };
+        let sharpest = Heading((turn * 1e6 * UNITS_PER_URAD + 0.5) as u32);
+        Self::of(Shape { turn_step_urad, sharpest, speeds, speed_step_mm })
+    }
+
+    /// A unicycle of this shape: as [`new`](Self::new), in integers alone.
+    ///
+    /// # Errors
+    /// [`BadGrid`].
+    pub const fn of(shape: Shape) -> Result<Self, BadGrid> {
+        let Shape { turn_step_urad, sharpest, speeds, speed_step_mm } = shape;
         let makes_sense = turn_step_urad > 0
-            && turn_step_urad as f64 <= 1e6 * PI
-            && sharpest_rad >= 1e-3
-            && sharpest_rad <= PI;
+            && turn_step_urad <= MOST_URAD
+            && sharpest.0 >= Heading::turn_of(1e-3)
+            && sharpest.0 <= Heading::HALF_TURN.0;
         if !makes_sense {
             return Err(BadGrid::Turn);
         }
         // Turns are half a turn at most, 2^31 units of a heading: all of this is below 2^64.
-        let sharpest = Heading((sharpest_rad * 1e6 * UNITS_PER_URAD + 0.5) as u32);
-        let step = (turn_step_urad as f64 * UNITS_PER_URAD * FRACTION + 0.5) as u64;
+        let step = turn_step_urad as u64 * STEP_PER_URAD;
         // The multiples, rounded to headings, that are less than the sharpest turn, and that turn; so one
         // that is a multiple but for rounding is that multiple.
         let turns = (((sharpest.0 as u64) << 32) - HALF).div_ceil(step) as u32;
@@ -74,14 +99,15 @@ impl Unicycle {
             Ok(grid) => grid,
             Err(bad) => return Err(bad),
         };
-        let sharpest_mrad = sharpest_rad * 1000.0;
+        // With 16 fractional bits, as in `square_mrad2`.
+        let sharpest_mrad = (sharpest.0 as u64 * MRAD_PER_UNIT) >> 32;
         Ok(Self {
             grid,
             turns,
             step_urad: turn_step_urad,
             step,
-            sharpest_rad: sharpest_rad as f32,
-            sharpest_mrad2: (sharpest_mrad * sharpest_mrad + 0.5) as u32,
+            sharpest_rad: sharpest.0 as f32 * RADIANS_PER_UNIT,
+            sharpest_mrad2: ((sharpest_mrad * sharpest_mrad + HALF) >> 32) as u32,
             sharpest,
         })
     }
@@ -109,6 +135,16 @@ impl Unicycle {
     /// The paper's speeds and sharpest turn with other turns between.
     const fn every(turn_step_urad: u32) -> Result<Self, BadGrid> {
         Self::new(turn_step_urad, core::f64::consts::FRAC_PI_2, 21, 100)
+    }
+
+    /// What it can do.
+    pub const fn shape(&self) -> Shape {
+        Shape {
+            turn_step_urad: self.step_urad,
+            sharpest: self.sharpest,
+            speeds: self.grid.speeds(),
+            speed_step_mm: self.grid.speed_step_mm(),
+        }
     }
 
     /// The sharpest turn to one side.
@@ -139,8 +175,17 @@ pub(super) const fn square_mrad2(urad: u32) -> u32 {
 /// A microradian in the units of a heading.
 pub(super) const UNITS_PER_URAD: f64 = 4_294_967_296.0 / (1e6 * core::f64::consts::TAU);
 
-/// Fractional bits of a step, as a factor.
-pub(super) const FRACTION: f64 = 4_294_967_296.0;
+/// A step of one microradian, with 32 fractional bits.
+pub(super) const STEP_PER_URAD: u64 = (UNITS_PER_URAD * 4_294_967_296.0 + 0.5) as u64;
+
+/// Half a turn, microradians.
+const MOST_URAD: u32 = (core::f64::consts::PI * 1e6) as u32;
+
+/// A unit of a heading in milliradians, with 48 fractional bits.
+const MRAD_PER_UNIT: u64 = (core::f64::consts::TAU * 1e3 * 65_536.0 + 0.5) as u64;
+
+/// A unit of a heading in radians.
+const RADIANS_PER_UNIT: f32 = (core::f64::consts::TAU / 4_294_967_296.0) as f32;
 
 /// One half with 32 fractional bits.
 pub(super) const HALF: u64 = 1 << 31;

@@ -6,6 +6,7 @@ use crate::geometry::arc::SlopeArc;
 use crate::geometry::area::Area;
 use crate::geometry::lattice::Vector;
 use crate::geometry::region::Region;
+use crate::motion::dynamics::{Dynamics, NoRoom};
 use crate::search::direction_rule::ArcRule;
 use crate::search::objective::Varrho;
 
@@ -57,6 +58,14 @@ pub struct Config<G = Area> {
 }
 
 impl<G: Region> Config<G> {
+    /// Whether a vehicle can move where motions may end.
+    ///
+    /// # Errors
+    /// [`NoRoom`].
+    pub fn admits<D: Dynamics>(self, dynamics: &D) -> Result<(), NoRoom> {
+        dynamics.fits(self.inset().area.bounds())
+    }
+
     /// The same for the area that motions may aim for: all but a margin of the tolerance, if that leaves any.
     pub(crate) fn inset(self) -> Self {
         Self { area: self.area.inset(self.tolerance.units()).unwrap_or(self.area), ..self }

@@ -49,6 +49,20 @@ enum Start {
     Outside,
 }
 
+/// A way round to one side.
+struct Round {
+    /// Where it began.
+    from: Pose,
+    side: Side,
+    /// Where it has come to, by so many motions in all.
+    pose: Pose,
+    motions: u32,
+    /// The turn since it began.
+    turned: u32,
+    /// The first motion of all.
+    first: Option<Leg>,
+}
+
 struct Manoeuvre<'d, 'p, 'a, D, G> {
     problem: &'p Problem<'a, ArcRule, G>,
     dynamics: &'d D,
@@ -96,7 +110,11 @@ pub(crate) fn manoeuvre<D: Dynamics, G: Region>(
         if it.shortest.is_none() {
             it.drive_on(from, None, 0, search.view.out_of_reach_for());
             for side in [Side::Left, Side::Right] {
-                it.go_round(from, side, (None, 0), true);
+                let mut round =
+                    Round { from, side, pose: from, turned: 0, first: None, motions: 0 };
+                while let Some((first, free)) = it.hold(&mut round) {
+                    it.drive_on(round.pose, Some(first), round.motions, free);
+                }
             }
         }
     }
@@ -118,40 +136,29 @@ impl<D: Dynamics, G: Region> Manoeuvre<'_, '_, '_, D, G> {
         motions < self.shortest.map_or(MOST, |(_, least)| least) && self.effort.is_enough()
     }
 
-    /// Goes round to a side, after so many motions that began with `first`; drives straight on after each motion, if
-    /// that is wanted.
-    fn go_round(
-        &mut self,
-        from: Pose,
-        side: Side,
-        (first, before): (Option<Leg>, u32),
-        and_on: bool,
-    ) {
-        let (mut pose, mut first, mut turned, mut motions) = (from, first, 0_u32, before);
-        loop {
-            motions += 1;
-            let Some(orbit) = self.dynamics.orbit(pose, side) else { return };
-            let Some(after) = self.dynamics.target(pose, orbit.action) else { return };
-            let is_inside = self.start == Start::Outside
-                || self.problem.area.contains(after.site)
-                    && self.dynamics.stays_inside(pose, after, &self.problem.area)
-                    && self.may_hold(pose, after, side);
-            let less = turned;
-            turned = match side {
-                Side::Left => after.heading.0.wrapping_sub(from.heading.0),
-                Side::Right => from.heading.0.wrapping_sub(after.heading.0),
-            };
-            // Beyond a whole turn there is nothing new.
-            if !is_inside || turned <= less || !self.is_short(motions) {
-                return;
-            }
-            let first = *first.get_or_insert((orbit.action, after));
-            pose = after;
-            let Some(free) = self.look(pose, (first, motions)) else { return };
-            if and_on {
-                self.drive_on(pose, Some(first), motions, free);
-            }
+    /// Holds the circle for one motion more, and looks there: the first motion of all, and how far from there no
+    /// uncertain ground is in reach. `None` when the round is over.
+    fn hold(&mut self, round: &mut Round) -> Option<(Leg, f32)> {
+        let Round { from, side, pose, .. } = *round;
+        round.motions += 1;
+        let orbit = self.dynamics.orbit(pose, side)?;
+        let after = self.dynamics.target(pose, orbit.action)?;
+        let is_inside = self.start == Start::Outside
+            || self.problem.area.contains(after.site)
+                && self.dynamics.stays_inside(pose, after, &self.problem.area)
+                && self.may_hold(pose, after, side);
+        let turned = match side {
+            Side::Left => after.heading.0.wrapping_sub(from.heading.0),
+            Side::Right => from.heading.0.wrapping_sub(after.heading.0),
+        };
+        // Beyond a whole turn there is nothing new.
+        if !is_inside || turned <= round.turned || !self.is_short(round.motions) {
+            return None;
         }
+        let first = *round.first.get_or_insert((orbit.action, after));
+        (round.pose, round.turned) = (after, turned);
+        let free = self.look(after, (first, round.motions))?;
+        Some((first, free))
     }
 
     /// Whether one more motion round to a side leaves it safe, if it is: on the circle that it goes round, whatever
@@ -185,7 +192,9 @@ impl<D: Dynamics, G: Region> Manoeuvre<'_, '_, '_, D, G> {
             }
             if self.looks_at_long_ways {
                 for side in [Side::Left, Side::Right] {
-                    self.go_round(pose, side, (Some(first), motions), false);
+                    let first = Some(first);
+                    let mut round = Round { from: pose, side, pose, turned: 0, first, motions };
+                    while self.hold(&mut round).is_some() {}
                 }
                 if motions - before == STRAIGHT {
                     return;

@@ -8,9 +8,10 @@
 //! | `small` | Algorithm 1, look-ahead for true labels | 16 samples |
 //! | `standard` | all algorithms | 32 labels beside 4 given, all 529 hypotheses |
 //! | `large` | all algorithms | 64 labels beside 4 given, all 2,081 hypotheses |
+//! | `vehicles` | all algorithms, all vehicles | as `standard` |
 //! | `panicking` | nothing | a panic: that of an index |
 //!
-//! It is built for Arm and for RISC-V (`riscv32imac`), there for its size alone.
+//! All but `vehicles` have the unicycle alone. It is built for Arm and for RISC-V (`riscv32imac`), there for its size alone.
 //! An emulator, or QEMU, plays the world at its standard streams; at the end of the input it exits.
 //! Ticks are the host's: instructions in the tests' emulator.
 
@@ -30,7 +31,8 @@ mod on_target {
 
     use planner_core::link::delivery::Link;
     use planner_core::link::message::{Algorithm, ClockRate, Declined};
-    use planner_core::link::station::Station;
+    use planner_core::link::station::{Known, Station};
+    use planner_core::motion::unicycle::Unicycle;
 
     use crate::port::{Semihosting, Streams, ticks};
 
@@ -50,12 +52,14 @@ mod on_target {
         let mut station = station(&streams);
         loop {
             let setup = station.await_setup();
-            let mut planner = match setup.algorithm {
-                Algorithm::Cfc => setup.cfc::<N>(),
-                _ => Err(Declined::Algorithm),
-            };
             // How it ended is the host's to judge.
-            let _ = station.fly(&setup, &mut planner, |_| {});
+            let _ = match (setup.dynamics::<Unicycle>(), setup.algorithm) {
+                (Err(declined), _) => station.decline(declined),
+                (Ok(dynamics), Algorithm::Cfc) => {
+                    station.fly(&setup, &mut setup.cfc::<_, N>(dynamics), |_| {})
+                }
+                _ => station.decline(Declined::Algorithm),
+            };
         }
     }
 
@@ -65,37 +69,45 @@ mod on_target {
         let mut station = station(&streams);
         loop {
             let setup = station.await_setup();
-            let _ = match setup.algorithm {
-                Algorithm::Lookahead { evaluations, goal, noise: None } => {
-                    station.fly(&setup, &mut setup.lookahead::<N>(evaluations, goal), |_| {})
+            let _ = match (setup.dynamics::<Unicycle>(), setup.algorithm) {
+                (Err(declined), _) => station.decline(declined),
+                (Ok(dynamics), Algorithm::Lookahead { evaluations, goal, noise: None }) => {
+                    let mut planner = setup.lookahead::<_, N>(dynamics, evaluations, goal);
+                    station.fly(&setup, &mut planner, |_| {})
                 }
-                algorithm => {
-                    let cfc = setup.cfc::<N>();
-                    let is_cfc = algorithm == Algorithm::Cfc;
-                    let mut cfc = if is_cfc { cfc } else { Err(Declined::Algorithm) };
-                    station.fly(&setup, &mut cfc, |_| {})
+                (Ok(dynamics), Algorithm::Cfc) => {
+                    station.fly(&setup, &mut setup.cfc::<_, N>(dynamics), |_| {})
                 }
+                _ => station.decline(Declined::Algorithm),
             };
         }
     }
 
-    /// Flies missions of all algorithms with room for `N` samples and `H` hypotheses.
-    pub fn any<const N: usize, const H: usize>() -> ! {
+    /// Flies missions of all algorithms with vehicles of one type and room for `N` samples and `H` hypotheses.
+    pub fn any<D: Known, const N: usize, const H: usize>() -> ! {
         let streams = open();
         let mut station = station(&streams);
         loop {
             let setup = station.await_setup();
+            let dynamics: D = match setup.dynamics() {
+                Ok(dynamics) => dynamics,
+                Err(declined) => {
+                    let _ = station.decline(declined);
+                    continue;
+                }
+            };
             let _ = match setup.algorithm {
-                Algorithm::Cfc => station.fly(&setup, &mut setup.cfc::<N>(), |_| {}),
+                Algorithm::Cfc => station.fly(&setup, &mut setup.cfc::<_, N>(dynamics), |_| {}),
                 Algorithm::Lookahead { evaluations, goal, noise: None } => {
-                    station.fly(&setup, &mut setup.lookahead::<N>(evaluations, goal), |_| {})
+                    let mut planner = setup.lookahead::<_, N>(dynamics, evaluations, goal);
+                    station.fly(&setup, &mut planner, |_| {})
                 }
                 Algorithm::Lookahead { evaluations, goal, noise: Some((noise, prior)) } => {
-                    let mut planner = setup.forecast::<N, H>(evaluations, goal);
+                    let mut planner = setup.forecast::<_, N, H>(dynamics, evaluations, goal);
                     station.fly(&setup, &mut setup.prepare(&mut planner, prior, noise), |_| {})
                 }
                 Algorithm::Scc { noise, policy, prior } => {
-                    let mut planner = setup.scc::<N, H>(policy);
+                    let mut planner = setup.scc::<_, N, H>(dynamics, policy);
                     station.fly(&setup, &mut setup.prepare(&mut planner, prior, noise), |_| {})
                 }
             };

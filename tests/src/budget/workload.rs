@@ -17,8 +17,8 @@ use host_sim::world::noise::{Extent, NoiseModel};
 use nalgebra::Point2;
 use planner_core::geometry::heading::Heading;
 use planner_core::geometry::lattice::Site;
+use planner_core::motion::any_vehicle::AnyVehicle;
 use planner_core::motion::dynamics::Pose;
-use planner_core::motion::unicycle::Grid;
 use planner_core::planner::scc::Policy;
 use rayon::prelude::*;
 
@@ -41,8 +41,8 @@ pub struct Workload {
     pub sought: usize,
     /// Calls of the planner after which a mission is broken off, if it is: estimates take long.
     pub calls: Option<usize>,
-    /// The fan.
-    pub grid: Grid,
+    /// What moves.
+    pub vehicle: AnyVehicle,
     /// How labels are flipped, if they are.
     pub noise: Option<NoiseModel>,
 }
@@ -80,7 +80,7 @@ impl Workload {
     /// The mission with a number.
     pub fn mission(&self, number: u64) -> Mission {
         let mut mission = standard_field::standard(SEED, number, self.algorithm, self.steps);
-        (mission.policy, mission.grid) = (self.policy, self.grid);
+        (mission.policy, mission.vehicle) = (self.policy, self.vehicle);
         mission.noise = self.noise;
         if number >= self.random && number % 2 == 1 {
             mission.start = facing_out(number / 2 % 4);

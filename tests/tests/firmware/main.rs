@@ -32,7 +32,7 @@ use rayon::prelude::*;
 use tempfile::NamedTempFile;
 use tests::budget::footprint::{self, Footprint};
 use tests::debugger::{self, Debugger};
-use tests::link::by_turns;
+use tests::link::{by_turns, of_any_vehicle};
 use tests::program::image::Image;
 
 use crate::chip::{Chip, firmware};
@@ -56,7 +56,9 @@ fn here(mission: &Mission) -> String {
 #[test]
 fn the_closed_loop_makes_the_trace_of_this_machine_byte_for_byte() {
     let examples = [scenario::PAPER_NOISELESS, scenario::PAPER_NOISY].map(example);
-    let missions: Vec<_> = examples.into_iter().chain((0..200).map(random)).collect();
+    let vehicles = (0..48).map(|number| of_any_vehicle(number, 12));
+    let missions = examples.into_iter().chain((0..200).map(random)).chain(vehicles);
+    let missions: Vec<_> = missions.collect();
     // Twenty missions in a row on a chip: one leaves nothing behind for the next.
     let flown: usize = missions
         .par_chunks(20)

@@ -1,0 +1,158 @@
+//! Any of the vehicles that turn and drive, chosen while the program runs: by a scenario, or over a wire.
+
+use crate::geometry::heading::Heading;
+use crate::geometry::lattice::{OffLattice, Vector};
+use crate::motion::action::{Action, ActionGrid, BadGrid, Control};
+use crate::motion::boat::Boat;
+use crate::motion::car::{self, Car};
+use crate::motion::dynamics::{Dynamics, Fan, NoRoom, Orbit, Pose, Ray, Side};
+use crate::motion::unicycle::{self, Grid, Unicycle};
+
+/// One vehicle of three kinds. A program that knows which it has is smaller and faster with that one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum AnyVehicle {
+    /// Turns on the spot, then drives.
+    Unicycle(Unicycle),
+    /// Turns a little and drives, a step at a time, and never on the spot.
+    Boat(Boat),
+    /// Drives along arcs of at most some curvature.
+    Car(Car),
+}
+
+/// A vehicle by its numbers, from which it is made anew elsewhere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+pub enum Shape {
+    /// Of a [`Unicycle`].
+    Unicycle(unicycle::Shape),
+    /// Of a [`Boat`], by its steps.
+    Boat(unicycle::Shape),
+    /// Of a [`Car`].
+    Car(car::Shape),
+}
+
+/// Why a shape is no vehicle to fly with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum NoVehicle {
+    /// There is none of this kind here.
+    Kind,
+    /// Its numbers make none.
+    Grid(BadGrid),
+    /// It cannot move in its area.
+    Room(NoRoom),
+}
+
+impl core::fmt::Display for NoVehicle {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Kind => f.write_str("no vehicle of this kind"),
+            Self::Grid(bad) => bad.fmt(f),
+            Self::Room(none) => none.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for NoVehicle {}
+
+impl TryFrom<Shape> for AnyVehicle {
+    type Error = NoVehicle;
+
+    fn try_from(shape: Shape) -> Result<Self, NoVehicle> {
+        match shape {
+            Shape::Unicycle(shape) => Unicycle::of(shape).map(Self::Unicycle),
+            Shape::Boat(steps) => Unicycle::of(steps).and_then(Boat::new).map(Self::Boat),
+            Shape::Car(shape) => Car::new(shape).map(Self::Car),
+        }
+        .map_err(NoVehicle::Grid)
+    }
+}
+
+/// For a program that has no other.
+impl TryFrom<Shape> for Unicycle {
+    type Error = NoVehicle;
+
+    fn try_from(shape: Shape) -> Result<Self, NoVehicle> {
+        match shape {
+            Shape::Unicycle(shape) => Self::of(shape).map_err(NoVehicle::Grid),
+            Shape::Boat(_) | Shape::Car(_) => Err(NoVehicle::Kind),
+        }
+    }
+}
+
+impl From<AnyVehicle> for Shape {
+    fn from(vehicle: AnyVehicle) -> Self {
+        match vehicle {
+            AnyVehicle::Unicycle(it) => Self::Unicycle(it.shape()),
+            AnyVehicle::Boat(it) => Self::Boat(it.steps().shape()),
+            AnyVehicle::Car(it) => Self::Car(it.shape()),
+        }
+    }
+}
+
+impl From<Grid> for AnyVehicle {
+    fn from(grid: Grid) -> Self {
+        Self::Unicycle(grid.into())
+    }
+}
+
+/// What the vehicle, whichever it is, says.
+macro_rules! of {
+    ($vehicle:expr, $it:ident => $says:expr) => {
+        match $vehicle {
+            Self::Unicycle($it) => $says,
+            Self::Boat($it) => $says,
+            Self::Car($it) => $says,
+        }
+    };
+}
+
+impl Dynamics for AnyVehicle {
+    fn grid(&self) -> ActionGrid {
+        of!(self, it => it.grid())
+    }
+
+    fn fan(&self) -> Fan {
+        of!(self, it => it.fan())
+    }
+
+    fn heading(&self, pose: Pose, side: Side, n: u32) -> Heading {
+        of!(self, it => it.heading(pose, side, n))
+    }
+
+    fn ray(&self, pose: Pose, side: Side, n: u32) -> Ray {
+        of!(self, it => it.ray(pose, side, n))
+    }
+
+    fn rays_at(&self, speed: u16) -> Option<[u32; 2]> {
+        of!(self, it => it.rays_at(speed))
+    }
+
+    fn arrive(&self, pose: Pose, ray: &Ray, speed: u16) -> Result<Pose, OffLattice> {
+        of!(self, it => it.arrive(pose, ray, speed))
+    }
+
+    fn corner(&self, from: Pose, to: Pose) -> Option<Vector> {
+        of!(self, it => it.corner(from, to))
+    }
+
+    fn orbit(&self, pose: Pose, side: Side) -> Option<Orbit> {
+        of!(self, it => it.orbit(pose, side))
+    }
+
+    fn turn_in_place(&self, pose: Pose, side: Side) -> Option<(Action, Pose)> {
+        of!(self, it => it.turn_in_place(pose, side))
+    }
+
+    fn ray_of(&self, pose: Pose, action: Action) -> Option<Ray> {
+        of!(self, it => it.ray_of(pose, action))
+    }
+
+    fn control(&self, action: Action) -> Control {
+        of!(self, it => it.control(action))
+    }
+}

@@ -1,0 +1,13 @@
+#![cfg_attr(target_os = "none", no_std, no_main)]
+#![forbid(unsafe_code)]
+//! All algorithms and all vehicles, with 32 labels beside 4 given samples.
+
+#[cfg(target_os = "none")]
+#[bare_core::entry]
+fn main() -> ! {
+    bare_core::any::<planner_core::AnyVehicle, 36, 529>()
+}
+
+/// On a host there is nothing to run.
+#[cfg(not(target_os = "none"))]
+fn main() {}
