@@ -4,8 +4,8 @@ use planner_core::AnyVehicle;
 use planner_core::belief::sample::Reading;
 use planner_core::geometry::local_line::LocalLine;
 use planner_core::link::delivery::LinkLost;
-use planner_core::link::message::{Algorithm, Declined, MissionEnd, Setup};
-use planner_core::link::station::{Flown, Prepared, Station};
+use planner_core::link::message::{Algorithm, Declined, MissionArea, MissionEnd, Setup};
+use planner_core::link::station::{Flown, Prepared, Station, Terms};
 use planner_core::planner::Planner;
 use planner_core::robot::agent::Step;
 use planner_core::robot::hal::PinSensor;
@@ -34,29 +34,29 @@ impl Board {
         loop {
             let setup = self.station.await_setup();
             defmt::info!("mission: {}, {=u16} steps at most", setup.algorithm, setup.steps);
-            match setup.dynamics() {
-                Ok(vehicle) => self.fly_with(&setup, vehicle),
+            match setup.terms() {
+                Ok(terms) => self.fly_with(&setup, terms),
                 Err(declined) => log_end(0, &self.station.decline(declined)),
             }
         }
     }
 
-    fn fly_with(&mut self, setup: &Setup, vehicle: AnyVehicle) {
+    fn fly_with(&mut self, setup: &Setup, terms: Terms<AnyVehicle, MissionArea>) {
         match setup.algorithm {
-            Algorithm::Cfc => self.fly(setup, &mut setup.cfc::<_, TRUE_SAMPLES>(vehicle)),
+            Algorithm::Cfc => self.fly(setup, &mut setup.cfc::<_, _, TRUE_SAMPLES>(terms)),
             Algorithm::Lookahead { evaluations, goal, noise: None } => {
                 self.fly(
                     setup,
-                    &mut setup.lookahead::<_, TRUE_SAMPLES>(vehicle, evaluations, goal),
+                    &mut setup.lookahead::<_, _, TRUE_SAMPLES>(terms, evaluations, goal),
                 );
             }
             Algorithm::Lookahead { evaluations, goal, noise: Some((noise, prior)) } => {
                 let mut planner =
-                    setup.forecast::<_, DOUBTFUL_SAMPLES, HYPOTHESES>(vehicle, evaluations, goal);
+                    setup.forecast::<_, _, DOUBTFUL_SAMPLES, HYPOTHESES>(terms, evaluations, goal);
                 self.fly(setup, &mut setup.prepare(&mut planner, prior, noise));
             }
             Algorithm::Scc { noise, policy, prior } => {
-                let mut planner = setup.scc::<_, DOUBTFUL_SAMPLES, HYPOTHESES>(vehicle, policy);
+                let mut planner = setup.scc::<_, _, DOUBTFUL_SAMPLES, HYPOTHESES>(terms, policy);
                 self.fly(setup, &mut setup.prepare(&mut planner, prior, noise));
             }
         }

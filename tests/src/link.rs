@@ -12,8 +12,8 @@ use planner_core::belief::goal::{Accuracy, Goal};
 use planner_core::belief::tolerance::Tolerance;
 use planner_core::geometry::heading::Heading;
 use planner_core::link::delivery::{LinkLost, Port};
-use planner_core::link::message;
-use planner_core::link::station::{Flown, Station};
+use planner_core::link::message::{self, MissionArea};
+use planner_core::link::station::{Flown, Station, Terms};
 use planner_core::motion::any_vehicle::AnyVehicle;
 use planner_core::motion::boat::Boat;
 use planner_core::motion::car::{self, Car};
@@ -42,21 +42,21 @@ pub fn fly<P: Port>(
     chip: &mut Station<P, Infallible>,
     setup: &message::Setup,
 ) -> Result<Flown, LinkLost> {
-    let vehicle: AnyVehicle = match setup.dynamics() {
-        Ok(vehicle) => vehicle,
+    let terms: Terms<AnyVehicle, MissionArea> = match setup.terms() {
+        Ok(terms) => terms,
         Err(declined) => return chip.decline(declined),
     };
     match setup.algorithm {
-        message::Algorithm::Cfc => chip.fly(setup, &mut setup.cfc::<_, 68>(vehicle), |_| {}),
+        message::Algorithm::Cfc => chip.fly(setup, &mut setup.cfc::<_, _, 68>(terms), |_| {}),
         message::Algorithm::Lookahead { evaluations, goal, noise: None } => {
-            chip.fly(setup, &mut setup.lookahead::<_, 68>(vehicle, evaluations, goal), |_| {})
+            chip.fly(setup, &mut setup.lookahead::<_, _, 68>(terms, evaluations, goal), |_| {})
         }
         message::Algorithm::Lookahead { evaluations, goal, noise: Some((noise, prior)) } => {
-            let mut planner = setup.forecast::<_, 36, 529>(vehicle, evaluations, goal);
+            let mut planner = setup.forecast::<_, _, 36, 529>(terms, evaluations, goal);
             chip.fly(setup, &mut setup.prepare(&mut planner, prior, noise), |_| {})
         }
         message::Algorithm::Scc { noise, policy, prior } => {
-            let mut planner = setup.scc::<_, 36, 529>(vehicle, policy);
+            let mut planner = setup.scc::<_, _, 36, 529>(terms, policy);
             chip.fly(setup, &mut setup.prepare(&mut planner, prior, noise), |_| {})
         }
     }

@@ -16,10 +16,12 @@ use host_sim::mission::definition::Mission;
 use host_sim::mission::recording::Recording;
 use host_sim::report::trace;
 use planner_core::belief::version_space::NoVersionSpace;
+use planner_core::geometry::area::Area;
 use planner_core::link::delivery::{Link, LinkLost, Port};
 use planner_core::link::frame::{Decoder, Envelope, FRAME, Frame, Message};
 use planner_core::link::message::{
-    Capacity, ClockRate, Declined, EndReason, LabelSource, PROTOCOL, Reply, Request, Setup,
+    Capacity, ClockRate, Declined, EndReason, LabelSource, MissionArea, PROTOCOL, Reply, Request,
+    Setup,
 };
 use planner_core::link::station::{Flown, Station};
 use planner_core::motion::action::BadGrid;
@@ -199,9 +201,13 @@ fn a_chip_declines_what_is_no_vehicle_of_its_own() {
     let no_car = car(car::Shape { radius_mm: 0, ..shape });
     let wide = car(car::Shape { radius_mm: 12_000, ..shape });
     let later = Setup { protocol: PROTOCOL + 1, ..good.clone() };
-    let by_any = |setup: &Setup| setup.dynamics::<AnyVehicle>().map(Shape::from);
+    let by_any = |setup: &Setup| {
+        let terms = setup.terms::<AnyVehicle, MissionArea>();
+        terms.map(|terms| Shape::from(terms.dynamics))
+    };
     assert_eq!(by_any(&good), Ok(good.vehicle));
-    assert_eq!(good.dynamics::<Unicycle>(), Err(Declined::Vehicle(NoVehicle::Kind)));
+    let by_unicycle = |setup: &Setup| setup.terms::<Unicycle, Area>().map(drop);
+    assert_eq!(by_unicycle(&good), Err(Declined::Vehicle(NoVehicle::Kind)));
     assert_eq!(by_any(&no_car), Err(Declined::Vehicle(NoVehicle::Grid(BadGrid::Circle))));
     assert!(matches!(by_any(&wide), Err(Declined::Vehicle(NoVehicle::Room(_)))));
     assert_eq!(by_any(&later), Err(Declined::Protocol(PROTOCOL)));
@@ -209,7 +215,7 @@ fn a_chip_declines_what_is_no_vehicle_of_its_own() {
     let network = RefCell::new(Network::new(&mission, Faults::default()));
     let mut chip = chip(&network);
     let setup = chip.await_setup();
-    let declined = setup.dynamics::<Unicycle>().expect_err("it has no car");
+    let declined = by_unicycle(&setup).expect_err("it has no car");
     assert!(matches!(chip.decline(declined), Ok(Flown::Declined(_))));
     drop(chip);
     let error = network.into_inner().player.finish().expect_err("it was declined").to_string();

@@ -10,6 +10,7 @@ use planner_core::belief::Belief as _;
 use planner_core::belief::sample::{Label, Reading, Sample};
 use planner_core::geometry::lattice::Site;
 use planner_core::geometry::line::Line;
+use planner_core::geometry::region::Region as _;
 use planner_core::motion::action::Action;
 use planner_core::motion::dynamics::{Dynamics as _, Pose};
 use planner_core::motion::unicycle::Unicycle;

@@ -14,6 +14,8 @@ use host_sim::world::robot::Ideal;
 use nalgebra::Point2;
 use planner_core::belief::consistent_lines::Certainty;
 use planner_core::geometry::lattice::Site;
+use planner_core::geometry::region::Region as _;
+use planner_core::link::message::MissionArea;
 use planner_core::motion::dynamics::Pose;
 use planner_core::motion::unicycle::Unicycle;
 use planner_core::planner::cfc::Cfc;
@@ -117,7 +119,7 @@ fn every_plan_is_what_trying_all_actions_would_make_it() {
 }
 
 /// What the ladder finds is what its slow twin does.
-fn climb(ladder: &Ladder<Unicycle>, pose: Pose, plan: Plan, place: &str) {
+fn climb(ladder: &Ladder<Unicycle, MissionArea>, pose: Pose, plan: Plan, place: &str) {
     let rung = ladder.rung(pose);
     match (plan, rung) {
         (Plan::Stop(found), Rung::Stop(reason)) => assert_eq!(found, reason, "{place}"),

@@ -13,6 +13,7 @@ use host_sim::hil::player::Player;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::recording::Recording;
 use host_sim::report::trace;
+use planner_core::Area;
 use planner_core::link::delivery::{Link, Port};
 use planner_core::link::message::{ClockRate, EndReason, LabelSource, MissionEnd};
 use planner_core::link::station::{Flown, Station};
@@ -57,8 +58,8 @@ fn a_board_at_a_serial_port_flies_as_this_machine_does() {
         let clock = ClockRate { per_second: 1_000_000, emulated: false };
         let mut board = Station::<_, Infallible> { link, sensor: None, ticks: || 0, clock };
         let setup = board.await_setup();
-        let unicycle: Unicycle = setup.dynamics().expect("it has one");
-        board.fly(&setup, &mut setup.cfc::<_, 68>(unicycle), |_| {})
+        let terms = setup.terms::<Unicycle, Area>().expect("it has one");
+        board.fly(&setup, &mut setup.cfc::<_, _, 68>(terms), |_| {})
     });
     let mission = standard_field::standard(4, 1, Algorithm::Cfc, 10);
     let mut player = Player::new(&mission, LabelSource::Vehicle, 1).expect("a mission for a chip");

@@ -13,6 +13,7 @@ use planner_core::belief::version_space::VersionSpace;
 use planner_core::geometry::area::Area;
 use planner_core::geometry::heading::Heading;
 use planner_core::geometry::lattice::Site;
+use planner_core::geometry::region::Region;
 use planner_core::motion::contract;
 use planner_core::motion::dynamics::{Dynamics, Pose};
 use planner_core::motion::holonomic::Holonomic;
@@ -36,8 +37,8 @@ struct Endless;
 
 /// Follows the plans from a pose, learning nothing, up to the first that takes a sample: where that
 /// is, or why there is none. And the motions made.
-fn chase<D: Dynamics>(
-    planner: &mut Cfc<D, CAPACITY>,
+fn chase<D: Dynamics, G: Region>(
+    planner: &mut Cfc<D, CAPACITY, G>,
     mut pose: Pose,
 ) -> Result<(Result<Pose, StopReason>, usize), Endless> {
     let mut been = HashSet::new();

@@ -20,6 +20,7 @@ use planner_core::belief::tolerance::Tolerance;
 use planner_core::belief::weight::Prior;
 use planner_core::geometry::heading::Heading;
 use planner_core::geometry::lattice::{LIMIT, Site};
+use planner_core::link::message::MissionArea;
 use planner_core::motion::action::{Action, Control};
 use planner_core::motion::dynamics::Pose;
 use planner_core::motion::unicycle::{Grid, Unicycle};
@@ -31,7 +32,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
-type Planner64 = Scc<Unicycle, CAPACITY, HYPOTHESES>;
+type Planner64 = Scc<Unicycle, CAPACITY, HYPOTHESES, MissionArea>;
 
 /// The election the slow way: every hypothesis tries every action, and all votes are summed.
 fn slow_election(planner: &Planner64, pose: Pose) -> Option<Action> {

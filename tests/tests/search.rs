@@ -13,6 +13,7 @@ use planner_core::geometry::arc::SlopeArc;
 use planner_core::geometry::area::Area;
 use planner_core::geometry::heading::Heading;
 use planner_core::geometry::lattice::{Site, Vector};
+use planner_core::geometry::region::Region;
 use planner_core::motion::dynamics::{Dynamics, Pose};
 use planner_core::motion::holonomic::Holonomic;
 use planner_core::motion::unicycle::Unicycle;
@@ -31,7 +32,7 @@ use tests::clamped;
 fn check<D: Dynamics, const N: usize>(
     dynamics: &D,
     space: &VersionSpace<N>,
-    area: Area,
+    area: impl Region,
     varrho: Varrho,
     pose: Pose,
     context: &str,

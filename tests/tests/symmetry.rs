@@ -9,6 +9,7 @@ use planner_core::belief::sample::{Label, Sample};
 use planner_core::geometry::area::Area;
 use planner_core::geometry::heading::Heading;
 use planner_core::geometry::lattice::{Site, UNITS_PER_METRE};
+use planner_core::geometry::region::Region as _;
 use planner_core::motion::dynamics::Pose;
 use planner_core::motion::unicycle::Grid;
 use planner_core::planner::Plan;
@@ -60,7 +61,7 @@ impl View {
         let given: Vec<_> = mission.given.samples().iter().map(seen).collect();
         let mut other = mission.clone();
         other.given = Lines::new(&given).expect("lines are left as before");
-        other.config.area = self.area(mission.config.area);
+        other.config.area = self.area(mission.config.area.bounds()).into();
         other.start = self.pose(mission.start);
         other
     }

@@ -17,6 +17,7 @@ use planner_core::geometry::area::Area;
 use planner_core::geometry::heading::Heading;
 use planner_core::geometry::lattice::Site;
 use planner_core::geometry::line::Line;
+use planner_core::geometry::region::Region as _;
 use planner_core::motion::boat::Boat;
 use planner_core::motion::car::{Car, Shape};
 use planner_core::motion::contract;
@@ -55,7 +56,7 @@ fn site(p: Point2<f64>) -> Site {
 fn pool(number: u64) -> Field {
     let mission = standard_field::standard(31, number, Algorithm::Cfc, 1);
     let truth = *mission.world.line().expect("a line");
-    let (area, start, given) = (mission.config.area, mission.start, mission.given);
+    let (area, start, given) = (mission.config.area.bounds(), mission.start, mission.given);
     Field { area, size: [standard_field::SIDE_M; 2], start, given, truth }
 }
 

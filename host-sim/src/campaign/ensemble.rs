@@ -183,7 +183,7 @@ impl Campaign {
     ) -> Result<(Vec<M::Checkpoint>, Tally)> {
         let mission = self.mission(number);
         let (tolerance, area) = (mission.config.tolerance, mission.config.area);
-        scenario::check_tolerance("--tolerance", tolerance, &mission.given, area)?;
+        scenario::check_tolerance("--tolerance", tolerance, &mission.given, &area)?;
         let (mut checkpoints, mut tally) = (Vec::new(), Tally::default());
         let mut now = Progress { field: number, ..Progress::default() };
         let mut stages = measure.stages(self.steps).into_iter().peekable();

@@ -90,7 +90,7 @@ pub fn standard(seed: u64, number: u64, algorithm: Algorithm, steps: u32) -> Mis
         steps,
         seed: seed ^ number.rotate_left(32),
         config: Config {
-            area,
+            area: area.into(),
             varrho: algorithm.varrho(),
             crossing: Crossing::default(),
             following: algorithm.following(),

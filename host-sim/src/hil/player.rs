@@ -305,6 +305,7 @@ fn decline(declined: Declined, setup: &Setup) -> anyhow::Error {
         Declined::Algorithm => anyhow!("algorithm: declined by the board, which has another"),
         Declined::Given(error) => anyhow!("oracle: declined by the board: {error}"),
         Declined::Vehicle(why) => anyhow!("vehicle: declined by the board: expected {why}"),
+        Declined::Area => anyhow!("area: declined by the board: {declined}"),
         Declined::Labels => anyhow!("--labels: found chip, but this board has no label sensor"),
     }
 }

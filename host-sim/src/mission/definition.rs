@@ -6,6 +6,7 @@ use planner_core::belief::hypotheses::Hypotheses;
 use planner_core::belief::noise::Noise;
 use planner_core::belief::version_space::VersionSpace;
 use planner_core::belief::weight::Prior;
+use planner_core::link::message::MissionArea;
 use planner_core::motion::any_vehicle::AnyVehicle;
 use planner_core::motion::dynamics::Pose;
 use planner_core::planner::config::{Config, Crossing, Following};
@@ -41,7 +42,7 @@ pub struct Mission {
     /// Seed of whatever is random.
     pub seed: u64,
     /// Area, weight of the control, way of crossing.
-    pub config: Config,
+    pub config: Config<MissionArea>,
     /// What moves.
     pub vehicle: AnyVehicle,
     /// Where the agent starts.

@@ -17,9 +17,10 @@ use nalgebra::Point2;
 use planner_core::belief::Refused;
 use planner_core::belief::consistent_lines::Certainty;
 use planner_core::belief::sample::Reading;
-use planner_core::geometry::area::Area;
 use planner_core::geometry::lattice::Site;
 use planner_core::geometry::line::Line;
+use planner_core::geometry::region::Region as _;
+use planner_core::link::message::MissionArea;
 use planner_core::motion::action::Action;
 use planner_core::motion::dynamics::{Dynamics, Pose, Side};
 use planner_core::planner::{Motion, Plan, Planner, StopReason};
@@ -33,7 +34,7 @@ pub struct Margin<D, B> {
     /// The action set.
     pub dynamics: D,
     /// Where positions stay.
-    pub area: Area,
+    pub area: MissionArea,
     /// What has been learnt on the way.
     pub belief: B,
 }

@@ -14,4 +14,5 @@ pub mod results;
 pub mod scenario;
 pub mod stop;
 pub mod strict;
+pub mod terrain;
 pub mod vehicle;

@@ -2,7 +2,8 @@
 
 use planner_core::belief::sample::Reading;
 use planner_core::belief::{Belief, Refused};
-use planner_core::geometry::area::Area;
+use planner_core::geometry::region::Region as _;
+use planner_core::link::message::MissionArea;
 use planner_core::motion::action::Action;
 use planner_core::motion::dynamics::{Dynamics, Pose};
 use planner_core::planner::{Motion, Plan, Planner, StopReason};
@@ -14,7 +15,7 @@ pub struct RandomWalk<D, B> {
     /// The action set.
     pub dynamics: D,
     /// Where positions stay.
-    pub area: Area,
+    pub area: MissionArea,
     /// What has been learnt on the way.
     pub belief: B,
     /// The source of chance.

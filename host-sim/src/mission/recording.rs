@@ -18,8 +18,8 @@ use crate::mission::definition::{Mission, Table};
 use crate::mission::flight::Flown;
 use crate::mission::read_out::{Knowledge, LEVEL, ReadOut};
 use crate::mission::results::{
-    BestRecord, CredibleRecord, End, EstimateRecords, LineError, NoisyEnd, NoisyStep, Results,
-    Start, StepResult, recovery_name, stage_name,
+    BestRecord, CredibleRecord, End, EstimateRecords, KeepOutRecord, LineError, NoisyEnd,
+    NoisyStep, Results, Start, StepResult, recovery_name, stage_name,
 };
 use crate::mission::stop::GoalRecord;
 use crate::world::World;
@@ -144,6 +144,7 @@ fn start(mission: &Mission) -> Start {
         seed: mission.seed,
         varrho: mission.config.varrho.value(),
         area: mission.config.area.into(),
+        keep_out: mission.config.area.hulls().map(KeepOutRecord::from).collect(),
         oracle: mission.given.samples().iter().map(Into::into).collect(),
         vehicle: (!is_of_a_fan).then(|| mission.vehicle.into()),
         pose: mission.start.into(),

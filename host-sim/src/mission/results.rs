@@ -4,9 +4,12 @@
 use nalgebra::Point2;
 use planner_core::belief::estimate::Estimates;
 use planner_core::belief::sample::Sample;
-use planner_core::geometry::area::Area;
+use planner_core::geometry::lattice::{Site, UNITS_PER_METRE};
 use planner_core::geometry::line::Line;
 use planner_core::geometry::local_line::LocalLine;
+use planner_core::geometry::region::Region as _;
+use planner_core::geometry::terrain::RoundedHull;
+use planner_core::link::message::MissionArea;
 use planner_core::motion::action::Control;
 use planner_core::motion::dynamics::Pose;
 use planner_core::planner::{Motion, Stage, StopReason};
@@ -39,6 +42,9 @@ pub struct Start {
     pub varrho: f64,
     /// Where positions stayed.
     pub area: AreaRecord,
+    /// What no motion touches.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub keep_out: Vec<KeepOutRecord>,
     /// The oracle's samples.
     pub oracle: Vec<SampleRecord>,
     /// What moved, unless it is the unicycle of a fan.
@@ -172,12 +178,24 @@ pub struct CredibleRecord {
 }
 
 /// An area, metres.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 pub struct AreaRecord {
     /// From and to.
     pub x: [f64; 2],
     /// From and to.
     pub z: [f64; 2],
+    /// Its corners, if it is not that rectangle.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub polygon: Option<Vec<[f64; 2]>>,
+}
+
+/// What is kept out of, metres: all within a radius of a convex polygon, or of a point.
+#[derive(Clone, Debug, Serialize)]
+pub struct KeepOutRecord {
+    /// The corners.
+    pub polygon: Vec<[f64; 2]>,
+    /// The radius.
+    pub radius: f64,
 }
 
 /// A sample.
@@ -280,11 +298,23 @@ impl Results {
     }
 }
 
-impl From<Area> for AreaRecord {
-    fn from(area: Area) -> Self {
-        let (min, max) = (Point2::<f64>::from(area.min()), Point2::<f64>::from(area.max()));
-        Self { x: [min.x, max.x], z: [min.y, max.y] }
+impl From<MissionArea> for AreaRecord {
+    fn from(area: MissionArea) -> Self {
+        let [min, max] = [area.bounds().min(), area.bounds().max()].map(Point2::<f64>::from);
+        let polygon = area.sides().next().map(|_| corners(area.corners()));
+        Self { x: [min.x, max.x], z: [min.y, max.y], polygon }
     }
+}
+
+impl<const C: usize> From<&RoundedHull<C>> for KeepOutRecord {
+    fn from(RoundedHull { hull, radius }: &RoundedHull<C>) -> Self {
+        let radius = f64::from(*radius) / f64::from(UNITS_PER_METRE);
+        Self { polygon: corners(hull.corners()), radius }
+    }
+}
+
+fn corners(sites: &[Site]) -> Vec<[f64; 2]> {
+    sites.iter().map(|site| Point2::<f64>::from(*site).into()).collect()
 }
 
 impl From<&Sample> for SampleRecord {

@@ -9,10 +9,10 @@ use planner_core::belief::noise::trusted_radius;
 use planner_core::belief::sample::{Label, Reading, Sample};
 use planner_core::belief::tolerance::Tolerance;
 use planner_core::belief::version_space::{NoVersionSpace, VersionSpace};
-use planner_core::geometry::area::Area;
 use planner_core::geometry::heading::Heading;
 use planner_core::geometry::lattice::Site;
 use planner_core::geometry::line::Line;
+use planner_core::link::message::MissionArea;
 use planner_core::motion::dynamics::Pose;
 use planner_core::motion::unicycle::Grid;
 use planner_core::planner::config::{Config, Following};
@@ -24,6 +24,7 @@ use crate::mission::definition::{CAPACITY, Lines, Mission};
 use crate::mission::names::{CrossingName, FanName, FollowingName, PolicyName, PriorName};
 use crate::mission::stop::StopTable;
 use crate::mission::strict::{Numbers, Table, wrong};
+use crate::mission::terrain::{self, AreaTable, KeepOutTable};
 use crate::mission::vehicle::{self, Source, VehicleTable};
 use crate::world::World;
 use crate::world::errors::{CUT, Errors};
@@ -65,6 +66,8 @@ struct File {
     #[serde(default)]
     area: Table<AreaTable>,
     #[serde(default)]
+    keep_out: Vec<Table<KeepOutTable>>,
+    #[serde(default)]
     start: Table<StartTable>,
     truth: Table<TruthTable>,
     oracle: Vec<Table<SampleTable>>,
@@ -100,19 +103,6 @@ struct ErrorsTable {
     turn: f64,
     position: f64,
     heading: f64,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct AreaTable {
-    x: Numbers<2>,
-    z: Numbers<2>,
-}
-
-impl Default for AreaTable {
-    fn default() -> Self {
-        Self { x: Numbers([0.0, 20.0]), z: Numbers([0.0, 20.0]) }
-    }
 }
 
 #[derive(Default, Deserialize)]
@@ -199,7 +189,7 @@ pub fn check_steps(field: &str, steps: u32, oracle: usize) -> Result<()> {
     Ok(())
 }
 
-fn site(field: &str, x: f64, z: f64) -> Result<Site> {
+pub(crate) fn site(field: &str, x: f64, z: f64) -> Result<Site> {
     for (name, value) in [("x", x), ("z", z)] {
         if Site::try_from(Point2::new(value, 0.0)).is_err() {
             let expected = "a finite coordinate smaller than 8192 m in size";
@@ -224,23 +214,18 @@ fn mission(file: &File, overrides: Overrides) -> Result<Mission> {
         || Ok(grid.into()),
         |it| it.0.vehicle(Source::File, algorithm, has_fan, grid),
     )?;
-    let AreaTable { x: Numbers([x0, x1]), z: Numbers([z0, z1]) } = file.area.0;
-    let corners = (site("area", x0, z0)?, site("area", x1, z1)?);
-    let Some(area) = Area::new(corners.0, corners.1) else {
-        let found = format!("x = [{x0}, {x1}], z = [{z0}, {z1}]");
-        return wrong("area", found, "each range from smaller to larger");
-    };
+    let area = terrain::area(&file.area.0, &file.keep_out)?;
     let world = World::divided_by(truth(&file.truth.0)?);
-    let given = oracle(&file.oracle, area, &world)?;
+    let given = oracle(&file.oracle, &area, &world)?;
     let bounding = given.cell().edges().len();
     if bounding > MOST_BOUNDING {
         let found = format!("{bounding} points that bound the line");
         return wrong("oracle", found, format!("at most {MOST_BOUNDING} that do"));
     }
-    let start = start(&file.start.0, &given, area)?;
+    let start = start(&file.start.0, &given, &area)?;
     let errors = errors(&file.errors.0)?;
     let tolerance = tolerance("tolerance", file.tolerance, errors)?;
-    check_tolerance("tolerance", tolerance, &given, area)?;
+    check_tolerance("tolerance", tolerance, &given, &area)?;
     let noise = file.noise.as_ref().map(|table| noise(&table.0)).transpose()?;
     let following = file.following.map_or(algorithm.following(), Following::from);
     let crossing = file.crossing.into();
@@ -308,9 +293,14 @@ pub fn tolerance(field: &str, metres: Option<f64>, errors: Errors) -> Result<Tol
 ///
 /// # Errors
 /// Names `field`, and what the tolerance is too much for.
-pub fn check_tolerance(field: &str, tolerance: Tolerance, given: &Lines, area: Area) -> Result<()> {
+pub fn check_tolerance(
+    field: &str,
+    tolerance: Tolerance,
+    given: &Lines,
+    area: &MissionArea,
+) -> Result<()> {
     let found = || format!("{} m", tolerance.metres());
-    if area.inset(tolerance.units()).is_none() {
+    if !terrain::leaves_any(area, tolerance.metres()) {
         return wrong(field, found(), "less than half the breadth of the area");
     }
     let of = |label| {
@@ -388,7 +378,7 @@ fn truth(table: &TruthTable) -> Result<Line> {
     line.map_or_else(|| wrong("truth", found, finite), Ok)
 }
 
-fn oracle(tables: &[Table<SampleTable>], area: Area, world: &World) -> Result<Lines> {
+fn oracle(tables: &[Table<SampleTable>], area: &MissionArea, world: &World) -> Result<Lines> {
     let mut samples = Vec::with_capacity(tables.len());
     for (i, Table(table)) in tables.iter().enumerate() {
         let field = format!("oracle[{i}]");
@@ -398,10 +388,7 @@ fn oracle(tables: &[Table<SampleTable>], area: Area, world: &World) -> Result<Li
             other => return wrong(&format!("{field}.label"), other, "-1 or 1"),
         };
         let site = site(&field, table.x, table.z)?;
-        if !area.contains(site) {
-            let found = format!("({}, {})", table.x, table.z);
-            return wrong(&field, found, "a point inside the area");
-        }
+        terrain::check_inside(&field, site, area)?;
         let reading = world.reading(site);
         if reading != Reading::Side(label) {
             let expected = format!("{}, as the truth has it", reading.sign());
@@ -428,15 +415,13 @@ fn oracle(tables: &[Table<SampleTable>], area: Area, world: &World) -> Result<Li
     })
 }
 
-fn start(table: &StartTable, given: &Lines, area: Area) -> Result<Pose> {
+fn start(table: &StartTable, given: &Lines, area: &MissionArea) -> Result<Pose> {
     let Some(heading) = Heading::from_radians(table.heading) else {
         return wrong("start.heading", table.heading, "a finite angle in radians");
     };
     let first = Point2::<f64>::from(given.samples()[0].site);
     let (x, z) = (table.x.unwrap_or(first.x), table.z.unwrap_or(first.y));
     let site = site("start", x, z)?;
-    if !area.contains(site) {
-        return wrong("start", format!("({x}, {z})"), "a point inside the area");
-    }
+    terrain::check_inside("start", site, area)?;
     Ok(Pose { site, heading })
 }

@@ -6,6 +6,7 @@
 use anyhow::Result;
 use planner_core::belief::goal::{Accuracy, Goal};
 use planner_core::geometry::heading::Heading;
+use planner_core::geometry::region::Region as _;
 use serde::{Deserialize, Serialize};
 
 use crate::mission::algorithm::Algorithm;
@@ -116,7 +117,8 @@ impl GoalRecord {
             Accuracy::Misclassified(share) => (None, Some(f64::from(share + SHARE_OFF) / MILLION)),
         };
         let level = mission.is_noisy().then(|| f64::from(goal.level) / MILLION);
-        let is_met = belief.meets(goal, mission.config.area);
+        let is_met =
+            belief.meets(goal.in_bounds_of(&mission.config.area), mission.config.area.bounds());
         Some(Self { slope_arc_deg, misclassified, level, is_met })
     }
 }

@@ -3,6 +3,8 @@
 use anyhow::Result;
 use nalgebra::Point2;
 use planner_core::geometry::area::Area;
+use planner_core::geometry::region::Region as _;
+use planner_core::link::message::MissionArea;
 use planner_core::motion::action::BadGrid;
 use planner_core::motion::any_vehicle::{AnyVehicle, Shape};
 use planner_core::motion::boat::Boat;
@@ -204,9 +206,13 @@ fn check_suits(name: &str, vehicle: &AnyVehicle, algorithm: Algorithm) -> Result
 ///
 /// # Errors
 /// Names the vehicle, the area, and how much it needs.
-pub fn check_room(source: Source, vehicle: &AnyVehicle, config: &Config) -> Result<()> {
+pub fn check_room(
+    source: Source,
+    vehicle: &AnyVehicle,
+    config: &Config<MissionArea>,
+) -> Result<()> {
     config.admits(vehicle).or_else(|none| {
-        wrong(&source.name("kind"), of_area(config.area, config.tolerance.metres()), none)
+        wrong(&source.name("kind"), of_area(config.area.bounds(), config.tolerance.metres()), none)
     })
 }
 

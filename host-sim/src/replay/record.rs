@@ -141,8 +141,8 @@ impl Replay {
         Picture {
             title: self.name.clone(),
             note,
-            area,
-            ground: Ground::certain(area, &bounding),
+            area: area.into(),
+            ground: Ground::certain(area.into(), &bounding),
             samples: shown.iter().map(dot).collect(),
             given: 0,
             path: None,

@@ -4,6 +4,7 @@ use anyhow::Result;
 use nalgebra::{Point2, Vector2};
 use planner_core::belief::sample::Label;
 use planner_core::geometry::line::Line;
+use planner_core::geometry::region::Region as _;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
@@ -25,8 +26,8 @@ impl Picture {
     /// When the drawing library fails.
     pub fn svg(&self) -> Result<String> {
         const SIZE: f64 = 760.0;
-        let (min, max) =
-            (Point2::<f64>::from(self.area.min()), Point2::<f64>::from(self.area.max()));
+        let bounds = self.area.bounds();
+        let [min, max] = [bounds.min(), bounds.max()].map(Point2::<f64>::from);
         let (width, height) = (max.x - min.x, max.y - min.y);
         let scale = SIZE / width.max(height);
         let margins = (125.0, 210.0); // axes below and left; title, legend and axis above
@@ -57,6 +58,7 @@ impl Picture {
                 .label_style(("sans-serif", 15))
                 .draw()
                 .map_err(failed)?;
+            self.draw_area(&mut chart)?;
             self.draw_lines(&mut chart)?;
             self.draw_path(&mut chart, 14.0 / scale)?;
             self.draw_samples(&mut chart)?;
@@ -71,6 +73,22 @@ impl Picture {
             Ground::Credible(patches) => draw_credible(chart, patches),
             Ground::Plain => Ok(()),
         }
+    }
+
+    /// The border of a polygon, and what is kept out of.
+    fn draw_area(&self, chart: &mut Chart) -> Result<()> {
+        if self.area.sides().next().is_some() {
+            let corners = self.area.corners().iter().chain(self.area.corners().first());
+            let border = corners.map(|corner| xy(Point2::from(*corner))).collect::<Vec<_>>();
+            let style = BLACK.mix(0.6).stroke_width(1);
+            chart.draw_series([PathElement::new(border, style)]).map_err(failed)?;
+        }
+        for keep_out in self.area.hulls() {
+            let outline: Vec<_> = Polygon::from(keep_out).0.into_iter().map(xy).collect();
+            let fill = style::KEEP_OUT.filled();
+            chart.draw_series([plotters::element::Polygon::new(outline, fill)]).map_err(failed)?;
+        }
+        Ok(())
     }
 
     fn draw_lines(&self, chart: &mut Chart) -> Result<()> {

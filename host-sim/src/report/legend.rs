@@ -50,6 +50,11 @@ pub(crate) fn draw(picture: &Picture, legend: &DrawingArea<SVGBackend, Shift>) -
             .map_err(failed)?;
         text("a wrong label", left, rows[2])?;
     }
+    if picture.area.hulls().next().is_some() {
+        let corners = [(right + 210, rows[0] - 9), (right + 236, rows[0] + 9)];
+        legend.draw(&Rectangle::new(corners, style::KEEP_OUT.filled())).map_err(failed)?;
+        text("kept out of", right + 210, rows[0])?;
+    }
     let mut row = rows.into_iter();
     if let (Some(_), Some(y)) = (picture.truth, row.next()) {
         stroke(right, y, 26, BLACK, 2)?;

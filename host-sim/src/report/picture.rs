@@ -9,6 +9,8 @@ use planner_core::geometry::area::Area;
 use planner_core::geometry::lattice::{LIMIT, Site, UNITS_PER_METRE, Vector};
 use planner_core::geometry::line::Line;
 use planner_core::geometry::local_line::LocalLine;
+use planner_core::geometry::region::Region as _;
+use planner_core::link::message::MissionArea;
 
 use crate::mission::definition::Table;
 use crate::mission::read_out::LEVEL;
@@ -24,7 +26,7 @@ pub struct Picture {
     /// What the legend says of the samples, if anything.
     pub note: Option<String>,
     /// The ground to show.
-    pub area: Area,
+    pub area: MissionArea,
     /// What is known of it.
     pub ground: Ground,
     /// The samples, with the labels that were seen.
@@ -112,23 +114,24 @@ impl Named {
 
 impl Ground {
     /// The ground that samples leave certain, which bound the lines in cyclic order.
-    pub fn certain(area: Area, support: &[Sample]) -> Self {
+    pub fn certain(area: MissionArea, support: &[Sample]) -> Self {
         let certain = |label| Polygon::certain(area, support, label);
         Self::Certain([Label::Positive, Label::Negative].map(certain))
     }
 
     /// The credible set: each patch of ground with the probability of the hypotheses of the set whose
     /// lines pass through it.
-    fn credible(area: Area, table: &Table) -> Self {
+    fn credible(area: &MissionArea, table: &Table) -> Self {
         const PATCHES: i32 = 72;
         let posterior = Posterior::new(table);
         let set = posterior.credible(LEVEL);
-        let (min, max) = (Point2::<f64>::from(area.min()), Point2::<f64>::from(area.max()));
+        let [min, max] = [area.bounds().min(), area.bounds().max()].map(Point2::<f64>::from);
         let size = (max - min) / f64::from(PATCHES);
         let all = (0..PATCHES).flat_map(|i| (0..PATCHES).map(move |j| (i, j)));
         let patch = |(i, j)| {
             let corner = min + size.component_mul(&Vector2::new(f64::from(i), f64::from(j)));
-            let middle = Site::try_from(corner + size / 2.0).ok()?;
+            let middle =
+                Site::try_from(corner + size / 2.0).ok().filter(|at| area.encloses(*at))?;
             let passing = posterior
                 .members(&set)
                 .filter(|h| table.lines(h).certainty(middle) == Certainty::Uncertain);
@@ -153,7 +156,7 @@ impl Picture {
         if let Some(table) = belief.hypotheses() {
             lines.extend(Named::estimate("posterior mean", centre));
             lines.extend(bounding(table));
-            ground = Ground::credible(area, table);
+            ground = Ground::credible(&area, table);
         }
         let dot = |s: &Sample| Dot {
             at: s.site.into(),

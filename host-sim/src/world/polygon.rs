@@ -1,10 +1,13 @@
 //! Convex polygons in metres: clipping, area, and certain ground.
 
-use nalgebra::Point2;
+use nalgebra::{Point2, Vector2};
 use planner_core::belief::consistent_lines::bound;
 use planner_core::belief::sample::{Label, Sample};
 use planner_core::geometry::area::Area;
+use planner_core::geometry::lattice::UNITS_PER_METRE;
 use planner_core::geometry::line::Line;
+use planner_core::geometry::terrain::RoundedHull;
+use planner_core::link::message::MissionArea;
 
 /// A convex polygon as its corners in order; empty when there are none.
 #[derive(Clone, Debug)]
@@ -14,6 +17,33 @@ impl From<Area> for Polygon {
     fn from(area: Area) -> Self {
         let (a, b) = (Point2::<f64>::from(area.min()), Point2::<f64>::from(area.max()));
         Self(vec![a, Point2::new(b.x, a.y), b, Point2::new(a.x, b.y)])
+    }
+}
+
+impl From<MissionArea> for Polygon {
+    fn from(area: MissionArea) -> Self {
+        Self(area.corners().iter().copied().map(Point2::from).collect())
+    }
+}
+
+/// Its border, with arcs as 16 chords of a quarter turn.
+impl<const C: usize> From<&RoundedHull<C>> for Polygon {
+    fn from(RoundedHull { hull, radius }: &RoundedHull<C>) -> Self {
+        const CHORDS: u32 = 64;
+        let radius = f64::from(*radius) / f64::from(UNITS_PER_METRE);
+        let corners: Vec<Point2<f64>> = hull.corners().iter().map(|at| Point2::from(*at)).collect();
+        if radius == 0.0 {
+            return Self(corners);
+        }
+        // The corner that is furthest a way, and the radius beyond it.
+        let at = |n: u32| {
+            let (sin, cos) = libm::sincos(f64::from(n) / f64::from(CHORDS) * std::f64::consts::TAU);
+            let way = Vector2::new(cos, sin);
+            let furthest =
+                corners.iter().max_by(|a, b| a.coords.dot(&way).total_cmp(&b.coords.dot(&way)));
+            furthest.map(|corner| corner + way * radius)
+        };
+        Self((0..CHORDS).filter_map(at).collect())
     }
 }
 
@@ -40,12 +70,12 @@ impl Polygon {
     ///
     /// It lies beyond the two lines that pass between the labels, and beyond the samples of the label, which
     /// cut off the corner where the two lines cross.
-    pub fn certain(area: Area, support: &[Sample], label: Label) -> Self {
+    pub fn certain(area: impl Into<Self>, support: &[Sample], label: Label) -> Self {
         let next = support.iter().cycle().skip(1);
         let sides = support.iter().zip(next).filter(|(p, q)| p.label != q.label);
         let lines: Vec<_> = sides.map(|(p, q)| Line::from(bound(*p, *q))).collect();
         let beyond = |ground: Self, line: &Line| ground.clip(line, f64::from(label.sign()));
-        let mut ground = lines.iter().fold(Self::from(area), beyond);
+        let mut ground = lines.iter().fold(area.into(), beyond);
         let off =
             |corner: &Point2<f64>| lines.iter().map(|line| line.distance(*corner).abs()).sum();
         let offs: Vec<f64> = ground.0.iter().map(off).collect();
@@ -75,8 +105,8 @@ impl Polygon {
 }
 
 /// The share of the area to which the estimate gives the wrong label.
-pub fn misclassified(area: Area, truth: &Line, estimate: &Line) -> f64 {
-    let all = Polygon::from(area);
+pub fn misclassified(area: impl Into<Polygon>, truth: &Line, estimate: &Line) -> f64 {
+    let all: Polygon = area.into();
     let wrong: f64 =
         [1.0, -1.0].iter().map(|side| all.clip(truth, *side).clip(estimate, -side).area()).sum();
     wrong / all.area()

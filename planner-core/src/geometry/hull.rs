@@ -3,6 +3,7 @@
 //! A hull is given by its corners in order. One corner is a point, two are a segment: what a straight motion sweeps,
 //! a wall, the middle of a disc.
 
+use crate::geometry::area::Area;
 use crate::geometry::lattice::{Site, orient};
 
 /// The corners of a convex hull, counter-clockwise, `C` at most.
@@ -61,6 +62,19 @@ impl<const C: usize> Hull<C> {
             _ => return Err(NoHull::NotConvex),
         }
         Ok(Self { corners: all, count })
+    }
+
+    /// The hull of a rectangle.
+    pub fn of(area: Area) -> Self {
+        const { assert!(C >= 4, "a rectangle has four corners") };
+        let (min, max) = (area.min(), area.max());
+        let aside = [(max.x(), min.z()), (min.x(), max.z())];
+        let [right, left] = aside.map(|(x, z)| Site::new(x, z).unwrap_or(min));
+        let mut corners = [Site::ORIGIN; C];
+        for (place, corner) in corners.iter_mut().zip([min, right, max, left]) {
+            *place = corner;
+        }
+        Self { corners, count: 4 }
     }
 
     /// Its corners.

@@ -8,6 +8,14 @@ use crate::geometry::region::{HalfPlane, KeepOut, Region};
 /// A convex polygon, but for keep-outs; `C` corners each and `K` keep-outs at most.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "wire",
+    serde(
+        try_from = "crate::link::checked::Outlines<C, K>",
+        into = "crate::link::checked::Outlines<C, K>"
+    )
+)]
 pub struct Terrain<const C: usize, const K: usize> {
     polygon: Hull<C>,
     bounds: Area,
@@ -59,11 +67,6 @@ impl<const C: usize, const K: usize> Terrain<C, K> {
     /// [`NoTerrain`] says what is wrong with them.
     pub fn new(polygon: Hull<C>, keep_outs: &[RoundedHull<C>]) -> Result<Self, NoTerrain> {
         let bounds = bounds_of(polygon.corners()).ok_or(NoTerrain::Area(NoHull::NotConvex))?;
-        let mut lengths = [0; C];
-        for (length, (from, to)) in lengths.iter_mut().zip(edges(polygon.corners())) {
-            let along = to - from;
-            *length = length_of(along);
-        }
         let mut kept = [None; K];
         let too_many = NoTerrain::TooManyKeepOuts(K);
         let places = kept.get_mut(..keep_outs.len()).ok_or(too_many)?;
@@ -73,7 +76,7 @@ impl<const C: usize, const K: usize> Terrain<C, K> {
             }
             *place = Some(*keep_out);
         }
-        Ok(Self { polygon, bounds, lengths, keep_outs: kept, margin: 0 })
+        Ok(Self { polygon, bounds, lengths: lengths(&polygon), keep_outs: kept, margin: 0 })
     }
 
     /// Its corners, counter-clockwise.
@@ -92,15 +95,21 @@ impl<const C: usize, const K: usize> Terrain<C, K> {
     }
 }
 
-/// A rectangle with nothing in it; `None` if polygons have less than four corners here.
-impl<const C: usize, const K: usize> Terrain<C, K> {
-    /// As a rectangle is.
-    pub fn of(area: Area) -> Option<Self> {
-        let (min, max) = (area.min(), area.max());
-        let corner = |x, z| Site::new(x, z).ok();
-        let corners = [min, corner(max.x(), min.z())?, max, corner(min.x(), max.z())?];
-        Self::new(Hull::new(&corners).ok()?, &[]).ok()
+/// A rectangle with nothing in it.
+impl<const C: usize, const K: usize> From<Area> for Terrain<C, K> {
+    fn from(bounds: Area) -> Self {
+        let polygon = Hull::of(bounds);
+        Self { polygon, bounds, lengths: lengths(&polygon), keep_outs: [None; K], margin: 0 }
     }
+}
+
+/// The lengths of a polygon's edges, rounded up.
+fn lengths<const C: usize>(polygon: &Hull<C>) -> [u32; C] {
+    let mut lengths = [0; C];
+    for (length, (from, to)) in lengths.iter_mut().zip(edges(polygon.corners())) {
+        *length = length_of(to - from);
+    }
+    lengths
 }
 
 /// The rectangle around positions; `None` unless it has an inside.

@@ -26,6 +26,7 @@ use crate::belief::noise::Noise;
 use crate::belief::sample::{Reading, Sample};
 use crate::belief::version_space::NoVersionSpace;
 use crate::belief::weight::Prior;
+use crate::geometry::terrain::Terrain;
 use crate::link::frame::Message;
 use crate::motion::any_vehicle::{NoVehicle, Shape};
 use crate::motion::dynamics::Pose;
@@ -39,6 +40,15 @@ pub const PROTOCOL: u16 = 5;
 
 /// Given samples that a setup can hold.
 pub const MOST_GIVEN: usize = 16;
+
+/// Corners that an area can have, and each keep-out in it.
+pub const MOST_CORNERS: usize = 8;
+
+/// Keep-outs that a setup can hold.
+pub const MOST_KEEP_OUTS: usize = 8;
+
+/// Where the motions of a mission may go.
+pub type MissionArea = Terrain<MOST_CORNERS, MOST_KEEP_OUTS>;
 
 /// What the chip asks of the vehicle.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -92,7 +102,7 @@ pub struct Setup {
     /// Who plans.
     pub algorithm: Algorithm,
     /// What the mission fixes beforehand.
-    pub config: Config,
+    pub config: Config<MissionArea>,
     /// What the vehicle can be asked to do. Whether there is such a vehicle is for the
     /// [chip](Setup::dynamics) to say: it need know no kind but its own.
     pub vehicle: Shape,
@@ -190,6 +200,8 @@ pub enum Declined {
     Labels,
     /// The chip cannot plan for this vehicle.
     Vehicle(NoVehicle),
+    /// The chip plans in rectangles with nothing in them.
+    Area,
 }
 
 impl core::fmt::Display for Declined {
@@ -203,6 +215,7 @@ impl core::fmt::Display for Declined {
             Self::Given(why) => why.fmt(f),
             Self::Labels => f.write_str("the chip has no label sensor"),
             Self::Vehicle(why) => why.fmt(f),
+            Self::Area => f.write_str("the chip plans in rectangles with nothing in them"),
         }
     }
 }
@@ -279,8 +292,10 @@ mod tests {
     use crate::belief::tolerance::Tolerance;
     use crate::geometry::area::Area;
     use crate::geometry::heading::Heading;
+    use crate::geometry::hull::Hull;
     use crate::geometry::lattice::{LIMIT, Site, Vector};
     use crate::geometry::local_line::LocalLine;
+    use crate::geometry::terrain::RoundedHull;
     use crate::link::frame::{Decoder, Envelope, FRAME, Frame};
     use crate::motion::action::{Action, Control};
     use crate::motion::car;
@@ -303,6 +318,25 @@ mod tests {
         Site::new(x * (LIMIT - 1), z * (LIMIT - 1)).unwrap()
     }
 
+    /// An octagon as large as the lattice, with as many keep-outs.
+    fn widest_area() -> MissionArea {
+        const FAR: i32 = LIMIT - 1;
+        const NEAR: i32 = FAR / 2 + 1;
+        let corners = [
+            (FAR, NEAR),
+            (NEAR, FAR),
+            (-NEAR, FAR),
+            (-FAR, NEAR),
+            (-FAR, -NEAR),
+            (-NEAR, -FAR),
+            (NEAR, -FAR),
+            (FAR, -NEAR),
+        ];
+        let hull = Hull::new(&corners.map(|(x, z)| Site::new(x, z).unwrap())).unwrap();
+        let keep_out = RoundedHull { hull, radius: FAR.unsigned_abs() };
+        MissionArea::new(hull, &[keep_out; MOST_KEEP_OUTS]).unwrap()
+    }
+
     fn longest_setup() -> Setup {
         let sample = Sample { site: far(-1, -1), label: Label::Positive };
         let reliability = Reliability::new(5e-324).unwrap();
@@ -314,7 +348,7 @@ mod tests {
                 prior: Prior::Sequences,
             },
             config: Config {
-                area: Area::new(far(-1, -1), far(1, 1)).unwrap(),
+                area: widest_area(),
                 varrho: Varrho::new(0.999_999).unwrap(),
                 crossing: Crossing::AcrossBisector,
                 following: Following::AlongBisector,

@@ -9,14 +9,17 @@ use crate::belief::noise::Noise;
 use crate::belief::sample::{Reading, Sample};
 use crate::belief::version_space::{NoVersionSpace, VersionSpace};
 use crate::belief::weight::Prior;
+use crate::geometry::area::Area;
+use crate::geometry::region::Region;
 use crate::link::delivery::{Link, LinkLost, Port};
 use crate::link::message::{
-    Accepted, Capacity, ClockRate, Declined, EndReason, LabelSource, MissionEnd, Move, PROTOCOL,
-    Reply, Request, Setup, Took,
+    Accepted, Capacity, ClockRate, Declined, EndReason, LabelSource, MissionArea, MissionEnd, Move,
+    PROTOCOL, Reply, Request, Setup, Took,
 };
 use crate::motion::any_vehicle::{NoVehicle, Shape};
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::cfc::Cfc;
+use crate::planner::config::Config;
 use crate::planner::lookahead::Lookahead;
 use crate::planner::scc::{Policy, Scc};
 use crate::planner::{Motion, Plan, Planner};
@@ -39,21 +42,23 @@ impl<L> Prepared<L> {
 }
 
 impl Setup {
-    /// The dynamics to plan with, of those that the chip has:
-    /// [`AnyVehicle`](crate::motion::any_vehicle::AnyVehicle), or the
-    /// [`Unicycle`](crate::motion::unicycle::Unicycle) alone. What is refused here no planner was made for, so it
-    /// goes to [`decline`](Station::decline).
+    /// What to plan with and where, of what the chip has: [`AnyVehicle`](crate::motion::any_vehicle::AnyVehicle) or
+    /// the [`Unicycle`](crate::motion::unicycle::Unicycle) alone, in a [`MissionArea`] or in an [`Area`] alone. What
+    /// is refused here no planner was made for, so it goes to [`decline`](Station::decline).
     ///
     /// # Errors
     /// [`Declined`].
-    pub fn dynamics<D: Known>(&self) -> Result<D, Declined> {
+    pub fn terms<D: Known, G: Charted>(&self) -> Result<Terms<D, G>, Declined> {
         if self.protocol != PROTOCOL {
             return Err(Declined::Protocol(PROTOCOL));
         }
         let dynamics = D::try_from(self.vehicle).map_err(Declined::Vehicle)?;
-        let fits = self.config.admits(&dynamics);
+        let Config { varrho, crossing, following, tolerance, .. } = self.config;
+        let area = G::of(&self.config.area).ok_or(Declined::Area)?;
+        let config = Config { area, varrho, crossing, following, tolerance };
+        let fits = config.admits(&dynamics);
         fits.map_err(|none| Declined::Vehicle(NoVehicle::Room(none)))?;
-        Ok(dynamics)
+        Ok(Terms { dynamics, config })
     }
 
     /// Whether this much will do for the mission.
@@ -77,14 +82,14 @@ impl Setup {
     /// # Errors
     /// [`Declined`].
     #[inline(never)] // it is the planner's, see `seam`
-    pub fn cfc<D: Dynamics, const N: usize>(
+    pub fn cfc<D: Dynamics, G: Region, const N: usize>(
         &self,
-        dynamics: D,
-    ) -> Result<Prepared<Cfc<D, N>>, Declined> {
+        Terms { dynamics, config }: Terms<D, G>,
+    ) -> Result<Prepared<Cfc<D, N, G>>, Declined> {
         let capacity = Capacity { samples: N as u16, hypotheses: 1 };
         self.check(capacity)?;
         let space = self.space()?;
-        Ok(Prepared { planner: Cfc::new(self.config, dynamics, space), capacity })
+        Ok(Prepared { planner: Cfc::new(config, dynamics, space), capacity })
     }
 
     /// Look-ahead for this mission, with labels that are true.
@@ -92,38 +97,38 @@ impl Setup {
     /// # Errors
     /// [`Declined`].
     #[inline(never)] // it is the planner's, see `seam`
-    pub fn lookahead<D: Dynamics, const N: usize>(
+    pub fn lookahead<D: Dynamics, G: Region, const N: usize>(
         &self,
-        dynamics: D,
+        Terms { dynamics, config }: Terms<D, G>,
         evaluations: u32,
         goal: Option<Goal>,
-    ) -> Result<Prepared<Lookahead<D, VersionSpace<N>>>, Declined> {
+    ) -> Result<Prepared<Lookahead<D, VersionSpace<N>, G>>, Declined> {
         let capacity = Capacity { samples: N as u16, hypotheses: 1 };
         self.check(capacity)?;
         let space = self.space()?;
-        let planner = Lookahead::new(self.config, dynamics, space);
+        let planner = Lookahead::new(config, dynamics, space);
         let planner = planner.within(evaluations).until(goal);
         Ok(Prepared { planner, capacity })
     }
 
     /// Algorithm 2 for this mission, with none of its samples yet: the memory for [`prepare`](Self::prepare).
-    pub fn scc<D: Dynamics, const N: usize, const H: usize>(
+    pub fn scc<D: Dynamics, G: Region, const N: usize, const H: usize>(
         &self,
-        dynamics: D,
+        Terms { dynamics, config }: Terms<D, G>,
         policy: Policy,
-    ) -> Scc<D, N, H> {
-        Scc::new(self.config, policy, dynamics, Hypotheses::NONE)
+    ) -> Scc<D, N, H, G> {
+        Scc::new(config, policy, dynamics, Hypotheses::NONE)
     }
 
     /// Look-ahead with labels that may be wrong, with none of its samples yet: the memory for
     /// [`prepare`](Self::prepare).
-    pub fn forecast<D: Dynamics, const N: usize, const H: usize>(
+    pub fn forecast<D: Dynamics, G: Region, const N: usize, const H: usize>(
         &self,
-        dynamics: D,
+        Terms { dynamics, config }: Terms<D, G>,
         evaluations: u32,
         goal: Option<Goal>,
-    ) -> Lookahead<D, Forecast<N, H>> {
-        let planner = Lookahead::new(self.config, dynamics, Forecast::NONE);
+    ) -> Lookahead<D, Forecast<N, H>, G> {
+        let planner = Lookahead::new(config, dynamics, Forecast::NONE);
         planner.within(evaluations).until(goal)
     }
 
@@ -142,6 +147,34 @@ impl Setup {
         self.check(capacity)?;
         planner.restart(&self.given, prior, noise).map_err(Declined::Given)?;
         Ok(Prepared { planner, capacity })
+    }
+}
+
+/// What to plan with, and where.
+#[derive(Clone, Copy, Debug)]
+pub struct Terms<D, G> {
+    /// How the vehicle moves.
+    pub dynamics: D,
+    /// What the mission fixes beforehand.
+    pub config: Config<G>,
+}
+
+/// Areas that a chip can plan in, of all that a setup can ask for.
+pub trait Charted: Region {
+    /// The same area; `None` if it is no such area.
+    fn of(area: &MissionArea) -> Option<Self>;
+}
+
+impl Charted for MissionArea {
+    fn of(area: &MissionArea) -> Option<Self> {
+        Some(*area)
+    }
+}
+
+impl Charted for Area {
+    fn of(area: &MissionArea) -> Option<Self> {
+        let is_plain = area.sides().next().is_none() && area.keep_outs().next().is_none();
+        is_plain.then(|| area.bounds())
     }
 }
 
@@ -167,7 +200,7 @@ pub trait Restart: Planner {
     ) -> Result<(), NoVersionSpace>;
 }
 
-impl<D: Dynamics, const N: usize, const H: usize> Restart for Scc<D, N, H> {
+impl<D: Dynamics, G: Region, const N: usize, const H: usize> Restart for Scc<D, N, H, G> {
     const CAPACITY: Capacity = Capacity { samples: N as u16, hypotheses: H as u16 };
 
     fn restart(
@@ -180,7 +213,9 @@ impl<D: Dynamics, const N: usize, const H: usize> Restart for Scc<D, N, H> {
     }
 }
 
-impl<D: Dynamics, const N: usize, const H: usize> Restart for Lookahead<D, Forecast<N, H>> {
+impl<D: Dynamics, G: Region, const N: usize, const H: usize> Restart
+    for Lookahead<D, Forecast<N, H>, G>
+{
     const CAPACITY: Capacity = Capacity { samples: N as u16, hypotheses: H as u16 };
 
     fn restart(

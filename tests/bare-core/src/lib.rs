@@ -29,9 +29,10 @@ pub use riscv_rt::entry;
 mod on_target {
     use core::convert::Infallible;
 
+    use planner_core::Area;
     use planner_core::link::delivery::Link;
     use planner_core::link::message::{Algorithm, ClockRate, Declined};
-    use planner_core::link::station::{Known, Station};
+    use planner_core::link::station::{Charted, Known, Station};
     use planner_core::motion::unicycle::Unicycle;
 
     use crate::port::{Semihosting, Streams, ticks};
@@ -53,10 +54,10 @@ mod on_target {
         loop {
             let setup = station.await_setup();
             // How it ended is the host's to judge.
-            let _ = match (setup.dynamics::<Unicycle>(), setup.algorithm) {
+            let _ = match (setup.terms::<Unicycle, Area>(), setup.algorithm) {
                 (Err(declined), _) => station.decline(declined),
-                (Ok(dynamics), Algorithm::Cfc) => {
-                    station.fly(&setup, &mut setup.cfc::<_, N>(dynamics), |_| {})
+                (Ok(terms), Algorithm::Cfc) => {
+                    station.fly(&setup, &mut setup.cfc::<_, _, N>(terms), |_| {})
                 }
                 _ => station.decline(Declined::Algorithm),
             };
@@ -69,45 +70,45 @@ mod on_target {
         let mut station = station(&streams);
         loop {
             let setup = station.await_setup();
-            let _ = match (setup.dynamics::<Unicycle>(), setup.algorithm) {
+            let _ = match (setup.terms::<Unicycle, Area>(), setup.algorithm) {
                 (Err(declined), _) => station.decline(declined),
-                (Ok(dynamics), Algorithm::Lookahead { evaluations, goal, noise: None }) => {
-                    let mut planner = setup.lookahead::<_, N>(dynamics, evaluations, goal);
+                (Ok(terms), Algorithm::Lookahead { evaluations, goal, noise: None }) => {
+                    let mut planner = setup.lookahead::<_, _, N>(terms, evaluations, goal);
                     station.fly(&setup, &mut planner, |_| {})
                 }
-                (Ok(dynamics), Algorithm::Cfc) => {
-                    station.fly(&setup, &mut setup.cfc::<_, N>(dynamics), |_| {})
+                (Ok(terms), Algorithm::Cfc) => {
+                    station.fly(&setup, &mut setup.cfc::<_, _, N>(terms), |_| {})
                 }
                 _ => station.decline(Declined::Algorithm),
             };
         }
     }
 
-    /// Flies missions of all algorithms with vehicles of one type and room for `N` samples and `H` hypotheses.
-    pub fn any<D: Known, const N: usize, const H: usize>() -> ! {
+    /// Flies missions of all algorithms with vehicles of one type in areas of one type, and room for `N` samples and `H` hypotheses.
+    pub fn any<D: Known, G: Charted, const N: usize, const H: usize>() -> ! {
         let streams = open();
         let mut station = station(&streams);
         loop {
             let setup = station.await_setup();
-            let dynamics: D = match setup.dynamics() {
-                Ok(dynamics) => dynamics,
+            let terms = match setup.terms::<D, G>() {
+                Ok(terms) => terms,
                 Err(declined) => {
                     let _ = station.decline(declined);
                     continue;
                 }
             };
             let _ = match setup.algorithm {
-                Algorithm::Cfc => station.fly(&setup, &mut setup.cfc::<_, N>(dynamics), |_| {}),
+                Algorithm::Cfc => station.fly(&setup, &mut setup.cfc::<_, _, N>(terms), |_| {}),
                 Algorithm::Lookahead { evaluations, goal, noise: None } => {
-                    let mut planner = setup.lookahead::<_, N>(dynamics, evaluations, goal);
+                    let mut planner = setup.lookahead::<_, _, N>(terms, evaluations, goal);
                     station.fly(&setup, &mut planner, |_| {})
                 }
                 Algorithm::Lookahead { evaluations, goal, noise: Some((noise, prior)) } => {
-                    let mut planner = setup.forecast::<_, N, H>(dynamics, evaluations, goal);
+                    let mut planner = setup.forecast::<_, _, N, H>(terms, evaluations, goal);
                     station.fly(&setup, &mut setup.prepare(&mut planner, prior, noise), |_| {})
                 }
                 Algorithm::Scc { noise, policy, prior } => {
-                    let mut planner = setup.scc::<_, N, H>(dynamics, policy);
+                    let mut planner = setup.scc::<_, _, N, H>(terms, policy);
                     station.fly(&setup, &mut setup.prepare(&mut planner, prior, noise), |_| {})
                 }
             };

@@ -6,6 +6,7 @@ use nalgebra::Point2;
 use planner_core::belief::consistent_lines::Certainty;
 use planner_core::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
 use planner_core::geometry::line::Line;
+use planner_core::geometry::region::Region;
 use planner_core::motion::action::Action;
 use planner_core::motion::dynamics::{Dynamics, Pose, Ray, Side};
 use planner_core::planner::StopReason;
@@ -28,18 +29,18 @@ pub enum Rung {
 }
 
 /// The ladder of a problem without a rule.
-pub struct Ladder<'a, D> {
+pub struct Ladder<'a, D, G> {
     /// The problem.
-    pub problem: Problem<'a, ArcRule>,
+    pub problem: Problem<'a, ArcRule, G>,
     /// The action set.
     pub dynamics: &'a D,
 }
 
-impl<D: Dynamics> Ladder<'_, D> {
+impl<D: Dynamics, G: Region> Ladder<'_, D, G> {
     /// The distance in metres from a site to the nearest uncertain ground inside the area.
     pub fn distance(&self, site: Site) -> Option<f64> {
         let from = Point2::<f64>::from(site);
-        let area = Polygon::from(self.problem.area);
+        let area = Polygon::from(self.problem.area.bounds());
         let to = |line: Line| {
             let part = area.clip(&line, 1.0);
             let ends: Vec<_> =

@@ -5,7 +5,7 @@
 #[cfg(target_os = "none")]
 #[bare_core::entry]
 fn main() -> ! {
-    bare_core::any::<planner_core::Unicycle, 68, 2081>()
+    bare_core::any::<planner_core::Unicycle, planner_core::Area, 68, 2081>()
 }
 
 /// On a host there is nothing to run.

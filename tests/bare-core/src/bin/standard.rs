@@ -5,7 +5,7 @@
 #[cfg(target_os = "none")]
 #[bare_core::entry]
 fn main() -> ! {
-    bare_core::any::<planner_core::Unicycle, 36, 529>()
+    bare_core::any::<planner_core::Unicycle, planner_core::Area, 36, 529>()
 }
 
 /// On a host there is nothing to run.

@@ -5,7 +5,7 @@
 #[cfg(target_os = "none")]
 #[bare_core::entry]
 fn main() -> ! {
-    bare_core::any::<planner_core::AnyVehicle, 36, 529>()
+    bare_core::any::<planner_core::AnyVehicle, planner_core::link::message::MissionArea, 36, 529>()
 }
 
 /// On a host there is nothing to run.

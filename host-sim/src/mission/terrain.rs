@@ -1,0 +1,134 @@
+//! The area of a mission and what is kept out of, as scenario files describe them.
+
+use anyhow::Result;
+use nalgebra::{Point2, Vector2};
+use planner_core::geometry::area::Area;
+use planner_core::geometry::hull::Hull;
+use planner_core::geometry::lattice::{Site, UNITS_PER_METRE};
+use planner_core::geometry::line::Line;
+use planner_core::geometry::region::Region as _;
+use planner_core::geometry::terrain::RoundedHull;
+use planner_core::link::message::{MOST_CORNERS, MOST_KEEP_OUTS, MissionArea};
+use serde::Deserialize;
+
+use crate::mission::scenario::site;
+use crate::mission::strict::{Numbers, Table, wrong};
+use crate::world::polygon::Polygon;
+
+/// `area` of a scenario file, metres: a rectangle, or a convex polygon by its corners in order.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct AreaTable {
+    x: Option<Numbers<2>>,
+    z: Option<Numbers<2>>,
+    polygon: Option<Vec<Numbers<2>>>,
+}
+
+impl Default for AreaTable {
+    fn default() -> Self {
+        let range = || Some(Numbers([0.0, 20.0]));
+        Self { x: range(), z: range(), polygon: None }
+    }
+}
+
+/// One of `keep_out`, metres: a disc, or a convex polygon.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct KeepOutTable {
+    x: Option<f64>,
+    z: Option<f64>,
+    radius: Option<f64>,
+    polygon: Option<Vec<Numbers<2>>>,
+}
+
+/// Where motions may go.
+///
+/// # Errors
+/// Names the field, what was found and what was expected.
+pub(crate) fn area(area: &AreaTable, keep_outs: &[Table<KeepOutTable>]) -> Result<MissionArea> {
+    let plain = match (&area.x, &area.z, &area.polygon) {
+        (Some(Numbers([x0, x1])), Some(Numbers([z0, z1])), None) => {
+            let corners = (site("area", *x0, *z0)?, site("area", *x1, *z1)?);
+            let Some(area) = Area::new(corners.0, corners.1) else {
+                let found = format!("x = [{x0}, {x1}], z = [{z0}, {z1}]");
+                return wrong("area", found, "each range from smaller to larger");
+            };
+            MissionArea::from(area)
+        }
+        (None, None, Some(corners)) => {
+            let hull = hull("area.polygon", corners, 3)?;
+            let found = |why| wrong("area.polygon", why, "a polygon with an inside");
+            MissionArea::new(hull, &[]).or_else(found)?
+        }
+        _ => return wrong("area", "other keys", "either { x, z } or { polygon }"),
+    };
+    if keep_outs.len() > MOST_KEEP_OUTS {
+        return wrong("keep_out", keep_outs.len(), format!("at most {MOST_KEEP_OUTS}"));
+    }
+    let each = keep_outs.iter().enumerate().map(|(i, table)| keep_out(i, &table.0));
+    let keep_outs = each.collect::<Result<Vec<_>>>()?;
+    let corners = plain.corners();
+    let polygon = Hull::new(corners)?;
+    MissionArea::new(polygon, &keep_outs).or_else(|why| wrong("keep_out", why, "smaller ones"))
+}
+
+fn keep_out(number: usize, table: &KeepOutTable) -> Result<RoundedHull<MOST_CORNERS>> {
+    let field = format!("keep_out[{number}]");
+    match (table.x, table.z, table.radius, &table.polygon) {
+        (Some(x), Some(z), Some(radius), None) => {
+            let units = (radius * f64::from(UNITS_PER_METRE)).ceil();
+            if !(radius > 0.0 && radius <= 4096.0) {
+                let expected = "a radius in metres, above 0 and up to 4096";
+                return wrong(&format!("{field}.radius"), radius, expected);
+            }
+            let hull = Hull::new(&[site(&field, x, z)?])?;
+            Ok(RoundedHull { hull, radius: units as u32 })
+        }
+        (None, None, None, Some(corners)) => {
+            Ok(RoundedHull { hull: hull(&format!("{field}.polygon"), corners, 2)?, radius: 0 })
+        }
+        _ => wrong(&field, "other keys", "either { x, z, radius } or { polygon }"),
+    }
+}
+
+fn hull(field: &str, corners: &[Numbers<2>], least: usize) -> Result<Hull<MOST_CORNERS>> {
+    if corners.len() < least {
+        return wrong(field, format!("{} corners", corners.len()), format!("{least} at least"));
+    }
+    let each = corners.iter().enumerate();
+    let sites = each.map(|(i, Numbers([x, z]))| site(&format!("{field}[{i}]"), *x, *z));
+    let sites = sites.collect::<Result<Vec<Site>>>()?;
+    Hull::new(&sites).or_else(|why| {
+        let list = corners.iter().map(|Numbers([x, z])| format!("[{x}, {z}]"));
+        let expected = format!(
+            "the corners of a convex polygon in order around it, at most {MOST_CORNERS} ({why})"
+        );
+        wrong(field, format!("[{}]", list.collect::<Vec<_>>().join(", ")), expected)
+    })
+}
+
+/// Whether a position is where the agent may be.
+///
+/// # Errors
+/// Names `field` and what is in the way.
+pub(crate) fn check_inside(field: &str, site: Site, area: &MissionArea) -> Result<()> {
+    let at = Point2::<f64>::from(site);
+    let found = format!("({}, {})", at.x, at.y);
+    if !area.encloses(site) {
+        return wrong(field, found, "a point inside the area");
+    }
+    let in_the_way = area.keep_outs().position(|it| !it.is_clear_of(&[site], 0));
+    in_the_way.map_or(Ok(()), |k| wrong(field, found, format!("a point outside keep_out[{k}]")))
+}
+
+/// Whether any of an area is further than a margin from its border.
+pub(crate) fn leaves_any(area: &MissionArea, margin: f64) -> bool {
+    let whole = Polygon::from(*area);
+    let edges = whole.0.iter().zip(whole.0.iter().cycle().skip(1));
+    let further = |rest: Polygon, (a, b): (&Point2<f64>, &Point2<f64>)| {
+        let inwards = Vector2::new(a.y - b.y, b.x - a.x).normalize();
+        let line = Line::through(a + inwards * margin, inwards);
+        line.map_or(rest.clone(), |line| rest.clip(&line, 1.0))
+    };
+    edges.fold(whole.clone(), further).area() > 0.0
+}
