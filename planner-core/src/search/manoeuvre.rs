@@ -1,7 +1,7 @@
 //! The way to where a label can be asked, for a vehicle that cannot turn on the spot.
 //!
-//! It holds its circle to one side for some motions, until it has gone round at most, and drives straight on from
-//! there for some more: `L..L S..S` or `R..R S..S`. After each of these motions it sees whether the problem is
+//! It holds its circle to one side for some motions (shorter ones where it is not safe and its own would leave the
+//! area), until it has gone round at most, and drives straight on from there for some more: `L..L S..S` or `R..R S..S`. After each of these motions it sees whether the problem is
 //! feasible there, and the first motion of the fewest is the one to make. Where there is none it looks at *long* ways,
 //! which after up to eight straight motions go round to either side once more, as the shortest paths of a car do
 //! (Dubins, 1957): `L..L S..S R..R` and the like. So that it is never cornered for want of caution, each motion ends
@@ -140,24 +140,45 @@ impl<D: Dynamics> Manoeuvre<'_, '_, '_, D> {
     fn hold(&mut self, round: &mut Round) -> Option<(Leg, f32)> {
         let Round { from, side, pose, .. } = *round;
         round.motions += 1;
-        let orbit = self.dynamics.orbit(pose, side)?;
-        let after = self.dynamics.target(pose, orbit.action)?;
-        let is_inside = self.start == Start::Outside
-            || self.problem.area.contains(after.site)
-                && self.dynamics.bulges_inside(pose, after, self.problem.area)
-                && self.may_hold(pose, after, side);
+        let (action, after) = self.sharpest(pose, side)?;
         let turned = match side {
             Side::Left => after.heading.0.wrapping_sub(from.heading.0),
             Side::Right => from.heading.0.wrapping_sub(after.heading.0),
         };
         // Beyond a whole turn there is nothing new.
-        if !is_inside || turned <= round.turned || !self.is_short(round.motions) {
+        if turned <= round.turned || !self.is_short(round.motions) {
             return None;
         }
-        let first = *round.first.get_or_insert((orbit.action, after));
+        let first = *round.first.get_or_insert((action, after));
         (round.pose, round.turned) = (after, turned);
         let free = self.look(after, (first, round.motions))?;
         Some((first, free))
+    }
+
+    /// The motion that holds its circle to a side. Where that would leave the area, and it is not safe either way, the
+    /// longest of the sharpest shorter ones that stays: they bulge less.
+    fn sharpest(&self, pose: Pose, side: Side) -> Option<Leg> {
+        let (dynamics, area, grid) = (self.dynamics, self.problem.area, self.dynamics.grid());
+        let stays = |after: Pose| {
+            self.start == Start::Outside
+                || area.contains(after.site) && dynamics.bulges_inside(pose, after, area)
+        };
+        let action = dynamics.orbit(pose, side)?.action;
+        let after = dynamics.target(pose, action)?;
+        if stays(after) && (self.start == Start::Outside || self.may_hold(pose, after, side)) {
+            return Some((action, after));
+        }
+        if dynamics.is_safe(pose, area) {
+            return None;
+        }
+        let (_, speed) = grid.split(action);
+        (1..speed).rev().find_map(|speed| {
+            let [left, right] = dynamics.rays_at(speed)?;
+            let n = if side == Side::Left { left.saturating_sub(1) } else { right };
+            let ray = (n > 0).then(|| dynamics.ray(pose, side, n))?;
+            let after = dynamics.arrive(pose, &ray, speed).ok().filter(|after| stays(*after))?;
+            Some((grid.action(ray.index, speed), after))
+        })
     }
 
     /// Whether one more motion round to a side leaves it safe, if it is: on the circle that it goes round, whatever
