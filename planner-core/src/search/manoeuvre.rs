@@ -18,7 +18,7 @@ use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Orbit, Pose, Side};
 use crate::search::circles::Search;
 use crate::search::dead_end::DeadEnd;
-use crate::search::direction_rule::ArcRule;
+use crate::search::direction_rule::DirectionRule;
 use crate::search::objective::Effort;
 use crate::search::problem::Problem;
 
@@ -62,8 +62,8 @@ struct Round {
     first: Option<Leg>,
 }
 
-struct Manoeuvre<'d, 'p, 'a, D> {
-    problem: &'p Problem<'a, ArcRule>,
+struct Manoeuvre<'d, 'p, 'a, D, R> {
+    problem: &'p Problem<'a, R>,
     dynamics: &'d D,
     effort: Effort,
     /// The shortest way to where the problem is feasible.
@@ -84,8 +84,8 @@ struct Manoeuvre<'d, 'p, 'a, D> {
 ///
 /// # Errors
 /// Why there is none.
-pub(crate) fn manoeuvre<D: Dynamics>(
-    problem: &Problem<'_, ArcRule>,
+pub(crate) fn manoeuvre<D: Dynamics, R: DirectionRule>(
+    problem: &Problem<'_, R>,
     search: &mut Search<'_, D>,
 ) -> Result<Leg, DeadEnd> {
     let (dynamics, from) = (search.dynamics, search.pose);
@@ -129,7 +129,7 @@ pub(crate) fn manoeuvre<D: Dynamics>(
     }
 }
 
-impl<D: Dynamics> Manoeuvre<'_, '_, '_, D> {
+impl<D: Dynamics, R: DirectionRule> Manoeuvre<'_, '_, '_, D, R> {
     /// Whether a way of so many motions is worth knowing.
     fn is_short(&self, motions: u32) -> bool {
         motions < self.shortest.map_or(MOST, |(_, least)| least) && self.effort.is_enough()
