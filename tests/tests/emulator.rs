@@ -30,7 +30,7 @@ use tests::program::build;
 
 /// Missions of every vehicle by every algorithm, of some with robots that err.
 fn vehicles() -> Vec<Mission> {
-    (0..cases(12, 24)).map(|number| of_any_vehicle(number, 8)).collect()
+    (0..cases(6, 24)).map(|number| of_any_vehicle(number, 8)).collect()
 }
 
 /// The paper's two examples, then random fields: both algorithms and look-ahead with true labels, with the paper's

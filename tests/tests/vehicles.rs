@@ -229,7 +229,9 @@ fn contradicts<D: Dynamics>(
                 let Some(target) = dynamics.target(pose, grid.action(ray.index, speed)) else {
                     continue;
                 };
-                if !field.area.contains(target.site) || !stays_inside(dynamics, field, pose, target)
+                // As the vehicle may: the triangle about an arc stays inside, not the arc alone.
+                if !field.area.contains(target.site)
+                    || !dynamics.stays_inside(pose, target, &field.area)
                 {
                     continue;
                 }

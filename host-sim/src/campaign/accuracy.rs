@@ -12,6 +12,7 @@ use crate::campaign::spread::Spread;
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::Mission;
 use crate::mission::read_out::ReadOut;
+use crate::mission::vehicle::VehicleTable;
 use crate::world::polygon::misclassified;
 
 /// Steps at which missions are compared.
@@ -70,6 +71,9 @@ pub struct Summary {
     pub fields: u64,
     /// Seed of the ensemble.
     pub seed: u64,
+    /// What moved, unless it is the unicycle of a fan.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub vehicle: Option<VehicleTable>,
     /// The ensemble as steps go by.
     pub rows: Vec<Row>,
     /// How many missions ended for which reason.
@@ -149,6 +153,7 @@ impl Summary {
             algorithm: campaign.algorithm,
             fields: campaign.fields,
             seed: campaign.seed,
+            vehicle: VehicleTable::of(campaign.vehicle),
             rows: (0..stages).map(|stage| row(&after(stage))).collect(),
             ends,
             recoveries,

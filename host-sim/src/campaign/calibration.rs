@@ -12,6 +12,7 @@ use crate::campaign::spread::Spread;
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::{Mission, Table};
 use crate::mission::read_out::{LEVEL, ReadOut};
+use crate::mission::vehicle::VehicleTable;
 use crate::world::noise::limit;
 
 /// Bits told, and how often what is stated is so. A mission that ended earlier does not count.
@@ -98,6 +99,9 @@ pub struct Summary {
     pub fields: u64,
     /// Seed of the ensemble.
     pub seed: u64,
+    /// What moved, unless it is the unicycle of a fan.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub vehicle: Option<VehicleTable>,
     /// Labels are true with this probability.
     pub p: f64,
     /// Bits that a label can tell at most, on average: `1 - H(p)`.
@@ -174,8 +178,8 @@ impl Summary {
         });
         let title =
             format!("{}, {fields} standard fields, seed {seed}, p = {p}", algorithm.title());
-        let rows = rows.collect();
-        Self { title, algorithm, fields, seed, p, limit: limit(p), rows, checkpoints }
+        let (vehicle, rows) = (VehicleTable::of(campaign.vehicle), rows.collect());
+        Self { title, algorithm, fields, seed, vehicle, p, limit: limit(p), rows, checkpoints }
     }
 }
 

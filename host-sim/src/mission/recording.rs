@@ -9,9 +9,7 @@ use planner_core::belief::posterior::Posterior;
 use planner_core::belief::sample::Reading;
 use planner_core::belief::weight::Prior;
 use planner_core::geometry::line::Line;
-use planner_core::motion::any_vehicle::AnyVehicle;
 use planner_core::motion::dynamics::Pose;
-use planner_core::motion::unicycle::Grid;
 use planner_core::robot::agent::Step;
 
 use crate::mission::definition::{Mission, Table};
@@ -22,6 +20,7 @@ use crate::mission::results::{
     NoisyStep, Results, Start, StepResult, recovery_name, stage_name,
 };
 use crate::mission::stop::GoalRecord;
+use crate::mission::vehicle::VehicleTable;
 use crate::world::World;
 use crate::world::polygon::misclassified;
 
@@ -138,7 +137,6 @@ impl Recording {
 }
 
 fn start(mission: &Mission) -> Start {
-    let is_of_a_fan = [Grid::Paper, Grid::Fine].map(AnyVehicle::from).contains(&mission.vehicle);
     Start {
         algorithm: mission.algorithm,
         seed: mission.seed,
@@ -146,7 +144,7 @@ fn start(mission: &Mission) -> Start {
         area: mission.config.area.into(),
         keep_out: mission.config.area.hulls().map(KeepOutRecord::from).collect(),
         oracle: mission.given.samples().iter().map(Into::into).collect(),
-        vehicle: (!is_of_a_fan).then(|| mission.vehicle.into()),
+        vehicle: VehicleTable::of(mission.vehicle),
         pose: mission.start.into(),
         truth: mission.world.line().map(|line| (*line).into()),
         p: mission.noise.map_or(1.0, |noise| noise.p),

@@ -138,6 +138,12 @@ impl VehicleTable {
         Ok(made)
     }
 
+    /// The table of a vehicle, unless it is the unicycle of a fan.
+    pub fn of(vehicle: AnyVehicle) -> Option<Self> {
+        let is_of_a_fan = [Grid::Paper, Grid::Fine].map(AnyVehicle::from).contains(&vehicle);
+        (!is_of_a_fan).then(|| vehicle.into())
+    }
+
     /// Whether each key means something for its kind.
     fn check_keys(&self, source: Source) -> Result<()> {
         let is_car = self.kind == Kind::Car;

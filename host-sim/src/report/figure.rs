@@ -120,10 +120,10 @@ impl Picture {
     /// The path with a tick at each pose that shows its heading; `tick` in metres.
     fn draw_path(&self, chart: &mut Chart, tick: f64) -> Result<()> {
         let Some((start, stops)) = &self.path else { return Ok(()) };
-        let places = stops.iter().map(|stop| stop.at);
-        let corners: Vec<_> = std::iter::once(*start).chain(places).map(xy).collect();
+        let places = stops.iter().flat_map(|stop| &stop.way);
+        let corners: Vec<_> = std::iter::once(start).chain(places).copied().map(xy).collect();
         chart.draw_series([PathElement::new(corners, PATH.stroke_width(1))]).map_err(failed)?;
-        for (&Stop { at, heading, sensed }, number) in stops.iter().zip(1..) {
+        for (&Stop { at, heading, sensed, .. }, number) in stops.iter().zip(1..) {
             let (sin, cos) = libm::sincos(heading);
             let tip = at + Vector2::new(cos, sin) * tick;
             chart

@@ -1,6 +1,6 @@
 //! What a figure shows: plain data, made of a mission's results and of what is known in the end.
 
-use nalgebra::{Point2, Vector2};
+use nalgebra::{Point2, Rotation2, Vector2};
 use planner_core::belief::consistent_lines::Certainty;
 use planner_core::belief::estimate;
 use planner_core::belief::posterior::Posterior;
@@ -11,6 +11,7 @@ use planner_core::geometry::line::Line;
 use planner_core::geometry::local_line::LocalLine;
 use planner_core::geometry::region::Region as _;
 use planner_core::link::message::MissionArea;
+use planner_core::motion::any_vehicle::AnyVehicle;
 
 use crate::mission::definition::Table;
 use crate::mission::read_out::LEVEL;
@@ -64,8 +65,10 @@ pub struct Dot {
 }
 
 /// The end of a step.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Stop {
+    /// Places on the way there, the last of them the end.
+    pub way: Vec<Point2<f64>>,
     /// Where.
     pub at: Point2<f64>,
     /// Radians.
@@ -163,7 +166,14 @@ impl Picture {
             label: s.label,
             wrong: !mission.world.agrees(s.site, s.label),
         };
+        let mut from = Point2::from(mission.start.site);
         let stops = results.steps.iter().map(|step| Stop {
+            way: {
+                let to = Point2::new(step.pose.x, step.pose.z);
+                let is_car = matches!(mission.vehicle, AnyVehicle::Car(_));
+                let turn = if is_car { step.action.w.into() } else { 0.0 };
+                arc(std::mem::replace(&mut from, to), to, turn)
+            },
             at: Point2::new(step.pose.x, step.pose.z),
             heading: step.pose.heading,
             sensed: step.label.is_some_and(|label| label != 0),
@@ -228,6 +238,20 @@ impl Picture {
         let lines = lines.collect();
         Some(Self { ground: Ground::Plain, path: None, lines, ..Self::of(title, recording) })
     }
+}
+
+/// Places along the arc from one place to another on which one turns so far; of a straight way the end.
+fn arc(from: Point2<f64>, to: Point2<f64>, turn: f64) -> Vec<Point2<f64>> {
+    const PARTS: u32 = 12;
+    if turn == 0.0 {
+        return vec![to];
+    }
+    let place = |part: u32| {
+        let half = turn / 2.0 * f64::from(part) / f64::from(PARTS);
+        let share = libm::sin(half) / libm::sin(turn / 2.0);
+        from + Rotation2::new(half - turn / 2.0) * (to - from) * share
+    };
+    (1..PARTS).map(place).chain([to]).collect()
 }
 
 /// The lines at the two ends of a credible set's slopes: the paper's `l1` and `l2`.

@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::Value;
 
-use crate::{GOOD, folder, prints};
+use crate::{GOOD, folder, prints, refuses};
 
 #[test]
 fn a_campaign_prints_tables_and_writes_rows() {
@@ -190,4 +190,53 @@ fn labels_err_in_a_comparison_with_algorithm_2_unless_one_says() {
     assert!(prints(folder.path(), &quick).contains("p = 0.7"));
     let table = prints(folder.path(), &[&quick[..], &["--p", "1"]].concat());
     assert!(table.contains("true labels") && table.contains("Algorithm 2 (scc)"), "{table}");
+}
+
+/// The numbers of a vehicle are flags, and the summary names what flew.
+#[test]
+fn a_campaign_flies_any_vehicle() {
+    let folder = folder();
+    let summary = |flags: &[&str]| -> Value {
+        let args = ["campaign", "--fields", "6", "--steps", "6", "--format", "json"];
+        let summary = prints(folder.path(), &[&args[..], flags].concat());
+        serde_json::from_str(&summary).expect("JSON")
+    };
+    assert!(summary(&[])["vehicle"].is_null());
+    let car =
+        summary(&["--vehicle", "car", "--radius", "3", "--reach", "1.8", "--shortest", "0.5"]);
+    let told = &car["vehicle"];
+    assert_eq!((&told["kind"], &told["radius"]), (&"car".into(), &3.0.into()));
+    assert_eq!((&told["reach"], &told["shortest"]), (&1.8.into(), &0.5.into()));
+    let boat =
+        ["--vehicle", "boat", "--sharpest", "0.35", "--speed-step", "0.2", "--turn-step", "0.02"];
+    let noisy = summary(&[&boat[..], &["--algorithm", "scc"]].concat());
+    assert_eq!(
+        (&noisy["vehicle"]["kind"], &noisy["vehicle"]["step"]),
+        (&"boat".into(), &0.2.into())
+    );
+    let both = summary(&[&boat[..], &["--compare", "cfc,lookahead"]].concat());
+    assert_eq!(both[1]["vehicle"]["turn_step"], 0.02);
+}
+
+#[test]
+fn bad_vehicles_of_campaigns_are_refused() {
+    let folder = folder();
+    let cases: [(&[&str], &[&str]); 9] = [
+        (&["--vehicle", "tank"], &["--vehicle", "tank", "car"]),
+        (&["--vehicle", "car"], &["--radius", "found none", "turning circle"]),
+        (&["--radius", "3"], &["--radius", "a unicycle", "a kind that has it"]),
+        (&["--vehicle", "car", "--radius=-3"], &["--radius", "found -3", "a millimetre"]),
+        (&["--vehicle", "car", "--radius", "12"], &["--vehicle", "20 m x 20 m", "25110 mm"]),
+        (&["--vehicle", "boat", "--speed-step", "0.3"], &["--reach", "found 2", "steps of 0.3"]),
+        (&["--vehicle", "boat", "--fan", "fine", "--turn-step", "0.01"], &["--turn-step", "a fan"]),
+        (&["--vehicle", "boat", "--compare", "cfc,random"], &["--vehicle", "with random"]),
+        (
+            &["--vehicle", "car", "--radius", "9.8", "--tolerance", "1"],
+            &["--vehicle", "less 1 m all around"],
+        ),
+    ];
+    for (flags, parts) in cases {
+        let args = [&["campaign", "--fields", "2"], flags].concat();
+        refuses(folder.path(), &args, parts);
+    }
 }

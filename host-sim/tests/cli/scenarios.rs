@@ -2,6 +2,8 @@
 
 use std::fs;
 
+use serde_json::Value;
+
 use crate::{GOOD, folder, prints, refuses};
 
 #[test]
@@ -68,7 +70,7 @@ fn bad_scenarios_are_refused_by_file_and_field() {
 #[test]
 fn bad_vehicles_are_refused() {
     let folder = folder();
-    let cases: [(&str, &str, &[&str]); 17] = [
+    let cases: [(&str, &str, &[&str]); 18] = [
         ("", "{ kind = \"tank\" }", &["bad.toml:1", "tank", "`car`"]),
         ("", "[\"car\", 3.0]", &["bad.toml:1", "a table"]),
         ("", "{ radius = 3.0 }", &["bad.toml:1", "missing field `kind`"]),
@@ -85,6 +87,7 @@ fn bad_vehicles_are_refused() {
         ("", "{ kind = \"boat\", sharpest = 4.0 }", &["vehicle", "0.001 to pi rad"]),
         ("", "{ kind = \"unicycle\", turn_step = 1e-9 }", &["vehicle.turn_step", "microradian"]),
         ("fan = \"fine\"", "{ kind = \"boat\", turn_step = 0.01 }", &["vehicle.turn_step", "fan"]),
+        ("", "{ kind = \"car\", radius = 12.0 }", &["vehicle", "20 m x 20 m", "25110 mm across"]),
         ("", "{ kind = \"boat\" }", &["vehicle", "with random", "cfc, scc or lookahead"]),
     ];
     for (before, vehicle, parts) in cases {
@@ -111,6 +114,7 @@ fn a_vehicle_flies() {
     let paper = trace("");
     let spelt = "reach = 2.0, step = 0.1, sharpest = 1.5707963267948966, turn_step = 0.01";
     assert_eq!(trace(&format!("vehicle = {{ kind = \"unicycle\", {spelt} }}")), paper);
+    assert!(!paper.contains("\"vehicle\""), "the paper's is the fan's");
     let mut traces = vec![paper];
     for vehicle in [
         "{ kind = \"unicycle\", reach = 3.0 }",
@@ -119,6 +123,13 @@ fn a_vehicle_flies() {
     ] {
         let flown = trace(&format!("vehicle = {vehicle}"));
         assert!(flown.contains("\"reason\":\"steps\"") && !traces.contains(&flown), "{flown}");
+        // The trace names it, by keys that make the same vehicle again.
+        let start = flown.lines().next().expect("a record");
+        let start: Value = serde_json::from_str(start).expect("JSON");
+        let keys = start["vehicle"].as_object().expect("a table").iter();
+        let spelt: Vec<_> = keys.map(|(key, value)| format!("{key} = {value}")).collect();
+        assert!(spelt.len() >= 4, "{spelt:?}");
+        assert_eq!(trace(&format!("vehicle = {{ {} }}", spelt.join(", "))), flown);
         traces.push(flown);
     }
 }

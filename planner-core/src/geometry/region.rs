@@ -42,6 +42,14 @@ pub trait Region: Copy {
         self.bounds().contains(q) && self.sides().all(|side| side.at(q) >= 0)
     }
 
+    /// How far inside the border a position lies, in lattice units or somewhat less; negative outside.
+    fn depth(&self, q: Site) -> i32 {
+        let (min, max) = (self.bounds().min(), self.bounds().max());
+        let bounds = [q.x() - min.x(), q.z() - min.z(), max.x() - q.x(), max.z() - q.z()];
+        let side = |it: HalfPlane| it.at(q).checked_div(it.length.into()).unwrap_or(0) as i32;
+        bounds.into_iter().chain(self.sides().map(side)).min().unwrap_or(0)
+    }
+
     /// Whether the agent may be at a position.
     fn contains(&self, q: Site) -> bool {
         self.encloses(q) && self.keep_outs().all(|it| it.is_clear_of(&[q], 0))

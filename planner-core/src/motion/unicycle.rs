@@ -94,7 +94,7 @@ impl Unicycle {
         let step = turn_step_urad as u64 * STEP_PER_URAD;
         // The multiples, rounded to headings, that are less than the sharpest turn, and that turn; so one
         // that is a multiple but for rounding is that multiple.
-        let turns = (((sharpest.0 as u64) << 32) - HALF).div_ceil(step) as u32;
+        let turns = below(((sharpest.0 as u64) << 32) - HALF, step) + 1;
         let grid = match ActionGrid::new(2 * turns + 1, speeds, speed_step_mm) {
             Ok(grid) => grid,
             Err(bad) => return Err(bad),
@@ -159,6 +159,22 @@ impl Unicycle {
         }
         let turned = (j as u64 * self.step + HALF) >> 32;
         (Heading(turned as u32), square_mrad2(j * self.step_urad))
+    }
+}
+
+/// How many steps fit below a turn, both with 32 fractional bits. A long division: a chip would carry the general one
+/// for this alone.
+const fn below(turn: u64, step: u64) -> u32 {
+    let (mut rest, mut count, mut k) = (turn - 1, 0, step.leading_zeros());
+    loop {
+        if rest >= step << k {
+            rest -= step << k;
+            count |= 1 << k;
+        }
+        if k == 0 {
+            return count;
+        }
+        k -= 1;
     }
 }
 

@@ -24,7 +24,7 @@ use crate::search::dead_end::DeadEnd;
 use crate::search::direction_rule::ArcRule;
 use crate::search::objective::{Choice, Effort, LOOKS};
 use crate::search::problem::Problem;
-use crate::search::recovery::{Found, solve_or_recover};
+use crate::search::recovery::{Found, solve_or_recover, turn_round};
 
 /// With this P2 Algorithm 1 learns the most.
 pub const FOLLOWING: Following = Following::AlongBisector;
@@ -103,6 +103,9 @@ impl<D: Dynamics, const N: usize, G: Region> Cfc<D, N, G> {
             if let Some((Choice { action, target, .. }, _)) = findings.best {
                 let found = Found { recovery: None, action, target };
                 return (Ok(found), Phase::Following, search.effort);
+            }
+            if let Some(turned) = turn_round(&problem, search) {
+                return (Ok(turned), Phase::Following, search.effort);
             }
             followed = Some(findings);
         }

@@ -149,8 +149,8 @@ impl<D: Dynamics, B: Foresight, G: Region> Lookahead<D, B, G> {
         let (area, varrho) = (self.config.area, self.config.varrho);
         let rule = ArcRule::default();
         let problem = Problem { lines: self.foresight.ground(), area, varrho, rule };
-        // With a tolerance it comes here often, and rays are passed over by turns that get smaller.
-        let exact = self.config.tolerance == Tolerance::NONE;
+        // With a tolerance it comes here often, and rays are passed over by small turns, as they are at keep-outs.
+        let exact = self.config.tolerance == Tolerance::NONE && area.keep_outs().next().is_none();
         let effort = Effort::of(if exact { LADDER_LOOKS } else { LOOKS });
         let mut search = problem.search(&self.dynamics, pose, effort);
         let search = search.open();

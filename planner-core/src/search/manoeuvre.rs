@@ -1,7 +1,7 @@
 //! The way to where a label can be asked, for a vehicle that cannot turn on the spot.
 //!
-//! It holds its circle to one side for some motions, until it has gone round at most, and drives straight on from
-//! there for some more: `L..L S..S` or `R..R S..S`. After each of these motions it sees whether the problem is
+//! It holds its circle to one side for some motions (shorter ones where it is not safe and its own would leave the
+//! area), until it has gone round at most, and drives straight on from there for some more: `L..L S..S` or `R..R S..S`. After each of these motions it sees whether the problem is
 //! feasible there, and the first motion of the fewest is the one to make. Where there is none it looks at *long* ways,
 //! which after up to eight straight motions go round to either side once more, as the shortest paths of a car do
 //! (Dubins, 1957): `L..L S..S R..R` and the like. So that it is never cornered for want of caution, each motion ends
@@ -18,8 +18,8 @@ use crate::geometry::region::Region;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Orbit, Pose, Side};
 use crate::search::circles::Search;
-use crate::search::dead_end::DeadEnd;
-use crate::search::direction_rule::ArcRule;
+use crate::search::dead_end::{DeadEnd, dead_end_at};
+use crate::search::direction_rule::DirectionRule;
 use crate::search::objective::Effort;
 use crate::search::problem::Problem;
 
@@ -63,8 +63,8 @@ struct Round {
     first: Option<Leg>,
 }
 
-struct Manoeuvre<'d, 'p, 'a, D, G> {
-    problem: &'p Problem<'a, ArcRule, G>,
+struct Manoeuvre<'d, 'p, 'a, D, R, G> {
+    problem: &'p Problem<'a, R, G>,
     dynamics: &'d D,
     effort: Effort,
     /// The shortest way to where the problem is feasible.
@@ -76,6 +76,8 @@ struct Manoeuvre<'d, 'p, 'a, D, G> {
     comes_near: bool,
     is_hemmed_in: bool,
     looks_at_long_ways: bool,
+    /// How far inside motions end at least; negative, outside.
+    depth: i32,
 }
 
 /// The first motion of the shortest way to where the problem, without its rule, is feasible.
@@ -85,8 +87,8 @@ struct Manoeuvre<'d, 'p, 'a, D, G> {
 ///
 /// # Errors
 /// Why there is none.
-pub(crate) fn manoeuvre<D: Dynamics, G: Region>(
-    problem: &Problem<'_, ArcRule, G>,
+pub(crate) fn manoeuvre<D: Dynamics, R: DirectionRule, G: Region>(
+    problem: &Problem<'_, R, G>,
     search: &mut Search<'_, D, G>,
 ) -> Result<Leg, DeadEnd> {
     let (dynamics, from) = (search.dynamics, search.pose);
@@ -104,10 +106,13 @@ pub(crate) fn manoeuvre<D: Dynamics, G: Region>(
         comes_near: search.view.own_label == Certainty::Uncertain,
         is_hemmed_in: search.is_hemmed_in,
         looks_at_long_ways: false,
+        depth: 0,
     };
-    for long in [false, true] {
-        it.looks_at_long_ways = long;
-        if it.shortest.is_none() {
+    let depth = if it.start == Start::Outside { problem.area.depth(from.site) } else { 0 };
+    for (long, depth) in [(false, depth), (true, depth), (false, i32::MIN), (true, i32::MIN)] {
+        (it.looks_at_long_ways, it.depth) = (long, depth);
+        let is_needed = it.shortest.or(it.escape).is_none() && it.start == Start::Outside;
+        if it.shortest.is_none() && (is_needed || depth != i32::MIN) {
             it.drive_on(from, None, 0, search.view.out_of_reach_for());
             for side in [Side::Left, Side::Right] {
                 let mut round =
@@ -124,13 +129,13 @@ pub(crate) fn manoeuvre<D: Dynamics, G: Region>(
         None if !it.effort.is_enough() => Err(DeadEnd::Undecided),
         None if it.start == Start::Outside => Err(DeadEnd::Outside),
         None if it.start == Start::Safe && it.comes_near && !it.is_hemmed_in => {
-            Err(DeadEnd::Resolution)
+            Err(dead_end_at(&problem.area))
         }
         None => Err(DeadEnd::Cornered),
     }
 }
 
-impl<D: Dynamics, G: Region> Manoeuvre<'_, '_, '_, D, G> {
+impl<D: Dynamics, R: DirectionRule, G: Region> Manoeuvre<'_, '_, '_, D, R, G> {
     /// Whether a way of so many motions is worth knowing.
     fn is_short(&self, motions: u32) -> bool {
         motions < self.shortest.map_or(MOST, |(_, least)| least) && self.effort.is_enough()
@@ -141,24 +146,49 @@ impl<D: Dynamics, G: Region> Manoeuvre<'_, '_, '_, D, G> {
     fn hold(&mut self, round: &mut Round) -> Option<(Leg, f32)> {
         let Round { from, side, pose, .. } = *round;
         round.motions += 1;
-        let orbit = self.dynamics.orbit(pose, side)?;
-        let after = self.dynamics.target(pose, orbit.action)?;
-        let is_inside = self.start == Start::Outside
-            || self.problem.area.contains(after.site)
-                && self.dynamics.stays_inside(pose, after, &self.problem.area)
-                && self.may_hold(pose, after, side);
+        let (action, after) = self.sharpest(pose, side)?;
         let turned = match side {
             Side::Left => after.heading.0.wrapping_sub(from.heading.0),
             Side::Right => from.heading.0.wrapping_sub(after.heading.0),
         };
         // Beyond a whole turn there is nothing new.
-        if !is_inside || turned <= round.turned || !self.is_short(round.motions) {
+        if turned <= round.turned || !self.is_short(round.motions) {
             return None;
         }
-        let first = *round.first.get_or_insert((orbit.action, after));
+        let first = *round.first.get_or_insert((action, after));
         (round.pose, round.turned) = (after, turned);
         let free = self.look(after, (first, round.motions))?;
         Some((first, free))
+    }
+
+    /// The motion that holds its circle to a side. Where that would leave the area, and it is not safe either way, the
+    /// longest of the sharpest shorter ones that stays: they bulge less.
+    fn sharpest(&self, pose: Pose, side: Side) -> Option<Leg> {
+        let (dynamics, area, grid) = (self.dynamics, &self.problem.area, self.dynamics.grid());
+        let stays = |after: Pose| self.stays(pose, after);
+        let action = dynamics.orbit(pose, side)?.action;
+        let after = dynamics.target(pose, action)?;
+        if stays(after) && (self.start == Start::Outside || self.may_hold(pose, after, side)) {
+            return Some((action, after));
+        }
+        if dynamics.is_safe(pose, area) {
+            return None;
+        }
+        let (_, speed) = grid.split(action);
+        (1..speed).rev().find_map(|speed| {
+            let [left, right] = dynamics.rays_at(speed)?;
+            let n = if side == Side::Left { left.saturating_sub(1) } else { right };
+            let ray = (n > 0).then(|| dynamics.ray(pose, side, n))?;
+            let after = dynamics.arrive(pose, &ray, speed).ok().filter(|after| stays(*after))?;
+            Some((grid.action(ray.index, speed), after))
+        })
+    }
+
+    /// Whether a motion stays inside, or from outside ends no further out than it may; and touches no keep-out.
+    fn stays(&self, pose: Pose, after: Pose) -> bool {
+        let area = &self.problem.area;
+        (area.encloses(after.site) || area.depth(after.site) >= self.depth && self.depth < 0)
+            && self.dynamics.stays_inside(pose, after, area)
     }
 
     /// Whether one more motion round to a side leaves it safe, if it is: on the circle that it goes round, whatever
@@ -212,18 +242,12 @@ impl<D: Dynamics, G: Region> Manoeuvre<'_, '_, '_, D, G> {
             (1..grid.speeds()).rev().find_map(|speed| {
                 let exists = dynamics.rays_at(speed).is_none_or(|[left, _]| left > 0);
                 let target = exists.then(|| dynamics.arrive(pose, &ray, speed).ok()).flatten()?;
-                let is_inside = self.start == Start::Outside || area.contains(target.site);
-                (is_inside && may_end(target)).then(|| (grid.action(ray.index, speed), target))
+                let stays = self.stays(pose, target) && may_end(target);
+                stays.then(|| (grid.action(ray.index, speed), target))
             })
         };
         fastest(&|target| area.contains(target.site) && dynamics.keeps_inside(pose, target, area))
-            .or_else(|| {
-                if dynamics.is_safe(pose, area) {
-                    None
-                } else {
-                    fastest(&|target| dynamics.stays_inside(pose, target, area))
-                }
-            })
+            .or_else(|| if dynamics.is_safe(pose, area) { None } else { fastest(&|_| true) })
     }
 
     /// Sees whether the problem is feasible at the end of a way: then it is the shortest, and there is nothing to

@@ -18,7 +18,9 @@
 //!
 //! From outside the area, where an error has brought it, (1) and (3) may lead back inside. Else it drives
 //! towards the middle of the area, or away from the keep-out that it is too near to, or turns until it can.
-//! A vehicle that cannot turn on the spot has, in the place of 2 to 4, a way of several motions (`manoeuvre`).
+//! A vehicle that cannot turn on the spot has, in the place of 2 to 4, a way of several motions (`manoeuvre`). Before
+//! (1), and before Algorithm 1 gives P2 up, it takes such a way to where the problem is feasible with its rule: its fan
+//! may lie where the rule allows no direction, and straight on it would learn next to nothing.
 //!
 //! **It ends**, though it has no state. What is known does not change before the next sample, and each
 //! motion lowers a measure: far, the distance to uncertain ground and then the turns to the next drive;
@@ -32,7 +34,7 @@ use crate::geometry::region::Region;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Pose, Ray, Side};
 use crate::search::circles::{Findings, Search};
-use crate::search::dead_end::DeadEnd;
+use crate::search::dead_end::{DeadEnd, dead_end_at};
 use crate::search::detour::{self, Way};
 use crate::search::direction_rule::{ArcRule, DirectionRule};
 use crate::search::manoeuvre::manoeuvre;
@@ -89,6 +91,9 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule, G: Region>(
         return Ok(found(None)((best.action, best.target)));
     }
     if let Some((best, _)) = best_forbidden {
+        if let Some(turned) = turn_round(problem, ladder.search) {
+            return Ok(turned);
+        }
         return Ok(found(Some(Recovery::Undirected))((best.action, best.target)));
     }
     if goes_round(ladder.search.dynamics, ladder.search.pose) {
@@ -109,6 +114,19 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule, G: Region>(
         (None, _) => ladder.transit(),
     };
     leg.map(found(Some(Recovery::Transit)))
+}
+
+/// The way to where a problem is feasible in a direction that its rule allows, for a vehicle that has to go round in
+/// order to turn and is safe: its fan may lie where the rule allows none, and straight on it would learn next to
+/// nothing.
+pub(crate) fn turn_round<D: Dynamics, R: DirectionRule, G: Region>(
+    problem: &Problem<'_, R, G>,
+    search: &mut Search<'_, D, G>,
+) -> Option<Found> {
+    let is_free = goes_round(search.dynamics, search.pose)
+        && search.dynamics.is_safe(search.pose, &problem.area);
+    let (action, target) = is_free.then(|| manoeuvre(problem, search).ok()).flatten()?;
+    Some(Found { recovery: Some(Recovery::Transit), action, target })
 }
 
 /// Whether a vehicle has to go round in order to turn.
@@ -174,7 +192,7 @@ impl<D: Dynamics, G: Region> Ladder<'_, '_, '_, D, G> {
                     Approach::Feasible(leg, motions) => {
                         (nearest, horizon) = (Some(leg), motions - 1);
                     }
-                    Approach::Fruitless => otherwise = DeadEnd::Resolution,
+                    Approach::Fruitless => otherwise = dead_end_at(&self.problem.area),
                     Approach::Blocked => {}
                 }
             }

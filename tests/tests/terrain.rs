@@ -1,0 +1,267 @@
+//! Convex areas with keep-outs: the exact predicates and whole missions, against a geometry library that is not ours.
+
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+use geo::{Contains, Coord, Distance, Euclidean, LineString, Point};
+use host_sim::campaign::standard_field;
+use host_sim::mission::algorithm::Algorithm;
+use host_sim::mission::definition::Mission;
+use host_sim::mission::results::Ending;
+use host_sim::world::noise::{Extent, NoiseModel};
+use nalgebra::Point2;
+use planner_core::belief::tolerance::Tolerance;
+use planner_core::geometry::hull::{Hull, NoHull, are_apart};
+use planner_core::geometry::lattice::{LIMIT, Site, UNITS_PER_METRE};
+use planner_core::geometry::region::Region as _;
+use planner_core::geometry::terrain::RoundedHull;
+use planner_core::link::message::{MOST_CORNERS, MissionArea};
+use planner_core::motion::any_vehicle::AnyVehicle;
+use planner_core::motion::boat::Boat;
+use planner_core::motion::car::{Car, Shape};
+use planner_core::motion::dynamics::Pose;
+use planner_core::motion::unicycle::Unicycle;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+use tests::cases;
+
+fn coord(site: Site) -> Coord {
+    let at = Point2::<f64>::from(site);
+    Coord { x: at.x, y: at.y }
+}
+
+/// A hull as the library has it.
+fn shape(corners: &[Site]) -> geo::Geometry {
+    match corners {
+        [point] => Point::from(coord(*point)).into(),
+        [a, b] => geo::Line::new(coord(*a), coord(*b)).into(),
+        _ => polygon(corners).into(),
+    }
+}
+
+fn polygon(corners: &[Site]) -> geo::Polygon {
+    geo::Polygon::new(corners.iter().map(|at| coord(*at)).collect(), vec![])
+}
+
+/// Some corners on a circle, in order round it: two at least, no two the same.
+fn on_circle(rng: &mut ChaCha8Rng, middle: [f64; 2], radius: f64, count: usize) -> Vec<Site> {
+    loop {
+        let mut turns: Vec<f64> = (0..count).map(|_| rng.random_range(0.0..TAU)).collect();
+        turns.sort_by(f64::total_cmp);
+        let at = |turn: &f64| {
+            let (sin, cos) = turn.sin_cos();
+            let corner = Point2::new(middle[0] + radius * cos, middle[1] + radius * sin);
+            Site::try_from(corner).expect("near")
+        };
+        let corners: Vec<Site> = turns.iter().map(at).collect();
+        if Hull::<8>::new(&corners).is_ok() {
+            return corners;
+        }
+    }
+}
+
+#[test]
+fn hulls_are_apart_as_the_library_says() {
+    let mut rng = ChaCha8Rng::seed_from_u64(1);
+    let (mut meeting, mut tight) = (0, 0);
+    for case in 0..cases(20_000, 400_000) {
+        let mut any = || {
+            let middle = [rng.random_range(-3.0..3.0), rng.random_range(-3.0..3.0)];
+            let (size, count) = (rng.random_range(0.001..3.0), rng.random_range(1..=8));
+            on_circle(&mut rng, middle, size, count)
+        };
+        let (a, b) = (any(), any());
+        let distance = Euclidean.distance(&shape(&a), &shape(&b));
+        let units = distance * f64::from(UNITS_PER_METRE);
+        // As near as the library's rounding lets us.
+        for by in [units - 1e-3, units + 1e-3, 0.5 * units, 2.0 * units] {
+            let whole = by.floor();
+            if whole < 0.0 || (units - whole).abs() < 1e-4 {
+                continue;
+            }
+            let apart = are_apart(&a, &b, whole as u32);
+            assert_eq!(apart, units > whole, "case {case}: {a:?} and {b:?}, {units} and {whole}");
+            assert_eq!(apart, are_apart(&b, &a, whole as u32), "case {case}");
+            tight += 1;
+        }
+        meeting += usize::from(distance == 0.0);
+    }
+    assert!(meeting > 500 && tight > 10_000, "{meeting} {tight}");
+}
+
+#[test]
+fn distances_are_exact_at_the_ends_of_the_lattice() {
+    let site = |x: i64, z: i64| Site::new(x as i32, z as i32).expect("on the lattice");
+    let far = i64::from(LIMIT) - 1;
+    let corner = site(far, far);
+    let diagonal = [site(-far, -far + 1), site(far - 1, far)];
+    // The corner is a unit from the nearer end, and as far from the line as half a unit's diagonal.
+    assert!(are_apart(&[corner], &diagonal, 0) && !are_apart(&[corner], &diagonal, 1));
+    let across = [site(-far, far), site(far, -far)];
+    assert!(!are_apart(&diagonal, &across, 0));
+    assert!(!are_apart(&[site(far, 0)], &[site(-far, 0)], 2 * far as u32));
+    assert!(are_apart(&[site(far, 0)], &[site(-far, 0)], 2 * far as u32 - 1));
+}
+
+#[test]
+fn corners_of_no_convex_polygon_are_refused() {
+    let site = |(x, z)| Site::new(x, z).expect("near");
+    let hull = |corners: &[(i32, i32)]| {
+        Hull::<5>::new(&corners.iter().copied().map(site).collect::<Vec<_>>()).map(drop)
+    };
+    assert_eq!(hull(&[]), Err(NoHull::Empty));
+    assert_eq!(hull(&[(0, 0)]), Ok(()));
+    assert_eq!(hull(&[(0, 0), (0, 0)]), Err(NoHull::NotConvex));
+    assert_eq!(hull(&[(0, 0), (5, 0), (9, 0)]), Err(NoHull::NotConvex), "in line");
+    assert_eq!(hull(&[(0, 0), (9, 0), (2, 2), (0, 9)]), Err(NoHull::NotConvex), "a dent");
+    assert_eq!(hull(&[(0, 0), (9, 9), (9, 0), (0, 9)]), Err(NoHull::NotConvex), "a bow");
+    let star = [(0, 10), (6, -8), (-10, 3), (10, 3), (-6, -8)];
+    assert_eq!(hull(&star), Err(NoHull::NotConvex), "a star");
+    assert_eq!(hull(&[(0, 0), (9, 0), (9, 0), (0, 9)]), Err(NoHull::NotConvex), "one twice");
+    let square = [(0, 0), (9, 0), (9, 9), (0, 9)];
+    assert_eq!(hull(&square), Ok(()));
+    let back: Vec<_> = square.into_iter().rev().collect();
+    assert_eq!(hull(&back), Ok(()));
+    assert_eq!(hull(&[(0, 0), (9, 0), (12, 5), (9, 9), (0, 9), (-3, 5)]), Err(NoHull::TooMany(5)));
+}
+
+/// A standard field in a random polygon with up to four keep-outs.
+fn terrain(mission: &Mission, rng: &mut ChaCha8Rng) -> MissionArea {
+    let places: Vec<Site> = mission.given.samples().iter().map(|sample| sample.site).collect();
+    let border = loop {
+        let (size, count) = (rng.random_range(10.0..14.0), rng.random_range(3..=MOST_CORNERS));
+        let hull = Hull::new(&on_circle(rng, [10.0, 10.0], size, count)).expect("convex");
+        let area = MissionArea::new(hull, &[]).expect("an area");
+        if places.iter().all(|place| area.encloses(*place)) {
+            break hull;
+        }
+    };
+    let mut keep_outs: Vec<RoundedHull<MOST_CORNERS>> = Vec::new();
+    for _ in 0..rng.random_range(1..=4) {
+        let middle = [rng.random_range(1.0..19.0), rng.random_range(1.0..19.0)];
+        let size = rng.random_range(0.2..2.5);
+        let (hull, radius) = if rng.random() {
+            let at = Site::try_from(Point2::from(middle)).expect("near");
+            (Hull::new(&[at]), (size * f64::from(UNITS_PER_METRE)) as u32)
+        } else {
+            let count = rng.random_range(2..=6);
+            (Hull::new(&on_circle(rng, middle, size, count)), 0)
+        };
+        let keep_out = RoundedHull { hull: hull.expect("convex"), radius };
+        let area = MissionArea::new(border, &[keep_out]).expect("an area");
+        if places.iter().all(|place| area.contains(*place)) {
+            keep_outs.push(keep_out);
+        }
+    }
+    MissionArea::new(border, &keep_outs).expect("an area")
+}
+
+/// Where a motion goes along.
+fn swept(from: Pose, to: Pose, control: [f64; 2], is_car: bool) -> LineString {
+    let (start, end) = (coord(from.site), coord(to.site));
+    if !is_car {
+        return LineString::from(vec![start, end]);
+    }
+    let [length, turn] = control;
+    let at = |k: u32| {
+        let share = f64::from(k) / 64.0;
+        let half = 0.5 * turn * share;
+        let chord = if half == 0.0 { length * share } else { length * share * half.sin() / half };
+        let (sin, cos) = (from.heading.radians() + half).sin_cos();
+        Coord { x: start.x + chord * cos, y: start.y + chord * sin }
+    };
+    (0..=64).map(at).collect()
+}
+
+fn vehicles() -> [(&'static str, AnyVehicle); 3] {
+    let steps = Unicycle::new(10_000, 20f64.to_radians(), 21, 100).expect("a grid");
+    let car = Car::new(Shape {
+        radius_mm: 1_000,
+        shortest_mm: 300,
+        turn_step_urad: 10_000,
+        speeds: 21,
+        speed_step_mm: 100,
+    });
+    [
+        ("unicycle", AnyVehicle::Unicycle(Unicycle::paper())),
+        ("boat", AnyVehicle::Boat(Boat::new(steps).expect("a boat"))),
+        ("car", AnyVehicle::Car(car.expect("a car"))),
+    ]
+}
+
+/// Flies a mission; how it ended, its motions, and what was wrong with one if something was.
+fn fly(mission: &Mission) -> (Ending, usize, Option<String>) {
+    let area = mission.config.area;
+    let border = polygon(area.corners());
+    let aimed_for = area.inset(mission.config.tolerance.units()).expect("a narrow margin");
+    let is_car = matches!(mission.vehicle, AnyVehicle::Car(_));
+    let pivots_not = !matches!(mission.vehicle, AnyVehicle::Unicycle(_));
+    // The library's rounding, and that of an arc's end to the lattice.
+    let slack = if is_car { 1e-4 } else { 1e-9 };
+    let (mut from, mut motions, mut wrong) = (mission.start, 0, None);
+    let flown = mission.fly(|step, _| {
+        motions += 1;
+        let control = [step.motion.control.v, step.motion.control.w].map(f64::from);
+        let way = swept(from, step.pose, control, is_car);
+        for keep_out in area.hulls() {
+            let radius = f64::from(keep_out.radius) / f64::from(UNITS_PER_METRE);
+            let hull = shape(keep_out.hull.corners());
+            let distance = Euclidean.distance(&geo::Geometry::from(way.clone()), &hull);
+            if distance < radius - slack || (distance == 0.0 && radius == 0.0 && !is_car) {
+                wrong = Some(format!("motion {motions} is {distance} m from {keep_out:?}"));
+            }
+        }
+        let inside = |at: &Coord| {
+            border.contains(&Point::from(*at))
+                || Euclidean.distance(&Point::from(*at), border.exterior()) < slack
+        };
+        // Within the margin of the tolerance who cannot pivot may have to swing out in order to come back.
+        let swings_out = pivots_not && !aimed_for.contains(from.site);
+        if !swings_out && !way.0.iter().all(inside) {
+            wrong = Some(format!("motion {motions} leaves the area: {way:?}"));
+        }
+        from = step.pose;
+    });
+    let flown = flown.unwrap_or_else(|refused| panic!("{refused}"));
+    (flown.ending, motions, wrong)
+}
+
+#[test]
+fn no_motion_crosses_a_keep_out_or_the_border() {
+    const ALGORITHMS: [Algorithm; 3] = [Algorithm::Cfc, Algorithm::Lookahead, Algorithm::Scc];
+    let all: Vec<_> = (0..cases(600, 10_000))
+        .into_par_iter()
+        .map(|number| {
+            let mut rng = ChaCha8Rng::seed_from_u64(77);
+            rng.set_stream(number);
+            let algorithm = ALGORITHMS[number as usize % 3];
+            let (name, vehicle) = vehicles()[number as usize / 3 % 3];
+            let mut mission = standard_field::standard(5, number, algorithm, 20);
+            mission.vehicle = vehicle;
+            mission.config.area = terrain(&mission, &mut rng);
+            if algorithm == Algorithm::Scc {
+                mission.noise = Some(NoiseModel { p: 0.85, extent: Extent::OutsideBalls(0.0) });
+            }
+            if number % 2 == 1 {
+                mission.config.tolerance = Tolerance::new(0.05).expect("a distance");
+            }
+            let (ending, motions, wrong) = fly(&mission);
+            assert_eq!(wrong, None, "mission {number}, {name}, {algorithm:?}");
+            if ending != Ending::Steps {
+                println!("early {number} {name} {algorithm:?} {ending:?} {motions}");
+            }
+            (name, format!("{algorithm:?}"), format!("{ending:?}"), motions)
+        })
+        .collect();
+    let mut endings = BTreeMap::new();
+    for (name, algorithm, ending, _) in &all {
+        *endings.entry((name, algorithm, ending)).or_insert(0) += 1;
+    }
+    for ((name, algorithm, ending), count) in &endings {
+        println!("{name}, {algorithm}: {count} {ending}");
+    }
+    let motions: usize = all.iter().map(|(.., motions)| motions).sum();
+    println!("{motions} motions");
+    assert!(motions as u64 > 15 * all.len() as u64);
+}
