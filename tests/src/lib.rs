@@ -1,6 +1,6 @@
 //! What the cross-crate tests share: adversarial sites and the slow twin of the version space;
 //! programs for a chip ([`program`]), a core to run them on ([`emulator`]), what they may take
-//! ([`budget`]); a debugger for QEMU ([`debugger`]); beliefs to ask ([`known`]).
+//! ([`budget`]); a debugger for QEMU ([`debugger`]); beliefs to ask ([`known`]); areas with keep-outs ([`terrain`]).
 
 use planner_core::belief::sample::{Label, Sample};
 use planner_core::geometry::lattice::{LIMIT, Site, Vector};
@@ -13,6 +13,7 @@ pub mod emulator;
 pub mod known;
 pub mod link;
 pub mod program;
+pub mod terrain;
 pub mod twins;
 
 /// Whether the long runs are asked for, with the feature `long`.

@@ -18,6 +18,10 @@ use planner_core::motion::any_vehicle::AnyVehicle;
 use planner_core::motion::boat::Boat;
 use planner_core::motion::car::{self, Car};
 use planner_core::motion::unicycle::{Grid, Unicycle};
+use rand::SeedableRng as _;
+use rand_chacha::ChaCha8Rng;
+
+use crate::terrain;
 
 /// How long the chip waits for an answer before it asks again.
 pub const WAIT: Duration = Duration::from_millis(100);
@@ -104,7 +108,7 @@ pub fn stopping(number: u64) -> Mission {
 }
 
 /// Missions of every vehicle by every algorithm: 12 are all pairs of these; every second four of them with a robot
-/// that errs, and a tolerance for that.
+/// that errs, and a tolerance for that; two of five in a polygon with keep-outs.
 ///
 /// # Panics
 /// Never: these are vehicles.
@@ -133,6 +137,11 @@ pub fn of_any_vehicle(number: u64, steps: u32) -> Mission {
     mission.vehicle = made.expect("a vehicle");
     if is_noisy {
         mission.noise = Some(NoiseModel { p: 0.8, extent: Extent::OutsideBalls(0.5) });
+    }
+    if number % 5 < 2 {
+        let mut rng = ChaCha8Rng::seed_from_u64(SEED + 4);
+        rng.set_stream(number);
+        mission.config.area = terrain::around(&mission, &mut rng);
     }
     if number / 4 % 2 == 1 {
         mission.errors = Errors { motion: 0.05, turn: 0.02, position: 0.05, heading: 0.01 };

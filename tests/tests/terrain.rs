@@ -1,7 +1,6 @@
 //! Convex areas with keep-outs: the exact predicates and whole missions, against a geometry library that is not ours.
 
 use std::collections::BTreeMap;
-use std::f64::consts::TAU;
 
 use geo::{Contains, Coord, Distance, Euclidean, LineString, Point};
 use host_sim::campaign::standard_field;
@@ -14,8 +13,6 @@ use planner_core::belief::tolerance::Tolerance;
 use planner_core::geometry::hull::{Hull, NoHull, are_apart};
 use planner_core::geometry::lattice::{LIMIT, Site, UNITS_PER_METRE};
 use planner_core::geometry::region::Region as _;
-use planner_core::geometry::terrain::RoundedHull;
-use planner_core::link::message::{MOST_CORNERS, MissionArea};
 use planner_core::motion::any_vehicle::AnyVehicle;
 use planner_core::motion::boat::Boat;
 use planner_core::motion::car::{Car, Shape};
@@ -25,6 +22,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use tests::cases;
+use tests::terrain::{around, on_circle};
 
 fn coord(site: Site) -> Coord {
     let at = Point2::<f64>::from(site);
@@ -42,23 +40,6 @@ fn shape(corners: &[Site]) -> geo::Geometry {
 
 fn polygon(corners: &[Site]) -> geo::Polygon {
     geo::Polygon::new(corners.iter().map(|at| coord(*at)).collect(), vec![])
-}
-
-/// Some corners on a circle, in order round it: two at least, no two the same.
-fn on_circle(rng: &mut ChaCha8Rng, middle: [f64; 2], radius: f64, count: usize) -> Vec<Site> {
-    loop {
-        let mut turns: Vec<f64> = (0..count).map(|_| rng.random_range(0.0..TAU)).collect();
-        turns.sort_by(f64::total_cmp);
-        let at = |turn: &f64| {
-            let (sin, cos) = turn.sin_cos();
-            let corner = Point2::new(middle[0] + radius * cos, middle[1] + radius * sin);
-            Site::try_from(corner).expect("near")
-        };
-        let corners: Vec<Site> = turns.iter().map(at).collect();
-        if Hull::<8>::new(&corners).is_ok() {
-            return corners;
-        }
-    }
 }
 
 #[test]
@@ -124,37 +105,6 @@ fn corners_of_no_convex_polygon_are_refused() {
     let back: Vec<_> = square.into_iter().rev().collect();
     assert_eq!(hull(&back), Ok(()));
     assert_eq!(hull(&[(0, 0), (9, 0), (12, 5), (9, 9), (0, 9), (-3, 5)]), Err(NoHull::TooMany(5)));
-}
-
-/// A standard field in a random polygon with up to four keep-outs.
-fn terrain(mission: &Mission, rng: &mut ChaCha8Rng) -> MissionArea {
-    let places: Vec<Site> = mission.given.samples().iter().map(|sample| sample.site).collect();
-    let border = loop {
-        let (size, count) = (rng.random_range(10.0..14.0), rng.random_range(3..=MOST_CORNERS));
-        let hull = Hull::new(&on_circle(rng, [10.0, 10.0], size, count)).expect("convex");
-        let area = MissionArea::new(hull, &[]).expect("an area");
-        if places.iter().all(|place| area.encloses(*place)) {
-            break hull;
-        }
-    };
-    let mut keep_outs: Vec<RoundedHull<MOST_CORNERS>> = Vec::new();
-    for _ in 0..rng.random_range(1..=4) {
-        let middle = [rng.random_range(1.0..19.0), rng.random_range(1.0..19.0)];
-        let size = rng.random_range(0.2..2.5);
-        let (hull, radius) = if rng.random() {
-            let at = Site::try_from(Point2::from(middle)).expect("near");
-            (Hull::new(&[at]), (size * f64::from(UNITS_PER_METRE)) as u32)
-        } else {
-            let count = rng.random_range(2..=6);
-            (Hull::new(&on_circle(rng, middle, size, count)), 0)
-        };
-        let keep_out = RoundedHull { hull: hull.expect("convex"), radius };
-        let area = MissionArea::new(border, &[keep_out]).expect("an area");
-        if places.iter().all(|place| area.contains(*place)) {
-            keep_outs.push(keep_out);
-        }
-    }
-    MissionArea::new(border, &keep_outs).expect("an area")
 }
 
 /// Where a motion goes along.
@@ -239,7 +189,7 @@ fn no_motion_crosses_a_keep_out_or_the_border() {
             let (name, vehicle) = vehicles()[number as usize / 3 % 3];
             let mut mission = standard_field::standard(5, number, algorithm, 20);
             mission.vehicle = vehicle;
-            mission.config.area = terrain(&mission, &mut rng);
+            mission.config.area = around(&mission, &mut rng);
             if algorithm == Algorithm::Scc {
                 mission.noise = Some(NoiseModel { p: 0.85, extent: Extent::OutsideBalls(0.0) });
             }
