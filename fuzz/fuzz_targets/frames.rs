@@ -8,9 +8,12 @@ use std::fmt::Debug;
 use crc::{CRC_32_ISO_HDLC, Crc};
 use libfuzzer_sys::fuzz_target;
 use planner_core::belief::sample::{Label, Reading};
+use planner_core::geometry::region::Region as _;
 use planner_core::link::delivery::{Heard, Responder};
 use planner_core::link::frame::{Decoder, Envelope, FRAME, Frame, Message};
-use planner_core::link::message::{Algorithm, Reply, Request, Setup};
+use planner_core::link::message::{Algorithm, MissionArea, Reply, Request, Setup};
+use planner_core::motion::any_vehicle::AnyVehicle;
+use planner_core::motion::contract;
 use planner_core::motion::dynamics::Pose;
 use planner_core::planner::{Plan, Planner};
 
@@ -47,7 +50,8 @@ fn fly<P: Planner>(planner: &mut P, setup: &Setup) {
     let mut pose: Pose = *start;
     for step in 0..STEPS {
         let Plan::Move(motion) = planner.plan(pose) else { return };
-        assert!(config.area.contains(motion.target.site), "out of the area: {motion:?}");
+        let stays = config.area.contains(motion.target.site) || !config.area.contains(pose.site);
+        assert!(stays, "out of the area: {motion:?}");
         pose = motion.target;
         let label = if step % 2 == 0 { Label::Positive } else { Label::Negative };
         let reading = motion.wants_label.then_some(Reading::Side(label));
@@ -81,25 +85,28 @@ fuzz_target!(|bytes: &[u8]| {
         }
         for envelope in replies {
             let Reply::Setup(setup) = envelope.message else { continue };
+            let Ok(terms) = setup.terms::<AnyVehicle, MissionArea>() else { continue };
+            contract::check(&terms.dynamics).expect("what is no vehicle is declined");
             match setup.algorithm {
                 Algorithm::Cfc => {
-                    if let Ok(mut prepared) = setup.cfc::<16>() {
+                    if let Ok(mut prepared) = setup.cfc::<_, _, 16>(terms) {
                         fly(prepared.planner(), &setup);
                     }
                 }
                 Algorithm::Lookahead { evaluations, goal, noise: None } => {
-                    if let Ok(mut prepared) = setup.lookahead::<16>(evaluations, goal) {
+                    if let Ok(mut prepared) = setup.lookahead::<_, _, 16>(terms, evaluations, goal)
+                    {
                         fly(prepared.planner(), &setup);
                     }
                 }
                 Algorithm::Lookahead { evaluations, goal, noise: Some((noise, prior)) } => {
-                    let mut planner = setup.forecast::<24, 40>(evaluations, goal);
+                    let mut planner = setup.forecast::<_, _, 24, 40>(terms, evaluations, goal);
                     if let Ok(mut prepared) = setup.prepare(&mut planner, prior, noise) {
                         fly(prepared.planner(), &setup);
                     }
                 }
                 Algorithm::Scc { noise, policy, prior } => {
-                    let mut planner = setup.scc::<24, 40>(policy);
+                    let mut planner = setup.scc::<_, _, 24, 40>(terms, policy);
                     if let Ok(mut prepared) = setup.prepare(&mut planner, prior, noise) {
                         fly(prepared.planner(), &setup);
                     }

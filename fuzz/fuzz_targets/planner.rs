@@ -14,6 +14,7 @@ use planner_core::belief::noise::{Noise, Reliability};
 use planner_core::belief::outlook::Foresight;
 use planner_core::belief::posterior::Posterior;
 use planner_core::belief::sample::{Label, Reading, Sample};
+use planner_core::belief::tolerance::Tolerance;
 use planner_core::belief::version_space::VersionSpace;
 use planner_core::belief::weight::Prior;
 use planner_core::belief::{Belief, Refused};
@@ -108,6 +109,7 @@ fn run<D: Dynamics + Copy>(case: &Case, dynamics: D, world: &World) -> Option<()
         } else {
             Following::Unrestricted
         },
+        tolerance: Tolerance::NONE,
     };
     let (x, z, heading) = case.start;
     let start = Pose { site: world.site(x.into(), z.into())?, heading: Heading(heading) };
@@ -147,7 +149,8 @@ fn run<D: Dynamics + Copy>(case: &Case, dynamics: D, world: &World) -> Option<()
         (Policy::MixtureOfStart, Prior::Sequences),
         (Policy::MixtureOfOwn, Prior::Area),
     ] {
-        let noise = Noise { reliability, trusted_radius: case.trusted_radius, tolerance: Tolerance::NONE };
+        let noise =
+            Noise { reliability, trusted_radius: case.trusted_radius, tolerance: Tolerance::NONE };
         let table = Hypotheses::<16, 24>::new(&oracle, prior, noise).ok()?;
         let scc = Scc::new(config, policy, dynamics, table);
         fly_any(case, scc, world, start, &config, |planner, pose| planner.plan(pose));

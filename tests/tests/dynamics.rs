@@ -4,7 +4,7 @@
 use nalgebra::Point2;
 use planner_core::geometry::area::Area;
 use planner_core::geometry::heading::Heading;
-use planner_core::geometry::lattice::{Site, Vector};
+use planner_core::geometry::lattice::{OffLattice, Site, Vector};
 use planner_core::motion::action::{Action, ActionGrid, BadGrid, Control};
 use planner_core::motion::boat::Boat;
 use planner_core::motion::car::{Car, Shape};
@@ -241,6 +241,135 @@ fn each_broken_promise_is_named() {
     assert_eq!(check(Breaks::Nothing), Ok(()));
     assert_eq!(check(Breaks::Spacing), Err(Broken::Spacing(Side::Left, 1)));
     assert_eq!(check(Breaks::Twice), Err(Broken::Index(Side::Left, 1)));
+}
+
+/// A car that breaks one promise of those that the unicycle does not make.
+#[derive(Clone, Copy, Debug)]
+enum CarBreaks {
+    Nothing,
+    MoreWhenSlower,
+    NotAllWhenFastest,
+    KnowsTooMany,
+    KnowsTooFew,
+    EndsElsewhere,
+    EndsStraight,
+    CornerTooFar,
+    OneOrbit,
+    TurnsTheOtherWay,
+    DoesNotTurn,
+    LeavesItsRadius,
+    LeavesItsCentre,
+}
+
+struct FaultyCar(Car, CarBreaks);
+
+impl Dynamics for FaultyCar {
+    fn grid(&self) -> ActionGrid {
+        self.0.grid()
+    }
+
+    fn fan(&self) -> Fan {
+        self.0.fan()
+    }
+
+    fn heading(&self, pose: Pose, side: Side, n: u32) -> Heading {
+        self.0.heading(pose, side, n)
+    }
+
+    fn ray(&self, pose: Pose, side: Side, n: u32) -> Ray {
+        self.0.ray(pose, side, n)
+    }
+
+    fn rays_at(&self, speed: u16) -> Option<[u32; 2]> {
+        let fastest = self.0.grid().speeds() - 1;
+        let at = |speed| self.0.rays_at(speed);
+        match self.1 {
+            CarBreaks::MoreWhenSlower if speed == 9 => at(fastest),
+            CarBreaks::NotAllWhenFastest if speed == fastest => at(fastest / 2),
+            _ => at(speed),
+        }
+    }
+
+    fn arrive(&self, pose: Pose, ray: &Ray, speed: u16) -> Result<Pose, OffLattice> {
+        let end = self.0.arrive(pose, ray, speed)?;
+        Ok(match self.1 {
+            CarBreaks::EndsElsewhere => self.0.arrive(pose, ray, speed - 1)?,
+            CarBreaks::EndsStraight => Pose { heading: ray.heading, ..end },
+            _ => end,
+        })
+    }
+
+    fn corner(&self, from: Pose, to: Pose) -> Option<Vector> {
+        let corner = self.0.corner(from, to)?;
+        let twice = || Vector::new(2 * corner.x(), 2 * corner.z()).expect("near");
+        Some(if matches!(self.1, CarBreaks::CornerTooFar) { twice() } else { corner })
+    }
+
+    fn orbit(&self, pose: Pose, side: Side) -> Option<Orbit> {
+        let orbit = self.0.orbit(pose, side)?;
+        let other = if side == Side::Left { Side::Right } else { Side::Left };
+        match self.1 {
+            CarBreaks::OneOrbit if side == Side::Right => None,
+            CarBreaks::TurnsTheOtherWay => {
+                let Orbit { action, .. } = self.0.orbit(pose, other)?;
+                Some(Orbit { action, ..orbit })
+            }
+            CarBreaks::DoesNotTurn => {
+                let action = self.0.grid().action(self.0.fan().right, 10);
+                Some(Orbit { action, ..orbit })
+            }
+            CarBreaks::LeavesItsRadius => Some(Orbit { radius: orbit.radius / 2, ..orbit }),
+            CarBreaks::LeavesItsCentre => {
+                Some(Orbit { centre: self.0.orbit(pose, other)?.centre, ..orbit })
+            }
+            _ => Some(orbit),
+        }
+    }
+
+    fn turn_in_place(&self, pose: Pose, side: Side) -> Option<(Action, Pose)> {
+        self.0.turn_in_place(pose, side)
+    }
+
+    fn control(&self, action: Action) -> Control {
+        self.0.control(action)
+    }
+
+    fn ray_of(&self, pose: Pose, action: Action) -> Option<Ray> {
+        let (index, speed) = self.0.grid().split(action);
+        match self.1 {
+            CarBreaks::KnowsTooMany if speed == 9 => {
+                self.0.ray_of(pose, self.0.grid().action(index, self.0.grid().speeds() - 1))
+            }
+            CarBreaks::KnowsTooFew if speed == 9 => None,
+            _ => self.0.ray_of(pose, action),
+        }
+    }
+}
+
+#[test]
+fn each_broken_promise_of_a_car_is_named() {
+    let (speeds, speed_step_mm) = (21, 100);
+    let (radius_mm, shortest_mm, turn_step_urad) = (3_000, 500, 50_000);
+    let shape = Shape { radius_mm, shortest_mm, turn_step_urad, speeds, speed_step_mm };
+    let car = Car::new(shape).expect("a car");
+    let check = |breaks| contract::check(&FaultyCar(car, breaks));
+    assert_eq!(check(CarBreaks::Nothing), Ok(()));
+    for (breaks, broken) in [
+        (CarBreaks::MoreWhenSlower, Broken::Speeds(9)),
+        (CarBreaks::NotAllWhenFastest, Broken::Speeds(20)),
+        (CarBreaks::KnowsTooMany, Broken::Speeds(9)),
+        (CarBreaks::KnowsTooFew, Broken::Speeds(9)),
+        (CarBreaks::EndsElsewhere, Broken::Arrival(Side::Left, 0)),
+        (CarBreaks::EndsStraight, Broken::Arrival(Side::Left, 1)),
+        (CarBreaks::CornerTooFar, Broken::Arrival(Side::Left, 1)),
+        (CarBreaks::OneOrbit, Broken::Orbit(Side::Right)),
+        (CarBreaks::TurnsTheOtherWay, Broken::Orbit(Side::Left)),
+        (CarBreaks::DoesNotTurn, Broken::Orbit(Side::Left)),
+        (CarBreaks::LeavesItsRadius, Broken::Orbit(Side::Left)),
+        (CarBreaks::LeavesItsCentre, Broken::Orbit(Side::Left)),
+    ] {
+        assert_eq!(check(breaks), Err(broken), "{breaks:?}");
+    }
 }
 
 #[test]

@@ -14,6 +14,8 @@ use planner_core::geometry::area::Area;
 use planner_core::geometry::heading::Heading;
 use planner_core::geometry::lattice::{Site, Vector};
 use planner_core::geometry::region::Region;
+use planner_core::motion::boat::Boat;
+use planner_core::motion::car::{self, Car};
 use planner_core::motion::dynamics::{Dynamics, Pose};
 use planner_core::motion::holonomic::Holonomic;
 use planner_core::motion::unicycle::Unicycle;
@@ -136,6 +138,19 @@ fn anywhere(rng: &mut ChaCha8Rng) -> Option<(VersionSpace<CAPACITY>, Area, Pose)
     area.contains(site).then_some((space, area, Pose { site, heading }))
 }
 
+/// A car of metres, with a shortest motion, and one of millimetres, whose positions are rounded by much.
+fn cars() -> [Car; 2] {
+    let good = car::Shape {
+        radius_mm: 1_500,
+        shortest_mm: 500,
+        turn_step_urad: 30_000,
+        speeds: 11,
+        speed_step_mm: 200,
+    };
+    let tiny = car::Shape { radius_mm: 6, shortest_mm: 2, speed_step_mm: 1, ..good };
+    [good, tiny].map(|shape| Car::new(shape).expect("a car"))
+}
+
 #[test]
 fn equals_exhaustive_search_anywhere_for_any_grid() {
     let states = AtomicU64::new(0);
@@ -156,6 +171,12 @@ fn equals_exhaustive_search_anywhere_for_any_grid() {
         count += check(&round, &space, area, varrho, pose, &context).0;
         count += check(&tiny, &space, area, varrho, pose, &context).0;
         count += check(&fine, &space, area, varrho, pose, &context).0;
+        // Fewer rays the shorter the motion, of which the shortest are none, and ends that may leave no way on.
+        for car in cars() {
+            count += check(&car, &space, area, varrho, pose, &context).0;
+        }
+        let boat = Boat::new(coarse).expect("a boat");
+        count += check(&boat, &space, area, varrho, pose, &context).0;
         if seed % 8 == 0 {
             count += check(&Unicycle::paper(), &space, area, varrho, pose, &context).0;
         }

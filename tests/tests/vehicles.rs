@@ -7,6 +7,8 @@ use std::fmt::Debug;
 use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::CAPACITY;
+use host_sim::mission::results::Ending;
+use host_sim::world::noise::{Extent, NoiseModel};
 use host_sim::world::reading;
 use nalgebra::{Point2, Vector2};
 use planner_core::belief::consistent_lines::Certainty;
@@ -18,6 +20,7 @@ use planner_core::geometry::heading::Heading;
 use planner_core::geometry::lattice::Site;
 use planner_core::geometry::line::Line;
 use planner_core::geometry::region::Region as _;
+use planner_core::motion::any_vehicle::AnyVehicle;
 use planner_core::motion::boat::Boat;
 use planner_core::motion::car::{Car, Shape};
 use planner_core::motion::contract;
@@ -153,7 +156,7 @@ fn fly_by<D: Dynamics + Copy + Debug>(
         };
         assert!(been.insert((pose.site, pose.heading.0)), "it moves for ever, from {pose:?}");
         assert_eq!(dynamics.target(pose, motion.action), Some(motion.target));
-        assert!(stays_inside(&dynamics, field, pose, motion.target), "{pose:?}: {motion:?}");
+        assert!(stays_inside(&dynamics, field.size, pose, motion.target), "{pose:?}: {motion:?}");
         assert!(was_safe(motion.target) || !was_safe(pose), "it gives up where it is safe");
         pose = motion.target;
         motions += 1;
@@ -172,10 +175,10 @@ fn fly_by<D: Dynamics + Copy + Debug>(
 }
 
 /// Whether all of a motion is inside the area: an arc about the centre that its ends have, point by point.
-fn stays_inside<D: Dynamics>(dynamics: &D, field: &Field, from: Pose, to: Pose) -> bool {
+fn stays_inside<D: Dynamics>(dynamics: &D, size: [f64; 2], from: Pose, to: Pose) -> bool {
     let [a, b] = [from, to].map(|pose| Point2::<f64>::from(pose.site));
     let inside = |p: Point2<f64>| {
-        [p.x, p.y].into_iter().zip(field.size).all(|(at, most)| (-1e-4..=most + 1e-4).contains(&at))
+        [p.x, p.y].into_iter().zip(size).all(|(at, most)| (-1e-4..=most + 1e-4).contains(&at))
     };
     let turn = f64::from(to.heading.0.wrapping_sub(from.heading.0) as i32) / 2f64.powi(32) * TAU;
     if turn == 0.0 || dynamics.corner(from, to).is_none() {
@@ -342,4 +345,44 @@ fn no_mission_on_a_lake_ends_by_a_false_reason() {
         wrong += campaign(&name, lake, boat(reach_mm), f64::from(reach_mm) / 20_000.0 * 2.9);
     }
     assert_eq!(wrong, 0);
+}
+
+/// Rays 1 urad apart, and Algorithm 2 and look-ahead in noise: no motion leaves the area, each ends where the vehicle
+/// can go on, and none ends but at the start, where it could not.
+#[test]
+fn every_algorithm_keeps_a_vehicle_inside_with_the_fine_fan_too() {
+    let missions = (0..cases(32, 400)).into_par_iter().map(|number| {
+        let (is_fine, is_car) = (number % 2 == 0, number / 2 % 2 == 0);
+        let (algorithm, is_noisy) = [
+            (Algorithm::Cfc, false),
+            (Algorithm::Scc, true),
+            (Algorithm::Lookahead, false),
+            (Algorithm::Lookahead, true),
+        ][number as usize / 4 % 4];
+        let mut mission = standard_field::standard(33, number, algorithm, 12);
+        let turn_step_urad = if is_fine { 1 } else { 10_000 };
+        mission.vehicle = if is_car {
+            let shape = Shape { turn_step_urad, ..car(2_000, 2_000).shape() };
+            AnyVehicle::Car(Car::new(shape).expect("a car"))
+        } else {
+            let steps = Unicycle::new(turn_step_urad, 20f64.to_radians(), 21, 100);
+            AnyVehicle::Boat(steps.and_then(Boat::new).expect("a boat"))
+        };
+        if is_noisy {
+            mission.noise = Some(NoiseModel { p: 0.8, extent: Extent::OutsideBalls(0.5) });
+        }
+        let (vehicle, area) = (mission.vehicle, mission.config.area);
+        let (mut pose, mut steps) = (mission.start, 0);
+        let flown = mission.fly(|step, _| {
+            assert!(stays_inside(&vehicle, [standard_field::SIDE_M; 2], pose, step.pose));
+            assert!(vehicle.is_safe(step.pose, &area) || !vehicle.is_safe(pose, &area));
+            (pose, steps) = (step.pose, steps + 1);
+        });
+        let ending = flown.expect("labels that are certain are true").ending;
+        assert!(ending == Ending::Steps || steps == 0, "mission {number}: {ending:?}");
+        steps
+    });
+    let flown = missions.filter(|steps| *steps == 12).count() as u64;
+    println!("{flown} of {} missions made all their steps", cases(32, 400));
+    assert!(flown > cases(32, 400) * 9 / 10);
 }

@@ -90,8 +90,10 @@ impl ActionGrid {
         if speed_step_mm == 0 || longest >= Self::LONGEST_MM as u64 {
             return Err(BadGrid::Reach);
         }
-        let per_metre = (UNITS_PER_METRE as u64) << Self::STEP_BITS;
-        let step_length = ((speed_step_mm as u64 * per_metre + 500) / 1000) as i32;
+        // To the nearest, in 32 bits: whole metres, and of the rest an eighth of numerator and denominator.
+        let per_metre = (UNITS_PER_METRE as u32) << Self::STEP_BITS;
+        let (metres, rest) = (speed_step_mm / 1000, speed_step_mm % 1000);
+        let step_length = (metres * per_metre + (rest * (per_metre / 8) + 62) / 125) as i32;
         Ok(Self { rays, speeds, speed_step_mm, step_length })
     }
 
