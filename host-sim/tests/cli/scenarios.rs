@@ -104,6 +104,80 @@ fn bad_vehicles_are_refused() {
 
 /// The paper's unicycle may be spelt out; a car needs its radius alone.
 #[test]
+fn bad_areas_are_refused() {
+    const SQUARE: &str = "[[0, 0], [20, 0], [20, 20], [0, 20]]";
+    let folder = folder();
+    let many = format!("[{}]", vec!["[0, 0]"; 9].join(", "));
+    let polygons: [(&str, &[&str]); 9] = [
+        ("[]", &["area.polygon", "0 corners", "3 at least"]),
+        ("[[0, 0], [20, 0]]", &["area.polygon", "2 corners", "3 at least"]),
+        ("[[0, 0], [20, 0], [5, 5], [0, 20]]", &["area.polygon", "[5, 5]", "convex", "at most 8"]),
+        ("[[0, 0], [20, 20], [20, 0], [0, 20]]", &["area.polygon", "convex"]),
+        ("[[0, 0], [10, 0], [20, 0], [0, 20]]", &["area.polygon", "no three are in line"]),
+        ("[[0, 0], [20, 0], [0, 20, 3]]", &["bad.toml:1", "array of 2 numbers"]),
+        ("[[0, 0], [9000, 0], [0, 20]]", &["area.polygon[1].x", "found 9000", "8192"]),
+        ("[[0, 0], [10, 0], [0, 10]]", &["oracle[2]", "(18, 16)", "inside the area"]),
+        (&many, &["area.polygon", "at most 8"]),
+    ];
+    let good = GOOD.replace("area = { x = [0.0, 20.0], z = [0.0, 20.0] }\n", "");
+    assert_ne!(good, GOOD);
+    for (polygon, parts) in polygons {
+        let bad = format!("area = {{ polygon = {polygon} }}\n{good}");
+        fs::write(folder.path().join("bad.toml"), bad).expect("a file");
+        refuses(folder.path(), &["run", "bad.toml"], &[&["bad.toml"], parts].concat());
+    }
+    let disc = "{ x = 12, z = 3, radius = 1 }";
+    let nine = vec![disc; 9].join(", ");
+    let keep_outs: [(&str, &[&str]); 10] = [
+        ("{ x = 5, z = 6 }", &["keep_out[0]", "{ x, z, radius } or { polygon }"]),
+        ("{ x = 5, z = 6, radius = 0 }", &["keep_out[0].radius", "found 0", "above 0"]),
+        ("{ x = 5, z = 6, radius = -1 }", &["keep_out[0].radius", "found -1"]),
+        ("{ x = 5, z = 6, radius = nan }", &["keep_out[0].radius", "found NaN"]),
+        ("{ x = 5, z = inf, radius = 1 }", &["keep_out[0].z", "found inf", "finite"]),
+        ("{ polygon = [[5, 6]] }", &["keep_out[0].polygon", "1 corners", "2 at least"]),
+        ("{ polygon = [[5, 6], [5, 6]] }", &["keep_out[0].polygon", "convex"]),
+        ("{ x = 2, z = 1.5, radius = 1 }", &["oracle[0]", "(2, 1)", "outside keep_out[0]"]),
+        ("{ x = 12, z = 3, radius = 1, colour = 2 }", &["bad.toml:1", "colour"]),
+        (&nine, &["keep_out", "found 9", "at most 8"]),
+    ];
+    for (keep_out, parts) in keep_outs {
+        let bad = format!("keep_out = [{keep_out}]\n{GOOD}");
+        fs::write(folder.path().join("bad.toml"), bad).expect("a file");
+        refuses(folder.path(), &["run", "bad.toml"], &[&["bad.toml"], parts].concat());
+    }
+    let over_start = GOOD.replace("heading = 0.0", "x = 12.0, z = 3.5");
+    fs::write(folder.path().join("bad.toml"), format!("keep_out = [{disc}]\n{over_start}"))
+        .expect("a file");
+    let parts = ["bad.toml", "start", "(12, 3.5)", "outside keep_out[0]"];
+    refuses(folder.path(), &["run", "bad.toml"], &parts);
+    let both = format!("area = {{ polygon = {SQUARE}, x = [0, 20] }}\n{good}");
+    fs::write(folder.path().join("bad.toml"), both).expect("a file");
+    refuses(folder.path(), &["run", "bad.toml"], &["bad.toml", "area", "either { x, z }"]);
+}
+
+#[test]
+fn an_area_with_keep_outs_flies() {
+    let folder = folder();
+    let trace = |area: &str| {
+        let good = GOOD.replace("area = { x = [0.0, 20.0], z = [0.0, 20.0] }\n", "");
+        fs::write(folder.path().join("good.toml"), format!("{area}\n{good}")).expect("a file");
+        prints(folder.path(), &["run", "good.toml", "--format", "json", "--figure", "f.svg"])
+    };
+    let plain = trace("");
+    assert!(!plain.contains("polygon") && !plain.contains("keep_out"));
+    let square = "area = { polygon = [[0, 20], [20, 20], [20, 0], [0, 0]] }";
+    assert_eq!(trace(square), plain, "a rectangle is a polygon");
+    let cut = "area = { polygon = [[0, 0], [20, 0], [20, 20], [1, 20]] }";
+    let flown = trace(&format!("{cut}\nkeep_out = [{{ x = 12, z = 3, radius = 1 }}]"));
+    let start: Value = serde_json::from_str(flown.lines().next().expect("a record")).expect("JSON");
+    assert_eq!(start["area"]["polygon"][3], serde_json::json!([1.0, 20.0]));
+    let disc = serde_json::json!([{ "polygon": [[12.0, 3.0]], "radius": 1.0 }]);
+    assert_eq!(start["keep_out"], disc);
+    let figure = fs::read_to_string(folder.path().join("f.svg")).expect("a figure");
+    assert!(figure.contains("kept out of"));
+}
+
+#[test]
 fn a_vehicle_flies() {
     let folder = folder();
     let trace = |vehicle: &str| {
