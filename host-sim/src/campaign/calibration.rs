@@ -1,8 +1,8 @@
 //! What labels that may err tell of what they can tell, and whether the probabilities that are stated hold.
 
-use planner_core::belief::Belief as _;
 use planner_core::belief::hypotheses::Hypothesis;
 use planner_core::belief::posterior::Posterior;
+use planner_core::belief::sample::Sample;
 use planner_core::belief::weight::Prior;
 use planner_core::geometry::line::Line;
 use serde::Serialize;
@@ -183,11 +183,10 @@ impl Summary {
 fn expected(mission: &Mission, table: &Table) -> f64 {
     let mut known = mission.table();
     let given = known.samples().len();
-    let told = table.samples().iter().skip(given).map(|&sample| {
-        let reliability = known.reliability(sample.site);
-        let told = limit(reliability.probability()) - limit(known.chance(sample.site));
-        known.take(sample, reliability).expect("taken in once already");
-        told
+    let told = table.samples().iter().skip(given).map(|&Sample { site, label }| {
+        let [_, bits] = Posterior::new(&known).foretell(site);
+        known.read(site, label).expect("taken in once already");
+        bits
     });
     told.sum()
 }
