@@ -92,7 +92,7 @@ impl<const N: usize, const H: usize, const E: usize> Belief for Hypotheses<N, H,
     }
 
     fn chance(&self, site: Site) -> f64 {
-        Posterior::new(self).foretell(site)[0]
+        Posterior::new(self).chance(site)
     }
 }
 
@@ -197,22 +197,17 @@ impl<'a, const N: usize, const H: usize, const E: usize> Posterior<'a, N, H, E> 
         self.hypotheses.iter().map(share).sum()
     }
 
-    /// The chance that a label read at a site is +1, and the bits that it is expected to tell.
-    pub fn foretell(&self, site: Site) -> [f64; 2] {
-        let p = self.hypotheses.reliability(site).probability();
-        let chance = |above: f64| above * p + (1.0 - above) * (1.0 - p);
-        if !self.hypotheses.is_blurred() {
-            let chance = chance(self.share_above(site));
-            return [chance, certainty(p) - certainty(chance)];
-        }
-        let mut sums = [0.0; 2];
-        for hypothesis in self.hypotheses.iter() {
-            let Some(sides) = self.hypotheses.sides(hypothesis) else { continue };
-            let chance = chance(f64::from(sides(site)[0]));
-            let weight = self.probability(hypothesis);
-            sums = [sums[0] + weight * chance, sums[1] + weight * certainty(chance)];
-        }
-        [sums[0], sums[1] - certainty(sums[0])]
+    /// The chance that a label read at a site is +1.
+    fn chance(&self, site: Site) -> f64 {
+        let table = self.hypotheses;
+        let above = if table.is_blurred() {
+            let sides = |h| Some(f64::from(table.sides(h)?(site)[0]) * self.probability(h));
+            table.iter().filter_map(sides).sum()
+        } else {
+            self.share_above(site)
+        };
+        let p = table.reliability(site).probability();
+        above * p + (1.0 - above) * (1.0 - p)
     }
 
     /// The posterior mean of the line: each hypothesis adds its centre, as unit normals with their
@@ -221,12 +216,6 @@ impl<'a, const N: usize, const H: usize, const E: usize> Posterior<'a, N, H, E> 
     pub fn mean(&self) -> Option<LocalLine> {
         mean(self.hypotheses)
     }
-}
-
-/// What is known beforehand of a label that is +1 with a chance, bits: 1 less its entropy.
-fn certainty(chance: f64) -> f64 {
-    let term = |p: f64| if p > 0.0 { p * libm::log2(p) } else { 0.0 };
-    1.0 + term(chance) + term(1.0 - chance)
 }
 
 fn most_likely<const N: usize, const H: usize, const E: usize>(
