@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::Value;
 
-use crate::{GOOD, folder, prints};
+use crate::{GOOD, folder, prints, refuses};
 
 #[test]
 fn a_campaign_prints_tables_and_writes_rows() {
@@ -190,4 +190,21 @@ fn labels_err_in_a_comparison_with_algorithm_2_unless_one_says() {
     assert!(prints(folder.path(), &quick).contains("p = 0.7"));
     let table = prints(folder.path(), &[&quick[..], &["--p", "1"]].concat());
     assert!(table.contains("true labels") && table.contains("Algorithm 2 (scc)"), "{table}");
+}
+
+#[test]
+fn bad_errors_are_refused_by_their_flags() {
+    let folder = folder();
+    let cases: [(&[&str], &[&str]); 6] = [
+        (&["--position-error=-0.1"], &["--position-error", "found -0.1", "metres, 0 to 100"]),
+        (&["--position-error=nan"], &["--position-error", "found NaN"]),
+        (&["--motion-error=101"], &["--motion-error", "found 101", "metres, 0 to 100"]),
+        (&["--tolerance=-1"], &["--tolerance", "found -1", "0 to 1024"]),
+        (&["--tolerance=10"], &["--tolerance", "found 10 m", "half the breadth"]),
+        (&["--position-error=4"], &["--tolerance", "found 12 m", "half the breadth"]),
+    ];
+    for (flags, parts) in cases {
+        let args = [&["campaign", "--fields", "2", "--csv", "c.csv"], flags].concat();
+        refuses(folder.path(), &args, parts);
+    }
 }

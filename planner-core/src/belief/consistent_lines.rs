@@ -69,6 +69,8 @@ pub struct ConsistentLines<'a> {
     /// By how much a further sample of label +1 is shifted as it is taken in, and one of label -1 the other
     /// way: see [`Tolerance`](crate::belief::tolerance::Tolerance).
     pub shift: Vector,
+    /// Whether a place is worth asking where one label alone could cut.
+    pub is_loose: bool,
 }
 
 impl<'a> ConsistentLines<'a> {
@@ -92,15 +94,24 @@ impl<'a> ConsistentLines<'a> {
         certainty(self.edges, self.samples, q)
     }
 
-    /// Whether a label read at a position can tell something: not all lines agree there, and they do not give
-    /// the label as well where it would be taken in.
+    /// The same lines, for which a place is worth asking too where one label alone could cut.
+    pub(crate) const fn loosely(self) -> Self {
+        Self { is_loose: true, ..self }
+    }
+
+    /// Whether a label read at a position is worth it: not all lines agree there, and whichever it is, they do not
+    /// all give it as well where it would be taken in.
     pub fn can_cut(self, q: Site) -> bool {
+        let cuts = |label| {
+            let place = self.place(q, label);
+            place.is_some_and(|place| self.certainty(place) != Certainty::Certain(label))
+        };
         self.certainty(q) == Certainty::Uncertain
-            && (self.shift == Vector::default()
-                || [Label::Positive, Label::Negative].into_iter().any(|label| {
-                    let place = self.place(q, label);
-                    place.is_some_and(|place| self.certainty(place) != Certainty::Certain(label))
-                }))
+            && match [Label::Positive, Label::Negative] {
+                _ if self.shift == Vector::default() => true,
+                labels if self.is_loose => labels.into_iter().any(cuts),
+                labels => labels.into_iter().all(cuts),
+            }
     }
 
     /// Where a label read at a position is taken in; `None` off the lattice, where it tells nothing.
@@ -192,8 +203,8 @@ pub fn bounds(
 /// [`ConsistentLines::certainty`], in one place and with its arguments in registers.
 #[inline(never)]
 fn certainty(edges: &[Edge], samples: &[Sample], q: Site) -> Certainty {
-    let shift = Vector::default();
-    Certainty::of_values(ConsistentLines { edges, samples, shift }.turns(q))
+    let lines = ConsistentLines { edges, samples, shift: Vector::default(), is_loose: false };
+    Certainty::of_values(lines.turns(q))
 }
 
 /// The range of intercepts between the vertices of a set of lines, metres; `None` when a vertical line lies

@@ -46,7 +46,7 @@ impl Area {
     }
 
     /// The site in its middle, rounded.
-    pub(crate) fn middle(&self) -> Site {
+    pub fn middle(&self) -> Site {
         Site::between(self.min, self.max)
     }
 

@@ -159,20 +159,24 @@ impl<'a> View<'a> {
         self.area.contains(site) && self.lines.can_cut(site)
     }
 
-    /// How far a turn keeps the circle where a label tells nothing because positions err, if it does at a
-    /// position: as long as no line comes nearer than a sample is shifted beyond it. A turn of an angle moves a
+    /// How far a turn keeps the circle where a label may tell nothing because positions err, if one does at a
+    /// position: as long as all lines give the place where it is taken in that label. A turn of an angle moves a
     /// position by the angle's share of the radius at most.
     pub(crate) fn tells_nothing_until(&self, site: Site) -> u32 {
         let shift = self.lines.shift;
         if shift == Vector::default() {
             return 0;
         }
-        let slack = self.lines.bounds().map(|bound| {
+        let mut slack = [f32::INFINITY; 2];
+        for bound in self.lines.bounds() {
             let per_length = UnitVector::of(bound.along).per_length;
-            let (shifted, value) = (bound.along.cross(shift), bound.at(site));
-            (single(shifted) - single(value).abs()) * per_length
-        });
-        let least = slack.fold(f32::INFINITY, |a, b| if b < a { b } else { a });
+            let (shifted, value) = (single(bound.along.cross(shift)), single(bound.at(site)));
+            for (slack, value) in slack.iter_mut().zip([value, -value]) {
+                *slack = slack.min((shifted + value) * per_length);
+            }
+        }
+        let [one, other] = slack;
+        let least = if self.lines.is_loose { one.min(other) } else { one.max(other) };
         // Less for rounding, and no more than a radian.
         let turn = (0.999 * least - 2.0) * self.inverse_radius;
         Angle::radians(if turn < 1.0 { turn } else { 1.0 }).turn()
