@@ -64,8 +64,10 @@ pub struct Dot {
 /// The end of a step.
 #[derive(Clone, Copy, Debug)]
 pub struct Stop {
-    /// Where.
+    /// Where, by what the robot reports.
     pub at: Point2<f64>,
+    /// Where it truly was, if it errs.
+    pub truly: Option<Point2<f64>>,
     /// Radians.
     pub heading: f64,
     /// Whether a side of the boundary was sensed there.
@@ -162,6 +164,7 @@ impl Picture {
         };
         let stops = results.steps.iter().map(|step| Stop {
             at: Point2::new(step.pose.x, step.pose.z),
+            truly: step.true_pose.map(|pose| Point2::new(pose.x, pose.z)),
             heading: step.pose.heading,
             sensed: step.label.is_some_and(|label| label != 0),
         });
