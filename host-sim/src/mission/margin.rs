@@ -39,7 +39,7 @@ pub struct Margin<D, B> {
     pub belief: B,
 }
 
-/// A drive that stays in the area.
+/// A drive that stays in the area, or comes back to it.
 #[derive(Clone, Copy)]
 struct Drive {
     action: Action,
@@ -62,7 +62,9 @@ impl<D: Dynamics, B: ReadOut> Margin<D, B> {
                 let target = self.dynamics.target(pose, action)?;
                 let is_inside = self.area.contains(target.site)
                     && self.dynamics.keeps_inside(pose, target, &self.area);
-                is_inside.then(|| Drive {
+                let comes_back = self.comes_back(pose.site, target.site)
+                    && self.dynamics.stays_inside(pose, target, &self.area);
+                (is_inside || comes_back).then(|| Drive {
                     action,
                     target,
                     effort: ray.effort,
@@ -73,7 +75,16 @@ impl<D: Dynamics, B: ReadOut> Margin<D, B> {
         })
     }
 
-    /// The drive that asks: it ends on uncertain ground.
+    /// Whether a drive from outside the area, where an error has brought it, leads nearer to its middle.
+    fn comes_back(&self, from: Site, to: Site) -> bool {
+        let [before, after] = [from, to].map(|site| {
+            let way = self.area.middle() - site;
+            way.dot(way)
+        });
+        !self.area.contains(from) && after < before
+    }
+
+    /// The drive that asks: it ends on uncertain ground of the area.
     fn asking(&self, line: &Line, pose: Pose) -> Option<Drive> {
         nearest(self.drives(line, pose).filter(|drive| self.is_uncertain(drive.target.site)))
     }
@@ -86,11 +97,12 @@ impl<D: Dynamics, B: ReadOut> Margin<D, B> {
         sides.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(turn, _)| turn)
     }
 
-    /// Whether lines disagree about a site: those left, or where labels may err those at the start.
+    /// Whether lines disagree about a site of the area: those left, or where labels may err those at the start.
     fn is_uncertain(&self, site: Site) -> bool {
         let left = self.belief.version_space().map(Lines::lines);
         let lines = left.or_else(|| self.belief.hypotheses().map(Table::start));
-        lines.is_some_and(|lines| lines.certainty(site) == Certainty::Uncertain)
+        self.area.contains(site)
+            && lines.is_some_and(|lines| lines.certainty(site) == Certainty::Uncertain)
     }
 }
 
@@ -109,9 +121,6 @@ impl<D: Dynamics, B: ReadOut> Planner for Margin<D, B> {
     fn plan(&mut self, pose: Pose) -> Plan {
         if self.belief.is_full() {
             return Plan::Stop(StopReason::SamplesFull);
-        }
-        if !self.area.contains(pose.site) {
-            return Plan::Stop(StopReason::OutsideArea);
         }
         let Some(line) = self.belief.estimates().maximum_margin.map(Line::from) else {
             return Plan::Stop(StopReason::Resolution);

@@ -10,7 +10,8 @@ use planner_core::planner::{Motion, Plan, Planner, StopReason};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-/// Takes each action with equal probability among those that stay in the area.
+/// Takes each action with equal probability among those that stay in the area; from outside, where an error has brought
+/// it, also among those that do not lead further from its middle, without a label until it is inside.
 pub struct RandomWalk<D, B> {
     /// The action set.
     pub dynamics: D,
@@ -29,15 +30,19 @@ impl<D: Dynamics, B: Belief> Planner for RandomWalk<D, B> {
         if self.belief.is_full() {
             return Plan::Stop(StopReason::SamplesFull);
         }
-        if !self.area.contains(pose.site) {
-            return Plan::Stop(StopReason::OutsideArea);
-        }
+        let is_outside = !self.area.contains(pose.site);
+        let to_middle = |site| {
+            let way = self.area.middle() - site;
+            way.dot(way)
+        };
         loop {
             let last = self.dynamics.grid().actions() - 1;
             let action = Action(self.rng.random_range(0..=last as u32));
             let target = self.dynamics.target(pose, action).filter(|target| {
-                self.area.contains(target.site)
-                    && self.dynamics.keeps_inside(pose, *target, &self.area)
+                let comes_back = is_outside && to_middle(target.site) <= to_middle(pose.site);
+                comes_back && self.dynamics.stays_inside(pose, *target, &self.area)
+                    || self.area.contains(target.site)
+                        && self.dynamics.keeps_inside(pose, *target, &self.area)
             });
             if let Some(target) = target {
                 return Plan::Move(Motion {
@@ -46,7 +51,7 @@ impl<D: Dynamics, B: Belief> Planner for RandomWalk<D, B> {
                     action,
                     control: self.dynamics.control(action),
                     target,
-                    wants_label: true,
+                    wants_label: self.area.contains(target.site),
                     examined: 1,
                     proven: true,
                 });

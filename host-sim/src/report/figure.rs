@@ -123,7 +123,7 @@ impl Picture {
         let places = stops.iter().flat_map(|stop| &stop.way);
         let corners: Vec<_> = std::iter::once(start).chain(places).copied().map(xy).collect();
         chart.draw_series([PathElement::new(corners, PATH.stroke_width(1))]).map_err(failed)?;
-        for (&Stop { at, heading, sensed, .. }, number) in stops.iter().zip(1..) {
+        for (&Stop { at, truly, heading, sensed, .. }, number) in stops.iter().zip(1..) {
             let (sin, cos) = libm::sincos(heading);
             let tip = at + Vector2::new(cos, sin) * tick;
             chart
@@ -132,6 +132,12 @@ impl Picture {
             let style = ("sans-serif", 13).into_font().color(&BLACK.mix(0.75));
             let beside = EmptyElement::at(xy(at)) + Text::new(format!("{number}"), (7, -15), style);
             chart.draw_series([beside]).map_err(failed)?;
+            if let Some(truly) = truly {
+                let style = BLACK.stroke_width(1);
+                let way = PathElement::new([xy(at), xy(truly)], style);
+                chart.draw_series([way]).map_err(failed)?;
+                chart.draw_series([Cross::new(xy(truly), 4, style)]).map_err(failed)?;
+            }
             if !sensed {
                 chart
                     .draw_series([Circle::new(xy(at), 4, PATH.stroke_width(1))])

@@ -31,10 +31,12 @@ pub(crate) fn draw(picture: &Picture, legend: &DrawingArea<SVGBackend, Shift>) -
         let known = if certain { ", ground certain to have it" } else { "" };
         text(&format!("label {:+}{known}", label.sign()), left, y)?;
     }
-    if picture.path.is_some() {
+    if let Some((_, stops)) = &picture.path {
         stroke(left, rows[2], 26, PATH, 1)?;
         stroke(left + 12, rows[2], 14, PATH, 2)?;
-        text("path with headings; o: no sample", left, rows[2])?;
+        let errs = stops.iter().any(|stop| stop.truly.is_some());
+        let truly = if errs { "; x: where it truly was" } else { "" };
+        text(&format!("path with headings; o: no sample{truly}"), left, rows[2])?;
     }
     if let Some(note) = &picture.note {
         text(note, left, rows[2])?;

@@ -69,8 +69,10 @@ pub struct Dot {
 pub struct Stop {
     /// Places on the way there, the last of them the end.
     pub way: Vec<Point2<f64>>,
-    /// Where.
+    /// Where, by what the robot reports.
     pub at: Point2<f64>,
+    /// Where it truly was, if it errs.
+    pub truly: Option<Point2<f64>>,
     /// Radians.
     pub heading: f64,
     /// Whether a side of the boundary was sensed there.
@@ -175,6 +177,7 @@ impl Picture {
                 arc(std::mem::replace(&mut from, to), to, turn)
             },
             at: Point2::new(step.pose.x, step.pose.z),
+            truly: step.true_pose.map(|pose| Point2::new(pose.x, pose.z)),
             heading: step.pose.heading,
             sensed: step.label.is_some_and(|label| label != 0),
         });

@@ -240,3 +240,20 @@ fn bad_vehicles_of_campaigns_are_refused() {
         refuses(folder.path(), &args, parts);
     }
 }
+
+#[test]
+fn bad_errors_are_refused_by_their_flags() {
+    let folder = folder();
+    let cases: [(&[&str], &[&str]); 6] = [
+        (&["--position-error=-0.1"], &["--position-error", "found -0.1", "metres, 0 to 100"]),
+        (&["--position-error=nan"], &["--position-error", "found NaN"]),
+        (&["--motion-error=101"], &["--motion-error", "found 101", "metres, 0 to 100"]),
+        (&["--tolerance=-1"], &["--tolerance", "found -1", "0 to 1024"]),
+        (&["--tolerance=10"], &["--tolerance", "found 10 m", "half the breadth"]),
+        (&["--position-error=4"], &["--tolerance", "found 12 m", "half the breadth"]),
+    ];
+    for (flags, parts) in cases {
+        let args = [&["campaign", "--fields", "2", "--csv", "c.csv"], flags].concat();
+        refuses(folder.path(), &args, parts);
+    }
+}

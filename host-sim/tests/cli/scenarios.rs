@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::Value;
 
-use crate::{GOOD, folder, prints, refuses};
+use crate::{GOOD, folder, host_sim, prints, refuses, text};
 
 #[test]
 fn bad_noise_is_refused() {
@@ -107,7 +107,7 @@ fn bad_vehicles_are_refused() {
 fn bad_areas_are_refused() {
     const SQUARE: &str = "[[0, 0], [20, 0], [20, 20], [0, 20]]";
     let folder = folder();
-    let many = format!("[{}]", vec!["[0, 0]"; 9].join(", "));
+    let many = format!("[{}]", ["[0, 0]"; 9].join(", "));
     let polygons: [(&str, &[&str]); 9] = [
         ("[]", &["area.polygon", "0 corners", "3 at least"]),
         ("[[0, 0], [20, 0]]", &["area.polygon", "2 corners", "3 at least"]),
@@ -127,7 +127,7 @@ fn bad_areas_are_refused() {
         refuses(folder.path(), &["run", "bad.toml"], &[&["bad.toml"], parts].concat());
     }
     let disc = "{ x = 12, z = 3, radius = 1 }";
-    let nine = vec![disc; 9].join(", ");
+    let nine = [disc; 9].join(", ");
     let keep_outs: [(&str, &[&str]); 10] = [
         ("{ x = 5, z = 6 }", &["keep_out[0]", "{ x, z, radius } or { polygon }"]),
         ("{ x = 5, z = 6, radius = 0 }", &["keep_out[0].radius", "found 0", "above 0"]),
@@ -334,5 +334,51 @@ fn so_many_oracle_points_that_no_step_is_left_are_refused_plainly() {
         } else {
             prints(folder.path(), &["run", "many.toml", "--steps", "1"]);
         }
+    }
+}
+
+#[test]
+fn bad_errors_and_tolerances_are_refused() {
+    let folder = folder();
+    let cases: [(&str, &[&str]); 12] = [
+        ("errors = { motion = -0.1 }", &["errors.motion", "found -0.1", "metres, 0 to 100"]),
+        ("errors = { motion = nan }", &["errors.motion", "found NaN", "metres, 0 to 100"]),
+        ("errors = { position = 101 }", &["errors.position", "found 101", "metres, 0 to 100"]),
+        ("errors = { turn = 1.1 }", &["errors.turn", "found 1.1", "radians, 0 to 1"]),
+        ("errors = { heading = -0.1 }", &["errors.heading", "found -0.1", "radians, 0 to 1"]),
+        ("errors = { sideways = 0.1 }", &["bad.toml:1", "sideways", "`position`"]),
+        ("errors = 0.05", &["bad.toml:1", "a table"]),
+        ("tolerance = -0.1", &["tolerance", "found -0.1", "0 to 1024"]),
+        ("tolerance = inf", &["tolerance", "found inf", "0 to 1024"]),
+        ("tolerance = \"3 cm\"", &["bad.toml:1", "3 cm"]),
+        ("tolerance = 10.0", &["tolerance", "found 10 m", "half the breadth of the area"]),
+        ("errors = { position = 4.0 }", &["tolerance", "found 12 m", "half the breadth"]),
+    ];
+    for (line, parts) in cases {
+        fs::write(folder.path().join("bad.toml"), format!("{line}\n{GOOD}")).expect("a file");
+        refuses(folder.path(), &["run", "bad.toml"], &[&["bad.toml"], parts].concat());
+    }
+    let wide = GOOD.replace("[0.0, 20.0]", "[0.0, 100.0]");
+    fs::write(folder.path().join("bad.toml"), format!("tolerance = 22.0\n{wide}")).expect("a file");
+    let parts = ["bad.toml", "tolerance", "found 22 m", "the oracle's points", "apart"];
+    refuses(folder.path(), &["run", "bad.toml"], &parts);
+}
+
+#[test]
+fn errors_without_a_tolerance_draw_a_warning() {
+    let folder = folder();
+    let warning = |lines: &str| {
+        fs::write(folder.path().join("good.toml"), format!("{lines}\n{GOOD}")).expect("a file");
+        let output = host_sim(folder.path(), &["run", "good.toml", "--steps", "1"]);
+        assert!(output.status.success(), "{lines}");
+        text(&output.stderr)
+    };
+    let warned = warning("errors = { position = 0.05 }\ntolerance = 0.1");
+    let parts = ["warning: tolerance: 0.1", "err by up to 0.15", "refused, or cut the true line"];
+    assert!(parts.iter().all(|part| warned.contains(part)), "{warned}");
+    assert_eq!(warned.lines().count(), 1, "{warned}");
+    for enough in ["errors = { position = 0.05 }", "errors = { motion = 0.05 }", "tolerance = 0.1"]
+    {
+        assert_eq!(warning(enough), "", "{enough}");
     }
 }

@@ -91,7 +91,7 @@ impl<const E: usize> LineCell<E> {
 
     /// The lines, beside the samples that the edges name.
     pub fn lines<'a>(&'a self, samples: &'a [Sample]) -> ConsistentLines<'a> {
-        ConsistentLines { edges: self.edges(), samples, shift: Vector::default() }
+        ConsistentLines { edges: self.edges(), samples, shift: Vector::default(), is_loose: false }
     }
 
     /// Keeps the lines that agree with the edge's sample. One orientation an edge, exact.

@@ -69,6 +69,8 @@ pub struct ConsistentLines<'a> {
     /// By how much a further sample of label +1 is shifted as it is taken in, and one of label -1 the other
     /// way: see [`Tolerance`](crate::belief::tolerance::Tolerance).
     pub shift: Vector,
+    /// Whether a place is worth asking where one label alone could cut.
+    pub is_loose: bool,
 }
 
 impl<'a> ConsistentLines<'a> {
@@ -92,14 +94,23 @@ impl<'a> ConsistentLines<'a> {
         certainty(self.edges, self.samples, q)
     }
 
-    /// Whether a label read at a position can tell something: not all lines agree there, nor do they where one of
-    /// the two labels would be taken in.
+    /// The same lines, for which a place is worth asking too where one label alone could cut.
+    pub(crate) const fn loosely(self) -> Self {
+        Self { is_loose: true, ..self }
+    }
+
+    /// Whether a label read at a position is worth it: not all lines agree there, nor do they where it would be taken
+    /// in, whichever it is.
     pub fn can_cut(self, q: Site) -> bool {
         let is_uncertain =
             |by| q.step(by).is_ok_and(|place| self.certainty(place) == Certainty::Uncertain);
+        let mut shifts = [self.shift, self.shift.reversed()].into_iter();
         is_uncertain(Vector::default())
-            && (self.shift == Vector::default()
-                || [self.shift, self.shift.reversed()].into_iter().any(is_uncertain))
+            && match self {
+                Self { shift: Vector { x: 0, z: 0 }, .. } => true,
+                Self { is_loose: true, .. } => shifts.any(is_uncertain),
+                _ => shifts.all(is_uncertain),
+            }
     }
 
     /// Where a label read at a position is taken in; `None` off the lattice, where it tells nothing.
@@ -192,8 +203,8 @@ pub fn bounds(
 /// [`ConsistentLines::certainty`], in one place and with its arguments in registers.
 #[inline(never)]
 fn certainty(edges: &[Edge], samples: &[Sample], q: Site) -> Certainty {
-    let shift = Vector::default();
-    Certainty::of_values(ConsistentLines { edges, samples, shift }.turns(q))
+    let lines = ConsistentLines { edges, samples, shift: Vector::default(), is_loose: false };
+    Certainty::of_values(lines.turns(q))
 }
 
 /// The range of intercepts between the vertices of a set of lines, metres; `None` when a vertical line lies

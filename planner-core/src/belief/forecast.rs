@@ -72,8 +72,7 @@ impl<const N: usize, const H: usize> Foresight for Forecast<N, H> {
 
     fn observe(&mut self, site: Site, reading: Reading) -> Result<(), Refused> {
         let Reading::Side(label) = reading else { return Ok(()) };
-        let parts = self.table.parts(site, label);
-        parts.iter().try_for_each(|&(sample, by)| self.take(sample, by))
+        self.take(Sample { site, label }, self.table.reliability(site))
     }
 
     fn prepare(&mut self) {

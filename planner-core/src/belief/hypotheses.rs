@@ -12,15 +12,20 @@
 //!   outer approximation, counted in [`outer_cells`](Hypotheses::outer_cells). With 15 edges it has
 //!   not been seen to happen: over the tests' missions of 64 labels a cell has 9 at most.
 //!
+//! Where positions err a label's weight is no step from one side of its site to the other: steps, however they
+//! are placed, claim to know more than there is. A hypothesis is weighed by the label's mean likelihood over its
+//! lines, and when it splits each part anew, by all labels. So weights follow the likelihood the more closely the
+//! narrower the cells, a label is one sample, and what pruning lost is told as it was when it was lost.
+//!
 //! [`Posterior::pruned_mass`]: crate::belief::posterior::Posterior::pruned_mass
 
-use heapless::Vec;
+use core::ops::Add as _;
 
 use crate::belief::Refused;
 use crate::belief::cell::LineCell;
 use crate::belief::consistent_lines::{Certainty, ConsistentLines};
 use crate::belief::edge::Edge;
-use crate::belief::estimate::area;
+use crate::belief::estimate::{area, centre};
 use crate::belief::list::List;
 use crate::belief::noise::{Noise, Reliability};
 use crate::belief::pruned::PrunedMass;
@@ -28,7 +33,7 @@ use crate::belief::sample::{Label, Sample, SampleBuffer};
 use crate::belief::tolerance::Tolerance;
 use crate::belief::version_space::{NoVersionSpace, VersionSpace};
 use crate::belief::weight::{Coarse, LogWeight, Prior};
-use crate::geometry::lattice::{Site, Vector};
+use crate::geometry::lattice::Site;
 
 /// A sequence of true labels that some line realises: the cell of the lines that do, and what it weighs
 /// if the labels seen are given. 24 bytes for `E = 15`.
@@ -260,36 +265,57 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
         self.lines(hypothesis).certainty(q)
     }
 
-    /// As what a label that is read at a site is taken in.
+    /// The labels taken in since.
+    fn labels(&self) -> &[Sample] {
+        self.samples.get(usize::from(self.given)..).unwrap_or(&[])
+    }
+
+    /// The weights of the lines on the label's side of a sample and on the other: where positions err alike, as each
+    /// hypothesis is [told](Self::told) for itself.
+    fn weights(&self, reliability: Reliability) -> (Option<LogWeight>, Option<LogWeight>) {
+        if self.is_blurred() {
+            return (Some(LogWeight::ZERO), Some(LogWeight::ZERO));
+        }
+        (reliability.agree(), reliability.disagree())
+    }
+
+    /// Whether the noise says that positions err.
+    pub(crate) fn is_blurred(&self) -> bool {
+        self.noise.tolerance != Tolerance::NONE
+    }
+
+    /// The chances that the true position is on the +1 side and on the -1 side where a site is reported, on average
+    /// over the lines of a hypothesis; `None` if these are too near each other to tell their mean.
     ///
-    /// Where positions err, a line is less likely to have told the label the nearer to the site it passes. Two
-    /// labels say so in three steps, one on each side of it.
-    pub(crate) fn parts(&self, site: Site, label: Label) -> Vec<(Sample, Reliability), 2, u8> {
-        let (tolerance, reliability) = (self.noise.tolerance, self.reliability(site));
-        let mut parts = Vec::new();
-        let mut add = |shift: Vector, reliability| {
-            if let Ok(site) = site.step(shift) {
-                let _ = parts.push((Sample { site, label }, reliability)); // there are two at most
-            }
+    /// Their distances are taken to spread evenly about that of their mean, as far as to the nearer of the extremes.
+    pub(crate) fn sides<'a>(
+        &'a self,
+        hypothesis: &'a Hypothesis<E>,
+    ) -> Option<impl Fn(Site) -> [f32; 2] + 'a> {
+        let (tolerance, lines) = (self.noise.tolerance, self.lines(hypothesis));
+        let mean = centre(lines)?.distances();
+        Some(move |site| {
+            let mean = mean(site);
+            let spread = lines.bounds().map(|bound| bound.distance(site));
+            let (least, most) =
+                spread.fold((mean, mean), |(least, most), it| (least.min(it), most.max(it)));
+            let half = (mean - least).min(most - mean);
+            tolerance.sides(mean - half, mean + half)
+        })
+    }
+
+    /// What some labels make a hypothesis weigh where positions err.
+    fn told(&self, hypothesis: &Hypothesis<E>, labels: &[Sample]) -> LogWeight {
+        if !self.is_blurred() {
+            return LogWeight::ZERO;
+        }
+        let Some(sides) = self.sides(hypothesis) else { return LogWeight::ZERO };
+        let told = |&Sample { site, label }: &Sample| {
+            let [above, below] = sides(site);
+            let is_above = label == Label::Positive;
+            self.reliability(site).among(if is_above { [above, below] } else { [below, above] })
         };
-        if tolerance == Tolerance::NONE {
-            add(Vector::default(), reliability);
-            return parts;
-        }
-        let towards =
-            |shift: Vector| if label == Label::Positive { shift } else { shift.reversed() };
-        if reliability == Reliability::CERTAIN {
-            let shift = tolerance.shift(self.start().slope_arc());
-            shift.map(towards).into_iter().for_each(|shift| add(shift, reliability));
-            return parts;
-        }
-        let heaviest = self.iter().max_by_key(|it| it.weight());
-        let slopes = heaviest.map_or(self.start(), |it| self.lines(it)).slope_arc();
-        let shift = towards(tolerance.step(slopes));
-        let [near, far] = reliability.halves();
-        add(shift, near);
-        add(shift.reversed(), far);
-        parts
+        labels.iter().map(told).fold(LogWeight::ZERO, LogWeight::add)
     }
 
     /// Takes in a label that is read at a site, as far as it can be believed there.
@@ -297,18 +323,19 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
     /// # Errors
     /// As [`take`](Self::take).
     pub fn read(&mut self, site: Site, label: Label) -> Result<(), Refused> {
-        self.parts(site, label).iter().try_for_each(|&(sample, by)| self.take(sample, by))
+        self.take(Sample { site, label }, self.reliability(site))
     }
 
     /// Takes in a label of some reliability: splits the hypotheses that the sample cuts and weighs
     /// all. One orientation an edge, and for each of the at most `t + 1` that split two cuts and two
-    /// measures, in integers and single precision.
+    /// measures, in integers and single precision; where positions err also a centre for each, and for those
+    /// that split all labels anew. There a label is as reliable as the noise says.
     ///
     /// # Errors
     /// [`Refused::Contradiction`] when a label that is certain leaves no hypothesis, and
     /// [`Refused::Full`]; the table is then as it was.
     pub fn take(&mut self, sample: Sample, reliability: Reliability) -> Result<(), Refused> {
-        let (agree, disagree) = (reliability.agree(), reliability.disagree());
+        let (agree, disagree) = self.weights(reliability);
         let weight = |label: Label| if label == sample.label { agree } else { disagree };
         let survives = |hypothesis: &Hypothesis<E>| match self.certainty(hypothesis, sample.site) {
             Certainty::Certain(label) => weight(label).is_some(),
@@ -365,25 +392,27 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
     /// Weighs the `k`-th hypothesis by the newest sample, splitting it first if the sample cuts it.
     /// One that becomes impossible is left without edges.
     fn update(&mut self, k: usize, edge: Edge, reliability: Reliability) {
-        let (agree, disagree) = (reliability.agree(), reliability.disagree());
-        let Some(site) = self.samples.get(edge.index()).map(|s| s.site) else { return };
-        let Some(whole) = self.table.get_mut(k) else { return };
-        match whole.cell.lines(&self.samples).certainty(site) {
+        let (agree, disagree) = self.weights(reliability);
+        let Some((newest, labels)) = self.labels().split_last() else { return };
+        let Some(whole) = self.table.get(k).copied() else { return };
+        match self.certainty(&whole, newest.site) {
             Certainty::Certain(certain) => {
                 let weight = if certain == edge.label() { agree } else { disagree };
+                let told = self.told(&whole, core::slice::from_ref(newest));
+                let Some(place) = self.table.get_mut(k) else { return };
                 match weight {
-                    Some(weight) => whole.weigh(weight),
-                    None => whole.cell = LineCell::NONE,
+                    Some(weight) => place.weigh(weight + told),
+                    None => place.cell = LineCell::NONE,
                 }
             }
             Certainty::Uncertain => {
-                let whole = *whole;
                 let opposite = Edge::new(edge.index() as u8, -edge.label());
-                // A cell's measure is the same each time it is taken: nothing is lost in the quotients.
+                // A cell's measure is the same each time it is taken, as is what it is told: nothing is lost in
+                // the quotients.
                 let weight = match self.prior {
                     Prior::Area => LogWeight::ZERO - self.log_area(&whole),
                     Prior::Sequences => LogWeight::ZERO,
-                };
+                } - self.told(&whole, labels);
                 let mut part = |edge, by| self.part(&whole, edge, weight + by);
                 let agreeing = agree.map(|by| part(edge, by));
                 let other = disagree.map(|by| part(opposite, by));
@@ -419,6 +448,7 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
         if part.cell.cut(&self.samples, edge).is_err() {
             self.outer_cells = self.outer_cells.saturating_add(1);
         }
+        let weight = weight + self.told(&part, self.labels());
         part.weigh(match self.prior {
             Prior::Area => weight + self.log_area(&part),
             Prior::Sequences => weight,

@@ -58,10 +58,11 @@ impl Reliability {
         agree / (agree + disagree)
     }
 
-    /// Two reliabilities that come to this one together: of what half a label says, and of the rest.
-    pub(crate) fn halves(self) -> [Self; 2] {
-        let half = LogWeight::from(Coarse::of(0.5 / (1.0 - self.single())));
-        [half, self.log_odds - half].map(|log_odds| Self { log_odds })
+    /// What lines weigh that tell the label with these chances rightly and wrongly, relative to the likelier side.
+    pub(crate) fn among(self, [rightly, wrongly]: [f32; 2]) -> LogWeight {
+        let weight = |it: Option<LogWeight>| it.map_or(0.0, LogWeight::exp_single);
+        let chance = rightly * weight(self.agree()) + wrongly * weight(self.disagree());
+        Coarse::of(chance).into()
     }
 
     /// The logarithm of the odds, in units of 2^-32.
@@ -101,9 +102,10 @@ impl Noise {
     pub const NONE: Self =
         Self { reliability: Reliability::CERTAIN, trusted_radius: 0, tolerance: Tolerance::NONE };
 
-    /// The reliability of a label at a site: certain in a trusted ball (the paper's `B_r(p_j)`).
+    /// The reliability of a label at a site: certain in a trusted ball (the paper's `B_r(p_j)`), by as much inside
+    /// it as the site may be off.
     pub fn at(&self, site: Site, given: &[Sample]) -> Reliability {
-        let radius = u64::from(self.trusted_radius);
+        let radius = u64::from(self.trusted_radius.saturating_sub(self.tolerance.units()));
         let near = |s: &Sample| {
             let apart = site - s.site;
             apart.dot(apart).unsigned_abs() <= radius * radius

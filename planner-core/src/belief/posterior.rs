@@ -92,9 +92,7 @@ impl<const N: usize, const H: usize, const E: usize> Belief for Hypotheses<N, H,
     }
 
     fn chance(&self, site: Site) -> f64 {
-        let above = Posterior::new(self).share_above(site);
-        let p = self.reliability(site).probability();
-        above * p + (1.0 - above) * (1.0 - p)
+        Posterior::new(self).chance(site)
     }
 }
 
@@ -197,6 +195,19 @@ impl<'a, const N: usize, const H: usize, const E: usize> Posterior<'a, N, H, E> 
         let share =
             |h| f64::from(share_above(self.hypotheses.lines(h), site)) * self.probability(h);
         self.hypotheses.iter().map(share).sum()
+    }
+
+    /// The chance that a label read at a site is +1.
+    fn chance(&self, site: Site) -> f64 {
+        let table = self.hypotheses;
+        let above = if table.is_blurred() {
+            let sides = |h| Some(f64::from(table.sides(h)?(site)[0]) * self.probability(h));
+            table.iter().filter_map(sides).sum()
+        } else {
+            self.share_above(site)
+        };
+        let p = table.reliability(site).probability();
+        above * p + (1.0 - above) * (1.0 - p)
     }
 
     /// The posterior mean of the line: each hypothesis adds its centre, as unit normals with their

@@ -12,8 +12,15 @@
 //! in at the place *shifted* by this, a label -1 at the one shifted as far the other way, each as an exact
 //! sample: the truth is never cut off, and cells stay what they are. As the lines' arc narrows, `d` falls and
 //! the shift comes down to the tolerance.
+//!
+//! A label that may be wrong is not shifted but doubted: the nearer a line passes, the more. The true position is
+//! spread about the reported one, so a line that has the latter `s` on its +1 side tells a label +1 with
+//! probability `p Phi(s / sigma) + (1 - p) Phi(-s / sigma)`, see [`Hypotheses`].
+//!
+//! [`Hypotheses`]: crate::belief::hypotheses::Hypotheses
 
-use crate::geometry::approximate::UnitVector;
+use crate::belief::weight::LogWeight;
+use crate::geometry::approximate::{METRE, UnitVector};
 use crate::geometry::arc::SlopeArc;
 use crate::geometry::lattice::{UNITS_PER_METRE, Vector};
 
@@ -74,17 +81,25 @@ impl Tolerance {
         let [x, z] = sum.map(|v| v * scale);
         (x.abs() < FARTHEST && z.abs() < FARTHEST).then_some(Vector { x: x as i32, z: z as i32 })
     }
-}
 
-impl Tolerance {
-    /// Where the probability of being on the other side of a line has fallen to a quarter, at right angles to the
-    /// middle of these slopes: the tolerance is three standard deviations.
-    pub(crate) fn step(self, slopes: SlopeArc) -> Vector {
-        const QUARTER: f32 = 0.674_49 / 3.0;
-        let middle = slopes.bisector().left();
-        let unit = UnitVector::of(middle);
-        let [x, z] = [unit.x, unit.z].map(|v| v * (QUARTER * self.units as f32));
-        Vector { x: x as i32, z: z as i32 }
+    /// The chances that the true position is on the +1 side of a line and on the other: on average over lines that
+    /// have the reported one between `least` and `most` metres on it.
+    ///
+    /// The tolerance is three standard deviations, and a logistic curve stands for the normal one, to 0.01: its
+    /// integral is `log(1 + e^x)`.
+    pub(crate) fn sides(self, least: f32, most: f32) -> [f32; 2] {
+        let scale = 3.0 * 1.702 / (self.units as f32 * METRE);
+        let exp = |x: f32| LogWeight::near(x).exp_single();
+        let integral = |x: f32| x.max(0.0) + LogWeight::of(1.0 + exp(-x.abs()));
+        let (middle, half) = (0.5 * scale * (least + most), 0.5 * scale * (most - least));
+        // What is further off: the smaller, and the curve is hollow there.
+        let far = middle.abs();
+        let odds = exp(-far);
+        let mut smaller = odds / (1.0 + odds);
+        if half > 0.05 {
+            smaller = smaller.max((integral(half - far) - integral(-half - far)) / (2.0 * half));
+        }
+        if middle < 0.0 { [smaller, 1.0 - smaller] } else { [1.0 - smaller, smaller] }
     }
 }
 

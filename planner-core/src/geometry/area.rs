@@ -47,7 +47,7 @@ impl Area {
     }
 
     /// The site in its middle, rounded.
-    pub(crate) fn middle(&self) -> Site {
+    pub fn middle(&self) -> Site {
         Site::between(self.min, self.max)
     }
 

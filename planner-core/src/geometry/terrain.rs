@@ -90,7 +90,7 @@ impl<const C: usize, const K: usize> Terrain<C, K> {
     }
 
     /// The middle of its corners, which is inside.
-    fn middle(&self) -> Site {
+    pub fn middle(&self) -> Site {
         middle_of(self.corners())
     }
 }

@@ -11,8 +11,9 @@
 
 use crate::belief::Belief as _;
 use crate::belief::Refused;
-use crate::belief::consistent_lines::Certainty;
+use crate::belief::consistent_lines::{Certainty, ConsistentLines};
 use crate::belief::sample::{Label, Reading};
+use crate::belief::tolerance::Tolerance;
 use crate::belief::version_space::VersionSpace;
 use crate::geometry::arc::SlopeArc;
 use crate::geometry::area::Area;
@@ -77,10 +78,15 @@ impl<D: Dynamics, const N: usize, G: Region> Cfc<D, N, G> {
 
     /// The one-step problem of the present phase.
     pub fn problem(&self) -> Problem<'_, ArcRule, G> {
-        self.problem_of(self.phase, self.space.slope_arc())
+        self.problem_of(self.phase, self.space.slope_arc(), self.space.lines())
     }
 
-    fn problem_of(&self, phase: Phase, slopes: SlopeArc) -> Problem<'_, ArcRule, G> {
+    fn problem_of<'a>(
+        &self,
+        phase: Phase,
+        slopes: SlopeArc,
+        lines: ConsistentLines<'a>,
+    ) -> Problem<'a, ArcRule, G> {
         let (area, varrho) = (self.config.area, self.config.varrho);
         let rule = match phase {
             Phase::Crossing => {
@@ -88,13 +94,25 @@ impl<D: Dynamics, const N: usize, G: Region> Cfc<D, N, G> {
             }
             Phase::Following => self.config.following_rule(slopes),
         };
-        Problem { lines: self.space.lines(), area, varrho, rule }
+        Problem { lines, area, varrho, rule }
     }
 
     /// The motion to make, the phase that it belongs to, and what it cost to find it.
+    /// Where positions err and no place is left at which either label would cut, one where one would is enough.
     fn find(&self, pose: Pose) -> (Result<Found, DeadEnd>, Phase, Effort) {
+        let lines = self.space.lines();
+        let found = self.find_among(lines, pose);
+        let is_left = found.0.is_err() && self.space.tolerance() != Tolerance::NONE;
+        if is_left { self.find_among(lines.loosely(), pose) } else { found }
+    }
+
+    fn find_among(
+        &self,
+        lines: ConsistentLines<'_>,
+        pose: Pose,
+    ) -> (Result<Found, DeadEnd>, Phase, Effort) {
         let slopes = self.space.slope_arc();
-        let problem = self.problem_of(self.phase, slopes);
+        let problem = self.problem_of(self.phase, slopes, lines);
         let mut search = problem.search(&self.dynamics, pose, Effort::of(LOOKS));
         let search = search.open();
         let mut followed = None;
@@ -109,7 +127,7 @@ impl<D: Dynamics, const N: usize, G: Region> Cfc<D, N, G> {
             }
             followed = Some(findings);
         }
-        let crossing = self.problem_of(Phase::Crossing, slopes);
+        let crossing = self.problem_of(Phase::Crossing, slopes, lines);
         let found = solve_or_recover(&crossing, search, followed);
         (found, Phase::Crossing, search.effort)
     }
@@ -164,7 +182,6 @@ mod tests {
 
     use super::*;
     use crate::belief::sample::Sample;
-    use crate::belief::tolerance::Tolerance;
     use crate::geometry::lattice::Site;
     use crate::motion::unicycle::Unicycle;
     use crate::planner::config::Crossing;

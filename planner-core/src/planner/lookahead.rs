@@ -18,6 +18,7 @@
 
 use crate::belief::Belief as _;
 use crate::belief::Refused;
+use crate::belief::consistent_lines::ConsistentLines;
 use crate::belief::goal::Goal;
 use crate::belief::outlook::{Foresight, Outlook, Prediction};
 use crate::belief::sample::{Label, Reading};
@@ -146,9 +147,20 @@ impl<D: Dynamics, B: Foresight, G: Region> Lookahead<D, B, G> {
 
     /// What the ladder finds where no label is in reach.
     fn recover(&self, pose: Pose) -> (Result<Found, DeadEnd>, Effort) {
+        let lines = self.foresight.ground();
+        let found = self.recover_among(lines, pose);
+        let is_left = found.0.is_err() && self.config.tolerance != Tolerance::NONE;
+        if is_left { self.recover_among(lines.loosely(), pose) } else { found }
+    }
+
+    fn recover_among(
+        &self,
+        lines: ConsistentLines<'_>,
+        pose: Pose,
+    ) -> (Result<Found, DeadEnd>, Effort) {
         let (area, varrho) = (self.config.area, self.config.varrho);
         let rule = ArcRule::default();
-        let problem = Problem { lines: self.foresight.ground(), area, varrho, rule };
+        let problem = Problem { lines, area, varrho, rule };
         // With a tolerance it comes here often, and rays are passed over by small turns, as they are at keep-outs.
         let exact = self.config.tolerance == Tolerance::NONE && area.keep_outs().next().is_none();
         let effort = Effort::of(if exact { LADDER_LOOKS } else { LOOKS });

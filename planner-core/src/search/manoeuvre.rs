@@ -236,18 +236,22 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Manoeuvre<'_, '_, '_, D, R, G> {
     /// The fastest drive straight ahead that ends safe, or from where it is not safe, inside.
     fn straight(&self, pose: Pose) -> Option<Leg> {
         let (dynamics, area) = (self.dynamics, &self.problem.area);
-        let grid = dynamics.grid();
+        let is_safe = dynamics.is_safe(pose, area);
+        let drives = || self.drives_ahead(pose);
+        drives()
+            .find(|(_, it)| area.contains(it.site) && dynamics.keeps_inside(pose, *it, area))
+            .or_else(|| if is_safe { None } else { drives().next() })
+    }
+
+    /// The drives straight ahead that stay inside, the fastest first.
+    fn drives_ahead(&self, pose: Pose) -> impl Iterator<Item = Leg> {
+        let (dynamics, grid) = (self.dynamics, self.dynamics.grid());
         let ray = dynamics.ray(pose, Side::Left, 0);
-        let fastest = |may_end: &dyn Fn(Pose) -> bool| {
-            (1..grid.speeds()).rev().find_map(|speed| {
-                let exists = dynamics.rays_at(speed).is_none_or(|[left, _]| left > 0);
-                let target = exists.then(|| dynamics.arrive(pose, &ray, speed).ok()).flatten()?;
-                let stays = self.stays(pose, target) && may_end(target);
-                stays.then(|| (grid.action(ray.index, speed), target))
-            })
-        };
-        fastest(&|target| area.contains(target.site) && dynamics.keeps_inside(pose, target, area))
-            .or_else(|| if dynamics.is_safe(pose, area) { None } else { fastest(&|_| true) })
+        (1..grid.speeds()).rev().filter_map(move |speed| {
+            let exists = dynamics.rays_at(speed).is_none_or(|[left, _]| left > 0);
+            let target = exists.then(|| dynamics.arrive(pose, &ray, speed).ok()).flatten()?;
+            self.stays(pose, target).then(|| (grid.action(ray.index, speed), target))
+        })
     }
 
     /// Sees whether the problem is feasible at the end of a way: then it is the shortest, and there is nothing to
