@@ -34,9 +34,9 @@ impl Board {
         loop {
             let setup = self.station.await_setup();
             defmt::info!("mission: {}, {=u16} steps at most", setup.algorithm, setup.steps);
-            match setup.terms() {
+            match self.station.terms(&setup) {
                 Ok(terms) => self.fly_with(&setup, terms),
-                Err(declined) => log_end(0, &self.station.decline(declined)),
+                Err(none) => log_end(0, &self.station.give_up(none)),
             }
         }
     }

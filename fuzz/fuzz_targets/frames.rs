@@ -85,7 +85,10 @@ fuzz_target!(|bytes: &[u8]| {
         }
         for envelope in replies {
             let Reply::Setup(setup) = envelope.message else { continue };
-            let Ok(terms) = setup.terms::<AnyVehicle, MissionArea>() else { continue };
+            let Ok(terms) = setup.terms::<AnyVehicle, _>(MissionArea::from(setup.config.area))
+            else {
+                continue;
+            };
             contract::check(&terms.dynamics).expect("what is no vehicle is declined");
             match setup.algorithm {
                 Algorithm::Cfc => {

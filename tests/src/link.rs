@@ -46,9 +46,9 @@ pub fn fly<P: Port>(
     chip: &mut Station<P, Infallible>,
     setup: &message::Setup,
 ) -> Result<Flown, LinkLost> {
-    let terms: Terms<AnyVehicle, MissionArea> = match setup.terms() {
+    let terms: Terms<AnyVehicle, MissionArea> = match chip.terms(setup) {
         Ok(terms) => terms,
-        Err(declined) => return chip.decline(declined),
+        Err(none) => return chip.give_up(none),
     };
     match setup.algorithm {
         message::Algorithm::Cfc => chip.fly(setup, &mut setup.cfc::<_, _, 68>(terms), |_| {}),

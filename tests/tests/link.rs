@@ -16,11 +16,10 @@ use host_sim::mission::definition::Mission;
 use host_sim::mission::recording::Recording;
 use host_sim::report::trace;
 use planner_core::belief::version_space::NoVersionSpace;
-use planner_core::geometry::area::Area;
 use planner_core::link::delivery::{Link, LinkLost, Port};
 use planner_core::link::frame::{Decoder, Envelope, FRAME, Frame, Message};
 use planner_core::link::message::{
-    Capacity, ClockRate, Declined, EndReason, LabelSource, MissionArea, PROTOCOL, Reply, Request,
+    Capacity, ClockRate, Declined, EndReason, LabelSource, PROTOCOL, Reply, Request,
     Setup,
 };
 use planner_core::link::station::{Flown, Station};
@@ -202,11 +201,11 @@ fn a_chip_declines_what_is_no_vehicle_of_its_own() {
     let wide = car(car::Shape { radius_mm: 12_000, ..shape });
     let later = Setup { protocol: PROTOCOL + 1, ..good.clone() };
     let by_any = |setup: &Setup| {
-        let terms = setup.terms::<AnyVehicle, MissionArea>();
+        let terms = setup.terms::<AnyVehicle, _>(setup.config.area);
         terms.map(|terms| Shape::from(terms.dynamics))
     };
     assert_eq!(by_any(&good), Ok(good.vehicle));
-    let by_unicycle = |setup: &Setup| setup.terms::<Unicycle, Area>().map(drop);
+    let by_unicycle = |setup: &Setup| setup.terms::<Unicycle, _>(setup.config.area).map(drop);
     assert_eq!(by_unicycle(&good), Err(Declined::Vehicle(NoVehicle::Kind)));
     assert_eq!(by_any(&no_car), Err(Declined::Vehicle(NoVehicle::Grid(BadGrid::Circle))));
     assert!(matches!(by_any(&wide), Err(Declined::Vehicle(NoVehicle::Room(_)))));

@@ -58,7 +58,7 @@ fn a_board_at_a_serial_port_flies_as_this_machine_does() {
         let clock = ClockRate { per_second: 1_000_000, emulated: false };
         let mut board = Station::<_, Infallible> { link, sensor: None, ticks: || 0, clock };
         let setup = board.await_setup();
-        let terms = setup.terms::<Unicycle, Area>().expect("it has one");
+        let terms = board.terms::<Unicycle, Area>(&setup).expect("it has one");
         board.fly(&setup, &mut setup.cfc::<_, _, 68>(terms), |_| {})
     });
     let mission = standard_field::standard(4, 1, Algorithm::Cfc, 10);

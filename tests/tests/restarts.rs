@@ -57,6 +57,10 @@ impl Garage {
             Heard::New(request) => request,
         };
         let reply = match request {
+            Request::Outline(number) => {
+                let mut outlines = player::outlines(&self.mission.config.area);
+                Reply::Outline(outlines.nth(number.into()).expect("there are so many"))
+            }
             Request::Ready(_) => {
                 (self.robot, self.pose) = (self.mission.robot(), self.mission.start);
                 (self.motions, self.ended) = (0, false);

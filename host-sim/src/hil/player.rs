@@ -8,13 +8,16 @@ use anyhow::{Result, anyhow, bail};
 use heapless::Vec as BoundedVec;
 use planner_core::belief::estimate::Estimates;
 use planner_core::belief::sample::Reading;
+use planner_core::geometry::hull::Hull;
+use planner_core::geometry::region::Region as _;
 use planner_core::link::delivery::{Heard, Hello, Responder};
 use planner_core::link::frame::Frame;
 use planner_core::link::message::{
-    self, Capacity, ClockRate, Declined, EndReason, LabelSource, PROTOCOL, Reply, Request, Setup,
-    Took,
+    self, Capacity, ClockRate, Declined, EndReason, LabelSource, MissionArea, Outline, PROTOCOL,
+    Reply, Request, Setup, Took,
 };
 use planner_core::motion::dynamics::Pose;
+use planner_core::planner::config::Config;
 use planner_core::planner::{Motion, lookahead};
 use planner_core::robot::agent::Step;
 
@@ -32,6 +35,8 @@ const MOST_HELLOS: u32 = 5 * 16;
 /// Plays the world for one mission.
 pub struct Player {
     setup: Setup,
+    /// What the setup's area is in full.
+    area: MissionArea,
     responder: Responder,
     robot: Box<dyn Robot>,
     /// Where it is.
@@ -74,6 +79,7 @@ impl Player {
         let setup = setup(mission, labels)?;
         Ok(Self {
             setup,
+            area: mission.config.area,
             responder: Responder::new(seed),
             robot: mission.robot(),
             pose: mission.start,
@@ -150,9 +156,15 @@ impl Player {
         match request {
             Request::Hello { .. } => unreachable!("a hello is welcomed"),
             // Of a session that the chip begins: it knows nothing of the last.
-            Request::Ready(_) | Request::Declined(_) if self.clock.is_some() => {
+            Request::Outline(_) | Request::Ready(_) | Request::Declined(_)
+                if self.clock.is_some() =>
+            {
                 bail!("the board restarted or gave up after step {}", self.steps())
             }
+            Request::Outline(number) => match outlines(&self.area).nth(number.into()) {
+                Some(outline) => Ok(Reply::Outline(outline)),
+                None => bail!("the board asks for outline {number}, which there is not"),
+            },
             Request::Declined(declined) => {
                 self.outcome = Some(Err(decline(declined, &self.setup)));
                 Ok(Reply::Noted)
@@ -283,9 +295,31 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
     };
     let capacity =
         Capacity { samples: (samples.len() as u32 + taken) as u16, hypotheses: hypotheses as u16 };
-    let &Mission { config, start, .. } = mission;
+    let &Mission { config: Config { area, varrho, crossing, following, tolerance }, start, .. } =
+        mission;
+    let config = Config { area: area.bounds(), varrho, crossing, following, tolerance };
+    let is_plain = area.sides().next().is_none() && area.hulls().next().is_none();
+    let keep_outs = (!is_plain).then(|| area.hulls().count() as u8);
     let (protocol, vehicle, steps) = (PROTOCOL, mission.vehicle.into(), taken as u16);
-    Ok(Setup { protocol, algorithm, config, vehicle, capacity, steps, start, labels, given })
+    Ok(Setup {
+        protocol,
+        algorithm,
+        config,
+        keep_outs,
+        vehicle,
+        capacity,
+        steps,
+        start,
+        labels,
+        given,
+    })
+}
+
+/// The border of an area, then its keep-outs.
+pub fn outlines(area: &MissionArea) -> impl Iterator<Item = Outline> {
+    let hull = Hull::new(area.corners()).ok();
+    let border = hull.map(|hull| Outline { hull, radius: 0 });
+    border.into_iter().chain(area.hulls().copied())
 }
 
 fn decline(declined: Declined, setup: &Setup) -> anyhow::Error {

@@ -8,14 +8,6 @@ use crate::geometry::region::{HalfPlane, KeepOut, Region};
 /// A convex polygon, but for keep-outs; `C` corners each and `K` keep-outs at most.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(
-    feature = "wire",
-    serde(
-        try_from = "crate::link::checked::Outlines<C, K>",
-        into = "crate::link::checked::Outlines<C, K>"
-    )
-)]
 pub struct Terrain<const C: usize, const K: usize> {
     polygon: Hull<C>,
     bounds: Area,
@@ -29,6 +21,7 @@ pub struct Terrain<const C: usize, const K: usize> {
 /// All within a distance of a hull, in lattice units below 2^30: a disc, if that is a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub struct RoundedHull<const C: usize> {
     /// The hull.
     pub hull: Hull<C>,

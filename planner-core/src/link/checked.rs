@@ -4,10 +4,9 @@ use heapless::Vec;
 
 use crate::belief::noise::Reliability;
 use crate::geometry::area::Area;
-use crate::geometry::hull::Hull;
+use crate::geometry::hull::{Hull, NoHull};
 use crate::geometry::lattice::{OffLattice, Site, Vector};
 use crate::geometry::local_line::LocalLine;
-use crate::geometry::terrain::{RoundedHull, Terrain};
 use crate::search::objective::Varrho;
 
 impl From<Site> for (i32, i32) {
@@ -100,31 +99,17 @@ impl TryFrom<(Site, [i32; 2], [f32; 2])> for LocalLine {
     }
 }
 
-/// The corners of a hull.
-type Corners<const C: usize> = Vec<Site, C, u8>;
-
-/// The corners of an area, and the keep-outs in it: corners and a radius.
-pub(crate) type Outlines<const C: usize, const K: usize> =
-    (Corners<C>, Vec<(Corners<C>, u32), K, u8>);
-
-impl<const C: usize, const K: usize> From<Terrain<C, K>> for Outlines<C, K> {
-    fn from(terrain: Terrain<C, K>) -> Self {
-        let corners = |of: &[Site]| of.iter().copied().collect();
-        let keep_outs = terrain.hulls().map(|it| (corners(it.hull.corners()), it.radius));
-        (corners(terrain.corners()), keep_outs.collect())
+/// Its corners.
+impl<const C: usize> From<Hull<C>> for Vec<Site, C, u8> {
+    fn from(hull: Hull<C>) -> Self {
+        hull.corners().iter().copied().collect()
     }
 }
 
-impl<const C: usize, const K: usize> TryFrom<Outlines<C, K>> for Terrain<C, K> {
-    type Error = OutOfRange;
+impl<const C: usize> TryFrom<Vec<Site, C, u8>> for Hull<C> {
+    type Error = NoHull;
 
-    fn try_from((corners, outlines): Outlines<C, K>) -> Result<Self, OutOfRange> {
-        let mut keep_outs = Vec::<RoundedHull<C>, K, u8>::new();
-        for (corners, radius) in &outlines {
-            let hull = Hull::new(corners).map_err(|_| OutOfRange)?;
-            keep_outs.push(RoundedHull { hull, radius: *radius }).map_err(|_| OutOfRange)?;
-        }
-        let polygon = Hull::new(&corners).map_err(|_| OutOfRange)?;
-        Self::new(polygon, &keep_outs).map_err(|_| OutOfRange)
+    fn try_from(corners: Vec<Site, C, u8>) -> Result<Self, NoHull> {
+        Self::new(&corners)
     }
 }

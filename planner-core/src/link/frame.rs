@@ -14,7 +14,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 /// Bytes of the longest frame, its two zeros included.
-pub const FRAME: usize = 1_152;
+pub const FRAME: usize = 320;
 
 /// What goes one way over the link.
 pub trait Message: Serialize + DeserializeOwned {

@@ -26,7 +26,7 @@ use crate::belief::noise::Noise;
 use crate::belief::sample::{Reading, Sample};
 use crate::belief::version_space::NoVersionSpace;
 use crate::belief::weight::Prior;
-use crate::geometry::terrain::Terrain;
+use crate::geometry::terrain::{RoundedHull, Terrain};
 use crate::link::frame::Message;
 use crate::motion::any_vehicle::{NoVehicle, Shape};
 use crate::motion::dynamics::Pose;
@@ -44,11 +44,14 @@ pub const MOST_GIVEN: usize = 16;
 /// Corners that an area can have, and each keep-out in it.
 pub const MOST_CORNERS: usize = 8;
 
-/// Keep-outs that a setup can hold.
+/// Keep-outs that a mission can have.
 pub const MOST_KEEP_OUTS: usize = 8;
 
 /// Where the motions of a mission may go.
 pub type MissionArea = Terrain<MOST_CORNERS, MOST_KEEP_OUTS>;
+
+/// The border of an area that is no rectangle, or what is kept out of.
+pub type Outline = RoundedHull<MOST_CORNERS>;
 
 /// What the chip asks of the vehicle.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -59,6 +62,8 @@ pub enum Request {
         /// [`PROTOCOL`] as the chip has it.
         protocol: u16,
     },
+    /// For an outline, before it begins: 0 is the area's border, then come the keep-outs.
+    Outline(u8),
     /// To begin: the setup is accepted.
     Ready(Accepted),
     /// For another setup: this one is not accepted.
@@ -76,6 +81,8 @@ pub enum Request {
 pub enum Reply {
     /// To [`Request::Hello`]: the mission.
     Setup(Setup),
+    /// To [`Request::Outline`].
+    Outline(Outline),
     /// To [`Request::Move`]: where the motion ended and what was sensed there.
     Arrived {
         /// Where it ended.
@@ -102,7 +109,10 @@ pub struct Setup {
     /// Who plans.
     pub algorithm: Algorithm,
     /// What the mission fixes beforehand.
-    pub config: Config<MissionArea>,
+    pub config: Config,
+    /// If the area is more than that rectangle: how many keep-outs there are. Then the chip asks for
+    /// [outlines](Request::Outline).
+    pub keep_outs: Option<u8>,
     /// What the vehicle can be asked to do. Whether there is such a vehicle is for the
     /// [chip](Setup::dynamics) to say: it need know no kind but its own.
     pub vehicle: Shape,
@@ -200,7 +210,7 @@ pub enum Declined {
     Labels,
     /// The chip cannot plan for this vehicle.
     Vehicle(NoVehicle),
-    /// The chip plans in rectangles with nothing in them.
+    /// The chip cannot plan in this area: if it is more than a rectangle, the chip may have no more.
     Area,
 }
 
@@ -215,7 +225,7 @@ impl core::fmt::Display for Declined {
             Self::Given(why) => why.fmt(f),
             Self::Labels => f.write_str("the chip has no label sensor"),
             Self::Vehicle(why) => why.fmt(f),
-            Self::Area => f.write_str("the chip plans in rectangles with nothing in them"),
+            Self::Area => f.write_str("the chip cannot plan in this area"),
         }
     }
 }
@@ -295,7 +305,6 @@ mod tests {
     use crate::geometry::hull::Hull;
     use crate::geometry::lattice::{LIMIT, Site, Vector};
     use crate::geometry::local_line::LocalLine;
-    use crate::geometry::terrain::RoundedHull;
     use crate::link::frame::{Decoder, Envelope, FRAME, Frame};
     use crate::motion::action::{Action, Control};
     use crate::motion::car;
@@ -318,8 +327,8 @@ mod tests {
         Site::new(x * (LIMIT - 1), z * (LIMIT - 1)).unwrap()
     }
 
-    /// An octagon as large as the lattice, with as many keep-outs.
-    fn widest_area() -> MissionArea {
+    /// An octagon as large as the lattice.
+    fn widest_outline() -> Outline {
         const FAR: i32 = LIMIT - 1;
         const NEAR: i32 = FAR / 2 + 1;
         let corners = [
@@ -333,8 +342,7 @@ mod tests {
             (FAR, -NEAR),
         ];
         let hull = Hull::new(&corners.map(|(x, z)| Site::new(x, z).unwrap())).unwrap();
-        let keep_out = RoundedHull { hull, radius: FAR.unsigned_abs() };
-        MissionArea::new(hull, &[keep_out; MOST_KEEP_OUTS]).unwrap()
+        Outline { hull, radius: u32::MAX }
     }
 
     fn longest_setup() -> Setup {
@@ -348,12 +356,13 @@ mod tests {
                 prior: Prior::Sequences,
             },
             config: Config {
-                area: widest_area(),
+                area: Area::new(far(-1, -1), far(1, 1)).unwrap(),
                 varrho: Varrho::new(0.999_999).unwrap(),
                 crossing: Crossing::AcrossBisector,
                 following: Following::AlongBisector,
                 tolerance: Tolerance::NONE,
             },
+            keep_outs: Some(u8::MAX),
             vehicle: Shape::Car(car::Shape {
                 radius_mm: u32::MAX,
                 shortest_mm: u32::MAX,
@@ -371,10 +380,11 @@ mod tests {
 
     #[test]
     fn the_longest_messages_fit_a_frame_and_arrive_as_they_were_sent() {
-        let setup = Reply::Setup(longest_setup());
-        let frame = Frame::of(&Envelope::new(u32::MAX, u32::MAX, setup.clone()));
-        let arrived = received::<Reply>(&frame).unwrap();
-        assert_eq!((arrived.number, arrived.message), (u32::MAX, setup));
+        for reply in [Reply::Setup(longest_setup()), Reply::Outline(widest_outline())] {
+            let frame = Frame::of(&Envelope::new(u32::MAX, u32::MAX, reply.clone()));
+            let arrived = received::<Reply>(&frame).unwrap();
+            assert_eq!((arrived.number, arrived.message), (u32::MAX, reply));
+        }
 
         let pose = Pose { site: far(-1, -1), heading: Heading(u32::MAX) };
         let motion = Motion {
@@ -427,6 +437,10 @@ mod tests {
             postcard::to_slice(&(far(1, 1), along, [slope, intercept]), &mut bytes).unwrap();
             assert!(postcard::from_bytes::<LocalLine>(&bytes).is_err());
         }
+        let dent = [(0, 0), (9, 0), (2, 2), (0, 9)].map(|(x, z)| Site::new(x, z).unwrap());
+        let dent = Vec::<Site, 8, u8>::from_slice(&dent).unwrap();
+        postcard::to_slice(&dent, &mut bytes).unwrap();
+        assert!(postcard::from_bytes::<Hull<8>>(&bytes).is_err());
         postcard::to_slice(&[far(1, 1), far(0, 0)], &mut bytes).unwrap();
         assert!(postcard::from_bytes::<Area>(&bytes).is_err());
     }

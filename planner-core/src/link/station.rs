@@ -1,5 +1,7 @@
 //! The chip's side of a mission: it is asked for over a link, planned here, and driven elsewhere.
 
+use heapless::Vec;
+
 use crate::belief::Refused;
 use crate::belief::estimate::Estimates;
 use crate::belief::forecast::Forecast;
@@ -13,8 +15,8 @@ use crate::geometry::area::Area;
 use crate::geometry::region::Region;
 use crate::link::delivery::{Link, LinkLost, Port};
 use crate::link::message::{
-    Accepted, Capacity, ClockRate, Declined, EndReason, LabelSource, MissionArea, MissionEnd, Move,
-    PROTOCOL, Reply, Request, Setup, Took,
+    Accepted, Capacity, ClockRate, Declined, EndReason, LabelSource, MOST_KEEP_OUTS, MissionArea,
+    MissionEnd, Move, Outline, PROTOCOL, Reply, Request, Setup, Took,
 };
 use crate::motion::any_vehicle::{NoVehicle, Shape};
 use crate::motion::dynamics::{Dynamics, Pose};
@@ -42,19 +44,16 @@ impl<L> Prepared<L> {
 }
 
 impl Setup {
-    /// What to plan with and where, of what the chip has: [`AnyVehicle`](crate::motion::any_vehicle::AnyVehicle) or
-    /// the [`Unicycle`](crate::motion::unicycle::Unicycle) alone, in a [`MissionArea`] or in an [`Area`] alone. What
-    /// is refused here no planner was made for, so it goes to [`decline`](Station::decline).
+    /// What to plan with, of the vehicles that the chip has, in an area: see [`Station::terms`].
     ///
     /// # Errors
     /// [`Declined`].
-    pub fn terms<D: Known, G: Charted>(&self) -> Result<Terms<D, G>, Declined> {
+    pub fn terms<D: Known, G: Region>(&self, area: G) -> Result<Terms<D, G>, Declined> {
         if self.protocol != PROTOCOL {
             return Err(Declined::Protocol(PROTOCOL));
         }
         let dynamics = D::try_from(self.vehicle).map_err(Declined::Vehicle)?;
         let Config { varrho, crossing, following, tolerance, .. } = self.config;
-        let area = G::of(&self.config.area).ok_or(Declined::Area)?;
         let config = Config { area, varrho, crossing, following, tolerance };
         let fits = config.admits(&dynamics);
         fits.map_err(|none| Declined::Vehicle(NoVehicle::Room(none)))?;
@@ -159,22 +158,59 @@ pub struct Terms<D, G> {
     pub config: Config<G>,
 }
 
-/// Areas that a chip can plan in, of all that a setup can ask for.
-pub trait Charted: Region {
-    /// The same area; `None` if it is no such area.
-    fn of(area: &MissionArea) -> Option<Self>;
+/// Why a mission has no terms.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum NoTerms {
+    /// The setup is not accepted.
+    Declined(Declined),
+    /// There was no reply.
+    Lost(LinkLost),
 }
 
-impl Charted for MissionArea {
-    fn of(area: &MissionArea) -> Option<Self> {
-        Some(*area)
+impl From<LinkLost> for NoTerms {
+    fn from(lost: LinkLost) -> Self {
+        Self::Lost(lost)
     }
 }
 
+impl From<Declined> for NoTerms {
+    fn from(declined: Declined) -> Self {
+        Self::Declined(declined)
+    }
+}
+
+/// Areas that a chip can plan in, of all that a setup can ask for.
+pub trait Charted: Region {
+    /// The area of a setup, whose outlines can be asked for.
+    ///
+    /// # Errors
+    /// [`NoTerms`].
+    fn of<P: Port>(setup: &Setup, link: &mut Link<P>) -> Result<Self, NoTerms>;
+}
+
 impl Charted for Area {
-    fn of(area: &MissionArea) -> Option<Self> {
-        let is_plain = area.sides().next().is_none() && area.keep_outs().next().is_none();
-        is_plain.then(|| area.bounds())
+    fn of<P: Port>(setup: &Setup, _: &mut Link<P>) -> Result<Self, NoTerms> {
+        let is_plain = setup.keep_outs.is_none();
+        if is_plain { Ok(setup.config.area) } else { Err(Declined::Area.into()) }
+    }
+}
+
+impl Charted for MissionArea {
+    fn of<P: Port>(setup: &Setup, link: &mut Link<P>) -> Result<Self, NoTerms> {
+        let Some(count) = setup.keep_outs else { return Ok(setup.config.area.into()) };
+        let mut ask = |number| match link.ask(Request::Outline(number))? {
+            Reply::Outline(outline) => Ok(outline),
+            _ => Err(NoTerms::from(Declined::Area)),
+        };
+        let border = ask(0)?;
+        let mut keep_outs: Vec<Outline, MOST_KEEP_OUTS, u8> = Vec::new();
+        for number in 1..=count {
+            keep_outs.push(ask(number)?).map_err(|_| Declined::Area)?;
+        }
+        let area = Self::new(border.hull, &keep_outs).map_err(|_| Declined::Area)?;
+        let is_it = area.bounds() == setup.config.area && border.radius == 0;
+        if is_it { Ok(area) } else { Err(Declined::Area.into()) }
     }
 }
 
@@ -259,6 +295,28 @@ impl<P: Port, S: LabelSensor> Station<P, S> {
             if let Ok(Reply::Setup(setup)) = self.link.ask(Request::Hello { protocol: PROTOCOL }) {
                 return setup;
             }
+        }
+    }
+
+    /// What to plan with and where, of what the chip has: [`AnyVehicle`](crate::motion::any_vehicle::AnyVehicle) or
+    /// the [`Unicycle`](crate::motion::unicycle::Unicycle) alone, in a [`MissionArea`] or in an [`Area`] alone. What
+    /// is refused here no planner was made for, so it goes to [`give_up`](Self::give_up).
+    ///
+    /// # Errors
+    /// [`NoTerms`].
+    pub fn terms<D: Known, G: Charted>(&mut self, setup: &Setup) -> Result<Terms<D, G>, NoTerms> {
+        let area = G::of(setup, &mut self.link)?;
+        Ok(setup.terms(area)?)
+    }
+
+    /// Asks for another setup, unless the link is lost.
+    ///
+    /// # Errors
+    /// [`LinkLost`].
+    pub fn give_up(&mut self, none: NoTerms) -> Result<Flown, LinkLost> {
+        match none {
+            NoTerms::Declined(declined) => self.decline(declined),
+            NoTerms::Lost(lost) => Err(lost),
         }
     }
 

@@ -54,8 +54,8 @@ mod on_target {
         loop {
             let setup = station.await_setup();
             // How it ended is the host's to judge.
-            let _ = match (setup.terms::<Unicycle, Area>(), setup.algorithm) {
-                (Err(declined), _) => station.decline(declined),
+            let _ = match (station.terms::<Unicycle, Area>(&setup), setup.algorithm) {
+                (Err(none), _) => station.give_up(none),
                 (Ok(terms), Algorithm::Cfc) => {
                     station.fly(&setup, &mut setup.cfc::<_, _, N>(terms), |_| {})
                 }
@@ -70,8 +70,8 @@ mod on_target {
         let mut station = station(&streams);
         loop {
             let setup = station.await_setup();
-            let _ = match (setup.terms::<Unicycle, Area>(), setup.algorithm) {
-                (Err(declined), _) => station.decline(declined),
+            let _ = match (station.terms::<Unicycle, Area>(&setup), setup.algorithm) {
+                (Err(none), _) => station.give_up(none),
                 (Ok(terms), Algorithm::Lookahead { evaluations, goal, noise: None }) => {
                     let mut planner = setup.lookahead::<_, _, N>(terms, evaluations, goal);
                     station.fly(&setup, &mut planner, |_| {})
@@ -90,10 +90,10 @@ mod on_target {
         let mut station = station(&streams);
         loop {
             let setup = station.await_setup();
-            let terms = match setup.terms::<D, G>() {
+            let terms = match station.terms::<D, G>(&setup) {
                 Ok(terms) => terms,
-                Err(declined) => {
-                    let _ = station.decline(declined);
+                Err(none) => {
+                    let _ = station.give_up(none);
                     continue;
                 }
             };
