@@ -1,6 +1,5 @@
 //! What `idle` runs: asks for a mission, flies it, logs it, and asks for the next.
 
-use planner_core::AnyVehicle;
 use planner_core::belief::sample::Reading;
 use planner_core::geometry::local_line::LocalLine;
 use planner_core::link::delivery::LinkLost;
@@ -9,6 +8,7 @@ use planner_core::link::station::{Flown, Prepared, Station, Terms};
 use planner_core::planner::Planner;
 use planner_core::robot::agent::Step;
 use planner_core::robot::hal::PinSensor;
+use planner_core::{AnyVehicle, Goal, Noise, Policy, Prior};
 use stm32f4xx_hal::gpio::{Input, PB1};
 
 use crate::serial::Serial;
@@ -22,6 +22,9 @@ const DOUBTFUL_SAMPLES: usize = 36;
 
 /// All hypotheses that 32 labels can come to.
 const HYPOTHESES: usize = 529;
+
+/// What it plans with and where: all there is.
+type Known = Terms<AnyVehicle, MissionArea>;
 
 /// What a mission has to do with.
 pub(crate) struct Board {
@@ -41,7 +44,7 @@ impl Board {
         }
     }
 
-    fn fly_with(&mut self, setup: &Setup, terms: Terms<AnyVehicle, MissionArea>) {
+    fn fly_with(&mut self, setup: &Setup, terms: Known) {
         match setup.algorithm {
             Algorithm::Cfc => self.fly(setup, &mut setup.cfc::<_, _, TRUE_SAMPLES>(terms)),
             Algorithm::Lookahead { evaluations, goal, noise: None } => {
@@ -51,15 +54,38 @@ impl Board {
                 );
             }
             Algorithm::Lookahead { evaluations, goal, noise: Some((noise, prior)) } => {
-                let mut planner =
-                    setup.forecast::<_, _, DOUBTFUL_SAMPLES, HYPOTHESES>(terms, evaluations, goal);
-                self.fly(setup, &mut setup.prepare(&mut planner, prior, noise));
+                self.fly_forecast(setup, terms, (evaluations, goal), (noise, prior));
             }
             Algorithm::Scc { noise, policy, prior } => {
-                let mut planner = setup.scc::<_, _, DOUBTFUL_SAMPLES, HYPOTHESES>(terms, policy);
-                self.fly(setup, &mut setup.prepare(&mut planner, prior, noise));
+                self.fly_scc(setup, terms, policy, (noise, prior));
             }
         }
+    }
+
+    // Tables of hypotheses are large: there is one on the stack, as each is in a function of its own.
+    #[inline(never)]
+    fn fly_forecast(
+        &mut self,
+        setup: &Setup,
+        terms: Known,
+        (evaluations, goal): (u32, Option<Goal>),
+        (noise, prior): (Noise, Prior),
+    ) {
+        let mut planner =
+            setup.forecast::<_, _, DOUBTFUL_SAMPLES, HYPOTHESES>(terms, evaluations, goal);
+        self.fly(setup, &mut setup.prepare(&mut planner, prior, noise));
+    }
+
+    #[inline(never)]
+    fn fly_scc(
+        &mut self,
+        setup: &Setup,
+        terms: Known,
+        policy: Policy,
+        (noise, prior): (Noise, Prior),
+    ) {
+        let mut planner = setup.scc::<_, _, DOUBTFUL_SAMPLES, HYPOTHESES>(terms, policy);
+        self.fly(setup, &mut setup.prepare(&mut planner, prior, noise));
     }
 
     /// The drive is enabled for as long as this takes.

@@ -10,25 +10,30 @@ use std::convert::Infallible;
 use std::fmt::Debug;
 use std::time::Duration;
 
+use host_sim::campaign::standard_field;
 use host_sim::hil::faults::{Faults, Spoiler};
 use host_sim::hil::player::{self, Player};
 use host_sim::mission::definition::Mission;
 use host_sim::mission::recording::Recording;
 use host_sim::report::trace;
 use planner_core::belief::version_space::NoVersionSpace;
+use planner_core::geometry::area::Area;
+use planner_core::geometry::lattice::Site;
+use planner_core::geometry::terrain::RoundedHull;
 use planner_core::link::delivery::{Link, LinkLost, Port};
 use planner_core::link::frame::{Decoder, Envelope, FRAME, Frame, Message};
 use planner_core::link::message::{
-    Capacity, ClockRate, Declined, EndReason, LabelSource, PROTOCOL, Reply, Request,
-    Setup,
+    Capacity, ClockRate, Declined, EndReason, LabelSource, MissionArea, Outline, PROTOCOL, Reply,
+    Request, Setup,
 };
-use planner_core::link::station::{Flown, Station};
+use planner_core::link::station::{Flown, NoTerms, Station};
 use planner_core::motion::action::BadGrid;
 use planner_core::motion::any_vehicle::{AnyVehicle, NoVehicle, Shape};
 use planner_core::motion::car;
 use planner_core::motion::dynamics::NoRoom;
 use planner_core::motion::unicycle::Unicycle;
 use planner_core::planner::StopReason;
+use planner_core::planner::config::Config;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -219,6 +224,49 @@ fn a_chip_declines_what_is_no_vehicle_of_its_own() {
     drop(chip);
     let error = network.into_inner().player.finish().expect_err("it was declined").to_string();
     assert!(error.contains("vehicle") && error.contains("of this kind"), "{error}");
+}
+
+/// A chip that knows rectangles alone says so; one that knows more is told all of the area, and outlines of no area are
+/// declined.
+#[test]
+fn a_chip_plans_in_the_area_that_it_was_told_or_declines_it() {
+    let mission = of_any_vehicle(0, 10);
+    assert!(mission.config.area.hulls().count() > 0);
+    let network = RefCell::new(Network::new(&mission, Faults::default()));
+    let mut chip = chip(&network);
+    let setup = chip.await_setup();
+    let terms = chip.terms::<AnyVehicle, MissionArea>(&setup).expect("it has room");
+    assert_eq!(terms.config.area, mission.config.area);
+    let more = Setup { keep_outs: setup.keep_outs.map(|count| count - 1), ..setup.clone() };
+    let fewer = chip.terms::<AnyVehicle, MissionArea>(&more).expect("an area too");
+    assert_ne!(fewer.config.area, mission.config.area);
+    let elsewhere = standard_field::area().inset(1).expect("nearly all of it");
+    let config = Config { area: elsewhere, ..setup.config };
+    let wrong = chip.terms::<AnyVehicle, MissionArea>(&Setup { config, ..setup.clone() });
+    assert_eq!(
+        wrong.err(),
+        Some(NoTerms::Declined(Declined::Area)),
+        "not that polygon's rectangle"
+    );
+    let none = chip.terms::<AnyVehicle, Area>(&setup).expect_err("it is more than a rectangle");
+    assert_eq!(none, NoTerms::Declined(Declined::Area));
+    assert!(matches!(chip.give_up(none), Ok(Flown::Declined(Declined::Area))));
+    drop(chip);
+    let error = network.into_inner().player.finish().expect_err("it was declined").to_string();
+    assert!(error.contains("area") && error.contains("declined"), "{error}");
+}
+
+#[test]
+fn outlines_of_no_polygon_are_refused() {
+    let site = |x, z| Site::new(x, z).expect("near");
+    let outline =
+        |corners: &[Site]| Outline { corners: corners.iter().copied().collect(), radius: 3 };
+    let triangle = outline(&[site(0, 0), site(9, 0), site(0, 9)]);
+    let hull = RoundedHull::try_from(triangle.clone()).expect("a triangle");
+    assert_eq!(Outline::from(&hull), triangle);
+    for bad in [&[][..], &[site(0, 0), site(9, 0), site(2, 2), site(0, 9)]] {
+        assert!(RoundedHull::try_from(outline(bad)).is_err(), "{bad:?}");
+    }
 }
 
 #[test]

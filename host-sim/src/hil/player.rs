@@ -8,7 +8,6 @@ use anyhow::{Result, anyhow, bail};
 use heapless::Vec as BoundedVec;
 use planner_core::belief::estimate::Estimates;
 use planner_core::belief::sample::Reading;
-use planner_core::geometry::hull::Hull;
 use planner_core::geometry::region::Region as _;
 use planner_core::link::delivery::{Heard, Hello, Responder};
 use planner_core::link::frame::Frame;
@@ -317,9 +316,8 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
 
 /// The border of an area, then its keep-outs.
 pub fn outlines(area: &MissionArea) -> impl Iterator<Item = Outline> {
-    let hull = Hull::new(area.corners()).ok();
-    let border = hull.map(|hull| Outline { hull, radius: 0 });
-    border.into_iter().chain(area.hulls().copied())
+    let border = Outline { corners: area.corners().iter().copied().collect(), radius: 0 };
+    [border].into_iter().chain(area.hulls().map(Outline::from))
 }
 
 fn decline(declined: Declined, setup: &Setup) -> anyhow::Error {

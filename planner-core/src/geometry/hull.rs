@@ -9,11 +9,6 @@ use crate::geometry::lattice::{Site, orient};
 /// The corners of a convex hull, counter-clockwise, `C` at most.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(
-    feature = "wire",
-    serde(try_from = "heapless::Vec<Site, C, u8>", into = "heapless::Vec<Site, C, u8>")
-)]
 pub struct Hull<const C: usize> {
     corners: [Site; C],
     count: u8,

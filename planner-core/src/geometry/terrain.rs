@@ -21,7 +21,6 @@ pub struct Terrain<const C: usize, const K: usize> {
 /// All within a distance of a hull, in lattice units below 2^30: a disc, if that is a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub struct RoundedHull<const C: usize> {
     /// The hull.
     pub hull: Hull<C>,

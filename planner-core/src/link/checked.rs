@@ -1,10 +1,7 @@
 //! Values that hold an invariant cross the link as bare numbers and are checked on arrival.
 
-use heapless::Vec;
-
 use crate::belief::noise::Reliability;
 use crate::geometry::area::Area;
-use crate::geometry::hull::{Hull, NoHull};
 use crate::geometry::lattice::{OffLattice, Site, Vector};
 use crate::geometry::local_line::LocalLine;
 use crate::search::objective::Varrho;
@@ -96,20 +93,5 @@ impl TryFrom<(Site, [i32; 2], [f32; 2])> for LocalLine {
     ) -> Result<Self, OutOfRange> {
         let along = Vector::new(x, z).ok_or(OutOfRange)?;
         Self::new(about, along, slope, intercept).ok_or(OutOfRange)
-    }
-}
-
-/// Its corners.
-impl<const C: usize> From<Hull<C>> for Vec<Site, C, u8> {
-    fn from(hull: Hull<C>) -> Self {
-        hull.corners().iter().copied().collect()
-    }
-}
-
-impl<const C: usize> TryFrom<Vec<Site, C, u8>> for Hull<C> {
-    type Error = NoHull;
-
-    fn try_from(corners: Vec<Site, C, u8>) -> Result<Self, NoHull> {
-        Self::new(&corners)
     }
 }

@@ -26,6 +26,8 @@ use crate::belief::noise::Noise;
 use crate::belief::sample::{Reading, Sample};
 use crate::belief::version_space::NoVersionSpace;
 use crate::belief::weight::Prior;
+use crate::geometry::hull::{Hull, NoHull};
+use crate::geometry::lattice::Site;
 use crate::geometry::terrain::{RoundedHull, Terrain};
 use crate::link::frame::Message;
 use crate::motion::any_vehicle::{NoVehicle, Shape};
@@ -50,8 +52,30 @@ pub const MOST_KEEP_OUTS: usize = 8;
 /// Where the motions of a mission may go.
 pub type MissionArea = Terrain<MOST_CORNERS, MOST_KEEP_OUTS>;
 
-/// The border of an area that is no rectangle, or what is kept out of.
-pub type Outline = RoundedHull<MOST_CORNERS>;
+/// The border of an area, or what is kept out of, by its numbers: whether they are those of a convex polygon is for
+/// a chip to say that has room for one.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Outline {
+    /// The corners.
+    pub corners: Vec<Site, MOST_CORNERS, u8>,
+    /// How far it reaches beyond them, lattice units.
+    pub radius: u32,
+}
+
+impl From<&RoundedHull<MOST_CORNERS>> for Outline {
+    fn from(RoundedHull { hull, radius }: &RoundedHull<MOST_CORNERS>) -> Self {
+        Self { corners: hull.corners().iter().copied().collect(), radius: *radius }
+    }
+}
+
+impl TryFrom<Outline> for RoundedHull<MOST_CORNERS> {
+    type Error = NoHull;
+
+    fn try_from(Outline { corners, radius }: Outline) -> Result<Self, NoHull> {
+        Ok(Self { hull: Hull::new(&corners)?, radius })
+    }
+}
 
 /// What the chip asks of the vehicle.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -302,7 +326,6 @@ mod tests {
     use crate::belief::tolerance::Tolerance;
     use crate::geometry::area::Area;
     use crate::geometry::heading::Heading;
-    use crate::geometry::hull::Hull;
     use crate::geometry::lattice::{LIMIT, Site, Vector};
     use crate::geometry::local_line::LocalLine;
     use crate::link::frame::{Decoder, Envelope, FRAME, Frame};
@@ -342,7 +365,7 @@ mod tests {
             (FAR, -NEAR),
         ];
         let hull = Hull::new(&corners.map(|(x, z)| Site::new(x, z).unwrap())).unwrap();
-        Outline { hull, radius: u32::MAX }
+        Outline::from(&RoundedHull { hull, radius: u32::MAX })
     }
 
     fn longest_setup() -> Setup {
@@ -437,10 +460,6 @@ mod tests {
             postcard::to_slice(&(far(1, 1), along, [slope, intercept]), &mut bytes).unwrap();
             assert!(postcard::from_bytes::<LocalLine>(&bytes).is_err());
         }
-        let dent = [(0, 0), (9, 0), (2, 2), (0, 9)].map(|(x, z)| Site::new(x, z).unwrap());
-        let dent = Vec::<Site, 8, u8>::from_slice(&dent).unwrap();
-        postcard::to_slice(&dent, &mut bytes).unwrap();
-        assert!(postcard::from_bytes::<Hull<8>>(&bytes).is_err());
         postcard::to_slice(&[far(1, 1), far(0, 0)], &mut bytes).unwrap();
         assert!(postcard::from_bytes::<Area>(&bytes).is_err());
     }

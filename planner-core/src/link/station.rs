@@ -13,10 +13,11 @@ use crate::belief::version_space::{NoVersionSpace, VersionSpace};
 use crate::belief::weight::Prior;
 use crate::geometry::area::Area;
 use crate::geometry::region::Region;
+use crate::geometry::terrain::RoundedHull;
 use crate::link::delivery::{Link, LinkLost, Port};
 use crate::link::message::{
-    Accepted, Capacity, ClockRate, Declined, EndReason, LabelSource, MOST_KEEP_OUTS, MissionArea,
-    MissionEnd, Move, Outline, PROTOCOL, Reply, Request, Setup, Took,
+    Accepted, Capacity, ClockRate, Declined, EndReason, LabelSource, MOST_CORNERS, MOST_KEEP_OUTS,
+    MissionArea, MissionEnd, Move, PROTOCOL, Reply, Request, Setup, Took,
 };
 use crate::motion::any_vehicle::{NoVehicle, Shape};
 use crate::motion::dynamics::{Dynamics, Pose};
@@ -105,8 +106,7 @@ impl Setup {
         let capacity = Capacity { samples: N as u16, hypotheses: 1 };
         self.check(capacity)?;
         let space = self.space()?;
-        let planner = Lookahead::new(config, dynamics, space);
-        let planner = planner.within(evaluations).until(goal);
+        let planner = Lookahead::of((config, dynamics), space, evaluations, goal);
         Ok(Prepared { planner, capacity })
     }
 
@@ -127,8 +127,7 @@ impl Setup {
         evaluations: u32,
         goal: Option<Goal>,
     ) -> Lookahead<D, Forecast<N, H>, G> {
-        let planner = Lookahead::new(config, dynamics, Forecast::NONE);
-        planner.within(evaluations).until(goal)
+        Lookahead::of((config, dynamics), Forecast::NONE, evaluations, goal)
     }
 
     /// Begins the mission in this memory, so that there is never a second planner beside it.
@@ -200,11 +199,13 @@ impl Charted for MissionArea {
     fn of<P: Port>(setup: &Setup, link: &mut Link<P>) -> Result<Self, NoTerms> {
         let Some(count) = setup.keep_outs else { return Ok(setup.config.area.into()) };
         let mut ask = |number| match link.ask(Request::Outline(number))? {
-            Reply::Outline(outline) => Ok(outline),
+            Reply::Outline(outline) => {
+                RoundedHull::try_from(outline).map_err(|_| Declined::Area.into())
+            }
             _ => Err(NoTerms::from(Declined::Area)),
         };
         let border = ask(0)?;
-        let mut keep_outs: Vec<Outline, MOST_KEEP_OUTS, u8> = Vec::new();
+        let mut keep_outs: Vec<RoundedHull<MOST_CORNERS>, MOST_KEEP_OUTS, u8> = Vec::new();
         for number in 1..=count {
             keep_outs.push(ask(number)?).map_err(|_| Declined::Area)?;
         }

@@ -78,8 +78,20 @@ struct Decision {
 impl<D: Dynamics, B: Foresight, G: Region> Lookahead<D, B, G> {
     /// A planner with what is known so far.
     pub fn new(config: Config<G>, dynamics: D, foresight: B) -> Self {
+        Self::of((config, dynamics), foresight, EVALUATIONS, None)
+    }
+
+    /// The same with all that it can be told: it is made where it stays, as it may be large.
+    #[inline]
+    pub(crate) fn of(
+        (config, dynamics): (Config<G>, D),
+        foresight: B,
+        evaluations: u32,
+        goal: Option<Goal>,
+    ) -> Self {
+        let goal = goal.map(|goal| goal.in_bounds_of(&config.area));
         let (bounds, config) = (config.area.bounds(), config.inset());
-        Self { config, bounds, dynamics, foresight, evaluations: EVALUATIONS, goal: None }
+        Self { config, bounds, dynamics, foresight, evaluations, goal }
     }
 
     /// The same, with so many ends of motions to ask for a plan at most instead of [`EVALUATIONS`].

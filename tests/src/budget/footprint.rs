@@ -22,6 +22,8 @@ pub const KNOWN: Known<'static> = &[
     ("bare_core::on_target::any", &["bare_core::port::ticks"]),
     ("bare_core::on_target::true_labels", &["bare_core::port::ticks"]),
     ("firmware::mission::Board::run", &["firmware::time::ticks"]),
+    ("firmware::mission::Board::fly_forecast", &["firmware::time::ticks"]),
+    ("firmware::mission::Board::fly_scc", &["firmware::time::ticks"]),
     // It would wake who waits on the monotonic. No task does: the queue is empty.
     ("SysTick", &[]),
 ];
