@@ -6,6 +6,8 @@
 //! chip                                        vehicle (or `host-sim hil` in its place)
 //!  | -- Hello { protocol } ------------------->  |  repeated until someone answers
 //!  | <------------------------- Setup { .. } --  |  the mission
+//!  | -- Outline(number) ---------------------->  |
+//!  | <----------------------- Outline { .. } --  |  as often as the area has any, if it is no rectangle
 //!  | -- Ready(Accepted), or Declined --------->  |
 //!  | <-------------------------------- Noted --  |
 //!  | -- Move { motion, what came of the last } ->  |
@@ -138,7 +140,7 @@ pub struct Setup {
     /// [outlines](Request::Outline).
     pub keep_outs: Option<u8>,
     /// What the vehicle can be asked to do. Whether there is such a vehicle is for the
-    /// [chip](Setup::dynamics) to say: it need know no kind but its own.
+    /// [chip](Setup::terms) to say: it need know no kind but its own.
     pub vehicle: Shape,
     /// The capacity asked for.
     pub capacity: Capacity,
