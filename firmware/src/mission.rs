@@ -38,19 +38,19 @@ impl Board {
             let setup = self.station.await_setup();
             defmt::info!("mission: {}, {=u16} steps at most", setup.algorithm, setup.steps);
             match self.station.terms(&setup) {
-                Ok(terms) => self.fly_with(&setup, terms),
+                Ok(terms) => self.fly_with(&setup, &terms),
                 Err(none) => log_end(0, &self.station.give_up(none)),
             }
         }
     }
 
-    fn fly_with(&mut self, setup: &Setup, terms: Known) {
+    fn fly_with(&mut self, setup: &Setup, terms: &Known) {
         match setup.algorithm {
-            Algorithm::Cfc => self.fly(setup, &mut setup.cfc::<_, _, TRUE_SAMPLES>(terms)),
+            Algorithm::Cfc => self.fly(setup, &mut setup.cfc::<_, _, TRUE_SAMPLES>(*terms)),
             Algorithm::Lookahead { evaluations, goal, noise: None } => {
                 self.fly(
                     setup,
-                    &mut setup.lookahead::<_, _, TRUE_SAMPLES>(terms, evaluations, goal),
+                    &mut setup.lookahead::<_, _, TRUE_SAMPLES>(*terms, evaluations, goal),
                 );
             }
             Algorithm::Lookahead { evaluations, goal, noise: Some((noise, prior)) } => {
@@ -67,12 +67,12 @@ impl Board {
     fn fly_forecast(
         &mut self,
         setup: &Setup,
-        terms: Known,
+        terms: &Known,
         (evaluations, goal): (u32, Option<Goal>),
         (noise, prior): (Noise, Prior),
     ) {
         let mut planner =
-            setup.forecast::<_, _, DOUBTFUL_SAMPLES, HYPOTHESES>(terms, evaluations, goal);
+            setup.forecast::<_, _, DOUBTFUL_SAMPLES, HYPOTHESES>(*terms, evaluations, goal);
         self.fly(setup, &mut setup.prepare(&mut planner, prior, noise));
     }
 
@@ -80,11 +80,11 @@ impl Board {
     fn fly_scc(
         &mut self,
         setup: &Setup,
-        terms: Known,
+        terms: &Known,
         policy: Policy,
         (noise, prior): (Noise, Prior),
     ) {
-        let mut planner = setup.scc::<_, _, DOUBTFUL_SAMPLES, HYPOTHESES>(terms, policy);
+        let mut planner = setup.scc::<_, _, DOUBTFUL_SAMPLES, HYPOTHESES>(*terms, policy);
         self.fly(setup, &mut setup.prepare(&mut planner, prior, noise));
     }
 
