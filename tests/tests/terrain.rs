@@ -5,14 +5,20 @@ use std::collections::BTreeMap;
 use geo::{Contains, Coord, Distance, Euclidean, LineString, Point};
 use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
-use host_sim::mission::definition::Mission;
+use host_sim::mission::definition::{Lines, Mission};
 use host_sim::mission::results::Ending;
+use host_sim::world::World;
 use host_sim::world::noise::{Extent, NoiseModel};
 use nalgebra::Point2;
+use planner_core::belief::sample::{Label, Sample};
 use planner_core::belief::tolerance::Tolerance;
+use planner_core::geometry::heading::Heading;
 use planner_core::geometry::hull::{Hull, NoHull, are_apart};
 use planner_core::geometry::lattice::{LIMIT, Site, UNITS_PER_METRE};
+use planner_core::geometry::line::Line;
 use planner_core::geometry::region::Region as _;
+use planner_core::geometry::terrain::RoundedHull;
+use planner_core::link::message::MissionArea;
 use planner_core::motion::any_vehicle::AnyVehicle;
 use planner_core::motion::boat::Boat;
 use planner_core::motion::car::{Car, Shape};
@@ -214,4 +220,38 @@ fn no_motion_crosses_a_keep_out_or_the_border() {
     let motions: usize = all.iter().map(|(.., motions)| motions).sum();
     println!("{motions} motions");
     assert!(motions as u64 > 15 * all.len() as u64);
+}
+
+/// A wall between the robot and all that is uncertain: it goes round, and asks there.
+#[test]
+fn it_goes_round_what_is_in_the_way() {
+    let at = |x: f64, z: f64| Site::try_from(Point2::new(x, z)).expect("near");
+    for (name, vehicle) in vehicles() {
+        for algorithm in [Algorithm::Cfc, Algorithm::Lookahead] {
+            let mut mission = standard_field::standard(5, 1, algorithm, 40);
+            let labels = [(3.0, 8.0, -1), (3.0, 12.0, 1), (17.0, 12.5, 1), (17.0, 8.5, -1)];
+            let given = labels.map(|(x, z, sign)| Sample {
+                site: at(x, z),
+                label: if sign > 0 { Label::Positive } else { Label::Negative },
+            });
+            mission.given = Lines::new(&given).expect("lines are left");
+            let truth = Line::from_slope(0.02, 9.9).expect("a line");
+            (mission.world, mission.vehicle) = (World::divided_by(truth), vehicle);
+            let wall = Hull::new(&[at(2.5, 5.0), at(17.0, 5.2)]).expect("a wall");
+            let pillar = Hull::new(&[at(18.3, 4.0)]).expect("a point");
+            let keep_outs =
+                [(wall, 0), (pillar, 80_000)].map(|(hull, radius)| RoundedHull { hull, radius });
+            let border = Hull::of(standard_field::area());
+            mission.config.area = MissionArea::new(border, &keep_outs).expect("an area");
+            mission.start = Pose { site: at(12.0, 2.5), heading: Heading(0) };
+            let mut labels = 0;
+            let flown = mission.fly(|step, _| labels += u32::from(step.reading.is_some()));
+            let flown = flown.expect("labels are true");
+            assert_eq!(flown.ending, Ending::Steps, "{name}, {algorithm:?}");
+            assert!(labels >= 12, "{name}, {algorithm:?}: {labels} labels");
+            let (_, _, wrong) = fly(&mission);
+            assert_eq!(wrong, None, "{name}, {algorithm:?}");
+            println!("{name}, {algorithm:?}: {labels} labels in 40 motions");
+        }
+    }
 }

@@ -1,12 +1,13 @@
 //! The way to where a label can be asked, for a vehicle that cannot turn on the spot.
 //!
 //! It holds its circle to one side for some motions (shorter ones where it is not safe and its own would leave the
-//! area), until it has gone round at most, and drives straight on from there for some more: `L..L S..S` or `R..R S..S`. After each of these motions it sees whether the problem is
-//! feasible there, and the first motion of the fewest is the one to make. Where there is none it looks at *long* ways,
-//! which after up to eight straight motions go round to either side once more, as the shortest paths of a car do
-//! (Dubins, 1957): `L..L S..S R..R` and the like. So that it is never cornered for want of caution, each motion ends
+//! area), until it has gone round at most, and drives straight on from there for some more: `L..L S..S` or `R..R S..S`.
+//! After each of these motions it sees whether the problem is feasible there, and the first motion of the fewest is the
+//! one to make. Where there is none it looks at *long* ways, which after up to eight straight motions go round to either
+//! side once more, as the shortest paths of a car do (Dubins, 1957): `L..L S..S R..R` and the like. So that it is never cornered for want of caution, each motion ends
 //! [safe](Dynamics::keeps_inside); only where it is not safe to begin with, or outside, it may take some that do not,
-//! and if nothing is feasible on any such way, it goes where it is safe.
+//! and if nothing is feasible on any such way, it goes where it is safe. Where keep-outs are in the way it goes as near
+//! as such ways come to the first waypoint round them (`detour`).
 //!
 //! **It ends**, though it has no state. What is left of a way is a way too, of one motion less: so each motion lowers
 //! the number of motions to where a label can be asked, by a short way, or as long as there is none, by a long one, or
@@ -14,11 +15,13 @@
 
 use crate::belief::consistent_lines::Certainty;
 use crate::geometry::approximate::{single, sqrt};
+use crate::geometry::lattice::{Site, Vector};
 use crate::geometry::region::Region;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Orbit, Pose, Side};
 use crate::search::circles::Search;
 use crate::search::dead_end::{DeadEnd, dead_end_at};
+use crate::search::detour::{self, Way};
 use crate::search::direction_rule::DirectionRule;
 use crate::search::objective::Effort;
 use crate::search::problem::Problem;
@@ -29,6 +32,9 @@ const MOST: u32 = 1_024;
 /// Rays that all this looks at, at most.
 const LOOKS: u32 = 65_536;
 
+/// A way round keep-outs comes nearer to its waypoint at least by the rest of this share.
+const LEAST: f32 = 0.95;
+
 /// Straight motions of a long way at most.
 const STRAIGHT: u32 = 8;
 
@@ -36,7 +42,7 @@ const STRAIGHT: u32 = 8;
 type Leg = (Action, Pose);
 
 /// The first motion of a way, and the number of its motions.
-type Way = (Leg, u32);
+type Course = (Leg, u32);
 
 /// Where all ways begin.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -68,9 +74,13 @@ struct Manoeuvre<'d, 'p, 'a, D, R, G> {
     dynamics: &'d D,
     effort: Effort,
     /// The shortest way to where the problem is feasible.
-    shortest: Option<Way>,
+    shortest: Option<Course>,
     /// From where it is not safe: the shortest way to where it is.
-    escape: Option<Way>,
+    escape: Option<Course>,
+    /// Where the way round keep-outs begins, how near a way has come to that, and the way.
+    waypoint: Option<Site>,
+    nearest: f32,
+    approach: Option<Course>,
     start: Start,
     /// Whether uncertain ground was in reach somewhere.
     comes_near: bool,
@@ -80,7 +90,7 @@ struct Manoeuvre<'d, 'p, 'a, D, R, G> {
     depth: i32,
 }
 
-/// The first motion of the shortest way to where the problem, without its rule, is feasible.
+/// The first motion of the shortest way to where the problem is feasible, or else as near as ways come to a waypoint.
 ///
 /// Cost: for each motion of a round, and each straight one beyond near uncertain ground, one search; where that finds
 /// nothing, one for each motion of the long ways, up to 65,536 looks in all.
@@ -90,6 +100,7 @@ struct Manoeuvre<'d, 'p, 'a, D, R, G> {
 pub(crate) fn manoeuvre<D: Dynamics, R: DirectionRule, G: Region>(
     problem: &Problem<'_, R, G>,
     search: &mut Search<'_, D, G>,
+    waypoint: Option<Site>,
 ) -> Result<Leg, DeadEnd> {
     let (dynamics, from) = (search.dynamics, search.pose);
     let mut it = Manoeuvre {
@@ -98,6 +109,9 @@ pub(crate) fn manoeuvre<D: Dynamics, R: DirectionRule, G: Region>(
         effort: Effort { looks: LOOKS, ..search.effort },
         shortest: None,
         escape: None,
+        waypoint,
+        nearest: f32::INFINITY,
+        approach: None,
         start: match problem.area.contains(from.site) {
             true if dynamics.is_safe(from, &problem.area) => Start::Safe,
             true => Start::Unsafe,
@@ -109,6 +123,7 @@ pub(crate) fn manoeuvre<D: Dynamics, R: DirectionRule, G: Region>(
         depth: 0,
     };
     let depth = if it.start == Start::Outside { problem.area.depth(from.site) } else { 0 };
+    it.nearest = it.waypoint.map_or(0.0, |waypoint| LEAST * distance(waypoint - from.site));
     for (long, depth) in [(false, depth), (true, depth), (false, i32::MIN), (true, i32::MIN)] {
         (it.looks_at_long_ways, it.depth) = (long, depth);
         let is_needed = it.shortest.or(it.escape).is_none() && it.start == Start::Outside;
@@ -124,7 +139,7 @@ pub(crate) fn manoeuvre<D: Dynamics, R: DirectionRule, G: Region>(
         }
     }
     search.effort = it.effort;
-    match it.shortest.or(it.escape) {
+    match it.shortest.or(it.escape).or(it.approach) {
         Some((first, _)) => Ok(first),
         None if !it.effort.is_enough() => Err(DeadEnd::Undecided),
         None if it.start == Start::Outside => Err(DeadEnd::Outside),
@@ -133,6 +148,18 @@ pub(crate) fn manoeuvre<D: Dynamics, R: DirectionRule, G: Region>(
         }
         None => Err(DeadEnd::Cornered),
     }
+}
+
+/// Where the way round keep-outs to uncertain ground begins, if there are any.
+pub(crate) fn waypoint<D: Dynamics, G: Region>(search: &Search<'_, D, G>) -> Option<Site> {
+    let (view, from) = (&search.view, search.pose.site);
+    view.area().keep_outs().next()?;
+    let (Way::Straight(way) | Way::Round(way)) = detour::begin(view, from, view.way_out()?)?;
+    from.step(way).ok()
+}
+
+fn distance(way: Vector) -> f32 {
+    sqrt(single(way.dot(way)))
 }
 
 impl<D: Dynamics, R: DirectionRule, G: Region> Manoeuvre<'_, '_, '_, D, R, G> {
@@ -215,7 +242,7 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Manoeuvre<'_, '_, '_, D, R, G> {
             free -= sqrt(single(by.dot(by)));
             pose = leg.1;
             if free > 0.0 {
-                self.note_escape(pose, (first, motions));
+                self.note(pose, (first, motions));
             } else {
                 let Some(next) = self.look(pose, (first, motions)) else { return };
                 free = next;
@@ -256,8 +283,8 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Manoeuvre<'_, '_, '_, D, R, G> {
 
     /// Sees whether the problem is feasible at the end of a way: then it is the shortest, and there is nothing to
     /// go on for. Else how far from there no uncertain ground is in reach.
-    fn look(&mut self, pose: Pose, way: Way) -> Option<f32> {
-        self.note_escape(pose, way);
+    fn look(&mut self, pose: Pose, way: Course) -> Option<f32> {
+        self.note(pose, way);
         self.effort.looks = self.effort.looks.saturating_sub(1);
         let mut there = self.problem.search(self.dynamics, pose, self.effort);
         let there = there.open();
@@ -276,8 +303,12 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Manoeuvre<'_, '_, '_, D, R, G> {
         Some(free)
     }
 
-    fn note_escape(&mut self, pose: Pose, way: Way) {
+    fn note(&mut self, pose: Pose, way: Course) {
         let (_, motions) = way;
+        let distance = self.waypoint.map_or(f32::INFINITY, |it| distance(it - pose.site));
+        if distance < self.nearest {
+            (self.nearest, self.approach) = (distance, Some(way));
+        }
         if self.start != Start::Safe
             && self.escape.is_none_or(|(_, least)| motions < least)
             && self.problem.area.contains(pose.site)

@@ -37,7 +37,7 @@ use crate::search::circles::{Findings, Search};
 use crate::search::dead_end::{DeadEnd, dead_end_at};
 use crate::search::detour::{self, Way};
 use crate::search::direction_rule::{ArcRule, DirectionRule};
-use crate::search::manoeuvre::manoeuvre;
+use crate::search::manoeuvre::{manoeuvre, waypoint};
 use crate::search::problem::Problem;
 
 /// A transit among uncertain ground looks this many motions ahead. Twice as many find nothing more in
@@ -98,7 +98,9 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule, G: Region>(
     }
     if goes_round(ladder.search.dynamics, ladder.search.pose) {
         ladder.search.view.way_out().ok_or(DeadEnd::Resolution)?;
-        return manoeuvre(&ladder.problem, ladder.search).map(found(Some(Recovery::Transit)));
+        let waypoint = waypoint(ladder.search);
+        let leg = manoeuvre(&ladder.problem, ladder.search, waypoint);
+        return leg.map(found(Some(Recovery::Transit)));
     }
     // Where nothing is in reach no turn finds anything, so that the order does not matter.
     if let Some(turn) = ladder.reorient() {
@@ -125,7 +127,7 @@ pub(crate) fn turn_round<D: Dynamics, R: DirectionRule, G: Region>(
 ) -> Option<Found> {
     let is_free = goes_round(search.dynamics, search.pose)
         && search.dynamics.is_safe(search.pose, &problem.area);
-    let (action, target) = is_free.then(|| manoeuvre(problem, search).ok()).flatten()?;
+    let (action, target) = is_free.then(|| manoeuvre(problem, search, None).ok()).flatten()?;
     Some(Found { recovery: Some(Recovery::Transit), action, target })
 }
 
