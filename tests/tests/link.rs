@@ -432,8 +432,11 @@ impl Message for Unknown {
 fn a_decoder_takes_what_was_sent_and_nothing_else() {
     let corpus = corpus();
     let [requests, replies] = kinds(&corpus);
-    assert!(requests.iter().eq(["Declined", "End", "Hello", "Move", "Ready"]), "{requests:?}");
-    let all = ["Arrived", "Busy", "Failed", "Noted", "Setup", "Stale"];
+    assert!(
+        requests.iter().eq(["Declined", "End", "Hello", "Move", "Outline", "Ready"]),
+        "{requests:?}"
+    );
+    let all = ["Arrived", "Busy", "Failed", "Noted", "Outline", "Setup", "Stale"];
     assert!(replies.iter().eq(all), "{replies:?}");
     let longest = corpus.iter().map(Vec::len).max();
     for frame in &corpus {

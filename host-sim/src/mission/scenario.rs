@@ -10,7 +10,6 @@ use planner_core::belief::sample::{Label, Reading, Sample};
 use planner_core::belief::tolerance::Tolerance;
 use planner_core::belief::version_space::{NoVersionSpace, VersionSpace};
 use planner_core::geometry::heading::Heading;
-use planner_core::geometry::lattice::Site;
 use planner_core::geometry::line::Line;
 use planner_core::link::message::MissionArea;
 use planner_core::motion::dynamics::Pose;
@@ -24,7 +23,7 @@ use crate::mission::definition::{CAPACITY, Lines, Mission};
 use crate::mission::names::{CrossingName, FanName, FollowingName, PolicyName, PriorName};
 use crate::mission::stop::StopTable;
 use crate::mission::strict::{Numbers, Table, wrong};
-use crate::mission::terrain::{self, AreaTable, KeepOutTable};
+use crate::mission::terrain::{self, AreaTable, KeepOutTable, site};
 use crate::mission::vehicle::{self, Source, VehicleTable};
 use crate::world::World;
 use crate::world::errors::{CUT, Errors};
@@ -187,16 +186,6 @@ pub fn check_steps(field: &str, steps: u32, oracle: usize) -> Result<()> {
         return wrong(field, steps, room);
     }
     Ok(())
-}
-
-pub(crate) fn site(field: &str, x: f64, z: f64) -> Result<Site> {
-    for (name, value) in [("x", x), ("z", z)] {
-        if Site::try_from(Point2::new(value, 0.0)).is_err() {
-            let expected = "a finite coordinate smaller than 8192 m in size";
-            return wrong(&format!("{field}.{name}"), value, expected);
-        }
-    }
-    Ok(Site::try_from(Point2::new(x, z))?)
 }
 
 fn mission(file: &File, overrides: Overrides) -> Result<Mission> {

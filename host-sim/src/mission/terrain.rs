@@ -11,7 +11,6 @@ use planner_core::geometry::terrain::RoundedHull;
 use planner_core::link::message::{MOST_CORNERS, MOST_KEEP_OUTS, MissionArea};
 use serde::Deserialize;
 
-use crate::mission::scenario::site;
 use crate::mission::strict::{Numbers, Table, wrong};
 use crate::world::polygon::Polygon;
 
@@ -105,6 +104,20 @@ fn hull(field: &str, corners: &[Numbers<2>], least: usize) -> Result<Hull<MOST_C
         );
         wrong(field, format!("[{}]", list.collect::<Vec<_>>().join(", ")), expected)
     })
+}
+
+/// A position in metres.
+///
+/// # Errors
+/// Names the coordinate of `field` that is beyond the lattice.
+pub(crate) fn site(field: &str, x: f64, z: f64) -> Result<Site> {
+    for (name, value) in [("x", x), ("z", z)] {
+        if Site::try_from(Point2::new(value, 0.0)).is_err() {
+            let expected = "a finite coordinate smaller than 8192 m in size";
+            return wrong(&format!("{field}.{name}"), value, expected);
+        }
+    }
+    Ok(Site::try_from(Point2::new(x, z))?)
 }
 
 /// Whether a position is where the agent may be.

@@ -1,7 +1,6 @@
 //! The mission area: the rectangle in which all positions stay.
 
 use crate::geometry::lattice::Site;
-use crate::geometry::region::Region;
 
 /// The rectangle in which all positions stay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,15 +66,5 @@ impl Area {
     pub fn contains(&self, q: Site) -> bool {
         (self.min.x()..=self.max.x()).contains(&q.x())
             && (self.min.z()..=self.max.z()).contains(&q.z())
-    }
-}
-
-impl Region for Area {
-    fn bounds(&self) -> Area {
-        *self
-    }
-
-    fn inset(&self, margin: u32) -> Option<Self> {
-        Self::inset(self, margin)
     }
 }

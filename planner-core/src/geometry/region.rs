@@ -72,6 +72,16 @@ pub trait Region: Copy {
     }
 }
 
+impl Region for Area {
+    fn bounds(&self) -> Area {
+        *self
+    }
+
+    fn inset(&self, margin: u32) -> Option<Self> {
+        Self::inset(self, margin)
+    }
+}
+
 /// Positions to the left of a line, some way from it at least.
 #[derive(Clone, Copy, Debug)]
 pub struct HalfPlane {
