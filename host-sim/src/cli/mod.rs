@@ -1,6 +1,9 @@
 //! The command line.
 
 pub mod arguments;
-pub mod commands;
+mod campaign;
 mod compare;
+mod hil;
 pub mod paper;
+mod replay;
+mod run;
