@@ -1,12 +1,9 @@
 //! What labels that may err tell of what they can tell, and whether the probabilities that are stated hold.
 
-use planner_core::belief::Belief as _;
 use planner_core::belief::hypotheses::Hypothesis;
 use planner_core::belief::posterior::Posterior;
-use planner_core::belief::sample::{Label, Sample};
-use planner_core::belief::tolerance::Tolerance;
+use planner_core::belief::sample::Sample;
 use planner_core::belief::weight::Prior;
-use planner_core::geometry::lattice::Site;
 use planner_core::geometry::line::Line;
 use serde::Serialize;
 
@@ -191,26 +188,11 @@ fn expected(mission: &Mission, table: &Table) -> f64 {
     let mut known = mission.table();
     let given = known.samples().len();
     let told = table.samples().iter().skip(given).map(|&Sample { site, label }| {
-        let told = foretold(&known, site);
+        let told = known.expects(site).bits;
         known.read(site, label).expect("taken in once already");
         told
     });
     told.sum()
-}
-
-/// What a label at a site is expected to tell: where positions err, the mean of what the two there are would.
-fn foretold(known: &Table, site: Site) -> f64 {
-    let chance = known.chance(site);
-    if known.noise().tolerance == Tolerance::NONE {
-        return limit(known.reliability(site).probability()) - limit(chance);
-    }
-    let after = |label| {
-        let mut after = known.clone();
-        after.read(site, label).expect("there is room");
-        after.information()
-    };
-    let [above, below] = [Label::Positive, Label::Negative].map(after);
-    chance * above + (1.0 - chance) * below - known.information()
 }
 
 fn row(labels: u32, limit: f64, checkpoints: &[Checkpoint]) -> Row {

@@ -7,7 +7,7 @@ use crate::cli::campaign::{CampaignArgs, campaign};
 use crate::cli::hil::{HilArgs, hil};
 use crate::cli::paper;
 use crate::cli::replay::{ReplayArgs, replay};
-use crate::cli::run::{Run, run};
+use crate::cli::run::{RunArgs, run};
 
 /// Simulates a robot that finds an unknown straight boundary from few samples.
 ///
@@ -23,7 +23,7 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Run one mission
-    Run(Run),
+    Run(RunArgs),
     /// Say what samples determine that were recorded elsewhere
     Replay(ReplayArgs),
     /// Run the standard fields and print tables

@@ -71,11 +71,11 @@ pub(crate) fn hil(args: &HilArgs) -> Result<String> {
         Some(device) => ("the port", Path::new(device)),
         None => ("the firmware", elf.as_path()),
     };
-    let [trace, figure, candidates] = args.run.outputs();
+    let [trace, figure, candidates, report] = args.run.outputs();
     let (timing, log) = (args.timing.as_deref(), args.log.as_deref());
-    let asked = [trace, figure, candidates, ("--timing", timing), ("--log", log)];
+    let asked = [trace, figure, candidates, report, ("--timing", timing), ("--log", log)];
     let prepared = prepare(&[args.run.input(), (chip, board)], asked)?;
-    let [trace, figure, candidates, timing, log] = prepared;
+    let [trace, figure, candidates, report, timing, log] = prepared;
     // The emulator writes its log as it goes; it comes to its place when it is whole.
     let log = log.map(|log| Ok::<_, anyhow::Error>((log, temporary(&env::temp_dir())?)));
     let log = log.transpose().context("expected a place for temporary files")?;
@@ -102,7 +102,7 @@ pub(crate) fn hil(args: &HilArgs) -> Result<String> {
     let played = player.finish().with_context(|| args.run.name())?;
     let timings = Timings::new(&played, &turnarounds);
     let rows = timings.csv()?;
-    let mut text = args.run.tell([trace, figure, candidates], &played.recording)?;
+    let mut text = args.run.tell([trace, figure, candidates, report], &played.recording)?;
     if let Some(output) = timing {
         output.write(rows)?;
     }

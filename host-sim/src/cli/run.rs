@@ -6,11 +6,14 @@ use anyhow::{Context as _, Result, bail};
 use clap::Args;
 
 use crate::cli::arguments::Format;
+use crate::cli::compare;
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::Mission;
 use crate::mission::recording::Recording;
 use crate::mission::scenario::{self, Overrides};
 use crate::output::file::{Output, prepare};
+use crate::report::examples::{Flown, side_by_side};
+use crate::report::page::{Chapter, Page};
 use crate::report::picture::Picture;
 use crate::report::{text, trace};
 
@@ -36,17 +39,48 @@ pub(crate) struct Run {
     /// Write a figure of the lines with the fewest violations here (scc)
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) candidates: Option<PathBuf>,
+    /// Write a page to step through the mission here
+    #[arg(long, value_name = "FILE.html")]
+    pub(crate) report: Option<PathBuf>,
     /// What to print; json prints the trace
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: Format,
 }
 
+#[derive(Debug, Args)]
+pub(crate) struct RunArgs {
+    #[command(flatten)]
+    run: Run,
+    /// Who plans, one after the other from the same start: the page shows them in step
+    #[arg(
+        long,
+        value_enum,
+        value_name = "PLANNER,...",
+        value_delimiter = ',',
+        requires = "report",
+        conflicts_with_all = ["algorithm", "trace", "figure", "candidates"]
+    )]
+    compare: Vec<Algorithm>,
+}
+
 /// Flies it, and what to print.
-pub(crate) fn run(args: &Run) -> Result<String> {
-    let mission = args.mission()?;
-    let outputs = prepare(&[args.input()], args.outputs())?;
-    let recording = Recording::of(&mission).with_context(|| args.name())?;
-    args.tell(outputs, &recording)
+pub(crate) fn run(args: &RunArgs) -> Result<String> {
+    let RunArgs { run, compare } = args;
+    if !compare.is_empty() {
+        return run.compare(compare);
+    }
+    let mission = run.mission()?;
+    let outputs = prepare(&[run.input()], run.outputs())?;
+    let recording = Recording::of(&mission).with_context(|| run.name())?;
+    run.tell(outputs, &recording)
+}
+
+/// A page of missions that were flown from the same start.
+fn page(name: &str, recordings: &[&Recording]) -> Result<String> {
+    let planners: Vec<_> = recordings.iter().map(|it| it.mission.algorithm.title()).collect();
+    let title = format!("Flown by {}", planners.join(", "));
+    let flights = planners.into_iter().zip(recordings.iter().copied());
+    Page::new(name, vec![Chapter::new(title, flights)]).html()
 }
 
 impl Run {
@@ -55,7 +89,12 @@ impl Run {
     }
 
     pub(crate) fn mission(&self) -> Result<Mission> {
-        let Self { algorithm, steps, seed, .. } = *self;
+        self.mission_by(self.algorithm)
+    }
+
+    /// The mission as this one plans it, or who the file names.
+    fn mission_by(&self, algorithm: Option<Algorithm>) -> Result<Mission> {
+        let Self { steps, seed, .. } = *self;
         let mission = scenario::read(&self.scenario, Overrides { algorithm, steps, seed })?;
         if self.candidates.is_some() && !mission.is_noisy() {
             bail!("--candidates: found a mission without noise, expected one with noisy labels");
@@ -66,34 +105,70 @@ impl Run {
         Ok(mission)
     }
 
+    /// Flies the mission by each of these, and writes the page that shows them; what to print.
+    fn compare(&self, planners: &[Algorithm]) -> Result<String> {
+        compare::check_once(planners)?;
+        let mission = |&planner: &Algorithm| {
+            let mission = self.mission_by(Some(planner)).with_context(|| format!("--compare {}", planner.name()))?;
+            if mission.noise.is_some() && !mission.is_noisy() {
+                let name = planner.name();
+                bail!("--compare: found {name}, which takes labels to be true, in a mission with noise");
+            }
+            Ok(mission)
+        };
+        let missions = planners.iter().map(mission).collect::<Result<Vec<_>>>()?;
+        let [report] = prepare(&[self.input()], [("--report", self.report.as_deref())])?;
+        let name = self.name();
+        let fly = |mission: &Mission| Recording::of(mission).with_context(|| name.clone());
+        let recordings = missions.iter().map(fly).collect::<Result<Vec<_>>>()?;
+        let page = page(&name, &recordings.iter().collect::<Vec<_>>())?;
+        if let Some(report) = report {
+            report.write(page)?;
+        }
+        Ok(match self.format {
+            Format::Text => side_by_side(recordings.iter().map(|recording| Flown {
+                example: &name,
+                planner: recording.mission.algorithm.title(),
+                is_printed: false,
+                recording,
+            })),
+            Format::Json => recordings.iter().map(|it| trace::lines(&it.results)).collect(),
+        })
+    }
+
     pub(crate) fn input(&self) -> (&'static str, &Path) {
         ("the scenario", &self.scenario)
     }
 
-    pub(crate) fn outputs(&self) -> [(&'static str, Option<&Path>); 3] {
+    pub(crate) fn outputs(&self) -> [(&'static str, Option<&Path>); 4] {
         [
             ("--trace", self.trace.as_deref()),
             ("--figure", self.figure.as_deref()),
             ("--candidates", self.candidates.as_deref()),
+            ("--report", self.report.as_deref()),
         ]
     }
 
-    /// Writes the trace and the figures that were asked for; what to print.
+    /// Writes the trace, the figures and the page that were asked for; what to print.
     pub(crate) fn tell(
         &self,
-        outputs: [Option<Output>; 3],
+        outputs: [Option<Output>; 4],
         recording: &Recording,
     ) -> Result<String> {
-        let [trace, figure, candidates] = outputs;
+        let [trace, figure, candidates, report] = outputs;
         let name = self.name();
         let lines = trace::lines(&recording.results);
         // All is drawn before anything is written.
         let svg = figure.as_ref().map(|_| Picture::of(&name, recording).svg()).transpose()?;
         let fewest = candidates.as_ref().and_then(|_| Picture::of_candidates(&name, recording));
         let fewest = fewest.map(|picture| picture.svg()).transpose()?;
-        for (output, content) in
-            [(trace, Some(&lines)), (figure, svg.as_ref()), (candidates, fewest.as_ref())]
-        {
+        let page = report.as_ref().map(|_| page(&name, &[recording])).transpose()?;
+        for (output, content) in [
+            (trace, Some(&lines)),
+            (figure, svg.as_ref()),
+            (candidates, fewest.as_ref()),
+            (report, page.as_ref()),
+        ] {
             if let (Some(output), Some(content)) = (output, content) {
                 output.write(content)?;
             }

@@ -4,9 +4,12 @@ use std::fmt::Debug;
 
 use planner_core::belief::Belief;
 use planner_core::belief::posterior::Posterior;
-use planner_core::belief::sample::Sample;
+use planner_core::belief::sample::{Label, Sample};
+use planner_core::belief::tolerance::Tolerance;
+use planner_core::geometry::lattice::Site;
 
 use crate::mission::definition::{Lines, Table};
+use crate::world::noise::limit;
 
 /// The level of the credible sets that are told.
 pub const LEVEL: f64 = 0.9;
@@ -36,10 +39,22 @@ pub struct Doubt {
     pub entropy: f64,
 }
 
+/// What a label is expected to be, and to tell, before it is read.
+#[derive(Clone, Copy, Debug)]
+pub struct Expectation {
+    /// The chance that it is +1.
+    pub chance: f64,
+    /// Bits, on average.
+    pub bits: f64,
+}
+
 /// A belief that can be read out.
 pub trait ReadOut: Belief + Debug + Send {
     /// What is known, in figures.
     fn knowledge(&self) -> Knowledge;
+
+    /// What is expected of a label at a site, by the exact distribution.
+    fn expects(&self, site: Site) -> Expectation;
 
     /// All samples with the labels that were taken in, the given ones first.
     fn samples(&self) -> &[Sample];
@@ -62,6 +77,14 @@ impl ReadOut for Lines {
             bits: self.information(),
             doubt: None,
         }
+    }
+
+    fn expects(&self, site: Site) -> Expectation {
+        let chance = self.chance(site);
+        // A true label tells which part of the lines is left, so as much as the parts are open.
+        let is_exact = self.tolerance() == Tolerance::NONE;
+        let bits = if is_exact { 1.0 - limit(chance) } else { mean_told(self, site, chance) };
+        Expectation { chance, bits }
     }
 
     fn samples(&self) -> &[Sample] {
@@ -97,6 +120,17 @@ impl ReadOut for Table {
         }
     }
 
+    fn expects(&self, site: Site) -> Expectation {
+        let chance = self.chance(site);
+        let is_exact = self.noise().tolerance == Tolerance::NONE;
+        let bits = if is_exact {
+            limit(self.reliability(site).probability()) - limit(chance)
+        } else {
+            mean_told(self, site, chance)
+        };
+        Expectation { chance, bits }
+    }
+
     fn samples(&self) -> &[Sample] {
         self.samples()
     }
@@ -112,4 +146,16 @@ impl ReadOut for Table {
     fn boxed(&self) -> Box<dyn ReadOut> {
         Box::new(self.clone())
     }
+}
+
+/// Where positions err: the mean of what the two labels there are would tell, each taken in. One that is not taken
+/// in tells nothing.
+fn mean_told(known: &(impl Belief + Clone), site: Site, chance: f64) -> f64 {
+    let now = known.information();
+    let after = |label: Label| {
+        let mut after = known.clone();
+        after.observe(site, label.into()).map_or(now, |()| after.information())
+    };
+    let [above, below] = [Label::Positive, Label::Negative].map(after);
+    chance * above + (1.0 - chance) * below - now
 }

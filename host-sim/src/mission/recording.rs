@@ -3,6 +3,7 @@
 use anyhow::{Result, anyhow};
 use nalgebra::Point2;
 use planner_core::belief::Refused;
+use planner_core::belief::estimate::Estimates;
 use planner_core::belief::hypotheses::Hypothesis;
 use planner_core::belief::noise::Reliability;
 use planner_core::belief::posterior::Posterior;
@@ -104,17 +105,10 @@ impl Recorder {
     /// The mission is over.
     pub fn end(self, Flown { ending, belief }: Flown) -> Recording {
         let Self { mission, steps, results } = self;
-        let world = &mission.world;
-        let error = |line: &Line| {
-            world.line().map(|truth| LineError {
-                degrees: line.angle_to_deg(truth),
-                misclassified: misclassified(mission.config.area, truth, line),
-            })
-        };
         let end = End {
             reason: ending.name(),
-            estimates: EstimateRecords::beside(belief.estimates(), error),
-            noisy: belief.hypotheses().and_then(|table| noisy_end(table, world)),
+            estimates: beside_truth(&mission, belief.estimates()),
+            noisy: belief.hypotheses().and_then(|table| noisy_end(table, &mission.world)),
             goal: GoalRecord::of(&mission, &*belief),
         };
         let results = Results { start: start(&mission), steps: results, end };
@@ -134,6 +128,17 @@ impl Recording {
             Err(refused) => Err(recorder.refusal(&refused)),
         }
     }
+}
+
+/// Estimates of a mission's line, each beside the truth.
+pub fn beside_truth(mission: &Mission, estimates: Estimates) -> EstimateRecords {
+    let error = |line: &Line| {
+        mission.world.line().map(|truth| LineError {
+            degrees: line.angle_to_deg(truth),
+            misclassified: misclassified(mission.config.area, truth, line),
+        })
+    };
+    EstimateRecords::beside(estimates, error)
 }
 
 fn start(mission: &Mission) -> Start {

@@ -14,7 +14,7 @@ use planner_core::link::message::MissionArea;
 use planner_core::motion::any_vehicle::AnyVehicle;
 
 use crate::mission::definition::Table;
-use crate::mission::read_out::LEVEL;
+use crate::mission::read_out::{LEVEL, ReadOut};
 use crate::mission::recording::Recording;
 use crate::world::polygon::Polygon;
 use crate::world::reading;
@@ -118,6 +118,15 @@ impl Named {
 }
 
 impl Ground {
+    /// What is known of an area.
+    pub fn of(area: MissionArea, belief: &dyn ReadOut) -> Self {
+        match (belief.version_space(), belief.hypotheses()) {
+            (Some(space), _) => Self::certain(area, &space.support().collect::<Vec<_>>()),
+            (None, Some(table)) => Self::credible(&area, table),
+            (None, None) => Self::Plain,
+        }
+    }
+
     /// The ground that samples leave certain, which bound the lines in cyclic order.
     pub fn certain(area: MissionArea, support: &[Sample]) -> Self {
         let certain = |label| Polygon::certain(area, support, label);
@@ -153,15 +162,13 @@ impl Picture {
         let Recording { mission, results, belief, .. } = recording;
         let area = mission.config.area;
         let centre = belief.estimates().centre;
-        let (mut lines, mut ground) = (Vec::new(), Ground::Plain);
-        if let Some(space) = belief.version_space() {
+        let mut lines = Vec::new();
+        if belief.version_space().is_some() {
             lines.extend(Named::estimate("centre of the version space", centre));
-            ground = Ground::certain(area, &space.support().collect::<Vec<_>>());
         }
         if let Some(table) = belief.hypotheses() {
             lines.extend(Named::estimate("posterior mean", centre));
             lines.extend(bounding(table));
-            ground = Ground::credible(&area, table);
         }
         let dot = |s: &Sample| Dot {
             at: s.site.into(),
@@ -185,7 +192,7 @@ impl Picture {
             title: title.to_owned(),
             note: None,
             area,
-            ground,
+            ground: Ground::of(area, &**belief),
             samples: belief.samples().iter().map(dot).collect(),
             given: mission.given.samples().len(),
             path: Some((Point2::from(mission.start.site), stops.collect())),

@@ -102,12 +102,7 @@ fn story(title: &str, results: &Results) -> String {
 }
 
 fn end(results: &Results, estimates: &[(&str, Option<LineRecord>); 3]) -> String {
-    let why = match results.end.reason {
-        "steps" => "all steps are taken",
-        "known" => "what was asked for is known",
-        "resolution" => "what is uncertain is thinner than the action grid can hit",
-        other => other,
-    };
+    let why = why(results.end.reason);
     let mut text = format!(
         "Ended: {why}. {} samples in {} steps, {:.1} m travelled, control cost {:.1}.\n",
         results.samples(),
@@ -125,8 +120,18 @@ fn end(results: &Results, estimates: &[(&str, Option<LineRecord>); 3]) -> String
     text + &errors(results.start.truth.as_ref(), estimates)
 }
 
+/// Why a mission ended, in words.
+pub(crate) fn why(reason: &str) -> &str {
+    match reason {
+        "steps" => "all steps are taken",
+        "known" => "what was asked for is known",
+        "resolution" => "what is uncertain is thinner than the action grid can hit",
+        other => other,
+    }
+}
+
 /// What is known for sure, or as surely as was asked.
-fn promise(goal: &GoalRecord) -> String {
+pub(crate) fn promise(goal: &GoalRecord) -> String {
     let &GoalRecord { slope_arc_deg, misclassified, level, is_met } = goal;
     let sure = level.map_or(String::new(), |level| format!(" with probability {level} at least"));
     let known = if is_met { "Known" } else { "Not known yet" };

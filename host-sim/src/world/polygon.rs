@@ -65,6 +65,12 @@ impl Polygon {
         Self(kept)
     }
 
+    /// Where a line enters and leaves it; none if it passes by.
+    pub fn across(&self, line: &Line) -> Vec<Point2<f64>> {
+        let part = self.clip(line, 1.0).0;
+        part.into_iter().filter(|at| line.distance(*at).abs() < 1e-6).collect()
+    }
+
     /// The part of an area to which all lines give a label that some samples bound. `support` has these in
     /// cyclic order; all of them lie in the area.
     ///

@@ -1,0 +1,142 @@
+// The map of a mission: ground, lines, path and labels at a step.
+
+const PROBABILITY_CLASSES = 6;
+
+/** The class of a band of ground by the probability that the line passes there at least. */
+function bandClass(from) {
+  return `band-${Math.min(PROBABILITY_CLASSES - 1, Math.floor(from * PROBABILITY_CLASSES))}`;
+}
+
+/** Where the places of an area lie on a drawing this wide. */
+function layout(area, width) {
+  const xs = area.map(([x]) => x);
+  const zs = area.map(([, z]) => z);
+  const [left, right, bottom, top] = [Math.min(...xs), Math.max(...xs), Math.min(...zs), Math.max(...zs)];
+  const margin = { left: 38, right: 12, top: 12, bottom: 34 };
+  const most = Math.max(240, Math.min(620, width));
+  const room = width - margin.left - margin.right;
+  const scale = Math.min(room / (right - left), most / (top - bottom));
+  const shift = margin.left + (room - scale * (right - left)) / 2;
+  const height = margin.top + scale * (top - bottom) + margin.bottom;
+  return {
+    bounds: { left, right, bottom, top },
+    height: Math.ceil(height),
+    at: ([x, z]) => [shift + scale * (x - left), margin.top + scale * (top - z)],
+  };
+}
+
+/** Draws a mission as it was after some step; `from` is the step that was shown before. */
+function drawMap(svg, flight, step, width, from) {
+  const view = layout(flight.area, width);
+  const { at } = view;
+  const ring = (places) => through(places.map(at), true);
+  blank(svg, width, view.height);
+  const scene = flight.scenes[step];
+  const past = flight.scenes.slice(0, step + 1);
+
+  add(svg, 'path', { class: 'area', d: ring(flight.area) });
+  drawGround(svg, scene.ground, at);
+  drawAxes(svg, view, width);
+  for (const keepOut of flight.keep_outs) add(svg, 'path', { class: 'keep-out', d: ring(keepOut) });
+  add(svg, 'path', { class: 'border', d: ring(flight.area) });
+  if (flight.truth) add(svg, 'path', { class: 'truth', d: through(flight.truth.ends.map(at)) });
+  if (scene.estimate) add(svg, 'path', { class: 'estimate', d: through(scene.estimate.ends.map(at)) });
+
+  const way = past.flatMap((it) => (it.motion ? it.motion.way : [it.at]));
+  add(svg, 'path', { class: 'path', d: through(way.map(at)) });
+  if (scene.motion) {
+    const legs = [flight.scenes[step - 1].at, ...scene.motion.way];
+    add(svg, 'path', { class: 'leg', d: through(legs.map(at)) });
+    if (scene.motion.target) cross(svg, at(scene.motion.target), 'target');
+  }
+  for (const [number, { at: place, label }] of flight.given.entries()) {
+    const [x, y] = at(place);
+    symbol(svg, [x, y], label, 6.5);
+    const isRight = x > width - 40;
+    add(svg, 'text', { class: 'name', x: x + (isRight ? -10 : 10), y: y + (y < 26 ? 16 : -7), 'text-anchor': isRight ? 'end' : 'start' }, `p${number + 1}`);
+  }
+  for (const { motion, at: place } of past) {
+    if (!motion) continue;
+    const spot = at(place);
+    if (motion.truly) {
+      add(svg, 'path', { class: 'slip', d: through([spot, at(motion.truly)]) });
+      cross(svg, at(motion.truly), 'truly');
+    }
+    if (motion.label === null) add(svg, 'circle', { class: 'unread', cx: spot[0], cy: spot[1], r: 3.5 });
+    else symbol(svg, spot, motion.label, 4.5);
+    if (motion.is_wrong) add(svg, 'circle', { class: 'wrong', cx: spot[0], cy: spot[1], r: 9 });
+  }
+  drawRobot(svg, flight, step, at, from);
+}
+
+function drawGround(svg, ground, at) {
+  if (ground.certain) {
+    for (const [k, sign] of ['+1', '\u22121'].entries()) {
+      const corners = ground.certain[k].map(at);
+      if (corners.length < 3) continue;
+      add(svg, 'path', { class: k === 0 ? 'certain above' : 'certain below', d: through(corners, true) });
+      const middle = [0, 1].map((i) => corners.reduce((sum, it) => sum + it[i], 0) / corners.length);
+      const spread = Math.max(...corners.map((it) => it[1])) - Math.min(...corners.map((it) => it[1]));
+      if (spread > 60) {
+        add(svg, 'text', { class: k === 0 ? 'region above' : 'region below', x: middle[0], y: middle[1] + 8 }, sign);
+      }
+    }
+  }
+  for (const { from, rings } of ground.bands ?? []) {
+    const d = rings.map((places) => through(places.map(at), true)).join('');
+    add(svg, 'path', { class: bandClass(from), d, 'fill-rule': 'evenodd' });
+  }
+}
+
+function drawAxes(svg, view, width) {
+  const { left, right, bottom, top } = view.bounds;
+  const { at } = view;
+  const [, base] = at([left, bottom]);
+  for (const x of ticks(left, right, Math.max(2, Math.min(10, width / 70)))) {
+    const [px, py] = at([x, top]);
+    add(svg, 'path', { class: 'grid', d: through([[px, py], [px, base]]) });
+    add(svg, 'text', { class: 'tick', x: px, y: base + 15, 'text-anchor': 'middle' }, figure(x, x % 1 ? 1 : 0));
+  }
+  for (const z of ticks(bottom, top, Math.max(2, Math.min(10, view.height / 60)))) {
+    const [px, py] = at([left, z]);
+    add(svg, 'path', { class: 'grid', d: through([[px, py], at([right, z])]) });
+    add(svg, 'text', { class: 'tick', x: px - 6, y: py + 4, 'text-anchor': 'end' }, figure(z, z % 1 ? 1 : 0));
+  }
+  const [end] = at([right, bottom]);
+  add(svg, 'text', { class: 'tick', x: end, y: base + 29, 'text-anchor': 'end' }, 'x, m');
+  const [start] = at([left, top]);
+  add(svg, 'text', { class: 'tick', x: start, y: base + 29 }, 'z up, m');
+}
+
+/** A label's symbol: a disc for +1, a square for -1, a diamond on the line itself. */
+function symbol(svg, [x, y], label, size) {
+  if (label > 0) return add(svg, 'circle', { class: 'mark above', cx: x, cy: y, r: size });
+  if (label < 0) {
+    const side = 1.8 * size;
+    return add(svg, 'rect', { class: 'mark below', x: x - side / 2, y: y - side / 2, width: side, height: side });
+  }
+  const diamond = [[x - size, y], [x, y - size], [x + size, y], [x, y + size]];
+  return add(svg, 'path', { class: 'mark on-line', d: through(diamond, true) });
+}
+
+function cross(svg, [x, y], name) {
+  const d = `M${x - 4} ${y - 4}l8 8M${x - 4} ${y + 4}l8 -8`;
+  add(svg, 'path', { class: name, d });
+}
+
+/** The robot with its heading. One step on it travels there, unless whoever looks wants no motion. */
+function drawRobot(svg, flight, step, at, from) {
+  const { at: place, heading, motion } = flight.scenes[step];
+  const [x, y] = at(place);
+  const turn = (-heading * 180) / Math.PI;
+  const robot = add(svg, 'g', { class: 'robot' });
+  const pose = ([px, py]) => `translate(${px}px, ${py}px) rotate(${turn}deg)`;
+  robot.style.transform = pose([x, y]);
+  add(robot, 'circle', { class: 'halo', r: 11 });
+  add(robot, 'path', { class: 'bow', d: 'M11 -4.5L20 0L11 4.5Z' });
+  const isStill = matchMedia('(prefers-reduced-motion: reduce)').matches;
+  if (motion && from === step - 1 && !isStill) {
+    const way = [flight.scenes[from].at, ...motion.way];
+    robot.animate(way.map((it) => ({ transform: pose(at(it)) })), { duration: 350, easing: 'ease-in-out' });
+  }
+}

@@ -1,0 +1,179 @@
+//! A page as HTML: what is there without a script, and the scenes as a block of data for the one that is.
+
+use std::fmt::Write as _;
+
+use anyhow::Result;
+
+use crate::report::page::scene::{Flight, Moved, Scene};
+use crate::report::page::words::{arcs, range, signed, small};
+use crate::report::page::{Chapter, Page};
+
+const TEMPLATE: &str = include_str!("page.html");
+const STYLE: &str = include_str!("page.css");
+const SCRIPT: [&str; 4] = [
+    include_str!("svg.js"),
+    include_str!("map.js"),
+    include_str!("charts.js"),
+    include_str!("page.js"),
+];
+
+/// The whole document.
+pub(super) fn document(page: &Page) -> Result<String> {
+    let mut chapters = String::new();
+    for (number, chapter) in page.chapters.iter().enumerate() {
+        chapters += &self::chapter(number, chapter)?;
+    }
+    Ok(filled(TEMPLATE, |slot| match slot {
+        "title" => escaped(&page.title),
+        "style" => STYLE.to_owned(),
+        "chapters" => chapters.clone(),
+        "data" => data(page),
+        "script" => SCRIPT.join("\n"),
+        other => unreachable!("the template has no {other}"),
+    }))
+}
+
+/// A template with its slots, `{{name}}`, filled. What fills them is not looked at again.
+fn filled(template: &str, value: impl Fn(&str) -> String) -> String {
+    let mut parts = template.split("{{");
+    let mut text = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (slot, rest) = part.split_once("}}").expect("a slot is closed");
+        text += &value(slot);
+        text += rest;
+    }
+    text
+}
+
+/// Text as it stands in HTML, also within an attribute.
+fn escaped(text: &str) -> String {
+    let mut safe = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match letter {
+            '&' => safe += "&amp;",
+            '<' => safe += "&lt;",
+            '>' => safe += "&gt;",
+            '"' => safe += "&quot;",
+            '\'' => safe += "&#39;",
+            other => safe.push(other),
+        }
+    }
+    safe
+}
+
+/// The scenes as JSON that ends no script: within its strings alone there is a `<`, and there it may be written so.
+fn data(page: &Page) -> String {
+    let json = serde_json::to_string(page).expect("a plain structure");
+    json.replace('<', "\\u003c")
+}
+
+fn chapter(number: usize, Chapter { title, about, flights }: &Chapter) -> Result<String> {
+    let mut html = format!(
+        "<section class=\"chapter\" id=\"chapter-{number}\" aria-labelledby=\"chapter-{number}-title\">\n\
+         <h2 id=\"chapter-{number}-title\">{}</h2>\n<ul class=\"about\">\n",
+        escaped(title)
+    );
+    for fact in about {
+        html += &format!("<li>{}</li>\n", escaped(fact));
+    }
+    html += "</ul>\n<div class=\"stage\" hidden></div>\n";
+    for flight in flights {
+        html += "<noscript>\n";
+        html += &still(flight)?;
+        html += "</noscript>\n";
+    }
+    html += "<section class=\"steps\">\n<h3>All steps</h3>\n";
+    for flight in flights {
+        html += &steps(flight);
+    }
+    Ok(html + "</section>\n</section>\n")
+}
+
+/// The picture of a mission's end.
+fn still(flight: &Flight) -> Result<String> {
+    // Within HTML it needs no name space, and a page that names no address can be seen to load none.
+    let svg = flight.picture.svg()?.replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
+    Ok(format!("<h3>{}</h3>\n<div class=\"still\">{svg}</div>\n", escaped(&flight.planner)))
+}
+
+/// The steps as a table.
+fn steps(flight: &Flight) -> String {
+    const HEADS: [&str; 10] = [
+        "step",
+        "planned",
+        "chance of +1",
+        "bits expected",
+        "read",
+        "bits so far",
+        "slopes left, deg",
+        "intercepts left, m",
+        "estimate off, deg",
+        "cost so far",
+    ];
+    let planner = escaped(&flight.planner);
+    let mut html = format!(
+        "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"Steps of {planner}\">\n\
+         <table class=\"told\">\n<caption>{planner}</caption>\n<thead><tr>"
+    );
+    for head in HEADS {
+        // Writing to a string cannot fail.
+        let _ = write!(html, "<th scope=\"col\">{head}</th>");
+    }
+    html += "</tr></thead>\n<tbody>\n";
+    for (number, scene) in flight.scenes.iter().enumerate() {
+        let _ = write!(html, "<tr><th scope=\"row\">{number}</th>");
+        for cell in cells(scene) {
+            let _ = write!(html, "<td>{}</td>", escaped(&cell));
+        }
+        html += "</tr>\n";
+    }
+    html + "</tbody>\n</table>\n</div>\n"
+}
+
+fn cells(scene: &Scene) -> [String; 9] {
+    let none = || "\u{2013}".to_owned();
+    let motion = scene.motion.as_ref();
+    let of = |heading: &str| {
+        let told = scene.told.iter().find(|told| told.of == heading);
+        told.map_or_else(none, |told| told.text.clone())
+    };
+    let expected = |of: fn(&Moved) -> Option<f64>| motion.and_then(of);
+    let wrong = |motion: &Moved| if motion.is_wrong { ", wrong" } else { "" };
+    let label = |motion: &Moved| Some(format!("{}{}", signed(motion.label?), wrong(motion)));
+    let off = scene.estimate.as_ref().and_then(|line| line.off_deg);
+    [
+        of("Planned"),
+        expected(|it| it.chance).map_or_else(none, |it| format!("{:.0} %", 100.0 * it)),
+        expected(|it| it.expected).map_or_else(none, |bits| format!("{bits:.3}")),
+        motion.and_then(label).unwrap_or_else(none),
+        format!("{:.2}", scene.bits),
+        arcs(&scene.slopes),
+        range(scene.intercepts),
+        off.map_or_else(none, small),
+        format!("{:.1}", scene.cost),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_fills_a_slot_is_not_filled_again() {
+        let page = filled("<h1>{{title}}</h1>{{data}}", |slot| match slot {
+            "title" => "{{data}}".to_owned(),
+            _ => "1".to_owned(),
+        });
+        assert_eq!(page, "<h1>{{data}}</h1>1");
+    }
+
+    #[test]
+    fn no_text_ends_its_script_or_its_element() {
+        let page = Page::new("</script><!--<script>&'\"", Vec::new());
+        let data = data(&page);
+        assert!(!data.contains('<'), "{data}");
+        let read: serde_json::Value = serde_json::from_str(&data).unwrap();
+        assert_eq!(read["title"], page.title);
+        assert_eq!(escaped("<a href='x' id=\"y\">&"), "&lt;a href=&#39;x&#39; id=&quot;y&quot;&gt;&amp;");
+    }
+}

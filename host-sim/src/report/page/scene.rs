@@ -1,0 +1,306 @@
+//! What a report shows of a mission: where it takes place, and a scene for the start and for each step. Plain data,
+//! which the page draws.
+//!
+//! What was known after each step comes of the steps themselves: a planner that plans nothing takes them in once more.
+//! So it is the same for a mission that a chip has planned.
+
+use nalgebra::Point2;
+use planner_core::belief::sample::Sample;
+use planner_core::geometry::line::Line;
+use planner_core::robot::agent::Step;
+use serde::Serialize;
+
+use crate::mission::read_out::{Expectation, ReadOut};
+use crate::mission::recording::{Recording, beside_truth};
+use crate::mission::results::{LineError, LineRecord, StepResult};
+use crate::report::page::words::{self, Told};
+use crate::report::picture::{Ground, Picture, Stop};
+use crate::report::text;
+use crate::world::polygon::Polygon;
+
+/// Places are told to this share of the area's size: a twentieth of a pixel.
+const GRAIN: f64 = 20_000.0;
+
+/// A mission that is shown.
+#[derive(Debug, Serialize)]
+pub(crate) struct Flight {
+    /// Who planned.
+    pub(crate) planner: String,
+    /// What the recommended estimate is called.
+    pub(crate) estimate: &'static str,
+    /// Whether labels may be wrong.
+    labels_err: bool,
+    /// The border of the area.
+    area: Ring,
+    /// What is kept out of.
+    keep_outs: Vec<Ring>,
+    /// The samples that were given.
+    given: Vec<Mark>,
+    /// The true line, where known.
+    truth: Option<SeenLine>,
+    /// The start, and each step.
+    pub(crate) scenes: Vec<Scene>,
+    /// The picture of the end, for where no script runs.
+    #[serde(skip)]
+    pub(crate) picture: Picture,
+}
+
+/// The border of a polygon.
+type Ring = Vec<Place>;
+
+/// Metres.
+type Place = [f64; 2];
+
+/// A sample.
+#[derive(Debug, Serialize)]
+struct Mark {
+    at: Place,
+    label: i8,
+}
+
+/// A line as it is seen in the area.
+#[derive(Debug, Serialize)]
+pub(crate) struct SeenLine {
+    /// Where it enters and leaves the area; empty of a line that passes it by.
+    ends: Vec<Place>,
+    /// Degrees.
+    angle: f64,
+    /// Metres; `None` of a vertical line.
+    intercept: Option<f64>,
+    /// Degrees to the truth, if there is one.
+    pub(crate) off_deg: Option<f64>,
+    /// The share of the area that gets the wrong label.
+    pub(crate) misclassified: Option<f64>,
+}
+
+/// What was known at some stage, and the motion that led there.
+#[derive(Debug, Serialize)]
+pub(crate) struct Scene {
+    /// The motion; `None` at the start.
+    pub(crate) motion: Option<Moved>,
+    /// Where the robot is by what it reports.
+    at: Place,
+    /// Radians.
+    heading: f64,
+    /// What is known of the ground.
+    ground: GroundRecord,
+    /// The recommended estimate.
+    pub(crate) estimate: Option<SeenLine>,
+    /// The slopes left, as intervals of degrees.
+    pub(crate) slopes: Vec<[f64; 2]>,
+    /// The intercepts left, metres; `None` when unbounded.
+    pub(crate) intercepts: Option<[f64; 2]>,
+    /// Bits told so far.
+    pub(crate) bits: f64,
+    /// Bits that the labels so far were expected to tell, each when it was asked for.
+    expected_bits: f64,
+    /// Control cost so far.
+    pub(crate) cost: f64,
+    /// Metres travelled so far.
+    metres: f64,
+    /// The same in words.
+    pub(crate) told: Vec<Told>,
+}
+
+/// A motion, and what was read at its end.
+#[derive(Debug, Serialize)]
+pub(crate) struct Moved {
+    /// Places on the way, the last of them the end.
+    way: Vec<Place>,
+    /// Where it should have ended, if it ended elsewhere.
+    target: Option<Place>,
+    /// Where the robot truly was, if it errs.
+    truly: Option<Place>,
+    /// -1, 0 on the boundary, 1; `None` if nothing was read.
+    pub(crate) label: Option<i8>,
+    /// Whether that is known to be false.
+    pub(crate) is_wrong: bool,
+    /// The chance of +1 there, if a label was asked for.
+    pub(crate) chance: Option<f64>,
+    /// Bits that it was expected to tell.
+    pub(crate) expected: Option<f64>,
+}
+
+/// What is known of the ground.
+#[derive(Debug, Serialize)]
+#[serde(rename_all = "snake_case")]
+enum GroundRecord {
+    /// What is certain to be +1, and to be -1.
+    Certain([Ring; 2]),
+    /// Nothing to show.
+    Plain,
+}
+
+/// Rounds places to what can be seen.
+#[derive(Clone, Copy)]
+struct Rounding {
+    /// Metres.
+    unit: f64,
+}
+
+impl Rounding {
+    fn of(border: &Polygon) -> Self {
+        let corners = || border.0.iter();
+        let low = corners().copied().reduce(|a, b| a.inf(&b)).unwrap_or_default();
+        let high = corners().copied().reduce(|a, b| a.sup(&b)).unwrap_or_default();
+        Self { unit: 10_f64.powf(((high - low).amax() / GRAIN).log10().floor()) }
+    }
+
+    fn place(self, at: Point2<f64>) -> Place {
+        // By a division where the unit is a fraction: so decimals stay short.
+        let rounded = |m: f64| {
+            let per_metre = (1.0 / self.unit).round();
+            if per_metre > 1.0 { (m * per_metre).round() / per_metre } else { m.round() }
+        };
+        [rounded(at.x), rounded(at.y)]
+    }
+
+    fn ring(self, polygon: &Polygon) -> Ring {
+        polygon.0.iter().map(|at| self.place(*at)).collect()
+    }
+}
+
+impl Flight {
+    /// A mission as it was flown by a planner of this name.
+    pub(crate) fn of(planner: &str, recording: &Recording) -> Self {
+        let Recording { mission, results, steps, .. } = recording;
+        let area = mission.config.area;
+        let border = Polygon::from(area);
+        let rounding = Rounding::of(&border);
+        let picture = Picture::of(planner, recording);
+        let seen = |record: &LineRecord| seen(record, &border, rounding);
+        let [(estimate, _), ..] = text::estimates(results);
+        let mark = |s: &Sample| Mark { at: rounding.place(s.site.into()), label: s.label.sign() };
+        let mut scenes = Vec::with_capacity(steps.len() + 1);
+        let mut watcher = mission.planner();
+        let mut sums = Sums::default();
+        scenes.push({
+            let now = Stage { recording, rounding, step: None, sums, estimate };
+            now.scene(watcher.belief(), None)
+        });
+        let stops = picture.path.iter().flat_map(|(_, stops)| stops);
+        for ((step, result), stop) in steps.iter().zip(&results.steps).zip(stops) {
+            let expectation =
+                step.motion.wants_label.then(|| watcher.belief().expects(step.motion.target.site));
+            // It was taken in once already.
+            let _ = watcher.observe(step.pose, step.reading);
+            let before = sums.bits;
+            sums.take(result, expectation);
+            let motion = moved(step, result, stop, expectation, rounding);
+            let step = Some((step, result, expectation, result.bits - before));
+            let now = Stage { recording, rounding, step, sums, estimate };
+            scenes.push(now.scene(watcher.belief(), Some(motion)));
+        }
+        if let Some(last) = scenes.last_mut() {
+            last.told.extend(words::ended(results));
+        }
+        Self {
+            planner: planner.to_owned(),
+            estimate,
+            labels_err: mission.is_noisy(),
+            area: rounding.ring(&border),
+            keep_outs: area.hulls().map(|hull| rounding.ring(&Polygon::from(hull))).collect(),
+            given: mission.given.samples().iter().map(mark).collect(),
+            truth: results.start.truth.as_ref().map(seen),
+            scenes,
+            picture,
+        }
+    }
+}
+
+/// What adds up from step to step.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    bits: f64,
+    expected_bits: f64,
+    cost: f64,
+    metres: f64,
+}
+
+impl Sums {
+    fn take(&mut self, result: &StepResult, expectation: Option<Expectation>) {
+        self.bits = result.bits;
+        self.expected_bits += expectation.map_or(0.0, |it| it.bits);
+        self.cost += result.cost();
+        self.metres += f64::from(result.action.v);
+    }
+}
+
+/// A stage of a mission that is about to be shown.
+struct Stage<'a> {
+    recording: &'a Recording,
+    rounding: Rounding,
+    /// The step that led here, what was expected of it, and the bits that it told.
+    step: Option<(&'a Step, &'a StepResult, Option<Expectation>, f64)>,
+    sums: Sums,
+    /// What the recommended estimate is called.
+    estimate: &'static str,
+}
+
+impl Stage<'_> {
+    fn scene(&self, belief: &dyn ReadOut, motion: Option<Moved>) -> Scene {
+        let &Self { recording, rounding, step, sums, estimate } = self;
+        let mission = &recording.mission;
+        let area = mission.config.area;
+        let knowledge = belief.knowledge();
+        let centre = beside_truth(mission, belief.estimates()).centre;
+        let told = words::stage(recording, step, &knowledge, (estimate, centre.as_ref()));
+        let pose = step.map_or(mission.start, |(step, ..)| step.pose);
+        let Sums { bits, expected_bits, cost, metres } = sums;
+        Scene {
+            motion,
+            at: rounding.place(pose.site.into()),
+            heading: pose.heading.radians(),
+            ground: GroundRecord::of(&Ground::of(area, belief), rounding),
+            estimate: centre.map(|line| seen(&line, &area.into(), rounding)),
+            slopes: knowledge.slope_arcs,
+            intercepts: knowledge.intercept,
+            bits,
+            expected_bits,
+            cost,
+            metres,
+            told,
+        }
+    }
+}
+
+fn moved(
+    step: &Step,
+    result: &StepResult,
+    stop: &Stop,
+    expectation: Option<Expectation>,
+    rounding: Rounding,
+) -> Moved {
+    let [target, end] = [step.motion.target.site, step.pose.site];
+    Moved {
+        way: stop.way.iter().map(|at| rounding.place(*at)).collect(),
+        target: (target != end).then(|| rounding.place(target.into())),
+        truly: stop.truly.map(|at| rounding.place(at)),
+        label: result.label,
+        is_wrong: result.label.is_some_and(|label| label != 0 && label != result.fact),
+        chance: expectation.map(|it| it.chance),
+        expected: expectation.map(|it| it.bits),
+    }
+}
+
+fn seen(record: &LineRecord, border: &Polygon, rounding: Rounding) -> SeenLine {
+    let &LineRecord { intercept, angle, coefficients: [a, b, c], error, .. } = record;
+    let line = Line::from_coefficients(a, b, c);
+    let ends = line.map(|line| border.across(&line)).unwrap_or_default();
+    SeenLine {
+        ends: ends.into_iter().map(|at| rounding.place(at)).collect(),
+        angle,
+        intercept,
+        off_deg: error.map(|LineError { degrees, .. }| degrees),
+        misclassified: error.map(|LineError { misclassified, .. }| misclassified),
+    }
+}
+
+impl GroundRecord {
+    fn of(ground: &Ground, rounding: Rounding) -> Self {
+        match ground {
+            Ground::Certain(regions) => Self::Certain(regions.each_ref().map(|it| rounding.ring(it))),
+            Ground::Credible(_) | Ground::Plain => Self::Plain,
+        }
+    }
+}

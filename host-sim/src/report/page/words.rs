@@ -1,0 +1,205 @@
+//! A stage of a mission in words: what was planned, what was expected of it, what was read, what is known.
+
+use planner_core::motion::any_vehicle::AnyVehicle;
+use planner_core::robot::agent::Step;
+use serde::Serialize;
+
+use crate::mission::algorithm::Algorithm;
+use crate::mission::definition::Mission;
+use crate::mission::read_out::{Expectation, Knowledge};
+use crate::mission::recording::Recording;
+use crate::mission::results::{LineRecord, Results, StepResult};
+use crate::report::text;
+use crate::world::noise::limit;
+
+/// A sentence under its heading.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Told {
+    /// The heading, a word.
+    pub(crate) of: &'static str,
+    /// The sentence.
+    pub(crate) text: String,
+}
+
+impl Told {
+    fn new(of: &'static str, text: impl Into<String>) -> Self {
+        Self { of, text: text.into() }
+    }
+}
+
+/// A stage: the step that led there with what was expected of it and the bits that it told, or the start; what is
+/// known; the recommended estimate with its name.
+pub(crate) fn stage(
+    recording: &Recording,
+    step: Option<(&Step, &StepResult, Option<Expectation>, f64)>,
+    knowledge: &Knowledge,
+    (name, estimate): (&str, Option<&LineRecord>),
+) -> Vec<Told> {
+    let Recording { mission, results, .. } = recording;
+    let mut told = if let Some((_, result, expectation, bits)) = step {
+        vec![
+            Told::new("Planned", planned(mission, result)),
+            Told::new("Expected", expected(expectation)),
+            Told::new("Read", read(result, bits)),
+        ]
+    } else {
+        vec![Told::new("Given", given(results))]
+    };
+    told.push(Told::new("Known", known(knowledge)));
+    told.push(Told::new("Estimate", estimated(name, estimate)));
+    told
+}
+
+/// Why a mission ended, and what is promised of what it found.
+pub(crate) fn ended(results: &Results) -> Vec<Told> {
+    let why = text::why(results.end.reason);
+    let promise = results.end.goal.as_ref().map(|goal| text::promise(goal).trim_end().to_owned());
+    let promise = promise.map_or(String::new(), |promise| format!(" {promise}"));
+    vec![Told::new("Ended", format!("{}.{promise}", sentence(why)))]
+}
+
+/// What a mission is, before it begins.
+pub(crate) fn about(recording: &Recording) -> Vec<String> {
+    let Recording { mission, results, .. } = recording;
+    let start = &results.start;
+    let mut about = Vec::new();
+    if let Some(truth) = &start.truth {
+        about.push(format!("The true line, unknown to a planner: {}.", line(truth)));
+    }
+    if start.labels_err {
+        let each = limit(start.p);
+        about.push(format!(
+            "A label is true with probability {}, so it tells {each:.3} bits at most on average.",
+            start.p
+        ));
+    } else {
+        about.push("Labels are true, so each tells one bit at most on average.".to_owned());
+    }
+    let tolerance = mission.config.tolerance.metres();
+    if tolerance > 0.0 {
+        about.push(format!("Planners take reported positions to be off by up to {tolerance:.3} m."));
+    }
+    about
+}
+
+fn given(results: &Results) -> String {
+    let points = results.start.oracle.iter();
+    let each = points.map(|s| format!("({}, {}) is {}", s.x, s.z, signed(s.label)));
+    format!("{}.", each.collect::<Vec<_>>().join(", "))
+}
+
+/// What the planner chose, and why it may have.
+fn planned(mission: &Mission, step: &StepResult) -> String {
+    let why = match (step.problem, step.recovery) {
+        (_, Some("reorient")) => "Nothing uncertain ahead, so it turns in place",
+        (_, Some("transit")) => "Nothing uncertain in reach, so it drives on",
+        (Some("P1"), None) => "P1, look for the opposite label",
+        (Some("P2"), None) => "P2, follow the boundary",
+        (Some("P3"), None) => "P3, explore where no hypothesis has the boundary run",
+        (Some("P4"), None) => "P4, explore where some hypothesis has the boundary run",
+        (Some("P1"), Some(_)) => "P1, no way across, so in any direction",
+        (Some("P2"), Some(_)) => "P2, no way along, so in any direction",
+        (_, Some(_)) => "No way in the problem's directions, so in any",
+        (_, None) => match mission.algorithm {
+            Algorithm::Lookahead => "Where this label and the next tell the most for their cost",
+            Algorithm::Margin => "The place in reach nearest to the maximum-margin line",
+            _ => "At random",
+        },
+    };
+    let unproven = if step.proven == Some(false) { " The best so far: its looks were used up." } else { "" };
+    let (at, way) = (step.pose, motion(mission, step));
+    format!("{why}: {way}, to ({:.3}, {:.3}).{unproven}", at.x, at.z)
+}
+
+fn motion(mission: &Mission, step: &StepResult) -> String {
+    let degrees = f64::from(step.action.w).to_degrees();
+    let side = if degrees < 0.0 { "right" } else { "left" };
+    let turn = format!("{:.1} deg {side}", degrees.abs());
+    let metres = step.action.v;
+    match (mission.vehicle, metres > 0.0) {
+        (AnyVehicle::Car(_), _) => format!("an arc of {metres:.1} m that turns {turn}"),
+        (_, true) => format!("turn {turn}, go {metres:.1} m"),
+        (_, false) => format!("turn {turn}"),
+    }
+}
+
+fn expected(expectation: Option<Expectation>) -> String {
+    expectation.map_or("No label is asked for.".into(), |Expectation { chance, bits }| {
+        format!("+1 with a chance of {:.0} %; {bits:.3} bits on average.", 100.0 * chance)
+    })
+}
+
+fn read(step: &StepResult, bits: f64) -> String {
+    let Some(label) = step.label else { return "Nothing.".into() };
+    let judged = match label {
+        0 => ", exactly on the line",
+        _ if label != step.fact => ", which is wrong",
+        _ => "",
+    };
+    let bits = format!("{bits:.3}").replace('-', "\u{2212}");
+    format!("{}{judged}; it told {bits} bits.", signed(label))
+}
+
+fn known(knowledge: &Knowledge) -> String {
+    let Knowledge { slope_arcs, intercept, bits, doubt } = knowledge;
+    let (arcs, range) = (minus(&text::arcs(slope_arcs)), minus(&text::range(*intercept)));
+    let metres = if intercept.is_some() { " m" } else { "" };
+    let (of, doubt) = doubt.map_or((String::new(), String::new()), |doubt| {
+        let entropy = doubt.entropy;
+        let among = format!(" {} hypotheses, entropy {entropy:.2} bits.", doubt.hypotheses);
+        (" of the 90 % set".to_owned(), among)
+    });
+    let bits = minus(&format!("{bits:.2}"));
+    format!("Slopes{of} {arcs} deg, intercepts {range}{metres}. {bits} bits told so far.{doubt}")
+}
+
+fn estimated(name: &str, estimate: Option<&LineRecord>) -> String {
+    let Some(estimate) = estimate else { return format!("{}: none.", sentence(name)) };
+    let off = estimate.error.map_or(String::new(), |error| {
+        let share = 100.0 * error.misclassified;
+        format!("; {} deg off the truth, {} % of the area misjudged", small(error.degrees), small(share))
+    });
+    format!("{}: {}{off}.", sentence(name), line(estimate))
+}
+
+/// A line, with single spaces.
+pub(crate) fn line(record: &LineRecord) -> String {
+    let words = text::line(record);
+    minus(&words.split_whitespace().collect::<Vec<_>>().join(" "))
+}
+
+/// Slope intervals in degrees.
+pub(crate) fn arcs(intervals: &[[f64; 2]]) -> String {
+    minus(&text::arcs(intervals))
+}
+
+/// A range of intercepts in metres.
+pub(crate) fn range(intercepts: Option<[f64; 2]>) -> String {
+    minus(&text::range(intercepts))
+}
+
+/// A label with its sign, as one reads it.
+pub(crate) fn signed(label: i8) -> String {
+    minus(&format!("{label:+}")).replace("+0", "0")
+}
+
+/// A size that may be very small, to three digits or so.
+pub(crate) fn small(size: f64) -> String {
+    match size {
+        _ if size == 0.0 => "0".into(),
+        1.0.. => format!("{size:.2}"),
+        0.01.. => format!("{size:.3}"),
+        1e-5.. => format!("{size:.6}"),
+        _ => format!("{size:.1e}"),
+    }
+}
+
+/// With true minus signs, which screen readers say.
+fn minus(text: &str) -> String {
+    text.replace('-', "\u{2212}")
+}
+
+fn sentence(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}
