@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use anyhow::{Context as _, Result};
 use clap::Parser as _;
 use host_sim::cli::arguments::Cli;
-use host_sim::output::interruption;
+use host_sim::output::{interruption, notes};
 
 /// What bad input ends with.
 const REFUSED: u8 = 2;
@@ -45,7 +45,6 @@ fn print(write: impl FnOnce(&mut io::Stdout) -> io::Result<()>) -> Result<()> {
 }
 
 fn fail(error: &anyhow::Error) -> ExitCode {
-    // Where nobody hears it the status has to do.
-    let _ = writeln!(io::stderr(), "error: {error:#}");
+    notes::error(error);
     ExitCode::from(REFUSED)
 }

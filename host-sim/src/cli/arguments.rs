@@ -4,20 +4,29 @@ use anyhow::Result;
 use clap::{Parser, Subcommand, ValueEnum};
 
 use crate::cli::campaign::{CampaignArgs, campaign};
+use crate::cli::completions::{Completions, completions};
 use crate::cli::hil::{HilArgs, hil};
-use crate::cli::paper;
+use crate::cli::init::{Init, init};
 use crate::cli::replay::{ReplayArgs, replay};
 use crate::cli::run::{RunArgs, run};
+use crate::cli::{help, paper};
+use crate::output::notes::{self, Loudness};
 
 /// Simulates a robot that finds an unknown straight boundary from few samples.
 ///
 /// Without a command: the paper's two examples, as printed, by default and by look-ahead, with
 /// figures in out/.
 #[derive(Debug, Parser)]
-#[command(version)]
+#[command(version, after_help = help::MAIN)]
 pub struct Cli {
     #[command(subcommand)]
     pub(crate) command: Option<Command>,
+    /// Tell results and errors alone: no progress, no warnings
+    #[arg(short, long, global = true)]
+    pub(crate) quiet: bool,
+    /// Tell what is written and built, too
+    #[arg(short, long, global = true, conflicts_with = "quiet")]
+    pub(crate) verbose: bool,
 }
 
 #[derive(Debug, Subcommand)]
@@ -30,6 +39,10 @@ pub(crate) enum Command {
     Campaign(CampaignArgs),
     /// Have a board, or its firmware under emulation, fly a mission
     Hil(HilArgs),
+    /// Write a commented scenario to begin with
+    Init(Init),
+    /// Print a script by which a shell completes commands and flags
+    Completions(Completions),
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -47,12 +60,19 @@ impl Cli {
     /// # Errors
     /// One message that names the culprit.
     pub fn execute(self) -> Result<String> {
+        notes::set(match (self.quiet, self.verbose) {
+            (true, _) => Loudness::Quiet,
+            (_, true) => Loudness::Verbose,
+            _ => Loudness::Usual,
+        });
         match self.command {
             None => paper::tell(),
             Some(Command::Run(args)) => run(&args),
             Some(Command::Replay(args)) => replay(&args),
             Some(Command::Campaign(args)) => campaign(&args),
             Some(Command::Hil(args)) => hil(&args),
+            Some(Command::Init(args)) => init(&args),
+            Some(Command::Completions(args)) => completions(&args),
         }
     }
 }

@@ -13,6 +13,7 @@ use crate::campaign::calibration::{self, Calibrated};
 use crate::campaign::ensemble::Campaign;
 use crate::cli::arguments::Format;
 use crate::cli::compare::{self, Told};
+use crate::cli::help;
 use crate::mission::algorithm::Algorithm;
 use crate::mission::names::{CrossingName, FanName, FollowingName, PolicyName, PriorName};
 use crate::mission::scenario;
@@ -23,6 +24,7 @@ use crate::world::errors::Errors;
 use crate::world::noise::{Extent, NoiseModel};
 
 #[derive(Debug, Args)]
+#[command(after_help = help::CAMPAIGN)]
 pub(crate) struct CampaignArgs {
     /// Number of standard fields
     #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..))]

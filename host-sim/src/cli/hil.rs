@@ -7,20 +7,19 @@ use anyhow::{Context as _, Result};
 use clap::{Args, ValueEnum};
 use planner_core::link::message::LabelSource;
 
-use crate::cli::arguments::Format;
-use crate::cli::run::Run;
+use crate::cli::help;
+use crate::cli::run::{Format, Run};
 use crate::hil::faults::Faults;
+use crate::hil::firmware::{self, FIRMWARE};
 use crate::hil::flight::{self, Chip, Timings};
 use crate::hil::player::Player;
 use crate::output::file::{prepare, temporary};
-
-/// Where `cargo firmware` leaves it.
-const FIRMWARE: &str = "target/thumbv7em-none-eabihf/release/firmware";
 
 /// The speed of the firmware's serial lines, bits per second.
 const BAUD: u32 = 115_200;
 
 #[derive(Debug, Args)]
+#[command(after_help = help::HIL)]
 #[group(id = "chip", required = true, multiple = false, args = ["port", "emulator"])]
 pub(crate) struct HilArgs {
     #[command(flatten)]
@@ -31,7 +30,7 @@ pub(crate) struct HilArgs {
     /// The port's speed, bits per second [default: 115200]
     #[arg(long, conflicts_with = "emulator")]
     pub(crate) baud: Option<u32>,
-    /// Emulate the firmware under QEMU instead
+    /// Emulate the firmware under QEMU instead; without a path it is built here where needed
     #[arg(
         long,
         value_name = "ELF",
@@ -71,17 +70,19 @@ pub(crate) fn hil(args: &HilArgs) -> Result<String> {
         Some(device) => ("the port", Path::new(device)),
         None => ("the firmware", elf.as_path()),
     };
-    let [trace, figure, candidates, report] = args.run.outputs();
+    let [trace, figure, candidates, report, mcap] = args.run.outputs();
     let (timing, log) = (args.timing.as_deref(), args.log.as_deref());
-    let asked = [trace, figure, candidates, report, ("--timing", timing), ("--log", log)];
+    let asked = [trace, figure, candidates, report, mcap, ("--timing", timing), ("--log", log)];
     let prepared = prepare(&[args.run.input(), (chip, board)], asked)?;
-    let [trace, figure, candidates, report, timing, log] = prepared;
+    let [trace, figure, candidates, report, mcap, timing, log] = prepared;
     // The emulator writes its log as it goes; it comes to its place when it is whole.
     let log = log.map(|log| Ok::<_, anyhow::Error>((log, temporary(&env::temp_dir())?)));
     let log = log.transpose().context("expected a place for temporary files")?;
-    let chip = match &args.port {
-        Some(device) => Chip::Board { device: device.clone(), baud: args.baud.unwrap_or(BAUD) },
-        None => Chip::Emulated { elf, log: log.as_ref().map(|(_, said)| said.path().to_owned()) },
+    let chip = if let Some(device) = &args.port {
+        Chip::Board { device: device.clone(), baud: args.baud.unwrap_or(BAUD) }
+    } else {
+        let elf = if elf == Path::new(FIRMWARE) { firmware::built()? } else { elf };
+        Chip::Emulated { elf, log: log.as_ref().map(|(_, said)| said.path().to_owned()) }
     };
     let labels = match args.labels {
         Labels::Vehicle => LabelSource::Vehicle,
@@ -102,7 +103,7 @@ pub(crate) fn hil(args: &HilArgs) -> Result<String> {
     let played = player.finish().with_context(|| args.run.name())?;
     let timings = Timings::new(&played, &turnarounds);
     let rows = timings.csv()?;
-    let mut text = args.run.tell([trace, figure, candidates, report], &played.recording)?;
+    let mut text = args.run.tell([trace, figure, candidates, report, mcap], &played.recording)?;
     if let Some(output) = timing {
         output.write(rows)?;
     }

@@ -3,7 +3,10 @@
 pub mod arguments;
 mod campaign;
 mod compare;
+mod completions;
+mod help;
 mod hil;
+mod init;
 pub mod paper;
 mod replay;
 mod run;

@@ -6,10 +6,12 @@ use anyhow::Result;
 use clap::Args;
 
 use crate::cli::arguments::Format;
+use crate::cli::help;
 use crate::output::file::{json, prepare};
 use crate::replay::record::Replay;
 
 #[derive(Debug, Args)]
+#[command(after_help = help::REPLAY)]
 pub(crate) struct ReplayArgs {
     /// The samples, a CSV file with the columns x, z (metres) and label (-1 or 1)
     pub(crate) samples: PathBuf,

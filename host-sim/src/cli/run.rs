@@ -3,19 +3,19 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, Result, bail};
-use clap::Args;
+use clap::{Args, ValueEnum};
 
-use crate::cli::arguments::Format;
-use crate::cli::compare;
+use crate::cli::{compare, help};
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::Mission;
 use crate::mission::recording::Recording;
 use crate::mission::scenario::{self, Overrides};
 use crate::output::file::{Output, prepare};
+use crate::output::notes::warn;
 use crate::report::examples::{Flown, side_by_side};
 use crate::report::page::{Chapter, Page};
 use crate::report::picture::Picture;
-use crate::report::{text, trace};
+use crate::report::{flat, log, text, trace};
 
 #[derive(Debug, Args)]
 pub(crate) struct Run {
@@ -42,12 +42,27 @@ pub(crate) struct Run {
     /// Write a page to step through the mission here
     #[arg(long, value_name = "FILE.html")]
     pub(crate) report: Option<PathBuf>,
-    /// What to print; json prints the trace
+    /// Write a log for Foxglove, Rerun or `PlotJuggler` here
+    #[arg(long, value_name = "FILE.mcap")]
+    pub(crate) mcap: Option<PathBuf>,
+    /// What to print
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: Format,
 }
 
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    /// For people
+    #[default]
+    Text,
+    /// The trace, for programs
+    Json,
+    /// A line a step without lists, for data frames
+    Flat,
+}
+
 #[derive(Debug, Args)]
+#[command(after_help = help::RUN)]
 pub(crate) struct RunArgs {
     #[command(flatten)]
     run: Run,
@@ -58,7 +73,7 @@ pub(crate) struct RunArgs {
         value_name = "PLANNER,...",
         value_delimiter = ',',
         requires = "report",
-        conflicts_with_all = ["algorithm", "trace", "figure", "candidates"]
+        conflicts_with_all = ["algorithm", "trace", "figure", "candidates", "mcap"]
     )]
     compare: Vec<Algorithm>,
 }
@@ -100,7 +115,7 @@ impl Run {
             bail!("--candidates: found a mission without noise, expected one with noisy labels");
         }
         if let Some(warning) = mission.warning() {
-            eprintln!("{}: {warning}", self.name());
+            warn(self.name(), warning);
         }
         Ok(mission)
     }
@@ -109,10 +124,14 @@ impl Run {
     fn compare(&self, planners: &[Algorithm]) -> Result<String> {
         compare::check_once(planners)?;
         let mission = |&planner: &Algorithm| {
-            let mission = self.mission_by(Some(planner)).with_context(|| format!("--compare {}", planner.name()))?;
+            let mission = self
+                .mission_by(Some(planner))
+                .with_context(|| format!("--compare {}", planner.name()))?;
             if mission.noise.is_some() && !mission.is_noisy() {
                 let name = planner.name();
-                bail!("--compare: found {name}, which takes labels to be true, in a mission with noise");
+                bail!(
+                    "--compare: found {name}, which takes labels to be true, in a mission with noise"
+                );
             }
             Ok(mission)
         };
@@ -133,6 +152,7 @@ impl Run {
                 recording,
             })),
             Format::Json => recordings.iter().map(|it| trace::lines(&it.results)).collect(),
+            Format::Flat => recordings.iter().map(|it| flat::lines(&it.results)).collect(),
         })
     }
 
@@ -140,22 +160,23 @@ impl Run {
         ("the scenario", &self.scenario)
     }
 
-    pub(crate) fn outputs(&self) -> [(&'static str, Option<&Path>); 4] {
+    pub(crate) fn outputs(&self) -> [(&'static str, Option<&Path>); 5] {
         [
             ("--trace", self.trace.as_deref()),
             ("--figure", self.figure.as_deref()),
             ("--candidates", self.candidates.as_deref()),
             ("--report", self.report.as_deref()),
+            ("--mcap", self.mcap.as_deref()),
         ]
     }
 
     /// Writes the trace, the figures and the page that were asked for; what to print.
     pub(crate) fn tell(
         &self,
-        outputs: [Option<Output>; 4],
+        outputs: [Option<Output>; 5],
         recording: &Recording,
     ) -> Result<String> {
-        let [trace, figure, candidates, report] = outputs;
+        let [trace, figure, candidates, report, mcap] = outputs;
         let name = self.name();
         let lines = trace::lines(&recording.results);
         // All is drawn before anything is written.
@@ -163,11 +184,13 @@ impl Run {
         let fewest = candidates.as_ref().and_then(|_| Picture::of_candidates(&name, recording));
         let fewest = fewest.map(|picture| picture.svg()).transpose()?;
         let page = report.as_ref().map(|_| page(&name, &[recording])).transpose()?;
+        let log = mcap.as_ref().map(|_| log::mcap(recording)).transpose()?;
         for (output, content) in [
-            (trace, Some(&lines)),
-            (figure, svg.as_ref()),
-            (candidates, fewest.as_ref()),
-            (report, page.as_ref()),
+            (trace, Some(lines.as_bytes())),
+            (figure, svg.as_ref().map(String::as_bytes)),
+            (candidates, fewest.as_ref().map(String::as_bytes)),
+            (report, page.as_ref().map(String::as_bytes)),
+            (mcap, log.as_deref()),
         ] {
             if let (Some(output), Some(content)) = (output, content) {
                 output.write(content)?;
@@ -176,6 +199,7 @@ impl Run {
         Ok(match self.format {
             Format::Text => text::mission(&name, &recording.results),
             Format::Json => lines,
+            Format::Flat => flat::lines(&recording.results),
         })
     }
 }

@@ -2,6 +2,7 @@
 
 pub mod cable;
 pub mod faults;
+pub mod firmware;
 pub mod flight;
 pub mod player;
 pub mod qemu;

@@ -120,7 +120,7 @@ impl Mission {
         let told = self.config.tolerance.metres();
         (told < needs && !self.is_noisy()).then(|| {
             format!(
-                "warning: tolerance: {told} m with positions that err by up to {needs} m: true labels may be \
+                "tolerance: {told} m with positions that err by up to {needs} m: true labels may be \
                  refused, or cut the true line off"
             )
         })

@@ -18,7 +18,7 @@ use crate::mission::flight::Flown;
 use crate::mission::read_out::{Knowledge, LEVEL, ReadOut};
 use crate::mission::results::{
     BestRecord, CredibleRecord, End, EstimateRecords, KeepOutRecord, LineError, NoisyEnd,
-    NoisyStep, Results, Start, StepResult, recovery_name, stage_name,
+    NoisyStep, Results, Start, StepResult, VERSION, recovery_name, stage_name,
 };
 use crate::mission::stop::GoalRecord;
 use crate::mission::vehicle::VehicleTable;
@@ -143,6 +143,7 @@ pub fn beside_truth(mission: &Mission, estimates: Estimates) -> EstimateRecords 
 
 fn start(mission: &Mission) -> Start {
     Start {
+        version: VERSION,
         algorithm: mission.algorithm,
         seed: mission.seed,
         varrho: mission.config.varrho.value(),

@@ -31,9 +31,14 @@ pub struct Results {
     pub end: End,
 }
 
+/// The version of the trace, which its start says. Fields that are added do not change it.
+pub const VERSION: u32 = 1;
+
 /// What a mission began with.
 #[derive(Clone, Debug, Serialize)]
 pub struct Start {
+    /// [`VERSION`].
+    pub version: u32,
     /// Who planned.
     pub algorithm: Algorithm,
     /// Seed of whatever was random.

@@ -9,6 +9,7 @@ use serde::Serialize;
 use tempfile::NamedTempFile;
 
 use crate::output::interruption::unfinished;
+use crate::output::notes::mention;
 use crate::output::place::Place;
 
 /// A record as a line of JSON.
@@ -154,6 +155,9 @@ impl Output {
                 written => written,
             },
         };
+        if written.is_ok() {
+            mention(format_args!("{name}: written, {} bytes", content.len()));
+        }
         written.context(name)
     }
 }

@@ -1,5 +1,6 @@
-//! Files that appear whole or not at all, whatever interrupts the program.
+//! What comes out: files that appear whole or not at all, whatever interrupts the program, and what is told beside.
 
 pub mod file;
 pub mod interruption;
+pub mod notes;
 pub mod place;

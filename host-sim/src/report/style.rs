@@ -16,7 +16,7 @@ const NEGATIVE: RGBColor = RGBColor(0, 114, 178);
 pub(crate) const PATH: RGBColor = RGBColor(90, 90, 90);
 pub(crate) const SHADE: RGBColor = RGBColor(120, 60, 160);
 pub(crate) const KEEP_OUT: RGBColor = RGBColor(150, 150, 150);
-const ESTIMATE: RGBColor = RGBColor(0, 120, 80);
+pub(crate) const ESTIMATE: RGBColor = RGBColor(0, 120, 80);
 
 pub(crate) fn of_label(label: Label) -> RGBColor {
     match label {

@@ -174,6 +174,9 @@ mod tests {
         assert!(!data.contains('<'), "{data}");
         let read: serde_json::Value = serde_json::from_str(&data).unwrap();
         assert_eq!(read["title"], page.title);
-        assert_eq!(escaped("<a href='x' id=\"y\">&"), "&lt;a href=&#39;x&#39; id=&quot;y&quot;&gt;&amp;");
+        assert_eq!(
+            escaped("<a href='x' id=\"y\">&"),
+            "&lt;a href=&#39;x&#39; id=&quot;y&quot;&gt;&amp;"
+        );
     }
 }

@@ -10,7 +10,7 @@ use crate::mission::recording::Recording;
 use crate::report::page::scene::Flight;
 
 mod markup;
-mod scene;
+pub(crate) mod scene;
 mod words;
 
 /// A page of missions.

@@ -31,13 +31,13 @@ pub(crate) struct Flight {
     /// Whether labels may be wrong.
     labels_err: bool,
     /// The border of the area.
-    area: Ring,
+    pub(crate) area: Ring,
     /// What is kept out of.
-    keep_outs: Vec<Ring>,
+    pub(crate) keep_outs: Vec<Ring>,
     /// The samples that were given.
-    given: Vec<Mark>,
+    pub(crate) given: Vec<Mark>,
     /// The true line, where known.
-    truth: Option<SeenLine>,
+    pub(crate) truth: Option<SeenLine>,
     /// The start, and each step.
     pub(crate) scenes: Vec<Scene>,
     /// The picture of the end, for where no script runs.
@@ -46,23 +46,23 @@ pub(crate) struct Flight {
 }
 
 /// The border of a polygon.
-type Ring = Vec<Place>;
+pub(crate) type Ring = Vec<Place>;
 
 /// Metres.
-type Place = [f64; 2];
+pub(crate) type Place = [f64; 2];
 
 /// A sample.
 #[derive(Debug, Serialize)]
-struct Mark {
-    at: Place,
-    label: i8,
+pub(crate) struct Mark {
+    pub(crate) at: Place,
+    pub(crate) label: i8,
 }
 
 /// A line as it is seen in the area.
 #[derive(Debug, Serialize)]
 pub(crate) struct SeenLine {
     /// Where it enters and leaves the area; empty of a line that passes it by.
-    ends: Vec<Place>,
+    pub(crate) ends: Vec<Place>,
     /// Degrees.
     angle: f64,
     /// Metres; `None` of a vertical line.
@@ -79,11 +79,11 @@ pub(crate) struct Scene {
     /// The motion; `None` at the start.
     pub(crate) motion: Option<Moved>,
     /// Where the robot is by what it reports.
-    at: Place,
+    pub(crate) at: Place,
     /// Radians.
     heading: f64,
     /// What is known of the ground.
-    ground: GroundRecord,
+    pub(crate) ground: GroundRecord,
     /// The recommended estimate.
     pub(crate) estimate: Option<SeenLine>,
     /// The slopes left, as intervals of degrees.
@@ -97,7 +97,7 @@ pub(crate) struct Scene {
     /// Control cost so far.
     pub(crate) cost: f64,
     /// Metres travelled so far.
-    metres: f64,
+    pub(crate) metres: f64,
     /// The same in words.
     pub(crate) told: Vec<Told>,
 }
@@ -106,7 +106,7 @@ pub(crate) struct Scene {
 #[derive(Debug, Serialize)]
 pub(crate) struct Moved {
     /// Places on the way, the last of them the end.
-    way: Vec<Place>,
+    pub(crate) way: Vec<Place>,
     /// Where it should have ended, if it ended elsewhere.
     target: Option<Place>,
     /// Where the robot truly was, if it errs.
@@ -124,7 +124,7 @@ pub(crate) struct Moved {
 /// What is known of the ground.
 #[derive(Debug, Serialize)]
 #[serde(rename_all = "snake_case")]
-enum GroundRecord {
+pub(crate) enum GroundRecord {
     /// What is certain to be +1, and to be -1.
     Certain([Ring; 2]),
     /// Nothing to show.
@@ -161,6 +161,15 @@ impl Rounding {
 }
 
 impl Flight {
+    /// The longer side of the area, metres.
+    pub(crate) fn size(&self) -> f64 {
+        let side = |axis: usize| {
+            let along = self.area.iter().map(|at| at[axis]);
+            along.clone().fold(f64::MIN, f64::max) - along.fold(f64::MAX, f64::min)
+        };
+        side(0).max(side(1))
+    }
+
     /// A mission as it was flown by a planner of this name.
     pub(crate) fn of(planner: &str, recording: &Recording) -> Self {
         let Recording { mission, results, steps, .. } = recording;
@@ -299,7 +308,9 @@ fn seen(record: &LineRecord, border: &Polygon, rounding: Rounding) -> SeenLine {
 impl GroundRecord {
     fn of(ground: &Ground, rounding: Rounding) -> Self {
         match ground {
-            Ground::Certain(regions) => Self::Certain(regions.each_ref().map(|it| rounding.ring(it))),
+            Ground::Certain(regions) => {
+                Self::Certain(regions.each_ref().map(|it| rounding.ring(it)))
+            }
             Ground::Credible(_) | Ground::Plain => Self::Plain,
         }
     }

@@ -77,7 +77,8 @@ pub(crate) fn about(recording: &Recording) -> Vec<String> {
     }
     let tolerance = mission.config.tolerance.metres();
     if tolerance > 0.0 {
-        about.push(format!("Planners take reported positions to be off by up to {tolerance:.3} m."));
+        about
+            .push(format!("Planners take reported positions to be off by up to {tolerance:.3} m."));
     }
     about
 }
@@ -106,7 +107,8 @@ fn planned(mission: &Mission, step: &StepResult) -> String {
             _ => "At random",
         },
     };
-    let unproven = if step.proven == Some(false) { " The best so far: its looks were used up." } else { "" };
+    let unproven =
+        if step.proven == Some(false) { " The best so far: its looks were used up." } else { "" };
     let (at, way) = (step.pose, motion(mission, step));
     format!("{why}: {way}, to ({:.3}, {:.3}).{unproven}", at.x, at.z)
 }
@@ -157,7 +159,11 @@ fn estimated(name: &str, estimate: Option<&LineRecord>) -> String {
     let Some(estimate) = estimate else { return format!("{}: none.", sentence(name)) };
     let off = estimate.error.map_or(String::new(), |error| {
         let share = 100.0 * error.misclassified;
-        format!("; {} deg off the truth, {} % of the area misjudged", small(error.degrees), small(share))
+        format!(
+            "; {} deg off the truth, {} % of the area misjudged",
+            small(error.degrees),
+            small(share)
+        )
     });
     format!("{}: {}{off}.", sentence(name), line(estimate))
 }

@@ -1,0 +1,54 @@
+//! What help says beyond each flag: examples first, then what an exit status means.
+
+pub(crate) const MAIN: &str = "\
+Examples:
+  host-sim                                     the paper's examples, figures in out/
+  host-sim init mission.toml                   a commented scenario to begin with
+  host-sim run mission.toml --figure m.svg     fly it, and draw it
+  host-sim campaign --compare cfc,lookahead    two planners on the same 1,000 fields
+  host-sim replay samples.csv                  what samples of your own determine
+
+Exit status:
+  0    done
+  2    bad input, or an output that cannot be written; one message says which
+  129, 130, 143    ended by SIGHUP, SIGINT (Ctrl-C) or SIGTERM; no file is left half written
+
+Colours and progress bars are for terminals alone; NO_COLOR=1 turns colours off there too.";
+
+pub(crate) const RUN: &str = "\
+Examples:
+  host-sim run mission.toml
+  host-sim run mission.toml --algorithm lookahead --steps 30 --figure m.svg
+  host-sim run mission.toml --trace m.jsonl --mcap m.mcap
+  host-sim run mission.toml --format flat > steps.jsonl
+      then, in Python: pandas.read_json('steps.jsonl', lines=True)
+
+The scenario file is described in ARCHITECTURE.md; `host-sim init` writes one to begin with.";
+
+pub(crate) const HIL: &str = "\
+Examples:
+  host-sim hil mission.toml --emulator         the firmware under QEMU; it is built where needed
+  host-sim hil mission.toml --port /dev/ttyUSB0
+  host-sim hil mission.toml --emulator --fault drop=0.1,delay=20ms --timing t.csv";
+
+pub(crate) const REPLAY: &str = "\
+Examples:
+  host-sim replay samples.csv
+  host-sim replay samples.csv --figure samples.svg --format json";
+
+pub(crate) const CAMPAIGN: &str = "\
+Examples:
+  host-sim campaign
+  host-sim campaign --algorithm lookahead --p 0.7 --steps 36
+  host-sim campaign --compare cfc,lookahead,random --csv rows.csv";
+
+pub(crate) const INIT: &str = "\
+Examples:
+  host-sim init
+  host-sim init harbour.toml --kind noisy";
+
+pub(crate) const COMPLETIONS: &str = "\
+Examples:
+  host-sim completions bash > ~/.local/share/bash-completion/completions/host-sim
+  host-sim completions zsh > ~/.zfunc/_host-sim
+  host-sim completions fish > ~/.config/fish/completions/host-sim.fish";

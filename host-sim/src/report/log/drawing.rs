@@ -1,0 +1,131 @@
+//! What a viewer draws of a mission: the area and the true line once, then what each step adds or replaces.
+
+use plotters::style::RGBColor;
+
+use planner_core::belief::sample::Label;
+
+use crate::report::log::messages::{
+    Color, Entity, Line, Point, Pose, SceneUpdate, Solid, Triangles,
+};
+use crate::report::log::{FRAME, timestamp};
+use crate::report::page::scene::{Flight, GroundRecord, Mark, Place, Scene};
+use crate::report::style;
+
+/// Pixels.
+const THIN: f64 = 1.0;
+const THICK: f64 = 3.0;
+
+/// A sample's size as a share of the area's.
+const SAMPLE: f64 = 0.012;
+
+/// The start: all that stands still.
+pub(super) fn begin(flight: &Flight) -> SceneUpdate {
+    let size = SAMPLE * flight.size();
+    let border = line(&flight.area, true, THIN, opaque(style::PATH));
+    let keep_outs = flight.keep_outs.iter().map(|ring| fan(ring, opaque(style::KEEP_OUT)));
+    let truth = flight.truth.iter().map(|truth| line(&truth.ends, false, THICK, BLACK));
+    let mut entities = vec![
+        Entity { lines: vec![border], triangles: keep_outs.collect(), ..entity("area", 0) },
+        Entity { lines: truth.collect(), ..entity("true line", 0) },
+        samples(
+            "given",
+            0,
+            flight.given.iter().map(|Mark { at, label }| (*at, *label)),
+            1.5 * size,
+        ),
+    ];
+    if let Some(scene) = flight.scenes.first() {
+        entities.extend(known(scene, 0));
+    }
+    SceneUpdate { entities }
+}
+
+/// What each step adds.
+pub(super) fn steps(flight: &Flight) -> impl Iterator<Item = SceneUpdate> {
+    let size = SAMPLE * flight.size();
+    let mut path: Vec<Place> = flight.scenes.iter().take(1).map(|scene| scene.at).collect();
+    let mut read = Vec::new();
+    (1..).zip(flight.scenes.iter().skip(1)).map(move |(second, scene)| {
+        if let Some(moved) = &scene.motion {
+            path.extend(&moved.way);
+            read.extend(moved.label.map(|label| (scene.at, label)));
+        }
+        let way = line(&path, false, THIN, opaque(style::PATH));
+        let mut entities = vec![
+            Entity { lines: vec![way], ..entity("path", second) },
+            samples("samples", second, read.iter().copied(), size),
+        ];
+        entities.extend(known(scene, second));
+        SceneUpdate { entities }
+    })
+}
+
+/// What is known: the ground and the estimate.
+fn known(scene: &Scene, second: u32) -> [Entity; 2] {
+    let estimate = scene.estimate.iter();
+    let estimate = estimate.map(|it| line(&it.ends, false, THICK, opaque(style::ESTIMATE)));
+    let ground = entity("ground", second);
+    let ground = match &scene.ground {
+        GroundRecord::Certain(regions) => {
+            let labels = [Label::Positive, Label::Negative];
+            let certain = labels.into_iter().zip(regions).map(|(label, ring)| {
+                fan(ring, Color { a: 0.25, ..opaque(style::of_label(label)) })
+            });
+            Entity { triangles: certain.collect(), ..ground }
+        }
+        GroundRecord::Plain => ground,
+    };
+    [ground, Entity { lines: estimate.collect(), ..entity("estimate", second) }]
+}
+
+fn entity(id: &str, second: u32) -> Entity {
+    let timestamp = Some(timestamp(second));
+    Entity { timestamp, frame_id: FRAME.to_owned(), id: id.to_owned(), ..Entity::default() }
+}
+
+/// Spheres for +1, cubes for -1.
+fn samples(id: &str, second: u32, samples: impl Iterator<Item = (Place, i8)>, size: f64) -> Entity {
+    let mut entity = entity(id, second);
+    for (at, label) in samples {
+        let of = |label| Solid {
+            pose: Some(Pose::new(at, 0.0)),
+            size: Some(Point::cube(size)),
+            color: Some(opaque(style::of_label(label))),
+        };
+        match label {
+            1.. => entity.spheres.push(of(Label::Positive)),
+            ..0 => entity.cubes.push(of(Label::Negative)),
+            0 => {}
+        }
+    }
+    entity
+}
+
+const BLACK: Color = Color { r: 0.0, g: 0.0, b: 0.0, a: 1.0 };
+
+fn opaque(RGBColor(r, g, b): RGBColor) -> Color {
+    let share = |part: u8| f64::from(part) / 255.0;
+    Color { r: share(r), g: share(g), b: share(b), a: 1.0 }
+}
+
+fn line(places: &[Place], is_loop: bool, thickness: f64, color: Color) -> Line {
+    Line {
+        kind: i32::from(is_loop),
+        pose: Some(Pose::new([0.0, 0.0], 0.0)),
+        thickness,
+        scale_invariant: true,
+        points: places.iter().copied().map(Point::at).collect(),
+        color: Some(color),
+    }
+}
+
+/// A convex polygon as triangles about its first corner.
+fn fan(ring: &[Place], color: Color) -> Triangles {
+    let corners = ring.split_first().map_or(&[][..], |(_, rest)| rest).windows(2);
+    let points = corners.flat_map(|pair| [ring[0], pair[0], pair[1]]);
+    Triangles {
+        pose: Some(Pose::new([0.0, 0.0], 0.0)),
+        points: points.map(Point::at).collect(),
+        color: Some(color),
+    }
+}
