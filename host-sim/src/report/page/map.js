@@ -12,7 +12,7 @@ function layout(area, width) {
   const xs = area.map(([x]) => x);
   const zs = area.map(([, z]) => z);
   const [left, right, bottom, top] = [Math.min(...xs), Math.max(...xs), Math.min(...zs), Math.max(...zs)];
-  const margin = { left: 38, right: 12, top: 12, bottom: 34 };
+  const margin = { left: 38, right: 12, top: 22, bottom: 34 };
   const most = Math.max(240, Math.min(620, width));
   const room = width - margin.left - margin.right;
   const scale = Math.min(room / (right - left), most / (top - bottom));
@@ -104,8 +104,8 @@ function drawAxes(svg, view, width) {
   }
   const [end] = at([right, bottom]);
   add(svg, 'text', { class: 'tick', x: end, y: base + 29, 'text-anchor': 'end' }, 'x, m');
-  const [start] = at([left, top]);
-  add(svg, 'text', { class: 'tick', x: start, y: base + 29 }, 'z up, m');
+  const [start, peak] = at([left, top]);
+  add(svg, 'text', { class: 'tick', x: start - 6, y: peak - 8, 'text-anchor': 'end' }, 'z, m');
 }
 
 /** A label's symbol: a disc for +1, a square for -1, a diamond on the line itself. */
