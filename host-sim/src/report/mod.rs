@@ -1,9 +1,11 @@
 //! What is told of a mission: text for people, a trace for programs, a figure to look at.
 
+pub mod bands;
 pub mod campaign;
 pub mod comparison;
 pub mod examples;
 pub mod figure;
+pub mod ground;
 pub mod legend;
 pub mod picture;
 pub mod style;
