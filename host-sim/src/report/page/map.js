@@ -1,12 +1,5 @@
 // The map of a mission: ground, lines, path and labels at a step.
 
-const PROBABILITY_CLASSES = 6;
-
-/** The class of a band of ground by the probability that the line passes there at least. */
-function bandClass(from) {
-  return `band-${Math.min(PROBABILITY_CLASSES - 1, Math.floor(from * PROBABILITY_CLASSES))}`;
-}
-
 /** Where the places of an area lie on a drawing this wide. */
 function layout(area, width) {
   const xs = area.map(([x]) => x);
@@ -82,9 +75,9 @@ function drawGround(svg, ground, at) {
       }
     }
   }
-  for (const { from, rings } of ground.bands ?? []) {
-    const d = rings.map((places) => through(places.map(at), true)).join('');
-    add(svg, 'path', { class: bandClass(from), d, 'fill-rule': 'evenodd' });
+  // Each band lies within the one before it, so shades add up.
+  for (const { rings } of ground.bands ?? []) {
+    add(svg, 'path', { class: 'band', d: rings.map((places) => through(places.map(at), true)).join('') });
   }
 }
 
