@@ -10,6 +10,7 @@ use crate::mission::recording::Recording;
 use crate::mission::scenario::{self, Overrides};
 use crate::output::file::prepare;
 use crate::report::examples::{Flown, side_by_side};
+use crate::report::page::{Chapter, Page};
 use crate::report::picture::Picture;
 use crate::report::text;
 
@@ -28,6 +29,11 @@ pub struct Flight {
     /// The file of its figure, in `out/`.
     pub figure: &'static str,
 }
+
+/// The page that steps through all flights, in `out/`.
+const REPORT: &str = "report.html";
+
+const REPORT_TITLE: &str = "The paper's two examples";
 
 const NOISELESS: &str = "The paper's noiseless example (Section V)";
 const NOISY: &str = "The paper's noisy example (Section V)";
@@ -127,8 +133,10 @@ impl Flight {
 pub(crate) fn tell() -> Result<String> {
     const FIGURES: usize = FLIGHTS.len() + 1;
     fs::create_dir_all("out").context("out: expected a place to make a folder")?;
-    let names: [_; FIGURES] =
-        std::array::from_fn(|k| FLIGHTS.get(k).map_or(CANDIDATES, |flight| flight.figure));
+    let names: [_; FIGURES + 1] = std::array::from_fn(|k| match k {
+        FIGURES => REPORT,
+        _ => FLIGHTS.get(k).map_or(CANDIDATES, |flight| flight.figure),
+    });
     let places = names.map(|name| (name, Path::new("out").join(name)));
     let asked = places.each_ref().map(|(name, path)| (*name, Some(path.as_path())));
     let outputs = prepare(&[], asked)?;
@@ -138,9 +146,10 @@ pub(crate) fn tell() -> Result<String> {
     let mut figures: Vec<_> = flights().map(|(flight, it)| flight.picture(it)).collect();
     let printed = flights().filter(|(flight, _)| flight.is_printed);
     figures.extend(printed.filter_map(|(_, it)| Picture::of_candidates(CANDIDATES_TITLE, it)));
-    let drawn = figures.iter().map(Picture::svg).collect::<Result<Vec<_>>>()?;
-    for (output, svg) in outputs.into_iter().flatten().zip(drawn) {
-        output.write(svg)?;
+    let mut drawn = figures.iter().map(Picture::svg).collect::<Result<Vec<_>>>()?;
+    drawn.push(page(&recordings)?);
+    for (output, content) in outputs.into_iter().flatten().zip(drawn) {
+        output.write(content)?;
     }
     let told: Vec<_> = flights().map(|(flight, it)| flight.told(it)).collect();
     let flown = flights().map(|(flight, recording)| Flown {
@@ -150,9 +159,19 @@ pub(crate) fn tell() -> Result<String> {
         recording,
     });
     Ok(format!(
-        "{}\n{}\n{NOTES}\n\nFigures in out/: {}\n",
+        "{}\n{}\n{NOTES}\n\nFigures in out/: {}\nTo step through all of them, open out/{REPORT} in a browser.\n",
         told.join("\n"),
         side_by_side(flown),
-        names.join(", ")
+        names[..FIGURES].join(", ")
     ))
+}
+
+/// The page of all flights, those of an example side by side.
+fn page(recordings: &[Recording]) -> Result<String> {
+    let chapter = |example| {
+        let flights =
+            FLIGHTS.iter().zip(recordings).filter(|(flight, _)| flight.example == example);
+        Chapter::new(example, flights.map(|(flight, recording)| (flight.planner, recording)))
+    };
+    Page::new(REPORT_TITLE, [NOISELESS, NOISY].map(chapter).into()).html()
 }

@@ -8,8 +8,10 @@ use planner_core::geometry::region::Region as _;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
+use crate::report::bands::Band;
+use crate::report::ground::Ground;
 use crate::report::legend;
-use crate::report::picture::{Ground, Named, Picture, Stop};
+use crate::report::picture::{Named, Picture, Stop};
 use crate::report::style::{self, PATH, SHADE, failed, symbol};
 use crate::world::polygon::Polygon;
 
@@ -70,7 +72,7 @@ impl Picture {
     fn draw_ground(&self, chart: &mut Chart) -> Result<()> {
         match &self.ground {
             Ground::Certain(regions) => draw_certain(chart, regions),
-            Ground::Credible(patches) => draw_credible(chart, patches),
+            Ground::Credible(bands) => draw_credible(chart, bands),
             Ground::Plain => Ok(()),
         }
     }
@@ -179,10 +181,13 @@ fn draw_certain(chart: &mut Chart, regions: &[Polygon; 2]) -> Result<()> {
 }
 
 /// The credible set: the likelier that the line passes, the darker.
-fn draw_credible(chart: &mut Chart, patches: &[([Point2<f64>; 2], f64)]) -> Result<()> {
-    for (corners, mass) in patches {
-        let shade = SHADE.mix(0.75 * mass.min(1.0)).filled();
-        chart.draw_series([Rectangle::new(corners.map(xy), shade)]).map_err(failed)?;
+fn draw_credible(chart: &mut Chart, bands: &[Band]) -> Result<()> {
+    for Band { rings, .. } in bands {
+        for ring in rings {
+            let corners: Vec<_> = ring.iter().copied().map(xy).collect();
+            let fill = SHADE.mix(0.15).filled();
+            chart.draw_series([plotters::element::Polygon::new(corners, fill)]).map_err(failed)?;
+        }
     }
     Ok(())
 }

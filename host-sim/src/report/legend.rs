@@ -5,7 +5,8 @@ use planner_core::belief::sample::Label;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-use crate::report::picture::{Ground, Picture};
+use crate::report::ground::Ground;
+use crate::report::picture::Picture;
 use crate::report::style::{self, PATH, SHADE, failed, symbol};
 
 /// Draws them.

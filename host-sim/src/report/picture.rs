@@ -1,7 +1,6 @@
 //! What a figure shows: plain data, made of a mission's results and of what is known in the end.
 
 use nalgebra::{Point2, Rotation2, Vector2};
-use planner_core::belief::consistent_lines::Certainty;
 use planner_core::belief::estimate;
 use planner_core::belief::posterior::Posterior;
 use planner_core::belief::sample::{Label, Reading, Sample};
@@ -9,14 +8,13 @@ use planner_core::geometry::area::Area;
 use planner_core::geometry::lattice::{LIMIT, Site, UNITS_PER_METRE, Vector};
 use planner_core::geometry::line::Line;
 use planner_core::geometry::local_line::LocalLine;
-use planner_core::geometry::region::Region as _;
 use planner_core::link::message::MissionArea;
 use planner_core::motion::any_vehicle::AnyVehicle;
 
 use crate::mission::definition::Table;
-use crate::mission::read_out::{LEVEL, ReadOut};
+use crate::mission::read_out::LEVEL;
 use crate::mission::recording::Recording;
-use crate::world::polygon::Polygon;
+pub use crate::report::ground::Ground;
 use crate::world::reading;
 
 /// What to draw.
@@ -40,17 +38,6 @@ pub struct Picture {
     pub truth: Option<Line>,
     /// Other lines, with their names.
     pub lines: Vec<Named>,
-}
-
-/// What is known of the ground.
-#[derive(Clone, Debug)]
-pub enum Ground {
-    /// The regions of certainty, of +1 and of -1.
-    Certain([Polygon; 2]),
-    /// Patches that lines of the credible set pass through, each with the probability of these.
-    Credible(Vec<([Point2<f64>; 2], f64)>),
-    /// Nothing to show.
-    Plain,
 }
 
 /// A sample.
@@ -117,45 +104,6 @@ impl Named {
     }
 }
 
-impl Ground {
-    /// What is known of an area.
-    pub fn of(area: MissionArea, belief: &dyn ReadOut) -> Self {
-        match (belief.version_space(), belief.hypotheses()) {
-            (Some(space), _) => Self::certain(area, &space.support().collect::<Vec<_>>()),
-            (None, Some(table)) => Self::credible(&area, table),
-            (None, None) => Self::Plain,
-        }
-    }
-
-    /// The ground that samples leave certain, which bound the lines in cyclic order.
-    pub fn certain(area: MissionArea, support: &[Sample]) -> Self {
-        let certain = |label| Polygon::certain(area, support, label);
-        Self::Certain([Label::Positive, Label::Negative].map(certain))
-    }
-
-    /// The credible set: each patch of ground with the probability of the hypotheses of the set whose
-    /// lines pass through it.
-    fn credible(area: &MissionArea, table: &Table) -> Self {
-        const PATCHES: i32 = 72;
-        let posterior = Posterior::new(table);
-        let set = posterior.credible(LEVEL);
-        let [min, max] = [area.bounds().min(), area.bounds().max()].map(Point2::<f64>::from);
-        let size = (max - min) / f64::from(PATCHES);
-        let all = (0..PATCHES).flat_map(|i| (0..PATCHES).map(move |j| (i, j)));
-        let patch = |(i, j)| {
-            let corner = min + size.component_mul(&Vector2::new(f64::from(i), f64::from(j)));
-            let middle =
-                Site::try_from(corner + size / 2.0).ok().filter(|at| area.encloses(*at))?;
-            let passing = posterior
-                .members(&set)
-                .filter(|h| table.lines(h).certainty(middle) == Certainty::Uncertain);
-            let mass: f64 = passing.map(|h| posterior.probability(h)).sum();
-            (mass > 0.01).then_some(([corner, corner + size], mass))
-        };
-        Self::Credible(all.filter_map(patch).collect())
-    }
-}
-
 impl Picture {
     /// A mission: what is certain, the path, the labels, the lines.
     pub fn of(title: &str, recording: &Recording) -> Self {
@@ -192,7 +140,7 @@ impl Picture {
             title: title.to_owned(),
             note: None,
             area,
-            ground: Ground::of(area, &**belief),
+            ground: Ground::of(&**belief, area),
             samples: belief.samples().iter().map(dot).collect(),
             given: mission.given.samples().len(),
             path: Some((Point2::from(mission.start.site), stops.collect())),
@@ -298,6 +246,7 @@ mod tests {
     use super::*;
     use crate::campaign::standard_field;
     use crate::mission::algorithm::Algorithm;
+    use crate::world::polygon::Polygon;
 
     #[test]
     fn certain_ground_is_on_one_side_of_every_bound() {

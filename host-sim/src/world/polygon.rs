@@ -71,6 +71,18 @@ impl Polygon {
         part.into_iter().filter(|at| line.distance(*at).abs() < 1e-6).collect()
     }
 
+    /// The part in a convex polygon whose corners go counter-clockwise.
+    #[must_use]
+    pub fn within(self, convex: &Self) -> Self {
+        let corners = &convex.0;
+        let sides = corners.iter().zip(corners.iter().cycle().skip(1));
+        let lines = sides.filter_map(|(p, q)| {
+            let way = q - p;
+            Line::through(*p, Vector2::new(-way.y, way.x))
+        });
+        lines.fold(self, |ground, line| ground.clip(&line, 1.0))
+    }
+
     /// The part of an area to which all lines give a label that some samples bound. `support` has these in
     /// cyclic order; all of them lie in the area.
     ///
@@ -96,6 +108,13 @@ impl Polygon {
             ground.0.splice(crossing..=crossing, own);
         }
         ground
+    }
+
+    /// The longest way across the rectangle around it, metres.
+    pub fn diameter(&self) -> f64 {
+        let min = self.0.iter().copied().reduce(|a, b| a.inf(&b));
+        let max = self.0.iter().copied().reduce(|a, b| a.sup(&b));
+        min.zip(max).map_or(0.0, |(min, max)| (max - min).norm())
     }
 
     /// Area, square metres.

@@ -8,7 +8,7 @@ use crate::report::log::messages::{
     Color, Entity, Line, Point, Pose, SceneUpdate, Solid, Triangles,
 };
 use crate::report::log::{FRAME, timestamp};
-use crate::report::page::scene::{Flight, GroundRecord, Mark, Place, Scene};
+use crate::report::page::scene::{BandRecord, Flight, GroundRecord, Mark, Place, Scene};
 use crate::report::style;
 
 /// Pixels.
@@ -72,6 +72,13 @@ fn known(scene: &Scene, second: u32) -> [Entity; 2] {
                 fan(ring, Color { a: 0.25, ..opaque(style::of_label(label)) })
             });
             Entity { triangles: certain.collect(), ..ground }
+        }
+        GroundRecord::Bands(bands) => {
+            let borders = bands.iter().flat_map(|BandRecord { from, rings }| {
+                let color = Color { a: 0.2 + 0.8 * from, ..opaque(style::SHADE) };
+                rings.iter().map(move |ring| line(ring, true, THIN, color))
+            });
+            Entity { lines: borders.collect(), ..ground }
         }
         GroundRecord::Plain => ground,
     };

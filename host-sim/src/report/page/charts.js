@@ -121,12 +121,14 @@ function drawScales(svg, chart, range, steps, across, up, width) {
   add(svg, 'path', { class: 'axis', d: through([[left, top], [left, height - bottom], [width - right, height - bottom]]) });
 }
 
-/** Whole powers of ten in a range of logarithms, four at most. */
+/** Round sizes in a range of logarithms, as logarithms: four or so. */
 function wholes([from, to]) {
+  const sizes = to - from < 1.5 ? [1, 2, 5] : [1];
   const all = [];
-  for (let k = Math.ceil(from); k <= to; k += 1) all.push(k);
-  const every = Math.ceil(all.length / 4) || 1;
-  return all.length > 0 ? all.filter((_, k) => k % every === 0) : [from, to];
+  for (let k = Math.floor(from); k <= to; k += 1) all.push(...sizes.map((size) => k + Math.log10(size)));
+  const within = all.filter((it) => it >= from && it <= to);
+  const every = Math.ceil(within.length / 4) || 1;
+  return within.length > 0 ? within.filter((_, k) => k % every === 0) : [from, to];
 }
 
 /** The step that a place on a chart stands for. */

@@ -1,18 +1,11 @@
 // The map of a mission: ground, lines, path and labels at a step.
 
-const PROBABILITY_CLASSES = 6;
-
-/** The class of a band of ground by the probability that the line passes there at least. */
-function bandClass(from) {
-  return `band-${Math.min(PROBABILITY_CLASSES - 1, Math.floor(from * PROBABILITY_CLASSES))}`;
-}
-
 /** Where the places of an area lie on a drawing this wide. */
 function layout(area, width) {
   const xs = area.map(([x]) => x);
   const zs = area.map(([, z]) => z);
   const [left, right, bottom, top] = [Math.min(...xs), Math.max(...xs), Math.min(...zs), Math.max(...zs)];
-  const margin = { left: 38, right: 12, top: 12, bottom: 34 };
+  const margin = { left: 38, right: 12, top: 22, bottom: 34 };
   const most = Math.max(240, Math.min(620, width));
   const room = width - margin.left - margin.right;
   const scale = Math.min(room / (right - left), most / (top - bottom));
@@ -82,9 +75,9 @@ function drawGround(svg, ground, at) {
       }
     }
   }
-  for (const { from, rings } of ground.bands ?? []) {
-    const d = rings.map((places) => through(places.map(at), true)).join('');
-    add(svg, 'path', { class: bandClass(from), d, 'fill-rule': 'evenodd' });
+  // Each band lies within the one before it, so shades add up.
+  for (const { rings } of ground.bands ?? []) {
+    add(svg, 'path', { class: 'band', d: rings.map((places) => through(places.map(at), true)).join('') });
   }
 }
 
@@ -104,8 +97,8 @@ function drawAxes(svg, view, width) {
   }
   const [end] = at([right, bottom]);
   add(svg, 'text', { class: 'tick', x: end, y: base + 29, 'text-anchor': 'end' }, 'x, m');
-  const [start] = at([left, top]);
-  add(svg, 'text', { class: 'tick', x: start, y: base + 29 }, 'z up, m');
+  const [start, peak] = at([left, top]);
+  add(svg, 'text', { class: 'tick', x: start - 6, y: peak - 8, 'text-anchor': 'end' }, 'z, m');
 }
 
 /** A label's symbol: a disc for +1, a square for -1, a diamond on the line itself. */

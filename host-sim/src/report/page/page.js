@@ -110,6 +110,13 @@ function legend(figure, flight) {
     item('certain to be \u22121', box('certain below'));
     item('uncertain', box('area border'));
   }
+  const { bands } = flight.scenes[0].ground;
+  if (bands) {
+    const levels = bands.map(({ from }) => `${Math.round(100 * from)}`).join(', ');
+    item(`the line passes with a probability of ${levels} % at least, the darker the likelier`, (svg) => {
+      bands.forEach((_, k) => add(svg, 'rect', { class: 'band', x: 1 + 5 * k, y: 1, width: 25 - 1 - 5 * k, height: 16 }));
+    });
+  }
   if (flight.truth) item('the true line', stroke('truth'));
   item(flight.estimate, stroke('estimate'));
   item('path, and the last motion', (svg) => { add(svg, 'path', { class: 'path', d: 'M1 9H12' }); add(svg, 'path', { class: 'leg', d: 'M12 9H25' }); });

@@ -13,8 +13,10 @@ use serde::Serialize;
 use crate::mission::read_out::{Expectation, ReadOut};
 use crate::mission::recording::{Recording, beside_truth};
 use crate::mission::results::{LineError, LineRecord, StepResult};
+use crate::report::bands::Band;
+use crate::report::ground::Ground;
 use crate::report::page::words::{self, Told};
-use crate::report::picture::{Ground, Picture, Stop};
+use crate::report::picture::{Picture, Stop};
 use crate::report::text;
 use crate::world::polygon::Polygon;
 
@@ -127,8 +129,17 @@ pub(crate) struct Moved {
 pub(crate) enum GroundRecord {
     /// What is certain to be +1, and to be -1.
     Certain([Ring; 2]),
+    /// Where the line may pass, the least likely first.
+    Bands(Vec<BandRecord>),
     /// Nothing to show.
     Plain,
+}
+
+/// Ground that lines of so much probability pass at least.
+#[derive(Debug, Serialize)]
+pub(crate) struct BandRecord {
+    pub(crate) from: f64,
+    pub(crate) rings: Vec<Ring>,
 }
 
 /// Rounds places to what can be seen.
@@ -156,7 +167,13 @@ impl Rounding {
     }
 
     fn ring(self, polygon: &Polygon) -> Ring {
-        polygon.0.iter().map(|at| self.place(*at)).collect()
+        self.corners(&polygon.0)
+    }
+
+    fn corners(self, places: &[Point2<f64>]) -> Ring {
+        let mut corners: Ring = places.iter().map(|at| self.place(*at)).collect();
+        corners.dedup();
+        corners
     }
 }
 
@@ -260,7 +277,7 @@ impl Stage<'_> {
             motion,
             at: rounding.place(pose.site.into()),
             heading: pose.heading.radians(),
-            ground: GroundRecord::of(&Ground::of(area, belief), rounding),
+            ground: GroundRecord::of(&Ground::of(belief, area), rounding),
             estimate: centre.map(|line| seen(&line, &area.into(), rounding)),
             slopes: knowledge.slope_arcs,
             intercepts: knowledge.intercept,
@@ -311,7 +328,14 @@ impl GroundRecord {
             Ground::Certain(regions) => {
                 Self::Certain(regions.each_ref().map(|it| rounding.ring(it)))
             }
-            Ground::Credible(_) | Ground::Plain => Self::Plain,
+            Ground::Credible(bands) => {
+                let record = |band: &Band| BandRecord {
+                    from: band.from,
+                    rings: band.rings.iter().map(|ring| rounding.corners(ring)).collect(),
+                };
+                Self::Bands(bands.iter().map(record).collect())
+            }
+            Ground::Plain => Self::Plain,
         }
     }
 }

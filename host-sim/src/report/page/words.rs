@@ -118,10 +118,12 @@ fn motion(mission: &Mission, step: &StepResult) -> String {
     let side = if degrees < 0.0 { "right" } else { "left" };
     let turn = format!("{:.1} deg {side}", degrees.abs());
     let metres = step.action.v;
-    match (mission.vehicle, metres > 0.0) {
-        (AnyVehicle::Car(_), _) => format!("an arc of {metres:.1} m that turns {turn}"),
-        (_, true) => format!("turn {turn}, go {metres:.1} m"),
-        (_, false) => format!("turn {turn}"),
+    let is_car = matches!(mission.vehicle, AnyVehicle::Car(_));
+    match (degrees.abs() < 0.05, metres > 0.0) {
+        (true, _) => format!("straight on for {metres:.1} m"),
+        (false, true) if is_car => format!("an arc of {metres:.1} m that turns {turn}"),
+        (false, true) => format!("turn {turn}, go {metres:.1} m"),
+        (false, false) => format!("turn {turn}"),
     }
 }
 

@@ -1,0 +1,327 @@
+//! How likely the line is to pass where: nested bands of ground, from the hypotheses of the credible set.
+//!
+//! All lines of the set have directions within less than half a turn, so a column across the middle one meets each
+//! line once. On a column the lines of a hypothesis fill an interval between two of its bounds. So the places of a
+//! column that lines of so much probability pass are intervals too, by a sum over sorted ends; and from one column to
+//! the next they join to polygons. Columns stand at every sample, where a hypothesis's ends turn, and closely between.
+
+use nalgebra::{Point2, Vector2};
+use planner_core::belief::posterior::Posterior;
+use planner_core::geometry::lattice::Vector;
+use planner_core::geometry::line::Bound;
+use planner_core::link::message::MissionArea;
+
+use crate::mission::definition::Table;
+use crate::mission::read_out::LEVEL;
+use crate::world::polygon::Polygon;
+
+/// Where bands begin: the least probability that lines pass a place of each. What is below the first is blank.
+pub const LEAST: [f64; 5] = [0.01, 0.2, 0.4, 0.6, 0.8];
+
+/// Columns between those at the samples.
+const COLUMNS: u32 = 240;
+
+/// Ground that lines of so much probability pass at least.
+#[derive(Clone, Debug)]
+pub struct Band {
+    /// The least probability of the hypotheses of the credible set that have lines through a place of it.
+    pub from: f64,
+    /// Polygons that touch at most, each as its corners in metres. A hole is between two of them.
+    pub rings: Vec<Vec<Point2<f64>>>,
+}
+
+/// Coordinates along the middle direction of the set's lines and across it, metres.
+struct Frame {
+    along: Vector2<f64>,
+    across: Vector2<f64>,
+}
+
+/// A line in a frame: where it is across at 0, and how much it rises.
+#[derive(Clone, Copy)]
+struct Rising {
+    at: f64,
+    slope: f64,
+}
+
+/// The lines that bound a hypothesis, and its probability.
+struct Weighed {
+    bounds: Vec<Rising>,
+    probability: f64,
+}
+
+type Interval = [f64; 2];
+
+/// A polygon that grows from column to column: its lower and its upper side.
+#[derive(Default)]
+struct Growing {
+    sides: [Vec<Point2<f64>>; 2],
+}
+
+/// The bands of a table's credible set in an area, each within the one before it.
+pub(crate) fn of(table: &Table, area: MissionArea) -> Vec<Band> {
+    let posterior = Posterior::new(table);
+    let set = posterior.credible(LEVEL);
+    let frame = Frame::between(set.slope_arc.from(), set.slope_arc.to());
+    let hypotheses: Vec<_> = posterior
+        .members(&set)
+        .map(|h| Weighed {
+            bounds: table.lines(h).bounds().map(|bound| frame.rising(bound)).collect(),
+            probability: posterior.probability(h),
+        })
+        .collect();
+    let ground = Polygon::from(area);
+    let samples = table.samples().iter().map(|s| Point2::from(s.site));
+    let columns = frame.columns(&ground, samples);
+    let ends: Vec<_> = columns.iter().map(|&s| Ends::of(&hypotheses, s)).collect();
+    let detail = ground.diameter() / 20_000.0;
+    let band = |from| {
+        let rings = join(columns.iter().copied().zip(ends.iter().map(|it| it.from(from))));
+        let in_area = |ring: Growing| {
+            let corners = ring.corners(detail).into_iter().map(|it| frame.place(it));
+            Some(Polygon(corners.collect()).within(&ground).0).filter(|corners| corners.len() > 2)
+        };
+        Band { from, rings: rings.into_iter().filter_map(in_area).collect() }
+    };
+    LEAST.map(band).into_iter().filter(|band| !band.rings.is_empty()).collect()
+}
+
+impl Frame {
+    fn between(from: Vector, to: Vector) -> Self {
+        let [from, to] = [from, to].map(|it| metres(it).normalize());
+        let along = (from + to).normalize();
+        Self { along, across: Vector2::new(-along.y, along.x) }
+    }
+
+    fn coordinates(&self, at: Point2<f64>) -> Point2<f64> {
+        Point2::new(at.coords.dot(&self.along), at.coords.dot(&self.across))
+    }
+
+    fn place(&self, at: Point2<f64>) -> Point2<f64> {
+        Point2::from(self.along * at.x + self.across * at.y)
+    }
+
+    fn rising(&self, bound: Bound) -> Rising {
+        let (through, way) = (self.coordinates(bound.through.into()), metres(bound.along));
+        let slope = way.dot(&self.across) / way.dot(&self.along);
+        Rising { at: through.y - slope * through.x, slope }
+    }
+
+    /// Where columns stand, in order.
+    fn columns(&self, area: &Polygon, samples: impl Iterator<Item = Point2<f64>>) -> Vec<f64> {
+        let corners = area.0.iter().map(|corner| self.coordinates(*corner).x);
+        let (from, to) = corners
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(from, to), s| (from.min(s), to.max(s)));
+        let even = |k| from + (to - from) * f64::from(k) / f64::from(COLUMNS);
+        let samples = samples.map(|at| self.coordinates(at).x).filter(|s| from < *s && *s < to);
+        let mut columns: Vec<_> = (0..=COLUMNS).map(even).chain(samples).collect();
+        columns.sort_by(f64::total_cmp);
+        columns.dedup();
+        columns
+    }
+}
+
+fn metres(it: Vector) -> Vector2<f64> {
+    Vector2::new(it.x().into(), it.z().into())
+}
+
+/// Where hypotheses' lines begin and end on a column, in order, with the probability that comes or goes there.
+struct Ends(Vec<(f64, f64)>);
+
+impl Ends {
+    fn of(hypotheses: &[Weighed], s: f64) -> Self {
+        let mut ends = Vec::with_capacity(2 * hypotheses.len());
+        for Weighed { bounds, probability } in hypotheses {
+            let places = || bounds.iter().map(|it| it.at + it.slope * s);
+            ends.push((places().fold(f64::INFINITY, f64::min), *probability));
+            ends.push((places().fold(f64::NEG_INFINITY, f64::max), -probability));
+        }
+        // Where one ends and another begins both count.
+        ends.sort_by(|a, b| a.0.total_cmp(&b.0).then(b.1.total_cmp(&a.1)));
+        Self(ends)
+    }
+
+    /// Where lines of so much probability pass.
+    fn from(&self, least: f64) -> Vec<Interval> {
+        const ROUNDING: f64 = 1e-12;
+        let (mut mass, mut begun, mut intervals) = (0.0, None, Vec::new());
+        for &(at, change) in &self.0 {
+            mass += change;
+            let holds = mass >= least - ROUNDING;
+            match begun {
+                None if holds => begun = Some(at),
+                Some(from) if !holds => {
+                    intervals.push([from, at]);
+                    begun = None;
+                }
+                _ => {}
+            }
+        }
+        intervals
+    }
+}
+
+/// Joins the intervals of columns, in order, to polygons.
+fn join(columns: impl Iterator<Item = (f64, Vec<Interval>)>) -> Vec<Growing> {
+    let mut done = Vec::new();
+    let mut open: Vec<(Interval, Growing)> = Vec::new();
+    let mut before = 0.0;
+    for (s, intervals) in columns {
+        if intervals.len() == open.len() {
+            for ((last, ring), interval) in open.iter_mut().zip(intervals) {
+                ring.grow(s, interval);
+                *last = interval;
+            }
+        } else {
+            // Some begin, end, part or meet: all end here and begin anew, and what overlaps is joined between.
+            let ended = std::mem::take(&mut open);
+            for [from, to] in parts(&ended, &intervals) {
+                let mut between = Growing::default();
+                between.grow(before, from);
+                between.grow(s, to);
+                done.push(between);
+            }
+            done.extend(ended.into_iter().map(|(_, ring)| ring));
+            open.extend(intervals.into_iter().map(|interval| {
+                let mut ring = Growing::default();
+                ring.grow(s, interval);
+                (interval, ring)
+            }));
+        }
+        before = s;
+    }
+    done.extend(open.into_iter().map(|(_, ring)| ring));
+    done
+}
+
+/// What lies between two columns whose intervals are not as many: pairs that overlap. Of one interval that overlaps
+/// several, each has its share, up to the middle of the gap to the next.
+fn parts(left: &[(Interval, Growing)], right: &[Interval]) -> Vec<[Interval; 2]> {
+    let left: Vec<_> = left.iter().map(|(interval, _)| *interval).collect();
+    let meet = |a: &Interval, b: &Interval| a[0] <= b[1] && b[0] <= a[1];
+    let share = |of: Interval, beside: &[Interval], own: &Interval| {
+        let partners: Vec<_> = beside.iter().filter(|it| meet(it, &of)).collect();
+        let k = partners.iter().position(|it| *it == own).unwrap_or_default();
+        let cut = |k: usize| f64::midpoint(partners[k - 1][1], partners[k][0]).clamp(of[0], of[1]);
+        [
+            if k == 0 { of[0] } else { cut(k) },
+            if k + 1 == partners.len() { of[1] } else { cut(k + 1) },
+        ]
+    };
+    let pairs = left.iter().flat_map(|a| right.iter().map(move |b| (a, b)));
+    let meeting = pairs.filter(|(a, b)| meet(a, b));
+    meeting.map(|(a, b)| [share(*a, right, b), share(*b, &left, a)]).collect()
+}
+
+impl Growing {
+    fn grow(&mut self, s: f64, interval: Interval) {
+        for (side, t) in self.sides.iter_mut().zip(interval) {
+            side.push(Point2::new(s, t));
+        }
+    }
+
+    /// Around it, without corners that are straight to some detail.
+    fn corners(self, detail: f64) -> Vec<Point2<f64>> {
+        let [lower, upper] = self.sides.map(|side| straightened(&side, detail));
+        lower.into_iter().chain(upper.into_iter().rev()).collect()
+    }
+}
+
+/// A line of places without those that are nearer than this to the straight line between the ones that stay
+/// (Douglas and Peucker's).
+fn straightened(line: &[Point2<f64>], detail: f64) -> Vec<Point2<f64>> {
+    let (Some(&from), Some(&to)) = (line.first(), line.last()) else { return Vec::new() };
+    let way = to - from;
+    let off = |at: &Point2<f64>| {
+        if way.norm() > 0.0 {
+            way.perp(&(at - from)).abs() / way.norm()
+        } else {
+            (at - from).norm()
+        }
+    };
+    let furthest =
+        (1..line.len().saturating_sub(1)).max_by(|a, b| off(&line[*a]).total_cmp(&off(&line[*b])));
+    match furthest {
+        Some(k) if off(&line[k]) > detail => {
+            let mut kept = straightened(&line[..=k], detail);
+            kept.pop();
+            kept.extend(straightened(&line[k..], detail));
+            kept
+        }
+        _ if line.len() == 1 => vec![from],
+        _ => vec![from, to],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use planner_core::belief::consistent_lines::Certainty;
+    use planner_core::geometry::lattice::Site;
+    use rand::{RngExt as _, SeedableRng as _};
+    use rand_chacha::ChaCha8Rng;
+
+    use super::*;
+    use crate::mission::recording::Recording;
+    use crate::mission::scenario::{self, Overrides};
+
+    /// Whether a place is inside, by the even-odd rule.
+    fn holds(band: &Band, at: Point2<f64>) -> bool {
+        let crosses = |ring: &Vec<Point2<f64>>| {
+            let next = ring.iter().cycle().skip(1);
+            let crossed = |(p, q): &(&Point2<f64>, &Point2<f64>)| {
+                (p.y > at.y) != (q.y > at.y)
+                    && at.x < p.x + (at.y - p.y) / (q.y - p.y) * (q.x - p.x)
+            };
+            ring.iter().zip(next).filter(crossed).count()
+        };
+        band.rings.iter().map(crosses).sum::<usize>() % 2 == 1
+    }
+
+    #[test]
+    fn bands_hold_the_mass_that_is_summed_place_by_place() {
+        const AROUND: f64 = 0.15; // more than from one column to the next
+        let mut rng = ChaCha8Rng::seed_from_u64(5);
+        let mut told = [0, 0];
+        for seed in 1..=12 {
+            let steps = Some([1, 5, 10, 25][seed as usize % 4]);
+            let overrides = Overrides { algorithm: None, steps, seed: Some(seed) };
+            let mission = scenario::parse("", scenario::PAPER_NOISY, overrides).unwrap();
+            let recording = Recording::of(&mission).unwrap();
+            let table = recording.belief.hypotheses().unwrap();
+            let bands = of(table, mission.config.area);
+            let posterior = Posterior::new(table);
+            let set = posterior.credible(LEVEL);
+            let mass = |at: Point2<f64>| -> f64 {
+                let at = Site::try_from(at).unwrap();
+                let pass = |h: &&_| table.lines(h).certainty(at) == Certainty::Uncertain;
+                posterior.members(&set).filter(pass).map(|h| posterior.probability(h)).sum()
+            };
+            for _ in 0..400 {
+                let at = Point2::new(rng.random_range(0.2..19.8), rng.random_range(0.2..19.8));
+                let way = |k: u32| {
+                    let (sin, cos) = libm::sincos(f64::from(k) * std::f64::consts::FRAC_PI_8);
+                    at + Vector2::new(cos, sin) * AROUND
+                };
+                let masses: Vec<_> = (0..16).map(way).chain([at]).map(mass).collect();
+                for (band, outer) in
+                    bands.iter().zip([None].into_iter().chain(bands.iter().map(Some)))
+                {
+                    let inside = holds(band, at);
+                    if masses.iter().all(|mass| *mass >= band.from) {
+                        assert!(inside, "seed {seed}: {at} has {masses:?}, band {}", band.from);
+                        told[0] += 1;
+                    } else if masses.iter().all(|mass| *mass < band.from) {
+                        assert!(!inside, "seed {seed}: {at} has {masses:?}, band {}", band.from);
+                        told[1] += 1;
+                    }
+                    let nests = outer.is_none_or(|outer| !inside || holds(outer, at));
+                    assert!(
+                        nests,
+                        "seed {seed}: {at} is not within all bands before {}",
+                        band.from
+                    );
+                }
+            }
+        }
+        assert!(told[0] > 2000 && told[1] > 8000, "{told:?} of 24000 told inside and outside");
+    }
+}
