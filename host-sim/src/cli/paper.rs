@@ -138,7 +138,7 @@ pub(crate) fn tell() -> Result<String> {
     let mut figures: Vec<_> = flights().map(|(flight, it)| flight.picture(it)).collect();
     let printed = flights().filter(|(flight, _)| flight.is_printed);
     figures.extend(printed.filter_map(|(_, it)| Picture::of_candidates(CANDIDATES_TITLE, it)));
-    let drawn = figures.iter().map(Picture::svg).collect::<Result<Vec<_>>>()?;
+    let drawn = figures.iter().map(Picture::svg).collect::<Vec<_>>();
     for (output, svg) in outputs.into_iter().flatten().zip(drawn) {
         output.write(svg)?;
     }

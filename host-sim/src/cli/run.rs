@@ -88,9 +88,9 @@ impl Run {
         let name = self.name();
         let lines = trace::lines(&recording.results);
         // All is drawn before anything is written.
-        let svg = figure.as_ref().map(|_| Picture::of(&name, recording).svg()).transpose()?;
+        let svg = figure.as_ref().map(|_| Picture::of(&name, recording).svg());
         let fewest = candidates.as_ref().and_then(|_| Picture::of_candidates(&name, recording));
-        let fewest = fewest.map(|picture| picture.svg()).transpose()?;
+        let fewest = fewest.map(|picture| picture.svg());
         for (output, content) in
             [(trace, Some(&lines)), (figure, svg.as_ref()), (candidates, fewest.as_ref())]
         {
