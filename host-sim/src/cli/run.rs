@@ -86,10 +86,11 @@ impl Run {
     ) -> Result<String> {
         let [trace, figure, candidates] = outputs;
         let name = self.name();
+        let title = self.scenario.file_stem().unwrap_or_default().to_string_lossy();
         let lines = trace::lines(&recording.results);
         // All is drawn before anything is written.
-        let svg = figure.as_ref().map(|_| Picture::of(&name, recording).svg());
-        let fewest = candidates.as_ref().and_then(|_| Picture::of_candidates(&name, recording));
+        let svg = figure.as_ref().map(|_| Picture::of(&title, recording).svg());
+        let fewest = candidates.as_ref().and_then(|_| Picture::of_candidates(&title, recording));
         let fewest = fewest.map(|picture| picture.svg());
         for (output, content) in
             [(trace, Some(&lines)), (figure, svg.as_ref()), (candidates, fewest.as_ref())]

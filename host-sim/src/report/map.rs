@@ -11,7 +11,7 @@ use crate::report::bands::Band;
 use crate::report::ground::Ground;
 use crate::report::numbers;
 use crate::report::picture::{Dot, Stop};
-use crate::report::placing::{Frame, Placing, foot};
+use crate::report::placing::{Placing, foot};
 use crate::report::sheet::{Anchor, Look, Sheet, Spot, width};
 use crate::report::style::{BORDER, Fill, HEADING, PATH, Stroke};
 use crate::world::polygon::Polygon;
@@ -64,6 +64,9 @@ impl Map {
         }
         let placing = Placing::new(axes.frame());
         let mut map = Self { area, axes, sheet, placing, words: Vec::new() };
+        let mut border = map.spots(&Polygon::from(area).0);
+        border.extend(border.first().copied());
+        map.placing.way(&border);
         let is_all =
             area.sides().next().is_none() && more.iter().all(|at| Polygon::from(area).holds(*at));
         if !is_all {
@@ -158,7 +161,7 @@ impl Map {
             on.max_by(|p, q| along(p).total_cmp(&along(q))),
         );
         let (Some(first), Some(last)) = (first, last) else { return };
-        self.stretch(*first, *last, stroke, meaning);
+        self.stretch(&[*first, *last], stroke, meaning);
         if let Some(name) = beside {
             let mut ends = self.spots(&[*first, *last]);
             ends.sort_by(|p, q| p.x.total_cmp(&q.x));
@@ -167,17 +170,11 @@ impl Map {
         }
     }
 
-    /// A straight line between two places.
-    pub(crate) fn stretch(
-        &mut self,
-        from: Point2<f64>,
-        to: Point2<f64>,
-        stroke: Stroke,
-        meaning: &str,
-    ) {
-        let ends = self.spots(&[from, to]);
-        self.placing.way(&ends);
-        self.sheet.ways(stroke, [&ends[..]]);
+    /// A way through some places.
+    pub(crate) fn stretch(&mut self, places: &[Point2<f64>], stroke: Stroke, meaning: &str) {
+        let spots = self.spots(places);
+        self.placing.way(&spots);
+        self.sheet.ways(stroke, [&spots[..]]);
         self.sheet.name(Look::Line(stroke), meaning);
     }
 
@@ -200,7 +197,7 @@ impl Map {
         self.placing.way(&way);
         self.sheet.mark(Look::Start, way[0]);
         self.sheet.name(Look::Start, "start");
-        self.placing.mark(way[0], 10.0);
+        self.placing.mark(way[0], 13.5);
         if stops.is_empty() {
             return;
         }
@@ -281,10 +278,5 @@ impl Map {
             self.sheet.ways(BORDER, [&corners[..]]);
         }
         self.sheet.finish()
-    }
-
-    /// The part of the map that is the area, for what is placed by hand.
-    pub(crate) fn frame(&self) -> Frame {
-        self.axes.frame()
     }
 }

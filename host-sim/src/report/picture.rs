@@ -200,7 +200,7 @@ impl Picture {
 
 /// What a figure of a mission shows, in a line.
 fn note(Recording { mission, results, .. }: &Recording) -> String {
-    let labels = if mission.noise.is_some() { ", whose labels may be wrong" } else { "" };
+    let labels = if mission.noise.is_some() { ", labels may be wrong" } else { "" };
     let (steps, planner) = (results.steps.len(), mission.algorithm.title());
     let plural = if steps == 1 { "" } else { "s" };
     format!(
