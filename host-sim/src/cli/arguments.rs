@@ -5,6 +5,7 @@ use clap::{Parser, Subcommand, ValueEnum};
 
 use crate::cli::campaign::{CampaignArgs, campaign};
 use crate::cli::completions::{Completions, completions};
+use crate::cli::figure::{FigureArgs, figure};
 use crate::cli::hil::{HilArgs, hil};
 use crate::cli::init::{Init, init};
 use crate::cli::replay::{ReplayArgs, replay};
@@ -37,6 +38,8 @@ pub(crate) enum Command {
     Replay(ReplayArgs),
     /// Run the standard fields and print tables
     Campaign(CampaignArgs),
+    /// Draw the paper's figures from what is computed here
+    Figure(FigureArgs),
     /// Have a board, or its firmware under emulation, fly a mission
     Hil(HilArgs),
     /// Write a commented scenario to begin with
@@ -70,6 +73,7 @@ impl Cli {
             Some(Command::Run(args)) => run(&args),
             Some(Command::Replay(args)) => replay(&args),
             Some(Command::Campaign(args)) => campaign(&args),
+            Some(Command::Figure(args)) => figure(&args),
             Some(Command::Hil(args)) => hil(&args),
             Some(Command::Init(args)) => init(&args),
             Some(Command::Completions(args)) => completions(&args),

@@ -4,6 +4,7 @@ pub mod arguments;
 mod campaign;
 mod compare;
 mod completions;
+mod figure;
 mod help;
 mod hil;
 mod init;

@@ -146,7 +146,7 @@ pub(crate) fn tell() -> Result<String> {
     let mut figures: Vec<_> = flights().map(|(flight, it)| flight.picture(it)).collect();
     let printed = flights().filter(|(flight, _)| flight.is_printed);
     figures.extend(printed.filter_map(|(_, it)| Picture::of_candidates(CANDIDATES_TITLE, it)));
-    let mut drawn = figures.iter().map(Picture::svg).collect::<Result<Vec<_>>>()?;
+    let mut drawn: Vec<_> = figures.iter().map(Picture::svg).collect();
     drawn.push(page(&recordings)?);
     for (output, content) in outputs.into_iter().flatten().zip(drawn) {
         output.write(content)?;

@@ -178,11 +178,12 @@ impl Run {
     ) -> Result<String> {
         let [trace, figure, candidates, report, mcap] = outputs;
         let name = self.name();
+        let title = self.scenario.file_stem().unwrap_or_default().to_string_lossy();
         let lines = trace::lines(&recording.results);
         // All is drawn before anything is written.
-        let svg = figure.as_ref().map(|_| Picture::of(&name, recording).svg()).transpose()?;
-        let fewest = candidates.as_ref().and_then(|_| Picture::of_candidates(&name, recording));
-        let fewest = fewest.map(|picture| picture.svg()).transpose()?;
+        let svg = figure.as_ref().map(|_| Picture::of(&title, recording).svg());
+        let fewest = candidates.as_ref().and_then(|_| Picture::of_candidates(&title, recording));
+        let fewest = fewest.map(|picture| picture.svg());
         let page = report.as_ref().map(|_| page(&name, &[recording])).transpose()?;
         let log = mcap.as_ref().map(|_| log::mcap(recording)).transpose()?;
         for (output, content) in [

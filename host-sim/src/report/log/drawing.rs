@@ -1,7 +1,5 @@
 //! What a viewer draws of a mission: the area and the true line once, then what each step adds or replaces.
 
-use plotters::style::RGBColor;
-
 use planner_core::belief::sample::Label;
 
 use crate::report::log::messages::{
@@ -9,6 +7,7 @@ use crate::report::log::messages::{
 };
 use crate::report::log::{FRAME, timestamp};
 use crate::report::page::scene::{BandRecord, Flight, GroundRecord, Mark, Place, Scene};
+use crate::report::picture::Kind;
 use crate::report::style;
 
 /// Pixels.
@@ -21,8 +20,8 @@ const SAMPLE: f64 = 0.012;
 /// The start: all that stands still.
 pub(super) fn begin(flight: &Flight) -> SceneUpdate {
     let size = SAMPLE * flight.size();
-    let border = line(&flight.area, true, THIN, opaque(style::PATH));
-    let keep_outs = flight.keep_outs.iter().map(|ring| fan(ring, opaque(style::KEEP_OUT)));
+    let border = line(&flight.area, true, THIN, opaque(style::PATH.colour));
+    let keep_outs = flight.keep_outs.iter().map(|ring| fan(ring, opaque(KEEP_OUT)));
     let truth = flight.truth.iter().map(|truth| line(&truth.ends, false, THICK, BLACK));
     let mut entities = vec![
         Entity { lines: vec![border], triangles: keep_outs.collect(), ..entity("area", 0) },
@@ -50,7 +49,7 @@ pub(super) fn steps(flight: &Flight) -> impl Iterator<Item = SceneUpdate> {
             path.extend(&moved.way);
             read.extend(moved.label.map(|label| (scene.at, label)));
         }
-        let way = line(&path, false, THIN, opaque(style::PATH));
+        let way = line(&path, false, THIN, opaque(style::PATH.colour));
         let mut entities = vec![
             Entity { lines: vec![way], ..entity("path", second) },
             samples("samples", second, read.iter().copied(), size),
@@ -63,7 +62,8 @@ pub(super) fn steps(flight: &Flight) -> impl Iterator<Item = SceneUpdate> {
 /// What is known: the ground and the estimate.
 fn known(scene: &Scene, second: u32) -> [Entity; 2] {
     let estimate = scene.estimate.iter();
-    let estimate = estimate.map(|it| line(&it.ends, false, THICK, opaque(style::ESTIMATE)));
+    let estimate = estimate
+        .map(|it| line(&it.ends, false, THICK, opaque(style::of_line(Kind::Estimate).colour)));
     let ground = entity("ground", second);
     let ground = match &scene.ground {
         GroundRecord::Certain(regions) => {
@@ -75,7 +75,7 @@ fn known(scene: &Scene, second: u32) -> [Entity; 2] {
         }
         GroundRecord::Bands(bands) => {
             let borders = bands.iter().flat_map(|BandRecord { from, rings }| {
-                let color = Color { a: 0.2 + 0.8 * from, ..opaque(style::SHADE) };
+                let color = Color { a: 0.2 + 0.8 * from, ..opaque(SHADE) };
                 rings.iter().map(move |ring| line(ring, true, THIN, color))
             });
             Entity { lines: borders.collect(), ..ground }
@@ -108,11 +108,17 @@ fn samples(id: &str, second: u32, samples: impl Iterator<Item = (Place, i8)>, si
     entity
 }
 
+const KEEP_OUT: &str = "#c9c9c9";
+const SHADE: &str = "#8653a6";
 const BLACK: Color = Color { r: 0.0, g: 0.0, b: 0.0, a: 1.0 };
 
-fn opaque(RGBColor(r, g, b): RGBColor) -> Color {
-    let share = |part: u8| f64::from(part) / 255.0;
-    Color { r: share(r), g: share(g), b: share(b), a: 1.0 }
+/// A colour as figures name it, `#rrggbb`.
+fn opaque(name: &str) -> Color {
+    let part = |k: usize| {
+        let digits = name.get(k..k + 2).and_then(|digits| u8::from_str_radix(digits, 16).ok());
+        f64::from(digits.unwrap_or_default()) / 255.0
+    };
+    Color { r: part(1), g: part(3), b: part(5), a: 1.0 }
 }
 
 fn line(places: &[Place], is_loop: bool, thickness: f64, color: Color) -> Line {
