@@ -6,10 +6,12 @@ use std::path::PathBuf;
 use anyhow::{Context as _, Result, bail};
 use clap::Args;
 
+use crate::cli::help;
 use crate::output::file::prepare;
 use crate::report::paper::{FIGURES, figure as draw};
 
 #[derive(Debug, Args)]
+#[command(after_help = help::FIGURE)]
 pub(crate) struct FigureArgs {
     /// The number of the paper's figure, 1 to 8, or all
     #[arg(value_name = "N|all", value_parser = which)]

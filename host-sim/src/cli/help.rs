@@ -19,6 +19,8 @@ pub(crate) const RUN: &str = "\
 Examples:
   host-sim run mission.toml
   host-sim run mission.toml --algorithm lookahead --steps 30 --figure m.svg
+  host-sim run mission.toml --report m.html    a page to step through, for a browser
+  host-sim run mission.toml --compare cfc,lookahead --report m.html
   host-sim run mission.toml --trace m.jsonl --mcap m.mcap
   host-sim run mission.toml --format flat > steps.jsonl
       then, in Python: pandas.read_json('steps.jsonl', lines=True)
@@ -41,6 +43,11 @@ Examples:
   host-sim campaign
   host-sim campaign --algorithm lookahead --p 0.7 --steps 36
   host-sim campaign --compare cfc,lookahead,random --csv rows.csv";
+
+pub(crate) const FIGURE: &str = "\
+Examples:
+  host-sim figure all
+  host-sim figure 7 --out pictures";
 
 pub(crate) const INIT: &str = "\
 Examples:
