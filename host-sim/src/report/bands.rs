@@ -18,6 +18,9 @@ use crate::world::polygon::Polygon;
 /// Where bands begin: the least probability that lines pass a place of each. What is below the first is blank.
 pub const LEAST: [f64; 5] = [0.01, 0.2, 0.4, 0.6, 0.8];
 
+/// The share of the area from which on a band is worth its shade.
+const LEAST_SEEN: f64 = 1e-4;
+
 /// Columns between those at the samples.
 const COLUMNS: u32 = 240;
 
@@ -82,7 +85,11 @@ pub(crate) fn of(table: &Table, area: MissionArea) -> Vec<Band> {
         };
         Band { from, rings: rings.into_iter().filter_map(in_area).collect() }
     };
-    LEAST.map(band).into_iter().filter(|band| !band.rings.is_empty()).collect()
+    let is_seen = |band: &Band| {
+        let size: f64 = band.rings.iter().map(|ring| Polygon(ring.clone()).area()).sum();
+        size > LEAST_SEEN * ground.area()
+    };
+    LEAST.map(band).into_iter().filter(is_seen).collect()
 }
 
 impl Frame {

@@ -111,8 +111,9 @@ impl Map {
             } else {
                 format!("{} and {last}", before.join(", "))
             };
-            let meaning =
-                format!("the line may pass, with probability of at least {list} % (white: less)");
+            let meaning = format!(
+                "the line passes here with a probability of at least {list} % (white: less)"
+            );
             self.sheet.name(Look::Shades(bands.len()), meaning);
         }
     }
@@ -176,6 +177,11 @@ impl Map {
         self.placing.way(&spots);
         self.sheet.ways(stroke, [&spots[..]]);
         self.sheet.name(Look::Line(stroke), meaning);
+    }
+
+    /// Gives a look another meaning than it has on other maps.
+    pub(crate) fn mean(&mut self, look: Look, meaning: String) {
+        self.sheet.name(look, meaning);
     }
 
     /// A short name beside a place.
