@@ -34,7 +34,7 @@ impl Map {
     pub(crate) fn new(
         title: &str,
         note: Option<&str>,
-        area: MissionArea,
+        area: &MissionArea,
         more: &[Point2<f64>],
     ) -> Self {
         const SIZE: f64 = 620.0;
@@ -63,17 +63,17 @@ impl Map {
             sheet.words(note, Spot::new(16.0, 48.0), 13.0, Anchor::Start);
         }
         let placing = Placing::new(axes.frame());
-        let mut map = Self { area, axes, sheet, placing, words: Vec::new() };
-        let mut border = map.spots(&Polygon::from(area).0);
+        let mut map = Self { area: *area, axes, sheet, placing, words: Vec::new() };
+        let mut border = map.spots(&Polygon::from(*area).0);
         border.extend(border.first().copied());
         map.placing.way(&border);
         let is_all =
-            area.sides().next().is_none() && more.iter().all(|at| Polygon::from(area).holds(*at));
+            area.sides().next().is_none() && more.iter().all(|at| Polygon::from(*area).holds(*at));
         if !is_all {
             let ([left, right], [bottom, top]) = (map.axes.x.pixels, map.axes.z.pixels);
             let corners = [(left, bottom), (right, bottom), (right, top), (left, top)];
             let all: Vec<_> = corners.iter().map(|(x, z)| Spot::new(*x, *z)).collect();
-            map.sheet.ground(Fill::Outside, &[all, map.spots(&Polygon::from(area).0)]);
+            map.sheet.ground(Fill::Outside, &[all, map.spots(&Polygon::from(*area).0)]);
             map.sheet.name(Look::Ground(Fill::Outside), "outside the area");
         }
         map
@@ -215,7 +215,9 @@ impl Map {
             vec![at, at + Vector2::new(cos, -sin) * TICK]
         });
         let ticks: Vec<_> = ticks.collect();
-        ticks.iter().for_each(|tick| self.placing.way(tick));
+        for tick in &ticks {
+            self.placing.way(tick);
+        }
         self.sheet.ways(HEADING, ticks.iter().map(Vec::as_slice));
         self.sheet.name(Look::Line(HEADING), "heading after a step");
         for stop in stops {

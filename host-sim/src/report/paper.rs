@@ -6,7 +6,7 @@ use nalgebra::{Point2, Vector2};
 use planner_core::belief::sample::{Label, Sample};
 use planner_core::geometry::line::Line;
 
-use crate::mission::definition::Mission;
+use crate::mission::definition::{Lines, Mission};
 use crate::mission::recording::Recording;
 use crate::mission::scenario::{self, Overrides, PAPER_NOISELESS, PAPER_NOISY};
 use crate::report::ground::Ground;
@@ -58,7 +58,7 @@ fn fly(text: &str, change: fn(Mission) -> Mission) -> Result<Recording> {
 /// A map of a mission with the ground of either label, as the true line divides it.
 fn divided(title: &str, note: &str, picture: &Picture) -> Result<(Map, Line)> {
     let truth = picture.truth.context("a mission without a line")?;
-    let mut map = Map::new(title, Some(note), picture.area, &[]);
+    let mut map = Map::new(title, Some(note), &picture.area, &[]);
     for label in [Label::Positive, Label::Negative] {
         let side = Polygon::from(picture.area).clip(&truth, f64::from(label.sign()));
         map.fill(Fill::Of(label), &[&side.0], &format!("ground whose label is {:+}", label.sign()));
@@ -131,9 +131,9 @@ fn bounded(title: &str, note: &str, recording: &Recording, four: &[Sample]) -> R
             positive.len()
         )
     };
-    let mut map = Map::new(title, Some(note), area, &[]);
+    let mut map = Map::new(title, Some(note), &area, &[]);
     let support: Vec<_> =
-        recording.belief.version_space().into_iter().flat_map(|it| it.support()).collect();
+        recording.belief.version_space().into_iter().flat_map(Lines::support).collect();
     map.ground(&Ground::certain(area, &support));
     for (name, from, to) in [("l13", p1, p3), ("l14", p1, p4), ("l23", p2, p3), ("l24", p2, p4)] {
         let way = to - from;
@@ -171,7 +171,7 @@ fn given_points() -> Result<String> {
 fn new_points() -> Result<String> {
     let recording = fly(&canonical(), |mission| Mission { steps: 7, ..mission })?;
     let support: Vec<_> =
-        recording.belief.version_space().into_iter().flat_map(|it| it.support()).collect();
+        recording.belief.version_space().into_iter().flat_map(Lines::support).collect();
     let note =
         "After 7 steps of Algorithm 1, four labels that it read tell all; p1 to p4 are named anew";
     bounded(&title(4, "more labels"), note, &recording, &support)

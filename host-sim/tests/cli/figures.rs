@@ -44,7 +44,7 @@ fn check(name: &str, svg: &str) -> usize {
     let size = numbers(attributes(svg, "viewBox").next().expect("a size"));
     let (wide, high) = (size[2], size[3]);
     let inside = |x: f64, y: f64| {
-        assert!((0.0..=wide).contains(&x) && (0.0..=high).contains(&y), "{name}: ({x}, {y})")
+        assert!((0.0..=wide).contains(&x) && (0.0..=high).contains(&y), "{name}: ({x}, {y})");
     };
     for part in [drawn, legend] {
         for path in attributes(part, "d") {
