@@ -60,5 +60,6 @@ pub(crate) fn figure(args: &FigureArgs) -> Result<String> {
         output.write(svg)?;
     }
     let written = places.iter().filter_map(|(_, path)| path.as_ref());
-    Ok(written.map(|path| format!("{}\n", path.display())).collect())
+    let written: Vec<_> = written.map(|path| path.display().to_string()).collect();
+    Ok(written.join("\n") + "\n")
 }

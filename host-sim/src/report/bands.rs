@@ -18,6 +18,9 @@ use crate::world::polygon::Polygon;
 /// Where bands begin: the least probability that lines pass a place of each. What is below the first is blank.
 pub const LEAST: [f64; 5] = [0.01, 0.2, 0.4, 0.6, 0.8];
 
+/// The share of the area from which on a band is worth its shade.
+const LEAST_SEEN: f64 = 1e-4;
+
 /// Columns between those at the samples.
 const COLUMNS: u32 = 240;
 
@@ -58,7 +61,7 @@ struct Growing {
 }
 
 /// The bands of a table's credible set in an area, each within the one before it.
-pub(crate) fn of(table: &Table, area: MissionArea) -> Vec<Band> {
+pub(crate) fn of(table: &Table, area: &MissionArea) -> Vec<Band> {
     let posterior = Posterior::new(table);
     let set = posterior.credible(LEVEL);
     let frame = Frame::between(set.slope_arc.from(), set.slope_arc.to());
@@ -69,7 +72,7 @@ pub(crate) fn of(table: &Table, area: MissionArea) -> Vec<Band> {
             probability: posterior.probability(h),
         })
         .collect();
-    let ground = Polygon::from(area);
+    let ground = Polygon::from(*area);
     let samples = table.samples().iter().map(|s| Point2::from(s.site));
     let columns = frame.columns(&ground, samples);
     let ends: Vec<_> = columns.iter().map(|&s| Ends::of(&hypotheses, s)).collect();
@@ -82,7 +85,11 @@ pub(crate) fn of(table: &Table, area: MissionArea) -> Vec<Band> {
         };
         Band { from, rings: rings.into_iter().filter_map(in_area).collect() }
     };
-    LEAST.map(band).into_iter().filter(|band| !band.rings.is_empty()).collect()
+    let is_seen = |band: &Band| {
+        let size: f64 = band.rings.iter().map(|ring| Polygon(ring.clone()).area()).sum();
+        size > LEAST_SEEN * ground.area()
+    };
+    LEAST.map(band).into_iter().filter(is_seen).collect()
 }
 
 impl Frame {
@@ -200,7 +207,7 @@ fn parts(left: &[(Interval, Growing)], right: &[Interval]) -> Vec<[Interval; 2]>
     let meet = |a: &Interval, b: &Interval| a[0] <= b[1] && b[0] <= a[1];
     let share = |of: Interval, beside: &[Interval], own: &Interval| {
         let partners: Vec<_> = beside.iter().filter(|it| meet(it, &of)).collect();
-        let k = partners.iter().position(|it| *it == own).unwrap_or_default();
+        let k = partners.iter().position(|it| std::ptr::eq(*it, own)).unwrap_or_default();
         let cut = |k: usize| f64::midpoint(partners[k - 1][1], partners[k][0]).clamp(of[0], of[1]);
         [
             if k == 0 { of[0] } else { cut(k) },
@@ -287,7 +294,7 @@ mod tests {
             let mission = scenario::parse("", scenario::PAPER_NOISY, overrides).unwrap();
             let recording = Recording::of(&mission).unwrap();
             let table = recording.belief.hypotheses().unwrap();
-            let bands = of(table, mission.config.area);
+            let bands = of(table, &mission.config.area);
             let posterior = Posterior::new(table);
             let set = posterior.credible(LEVEL);
             let mass = |at: Point2<f64>| -> f64 {

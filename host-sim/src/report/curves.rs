@@ -123,7 +123,7 @@ impl Curves {
 
 fn note(fields: u64) -> String {
     format!(
-        "{fields} standard fields; errors: the median, shaded up to the 90th percentile; bits: the mean"
+        "{fields} standard fields; errors: the median, shaded up to the 90th percentile (thin); bits: the mean"
     )
 }
 
@@ -152,7 +152,9 @@ impl Panel {
         if self.is_error {
             for (k, of) in self.of.iter().enumerate().filter(|(_, of)| of.len() > 1) {
                 let mut ring = spots(of, |it| it.median);
-                ring.extend(spots(of, |it| it.p90).into_iter().rev());
+                let edge = spots(of, |it| it.p90);
+                sheet.ways(Stroke { width: 0.7, ..CURVES[k % CURVES.len()] }, [&edge[..]]);
+                ring.extend(edge.into_iter().rev());
                 sheet.spread(k % CURVES.len(), &ring);
             }
         }

@@ -10,7 +10,7 @@ impl Picture {
     /// The picture as an SVG document.
     pub fn svg(&self) -> String {
         let stops = self.path.as_ref().map_or(&[][..], |(_, stops)| stops);
-        let mut map = Map::new(&self.title, self.note.as_deref(), self.area, &self.places());
+        let mut map = Map::new(&self.title, self.note.as_deref(), &self.area, &self.places());
         map.ground(&self.ground);
         map.limits();
         if let Some(truth) = self.truth {

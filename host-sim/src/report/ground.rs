@@ -23,7 +23,7 @@ impl Ground {
     /// What a belief knows of an area.
     pub fn of(belief: &dyn ReadOut, area: MissionArea) -> Self {
         if let Some(table) = belief.hypotheses() {
-            return Self::Credible(bands::of(table, area));
+            return Self::Credible(bands::of(table, &area));
         }
         let support = |lines: &Lines| lines.support().collect::<Vec<_>>();
         belief.version_space().map_or(Self::Plain, |lines| Self::certain(area, &support(lines)))

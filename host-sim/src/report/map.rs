@@ -34,7 +34,7 @@ impl Map {
     pub(crate) fn new(
         title: &str,
         note: Option<&str>,
-        area: MissionArea,
+        area: &MissionArea,
         more: &[Point2<f64>],
     ) -> Self {
         const SIZE: f64 = 620.0;
@@ -63,17 +63,17 @@ impl Map {
             sheet.words(note, Spot::new(16.0, 48.0), 13.0, Anchor::Start);
         }
         let placing = Placing::new(axes.frame());
-        let mut map = Self { area, axes, sheet, placing, words: Vec::new() };
-        let mut border = map.spots(&Polygon::from(area).0);
+        let mut map = Self { area: *area, axes, sheet, placing, words: Vec::new() };
+        let mut border = map.spots(&Polygon::from(*area).0);
         border.extend(border.first().copied());
         map.placing.way(&border);
         let is_all =
-            area.sides().next().is_none() && more.iter().all(|at| Polygon::from(area).holds(*at));
+            area.sides().next().is_none() && more.iter().all(|at| Polygon::from(*area).holds(*at));
         if !is_all {
             let ([left, right], [bottom, top]) = (map.axes.x.pixels, map.axes.z.pixels);
             let corners = [(left, bottom), (right, bottom), (right, top), (left, top)];
             let all: Vec<_> = corners.iter().map(|(x, z)| Spot::new(*x, *z)).collect();
-            map.sheet.ground(Fill::Outside, &[all, map.spots(&Polygon::from(area).0)]);
+            map.sheet.ground(Fill::Outside, &[all, map.spots(&Polygon::from(*area).0)]);
             map.sheet.name(Look::Ground(Fill::Outside), "outside the area");
         }
         map
@@ -111,8 +111,9 @@ impl Map {
             } else {
                 format!("{} and {last}", before.join(", "))
             };
-            let meaning =
-                format!("the line may pass, with probability of at least {list} % (white: less)");
+            let meaning = format!(
+                "the line passes here with a probability of at least {list} % (white: less)"
+            );
             self.sheet.name(Look::Shades(bands.len()), meaning);
         }
     }
@@ -178,6 +179,11 @@ impl Map {
         self.sheet.name(Look::Line(stroke), meaning);
     }
 
+    /// Gives a look another meaning than it has on other maps.
+    pub(crate) fn mean(&mut self, look: Look, meaning: String) {
+        self.sheet.name(look, meaning);
+    }
+
     /// A short name beside a place.
     pub(crate) fn name(&mut self, name: &str, at: Point2<f64>) {
         let at = self.axes.at(at);
@@ -209,7 +215,9 @@ impl Map {
             vec![at, at + Vector2::new(cos, -sin) * TICK]
         });
         let ticks: Vec<_> = ticks.collect();
-        ticks.iter().for_each(|tick| self.placing.way(tick));
+        for tick in &ticks {
+            self.placing.way(tick);
+        }
         self.sheet.ways(HEADING, ticks.iter().map(Vec::as_slice));
         self.sheet.name(Look::Line(HEADING), "heading after a step");
         for stop in stops {

@@ -19,7 +19,7 @@ const EVERY: usize = 5;
 pub(crate) fn draw(sheet: &mut Sheet, placing: &mut Placing, stops: &[Spot]) {
     let [least, near, most] = AWAY;
     let count = stops.len();
-    let is_kept = |k: usize| k == 1 || k == count || k % EVERY == 0;
+    let is_kept = |k: usize| k == 1 || k == count || k.is_multiple_of(EVERY);
     let kept = (1..=count).filter(|k| is_kept(*k));
     let others = (1..=count).filter(|k| !is_kept(*k));
     let mut left_out = 0;

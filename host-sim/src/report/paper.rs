@@ -6,12 +6,13 @@ use nalgebra::{Point2, Vector2};
 use planner_core::belief::sample::{Label, Sample};
 use planner_core::geometry::line::Line;
 
-use crate::mission::definition::Mission;
+use crate::mission::definition::{Lines, Mission};
 use crate::mission::recording::Recording;
 use crate::mission::scenario::{self, Overrides, PAPER_NOISELESS, PAPER_NOISY};
 use crate::report::ground::Ground;
 use crate::report::map::Map;
 use crate::report::picture::{Dot, Kind, Picture};
+use crate::report::sheet::Look;
 use crate::report::style::{self, Fill, Stroke, TRUTH};
 use crate::world::polygon::Polygon;
 
@@ -27,7 +28,6 @@ const WALK_SEED: u64 = 292;
 const BOUND: Stroke = style::of_line(Kind::Bound);
 const RAY: Stroke = Stroke { class: "ray", colour: "#5b2a86", width: 1.4, dashes: "7 3" };
 const ANGLE: Stroke = Stroke { class: "angle", colour: "#5b2a86", width: 1.1, dashes: "" };
-const AXIS: Stroke = Stroke { class: "reference", colour: "#5a5a5a", width: 0.9, dashes: "2 3" };
 
 /// One of the figures as an SVG document.
 ///
@@ -58,7 +58,7 @@ fn fly(text: &str, change: fn(Mission) -> Mission) -> Result<Recording> {
 /// A map of a mission with the ground of either label, as the true line divides it.
 fn divided(title: &str, note: &str, picture: &Picture) -> Result<(Map, Line)> {
     let truth = picture.truth.context("a mission without a line")?;
-    let mut map = Map::new(title, Some(note), picture.area, &[]);
+    let mut map = Map::new(title, Some(note), &picture.area, &[]);
     for label in [Label::Positive, Label::Negative] {
         let side = Polygon::from(picture.area).clip(&truth, f64::from(label.sign()));
         map.fill(Fill::Of(label), &[&side.0], &format!("ground whose label is {:+}", label.sign()));
@@ -82,7 +82,7 @@ fn finish(mut map: Map, picture: &Picture, truth: &Line) -> String {
 fn task() -> Result<String> {
     let six = PAPER_NOISELESS.replace("steps = 10", "steps = 6");
     let picture = Picture::of("", &fly(&six, Mission::by_lookahead)?);
-    let note = "Four labels are given. Starting at p1, a robot reads more of them to find the line between";
+    let note = "Four labels are given. A robot starts at p1 and reads more, to find the line that divides them";
     let (map, truth) = divided(&title(1, "the task"), note, &picture)?;
     Ok(finish(map, &picture, &truth))
 }
@@ -131,9 +131,9 @@ fn bounded(title: &str, note: &str, recording: &Recording, four: &[Sample]) -> R
             positive.len()
         )
     };
-    let mut map = Map::new(title, Some(note), area, &[]);
+    let mut map = Map::new(title, Some(note), &area, &[]);
     let support: Vec<_> =
-        recording.belief.version_space().into_iter().flat_map(|it| it.support()).collect();
+        recording.belief.version_space().into_iter().flat_map(Lines::support).collect();
     map.ground(&Ground::certain(area, &support));
     for (name, from, to) in [("l13", p1, p3), ("l14", p1, p4), ("l23", p2, p3), ("l24", p2, p4)] {
         let way = to - from;
@@ -146,6 +146,9 @@ fn bounded(title: &str, note: &str, recording: &Recording, four: &[Sample]) -> R
         );
     }
     map.line(truth, TRUTH, "true line", None);
+    for label in [Label::Negative, Label::Positive] {
+        map.mean(Look::Given(label), format!("one of the four points, label {:+}", label.sign()));
+    }
     let dots = [
         (p1, Label::Negative),
         (p2, Label::Positive),
@@ -158,7 +161,7 @@ fn bounded(title: &str, note: &str, recording: &Recording, four: &[Sample]) -> R
 
 /// Figure 3, "Region of certainty from the four given points".
 fn given_points() -> Result<String> {
-    let recording = fly(&canonical().replace("steps = 10", "steps = 0"), |mission| mission)?;
+    let recording = fly(&canonical(), |mission| Mission { steps: 0, ..mission })?;
     let given = recording.mission.given.samples().to_vec();
     let note = "Every line that separates the four points labels the hatched ground alike";
     bounded(&title(3, "what four labels tell"), note, &recording, &given)
@@ -166,11 +169,11 @@ fn given_points() -> Result<String> {
 
 /// Figure 4, "Region of certainty from new four points obtained by Agent".
 fn new_points() -> Result<String> {
-    let recording = fly(&canonical(), |mission| mission)?;
+    let recording = fly(&canonical(), |mission| Mission { steps: 7, ..mission })?;
     let support: Vec<_> =
-        recording.belief.version_space().into_iter().flat_map(|it| it.support()).collect();
+        recording.belief.version_space().into_iter().flat_map(Lines::support).collect();
     let note =
-        "After 10 steps of Algorithm 1 the four labels that matter are those of p1 to p4 here";
+        "After 7 steps of Algorithm 1, four labels that it read tell all; p1 to p4 are named anew";
     bounded(&title(4, "more labels"), note, &recording, &support)
 }
 
@@ -202,16 +205,10 @@ fn polar() -> Result<String> {
     let pairs = of(Label::Negative).flat_map(|p| of(Label::Positive).map(move |q| (p, q)));
     let apart = |(p, q): &(Point2<f64>, Point2<f64>)| (q - p).norm();
     let (p, q) = pairs.min_by(|a, b| apart(a).total_cmp(&apart(b))).context("both labels")?;
-    let origin = Point2::new(0.0, truth.intercept().context("not vertical")?);
-    let reach = 6.0;
-    map.stretch(
-        &[origin, origin + Vector2::new(reach + 1.0, 0.0)],
-        AXIS,
-        "from here angles are measured",
-    );
+    let (origin, reach) = (Point2::origin(), 6.0);
     for (k, at) in [(1, p), (2, q)] {
         let way = at - origin;
-        map.stretch(&[origin, at], RAY, "distances r1 and r2 from where the line meets x = 0");
+        map.stretch(&[origin, at], RAY, "distances r1 and r2 of the closest two from the origin");
         let angle = libm::atan2(way.y, way.x);
         let radius = reach - 2.2 * f64::from(k - 1);
         let on = |part: u32| {
@@ -219,7 +216,7 @@ fn polar() -> Result<String> {
             origin + Vector2::new(cos, sin) * radius
         };
         let arc: Vec<_> = (0..=24).map(on).collect();
-        map.stretch(&arc, ANGLE, "angles θ1 and θ2");
+        map.stretch(&arc, ANGLE, "their angles θ1 and θ2");
         map.name(&format!("θ{k}"), arc[8]);
         map.name(&format!("r{k}"), origin + way * 0.75);
         map.name(&format!("p{k},ε"), at);

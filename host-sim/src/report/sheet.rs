@@ -140,8 +140,7 @@ impl Look {
                 let group = group.set("fill", style::of_label(label));
                 group.set("stroke", "#000000").set("stroke-width", 1.8)
             }
-            Self::Wrong => outlined(group, 1.4),
-            Self::Start => outlined(group, 1.4),
+            Self::Wrong | Self::Start => outlined(group, 1.4),
             Self::Truly => outlined(group, 1.1),
             Self::Unread => outlined(group, 1.2).set("fill", "#ffffff"),
             Self::Number => group.set("fill", INK),

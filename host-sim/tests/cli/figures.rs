@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-use crate::{GOOD, folder, prints, refuses, text};
+use crate::{GOOD, folder, prints, refuses};
 
 const NOISY: &str = include_str!("../../scenarios/paper-noisy.toml");
 const CAR: &str = include_str!("../../scenarios/car-among-keep-outs.toml");
@@ -44,7 +44,7 @@ fn check(name: &str, svg: &str) -> usize {
     let size = numbers(attributes(svg, "viewBox").next().expect("a size"));
     let (wide, high) = (size[2], size[3]);
     let inside = |x: f64, y: f64| {
-        assert!((0.0..=wide).contains(&x) && (0.0..=high).contains(&y), "{name}: ({x}, {y})")
+        assert!((0.0..=wide).contains(&x) && (0.0..=high).contains(&y), "{name}: ({x}, {y})");
     };
     for part in [drawn, legend] {
         for path in attributes(part, "d") {
@@ -82,7 +82,7 @@ fn all_that_is_drawn_is_named_and_the_reverse() {
     let path = |name: &str| folder.path().join(name);
     for (name, scenario, steps, planner) in [
         ("few", GOOD, "3", "cfc"),
-        ("none", GOOD, "0", "cfc"),
+        ("one", GOOD, "1", "cfc"),
         ("many", GOOD, "60", "lookahead"),
         ("walk", GOOD, "64", "random"),
         ("noisy", NOISY, "10", "scc"),
@@ -92,11 +92,7 @@ fn all_that_is_drawn_is_named_and_the_reverse() {
         let scenario = scenario.replace("varrho = 0.1\n", "");
         fs::write(path("m.toml"), scenario).expect("a file");
         let args = ["run", "m.toml", "--steps", steps, "--algorithm", planner, "--figure", "f.svg"];
-        let output = crate::host_sim(folder.path(), &args);
-        if steps == "0" && !output.status.success() {
-            continue; // a mission has a step at least
-        }
-        assert!(output.status.success(), "{name}: {}", text(&output.stderr));
+        prints(folder.path(), &args);
         let svg = fs::read_to_string(path("f.svg")).expect("a figure");
         let shown = check(name, &svg);
         assert!(shown >= steps.parse::<usize>().expect("a number") / 5, "{name}: {shown} numbers");
