@@ -78,19 +78,19 @@ pub(crate) fn hil(args: &HilArgs) -> Result<String> {
     // The emulator writes its log as it goes; it comes to its place when it is whole.
     let log = log.map(|log| Ok::<_, anyhow::Error>((log, temporary(&env::temp_dir())?)));
     let log = log.transpose().context("expected a place for temporary files")?;
+    let labels = match args.labels {
+        Labels::Vehicle => LabelSource::Vehicle,
+        Labels::Chip => LabelSource::Chip,
+    };
+    let mut player =
+        Player::new(&mission, labels, flight::start_number()).with_context(|| args.run.name())?;
     let chip = if let Some(device) = &args.port {
         Chip::Board { device: device.clone(), baud: args.baud.unwrap_or(BAUD) }
     } else {
         let elf = if elf == Path::new(FIRMWARE) { firmware::built()? } else { elf };
         Chip::Emulated { elf, log: log.as_ref().map(|(_, said)| said.path().to_owned()) }
     };
-    let labels = match args.labels {
-        Labels::Vehicle => LabelSource::Vehicle,
-        Labels::Chip => LabelSource::Chip,
-    };
     let faults = args.fault.unwrap_or_default();
-    let mut player =
-        Player::new(&mission, labels, flight::start_number()).with_context(|| args.run.name())?;
     let flown = flight::fly(&mut player, &chip, faults, mission.seed);
     if let Some((log, said)) = log {
         let said = fs::read(said.path())?;
