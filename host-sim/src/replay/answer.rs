@@ -8,7 +8,6 @@ use planner_core::geometry::area::Area;
 use planner_core::geometry::line::Line;
 
 use crate::mission::read_out::LEVEL;
-use crate::mission::results::CredibleRecord;
 use crate::replay::doubt::{Doubt, Votes};
 use crate::replay::hull::in_order;
 use crate::replay::line_posterior::{Cell, LinePosterior, TooOpen};
@@ -56,7 +55,8 @@ pub(crate) struct Doubted {
     pub(crate) p: f64,
     /// The share of all lines that was left out, at most.
     pub(crate) pruned_mass: f64,
-    pub(crate) credible: CredibleRecord,
+    /// What the credible set holds.
+    pub(crate) probability: f64,
     pub(crate) most_likely: Line,
     /// The samples that disagree with it, wherever within the tolerance they are.
     pub(crate) disagreeing: Vec<usize>,
@@ -207,15 +207,6 @@ fn doubted(file: &SampleFile, p: f64, tolerance: Option<f64>) -> Result<Answer> 
         f64::from(sample.label.sign()) * most_likely.distance(sample.site.into()) < -off
     };
     let disagreeing = (0..samples.len()).filter(|index| disagrees(&samples[*index])).collect();
-    let credible = CredibleRecord {
-        level: LEVEL,
-        slope_arcs: slope_arcs.clone(),
-        intercept,
-        probability: held,
-        cells: count,
-        hypotheses: posterior.cells.len(),
-        holds: None,
-    };
     Ok(Answer {
         bounding: Vec::new(),
         slope_arcs,
@@ -227,7 +218,7 @@ fn doubted(file: &SampleFile, p: f64, tolerance: Option<f64>) -> Result<Answer> 
         doubt: Some(Doubted {
             p,
             pruned_mass: posterior.pruned_mass,
-            credible,
+            probability: held,
             most_likely,
             disagreeing,
         }),

@@ -154,6 +154,11 @@ impl Columns {
         let header = || titles.join(",");
         let Some((_, title)) = self.named.iter().find(|(named, _)| *named == role) else {
             let place = titles.iter().position(|title| role.is_usual(title));
+            if let ([one], None) = (titles, place)
+                && !one.is_empty()
+            {
+                bail!("found the one column {one:?}, expected {expected}");
+            }
             let place = place
                 .ok_or_else(|| anyhow!("found the header {:?}, expected {expected}", header()))?;
             if let Some(again) = titles[place + 1..].iter().find(|title| role.is_usual(title)) {

@@ -21,10 +21,13 @@ pub(crate) struct Doubt {
 struct Blur {
     /// Standard deviation, metres.
     sigma: f64,
-    /// What the first and the second derivative of the logarithm by the distance are at most.
-    steepest: f64,
-    sharpest: f64,
+    /// By bins of the distance in deviations, about 0: what the first and the second derivative of the logarithm by the
+    /// distance in metres are at most there, whichever the label.
+    bounds: [[f64; 2]; BINS],
 }
+
+/// Bins of half a deviation, as far as a position is on no side for certain.
+const BINS: usize = 28;
 
 /// The labels recorded at one position.
 #[derive(Clone, Copy, Debug)]
@@ -46,8 +49,8 @@ pub(crate) struct Told {
     pub(crate) slope: f64,
 }
 
-/// Beyond so many deviations a position is on its side for certain: the rest is below rounding.
-const FAR: f64 = 8.5;
+/// Beyond so many deviations a position is on its side for certain.
+const FAR: f64 = BINS as f64 / 4.0;
 
 fn normal_integral(t: f64) -> f64 {
     0.5 * libm::erfc(-t * std::f64::consts::FRAC_1_SQRT_2)
@@ -63,19 +66,24 @@ impl Doubt {
     /// three deviations.
     pub(crate) fn new(p: f64, tolerance: Option<f64>) -> Self {
         let mut doubt = Self { p, blur: None };
-        if let Some(tolerance) = tolerance {
-            let sigma = tolerance / 3.0;
-            doubt.blur = Some(Blur { sigma, steepest: 0.0, sharpest: 0.0 });
-            const STEPS: i32 = 4_000;
-            let step = 2.0 * FAR / f64::from(STEPS);
-            let slope = |k: i32| doubt.label(sigma * (f64::from(k) * step - FAR)).slope;
-            let steepest = (0..=STEPS).map(slope).fold(0.0, f64::max);
-            let bend = |k: i32| (slope(k + 1) - slope(k)).abs() / (step * sigma);
-            let sharpest = (0..STEPS).map(bend).fold(0.0, f64::max);
-            // The maxima lie between the steps, by less than this.
-            let up = 1.01;
-            doubt.blur = Some(Blur { sigma, steepest: up * steepest, sharpest: up * sharpest });
+        let Some(tolerance) = tolerance else { return doubt };
+        let sigma = tolerance / 3.0;
+        let mut blur = Blur { sigma, bounds: [[0.0; 2]; BINS] };
+        doubt.blur = Some(blur);
+        const STEPS: usize = 100;
+        let step = 0.5 / STEPS as f64;
+        let slope = |k: usize| doubt.label(sigma * (k as f64 * step - FAR)).slope;
+        for k in 0..BINS * STEPS {
+            let (here, next) = (slope(k), slope(k + 1));
+            // The maxima lie between the steps, by less than a hundredth above.
+            let found = [1.01 * here.max(next), 1.01 * (next - here).abs() / (step * sigma)];
+            // Of the other label it is the mirror image.
+            for bin in [k / STEPS, BINS - 1 - k / STEPS] {
+                let [steepest, sharpest] = &mut blur.bounds[bin];
+                (*steepest, *sharpest) = (steepest.max(found[0]), sharpest.max(found[1]));
+            }
         }
+        doubt.blur = Some(blur);
         doubt
     }
 
@@ -89,9 +97,13 @@ impl Doubt {
         self.blur.map_or(0.0, |blur| FAR * blur.sigma)
     }
 
-    /// Bounds of the first and the second derivative by the distance, for a label.
-    pub(crate) fn bounds(self) -> [f64; 2] {
-        self.blur.map_or([0.0; 2], |blur| [blur.steepest, blur.sharpest])
+    /// Bounds of the first and the second derivative by the distance, for a label of lines so far from it, or nearer or
+    /// further by no more than `spread`, metres.
+    pub(crate) fn bounds(self, distance: f64, spread: f64) -> [f64; 2] {
+        let Some(Blur { sigma, bounds }) = self.blur else { return [0.0; 2] };
+        let bin = |at: f64| ((at / sigma + FAR) * 2.0).clamp(0.0, BINS as f64 - 1.0) as usize;
+        let within = &bounds[bin(distance - spread)..=bin(distance + spread)];
+        within.iter().fold([0.0; 2], |[a, b]: [f64; 2], it| [a.max(it[0]), b.max(it[1])])
     }
 
     /// A label +1 of a line that has its position so many metres on its +1 side.

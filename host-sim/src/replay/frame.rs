@@ -93,7 +93,8 @@ impl Frame {
                 let azimuth = libm::atan2(at.x, at.y).to_degrees();
                 let (lat, lon): (f64, f64) =
                     ellipsoid.direct(lat, lon, azimuth, libm::hypot(at.x, at.y));
-                [lat, lon]
+                // To a tenth of a millimetre.
+                [lat, lon].map(|degrees| (degrees * 1e9).round() / 1e9)
             }
         }
     }

@@ -28,7 +28,7 @@ impl Replay {
             if polygon.0.len() >= 3 {
                 let ring = polygon.0.iter().chain(polygon.0.first()).map(|at| self.degrees(*at));
                 let ring: Vec<_> = ring.collect();
-                let level = self.answer.doubt.as_ref().map(|doubt| doubt.credible.probability);
+                let level = self.answer.doubt.as_ref().map(|doubt| doubt.probability);
                 features.push(feature(
                     "Polygon",
                     json!([ring]),
@@ -69,8 +69,7 @@ impl Replay {
     /// Longitude and latitude.
     fn degrees(&self, at: Point2<f64>) -> [f64; 2] {
         let [lat, lon] = self.file.frame.recorded(at);
-        // To a tenth of a millimetre.
-        [lon, lat].map(|it| (it * 1e9).round() / 1e9)
+        [lon, lat]
     }
 
     fn crosses_meridian(&self, corners: [Point2<f64>; 4]) -> bool {

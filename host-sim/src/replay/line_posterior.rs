@@ -4,7 +4,7 @@
 //! sides is +1. The plane of lines is halved again and again, best first: of a box the labels of most positions are
 //! settled, as all its lines have them on one side, and what the others could come to bounds its weight from above.
 //! A box that few positions cut is cut along them, exactly; where positions err, a box is done when what is left
-//! out of account over it is little. It ends when all boxes that are left weigh a millionth together, which is told. So the
+//! out of account over it is little. It ends when all boxes that are left weigh some millionths together, which is told. So the
 //! work depends on how much the labels leave open, and hardly on how many there are.
 
 use std::cmp::Ordering;
@@ -78,13 +78,13 @@ const FEW: usize = 8;
 const NARROW: f64 = 1.0 / 16.0;
 
 /// What may be left out of account over a box that is done, of the logarithm.
-const LITTLE: f64 = 0.01;
+const LITTLE: f64 = 0.1;
 
 /// Boxes narrower than this are done, whatever cuts them: positions are no finer.
 const FINEST: f64 = 1e-12;
 
 /// The logarithm of the share at which the rest is left out.
-const REST: f64 = -14.0;
+const REST: f64 = -12.0;
 
 /// Lines of one quarter: a rectangle of slopes and offsets.
 #[derive(Debug)]
@@ -273,7 +273,6 @@ impl Problem<'_> {
         self.work += BLURRED_WORK * line_box.open.len() as u64;
         let ([slope, offset], half) = (line_box.middle, line_box.half);
         let length = libm::hypot(1.0, slope);
-        let [steepest, sharpest] = self.doubt.bounds();
         let mut blurred = Blurred { log: 0.0, change: [0.0; 2], beyond: 0.0 };
         for votes in line_box.open.iter().map(|index| &self.votes[*index as usize]) {
             if votes.count() == 0.0 {
@@ -289,6 +288,7 @@ impl Problem<'_> {
             blurred.change[0] += told.slope * by_slope;
             blurred.change[1] += told.slope * by_offset;
             let far = (ahead.abs() + height.abs()) * half[0] + half[1];
+            let [steepest, sharpest] = self.doubt.bounds(height / length, far);
             let bent = (2.0 * ahead.abs() + 3.0 * (height.abs() + far)) * half[0] * half[0]
                 + 2.0 * half[0] * half[1];
             blurred.beyond += votes.count() * 0.5 * (sharpest * far * far + steepest * bent);

@@ -9,7 +9,8 @@ use planner_core::belief::sample::Sample;
 use planner_core::geometry::line::Line;
 use serde::Serialize;
 
-use crate::mission::results::{CredibleRecord, EstimateRecords, LineRecord};
+use crate::mission::read_out::LEVEL;
+use crate::mission::results::{EstimateRecords, LineRecord};
 use crate::replay::answer::{Answer, Doubted, Trust};
 use crate::replay::sample_file::{Layout, SampleFile};
 use crate::report::picture::{Dot, Ground, Kind, Named, Picture, area_around};
@@ -74,6 +75,16 @@ struct DoubtRecord {
     pruned_mass: f64,
     credible: CredibleRecord,
     most_likely: MostLikelyRecord,
+}
+
+/// The smallest set of lines that holds a probability; lines that are equally likely are in it together.
+#[derive(Serialize)]
+struct CredibleRecord {
+    level: f64,
+    slope_arcs: Vec<[f64; 2]>,
+    intercept: Option<[f64; 2]>,
+    /// What it holds.
+    probability: f64,
 }
 
 /// The most likely line.
@@ -178,11 +189,10 @@ impl Replay {
     }
 
     fn doubt_in_words(&self, doubt: &Doubted) -> String {
-        let Doubted { pruned_mass, credible, disagreeing, .. } = doubt;
+        let Doubted { pruned_mass, probability, disagreeing, .. } = doubt;
         let mut text = format!(
-            "\nOf all lines through the ground around the samples the 90 % set holds probability {:.3};\n\
-             left out of account: {pruned_mass:.0e} at most.\n",
-            credible.probability
+            "\nOf all lines through the ground around the samples the 90 % set holds {probability:.3};\n\
+             what was left out of account weighs {pruned_mass:.6} at most.\n",
         );
         let count = disagreeing.len();
         let lines: Vec<_> = disagreeing
@@ -252,7 +262,12 @@ impl Replay {
             doubt: doubt.as_ref().map(|doubt| DoubtRecord {
                 p: doubt.p,
                 pruned_mass: doubt.pruned_mass,
-                credible: doubt.credible.clone(),
+                credible: CredibleRecord {
+                    level: LEVEL,
+                    slope_arcs: slope_arcs.clone(),
+                    intercept: *intercept,
+                    probability: doubt.probability,
+                },
                 most_likely: MostLikelyRecord {
                     line: doubt.most_likely.into(),
                     disagreeing: lines_of_file(&doubt.disagreeing),
