@@ -152,7 +152,7 @@ fn doubted(file: &SampleFile, p: f64, tolerance: Option<f64>) -> Result<Answer> 
     let votes = Votes::of(samples, &file.certain, middle).map_err(|index| {
         anyhow!("{}: found a certain label, and another at the same place", file.place(index))
     })?;
-    let posterior = LinePosterior::of(&votes, Doubt::new(p, tolerance), (max - min) / 2.0)
+    let posterior = LinePosterior::of(&votes, &Doubt::new(p, tolerance), (max - min) / 2.0)
         .map_err(|why| match why {
             TooOpen::Cells(_) | TooOpen::Work(_) => {
                 anyhow!(

@@ -9,7 +9,7 @@ use nalgebra::Point2;
 use planner_core::belief::sample::{Label, Sample};
 
 /// How far labels and positions can be believed.
-#[derive(Clone, Copy, Debug)]
+#[derive(Debug)]
 pub(crate) struct Doubt {
     /// The probability that a label is true, above 1/2 and below 1.
     p: f64,
@@ -28,6 +28,9 @@ struct Blur {
 
 /// Bins of half a deviation, as far as a position is on no side for certain.
 const BINS: usize = 28;
+
+/// Places in each at which the bounds are found.
+const STEPS: usize = 100;
 
 /// The labels recorded at one position.
 #[derive(Clone, Copy, Debug)]
@@ -70,7 +73,6 @@ impl Doubt {
         let sigma = tolerance / 3.0;
         let mut blur = Blur { sigma, bounds: [[0.0; 2]; BINS] };
         doubt.blur = Some(blur);
-        const STEPS: usize = 100;
         let step = 0.5 / STEPS as f64;
         let slope = |k: usize| doubt.label(sigma * (k as f64 * step - FAR)).slope;
         for k in 0..BINS * STEPS {
@@ -88,18 +90,18 @@ impl Doubt {
     }
 
     /// What a wrong label takes: the logarithm of the odds.
-    fn odds(self) -> f64 {
+    fn odds(&self) -> f64 {
         libm::log(self.p) - libm::log1p(-self.p)
     }
 
     /// How far from a line positions tell no side for certain; 0 where they are true.
-    pub(crate) fn blurred_within(self) -> f64 {
+    pub(crate) fn blurred_within(&self) -> f64 {
         self.blur.map_or(0.0, |blur| FAR * blur.sigma)
     }
 
     /// Bounds of the first and the second derivative by the distance, for a label of lines so far from it, or nearer or
     /// further by no more than `spread`, metres.
-    pub(crate) fn bounds(self, distance: f64, spread: f64) -> [f64; 2] {
+    pub(crate) fn bounds(&self, distance: f64, spread: f64) -> [f64; 2] {
         let Some(Blur { sigma, bounds }) = self.blur else { return [0.0; 2] };
         let bin = |at: f64| ((at / sigma + FAR) * 2.0).clamp(0.0, BINS as f64 - 1.0) as usize;
         let within = &bounds[bin(distance - spread)..=bin(distance + spread)];
@@ -107,7 +109,7 @@ impl Doubt {
     }
 
     /// A label +1 of a line that has its position so many metres on its +1 side.
-    fn label(self, distance: f64) -> Told {
+    fn label(&self, distance: f64) -> Told {
         let Some(Blur { sigma, .. }) = self.blur else {
             let log = if distance >= 0.0 { 0.0 } else { -self.odds() };
             return Told { log, slope: 0.0 };
@@ -119,7 +121,7 @@ impl Doubt {
     }
 
     /// All labels of a position near a line, so many metres on its +1 side.
-    pub(crate) fn near(self, votes: &Votes, distance: f64) -> Told {
+    pub(crate) fn near(&self, votes: &Votes, distance: f64) -> Told {
         let (plus, minus) = (self.label(distance), self.label(-distance));
         let [positive, negative] = [votes.positive, votes.negative].map(f64::from);
         Told {
@@ -129,7 +131,7 @@ impl Doubt {
     }
 
     /// All labels of a position that is on a side of a line for certain.
-    pub(crate) fn on(self, votes: &Votes, side: Label) -> f64 {
+    pub(crate) fn on(&self, votes: &Votes, side: Label) -> f64 {
         if votes.certain.is_some_and(|certain| certain != side) {
             return f64::NEG_INFINITY;
         }

@@ -19,14 +19,14 @@ const REACH: f64 = LIMIT as f64 / UNITS_PER_METRE as f64;
 const FEWEST: usize = 3;
 
 /// What recorded positions are on the lattice.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) enum Frame {
     /// Metres, as they are.
     Plain,
     /// Metres about an origin.
     About([f64; 2]),
     /// Latitude and longitude, degrees, about an origin.
-    Geographic { ellipsoid: Geodesic, origin: [f64; 2] },
+    Geographic { ellipsoid: Box<Geodesic>, origin: [f64; 2] },
 }
 
 impl Frame {
@@ -39,7 +39,7 @@ impl Frame {
         if is_geographic {
             let origin = origin.unwrap_or_else(|| geographic_middle(positions));
             check(origin).map_err(|error| anyhow!("the origin: {error}"))?;
-            return Ok(Self::Geographic { ellipsoid: Geodesic::wgs84(), origin });
+            return Ok(Self::Geographic { ellipsoid: Box::new(Geodesic::wgs84()), origin });
         }
         let is_near = |at: &[f64; 2]| Site::try_from(Point2::from(*at)).is_ok();
         Ok(match origin {
@@ -53,12 +53,13 @@ impl Frame {
 
     /// The site of a recorded position.
     pub(crate) fn site(&self, [x, z]: [f64; 2]) -> Result<Site> {
-        let at = match *self {
+        let at = match self {
             Self::Plain => [x, z],
             Self::About([x0, z0]) => [x - x0, z - z0],
-            Self::Geographic { ref ellipsoid, origin: [lat, lon] } => {
+            Self::Geographic { ellipsoid, origin: [lat, lon] } => {
                 check([x, z])?;
-                let (metres, azimuth, ..): (f64, f64, f64, f64) = ellipsoid.inverse(lat, lon, x, z);
+                let (metres, azimuth, ..): (f64, f64, f64, f64) =
+                    ellipsoid.inverse(*lat, *lon, x, z);
                 let (sin, cos) = libm::sincos(azimuth.to_radians());
                 [metres * sin, metres * cos]
             }
@@ -74,9 +75,9 @@ impl Frame {
 
     /// The origin, where there is one: of metres, or latitude and longitude.
     pub(crate) const fn origin(&self) -> Option<[f64; 2]> {
-        match *self {
+        match self {
             Self::Plain => None,
-            Self::About(origin) | Self::Geographic { origin, .. } => Some(origin),
+            Self::About(origin) | Self::Geographic { origin, .. } => Some(*origin),
         }
     }
 
@@ -86,13 +87,13 @@ impl Frame {
 
     /// A position as it would have been recorded: `x` and `z`, or latitude and longitude.
     pub(crate) fn recorded(&self, at: Point2<f64>) -> [f64; 2] {
-        match *self {
+        match self {
             Self::Plain => at.into(),
             Self::About([x, z]) => [at.x + x, at.y + z],
-            Self::Geographic { ref ellipsoid, origin: [lat, lon] } => {
+            Self::Geographic { ellipsoid, origin: [lat, lon] } => {
                 let azimuth = libm::atan2(at.x, at.y).to_degrees();
                 let (lat, lon): (f64, f64) =
-                    ellipsoid.direct(lat, lon, azimuth, libm::hypot(at.x, at.y));
+                    ellipsoid.direct(*lat, *lon, azimuth, libm::hypot(at.x, at.y));
                 // To a tenth of a millimetre.
                 [lat, lon].map(|degrees| (degrees * 1e9).round() / 1e9)
             }
@@ -101,7 +102,7 @@ impl Frame {
 
     /// A line in the file's metres; `None` where the file has none.
     pub(crate) fn line(&self, [a, b, c]: [f64; 3]) -> Option<Line> {
-        match *self {
+        match self {
             Self::Plain => Line::from_coefficients(a, b, c),
             Self::About([x, z]) => Line::from_coefficients(a, b, c - a * x - b * z),
             Self::Geographic { .. } => None,

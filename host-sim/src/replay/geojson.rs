@@ -1,7 +1,8 @@
-//! The answer for a map: GeoJSON (RFC 7946), whose coordinates are longitude and latitude in degrees, WGS84.
+//! The answer for a map: `GeoJSON` (RFC 7946), whose coordinates are longitude and latitude in degrees, WGS84.
 
 use anyhow::{Context as _, Result, bail};
 use nalgebra::Point2;
+use planner_core::geometry::area::Area;
 use planner_core::geometry::line::Line;
 use serde_json::{Value, json};
 
@@ -31,15 +32,15 @@ impl Replay {
                 let level = self.answer.doubt.as_ref().map(|doubt| doubt.probability);
                 features.push(feature(
                     "Polygon",
-                    json!([ring]),
-                    json!({ "kind": "ground", "label": label, "probability": level.unwrap_or(1.0) }),
+                    &json!([ring]),
+                    &json!({ "kind": "ground", "label": label, "probability": level.unwrap_or(1.0) }),
                 ));
             }
         }
         let mut line = |kind: &str, line: Option<Line>| {
             if let Some(ends) = line.and_then(|line| self.ends(&line)) {
                 let ends = ends.map(|at| self.degrees(at));
-                features.push(feature("LineString", json!(ends), json!({ "kind": kind })));
+                features.push(feature("LineString", &json!(ends), &json!({ "kind": kind })));
             }
         };
         line("centre", self.answer.centre);
@@ -56,7 +57,7 @@ impl Replay {
             if let Some(disagrees) = disagrees {
                 told["disagrees"] = disagrees.into();
             }
-            features.push(feature("Point", json!(self.degrees(sample.site.into())), told));
+            features.push(feature("Point", &json!(self.degrees(sample.site.into())), &told));
         }
         if self.crosses_meridian(area_corners(area)) {
             bail!(
@@ -78,12 +79,12 @@ impl Replay {
     }
 }
 
-fn area_corners(area: planner_core::geometry::area::Area) -> [Point2<f64>; 4] {
+fn area_corners(area: Area) -> [Point2<f64>; 4] {
     let (a, b) = (Point2::<f64>::from(area.min()), Point2::<f64>::from(area.max()));
     [a, Point2::new(b.x, a.y), b, Point2::new(a.x, b.y)]
 }
 
-fn feature(kind: &str, coordinates: Value, properties: Value) -> Value {
+fn feature(kind: &str, coordinates: &Value, properties: &Value) -> Value {
     json!({
         "type": "Feature",
         "geometry": { "type": kind, "coordinates": coordinates },

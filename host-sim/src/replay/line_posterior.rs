@@ -138,7 +138,7 @@ fn log_sum(a: f64, b: f64) -> f64 {
 /// What lines are weighed by.
 struct Problem<'a> {
     votes: &'a [Votes],
-    doubt: Doubt,
+    doubt: &'a Doubt,
     /// The corners of the ground, which every line crosses.
     ground: [Point2<f64>; 4],
     /// The furthest of them along an axis.
@@ -148,7 +148,7 @@ struct Problem<'a> {
 
 impl LinePosterior {
     /// The distribution over the lines that cross a rectangle about the origin, which reaches so far along the axes.
-    pub(crate) fn of(votes: &[Votes], doubt: Doubt, reach: Vector2<f64>) -> Result<Self, TooOpen> {
+    pub(crate) fn of(votes: &[Votes], doubt: &Doubt, reach: Vector2<f64>) -> Result<Self, TooOpen> {
         let corner = |x: f64, z: f64| Point2::new(x * reach.x, z * reach.y);
         let ground = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
         let extent = reach.amax();

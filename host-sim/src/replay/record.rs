@@ -200,7 +200,7 @@ impl Replay {
             .take(MOST_NAMED)
             .map(|index| self.file.line(*index).to_string())
             .collect();
-        let more = if count > lines.len() { ", ..." } else { "" };
+        let more = if count > lines.len() { " and others" } else { "" };
         let where_they_are =
             if count == 0 { String::new() } else { format!(": lines {}{more}", lines.join(", ")) };
         let _ = writeln!(

@@ -215,7 +215,7 @@ fn stretches(facing: &Facing, tolerance: f64) -> Vec<Stretch> {
     let count = corners.len();
     // Exact, or what is straight would turn all the way round.
     let edge = |k: usize| {
-        let [from, to] = [corners[k % count], corners[(k + 1) % count]].map(|it| it.apart());
+        let [from, to] = [corners[k % count], corners[(k + 1) % count]].map(Pair::apart);
         [i128::from(to.x()) - i128::from(from.x()), i128::from(to.z()) - i128::from(from.z())]
     };
     let mut all = Vec::new();
