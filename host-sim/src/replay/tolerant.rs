@@ -8,7 +8,7 @@
 //! ```
 //!
 //! Between which two samples that is stays the same over a stretch of directions: the two are a corner of the polygon
-//! of differences ([`Facing`]), and the stretch lies between the normals of the corner's edges. Unlike what a planner
+//! of differences (`Facing`), and the stretch lies between the normals of the corner's edges. Unlike what a planner
 //! does on its way, this does not depend on the order of the rows, and cuts off no more than it must.
 
 use std::f64::consts::{PI, TAU};
