@@ -1,35 +1,85 @@
 //! `replay`: what samples determine that were recorded elsewhere.
 
 use std::path::PathBuf;
+use std::str::FromStr;
 
-use anyhow::Result;
+use anyhow::{Context as _, Result, bail};
 use clap::Args;
+use planner_core::belief::tolerance::Tolerance;
 
 use crate::cli::arguments::Format;
 use crate::cli::help;
 use crate::output::file::{json, prepare};
+use crate::replay::answer::Trust;
+use crate::replay::columns::Columns;
+use crate::replay::delimiter::Delimiter;
 use crate::replay::record::Replay;
+use crate::replay::sample_file::Layout;
 
 #[derive(Debug, Args)]
 #[command(after_help = help::REPLAY)]
 pub(crate) struct ReplayArgs {
-    /// The samples, a CSV file with the columns x, z (metres) and label (-1 or 1)
+    /// The samples: a CSV file with the columns x, z (metres) or lat, lon (degrees) and label, or a trace of ours
     pub(crate) samples: PathBuf,
+    /// Its columns by title or number, as x=easting,z=northing,label=wet or lat=3,lon=4,label=7
+    #[arg(long, value_name = "LIST", value_parser = Columns::from_str)]
+    pub(crate) columns: Option<Columns>,
+    /// What is between them, if it is not clear: comma, semicolon, tab, pipe, space
+    #[arg(long, value_name = "NAME", value_parser = Delimiter::from_str)]
+    pub(crate) delimiter: Option<Delimiter>,
+    /// Take positions about this place, in the file's own coordinates; the middle of the data where they are far away
+    #[arg(long, value_name = "X,Z", value_parser = origin, allow_hyphen_values = true)]
+    pub(crate) origin: Option<[f64; 2]>,
+    /// Labels are true with this probability, above 0.5
+    #[arg(long, value_name = "P", value_parser = probability, allow_hyphen_values = true)]
+    pub(crate) p: Option<f64>,
+    /// Positions may be off by so many metres
+    #[arg(long, value_name = "METRES", value_parser = tolerance, allow_hyphen_values = true)]
+    pub(crate) tolerance: Option<f64>,
     /// Write a figure here
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) figure: Option<PathBuf>,
+    /// Write the answer for a map here; positions are to be latitude and longitude
+    #[arg(long, value_name = "FILE.geojson")]
+    pub(crate) geojson: Option<PathBuf>,
     /// What to print
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: Format,
 }
 
+fn origin(text: &str) -> Result<[f64; 2]> {
+    let number = |part: &str| part.trim().parse::<f64>().ok().filter(|value| value.is_finite());
+    let pair = text.split_once(',').and_then(|(a, b)| Some([number(a)?, number(b)?]));
+    pair.context("expected two numbers with a comma between")
+}
+
+fn probability(text: &str) -> Result<f64> {
+    match text.parse::<f64>() {
+        Ok(p) if p > 0.5 && p <= 1.0 => Ok(p),
+        _ => bail!("expected a number above 0.5 and at most 1"),
+    }
+}
+
+fn tolerance(text: &str) -> Result<f64> {
+    let metres = text.parse::<f64>().ok().filter(|metres| Tolerance::new(*metres).is_some());
+    metres.context("expected metres, 0 to 1024")
+}
+
 /// Reads them, and what to print.
 pub(crate) fn replay(args: &ReplayArgs) -> Result<String> {
-    let [figure] =
-        prepare(&[("the samples", &args.samples)], [("--figure", args.figure.as_deref())])?;
-    let replay = Replay::read(&args.samples)?;
-    if let Some(output) = figure {
-        output.write(replay.figure()?)?;
+    let asked = [("--figure", args.figure.as_deref()), ("--geojson", args.geojson.as_deref())];
+    let [figure, geojson] = prepare(&[("the samples", &args.samples)], asked)?;
+    let layout =
+        Layout { columns: args.columns.clone(), delimiter: args.delimiter, origin: args.origin };
+    let trust = Trust { p: args.p, tolerance: args.tolerance.unwrap_or(0.0) };
+    let replay = Replay::read(&args.samples, &layout, trust)?;
+    // Both are made before either is written.
+    let map = geojson.as_ref().map(|_| replay.geojson()).transpose()?;
+    let drawn = figure.as_ref().map(|_| replay.figure()).transpose()?;
+    for (output, content) in [(figure, drawn), (geojson, map)] {
+        if let (Some(output), Some(content)) = (output, content) {
+            output.write(content)?;
+        }
     }
     Ok(match args.format {
         Format::Text => replay.report(),

@@ -10,7 +10,7 @@
 //!
 //! All is decided in integers, in a time that grows with the number of corners.
 
-use planner_core::belief::sample::Label;
+use planner_core::belief::sample::{Label, Sample};
 use planner_core::geometry::lattice::Vector;
 
 use crate::replay::hull::{Hull, Row};
@@ -26,6 +26,14 @@ impl Pair {
     /// The difference of their positions: what points from the negative one to the positive one.
     pub(crate) fn apart(self) -> Vector {
         self.positive.site() - self.negative.site()
+    }
+
+    pub(crate) fn positive(self) -> Sample {
+        self.positive.sample
+    }
+
+    pub(crate) fn negative(self) -> Sample {
+        self.negative.sample
     }
 }
 
@@ -52,6 +60,11 @@ impl Facing {
 
     pub(crate) fn are_of_one_label(&self) -> bool {
         self.differences.is_empty()
+    }
+
+    /// The corners of the polygon of differences, counter-clockwise, some of them more than once.
+    pub(crate) fn differences(&self) -> &[Pair] {
+        &self.differences
     }
 
     /// Whether each is on a line.

@@ -13,6 +13,7 @@ mod flags;
 mod interruption;
 mod missions;
 mod outputs;
+mod recordings;
 mod samples;
 mod scenarios;
 mod stopping;

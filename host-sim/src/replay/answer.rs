@@ -1,0 +1,244 @@
+//! What samples come to, by how far they are trusted: one answer, whichever way it was found.
+
+use anyhow::{Context as _, Result, anyhow, bail};
+use nalgebra::Point2;
+use planner_core::belief::sample::{Label, Sample};
+use planner_core::belief::version_space::NoVersionSpace;
+use planner_core::geometry::area::Area;
+use planner_core::geometry::line::Line;
+
+use crate::mission::read_out::LEVEL;
+use crate::replay::doubt::{Doubt, Votes};
+use crate::replay::hull::in_order;
+use crate::replay::line_posterior::{Cell, LinePosterior, TooOpen};
+use crate::replay::line_set::{self, ByNormal, intercepts, slope_arcs};
+use crate::replay::patch::Mass;
+use crate::replay::sample_file::SampleFile;
+use crate::replay::separation::Separation;
+use crate::replay::shortest_pairs::bisector;
+use crate::replay::tolerant::{NoSeparation, TolerantSeparation};
+use crate::report::picture::area_around;
+use crate::world::polygon::Polygon;
+
+/// How far samples are to be trusted.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Trust {
+    /// The probability that a label is true, above 1/2, where one says it; 1 is certain.
+    pub p: Option<f64>,
+    /// How far a position may be off at most, metres.
+    pub tolerance: f64,
+}
+
+/// What samples determine.
+pub(crate) struct Answer {
+    /// The samples that bound the lines left, of labels that are true.
+    pub(crate) bounding: Vec<Sample>,
+    /// The slopes of the lines left, or of the credible set, as intervals of degrees.
+    pub(crate) slope_arcs: Vec<[f64; 2]>,
+    /// Their intercepts, metres; `None` when unbounded.
+    pub(crate) intercept: Option<[f64; 2]>,
+    /// The mean of the lines.
+    pub(crate) centre: Option<Line>,
+    pub(crate) maximum_margin: Option<Line>,
+    /// The paper's estimate, of labels and positions that are true.
+    pub(crate) bisector: Option<Line>,
+    /// Metres, where positions may be off.
+    pub(crate) tolerance: Option<f64>,
+    /// Where labels may be wrong.
+    pub(crate) doubt: Option<Doubted>,
+    /// Lines between which all lie.
+    bounds: Vec<ByNormal>,
+}
+
+/// What labels that may be wrong come to.
+pub(crate) struct Doubted {
+    pub(crate) p: f64,
+    /// The share of all lines that was left out, at most.
+    pub(crate) pruned_mass: f64,
+    /// What the credible set holds.
+    pub(crate) probability: f64,
+    pub(crate) most_likely: Line,
+    /// The samples that disagree with it, wherever within the tolerance they are.
+    pub(crate) disagreeing: Vec<usize>,
+}
+
+impl Answer {
+    /// Of the samples of a file.
+    ///
+    /// # Errors
+    /// Names the file, and the line where a row is the reason.
+    pub(crate) fn of(file: &SampleFile, trust: Trust) -> Result<Self> {
+        let p = trust.p.or(file.p).unwrap_or(1.0);
+        let tolerance = (trust.tolerance > 0.0).then_some(trust.tolerance);
+        match tolerance {
+            _ if p < 1.0 => doubted(file, p, tolerance),
+            Some(tolerance) => tolerant(file, tolerance),
+            None => exact(file),
+        }
+    }
+
+    /// The parts of some ground to which all lines left, or all of the credible set, give +1 and -1.
+    pub(crate) fn ground(&self, area: Area) -> [Polygon; 2] {
+        if self.doubt.is_none() && self.tolerance.is_none() {
+            return [Label::Positive, Label::Negative]
+                .map(|label| Polygon::certain(area, &self.bounding, label));
+        }
+        line_set::agreed(&area.into(), &self.bounds)
+    }
+}
+
+fn exact(file: &SampleFile) -> Result<Answer> {
+    let rows = in_order(&file.samples);
+    let lines = Separation::of(&file.samples, &rows).map_err(|why| match why {
+        NoVersionSpace::NotSeparable(index) => anyhow!(
+            "{}: no line separates this sample from those above it by their labels",
+            file.place(index)
+        ),
+        why => {
+            anyhow!("{}: {why}; expected samples of both labels, not all on one line", file.name)
+        }
+    })?;
+    Ok(Answer {
+        bounding: lines.support().collect(),
+        slope_arcs: lines.slope_arc().intervals_deg().to_vec(),
+        intercept: lines.intercepts(),
+        centre: lines.centre().map(Line::from),
+        maximum_margin: lines.maximum_margin().map(Line::from),
+        bisector: bisector(&rows).map(Line::from),
+        tolerance: None,
+        doubt: None,
+        bounds: Vec::new(),
+    })
+}
+
+fn tolerant(file: &SampleFile, tolerance: f64) -> Result<Answer> {
+    let rows = in_order(&file.samples);
+    let lines = TolerantSeparation::of(&file.samples, &rows, tolerance).map_err(|why| match why {
+        NoSeparation::Contradiction(index) => anyhow!(
+            "{}: no line separates this sample from those above it by their labels, wherever within {tolerance} m they are",
+            file.place(index)
+        ),
+        NoSeparation::OneLabel => {
+            anyhow!("{}: the samples share one label; expected samples of both labels", file.name)
+        }
+        NoSeparation::AnyDirection => anyhow!(
+            "{}: positions that may be off by {tolerance} m leave lines of every direction, expected samples further apart or a smaller --tolerance",
+            file.name
+        ),
+    })?;
+    Ok(Answer {
+        bounding: lines.support(),
+        slope_arcs: lines.slope_arcs(),
+        intercept: lines.intercepts(),
+        centre: line_set::line(lines.centre()),
+        maximum_margin: lines.maximum_margin().and_then(line_set::line),
+        bisector: None,
+        tolerance: Some(tolerance),
+        doubt: None,
+        bounds: lines.bounds(),
+    })
+}
+
+fn doubted(file: &SampleFile, p: f64, tolerance: Option<f64>) -> Result<Answer> {
+    let SampleFile { name, samples, .. } = file;
+    let has = |label: Label| samples.iter().any(|sample| sample.label == label);
+    if !(has(Label::Positive) && has(Label::Negative)) {
+        bail!("{name}: found no two labels, expected samples of both");
+    }
+    let area = area_around(samples)
+        .with_context(|| format!("{name}: expected samples that are apart from each other"))?;
+    let [min, max] = [area.min(), area.max()].map(Point2::<f64>::from);
+    let middle = nalgebra::center(&min, &max);
+    let votes = Votes::of(samples, &file.certain, middle).map_err(|index| {
+        anyhow!("{}: found a certain label, and another at the same place", file.place(index))
+    })?;
+    let posterior = LinePosterior::of(&votes, &Doubt::new(p, tolerance), (max - min) / 2.0)
+        .map_err(|why| match why {
+            TooOpen::Cells(_) | TooOpen::Work(_) => {
+                anyhow!(
+                    "{name}: labels that are true with probability {p} leave too much open: {why}"
+                )
+            }
+            TooOpen::NoLine => anyhow!("{name}: no line agrees with the labels that are certain"),
+        })?;
+    let home = |(normal, distance): ByNormal| (normal, distance + normal.dot(&middle.coords));
+    let mean_of = |mass: &Mass| {
+        let length = mass.normal.norm();
+        line_set::line(home((mass.normal / length, mass.distance / length)))
+    };
+    // The smallest set of the level; of lines that are alike, all.
+    let (mut held, mut count) = (0.0, 0);
+    let mut least = f64::INFINITY;
+    for Cell { log, mass, .. } in &posterior.cells {
+        if held >= LEVEL && *log < least - 1e-9 {
+            break;
+        }
+        (held, count, least) = (held + mass.measure, count + 1, *log);
+    }
+    let set = &posterior.cells[..count];
+    let bounds: Vec<_> = set
+        .iter()
+        .flat_map(|Cell { patch, .. }| {
+            patch.corners.iter().map(|at| home(patch.quarter.normal(*at)))
+        })
+        .collect();
+    let slope_arcs = slope_arcs(set.iter().map(|cell| cell.patch.directions()));
+    let intercept = intercepts(&slope_arcs, bounds.iter().copied());
+    let mut all = Mass::default();
+    for cell in &posterior.cells {
+        all.add(&cell.mass, 1.0);
+    }
+    let mean = mean_of(&all);
+    let most_likely = most_likely(&posterior.cells, &all).and_then(|cell| mean_of(&cell.mass));
+    let most_likely =
+        most_likely.with_context(|| format!("{name}: expected labels that prefer some line"))?;
+    // The labels that it gives are true of all lines about it between the same samples.
+    let relabelled =
+        samples.iter().map(|sample| Sample { label: side(&most_likely, sample), ..*sample });
+    let relabelled: Vec<_> = relabelled.collect();
+    let about = tolerance
+        .is_none()
+        .then(|| Separation::of(&relabelled, &in_order(&relabelled)).ok())
+        .flatten();
+    let centre = about.as_ref().and_then(Separation::centre).map(Line::from);
+    let most_likely = centre.unwrap_or(most_likely);
+    let off = tolerance.unwrap_or(0.0);
+    let disagrees = |sample: &Sample| {
+        f64::from(sample.label.sign()) * most_likely.distance(sample.site.into()) < -off
+    };
+    let disagreeing = (0..samples.len()).filter(|index| disagrees(&samples[*index])).collect();
+    Ok(Answer {
+        bounding: Vec::new(),
+        slope_arcs,
+        intercept,
+        centre: mean,
+        maximum_margin: about.and_then(|it| it.maximum_margin()).map(Line::from),
+        bisector: None,
+        tolerance,
+        doubt: Some(Doubted {
+            p,
+            pruned_mass: posterior.pruned_mass,
+            probability: held,
+            most_likely,
+            disagreeing,
+        }),
+        bounds,
+    })
+}
+
+fn side(line: &Line, sample: &Sample) -> Label {
+    if line.distance(sample.site.into()) < 0.0 { Label::Negative } else { Label::Positive }
+}
+
+/// Of the most likely cells the one nearest to the mean.
+fn most_likely<'a>(cells: &'a [Cell], all: &Mass) -> Option<&'a Cell> {
+    let most = cells.first()?.log;
+    let mean = |mass: &Mass| (mass.normal / mass.measure, mass.distance / mass.measure);
+    let (normal, distance) = mean(all);
+    let off = |cell: &Cell| {
+        let (own, at) = mean(&cell.mass);
+        (own - normal).norm_squared() + (at - distance) * (at - distance)
+    };
+    let best = cells.iter().take_while(|cell| cell.log >= most - 1e-9);
+    best.min_by(|a, b| off(a).total_cmp(&off(b)))
+}

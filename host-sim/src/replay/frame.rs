@@ -1,0 +1,142 @@
+//! Where recorded positions lie on the lattice, which reaches 8,192 m about its origin.
+//!
+//! Positions that are all within it stay as they are. Others, as eastings and northings of a map are, are taken
+//! about the middle of the data, rounded to whole metres, so that the shift itself rounds nothing. Latitude and
+//! longitude (WGS84) are projected about their middle, keeping distance and direction from there (azimuthal
+//! equidistant): x is to the east and z to the north. Within 8 km a straight line of this map is a straight way on the
+//! ground to less than a centimetre.
+
+use anyhow::{Result, anyhow, bail};
+use geographiclib_rs::{DirectGeodesic as _, Geodesic, InverseGeodesic as _};
+use nalgebra::Point2;
+use planner_core::geometry::lattice::{LIMIT, Site, UNITS_PER_METRE};
+use planner_core::geometry::line::Line;
+
+/// How far the lattice reaches, metres.
+const REACH: f64 = LIMIT as f64 / UNITS_PER_METRE as f64;
+
+/// Rows that have a middle: fewer bound no line.
+const FEWEST: usize = 3;
+
+/// What recorded positions are on the lattice.
+#[derive(Clone, Debug)]
+pub(crate) enum Frame {
+    /// Metres, as they are.
+    Plain,
+    /// Metres about an origin.
+    About([f64; 2]),
+    /// Latitude and longitude, degrees, about an origin.
+    Geographic { ellipsoid: Box<Geodesic>, origin: [f64; 2] },
+}
+
+impl Frame {
+    /// The frame of some positions, with an origin of one's own or not.
+    pub(crate) fn of(
+        positions: &[[f64; 2]],
+        is_geographic: bool,
+        origin: Option<[f64; 2]>,
+    ) -> Result<Self> {
+        if is_geographic {
+            let origin = origin.unwrap_or_else(|| geographic_middle(positions));
+            check(origin).map_err(|error| anyhow!("the origin: {error}"))?;
+            return Ok(Self::Geographic { ellipsoid: Box::new(Geodesic::wgs84()), origin });
+        }
+        let is_near = |at: &[f64; 2]| Site::try_from(Point2::from(*at)).is_ok();
+        Ok(match origin {
+            Some(origin) => Self::About(origin),
+            None if positions.len() < FEWEST || positions.iter().all(is_near) => Self::Plain,
+            None => {
+                Self::About(bounds(positions).map(|[least, most]| least.midpoint(most).round()))
+            }
+        })
+    }
+
+    /// The site of a recorded position.
+    pub(crate) fn site(&self, [x, z]: [f64; 2]) -> Result<Site> {
+        let at = match self {
+            Self::Plain => [x, z],
+            Self::About([x0, z0]) => [x - x0, z - z0],
+            Self::Geographic { ellipsoid, origin: [lat, lon] } => {
+                check([x, z])?;
+                let (metres, azimuth, ..): (f64, f64, f64, f64) =
+                    ellipsoid.inverse(*lat, *lon, x, z);
+                let (sin, cos) = libm::sincos(azimuth.to_radians());
+                [metres * sin, metres * cos]
+            }
+        };
+        Site::try_from(Point2::from(at)).map_err(|error| match self {
+            Self::Plain => anyhow!("({x}, {z}): {error}"),
+            Self::About([a, b]) | Self::Geographic { origin: [a, b], .. } => anyhow!(
+                "({x}, {z}): found {:.0} m from the origin ({a}, {b}), expected less than {REACH} m along each axis",
+                libm::hypot(at[0], at[1])
+            ),
+        })
+    }
+
+    /// The origin, where there is one: of metres, or latitude and longitude.
+    pub(crate) const fn origin(&self) -> Option<[f64; 2]> {
+        match self {
+            Self::Plain => None,
+            Self::About(origin) | Self::Geographic { origin, .. } => Some(*origin),
+        }
+    }
+
+    pub(crate) const fn is_geographic(&self) -> bool {
+        matches!(self, Self::Geographic { .. })
+    }
+
+    /// A position as it would have been recorded: `x` and `z`, or latitude and longitude.
+    pub(crate) fn recorded(&self, at: Point2<f64>) -> [f64; 2] {
+        match self {
+            Self::Plain => at.into(),
+            Self::About([x, z]) => [at.x + x, at.y + z],
+            Self::Geographic { ellipsoid, origin: [lat, lon] } => {
+                let azimuth = libm::atan2(at.x, at.y).to_degrees();
+                let (lat, lon): (f64, f64) =
+                    ellipsoid.direct(*lat, *lon, azimuth, libm::hypot(at.x, at.y));
+                // To a tenth of a millimetre.
+                [lat, lon].map(|degrees| (degrees * 1e9).round() / 1e9)
+            }
+        }
+    }
+
+    /// A line in the file's metres; `None` where the file has none.
+    pub(crate) fn line(&self, [a, b, c]: [f64; 3]) -> Option<Line> {
+        match self {
+            Self::Plain => Line::from_coefficients(a, b, c),
+            Self::About([x, z]) => Line::from_coefficients(a, b, c - a * x - b * z),
+            Self::Geographic { .. } => None,
+        }
+    }
+}
+
+/// The least and the most of both coordinates.
+fn bounds(positions: &[[f64; 2]]) -> [[f64; 2]; 2] {
+    let of = |k: usize| {
+        let values = positions.iter().map(|at| at[k]);
+        values.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], it| {
+            [least.min(it), most.max(it)]
+        })
+    };
+    [of(0), of(1)]
+}
+
+/// The middle of latitudes and longitudes, to a ten-thousandth of a degree. Longitudes are counted from the first
+/// row's, so that it does not matter where they jump by a turn.
+fn geographic_middle(positions: &[[f64; 2]]) -> [f64; 2] {
+    let Some(&[_, first]) = positions.first() else { return [0.0; 2] };
+    let turned = |lon: f64| libm::remainder(lon - first, 360.0);
+    let from_first: Vec<_> = positions.iter().map(|[lat, lon]| [*lat, turned(*lon)]).collect();
+    let [lat, lon] = bounds(&from_first).map(|[least, most]| least.midpoint(most));
+    [lat, libm::remainder(lon + first, 360.0)].map(|degrees| (degrees * 1e4).round() / 1e4)
+}
+
+fn check([lat, lon]: [f64; 2]) -> Result<()> {
+    if !(-90.0..=90.0).contains(&lat) {
+        bail!("lat: found {lat}, expected a latitude from -90 to 90 degrees");
+    }
+    if !(-180.0..=360.0).contains(&lon) {
+        bail!("lon: found {lon}, expected a longitude from -180 to 360 degrees");
+    }
+    Ok(())
+}

@@ -1,0 +1,93 @@
+//! The answer for a map: `GeoJSON` (RFC 7946), whose coordinates are longitude and latitude in degrees, WGS84.
+
+use anyhow::{Context as _, Result, bail};
+use nalgebra::Point2;
+use planner_core::geometry::area::Area;
+use planner_core::geometry::line::Line;
+use serde_json::{Value, json};
+
+use crate::replay::record::Replay;
+use crate::report::picture::area_around;
+
+impl Replay {
+    /// Samples, lines, and the ground that has either label by all lines left, or by all of the credible set.
+    ///
+    /// # Errors
+    /// For a file whose positions are metres, which have no place on a map by themselves, or that lie on both sides of
+    /// the 180th meridian.
+    pub fn geojson(&self) -> Result<String> {
+        let name = &self.file.name;
+        if !self.file.frame.is_geographic() {
+            bail!(
+                "--geojson: found positions in metres in {name}, expected latitude and longitude (--columns lat=...,lon=...)"
+            );
+        }
+        let area = area_around(&self.file.samples)
+            .with_context(|| format!("{name}: no area around the samples"))?;
+        let mut features = Vec::new();
+        for (polygon, label) in self.answer.ground(area).into_iter().zip([1, -1]) {
+            if polygon.0.len() >= 3 {
+                let ring = polygon.0.iter().chain(polygon.0.first()).map(|at| self.degrees(*at));
+                let ring: Vec<_> = ring.collect();
+                let level = self.answer.doubt.as_ref().map(|doubt| doubt.probability);
+                features.push(feature(
+                    "Polygon",
+                    &json!([ring]),
+                    &json!({ "kind": "ground", "label": label, "probability": level.unwrap_or(1.0) }),
+                ));
+            }
+        }
+        let mut line = |kind: &str, line: Option<Line>| {
+            if let Some(ends) = line.and_then(|line| self.ends(&line)) {
+                let ends = ends.map(|at| self.degrees(at));
+                features.push(feature("LineString", &json!(ends), &json!({ "kind": kind })));
+            }
+        };
+        line("centre", self.answer.centre);
+        line("maximum_margin", self.answer.maximum_margin);
+        line("most_likely", self.answer.doubt.as_ref().map(|doubt| doubt.most_likely));
+        let disagreeing = self.answer.doubt.as_ref().map(|doubt| &doubt.disagreeing);
+        for (index, sample) in self.file.samples.iter().enumerate() {
+            let disagrees = disagreeing.map(|them| them.binary_search(&index).is_ok());
+            let mut told = json!({
+                "kind": "sample",
+                "label": sample.label.sign(),
+                "line": self.file.line(index),
+            });
+            if let Some(disagrees) = disagrees {
+                told["disagrees"] = disagrees.into();
+            }
+            features.push(feature("Point", &json!(self.degrees(sample.site.into())), &told));
+        }
+        if self.crosses_meridian(area_corners(area)) {
+            bail!(
+                "--geojson: {name} lies on both sides of the 180th meridian, expected positions on one"
+            );
+        }
+        Ok(json!({ "type": "FeatureCollection", "features": features }).to_string() + "\n")
+    }
+
+    /// Longitude and latitude.
+    fn degrees(&self, at: Point2<f64>) -> [f64; 2] {
+        let [lat, lon] = self.file.frame.recorded(at);
+        [lon, lat]
+    }
+
+    fn crosses_meridian(&self, corners: [Point2<f64>; 4]) -> bool {
+        let lons = corners.map(|corner| self.degrees(corner)[0]);
+        lons.iter().any(|a| lons.iter().any(|b| (a - b).abs() > 180.0))
+    }
+}
+
+fn area_corners(area: Area) -> [Point2<f64>; 4] {
+    let (a, b) = (Point2::<f64>::from(area.min()), Point2::<f64>::from(area.max()));
+    [a, Point2::new(b.x, a.y), b, Point2::new(a.x, b.y)]
+}
+
+fn feature(kind: &str, coordinates: &Value, properties: &Value) -> Value {
+    json!({
+        "type": "Feature",
+        "geometry": { "type": kind, "coordinates": coordinates },
+        "properties": properties,
+    })
+}

@@ -1,0 +1,78 @@
+//! The labels of a file, as its recorder wrote them: -1 and 1, 0 and 1, true and false, or yes and no.
+//!
+//! A file has one kind. A 0 may as well say that nothing was measured, so it stands for -1 only in a file that has
+//! a 1 as well.
+
+use anyhow::{Result, anyhow, bail};
+use planner_core::belief::sample::Label;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Signs,
+    Bits,
+    Truth,
+    Answers,
+}
+
+/// The labels read so far.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct LabelWords {
+    /// Their kind, and the line that told it.
+    kind: Option<(Kind, usize)>,
+    /// The line of the first 1, which is of two kinds.
+    one: Option<usize>,
+}
+
+const EXPECTED: &str = "-1 or 1, 0 or 1, true or false, yes or no";
+
+impl LabelWords {
+    /// The label that a field on some line is.
+    ///
+    /// # Errors
+    /// What was found and what was expected.
+    pub(crate) fn read(&mut self, field: &str, line: usize) -> Result<Label> {
+        let is = |word: &str| field.eq_ignore_ascii_case(word);
+        let (kind, is_positive) = match field.parse::<f64>() {
+            Ok(1.0) => {
+                self.one.get_or_insert(line);
+                match self.kind {
+                    None => return Ok(Label::Positive),
+                    Some((kind @ (Kind::Signs | Kind::Bits), _)) => (kind, true),
+                    Some(_) => (Kind::Signs, true),
+                }
+            }
+            Ok(-1.0) => (Kind::Signs, false),
+            Ok(0.0) => (Kind::Bits, false),
+            Ok(other) if other.is_finite() => bail!("label: found {other}, expected {EXPECTED}"),
+            _ if is("true") || is("false") => (Kind::Truth, is("true")),
+            _ if is("yes") || is("no") => (Kind::Answers, is("yes")),
+            _ => bail!("label: found {field:?}, expected a finite number or a word: {EXPECTED}"),
+        };
+        let is_number = matches!(kind, Kind::Signs | Kind::Bits);
+        let earlier = match self.kind {
+            Some((other, line)) => (other != kind).then_some(line),
+            None => self.one.filter(|_| !is_number),
+        };
+        if let Some(earlier) = earlier {
+            bail!(
+                "label: found {field} after one of another kind on line {earlier}, expected all of one kind: {EXPECTED}"
+            );
+        }
+        self.kind.get_or_insert((kind, line));
+        Ok(if is_positive { Label::Positive } else { Label::Negative })
+    }
+
+    /// All labels are read.
+    ///
+    /// # Errors
+    /// The line of a 0 where there is no 1, and what was expected.
+    pub(crate) fn end(self) -> Result<(), (usize, anyhow::Error)> {
+        match self {
+            Self { kind: Some((Kind::Bits, line)), one: None } => Err((
+                line,
+                anyhow!("label: found 0 and nowhere a 1 in the file, expected {EXPECTED}"),
+            )),
+            _ => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,249 @@
+//! The lines that agree with a record whose positions may each be off by a tolerance, however many rows it has.
+//!
+//! A line agrees with a label if some place within the tolerance of the position has it. So of all lines with a unit
+//! normal `n`, those `n . q = r` are left for which
+//!
+//! ```text
+//! max over -1 of n . q  -  tolerance  <=  r  <=  min over +1 of n . q  +  tolerance
+//! ```
+//!
+//! Between which two samples that is stays the same over a stretch of directions: the two are a corner of the polygon
+//! of differences (`Facing`), and the stretch lies between the normals of the corner's edges. Unlike what a planner
+//! does on its way, this does not depend on the order of the rows, and cuts off no more than it must.
+
+use std::f64::consts::{PI, TAU};
+
+use nalgebra::{Point2, Vector2};
+use planner_core::belief::sample::Sample;
+use planner_core::geometry::lattice::{UNITS_PER_METRE, Vector};
+
+use crate::replay::facing::{Facing, Pair};
+use crate::replay::hull::Row;
+use crate::replay::line_set::{ByNormal, intercepts, slope_arcs};
+
+/// Directions of the normal between which the same two samples bound the lines, radians.
+#[derive(Clone, Copy, Debug)]
+struct Stretch {
+    from: f64,
+    to: f64,
+    pair: Pair,
+}
+
+/// All lines that agree with a record within a tolerance.
+#[derive(Debug)]
+pub(crate) struct TolerantSeparation {
+    /// Metres, with what positions are rounded by.
+    tolerance: f64,
+    stretches: Vec<Stretch>,
+}
+
+/// Why there is none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum NoSeparation {
+    /// All samples have the same label.
+    OneLabel,
+    /// No line agrees with the samples up to and including the one at this index, the first such.
+    Contradiction(usize),
+    /// Lines of every direction do.
+    AnyDirection,
+}
+
+/// Between two places where read-outs are taken, radians at most.
+const STEP: f64 = 0.02;
+
+fn unit(angle: f64) -> Vector2<f64> {
+    let (sin, cos) = libm::sincos(angle);
+    Vector2::new(cos, sin)
+}
+
+fn metres(v: Vector) -> Vector2<f64> {
+    Vector2::new(f64::from(v.x()), f64::from(v.z())) / f64::from(UNITS_PER_METRE)
+}
+
+impl Stretch {
+    /// The distances of the lines with a normal, the least and the most.
+    fn distances(&self, angle: f64, tolerance: f64) -> [f64; 2] {
+        let along = |sample: Sample| unit(angle).dot(&Point2::<f64>::from(sample.site).coords);
+        [along(self.pair.negative()) - tolerance, along(self.pair.positive()) + tolerance]
+    }
+
+    /// Both lines that bound those with a normal.
+    fn bounds(&self, angle: f64, tolerance: f64) -> [ByNormal; 2] {
+        self.distances(angle, tolerance).map(|distance| (unit(angle), distance))
+    }
+
+    /// Places from its beginning to its end.
+    fn places(&self) -> impl Iterator<Item = f64> + use<> {
+        let Self { from, to, .. } = *self;
+        let parts = ((to - from) / STEP).ceil().max(1.0);
+        (0..=parts as u32).map(move |k| from + (to - from) * f64::from(k) / parts)
+    }
+}
+
+impl TolerantSeparation {
+    /// Of some samples, whose rows [in order](crate::replay::hull::in_order) are these.
+    pub(crate) fn of(
+        samples: &[Sample],
+        rows: &[Row],
+        tolerance: f64,
+    ) -> Result<Self, NoSeparation> {
+        // Positions were rounded to the lattice.
+        let tolerance = tolerance + 1.0 / f64::from(UNITS_PER_METRE);
+        let all = Facing::of(rows, samples.len());
+        if all.are_of_one_label() {
+            return Err(NoSeparation::OneLabel);
+        }
+        let stretches = stretches(&all, tolerance);
+        if stretches.is_empty() {
+            // The more samples, the fewer lines.
+            let agree = |count: usize| {
+                let some = Facing::of(rows, count);
+                some.are_of_one_label() || !self::stretches(&some, tolerance).is_empty()
+            };
+            let (mut good, mut bad) = (0, samples.len());
+            while bad - good > 1 {
+                let middle = good.midpoint(bad);
+                *(if agree(middle) { &mut good } else { &mut bad }) = middle;
+            }
+            return Err(NoSeparation::Contradiction(good));
+        }
+        let covered: f64 = stretches.iter().map(|it| it.to - it.from).sum();
+        if covered > TAU - 1e-9 {
+            return Err(NoSeparation::AnyDirection);
+        }
+        Ok(Self { tolerance, stretches })
+    }
+
+    /// The samples that bound the lines.
+    pub(crate) fn support(&self) -> Vec<Sample> {
+        let mut support: Vec<Sample> = Vec::new();
+        for stretch in &self.stretches {
+            for sample in [stretch.pair.positive(), stretch.pair.negative()] {
+                if !support.contains(&sample) {
+                    support.push(sample);
+                }
+            }
+        }
+        support
+    }
+
+    /// The directions of the lines, as intervals of degrees.
+    pub(crate) fn slope_arcs(&self) -> Vec<[f64; 2]> {
+        slope_arcs(self.stretches.iter().map(|it| [it.from - PI / 2.0, it.to - PI / 2.0]))
+    }
+
+    /// The range of the lines' intercepts, metres; `None` when it is unbounded.
+    pub(crate) fn intercepts(&self) -> Option<[f64; 2]> {
+        let bounds = self.stretches.iter().flat_map(|it| {
+            // Where a line along a rim about a sample has its intercept at an end: the sample's own normal.
+            let rims = [it.pair.positive(), it.pair.negative()].into_iter().flat_map(|sample| {
+                let x = Point2::<f64>::from(sample.site).x / self.tolerance;
+                let angle = if x.abs() < 1.0 { libm::asin(x) } else { 0.0 };
+                [angle, -angle, PI - angle, PI + angle, TAU - angle]
+            });
+            let turned = [-TAU, 0.0, TAU];
+            let rims: Vec<f64> =
+                rims.flat_map(|rim| turned.map(|turn| PI / 2.0 + rim + turn)).collect();
+            let inside = rims.into_iter().filter(|rim| (it.from..it.to).contains(rim));
+            [it.from, it.to].into_iter().chain(inside).flat_map(|at| it.bounds(at, self.tolerance))
+        });
+        intercepts(&self.slope_arcs(), bounds)
+    }
+
+    /// Lines that bound the set.
+    pub(crate) fn bounds(&self) -> Vec<ByNormal> {
+        let of = |it: &Stretch| {
+            let (it, tolerance) = (*it, self.tolerance);
+            it.places().flat_map(move |at| it.bounds(at, tolerance))
+        };
+        self.stretches.iter().flat_map(of).collect()
+    }
+
+    /// The mean of the lines, as unit normals with their distances, by the measure of lines.
+    pub(crate) fn centre(&self) -> ByNormal {
+        // Gauss's rule of three points.
+        const RULE: [(f64, f64); 3] =
+            [(-0.774_596_669_241_483_4, 5.0), (0.0, 8.0), (0.774_596_669_241_483_4, 5.0)];
+        let (mut normal, mut distance) = (Vector2::zeros(), 0.0);
+        for stretch in &self.stretches {
+            let places: Vec<_> = stretch.places().collect();
+            for pair in places.windows(2) {
+                let half = 0.5 * (pair[1] - pair[0]);
+                for (place, weight) in RULE {
+                    let angle = pair[0].midpoint(pair[1]) + half * place;
+                    let [low, high] = stretch.distances(angle, self.tolerance);
+                    let measure = weight * half * (high - low);
+                    normal += unit(angle) * measure;
+                    distance += low.midpoint(high) * measure;
+                }
+            }
+        }
+        let length = normal.norm();
+        (normal / length, distance / length)
+    }
+
+    /// The line that stays furthest from being wrong: in the middle where the range of distances is widest.
+    pub(crate) fn maximum_margin(&self) -> Option<ByNormal> {
+        let width = |stretch: &Stretch, at: f64| {
+            let [low, high] = stretch.distances(at, self.tolerance);
+            high - low
+        };
+        let best = |stretch: &Stretch| {
+            let apart = metres(stretch.pair.apart());
+            let towards = libm::atan2(apart.y, apart.x);
+            let inside = [-TAU, 0.0, TAU].map(|turn| towards + turn);
+            let inside = inside.into_iter().filter(|at| (stretch.from..stretch.to).contains(at));
+            let places = [stretch.from, stretch.to].into_iter().chain(inside);
+            places.map(|at| (width(stretch, at), at)).max_by(|a, b| a.0.total_cmp(&b.0))
+        };
+        let all = self.stretches.iter().filter_map(|it| Some((best(it)?, it)));
+        let ((_, at), stretch) = all.max_by(|a, b| a.0.0.total_cmp(&b.0.0))?;
+        let [low, high] = stretch.distances(at, self.tolerance);
+        Some((unit(at), low.midpoint(high)))
+    }
+}
+
+/// The directions in which lines are left.
+fn stretches(facing: &Facing, tolerance: f64) -> Vec<Stretch> {
+    let mut corners: Vec<Pair> = facing.differences().to_vec();
+    corners.dedup_by_key(|pair| (pair.apart().x(), pair.apart().z()));
+    while corners.len() > 1
+        && corners.last().map(|it| it.apart()) == corners.first().map(|it| it.apart())
+    {
+        corners.pop();
+    }
+    let count = corners.len();
+    // Exact, or what is straight would turn all the way round.
+    let edge = |k: usize| {
+        let [from, to] = [corners[k % count], corners[(k + 1) % count]].map(Pair::apart);
+        [i128::from(to.x()) - i128::from(from.x()), i128::from(to.z()) - i128::from(from.z())]
+    };
+    let mut all = Vec::new();
+    for (k, &pair) in corners.iter().enumerate() {
+        // The normals for which this corner comes first: between those of its edges.
+        let [from, to] = if count == 1 {
+            [0.0, TAU]
+        } else {
+            let (before, after) = (edge(k + count - 1), edge(k));
+            let [cross, dot] = [
+                before[0] * after[1] - before[1] * after[0],
+                before[0] * after[0] + before[1] * after[1],
+            ];
+            let turn = libm::atan2(cross as f64, dot as f64);
+            let from = libm::atan2(before[1] as f64, before[0] as f64) + PI / 2.0;
+            [from, from + turn]
+        };
+        let apart = metres(pair.apart());
+        let length = apart.norm();
+        let half =
+            if length <= 2.0 * tolerance { PI } else { libm::acos(-2.0 * tolerance / length) };
+        let middle = libm::atan2(apart.y, apart.x);
+        for turn in [-TAU, 0.0, TAU] {
+            let (from, to) = (from.max(middle - half + turn), to.min(middle + half + turn));
+            if from < to {
+                all.push(Stretch { from, to, pair });
+            }
+        }
+    }
+    all
+}
