@@ -13,7 +13,7 @@ use crate::replay::answer::Trust;
 use crate::replay::columns::Columns;
 use crate::replay::delimiter::Delimiter;
 use crate::replay::record::Replay;
-use crate::replay::sample_file::Layout;
+use crate::replay::rows::Layout;
 
 #[derive(Debug, Args)]
 pub(crate) struct ReplayArgs {
