@@ -14,7 +14,7 @@ use crate::replay::answer::Trust;
 use crate::replay::columns::Columns;
 use crate::replay::delimiter::Delimiter;
 use crate::replay::record::Replay;
-use crate::replay::sample_file::Layout;
+use crate::replay::rows::Layout;
 
 #[derive(Debug, Args)]
 #[command(after_help = help::REPLAY)]

@@ -13,6 +13,7 @@ pub mod line_posterior;
 pub mod line_set;
 pub mod patch;
 pub mod record;
+pub mod rows;
 pub mod sample_file;
 pub mod separation;
 pub mod shortest_pairs;

@@ -12,7 +12,8 @@ use serde::Serialize;
 use crate::mission::read_out::LEVEL;
 use crate::mission::results::{EstimateRecords, LineRecord};
 use crate::replay::answer::{Answer, Doubted, Trust};
-use crate::replay::sample_file::{Layout, SampleFile};
+use crate::replay::rows::Layout;
+use crate::replay::sample_file::SampleFile;
 use crate::report::picture::{Dot, Ground, Kind, Named, Picture, area_around};
 use crate::report::text;
 use crate::world::polygon::Polygon;
@@ -304,7 +305,9 @@ impl Replay {
         });
         let note = match (sparse, doubt) {
             (note, None) => note,
-            (None, Some(_)) => Some("by all lines of the 90 % credible set".to_owned()),
+            (None, Some(_)) => Some(
+                "by all lines of the 90 % credible set; ringed: disagrees with the line".to_owned(),
+            ),
             (Some(_), Some(_)) => {
                 Some(format!("one in {every} of {count}; by the 90 % credible set"))
             }

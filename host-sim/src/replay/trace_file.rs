@@ -4,7 +4,7 @@ use anyhow::{Result, anyhow, bail};
 use planner_core::belief::sample::Label;
 use serde::Deserialize;
 
-use crate::replay::sample_file::{Layout, Rows};
+use crate::replay::rows::{Layout, Rows};
 
 /// As much of a record as is read here; see the contract of the trace in ARCHITECTURE.md.
 #[derive(Deserialize)]
