@@ -3,7 +3,8 @@
 use nalgebra::{Point2, Vector2};
 
 use crate::report::placing::Frame;
-use crate::report::sheet::{Anchor, Sheet, Spot};
+use crate::report::shapes::{Anchor, Spot, width};
+use crate::report::sheet::Sheet;
 use crate::report::style::BORDER;
 
 /// How figures lie along an axis.
@@ -111,12 +112,7 @@ impl Axes {
         sheet.ways(BORDER, ways.iter().map(Vec::as_slice));
         let [x, z] = names;
         sheet.words(x, corner(f64::midpoint(left, right), bottom + 36.0), 13.0, Anchor::Middle);
-        let widest = self
-            .z
-            .ticks()
-            .iter()
-            .map(|(_, name)| crate::report::sheet::width(name, SIZE))
-            .fold(0.0, f64::max);
+        let widest = self.z.ticks().iter().map(|(_, name)| width(name, SIZE)).fold(0.0, f64::max);
         sheet.upright(z, corner(left - widest - 14.0, f64::midpoint(bottom, top)), 13.0);
     }
 }

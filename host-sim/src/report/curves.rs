@@ -5,7 +5,9 @@ use nalgebra::{Point2, Vector2};
 use crate::campaign::spread::Spread;
 use crate::campaign::{accuracy, calibration};
 use crate::report::axes::{Axes, Axis, Scale};
-use crate::report::sheet::{Anchor, Look, Sheet, Spot};
+use crate::report::look::Look;
+use crate::report::shapes::{Anchor, Spot};
+use crate::report::sheet::Sheet;
 use crate::report::style::{CURVES, Stroke};
 
 /// Below this an error is drawn as if it were this.

@@ -9,11 +9,13 @@ use planner_core::link::message::MissionArea;
 use crate::report::axes::{Axes, Axis, Scale};
 use crate::report::bands::Band;
 use crate::report::ground::Ground;
+use crate::report::look::Look;
 use crate::report::numbers;
 use crate::report::picture::{Dot, Stop};
 use crate::report::placing::{Placing, foot};
-use crate::report::sheet::{Anchor, Look, Sheet, Spot, width};
-use crate::report::style::{BORDER, Fill, HEADING, PATH, Stroke};
+use crate::report::shapes::{Anchor, Spot, width};
+use crate::report::sheet::Sheet;
+use crate::report::style::{BORDER, Fill, HEADING, INK, PATH, Stroke};
 use crate::world::polygon::Polygon;
 
 /// Metres and pixels of a map, and what is on it so far.
@@ -39,7 +41,7 @@ impl Map {
     ) -> Self {
         const SIZE: f64 = 620.0;
         const LEAST: f64 = 220.0;
-        const TOP: f64 = 62.0;
+        const TOP: f64 = 70.0;
         let bounds = area.bounds();
         let ends = [bounds.min(), bounds.max()].map(Point2::<f64>::from);
         let min = more.iter().fold(ends[0], |min, at| min.inf(at));
@@ -128,7 +130,7 @@ impl Map {
         }
     }
 
-    /// What is kept out of, and the border of a polygon.
+    /// What is kept out of.
     pub(crate) fn limits(&mut self) {
         let outlines: Vec<Polygon> = self.area.hulls().map(Polygon::from).collect();
         for Polygon(outline) in &outlines {
@@ -223,12 +225,7 @@ impl Map {
         for stop in stops {
             let at = self.axes.at(stop.at);
             if let Some(truly) = stop.truly.map(|truly| self.axes.at(truly)) {
-                let thin = Stroke {
-                    class: "truly",
-                    colour: crate::report::style::INK,
-                    width: 0.8,
-                    dashes: "",
-                };
+                let thin = Stroke { class: "truly", colour: INK, width: 0.8, dashes: "" };
                 self.sheet.ways(thin, [&[at, truly][..]]);
                 self.sheet.mark(Look::Truly, truly);
                 self.sheet.name(Look::Truly, "where the robot truly was");

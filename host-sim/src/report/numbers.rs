@@ -3,8 +3,10 @@
 
 use nalgebra::Vector2;
 
+use crate::report::look::Look;
 use crate::report::placing::{Placing, foot};
-use crate::report::sheet::{Look, NUMBER, Sheet, Spot, width};
+use crate::report::shapes::{NUMBER, Spot, width};
+use crate::report::sheet::Sheet;
 use crate::report::style::{INK, Stroke};
 
 /// From a step to its number, where that is far.

@@ -10,9 +10,9 @@ use crate::mission::definition::{Lines, Mission};
 use crate::mission::recording::Recording;
 use crate::mission::scenario::{self, Overrides, PAPER_NOISELESS, PAPER_NOISY};
 use crate::report::ground::Ground;
+use crate::report::look::Look;
 use crate::report::map::Map;
 use crate::report::picture::{Dot, Kind, Picture};
-use crate::report::sheet::Look;
 use crate::report::style::{self, Fill, Stroke, TRUTH};
 use crate::world::polygon::Polygon;
 

@@ -194,7 +194,10 @@ impl Picture {
             beside: Some(format!("{n}")),
         });
         let lines = lines.collect();
-        Some(Self { ground: Ground::Plain, path: None, lines, ..Self::of(title, recording) })
+        let note =
+            "Lines that the fewest labels contradict, and beside each how many do".to_owned();
+        let all = Self::of(title, recording);
+        Some(Self { note: Some(note), ground: Ground::Plain, path: None, lines, ..all })
     }
 }
 

@@ -2,7 +2,7 @@
 
 use nalgebra::{Point2, Vector2};
 
-use crate::report::sheet::Spot;
+use crate::report::shapes::Spot;
 
 /// An upright rectangle, by its middle and half its size.
 #[derive(Clone, Copy, Debug)]

@@ -1,43 +1,14 @@
 //! A sheet that a figure is drawn on, as SVG. What is drawn on it is named in its legend: each mark has a look, and
 //! the legend shows the looks that were named.
 
-use nalgebra::{Point2, Vector2};
-use planner_core::belief::sample::Label;
+use nalgebra::Vector2;
 use svg::Document;
 use svg::node::element::path::Data;
-use svg::node::element::{Circle, Definitions, Group, Path, Pattern, Rectangle, Text, Title};
+use svg::node::element::{Definitions, Group, Path, Pattern, Rectangle, Title};
 
+use crate::report::look::{Look, marker};
+use crate::report::shapes::{Anchor, NUMBER, Spot, continued, outline, rounded, text, width};
 use crate::report::style::{self, Fill, HATCHES, INK, Stroke};
-
-/// A place on a sheet, pixels from its upper left corner.
-pub(crate) type Spot = Point2<f64>;
-
-/// How a mark looks.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Look {
-    /// A label that was read: a disc for +1, a square for -1.
-    Read(Label),
-    /// One that was given: larger, outlined.
-    Given(Label),
-    /// A ring about a wrong label.
-    Wrong,
-    /// A diamond where a robot starts.
-    Start,
-    /// A small circle where no label was read.
-    Unread,
-    /// A cross where a robot truly was.
-    Truly,
-    /// The number of a step.
-    Number,
-    /// A line.
-    Line(Stroke),
-    /// A marker of a curve: which of those that there are.
-    Marker(usize),
-    /// Ground.
-    Ground(Fill),
-    /// So many shades of ground, side by side.
-    Shades(usize),
-}
 
 /// A figure that is being drawn.
 pub(crate) struct Sheet {
@@ -47,177 +18,7 @@ pub(crate) struct Sheet {
     named: Vec<(Look, String)>,
 }
 
-/// Which side of a text stands at its place.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Anchor {
-    Start,
-    Middle,
-    End,
-}
-
-/// Hundredths of a pixel are enough, and keep files small.
-fn rounded(value: f64) -> f64 {
-    (value * 100.0).round() / 100.0 + 0.0
-}
-
-/// How wide a text is at most, as the widest of usual fonts without serifs have it.
-pub(crate) fn width(words: &str, size: f64) -> f64 {
-    let wide = |c: char| match c {
-        'i' | 'l' | 'j' | '.' | ',' | ':' | ';' | '\'' | '|' | '(' | ')' | 'I' => 0.36,
-        ' ' | 't' | 'f' | 'r' | '-' => 0.42,
-        'm' | 'w' | 'M' | 'W' | '%' | '@' => 0.96,
-        'A'..='Z' => 0.7,
-        _ => 0.6,
-    };
-    words.chars().map(wide).sum::<f64>() * size
-}
-
-pub(crate) fn text(words: &str, at: Spot, size: f64, anchor: Anchor) -> Text {
-    let text =
-        Text::new(words).set("x", rounded(at.x)).set("y", rounded(at.y)).set("font-size", size);
-    match anchor {
-        Anchor::Start => text,
-        Anchor::Middle => text.set("text-anchor", "middle"),
-        Anchor::End => text.set("text-anchor", "end"),
-    }
-}
-
-fn continued(data: Data, corners: &[Spot]) -> Data {
-    let at = |spot: &Spot| (rounded(spot.x), rounded(spot.y));
-    let mut spots = corners.iter().map(at);
-    let Some(first) = spots.next() else { return data };
-    spots.fold(data.move_to(first), Data::line_to)
-}
-
-fn outline(corners: &[Spot]) -> Data {
-    continued(Data::new(), corners)
-}
-
-fn circle(at: Spot, radius: f64) -> Circle {
-    Circle::new().set("cx", rounded(at.x)).set("cy", rounded(at.y)).set("r", radius)
-}
-
-fn square(at: Spot, half: f64) -> Rectangle {
-    rectangle(at - Vector2::repeat(half), at + Vector2::repeat(half))
-}
-
-fn rectangle(from: Spot, to: Spot) -> Rectangle {
-    Rectangle::new()
-        .set("x", rounded(from.x))
-        .set("y", rounded(from.y))
-        .set("width", rounded(to.x - from.x))
-        .set("height", rounded(to.y - from.y))
-}
-
-impl Look {
-    pub(crate) const fn class(self) -> &'static str {
-        match self {
-            Self::Read(Label::Positive) => "read-positive",
-            Self::Read(Label::Negative) => "read-negative",
-            Self::Given(Label::Positive) => "given-positive",
-            Self::Given(Label::Negative) => "given-negative",
-            Self::Wrong => "wrong",
-            Self::Start => "start",
-            Self::Unread => "unread",
-            Self::Truly => "truly",
-            Self::Number => "number",
-            Self::Line(stroke) => stroke.class,
-            Self::Marker(k) => style::CURVES[k].class,
-            Self::Ground(fill) => fill.class(),
-            Self::Shades(_) => "shading",
-        }
-    }
-
-    /// A group of such marks.
-    fn group(self) -> Group {
-        let group = Group::new().set("class", self.class());
-        let outlined = |group: Group, width: f64| {
-            group.set("fill", "none").set("stroke", INK).set("stroke-width", width)
-        };
-        match self {
-            Self::Read(label) => group.set("fill", style::of_label(label)),
-            Self::Given(label) => {
-                let group = group.set("fill", style::of_label(label));
-                group.set("stroke", "#000000").set("stroke-width", 1.8)
-            }
-            Self::Wrong | Self::Start => outlined(group, 1.4),
-            Self::Truly => outlined(group, 1.1),
-            Self::Unread => outlined(group, 1.2).set("fill", "#ffffff"),
-            Self::Number => group.set("fill", INK),
-            Self::Line(Stroke { colour, width, dashes, .. }) => {
-                let group = group.set("fill", "none").set("stroke", colour);
-                let group = group.set("stroke-width", width);
-                if dashes.is_empty() { group } else { group.set("stroke-dasharray", dashes) }
-            }
-            Self::Marker(k) => group.set("fill", style::CURVES[k].colour),
-            Self::Ground(fill) => group.set("fill", fill.paint()),
-            Self::Shades(_) => group,
-        }
-    }
-
-    /// One of them at a place.
-    fn mark(self, at: Spot) -> Group {
-        let group = self.group();
-        match self {
-            Self::Read(Label::Positive) => group.add(circle(at, 4.6)),
-            Self::Read(Label::Negative) => group.add(square(at, 4.1)),
-            Self::Given(Label::Positive) => group.add(circle(at, 6.8)),
-            Self::Given(Label::Negative) => group.add(square(at, 6.1)),
-            Self::Wrong => group.add(circle(at, 9.5)),
-            Self::Start => {
-                let to = |x: f64, y: f64| at + Vector2::new(x, y) * 13.0;
-                let corners = [to(1.0, 0.0), to(0.0, 1.0), to(-1.0, 0.0), to(0.0, -1.0)];
-                group.add(Path::new().set("d", outline(&corners).close()))
-            }
-            Self::Unread => group.add(circle(at, 3.4)),
-            Self::Truly => {
-                let to = |x: f64, y: f64| at + Vector2::new(x, y) * 3.6;
-                let strokes = [[to(-1.0, -1.0), to(1.0, 1.0)], [to(-1.0, 1.0), to(1.0, -1.0)]];
-                strokes.iter().fold(group, |group, it| group.add(Path::new().set("d", outline(it))))
-            }
-            Self::Number => {
-                group.add(text("7", at + Vector2::new(0.0, 4.0), NUMBER, Anchor::Middle))
-            }
-            Self::Line(_) => {
-                let half = Vector2::new(15.0, 0.0);
-                group.add(Path::new().set("d", outline(&[at - half, at + half])))
-            }
-            Self::Marker(k) => {
-                let line = Self::Line(style::CURVES[k]);
-                let half = Vector2::new(17.0, 0.0);
-                let way = Path::new().set("d", outline(&[at - half, at + half]));
-                Group::new()
-                    .set("class", self.class())
-                    .add(line.group().add(way))
-                    .add(marker(k, at).set("fill", style::CURVES[k].colour))
-            }
-            Self::Ground(_) => {
-                let half = Vector2::new(14.0, 7.0);
-                let edge = rectangle(at - half, at + half).set("stroke", "#8a8a8a");
-                group.add(edge.set("stroke-width", 0.6))
-            }
-            Self::Shades(_) => group,
-        }
-    }
-}
-
-/// The marker of the `k`-th curve.
-fn marker(k: usize, at: Spot) -> Path {
-    let shape: &[[f64; 2]] = match k {
-        0 => &[[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]],
-        1 => &[[0.0, -1.4], [1.3, 1.0], [-1.3, 1.0]],
-        2 => &[[0.0, -1.4], [1.4, 0.0], [0.0, 1.4], [-1.4, 0.0]],
-        3 => &[[0.0, 1.4], [1.3, -1.0], [-1.3, -1.0]],
-        4 => &[[-1.4, -0.6], [1.4, -0.6], [1.4, 0.6], [-1.4, 0.6]],
-        _ => &[[-0.6, -1.4], [0.6, -1.4], [0.6, 1.4], [-0.6, 1.4]],
-    };
-    let corners: Vec<_> = shape.iter().map(|it| at + Vector2::from(*it) * 3.6).collect();
-    Path::new().set("d", outline(&corners).close())
-}
-
-/// Size of the numbers of steps.
-pub(crate) const NUMBER: f64 = 11.0;
-
+/// Size of the legend's words.
 const ENTRY: f64 = 13.0;
 
 impl Sheet {
@@ -237,7 +38,7 @@ impl Sheet {
         self.drawn = std::mem::replace(&mut self.drawn, Group::new()).add(group);
     }
 
-    /// A mark at each of some places.
+    /// A mark at a place.
     pub(crate) fn mark(&mut self, look: Look, at: Spot) {
         self.add(look.mark(at));
     }
@@ -324,23 +125,6 @@ impl Sheet {
             .add(drawn.set("class", "figure"))
             .add(legend);
         document.to_string() + "\n"
-    }
-}
-
-impl Look {
-    /// How much wider than others it is in a legend.
-    fn reach(self) -> f64 {
-        if let Self::Shades(count) = self { 30.0 * (count as f64 - 1.0) } else { 0.0 }
-    }
-
-    /// As a legend shows it: at half its size where it is large.
-    fn entry(self, at: Spot) -> Group {
-        let Self::Shades(count) = self else { return self.mark(at) };
-        let shade = |k: usize| {
-            let at = at + Vector2::new(30.0 * k as f64, 0.0);
-            Self::Ground(Fill::Shade(k)).mark(at)
-        };
-        (0..count).map(shade).fold(self.group(), Group::add)
     }
 }
 

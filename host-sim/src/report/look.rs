@@ -1,0 +1,156 @@
+//! What marks look like: each has one look, on the figure as in its legend.
+
+use nalgebra::Vector2;
+use planner_core::belief::sample::Label;
+use svg::node::element::{Group, Path};
+
+use crate::report::shapes::{Anchor, NUMBER, Spot, circle, outline, rectangle, square, text};
+use crate::report::style::{self, Fill, INK, Stroke};
+
+/// How a mark looks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Look {
+    /// A label that was read: a disc for +1, a square for -1.
+    Read(Label),
+    /// One that was given: larger, outlined.
+    Given(Label),
+    /// A ring about a wrong label.
+    Wrong,
+    /// A diamond where a robot starts.
+    Start,
+    /// A small circle where no label was read.
+    Unread,
+    /// A cross where a robot truly was.
+    Truly,
+    /// The number of a step.
+    Number,
+    /// A line.
+    Line(Stroke),
+    /// A marker of a curve: which of those that there are.
+    Marker(usize),
+    /// Ground.
+    Ground(Fill),
+    /// So many shades of ground, side by side.
+    Shades(usize),
+}
+
+impl Look {
+    pub(crate) const fn class(self) -> &'static str {
+        match self {
+            Self::Read(Label::Positive) => "read-positive",
+            Self::Read(Label::Negative) => "read-negative",
+            Self::Given(Label::Positive) => "given-positive",
+            Self::Given(Label::Negative) => "given-negative",
+            Self::Wrong => "wrong",
+            Self::Start => "start",
+            Self::Unread => "unread",
+            Self::Truly => "truly",
+            Self::Number => "number",
+            Self::Line(stroke) => stroke.class,
+            Self::Marker(k) => style::CURVES[k].class,
+            Self::Ground(fill) => fill.class(),
+            Self::Shades(_) => "shading",
+        }
+    }
+
+    /// A group of such marks.
+    pub(crate) fn group(self) -> Group {
+        let group = Group::new().set("class", self.class());
+        let outlined = |group: Group, width: f64| {
+            group.set("fill", "none").set("stroke", INK).set("stroke-width", width)
+        };
+        match self {
+            Self::Read(label) => group.set("fill", style::of_label(label)),
+            Self::Given(label) => {
+                let group = group.set("fill", style::of_label(label));
+                group.set("stroke", "#000000").set("stroke-width", 1.8)
+            }
+            Self::Wrong | Self::Start => outlined(group, 1.4),
+            Self::Truly => outlined(group, 1.1),
+            Self::Unread => outlined(group, 1.2).set("fill", "#ffffff"),
+            Self::Number => group.set("fill", INK),
+            Self::Line(Stroke { colour, width, dashes, .. }) => {
+                let group = group.set("fill", "none").set("stroke", colour);
+                let group = group.set("stroke-width", width);
+                if dashes.is_empty() { group } else { group.set("stroke-dasharray", dashes) }
+            }
+            Self::Marker(k) => group.set("fill", style::CURVES[k].colour),
+            Self::Ground(fill) => group.set("fill", fill.paint()),
+            Self::Shades(_) => group,
+        }
+    }
+
+    /// One of them at a place.
+    pub(crate) fn mark(self, at: Spot) -> Group {
+        let group = self.group();
+        match self {
+            Self::Read(Label::Positive) => group.add(circle(at, 4.6)),
+            Self::Read(Label::Negative) => group.add(square(at, 4.1)),
+            Self::Given(Label::Positive) => group.add(circle(at, 6.8)),
+            Self::Given(Label::Negative) => group.add(square(at, 6.1)),
+            Self::Wrong => group.add(circle(at, 9.5)),
+            Self::Start => {
+                let to = |x: f64, y: f64| at + Vector2::new(x, y) * 13.0;
+                let corners = [to(1.0, 0.0), to(0.0, 1.0), to(-1.0, 0.0), to(0.0, -1.0)];
+                group.add(Path::new().set("d", outline(&corners).close()))
+            }
+            Self::Unread => group.add(circle(at, 3.4)),
+            Self::Truly => {
+                let to = |x: f64, y: f64| at + Vector2::new(x, y) * 3.6;
+                let strokes = [[to(-1.0, -1.0), to(1.0, 1.0)], [to(-1.0, 1.0), to(1.0, -1.0)]];
+                strokes.iter().fold(group, |group, it| group.add(Path::new().set("d", outline(it))))
+            }
+            Self::Number => {
+                group.add(text("7", at + Vector2::new(0.0, 4.0), NUMBER, Anchor::Middle))
+            }
+            Self::Line(_) => {
+                let half = Vector2::new(15.0, 0.0);
+                group.add(Path::new().set("d", outline(&[at - half, at + half])))
+            }
+            Self::Marker(k) => {
+                let line = Self::Line(style::CURVES[k]);
+                let half = Vector2::new(17.0, 0.0);
+                let way = Path::new().set("d", outline(&[at - half, at + half]));
+                Group::new()
+                    .set("class", self.class())
+                    .add(line.group().add(way))
+                    .add(marker(k, at).set("fill", style::CURVES[k].colour))
+            }
+            Self::Ground(_) => {
+                let half = Vector2::new(14.0, 7.0);
+                let edge = rectangle(at - half, at + half).set("stroke", "#8a8a8a");
+                group.add(edge.set("stroke-width", 0.6))
+            }
+            Self::Shades(_) => group,
+        }
+    }
+
+    /// How much wider than others it is in a legend.
+    pub(crate) fn reach(self) -> f64 {
+        if let Self::Shades(count) = self { 30.0 * (count as f64 - 1.0) } else { 0.0 }
+    }
+
+    /// As a legend shows it.
+    pub(crate) fn entry(self, at: Spot) -> Group {
+        let Self::Shades(count) = self else { return self.mark(at) };
+        let shade = |k: usize| {
+            let at = at + Vector2::new(30.0 * k as f64, 0.0);
+            Self::Ground(Fill::Shade(k)).mark(at)
+        };
+        (0..count).map(shade).fold(self.group(), Group::add)
+    }
+}
+
+/// The marker of the `k`-th curve.
+pub(crate) fn marker(k: usize, at: Spot) -> Path {
+    let shape: &[[f64; 2]] = match k {
+        0 => &[[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]],
+        1 => &[[0.0, -1.4], [1.3, 1.0], [-1.3, 1.0]],
+        2 => &[[0.0, -1.4], [1.4, 0.0], [0.0, 1.4], [-1.4, 0.0]],
+        3 => &[[0.0, 1.4], [1.3, -1.0], [-1.3, -1.0]],
+        4 => &[[-1.4, -0.6], [1.4, -0.6], [1.4, 0.6], [-1.4, 0.6]],
+        _ => &[[-0.6, -1.4], [0.6, -1.4], [0.6, 1.4], [-0.6, 1.4]],
+    };
+    let corners: Vec<_> = shape.iter().map(|it| at + Vector2::from(*it) * 3.6).collect();
+    Path::new().set("d", outline(&corners).close())
+}
