@@ -27,7 +27,7 @@ pub(crate) enum Command {
     /// Say what samples determine that were recorded elsewhere
     Replay(ReplayArgs),
     /// Run the standard fields and print tables
-    Campaign(CampaignArgs),
+    Campaign(Box<CampaignArgs>),
     /// Have a board, or its firmware under emulation, fly a mission
     Hil(HilArgs),
 }
@@ -51,7 +51,7 @@ impl Cli {
             None => paper::tell(),
             Some(Command::Run(args)) => run(&args),
             Some(Command::Replay(args)) => replay(&args),
-            Some(Command::Campaign(args)) => campaign(&args),
+            Some(Command::Campaign(args)) => campaign(*args),
             Some(Command::Hil(args)) => hil(&args),
         }
     }

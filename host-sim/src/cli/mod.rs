@@ -2,8 +2,12 @@
 
 pub mod arguments;
 mod campaign;
-mod compare;
+mod campaign_flags;
+mod campaign_record;
 mod hil;
+mod merge;
 pub mod paper;
+mod passage;
 mod replay;
 mod run;
+mod told;

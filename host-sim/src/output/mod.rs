@@ -2,4 +2,5 @@
 
 pub mod file;
 pub mod interruption;
+pub mod partial;
 pub mod place;
