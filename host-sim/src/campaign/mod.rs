@@ -5,6 +5,7 @@ pub mod accuracy;
 pub mod calibration;
 pub mod course;
 pub mod ensemble;
+pub mod field_record;
 pub mod rows;
 pub mod shard;
 mod sorting;

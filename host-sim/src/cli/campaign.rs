@@ -1,12 +1,14 @@
 //! `campaign`: the standard fields, all of them or a shard.
 
 use std::io::{Read, Write as _};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, Result, bail};
 use clap::{Args, Subcommand};
 
-use crate::campaign::ensemble::{Checkpoint as _, Measure};
+use crate::campaign::ensemble::{Campaign, Checkpoint as _, Measure};
+use crate::campaign::field_record::FieldRecord;
 use crate::campaign::rows::{Planners, RowReader, RowWriter};
 use crate::campaign::shard::Shard;
 use crate::cli::arguments::Format;
@@ -15,7 +17,7 @@ use crate::cli::campaign_record::CampaignRecord;
 use crate::cli::merge::{MergeArgs, merge};
 use crate::cli::passage::{Destination, Passage, ToFly};
 use crate::cli::told::{Opening, tell};
-use crate::output::file::{json, place_for, prepare};
+use crate::output::file::{Output, json, place_for, prepare};
 use crate::output::partial::{Begin, Partial};
 
 #[derive(Debug, Args)]
@@ -34,6 +36,9 @@ pub(crate) struct CampaignArgs {
     /// Fly one of N blocks of the fields only, the first is 1/N; `campaign merge` puts them together
     #[arg(long, value_name = "K/N", requires = "csv")]
     pub(crate) shard: Option<Shard>,
+    /// Write the fields themselves here: oracle, start and true line of each
+    #[arg(long, value_name = "FILE")]
+    pub(crate) fields_csv: Option<PathBuf>,
     /// What to print
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: Format,
@@ -47,7 +52,7 @@ pub(crate) enum CampaignCommand {
 
 /// Flies them, and what to print.
 pub(crate) fn campaign(args: CampaignArgs) -> Result<String> {
-    let CampaignArgs { command, flags, csv, resume, shard: part, format } = args;
+    let CampaignArgs { command, flags, csv, resume, shard: part, fields_csv, format } = args;
     if let Some(CampaignCommand::Merge(args)) = command {
         return merge(&args);
     }
@@ -68,6 +73,11 @@ pub(crate) fn campaign(args: CampaignArgs) -> Result<String> {
         }
         _ => String::new(),
     };
+    let rows: Vec<_> = csv.iter().map(|path| ("the rows", &**path)).collect();
+    let [output] = prepare(&rows, [("--fields-csv", fields_csv.as_deref())])?;
+    if let (Some(output), Some(campaign)) = (output, campaigns.of_each.first()) {
+        write_fields(campaign, fields.clone(), output)?;
+    }
     let to_fly = ToFly { from: (0, fields.start), fields };
     let record = CampaignRecord::new(flags, shard);
     let opening = Begun {
@@ -80,6 +90,15 @@ pub(crate) fn campaign(args: CampaignArgs) -> Result<String> {
     };
     let told = tell(&campaigns, opening, format)?;
     Ok(title + &told)
+}
+
+/// Writes the fields, which are the same for every planner.
+fn write_fields(campaign: &Campaign, fields: Range<u64>, output: Output) -> Result<()> {
+    let mut writer = csv::Writer::from_writer(output);
+    for field in fields {
+        writer.serialize(FieldRecord::of(field, &campaign.mission(field)))?;
+    }
+    writer.into_inner().map_err(csv::IntoInnerError::into_error)?.complete()
 }
 
 /// A campaign that is to be flown.

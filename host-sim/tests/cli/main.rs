@@ -11,8 +11,10 @@ mod flags;
 mod interruption;
 mod missions;
 mod outputs;
+mod resuming;
 mod samples;
 mod scenarios;
+mod shards;
 mod stopping;
 
 const GOOD: &str = include_str!("../../scenarios/paper-noiseless.toml");
