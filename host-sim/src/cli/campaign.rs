@@ -96,7 +96,8 @@ pub(crate) fn campaign(args: CampaignArgs) -> Result<String> {
 fn write_fields(campaign: &Campaign, fields: Range<u64>, output: Output) -> Result<()> {
     let mut writer = csv::Writer::from_writer(output);
     for field in fields {
-        writer.serialize(FieldRecord::of(field, &campaign.mission(field)))?;
+        let record = FieldRecord::of(field, &campaign.mission(field));
+        writer.serialize(record.context("a standard field")?)?;
     }
     writer.into_inner().map_err(csv::IntoInnerError::into_error)?.complete()
 }

@@ -1,5 +1,7 @@
 //! What is kept beside rows that are part of something: which campaign they belong to, and which fields.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use anyhow::{Context as _, Result, bail};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -51,8 +53,11 @@ impl CampaignRecord {
         if found.version != self.version {
             bail!("found a campaign of version {}, expected {}", found.version, self.version);
         }
-        let flags = |record: &Self| flags_told(&record.flags);
-        for (expected, found) in flags(self)?.into_iter().zip(flags(found)?) {
+        let (mut expected, mut found) = (flags_told(&self.flags)?, flags_told(&found.flags)?);
+        let flags: BTreeSet<_> = expected.keys().chain(found.keys()).cloned().collect();
+        for flag in flags {
+            let [expected, found] = [&mut expected, &mut found]
+                .map(|told| told.remove(&flag).unwrap_or(format!("no {flag}")));
             if found != expected {
                 bail!("found a campaign with {found}, expected {expected}");
             }
@@ -61,16 +66,20 @@ impl CampaignRecord {
     }
 }
 
-/// Each flag as it is given, or that it is not.
-fn flags_told(flags: &CampaignFlags) -> Result<Vec<String>> {
-    let mut told = Vec::new();
+/// Each flag, and how it is given, or that it is not.
+fn flags_told(flags: &CampaignFlags) -> Result<BTreeMap<String, String>> {
+    let mut told = BTreeMap::new();
+    let mut add = |flag: String, value: &Value| {
+        let given = tell(&flag, value);
+        told.insert(flag, given);
+    };
     if let Value::Object(flags) = serde_json::to_value(flags)? {
         for (flag, value) in flags {
             match value {
                 Value::Object(vehicle) => {
-                    told.extend(vehicle.iter().map(|(key, it)| tell(&Source::Flags.name(key), it)));
+                    vehicle.iter().for_each(|(key, it)| add(Source::Flags.name(key), it));
                 }
-                value => told.push(tell(&format!("--{flag}"), &value)),
+                value => add(format!("--{flag}"), &value),
             }
         }
     }
