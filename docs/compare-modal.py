@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 """modAL beside our planners, on the same standard fields in one run.
 
-    python3 -m venv venv && venv/bin/pip install modAL-python==0.4.2.1 scikit-learn==1.9.1
+    python3 -m venv venv && venv/bin/pip install modAL-python==0.4.2.1 scikit-learn==1.5.2
     cargo build --release
     venv/bin/python docs/compare-modal.py target/release/host-sim
+
+modAL 0.4.2.1 calls scikit-learn by an argument that newer ones do not have any more, so it needs an older one.
 
 modAL asks for the label of whichever place of its pool is nearest to the line of a linear SVC (margin sampling): it
 jumps, where our planners drive. Its estimate is the line of the SVC that all labels so far are fitted with. The slope
@@ -25,7 +27,6 @@ import numpy as np
 import sklearn
 from modAL.models import ActiveLearner
 from modAL.uncertainty import margin_sampling
-from sklearn.exceptions import ConvergenceWarning
 from sklearn.svm import SVC
 
 SIDE = 20.0
@@ -109,8 +110,9 @@ def main():
     arguments.add_argument("program", type=Path, help="host-sim")
     arguments.add_argument("--fields", type=int, default=100)
     arguments = arguments.parse_args()
-    # A hard margin may take more iterations than libsvm likes; where it is not reached, modAL's line is what it is.
-    warnings.simplefilter("ignore", ConvergenceWarning)
+    program = arguments.program.resolve()
+    # modAL calls scikit-learn in an older way, which that tells at every query.
+    warnings.simplefilter("ignore", FutureWarning)
     side = np.linspace(0.0, SIDE, POOL)
     pool = np.array([[x, z] for x in side for z in side])
     results = []
@@ -118,7 +120,7 @@ def main():
         folder = Path(folder)
         fields_csv = folder / "fields.csv"
         subprocess.run(
-            [arguments.program, "campaign", "--fields", str(arguments.fields), "--steps", "1"]
+            [program, "campaign", "--fields", str(arguments.fields), "--steps", "1"]
             + ["--fields-csv", fields_csv],
             check=True,
             stdout=subprocess.DEVNULL,
@@ -130,7 +132,7 @@ def main():
         seconds = sum(seconds for _, seconds in found) / (len(fields) * max(LABELS))
         results.append((f"modAL, jumps in a pool of {len(pool)}", errors, seconds))
         for planner in PLANNERS:
-            results.append((planner, *by_us(arguments.program, planner, len(fields), folder)))
+            results.append((planner, *by_us(program, planner, len(fields), folder)))
     first, second = LABELS
     print(f"{len(fields)} standard fields, seed 1; scikit-learn {sklearn.__version__}, numpy {np.__version__}")
     print(f"| planner | slope error, median (90th percentile) at {first} labels | at {second} | seconds a query |")

@@ -41,6 +41,7 @@ struct Statement {
 }
 
 /// What was known after some labels of one mission. Statements are by the area prior and by the paper's.
+#[allow(clippy::struct_excessive_bools)] // columns of a row, which has no nesting
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Checkpoint {
     field: u64,

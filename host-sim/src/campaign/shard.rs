@@ -23,6 +23,9 @@ impl Shard {
     pub const WHOLE: Self = Self { number: 1, of: 1 };
 
     /// Its fields, of so many.
+    ///
+    /// # Panics
+    /// Never: no shard ends after the last field.
     pub fn fields(self, of_all: u64) -> Range<u64> {
         let until = |shards: u64| {
             let fields = u128::from(of_all) * u128::from(shards) / u128::from(self.of);

@@ -103,7 +103,7 @@ impl Sorting {
         let mut bytes = Vec::with_capacity(1 << 16);
         for values in self.run.chunks(bytes.capacity() / BYTES) {
             bytes.clear();
-            values.iter().for_each(|value| bytes.extend(value.to_bytes()));
+            bytes.extend(values.iter().flat_map(|value| value.to_bytes()));
             file.write_all(&bytes)?;
         }
         (self.file, self.runs) = (Some(file), self.runs + 1);
@@ -144,9 +144,12 @@ pub(crate) struct Sorted {
     file: Option<File>,
     runs: Vec<Run>,
     /// The first value left of each run: its key, the run, the mark. Of equal ones the earlier run's comes first.
-    heads: BinaryHeap<Reverse<((u32, i64), usize, bool)>>,
+    heads: BinaryHeap<Reverse<Head>>,
     chunk: usize,
 }
+
+/// The key of a value, its run, and its mark.
+type Head = ((u32, i64), usize, bool);
 
 /// What is left of a run.
 #[derive(Debug)]

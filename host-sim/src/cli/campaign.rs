@@ -136,7 +136,7 @@ impl Opening for Begun<'_> {
                     recorded.push(go_on::<M>(&mut partial, &planners, &mut to_fly)?);
                 }
                 partial.announce();
-                Destination::Partial(partial, is_shard.then_some(record))
+                Destination::Partial(partial, is_shard.then(|| record.into()))
             };
             writer = Some(RowWriter::new(destination, &planners));
         }

@@ -43,7 +43,7 @@ pub(crate) fn merge(args: &MergeArgs) -> Result<String> {
     let shards = in_order(records.collect::<Result<_>>()?)?;
     let campaigns = shards[0].record.flags.campaigns()?;
     let planners = campaigns.planners();
-    tell(&campaigns, Shards { shards: &shards, planners, output }, args.format)
+    tell(&campaigns, Shards { recorded: &shards, planners, output }, args.format)
 }
 
 /// A shard as it was read.
@@ -98,15 +98,15 @@ fn in_order(mut shards: Vec<Recorded>) -> Result<Vec<Recorded>> {
 
 /// Shards that are to be put together.
 struct Shards<'a> {
-    shards: &'a [Recorded<'a>],
+    recorded: &'a [Recorded<'a>],
     planners: Planners,
     output: Option<Output>,
 }
 
 impl Opening for Shards<'_> {
     fn open<M: Measure>(self, measure: &M) -> Result<Passage<'_, M>> {
-        let Self { shards, planners, output } = self;
-        let recorded = shards.iter().map(|it| {
+        let Self { recorded, planners, output } = self;
+        let recorded = recorded.iter().map(|it| {
             let name = it.path.display().to_string();
             let from: Box<dyn Read> = Box::new(File::open(it.path).with_context(|| name.clone())?);
             RowReader::new(&name, from, &planners)

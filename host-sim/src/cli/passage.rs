@@ -1,6 +1,7 @@
 //! The way of a campaign's rows: out of files that have them already, then out of missions that are flown, in the
 //! order of planners and fields; into a file; and into the summary. None holds more than a few.
 
+use std::cmp::Ordering;
 use std::io::{self, Read, Write};
 use std::iter;
 use std::ops::Range;
@@ -17,7 +18,7 @@ use crate::output::partial::Partial;
 #[derive(Debug)]
 pub(crate) enum Destination {
     /// A file that grows beside its place, and the record that is to stand beside it for good.
-    Partial(Partial, Option<CampaignRecord>),
+    Partial(Partial, Option<Box<CampaignRecord>>),
     /// A file that nobody goes on with, or a stream.
     Output(Output),
 }
@@ -27,7 +28,7 @@ impl Destination {
     pub(crate) fn complete(self) -> Result<()> {
         match self {
             Self::Partial(partial, record) => partial.complete(|bytes| {
-                record.map(|it| json(&CampaignRecord { bytes: Some(bytes), ..it }))
+                record.map(|it| json(&CampaignRecord { bytes: Some(bytes), ..*it }))
             }),
             Self::Output(output) => output.complete(),
         }
@@ -63,12 +64,10 @@ impl ToFly {
     /// With which field a planner begins.
     fn first(&self, planner: usize) -> u64 {
         let (first, field) = self.from;
-        if planner < first {
-            self.fields.end
-        } else if planner == first {
-            field
-        } else {
-            self.fields.start
+        match planner.cmp(&first) {
+            Ordering::Less => self.fields.end,
+            Ordering::Equal => field,
+            Ordering::Greater => self.fields.start,
         }
     }
 }
