@@ -1,5 +1,7 @@
 //! `campaign`.
 
+#![allow(clippy::float_cmp)] // figures are the same to the last bit
+
 use std::fs;
 
 use serde_json::Value;

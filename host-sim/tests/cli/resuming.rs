@@ -31,7 +31,7 @@ fn kill_early(folder: &Path, args: &[&str]) {
         .stdout(Stdio::null())
         .spawn()
         .expect("it starts");
-    let until = Instant::now() + Duration::from_secs(60);
+    let until = Instant::now() + Duration::from_mins(1);
     while fs::metadata(folder.join(PARTIAL)).map_or(0, |found| found.len()) < 2_000 {
         assert!(Instant::now() < until, "waited in vain for rows");
         thread::sleep(Duration::from_millis(1));
