@@ -15,6 +15,7 @@ error is the angle between the estimated and the true line, in degrees; of ours 
 import argparse
 import csv
 import math
+import os
 import statistics
 import subprocess
 import sys
@@ -54,41 +55,40 @@ def angle(normal, truth):
 
 
 def by_modal(field, pool):
-    """Slope errors after so many labels, and the seconds of all queries."""
+    """Slope errors after so many labels, and the processor's seconds for all queries."""
     number = {name: float(value) for name, value in field.items()}
     places = np.array([[number[f"x{k}"], number[f"z{k}"]] for k in range(1, 5)])
     labels = np.array([int(number[f"label{k}"]) for k in range(1, 5)])
     truth = np.array([number["a"], number["b"]])
     left, errors, seconds = pool.copy(), {}, 0.0
-    began = time.perf_counter()
+    began = time.process_time()
     learner = ActiveLearner(LinearSvc(), margin_sampling, places, labels)
-    seconds += time.perf_counter() - began
+    seconds += time.process_time() - began
     for asked in range(1, max(LABELS) + 1):
-        began = time.perf_counter()
+        began = time.process_time()
         index, place = learner.query(left)
-        seconds += time.perf_counter() - began
+        seconds += time.process_time() - began
         label = np.where(place @ truth + number["c"] > 0, 1, -1)
         left = np.delete(left, index, axis=0)
-        began = time.perf_counter()
+        began = time.process_time()
         learner.teach(place, label)
-        seconds += time.perf_counter() - began
+        seconds += time.process_time() - began
         if asked in LABELS:
             errors[asked] = angle(learner.estimator.coef_[0], truth)
     return errors, seconds
 
 
 def by_us(program, planner, fields, folder):
-    """Slope errors of the centre after so many steps, and the seconds of a step: of the whole campaign on all cores,
-    with its measuring."""
+    """Slope errors of the centre after so many steps, and the processor's seconds for a step, with all that is
+    measured of it."""
     rows, steps = folder / f"{planner}.csv", max(LABELS)
-    began = time.perf_counter()
     before = children_seconds()
     subprocess.run(
         [program, "campaign", "--algorithm", planner, "--fields", str(fields), "--steps", str(steps), "--csv", rows],
         check=True,
         stdout=subprocess.DEVNULL,
     )
-    seconds = children_seconds() - before or time.perf_counter() - began
+    seconds = children_seconds() - before
     with open(rows, newline="") as file:
         found = [row for row in csv.DictReader(file) if int(row["step"]) in LABELS]
     errors = {at: [float(row["centre_deg"]) for row in found if int(row["step"]) == at] for at in LABELS}
@@ -96,13 +96,9 @@ def by_us(program, planner, fields, folder):
 
 
 def children_seconds():
-    """Seconds that cores have spent on programs that this one called; 0 where that is not told."""
-    try:
-        import resource
-    except ImportError:
-        return 0.0
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
+    """Seconds that processors have spent on programs that this one called."""
+    used = os.times()
+    return used.children_user + used.children_system
 
 
 def main():
@@ -135,7 +131,7 @@ def main():
             results.append((planner, *by_us(program, planner, len(fields), folder)))
     first, second = LABELS
     print(f"{len(fields)} standard fields, seed 1; scikit-learn {sklearn.__version__}, numpy {np.__version__}")
-    print(f"| planner | slope error, median (90th percentile) at {first} labels | at {second} | seconds a query |")
+    print(f"| planner | slope error, median (90th percentile) at {first} labels | at {second} | processor seconds a query |")
     print("| --- | --- | --- | --- |")
     for name, errors, seconds in results:
         cells = []
