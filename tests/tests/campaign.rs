@@ -17,6 +17,7 @@ fn campaign(algorithm: Algorithm, following: Following, steps: u32) -> Summary {
         algorithm,
         fields: 1000,
         steps,
+        every: false,
         seed: 1,
         crossing: Crossing::default(),
         following,
@@ -27,8 +28,8 @@ fn campaign(algorithm: Algorithm, following: Following, steps: u32) -> Summary {
         policy: Policy::default(),
         prior: Prior::default(),
     };
-    let ensemble = campaign.run(&Accuracy).expect("labels are true");
-    let summary = Summary::of(&campaign, ensemble);
+    let rows = campaign.run(&Accuracy).expect("there is room");
+    let summary = Summary::of(&campaign, rows).expect("labels are true");
     println!("{}", tables::accuracy(&summary));
     summary
 }
@@ -68,5 +69,5 @@ fn the_misclassified_area_falls_until_the_grid_can_hit_nothing_more() {
     }
     let ended: u64 = summary.ends.values().sum();
     assert_eq!(ended, summary.fields);
-    assert!(summary.ends.keys().all(|reason| ["steps", "resolution"].contains(reason)));
+    assert!(summary.ends.keys().all(|reason| ["steps", "resolution"].contains(&&**reason)));
 }

@@ -186,6 +186,7 @@ fn campaign(seed: u64, steps: u32, grid: Grid, noise: Option<NoiseModel>) -> Cam
         algorithm: Algorithm::Lookahead,
         fields: cases(100, 1_000),
         steps,
+        every: false,
         seed,
         crossing: Crossing::default(),
         following: Algorithm::Lookahead.following(),
@@ -205,8 +206,8 @@ const CHANCE: f64 = if LONG { 1.0 } else { 0.985 };
 fn true_labels_teach_what_they_should() {
     for seed in [1, 2] {
         let campaign = campaign(seed, 40, Grid::Fine, None);
-        let ensemble = campaign.run(&Accurate).expect("labels are true");
-        let summary = accuracy::Summary::of(&campaign, ensemble);
+        let rows = campaign.run(&Accurate).expect("there is room");
+        let summary = accuracy::Summary::of(&campaign, rows).expect("labels are true");
         println!("{}", tables::accuracy(&summary));
         let at = |step| summary.rows.iter().find(|row| row.step == step).expect("a mark");
         for (step, bits) in [(10, 0.955), (20, 0.97), (30, 0.95), (40, 0.94)] {
@@ -232,8 +233,9 @@ fn labels_that_may_be_wrong_teach_what_they_should() {
     for seed in if LONG { 1..=2 } else { 1..=1 } {
         for &p in reliabilities {
             let campaign = campaign(seed, 36, Grid::Fine, Some(noise(p)));
-            let ensemble = campaign.run(&Calibrated).expect("labels that are certain are true");
-            let summary = calibration::Summary::of(&campaign, ensemble);
+            let rows = campaign.run(&Calibrated).expect("there is room");
+            let summary = calibration::Summary::of(&campaign, rows)
+                .expect("labels that are certain are true");
             println!("{}", tables::calibration(&summary));
             let at = |labels| summary.rows.iter().find(|row| row.labels == labels).expect("a mark");
             let shares = if p > 0.85 { [0.94; 3] } else { [0.96, 0.97, 0.97] };

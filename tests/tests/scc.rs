@@ -228,6 +228,7 @@ fn campaign(algorithm: Algorithm, fields: u64, steps: u32, policy: Policy) -> Su
         algorithm,
         fields,
         steps,
+        every: false,
         seed: 1,
         crossing: Crossing::default(),
         following: algorithm.following(),
@@ -238,8 +239,8 @@ fn campaign(algorithm: Algorithm, fields: u64, steps: u32, policy: Policy) -> Su
         policy,
         prior: Prior::Area,
     };
-    let ensemble = campaign.run(&Calibrated).expect("no trusted label");
-    let summary = Summary::of(&campaign, ensemble);
+    let rows = campaign.run(&Calibrated).expect("there is room");
+    let summary = Summary::of(&campaign, rows).expect("no trusted label");
     println!("{}", tables::calibration(&summary));
     summary
 }

@@ -2,12 +2,15 @@
 
 use std::collections::BTreeMap;
 
+use anyhow::Result;
 use planner_core::geometry::line::Line;
 use planner_core::geometry::local_line::LocalLine;
 use planner_core::motion::dynamics::Dynamics as _;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
-use crate::campaign::ensemble::{Campaign, Ensemble, Measure, Progress, Tally};
+use crate::campaign::course::Tally;
+use crate::campaign::ensemble::{self, Campaign, Measure, Measured, Progress};
+use crate::campaign::sorting::{Sorting, Value};
 use crate::campaign::spread::Spread;
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::Mission;
@@ -22,7 +25,7 @@ const STEPS: [u32; 8] = [1, 2, 5, 10, 20, 30, 40, 60];
 pub struct Accuracy;
 
 /// What was known after some steps of one mission.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Checkpoint {
     field: u64,
     step: u32,
@@ -77,7 +80,7 @@ pub struct Summary {
     /// The ensemble as steps go by.
     pub rows: Vec<Row>,
     /// How many missions ended for which reason.
-    pub ends: BTreeMap<&'static str, u64>,
+    pub ends: BTreeMap<String, u64>,
     /// How many steps climbed to which rung of the recovery ladder.
     pub recoveries: BTreeMap<&'static str, u64>,
     /// Motions planned.
@@ -88,9 +91,16 @@ pub struct Summary {
     pub most_examined: u32,
     /// The size of the action set.
     pub actions: u64,
-    /// Of each mission and stage.
-    #[serde(skip)]
-    pub(crate) checkpoints: Vec<Checkpoint>,
+}
+
+impl ensemble::Checkpoint for Checkpoint {
+    fn field(&self) -> u64 {
+        self.field
+    }
+
+    fn stage(&self) -> u32 {
+        self.step
+    }
 }
 
 impl Measure for Accuracy {
@@ -110,7 +120,7 @@ impl Measure for Accuracy {
         mission: &Mission,
         belief: &dyn ReadOut,
         progress: &Progress,
-    ) -> Checkpoint {
+    ) -> Option<Checkpoint> {
         let estimates = belief.estimates();
         let errors =
             |estimate: Option<LocalLine>| match (estimate.map(Line::from), mission.world.line()) {
@@ -122,7 +132,7 @@ impl Measure for Accuracy {
         let (centre_deg, centre_misclassified) = errors(estimates.centre);
         let (maximum_margin_deg, maximum_margin_misclassified) = errors(estimates.maximum_margin);
         let (bisector_deg, bisector_misclassified) = errors(estimates.bisector);
-        Checkpoint {
+        Some(Checkpoint {
             field: progress.field,
             step: progress.steps,
             bits: belief.information(),
@@ -134,7 +144,7 @@ impl Measure for Accuracy {
             bisector_misclassified,
             control_cost: progress.control_cost,
             metres: progress.metres,
-        }
+        })
     }
 
     fn held(&self, end: &Progress, stage: u32) -> Option<Progress> {
@@ -142,45 +152,101 @@ impl Measure for Accuracy {
     }
 }
 
+/// What of a checkpoint spreads, in the order of the row's columns.
+const SPREAD: [fn(&Checkpoint) -> f64; 6] = [
+    |it| it.centre_deg,
+    |it| it.maximum_margin_deg,
+    |it| it.bisector_deg,
+    |it| it.centre_misclassified,
+    |it| it.maximum_margin_misclassified,
+    |it| it.bisector_misclassified,
+];
+
+/// Sums over the missions at one stage.
+#[derive(Debug, Default)]
+struct Sums {
+    missions: u64,
+    bits: f64,
+    control_cost: f64,
+    metres: f64,
+}
+
 impl Summary {
-    /// What a campaign came to.
-    pub fn of(campaign: &Campaign, ensemble: Ensemble<Checkpoint>) -> Self {
-        let Ensemble { checkpoints, tally } = ensemble;
+    /// What a campaign came to, from its rows in the order of the fields. Few of them are held at a time.
+    ///
+    /// # Errors
+    /// The first of the rows', or when a temporary file cannot be written.
+    pub fn of(
+        campaign: &Campaign,
+        rows: impl IntoIterator<Item = Result<Measured<Checkpoint>>>,
+    ) -> Result<Self> {
+        let (mut stages, mut tally) = (BTreeMap::<u32, Sums>::new(), Tally::default());
+        let mut sorting = Sorting::default();
+        for row in rows {
+            let Measured { checkpoint, course } = row?;
+            stages.entry(checkpoint.step).or_default().add(&checkpoint);
+            for (slot, pick) in (SPREAD.len() as u32 * checkpoint.step..).zip(SPREAD) {
+                sorting.push(Value::new(slot, pick(&checkpoint), false))?;
+            }
+            if checkpoint.step == campaign.steps {
+                tally.add(&course);
+            }
+        }
+        let mut sorted = sorting.sorted()?;
+        let rows = stages.iter().map(|(&step, sums)| {
+            let mut spreads = [Spread::default(); SPREAD.len()];
+            for spread in &mut spreads {
+                *spread = Spread::of(&mut sorted, sums.missions)?;
+            }
+            Ok(sums.row(step, spreads))
+        });
+        let rows = rows.collect::<Result<_>>()?;
         let Tally { ends, recoveries, plans, examined, most_examined } = tally;
-        let stages = Accuracy.stages(campaign.steps).len();
-        let after = |stage: usize| checkpoints.iter().map(|of| of[stage]).collect::<Vec<_>>();
-        Self {
+        Ok(Self {
             algorithm: campaign.algorithm,
             fields: campaign.fields,
             seed: campaign.seed,
             vehicle: VehicleTable::of(campaign.vehicle),
-            rows: (0..stages).map(|stage| row(&after(stage))).collect(),
+            rows,
             ends,
             recoveries,
             plans,
             mean_examined: examined as f64 / plans as f64,
             most_examined,
             actions: campaign.vehicle.grid().actions(),
-            checkpoints: checkpoints.into_iter().flatten().collect(),
-        }
+        })
     }
 }
 
-fn row(checkpoints: &[Checkpoint]) -> Row {
-    let spread = |pick: fn(&Checkpoint) -> f64| Spread::of(checkpoints.iter().map(pick));
-    let n = checkpoints.len() as f64;
-    let mean = |pick: fn(&Checkpoint) -> f64| checkpoints.iter().map(pick).sum::<f64>() / n;
-    let step = checkpoints.first().map_or(0, |m| m.step);
-    Row {
-        step,
-        bits_per_step: mean(|m| m.bits) / f64::from(step),
-        centre_deg: spread(|m| m.centre_deg),
-        maximum_margin_deg: spread(|m| m.maximum_margin_deg),
-        bisector_deg: spread(|m| m.bisector_deg),
-        centre_misclassified: spread(|m| m.centre_misclassified),
-        maximum_margin_misclassified: spread(|m| m.maximum_margin_misclassified),
-        bisector_misclassified: spread(|m| m.bisector_misclassified),
-        control_cost: mean(|m| m.control_cost),
-        metres: mean(|m| m.metres),
+impl Sums {
+    fn add(&mut self, checkpoint: &Checkpoint) {
+        self.missions += 1;
+        self.bits += checkpoint.bits;
+        self.control_cost += checkpoint.control_cost;
+        self.metres += checkpoint.metres;
+    }
+
+    fn row(&self, step: u32, spreads: [Spread; SPREAD.len()]) -> Row {
+        let mean = |sum: f64| sum / self.missions as f64;
+        let [
+            centre_deg,
+            maximum_margin_deg,
+            bisector_deg,
+            centre_misclassified,
+            maximum_margin_misclassified,
+            bisector_misclassified,
+        ] = spreads;
+        Row {
+            step,
+            bits_per_step: mean(self.bits) / f64::from(step),
+            centre_deg,
+            maximum_margin_deg,
+            bisector_deg,
+            centre_misclassified,
+            maximum_margin_misclassified,
+            bisector_misclassified,
+            control_cost: mean(self.control_cost),
+            metres: mean(self.metres),
+        }
     }
 }

@@ -1,13 +1,17 @@
 //! What labels that may err tell of what they can tell, and whether the probabilities that are stated hold.
 
+use std::collections::BTreeMap;
+
+use anyhow::Result;
 use planner_core::belief::hypotheses::Hypothesis;
 use planner_core::belief::posterior::Posterior;
 use planner_core::belief::sample::Sample;
 use planner_core::belief::weight::Prior;
 use planner_core::geometry::line::Line;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
-use crate::campaign::ensemble::{Campaign, Ensemble, Measure, Progress};
+use crate::campaign::ensemble::{self, Campaign, Measure, Measured, Progress};
+use crate::campaign::sorting::{Sorted, Sorting, Value};
 use crate::campaign::spread::Spread;
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::{Mission, Table};
@@ -22,19 +26,20 @@ pub struct Calibrated;
 const LABELS: [u32; 6] = [1, 5, 10, 20, 30, 60];
 
 /// Bins of stated probabilities, each with as many missions.
-const BINS: usize = 5;
+const BINS: u64 = 5;
 
 /// What a posterior states of one mission, and whether it is so.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct Statement {
+#[derive(Clone, Copy, Debug)]
+struct Statement {
     credible_probability: f64,
     credible_holds: bool,
     best_probability: f64,
     best_holds: bool,
 }
 
-/// What was known after some labels of one mission.
-#[derive(Clone, Copy, Debug, Serialize)]
+/// What was known after some labels of one mission. Statements are by the area prior and by the paper's.
+#[allow(clippy::struct_excessive_bools)] // columns of a row, which has no nesting
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Checkpoint {
     field: u64,
     labels: u32,
@@ -44,8 +49,14 @@ pub struct Checkpoint {
     pruned_mass: f64,
     mean_deg: f64,
     control_cost: f64,
-    #[serde(skip)]
-    by_prior: [Statement; 2],
+    area_credible_probability: f64,
+    area_credible_holds: bool,
+    area_best_probability: f64,
+    area_best_holds: bool,
+    paper_credible_probability: f64,
+    paper_credible_holds: bool,
+    paper_best_probability: f64,
+    paper_best_holds: bool,
 }
 
 /// How often what is stated is so, by one prior.
@@ -108,13 +119,40 @@ pub struct Summary {
     pub limit: f64,
     /// The ensemble as labels come in.
     pub rows: Vec<Row>,
-    /// Of each mission and stage.
-    #[serde(skip)]
-    pub(crate) checkpoints: Vec<Checkpoint>,
+}
+
+impl ensemble::Checkpoint for Checkpoint {
+    fn field(&self) -> u64 {
+        self.field
+    }
+
+    fn stage(&self) -> u32 {
+        self.labels
+    }
+}
+
+impl Checkpoint {
+    /// By the area prior and by the paper's.
+    fn statements(&self) -> [Statement; 2] {
+        [
+            Statement {
+                credible_probability: self.area_credible_probability,
+                credible_holds: self.area_credible_holds,
+                best_probability: self.area_best_probability,
+                best_holds: self.area_best_holds,
+            },
+            Statement {
+                credible_probability: self.paper_credible_probability,
+                credible_holds: self.paper_credible_holds,
+                best_probability: self.paper_best_probability,
+                best_holds: self.paper_best_holds,
+            },
+        ]
+    }
 }
 
 impl Measure for Calibrated {
-    type Checkpoint = Option<Checkpoint>;
+    type Checkpoint = Checkpoint;
 
     fn stages(&self, _: u32) -> Vec<u32> {
         LABELS.to_vec()
@@ -147,6 +185,7 @@ impl Measure for Calibrated {
                 best_holds: holds(best.hypothesis),
             }
         };
+        let [area, paper] = [Prior::Area, Prior::Sequences].map(statement);
         let error = |line| mission.world.line().map(|truth| Line::from(line).angle_to_deg(truth));
         Some(Checkpoint {
             field: progress.field,
@@ -157,7 +196,14 @@ impl Measure for Calibrated {
             pruned_mass: by_area.pruned_mass(),
             mean_deg: by_area.mean().and_then(error).unwrap_or(90.0),
             control_cost: progress.control_cost,
-            by_prior: [Prior::Area, Prior::Sequences].map(statement),
+            area_credible_probability: area.credible_probability,
+            area_credible_holds: area.credible_holds,
+            area_best_probability: area.best_probability,
+            area_best_holds: area.best_holds,
+            paper_credible_probability: paper.credible_probability,
+            paper_credible_holds: paper.credible_holds,
+            paper_best_probability: paper.best_probability,
+            paper_best_holds: paper.best_holds,
         })
     }
 
@@ -166,20 +212,61 @@ impl Measure for Calibrated {
     }
 }
 
+/// Sums over the missions at one stage.
+#[derive(Debug, Default)]
+struct Sums {
+    missions: u64,
+    bits: f64,
+    expected_bits: f64,
+    hypotheses: f64,
+    pruned_mass: f64,
+    control_cost: f64,
+    by_prior: [StatementSums; 2],
+}
+
+/// Sums over what one prior states.
+#[derive(Clone, Copy, Debug, Default)]
+struct StatementSums {
+    credible_probability: f64,
+    credible_holds: f64,
+}
+
+/// What is sorted at a stage: the slope error, and the best hypothesis's probability by either prior, each marked with
+/// whether it holds the truth.
+const SORTED: u32 = 3;
+
 impl Summary {
-    /// What a campaign came to.
-    pub fn of(campaign: &Campaign, ensemble: Ensemble<Option<Checkpoint>>) -> Self {
+    /// What a campaign came to, from its rows in the order of the fields. Few of them are held at a time.
+    ///
+    /// # Errors
+    /// The first of the rows', or when a temporary file cannot be written.
+    pub fn of(
+        campaign: &Campaign,
+        rows: impl IntoIterator<Item = Result<Measured<Checkpoint>>>,
+    ) -> Result<Self> {
         let &Campaign { algorithm, fields, seed, noise, .. } = campaign;
         let p = noise.map_or(1.0, |noise| noise.p);
-        let checkpoints: Vec<_> = ensemble.checkpoints.into_iter().flatten().flatten().collect();
-        let rows = LABELS.iter().filter_map(|&labels| {
-            let of: Vec<_> = checkpoints.iter().filter(|m| m.labels == labels).copied().collect();
-            (!of.is_empty()).then(|| row(labels, limit(p), &of))
-        });
+        let (mut stages, mut sorting) = (BTreeMap::<u32, Sums>::new(), Sorting::default());
+        for row in rows {
+            let Measured { checkpoint, .. } = row?;
+            stages.entry(checkpoint.labels).or_default().add(&checkpoint);
+            let [area, paper] = checkpoint.statements();
+            let slots = SORTED * checkpoint.labels..;
+            for (slot, (value, mark)) in slots.zip([
+                (checkpoint.mean_deg, false),
+                (area.best_probability, area.best_holds),
+                (paper.best_probability, paper.best_holds),
+            ]) {
+                sorting.push(Value::new(slot, value, mark))?;
+            }
+        }
+        let mut sorted = sorting.sorted()?;
+        let rows = stages.iter().map(|(&labels, sums)| sums.row(labels, limit(p), &mut sorted));
+        let rows = rows.collect::<Result<_>>()?;
         let title =
             format!("{}, {fields} standard fields, seed {seed}, p = {p}", algorithm.title());
-        let (vehicle, rows) = (VehicleTable::of(campaign.vehicle), rows.collect());
-        Self { title, algorithm, fields, seed, vehicle, p, limit: limit(p), rows, checkpoints }
+        let vehicle = VehicleTable::of(campaign.vehicle);
+        Ok(Self { title, algorithm, fields, seed, vehicle, p, limit: limit(p), rows })
     }
 }
 
@@ -195,45 +282,67 @@ fn expected(mission: &Mission, table: &Table) -> f64 {
     told.sum()
 }
 
-fn row(labels: u32, limit: f64, checkpoints: &[Checkpoint]) -> Row {
-    let n = checkpoints.len() as f64;
-    let mean = |pick: fn(&Checkpoint) -> f64| checkpoints.iter().map(pick).sum::<f64>() / n;
-    let (bits, expected_bits) = (mean(|m| m.bits), mean(|m| m.expected_bits));
-    // Of nothing there is no share.
-    let share = |bits: f64| (limit > 0.0).then(|| bits / f64::from(labels) / limit);
-    Row {
-        labels,
-        missions: checkpoints.len() as u64,
-        bits,
-        share: share(bits),
-        expected_bits,
-        expected_share: share(expected_bits),
-        hypotheses: mean(|m| m.hypotheses as f64),
-        pruned_mass: checkpoints.iter().map(|m| m.pruned_mass).fold(0.0, f64::max),
-        mean_deg: Spread::of(checkpoints.iter().map(|m| m.mean_deg)),
-        control_cost: mean(|m| m.control_cost),
-        calibration: [0, 1].map(|prior| {
-            let of = checkpoints.iter().map(|m| m.by_prior[prior]);
-            calibration(&of.collect::<Vec<_>>())
-        }),
+/// 1 for what holds, so that sums count.
+fn share(holds: bool) -> f64 {
+    f64::from(u8::from(holds))
+}
+
+impl Sums {
+    fn add(&mut self, checkpoint: &Checkpoint) {
+        self.missions += 1;
+        self.bits += checkpoint.bits;
+        self.expected_bits += checkpoint.expected_bits;
+        self.hypotheses += checkpoint.hypotheses as f64;
+        self.pruned_mass = self.pruned_mass.max(checkpoint.pruned_mass);
+        self.control_cost += checkpoint.control_cost;
+        for (sums, statement) in self.by_prior.iter_mut().zip(checkpoint.statements()) {
+            sums.credible_probability += statement.credible_probability;
+            sums.credible_holds += share(statement.credible_holds);
+        }
+    }
+
+    fn row(&self, labels: u32, limit: f64, sorted: &mut Sorted) -> Result<Row> {
+        let mean = |sum: f64| sum / self.missions as f64;
+        let (bits, expected_bits) = (mean(self.bits), mean(self.expected_bits));
+        // Of nothing there is no share.
+        let share = |bits: f64| (limit > 0.0).then(|| bits / f64::from(labels) / limit);
+        Ok(Row {
+            labels,
+            missions: self.missions,
+            bits,
+            share: share(bits),
+            expected_bits,
+            expected_share: share(expected_bits),
+            hypotheses: mean(self.hypotheses),
+            pruned_mass: self.pruned_mass,
+            mean_deg: Spread::of(sorted, self.missions)?,
+            control_cost: mean(self.control_cost),
+            calibration: [
+                calibration(self.by_prior[0], self.missions, sorted)?,
+                calibration(self.by_prior[1], self.missions, sorted)?,
+            ],
+        })
     }
 }
 
-fn calibration(statements: &[Statement]) -> Calibration {
-    let n = statements.len() as f64;
-    let share = |holds: bool| f64::from(u8::from(holds));
-    let mut sorted = statements.to_vec();
-    sorted.sort_by(|a, b| a.best_probability.total_cmp(&b.best_probability));
-    let bin = |of: &[Statement]| {
-        let n = of.len() as f64;
-        let stated = of.iter().map(|s| s.best_probability).sum::<f64>() / n;
-        let holds = of.iter().map(|s| share(s.best_holds)).sum::<f64>() / n;
-        (of.len() as u64, stated, holds)
-    };
-    let best = sorted.chunks(sorted.len().div_ceil(BINS)).map(bin);
-    Calibration {
-        coverage: statements.iter().map(|s| share(s.credible_holds)).sum::<f64>() / n,
-        stated: statements.iter().map(|s| s.credible_probability).sum::<f64>() / n,
-        best: best.collect(),
+/// From the sums and the next so many sorted probabilities.
+fn calibration(sums: StatementSums, missions: u64, sorted: &mut Sorted) -> Result<Calibration> {
+    let size = missions.div_ceil(BINS);
+    let mut best = Vec::new();
+    for start in (0..missions).step_by(size as usize) {
+        let n = size.min(missions - start);
+        let (mut stated, mut holds) = (0.0, 0.0);
+        for value in sorted.take(n as usize) {
+            let value = value?;
+            stated += value.value();
+            holds += share(value.is_marked);
+        }
+        best.push((n, stated / n as f64, holds / n as f64));
     }
+    let n = missions as f64;
+    Ok(Calibration {
+        coverage: sums.credible_holds / n,
+        stated: sums.credible_probability / n,
+        best,
+    })
 }

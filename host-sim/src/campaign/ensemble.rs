@@ -1,28 +1,37 @@
 //! A campaign: one mission in each of many standard fields, on all cores, and what is measured of it.
 
-use std::collections::BTreeMap;
+use std::fmt::Debug;
+use std::ops::Range;
+use std::vec;
 
 use anyhow::{Context as _, Result};
-use indicatif::{ParallelProgressIterator as _, ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 use planner_core::belief::sample::Reading;
 use planner_core::belief::tolerance::Tolerance;
 use planner_core::belief::weight::Prior;
 use planner_core::motion::any_vehicle::AnyVehicle;
 use planner_core::planner::config::{Crossing, Following};
 use planner_core::planner::scc::Policy;
-use planner_core::robot::agent::Step;
 use rayon::prelude::*;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
+use crate::campaign::course::Course;
 use crate::campaign::standard_field;
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::Mission;
 use crate::mission::flight::Flown;
 use crate::mission::read_out::ReadOut;
-use crate::mission::results::{cost, recovery_name};
+use crate::mission::results::cost;
 use crate::mission::scenario;
 use crate::mission::vehicle::{self, Source};
+use crate::output::notes::progress;
 use crate::world::errors::Errors;
 use crate::world::noise::NoiseModel;
+
+/// Missions that a core flies between two hand-overs of rows: so many that cores hardly wait for each other, and so
+/// few that little is held.
+const BLOCK: u64 = 32;
 
 /// What to run.
 #[derive(Clone, Copy, Debug)]
@@ -33,6 +42,8 @@ pub struct Campaign {
     pub fields: u64,
     /// Steps in each.
     pub steps: u32,
+    /// Whether missions are measured at every stage, and not only at those that tables have.
+    pub every: bool,
     /// Seed of the ensemble.
     pub seed: u64,
     /// How P1 looks for the opposite label.
@@ -71,7 +82,7 @@ pub struct Progress {
 /// What is measured of every mission of a campaign.
 pub trait Measure: Sync {
     /// What is taken down at some stage of a mission.
-    type Checkpoint: Send;
+    type Checkpoint: Checkpoint;
 
     /// The stages at which missions of so many steps are compared, in rising order.
     fn stages(&self, steps: u32) -> Vec<u32>;
@@ -79,95 +90,80 @@ pub trait Measure: Sync {
     /// The stage that a mission has come to.
     fn stage(&self, progress: &Progress) -> u32;
 
-    /// What is taken down when a mission comes to one of these stages.
+    /// What is taken down when a mission comes to one of these stages; `None` if it does not count.
     fn checkpoint(
         &self,
         mission: &Mission,
         belief: &dyn ReadOut,
         progress: &Progress,
-    ) -> Self::Checkpoint;
+    ) -> Option<Self::Checkpoint>;
 
     /// How far a mission that ended is to be taken to have come at a stage that it did not reach;
     /// `None` if it does not count there.
     fn held(&self, end: &Progress, stage: u32) -> Option<Progress>;
 }
 
-/// What came of a campaign.
+/// What is taken down at some stage of a mission.
+pub trait Checkpoint: Clone + Debug + Default + Send + Serialize + DeserializeOwned {
+    /// The number of the mission's field.
+    fn field(&self) -> u64;
+
+    /// The stage.
+    fn stage(&self) -> u32;
+}
+
+/// A row: what was known at some stage of a mission, and how it had gone so far.
 #[derive(Clone, Debug)]
-pub struct Ensemble<M> {
-    /// What was taken down of each mission.
-    pub checkpoints: Vec<Vec<M>>,
-    /// How the missions went.
-    pub tally: Tally,
-}
-
-/// How missions went.
-#[derive(Clone, Debug, Default)]
-pub struct Tally {
-    /// How many ended for which reason.
-    pub ends: BTreeMap<&'static str, u64>,
-    /// How many steps climbed to which rung of the recovery ladder.
-    pub recoveries: BTreeMap<&'static str, u64>,
-    /// Motions planned.
-    pub plans: u64,
-    /// Actions whose position they looked at.
-    pub examined: u64,
-    /// The most that one plan looked at.
-    pub most_examined: u32,
-}
-
-impl Tally {
-    fn count(&mut self, step: &Step) {
-        self.plans += 1;
-        self.examined += u64::from(step.motion.examined);
-        self.most_examined = self.most_examined.max(step.motion.examined);
-        if let Some(recovery) = step.motion.recovery {
-            *self.recoveries.entry(recovery_name(recovery)).or_default() += 1;
-        }
-    }
-
-    fn add(&mut self, other: Self) {
-        for (mine, theirs) in
-            [(&mut self.ends, other.ends), (&mut self.recoveries, other.recoveries)]
-        {
-            for (name, count) in theirs {
-                *mine.entry(name).or_default() += count;
-            }
-        }
-        self.plans += other.plans;
-        self.examined += other.examined;
-        self.most_examined = self.most_examined.max(other.most_examined);
-    }
+pub struct Measured<C> {
+    /// What was known.
+    pub checkpoint: C,
+    /// How it had gone.
+    pub course: Course,
 }
 
 impl Campaign {
-    /// Runs all fields on all cores, with a progress bar on a terminal.
+    /// Flies all fields on all cores, with a progress bar on a terminal.
     ///
     /// # Errors
-    /// When the vehicle cannot move in the standard area. Names the field in which a sample contradicted what was
-    /// known: never, as labels are true where they are trusted.
-    pub fn run<M: Measure>(&self, measure: &M) -> Result<Ensemble<M::Checkpoint>> {
-        vehicle::check_room(Source::Flags, &self.vehicle, &self.mission(0).config)?;
-        let style = "{msg}  {bar:40} {pos}/{len} fields  {per_sec}  {eta} left";
-        let bar = ProgressBar::new(self.fields)
-            .with_style(ProgressStyle::with_template(style)?)
-            .with_message(self.algorithm.title());
-        let of_each: Vec<_> = (0..self.fields)
-            .into_par_iter()
-            .progress_with(bar.clone())
-            .map(|number| self.measured(measure, number).with_context(|| format!("field {number}")))
-            .collect::<Result<_>>()?;
-        bar.finish_and_clear();
-        let mut ensemble = Ensemble { checkpoints: Vec::new(), tally: Tally::default() };
-        for (checkpoints, tally) in of_each {
-            ensemble.checkpoints.push(checkpoints);
-            ensemble.tally.add(tally);
-        }
-        Ok(ensemble)
+    /// As [`fly`](Self::fly).
+    pub fn run<'a, M: Measure>(&'a self, measure: &'a M) -> Result<Flight<'a, M>> {
+        self.fly(measure, 0..self.fields, 0)
+    }
+
+    /// Flies those of a block of fields that are left: all from one of them on.
+    ///
+    /// # Errors
+    /// When the vehicle cannot move in the standard area.
+    pub fn fly<'a, M: Measure>(
+        &'a self,
+        measure: &'a M,
+        block: Range<u64>,
+        from: u64,
+    ) -> Result<Flight<'a, M>> {
+        self.check()?;
+        let bar = progress(block.end - block.start, "fields")?.with_message(self.algorithm.title());
+        // What was flown before says nothing of how fast it goes now.
+        bar.set_position(from - block.start);
+        bar.reset_eta();
+        Ok(Flight {
+            campaign: self,
+            measure,
+            left: from..block.end,
+            flown: Vec::new().into_iter(),
+            bar,
+        })
+    }
+
+    /// Whether the vehicle can move in the standard area.
+    ///
+    /// # Errors
+    /// Names it, the area, and how much it needs.
+    pub fn check(&self) -> Result<()> {
+        vehicle::check_room(Source::Flags, &self.vehicle, &self.mission(0).config)
     }
 
     /// The mission in the field with this number.
-    fn mission(&self, number: u64) -> Mission {
+    pub fn mission(&self, number: u64) -> Mission {
         let mut mission = standard_field::standard(self.seed, number, self.algorithm, self.steps);
         (mission.config.crossing, mission.config.following) = (self.crossing, self.following);
         (mission.vehicle, mission.errors) = (self.vehicle, self.errors);
@@ -176,30 +172,93 @@ impl Campaign {
         mission
     }
 
+    fn stages<M: Measure>(&self, measure: &M) -> Vec<u32> {
+        if self.every { (1..=self.steps).collect() } else { measure.stages(self.steps) }
+    }
+
     fn measured<M: Measure>(
         &self,
         measure: &M,
         number: u64,
-    ) -> Result<(Vec<M::Checkpoint>, Tally)> {
+    ) -> Result<Vec<Measured<M::Checkpoint>>> {
         let mission = self.mission(number);
         let (tolerance, area) = (mission.config.tolerance, mission.config.area);
         scenario::check_tolerance("--tolerance", tolerance, &mission.given, &area)?;
-        let (mut checkpoints, mut tally) = (Vec::new(), Tally::default());
+        let (mut rows, mut course) = (Vec::new(), Course::default());
         let mut now = Progress { field: number, ..Progress::default() };
-        let mut stages = measure.stages(self.steps).into_iter().peekable();
+        let mut stages = self.stages(measure).into_iter().peekable();
         let Flown { ending, belief } = mission.fly(|step, belief| {
             now.steps += 1;
             now.labels += u32::from(matches!(step.reading, Some(Reading::Side(_))));
             now.control_cost += cost(step.motion.control);
             now.metres += f64::from(step.motion.control.v);
+            course.count(step);
             if stages.next_if_eq(&measure.stage(&now)).is_some() {
-                checkpoints.push(measure.checkpoint(&mission, belief, &now));
+                let checkpoint = measure.checkpoint(&mission, belief, &now);
+                let row = checkpoint.map(|it| Measured { checkpoint: it, course: course.clone() });
+                rows.extend(row);
             }
-            tally.count(step);
         })?;
         let held = stages.filter_map(|stage| measure.held(&now, stage));
-        checkpoints.extend(held.map(|progress| measure.checkpoint(&mission, &*belief, &progress)));
-        tally.ends.insert(ending.name(), 1);
-        Ok((checkpoints, tally))
+        rows.extend(held.filter_map(|progress| {
+            let checkpoint = measure.checkpoint(&mission, &*belief, &progress)?;
+            Some(Measured { checkpoint, course: course.clone() })
+        }));
+        for row in &mut rows {
+            ending.name().clone_into(&mut row.course.ended);
+        }
+        Ok(rows)
+    }
+}
+
+/// A campaign that is being flown: its rows in the order of the fields, each an error that names the field in which
+/// a sample contradicted what was known. That never happens, as labels are true where they are trusted.
+#[derive(Debug)]
+pub struct Flight<'a, M: Measure> {
+    campaign: &'a Campaign,
+    measure: &'a M,
+    /// The fields that are still to be flown.
+    left: Range<u64>,
+    /// The rows of those flown last.
+    flown: vec::IntoIter<Measured<M::Checkpoint>>,
+    bar: ProgressBar,
+}
+
+impl<M: Measure> Flight<'_, M> {
+    /// The rows of the next fields, flown on all cores.
+    fn next_block(&mut self) -> Result<Vec<Measured<M::Checkpoint>>> {
+        let fields = BLOCK * rayon::current_num_threads() as u64;
+        let block = self.left.start..self.left.end.min(self.left.start.saturating_add(fields));
+        self.left.start = block.end;
+        let rows = block.into_par_iter().map(|number| {
+            let rows = self.campaign.measured(self.measure, number);
+            self.bar.inc(1);
+            rows.with_context(|| format!("field {number}"))
+        });
+        let rows = rows.collect::<Result<Vec<_>>>()?;
+        Ok(rows.into_iter().flatten().collect())
+    }
+}
+
+impl<M: Measure> Iterator for Flight<'_, M> {
+    type Item = Result<Measured<M::Checkpoint>>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            if let Some(row) = self.flown.next() {
+                return Some(Ok(row));
+            }
+            if self.left.is_empty() {
+                self.bar.finish_and_clear();
+                return None;
+            }
+            match self.next_block() {
+                Ok(rows) => self.flown = rows.into_iter(),
+                Err(error) => {
+                    self.left.start = self.left.end;
+                    return Some(Err(error));
+                }
+            }
+        }
     }
 }

@@ -1,7 +1,13 @@
-//! Many missions over standard fields, on all cores, and what they come to.
+//! Many missions over standard fields, on all cores, and what they come to: a row of each mission and stage, and a
+//! summary of the rows.
 
 pub mod accuracy;
 pub mod calibration;
+pub mod course;
 pub mod ensemble;
+pub mod field_record;
+pub mod rows;
+pub mod shard;
+mod sorting;
 pub mod spread;
 pub mod standard_field;

@@ -1,9 +1,12 @@
 //! How figures of an ensemble spread.
 
+use anyhow::{Context as _, Result};
 use serde::Serialize;
 
+use crate::campaign::sorting::Sorted;
+
 /// Median, 90th percentile and worst.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Spread {
     /// Half are at most this.
     pub median: f64,
@@ -14,13 +17,21 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Of at least one value.
-    pub(crate) fn of(values: impl Iterator<Item = f64>) -> Self {
-        let mut values: Vec<_> = values.collect();
-        values.sort_by(f64::total_cmp);
+    /// Of the next so many values, at least one.
+    pub(crate) fn of(values: &mut Sorted, n: u64) -> Result<Self> {
         // Nearest rank: the smallest value that at least this share do not exceed.
-        let rank = |tenths: usize| values[(values.len() * tenths).div_ceil(10).max(1) - 1];
-        Self { median: rank(5), p90: rank(9), worst: rank(10) }
+        let ranks = [5, 9, 10].map(|tenths| (n * tenths).div_ceil(10).max(1));
+        let mut spread = [0.0; 3];
+        for rank in 1..=n {
+            let value = values.next().context("a value is missing")??.value();
+            for (figure, of) in spread.iter_mut().zip(ranks) {
+                if rank == of {
+                    *figure = value;
+                }
+            }
+        }
+        let [median, p90, worst] = spread;
+        Ok(Self { median, p90, worst })
     }
 
     /// The same in another unit.

@@ -1,7 +1,7 @@
 //! The command line: what can be asked. The contract is in ARCHITECTURE.md; each command has a file of its own.
 
 use anyhow::Result;
-use clap::{Parser, Subcommand, ValueEnum};
+use clap::{Parser, Subcommand};
 
 use crate::cli::campaign::{CampaignArgs, campaign};
 use crate::cli::completions::{Completions, completions};
@@ -37,7 +37,7 @@ pub(crate) enum Command {
     /// Say what samples determine that were recorded elsewhere
     Replay(ReplayArgs),
     /// Run the standard fields and print tables
-    Campaign(CampaignArgs),
+    Campaign(Box<CampaignArgs>),
     /// Draw the paper's figures from what is computed here
     Figure(FigureArgs),
     /// Have a board, or its firmware under emulation, fly a mission
@@ -46,15 +46,6 @@ pub(crate) enum Command {
     Init(Init),
     /// Print a script by which a shell completes commands and flags
     Completions(Completions),
-}
-
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Format {
-    /// For people
-    #[default]
-    Text,
-    /// For programs
-    Json,
 }
 
 impl Cli {
@@ -72,7 +63,7 @@ impl Cli {
             None => paper::tell(),
             Some(Command::Run(args)) => run(&args),
             Some(Command::Replay(args)) => replay(&args),
-            Some(Command::Campaign(args)) => campaign(&args),
+            Some(Command::Campaign(args)) => campaign(*args),
             Some(Command::Figure(args)) => figure(&args),
             Some(Command::Hil(args)) => hil(&args),
             Some(Command::Init(args)) => init(&args),

@@ -1,88 +1,45 @@
-//! `campaign`: the standard fields.
+//! `campaign`: the standard fields, all of them or a shard.
 
-use std::path::PathBuf;
-use std::slice;
+use std::io::{Read, Write as _};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
 
-use anyhow::{Result, bail};
-use clap::Args;
-use planner_core::motion::any_vehicle::AnyVehicle;
-use planner_core::motion::unicycle::Grid;
+use anyhow::{Context as _, Result, bail};
+use clap::{Args, Subcommand};
 
-use crate::campaign::accuracy::{self, Accuracy};
-use crate::campaign::calibration::{self, Calibrated};
-use crate::campaign::ensemble::Campaign;
-use crate::cli::arguments::Format;
-use crate::cli::compare::{self, Told};
+use crate::campaign::ensemble::{Campaign, Checkpoint as _, Measure};
+use crate::campaign::field_record::FieldRecord;
+use crate::campaign::rows::{Planners, RowReader, RowWriter};
+use crate::campaign::shard::Shard;
+use crate::cli::campaign_flags::CampaignFlags;
+use crate::cli::campaign_record::CampaignRecord;
+use crate::cli::format::Format;
 use crate::cli::help;
-use crate::mission::algorithm::Algorithm;
-use crate::mission::names::{CrossingName, FanName, FollowingName, PolicyName, PriorName};
-use crate::mission::scenario;
-use crate::mission::vehicle::{Source, VehicleTable};
-use crate::output::file::{csv, json, prepare};
-use crate::report::campaign as tables;
-use crate::report::curves::Curves;
-use crate::world::errors::Errors;
-use crate::world::noise::{Extent, NoiseModel};
+use crate::cli::merge::{MergeArgs, merge};
+use crate::cli::passage::{Destination, Passage, ToFly};
+use crate::cli::told::{Opening, tell};
+use crate::output::file::{Output, json, place_for, prepare};
+use crate::output::partial::{Begin, Partial};
 
 #[derive(Debug, Args)]
-#[command(after_help = help::CAMPAIGN)]
+#[command(args_conflicts_with_subcommands = true, after_help = help::CAMPAIGN)]
 pub(crate) struct CampaignArgs {
-    /// Number of standard fields
-    #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..))]
-    pub(crate) fields: u64,
-    /// Steps in each
-    #[arg(long, default_value_t = 20)]
-    pub(crate) steps: u32,
-    /// Seed of the ensemble
-    #[arg(long, default_value_t = 1)]
-    pub(crate) seed: u64,
-    /// Who plans
-    #[arg(long, value_enum, default_value_t = Algorithm::Cfc)]
-    pub(crate) algorithm: Algorithm,
-    /// Who plans, one after the other on the same fields: one table shows them side by side
-    #[arg(
-        long,
-        value_enum,
-        value_name = "PLANNER,...",
-        value_delimiter = ',',
-        conflicts_with = "algorithm"
-    )]
-    pub(crate) compare: Vec<Algorithm>,
-    /// How finely the vehicle turns [default: paper; for lookahead fine]
-    #[arg(long, value_enum)]
-    pub(crate) fan: Option<FanName>,
+    #[command(subcommand)]
+    pub(crate) command: Option<CampaignCommand>,
     #[command(flatten)]
-    pub(crate) vehicle: VehicleTable,
-    /// How P1 looks for the opposite label (cfc, scc) [default: anyhow]
-    #[arg(long, value_enum)]
-    pub(crate) crossing: Option<CrossingName>,
-    /// How P2 follows the boundary (cfc, scc) [default: along-bisector; for scc anyhow]
-    #[arg(long, value_enum)]
-    pub(crate) following: Option<FollowingName>,
-    /// Labels are true with this probability (scc, lookahead, margin, random) [default: 0.7 for scc, 1 else]
-    #[arg(long)]
-    pub(crate) p: Option<f64>,
-    /// Within this distance of the oracle's points labels are certain, metres (where p is below 1) [default: 0]
-    #[arg(long)]
-    pub(crate) trusted_radius: Option<f64>,
-    /// Standard deviation of the positions that robots report, metres an axis
-    #[arg(long, value_name = "METRES", default_value_t = 0.0)]
-    pub(crate) position_error: f64,
-    /// Standard deviation of where motions end, metres an axis
-    #[arg(long, value_name = "METRES", default_value_t = 0.0)]
-    pub(crate) motion_error: f64,
-    /// How far off planners are told that positions are, at most, metres [default: 3 times the position error]
-    #[arg(long, value_name = "METRES")]
-    pub(crate) tolerance: Option<f64>,
-    /// How hypotheses choose an action together (scc) [default: mixture-of-own]
-    #[arg(long, value_enum)]
-    pub(crate) policy: Option<PolicyName>,
-    /// How hypotheses are weighed in that (scc; lookahead and margin where p is below 1) [default: area]
-    #[arg(long, value_enum)]
-    pub(crate) prior: Option<PriorName>,
-    /// Write a row for each field and mark here
+    pub(crate) flags: CampaignFlags,
+    /// Write a row for each field and stage here, as they are finished
     #[arg(long, value_name = "FILE")]
     pub(crate) csv: Option<PathBuf>,
+    /// Go on with the finished rows of the same command, if it was stopped
+    #[arg(long, requires = "csv")]
+    pub(crate) resume: bool,
+    /// Fly one of N blocks of the fields only, the first is 1/N; `campaign merge` puts them together
+    #[arg(long, value_name = "K/N", requires = "csv")]
+    pub(crate) shard: Option<Shard>,
+    /// Write the fields themselves here: oracle, start and true line of each
+    #[arg(long, value_name = "FILE")]
+    pub(crate) fields_csv: Option<PathBuf>,
     /// Draw how errors shrink and bits grow here
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) figure: Option<PathBuf>,
@@ -91,131 +48,135 @@ pub(crate) struct CampaignArgs {
     pub(crate) format: Format,
 }
 
+#[derive(Debug, Subcommand)]
+pub(crate) enum CampaignCommand {
+    /// Put the shards of a campaign together: its rows and tables
+    Merge(MergeArgs),
+}
+
 /// Flies them, and what to print.
-pub(crate) fn campaign(args: &CampaignArgs) -> Result<String> {
-    const ORACLE: usize = 4;
-    scenario::check_steps("--steps", args.steps, ORACLE)?;
-    compare::check_once(&args.compare)?;
-    let planners = args.planners();
-    let p = args.p.unwrap_or(if planners.contains(&Algorithm::Scc) { 0.7 } else { 1.0 });
-    let p = scenario::probability("--p", p)?;
-    planners.iter().try_for_each(|&planner| args.check_meanings(planner, p))?;
-    let radius = args.trusted_radius.unwrap_or_default();
-    let trusted_radius = scenario::trusted("--trusted-radius", radius)?;
-    let errors = Errors {
-        position: scenario::deviation("--position-error", args.position_error)?,
-        motion: scenario::deviation("--motion-error", args.motion_error)?,
-        ..Errors::default()
-    };
-    let tolerance = scenario::tolerance("--tolerance", args.tolerance, errors)?;
-    let asked = [("--csv", args.csv.as_deref()), ("--figure", args.figure.as_deref())];
-    let [output, drawn] = prepare(&[], asked)?;
-    let extent = Extent::OutsideBalls(trusted_radius);
-    let campaign = |algorithm: Algorithm| {
-        Ok::<_, anyhow::Error>(Campaign {
-            algorithm,
-            fields: args.fields,
-            steps: args.steps,
-            seed: args.seed,
-            crossing: args.crossing.unwrap_or_default().into(),
-            following: args.following.map_or(algorithm.following(), Into::into),
-            vehicle: args.moving(algorithm)?,
-            noise: algorithm.weighs(p < 1.0).then_some(NoiseModel { p, extent }),
-            errors,
-            tolerance,
-            policy: args.policy.unwrap_or_default().into(),
-            prior: args.prior.unwrap_or_default().into(),
-        })
-    };
-    let Told { table, rows, record, curves } = if args.compare.is_empty() {
-        alone(&campaign(args.algorithm)?)?
-    } else {
-        let campaigns: Vec<_> =
-            planners.iter().map(|&planner| campaign(planner)).collect::<Result<_>>()?;
-        compare::fly(&campaigns, p < 1.0)?
-    };
-    if let Some(output) = output {
-        output.write(rows)?;
+pub(crate) fn campaign(args: CampaignArgs) -> Result<String> {
+    let CampaignArgs { command, flags, csv, resume, shard: part, fields_csv, figure, format } =
+        args;
+    if let Some(CampaignCommand::Merge(args)) = command {
+        return merge(&args);
     }
+    let mut campaigns = flags.campaigns()?;
+    let shard = part.unwrap_or(Shard::WHOLE);
+    let of_all = flags.fields;
+    if shard.of > of_all {
+        bail!("--shard: found {shard} of {of_all} fields, expected at most as many shards");
+    }
+    let fields = shard.fields(of_all);
+    for campaign in &mut campaigns.of_each {
+        campaign.fields = fields.end - fields.start;
+        campaign.check()?;
+    }
+    let title = match (part, format) {
+        (Some(_), Format::Text) => {
+            format!("Shard {shard}: fields {} to {} of {of_all}\n\n", fields.start, fields.end - 1)
+        }
+        _ => String::new(),
+    };
+    let rows: Vec<_> = csv.iter().map(|path| ("the rows", &**path)).collect();
+    let asked = [("--fields-csv", fields_csv.as_deref()), ("--figure", figure.as_deref())];
+    let [output, drawn] = prepare(&rows, asked)?;
+    if let (Some(output), Some(campaign)) = (output, campaigns.of_each.first()) {
+        write_fields(campaign, fields.clone(), output)?;
+    }
+    let to_fly = ToFly { from: (0, fields.start), fields };
+    let record = CampaignRecord::new(flags, shard);
+    let opening = Begun {
+        csv: csv.as_deref(),
+        resume,
+        is_shard: part.is_some(),
+        record,
+        planners: campaigns.planners(),
+        to_fly,
+    };
+    let told = tell(&campaigns, opening, format)?;
     if let Some(output) = drawn {
-        output.write(curves.svg())?;
+        output.write(told.curves.svg())?;
     }
-    Ok(match args.format {
-        Format::Text => table,
-        Format::Json => record,
-    })
+    Ok(title + &told.text)
 }
 
-/// Flies one campaign.
-fn alone(campaign: &Campaign) -> Result<Told> {
-    Ok(if campaign.noise.is_some() {
-        let summary = calibration::Summary::of(campaign, campaign.run(&Calibrated)?);
-        let (table, rows) = (tables::calibration(&summary), csv(&summary.checkpoints)?);
-        let curves = Curves::of_calibration(slice::from_ref(&summary));
-        Told { table, rows, record: json(&summary), curves }
-    } else {
-        let summary = accuracy::Summary::of(campaign, campaign.run(&Accuracy)?);
-        let (table, rows) = (tables::accuracy(&summary), csv(&summary.checkpoints)?);
-        let curves = Curves::of_accuracy(slice::from_ref(&summary));
-        Told { table, rows, record: json(&summary), curves }
-    })
+/// Writes the fields, which are the same for every planner.
+fn write_fields(campaign: &Campaign, fields: Range<u64>, output: Output) -> Result<()> {
+    let mut writer = csv::Writer::from_writer(output);
+    for field in fields {
+        let record = FieldRecord::of(field, &campaign.mission(field));
+        writer.serialize(record.context("a standard field")?)?;
+    }
+    writer.into_inner().map_err(csv::IntoInnerError::into_error)?.complete()
 }
 
-impl CampaignArgs {
-    /// Who plans.
-    fn planners(&self) -> &[Algorithm] {
-        if self.compare.is_empty() { slice::from_ref(&self.algorithm) } else { &self.compare }
-    }
+/// A campaign that is to be flown.
+struct Begun<'a> {
+    csv: Option<&'a Path>,
+    resume: bool,
+    is_shard: bool,
+    record: CampaignRecord,
+    planners: Planners,
+    to_fly: ToFly,
+}
 
-    /// What moves when this one plans.
-    fn moving(&self, planner: Algorithm) -> Result<AnyVehicle> {
-        self.vehicle.vehicle(Source::Flags, planner, self.fan.is_some(), self.grid(planner))
+impl Opening for Begun<'_> {
+    fn open<M: Measure>(self, measure: &M) -> Result<Passage<'_, M>> {
+        let Self { csv, resume, is_shard, record, planners, mut to_fly } = self;
+        let (mut recorded, mut writer) = (Vec::new(), None);
+        if let Some(path) = csv {
+            let header = planners.header::<M::Checkpoint>()?;
+            let place = place_for(path)?;
+            let destination = if place.is_stream() {
+                for (flag, is_given) in [("--resume", resume), ("--shard", is_shard)] {
+                    if is_given {
+                        bail!("{}: found a stream, expected a file with {flag}", path.display());
+                    }
+                }
+                let [output] = prepare(&[], [("--csv", Some(path))])?;
+                let mut output = output.context("a place that was asked for")?;
+                output.write_all(header.as_bytes())?;
+                Destination::Output(output)
+            } else {
+                let begin = Begin { header: &header, record: &json(&record), resume };
+                let mut partial = Partial::open(path, &place, begin, |found| record.check(found))?;
+                if resume {
+                    recorded.push(go_on::<M>(&mut partial, &planners, &mut to_fly)?);
+                }
+                partial.announce();
+                Destination::Partial(partial, is_shard.then(|| record.into()))
+            };
+            writer = Some(RowWriter::new(destination, &planners));
+        }
+        Ok(Passage { measure, recorded, to_fly: Some(to_fly), writer, wants_recorded: false })
     }
+}
 
-    /// How finely a planner's vehicle turns.
-    fn grid(&self, planner: Algorithm) -> Grid {
-        self.fan.map_or(planner.grid(), Into::into)
+/// Reads what was finished, up to the first row that is not whole. The last field's rows may not be all: it is flown
+/// again, and what comes out is the same.
+fn go_on<M: Measure>(
+    partial: &mut Partial,
+    planners: &Planners,
+    to_fly: &mut ToFly,
+) -> Result<RowReader<Box<dyn Read>, M::Checkpoint>> {
+    let name = partial.name().to_owned();
+    let read = |bytes| {
+        let from: Box<dyn Read> = Box::new(partial.reader(bytes)?);
+        RowReader::<_, M::Checkpoint>::new(&name, from, planners)
+    };
+    let mut kept = planners.header::<M::Checkpoint>()?.len() as u64;
+    let mut rows = read(u64::MAX)?;
+    while let Ok(Some(row)) = rows.read() {
+        let at = (row.planner, row.row.checkpoint.field());
+        if !to_fly.fields.contains(&at.1) {
+            break;
+        }
+        if at != to_fly.from {
+            (to_fly.from, kept) = (at, row.begins);
+        }
     }
-
-    /// Whether every flag that was given has a meaning for a planner. `p` is how often labels are true.
-    fn check_meanings(&self, planner: Algorithm, p: f64) -> Result<()> {
-        let flag = if self.compare.is_empty() { "--algorithm" } else { "--compare" };
-        let name = planner.name();
-        if p < 1.0 && !planner.weighs(true) {
-            let found = if self.p.is_some() { "" } else { ", the default with scc" };
-            bail!(
-                "--p: found {p}{found}, expected 1 with {flag} {name}, which takes labels to be true"
-            );
-        }
-        if !planner.copes_with(self.grid(planner)) {
-            bail!("--fan: found fine with {flag} {name}, expected paper, as it tries every action");
-        }
-        let plans = planner.poses_problems();
-        let weighs = planner == Algorithm::Scc;
-        // Look-ahead predicts from hypotheses, margin sampling asks the most likely one.
-        let reads = matches!(planner, Algorithm::Lookahead | Algorithm::Margin);
-        let asks = weighs || reads && p < 1.0;
-        for (given, is_given, has_meaning, meant) in [
-            ("--crossing", self.crossing.is_some(), plans, "--algorithm cfc or scc"),
-            ("--following", self.following.is_some(), plans, "--algorithm cfc or scc"),
-            ("--policy", self.policy.is_some(), weighs, "--algorithm scc"),
-            (
-                "--prior",
-                self.prior.is_some(),
-                asks,
-                "--algorithm scc, or lookahead or margin with --p below 1",
-            ),
-            (
-                "--trusted-radius",
-                self.trusted_radius.is_some(),
-                p < 1.0,
-                "labels that can be wrong: --algorithm scc, lookahead, margin or random, --p below 1",
-            ),
-        ] {
-            if is_given && !has_meaning {
-                bail!("{given}: found with {flag} {name}, expected with {meant}");
-            }
-        }
-        Ok(())
-    }
+    let rows = read(kept)?;
+    partial.cut(kept).with_context(|| name.clone())?;
+    Ok(rows)
 }

@@ -36,13 +36,21 @@ Examples:
 pub(crate) const REPLAY: &str = "\
 Examples:
   host-sim replay samples.csv
-  host-sim replay samples.csv --figure samples.svg --format json";
+  host-sim replay samples.csv --figure samples.svg --format json
+  host-sim replay survey.csv --columns x=easting,z=northing,label=wet
+  host-sim replay boat.csv --columns label=oil --p 0.95 --tolerance 4.5 --geojson oil.geojson";
 
 pub(crate) const CAMPAIGN: &str = "\
 Examples:
   host-sim campaign
   host-sim campaign --algorithm lookahead --p 0.7 --steps 36
-  host-sim campaign --compare cfc,lookahead,random --csv rows.csv";
+  host-sim campaign --compare cfc,lookahead,random --figure curves.svg
+  host-sim campaign --fields 1000000 --csv rows.csv             if stopped: the same with --resume
+  host-sim campaign --shard 1/4 --csv 1.csv                     a quarter, see docs/campaigns.md";
+
+pub(crate) const MERGE: &str = "\
+Examples:
+  host-sim campaign merge 1.csv 2.csv 3.csv 4.csv --csv rows.csv";
 
 pub(crate) const FIGURE: &str = "\
 Examples:

@@ -2,12 +2,17 @@
 
 pub mod arguments;
 mod campaign;
-mod compare;
+mod campaign_flags;
+mod campaign_record;
 mod completions;
 mod figure;
+mod format;
 mod help;
 mod hil;
 mod init;
+mod merge;
 pub mod paper;
+mod passage;
 mod replay;
 mod run;
+mod told;

@@ -7,7 +7,7 @@ use anyhow::{Context as _, Result, bail};
 use clap::Args;
 use planner_core::belief::tolerance::Tolerance;
 
-use crate::cli::arguments::Format;
+use crate::cli::format::Format;
 use crate::cli::help;
 use crate::output::file::{json, prepare};
 use crate::replay::answer::Trust;

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, Result, bail};
 use clap::{Args, ValueEnum};
 
-use crate::cli::{compare, help};
+use crate::cli::campaign_flags::check_once;
+use crate::cli::help;
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::Mission;
 use crate::mission::recording::Recording;
@@ -122,7 +123,7 @@ impl Run {
 
     /// Flies the mission by each of these, and writes the page that shows them; what to print.
     fn compare(&self, planners: &[Algorithm]) -> Result<String> {
-        compare::check_once(planners)?;
+        check_once(planners)?;
         let mission = |&planner: &Algorithm| {
             let mission = self
                 .mission_by(Some(planner))

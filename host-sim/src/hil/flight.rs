@@ -6,7 +6,6 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, Result, bail};
-use indicatif::{ProgressBar, ProgressStyle};
 use planner_core::link::message::{ClockRate, Took};
 use serde::Serialize;
 
@@ -15,6 +14,7 @@ use crate::hil::faults::Faults;
 use crate::hil::player::{Played, Player};
 use crate::hil::qemu::{Emulator, NS_PER_INSTRUCTION};
 use crate::output::file::csv;
+use crate::output::notes::count;
 use crate::report::table::{Column, Table};
 
 /// Where the chip is.
@@ -84,8 +84,7 @@ pub fn fly(player: &mut Player, chip: &Chip, faults: Faults, seed: u64) -> Resul
 /// # Errors
 /// As [`fly`].
 pub fn play(player: &mut Player, mut cable: Cable) -> Result<Vec<Duration>> {
-    let style = "{spinner} {pos} steps flown, {elapsed}";
-    let bar = ProgressBar::new_spinner().with_style(ProgressStyle::with_template(style)?);
+    let bar = count("steps flown")?;
     let mut turnarounds = Vec::new();
     let mut answered = Instant::now();
     let mut until = answered + PATIENCE;

@@ -4,10 +4,10 @@ use planner_core::belief::weight::Prior;
 use planner_core::motion::unicycle::Grid;
 use planner_core::planner::config::{Crossing, Following};
 use planner_core::planner::scc::Policy;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// How finely the unicycle turns, by name.
-#[derive(Clone, Copy, Debug, Deserialize, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum FanName {
     /// Rays 10 mrad apart
@@ -26,7 +26,7 @@ impl From<FanName> for Grid {
 }
 
 /// How P1 looks for the opposite label, by name.
-#[derive(Clone, Copy, Debug, Default, Deserialize, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum CrossingName {
     /// In any direction in which the boundary cannot run: P1 as printed
@@ -49,7 +49,7 @@ impl From<CrossingName> for Crossing {
 }
 
 /// How P2 follows the boundary, by name.
-#[derive(Clone, Copy, Debug, Deserialize, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum FollowingName {
     /// In any direction in which the boundary can run: P2 as printed
@@ -68,7 +68,7 @@ impl From<FollowingName> for Following {
 }
 
 /// How hypotheses choose an action together, by name.
-#[derive(Clone, Copy, Debug, Default, Deserialize, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum PolicyName {
     /// P3 and P4 over all hypotheses at once
@@ -91,7 +91,7 @@ impl From<PolicyName> for Policy {
 }
 
 /// How hypotheses are weighed beforehand, by name.
-#[derive(Clone, Copy, Debug, Default, Deserialize, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum PriorName {
     /// By the measure of their lines

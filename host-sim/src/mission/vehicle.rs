@@ -77,7 +77,7 @@ pub enum Source {
 
 impl Source {
     /// What a number is called there.
-    fn name(self, key: &str) -> String {
+    pub(crate) fn name(self, key: &str) -> String {
         match (self, key) {
             (Self::File, "kind") => "vehicle".to_owned(),
             (Self::File, _) => format!("vehicle.{key}"),

@@ -1,7 +1,7 @@
 //! Output: records as text, and files that are written whole or not at all.
 
 use std::fs::{self, File};
-use std::io::{self, ErrorKind, Write as _};
+use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, Result, bail};
@@ -30,25 +30,6 @@ pub fn csv(records: &[impl Serialize]) -> Result<String> {
         writer.serialize(record)?;
     }
     Ok(String::from_utf8(writer.into_inner()?)?)
-}
-
-/// Records of several groups as CSV, under one header: a first column names the group of each.
-///
-/// # Errors
-/// When a record could not be written.
-pub fn csv_by<'a, R: Serialize + 'a>(
-    column: &str,
-    groups: impl IntoIterator<Item = (String, &'a [R])>,
-) -> Result<String> {
-    let mut text = String::new();
-    for (name, records) in groups {
-        let rows = csv(records)?;
-        let mut lines = rows.lines();
-        let header = lines.next().filter(|_| text.is_empty());
-        text.extend(header.map(|header| format!("{column},{header}\n")));
-        text.extend(lines.map(|row| format!("{name},{row}\n")));
-    }
-    Ok(text)
 }
 
 /// A temporary file, which goes with this value, and if the program is interrupted. Whoever the user's umask
@@ -118,7 +99,8 @@ pub fn prepare<const N: usize>(
     Ok(outputs)
 }
 
-fn place_for(path: &Path) -> Result<Place> {
+/// Where a path leads, if a file can be written there.
+pub(crate) fn place_for(path: &Path) -> Result<Place> {
     if path.is_dir() || path.as_os_str().as_encoded_bytes().ends_with(b"/") {
         bail!("{}: found a directory, expected a file", path.display());
     }
@@ -144,32 +126,55 @@ impl Output {
     ///
     /// # Errors
     /// Names the file that could not be written.
-    pub fn write(self, content: impl AsRef<[u8]>) -> Result<()> {
-        let Self { name, to } = self;
+    pub fn write(mut self, content: impl AsRef<[u8]>) -> Result<()> {
         let content = content.as_ref();
-        let written = match to {
-            Destination::File { place, begun } => replace(&place, begun, content),
-            Destination::Stream(mut stream) => match stream.write_all(content) {
-                // Whoever reads may stop early.
-                Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
-                written => written,
-            },
-        };
-        if written.is_ok() {
-            mention(format_args!("{name}: written, {} bytes", content.len()));
+        self.write_all(content).with_context(|| self.name.clone())?;
+        let name = self.name.clone();
+        self.complete()?;
+        mention(format_args!("{name}: written, {} bytes", content.len()));
+        Ok(())
+    }
+
+    /// What was written is all: it takes its place.
+    ///
+    /// # Errors
+    /// Names the file that could not be moved there.
+    pub fn complete(self) -> Result<()> {
+        match self.to {
+            Destination::File { place, begun } => replace(&place, begun).context(self.name),
+            Destination::Stream(_) => Ok(()),
         }
-        written.context(name)
     }
 }
 
-/// Completes a file and moves it to its place. One that was there hands on its permissions.
-fn replace(place: &Path, mut begun: NamedTempFile, content: &[u8]) -> io::Result<()> {
-    begun.write_all(content)?;
-    if let Ok(replaced) = fs::metadata(place) {
-        fs::set_permissions(begun.path(), replaced.permissions())?;
+/// Piece by piece; then it is to be completed.
+impl Write for Output {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match &mut self.to {
+            Destination::File { begun, .. } => begun.write(bytes),
+            Destination::Stream(stream) => match stream.write(bytes) {
+                // Whoever reads may stop early.
+                Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(bytes.len()),
+                written => written,
+            },
+        }
     }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// Moves a complete file to its place.
+fn replace(place: &Path, begun: NamedTempFile) -> io::Result<()> {
+    hand_on_permissions(begun.path(), place)?;
     let mut unfinished = unfinished();
     unfinished.files.remove(begun.path());
     begun.persist(place)?;
     Ok(())
+}
+
+/// A file that is to be replaced hands on its permissions.
+pub(crate) fn hand_on_permissions(to: &Path, replaced: &Path) -> io::Result<()> {
+    fs::metadata(replaced).map_or(Ok(()), |it| fs::set_permissions(to, it.permissions()))
 }

@@ -17,10 +17,12 @@ pub(crate) struct Unfinished {
     pub(crate) files: BTreeSet<PathBuf>,
     /// Child processes by their ids, to be ended.
     pub(crate) children: BTreeMap<u32, Child>,
+    /// What is said to the user: where to find what is not undone.
+    pub(crate) farewell: Option<String>,
 }
 
 static UNFINISHED: Mutex<Unfinished> =
-    Mutex::new(Unfinished { files: BTreeSet::new(), children: BTreeMap::new() });
+    Mutex::new(Unfinished { files: BTreeSet::new(), children: BTreeMap::new(), farewell: None });
 
 /// What is undone if a signal comes, under its lock.
 pub(crate) fn unfinished() -> MutexGuard<'static, Unfinished> {
@@ -41,6 +43,7 @@ pub fn watch() -> std::io::Result<()> {
 
 #[cfg(unix)]
 mod by_signal {
+    use std::io::{IsTerminal as _, Write as _};
     use std::{fs, io, process, thread};
 
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
@@ -74,6 +77,11 @@ mod by_signal {
         for child in unfinished.children.values_mut() {
             let _ = child.kill();
             let _ = child.wait();
+        }
+        if let Some(farewell) = &unfinished.farewell {
+            // A progress bar leaves the cursor in its line.
+            let begin = if io::stderr().is_terminal() { "\n" } else { "" };
+            let _ = writeln!(io::stderr(), "{begin}{farewell}");
         }
     }
 

@@ -3,4 +3,5 @@
 pub mod file;
 pub mod interruption;
 pub mod notes;
+pub mod partial;
 pub mod place;

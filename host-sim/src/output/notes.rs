@@ -70,9 +70,20 @@ pub fn error(error: &anyhow::Error) {
 /// Never: the template is sound.
 pub fn progress(count: u64, of: &str) -> Result<ProgressBar> {
     let style = format!("{{msg}}  {{bar:40}} {{pos}}/{{len}} {of}  {{per_sec}}  {{eta}} left");
-    let bar = ProgressBar::new(count).with_style(ProgressStyle::with_template(&style)?);
+    styled(ProgressBar::new(count), &style)
+}
+
+/// A count of something of which nobody knows how many there will be.
+///
+/// # Errors
+/// Never: the template is sound.
+pub fn count(of: &str) -> Result<ProgressBar> {
+    styled(ProgressBar::new_spinner(), &format!("{{spinner}} {{pos}} {of}, {{elapsed}}"))
+}
+
+fn styled(bar: ProgressBar, style: &str) -> Result<ProgressBar> {
     if !is_told(Loudness::Usual) {
         bar.set_draw_target(ProgressDrawTarget::hidden());
     }
-    Ok(bar)
+    Ok(bar.with_style(ProgressStyle::with_template(style)?))
 }

@@ -1,6 +1,7 @@
 //! A campaign's results in tables.
 
 use std::collections::BTreeMap;
+use std::fmt::Display;
 
 use crate::campaign::accuracy::{self, Row};
 use crate::campaign::calibration::{self, Calibration};
@@ -73,7 +74,7 @@ fn areas(rows: &[Row]) -> Table {
     table
 }
 
-fn counts(counts: &BTreeMap<&str, u64>) -> String {
+fn counts<K: Display>(counts: &BTreeMap<K, u64>) -> String {
     let each: Vec<_> = counts.iter().map(|(name, n)| format!("{name} {n}")).collect();
     if each.is_empty() { "none".into() } else { each.join(", ") }
 }

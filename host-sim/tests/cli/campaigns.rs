@@ -1,5 +1,7 @@
 //! `campaign`.
 
+#![allow(clippy::float_cmp)] // figures are the same to the last bit
+
 use std::fs;
 
 use serde_json::Value;
@@ -24,6 +26,123 @@ fn a_campaign_prints_tables_and_writes_rows() {
     );
     let summary: Value = serde_json::from_str(&json).expect("JSON");
     assert_eq!((&summary["fields"], &summary["algorithm"]), (&5.into(), &"random".into()));
+}
+
+/// Rows as a program reads them: the values of a column in the rows of a stage.
+fn column(rows: &str, stage: &str, name: &str) -> Vec<String> {
+    let mut lines = rows.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let titles = lines.next().expect("a header");
+    let at = |name: &str| titles.iter().position(|title| *title == name).expect("a column");
+    let stage_at = ["step", "labels"].into_iter().find(|it| titles.contains(it)).map(at);
+    lines
+        .filter(|line| line[stage_at.expect("a stage")] == stage)
+        .map(|line| line[at(name)].to_owned())
+        .collect()
+}
+
+fn numbers(rows: &str, stage: &str, name: &str) -> Vec<f64> {
+    column(rows, stage, name).iter().map(|it| it.parse().expect("a number")).collect()
+}
+
+/// Nearest rank, of all values at once.
+fn spread(mut values: Vec<f64>) -> Value {
+    values.sort_by(f64::total_cmp);
+    let rank = |tenths: usize| values[(values.len() * tenths).div_ceil(10) - 1];
+    serde_json::json!({ "median": rank(5), "p90": rank(9), "worst": rank(10) })
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+fn rows_and_record(flags: &[&str]) -> (String, Value) {
+    let folder = folder();
+    let args = [&["campaign", "--csv", "c.csv", "--format", "json"], flags].concat();
+    let record = serde_json::from_str(&prints(folder.path(), &args)).expect("JSON");
+    (fs::read_to_string(folder.path().join("c.csv")).expect("rows"), record)
+}
+
+/// The figures of tables, from the rows alone by a slow twin, to the last bit.
+#[test]
+fn rows_hold_what_tables_tell() {
+    let flags = ["--fields", "73", "--steps", "40", "--algorithm", "lookahead", "--every"];
+    let (rows, record) = rows_and_record(&flags);
+    let told = record["rows"].as_array().expect("rows");
+    let steps: Vec<_> = told.iter().map(|row| row["step"].as_u64().expect("a step")).collect();
+    assert_eq!(steps, (1..=40).collect::<Vec<_>>());
+    for row in told {
+        let step = row["step"].to_string();
+        for name in ["centre_deg", "bisector_deg", "maximum_margin_misclassified"] {
+            assert_eq!(row[name], spread(numbers(&rows, &step, name)), "{name} at {step}");
+        }
+        let bits = mean(&numbers(&rows, &step, "bits")) / number(&row["step"]);
+        assert_eq!(number(&row["bits_per_step"]), bits, "{step}");
+        assert_eq!(number(&row["metres"]), mean(&numbers(&rows, &step, "metres")), "{step}");
+    }
+    // What a mission came to in all is in its last row.
+    let count = |name: &str| numbers(&rows, "40", name).iter().sum::<f64>();
+    assert_eq!(number(&record["plans"]), count("plans"));
+    assert_eq!(number(&record["mean_examined"]), count("examined") / count("plans"));
+    let most = numbers(&rows, "40", "most_examined").into_iter().fold(0.0, f64::max);
+    assert_eq!(number(&record["most_examined"]), most);
+    for rung in ["undirected", "reorient", "transit"] {
+        assert_eq!(record["recoveries"][rung].as_f64().unwrap_or(0.0), count(rung), "{rung}");
+    }
+    let ends = column(&rows, "40", "ended");
+    for (reason, times) in record["ends"].as_object().expect("reasons") {
+        let found = ends.iter().filter(|it| *it == reason).count();
+        assert_eq!(times.as_u64(), Some(found as u64), "{reason}");
+    }
+}
+
+#[test]
+fn rows_in_noise_hold_what_tables_tell() {
+    let flags = ["--fields", "43", "--steps", "12", "--algorithm", "scc", "--every"];
+    let (rows, record) = rows_and_record(&flags);
+    let told = record["rows"].as_array().expect("rows");
+    assert!(told.len() >= 10, "{record}");
+    for row in told {
+        let labels = row["labels"].to_string();
+        let numbers = |name: &str| numbers(&rows, &labels, name);
+        let holds = |name: &str| -> Vec<f64> {
+            column(&rows, &labels, name)
+                .iter()
+                .map(|it| f64::from(u8::from(it == "true")))
+                .collect()
+        };
+        assert_eq!(number(&row["missions"]), numbers("bits").len() as f64);
+        assert_eq!(number(&row["bits"]), mean(&numbers("bits")));
+        assert_eq!(number(&row["expected_bits"]), mean(&numbers("expected_bits")));
+        assert_eq!(row["mean_deg"], spread(numbers("mean_deg")));
+        for (prior, name) in ["area", "paper"].into_iter().enumerate() {
+            let told = &row["calibration"][prior];
+            let of = |what: &str| format!("{name}_{what}");
+            assert_eq!(number(&told["coverage"]), mean(&holds(&of("credible_holds"))));
+            assert_eq!(number(&told["stated"]), mean(&numbers(&of("credible_probability"))));
+            let mut best: Vec<_> = numbers(&of("best_probability"))
+                .into_iter()
+                .zip(holds(&of("best_holds")))
+                .collect();
+            best.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let bins = best.chunks(best.len().div_ceil(5)).map(|bin| {
+                let (stated, holds): (Vec<_>, Vec<_>) = bin.iter().copied().unzip();
+                serde_json::json!([bin.len(), mean(&stated), mean(&holds)])
+            });
+            assert_eq!(told["best"], bins.collect::<Value>(), "{name} after {labels}");
+        }
+    }
+}
+
+/// The usual rows are among those of every step, the same.
+#[test]
+fn every_step_has_the_usual_rows() {
+    for flags in [&["--fields", "6", "--steps", "12"][..], &["--fields", "3", "--algorithm", "scc"]]
+    {
+        let (usual, _) = rows_and_record(flags);
+        let (every, _) = rows_and_record(&[flags, &["--every"]].concat());
+        assert!(every.lines().count() > 2 * usual.lines().count());
+        assert!(usual.lines().all(|row| every.lines().any(|it| it == row)));
+    }
 }
 
 /// The flag and the scenario's key choose the action set: more actions, and turns that are no multiples of
@@ -256,4 +375,45 @@ fn bad_errors_are_refused_by_their_flags() {
         let args = [&["campaign", "--fields", "2", "--csv", "c.csv"], flags].concat();
         refuses(folder.path(), &args, parts);
     }
+}
+
+/// The fields can be flown one by one: what a campaign measured of a field is what its own mission comes to.
+#[test]
+fn fields_are_written() {
+    let folder = folder();
+    let args =
+        ["campaign", "--fields", "4", "--steps", "6", "--csv", "c.csv", "--fields-csv", "f.csv"];
+    prints(folder.path(), &args);
+    let rows = fs::read_to_string(folder.path().join("c.csv")).expect("rows");
+    let fields = fs::read_to_string(folder.path().join("f.csv")).expect("fields");
+    let mut lines = fields.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let titles = lines.next().expect("a header");
+    assert_eq!(lines.clone().count(), 4);
+    for (number, line) in lines.enumerate() {
+        let of = |name: &str| line[titles.iter().position(|it| *it == name).expect("a column")];
+        let oracle = (1..=4).map(|k| {
+            let [x, z, label] = ["x", "z", "label"].map(|it| of(&format!("{it}{k}")));
+            format!("{{ x = {x}, z = {z}, label = {label} }}")
+        });
+        let oracle = oracle.collect::<Vec<_>>().join(", ");
+        let [heading, a, b, c] = ["heading", "a", "b", "c"].map(of);
+        let mission = format!(
+            "steps = 6\nstart = {{ heading = {heading} }}\ntruth = {{ line = [{a}, {b}, {c}] }}\noracle = [{oracle}]\n"
+        );
+        fs::write(folder.path().join("m.toml"), mission).expect("a file");
+        let trace = prints(folder.path(), &["run", "m.toml", "--format", "json"]);
+        let last = trace.lines().rev().nth(1).expect("a step");
+        let last: Value = serde_json::from_str(last).expect("JSON");
+        assert_eq!(of("field"), number.to_string());
+        assert_eq!(
+            numbers(&rows, "6", "bits")[number],
+            self::number(&last["bits"]),
+            "field {number}"
+        );
+    }
+    refuses(
+        folder.path(),
+        &["campaign", "--csv", "n.csv", "--fields-csv", "n.csv"],
+        &["n.csv", "--fields-csv"],
+    );
 }

@@ -75,16 +75,40 @@ fn names(folder: &Path) -> Vec<String> {
     names
 }
 
+/// Whether a campaign has some rows.
+fn has_rows(folder: &Path) -> bool {
+    fs::metadata(folder.join("c.csv.partial")).is_ok_and(|found| found.len() > 1_000)
+}
+
+/// What a campaign ended with. It leaves its rows and says where.
+fn status_of_campaign(campaign: Child, folder: &Path) -> Option<i32> {
+    let output = campaign.wait_with_output().expect("it ends");
+    let message = text(&output.stderr);
+    assert!(message.starts_with("stopped: ") && message.lines().count() == 1, "{message}");
+    assert!(message.contains("c.csv.partial") && message.contains("--resume"), "{message}");
+    assert_eq!(names(folder), ["c.csv.partial", "c.csv.partial.json"]);
+    output.status.code()
+}
+
 #[test]
-fn an_interrupted_campaign_leaves_nothing() {
+fn an_interrupted_campaign_leaves_its_rows() {
     for (name, number) in SIGNALS.into_iter().filter(|(_, number)| reaches(*number)) {
         let folder = folder();
         let campaign = host_sim(folder.path(), &LONG);
-        wait_until("its file is begun", || !names(folder.path()).is_empty());
+        wait_until("it has rows", || has_rows(folder.path()));
         signal(&campaign, name);
-        assert_eq!(status(campaign), Some(128 + number), "{name}");
-        assert_eq!(names(folder.path()), [""; 0], "{name}");
+        assert_eq!(status_of_campaign(campaign, folder.path()), Some(128 + number), "{name}");
     }
+}
+
+#[test]
+fn an_interrupted_campaign_without_rows_leaves_nothing() {
+    let folder = folder();
+    let campaign = host_sim(folder.path(), &LONG[..3]);
+    thread::sleep(Duration::from_millis(300));
+    signal(&campaign, "TERM");
+    assert_eq!(status(campaign), Some(128 + 15));
+    assert_eq!(names(folder.path()), [""; 0]);
 }
 
 #[test]
@@ -106,13 +130,12 @@ fn a_signal_that_is_ignored_from_the_start_stays_so() {
     let folder = folder();
     let script = format!("trap '' HUP; exec {} {}", env!("CARGO_BIN_EXE_host-sim"), LONG.join(" "));
     let mut campaign = start(Command::new("sh").args(["-c", &script]), folder.path());
-    wait_until("its file is begun", || !names(folder.path()).is_empty());
+    wait_until("it has rows", || has_rows(folder.path()));
     signal(&campaign, "HUP");
     thread::sleep(Duration::from_millis(300));
     assert!(campaign.try_wait().expect("a child").is_none(), "nohup would not help");
     signal(&campaign, "TERM");
-    assert_eq!(status(campaign), Some(128 + 15));
-    assert_eq!(names(folder.path()), [""; 0]);
+    assert_eq!(status_of_campaign(campaign, folder.path()), Some(128 + 15));
 }
 
 /// A folder with a mission, what passes for a firmware, and an emulator that logs some words and then does as

@@ -14,8 +14,10 @@ mod interruption;
 mod missions;
 mod outputs;
 mod recordings;
+mod resuming;
 mod samples;
 mod scenarios;
+mod shards;
 mod stopping;
 
 const GOOD: &str = include_str!("../../scenarios/paper-noiseless.toml");

@@ -1,0 +1,168 @@
+//! The rows of a campaign as CSV: what was known at a stage of a mission, then how it had gone so far. Floats are
+//! written with as many digits as give the same bits when they are read.
+
+use std::io::{Read, Write};
+
+use anyhow::{Context as _, Result, bail};
+use csv::{ReaderBuilder, StringRecord, WriterBuilder};
+use serde::Serialize;
+
+use crate::campaign::course::Course;
+use crate::campaign::ensemble::{Checkpoint, Measured};
+
+/// Who planned, one after the other, and whether a first column says so, as where planners are compared.
+#[derive(Clone, Debug)]
+pub struct Planners {
+    /// What rows call them.
+    pub names: Vec<String>,
+    /// Whether rows do.
+    pub are_named: bool,
+}
+
+impl Planners {
+    /// The line that the rows come under.
+    ///
+    /// # Errors
+    /// Never: checkpoints are plain structures.
+    pub fn header<C: Checkpoint>(&self) -> Result<String> {
+        let who = if self.are_named { "algorithm," } else { "" };
+        let (known, course) = (titles(&C::default())?, titles(&Course::default())?);
+        Ok(format!("{who}{known},{course}\n"))
+    }
+}
+
+/// The names of a structure's fields.
+fn titles(record: &impl Serialize) -> Result<String> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.serialize(record)?;
+    let text = String::from_utf8(writer.into_inner()?)?;
+    Ok(text.lines().next().unwrap_or_default().to_owned())
+}
+
+/// Writes rows.
+pub struct RowWriter<W: Write> {
+    csv: csv::Writer<W>,
+    planners: Planners,
+}
+
+impl<W: Write> RowWriter<W> {
+    /// Writes them to what has their header already.
+    pub fn new(to: W, planners: &Planners) -> Self {
+        let csv = WriterBuilder::new().has_headers(false).from_writer(to);
+        Self { csv, planners: planners.clone() }
+    }
+
+    /// Writes a row of the planner with this number.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn write<C: Checkpoint>(&mut self, planner: usize, row: &Measured<C>) -> Result<()> {
+        let Measured { checkpoint, course } = row;
+        if self.planners.are_named {
+            self.csv.serialize((&self.planners.names[planner], checkpoint, course))?;
+        } else {
+            self.csv.serialize((checkpoint, course))?;
+        }
+        Ok(())
+    }
+
+    /// Where they went.
+    ///
+    /// # Errors
+    /// When the last of them cannot be written.
+    pub fn into_inner(self) -> Result<W> {
+        self.csv.into_inner().map_err(|error| error.into_error().into())
+    }
+}
+
+/// A row that was read.
+#[derive(Clone, Debug)]
+pub struct RowRead<C> {
+    /// The number of its planner.
+    pub planner: usize,
+    /// The byte of the file at which it begins.
+    pub begins: u64,
+    /// The row.
+    pub row: Measured<C>,
+}
+
+/// Reads rows, which come by planner, field and stage.
+pub struct RowReader<R, C> {
+    name: String,
+    csv: csv::Reader<R>,
+    record: StringRecord,
+    planners: Planners,
+    /// Planner, field and stage of the row before.
+    before: Option<(usize, u64, u32)>,
+    /// A row that was read and belongs to a later planner.
+    ahead: Option<RowRead<C>>,
+}
+
+impl<R: Read, C: Checkpoint> RowReader<R, C> {
+    /// Reads those that a file of this name has under its header.
+    ///
+    /// # Errors
+    /// Names the file if it has another header.
+    pub fn new(name: &str, from: R, planners: &Planners) -> Result<Self> {
+        let mut csv = ReaderBuilder::new().has_headers(false).quoting(false).from_reader(from);
+        let mut record = StringRecord::new();
+        csv.read_record(&mut record).with_context(|| name.to_owned())?;
+        let found = record.iter().collect::<Vec<_>>().join(",");
+        let expected = planners.header::<C>()?;
+        if found != expected.trim_end() {
+            bail!("{name}:1: found the columns {found:?}, expected {:?}", expected.trim_end());
+        }
+        let planners = planners.clone();
+        Ok(Self { name: name.to_owned(), csv, record, planners, before: None, ahead: None })
+    }
+
+    /// The next row; `None` at the end.
+    ///
+    /// # Errors
+    /// Names the file and the line of what is no row, or of one that is out of order.
+    pub fn read(&mut self) -> Result<Option<RowRead<C>>> {
+        if let Some(row) = self.ahead.take() {
+            return Ok(Some(row));
+        }
+        let at = self.csv.position().clone();
+        let place = || format!("{}:{}", self.name, at.line());
+        if !self.csv.read_record(&mut self.record).with_context(place)? {
+            return Ok(None);
+        }
+        let read = if self.planners.are_named {
+            self.record.deserialize::<(String, C, Course)>(None)
+        } else {
+            let alone = self.record.deserialize::<(C, Course)>(None);
+            alone.map(|(checkpoint, course)| (self.planners.names[0].clone(), checkpoint, course))
+        };
+        let (name, checkpoint, course) = read.with_context(place)?;
+        let Some(planner) = self.planners.names.iter().position(|it| *it == name) else {
+            let expected = self.planners.names.join(", ");
+            bail!("{}: found the planner {name:?}, expected one of {expected}", place());
+        };
+        let now = (planner, checkpoint.field(), checkpoint.stage());
+        if self.before.is_some_and(|before| before >= now) {
+            let (_, field, stage) = now;
+            bail!(
+                "{}: found field {field} at {stage}, expected rows by field and stage, each once",
+                place()
+            );
+        }
+        self.before = Some(now);
+        Ok(Some(RowRead { planner, begins: at.byte(), row: Measured { checkpoint, course } }))
+    }
+
+    /// The next row of this planner; `None` when a later one's follow.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn read_of(&mut self, planner: usize) -> Result<Option<Measured<C>>> {
+        match self.read()? {
+            Some(read) if read.planner == planner => Ok(Some(read.row)),
+            read => {
+                self.ahead = read;
+                Ok(None)
+            }
+        }
+    }
+}

@@ -1,0 +1,218 @@
+//! What determines a campaign, as flags: they say what to fly, and beside rows they tell what was flown.
+
+use std::slice;
+
+use anyhow::{Result, bail};
+use clap::Args;
+use planner_core::motion::any_vehicle::AnyVehicle;
+use planner_core::motion::unicycle::Grid;
+use serde::{Deserialize, Serialize};
+
+use crate::campaign::ensemble::Campaign;
+use crate::campaign::rows::Planners;
+use crate::mission::algorithm::Algorithm;
+use crate::mission::names::{CrossingName, FanName, FollowingName, PolicyName, PriorName};
+use crate::mission::scenario;
+use crate::mission::vehicle::{Source, VehicleTable};
+use crate::world::errors::Errors;
+use crate::world::noise::{Extent, NoiseModel};
+
+/// Points that the oracle gives in a standard field.
+const ORACLE: usize = 4;
+
+/// What determines the rows of a campaign.
+#[derive(Debug, Args, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub(crate) struct CampaignFlags {
+    /// Number of standard fields
+    #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..))]
+    pub(crate) fields: u64,
+    /// Steps in each
+    #[arg(long, default_value_t = 20)]
+    steps: u32,
+    /// Measure at every step (or label), not only at those of the usual tables
+    #[arg(long)]
+    every: bool,
+    /// Seed of the ensemble
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Who plans
+    #[arg(long, value_enum, default_value_t = Algorithm::Cfc)]
+    algorithm: Algorithm,
+    /// Who plans, one after the other on the same fields: one table shows them side by side
+    #[arg(
+        long,
+        value_enum,
+        value_name = "PLANNER,...",
+        value_delimiter = ',',
+        conflicts_with = "algorithm"
+    )]
+    compare: Vec<Algorithm>,
+    /// How finely the vehicle turns [default: paper; for lookahead fine]
+    #[arg(long, value_enum)]
+    fan: Option<FanName>,
+    #[command(flatten)]
+    vehicle: VehicleTable,
+    /// How P1 looks for the opposite label (cfc, scc) [default: anyhow]
+    #[arg(long, value_enum)]
+    crossing: Option<CrossingName>,
+    /// How P2 follows the boundary (cfc, scc) [default: along-bisector; for scc anyhow]
+    #[arg(long, value_enum)]
+    following: Option<FollowingName>,
+    /// Labels are true with this probability (scc, lookahead, margin, random) [default: 0.7 for scc, 1 else]
+    #[arg(long)]
+    p: Option<f64>,
+    /// Within this distance of the oracle's points labels are certain, metres (where p is below 1) [default: 0]
+    #[arg(long)]
+    trusted_radius: Option<f64>,
+    /// Standard deviation of the positions that robots report, metres an axis
+    #[arg(long, value_name = "METRES", default_value_t = 0.0)]
+    position_error: f64,
+    /// Standard deviation of where motions end, metres an axis
+    #[arg(long, value_name = "METRES", default_value_t = 0.0)]
+    motion_error: f64,
+    /// How far off planners are told that positions are, at most, metres [default: 3 times the position error]
+    #[arg(long, value_name = "METRES")]
+    tolerance: Option<f64>,
+    /// How hypotheses choose an action together (scc) [default: mixture-of-own]
+    #[arg(long, value_enum)]
+    policy: Option<PolicyName>,
+    /// How hypotheses are weighed in that (scc; lookahead and margin where p is below 1) [default: area]
+    #[arg(long, value_enum)]
+    prior: Option<PriorName>,
+}
+
+/// What is to be flown.
+#[derive(Debug)]
+pub(crate) struct Campaigns {
+    /// One for each planner, over all fields.
+    pub(crate) of_each: Vec<Campaign>,
+    /// Whether they are compared, and not a single one.
+    pub(crate) are_compared: bool,
+    /// Whether they are measured by what labels that may err tell.
+    pub(crate) labels_err: bool,
+}
+
+impl Campaigns {
+    /// What their rows call them.
+    pub(crate) fn planners(&self) -> Planners {
+        let names = self.of_each.iter().map(|it| it.algorithm.name()).collect();
+        Planners { names, are_named: self.are_compared }
+    }
+}
+
+impl CampaignFlags {
+    /// What they ask for.
+    ///
+    /// # Errors
+    /// Names the flag, what was found and what was expected.
+    pub(crate) fn campaigns(&self) -> Result<Campaigns> {
+        scenario::check_steps("--steps", self.steps, ORACLE)?;
+        check_once(&self.compare)?;
+        let planners = self.planners();
+        let p = self.p.unwrap_or(if planners.contains(&Algorithm::Scc) { 0.7 } else { 1.0 });
+        let p = scenario::probability("--p", p)?;
+        planners.iter().try_for_each(|&planner| self.check_meanings(planner, p))?;
+        let radius = self.trusted_radius.unwrap_or_default();
+        let trusted_radius = scenario::trusted("--trusted-radius", radius)?;
+        let errors = Errors {
+            position: scenario::deviation("--position-error", self.position_error)?,
+            motion: scenario::deviation("--motion-error", self.motion_error)?,
+            ..Errors::default()
+        };
+        let tolerance = scenario::tolerance("--tolerance", self.tolerance, errors)?;
+        let extent = Extent::OutsideBalls(trusted_radius);
+        let campaign = |algorithm: Algorithm| {
+            Ok::<_, anyhow::Error>(Campaign {
+                algorithm,
+                fields: self.fields,
+                steps: self.steps,
+                every: self.every,
+                seed: self.seed,
+                crossing: self.crossing.unwrap_or_default().into(),
+                following: self.following.map_or(algorithm.following(), Into::into),
+                vehicle: self.moving(algorithm)?,
+                noise: algorithm.weighs(p < 1.0).then_some(NoiseModel { p, extent }),
+                errors,
+                tolerance,
+                policy: self.policy.unwrap_or_default().into(),
+                prior: self.prior.unwrap_or_default().into(),
+            })
+        };
+        let of_each = planners.iter().map(|&it| campaign(it)).collect::<Result<Vec<_>>>()?;
+        let are_compared = !self.compare.is_empty();
+        let labels_err =
+            if are_compared { p < 1.0 } else { of_each.iter().any(|it| it.noise.is_some()) };
+        Ok(Campaigns { of_each, are_compared, labels_err })
+    }
+
+    /// Who plans.
+    fn planners(&self) -> &[Algorithm] {
+        if self.compare.is_empty() { slice::from_ref(&self.algorithm) } else { &self.compare }
+    }
+
+    /// What moves when this one plans.
+    fn moving(&self, planner: Algorithm) -> Result<AnyVehicle> {
+        self.vehicle.vehicle(Source::Flags, planner, self.fan.is_some(), self.grid(planner))
+    }
+
+    /// How finely a planner's vehicle turns.
+    fn grid(&self, planner: Algorithm) -> Grid {
+        self.fan.map_or(planner.grid(), Into::into)
+    }
+
+    /// Whether every flag that was given has a meaning for a planner. `p` is how often labels are true.
+    fn check_meanings(&self, planner: Algorithm, p: f64) -> Result<()> {
+        let flag = if self.compare.is_empty() { "--algorithm" } else { "--compare" };
+        let name = planner.name();
+        if p < 1.0 && !planner.weighs(true) {
+            let found = if self.p.is_some() { "" } else { ", the default with scc" };
+            bail!(
+                "--p: found {p}{found}, expected 1 with {flag} {name}, which takes labels to be true"
+            );
+        }
+        if !planner.copes_with(self.grid(planner)) {
+            bail!("--fan: found fine with {flag} {name}, expected paper, as it tries every action");
+        }
+        let plans = planner.poses_problems();
+        let weighs = planner == Algorithm::Scc;
+        // Look-ahead predicts from hypotheses, margin sampling asks the most likely one.
+        let reads = matches!(planner, Algorithm::Lookahead | Algorithm::Margin);
+        let asks = weighs || reads && p < 1.0;
+        for (given, is_given, has_meaning, meant) in [
+            ("--crossing", self.crossing.is_some(), plans, "--algorithm cfc or scc"),
+            ("--following", self.following.is_some(), plans, "--algorithm cfc or scc"),
+            ("--policy", self.policy.is_some(), weighs, "--algorithm scc"),
+            (
+                "--prior",
+                self.prior.is_some(),
+                asks,
+                "--algorithm scc, or lookahead or margin with --p below 1",
+            ),
+            (
+                "--trusted-radius",
+                self.trusted_radius.is_some(),
+                p < 1.0,
+                "labels that can be wrong: --algorithm scc, lookahead, margin or random, --p below 1",
+            ),
+        ] {
+            if is_given && !has_meaning {
+                bail!("{given}: found with {flag} {name}, expected with {meant}");
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Whether each planner is compared once.
+///
+/// # Errors
+/// Names the one that is there twice.
+pub(crate) fn check_once(planners: &[Algorithm]) -> Result<()> {
+    for (k, planner) in planners.iter().enumerate() {
+        if planners[..k].contains(planner) {
+            bail!("--compare: found {} twice, expected once", planner.name());
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,165 @@
+//! A file that grows beside its place, for hours perhaps, and outlives an interruption: what is there can be gone on
+//! with. It is moved to its place when it is complete.
+//!
+//! Beside it stands a record of what is being done, so that nobody goes on with another's. The record is there before
+//! the file is, and goes when the file has become complete.
+
+use std::ffi::OsString;
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{self, Read as _, Write};
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, Result, bail};
+
+use crate::output::file::{Output, hand_on_permissions, prepare};
+use crate::output::interruption::unfinished;
+use crate::output::place::Place;
+
+/// A file that is not complete. Dropped, it stays if it has more than a header.
+#[derive(Debug)]
+pub struct Partial {
+    place: PathBuf,
+    path: PathBuf,
+    record: PathBuf,
+    file: File,
+    /// As the file's user names it.
+    name: String,
+    is_worth_keeping: bool,
+}
+
+/// What is to be written.
+#[derive(Clone, Copy, Debug)]
+pub struct Begin<'a> {
+    /// What it begins with.
+    pub header: &'a str,
+    /// What is being done.
+    pub record: &'a str,
+    /// Whether to go on with what is there.
+    pub resume: bool,
+}
+
+/// A path with something after it.
+pub(crate) fn with_suffix(path: &Path, suffix: &str) -> PathBuf {
+    let mut path = OsString::from(path);
+    path.push(suffix);
+    path.into()
+}
+
+impl Partial {
+    /// Begins a file, or opens the one that is to be gone on with, if it is there: `check` judges its record.
+    ///
+    /// # Errors
+    /// Names the file that is there though none is to be gone on with, that another program is writing, or that
+    /// cannot be written.
+    pub(crate) fn open(
+        path: &Path,
+        place: &Place,
+        begin: Begin,
+        check: impl FnOnce(&str) -> Result<()>,
+    ) -> Result<Self> {
+        let name = with_suffix(path, ".partial").display().to_string();
+        let path = with_suffix(place.path(), ".partial");
+        let record = with_suffix(place.path(), ".partial.json");
+        let is_there = path.try_exists().with_context(|| name.clone())?;
+        if is_there && !begin.resume {
+            bail!(
+                "{name}: found rows of a campaign that was stopped, expected --resume to go on with them, or that \
+                 they are removed"
+            );
+        }
+        if is_there {
+            let found = fs::read_to_string(&record);
+            check(&found.with_context(|| format!("{name}.json"))?).with_context(|| name.clone())?;
+        } else {
+            fs::write(&record, begin.record).with_context(|| format!("{name}.json"))?;
+        }
+        let mut options = OpenOptions::new();
+        let file = options.read(true).append(true).create_new(!is_there).open(&path);
+        let file = file.with_context(|| name.clone())?;
+        if let Err(TryLockError::WouldBlock) = file.try_lock() {
+            bail!("{name}: found another program writing it, expected none");
+        }
+        let place = place.path().to_owned();
+        let mut partial = Self { place, path, record, file, name, is_worth_keeping: is_there };
+        partial.begin(begin.header).with_context(|| partial.name.clone())?;
+        Ok(partial)
+    }
+
+    /// Writes the header if it is not there in full.
+    fn begin(&mut self, header: &str) -> io::Result<()> {
+        if self.file.metadata()?.len() < header.len() as u64 {
+            self.file.set_len(0)?;
+            self.file.write_all(header.as_bytes())?;
+        }
+        Ok(())
+    }
+
+    /// What its user calls it.
+    pub(crate) fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// So much of what is there, from its start.
+    ///
+    /// # Errors
+    /// When it cannot be opened.
+    pub(crate) fn reader(&self, bytes: u64) -> io::Result<io::Take<File>> {
+        Ok(File::open(&self.path)?.take(bytes))
+    }
+
+    /// Keeps so many bytes of what is there.
+    ///
+    /// # Errors
+    /// When it cannot be cut.
+    pub(crate) fn cut(&mut self, bytes: u64) -> io::Result<()> {
+        self.file.set_len(bytes)
+    }
+
+    /// From here on an interruption says that it is there.
+    pub(crate) fn announce(&self) {
+        let name = &self.name;
+        unfinished().farewell = Some(format!(
+            "stopped: finished rows are in {name}; the same command with --resume goes on with them"
+        ));
+    }
+
+    /// Moves it to its place. What is to stand beside it for good is told by its length.
+    ///
+    /// # Errors
+    /// Names the file that could not be written or moved.
+    pub(crate) fn complete(&self, beside: impl FnOnce(u64) -> Option<String>) -> Result<()> {
+        let named = || self.name.clone();
+        let bytes = self.file.metadata().with_context(named)?.len();
+        if let Some(record) = beside(bytes) {
+            let path = with_suffix(&self.place, ".json");
+            let [output] = prepare(&[], [("the record", Some(&path))])?;
+            output.map_or(Ok(()), |it: Output| it.write(record))?;
+        }
+        hand_on_permissions(&self.path, &self.place).with_context(named)?;
+        let mut unfinished = unfinished();
+        unfinished.farewell = None;
+        fs::rename(&self.path, &self.place).with_context(named)?;
+        fs::remove_file(&self.record).with_context(named)
+    }
+}
+
+impl Write for Partial {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.is_worth_keeping = true;
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl Drop for Partial {
+    fn drop(&mut self) {
+        if !self.is_worth_keeping {
+            // Whoever comes to this tells of another error already.
+            let _ = fs::remove_file(&self.path);
+            let _ = fs::remove_file(&self.record);
+        }
+    }
+}
