@@ -6,6 +6,7 @@ use clap::{Parser, Subcommand, ValueEnum};
 use crate::cli::campaign::{CampaignArgs, campaign};
 use crate::cli::hil::{HilArgs, hil};
 use crate::cli::paper;
+use crate::cli::reference::{ReferenceArgs, reference};
 use crate::cli::replay::{ReplayArgs, replay};
 use crate::cli::run::{Run, run};
 
@@ -30,6 +31,8 @@ pub(crate) enum Command {
     Campaign(CampaignArgs),
     /// Have a board, or its firmware under emulation, fly a mission
     Hil(HilArgs),
+    /// Solve the paper's full-horizon problem of a scenario, and say what the planners pay above its optimum
+    Reference(ReferenceArgs),
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -53,6 +56,7 @@ impl Cli {
             Some(Command::Replay(args)) => replay(&args),
             Some(Command::Campaign(args)) => campaign(&args),
             Some(Command::Hil(args)) => hil(&args),
+            Some(Command::Reference(args)) => reference(&args),
         }
     }
 }

@@ -5,5 +5,6 @@ mod campaign;
 mod compare;
 mod hil;
 pub mod paper;
+mod reference;
 mod replay;
 mod run;

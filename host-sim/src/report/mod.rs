@@ -6,6 +6,7 @@ pub mod examples;
 pub mod figure;
 pub mod legend;
 pub mod picture;
+pub mod reference;
 pub mod style;
 pub mod table;
 pub mod text;

@@ -1,0 +1,255 @@
+//! Branch and bound over sequences of motions, on all cores.
+//!
+//! A part of a sequence is given up when it costs more, at least, than the best whole one that is known; at the same cost,
+//! when its actions have the higher index. So the result is one and the same however the work is shared out: the
+//! cheapest sequence, and of those that cost the same, as they are rounded, the first in the order of its actions.
+
+use std::cmp::Ordering;
+use std::sync::Mutex;
+use std::sync::atomic::{self, AtomicI64, AtomicU64};
+
+use anyhow::{Result, bail};
+use indicatif::{ParallelProgressIterator as _, ProgressBar, ProgressStyle};
+use planner_core::belief::sample::{Reading, Sample};
+use planner_core::motion::action::Action;
+use rayon::prelude::*;
+
+use crate::reference::instance::{Instance, Partial};
+use crate::reference::relaxation::Relaxation;
+use crate::reference::size;
+
+/// Parts of sequences that are shared out to the cores, at least if there are so many.
+const TASKS: usize = 1000;
+
+/// Parts of sequences of each length that are followed to find a good sequence to begin with.
+const BEAM: usize = 200;
+
+/// A sequence of motions and what it costs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sequence {
+    /// The objective.
+    pub cost: f64,
+    /// Its actions.
+    pub actions: Vec<Action>,
+}
+
+/// A part of a sequence with the way there.
+#[derive(Clone, Debug)]
+pub(super) struct Branch {
+    at: Partial,
+    /// What all sequences cost that begin like this, at least.
+    pub(super) bound: f64,
+    actions: Vec<Action>,
+    /// The given samples, and those on the way.
+    samples: Vec<Sample>,
+}
+
+/// What a search knows and has done.
+pub(super) struct Search<'a> {
+    instance: &'a Instance,
+    relaxation: Relaxation<'a>,
+    best: Mutex<Option<Sequence>>,
+    /// The best one's cost, in the order of integers.
+    cost: AtomicI64,
+    /// Motions that were looked at.
+    looks: AtomicU64,
+}
+
+/// The best sequence of motions; `None` if there is none that the problem allows.
+///
+/// # Errors
+/// Names the horizon if there are too many sequences.
+pub fn solve(instance: &Instance) -> Result<Option<Sequence>> {
+    let search = Search::new(instance);
+    let Some(root) = search.root() else { return Ok(None) };
+    search.follow_best(&root);
+    size::check(&search, &root)?;
+    let mut tasks = vec![root];
+    while tasks.len() < TASKS && tasks.first().is_some_and(|task| task.at.left > 1) {
+        tasks = tasks.iter().flat_map(|task| search.branches(task)).collect();
+    }
+    tasks.sort_by(Branch::by_bound);
+    let style = "{bar:40} {pos}/{len} beginnings  {per_sec}  {eta} left";
+    let bar = ProgressBar::new(tasks.len() as u64).with_style(ProgressStyle::with_template(style)?);
+    tasks.into_par_iter().progress_with(bar.clone()).for_each(|task| search.descend(&task));
+    bar.finish_and_clear();
+    if search.is_too_long() {
+        bail!(
+            "--horizon: found {}, and no end after a look at {} motions, expected a shorter one or fewer actions",
+            instance.horizon(),
+            size::MOST_LOOKS
+        );
+    }
+    Ok(search.best.into_inner().expect("no thread panicked"))
+}
+
+impl<'a> Search<'a> {
+    fn new(instance: &'a Instance) -> Self {
+        Self {
+            instance,
+            relaxation: Relaxation::of(instance),
+            best: Mutex::new(None),
+            cost: AtomicI64::new(in_order(f64::INFINITY)),
+            looks: AtomicU64::new(0),
+        }
+    }
+
+    fn root(&self) -> Option<Branch> {
+        let at = self.instance.begin()?;
+        let bound = self.instance.cost(&at, self.relaxation.least(&at)?);
+        Some(Branch { at, bound, actions: Vec::new(), samples: self.instance.given().to_vec() })
+    }
+
+    /// Whether more was looked at than is to be.
+    fn is_too_long(&self) -> bool {
+        self.looks.load(atomic::Ordering::Relaxed) > size::MOST_LOOKS
+    }
+
+    /// All motions from here that may lead to the best sequence.
+    pub(super) fn branches(&self, from: &Branch) -> Vec<Branch> {
+        let mut branches = Vec::new();
+        self.motions(from, |at, bound, action, reading| {
+            branches.push(from.followed_by(at, bound, action, reading));
+        });
+        branches
+    }
+
+    /// Calls with each motion from here that may lead to the best sequence: where the sequence is then, what all that
+    /// begin like this cost at least, the action and what is read after it. Counts the motions that are looked at.
+    fn motions(&self, from: &Branch, mut each: impl FnMut(Partial, f64, Action, Reading)) -> u64 {
+        let (instance, at) = (self.instance, &from.at);
+        let left = at.left - 1;
+        let mut looks = 0;
+        for choice in &instance.choices {
+            let effort = at.effort + choice.effort;
+            // Each choice after it costs as much, and the line no less than now.
+            let least = instance.cost(&Partial { effort, ..*at }, 0);
+            if in_order(least) > self.cost.load(atomic::Ordering::Relaxed) {
+                break;
+            }
+            looks += 1;
+            let Some(pose) = instance.target(at.pose, choice.action) else { continue };
+            let reading = instance.mission.world.reading(pose.site);
+            let sum = at.sum + i32::from(reading.sign());
+            let moved = Partial { pose, left, effort, sum, lines: at.lines };
+            let Some(further) = self.relaxation.least(&moved) else { continue };
+            if self.is_beaten(instance.cost(&moved, further), from, choice.action) {
+                continue;
+            }
+            let Some(lines) = at.lines.with(&from.samples, pose.site, reading) else { continue };
+            let moved = Partial { lines, ..moved };
+            let bound = instance.cost(&moved, further);
+            if !self.is_beaten(bound, from, choice.action) {
+                each(moved, bound, choice.action, reading);
+            }
+        }
+        self.looks.fetch_add(looks, atomic::Ordering::Relaxed);
+        looks
+    }
+
+    /// How many motions one has to look at from here.
+    pub(super) fn count(&self, from: &Branch) -> u64 {
+        self.motions(from, |_, _, _, _| ())
+    }
+
+    /// Whether no sequence that begins with this action after others, and costs so much at least, can be the best.
+    fn is_beaten(&self, bound: f64, from: &Branch, action: Action) -> bool {
+        match in_order(bound).cmp(&self.cost.load(atomic::Ordering::Relaxed)) {
+            Ordering::Less => false,
+            Ordering::Greater => true,
+            Ordering::Equal => {
+                let best = self.best.lock().expect("no thread panicked");
+                let beginning = from.actions.iter().chain([&action]);
+                best.as_ref().is_some_and(|best| {
+                    beginning.cmp(best.actions.iter().take(from.actions.len() + 1)).is_gt()
+                })
+            }
+        }
+    }
+
+    /// Takes a whole sequence if it is the best so far.
+    fn offer(&self, cost: f64, from: &Branch, action: Action) {
+        let actions: Vec<_> = from.actions.iter().copied().chain([action]).collect();
+        let mut best = self.best.lock().expect("no thread panicked");
+        let is_better = best.as_ref().is_none_or(|best| {
+            in_order(cost)
+                .cmp(&in_order(best.cost))
+                .then_with(|| actions.cmp(&best.actions))
+                .is_lt()
+        });
+        if is_better {
+            self.cost.store(in_order(cost), atomic::Ordering::Relaxed);
+            *best = Some(Sequence { cost, actions });
+        }
+    }
+
+    /// Looks at all sequences that begin like this, as far as they may be the best.
+    fn descend(&self, from: &Branch) {
+        if from.at.left == 1 {
+            // What is left then is nothing, so the bound is the cost.
+            self.motions(from, |_, cost, action, _| self.offer(cost, from, action));
+            return;
+        }
+        let mut branches = self.branches(from);
+        branches.sort_by(Branch::by_bound);
+        for branch in branches {
+            if in_order(branch.bound) > self.cost.load(atomic::Ordering::Relaxed)
+                || self.is_too_long()
+            {
+                return;
+            }
+            self.descend(&branch);
+        }
+    }
+
+    /// Follows the most promising parts of sequences of each length, which makes a good one to begin with.
+    fn follow_best(&self, root: &Branch) {
+        let mut beam = vec![root.clone()];
+        for _ in 1..root.at.left {
+            beam = beam.iter().flat_map(|branch| self.branches(branch)).collect();
+            beam.sort_by(Branch::by_bound);
+            beam.truncate(BEAM);
+        }
+        for branch in &beam {
+            self.descend(branch);
+        }
+    }
+
+    /// The instance's number of motions.
+    pub(super) fn horizon(&self) -> u32 {
+        self.instance.horizon()
+    }
+
+    /// The instance's number of actions.
+    pub(super) fn actions(&self) -> usize {
+        self.instance.choices.len()
+    }
+}
+
+impl Branch {
+    /// Motions left.
+    pub(super) fn left(&self) -> u32 {
+        self.at.left
+    }
+
+    fn followed_by(&self, at: Partial, bound: f64, action: Action, reading: Reading) -> Self {
+        let mut samples = self.samples.clone();
+        if let Reading::Side(label) = reading {
+            samples.push(Sample { site: at.pose.site, label });
+        }
+        let actions = self.actions.iter().copied().chain([action]).collect();
+        Self { at, bound, actions, samples }
+    }
+
+    /// The order in which they are looked at: the most promising first.
+    fn by_bound(&self, other: &Self) -> Ordering {
+        self.bound.total_cmp(&other.bound).then_with(|| self.actions.cmp(&other.actions))
+    }
+}
+
+/// A number as an integer of the same order.
+fn in_order(value: f64) -> i64 {
+    // Negative numbers have the sign bit, and grow with the others the wrong way.
+    let bits = value.to_bits() as i64;
+    bits ^ (((bits >> 63) as u64) >> 1) as i64
+}
