@@ -78,6 +78,14 @@ impl Instance {
         Ok(Self { mission: Mission { steps: horizon, ..mission }, problem, above, choices })
     }
 
+    /// The same with fewer motions.
+    #[must_use]
+    pub fn cut_to(&self, horizon: u32) -> Self {
+        let mut cut = self.clone();
+        cut.mission.steps = horizon;
+        cut
+    }
+
     /// Motions in a sequence.
     pub fn horizon(&self) -> u32 {
         self.mission.steps

@@ -41,11 +41,12 @@ pub struct Relaxation<'a> {
     bins: Bins,
     /// What the cheapest motion costs.
     idlest: u64,
-    /// By motions left, then by sums of labels: a cost for each bin. Empty where labels need no balance.
+    /// By motions left, where labels need balance.
     tables: Vec<Tables>,
 }
 
-/// Tables for one number of motions left, by sums from `-most` to `most`.
+/// Tables for one number of motions left, by the sum of labels from `-most` to `most`: a cost for each bin. Sums that do
+/// not come up have none.
 struct Tables {
     most: i32,
     by_sum: Vec<Vec<u64>>,
@@ -100,10 +101,17 @@ impl<'a> Relaxation<'a> {
     }
 
     fn tables_for(&self, left: u32, moves: &Moves) -> Tables {
-        let reachable = self.instance.horizon() - left + 1;
-        let most = reachable.min(left + 1) as i32;
-        let by_sum = (-most..=most).map(|sum| self.table(left, sum, moves)).collect();
-        Tables { most, by_sum }
+        // With so many labels left no larger sum comes back to what is allowed, and each label so far has changed it by 1.
+        let most = left as i32 + 1;
+        let mission = &self.instance.mission;
+        let made = (self.instance.horizon() - left) as i32;
+        let begun = i32::from(mission.world.reading(mission.start.site).sign());
+        let comes_up = |sum: i32| {
+            let change = sum - begun;
+            change.abs() <= made && (made - change) % 2 == 0
+        };
+        let table = |sum| if comes_up(sum) { self.table(left, sum, moves) } else { Vec::new() };
+        Tables { most, by_sum: (-most..=most).map(table).collect() }
     }
 
     fn table(&self, left: u32, sum: i32, moves: &Moves) -> Vec<u64> {
@@ -162,7 +170,7 @@ impl<'a> Relaxation<'a> {
 
 impl Tables {
     fn of(&self, sum: i32) -> Option<&Vec<u64>> {
-        self.by_sum.get(usize::try_from(sum + self.most).ok()?)
+        self.by_sum.get(usize::try_from(sum + self.most).ok()?).filter(|costs| !costs.is_empty())
     }
 }
 

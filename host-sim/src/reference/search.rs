@@ -14,7 +14,7 @@ use planner_core::belief::sample::{Reading, Sample};
 use planner_core::motion::action::Action;
 use rayon::prelude::*;
 
-use crate::reference::instance::{Instance, Partial};
+use crate::reference::instance::{Choice, Instance, Partial};
 use crate::reference::relaxation::Relaxation;
 use crate::reference::size;
 
@@ -38,10 +38,20 @@ pub struct Sequence {
 pub(super) struct Branch {
     at: Partial,
     /// What all sequences cost that begin like this, at least.
-    pub(super) bound: f64,
+    bound: f64,
     actions: Vec<Action>,
     /// The given samples, and those on the way.
     samples: Vec<Sample>,
+}
+
+/// One motion more.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Twig {
+    at: Partial,
+    /// What all sequences cost that go on like this, at least.
+    bound: f64,
+    action: Action,
+    reading: Reading,
 }
 
 /// What a search knows and has done.
@@ -60,10 +70,9 @@ pub(super) struct Search<'a> {
 /// # Errors
 /// Names the horizon if there are too many sequences.
 pub fn solve(instance: &Instance) -> Result<Option<Sequence>> {
-    let search = Search::new(instance);
-    let Some(root) = search.root() else { return Ok(None) };
-    search.follow_best(&root);
-    size::check(&search, &root)?;
+    let (search, root) = Search::begin(instance);
+    let Some(root) = root else { return Ok(None) };
+    size::check(instance, &search, &root)?;
     let mut tasks = vec![root];
     while tasks.len() < TASKS && tasks.first().is_some_and(|task| task.at.left > 1) {
         tasks = tasks.iter().flat_map(|task| search.branches(task)).collect();
@@ -75,23 +84,28 @@ pub fn solve(instance: &Instance) -> Result<Option<Sequence>> {
     bar.finish_and_clear();
     if search.is_too_long() {
         bail!(
-            "--horizon: found {}, and no end after a look at {} motions, expected a shorter one or fewer actions",
+            "--horizon: found {}, and no end after a look at {:.0e} motions, expected a shorter one or fewer actions \
+             (--speed-step, --turn-step)",
             instance.horizon(),
-            size::MOST_LOOKS
+            size::MOST_LOOKS as f64
         );
     }
     Ok(search.best.into_inner().expect("no thread panicked"))
 }
 
 impl<'a> Search<'a> {
-    fn new(instance: &'a Instance) -> Self {
-        Self {
+    /// The search with a good sequence known, and the beginning of all; `None` if none can keep the constraints.
+    pub(super) fn begin(instance: &'a Instance) -> (Self, Option<Branch>) {
+        let search = Self {
             instance,
             relaxation: Relaxation::of(instance),
             best: Mutex::new(None),
             cost: AtomicI64::new(in_order(f64::INFINITY)),
             looks: AtomicU64::new(0),
-        }
+        };
+        let root = search.root();
+        root.iter().for_each(|root| search.follow_best(root));
+        (search, root)
     }
 
     fn root(&self) -> Option<Branch> {
@@ -105,51 +119,56 @@ impl<'a> Search<'a> {
         self.looks.load(atomic::Ordering::Relaxed) > size::MOST_LOOKS
     }
 
-    /// All motions from here that may lead to the best sequence.
-    pub(super) fn branches(&self, from: &Branch) -> Vec<Branch> {
-        let mut branches = Vec::new();
-        self.motions(from, |at, bound, action, reading| {
-            branches.push(from.followed_by(at, bound, action, reading));
-        });
-        branches
+    /// All motions from here that may lead to the best sequence, and how many were looked at.
+    pub(super) fn twigs(&self, from: &Branch) -> (Vec<Twig>, u64) {
+        let mut twigs = Vec::new();
+        let looks = self.look(from, |twig| twigs.push(twig));
+        (twigs, looks)
     }
 
-    /// Calls with each motion from here that may lead to the best sequence: where the sequence is then, what all that
-    /// begin like this cost at least, the action and what is read after it. Counts the motions that are looked at.
-    fn motions(&self, from: &Branch, mut each: impl FnMut(Partial, f64, Action, Reading)) -> u64 {
+    /// The same, in the order in which they are to be looked at.
+    fn sorted_twigs(&self, from: &Branch) -> Vec<Twig> {
+        let (mut twigs, _) = self.twigs(from);
+        twigs.sort_by(|a, b| a.bound.total_cmp(&b.bound).then_with(|| a.action.cmp(&b.action)));
+        twigs
+    }
+
+    /// Parts of sequences that are one motion longer.
+    fn branches(&self, from: &Branch) -> Vec<Branch> {
+        self.twigs(from).0.iter().map(|twig| from.followed_by(twig)).collect()
+    }
+
+    /// Calls with each motion from here that may lead to the best sequence. How many it has looked at.
+    fn look(&self, from: &Branch, mut each: impl FnMut(Twig)) -> u64 {
         let (instance, at) = (self.instance, &from.at);
         let left = at.left - 1;
         let mut looks = 0;
-        for choice in &instance.choices {
-            let effort = at.effort + choice.effort;
-            // Each choice after it costs as much, and the line no less than now.
-            let least = instance.cost(&Partial { effort, ..*at }, 0);
-            if in_order(least) > self.cost.load(atomic::Ordering::Relaxed) {
-                break;
+        for &Choice { action, effort } in &instance.choices {
+            let effort = at.effort + effort;
+            // The line costs no less than before the motion.
+            let at_least = |further| instance.cost(&Partial { effort, ..*at }, further);
+            if in_order(at_least(0)) > self.cost.load(atomic::Ordering::Relaxed) {
+                break; // and so do all choices after it
             }
             looks += 1;
-            let Some(pose) = instance.target(at.pose, choice.action) else { continue };
+            let Some(pose) = instance.target(at.pose, action) else { continue };
             let reading = instance.mission.world.reading(pose.site);
             let sum = at.sum + i32::from(reading.sign());
             let moved = Partial { pose, left, effort, sum, lines: at.lines };
             let Some(further) = self.relaxation.least(&moved) else { continue };
-            if self.is_beaten(instance.cost(&moved, further), from, choice.action) {
+            // The line after it is looked at last, as that takes the longest.
+            if self.is_beaten(at_least(further), from, action) {
                 continue;
             }
             let Some(lines) = at.lines.with(&from.samples, pose.site, reading) else { continue };
-            let moved = Partial { lines, ..moved };
-            let bound = instance.cost(&moved, further);
-            if !self.is_beaten(bound, from, choice.action) {
-                each(moved, bound, choice.action, reading);
+            let at = Partial { lines, ..moved };
+            let bound = instance.cost(&at, further);
+            if !self.is_beaten(bound, from, action) {
+                each(Twig { at, bound, action, reading });
             }
         }
         self.looks.fetch_add(looks, atomic::Ordering::Relaxed);
         looks
-    }
-
-    /// How many motions one has to look at from here.
-    pub(super) fn count(&self, from: &Branch) -> u64 {
-        self.motions(from, |_, _, _, _| ())
     }
 
     /// Whether no sequence that begins with this action after others, and costs so much at least, can be the best.
@@ -186,19 +205,17 @@ impl<'a> Search<'a> {
     /// Looks at all sequences that begin like this, as far as they may be the best.
     fn descend(&self, from: &Branch) {
         if from.at.left == 1 {
-            // What is left then is nothing, so the bound is the cost.
-            self.motions(from, |_, cost, action, _| self.offer(cost, from, action));
+            // No motion is left then, so the bound is the cost.
+            self.look(from, |twig| self.offer(twig.bound, from, twig.action));
             return;
         }
-        let mut branches = self.branches(from);
-        branches.sort_by(Branch::by_bound);
-        for branch in branches {
-            if in_order(branch.bound) > self.cost.load(atomic::Ordering::Relaxed)
+        for twig in self.sorted_twigs(from) {
+            if in_order(twig.bound) > self.cost.load(atomic::Ordering::Relaxed)
                 || self.is_too_long()
             {
                 return;
             }
-            self.descend(&branch);
+            self.descend(&from.followed_by(&twig));
         }
     }
 
@@ -214,16 +231,6 @@ impl<'a> Search<'a> {
             self.descend(branch);
         }
     }
-
-    /// The instance's number of motions.
-    pub(super) fn horizon(&self) -> u32 {
-        self.instance.horizon()
-    }
-
-    /// The instance's number of actions.
-    pub(super) fn actions(&self) -> usize {
-        self.instance.choices.len()
-    }
 }
 
 impl Branch {
@@ -232,13 +239,13 @@ impl Branch {
         self.at.left
     }
 
-    fn followed_by(&self, at: Partial, bound: f64, action: Action, reading: Reading) -> Self {
+    pub(super) fn followed_by(&self, twig: &Twig) -> Self {
         let mut samples = self.samples.clone();
-        if let Reading::Side(label) = reading {
-            samples.push(Sample { site: at.pose.site, label });
+        if let Reading::Side(label) = twig.reading {
+            samples.push(Sample { site: twig.at.pose.site, label });
         }
-        let actions = self.actions.iter().copied().chain([action]).collect();
-        Self { at, bound, actions, samples }
+        let actions = self.actions.iter().copied().chain([twig.action]).collect();
+        Self { at: twig.at, bound: twig.bound, actions, samples }
     }
 
     /// The order in which they are looked at: the most promising first.
