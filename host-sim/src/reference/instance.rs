@@ -157,7 +157,7 @@ fn choices(mission: &Mission) -> Result<Vec<Choice>> {
             "vehicle: found {count} actions, expected at most {MOST_ACTIONS}: fan = \"paper\", or a larger --turn-step"
         );
     }
-    let all = (0..count as u32).map(Action).filter(|it| vehicle.target(start, *it).is_some());
+    let all = (0..count as u32).map(Action).filter(|it| vehicle.ray_of(start, *it).is_some());
     let mut choices: Vec<_> =
         all.map(|action| Choice { action, effort: effort(vehicle.control(action)) }).collect();
     choices.sort_by_key(|it| (it.effort, it.action));
