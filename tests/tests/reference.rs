@@ -28,7 +28,7 @@ use planner_core::motion::unicycle::Unicycle;
 use tests::cases;
 
 /// Standard fields that planners fly beside the optimum.
-const FIELDS: u64 = cases(12, 100);
+const FIELDS: u64 = cases(4, 100);
 
 /// How strictly constraints are asked, metres.
 const STRICTNESS: f64 = 1e-4;
@@ -201,14 +201,14 @@ fn no_sequence_is_cheaper_than_the_optimum() {
         assert_eq!(found.is_some(), horizon > 1, "one motion does not come across");
     }
     let mut found = [0; 2];
-    for number in 0..60 {
+    for number in 0..24 {
         let field = standard(1, number, Algorithm::Cfc, 3);
         let horizon = 2 + u32::from(number % 2 == 0);
         for (line, found) in [LineCost::Slope, LineCost::Margin].into_iter().zip(&mut found) {
             *found += u32::from(between(&field, horizon, line).is_some());
         }
     }
-    assert!(found.iter().all(|found| (15..=50).contains(found)), "{found:?} of 60 have an optimum");
+    assert!(found.iter().all(|found| (6..=22).contains(found)), "{found:?} of 24 have an optimum");
 }
 
 /// The cheapest sequence of all, and of those that cost the same to 10^-9 the first, by the dynamics' own positions.

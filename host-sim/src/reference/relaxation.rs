@@ -10,6 +10,7 @@
 use std::f64::consts::TAU;
 
 use planner_core::geometry::lattice::Site;
+use planner_core::geometry::line::Line;
 use planner_core::geometry::region::Region as _;
 use planner_core::motion::dynamics::{Dynamics as _, Pose};
 use rayon::prelude::*;
@@ -194,7 +195,7 @@ impl Bins {
         let width = (highest - lowest) / DISTANCES;
         let side = |most: f64| if most > 0.0 { (most / width) as usize + 1 } else { 0 };
         let (negative, positive) = (side(-lowest), side(highest));
-        let [a, b, _] = world.line().map_or([0.0, 1.0, 0.0], |line| line.coefficients());
+        let [a, b, _] = world.line().map_or([0.0, 1.0, 0.0], Line::coefficients);
         Self { width, negative, distances: negative + positive, normal: libm::atan2(b, a) }
     }
 

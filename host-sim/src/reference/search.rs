@@ -69,6 +69,9 @@ pub(super) struct Search<'a> {
 ///
 /// # Errors
 /// Names the horizon if there are too many sequences.
+///
+/// # Panics
+/// Never, unless a thread of its own does.
 pub fn solve(instance: &Instance) -> Result<Option<Sequence>> {
     let (search, root) = Search::begin(instance);
     let Some(root) = root else { return Ok(None) };
@@ -104,7 +107,9 @@ impl<'a> Search<'a> {
             looks: AtomicU64::new(0),
         };
         let root = search.root();
-        root.iter().for_each(|root| search.follow_best(root));
+        if let Some(root) = &root {
+            search.follow_best(root);
+        }
         (search, root)
     }
 
@@ -223,9 +228,11 @@ impl<'a> Search<'a> {
     fn follow_best(&self, root: &Branch) {
         let mut beam = vec![root.clone()];
         for _ in 1..root.at.left {
-            beam = beam.iter().flat_map(|branch| self.branches(branch)).collect();
-            beam.sort_by(Branch::by_bound);
-            beam.truncate(BEAM);
+            let of = |branch| self.twigs(branch).0.into_iter().map(move |twig| (branch, twig));
+            let mut longer: Vec<_> = beam.iter().flat_map(of).collect();
+            longer.sort_by(|(_, a), (_, b)| a.bound.total_cmp(&b.bound)); // stable, so ties stay in order
+            longer.truncate(BEAM);
+            beam = longer.into_iter().map(|(branch, twig)| branch.followed_by(&twig)).collect();
         }
         for branch in &beam {
             self.descend(branch);

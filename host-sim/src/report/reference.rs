@@ -20,20 +20,14 @@ pub fn text(title: &str, solution: &Solution) -> String {
         instance.choices.len(),
         problem.line_cost(),
     );
-    match optimum {
-        Some(recording) => {
-            text += &steps(&recording.results.steps);
+    text += &match optimum {
+        Some(recording) => steps(&recording.results.steps),
+        None if instance.begin().is_none() => {
+            "No line has the oracle's points on the sides of their labels, a metre off.\n"
+                .to_owned()
         }
-        None => {
-            let why = if instance.begin().is_none() {
-                "No line has the oracle's points on the sides of their labels, a metre off."
-            } else {
-                "No sequence of so many motions keeps the constraints: see below what they ask."
-            };
-            text += why;
-            text.push('\n');
-        }
-    }
+        None => "No sequence of so many motions keeps the constraints.\n".to_owned(),
+    };
     text.push('\n');
     text += &table(accounts);
     text += &broken(accounts);

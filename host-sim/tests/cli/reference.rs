@@ -14,11 +14,13 @@ const COARSE: &str = "vehicle = { kind = \"unicycle\", step = 1.0, turn_step = 0
 #[test]
 fn the_optimum_stands_beside_what_planners_pay() {
     let folder = folder();
-    fs::write(folder.path().join("m.toml"), format!("{COARSE}{GOOD}")).expect("a file");
-    let args = ["reference", "m.toml", "--horizon", "5", "--line", "margin"];
+    fs::write(folder.path().join("m.toml"), GOOD).expect("a file");
+    let steps = ["--speed-step", "0.5", "--turn-step", "0.3"];
+    let args =
+        [&["reference", "m.toml", "--horizon", "5", "--line", "margin"][..], &steps].concat();
     let story = prints(folder.path(), &[&args[..], &["--figure", "f.svg"]].concat());
     for part in
-        ["Section II-A: 5 motions of 27 actions", "1 / (2 margin^2)", "optimum", "look-ahead"]
+        ["Section II-A: 5 motions of 65 actions", "1 / (2 margin^2)", "optimum", "look-ahead"]
     {
         assert!(story.contains(part), "expected {part:?} in: {story}");
     }
@@ -111,7 +113,7 @@ fn wrong_values_are_refused() {
     }
     let scenarios: [(&str, &[&str]); 7] = [
         (&format!("errors = {{ motion = 0.1 }}\n{GOOD}"), &["errors", "expected none"]),
-        (&format!("tolerance = 0.1\n{GOOD}"), &["tolerance: found 0.1 m, expected 0"]),
+        (&format!("tolerance = 0.125\n{GOOD}"), &["tolerance: found 0.125 m, expected 0"]),
         (
             &format!("stop = {{ slope_arc_deg = 1.0 }}\n{}", GOOD.replace("cfc", "lookahead")),
             &["stop: found one"],
