@@ -56,6 +56,7 @@ pub mod flight;
 pub mod instance;
 pub mod margin;
 pub mod objective;
+pub mod optimum;
 pub mod relaxation;
 pub mod search;
 pub mod size;

@@ -16,13 +16,15 @@ use rayon::prelude::*;
 
 use crate::reference::instance::{Choice, Instance, Partial};
 use crate::reference::relaxation::Relaxation;
-use crate::reference::size;
 
 /// Parts of sequences that are shared out to the cores, at least if there are so many.
 const TASKS: usize = 1000;
 
 /// Parts of sequences of each length that are followed to find a good sequence to begin with.
 const BEAM: usize = 200;
+
+/// Motions that a search may look at: some minutes on two cores.
+pub const MOST_LOOKS: u64 = 3_000_000_000;
 
 /// A sequence of motions and what it costs.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,37 +67,6 @@ pub(super) struct Search<'a> {
     looks: AtomicU64,
 }
 
-/// The best sequence of motions; `None` if there is none that the problem allows.
-///
-/// # Errors
-/// Names the horizon if there are too many sequences.
-///
-/// # Panics
-/// Never, unless a thread of its own does.
-pub fn solve(instance: &Instance) -> Result<Option<Sequence>> {
-    let (search, root) = Search::begin(instance);
-    let Some(root) = root else { return Ok(None) };
-    size::check(instance, &search, &root)?;
-    let mut tasks = vec![root];
-    while tasks.len() < TASKS && tasks.first().is_some_and(|task| task.at.left > 1) {
-        tasks = tasks.iter().flat_map(|task| search.branches(task)).collect();
-    }
-    tasks.sort_by(Branch::by_bound);
-    let style = "{bar:40} {pos}/{len} beginnings  {per_sec}  {eta} left";
-    let bar = ProgressBar::new(tasks.len() as u64).with_style(ProgressStyle::with_template(style)?);
-    tasks.into_par_iter().progress_with(bar.clone()).for_each(|task| search.descend(&task));
-    bar.finish_and_clear();
-    if search.is_too_long() {
-        bail!(
-            "--horizon: found {}, and no end after a look at {:.0e} motions, expected a shorter one or fewer actions \
-             (--speed-step, --turn-step)",
-            instance.horizon(),
-            size::MOST_LOOKS as f64
-        );
-    }
-    Ok(search.best.into_inner().expect("no thread panicked"))
-}
-
 impl<'a> Search<'a> {
     /// The search with a good sequence known, and the beginning of all; `None` if none can keep the constraints.
     pub(super) fn begin(instance: &'a Instance) -> (Self, Option<Branch>) {
@@ -113,6 +84,32 @@ impl<'a> Search<'a> {
         (search, root)
     }
 
+    /// Goes through all sequences that begin like this, on all cores, with a progress bar on a terminal.
+    ///
+    /// # Errors
+    /// Names the horizon if there was no end to them.
+    pub(super) fn run(self, root: Branch) -> Result<Option<Sequence>> {
+        let mut tasks = vec![root];
+        while tasks.len() < TASKS && tasks.first().is_some_and(|task| task.at.left > 1) {
+            tasks = tasks.iter().flat_map(|task| self.branches(task)).collect();
+        }
+        tasks.sort_by(Branch::by_bound);
+        let style = "{bar:40} {pos}/{len} beginnings  {per_sec}  {eta} left";
+        let bar =
+            ProgressBar::new(tasks.len() as u64).with_style(ProgressStyle::with_template(style)?);
+        tasks.into_par_iter().progress_with(bar.clone()).for_each(|task| self.descend(&task));
+        bar.finish_and_clear();
+        if self.is_too_long() {
+            bail!(
+                "--horizon: found {}, and no end after a look at {:.0e} motions, expected a shorter one or fewer \
+                 actions (--speed-step, --turn-step)",
+                self.instance.horizon(),
+                MOST_LOOKS as f64
+            );
+        }
+        Ok(self.best.into_inner().ok().flatten())
+    }
+
     fn root(&self) -> Option<Branch> {
         let at = self.instance.begin()?;
         let bound = self.instance.cost(&at, self.relaxation.least(&at)?);
@@ -121,7 +118,7 @@ impl<'a> Search<'a> {
 
     /// Whether more was looked at than is to be.
     fn is_too_long(&self) -> bool {
-        self.looks.load(atomic::Ordering::Relaxed) > size::MOST_LOOKS
+        self.looks.load(atomic::Ordering::Relaxed) > MOST_LOOKS
     }
 
     /// All motions from here that may lead to the best sequence, and how many were looked at.

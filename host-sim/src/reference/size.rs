@@ -9,10 +9,7 @@ use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 
 use crate::reference::instance::Instance;
-use crate::reference::search::{Branch, Search};
-
-/// Motions that a search may look at: some minutes on two cores.
-pub const MOST_LOOKS: u64 = 3_000_000_000;
+use crate::reference::search::{Branch, MOST_LOOKS, Search};
 
 /// Ways that are gone down.
 const WAYS: u64 = 400;

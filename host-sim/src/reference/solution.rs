@@ -11,7 +11,7 @@ use crate::reference::account::Account;
 use crate::reference::flight;
 use crate::reference::instance::Instance;
 use crate::reference::objective::Problem;
-use crate::reference::search::solve;
+use crate::reference::optimum::solve;
 
 /// A solved instance.
 #[derive(Debug)]
