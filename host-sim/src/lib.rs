@@ -8,6 +8,7 @@ pub mod cli;
 pub mod hil;
 pub mod mission;
 pub mod output;
+pub mod reference;
 pub mod replay;
 pub mod report;
 pub mod world;

@@ -16,7 +16,7 @@ const PLANNER_CORE: Storeys =
 const HOST_SIM: Storeys = &[
     &["output", "world"],
     &["mission"],
-    &["campaign"],
+    &["campaign", "reference"],
     &["report"],
     &["replay"],
     &["hil"],

@@ -8,6 +8,7 @@ use crate::cli::completions::{Completions, completions};
 use crate::cli::figure::{FigureArgs, figure};
 use crate::cli::hil::{HilArgs, hil};
 use crate::cli::init::{Init, init};
+use crate::cli::reference::{ReferenceArgs, reference};
 use crate::cli::replay::{ReplayArgs, replay};
 use crate::cli::run::{RunArgs, run};
 use crate::cli::{help, paper};
@@ -42,6 +43,8 @@ pub(crate) enum Command {
     Figure(FigureArgs),
     /// Have a board, or its firmware under emulation, fly a mission
     Hil(HilArgs),
+    /// Solve the paper's full-horizon problem of a scenario, and say what the planners pay above its optimum
+    Reference(ReferenceArgs),
     /// Write a commented scenario to begin with
     Init(Init),
     /// Print a script by which a shell completes commands and flags
@@ -66,6 +69,7 @@ impl Cli {
             Some(Command::Campaign(args)) => campaign(*args),
             Some(Command::Figure(args)) => figure(&args),
             Some(Command::Hil(args)) => hil(&args),
+            Some(Command::Reference(args)) => reference(&args),
             Some(Command::Init(args)) => init(&args),
             Some(Command::Completions(args)) => completions(&args),
         }

@@ -57,6 +57,11 @@ Examples:
   host-sim figure all
   host-sim figure 7 --out pictures";
 
+pub(crate) const REFERENCE: &str = "\
+Examples:
+  host-sim reference mission.toml --horizon 2
+  host-sim reference mission.toml --horizon 5 --speed-step 0.5 --turn-step 0.25";
+
 pub(crate) const INIT: &str = "\
 Examples:
   host-sim init

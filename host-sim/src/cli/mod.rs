@@ -13,6 +13,7 @@ mod init;
 mod merge;
 pub mod paper;
 mod passage;
+mod reference;
 mod replay;
 mod run;
 mod told;

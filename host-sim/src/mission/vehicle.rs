@@ -190,6 +190,32 @@ impl From<AnyVehicle> for VehicleTable {
     }
 }
 
+/// The same vehicle with other steps of speed (metres) and of turning (radians), which flags ask for.
+///
+/// # Errors
+/// Names the flag, what was found and what was expected.
+pub fn with_steps(
+    vehicle: AnyVehicle,
+    speed_step: Option<f64>,
+    turn_step: Option<f64>,
+    algorithm: Algorithm,
+) -> Result<AnyVehicle> {
+    let old = VehicleTable::from(vehicle);
+    if let (Some(step), Some(reach)) = (speed_step, old.reach) {
+        let parts = reach / step;
+        if (parts - parts.round()).abs() > 1e-6 {
+            return wrong(
+                "--speed-step",
+                step,
+                format!("a whole part of the longest motion, {reach} m"),
+            );
+        }
+    }
+    let (step, turn_step) = (speed_step.or(old.step), turn_step.or(old.turn_step));
+    let table = VehicleTable { step, turn_step, ..old };
+    table.vehicle(Source::Flags, algorithm, false, Grid::Paper)
+}
+
 /// Whether a planner sees to it that a vehicle can go on.
 fn check_suits(name: &str, vehicle: &AnyVehicle, algorithm: Algorithm) -> Result<()> {
     let tries = matches!(algorithm, Algorithm::Margin | Algorithm::Random);

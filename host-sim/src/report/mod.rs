@@ -18,6 +18,7 @@ pub mod page;
 pub mod paper;
 pub mod picture;
 mod placing;
+pub mod reference;
 mod shapes;
 mod sheet;
 mod style;

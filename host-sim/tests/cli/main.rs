@@ -14,6 +14,7 @@ mod interruption;
 mod missions;
 mod outputs;
 mod recordings;
+mod reference;
 mod resuming;
 mod samples;
 mod scenarios;

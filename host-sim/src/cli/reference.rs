@@ -1,0 +1,69 @@
+//! `reference`: the paper's full-horizon problem of a scenario, solved, and what planners pay above its optimum.
+
+use std::path::PathBuf;
+
+use anyhow::{Context as _, Result, bail};
+use clap::Args;
+
+use crate::cli::format::Format;
+use crate::cli::help;
+use crate::mission::scenario::{self, Overrides};
+use crate::mission::vehicle::with_steps;
+use crate::output::file::{json, prepare};
+use crate::reference::instance::Instance;
+use crate::reference::objective::LineCost;
+use crate::reference::solution::Solution;
+use crate::report::picture::Picture;
+use crate::report::reference as told;
+
+#[derive(Debug, Args)]
+#[command(after_help = help::REFERENCE)]
+pub(crate) struct ReferenceArgs {
+    /// The mission, a TOML file
+    pub(crate) scenario: PathBuf,
+    /// Motions in a sequence
+    #[arg(long, value_name = "M")]
+    pub(crate) horizon: u32,
+    /// What a line costs, where labels are true [default: slope]
+    #[arg(long, value_enum, value_name = "COST")]
+    pub(crate) line: Option<LineCost>,
+    /// From one length of motions to the next, metres [default: the vehicle's]
+    #[arg(long, value_name = "METRES")]
+    pub(crate) speed_step: Option<f64>,
+    /// From one direction to the next, radians [default: the vehicle's]
+    #[arg(long, value_name = "RADIANS")]
+    pub(crate) turn_step: Option<f64>,
+    /// Write a figure of the optimum here
+    #[arg(long, value_name = "FILE.svg")]
+    pub(crate) figure: Option<PathBuf>,
+    /// What to print
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) format: Format,
+}
+
+/// Solves it, and what to print.
+pub(crate) fn reference(args: &ReferenceArgs) -> Result<String> {
+    let name = args.scenario.display().to_string();
+    let mut mission = scenario::read(&args.scenario, Overrides::default())?;
+    if args.speed_step.is_some() || args.turn_step.is_some() {
+        mission.vehicle =
+            with_steps(mission.vehicle, args.speed_step, args.turn_step, mission.algorithm)?;
+    }
+    let [figure] =
+        prepare(&[("the scenario", &args.scenario)], [("--figure", args.figure.as_deref())])?;
+    let solution = Instance::new(mission, args.horizon, args.line)
+        .and_then(Solution::of)
+        .with_context(|| name.clone())?;
+    if let Some(output) = figure {
+        let Some(optimum) = &solution.optimum else {
+            bail!(
+                "--figure: found no sequence of motions that keeps the constraints, expected an optimum to draw"
+            )
+        };
+        output.write(Picture::of(&format!("{name}, optimum"), optimum).svg())?;
+    }
+    Ok(match args.format {
+        Format::Text => told::text(&name, &solution),
+        Format::Json => json(&solution.record()),
+    })
+}

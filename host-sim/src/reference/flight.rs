@@ -1,0 +1,45 @@
+//! Motions that are known beforehand, flown and recorded as a planner's are.
+
+use anyhow::Result;
+use planner_core::motion::action::Action;
+use planner_core::motion::dynamics::{Dynamics as _, Pose};
+use planner_core::planner::Motion;
+use planner_core::robot::agent::Step;
+
+use crate::mission::definition::Mission;
+use crate::mission::flight::Flown;
+use crate::mission::read_out::ReadOut;
+use crate::mission::recording::{Recorder, Recording};
+use crate::mission::results::Ending;
+
+/// Makes these motions, and takes in a label after each.
+///
+/// # Errors
+/// Names the sample that contradicts what is known.
+pub fn fly(mission: &Mission, actions: &[Action]) -> Result<Recording> {
+    let mut belief: Box<dyn ReadOut> =
+        if mission.is_noisy() { Box::new(mission.table()) } else { Box::new(mission.lines()) };
+    let (mut robot, mut pose) = (mission.robot(), mission.start);
+    let mut recorder = Recorder::new(mission.clone());
+    for &action in actions {
+        let Some(motion) = motion(mission, pose, action) else { break };
+        let Ok(reading) = robot.perform(&motion, &mut pose);
+        let seen = reading.map_or(Ok(()), |reading| belief.observe(pose.site, reading));
+        seen.map_err(|refused| recorder.refusal(&refused))?;
+        recorder.take(&Step { motion, pose, reading }, robot.true_pose(), &*belief);
+    }
+    Ok(recorder.end(Flown { ending: Ending::Steps, belief }))
+}
+
+fn motion(mission: &Mission, pose: Pose, action: Action) -> Option<Motion> {
+    Some(Motion {
+        stage: None,
+        recovery: None,
+        action,
+        control: mission.vehicle.control(action),
+        target: mission.vehicle.target(pose, action)?,
+        wants_label: true,
+        examined: 0,
+        proven: true,
+    })
+}
