@@ -97,7 +97,7 @@ fn all_that_is_drawn_is_named_and_the_reverse() {
         let shown = check(name, &svg);
         let ended = prints(folder.path(), &[&args[..6], &["--format", "json"]].concat());
         let steps = ended.matches("\"record\":\"step\"").count() as u32;
-        let kept = |step: &u32| *step == 1 || *step == steps || step % 5 == 0;
+        let kept = |step: &u32| *step == 1 || *step == steps || step.is_multiple_of(5);
         assert!(
             (1..=steps).filter(kept).all(|step| shown.contains(&step)),
             "{name}: {shown:?} of {steps}"
