@@ -169,7 +169,8 @@ pub(crate) fn tell() -> Result<String> {
 /// The page of all flights, those of an example side by side.
 fn page(recordings: &[Recording]) -> Result<String> {
     let chapter = |example| {
-        let flights = FLIGHTS.iter().zip(recordings).filter(|(flight, _)| flight.example == example);
+        let flights =
+            FLIGHTS.iter().zip(recordings).filter(|(flight, _)| flight.example == example);
         Chapter::new(example, flights.map(|(flight, recording)| (flight.planner, recording)))
     };
     Page::new(REPORT_TITLE, [NOISELESS, NOISY].map(chapter).into()).html()

@@ -75,8 +75,9 @@ pub(crate) fn run(args: &RunArgs) -> Result<String> {
     run.tell(outputs, &recording)
 }
 
-/// A page of missions that were flown from the same start.
-fn page(name: &str, recordings: &[&Recording]) -> Result<String> {
+/// A page of missions that were flown from the same start, under the scenario's name.
+fn page(scenario: &Path, recordings: &[&Recording]) -> Result<String> {
+    let name = scenario.file_name().unwrap_or(scenario.as_os_str()).to_string_lossy();
     let planners: Vec<_> = recordings.iter().map(|it| it.mission.algorithm.title()).collect();
     let title = format!("Flown by {}", planners.join(", "));
     let flights = planners.into_iter().zip(recordings.iter().copied());
@@ -109,10 +110,12 @@ impl Run {
     fn compare(&self, planners: &[Algorithm]) -> Result<String> {
         compare::check_once(planners)?;
         let mission = |&planner: &Algorithm| {
-            let mission = self.mission_by(Some(planner)).with_context(|| format!("--compare {}", planner.name()))?;
+            let mission = self
+                .mission_by(Some(planner))
+                .with_context(|| format!("--compare {}", planner.name()))?;
             if mission.noise.is_some() && !mission.is_noisy() {
-                let name = planner.name();
-                bail!("--compare: found {name}, which takes labels to be true, in a mission with noise");
+                let (name, planner) = (self.name(), planner.name());
+                bail!("{name}: noise: found --compare {planner}, which takes labels to be true");
             }
             Ok(mission)
         };
@@ -121,7 +124,7 @@ impl Run {
         let name = self.name();
         let fly = |mission: &Mission| Recording::of(mission).with_context(|| name.clone());
         let recordings = missions.iter().map(fly).collect::<Result<Vec<_>>>()?;
-        let page = page(&name, &recordings.iter().collect::<Vec<_>>())?;
+        let page = page(&self.scenario, &recordings.iter().collect::<Vec<_>>())?;
         if let Some(report) = report {
             report.write(page)?;
         }
@@ -162,7 +165,7 @@ impl Run {
         let svg = figure.as_ref().map(|_| Picture::of(&name, recording).svg()).transpose()?;
         let fewest = candidates.as_ref().and_then(|_| Picture::of_candidates(&name, recording));
         let fewest = fewest.map(|picture| picture.svg()).transpose()?;
-        let page = report.as_ref().map(|_| page(&name, &[recording])).transpose()?;
+        let page = report.as_ref().map(|_| page(&self.scenario, &[recording])).transpose()?;
         for (output, content) in [
             (trace, Some(&lines)),
             (figure, svg.as_ref()),

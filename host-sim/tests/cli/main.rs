@@ -11,6 +11,7 @@ mod flags;
 mod interruption;
 mod missions;
 mod outputs;
+mod report;
 mod samples;
 mod scenarios;
 mod stopping;

@@ -98,9 +98,11 @@ fn still(flight: &Flight) -> Result<String> {
 
 /// The steps as a table.
 fn steps(flight: &Flight) -> String {
-    const HEADS: [&str; 10] = [
+    const HEADS: [&str; 12] = [
         "step",
-        "planned",
+        "problem",
+        "motion",
+        "to, m",
         "chance of +1",
         "bits expected",
         "read",
@@ -130,19 +132,17 @@ fn steps(flight: &Flight) -> String {
     html + "</tbody>\n</table>\n</div>\n"
 }
 
-fn cells(scene: &Scene) -> [String; 9] {
+fn cells(scene: &Scene) -> [String; 11] {
     let none = || "\u{2013}".to_owned();
     let motion = scene.motion.as_ref();
-    let of = |heading: &str| {
-        let told = scene.told.iter().find(|told| told.of == heading);
-        told.map_or_else(none, |told| told.text.clone())
-    };
     let expected = |of: fn(&Moved) -> Option<f64>| motion.and_then(of);
     let wrong = |motion: &Moved| if motion.is_wrong { ", wrong" } else { "" };
     let label = |motion: &Moved| Some(format!("{}{}", signed(motion.label?), wrong(motion)));
     let off = scene.estimate.as_ref().and_then(|line| line.off_deg);
     [
-        of("Planned"),
+        motion.map_or_else(none, |it| it.problem.clone()),
+        motion.map_or_else(none, |it| it.motion.clone()),
+        format!("({:.3}, {:.3})", scene.at[0], scene.at[1]).replace('-', "\u{2212}"),
         expected(|it| it.chance).map_or_else(none, |it| format!("{:.0} %", 100.0 * it)),
         expected(|it| it.expected).map_or_else(none, |bits| format!("{bits:.3}")),
         motion.and_then(label).unwrap_or_else(none),
@@ -174,6 +174,9 @@ mod tests {
         assert!(!data.contains('<'), "{data}");
         let read: serde_json::Value = serde_json::from_str(&data).unwrap();
         assert_eq!(read["title"], page.title);
-        assert_eq!(escaped("<a href='x' id=\"y\">&"), "&lt;a href=&#39;x&#39; id=&quot;y&quot;&gt;&amp;");
+        assert_eq!(
+            escaped("<a href='x' id=\"y\">&"),
+            "&lt;a href=&#39;x&#39; id=&quot;y&quot;&gt;&amp;"
+        );
     }
 }

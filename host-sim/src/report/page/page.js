@@ -44,7 +44,7 @@ function panel(row, flight, ranges, steps, id) {
     if (k === 0) add(side, 'div', { class: 'charts' });
     const frame = add(side.lastElementChild, 'figure');
     const caption = add(frame, 'figcaption');
-    add(caption, 'span', {}, chart.title);
+    add(caption, 'span', {}, chart.title(flight));
     const value = add(caption, 'output', { 'aria-live': 'off' });
     const svg = add(frame, 'svg', { 'aria-hidden': 'true' });
     svg.addEventListener('click', (event) => go(stepAt(svg, event.clientX, steps)));
