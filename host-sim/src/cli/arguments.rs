@@ -4,6 +4,7 @@ use anyhow::Result;
 use clap::{Parser, Subcommand, ValueEnum};
 
 use crate::cli::campaign::{CampaignArgs, campaign};
+use crate::cli::figure::{FigureArgs, figure};
 use crate::cli::hil::{HilArgs, hil};
 use crate::cli::paper;
 use crate::cli::replay::{ReplayArgs, replay};
@@ -28,6 +29,8 @@ pub(crate) enum Command {
     Replay(ReplayArgs),
     /// Run the standard fields and print tables
     Campaign(CampaignArgs),
+    /// Draw the paper's figures from what is computed here
+    Figure(FigureArgs),
     /// Have a board, or its firmware under emulation, fly a mission
     Hil(HilArgs),
 }
@@ -52,6 +55,7 @@ impl Cli {
             Some(Command::Run(args)) => run(&args),
             Some(Command::Replay(args)) => replay(&args),
             Some(Command::Campaign(args)) => campaign(&args),
+            Some(Command::Figure(args)) => figure(&args),
             Some(Command::Hil(args)) => hil(&args),
         }
     }

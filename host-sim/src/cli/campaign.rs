@@ -19,6 +19,7 @@ use crate::mission::scenario;
 use crate::mission::vehicle::{Source, VehicleTable};
 use crate::output::file::{csv, json, prepare};
 use crate::report::campaign as tables;
+use crate::report::curves::Curves;
 use crate::world::errors::Errors;
 use crate::world::noise::{Extent, NoiseModel};
 
@@ -80,6 +81,9 @@ pub(crate) struct CampaignArgs {
     /// Write a row for each field and mark here
     #[arg(long, value_name = "FILE")]
     pub(crate) csv: Option<PathBuf>,
+    /// Draw how errors shrink and bits grow here
+    #[arg(long, value_name = "FILE.svg")]
+    pub(crate) figure: Option<PathBuf>,
     /// What to print
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: Format,
@@ -102,7 +106,8 @@ pub(crate) fn campaign(args: &CampaignArgs) -> Result<String> {
         ..Errors::default()
     };
     let tolerance = scenario::tolerance("--tolerance", args.tolerance, errors)?;
-    let [output] = prepare(&[], [("--csv", args.csv.as_deref())])?;
+    let asked = [("--csv", args.csv.as_deref()), ("--figure", args.figure.as_deref())];
+    let [output, drawn] = prepare(&[], asked)?;
     let extent = Extent::OutsideBalls(trusted_radius);
     let campaign = |algorithm: Algorithm| {
         Ok::<_, anyhow::Error>(Campaign {
@@ -120,7 +125,7 @@ pub(crate) fn campaign(args: &CampaignArgs) -> Result<String> {
             prior: args.prior.unwrap_or_default().into(),
         })
     };
-    let Told { table, rows, record } = if args.compare.is_empty() {
+    let Told { table, rows, record, curves } = if args.compare.is_empty() {
         alone(&campaign(args.algorithm)?)?
     } else {
         let campaigns: Vec<_> =
@@ -129,6 +134,9 @@ pub(crate) fn campaign(args: &CampaignArgs) -> Result<String> {
     };
     if let Some(output) = output {
         output.write(rows)?;
+    }
+    if let Some(output) = drawn {
+        output.write(curves.svg())?;
     }
     Ok(match args.format {
         Format::Text => table,
@@ -141,11 +149,13 @@ fn alone(campaign: &Campaign) -> Result<Told> {
     Ok(if campaign.noise.is_some() {
         let summary = calibration::Summary::of(campaign, campaign.run(&Calibrated)?);
         let (table, rows) = (tables::calibration(&summary), csv(&summary.checkpoints)?);
-        Told { table, rows, record: json(&summary) }
+        let curves = Curves::of_calibration(slice::from_ref(&summary));
+        Told { table, rows, record: json(&summary), curves }
     } else {
         let summary = accuracy::Summary::of(campaign, campaign.run(&Accuracy)?);
         let (table, rows) = (tables::accuracy(&summary), csv(&summary.checkpoints)?);
-        Told { table, rows, record: json(&summary) }
+        let curves = Curves::of_accuracy(slice::from_ref(&summary));
+        Told { table, rows, record: json(&summary), curves }
     })
 }
 

@@ -3,6 +3,7 @@
 pub mod arguments;
 mod campaign;
 mod compare;
+mod figure;
 mod hil;
 pub mod paper;
 mod replay;

@@ -146,8 +146,8 @@ pub(crate) fn tell() -> Result<String> {
     let mut figures: Vec<_> = flights().map(|(flight, it)| flight.picture(it)).collect();
     let printed = flights().filter(|(flight, _)| flight.is_printed);
     figures.extend(printed.filter_map(|(_, it)| Picture::of_candidates(CANDIDATES_TITLE, it)));
-    let mut drawn = figures.iter().map(Picture::svg).collect::<Result<Vec<_>>>()?;
-    drawn.push(page(&recordings)?);
+    let mut drawn: Vec<_> = figures.iter().map(Picture::svg).collect();
+    drawn.push(page(&recordings));
     for (output, content) in outputs.into_iter().flatten().zip(drawn) {
         output.write(content)?;
     }
@@ -167,7 +167,7 @@ pub(crate) fn tell() -> Result<String> {
 }
 
 /// The page of all flights, those of an example side by side.
-fn page(recordings: &[Recording]) -> Result<String> {
+fn page(recordings: &[Recording]) -> String {
     let chapter = |example| {
         let flights =
             FLIGHTS.iter().zip(recordings).filter(|(flight, _)| flight.example == example);

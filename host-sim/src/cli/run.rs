@@ -1,5 +1,6 @@
 //! `run`: one mission.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, Result, bail};
@@ -76,17 +77,21 @@ pub(crate) fn run(args: &RunArgs) -> Result<String> {
 }
 
 /// A page of missions that were flown from the same start, under the scenario's name.
-fn page(scenario: &Path, recordings: &[&Recording]) -> Result<String> {
-    let name = scenario.file_name().unwrap_or(scenario.as_os_str()).to_string_lossy();
+fn page(scenario: &str, recordings: &[&Recording]) -> String {
     let planners: Vec<_> = recordings.iter().map(|it| it.mission.algorithm.title()).collect();
     let title = format!("Flown by {}", planners.join(", "));
     let flights = planners.into_iter().zip(recordings.iter().copied());
-    Page::new(name, vec![Chapter::new(title, flights)]).html()
+    Page::new(scenario, vec![Chapter::new(title, flights)]).html()
 }
 
 impl Run {
     pub(crate) fn name(&self) -> String {
         self.scenario.display().to_string()
+    }
+
+    /// What figures and pages are called.
+    fn title(&self) -> Cow<'_, str> {
+        self.scenario.file_stem().unwrap_or_default().to_string_lossy()
     }
 
     pub(crate) fn mission(&self) -> Result<Mission> {
@@ -124,7 +129,7 @@ impl Run {
         let name = self.name();
         let fly = |mission: &Mission| Recording::of(mission).with_context(|| name.clone());
         let recordings = missions.iter().map(fly).collect::<Result<Vec<_>>>()?;
-        let page = page(&self.scenario, &recordings.iter().collect::<Vec<_>>())?;
+        let page = page(&self.title(), &recordings.iter().collect::<Vec<_>>());
         if let Some(report) = report {
             report.write(page)?;
         }
@@ -160,12 +165,13 @@ impl Run {
     ) -> Result<String> {
         let [trace, figure, candidates, report] = outputs;
         let name = self.name();
+        let title = self.title();
         let lines = trace::lines(&recording.results);
         // All is drawn before anything is written.
-        let svg = figure.as_ref().map(|_| Picture::of(&name, recording).svg()).transpose()?;
-        let fewest = candidates.as_ref().and_then(|_| Picture::of_candidates(&name, recording));
-        let fewest = fewest.map(|picture| picture.svg()).transpose()?;
-        let page = report.as_ref().map(|_| page(&self.scenario, &[recording])).transpose()?;
+        let svg = figure.as_ref().map(|_| Picture::of(&title, recording).svg());
+        let fewest = candidates.as_ref().and_then(|_| Picture::of_candidates(&title, recording));
+        let fewest = fewest.map(|picture| picture.svg());
+        let page = report.as_ref().map(|_| page(&title, &[recording]));
         for (output, content) in [
             (trace, Some(&lines)),
             (figure, svg.as_ref()),

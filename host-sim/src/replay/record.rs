@@ -138,7 +138,7 @@ impl Replay {
         };
         let centre = Named::estimate("centre of the version space", self.centre);
         let dot = |s: &Sample| Dot { at: s.site.into(), label: s.label, wrong: false };
-        Picture {
+        let svg = Picture {
             title: self.name.clone(),
             note,
             area: area.into(),
@@ -149,6 +149,7 @@ impl Replay {
             truth: None,
             lines: centre.into_iter().collect(),
         }
-        .svg()
+        .svg();
+        Ok(svg)
     }
 }

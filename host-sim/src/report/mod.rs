@@ -1,16 +1,22 @@
 //! What is told of a mission: text for people, a trace for programs, a figure to look at,
 //! a page to step through.
 
+mod axes;
 pub mod bands;
 pub mod campaign;
 pub mod comparison;
+pub mod curves;
 pub mod examples;
 pub mod figure;
 pub mod ground;
-pub mod legend;
+mod map;
+mod numbers;
 pub mod page;
+pub mod paper;
 pub mod picture;
-pub mod style;
+mod placing;
+mod sheet;
+mod style;
 pub mod table;
 pub mod text;
 pub mod trace;

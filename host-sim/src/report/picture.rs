@@ -138,7 +138,7 @@ impl Picture {
         });
         Self {
             title: title.to_owned(),
-            note: None,
+            note: Some(note(recording)),
             area,
             ground: Ground::of(&**belief, area),
             samples: belief.samples().iter().map(dot).collect(),
@@ -198,6 +198,16 @@ impl Picture {
     }
 }
 
+/// What a figure of a mission shows, in a line.
+fn note(Recording { mission, results, .. }: &Recording) -> String {
+    let labels = if mission.noise.is_some() { ", labels may be wrong" } else { "" };
+    let (steps, planner) = (results.steps.len(), mission.algorithm.title());
+    let plural = if steps == 1 { "" } else { "s" };
+    format!(
+        "A robot looks for the straight boundary of +1 and -1{labels}: {planner}, {steps} step{plural}"
+    )
+}
+
 /// Places along the arc from one place to another on which one turns so far; of a straight way the end.
 fn arc(from: Point2<f64>, to: Point2<f64>, turn: f64) -> Vec<Point2<f64>> {
     const PARTS: u32 = 12;
@@ -221,7 +231,7 @@ fn bounding(table: &Table) -> Vec<Named> {
     let named = |(name, end): (&str, Vector)| {
         let bound = bounds().find(|bound| bound.along.cross(end) == 0)?;
         Some(Named {
-            name: format!("{name}, which bounds the credible slopes"),
+            name: "l1 and l2, which bound the credible slopes".to_owned(),
             line: bound.into(),
             kind: Kind::Bound,
             beside: Some(name.to_owned()),

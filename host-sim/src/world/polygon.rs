@@ -110,6 +110,21 @@ impl Polygon {
         ground
     }
 
+    /// Whether a place lies in a convex polygon, or on its border.
+    pub fn holds(&self, at: Point2<f64>) -> bool {
+        let corners = &self.0;
+        let turns = corners
+            .iter()
+            .zip(corners.iter().cycle().skip(1))
+            .map(|(p, q)| (q - p).perp(&(at - p)));
+        let (mut left, mut right) = (false, false);
+        turns.for_each(|turn| {
+            left |= turn > 0.0;
+            right |= turn < 0.0;
+        });
+        !(left && right)
+    }
+
     /// The longest way across the rectangle around it, metres.
     pub fn diameter(&self) -> f64 {
         let min = self.0.iter().copied().reduce(|a, b| a.inf(&b));

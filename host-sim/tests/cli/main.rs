@@ -7,6 +7,7 @@ use std::process::{Command, Output};
 use tempfile::TempDir;
 
 mod campaigns;
+mod figures;
 mod flags;
 mod interruption;
 mod missions;

@@ -175,7 +175,7 @@ fn a_noisy_run_adds_to_the_trace() {
     for part in ["Most likely hypothesis", "Credible set", "posterior mean"] {
         assert!(story.contains(part), "{part}: {story}");
     }
-    for (figure, part) in [("f.svg", "l1, which bounds"), ("c.svg", "plain maximum margin")] {
+    for (figure, part) in [("f.svg", "l1 and l2, which bound"), ("c.svg", "plain maximum margin")] {
         let svg = fs::read_to_string(folder.path().join(figure)).expect("a figure");
         assert!(svg.contains(part), "{figure}: {part}");
     }

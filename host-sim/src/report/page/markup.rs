@@ -2,8 +2,6 @@
 
 use std::fmt::Write as _;
 
-use anyhow::Result;
-
 use crate::report::page::scene::{Flight, Moved, Scene};
 use crate::report::page::words::{arcs, range, signed, small};
 use crate::report::page::{Chapter, Page};
@@ -18,19 +16,18 @@ const SCRIPT: [&str; 4] = [
 ];
 
 /// The whole document.
-pub(super) fn document(page: &Page) -> Result<String> {
-    let mut chapters = String::new();
-    for (number, chapter) in page.chapters.iter().enumerate() {
-        chapters += &self::chapter(number, chapter)?;
-    }
-    Ok(filled(TEMPLATE, |slot| match slot {
+pub(super) fn document(page: &Page) -> String {
+    filled(TEMPLATE, |slot| match slot {
         "title" => escaped(&page.title),
         "style" => STYLE.to_owned(),
-        "chapters" => chapters.clone(),
+        "chapters" => {
+            let chapters = page.chapters.iter().enumerate();
+            chapters.map(|(number, it)| chapter(number, it)).collect()
+        }
         "data" => data(page),
         "script" => SCRIPT.join("\n"),
         other => unreachable!("the template has no {other}"),
-    }))
+    })
 }
 
 /// A template with its slots, `{{name}}`, filled. What fills them is not looked at again.
@@ -67,7 +64,7 @@ fn data(page: &Page) -> String {
     json.replace('<', "\\u003c")
 }
 
-fn chapter(number: usize, Chapter { title, about, flights }: &Chapter) -> Result<String> {
+fn chapter(number: usize, Chapter { title, about, flights }: &Chapter) -> String {
     let mut html = format!(
         "<section class=\"chapter\" id=\"chapter-{number}\" aria-labelledby=\"chapter-{number}-title\">\n\
          <h2 id=\"chapter-{number}-title\">{}</h2>\n<ul class=\"about\">\n",
@@ -79,21 +76,21 @@ fn chapter(number: usize, Chapter { title, about, flights }: &Chapter) -> Result
     html += "</ul>\n<div class=\"stage\" hidden></div>\n";
     for flight in flights {
         html += "<noscript>\n";
-        html += &still(flight)?;
+        html += &still(flight);
         html += "</noscript>\n";
     }
     html += "<section class=\"steps\">\n<h3>All steps</h3>\n";
     for flight in flights {
         html += &steps(flight);
     }
-    Ok(html + "</section>\n</section>\n")
+    html + "</section>\n</section>\n"
 }
 
 /// The picture of a mission's end.
-fn still(flight: &Flight) -> Result<String> {
+fn still(flight: &Flight) -> String {
     // Within HTML it needs no name space, and a page that names no address can be seen to load none.
-    let svg = flight.picture.svg()?.replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
-    Ok(format!("<h3>{}</h3>\n<div class=\"still\">{svg}</div>\n", escaped(&flight.planner)))
+    let svg = flight.picture.svg().replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
+    format!("<h3>{}</h3>\n<div class=\"still\">{svg}</div>\n", escaped(&flight.planner))
 }
 
 /// The steps as a table.

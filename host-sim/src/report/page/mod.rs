@@ -3,7 +3,6 @@
 //! All of it is in the file, and it may load nothing. A script draws what the [scenes](scene) hold; without scripts
 //! there are the last pictures and the tables of steps.
 
-use anyhow::Result;
 use serde::Serialize;
 
 use crate::mission::recording::Recording;
@@ -36,10 +35,7 @@ impl Page {
     }
 
     /// The page as an HTML document.
-    ///
-    /// # Errors
-    /// When a picture cannot be drawn.
-    pub fn html(&self) -> Result<String> {
+    pub fn html(&self) -> String {
         markup::document(self)
     }
 }

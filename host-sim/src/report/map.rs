@@ -1,0 +1,282 @@
+//! A map of an area: ground, lines, paths and samples on it, each named in the legend as it is drawn.
+
+use nalgebra::{Point2, Vector2};
+use planner_core::belief::sample::Label;
+use planner_core::geometry::line::Line;
+use planner_core::geometry::region::Region as _;
+use planner_core::link::message::MissionArea;
+
+use crate::report::axes::{Axes, Axis, Scale};
+use crate::report::bands::Band;
+use crate::report::ground::Ground;
+use crate::report::numbers;
+use crate::report::picture::{Dot, Stop};
+use crate::report::placing::{Placing, foot};
+use crate::report::sheet::{Anchor, Look, Sheet, Spot, width};
+use crate::report::style::{BORDER, Fill, HEADING, PATH, Stroke};
+use crate::world::polygon::Polygon;
+
+/// Metres and pixels of a map, and what is on it so far.
+pub(crate) struct Map {
+    area: MissionArea,
+    axes: Axes,
+    sheet: Sheet,
+    placing: Placing,
+    /// Words that wait for all marks to be there: what, beside which spot, how large.
+    words: Vec<(String, Spot, f64)>,
+}
+
+/// A name beside a spot stands at most so far away, pixels.
+const REACH: f64 = 90.0;
+
+impl Map {
+    /// The bare area, large enough for some more places.
+    pub(crate) fn new(
+        title: &str,
+        note: Option<&str>,
+        area: MissionArea,
+        more: &[Point2<f64>],
+    ) -> Self {
+        const SIZE: f64 = 620.0;
+        const LEAST: f64 = 220.0;
+        const TOP: f64 = 62.0;
+        let bounds = area.bounds();
+        let ends = [bounds.min(), bounds.max()].map(Point2::<f64>::from);
+        let min = more.iter().fold(ends[0], |min, at| min.inf(at));
+        let max = more.iter().fold(ends[1], |max, at| max.sup(at));
+        let scale = SIZE / (max - min).amax();
+        let size = (max - min).map(|metres| (metres * scale).max(LEAST));
+        let axis = |figures, pixels| Axis { scale: Scale::Linear, figures, pixels };
+        let mut axes = Axes {
+            x: axis([min.x, max.x], [0.0, 0.0]),
+            z: axis([min.y, max.y], [TOP + size.y, TOP]),
+        };
+        let widest = axes.z.ticks().iter().map(|(_, name)| width(name, 12.0)).fold(0.0, f64::max);
+        let left = 48.0 + widest;
+        axes.x.pixels = [left, left + size.x];
+        let all = (left + size.x + 30.0)
+            .max(24.0 + width(title, 17.0))
+            .max(24.0 + width(note.unwrap_or_default(), 13.0));
+        let mut sheet = Sheet::new(title, Vector2::new(all, TOP + size.y + 56.0));
+        sheet.words(title, Spot::new(16.0, 28.0), 17.0, Anchor::Start);
+        if let Some(note) = note {
+            sheet.words(note, Spot::new(16.0, 48.0), 13.0, Anchor::Start);
+        }
+        let placing = Placing::new(axes.frame());
+        let mut map = Self { area, axes, sheet, placing, words: Vec::new() };
+        let mut border = map.spots(&Polygon::from(area).0);
+        border.extend(border.first().copied());
+        map.placing.way(&border);
+        let is_all =
+            area.sides().next().is_none() && more.iter().all(|at| Polygon::from(area).holds(*at));
+        if !is_all {
+            let ([left, right], [bottom, top]) = (map.axes.x.pixels, map.axes.z.pixels);
+            let corners = [(left, bottom), (right, bottom), (right, top), (left, top)];
+            let all: Vec<_> = corners.iter().map(|(x, z)| Spot::new(*x, *z)).collect();
+            map.sheet.ground(Fill::Outside, &[all, map.spots(&Polygon::from(area).0)]);
+            map.sheet.name(Look::Ground(Fill::Outside), "outside the area");
+        }
+        map
+    }
+
+    fn spots(&self, places: &[Point2<f64>]) -> Vec<Spot> {
+        places.iter().map(|at| self.axes.at(*at)).collect()
+    }
+
+    /// What is known of the ground.
+    pub(crate) fn ground(&mut self, ground: &Ground) {
+        match ground {
+            Ground::Certain([positive, negative]) => {
+                for (label, region) in [(Label::Positive, positive), (Label::Negative, negative)] {
+                    let meaning = format!("ground certain to have label {:+}", label.sign());
+                    self.fill(Fill::Of(label), &[&region.0[..]], &meaning);
+                }
+                self.sheet.name(Look::Ground(Fill::Blank), "white: still uncertain");
+            }
+            Ground::Credible(bands) => self.shade(bands),
+            Ground::Plain => {}
+        }
+    }
+
+    fn shade(&mut self, bands: &[Band]) {
+        for (k, Band { rings, .. }) in bands.iter().enumerate() {
+            let rings: Vec<_> = rings.iter().map(|ring| self.spots(ring)).collect();
+            self.sheet.ground(Fill::Shade(k), &rings);
+        }
+        let least = bands.iter().map(|band| format!("{:.0}", 100.0 * band.from));
+        let least: Vec<_> = least.collect();
+        if let Some((last, before)) = least.split_last() {
+            let list = if before.is_empty() {
+                last.clone()
+            } else {
+                format!("{} and {last}", before.join(", "))
+            };
+            let meaning =
+                format!("the line may pass, with probability of at least {list} % (white: less)");
+            self.sheet.name(Look::Shades(bands.len()), meaning);
+        }
+    }
+
+    /// Ground of one kind.
+    pub(crate) fn fill(&mut self, fill: Fill, polygons: &[&[Point2<f64>]], meaning: &str) {
+        let rings: Vec<_> =
+            polygons.iter().map(|ring| self.spots(ring)).filter(|ring| ring.len() > 2).collect();
+        if !rings.is_empty() {
+            self.sheet.ground(fill, &rings);
+            self.sheet.name(Look::Ground(fill), meaning);
+        }
+    }
+
+    /// What is kept out of, and the border of a polygon.
+    pub(crate) fn limits(&mut self) {
+        let outlines: Vec<Polygon> = self.area.hulls().map(Polygon::from).collect();
+        for Polygon(outline) in &outlines {
+            let ring = self.spots(outline);
+            if let [from, to] = ring[..] {
+                self.sheet.ways(
+                    Stroke { class: "keep-out", width: 4.0, colour: "#6e6e6e", dashes: "" },
+                    [&[from, to][..]],
+                );
+            }
+            self.sheet.ground(Fill::KeepOut, &[ring]);
+            self.sheet.name(Look::Ground(Fill::KeepOut), "kept out of");
+        }
+    }
+
+    /// A line across the area, with a short name beside it if it has one.
+    pub(crate) fn line(
+        &mut self,
+        line: &Line,
+        stroke: Stroke,
+        meaning: &str,
+        beside: Option<&str>,
+    ) {
+        let part = Polygon::from(self.area).clip(line, 1.0);
+        let detail = 1e-9 * Polygon::from(self.area).diameter() + 1e-6;
+        let on = part.0.iter().filter(|at| line.distance(**at).abs() < detail);
+        let [a, b, _] = line.coefficients();
+        let along = |at: &&Point2<f64>| at.x * b - at.y * a;
+        let (first, last) = (
+            on.clone().min_by(|p, q| along(p).total_cmp(&along(q))),
+            on.max_by(|p, q| along(p).total_cmp(&along(q))),
+        );
+        let (Some(first), Some(last)) = (first, last) else { return };
+        self.stretch(&[*first, *last], stroke, meaning);
+        if let Some(name) = beside {
+            let mut ends = self.spots(&[*first, *last]);
+            ends.sort_by(|p, q| p.x.total_cmp(&q.x));
+            let inward = (ends[0] - ends[1]).normalize() * 16.0;
+            self.beside(name, ends[1] + inward, 14.0);
+        }
+    }
+
+    /// A way through some places.
+    pub(crate) fn stretch(&mut self, places: &[Point2<f64>], stroke: Stroke, meaning: &str) {
+        let spots = self.spots(places);
+        self.placing.way(&spots);
+        self.sheet.ways(stroke, [&spots[..]]);
+        self.sheet.name(Look::Line(stroke), meaning);
+    }
+
+    /// A short name beside a place.
+    pub(crate) fn name(&mut self, name: &str, at: Point2<f64>) {
+        let at = self.axes.at(at);
+        self.beside(name, at, 14.0);
+    }
+
+    fn beside(&mut self, name: &str, at: Spot, size: f64) {
+        self.words.push((name.to_owned(), at, size));
+    }
+
+    /// The path with the heading after each step, and where the robot truly was. Numbers of steps come last.
+    pub(crate) fn path(&mut self, start: Point2<f64>, stops: &[Stop]) {
+        const TICK: f64 = 13.0;
+        let places = stops.iter().flat_map(|stop| &stop.way);
+        let way: Vec<_> =
+            std::iter::once(&start).chain(places).map(|at| self.axes.at(*at)).collect();
+        self.placing.way(&way);
+        self.sheet.mark(Look::Start, way[0]);
+        self.sheet.name(Look::Start, "start");
+        self.placing.mark(way[0], 13.5);
+        if stops.is_empty() {
+            return;
+        }
+        self.sheet.ways(PATH, [&way[..]]);
+        self.sheet.name(Look::Line(PATH), "path of the robot");
+        let ticks = stops.iter().map(|stop| {
+            let (sin, cos) = libm::sincos(stop.heading);
+            let at = self.axes.at(stop.at);
+            vec![at, at + Vector2::new(cos, -sin) * TICK]
+        });
+        let ticks: Vec<_> = ticks.collect();
+        ticks.iter().for_each(|tick| self.placing.way(tick));
+        self.sheet.ways(HEADING, ticks.iter().map(Vec::as_slice));
+        self.sheet.name(Look::Line(HEADING), "heading after a step");
+        for stop in stops {
+            let at = self.axes.at(stop.at);
+            if let Some(truly) = stop.truly.map(|truly| self.axes.at(truly)) {
+                let thin = Stroke {
+                    class: "truly",
+                    colour: crate::report::style::INK,
+                    width: 0.8,
+                    dashes: "",
+                };
+                self.sheet.ways(thin, [&[at, truly][..]]);
+                self.sheet.mark(Look::Truly, truly);
+                self.sheet.name(Look::Truly, "where the robot truly was");
+                self.placing.way(&[at, truly]);
+                self.placing.mark(truly, 4.0);
+            }
+            if !stop.sensed {
+                self.sheet.mark(Look::Unread, at);
+                self.sheet.name(Look::Unread, "a stop where no label was read");
+            }
+            self.placing.mark(at, 4.5);
+        }
+    }
+
+    /// Samples, the first so many of them given.
+    pub(crate) fn samples(&mut self, samples: &[Dot], given: usize) {
+        for (k, dot) in samples.iter().enumerate() {
+            let at = self.axes.at(dot.at);
+            let sign = dot.label.sign();
+            let (look, meaning, radius) = if k < given {
+                self.beside(&format!("p{}", k + 1), at, 14.0);
+                (Look::Given(dot.label), format!("given beforehand, label {sign:+}"), 8.0)
+            } else {
+                (Look::Read(dot.label), format!("label {sign:+} was read here"), 5.0)
+            };
+            if dot.wrong {
+                self.sheet.mark(Look::Wrong, at);
+                self.sheet.name(Look::Wrong, "ringed: the label is wrong");
+            }
+            self.sheet.mark(look, at);
+            self.sheet.name(look, meaning);
+            self.placing.mark(at, if dot.wrong { 10.0 } else { radius });
+        }
+    }
+
+    /// The numbers of steps, after names have found their places; then the figure is complete.
+    pub(crate) fn finish(mut self, stops: &[Stop]) -> String {
+        for (words, at, size) in std::mem::take(&mut self.words) {
+            let frame = Vector2::new(width(&words, size) + 2.0, size);
+            if let Some(found) = self.placing.place(at, frame, 6.0, REACH) {
+                self.sheet.words(
+                    &words,
+                    foot(&found) - Vector2::new(0.0, 2.0),
+                    size,
+                    Anchor::Middle,
+                );
+            }
+        }
+        let spots: Vec<_> = stops.iter().map(|stop| self.axes.at(stop.at)).collect();
+        numbers::draw(&mut self.sheet, &mut self.placing, &spots);
+        self.axes.draw(&mut self.sheet, ["x, metres", "z, metres"]);
+        if self.area.sides().next().is_some() {
+            let mut corners = self.spots(&Polygon::from(self.area).0);
+            corners.extend(corners.first().copied());
+            self.sheet.ways(BORDER, [&corners[..]]);
+        }
+        self.sheet.finish()
+    }
+}

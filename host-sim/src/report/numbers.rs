@@ -1,0 +1,52 @@
+//! The numbers of steps beside where these ended. Where it is too tight a number is left out, but for the first, the
+//! last and every fifth: these stand further away, and a thin line leads to them.
+
+use nalgebra::Vector2;
+
+use crate::report::placing::{Placing, foot};
+use crate::report::sheet::{Look, NUMBER, Sheet, Spot, width};
+use crate::report::style::{INK, Stroke};
+
+/// From a step to its number, where that is far.
+const LEADER: Stroke = Stroke { class: "number", colour: INK, width: 0.6, dashes: "1.5 1.5" };
+
+/// How far from its step a number stands, pixels: at least, without a leader, and at most.
+const AWAY: [f64; 3] = [5.0, 13.0, 120.0];
+
+const EVERY: usize = 5;
+
+/// Draws them; steps end at these places.
+pub(crate) fn draw(sheet: &mut Sheet, placing: &mut Placing, stops: &[Spot]) {
+    let [least, near, most] = AWAY;
+    let count = stops.len();
+    let is_kept = |k: usize| k == 1 || k == count || k % EVERY == 0;
+    let kept = (1..=count).filter(|k| is_kept(*k));
+    let others = (1..=count).filter(|k| !is_kept(*k));
+    let mut left_out = 0;
+    for k in kept.chain(others) {
+        let at = stops[k - 1];
+        let name = k.to_string();
+        let size = Vector2::new(width(&name, NUMBER) + 1.0, NUMBER);
+        let reach = if is_kept(k) { most } else { near };
+        let Some(frame) = placing.place(at, size, least, reach) else {
+            left_out += 1;
+            continue;
+        };
+        let way = frame.middle - at;
+        let room = way.abs() - frame.half;
+        if room.x.max(room.y) > near {
+            let share = (frame.half.x / way.x.abs()).min(frame.half.y / way.y.abs());
+            let leader = [at + way.normalize() * least, frame.middle - way * share];
+            sheet.ways(LEADER, [&leader[..]]);
+            placing.way(&leader);
+        }
+        sheet.number(&name, foot(&frame) - Vector2::new(0.0, 0.5));
+    }
+    if count > 0 {
+        let meaning = match left_out {
+            0 => "number of the step that ends here".to_owned(),
+            _ => format!("number of the step that ends here; left out where too tight: {left_out}"),
+        };
+        sheet.name(Look::Number, meaning);
+    }
+}

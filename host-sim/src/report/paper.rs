@@ -1,0 +1,253 @@
+//! The paper's figures, drawn again from what is computed here: its own pictures are lost, but their captions and what
+//! the text says of them are not.
+
+use anyhow::{Context as _, Result, bail};
+use nalgebra::{Point2, Vector2};
+use planner_core::belief::sample::{Label, Sample};
+use planner_core::geometry::line::Line;
+
+use crate::mission::definition::Mission;
+use crate::mission::recording::Recording;
+use crate::mission::scenario::{self, Overrides, PAPER_NOISELESS, PAPER_NOISY};
+use crate::report::ground::Ground;
+use crate::report::map::Map;
+use crate::report::picture::{Dot, Kind, Picture};
+use crate::report::style::{self, Fill, Stroke, TRUTH};
+use crate::world::polygon::Polygon;
+
+/// How many figures the paper has.
+pub const FIGURES: u32 = 8;
+
+/// Half the breadth of the band in which labels are wrong at times, metres: the paper's `c_bar`.
+const BAND: f64 = 4.0;
+
+/// A walk of 27 labels of which four of +1 and three of -1 are flipped, as in the paper's Figure 2.
+const WALK_SEED: u64 = 292;
+
+const BOUND: Stroke = style::of_line(Kind::Bound);
+const RAY: Stroke = Stroke { class: "ray", colour: "#5b2a86", width: 1.4, dashes: "7 3" };
+const ANGLE: Stroke = Stroke { class: "angle", colour: "#5b2a86", width: 1.1, dashes: "" };
+const AXIS: Stroke = Stroke { class: "reference", colour: "#5a5a5a", width: 0.9, dashes: "2 3" };
+
+/// One of the figures as an SVG document.
+///
+/// # Errors
+/// When there is no figure of this number.
+pub fn figure(number: u32) -> Result<String> {
+    match number {
+        1 => task(),
+        2 => noisy_task(),
+        3 => given_points(),
+        4 => new_points(),
+        5 => candidates(),
+        6 => polar(),
+        7 => noiseless(),
+        8 => noisy(),
+        _ => bail!("found figure {number}, expected 1 to {FIGURES}"),
+    }
+}
+
+fn title(number: u32, what: &str) -> String {
+    format!("After Figure {number} of Raghavan and Johansson: {what}")
+}
+
+fn fly(text: &str, change: fn(Mission) -> Mission) -> Result<Recording> {
+    Recording::of(&change(scenario::parse("", text, Overrides::default())?))
+}
+
+/// A map of a mission with the ground of either label, as the true line divides it.
+fn divided(title: &str, note: &str, picture: &Picture) -> Result<(Map, Line)> {
+    let truth = picture.truth.context("a mission without a line")?;
+    let mut map = Map::new(title, Some(note), picture.area, &[]);
+    for label in [Label::Positive, Label::Negative] {
+        let side = Polygon::from(picture.area).clip(&truth, f64::from(label.sign()));
+        map.fill(Fill::Of(label), &[&side.0], &format!("ground whose label is {:+}", label.sign()));
+    }
+    Ok((map, truth))
+}
+
+/// The line, the path, the samples: what is left to draw of a mission.
+fn finish(mut map: Map, picture: &Picture, truth: &Line) -> String {
+    map.line(truth, TRUTH, "true line, which the robot is to find", None);
+    let (start, stops) =
+        picture.path.as_ref().map_or((None, &[][..]), |(at, stops)| (Some(*at), stops));
+    if let Some(start) = start {
+        map.path(start, stops);
+    }
+    map.samples(&picture.samples, picture.given);
+    map.finish(stops)
+}
+
+/// Figure 1, "Schematic for the motion planning problem": six labels on the way, three of each.
+fn task() -> Result<String> {
+    let six = PAPER_NOISELESS.replace("steps = 10", "steps = 6");
+    let picture = Picture::of("", &fly(&six, Mission::by_lookahead)?);
+    let note = "Four labels are given. Starting at p1, a robot reads more of them to find the line between";
+    let (map, truth) = divided(&title(1, "the task"), note, &picture)?;
+    Ok(finish(map, &picture, &truth))
+}
+
+/// A walk that heeds no label, which is wrong at times near the line.
+fn walk() -> Result<Recording> {
+    let seed = format!("seed = {WALK_SEED}");
+    let band = format!("noise = {{ p = 0.7, band = {BAND:?} }}");
+    let text = PAPER_NOISY.replace("\"scc\"", "\"random\"").replace("steps = 10", "steps = 27");
+    let text = text.replace("seed = 1", &seed).replace("varrho = 0.1\n", "");
+    fly(&text.replace("noise = { p = 0.7, trusted_radius = 0.5 }", &band), |mission| mission)
+}
+
+/// Figure 2, "Schematic for the motion planning problem with noisy data": 27 labels, seven of them flipped.
+fn noisy_task() -> Result<String> {
+    let picture = Picture::of("", &walk()?);
+    let note = "Near the line labels are wrong 3 times in 10. The robot walks without heeding them";
+    let (mut map, truth) = divided(&title(2, "wrong labels"), note, &picture)?;
+    let [a, b, c] = truth.coefficients();
+    let shifted = |by: f64| Line::from_coefficients(a, b, c + by).context("a line");
+    let band = Polygon::from(picture.area).clip(&shifted(BAND)?, 1.0).clip(&shifted(-BAND)?, -1.0);
+    map.fill(Fill::Doubtful, &[&band.0], "labels may be wrong here");
+    Ok(finish(map, &picture, &truth))
+}
+
+/// The points of Figure 3, by what the text says of their slopes: `p4` lies a little lower than `p1`.
+fn canonical() -> String {
+    PAPER_NOISELESS.replace("z = 5.0, label = -1", "z = 0.5, label = -1")
+}
+
+/// Certain ground with the four samples that bound it and the lines `l_ij` through them.
+fn bounded(title: &str, note: &str, recording: &Recording, four: &[Sample]) -> Result<String> {
+    let area = recording.mission.config.area;
+    let truth = recording.mission.world.line().context("a line")?;
+    let of = |label| {
+        let mut own: Vec<_> =
+            four.iter().filter(|s| s.label == label).map(|s| Point2::<f64>::from(s.site)).collect();
+        own.sort_by(|p, q| p.x.total_cmp(&q.x));
+        own
+    };
+    let (negative, positive) = (of(Label::Negative), of(Label::Positive));
+    let ([p1, p4], [p2, p3]) = (&negative[..], &positive[..]) else {
+        bail!(
+            "found {} and {} points of -1 and +1 that bound the line, expected two each",
+            negative.len(),
+            positive.len()
+        )
+    };
+    let mut map = Map::new(title, Some(note), area, &[]);
+    let support: Vec<_> =
+        recording.belief.version_space().into_iter().flat_map(|it| it.support()).collect();
+    map.ground(&Ground::certain(area, &support));
+    for (name, from, to) in [("l13", p1, p3), ("l14", p1, p4), ("l23", p2, p3), ("l24", p2, p4)] {
+        let way = to - from;
+        let line = Line::through(*from, Vector2::new(-way.y, way.x)).context("two points")?;
+        map.line(
+            &line,
+            BOUND,
+            "l13 to l24, bounds of the line: through the points named",
+            Some(name),
+        );
+    }
+    map.line(truth, TRUTH, "true line", None);
+    let dots = [
+        (p1, Label::Negative),
+        (p2, Label::Positive),
+        (p3, Label::Positive),
+        (p4, Label::Negative),
+    ];
+    map.samples(&dots.map(|(at, label)| Dot { at: *at, label, wrong: false }), 4);
+    Ok(map.finish(&[]))
+}
+
+/// Figure 3, "Region of certainty from the four given points".
+fn given_points() -> Result<String> {
+    let recording = fly(&canonical().replace("steps = 10", "steps = 0"), |mission| mission)?;
+    let given = recording.mission.given.samples().to_vec();
+    let note = "Every line that separates the four points labels the hatched ground alike";
+    bounded(&title(3, "what four labels tell"), note, &recording, &given)
+}
+
+/// Figure 4, "Region of certainty from new four points obtained by Agent".
+fn new_points() -> Result<String> {
+    let recording = fly(&canonical(), |mission| mission)?;
+    let support: Vec<_> =
+        recording.belief.version_space().into_iter().flat_map(|it| it.support()).collect();
+    let note =
+        "After 10 steps of Algorithm 1 the four labels that matter are those of p1 to p4 here";
+    bounded(&title(4, "more labels"), note, &recording, &support)
+}
+
+/// Figure 5, "Possible classifiers with noisy data set".
+fn candidates() -> Result<String> {
+    let recording = walk()?;
+    let mut picture =
+        Picture::of_candidates(&title(5, "which line?"), &recording).context("hypotheses")?;
+    picture.note = Some(
+        "The labels of Figure 2: several lines violate about as few, and one is true".to_owned(),
+    );
+    // The paper's l3 is the one that its support vector machine finds.
+    for (line, name) in picture.lines.iter_mut().zip(["l3", "l1", "l2"]) {
+        line.name = format!("{name}: {}", line.name);
+        line.beside = Some(name.to_owned());
+    }
+    Ok(picture.svg())
+}
+
+/// Figure 6, "Analysis of the problem using analytical geometry": the closest two opposite labels in polar coordinates.
+fn polar() -> Result<String> {
+    let recording = fly(PAPER_NOISELESS, Mission::as_printed)?;
+    let picture = Picture::of("", &recording);
+    let note = "Opposite labels come closer: then the angles and distances of two meet on the line";
+    let (mut map, truth) = divided(&title(6, "why it converges"), note, &picture)?;
+    let taken = &recording.belief.samples()[picture.given..];
+    let of =
+        |label| taken.iter().filter(move |s| s.label == label).map(|s| Point2::<f64>::from(s.site));
+    let pairs = of(Label::Negative).flat_map(|p| of(Label::Positive).map(move |q| (p, q)));
+    let apart = |(p, q): &(Point2<f64>, Point2<f64>)| (q - p).norm();
+    let (p, q) = pairs.min_by(|a, b| apart(a).total_cmp(&apart(b))).context("both labels")?;
+    let origin = Point2::new(0.0, truth.intercept().context("not vertical")?);
+    let reach = 6.0;
+    map.stretch(
+        &[origin, origin + Vector2::new(reach + 1.0, 0.0)],
+        AXIS,
+        "from here angles are measured",
+    );
+    for (k, at) in [(1, p), (2, q)] {
+        let way = at - origin;
+        map.stretch(&[origin, at], RAY, "distances r1 and r2 from where the line meets x = 0");
+        let angle = libm::atan2(way.y, way.x);
+        let radius = reach - 2.2 * f64::from(k - 1);
+        let on = |part: u32| {
+            let (sin, cos) = libm::sincos(angle * f64::from(part) / 24.0);
+            origin + Vector2::new(cos, sin) * radius
+        };
+        let arc: Vec<_> = (0..=24).map(on).collect();
+        map.stretch(&arc, ANGLE, "angles θ1 and θ2");
+        map.name(&format!("θ{k}"), arc[8]);
+        map.name(&format!("r{k}"), origin + way * 0.75);
+        map.name(&format!("p{k},ε"), at);
+    }
+    map.line(&truth, TRUTH, "true line", None);
+    map.samples(&picture.samples[picture.given..], 0);
+    Ok(map.finish(&[]))
+}
+
+/// Figure 7, "Path of the Agent with unicycle model and noiseless observations".
+fn noiseless() -> Result<String> {
+    let recording = fly(PAPER_NOISELESS, Mission::as_printed)?;
+    let mut picture =
+        Picture::of(&title(7, "true labels"), &recording).with_printed_estimate(&recording);
+    picture.note = Some(
+        "The path of the unicycle with noiseless observations: Algorithm 1 as printed, 10 steps"
+            .to_owned(),
+    );
+    Ok(picture.svg())
+}
+
+/// Figure 8, "Path of the Agent with unicycle model and noisy observations".
+fn noisy() -> Result<String> {
+    let recording = fly(PAPER_NOISY, Mission::as_printed)?;
+    let mut picture = Picture::of(&title(8, "labels true 7 times in 10"), &recording);
+    picture.note = Some(
+        "The path of the unicycle with noisy observations: Algorithm 2 as printed, 10 steps"
+            .to_owned(),
+    );
+    Ok(picture.svg())
+}
