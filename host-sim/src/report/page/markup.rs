@@ -70,9 +70,7 @@ fn chapter(number: usize, Chapter { title, about, flights }: &Chapter) -> String
          <h2 id=\"chapter-{number}-title\">{}</h2>\n<ul class=\"about\">\n",
         escaped(title)
     );
-    for fact in about {
-        html += &format!("<li>{}</li>\n", escaped(fact));
-    }
+    html.extend(about.iter().map(|fact| format!("<li>{}</li>\n", escaped(fact))));
     html += "</ul>\n<div class=\"stage\" hidden></div>\n";
     for flight in flights {
         html += "<noscript>\n";
