@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
+use crate::report::page::contents::{Chapter, Page};
 use crate::report::page::scene::{Flight, Moved, Scene};
 use crate::report::page::words::{arcs, range, signed, small};
-use crate::report::page::{Chapter, Page};
 
 const TEMPLATE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
@@ -15,8 +15,14 @@ const SCRIPT: [&str; 4] = [
     include_str!("page.js"),
 ];
 
-/// The whole document.
-pub(super) fn document(page: &Page) -> String {
+impl Page {
+    /// The page as an HTML document.
+    pub fn html(&self) -> String {
+        document(self)
+    }
+}
+
+fn document(page: &Page) -> String {
     filled(TEMPLATE, |slot| match slot {
         "title" => escaped(&page.title),
         "style" => STYLE.to_owned(),
