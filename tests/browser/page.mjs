@@ -72,7 +72,7 @@ async function check_stepping(page) {
   await page.click('#last');
   const end = await check_step(page, last, 'last');
   check(end.words.some((it) => it.includes('Ended')), 'last: nobody says why it ended');
-  await page.click('#next');
+  await page.click('#next', { force: true }); // it says that it is disabled, and does nothing
   await check_step(page, last, 'next at the end');
   await page.click('#first');
   await check_step(page, 0, 'first');
@@ -123,7 +123,7 @@ for (const [width, height] of [[1280, 900], [360, 740]]) {
     const chapters = await page.locator('#chapters option').count();
     for (let chapter = 0; chapter < chapters; chapter += 1) {
       if (chapters > 1) await page.selectOption('#chapters', String(chapter));
-      await check_stepping(page);
+      if (colorScheme === 'light') await check_stepping(page);
       await page.fill('#slider', '5');
       await page.waitForTimeout(500); // the robot has come to rest
       await check_looks(page, `${what}, chapter ${chapter}`);

@@ -147,7 +147,7 @@ pub(crate) fn tell() -> Result<String> {
     let printed = flights().filter(|(flight, _)| flight.is_printed);
     figures.extend(printed.filter_map(|(_, it)| Picture::of_candidates(CANDIDATES_TITLE, it)));
     let mut drawn: Vec<_> = figures.iter().map(Picture::svg).collect();
-    drawn.push(page(&recordings)?);
+    drawn.push(page(&recordings));
     for (output, content) in outputs.into_iter().flatten().zip(drawn) {
         output.write(content)?;
     }
@@ -166,8 +166,8 @@ pub(crate) fn tell() -> Result<String> {
     ))
 }
 
-/// The page of all flights, those of an example side by side.
-fn page(recordings: &[Recording]) -> Result<String> {
+/// The page of all [`FLIGHTS`] as they went, those of an example side by side.
+pub fn page(recordings: &[Recording]) -> String {
     let chapter = |example| {
         let flights =
             FLIGHTS.iter().zip(recordings).filter(|(flight, _)| flight.example == example);

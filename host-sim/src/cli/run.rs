@@ -1,5 +1,6 @@
 //! `run`: one mission.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, Result, bail};
@@ -91,17 +92,22 @@ pub(crate) fn run(args: &RunArgs) -> Result<String> {
     run.tell(outputs, &recording)
 }
 
-/// A page of missions that were flown from the same start.
-fn page(name: &str, recordings: &[&Recording]) -> Result<String> {
+/// A page of missions that were flown from the same start, under the scenario's name.
+fn page(scenario: &str, recordings: &[&Recording]) -> String {
     let planners: Vec<_> = recordings.iter().map(|it| it.mission.algorithm.title()).collect();
     let title = format!("Flown by {}", planners.join(", "));
     let flights = planners.into_iter().zip(recordings.iter().copied());
-    Page::new(name, vec![Chapter::new(title, flights)]).html()
+    Page::new(scenario, vec![Chapter::new(title, flights)]).html()
 }
 
 impl Run {
     pub(crate) fn name(&self) -> String {
         self.scenario.display().to_string()
+    }
+
+    /// What figures and pages are called.
+    fn title(&self) -> Cow<'_, str> {
+        self.scenario.file_stem().unwrap_or_default().to_string_lossy()
     }
 
     pub(crate) fn mission(&self) -> Result<Mission> {
@@ -129,10 +135,8 @@ impl Run {
                 .mission_by(Some(planner))
                 .with_context(|| format!("--compare {}", planner.name()))?;
             if mission.noise.is_some() && !mission.is_noisy() {
-                let name = planner.name();
-                bail!(
-                    "--compare: found {name}, which takes labels to be true, in a mission with noise"
-                );
+                let (name, planner) = (self.name(), planner.name());
+                bail!("{name}: noise: found --compare {planner}, which takes labels to be true");
             }
             Ok(mission)
         };
@@ -141,7 +145,7 @@ impl Run {
         let name = self.name();
         let fly = |mission: &Mission| Recording::of(mission).with_context(|| name.clone());
         let recordings = missions.iter().map(fly).collect::<Result<Vec<_>>>()?;
-        let page = page(&name, &recordings.iter().collect::<Vec<_>>())?;
+        let page = page(&self.title(), &recordings.iter().collect::<Vec<_>>());
         if let Some(report) = report {
             report.write(page)?;
         }
@@ -179,13 +183,13 @@ impl Run {
     ) -> Result<String> {
         let [trace, figure, candidates, report, mcap] = outputs;
         let name = self.name();
-        let title = self.scenario.file_stem().unwrap_or_default().to_string_lossy();
+        let title = self.title();
         let lines = trace::lines(&recording.results);
         // All is drawn before anything is written.
         let svg = figure.as_ref().map(|_| Picture::of(&title, recording).svg());
         let fewest = candidates.as_ref().and_then(|_| Picture::of_candidates(&title, recording));
         let fewest = fewest.map(|picture| picture.svg());
-        let page = report.as_ref().map(|_| page(&name, &[recording])).transpose()?;
+        let page = report.as_ref().map(|_| page(&title, &[recording]));
         let log = mcap.as_ref().map(|_| log::mcap(recording)).transpose()?;
         for (output, content) in [
             (trace, Some(lines.as_bytes())),

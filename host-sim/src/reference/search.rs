@@ -1,5 +1,4 @@
 //! Branch and bound over sequences of motions, on all cores.
-use crate::output::notes::progress;
 //!
 //! A part of a sequence is given up when it costs more, at least, than the best whole one that is known; at the same cost,
 //! when its actions have the higher index. So the result is one and the same however the work is shared out: the
@@ -15,6 +14,7 @@ use planner_core::belief::sample::{Reading, Sample};
 use planner_core::motion::action::Action;
 use rayon::prelude::*;
 
+use crate::output::notes::progress;
 use crate::reference::instance::{Choice, Instance, Partial};
 use crate::reference::relaxation::Relaxation;
 

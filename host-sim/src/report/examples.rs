@@ -62,7 +62,7 @@ pub fn side_by_side<'a>(flights: impl Iterator<Item = Flown<'a>>) -> String {
 }
 
 /// Bits told, by the area prior whichever chose the motions.
-fn bits(belief: &dyn ReadOut) -> f64 {
+pub(crate) fn bits(belief: &dyn ReadOut) -> f64 {
     let by_area = belief.hypotheses().map(|table| table.weighed_by(Prior::Area));
     by_area.map_or_else(|| belief.information(), |table| Posterior::new(&table).information())
 }

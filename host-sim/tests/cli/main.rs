@@ -15,6 +15,7 @@ mod missions;
 mod outputs;
 mod recordings;
 mod reference;
+mod report;
 mod resuming;
 mod samples;
 mod scenarios;

@@ -76,7 +76,10 @@ fn known(scene: &Scene, second: u32) -> [Entity; 2] {
         GroundRecord::Bands(bands) => {
             let borders = bands.iter().flat_map(|BandRecord { from, rings }| {
                 let color = Color { a: 0.2 + 0.8 * from, ..opaque(SHADE) };
-                rings.iter().map(move |ring| line(ring, true, THIN, color))
+                rings.iter().map(move |ring| {
+                    let places: Vec<_> = ring.chunks_exact(2).map(|at| [at[0], at[1]]).collect();
+                    line(&places, true, THIN, color)
+                })
             });
             Entity { lines: borders.collect(), ..ground }
         }

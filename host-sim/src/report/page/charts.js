@@ -5,39 +5,39 @@ const CHART = { height: 118, left: 46, right: 8, top: 8, bottom: 20 };
 /** What is charted of missions, each with the text that tells its value at a step. */
 const CHARTS = [
   {
-    title: 'Slopes left, deg',
+    title: (flight) => (flight.labels_err ? 'Slopes of the 90 % set, deg' : 'Slopes left, deg'),
     bars: (scene) => scene.slopes,
     rule: (flight) => flight.truth?.angle,
     dot: (scene) => scene.estimate?.angle,
     told: (scene) => scene.slopes.map(([low, high]) => `${figure(low, 2)} to ${figure(high, 2)}`).join(' or '),
   },
   {
-    title: 'Intercepts left, m',
+    title: (flight) => (flight.labels_err ? 'Intercepts of the 90 % set, m' : 'Intercepts left, m'),
     bars: (scene) => (scene.intercepts ? [scene.intercepts] : [[-Infinity, Infinity]]),
     rule: (flight) => flight.truth?.intercept,
     dot: (scene) => scene.estimate?.intercept,
     told: (scene) => (scene.intercepts ? `${figure(scene.intercepts[0], 2)} to ${figure(scene.intercepts[1], 2)}` : 'unbounded'),
   },
   {
-    title: 'Estimate off the truth, deg',
+    title: () => 'Estimate off the truth, deg',
     isLogarithmic: true,
     line: (scene) => scene.estimate?.off_deg,
     told: (scene) => (scene.estimate?.off_deg == null ? 'none' : small(scene.estimate.off_deg)),
   },
   {
-    title: 'Area misjudged, %',
+    title: () => 'Area misjudged, %',
     isLogarithmic: true,
     line: (scene) => (scene.estimate?.misclassified == null ? null : 100 * scene.estimate.misclassified),
     told: (scene) => (scene.estimate?.misclassified == null ? 'none' : small(100 * scene.estimate.misclassified)),
   },
   {
-    title: 'Bits told; dashed: expected',
+    title: () => 'Bits told; dashed: expected',
     line: (scene) => scene.bits,
     dashed: (scene) => scene.expected_bits,
     told: (scene) => `${figure(scene.bits, 2)}; ${figure(scene.expected_bits, 2)}`,
   },
   {
-    title: 'Control cost so far',
+    title: () => 'Control cost so far',
     line: (scene) => scene.cost,
     told: (scene) => figure(scene.cost, 1),
   },
@@ -73,10 +73,6 @@ function drawChart(svg, chart, flight, step, range, steps, width) {
   const up = linear(range, [height - bottom, top]);
   const limited = (value) => Math.min(height - bottom, Math.max(top, up(value)));
   drawScales(svg, chart, range, steps, across, up, width);
-  if (chart.rule?.(flight) != null) {
-    const y = up(chart.rule(flight));
-    add(svg, 'path', { class: 'truth', d: through([[left, y], [width - right, y]]) });
-  }
   const breadth = Math.max(1.5, Math.min(9, (across(1) - across(0)) * 0.6));
   for (const [number, scene] of flight.scenes.entries()) {
     const when = number === step ? ' now' : number > step ? ' later' : '';
@@ -85,9 +81,16 @@ function drawChart(svg, chart, flight, step, range, steps, width) {
       const length = Math.max(1.5, limited(low) - y);
       add(svg, 'rect', { class: `bar${when}`, x: across(number) - breadth / 2, y, width: breadth, height: length });
     }
+  }
+  if (chart.rule?.(flight) != null) {
+    const y = up(chart.rule(flight));
+    add(svg, 'path', { class: 'truth', d: through([[left, y], [width - right, y]]) });
+  }
+  for (const [number, scene] of flight.scenes.entries()) {
+    const when = number === step ? ' now' : number > step ? ' later' : '';
     const dot = chart.dot?.(scene);
     if (dot != null && dot >= range[0] && dot <= range[1]) {
-      add(svg, 'circle', { class: `dot${when}`, cx: across(number), cy: up(dot), r: number === step ? 3 : 1.6 });
+      add(svg, 'circle', { class: `dot${when}`, cx: across(number), cy: up(dot), r: number === step ? 3.5 : 2.2 });
     }
   }
   for (const [kind, of] of [['dashed', chart.dashed], ['line', chart.line]]) {

@@ -62,6 +62,11 @@ function drawMap(svg, flight, step, width, from) {
   drawRobot(svg, flight, step, at, from);
 }
 
+/** Places of `x, z, x, z` and so on. */
+function pairs(numbers) {
+  return Array.from({ length: numbers.length / 2 }, (_, k) => numbers.slice(2 * k, 2 * k + 2));
+}
+
 function drawGround(svg, ground, at) {
   if (ground.certain) {
     for (const [k, sign] of ['+1', '\u22121'].entries()) {
@@ -77,7 +82,7 @@ function drawGround(svg, ground, at) {
   }
   // Each band lies within the one before it, so shades add up.
   for (const { rings } of ground.bands ?? []) {
-    add(svg, 'path', { class: 'band', d: rings.map((places) => through(places.map(at), true)).join('') });
+    add(svg, 'path', { class: 'band', d: rings.map((ring) => through(pairs(ring).map(at), true)).join('') });
   }
 }
 

@@ -2,11 +2,9 @@
 
 use std::fmt::Write as _;
 
-use anyhow::Result;
-
+use crate::report::page::contents::{Chapter, Page};
 use crate::report::page::scene::{Flight, Moved, Scene};
 use crate::report::page::words::{arcs, range, signed, small};
-use crate::report::page::{Chapter, Page};
 
 const TEMPLATE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
@@ -17,20 +15,25 @@ const SCRIPT: [&str; 4] = [
     include_str!("page.js"),
 ];
 
-/// The whole document.
-pub(super) fn document(page: &Page) -> Result<String> {
-    let mut chapters = String::new();
-    for (number, chapter) in page.chapters.iter().enumerate() {
-        chapters += &self::chapter(number, chapter)?;
+impl Page {
+    /// The page as an HTML document.
+    pub fn html(&self) -> String {
+        document(self)
     }
-    Ok(filled(TEMPLATE, |slot| match slot {
+}
+
+fn document(page: &Page) -> String {
+    filled(TEMPLATE, |slot| match slot {
         "title" => escaped(&page.title),
         "style" => STYLE.to_owned(),
-        "chapters" => chapters.clone(),
+        "chapters" => {
+            let chapters = page.chapters.iter().enumerate();
+            chapters.map(|(number, it)| chapter(number, it)).collect()
+        }
         "data" => data(page),
         "script" => SCRIPT.join("\n"),
         other => unreachable!("the template has no {other}"),
-    }))
+    })
 }
 
 /// A template with its slots, `{{name}}`, filled. What fills them is not looked at again.
@@ -67,40 +70,40 @@ fn data(page: &Page) -> String {
     json.replace('<', "\\u003c")
 }
 
-fn chapter(number: usize, Chapter { title, about, flights }: &Chapter) -> Result<String> {
+fn chapter(number: usize, Chapter { title, about, flights }: &Chapter) -> String {
     let mut html = format!(
         "<section class=\"chapter\" id=\"chapter-{number}\" aria-labelledby=\"chapter-{number}-title\">\n\
          <h2 id=\"chapter-{number}-title\">{}</h2>\n<ul class=\"about\">\n",
         escaped(title)
     );
-    for fact in about {
-        html += &format!("<li>{}</li>\n", escaped(fact));
-    }
+    html.extend(about.iter().map(|fact| format!("<li>{}</li>\n", escaped(fact))));
     html += "</ul>\n<div class=\"stage\" hidden></div>\n";
     for flight in flights {
         html += "<noscript>\n";
-        html += &still(flight)?;
+        html += &still(flight);
         html += "</noscript>\n";
     }
     html += "<section class=\"steps\">\n<h3>All steps</h3>\n";
     for flight in flights {
         html += &steps(flight);
     }
-    Ok(html + "</section>\n</section>\n")
+    html + "</section>\n</section>\n"
 }
 
 /// The picture of a mission's end.
-fn still(flight: &Flight) -> Result<String> {
+fn still(flight: &Flight) -> String {
     // Within HTML it needs no name space, and a page that names no address can be seen to load none.
     let svg = flight.picture.svg().replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
-    Ok(format!("<h3>{}</h3>\n<div class=\"still\">{svg}</div>\n", escaped(&flight.planner)))
+    format!("<h3>{}</h3>\n<div class=\"still\">{svg}</div>\n", escaped(&flight.planner))
 }
 
 /// The steps as a table.
 fn steps(flight: &Flight) -> String {
-    const HEADS: [&str; 10] = [
+    const HEADS: [&str; 12] = [
         "step",
-        "planned",
+        "problem",
+        "motion",
+        "to, m",
         "chance of +1",
         "bits expected",
         "read",
@@ -130,19 +133,17 @@ fn steps(flight: &Flight) -> String {
     html + "</tbody>\n</table>\n</div>\n"
 }
 
-fn cells(scene: &Scene) -> [String; 9] {
+fn cells(scene: &Scene) -> [String; 11] {
     let none = || "\u{2013}".to_owned();
     let motion = scene.motion.as_ref();
-    let of = |heading: &str| {
-        let told = scene.told.iter().find(|told| told.of == heading);
-        told.map_or_else(none, |told| told.text.clone())
-    };
     let expected = |of: fn(&Moved) -> Option<f64>| motion.and_then(of);
     let wrong = |motion: &Moved| if motion.is_wrong { ", wrong" } else { "" };
     let label = |motion: &Moved| Some(format!("{}{}", signed(motion.label?), wrong(motion)));
     let off = scene.estimate.as_ref().and_then(|line| line.off_deg);
     [
-        of("Planned"),
+        motion.map_or_else(none, |it| it.problem.clone()),
+        motion.map_or_else(none, |it| it.motion.clone()),
+        format!("({:.3}, {:.3})", scene.at[0], scene.at[1]).replace('-', "\u{2212}"),
         expected(|it| it.chance).map_or_else(none, |it| format!("{:.0} %", 100.0 * it)),
         expected(|it| it.expected).map_or_else(none, |bits| format!("{bits:.3}")),
         motion.and_then(label).unwrap_or_else(none),

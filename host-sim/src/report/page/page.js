@@ -2,6 +2,7 @@
 
 const PAGE = JSON.parse(document.getElementById('data').textContent);
 const BEAT_MS = 900;
+const PAPER = matchMedia('print');
 
 const controls = Object.fromEntries(
   ['controls', 'choice', 'chapters', 'first', 'back', 'play', 'next', 'last', 'count', 'slider'].map((id) => [id, document.getElementById(id)]),
@@ -27,7 +28,9 @@ function stage({ flights }, section) {
     for (const each of rows) markRow(each, step);
     shown = step;
   };
-  new ResizeObserver(() => shown !== null && views.forEach((view) => view.fit())).observe(row);
+  const fit = () => shown !== null && views.forEach((view) => view.fit());
+  new ResizeObserver(fit).observe(row);
+  PAPER.addEventListener('change', fit);
   return { section, steps, show, quiet: (isQuiet) => views.forEach((view) => view.quiet(isQuiet)) };
 }
 
@@ -40,11 +43,12 @@ function panel(row, flight, ranges, steps, id) {
   legend(figure, flight);
   const side = add(article, 'div', { class: 'side' });
   const told = add(side, 'div', { class: 'words', role: 'status', 'aria-live': 'polite' });
+  const grid = add(side, 'div', { class: 'charts' });
+  add(grid, 'p', {}, 'By step. Bars: what is left; across: the truth; dots: the estimate. Click to go there.');
   const charts = CHARTS.map((chart, k) => {
-    if (k === 0) add(side, 'div', { class: 'charts' });
-    const frame = add(side.lastElementChild, 'figure');
+    const frame = add(grid, 'figure');
     const caption = add(frame, 'figcaption');
-    add(caption, 'span', {}, chart.title);
+    add(caption, 'span', {}, chart.title(flight));
     const value = add(caption, 'output', { 'aria-live': 'off' });
     const svg = add(frame, 'svg', { 'aria-hidden': 'true' });
     svg.addEventListener('click', (event) => go(stepAt(svg, event.clientX, steps)));
@@ -70,7 +74,9 @@ function panel(row, flight, ranges, steps, id) {
   };
 }
 
+/** The pixels that a drawing has for its width; on paper they are larger, so there are fewer. */
 function widthOf(element) {
+  if (PAPER.matches) return element.closest('.charts') ? 230 : 400;
   return Math.max(200, Math.floor(element.clientWidth));
 }
 
@@ -113,7 +119,7 @@ function legend(figure, flight) {
   const { bands } = flight.scenes[0].ground;
   if (bands) {
     const levels = bands.map(({ from }) => `${Math.round(100 * from)}`).join(', ');
-    item(`the line passes with a probability of ${levels} % at least, the darker the likelier`, (svg) => {
+    item(`the line passes with a probability of ${levels} % at least, the stronger the likelier`, (svg) => {
       bands.forEach((_, k) => add(svg, 'rect', { class: 'band', x: 1 + 5 * k, y: 1, width: 25 - 1 - 5 * k, height: 16 }));
     });
   }

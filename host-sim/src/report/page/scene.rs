@@ -12,10 +12,11 @@ use serde::Serialize;
 
 use crate::mission::read_out::{Expectation, ReadOut};
 use crate::mission::recording::{Recording, beside_truth};
-use crate::mission::results::{LineError, LineRecord, StepResult};
+use crate::mission::results::{LineError, LineRecord, PoseRecord, StepResult};
 use crate::report::bands::Band;
+use crate::report::examples::bits;
 use crate::report::ground::Ground;
-use crate::report::page::words::{self, Told};
+use crate::report::page::words::{self, Taken, Told};
 use crate::report::picture::{Picture, Stop};
 use crate::report::text;
 use crate::world::polygon::Polygon;
@@ -92,7 +93,7 @@ pub(crate) struct Scene {
     pub(crate) slopes: Vec<[f64; 2]>,
     /// The intercepts left, metres; `None` when unbounded.
     pub(crate) intercepts: Option<[f64; 2]>,
-    /// Bits told so far.
+    /// Bits told so far, by the area prior, so that planners compare.
     pub(crate) bits: f64,
     /// Bits that the labels so far were expected to tell, each when it was asked for.
     expected_bits: f64,
@@ -107,6 +108,12 @@ pub(crate) struct Scene {
 /// A motion, and what was read at its end.
 #[derive(Debug, Serialize)]
 pub(crate) struct Moved {
+    /// What it answers, in short.
+    #[serde(skip)]
+    pub(crate) problem: String,
+    /// The motion itself, in words.
+    #[serde(skip)]
+    pub(crate) motion: String,
     /// Places on the way, the last of them the end.
     pub(crate) way: Vec<Place>,
     /// Where it should have ended, if it ended elsewhere.
@@ -139,7 +146,8 @@ pub(crate) enum GroundRecord {
 #[derive(Debug, Serialize)]
 pub(crate) struct BandRecord {
     pub(crate) from: f64,
-    pub(crate) rings: Vec<Ring>,
+    /// Polygons, each as `x, z, x, z` and so on: there are many.
+    pub(crate) rings: Vec<Vec<f64>>,
 }
 
 /// Rounds places to what can be seen.
@@ -211,9 +219,9 @@ impl Flight {
             // It was taken in once already.
             let _ = watcher.observe(step.pose, step.reading);
             let before = sums.bits;
-            sums.take(result, expectation);
-            let motion = moved(step, result, stop, expectation, rounding);
-            let step = Some((step, result, expectation, result.bits - before));
+            sums.take(result, expectation, watcher.belief());
+            let motion = moved(recording, (step, result, stop), expectation, rounding);
+            let step = Some(Taken { result, expectation, rise: sums.bits - before });
             let now = Stage { recording, rounding, step, sums, estimate };
             scenes.push(now.scene(watcher.belief(), Some(motion)));
         }
@@ -244,8 +252,13 @@ struct Sums {
 }
 
 impl Sums {
-    fn take(&mut self, result: &StepResult, expectation: Option<Expectation>) {
-        self.bits = result.bits;
+    fn take(
+        &mut self,
+        result: &StepResult,
+        expectation: Option<Expectation>,
+        belief: &dyn ReadOut,
+    ) {
+        self.bits = bits(belief);
         self.expected_bits += expectation.map_or(0.0, |it| it.bits);
         self.cost += result.cost();
         self.metres += f64::from(result.action.v);
@@ -256,8 +269,8 @@ impl Sums {
 struct Stage<'a> {
     recording: &'a Recording,
     rounding: Rounding,
-    /// The step that led here, what was expected of it, and the bits that it told.
-    step: Option<(&'a Step, &'a StepResult, Option<Expectation>, f64)>,
+    /// The step that led here.
+    step: Option<Taken<'a>>,
     sums: Sums,
     /// What the recommended estimate is called.
     estimate: &'static str,
@@ -268,15 +281,16 @@ impl Stage<'_> {
         let &Self { recording, rounding, step, sums, estimate } = self;
         let mission = &recording.mission;
         let area = mission.config.area;
+        let Sums { bits, expected_bits, cost, metres } = sums;
         let knowledge = belief.knowledge();
         let centre = beside_truth(mission, belief.estimates()).centre;
-        let told = words::stage(recording, step, &knowledge, (estimate, centre.as_ref()));
-        let pose = step.map_or(mission.start, |(step, ..)| step.pose);
-        let Sums { bits, expected_bits, cost, metres } = sums;
+        let told = words::stage(recording, step, (&knowledge, bits), (estimate, centre.as_ref()));
+        let start = PoseRecord::from(mission.start);
+        let PoseRecord { x, z, heading } = step.map_or(start, |step| step.result.pose);
         Scene {
             motion,
-            at: rounding.place(pose.site.into()),
-            heading: pose.heading.radians(),
+            at: rounding.place(Point2::new(x, z)),
+            heading,
             ground: GroundRecord::of(&Ground::of(belief, area), rounding),
             estimate: centre.map(|line| seen(&line, &area.into(), rounding)),
             slopes: knowledge.slope_arcs,
@@ -291,14 +305,15 @@ impl Stage<'_> {
 }
 
 fn moved(
-    step: &Step,
-    result: &StepResult,
-    stop: &Stop,
+    recording: &Recording,
+    (step, result, stop): (&Step, &StepResult, &Stop),
     expectation: Option<Expectation>,
     rounding: Rounding,
 ) -> Moved {
     let [target, end] = [step.motion.target.site, step.pose.site];
     Moved {
+        problem: words::problem(result),
+        motion: words::motion(&recording.mission, result),
         way: stop.way.iter().map(|at| rounding.place(*at)).collect(),
         target: (target != end).then(|| rounding.place(target.into())),
         truly: stop.truly.map(|at| rounding.place(at)),
@@ -329,9 +344,10 @@ impl GroundRecord {
                 Self::Certain(regions.each_ref().map(|it| rounding.ring(it)))
             }
             Ground::Credible(bands) => {
-                let record = |band: &Band| BandRecord {
-                    from: band.from,
-                    rings: band.rings.iter().map(|ring| rounding.corners(ring)).collect(),
+                let record = |Band { from, rings }: &Band| {
+                    let rings = rings.iter().map(|ring| rounding.corners(ring));
+                    let seen = rings.filter(|ring| ring.len() >= 3).map(|ring| ring.concat());
+                    BandRecord { from: *from, rings: seen.collect() }
                 };
                 Self::Bands(bands.iter().map(record).collect())
             }

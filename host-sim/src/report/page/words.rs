@@ -1,7 +1,6 @@
 //! A stage of a mission in words: what was planned, what was expected of it, what was read, what is known.
 
 use planner_core::motion::any_vehicle::AnyVehicle;
-use planner_core::robot::agent::Step;
 use serde::Serialize;
 
 use crate::mission::algorithm::Algorithm;
@@ -27,25 +26,36 @@ impl Told {
     }
 }
 
-/// A stage: the step that led there with what was expected of it and the bits that it told, or the start; what is
-/// known; the recommended estimate with its name.
+/// A step that was taken.
+#[derive(Clone, Copy)]
+pub(crate) struct Taken<'a> {
+    /// What came of it.
+    pub(crate) result: &'a StepResult,
+    /// What was expected of its label.
+    pub(crate) expectation: Option<Expectation>,
+    /// By how much the bits told rose.
+    pub(crate) rise: f64,
+}
+
+/// A stage: the step that led there, or the start; what is known and the bits told so far; the recommended estimate
+/// with its name.
 pub(crate) fn stage(
     recording: &Recording,
-    step: Option<(&Step, &StepResult, Option<Expectation>, f64)>,
-    knowledge: &Knowledge,
+    step: Option<Taken<'_>>,
+    (knowledge, bits): (&Knowledge, f64),
     (name, estimate): (&str, Option<&LineRecord>),
 ) -> Vec<Told> {
     let Recording { mission, results, .. } = recording;
-    let mut told = if let Some((_, result, expectation, bits)) = step {
+    let mut told = if let Some(Taken { result, expectation, rise }) = step {
         vec![
             Told::new("Planned", planned(mission, result)),
             Told::new("Expected", expected(expectation)),
-            Told::new("Read", read(result, bits)),
+            Told::new("Read", read(result, rise)),
         ]
     } else {
         vec![Told::new("Given", given(results))]
     };
-    told.push(Told::new("Known", known(knowledge)));
+    told.push(Told::new("Known", known(knowledge, bits)));
     told.push(Told::new("Estimate", estimated(name, estimate)));
     told
 }
@@ -113,7 +123,14 @@ fn planned(mission: &Mission, step: &StepResult) -> String {
     format!("{why}: {way}, to ({:.3}, {:.3}).{unproven}", at.x, at.z)
 }
 
-fn motion(mission: &Mission, step: &StepResult) -> String {
+/// The one-step problem and the rung of the recovery ladder, as the trace names them.
+pub(crate) fn problem(step: &StepResult) -> String {
+    let named: Vec<_> = step.problem.into_iter().chain(step.recovery).collect();
+    if named.is_empty() { "\u{2013}".to_owned() } else { named.join(", ") }
+}
+
+/// How it moves.
+pub(crate) fn motion(mission: &Mission, step: &StepResult) -> String {
     let degrees = f64::from(step.action.w).to_degrees();
     let side = if degrees < 0.0 { "right" } else { "left" };
     let turn = format!("{:.1} deg {side}", degrees.abs());
@@ -133,19 +150,19 @@ fn expected(expectation: Option<Expectation>) -> String {
     })
 }
 
-fn read(step: &StepResult, bits: f64) -> String {
+fn read(step: &StepResult, rise: f64) -> String {
     let Some(label) = step.label else { return "Nothing.".into() };
     let judged = match label {
         0 => ", exactly on the line",
         _ if label != step.fact => ", which is wrong",
         _ => "",
     };
-    let bits = format!("{bits:.3}").replace('-', "\u{2212}");
-    format!("{}{judged}; it told {bits} bits.", signed(label))
+    let change = if rise < 0.0 { "fall" } else { "rise" };
+    format!("{}{judged}. Bits told {change} by {:.3}.", signed(label), rise.abs())
 }
 
-fn known(knowledge: &Knowledge) -> String {
-    let Knowledge { slope_arcs, intercept, bits, doubt } = knowledge;
+fn known(knowledge: &Knowledge, bits: f64) -> String {
+    let Knowledge { slope_arcs, intercept, doubt, .. } = knowledge;
     let (arcs, range) = (minus(&text::arcs(slope_arcs)), minus(&text::range(*intercept)));
     let metres = if intercept.is_some() { " m" } else { "" };
     let (of, doubt) = doubt.map_or((String::new(), String::new()), |doubt| {
