@@ -1,7 +1,7 @@
 //! The command line: what can be asked. The contract is in ARCHITECTURE.md; each command has a file of its own.
 
 use anyhow::Result;
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory as _, Parser, Subcommand};
 
 use crate::cli::campaign::{CampaignArgs, campaign};
 use crate::cli::completions::{Completions, completions};
@@ -71,7 +71,7 @@ impl Cli {
             Some(Command::Hil(args)) => hil(&args),
             Some(Command::Reference(args)) => reference(&args),
             Some(Command::Init(args)) => init(&args),
-            Some(Command::Completions(args)) => completions(&args),
+            Some(Command::Completions(args)) => completions(&args, Self::command()),
         }
     }
 }

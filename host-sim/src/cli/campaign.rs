@@ -78,7 +78,7 @@ pub(crate) fn campaign(args: CampaignArgs) -> Result<String> {
         }
         _ => String::new(),
     };
-    let rows: Vec<_> = csv.iter().map(|path| ("the rows", &**path)).collect();
+    let rows: Vec<_> = csv.iter().map(|path| ("the place of --csv", &**path)).collect();
     let asked = [("--fields-csv", fields_csv.as_deref()), ("--figure", figure.as_deref())];
     let [output, drawn] = prepare(&rows, asked)?;
     if let (Some(output), Some(campaign)) = (output, campaigns.of_each.first()) {

@@ -1,10 +1,9 @@
 //! `completions`: what a shell needs to complete commands and flags.
 
 use anyhow::Result;
-use clap::{Args, CommandFactory as _};
+use clap::{Args, Command};
 use clap_complete::{Shell, generate};
 
-use crate::cli::arguments::Cli;
 use crate::cli::help;
 
 #[derive(Debug, Args)]
@@ -15,9 +14,8 @@ pub(crate) struct Completions {
     pub(crate) shell: Shell,
 }
 
-/// The script for a shell.
-pub(crate) fn completions(args: &Completions) -> Result<String> {
-    let mut command = Cli::command();
+/// The script for a shell, of a command line.
+pub(crate) fn completions(args: &Completions, mut command: Command) -> Result<String> {
     let name = command.get_name().to_owned();
     let mut script = Vec::new();
     generate(args.shell, &mut command, name, &mut script);

@@ -3,9 +3,8 @@
 use planner_core::belief::sample::Label;
 
 use crate::report::log::messages::{
-    Color, Entity, Line, Point, Pose, SceneUpdate, Solid, Triangles,
+    Color, Entity, FRAME, Line, Point, Pose, SceneUpdate, Solid, Timestamp, Triangles,
 };
-use crate::report::log::{FRAME, timestamp};
 use crate::report::page::scene::{BandRecord, Flight, GroundRecord, Mark, Place, Scene};
 use crate::report::picture::Kind;
 use crate::report::style;
@@ -89,7 +88,7 @@ fn known(scene: &Scene, second: u32) -> [Entity; 2] {
 }
 
 fn entity(id: &str, second: u32) -> Entity {
-    let timestamp = Some(timestamp(second));
+    let timestamp = Some(Timestamp::of(second));
     Entity { timestamp, frame_id: FRAME.to_owned(), id: id.to_owned(), ..Entity::default() }
 }
 

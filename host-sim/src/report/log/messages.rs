@@ -11,6 +11,9 @@ pub(super) const SCENE: (&str, &[u8]) =
 pub(super) const STEP: (&str, &[u8]) =
     ("host_sim.Step", include_bytes!("../../../schemas/host_sim.Step.bin"));
 
+/// What all places are told in.
+pub(super) const FRAME: &str = "field";
+
 /// A point, a vector: `z` of a place in the plane is the viewer's `y`.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub(super) struct Point {
@@ -64,9 +67,16 @@ impl Pose {
 #[derive(Clone, Copy, PartialEq, Eq, Message)]
 pub(super) struct Timestamp {
     #[prost(int64, tag = "1")]
-    pub(super) seconds: i64,
+    seconds: i64,
     #[prost(int32, tag = "2")]
-    pub(super) nanos: i32,
+    nanos: i32,
+}
+
+impl Timestamp {
+    /// So many seconds after the start.
+    pub(super) fn of(second: u32) -> Self {
+        Self { seconds: second.into(), nanos: 0 }
+    }
 }
 
 #[derive(Clone, PartialEq, Message)]

@@ -15,11 +15,10 @@ use prost::Message;
 use crate::mission::recording::Recording;
 use crate::mission::results::{PoseRecord, Results};
 use crate::report::flat::interval;
-use crate::report::log::messages::{POSE, Plotted, Pose, PoseInFrame, SCENE, STEP, Timestamp};
+use crate::report::log::messages::{
+    FRAME, POSE, Plotted, Pose, PoseInFrame, SCENE, STEP, Timestamp,
+};
 use crate::report::page::scene::Flight;
-
-/// What all places are told in.
-const FRAME: &str = "field";
 
 const PROTOBUF: &str = "protobuf";
 
@@ -79,12 +78,8 @@ pub fn mcap(recording: &Recording) -> Result<Vec<u8>> {
     Ok(log.writer.into_inner().into_inner())
 }
 
-fn timestamp(second: u32) -> Timestamp {
-    Timestamp { seconds: second.into(), nanos: 0 }
-}
-
 fn pose(second: u32, &PoseRecord { x, z, heading }: &PoseRecord) -> PoseInFrame {
-    let (timestamp, frame_id) = (Some(timestamp(second)), FRAME.to_owned());
+    let (timestamp, frame_id) = (Some(Timestamp::of(second)), FRAME.to_owned());
     PoseInFrame { timestamp, frame_id, pose: Some(Pose::new([x, z], heading)) }
 }
 
@@ -95,7 +90,7 @@ fn plotted<'a>(results: &'a Results, flight: &'a Flight) -> impl Iterator<Item =
         let slopes = interval(&step.slope_arcs);
         let estimate = scene.estimate.as_ref();
         Plotted {
-            timestamp: Some(timestamp(second)),
+            timestamp: Some(Timestamp::of(second)),
             step: second,
             problem: step.problem.unwrap_or_default().to_owned(),
             recovery: step.recovery.unwrap_or_default().to_owned(),
