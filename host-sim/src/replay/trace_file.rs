@@ -6,13 +6,25 @@ use serde::Deserialize;
 
 use crate::replay::rows::{Layout, Rows};
 
-/// As much of a record as is read here; see the contract of the trace in ARCHITECTURE.md.
+/// As much of a record as is read here; see the contract of the trace in ARCHITECTURE.md. One structure for all kinds:
+/// of a tagged enumeration numbers are not understood where another crate has serde keep their digits.
 #[derive(Deserialize)]
-#[serde(tag = "record", rename_all = "lowercase")]
-enum Record {
-    Start { oracle: Vec<Given>, p: f64 },
-    Step(Step),
-    End {},
+struct Record {
+    record: Kind,
+    oracle: Option<Vec<Given>>,
+    p: Option<f64>,
+    pose: Option<Pose>,
+    label: Option<i8>,
+    #[serde(default)]
+    trusted: bool,
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Kind {
+    Start,
+    Step,
+    End,
 }
 
 #[derive(Deserialize)]
@@ -20,14 +32,6 @@ struct Given {
     x: f64,
     z: f64,
     label: i8,
-}
-
-#[derive(Deserialize)]
-struct Step {
-    pose: Pose,
-    label: Option<i8>,
-    #[serde(default)]
-    trusted: bool,
 }
 
 #[derive(Deserialize)]
@@ -54,13 +58,15 @@ pub(crate) fn parse(name: &str, text: &[u8], layout: &Layout) -> Result<Rows> {
         if record.trim_ascii().is_empty() {
             continue;
         }
-        let record = serde_json::from_slice(record).map_err(|error| {
-            anyhow!(
-                "{name}:{line}: expected a record of a trace, as run --trace writes it: {error}"
-            )
-        })?;
-        match (record, rows.p) {
-            (Record::Start { oracle, p }, None) => {
+        let expected =
+            format!("{name}:{line}: expected a record of a trace, as run --trace writes it");
+        let record: Record =
+            serde_json::from_slice(record).map_err(|error| anyhow!("{expected}: {error}"))?;
+        match (record.record, rows.p) {
+            (Kind::Start, None) => {
+                let (Some(oracle), Some(p)) = (record.oracle, record.p) else {
+                    bail!("{expected}: found a start without oracle or p")
+                };
                 rows.p = Some(p);
                 rows.certain = (0..oracle.len()).collect();
                 for given in oracle {
@@ -68,19 +74,24 @@ pub(crate) fn parse(name: &str, text: &[u8], layout: &Layout) -> Result<Rows> {
                         .map_err(|error| anyhow!("{name}:{line}: {error}"))?;
                 }
             }
-            (Record::Start { .. }, Some(_)) => {
+            (Kind::Start, Some(_)) => {
                 bail!("{name}:{line}: found a second start, expected the trace of one mission")
             }
-            (_, None) => bail!("{name}:{line}: found no start, expected it as the first record"),
-            (Record::Step(step), _) => {
-                let Some(label) = step.label.filter(|label| *label != 0) else { continue };
-                if step.trusted {
+            (_, None) => {
+                bail!("{name}:{line}: found no start, expected a trace, which begins with it")
+            }
+            (Kind::Step, _) => {
+                let Some(pose) = record.pose else {
+                    bail!("{expected}: found a step without pose")
+                };
+                let Some(label) = record.label.filter(|label| *label != 0) else { continue };
+                if record.trusted {
                     rows.certain.push(rows.labels.len());
                 }
-                take(&mut rows, [step.pose.x, step.pose.z], label, line)
+                take(&mut rows, [pose.x, pose.z], label, line)
                     .map_err(|error| anyhow!("{name}:{line}: {error}"))?;
             }
-            (Record::End {}, _) => {}
+            (Kind::End, _) => {}
         }
     }
     Ok(rows)

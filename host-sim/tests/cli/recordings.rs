@@ -218,7 +218,8 @@ fn a_map_has_lines_ground_and_samples() {
         let args = [&["replay", "s.csv", "--geojson", "s.geojson"], flags].concat();
         prints(folder.path(), &args);
         let text = fs::read_to_string(folder.path().join("s.geojson")).expect("a map");
-        let map: geojson::FeatureCollection = text.parse().expect("GeoJSON");
+        let map: Value = serde_json::from_str(&text).expect("JSON");
+        let map: geojson::FeatureCollection = serde_json::from_value(map).expect("GeoJSON");
         let (mut samples, mut lines, mut labels) = (0, 0, Vec::new());
         for feature in &map.features {
             let told = |key: &str| feature.property(key).expect("a property").clone();
