@@ -1,6 +1,8 @@
 //! Logs for viewers, and the trace as flat rows: what they say is what the trace says. Logs are read by a library
 //! that is not ours, in Python.
 
+#![allow(clippy::float_cmp)] // what is said is said to the last bit
+
 use std::path::Path;
 use std::process::Command;
 use std::{env, fs};

@@ -6,6 +6,8 @@
 //! the directions in which two samples lie from each other, or across. For vehicles that end their motions otherwise
 //! than in a line, positions are those of the dynamics.
 
+#![allow(clippy::float_cmp)] // sides are exactly 1 and -1, and costs of standing still whole numbers
+
 use std::f64::consts::FRAC_PI_2;
 
 use host_sim::campaign::standard_field::standard;

@@ -10,7 +10,8 @@ use crate::replay::rows::{Layout, Rows};
 /// of a tagged enumeration numbers are not understood where another crate has serde keep their digits.
 #[derive(Deserialize)]
 struct Record {
-    record: Kind,
+    #[serde(rename = "record")]
+    kind: Kind,
     oracle: Option<Vec<Given>>,
     p: Option<f64>,
     pose: Option<Pose>,
@@ -62,7 +63,7 @@ pub(crate) fn parse(name: &str, text: &[u8], layout: &Layout) -> Result<Rows> {
             format!("{name}:{line}: expected a record of a trace, as run --trace writes it");
         let record: Record =
             serde_json::from_slice(record).map_err(|error| anyhow!("{expected}: {error}"))?;
-        match (record.record, rows.p) {
+        match (record.kind, rows.p) {
             (Kind::Start, None) => {
                 let (Some(oracle), Some(p)) = (record.oracle, record.p) else {
                     bail!("{expected}: found a start without oracle or p")
