@@ -31,7 +31,7 @@ use crate::world::noise::NoiseModel;
 
 /// Missions that a core flies between two hand-overs of rows: so many that cores hardly wait for each other, and so
 /// few that little is held.
-const BLOCK: u64 = 32;
+const BLOCK: u64 = 256;
 
 /// What to run.
 #[derive(Clone, Copy, Debug)]
