@@ -9,52 +9,56 @@ use crate::output::file::json;
 /// A step with what the trace tells once for all steps. Keys are those of the trace; what is a list or an object
 /// there has a key for each part.
 #[derive(Serialize)]
-struct Row {
-    algorithm: Algorithm,
-    seed: u64,
-    p: f64,
-    truth_angle: Option<f64>,
-    truth_slope: Option<f64>,
-    truth_intercept: Option<f64>,
-    step: usize,
-    problem: Option<&'static str>,
-    recovery: Option<&'static str>,
-    index: u32,
-    v: f32,
-    w: f32,
-    x: f64,
-    z: f64,
-    heading: f64,
-    true_x: Option<f64>,
-    true_z: Option<f64>,
-    true_heading: Option<f64>,
-    label: Option<i8>,
-    trusted: Option<bool>,
+pub(crate) struct Row {
+    pub(crate) algorithm: Algorithm,
+    pub(crate) seed: u64,
+    pub(crate) p: f64,
+    pub(crate) truth_angle: Option<f64>,
+    pub(crate) truth_slope: Option<f64>,
+    pub(crate) truth_intercept: Option<f64>,
+    pub(crate) step: usize,
+    pub(crate) problem: Option<&'static str>,
+    pub(crate) recovery: Option<&'static str>,
+    pub(crate) index: u32,
+    pub(crate) v: f32,
+    pub(crate) w: f32,
+    pub(crate) x: f64,
+    pub(crate) z: f64,
+    pub(crate) heading: f64,
+    pub(crate) true_x: Option<f64>,
+    pub(crate) true_z: Option<f64>,
+    pub(crate) true_heading: Option<f64>,
+    pub(crate) label: Option<i8>,
+    pub(crate) trusted: Option<bool>,
     /// One interval: across the vertical it ends beyond 90.
-    slope_from: Option<f64>,
-    slope_to: Option<f64>,
-    intercept_from: Option<f64>,
-    intercept_to: Option<f64>,
-    bits: f64,
-    entropy: Option<f64>,
-    hypotheses: Option<usize>,
-    pruned_mass: Option<f64>,
-    examined: u32,
-    proven: bool,
+    pub(crate) slope_from: Option<f64>,
+    pub(crate) slope_to: Option<f64>,
+    pub(crate) intercept_from: Option<f64>,
+    pub(crate) intercept_to: Option<f64>,
+    pub(crate) bits: f64,
+    pub(crate) entropy: Option<f64>,
+    pub(crate) hypotheses: Option<usize>,
+    pub(crate) pruned_mass: Option<f64>,
+    pub(crate) examined: u32,
+    pub(crate) proven: bool,
     /// Up to and with this step.
-    control_cost: f64,
-    metres: f64,
+    pub(crate) control_cost: f64,
+    pub(crate) metres: f64,
 }
 
 /// The steps of a mission, one a line.
 pub fn lines(results: &Results) -> String {
+    rows(results).map(|row| json(&row)).collect()
+}
+
+/// The steps of a mission.
+pub(crate) fn rows(results: &Results) -> impl Iterator<Item = Row> {
     let (mut control_cost, mut metres) = (0.0, 0.0);
-    let rows = results.steps.iter().map(|step| {
+    results.steps.iter().map(move |step| {
         control_cost += step.cost();
         metres += f64::from(step.action.v);
-        json(&Row { control_cost, metres, ..Row::of(&results.start, step) })
-    });
-    rows.collect()
+        Row { control_cost, metres, ..Row::of(&results.start, step) }
+    })
 }
 
 impl Row {
@@ -100,7 +104,7 @@ impl Row {
 }
 
 /// Slopes as one interval, degrees; across the vertical it ends beyond 90.
-pub(crate) fn interval(intervals: &[[f64; 2]]) -> Option<[f64; 2]> {
+fn interval(intervals: &[[f64; 2]]) -> Option<[f64; 2]> {
     match *intervals {
         [[_, to], [from, _]] => Some([from, to + 180.0]),
         ref one => one.first().copied(),

@@ -14,7 +14,7 @@ use prost::Message;
 
 use crate::mission::recording::Recording;
 use crate::mission::results::{PoseRecord, Results};
-use crate::report::flat::interval;
+use crate::report::flat;
 use crate::report::log::messages::{
     FRAME, POSE, Plotted, Pose, PoseInFrame, SCENE, STEP, Timestamp,
 };
@@ -83,27 +83,26 @@ fn pose(second: u32, &PoseRecord { x, z, heading }: &PoseRecord) -> PoseInFrame 
     PoseInFrame { timestamp, frame_id, pose: Some(Pose::new([x, z], heading)) }
 }
 
-/// The numbers of each step.
-fn plotted<'a>(results: &'a Results, flight: &'a Flight) -> impl Iterator<Item = Plotted> + 'a {
+/// The numbers of each step, as flat rows have them, and how far the estimate is off.
+fn plotted(results: &Results, flight: &Flight) -> impl Iterator<Item = Plotted> {
     let stages = flight.scenes.iter().skip(1);
-    (1..).zip(results.steps.iter().zip(stages)).map(|(second, (step, scene))| {
-        let slopes = interval(&step.slope_arcs);
+    (1..).zip(flat::rows(results).zip(stages)).map(|(second, (row, scene))| {
         let estimate = scene.estimate.as_ref();
         Plotted {
             timestamp: Some(Timestamp::of(second)),
             step: second,
-            problem: step.problem.unwrap_or_default().to_owned(),
-            recovery: step.recovery.unwrap_or_default().to_owned(),
-            label: step.label.map(i32::from),
-            slope_from: slopes.map(|[from, _]| from),
-            slope_to: slopes.map(|[_, to]| to),
-            intercept_from: step.intercept.map(|[from, _]| from),
-            intercept_to: step.intercept.map(|[_, to]| to),
-            bits: step.bits,
-            entropy: step.noisy.map(|it| it.entropy),
-            hypotheses: step.noisy.map(|it| it.hypotheses as u32),
-            control_cost: scene.cost,
-            metres: scene.metres,
+            problem: row.problem.unwrap_or_default().to_owned(),
+            recovery: row.recovery.unwrap_or_default().to_owned(),
+            label: row.label.map(i32::from),
+            slope_from: row.slope_from,
+            slope_to: row.slope_to,
+            intercept_from: row.intercept_from,
+            intercept_to: row.intercept_to,
+            bits: row.bits,
+            entropy: row.entropy,
+            hypotheses: row.hypotheses.map(|count| count as u32),
+            control_cost: row.control_cost,
+            metres: row.metres,
             slope_error_deg: estimate.and_then(|line| line.off_deg),
             misclassified: estimate.and_then(|line| line.misclassified),
         }

@@ -100,7 +100,7 @@ pub(crate) struct Scene {
     /// Control cost so far.
     pub(crate) cost: f64,
     /// Metres travelled so far.
-    pub(crate) metres: f64,
+    metres: f64,
     /// The same in words.
     pub(crate) told: Vec<Told>,
 }
