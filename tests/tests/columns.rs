@@ -110,21 +110,20 @@ struct Compared {
 /// Columns of several numbers of directions beside a table.
 struct Told {
     table: Table,
-    columns: (Columns<36, 16>, Columns<36, 24>, Columns<36, 32>),
+    believed: Vec<Reliability>,
+    columns: (Columns<16>, Columns<24>, Columns<32>),
 }
 
 impl Told {
     fn take(&mut self, sample: Sample, reliability: Reliability) {
         self.table.take(sample, reliability).expect("room, and a possible label");
-        self.columns.0.take(sample, reliability);
-        self.columns.1.take(sample, reliability);
-        self.columns.2.take(sample, reliability);
+        self.believed.push(reliability);
     }
 
     fn lay(&mut self) {
-        self.columns.0.lay(&self.table);
-        self.columns.1.lay(&self.table);
-        self.columns.2.lay(&self.table);
+        self.columns.0.lay(&self.table, &self.believed);
+        self.columns.1.lay(&self.table, &self.believed);
+        self.columns.2.lay(&self.table, &self.believed);
     }
 
     fn compare(
@@ -164,8 +163,8 @@ fn fly(number: u64, truth: Truth, walk: Walk) -> Vec<Compared> {
         let flown = mission.fly(|step, _| sites.extend(step.reading.map(|_| step.pose.site)));
         assert!(flown.is_ok());
     }
-    let mut told =
-        Told { table: mission.table(), columns: (Columns::NONE, Columns::NONE, Columns::NONE) };
+    let columns = (Columns::NONE, Columns::NONE, Columns::NONE);
+    let mut told = Told { table: mission.table(), believed: Vec::new(), columns };
     let (mut at, mut compared) = (mission.start.site, Vec::new());
     for labels in 1..=30 {
         at = match walk {

@@ -89,7 +89,7 @@ fn hashes_of_traces_figures_and_campaigns() {
     let program = Path::new(env!("CARGO_MANIFEST_DIR")).join("../host-sim/scenarios");
     let run = |args: &str| {
         let args = std::iter::once("host-sim").chain(args.split(' '));
-        Cli::try_parse_from(args).expect("good arguments").execute().expect("it runs")
+        Cli::try_parse_from(args).expect("good arguments").execute().expect("it runs").text
     };
     for args in [
         "campaign --fields 40 --steps 40 --format json",

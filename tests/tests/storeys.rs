@@ -16,10 +16,10 @@ const PLANNER_CORE: Storeys =
 const HOST_SIM: Storeys = &[
     &["output", "world"],
     &["mission"],
-    &["campaign", "reference"],
+    &["campaign", "reference", "size"],
     &["report"],
     &["replay"],
-    &["hil"],
+    &["hil", "fly"],
     &["cli"],
 ];
 

@@ -27,54 +27,40 @@ use crate::geometry::lattice::{Site, Vector};
 /// chance and would stand for much more than that: truncated importance sampling.
 const MOST: f32 = 3.0;
 
-/// The lines of `K` directions, by up to `S` samples, the given ones included. `136 K + 12 S` bytes and some
-/// 16: 2.6 kB for 16 directions and 36 samples.
+/// The lines of `K` directions. `136 K` bytes and 12: 2.2 kB for 16 directions.
 #[derive(Clone, Debug)]
-pub struct Columns<const S: usize, const K: usize> {
-    labels: List<(Site, Step), S>,
+pub struct Columns<const K: usize> {
     view: View,
     /// Those of each direction.
     lines: [Column; K],
 }
 
-impl<const S: usize, const K: usize> Columns<S, K> {
-    /// No label and no line: memory to take labels and [`lay`](Self::lay) columns in.
+impl<const K: usize> Columns<K> {
+    /// No line: memory to [`lay`](Self::lay) columns in.
     pub const NONE: Self = {
         assert!(K >= 1, "there is at least one direction");
-        Self {
-            labels: List::filled((Site::ORIGIN, Step::NONE)),
-            view: View { from: Site::ORIGIN, shift: 0 },
-            lines: [Column::NONE; K],
-        }
+        Self { view: View { from: Site::ORIGIN, shift: 0 }, lines: [Column::NONE; K] }
     };
 
-    /// Begins again, without labels.
-    pub fn restart(&mut self) {
-        self.labels.clear();
-    }
-
-    /// Takes down a label as a table [takes it in](Hypotheses::take). It tells as soon as the columns are laid; one
-    /// for which there is no room does not.
-    pub fn take(&mut self, Sample { site, label }: Sample, reliability: Reliability) {
-        let _ = self.labels.push((site, Step::of(label, reliability)));
-    }
-
-    /// Lays the columns by the given samples of a table and the labels taken since, in directions of the lines that
-    /// the table leaves. It must have taken in the same labels.
+    /// Lays the columns by the given samples of a table and the labels that it has taken in since, each of which is
+    /// believed so far, in directions of the lines that it leaves.
     ///
     /// `O(H + K S)`: some 150,000 instructions for 30 labels and 16 directions.
     pub fn lay<const N: usize, const H: usize, const E: usize>(
         &mut self,
         table: &Hypotheses<N, H, E>,
+        believed: &[Reliability],
     ) {
-        let mut samples = self.labels.clone();
-        for Sample { site, label } in table.start().support() {
-            let _ = samples.push((site, Step::of(label, Reliability::CERTAIN)));
-        }
-        let latest = self.labels.last().or(samples.first());
-        self.view = View::of(latest.map_or(Site::ORIGIN, |latest| latest.0), &samples);
-        let mut thresholds: List<Threshold, S> = List::filled(Threshold::NONE);
-        for &(site, step) in samples.iter() {
+        let support = table.start().support().map(|sample| (sample, Reliability::CERTAIN));
+        let labels = table.labels().iter().copied().zip(believed.iter().copied());
+        let samples = || labels.clone().chain(support.clone());
+        let latest = labels.clone().next_back().or_else(|| samples().next());
+        let from = latest.map_or(Site::ORIGIN, |(latest, _)| latest.site);
+        self.view = View::of(from, samples().map(|(sample, _)| sample.site));
+        // Each of its samples at most: there is room.
+        let mut thresholds: List<Threshold, N> = List::filled(Threshold::NONE);
+        for (Sample { site, label }, reliability) in samples() {
+            let step = Step::of(label, reliability);
             let _ = thresholds.push(Threshold::new(self.view.vector(site), step));
         }
         let directions: [Direction; K] = directions(table);
@@ -99,7 +85,7 @@ impl<const S: usize, const K: usize> Columns<S, K> {
 
     /// What will be known when a label is read at the site whose [`heights`](Self::heights) these are, where
     /// labels are true with probability `p`. One that hardly can be read tells nothing, for want of digits.
-    pub fn after(&self, heights: [f32; K], label: Label, p: f32) -> After<'_, S, K> {
+    pub fn after(&self, heights: [f32; K], label: Label, p: f32) -> After<'_, K> {
         let above: f32 = heights.iter().sum();
         let (plus, minus) = match label {
             Label::Positive => (p, 1.0 - p),
@@ -114,8 +100,8 @@ impl<const S: usize, const K: usize> Columns<S, K> {
 
 /// Columns as they will be after one more label.
 #[derive(Clone, Copy, Debug)]
-pub struct After<'a, const S: usize, const K: usize> {
-    columns: &'a Columns<S, K>,
+pub struct After<'a, const K: usize> {
+    columns: &'a Columns<K>,
     /// Of its site.
     heights: [f32; K],
     /// What the lines weigh that have its site on their +1 side.
@@ -124,7 +110,7 @@ pub struct After<'a, const S: usize, const K: usize> {
     minus: f32,
 }
 
-impl<const S: usize, const K: usize> After<'_, S, K> {
+impl<const K: usize> After<'_, K> {
     /// The share of the lines that will have another site on their +1 side. Of the lines of one direction
     /// those that have both there are those that have the lower one.
     pub fn share_above(&self, site: Site) -> f32 {
@@ -142,10 +128,10 @@ impl<const S: usize, const K: usize> After<'_, S, K> {
 /// Lays a column for each direction and makes them comparable. Each stands for an equal part of the density that
 /// its direction was drawn from, so it weighs as much more as there truly is in that direction.
 #[inline(never)] // and with slices, or loops are unrolled for their number
-fn lay_each<const S: usize>(
+fn lay_each<const N: usize>(
     columns: &mut [Column],
     directions: &[Direction],
-    thresholds: &mut List<Threshold, S>,
+    thresholds: &mut List<Threshold, N>,
     peaks: &mut [Option<i32>],
 ) {
     for ((column, direction), peak) in columns.iter_mut().zip(directions).zip(&mut *peaks) {
@@ -185,9 +171,9 @@ struct View {
 
 impl View {
     /// From a site, so that some samples fit.
-    fn of(from: Site, samples: &[(Site, Step)]) -> Self {
+    fn of(from: Site, samples: impl Iterator<Item = Site>) -> Self {
         let size = |v: Vector| v.x.unsigned_abs() | v.z.unsigned_abs();
-        let sizes = samples.iter().fold(0, |sizes, (site, _)| sizes | size(*site - from));
+        let sizes = samples.fold(0, |sizes, site| sizes | size(site - from));
         // A bit for the sign, and one for places that are farther off.
         Self { from, shift: sizes.leading_zeros().saturating_sub(2) }
     }
@@ -203,6 +189,8 @@ impl View {
 
 #[cfg(test)]
 mod tests {
+    use heapless::Vec;
+
     use super::*;
     use crate::belief::noise::Noise;
     use crate::belief::weight::Prior;
@@ -216,19 +204,18 @@ mod tests {
     }
 
     /// What four points and some labels leave.
-    fn columns(labels: &[(Sample, f64)]) -> Columns<12, 16> {
+    fn columns(labels: &[(Sample, f64)]) -> Columns<16> {
         use Label::{Negative, Positive};
         let given = [(0, 0, Negative), (0, 4, Positive), (9, 5, Positive), (10, 0, Negative)]
             .map(|(x, z, label)| sample(x, z, label));
         let mut table = Hypotheses::<12, 40>::new(&given, Prior::Area, Noise::NONE).unwrap();
         let mut columns = Columns::NONE;
-        columns.restart();
-        for &(sample, p) in labels {
-            let reliability = Reliability::new(p).unwrap();
-            table.take(sample, reliability).unwrap();
-            columns.take(sample, reliability);
+        let believed: Vec<Reliability, 12> =
+            labels.iter().map(|(_, p)| Reliability::new(*p).unwrap()).collect();
+        for ((sample, _), reliability) in labels.iter().zip(&believed) {
+            table.take(*sample, *reliability).unwrap();
         }
-        columns.lay(&table);
+        columns.lay(&table, &believed);
         columns
     }
 
@@ -300,6 +287,6 @@ mod tests {
 
     #[test]
     fn it_holds_as_little_as_it_says() {
-        assert_eq!(size_of::<Columns<36, 16>>(), 136 * 16 + 12 * 36 + 16);
+        assert_eq!(size_of::<Columns<16>>(), 136 * 16 + 12);
     }
 }

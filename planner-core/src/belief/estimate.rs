@@ -20,7 +20,7 @@ use crate::geometry::local_line::{Frame, LocalLine};
 /// The three estimates; `None` where one does not exist.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Estimates {
     /// The paper's printed estimate.
     pub bisector: Option<LocalLine>,

@@ -5,9 +5,11 @@ use crate::belief::Refused;
 use crate::belief::columns::{After, Columns};
 use crate::belief::consistent_lines::ConsistentLines;
 use crate::belief::hypotheses::Hypotheses;
+use crate::belief::list::List;
 use crate::belief::noise::{Noise, Reliability};
 use crate::belief::outlook::{Foresight, Outlook, Prediction, entropy};
 use crate::belief::sample::{Label, Reading, Sample};
+use crate::belief::told::{NotReplayed, Replay, Told};
 use crate::belief::version_space::NoVersionSpace;
 use crate::belief::weight::Prior;
 use crate::geometry::lattice::Site;
@@ -19,12 +21,18 @@ const DIRECTIONS: usize = 16;
 #[derive(Clone, Debug)]
 pub struct Forecast<const N: usize, const H: usize> {
     table: Hypotheses<N, H>,
-    columns: Columns<N, DIRECTIONS>,
+    /// How far each label of the table is believed.
+    believed: List<Reliability, N>,
+    columns: Columns<DIRECTIONS>,
 }
 
 impl<const N: usize, const H: usize> Forecast<N, H> {
     /// No sample and no hypothesis: memory to [`restart`](Self::restart) in.
-    pub const NONE: Self = Self { table: Hypotheses::NONE, columns: Columns::NONE };
+    pub const NONE: Self = Self {
+        table: Hypotheses::NONE,
+        believed: List::filled(Reliability::NONE),
+        columns: Columns::NONE,
+    };
 
     /// What the given samples leave, see [`Hypotheses::new`].
     ///
@@ -47,7 +55,7 @@ impl<const N: usize, const H: usize> Forecast<N, H> {
         noise: Noise,
     ) -> Result<(), NoVersionSpace> {
         self.table.restart(given, prior, noise)?;
-        self.columns.restart();
+        self.believed.clear();
         Ok(())
     }
 
@@ -57,7 +65,23 @@ impl<const N: usize, const H: usize> Forecast<N, H> {
     /// As there, with the forecast as it was.
     pub fn take(&mut self, sample: Sample, reliability: Reliability) -> Result<(), Refused> {
         self.table.take(sample, reliability)?;
-        self.columns.take(sample, reliability);
+        let _ = self.believed.push(reliability); // there is as much room
+        Ok(())
+    }
+}
+
+impl<const N: usize, const H: usize> Replay for Forecast<N, H> {
+    type Told = Told<N>;
+
+    fn told(&self) -> Told<N> {
+        Told::new(self.table.given(), self.table.samples(), self.believed.iter().copied())
+    }
+
+    fn replay(&mut self, told: &Told<N>) -> Result<(), NotReplayed> {
+        self.restart(told.given(), self.table.prior(), self.table.noise())?;
+        for (sample, reliability) in told.doubtful_labels()? {
+            self.take(sample, reliability)?;
+        }
         Ok(())
     }
 }
@@ -76,7 +100,7 @@ impl<const N: usize, const H: usize> Foresight for Forecast<N, H> {
     }
 
     fn prepare(&mut self) {
-        self.columns.lay(&self.table);
+        self.columns.lay(&self.table, &self.believed);
     }
 
     fn outlook(&self, _: Site) -> Expected<'_, N, H> {
@@ -123,14 +147,14 @@ fn chance(share: f32, p: f32) -> f32 {
 #[derive(Clone, Copy, Debug)]
 pub struct Expected<'a, const N: usize, const H: usize> {
     labels: Labels<'a, N, H>,
-    columns: &'a Columns<N, DIRECTIONS>,
+    columns: &'a Columns<DIRECTIONS>,
 }
 
 /// What they will expect when one more label is known.
 #[derive(Clone, Copy, Debug)]
 pub struct ExpectedAfter<'a, const N: usize, const H: usize> {
     labels: Labels<'a, N, H>,
-    columns: After<'a, N, DIRECTIONS>,
+    columns: After<'a, DIRECTIONS>,
 }
 
 impl<const N: usize, const H: usize> Prediction for Expected<'_, N, H> {

@@ -30,6 +30,7 @@ use crate::belief::list::List;
 use crate::belief::noise::{Noise, Reliability};
 use crate::belief::pruned::PrunedMass;
 use crate::belief::sample::{Label, Sample, SampleBuffer};
+use crate::belief::told::{NotReplayed, Replay, Told};
 use crate::belief::tolerance::Tolerance;
 use crate::belief::version_space::{NoVersionSpace, VersionSpace};
 use crate::belief::weight::{Coarse, LogWeight, Prior};
@@ -266,12 +267,12 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
     }
 
     /// The labels taken in since.
-    fn labels(&self) -> &[Sample] {
+    pub(crate) fn labels(&self) -> &[Sample] {
         self.samples.get(usize::from(self.given)..).unwrap_or(&[])
     }
 
     /// The weights of the lines on the label's side of a sample and on the other: where positions err alike, as each
-    /// hypothesis is [told](Self::told) for itself.
+    /// hypothesis is [told](Self::told_by) for itself.
     fn weights(&self, reliability: Reliability) -> (Option<LogWeight>, Option<LogWeight>) {
         if self.is_blurred() {
             return (Some(LogWeight::ZERO), Some(LogWeight::ZERO));
@@ -305,7 +306,7 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
     }
 
     /// What some labels make a hypothesis weigh where positions err.
-    fn told(&self, hypothesis: &Hypothesis<E>, labels: &[Sample]) -> LogWeight {
+    fn told_by(&self, hypothesis: &Hypothesis<E>, labels: &[Sample]) -> LogWeight {
         if !self.is_blurred() {
             return LogWeight::ZERO;
         }
@@ -398,7 +399,7 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
         match self.certainty(&whole, newest.site) {
             Certainty::Certain(certain) => {
                 let weight = if certain == edge.label() { agree } else { disagree };
-                let told = self.told(&whole, core::slice::from_ref(newest));
+                let told = self.told_by(&whole, core::slice::from_ref(newest));
                 let Some(place) = self.table.get_mut(k) else { return };
                 match weight {
                     Some(weight) => place.weigh(weight + told),
@@ -412,7 +413,7 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
                 let weight = match self.prior {
                     Prior::Area => LogWeight::ZERO - self.log_area(&whole),
                     Prior::Sequences => LogWeight::ZERO,
-                } - self.told(&whole, labels);
+                } - self.told_by(&whole, labels);
                 let mut part = |edge, by| self.part(&whole, edge, weight + by);
                 let agreeing = agree.map(|by| part(edge, by));
                 let other = disagree.map(|by| part(opposite, by));
@@ -448,7 +449,7 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
         if part.cell.cut(&self.samples, edge).is_err() {
             self.outer_cells = self.outer_cells.saturating_add(1);
         }
-        let weight = weight + self.told(&part, self.labels());
+        let weight = weight + self.told_by(&part, self.labels());
         part.weigh(match self.prior {
             Prior::Area => weight + self.log_area(&part),
             Prior::Sequences => weight,
@@ -463,5 +464,25 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
             self.table.iter_mut().for_each(|h| h.weigh(LogWeight::ZERO - most));
             self.pruned.rescale(most);
         }
+    }
+}
+
+/// Its labels are as reliable as its noise says: those that were not are a [`Forecast`]'s to tell.
+///
+/// [`Forecast`]: crate::belief::forecast::Forecast
+impl<const N: usize, const H: usize, const E: usize> Replay for Hypotheses<N, H, E> {
+    type Told = Told<N>;
+
+    fn told(&self) -> Told<N> {
+        let believed = self.labels().iter().map(|label| self.reliability(label.site));
+        Told::new(self.given(), self.samples(), believed)
+    }
+
+    fn replay(&mut self, told: &Told<N>) -> Result<(), NotReplayed> {
+        self.restart(told.given(), self.prior, self.noise)?;
+        for (sample, reliability) in told.doubtful_labels()? {
+            self.take(sample, reliability)?;
+        }
+        Ok(())
     }
 }

@@ -6,7 +6,8 @@
 //! wrong there is a table of weighed cells ([`hypotheses`]), read as a distribution ([`posterior`]).
 //! What the next labels are expected to tell is an [`outlook`]: a [`picture`] of the one cell, or [`columns`] beside the
 //! table in a [`forecast`]. When that is enough says a [`goal`], and what
-//! a position that errs is good for a [`tolerance`]. Nothing here knows how the robot moves.
+//! a position that errs is good for a [`tolerance`]. What has to be kept of a belief over a sleep is what it was [`told`].
+//! Nothing here knows how the robot moves.
 
 pub mod cell;
 pub(crate) mod column;
@@ -26,6 +27,7 @@ pub mod picture;
 pub mod posterior;
 pub(crate) mod pruned;
 pub mod sample;
+pub mod told;
 pub mod tolerance;
 pub(crate) mod trapezoids;
 pub mod version_space;
@@ -67,7 +69,7 @@ pub trait Belief {
 /// Why a sample was not taken. What is known is as it was.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Refused {
     /// The sample lies in the region of certainty of the other label: a label was wrong, or the

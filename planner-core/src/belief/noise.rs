@@ -11,8 +11,8 @@ use crate::geometry::lattice::Site;
 /// it: lines that agree with a label gain so much on those that do not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "wire", serde(try_from = "i64", into = "i64"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "i64", into = "i64"))]
 pub struct Reliability {
     log_odds: LogWeight,
 }
@@ -40,7 +40,7 @@ impl Reliability {
 
     /// The reliability with these odds as a logarithm in units of 2^-32; `None` if there is no such
     /// probability.
-    #[cfg(any(feature = "wire", test))]
+    #[cfg(any(feature = "serde", test))]
     pub(crate) fn from_log_odds(units: i64) -> Option<Self> {
         let inside = units.unsigned_abs() <= Self::BEYOND.0.unsigned_abs();
         inside.then_some(Self { log_odds: LogWeight(units) })
@@ -66,7 +66,7 @@ impl Reliability {
     }
 
     /// The logarithm of the odds, in units of 2^-32.
-    #[cfg(any(feature = "wire", test))]
+    #[cfg(any(feature = "serde", test))]
     pub(crate) const fn log_odds(self) -> i64 {
         self.log_odds.0
     }
@@ -86,7 +86,7 @@ impl Reliability {
 /// What is known of the noise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Noise {
     /// How far a label can be believed.
     pub reliability: Reliability,

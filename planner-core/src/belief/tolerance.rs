@@ -27,8 +27,8 @@ use crate::geometry::lattice::{UNITS_PER_METRE, Vector};
 /// How far a position may be from where it is reported to be.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "wire", serde(try_from = "u32", into = "u32"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "u32", into = "u32"))]
 pub struct Tolerance {
     /// Lattice units.
     units: u32,

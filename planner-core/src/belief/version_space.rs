@@ -16,7 +16,7 @@ use crate::geometry::line::Bound;
 /// Why samples do not make a version space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum NoVersionSpace {
     /// All samples lie on one line (or there are fewer than three): any line may pass.
@@ -165,14 +165,19 @@ impl<const N: usize> VersionSpace<N> {
                 Certainty::Certain(label) => -label,
             },
         };
-        if let Some(site) = self.lines().place(site, label)
-            && self.insert(Sample { site, label })? == Cut::Smaller
-            && self.tolerance != Tolerance::NONE
-        {
+        if let Some(site) = self.lines().place(site, label) {
+            self.insert_next(Sample { site, label })?;
+        }
+        Ok(label)
+    }
+
+    /// Takes a sample as it is, and shifts those that follow by what it leaves.
+    pub(crate) fn insert_next(&mut self, sample: Sample) -> Result<(), Refused> {
+        if self.insert(sample)? == Cut::Smaller && self.tolerance != Tolerance::NONE {
             // Arcs only narrow: there is always one.
             self.shift = self.shift_by(self.tolerance).unwrap_or(self.shift);
         }
-        Ok(label)
+        Ok(())
     }
 
     /// By how much a tolerance shifts the next sample.

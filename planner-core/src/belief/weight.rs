@@ -140,7 +140,7 @@ impl From<Coarse> for LogWeight {
 /// How hypotheses are weighed before any label is seen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Prior {
     /// By the measure of their lines, d(angle) d(offset): uniform over lines.
     #[default]

@@ -5,9 +5,9 @@ use crate::geometry::lattice::Site;
 /// The rectangle in which all positions stay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
-    feature = "wire",
+    feature = "serde",
     serde(
         try_from = "[crate::geometry::lattice::Site; 2]",
         into = "[crate::geometry::lattice::Site; 2]"

@@ -6,7 +6,7 @@ use crate::geometry::lattice::Vector;
 /// exact. Counter-clockwise from the x axis; a unit is 1.5 nanoradians.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Heading(pub u32);
 
 /// Binary-angle units in a radian.

@@ -18,8 +18,8 @@ pub const LIMIT: i32 = 1 << 29;
 /// A position on the lattice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "wire", serde(try_from = "(i32, i32)", into = "(i32, i32)"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "(i32, i32)", into = "(i32, i32)"))]
 pub struct Site {
     x: i32,
     z: i32,

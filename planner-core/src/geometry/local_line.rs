@@ -19,9 +19,9 @@ pub(crate) struct Frame {
 /// has it in metres from the origin, in double precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
-    feature = "wire",
+    feature = "serde",
     serde(try_from = "(Site, [i32; 2], [f32; 2])", into = "(Site, [i32; 2], [f32; 2])")
 )]
 pub struct LocalLine {

@@ -16,6 +16,10 @@
 //!  | <-------------------------------- Noted --  |
 //! ```
 //!
+//! A mission that was cut off needs no message of its own: planners are deterministic, so it is flown again from its
+//! beginning, and the vehicle answers the motions that it has made from memory, without moving. `docs/protocol.md`
+//! has all this byte by byte.
+//!
 //! A message goes as a [`Frame`](crate::link::frame::Frame); delivery (loss, repetition, lateness) is [`link`](crate::link::delivery)'s.
 
 use heapless::Vec;
@@ -40,7 +44,7 @@ use crate::planner::{Motion, StopReason};
 
 /// The version of this protocol. The layout of [`Request::Hello`] and of its frame is that of every
 /// version from 2 on.
-pub const PROTOCOL: u16 = 5;
+pub const PROTOCOL: u16 = 6;
 
 /// Given samples that a setup can hold.
 pub const MOST_GIVEN: usize = 16;
@@ -113,7 +117,9 @@ pub enum Reply {
     Arrived {
         /// Where it ended.
         pose: Pose,
-        /// What was sensed; `None` when no sample was taken, or the chip has the sensor.
+        /// What was sensed; `None` when no sample was taken, or the chip has the sensor and is to read it. Where
+        /// there is a reading the chip takes that, and leaves its own sensor alone: a mission that was cut off is
+        /// flown again from its beginning, and what was sensed then is told from memory.
         reading: Option<Reading>,
     },
     /// To [`Request::Move`]: the vehicle could not make the motion.
@@ -196,7 +202,7 @@ pub struct Capacity {
 pub enum LabelSource {
     /// The vehicle: they come with [`Reply::Arrived`].
     Vehicle,
-    /// The chip, from its own sensor.
+    /// The chip, from its own sensor, at the end of each motion whose reading is not told.
     Chip,
 }
 

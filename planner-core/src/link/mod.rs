@@ -4,10 +4,7 @@
 //! What they say to each other is in [`message`], how it goes over a wire in [`frame`], how it is
 //! delivered exactly once in [`delivery`], and the chip's side of a mission in [`station`].
 
-mod checked;
 pub mod delivery;
 pub mod frame;
 pub mod message;
 pub mod station;
-
-pub use checked::OutOfRange;

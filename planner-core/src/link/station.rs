@@ -456,10 +456,12 @@ impl<P: Port, S: LabelSensor> Body for RemoteVehicle<'_, P, S> {
             Ok(_) => return Err(NoArrival::Failed),
             Err(lost) => return Err(NoArrival::Lost(lost)),
         };
-        let label = match &mut self.chip {
+        let label = match (reading, &mut self.chip) {
             _ if !motion.wants_label => None,
-            Some(sensor) => Some(sensor.read().map_err(|_| NoArrival::NoLabel)?),
-            None => Some(reading.ok_or(NoArrival::NoLabel)?),
+            // Of a motion that is told again this is what the chip's own sensor read then.
+            (Some(reading), _) => Some(reading),
+            (None, Some(sensor)) => Some(sensor.read().map_err(|_| NoArrival::NoLabel)?),
+            (None, None) => return Err(NoArrival::NoLabel),
         };
         self.last = label;
         Ok(label)

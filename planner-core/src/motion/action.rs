@@ -9,13 +9,13 @@ use crate::geometry::lattice::UNITS_PER_METRE;
 /// The name of an action within a grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Action(pub u32);
 
 /// What an action asks of the vehicle in one unit of time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Control {
     /// Speed, metres per unit time.
     pub v: f32,
@@ -37,7 +37,7 @@ pub struct ActionGrid {
 /// Why there is no such grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum BadGrid {
     /// It has no action, or more than 2^32.
@@ -129,7 +129,7 @@ impl ActionGrid {
     }
 
     /// Length of one step of speed in the units of [`Ray::step`](crate::motion::dynamics::Ray::step).
-    pub(crate) const fn step_length(self) -> i32 {
+    pub const fn step_length(self) -> i32 {
         self.step_length
     }
 

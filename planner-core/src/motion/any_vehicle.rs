@@ -23,7 +23,7 @@ pub enum AnyVehicle {
 /// A vehicle by its numbers, from which it is made anew elsewhere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Shape {
     /// Of a [`Unicycle`].
     Unicycle(unicycle::Shape),
@@ -36,7 +36,7 @@ pub enum Shape {
 /// Why a shape is no vehicle to fly with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum NoVehicle {
     /// There is none of this kind here.

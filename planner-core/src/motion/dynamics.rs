@@ -17,7 +17,7 @@ use crate::motion::action::{Action, ActionGrid, Control};
 /// Where the agent is and where it faces: the state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Pose {
     /// Position.
     pub site: Site,
@@ -104,7 +104,7 @@ impl Orbit {
 /// An area is too small for a vehicle's circle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct NoRoom {
     /// What the circle takes from side to side, millimetres.
     pub across_mm: u32,

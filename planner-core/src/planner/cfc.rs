@@ -13,6 +13,7 @@ use crate::belief::Belief as _;
 use crate::belief::Refused;
 use crate::belief::consistent_lines::{Certainty, ConsistentLines};
 use crate::belief::sample::{Label, Reading};
+use crate::belief::told::{Replay as _, Told};
 use crate::belief::tolerance::Tolerance;
 use crate::belief::version_space::VersionSpace;
 use crate::geometry::arc::SlopeArc;
@@ -20,6 +21,7 @@ use crate::geometry::area::Area;
 use crate::geometry::region::Region;
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::config::{Config, Following, first_to_second};
+use crate::planner::snapshot::{NotRestored, Persist, Snapshot};
 use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
 use crate::search::dead_end::DeadEnd;
 use crate::search::direction_rule::ArcRule;
@@ -46,6 +48,7 @@ pub const FOLLOWING: Following = Following::AlongBisector;
 /// A flip is a label opposite to that of the past position. A reading on the boundary is none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Phase {
     /// Solve P1 until the label flips.
     Crossing,
@@ -173,6 +176,22 @@ impl<D: Dynamics, const N: usize, G: Region> Planner for Cfc<D, N, G> {
 
     fn belief(&self) -> &VersionSpace<N> {
         &self.space
+    }
+}
+
+/// It remembers its phase, and the label of the past position.
+impl<D: Dynamics, const N: usize, G: Region> Persist for Cfc<D, N, G> {
+    type Snapshot = Snapshot<Told<N>, (Phase, Label)>;
+
+    fn snapshot(&self) -> Self::Snapshot {
+        Snapshot::new(self.space.told(), (self.phase, self.past))
+    }
+
+    fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), NotRestored> {
+        let (told, &(phase, past)) = snapshot.open()?;
+        self.space.replay(told)?;
+        (self.phase, self.past) = (phase, past);
+        Ok(())
     }
 }
 

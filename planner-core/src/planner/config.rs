@@ -13,7 +13,7 @@ use crate::search::objective::Varrho;
 /// How P1 looks for the opposite label (Section III-A).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Crossing {
     /// In any direction in which the boundary cannot run: P1 as printed.
     #[default]
@@ -30,7 +30,7 @@ pub enum Crossing {
 /// costs Algorithm 2 a tenth of a bit in thirty labels, see [`scc::FOLLOWING`](crate::planner::scc::FOLLOWING).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Following {
     /// In any direction in which the boundary can run: P2 as printed. It takes the smallest turn
     /// into the slope arc, so it skims ground that is all but certain and learns next to nothing.
@@ -42,7 +42,7 @@ pub enum Following {
 /// What a mission fixes beforehand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Config<G = Area> {
     /// Where positions must stay.
     pub area: G,

@@ -22,12 +22,14 @@ use crate::belief::consistent_lines::ConsistentLines;
 use crate::belief::goal::Goal;
 use crate::belief::outlook::{Foresight, Outlook, Prediction};
 use crate::belief::sample::{Label, Reading};
+use crate::belief::told::Replay;
 use crate::belief::tolerance::Tolerance;
 use crate::geometry::area::Area;
 use crate::geometry::region::Region;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Pose, Side};
 use crate::planner::config::Config;
+use crate::planner::snapshot::{NotRestored, Persist, Snapshot};
 use crate::planner::{Motion, Plan, Planner, StopReason};
 use crate::search::dead_end::DeadEnd;
 use crate::search::direction_rule::ArcRule;
@@ -230,6 +232,19 @@ impl<D: Dynamics, B: Foresight, G: Region> Planner for Lookahead<D, B, G> {
 
     fn belief(&self) -> &B::Belief {
         self.foresight.belief()
+    }
+}
+
+impl<D: Dynamics, B: Foresight + Replay, G: Region> Persist for Lookahead<D, B, G> {
+    type Snapshot = Snapshot<B::Told>;
+
+    fn snapshot(&self) -> Self::Snapshot {
+        Snapshot::new(self.foresight.told(), ())
+    }
+
+    fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), NotRestored> {
+        let (told, ()) = snapshot.open()?;
+        Ok(self.foresight.replay(told)?)
     }
 }
 

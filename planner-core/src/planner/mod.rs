@@ -3,13 +3,19 @@
 //!
 //! [`lookahead`] asks where labels are expected to tell the most, be they true or sometimes wrong. [`cfc`] is the
 //! paper's Algorithm 1, for labels that are true; [`scc`] its Algorithm 2, for labels that are sometimes wrong.
-//! [`config`] is what a mission fixes beforehand.
+//! [`config`] is what a mission fixes beforehand, a [`snapshot`] what a planner has to remember over a sleep.
 
 pub mod cfc;
+#[cfg(feature = "serde")]
+mod checked;
 pub mod config;
 pub mod lookahead;
 pub mod scc;
+pub mod snapshot;
 mod vote;
+
+#[cfg(feature = "serde")]
+pub use checked::OutOfRange;
 
 use crate::belief::estimate::Estimates;
 use crate::belief::sample::Reading;
@@ -23,7 +29,7 @@ use crate::search::recovery::{Found, Recovery};
 /// Which one-step problem a motion answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Stage {
     /// Look for the opposite label.
     P1,
@@ -38,7 +44,7 @@ pub enum Stage {
 /// A motion to make.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Motion {
     /// The one-step problem it answers, for planners that pose one.
     pub stage: Option<Stage>,
@@ -84,7 +90,7 @@ impl Motion {
 /// Why a planner has no further motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum StopReason {
     /// What is uncertain is thinner than the action grid can hit, or lies outside the area.

@@ -26,6 +26,7 @@ use crate::belief::consistent_lines::ConsistentLines;
 use crate::belief::hypotheses::{Hypotheses, Hypothesis};
 use crate::belief::noise::Noise;
 use crate::belief::sample::{Reading, Sample};
+use crate::belief::told::{Replay as _, Told};
 use crate::belief::version_space::NoVersionSpace;
 use crate::belief::weight::Prior;
 use crate::geometry::area::Area;
@@ -33,6 +34,7 @@ use crate::geometry::region::Region;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::config::{Config, Following, first_to_second};
+use crate::planner::snapshot::{NotRestored, Persist, Snapshot};
 use crate::planner::vote::Ballot;
 use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
 use crate::search::dead_end::DeadEnd;
@@ -51,7 +53,7 @@ pub const VOTE_LOOKS: u32 = 65_536;
 /// How the hypotheses choose an action together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Policy {
     /// One problem, P3 or P4, whose rule looks at the slopes of all hypotheses.
     Joint,
@@ -215,5 +217,18 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Region> Planner for Scc<D, 
 
     fn belief(&self) -> &Hypotheses<N, H> {
         &self.hypotheses
+    }
+}
+
+impl<D: Dynamics, const N: usize, const H: usize, G: Region> Persist for Scc<D, N, H, G> {
+    type Snapshot = Snapshot<Told<N>>;
+
+    fn snapshot(&self) -> Self::Snapshot {
+        Snapshot::new(self.hypotheses.told(), ())
+    }
+
+    fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), NotRestored> {
+        let (told, ()) = snapshot.open()?;
+        Ok(self.hypotheses.replay(told)?)
     }
 }

@@ -58,7 +58,7 @@ pub struct Agent<P, B> {
     pose: Pose,
 }
 
-impl<P: Planner, B: Body> Agent<P, B> {
+impl<P, B> Agent<P, B> {
     /// An agent that starts at a pose.
     pub const fn new(planner: P, body: B, pose: Pose) -> Self {
         Self { planner, body, pose }
@@ -74,21 +74,56 @@ impl<P: Planner, B: Body> Agent<P, B> {
         &self.body
     }
 
+    /// What it moves, to be seen to between two steps.
+    pub const fn body_mut(&mut self) -> &mut B {
+        &mut self.body
+    }
+
+    /// Takes it apart: its planner, its body, and where it is. [`new`](Self::new) puts it together again.
+    pub fn into_parts(self) -> (P, B, Pose) {
+        (self.planner, self.body, self.pose)
+    }
+
     /// Says where the agent is, as after a drive that failed: the mission goes on from there.
     pub const fn relocate(&mut self, pose: Pose) {
         self.pose = pose;
     }
+}
 
+impl<P: Planner, B: Body> Agent<P, B> {
     /// Plans one motion, makes it, and takes in what was sensed at its end.
     ///
     /// # Errors
     /// [`AgentError`]. The pose is that of the last motion whose end is known.
     pub fn step(&mut self) -> Result<Event, AgentError<B::Error>> {
-        let motion = match self.planner.plan(self.pose) {
-            Plan::Move(motion) => motion,
-            Plan::Stop(reason) => return Ok(Event::Stopped(reason)),
+        let motion = match self.next_motion() {
+            Ok(motion) => motion,
+            Err(reason) => return Ok(Event::Stopped(reason)),
         };
-        let reading = self.body.perform(&motion, &mut self.pose).map_err(AgentError::Body)?;
+        let (body, pose) = self.body_and_pose();
+        let reading = body.perform(&motion, pose).map_err(AgentError::Body)?;
+        self.take_in(motion, reading)
+    }
+}
+
+/// The parts of a step, for bodies of either kind.
+impl<P: Planner, B> Agent<P, B> {
+    pub(super) fn next_motion(&mut self) -> Result<Motion, StopReason> {
+        match self.planner.plan(self.pose) {
+            Plan::Move(motion) => Ok(motion),
+            Plan::Stop(reason) => Err(reason),
+        }
+    }
+
+    pub(super) const fn body_and_pose(&mut self) -> (&mut B, &mut Pose) {
+        (&mut self.body, &mut self.pose)
+    }
+
+    pub(super) fn take_in<E>(
+        &mut self,
+        motion: Motion,
+        reading: Option<Reading>,
+    ) -> Result<Event, AgentError<E>> {
         self.planner.observe(self.pose, reading).map_err(AgentError::Refused)?;
         Ok(Event::Step(Step { motion, pose: self.pose, reading }))
     }

@@ -10,8 +10,8 @@ pub const LOOKS: u32 = 8_192;
 /// The weight of the control in the objective, in [0, 1), to six decimal places.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "wire", serde(try_from = "u32", into = "u32"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "u32", into = "u32"))]
 pub struct Varrho {
     pub(crate) millionths: u32,
 }

@@ -54,7 +54,7 @@ const TURNS: u32 = 8;
 /// What was done as the problem itself had no feasible action.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Recovery {
     /// The same problem without its rule on directions.
     Undirected,

@@ -1,4 +1,4 @@
-//! Values that hold an invariant cross the link as bare numbers and are checked on arrival.
+//! Values that hold an invariant are written as bare numbers, and checked when they are read.
 
 use crate::belief::noise::Reliability;
 use crate::geometry::area::Area;

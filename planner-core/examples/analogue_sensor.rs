@@ -1,0 +1,51 @@
+//! An analogue sensor: a threshold with hysteresis on what a converter measures.
+//!
+//! `cargo run -p planner-core --example analogue_sensor`
+
+mod field;
+
+use std::convert::Infallible;
+
+use field::{Result, World};
+use planner_core::belief::tolerance::Tolerance;
+use planner_core::{
+    Agent, Config, Drive, Event, Label, Lookahead, Motion, Planner as _, Pose, ThresholdSensor,
+    Unicycle, Vehicle, VersionSpace,
+};
+
+struct Tracks<'a>(&'a World);
+
+impl Drive for Tracks<'_> {
+    type Error = Infallible;
+
+    fn drive(&mut self, motion: &Motion) -> std::result::Result<Pose, Infallible> {
+        self.0.go(motion.target);
+        Ok(self.0.pose())
+    }
+}
+
+/// Counts of a 12-bit converter behind a photodiode: 800 a metre across the edge, and a ripple.
+fn counts(world: &World, conversions: &mut u32) -> i32 {
+    *conversions += 1;
+    let ripple = [0, 14, -9, 11, -15][*conversions as usize % 5];
+    (2_048.0 + 800.0 * world.height()).clamp(0.0, 4_095.0) as i32 + ripple
+}
+
+pub(crate) fn main() -> Result {
+    let world = World::new()?;
+    let mut conversions = 0;
+    let measure = || Ok::<_, Infallible>(counts(&world, &mut conversions));
+    // A band wider than the ripple. It hides 40 counts of 800 a metre to either side at most: 5 cm, and that the
+    // planner is told.
+    let sensor = ThresholdSensor::new(measure, 2_028..=2_068, Label::Positive);
+    let tolerance = Tolerance::new(0.06).ok_or("no length")?;
+    let config = Config { tolerance, ..field::config()? };
+    let space = VersionSpace::<32>::new(&field::given()?)?.within(tolerance)?;
+    let planner = Lookahead::new(config, Unicycle::paper(), space);
+    let vehicle = Vehicle { drive: Tracks(&world), sensor };
+    let mut agent = Agent::new(planner, vehicle, field::start()?);
+    while let Event::Step(step) = agent.step()? {
+        println!("{:?} at {:?}", step.reading, step.pose.site);
+    }
+    field::report(agent.planner.estimates().centre, 0.3)
+}

@@ -1,0 +1,104 @@
+//! A label sensor on a quantity that is measured: a threshold, with hysteresis.
+
+use core::fmt::Debug;
+
+use crate::belief::sample::{Label, Reading};
+use crate::robot::hal::LabelSensor;
+
+/// Reads a label off a quantity such as the counts of a converter, a concentration or a depth: one label above a
+/// band, the other below it. Inside the band it is the label that was read last (a Schmitt trigger), and by the
+/// middle of the band if none was.
+///
+/// The band keeps readings from changing with every noise of the quantity where several are taken near the line. It
+/// also keeps the old label for as much further: a band of `b` where the quantity changes by `g` a metre moves the
+/// line by up to `b / 2g`, which belongs into the [tolerance](crate::belief::tolerance::Tolerance).
+///
+/// ```
+/// use planner_core::robot::threshold::ThresholdSensor;
+/// use planner_core::{Label, LabelSensor, Reading};
+///
+/// let mut counts = [470, 530, 490, 520, 440].into_iter();
+/// let measure = || counts.next().ok_or("no conversion");
+/// let mut sensor = ThresholdSensor::new(measure, 450..=520, Label::Positive);
+/// let mut read = || sensor.read();
+/// assert_eq!(read()?, Reading::Side(Label::Negative)); // nearer to the lower end
+/// assert_eq!(read()?, Reading::Side(Label::Positive));
+/// assert_eq!(read()?, Reading::Side(Label::Positive)); // inside the band, as before
+/// assert_eq!(read()?, Reading::Side(Label::Positive));
+/// assert_eq!(read()?, Reading::Side(Label::Negative));
+/// assert_eq!(read(), Err("no conversion"));
+/// # Ok::<(), &str>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct ThresholdSensor<F> {
+    measure: F,
+    low: i32,
+    high: i32,
+    above: Label,
+    last: Option<Label>,
+}
+
+impl<F> ThresholdSensor<F> {
+    /// A sensor that reads the label `above` beyond the upper end of a band, and the other beyond the lower. Ends are
+    /// in whatever units `measure` has, and belong to the band; one value is a band without hysteresis.
+    pub const fn new(measure: F, band: core::ops::RangeInclusive<i32>, above: Label) -> Self {
+        Self { measure, low: *band.start(), high: *band.end(), above, last: None }
+    }
+
+    /// Gives back what measures.
+    pub fn release(self) -> F {
+        self.measure
+    }
+}
+
+impl<F: FnMut() -> Result<i32, E>, E: Debug> LabelSensor for ThresholdSensor<F> {
+    type Error = E;
+
+    fn read(&mut self) -> Result<Reading, E> {
+        let value = (self.measure)()?;
+        let by_the_middle = || {
+            let is_above = value.abs_diff(self.low) > value.abs_diff(self.high);
+            if is_above { self.above } else { -self.above }
+        };
+        let label = match value {
+            _ if value > self.high => self.above,
+            _ if value < self.low => -self.above,
+            _ => self.last.unwrap_or_else(by_the_middle),
+        };
+        self.last = Some(label);
+        Ok(label.into())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The labels of some values, by a sensor that begins.
+    fn labels<const N: usize>(values: [i32; N], band: core::ops::RangeInclusive<i32>) -> [i8; N] {
+        let mut next = values.into_iter();
+        let measure = || next.next().ok_or(());
+        let mut sensor = ThresholdSensor::new(measure, band, Label::Positive);
+        values.map(|_| sensor.read().unwrap().sign())
+    }
+
+    #[test]
+    fn a_label_stays_until_the_other_end_is_passed() {
+        assert_eq!(labels([9, 10, 20, 21, 20, 10, 9, 10], 10..=20), [-1, -1, -1, 1, 1, 1, -1, -1]);
+        // The first by the middle, which is the lower half's.
+        assert_eq!([14, 15, 16].map(|first| labels([first], 10..=20)), [[-1], [-1], [1]]);
+        assert_eq!(labels([i32::MAX, i32::MIN, i32::MAX], i32::MIN..=i32::MAX), [1, 1, 1]);
+    }
+
+    #[test]
+    fn one_value_is_a_threshold_without_hysteresis() {
+        assert_eq!(labels([4, 6, 4, 6], 5..=5), [-1, 1, -1, 1]);
+    }
+
+    #[test]
+    fn either_label_may_be_above() {
+        let mut sensor = ThresholdSensor::new(|| Ok::<_, ()>(7), 1..=2, Label::Negative);
+        assert_eq!(sensor.read(), Ok(Reading::Side(Label::Negative)));
+        let _ = (sensor.release())();
+    }
+}
