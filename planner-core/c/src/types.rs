@@ -1,0 +1,238 @@
+//! What goes over the interface: plain numbers, in metres and radians.
+
+use planner_core::belief::goal::Accuracy;
+use planner_core::belief::tolerance::Tolerance;
+use planner_core::nalgebra::Point2;
+use planner_core::{
+    Area, Config, Crossing, Goal, Heading, Label, Noise, Reliability, Site, StopReason, Unicycle,
+    lookahead,
+};
+
+/// What a call came to.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// It was done.
+    Ok,
+    /// Stopped: the line is known as well as was asked for.
+    Known,
+    /// Stopped: no motion leads to uncertain ground, as what is left of it is too thin or out of reach.
+    Resolution,
+    /// Stopped: there is no room for another sample.
+    Full,
+    /// Stopped: outside the area, or cornered.
+    Stuck,
+    /// Refused: the reading contradicts what is certain.
+    Contradiction,
+    /// Refused: a pointer is null, or the memory too small or not aligned to 8 bytes.
+    Memory,
+    /// Refused: a number of the mission is out of its range.
+    Mission,
+    /// Refused: a position is further than 8,192 m from the origin, or no number.
+    Position,
+    /// Refused: there is no such reading.
+    Reading,
+    /// Refused: no line separates the given samples, or they are collinear, too many or of one label.
+    Given,
+}
+
+/// What was read. It comes as a number, as an enumeration of C may hold any.
+#[repr(i32)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reading {
+    /// The side of -1.
+    Negative = -1,
+    /// The line itself.
+    Boundary = 0,
+    /// The side of +1.
+    Positive = 1,
+    /// No label was asked for.
+    None = 2,
+}
+
+impl Reading {
+    pub(crate) fn read(number: i32) -> Result<Option<planner_core::Reading>, Status> {
+        [
+            (Self::Negative, Some(Label::Negative.into())),
+            (Self::Boundary, Some(planner_core::Reading::Boundary)),
+            (Self::Positive, Some(Label::Positive.into())),
+            (Self::None, None),
+        ]
+        .into_iter()
+        .find_map(|(reading, read)| (reading as i32 == number).then_some(read))
+        .ok_or(Status::Reading)
+    }
+}
+
+/// Where the robot is.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct Pose {
+    /// Metres.
+    pub x: f64,
+    /// Metres.
+    pub z: f64,
+    /// Counter-clockwise from the x axis, radians.
+    pub heading: f64,
+}
+
+impl Pose {
+    /// On the lattice.
+    pub(crate) fn read(self) -> Result<planner_core::Pose, Status> {
+        let site = site(self.x, self.z)?;
+        let heading = Heading::from_radians(self.heading).ok_or(Status::Position)?;
+        Ok(planner_core::Pose { site, heading })
+    }
+}
+
+impl From<planner_core::Pose> for Pose {
+    fn from(pose: planner_core::Pose) -> Self {
+        let at = Point2::<f64>::from(pose.site);
+        Self { x: at.x, z: at.y, heading: pose.heading.radians() }
+    }
+}
+
+/// A sample that is known before the mission.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct Sample {
+    /// Metres.
+    pub x: f64,
+    /// Metres.
+    pub z: f64,
+    /// Whether it lies on the side of +1.
+    pub is_positive: bool,
+}
+
+impl Sample {
+    pub(crate) fn read(self) -> Result<planner_core::Sample, Status> {
+        let label = if self.is_positive { Label::Positive } else { Label::Negative };
+        Ok(planner_core::Sample { site: site(self.x, self.z)?, label })
+    }
+}
+
+/// What is fixed beforehand.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct Mission {
+    /// The area's lower left corner, metres.
+    pub min_x: f64,
+    /// The same.
+    pub min_z: f64,
+    /// The area's upper right corner, metres.
+    pub max_x: f64,
+    /// The same.
+    pub max_z: f64,
+    /// How far a position may be off, metres; 0 if it is exact.
+    pub tolerance: f64,
+    /// How often a label is right: 1 if always, else above 1/2.
+    pub p: f64,
+    /// Stop when the slopes of all lines left, or with p below 1 of 90 % of them, differ by no more, radians; 0 to
+    /// go on.
+    pub slopes: f64,
+    /// The sharpest turn to either side, radians.
+    pub sharpest: f64,
+    /// From one turn to the next, millionths of a radian.
+    pub turn_step_urad: u32,
+    /// From one distance to the next, millimetres.
+    pub step_mm: u32,
+    /// How many such steps the longest motion has.
+    pub steps: u16,
+}
+
+impl Mission {
+    pub(crate) fn config(&self) -> Result<Config, Status> {
+        let corners = (site(self.min_x, self.min_z)?, site(self.max_x, self.max_z)?);
+        Ok(Config {
+            area: Area::new(corners.0, corners.1).ok_or(Status::Mission)?,
+            varrho: lookahead::VARRHO,
+            crossing: Crossing::default(),
+            following: planner_core::cfc::FOLLOWING,
+            tolerance: Tolerance::new(self.tolerance).ok_or(Status::Mission)?,
+        })
+    }
+
+    pub(crate) fn unicycle(&self) -> Result<Unicycle, Status> {
+        let speeds = self.steps.checked_add(1).ok_or(Status::Mission)?;
+        let made = Unicycle::new(self.turn_step_urad, self.sharpest, speeds, self.step_mm);
+        made.map_err(|_| Status::Mission)
+    }
+
+    pub(crate) fn goal(&self) -> Result<Option<Goal>, Status> {
+        if self.slopes == 0.0 {
+            return Ok(None);
+        }
+        let inside = self.slopes > 0.0 && self.slopes < core::f64::consts::FRAC_PI_2;
+        let arc = inside.then(|| Heading::from_radians(self.slopes)).flatten();
+        let accuracy = Accuracy::SlopeArc(arc.ok_or(Status::Mission)?);
+        Ok(Some(Goal { accuracy, level: 900_000 }))
+    }
+
+    /// What is known of the noise, if there is any.
+    pub(crate) fn noise(&self) -> Result<Option<Noise>, Status> {
+        let is_useful = self.p > 0.5 && self.p <= 1.0;
+        let reliability = is_useful.then(|| Reliability::new(self.p)).flatten();
+        let reliability = reliability.ok_or(Status::Mission)?;
+        let tolerance = Tolerance::new(self.tolerance).ok_or(Status::Mission)?;
+        Ok((self.p < 1.0).then_some(Noise { reliability, trusted_radius: 0, tolerance }))
+    }
+}
+
+/// A motion to make: first turn, then drive.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct Motion {
+    /// How far to turn to the left, radians.
+    pub turn: f64,
+    /// How far to drive, metres.
+    pub drive: f64,
+    /// Where it leads.
+    pub target: Pose,
+    /// Whether a label is to be read at its end.
+    pub wants_label: bool,
+}
+
+impl From<planner_core::Motion> for Motion {
+    fn from(motion: planner_core::Motion) -> Self {
+        Self {
+            turn: motion.control.w.into(),
+            drive: motion.control.v.into(),
+            target: motion.target.into(),
+            wants_label: motion.wants_label,
+        }
+    }
+}
+
+/// A line `a x + b z + c = 0` with a unit normal, positive on the side of +1.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct Line {
+    /// Of x.
+    pub a: f64,
+    /// Of z.
+    pub b: f64,
+    /// Metres.
+    pub c: f64,
+}
+
+impl From<planner_core::Line> for Line {
+    fn from(line: planner_core::Line) -> Self {
+        let [a, b, c] = line.coefficients();
+        Self { a, b, c }
+    }
+}
+
+impl From<StopReason> for Status {
+    fn from(reason: StopReason) -> Self {
+        match reason {
+            StopReason::Known => Self::Known,
+            StopReason::SamplesFull => Self::Full,
+            StopReason::OutsideArea | StopReason::Cornered => Self::Stuck,
+            _ => Self::Resolution,
+        }
+    }
+}
+
+fn site(x: f64, z: f64) -> Result<Site, Status> {
+    Site::try_from(Point2::new(x, z)).map_err(|_| Status::Position)
+}
