@@ -2,7 +2,8 @@
 
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::{TcpListener, TcpStream};
-use std::time::Duration;
+use std::thread;
+use std::time::{Duration, Instant};
 
 /// For anything that QEMU does at once.
 const PATIENCE: Duration = Duration::from_secs(20);
@@ -23,7 +24,15 @@ impl Debugger {
     /// # Panics
     /// When nobody listens, as all that follow do when QEMU does not answer.
     pub fn connect(port: u16) -> Self {
-        let out = TcpStream::connect(("127.0.0.1", port)).expect("QEMU listens");
+        // It does not from its first moment on.
+        let since = Instant::now();
+        let out = loop {
+            match TcpStream::connect(("127.0.0.1", port)) {
+                Ok(out) => break out,
+                Err(error) => assert!(since.elapsed() < PATIENCE, "QEMU listens: {error}"),
+            }
+            thread::sleep(Duration::from_millis(5));
+        };
         out.set_read_timeout(Some(PATIENCE)).expect("a socket");
         let answers = BufReader::new(out.try_clone().expect("a socket"));
         let mut debugger = Self { out, answers };
@@ -60,6 +69,15 @@ impl Debugger {
         write!(self.out, "+").expect("QEMU listens");
         let answer = String::from_utf8_lossy(&answer).into_owned();
         answer.trim_start_matches('+').trim_matches(['$', '#']).to_owned()
+    }
+
+    /// Halts a chip that runs.
+    ///
+    /// # Panics
+    /// As [`connect`](Self::connect).
+    pub fn halt(&mut self) {
+        self.out.write_all(&[3]).expect("QEMU listens");
+        assert!(self.answer().starts_with('T'), "it says that it has halted");
     }
 
     /// What is in memory.

@@ -5,14 +5,14 @@
 //! their waits take seconds, and each is the same whenever it is run.
 
 use std::cell::RefCell;
-use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::collections::BTreeSet;
 use std::convert::Infallible;
 use std::fmt::Debug;
-use std::time::Duration;
 
 use host_sim::campaign::standard_field;
-use host_sim::hil::faults::{Faults, Spoiler};
-use host_sim::hil::player::{self, Player};
+use host_sim::hil::faults::Faults;
+use host_sim::hil::player::Player;
+use host_sim::hil::setup;
 use host_sim::mission::definition::Mission;
 use host_sim::mission::recording::Recording;
 use host_sim::report::trace;
@@ -38,20 +38,11 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use tests::link::{SEED, WAIT, Way, fly, mission, of_any_vehicle, stopping};
+use tests::link::{SEED, WAIT, Way, Wire, fly, mission, of_any_vehicle, stopping};
 
-/// A network in virtual time with the vehicle at its other end.
+/// A wire with the vehicle at its other end.
 struct Network {
-    now: Duration,
-    /// When the chip's wait is over.
-    until: Duration,
-    under_way: BTreeMap<(Duration, u64), (Way, Vec<u8>)>,
-    launched: u64,
-    /// Cut for good after so many frames, in one way or both.
-    cut: Option<(u64, Option<Way>)>,
-    to_chip: Spoiler,
-    to_vehicle: Spoiler,
-    arrived: VecDeque<u8>,
+    wire: Wire,
     player: Player,
     failure: Option<String>,
     frames_of_chip: u64,
@@ -60,30 +51,10 @@ struct Network {
 impl Network {
     fn new(mission: &Mission, faults: Faults) -> Self {
         Self {
-            now: Duration::ZERO,
-            until: Duration::ZERO,
-            under_way: BTreeMap::new(),
-            launched: 0,
-            cut: None,
-            to_chip: Spoiler::new(faults, mission.seed, 0),
-            to_vehicle: Spoiler::new(faults, mission.seed, 1),
-            arrived: VecDeque::new(),
+            wire: Wire::new(faults, mission.seed),
             player: Player::new(mission, LabelSource::Vehicle, 1).expect("a mission for a chip"),
             failure: None,
             frames_of_chip: 0,
-        }
-    }
-
-    fn launch(&mut self, way: Way, frame: &[u8]) {
-        let spoiler = if way == Way::ToChip { &mut self.to_chip } else { &mut self.to_vehicle };
-        for (late, bytes) in spoiler.spoil(frame) {
-            self.launched += 1;
-            let is_cut = |(after, only): (u64, Option<Way>)| {
-                self.launched > after && only.is_none_or(|only| only == way)
-            };
-            if !self.cut.is_some_and(is_cut) {
-                self.under_way.insert((self.now + late, self.launched), (way, bytes));
-            }
         }
     }
 }
@@ -95,38 +66,18 @@ struct Plug<'a>(&'a RefCell<Network>);
 impl Port for Plug<'_> {
     fn send(&mut self, frame: &[u8]) {
         let mut net = self.0.borrow_mut();
-        net.until = net.now + WAIT;
         net.frames_of_chip += 1;
-        net.launch(Way::ToVehicle, frame);
+        net.wire.ask(frame);
     }
 
     fn receive(&mut self) -> Option<u8> {
-        let mut net = self.0.borrow_mut();
-        loop {
-            if let Some(byte) = net.arrived.pop_front() {
-                return Some(byte);
-            }
-            let until = net.until;
-            let due = net.under_way.first_entry().filter(|it| it.key().0 < until);
-            let Some(due) = due else {
-                net.now = until;
-                return None;
-            };
-            let ((at, _), (way, bytes)) = due.remove_entry();
-            net.now = net.now.max(at);
-            match way {
-                Way::ToChip => net.arrived.extend(bytes),
-                Way::ToVehicle => {
-                    for byte in bytes {
-                        match net.player.hear(byte) {
-                            Ok(Some(frame)) => net.launch(Way::ToChip, frame.bytes()),
-                            Ok(None) => {}
-                            Err(error) => net.failure = Some(error.to_string()),
-                        }
-                    }
-                }
-            }
-        }
+        let Network { wire, player, failure, .. } = &mut *self.0.borrow_mut();
+        wire.answer(|byte| {
+            player.hear(byte).unwrap_or_else(|error| {
+                *failure = Some(error.to_string());
+                None
+            })
+        })
     }
 }
 
@@ -199,7 +150,7 @@ fn every_vehicle_flies_over_the_link_as_here_and_so_do_robots_that_err() {
 #[test]
 fn a_chip_declines_what_is_no_vehicle_of_its_own() {
     let mission = of_any_vehicle(2, 10);
-    let good = player::setup(&mission, LabelSource::Vehicle).expect("a mission for a chip");
+    let good = setup::setup(&mission, LabelSource::Vehicle).expect("a mission for a chip");
     let Shape::Car(shape) = good.vehicle else { panic!("{:?}", good.vehicle) };
     let car = |shape| Setup { vehicle: Shape::Car(shape), ..good.clone() };
     let no_car = car(car::Shape { radius_mm: 0, ..shape });
@@ -280,13 +231,13 @@ fn a_cut_link_ends_every_mission_within_the_bound_and_with_no_motion_after_it() 
         let ways = [None, Some(Way::ToChip), Some(Way::ToVehicle)];
         // A setup takes two frames, a mission of ten steps 24 more.
         let after = 2 + number / 3 % 20;
-        network.borrow_mut().cut = Some((after, ways[(number % 3) as usize]));
+        network.borrow_mut().wire.cut = Some((after, ways[(number % 3) as usize]));
         let flown = fly(&mut chip, &setup);
         assert!(
             matches!(flown, Err(LinkLost::Silent)),
             "mission {number}, cut after {after}: {flown:?}"
         );
-        let Network { now, player, .. } = &*network.borrow();
+        let Network { wire: Wire { now, .. }, player, .. } = &*network.borrow();
         // Until the cut no virtual time passes.
         assert_eq!(*now, bound, "mission {number}");
         // Requests are the odd frames; Hello and Ready come before the first motion.

@@ -4,14 +4,14 @@
 //! Chip and vehicle run here, in one thread and in virtual time.
 
 use std::cell::RefCell;
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::VecDeque;
 use std::convert::Infallible;
 use std::fmt::Debug;
 use std::panic::{self, AssertUnwindSafe};
 use std::time::Duration;
 
-use host_sim::hil::faults::{Faults, Spoiler};
-use host_sim::hil::player::{self};
+use host_sim::hil::faults::Faults;
+use host_sim::hil::setup;
 use host_sim::mission::definition::Mission;
 use host_sim::mission::recording::Recording;
 use host_sim::world::robot::Robot;
@@ -23,7 +23,7 @@ use planner_core::link::message::{
 use planner_core::link::station::{Flown, Station};
 use planner_core::motion::dynamics::Pose;
 use rayon::prelude::*;
-use tests::link::{WAIT, Way, fly, mission};
+use tests::link::{Wire, fly, mission};
 
 /// A vehicle that serves one mission after the other, over a network that it is at the end of.
 struct Garage {
@@ -42,7 +42,7 @@ impl Garage {
         Self {
             responder: Responder::new(seed),
             mission: mission.clone(),
-            setup: player::setup(mission, LabelSource::Vehicle).expect("a mission for a chip"),
+            setup: setup::setup(mission, LabelSource::Vehicle).expect("a mission for a chip"),
             robot: mission.robot(),
             pose: mission.start,
             motions: 0,
@@ -58,7 +58,7 @@ impl Garage {
         };
         let reply = match request {
             Request::Outline(number) => {
-                let mut outlines = player::outlines(&self.mission.config.area);
+                let mut outlines = setup::outlines(&self.mission.config.area);
                 Reply::Outline(outlines.nth(number.into()).expect("there are so many"))
             }
             Request::Ready(_) => {
@@ -91,13 +91,7 @@ struct Restart {
 
 /// A network in virtual time between chips and a garage, of which one or both restart.
 struct Yard {
-    now: Duration,
-    /// When the chip's wait is over.
-    until: Duration,
-    under_way: BTreeMap<(Duration, u64), (Way, Vec<u8>)>,
-    launched: u64,
-    spoilers: [Spoiler; 2],
-    arrived: VecDeque<u8>,
+    wire: Wire,
     garage: Garage,
     restart: Option<Restart>,
     /// The chip's last request, and how many came before it: since the restart, once that was.
@@ -115,25 +109,13 @@ struct Off;
 impl Yard {
     fn new(mission: &Mission, faults: Faults, seed: u64, restart: Restart) -> Self {
         Self {
-            now: Duration::ZERO,
-            until: Duration::ZERO,
-            under_way: BTreeMap::new(),
-            launched: 0,
-            spoilers: [0, 1].map(|way| Spoiler::new(faults, seed, way)),
-            arrived: VecDeque::new(),
+            wire: Wire::new(faults, seed),
             garage: Garage::new(mission, 1),
             restart: Some(restart),
             last: Vec::new(),
             asked: 0,
             restarted: Duration::ZERO,
             flown_after: None,
-        }
-    }
-
-    fn launch(&mut self, way: Way, frame: &[u8]) {
-        for (late, bytes) in self.spoilers[usize::from(way == Way::ToChip)].spoil(frame) {
-            self.launched += 1;
-            self.under_way.insert((self.now + late, self.launched), (way, bytes));
         }
     }
 
@@ -144,13 +126,13 @@ impl Yard {
         }
         if let Some(Restart { chip, vehicle, .. }) = self.restart.take_if(|it| it.at == self.asked)
         {
-            (self.asked, self.restarted) = (0, self.now);
+            (self.asked, self.restarted) = (0, self.wire.now);
             if vehicle {
                 self.garage = Garage::new(&self.garage.mission, 77_777);
             }
             if chip {
                 self.last.clear();
-                self.arrived.clear();
+                self.wire.forget();
                 return Err(Off);
             }
         }
@@ -159,36 +141,16 @@ impl Yard {
         let asks = |byte| decoder.feed::<Request>(byte).map(|it| it.message);
         let flies = matches!(frame.iter().copied().find_map(asks), Some(Request::Move(_)));
         if self.restart.is_none() && flies && self.asked > 0 && self.flown_after.is_none() {
-            let since = self.now.saturating_sub(self.restarted);
+            let since = self.wire.now.saturating_sub(self.restarted);
             self.flown_after = Some((self.asked - 1, since));
         }
-        self.until = self.now + WAIT;
-        self.launch(Way::ToVehicle, frame);
+        self.wire.ask(frame);
         Ok(())
     }
 
     fn receive(&mut self) -> Option<u8> {
-        loop {
-            if let Some(byte) = self.arrived.pop_front() {
-                return Some(byte);
-            }
-            let until = self.until;
-            let Some(due) = self.under_way.first_entry().filter(|it| it.key().0 < until) else {
-                self.now = until;
-                return None;
-            };
-            let ((at, _), (way, bytes)) = due.remove_entry();
-            self.now = self.now.max(at);
-            if way == Way::ToChip {
-                self.arrived.extend(bytes);
-                continue;
-            }
-            for byte in bytes {
-                if let Some(frame) = self.garage.hear(byte) {
-                    self.launch(Way::ToChip, frame.bytes());
-                }
-            }
-        }
+        let Self { wire, garage, .. } = self;
+        wire.answer(|byte| garage.hear(byte))
     }
 }
 

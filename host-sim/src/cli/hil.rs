@@ -3,17 +3,20 @@
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-use anyhow::{Context as _, Result};
+use anyhow::{Context as _, Result, bail};
 use clap::{Args, ValueEnum};
 use planner_core::link::message::LabelSource;
 
 use crate::cli::help;
 use crate::cli::run::{Format, Run};
 use crate::hil::faults::Faults;
-use crate::hil::firmware::{self, FIRMWARE};
+use crate::hil::firmware::{Firmware, STM32F405};
 use crate::hil::flight::{self, Chip, Timings};
+use crate::hil::logbook::Logbook;
 use crate::hil::player::Player;
-use crate::output::file::{prepare, temporary};
+use crate::output::file::{place_for, prepare, temporary};
+use crate::output::notes::announce;
+use crate::report::trace as lines;
 
 /// The speed of the firmware's serial lines, bits per second.
 const BAUD: u32 = 115_200;
@@ -31,14 +34,12 @@ pub(crate) struct HilArgs {
     #[arg(long, conflicts_with = "emulator")]
     pub(crate) baud: Option<u32>,
     /// Emulate the firmware under QEMU instead; without a path it is built here where needed
-    #[arg(
-        long,
-        value_name = "ELF",
-        num_args = 0..=1,
-        require_equals = true,
-        default_missing_value = FIRMWARE
-    )]
-    pub(crate) emulator: Option<PathBuf>,
+    #[arg(long, value_name = "ELF", num_args = 0..=1, require_equals = true)]
+    #[expect(clippy::option_option, reason = "as clap tells a flag from one with a value")]
+    pub(crate) emulator: Option<Option<PathBuf>>,
+    /// The machine that QEMU is: netduinoplus2, microbit, or the name of one for your ELF [default: netduinoplus2]
+    #[arg(long, value_name = "NAME", conflicts_with = "port", value_parser = machine)]
+    pub(crate) machine: Option<String>,
     /// Write the emulated board's log here, for defmt-print
     #[arg(long, value_name = "FILE", conflicts_with = "port")]
     pub(crate) log: Option<PathBuf>,
@@ -51,6 +52,9 @@ pub(crate) struct HilArgs {
     /// Write what each step took here
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) timing: Option<PathBuf>,
+    /// Go on with the steps of the same command, if it was stopped, and where the board restarts
+    #[arg(long, requires = "trace")]
+    pub(crate) resume: bool,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -62,19 +66,71 @@ pub(crate) enum Labels {
     Chip,
 }
 
+/// What QEMU runs.
+#[derive(Clone, Copy)]
+enum Emulated<'a> {
+    /// A firmware of this repository, to be built where needed.
+    Ours(&'static Firmware),
+    /// An ELF.
+    Yours(&'a Path),
+}
+
+impl Emulated<'_> {
+    fn elf(&self) -> &Path {
+        match self {
+            Self::Ours(firmware) => Path::new(firmware.elf),
+            Self::Yours(elf) => elf,
+        }
+    }
+}
+
+impl HilArgs {
+    fn machine(&self) -> &str {
+        self.machine.as_deref().unwrap_or(STM32F405.machine)
+    }
+
+    fn emulated(&self) -> Result<Emulated<'_>> {
+        if let Some(Some(elf)) = &self.emulator {
+            return Ok(Emulated::Yours(elf));
+        }
+        let machine = self.machine();
+        let ours = Firmware::of(machine).with_context(|| {
+            format!("--machine {machine}: no firmware for it is here, expected --emulator=ELF")
+        });
+        ours.map(Emulated::Ours)
+    }
+}
+
+/// The name of a machine, without options for it: these are QEMU's to take.
+fn machine(name: &str) -> Result<String, String> {
+    let is_name = |c: char| c.is_ascii_alphanumeric() || "-._".contains(c);
+    if name.is_empty() || !name.chars().all(is_name) {
+        return Err("expected the name of a machine of QEMU's, as microbit".into());
+    }
+    Ok(name.into())
+}
+
 /// Flies it, and what to print.
 pub(crate) fn hil(args: &HilArgs) -> Result<String> {
     let mission = args.run.mission()?;
-    let elf = args.emulator.clone().unwrap_or_else(|| FIRMWARE.into());
+    let emulated = args.emulated()?;
     let (chip, board) = match &args.port {
         Some(device) => ("the port", Path::new(device)),
-        None => ("the firmware", elf.as_path()),
+        None => ("the firmware", emulated.elf()),
     };
     let [trace, figure, candidates, report, mcap] = args.run.outputs();
     let (timing, log) = (args.timing.as_deref(), args.log.as_deref());
+    let growing = trace.1.filter(|_| args.resume);
+    if let Some(path) = growing
+        && place_for(path)?.is_stream()
+    {
+        bail!("{}: found a stream, expected a file with --resume", path.display());
+    }
     let asked = [trace, figure, candidates, report, mcap, ("--timing", timing), ("--log", log)];
     let prepared = prepare(&[args.run.input(), (chip, board)], asked)?;
     let [trace, figure, candidates, report, mcap, timing, log] = prepared;
+    // Its place will do, and it grows beside it.
+    let trace = trace.filter(|_| !args.resume);
     // The emulator writes its log as it goes; it comes to its place when it is whole.
     let log = log.map(|log| Ok::<_, anyhow::Error>((log, temporary(&env::temp_dir())?)));
     let log = log.transpose().context("expected a place for temporary files")?;
@@ -84,13 +140,23 @@ pub(crate) fn hil(args: &HilArgs) -> Result<String> {
     };
     let mut player =
         Player::new(&mission, labels, flight::start_number()).with_context(|| args.run.name())?;
+    if let Some(path) = growing {
+        let start = player.start();
+        let logbook = Logbook::open(path, &start, |read| Ok(lines::step(player.retrace(read)?)))?;
+        player = player.resuming().with_logbook(logbook);
+    }
     let chip = if let Some(device) = &args.port {
         Chip::Board { device: device.clone(), baud: args.baud.unwrap_or(BAUD) }
     } else {
-        let elf = if elf == Path::new(FIRMWARE) { firmware::built()? } else { elf };
-        Chip::Emulated { elf, log: log.as_ref().map(|(_, said)| said.path().to_owned()) }
+        let elf = match emulated {
+            Emulated::Ours(firmware) => firmware.built()?,
+            Emulated::Yours(elf) => elf.to_owned(),
+        };
+        let log = log.as_ref().map(|(_, said)| said.path().to_owned());
+        Chip::Emulated { elf, machine: args.machine().to_owned(), log }
     };
     let faults = args.fault.unwrap_or_default();
+    let made_before = player.steps();
     let flown = flight::fly(&mut player, &chip, faults, mission.seed);
     if let Some((log, said)) = log {
         let said = fs::read(said.path())?;
@@ -99,11 +165,19 @@ pub(crate) fn hil(args: &HilArgs) -> Result<String> {
             log.write(said)?;
         }
     }
+    if let (Some(logbook), Err(_)) = (player.logbook(), &flown)
+        && player.steps() > made_before
+    {
+        announce(logbook.farewell());
+    }
     let turnarounds = flown?;
-    let played = player.finish().with_context(|| args.run.name())?;
+    let mut played = player.finish().with_context(|| args.run.name())?;
     let timings = Timings::new(&played, &turnarounds);
     let rows = timings.csv()?;
     let mut text = args.run.tell([trace, figure, candidates, report, mcap], &played.recording)?;
+    if let Some(logbook) = played.logbook.take() {
+        logbook.complete(&played.recording.results.end)?;
+    }
     if let Some(output) = timing {
         output.write(rows)?;
     }

@@ -1,4 +1,4 @@
-//! The firmware for the emulator: built where this is run in the repository, target and all.
+//! The firmwares for the emulator: built where this is run in the repository, target and all.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
@@ -10,49 +10,79 @@ use anyhow::{Context as _, Result, bail};
 use crate::output::interruption::unfinished;
 use crate::output::notes::announce;
 
-/// Where it lies when it is built, as seen from the repository.
-pub const FIRMWARE: &str = "target/thumbv7em-none-eabihf/release/firmware";
+/// A board that this repository has a firmware for. Places are as seen from the repository.
+#[derive(Debug)]
+pub struct Firmware {
+    /// The machine of QEMU's that runs it.
+    pub machine: &'static str,
+    /// Where it lies when it is built.
+    pub elf: &'static str,
+    /// The package that it is built from.
+    package: &'static str,
+    target: &'static str,
+}
 
-/// The package that it is built from, as seen from the repository.
-const PACKAGE: &str = "firmware/Cargo.toml";
+/// The board that is meant where none is named: an STM32F405.
+pub const STM32F405: Firmware = Firmware {
+    machine: "netduinoplus2",
+    elf: "target/thumbv7em-none-eabihf/release/firmware",
+    package: "firmware/Cargo.toml",
+    target: "thumbv7em-none-eabihf",
+};
 
-const TARGET: &str = "thumbv7em-none-eabihf";
+/// The BBC micro:bit.
+pub const MICROBIT: Firmware = Firmware {
+    machine: "microbit",
+    elf: "target/thumbv6m-none-eabi/release/microbit",
+    package: "firmware/microbit/Cargo.toml",
+    target: "thumbv6m-none-eabi",
+};
 
-/// The firmware that belongs to this repository, as new as its sources. Elsewhere what lies at its place.
-///
-/// # Errors
-/// When it is not there and cannot be built: what is missing, or what failed to build.
-pub fn built() -> Result<PathBuf> {
-    if !Path::new(PACKAGE).exists() {
-        if Path::new(FIRMWARE).exists() {
-            return Ok(FIRMWARE.into());
+impl Firmware {
+    /// That of a machine, if there is one.
+    pub fn of(machine: &str) -> Option<&'static Self> {
+        [&STM32F405, &MICROBIT].into_iter().find(|it| it.machine == machine)
+    }
+
+    /// The firmware that belongs to this repository, as new as its sources. Elsewhere what lies at its place.
+    ///
+    /// # Errors
+    /// When it is not there and cannot be built: what is missing, or what failed to build.
+    pub fn built(&self) -> Result<PathBuf> {
+        let Self { elf, package, target, .. } = *self;
+        if !Path::new(package).exists() {
+            if Path::new(elf).exists() {
+                return Ok(elf.into());
+            }
+            bail!(
+                "--emulator: found no {elf} and no sources to build it from, expected to be run in the repository, \
+                 or --emulator=ELF"
+            );
         }
-        bail!(
-            "--emulator: found no {FIRMWARE} and no sources to build it from, expected to be run in the \
-             repository, or --emulator=ELF"
-        );
+        if !Path::new(elf).exists() {
+            announce("The firmware is built first, which takes a minute once.");
+            add_target(target)?;
+        }
+        let mut cargo = Command::new("cargo");
+        cargo.args(["build", "--release", "--quiet", "--locked"]);
+        cargo.args(["--manifest-path", package, "--target", target]);
+        // Where people look for it, whatever folder the caller has for targets.
+        cargo.args(["--target-dir", "target"]);
+        let status = run(&mut cargo).context("cargo: expected on PATH, to build the firmware")?;
+        if !status.success() {
+            bail!("--emulator: the firmware does not build, see above");
+        }
+        Ok(elf.into())
     }
-    if !Path::new(FIRMWARE).exists() {
-        announce("The firmware is built first, which takes a minute once.");
-        add_target()?;
-    }
-    let mut cargo = Command::new("cargo");
-    // Where people look for it, whatever folder the caller has for targets.
-    cargo.args(["firmware", "--quiet", "--locked", "--target-dir", "target"]);
-    let status = run(&mut cargo).context("cargo: expected on PATH, to build the firmware")?;
-    if !status.success() {
-        bail!("--emulator: the firmware does not build, see above");
-    }
-    Ok(FIRMWARE.into())
 }
 
 /// Has rustup add the chip's libraries. Without rustup they are whoever installed Rust's to add, and cargo says so.
-fn add_target() -> Result<()> {
+fn add_target(target: &str) -> Result<()> {
     let mut rustup = Command::new("rustup");
-    rustup.args(["--quiet", "target", "add", TARGET]);
+    rustup.args(["--quiet", "target", "add", target]);
     match run(&mut rustup) {
         Ok(status) if !status.success() => {
-            bail!("--emulator: rustup could not add the target {TARGET}, see above")
+            bail!("--emulator: rustup could not add the target {target}, see above")
         }
         _ => Ok(()),
     }

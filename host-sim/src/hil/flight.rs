@@ -31,6 +31,8 @@ pub enum Chip {
     Emulated {
         /// Its ELF.
         elf: PathBuf,
+        /// The machine of QEMU's that it runs on.
+        machine: String,
         /// Where its log goes, as defmt encodes it.
         log: Option<PathBuf>,
     },
@@ -70,8 +72,8 @@ pub fn fly(player: &mut Player, chip: &Chip, faults: Faults, seed: u64) -> Resul
             let reader = port.try_clone().with_context(|| device.clone())?;
             play(player, Cable::new(reader, port, faults, seed))
         }
-        Chip::Emulated { elf, log } => {
-            let (mut emulator, link) = Emulator::start(elf, log.as_deref(), &[])?;
+        Chip::Emulated { elf, machine, log } => {
+            let (mut emulator, link) = Emulator::start(elf, machine, log.as_deref(), &[])?;
             let reader = link.try_clone()?;
             let played = play(player, Cable::new(reader, link, faults, seed));
             played.map_err(|error| emulator.blame(error))
@@ -106,6 +108,8 @@ pub fn play(player: &mut Player, mut cable: Cable) -> Result<Vec<Duration>> {
             let (motions, was_over) = (player.motions(), player.is_over());
             let Some(frame) = player.hear(byte)? else { continue };
             if player.motions() > motions {
+                // A chip that restarts begins again.
+                turnarounds.truncate(motions);
                 turnarounds.push(answered.elapsed());
                 bar.set_position(player.steps() as u64);
             }

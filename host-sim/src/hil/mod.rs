@@ -4,5 +4,7 @@ pub mod cable;
 pub mod faults;
 pub mod firmware;
 pub mod flight;
+pub mod logbook;
 pub mod player;
 pub mod qemu;
+pub mod setup;

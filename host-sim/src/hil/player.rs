@@ -3,33 +3,36 @@
 //! Knows nothing of ports and clocks, so a serial line, an emulator and a test's own network can all
 //! carry the bytes. Each reading is taken in here as on the chip. What is known then is the same, or
 //! the estimates at the end would differ, and that is an error.
+//!
+//! A chip that restarts in the middle of a mission flies it again from its beginning. What it asks for then has been
+//! done, up to where it was: it is answered from memory, and nothing moves until something new is asked.
 
-use anyhow::{Result, anyhow, bail};
-use heapless::Vec as BoundedVec;
+use anyhow::{Context as _, Result, anyhow, bail};
 use planner_core::belief::estimate::Estimates;
 use planner_core::belief::sample::Reading;
-use planner_core::geometry::region::Region as _;
 use planner_core::link::delivery::{Heard, Hello, Responder};
 use planner_core::link::frame::Frame;
 use planner_core::link::message::{
-    self, Capacity, ClockRate, Declined, EndReason, LabelSource, MissionArea, Outline, PROTOCOL,
-    Reply, Request, Setup, Took,
+    self, ClockRate, EndReason, LabelSource, MissionArea, PROTOCOL, Reply, Request, Setup, Took,
 };
 use planner_core::motion::dynamics::Pose;
-use planner_core::planner::config::Config;
-use planner_core::planner::{Motion, lookahead};
+use planner_core::planner::{Motion, Plan};
 use planner_core::robot::agent::Step;
 
-use crate::mission::algorithm::Algorithm;
+use crate::hil::logbook::Logbook;
+use crate::hil::setup;
 use crate::mission::definition::Mission;
 use crate::mission::flight::Flown;
 use crate::mission::planners::AnyPlanner;
 use crate::mission::recording::{Recorder, Recording};
-use crate::mission::results::Ending;
+use crate::mission::results::{Ending, Start, StepResult};
 use crate::world::robot::Robot;
 
 /// A chip that has asked so often for a mission hears nothing: five times as often as it sends a request.
 const MOST_HELLOS: u32 = 5 * 16;
+
+/// A chip that has begun so often and come no further will not.
+const MOST_RESTARTS: u32 = 16;
 
 /// Plays the world for one mission.
 pub struct Player {
@@ -45,9 +48,15 @@ pub struct Player {
     recorder: Recorder,
     /// How often the chip has asked for a mission since it took up the last.
     hellos: u32,
-    /// The motion under way, and what the vehicle sensed at its end.
+    /// The last motion, and what the vehicle sensed at its end: the chip has not said yet what it took in there.
     pending: Option<(Motion, Option<Reading>)>,
+    /// Of the motions that the chip has asked for since it began.
     took: Vec<Took>,
+    /// Whether a chip that restarts may begin again, and how often it has since the last motion that was new.
+    resumes: bool,
+    restarts: u32,
+    /// Where steps are kept as they are taken.
+    logbook: Option<Logbook>,
     ending: Took,
     clock: Option<ClockRate>,
     /// How the mission ended, or why it came to nothing.
@@ -67,6 +76,8 @@ pub struct Played {
     pub ending: Took,
     /// What they are.
     pub clock: ClockRate,
+    /// The mission on disc, if it was to be kept there: all but its end.
+    pub logbook: Option<Logbook>,
 }
 
 impl Player {
@@ -75,7 +86,7 @@ impl Player {
     /// # Errors
     /// When the mission is none that a chip can be asked to fly.
     pub fn new(mission: &Mission, labels: LabelSource, seed: u32) -> Result<Self> {
-        let setup = setup(mission, labels)?;
+        let setup = setup::setup(mission, labels)?;
         Ok(Self {
             setup,
             area: mission.config.area,
@@ -87,6 +98,9 @@ impl Player {
             hellos: 0,
             pending: None,
             took: Vec::new(),
+            resumes: false,
+            restarts: 0,
+            logbook: None,
             ending: Took::default(),
             clock: None,
             outcome: None,
@@ -94,12 +108,39 @@ impl Player {
         })
     }
 
-    /// Steps that have been flown.
-    pub fn steps(&self) -> usize {
-        self.recorder.steps()
+    /// The same, for a chip that may restart: it goes on where it was.
+    #[must_use]
+    pub fn resuming(self) -> Self {
+        Self { resumes: true, ..self }
     }
 
-    /// Motions that the vehicle has made.
+    /// The same, which keeps its steps on disc from here on.
+    #[must_use]
+    pub fn with_logbook(self, logbook: Logbook) -> Self {
+        Self { logbook: Some(logbook), ..self }
+    }
+
+    /// Where its steps are kept.
+    pub const fn logbook(&self) -> Option<&Logbook> {
+        self.logbook.as_ref()
+    }
+
+    /// What the mission begins with.
+    pub fn start(&self) -> Start {
+        self.recorder.start()
+    }
+
+    /// Where the robot says that it is.
+    pub const fn pose(&self) -> Pose {
+        self.pose
+    }
+
+    /// Steps that have been flown.
+    pub fn steps(&self) -> usize {
+        self.recorder.steps().len()
+    }
+
+    /// Motions that the chip has asked for since it began.
     pub fn motions(&self) -> usize {
         self.took.len()
     }
@@ -156,30 +197,47 @@ impl Player {
             Request::Hello { .. } => unreachable!("a hello is welcomed"),
             // Of a session that the chip begins: it knows nothing of the last.
             Request::Outline(_) | Request::Ready(_) | Request::Declined(_)
-                if self.clock.is_some() =>
+                if self.clock.is_some() && !self.resumes =>
             {
                 bail!("the board restarted or gave up after step {}", self.steps())
             }
-            Request::Outline(number) => match outlines(&self.area).nth(number.into()) {
+            Request::Outline(number) => match setup::outlines(&self.area).nth(number.into()) {
                 Some(outline) => Ok(Reply::Outline(outline)),
                 None => bail!("the board asks for outline {number}, which there is not"),
             },
             Request::Declined(declined) => {
-                self.outcome = Some(Err(decline(declined, &self.setup)));
+                self.outcome = Some(Err(setup::declined(declined, &self.setup)));
                 Ok(Reply::Noted)
             }
             Request::Ready(accepted) => {
-                self.clock = Some(accepted.clock);
+                if self.clock.replace(accepted.clock).is_some() {
+                    self.restarts += 1;
+                }
+                if self.restarts > MOST_RESTARTS {
+                    bail!("the board restarts again and again after step {}", self.steps());
+                }
+                self.took.clear();
                 Ok(Reply::Noted)
             }
             Request::Move(message::Move { motion, last, took }) => {
                 self.settle(last, took)?;
-                let robot_senses = self.setup.labels == LabelSource::Vehicle;
-                let made = Motion { wants_label: motion.wants_label && robot_senses, ..motion };
-                let Ok(reading) = self.robot.perform(&made, &mut self.pose);
-                self.pending = Some((motion, reading));
+                let (pose, reading) = match self.made() {
+                    Some((made, _, _)) if made != motion => {
+                        let (step, place) = (self.motions() + 1, |it: Motion| it.target.site);
+                        bail!(
+                            "step {step}: the board asks for action {} to {:?}, expected {} to {:?} as \
+                             before it restarted",
+                            motion.action.0,
+                            place(motion),
+                            made.action.0,
+                            place(made),
+                        )
+                    }
+                    Some((_, pose, reading)) => (pose, reading),
+                    None => self.make(motion),
+                };
                 self.took.push(Took { observe: 0, ..took });
-                Ok(Reply::Arrived { pose: self.pose, reading })
+                Ok(Reply::Arrived { pose, reading })
             }
             Request::End(end) => {
                 let settled = self.settle(end.last, end.took);
@@ -203,22 +261,70 @@ impl Player {
         Ok(reason)
     }
 
+    /// The motion that the chip comes to next, where it ended and what was told of it, if it was made before.
+    fn made(&self) -> Option<(Motion, Pose, Option<Reading>)> {
+        let known = self.recorder.steps().get(self.motions());
+        let known = known.map(|step| (step.motion, step.pose, step.reading));
+        known.or_else(|| self.pending.map(|(motion, sensed)| (motion, self.pose, sensed)))
+    }
+
+    /// Makes a motion: where it ended, and what the vehicle sensed there.
+    fn make(&mut self, motion: Motion) -> (Pose, Option<Reading>) {
+        let robot_senses = self.setup.labels == LabelSource::Vehicle;
+        let made = Motion { wants_label: motion.wants_label && robot_senses, ..motion };
+        let Ok(sensed) = self.robot.perform(&made, &mut self.pose);
+        (self.pending, self.restarts) = (Some((motion, sensed)), 0);
+        (self.pose, sensed)
+    }
+
     /// Takes down the last step, now that the chip says what it took in at its end.
     fn settle(&mut self, last: Option<Reading>, took: Took) -> Result<()> {
-        let Some((motion, sensed)) = self.pending.take() else { return Ok(()) };
-        if self.setup.labels == LabelSource::Vehicle && last != sensed {
-            bail!("step {}: sensed {sensed:?}, the board took in {last:?}", self.motions());
+        let Some(current) = self.took.last_mut() else { return Ok(()) };
+        current.observe = took.observe;
+        let told = match (self.recorder.steps().get(self.took.len() - 1), self.pending) {
+            (Some(step), _) => Some(step.reading),
+            (None, Some((_, sensed))) if self.setup.labels == LabelSource::Vehicle => Some(sensed),
+            _ => None,
+        };
+        if let Some(told) = told.filter(|told| *told != last) {
+            bail!("step {}: sensed {told:?}, the board took in {last:?}", self.motions());
         }
+        if self.steps() < self.motions() { self.take_in(last) } else { Ok(()) }
+    }
+
+    /// Takes in the reading of the last motion.
+    fn take_in(&mut self, reading: Option<Reading>) -> Result<()> {
+        let Some((motion, _)) = self.pending.take() else { return Ok(()) };
         let pose = self.pose;
-        if let Some(current) = self.took.last_mut() {
-            current.observe = took.observe;
-        }
-        if let Err(refused) = self.planner.observe(pose, last) {
+        if let Err(refused) = self.planner.observe(pose, reading) {
             return Err(self.recorder.refusal(&refused));
         }
-        let step = Step { motion, pose, reading: last };
+        let step = Step { motion, pose, reading };
         self.recorder.take(&step, self.robot.true_pose(), self.planner.belief());
-        Ok(())
+        match (&mut self.logbook, self.recorder.last()) {
+            (Some(logbook), Some(step)) => logbook.take(step),
+            _ => Ok(()),
+        }
+    }
+
+    /// Makes the next step before a chip asks for it: one of before this program restarted. `read` is what the chip's
+    /// own sensor read.
+    ///
+    /// # Errors
+    /// When the mission has no such step.
+    pub fn retrace(&mut self, read: Option<Reading>) -> Result<&StepResult> {
+        let motion = match self.planner.plan(self.pose) {
+            Plan::Move(motion) if self.steps() < usize::from(self.setup.steps) => motion,
+            _ => bail!("expected no more than {} steps", self.steps()),
+        };
+        let (_, sensed) = self.make(motion);
+        let reading = match self.setup.labels {
+            LabelSource::Vehicle => sensed,
+            LabelSource::Chip if !motion.wants_label => None,
+            LabelSource::Chip => Some(read.context("expected a label")?),
+        };
+        self.take_in(reading)?;
+        self.recorder.last().context("a step")
     }
 
     /// Whether the chip's estimates are those of this machine, to the last bit.
@@ -243,7 +349,7 @@ impl Player {
     /// When that is refused here, or the chip had not begun.
     pub fn break_off(mut self) -> Result<Played> {
         let sensed = self.pending.and_then(|(_, reading)| reading);
-        self.settle(sensed, Took::default())?;
+        self.take_in(sensed)?;
         self.outcome = Some(Ok(Ending::Steps));
         self.finish()
     }
@@ -253,91 +359,11 @@ impl Player {
     /// # Errors
     /// When it is not over, the chip declined it, or it came to nothing.
     pub fn finish(self) -> Result<Played> {
-        let Self { recorder, planner, took, ending, clock, outcome, .. } = self;
-        let unfinished = || anyhow!("the mission broke off after step {}", recorder.steps());
+        let Self { recorder, planner, took, ending, clock, outcome, logbook, .. } = self;
+        let unfinished = || anyhow!("the mission broke off after step {}", recorder.steps().len());
         let reason = outcome.unwrap_or_else(|| Err(unfinished()))?;
         let clock = clock.ok_or_else(unfinished)?;
         let flown = Flown { ending: reason, belief: planner.belief().boxed() };
-        Ok(Played { recording: recorder.end(flown), took, ending, clock })
-    }
-}
-
-/// The mission as a chip is told it.
-///
-/// # Errors
-/// When it is none that a chip can be asked to fly.
-pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
-    let algorithm = match mission.algorithm {
-        Algorithm::Cfc => message::Algorithm::Cfc,
-        Algorithm::Scc => message::Algorithm::Scc {
-            noise: mission.noise_told(),
-            policy: mission.policy,
-            prior: mission.prior,
-        },
-        Algorithm::Lookahead => message::Algorithm::Lookahead {
-            evaluations: lookahead::EVALUATIONS,
-            goal: mission.goal,
-            noise: mission.noise.map(|_| (mission.noise_told(), mission.prior)),
-        },
-        other => bail!("algorithm: found {}, expected cfc, scc or lookahead", other.name()),
-    };
-    let samples = mission.given.samples();
-    let given = BoundedVec::from_slice(samples).map_err(|_| {
-        let most = message::MOST_GIVEN;
-        anyhow!("oracle: found {} points, expected at most {most} on a board", samples.len())
-    })?;
-    // Labels that are all certain make no second hypothesis; of t others there are at most so many.
-    let taken = mission.steps;
-    let hypotheses = match mission.algorithm {
-        _ if mission.is_noisy() => 1 + taken + taken * taken.saturating_sub(1) / 2,
-        _ => 1,
-    };
-    let capacity =
-        Capacity { samples: (samples.len() as u32 + taken) as u16, hypotheses: hypotheses as u16 };
-    let &Mission { config: Config { area, varrho, crossing, following, tolerance }, start, .. } =
-        mission;
-    let config = Config { area: area.bounds(), varrho, crossing, following, tolerance };
-    let is_plain = area.sides().next().is_none() && area.hulls().next().is_none();
-    let keep_outs = (!is_plain).then(|| area.hulls().count() as u8);
-    let (protocol, vehicle, steps) = (PROTOCOL, mission.vehicle.into(), taken as u16);
-    Ok(Setup {
-        protocol,
-        algorithm,
-        config,
-        keep_outs,
-        vehicle,
-        capacity,
-        steps,
-        start,
-        labels,
-        given,
-    })
-}
-
-/// The border of an area, then its keep-outs.
-pub fn outlines(area: &MissionArea) -> impl Iterator<Item = Outline> {
-    let border = Outline { corners: area.corners().iter().copied().collect(), radius: 0 };
-    [border].into_iter().chain(area.hulls().map(Outline::from))
-}
-
-fn decline(declined: Declined, setup: &Setup) -> anyhow::Error {
-    match declined {
-        Declined::Protocol(theirs) => {
-            anyhow!("the board speaks protocol {theirs}, expected {PROTOCOL}")
-        }
-        Declined::Capacity(Capacity { samples, hypotheses }) => {
-            let most = usize::from(samples).saturating_sub(setup.given.len());
-            anyhow!(
-                "steps: found {}, expected at most {most}: the board has room for {samples} samples \
-                 and {hypotheses} hypotheses, {} of the samples the oracle's",
-                setup.steps,
-                setup.given.len(),
-            )
-        }
-        Declined::Algorithm => anyhow!("algorithm: declined by the board, which has another"),
-        Declined::Given(error) => anyhow!("oracle: declined by the board: {error}"),
-        Declined::Vehicle(why) => anyhow!("vehicle: declined by the board: expected {why}"),
-        Declined::Area => anyhow!("area: declined by the board: {declined}"),
-        Declined::Labels => anyhow!("--labels: found chip, but this board has no label sensor"),
+        Ok(Played { recording: recorder.end(flown), took, ending, clock, logbook })
     }
 }

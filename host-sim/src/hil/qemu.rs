@@ -1,4 +1,4 @@
-//! The firmware under emulation: QEMU's STM32F405, its first UART over TCP.
+//! A firmware under emulation: QEMU's machine for its board, the first UART over TCP.
 
 use std::io::Read as _;
 use std::net::{TcpListener, TcpStream};
@@ -32,12 +32,17 @@ pub struct Emulator {
 }
 
 impl Emulator {
-    /// Starts a firmware, with further arguments for QEMU; the other end of its link. Its log, as defmt
-    /// encodes it, goes to `log`.
+    /// Starts a firmware on a machine of QEMU's, with further arguments for QEMU; the other end of its link. What it
+    /// says at its second UART, the log as defmt encodes it, goes to `log`.
     ///
     /// # Errors
-    /// When there is no such ELF or no QEMU, or it does not come up.
-    pub fn start(elf: &Path, log: Option<&Path>, more: &[&str]) -> Result<(Self, TcpStream)> {
+    /// When there is no such ELF, machine or QEMU, or it does not come up.
+    pub fn start(
+        elf: &Path,
+        machine: &str,
+        log: Option<&Path>,
+        more: &[&str],
+    ) -> Result<(Self, TcpStream)> {
         if !fs::read(elf).is_ok_and(|content| is_arm_elf(&content)) {
             bail!("{}: expected the firmware's ELF; `cargo firmware` builds it", elf.display());
         }
@@ -46,7 +51,7 @@ impl Emulator {
         let log = log.map_or_else(|| "null".into(), |path| format!("file:{}", path.display()));
         let mut command = Command::new(QEMU);
         command
-            .args(["-M", "netduinoplus2", "-nographic", "-monitor", "none"])
+            .args(["-M", machine, "-nographic", "-monitor", "none"])
             .args(["-icount", "shift=6"])
             .args(["-serial", &format!("tcp:127.0.0.1:{port},nodelay=on")])
             .args(["-serial", &log])

@@ -22,8 +22,8 @@ use crate::mission::results::{
 };
 use crate::mission::stop::GoalRecord;
 use crate::mission::vehicle::VehicleTable;
-use crate::world::World;
 use crate::world::polygon::misclassified;
+use crate::world::{World, reading};
 
 /// A mission that is over: its results, and what is known in the end.
 #[derive(Debug)]
@@ -77,13 +77,27 @@ impl Recorder {
                 pruned_mass: doubt.pruned_mass,
                 entropy: doubt.entropy,
             }),
-            fact: self.mission.world.reading(true_pose.unwrap_or(step.pose).site).sign(),
+            fact: self
+                .mission
+                .world
+                .line()
+                .map(|line| reading(line, true_pose.unwrap_or(step.pose).site).sign()),
         });
     }
 
+    /// What the mission begins with.
+    pub fn start(&self) -> Start {
+        start(&self.mission)
+    }
+
     /// Steps so far.
-    pub fn steps(&self) -> usize {
-        self.steps.len()
+    pub fn steps(&self) -> &[Step] {
+        &self.steps
+    }
+
+    /// What came of the last of them.
+    pub fn last(&self) -> Option<&StepResult> {
+        self.results.last()
     }
 
     /// What is said of a sample that the planner does not take in the step after these.

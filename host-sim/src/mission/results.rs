@@ -104,9 +104,9 @@ pub struct StepResult {
     /// What noisy labels add.
     #[serde(flatten)]
     pub noisy: Option<NoisyStep>,
-    /// What a perfect sensor reads there.
+    /// What a perfect sensor reads there, if the true line is known.
     #[serde(skip)]
-    pub fact: i8,
+    pub fact: Option<i8>,
 }
 
 /// The distribution over hypotheses after a step.
@@ -274,6 +274,11 @@ pub struct EstimateRecords {
 }
 
 impl StepResult {
+    /// Whether what was sensed is not what a perfect sensor reads, as far as that is known.
+    pub fn is_wrong(&self) -> bool {
+        self.label.zip(self.fact).is_some_and(|(seen, fact)| seen != fact)
+    }
+
     /// Its control cost.
     pub fn cost(&self) -> f64 {
         cost(Control { v: self.action.v, w: self.action.w })
@@ -395,6 +400,8 @@ pub enum Ending {
     Steps,
     /// The planner had no further motion.
     Stopped(StopReason),
+    /// A real vehicle could not go on.
+    BrokenOff,
 }
 
 impl Ending {
@@ -402,6 +409,7 @@ impl Ending {
     pub fn name(self) -> &'static str {
         match self {
             Self::Steps => "steps",
+            Self::BrokenOff => "broken off",
             Self::Stopped(StopReason::Resolution) => "resolution",
             Self::Stopped(StopReason::SamplesFull) => "samples full",
             Self::Stopped(StopReason::OutsideArea) => "outside area",

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use anyhow::{Result, anyhow};
+use anyhow::{Context as _, Result, anyhow};
 use nalgebra::Point2;
 use planner_core::belief::noise::Reliability;
 use planner_core::belief::noise::trusted_radius;
-use planner_core::belief::sample::{Label, Reading, Sample};
+use planner_core::belief::sample::{Label, Sample};
 use planner_core::belief::tolerance::Tolerance;
 use planner_core::belief::version_space::{NoVersionSpace, VersionSpace};
 use planner_core::geometry::heading::Heading;
@@ -68,7 +68,7 @@ struct File {
     keep_out: Vec<Table<KeepOutTable>>,
     #[serde(default)]
     start: Table<StartTable>,
-    truth: Table<TruthTable>,
+    truth: Option<Table<TruthTable>>,
     oracle: Vec<Table<SampleTable>>,
 }
 
@@ -140,14 +140,20 @@ pub struct Overrides {
     pub seed: Option<u64>,
 }
 
-/// The mission that a scenario file describes.
+/// The mission that a scenario file describes, to be flown in a simulated world.
 ///
 /// # Errors
 /// One message with the file, the line or field, what was found and what was expected.
 pub fn read(path: &Path, overrides: Overrides) -> Result<Mission> {
-    let text = std::fs::read_to_string(path)
-        .map_err(|error| anyhow!("{}: expected a readable text file: {error}", path.display()))?;
-    parse(&path.display().to_string(), &text, overrides)
+    parse(&path.display().to_string(), &content(path)?, overrides)
+}
+
+/// As [`read`], for a vehicle that is real: the file need not say what is true.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_real(path: &Path, overrides: Overrides) -> Result<Mission> {
+    any(&path.display().to_string(), &content(path)?, overrides)
 }
 
 /// As [`read`], from the text of the file called `name`.
@@ -155,6 +161,21 @@ pub fn read(path: &Path, overrides: Overrides) -> Result<Mission> {
 /// # Errors
 /// As [`read`].
 pub fn parse(name: &str, text: &str, overrides: Overrides) -> Result<Mission> {
+    let mission = any(name, text, overrides)?;
+    if mission.world.line().is_none() {
+        let found = wrong("truth", "none", "the line that the simulated world is divided by");
+        return found.with_context(|| name.to_owned());
+    }
+    Ok(mission)
+}
+
+fn content(path: &Path) -> Result<String> {
+    std::fs::read_to_string(path)
+        .map_err(|error| anyhow!("{}: expected a readable text file: {error}", path.display()))
+}
+
+/// The mission, whether it says what is true or not.
+fn any(name: &str, text: &str, overrides: Overrides) -> Result<Mission> {
     let file: File = toml::from_str(text).map_err(|error| {
         let line = error.span().map_or(1, |span| 1 + text[..span.start].matches('\n').count());
         anyhow!("{name}:{line}: {}", error.message().replace('\n', "; "))
@@ -204,7 +225,8 @@ fn mission(file: &File, overrides: Overrides) -> Result<Mission> {
         |it| it.0.vehicle(Source::File, algorithm, has_fan, grid),
     )?;
     let area = terrain::area(&file.area.0, &file.keep_out)?;
-    let world = World::divided_by(truth(&file.truth.0)?);
+    let truth = file.truth.as_ref().map(|table| truth(&table.0)).transpose()?;
+    let world = truth.map_or(World::UNKNOWN, World::divided_by);
     let given = oracle(&file.oracle, &area, &world)?;
     let bounding = given.cell().edges().len();
     if bounding > MOST_BOUNDING {
@@ -378,9 +400,8 @@ fn oracle(tables: &[Table<SampleTable>], area: &MissionArea, world: &World) -> R
         };
         let site = site(&field, table.x, table.z)?;
         terrain::check_inside(&field, site, area)?;
-        let reading = world.reading(site);
-        if reading != Reading::Side(label) {
-            let expected = format!("{}, as the truth has it", reading.sign());
+        if !world.agrees(site, label) {
+            let expected = format!("{}, as the truth has it", world.reading(site).sign());
             return wrong(&format!("{field}.label"), table.label, expected);
         }
         samples.push(Sample { site, label });

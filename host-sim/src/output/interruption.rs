@@ -8,6 +8,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::process::Child;
+use std::sync::atomic::{AtomicI32, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// What is undone: an entry that has gone by itself does no harm.
@@ -19,10 +20,30 @@ pub(crate) struct Unfinished {
     pub(crate) children: BTreeMap<u32, Child>,
     /// What is said to the user: where to find what is not undone.
     pub(crate) farewell: Option<String>,
+    /// Whether whoever runs sees to it that the program ends: a vehicle must be stopped first.
+    pub(crate) is_deferred: bool,
 }
 
-static UNFINISHED: Mutex<Unfinished> =
-    Mutex::new(Unfinished { files: BTreeSet::new(), children: BTreeMap::new(), farewell: None });
+static UNFINISHED: Mutex<Unfinished> = Mutex::new(Unfinished {
+    files: BTreeSet::new(),
+    children: BTreeMap::new(),
+    farewell: None,
+    is_deferred: false,
+});
+
+/// The signal that was deferred; 0 if there was none.
+static DEFERRED: AtomicI32 = AtomicI32::new(0);
+
+/// From here on a signal does not end the program: [`deferred`] tells it.
+pub fn defer() {
+    unfinished().is_deferred = true;
+}
+
+/// The signal that has come since signals were deferred.
+pub fn deferred() -> Option<i32> {
+    let signal = DEFERRED.load(Ordering::Relaxed);
+    (signal != 0).then_some(signal)
+}
 
 /// What is undone if a signal comes, under its lock.
 pub(crate) fn unfinished() -> MutexGuard<'static, Unfinished> {
@@ -49,7 +70,7 @@ mod by_signal {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
     use signal_hook::iterator::Signals;
 
-    use super::{Unfinished, unfinished};
+    use super::{DEFERRED, Ordering, Unfinished, unfinished};
 
     /// From here on an interruption, a request to end, and a terminal's going away undo what is unfinished and
     /// end the program with 128 and the signal's number, as shells have it.
@@ -60,8 +81,12 @@ mod by_signal {
         let heeded = [SIGHUP, SIGINT, SIGTERM].into_iter().filter(|signal| !is_ignored(*signal));
         let mut signals = Signals::new(heeded)?;
         thread::spawn(move || {
-            if let Some(signal) = signals.forever().next() {
+            for signal in signals.forever() {
                 let mut unfinished = unfinished();
+                if unfinished.is_deferred {
+                    DEFERRED.store(signal, Ordering::Relaxed);
+                    continue;
+                }
                 undo(&mut unfinished);
                 process::exit(128 + signal);
             }

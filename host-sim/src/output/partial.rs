@@ -1,8 +1,8 @@
 //! A file that grows beside its place, for hours perhaps, and outlives an interruption: what is there can be gone on
 //! with. It is moved to its place when it is complete.
 //!
-//! Beside it stands a record of what is being done, so that nobody goes on with another's. The record is there before
-//! the file is, and goes when the file has become complete.
+//! Where it does not tell by itself what is being done, a record of that stands beside it, so that nobody goes on with
+//! another's. The record is there before the file is, and goes when the file has become complete.
 
 use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -20,22 +20,35 @@ use crate::output::place::Place;
 pub struct Partial {
     place: PathBuf,
     path: PathBuf,
-    record: PathBuf,
+    record: Option<PathBuf>,
     file: File,
     /// As the file's user names it.
     name: String,
+    /// What it holds.
+    holds: &'static str,
     is_worth_keeping: bool,
 }
 
 /// What is to be written.
-#[derive(Clone, Copy, Debug)]
-pub struct Begin<'a> {
+#[derive(Clone, Copy)]
+pub(crate) struct Begin<'a> {
+    /// What it holds, in the plural: rows, steps.
+    pub(crate) holds: &'static str,
     /// What it begins with.
-    pub header: &'a str,
-    /// What is being done.
-    pub record: &'a str,
+    pub(crate) header: &'a str,
+    /// What is being done, if it does not tell that by itself.
+    pub(crate) record: Option<Record<'a>>,
     /// Whether to go on with what is there.
-    pub resume: bool,
+    pub(crate) resume: bool,
+}
+
+/// What is being done, as it is told beside the file.
+#[derive(Clone, Copy)]
+pub(crate) struct Record<'a> {
+    /// The record.
+    pub(crate) text: &'a str,
+    /// Judges the one that is there.
+    pub(crate) check: &'a dyn Fn(&str) -> Result<()>,
 }
 
 /// A path with something after it.
@@ -46,32 +59,30 @@ pub(crate) fn with_suffix(path: &Path, suffix: &str) -> PathBuf {
 }
 
 impl Partial {
-    /// Begins a file, or opens the one that is to be gone on with, if it is there: `check` judges its record.
+    /// Begins a file, or opens the one that is to be gone on with, if it is there.
     ///
     /// # Errors
     /// Names the file that is there though none is to be gone on with, that another program is writing, or that
     /// cannot be written.
-    pub(crate) fn open(
-        path: &Path,
-        place: &Place,
-        begin: Begin,
-        check: impl FnOnce(&str) -> Result<()>,
-    ) -> Result<Self> {
+    pub(crate) fn open(path: &Path, place: &Place, begin: Begin) -> Result<Self> {
         let name = with_suffix(path, ".partial").display().to_string();
         let path = with_suffix(place.path(), ".partial");
-        let record = with_suffix(place.path(), ".partial.json");
+        let record = begin.record.map(|_| with_suffix(place.path(), ".partial.json"));
         let is_there = path.try_exists().with_context(|| name.clone())?;
         if is_there && !begin.resume {
             bail!(
-                "{name}: found rows of a campaign that was stopped, expected --resume to go on with them, or that \
-                 they are removed"
+                "{name}: found {} of a campaign that was stopped, expected --resume to go on with them, or that \
+                 they are removed",
+                begin.holds
             );
         }
-        if is_there {
-            let found = fs::read_to_string(&record);
-            check(&found.with_context(|| format!("{name}.json"))?).with_context(|| name.clone())?;
-        } else {
-            fs::write(&record, begin.record).with_context(|| format!("{name}.json"))?;
+        if let (Some(Record { text, check }), Some(record)) = (begin.record, &record) {
+            if is_there {
+                let found = fs::read_to_string(record).with_context(|| format!("{name}.json"))?;
+                check(&found).with_context(|| name.clone())?;
+            } else {
+                fs::write(record, text).with_context(|| format!("{name}.json"))?;
+            }
         }
         let mut options = OpenOptions::new();
         let file = options.read(true).append(true).create_new(!is_there).open(&path);
@@ -79,15 +90,21 @@ impl Partial {
         if let Err(TryLockError::WouldBlock) = file.try_lock() {
             bail!("{name}: found another program writing it, expected none");
         }
-        let place = place.path().to_owned();
-        let mut partial = Self { place, path, record, file, name, is_worth_keeping: is_there };
+        let (place, holds) = (place.path().to_owned(), begin.holds);
+        let mut partial =
+            Self { place, path, record, file, name, holds, is_worth_keeping: is_there };
         partial.begin(begin.header).with_context(|| partial.name.clone())?;
         Ok(partial)
     }
 
     /// Writes the header if it is not there in full.
-    fn begin(&mut self, header: &str) -> io::Result<()> {
+    fn begin(&mut self, header: &str) -> Result<()> {
         if self.file.metadata()?.len() < header.len() as u64 {
+            let mut found = Vec::new();
+            File::open(&self.path)?.read_to_end(&mut found)?;
+            if !header.as_bytes().starts_with(&found) {
+                bail!("found something else than {} under their header", self.holds);
+            }
             self.file.set_len(0)?;
             self.file.write_all(header.as_bytes())?;
         }
@@ -117,10 +134,13 @@ impl Partial {
 
     /// From here on an interruption says that it is there.
     pub(crate) fn announce(&self) {
-        let name = &self.name;
-        unfinished().farewell = Some(format!(
-            "stopped: finished rows are in {name}; the same command with --resume goes on with them"
-        ));
+        unfinished().farewell = Some(format!("stopped: {}", self.farewell()));
+    }
+
+    /// Where to find what is finished.
+    pub(crate) fn farewell(&self) -> String {
+        let Self { holds, name, .. } = self;
+        format!("finished {holds} are in {name}; the same command with --resume goes on with them")
     }
 
     /// Moves it to its place. What is to stand beside it for good is told by its length.
@@ -139,7 +159,7 @@ impl Partial {
         let mut unfinished = unfinished();
         unfinished.farewell = None;
         fs::rename(&self.path, &self.place).with_context(named)?;
-        fs::remove_file(&self.record).with_context(named)
+        self.record.as_ref().map_or(Ok(()), fs::remove_file).with_context(named)
     }
 }
 
@@ -159,7 +179,7 @@ impl Drop for Partial {
         if !self.is_worth_keeping {
             // Whoever comes to this tells of another error already.
             let _ = fs::remove_file(&self.path);
-            let _ = fs::remove_file(&self.record);
+            let _ = self.record.as_ref().map_or(Ok(()), fs::remove_file);
         }
     }
 }

@@ -53,7 +53,7 @@ fn steps(steps: &[StepResult]) -> String {
             format!("{:.2}", step.action.w),
             format!("{:.3}", step.pose.x),
             format!("{:.3}", step.pose.z),
-            format!("{:+}", step.fact),
+            text::signed(step.fact),
             text::arcs(&step.slope_arcs),
             format!("{:.2}", step.bits),
         ]);

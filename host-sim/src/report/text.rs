@@ -153,7 +153,7 @@ pub(crate) fn promise(goal: &GoalRecord) -> String {
 
 fn beginning(title: &str, start: &Start) -> String {
     let mut text = format!("{title}\n");
-    let truth = start.truth.map_or("none".into(), |truth| line(&truth));
+    let truth = start.truth.map_or("not known".into(), |truth| line(&truth));
     let oracle = start.oracle.iter().map(|s| format!("({}, {}) is {:+}", s.x, s.z, s.label));
     // Writing to a string cannot fail.
     let _ = writeln!(
@@ -202,7 +202,7 @@ fn motion(step: &StepResult) -> [String; 5] {
     ]
 }
 
-fn signed(label: Option<i8>) -> String {
+pub(crate) fn signed(label: Option<i8>) -> String {
     label.map_or("-".into(), |label| format!("{label:+}"))
 }
 
@@ -259,11 +259,11 @@ fn noisy_steps(steps: &[StepResult]) -> Table {
     let mut table = Table::new([&MOTION[..], &said].concat());
     for step in steps {
         let Some(noisy) = step.noisy else { continue };
-        let wrong = if step.label.is_some_and(|seen| seen != step.fact) { " !" } else { "  " };
+        let wrong = if step.is_wrong() { " !" } else { "  " };
         let trusted = if noisy.trusted { "  (trusted)" } else { "" };
         let said = [
             signed(step.label),
-            format!("{:+}{wrong}", step.fact),
+            format!("{}{wrong}", signed(step.fact)),
             noisy.hypotheses.to_string(),
             format!("{:.2}", noisy.entropy),
             format!("{:.2}", step.bits),

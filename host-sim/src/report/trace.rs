@@ -15,8 +15,21 @@ enum Record<'a> {
 
 /// The trace of a mission, a record a line.
 pub fn lines(results: &Results) -> String {
-    let start = std::iter::once(Record::Start(&results.start));
-    let steps = results.steps.iter().map(Record::Step);
-    let end = std::iter::once(Record::End(&results.end));
-    start.chain(steps).chain(end).map(|record| json(&record)).collect()
+    let steps = results.steps.iter().map(step);
+    std::iter::once(start(&results.start)).chain(steps).chain([end(&results.end)]).collect()
+}
+
+/// The line that it begins with.
+pub fn start(start: &Start) -> String {
+    json(&Record::Start(start))
+}
+
+/// The line of a step.
+pub fn step(step: &StepResult) -> String {
+    json(&Record::Step(step))
+}
+
+/// The line that it ends with.
+pub fn end(end: &End) -> String {
+    json(&Record::End(end))
 }

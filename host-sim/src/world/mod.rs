@@ -12,36 +12,39 @@ use planner_core::belief::sample::{Label, Reading};
 use planner_core::geometry::lattice::Site;
 use planner_core::geometry::line::Line;
 
-/// What is really there: today a straight boundary.
+/// What is really there: a straight boundary, if it is known. A real vehicle's is not.
 #[derive(Clone, Copy, Debug)]
 pub struct World {
-    boundary: Line,
+    boundary: Option<Line>,
 }
 
 impl World {
     /// A world that a line divides.
     pub const fn divided_by(line: Line) -> Self {
-        Self { boundary: line }
+        Self { boundary: Some(line) }
     }
 
-    /// The line that divides it, if one does.
+    /// A world of which nobody knows what divides it: no simulated robot senses anything there.
+    pub const UNKNOWN: Self = Self { boundary: None };
+
+    /// The line that divides it, if that is known.
     pub const fn line(&self) -> Option<&Line> {
-        Some(&self.boundary)
+        self.boundary.as_ref()
     }
 
-    /// The distance of a site from the boundary in metres, positive on its +1 side.
+    /// The distance of a site from the boundary in metres, positive on its +1 side; not a number without one.
     pub fn distance(&self, site: Site) -> f64 {
-        self.boundary.distance(Point2::from(site))
+        self.boundary.map_or(f64::NAN, |line| line.distance(Point2::from(site)))
     }
 
-    /// What a perfect sensor reads at a site.
+    /// What a perfect sensor reads at a site: of a world that is not known, neither side.
     pub fn reading(&self, site: Site) -> Reading {
         side(self.distance(site))
     }
 
-    /// Whether a label is the true one of a site.
+    /// Whether a label is the true one of a site, for all that is known.
     pub fn agrees(&self, site: Site, label: Label) -> bool {
-        self.reading(site) == Reading::Side(label)
+        self.boundary.is_none() || self.reading(site) == Reading::Side(label)
     }
 
     /// Whether its line is among the lines of a cell; `None` without a line.

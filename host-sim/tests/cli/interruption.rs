@@ -161,11 +161,12 @@ fn with_emulator(words: &str, script: &str) -> tempfile::TempDir {
 const SPEAK: &str =
     r#"for each; do case "$each" in file:*) printf "$words" >"${each#file:}";; esac; done"#;
 
-fn fly(folder: &Path) -> Child {
+fn fly(folder: &Path, more: &[&str]) -> Child {
     let path = std::env::var("PATH").unwrap_or_default();
     let mut command = Command::new(env!("CARGO_BIN_EXE_host-sim"));
     command
         .args(["hil", "m.toml", "--emulator=firmware", "--log", "log", "--trace", "t.jsonl"])
+        .args(more)
         .env("PATH", format!("{}:{path}", folder.join("bin").display()))
         .env("TMPDIR", folder.join("tmp"));
     start(&mut command, folder)
@@ -176,7 +177,7 @@ fn an_interrupted_emulator_is_no_orphan() {
     for (name, number) in SIGNALS.into_iter().filter(|(_, number)| reaches(*number)) {
         let folder = with_emulator("one", "echo $$ >started; mv started id; exec sleep 600");
         let id = || fs::read_to_string(folder.path().join("id"));
-        let hil = fly(folder.path());
+        let hil = fly(folder.path(), &[]);
         wait_until("the emulator runs", || id().is_ok());
         signal(&hil, name);
         assert_eq!(status(hil), Some(128 + number), "{name}");
@@ -187,12 +188,38 @@ fn an_interrupted_emulator_is_no_orphan() {
     }
 }
 
+/// Steps that were flown before stay, without a line that is not whole, and the message says where.
+#[test]
+fn an_interrupted_mission_leaves_its_steps() {
+    if !reaches(15) {
+        return;
+    }
+    let folder = with_emulator("one", "echo $$ >started; mv started id; exec sleep 600");
+    let run = host_sim(folder.path(), &["run", "m.toml", "--trace", "whole"]);
+    assert_eq!(status(run), Some(0));
+    let whole = fs::read_to_string(folder.path().join("whole")).expect("a trace");
+    let at = whole.match_indices('\n').nth(4).expect("a step").0 + 1;
+    fs::write(folder.path().join("t.jsonl.partial"), &whole[..at + 30]).expect("a file");
+    let hil = fly(folder.path(), &["--resume"]);
+    wait_until("the emulator runs", || folder.path().join("id").exists());
+    signal(&hil, "TERM");
+    let output = hil.wait_with_output().expect("it ends");
+    assert_eq!(output.status.code(), Some(128 + 15));
+    let message = text(&output.stderr);
+    assert!(
+        message.contains("steps are in t.jsonl.partial") && message.contains("--resume"),
+        "{message}"
+    );
+    let kept = fs::read_to_string(folder.path().join("t.jsonl.partial")).expect("it stays");
+    assert_eq!(kept, whole[..at]);
+}
+
 #[test]
 fn a_failed_mission_keeps_what_the_board_said_or_an_older_log() {
     for (words, kept) in [("one", "one"), ("", "old")] {
         let folder = with_emulator(words, "echo it burns >&2; exit 3");
         fs::write(folder.path().join("log"), "old").expect("a file");
-        let output = fly(folder.path()).wait_with_output().expect("it ends");
+        let output = fly(folder.path(), &[]).wait_with_output().expect("it ends");
         assert_eq!(output.status.code(), Some(2));
         let message = text(&output.stderr);
         assert!(message.contains("qemu-system-arm") && message.contains("it burns"), "{message}");

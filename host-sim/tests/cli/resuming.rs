@@ -1,4 +1,5 @@
-//! Campaigns that were stopped go on where they were, and what comes out is what it would have been.
+//! Campaigns and missions of a board that were stopped go on where they were, and what comes out is what it would have
+//! been.
 
 use std::fs;
 use std::path::Path;
@@ -9,7 +10,7 @@ use std::time::{Duration, Instant};
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 
-use crate::{folder, host_sim, prints, refuses, text};
+use crate::{GOOD, folder, host_sim, prints, refuses, text};
 
 const ROWS: &str = "c.csv";
 const PARTIAL: &str = "c.csv.partial";
@@ -195,4 +196,63 @@ fn two_programs_do_not_write_one_file() {
     first.wait().expect("it ends");
     assert_eq!(second.status.code(), Some(2));
     assert!(text(&second.stderr).contains("another program"), "{}", text(&second.stderr));
+}
+
+/// A folder with a scenario, what passes for no firmware, and the trace of the scenario's mission with these flags.
+fn with_trace(flags: &[&str]) -> (tempfile::TempDir, String) {
+    let folder = folder();
+    fs::write(folder.path().join("m.toml"), GOOD).expect("a file");
+    prints(folder.path(), &[&["run", "m.toml", "--trace", "whole"], flags].concat());
+    let trace = String::from_utf8(read(folder.path(), "whole")).expect("text");
+    (folder, trace)
+}
+
+/// Steps of another mission, or what are none, are refused by the line and the key that differs, and stay as they are.
+#[test]
+fn the_steps_of_another_mission_are_refused() {
+    const HIL: [&str; 6] = ["hil", "m.toml", "--emulator=m.toml", "--trace", "t.jsonl", "--resume"];
+    let (folder, trace) = with_trace(&[]);
+    let (_, other) = with_trace(&["--seed", "2"]);
+    let mut lines: Vec<_> = trace.lines().collect();
+    let steps = lines.len() - 2;
+    let label = if lines[3].contains("\"label\":-1") { ["-1", "1"] } else { ["1", "-1"] };
+    let [from, to] = label.map(|label| format!("\"label\":{label},"));
+    let wrong = lines[3].replace(&from, &to);
+    let with = |at: usize, line: &str| {
+        let mut lines = lines.clone();
+        lines[at] = line;
+        lines.join("\n") + "\n"
+    };
+    let cases: [(String, &[&str], &[&str]); 6] = [
+        (other, &[], &[":1: found seed 2, expected 1"]),
+        (with(3, &wrong), &[], &[":4: found label", &format!("expected {}", label[0])]),
+        (with(2, "{}"), &[], &[":3: expected a step"]),
+        (with(2, "?"), &[], &[":3: expected a step"]),
+        (trace.clone(), &["--steps", "3"], &[":5: expected no more than 3 steps"]),
+        ("notes\n".to_owned(), &[], &["something else than steps"]),
+    ];
+    for (content, flags, parts) in cases {
+        let partial = folder.path().join("t.jsonl.partial");
+        fs::write(&partial, &content).expect("a file");
+        let parts = [&["t.jsonl.partial"], parts].concat();
+        refuses(folder.path(), &[&HIL[..], flags].concat(), &parts);
+        assert_eq!(fs::read_to_string(&partial).expect("it stays"), content);
+    }
+    // What is not whole is made again; then comes the firmware, which this is not.
+    lines.truncate(5);
+    let cut = lines.join("\n") + "\n" + &trace.lines().nth(5).expect("a step")[..20];
+    fs::write(folder.path().join("t.jsonl.partial"), cut).expect("a file");
+    refuses(folder.path(), &HIL, &["m.toml", "firmware's ELF"]);
+    assert_eq!(read(folder.path(), "t.jsonl.partial"), (lines.join("\n") + "\n").into_bytes());
+    assert!(steps > 5);
+}
+
+#[test]
+fn a_mission_that_cannot_be_gone_on_with_is_refused() {
+    let (folder, _) = with_trace(&[]);
+    let hil = ["hil", "m.toml", "--emulator=m.toml", "--resume", "--trace"];
+    refuses(folder.path(), &[&hil[..], &["/dev/null"]].concat(), &["/dev/null", "a stream"]);
+    refuses(folder.path(), &[&hil[..], &["m.toml"]].concat(), &["m.toml", "the scenario"]);
+    // Nothing was flown, so nothing stays.
+    refuses(folder.path(), &[&hil[..], &["t.jsonl"]].concat(), &["firmware's ELF"]);
 }

@@ -30,7 +30,8 @@ fn bad_noise_is_refused() {
 #[test]
 fn bad_scenarios_are_refused_by_file_and_field() {
     let folder = folder();
-    let cases: [(&str, &str, &[&str]); 23] = [
+    let cases: [(&str, &str, &[&str]); 24] = [
+        ("truth = { slope = 0.41, intercept = 3.5 }", "", &["bad.toml", "truth", "found none"]),
         ("steps = 10", "steps = ten", &["bad.toml:4"]),
         ("steps = 10", "stepz = 10", &["bad.toml:4", "stepz", "expected one of", "`steps`"]),
         ("steps = 10", "steps = 65", &["steps", "found 65", "1 to 64", "68 samples"]),

@@ -318,7 +318,7 @@ fn moved(
         target: (target != end).then(|| rounding.place(target.into())),
         truly: stop.truly.map(|at| rounding.place(at)),
         label: result.label,
-        is_wrong: result.label.is_some_and(|label| label != 0 && label != result.fact),
+        is_wrong: result.is_wrong() && result.label != Some(0),
         chance: expectation.map(|it| it.chance),
         expected: expectation.map(|it| it.bits),
     }

@@ -154,7 +154,7 @@ fn read(step: &StepResult, rise: f64) -> String {
     let Some(label) = step.label else { return "Nothing.".into() };
     let judged = match label {
         0 => ", exactly on the line",
-        _ if label != step.fact => ", which is wrong",
+        _ if step.is_wrong() => ", which is wrong",
         _ => "",
     };
     let change = if rise < 0.0 { "fall" } else { "rise" };

@@ -1,0 +1,200 @@
+#!/usr/bin/env python3
+"""An ideal vehicle for a chip that plans, in a world with a straight line; written from protocol.md.
+
+It keeps what it has done, so a chip that restarts goes on where it was.
+"""
+
+import argparse
+import math
+import os
+import random
+import select
+import socket
+import sys
+
+from wire import (ENVELOPES, METRE, MOTION, PROTOCOL, TO_CHIP, TO_VEHICLE, envelope, frame, unframe,
+                  write)
+
+
+def setup(args):
+    """The paper's example: a square of 20 m, four given labels, a unicycle."""
+    site = lambda x, z: {"x": x * METRE, "z": z * METRE}
+    odds = round((math.log(args.p) - math.log1p(-args.p)) * 2**32) if args.p < 1 else 1000 << 32
+    noise = {"reliability": odds, "trusted_radius": METRE // 2 if args.p < 1 else 0, "tolerance": 0}
+    looks_ahead, taken = args.algorithm == "lookahead", args.steps
+    doubt = {"noise": noise, "prior": ("Area", None)}
+    return {
+        "protocol": PROTOCOL,
+        "algorithm": {
+            "cfc": ("Cfc", None),
+            "scc": ("Scc", {**doubt, "policy": ("MixtureOfOwn", None)}),
+            "lookahead": ("Lookahead", {"evaluations": 512, "goal": None,
+                                        "noise": doubt if args.p < 1 else None}),
+        }[args.algorithm],
+        "config": {
+            "area": {"min": site(0, 0), "max": site(20, 20)},
+            "varrho": 2_000 if looks_ahead else 100_000,
+            "crossing": ("Unrestricted", None),
+            "following": ("Unrestricted" if args.algorithm == "scc" else "AlongBisector", None),
+            "tolerance": 0,
+        },
+        "keep_outs": None,
+        "vehicle": ("Unicycle", {"turn_step_urad": 1 if looks_ahead else 10_000,
+                                 "sharpest": 1 << 30, "speeds": 21, "speed_step_mm": 100}),
+        "capacity": {"samples": 4 + taken,
+                     "hypotheses": 1 + taken + taken * (taken - 1) // 2 if args.p < 1 else 1},
+        "steps": taken,
+        "start": {"site": site(2, 1), "heading": 0},
+        "labels": ("Vehicle", None),
+        "given": [{"site": site(x, z), "label": (label, None)} for x, z, label in (
+            (2, 1, "Negative"), (2, 8, "Positive"), (18, 16, "Positive"), (18, 5, "Negative"))],
+    }
+
+
+class Vehicle:
+    """Reaches every target, reads the label there, and keeps what it has done."""
+
+    def __init__(self, args):
+        self.setup, self.args = setup(args), args
+        self.made, self.asked, self.begun, self.labels = [], 0, 0, 0
+        self.end, self.is_dismissed = None, False
+
+    def read(self, site):
+        slope, intercept = self.args.line
+        above = site["z"] / METRE - (slope * site["x"] / METRE + intercept)
+        self.labels += 1
+        is_wrong = self.labels in self.args.wrong
+        return ("Side", ("Positive" if (above > 0) != is_wrong else "Negative", None))
+
+    def act(self, request, said):
+        if request == "Ready":
+            self.begun, self.asked = self.begun + 1, 0
+            if self.begun > 1:
+                print(f"the chip has restarted: it is told again what was done in {len(self.made)} steps")
+            return "Noted", None
+        if request == "Declined":
+            sys.exit(f"the chip declines: {said}")
+        if request in ("Move", "End") and self.asked:
+            if said["last"] != self.made[self.asked - 1][2]:
+                sys.exit(f"step {self.asked}: the chip took in {said['last']}, which was not read")
+        if request == "Move":
+            motion = write(MOTION, said["motion"])
+            if self.asked == len(self.made):
+                self.make(motion, said["motion"])
+            kept, pose, reading = self.made[self.asked]
+            self.asked += 1
+            if kept != motion:
+                sys.exit(f"step {self.asked}: the chip asks for another motion than before it restarted")
+            return "Arrived", {"pose": pose, "reading": reading}
+        if request == "End":
+            self.end = said
+            return "Noted", None
+        sys.exit(f"{request}: the chip asks for what this mission has not")
+
+    def make(self, motion, said):
+        pose, site = said["target"], said["target"]["site"]
+        reading = self.read(site) if said["wants_label"] else None
+        self.made.append((motion, pose, reading))
+        label = {"Positive": "+1", "Negative": "-1"}[reading[1][0]] if reading else "none"
+        print(f"step {len(self.made)}: action {said['action']} to x {site['x'] / METRE:.4f}, "
+              f"z {site['z'] / METRE:.4f} ({site['x']}, {site['z']}, {pose['heading']}), label {label}")
+
+
+class Responder:
+    """Acts on a request once, and answers it as often as it comes."""
+
+    def __init__(self, vehicle):
+        self.vehicle, self.session, self.last, self.reply = vehicle, random.getrandbits(32), None, None
+
+    def hear(self, content):
+        said, _ = envelope(content, {TO_VEHICLE: ENVELOPES[TO_VEHICLE]})
+        if not said:
+            return None
+        session, number, (request, what) = said["session"], said["number"], said["message"]
+        answer = lambda session, name, value: frame(write(ENVELOPES[TO_CHIP], {
+            "way": TO_CHIP, "session": session, "number": number, "message": (name, value)}))
+        on_offer = (self.session + 1) % 2**32 or 1
+        if request == "Hello":
+            if what["protocol"] != PROTOCOL:
+                sys.exit(f"the chip speaks protocol {what['protocol']}, this vehicle {PROTOCOL}")
+            self.vehicle.is_dismissed = self.vehicle.end is not None
+            return None if self.vehicle.end else answer(on_offer, "Setup", self.vehicle.setup)
+        if session == on_offer:
+            self.session, self.last = session, None
+        elif session != self.session or self.last is None:
+            return answer(session, "Stale", None)
+        if self.last is not None and number < self.last:
+            return answer(session, "Stale", None)
+        if number != self.last:
+            self.last, self.reply = number, answer(session, "Busy", None)
+            self.reply = answer(session, *self.vehicle.act(request, what))
+        return self.reply
+
+
+def connect(address):
+    """A file descriptor of HOST:PORT or of a serial device."""
+    if ":" in address:
+        host, port = address.rsplit(":", 1)
+        return socket.create_connection((host, int(port))).detach()
+    import termios
+
+    port = os.open(address, os.O_RDWR | os.O_NOCTTY)
+    speed, raw = termios.B115200, termios.CS8 | termios.CREAD | termios.CLOCAL
+    at_least = [1 if at == termios.VMIN else 0 for at in range(32)]
+    termios.tcsetattr(port, termios.TCSANOW, [0, 0, raw, 0, speed, speed, at_least])
+    return port
+
+
+def fly(port, vehicle):
+    responder, stuffed = Responder(vehicle), bytearray()
+    # Once the mission is over the chip may not have heard that, until it asks for another.
+    while not vehicle.is_dismissed and select.select([port], [], [], 2 if vehicle.end else 30)[0]:
+        data = os.read(port, 512)
+        if not data:
+            break
+        for byte in data:
+            if byte:
+                stuffed.append(byte)
+                continue
+            content, stuffed = unframe(bytes(stuffed)), bytearray()
+            reply = content and responder.hear(content)
+            while reply:
+                reply = reply[os.write(port, reply) :]
+    if not vehicle.end:
+        sys.exit(f"the chip has been silent since step {len(vehicle.made)}")
+
+
+def tell(end):
+    print(f"ended: {end['reason'][0]}" + (f", {end['reason'][1]}" if end["reason"][1] else ""))
+    for name, line in end["estimates"].items():
+        if line:
+            x, z = line["along"]["x"], line["along"]["z"]
+            c, s, m, b = x / math.hypot(x, z), z / math.hypot(x, z), line["slope"], line["intercept"]
+            x, z = line["about"]["x"] / METRE - b * s, line["about"]["z"] / METRE + b * c
+            slope = (s + m * c) / (c - m * s)
+            exact = [*line["about"].values(), *line["along"].values(), m, b]
+            print(f"{name}: z = {slope:.4f} x + {z - slope * x:.4f}, exactly", *exact)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("address", help="HOST:PORT, or a serial device")
+    parser.add_argument("--algorithm", choices=["cfc", "scc", "lookahead"], default="lookahead")
+    parser.add_argument("--steps", type=int, default=10)
+    parser.add_argument("--p", type=float, default=1.0, help="how often labels are said to be right")
+    parser.add_argument("--line", type=float, nargs=2, default=[0.41, 3.5], metavar=("SLOPE", "INTERCEPT"))
+    parser.add_argument("--wrong", type=int, nargs="*", default=[], help="which labels are read wrong")
+    args = parser.parse_args()
+    if not 0 < args.p <= 1 or args.p < 1 and args.algorithm == "cfc":
+        parser.error(f"--p: found {args.p}, expected a probability, and 1 with --algorithm cfc")
+    sys.stdout.reconfigure(line_buffering=True)
+    vehicle = Vehicle(args)
+    try:
+        fly(connect(args.address), vehicle)
+    except (OSError, ValueError) as error:
+        sys.exit(f"{args.address}: {error}")
+    tell(vehicle.end)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,94 @@
+//! A mission as a chip is told it, and why a chip may not want it.
+
+use anyhow::{Result, anyhow, bail};
+use heapless::Vec as BoundedVec;
+use planner_core::geometry::region::Region as _;
+use planner_core::link::message::{
+    self, Capacity, Declined, LabelSource, MissionArea, Outline, PROTOCOL, Setup,
+};
+use planner_core::planner::config::Config;
+use planner_core::planner::lookahead;
+
+use crate::mission::algorithm::Algorithm;
+use crate::mission::definition::Mission;
+
+/// The mission as a chip is told it.
+///
+/// # Errors
+/// When it is none that a chip can be asked to fly.
+pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
+    let algorithm = match mission.algorithm {
+        Algorithm::Cfc => message::Algorithm::Cfc,
+        Algorithm::Scc => message::Algorithm::Scc {
+            noise: mission.noise_told(),
+            policy: mission.policy,
+            prior: mission.prior,
+        },
+        Algorithm::Lookahead => message::Algorithm::Lookahead {
+            evaluations: lookahead::EVALUATIONS,
+            goal: mission.goal,
+            noise: mission.noise.map(|_| (mission.noise_told(), mission.prior)),
+        },
+        other => bail!("algorithm: found {}, expected cfc, scc or lookahead", other.name()),
+    };
+    let samples = mission.given.samples();
+    let given = BoundedVec::from_slice(samples).map_err(|_| {
+        let most = message::MOST_GIVEN;
+        anyhow!("oracle: found {} points, expected at most {most} on a board", samples.len())
+    })?;
+    // Labels that are all certain make no second hypothesis; of t others there are at most so many.
+    let taken = mission.steps;
+    let hypotheses = match mission.algorithm {
+        _ if mission.is_noisy() => 1 + taken + taken * taken.saturating_sub(1) / 2,
+        _ => 1,
+    };
+    let capacity =
+        Capacity { samples: (samples.len() as u32 + taken) as u16, hypotheses: hypotheses as u16 };
+    let &Mission { config: Config { area, varrho, crossing, following, tolerance }, start, .. } =
+        mission;
+    let config = Config { area: area.bounds(), varrho, crossing, following, tolerance };
+    let is_plain = area.sides().next().is_none() && area.hulls().next().is_none();
+    let keep_outs = (!is_plain).then(|| area.hulls().count() as u8);
+    let (protocol, vehicle, steps) = (PROTOCOL, mission.vehicle.into(), taken as u16);
+    Ok(Setup {
+        protocol,
+        algorithm,
+        config,
+        keep_outs,
+        vehicle,
+        capacity,
+        steps,
+        start,
+        labels,
+        given,
+    })
+}
+
+/// The border of an area, then its keep-outs.
+pub fn outlines(area: &MissionArea) -> impl Iterator<Item = Outline> {
+    let border = Outline { corners: area.corners().iter().copied().collect(), radius: 0 };
+    [border].into_iter().chain(area.hulls().map(Outline::from))
+}
+
+/// Why a chip does not fly it, by the key of the scenario that asks too much.
+pub(crate) fn declined(declined: Declined, setup: &Setup) -> anyhow::Error {
+    match declined {
+        Declined::Protocol(theirs) => {
+            anyhow!("the board speaks protocol {theirs}, expected {PROTOCOL}")
+        }
+        Declined::Capacity(Capacity { samples, hypotheses }) => {
+            let most = usize::from(samples).saturating_sub(setup.given.len());
+            anyhow!(
+                "steps: found {}, expected at most {most}: the board has room for {samples} samples \
+                 and {hypotheses} hypotheses, {} of the samples the oracle's",
+                setup.steps,
+                setup.given.len(),
+            )
+        }
+        Declined::Algorithm => anyhow!("algorithm: declined by the board, which has another"),
+        Declined::Given(error) => anyhow!("oracle: declined by the board: {error}"),
+        Declined::Vehicle(why) => anyhow!("vehicle: declined by the board: expected {why}"),
+        Declined::Area => anyhow!("area: declined by the board: {declined}"),
+        Declined::Labels => anyhow!("--labels: found chip, but this board has no label sensor"),
+    }
+}

@@ -1,0 +1,119 @@
+//! What recorded samples determine, in words.
+
+use std::fmt::Write as _;
+
+use planner_core::geometry::line::Line;
+
+use crate::replay::answer::{Answer, Doubted};
+use crate::replay::record::{LineInFile, Replay};
+use crate::report::text;
+
+/// Lines of a file that are named in words; the record has all.
+const MOST_NAMED: usize = 20;
+
+impl Replay {
+    /// What the samples determine, in words.
+    pub fn report(&self) -> String {
+        let mut text = format!("{}: {}.\n{}\n", self.file.name, self.headline(), self.about());
+        // Writing to a string cannot fail.
+        let mut row = |name: &str, value: &str| {
+            let _ = writeln!(text, "{name:<28} {value}");
+        };
+        let of_set = if self.answer.doubt.is_some() { " (90 %)" } else { "" };
+        row(&format!("slope between, deg{of_set}"), &text::arcs(&self.answer.slope_arcs));
+        row(&format!("intercept between, m{of_set}"), &text::range(self.answer.intercept));
+        for (name, line) in self.named() {
+            row(name, &line.map_or("none".into(), |line| text::line(&line.into())));
+            if let Some(in_file) = line.and_then(|line| self.in_file(&line)) {
+                row("  in the file's coordinates", &in_file.in_words());
+            }
+        }
+        if let Some(doubt) = &self.answer.doubt {
+            text += &self.doubt_in_words(doubt);
+        }
+        text
+    }
+
+    fn headline(&self) -> String {
+        let Answer { bounding, tolerance, doubt, .. } = &self.answer;
+        let (count, bounding) = (self.file.samples.len(), bounding.len());
+        match (doubt, tolerance) {
+            (None, None) => {
+                format!("{count} samples, separable by a line; {bounding} of them bound it")
+            }
+            (None, Some(off)) => format!(
+                "{count} samples, separable by a line with each within {off} m of where it is said to be; {bounding} of them bound it"
+            ),
+            (Some(Doubted { p, .. }), None) => {
+                format!("{count} samples, each label true with probability {p}")
+            }
+            (Some(Doubted { p, .. }), Some(off)) => format!(
+                "{count} samples, each label true with probability {p}, each position within {off} m"
+            ),
+        }
+    }
+
+    /// What positions are about.
+    fn about(&self) -> String {
+        match self.file.frame.origin() {
+            None => String::new(),
+            Some([lat, lon]) if self.file.frame.is_geographic() => format!(
+                "Metres to the east (x) and the north (z) of latitude {lat}, longitude {lon}.\n"
+            ),
+            Some([x, z]) => format!("Metres about the origin ({x}, {z}).\n"),
+        }
+    }
+
+    /// The lines to tell, the recommended one first.
+    pub(crate) fn named(&self) -> Vec<(&'static str, Option<Line>)> {
+        let Answer { centre, maximum_margin, bisector, tolerance, doubt, .. } = &self.answer;
+        let [mean, margin, printed] = text::NAMES;
+        match (doubt, tolerance) {
+            (Some(doubt), _) => {
+                vec![("posterior mean", *centre), ("most likely line", Some(doubt.most_likely))]
+            }
+            (None, Some(_)) => {
+                vec![("centre of the lines left", *centre), (margin, *maximum_margin)]
+            }
+            (None, None) => {
+                vec![(mean, *centre), (margin, *maximum_margin), (printed, *bisector)]
+            }
+        }
+    }
+
+    fn doubt_in_words(&self, doubt: &Doubted) -> String {
+        let Doubted { pruned_mass, probability, disagreeing, .. } = doubt;
+        let mut text = format!(
+            "\nOf all lines through the ground around the samples the 90 % set holds {probability:.3};\n\
+             what was left out of account weighs {pruned_mass:.6} at most.\n",
+        );
+        let count = disagreeing.len();
+        let lines: Vec<_> = disagreeing
+            .iter()
+            .take(MOST_NAMED)
+            .map(|index| self.file.line(*index).to_string())
+            .collect();
+        let more = if count > lines.len() { " and others" } else { "" };
+        let where_they_are =
+            if count == 0 { String::new() } else { format!(": lines {}{more}", lines.join(", ")) };
+        let _ = writeln!(
+            text,
+            "Disagree with the most likely line: {count} of {} samples{where_they_are}.",
+            self.file.samples.len()
+        );
+        text
+    }
+}
+
+impl LineInFile {
+    fn in_words(self) -> String {
+        let from_to = self.ends.map(|[[a, b], [c, d]]| format!("from ({a}, {b}) to ({c}, {d})"));
+        let from_to = from_to.unwrap_or_default();
+        match (self.slope, self.intercept) {
+            (Some(slope), Some(intercept)) => {
+                format!("z = {slope} x {intercept:+}, {from_to}")
+            }
+            _ => from_to,
+        }
+    }
+}
