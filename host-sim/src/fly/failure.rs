@@ -1,0 +1,82 @@
+//! Why a flight ends before its mission does.
+
+use std::fmt;
+use std::time::Duration;
+
+/// What went wrong.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Failure {
+    /// The vehicle is none that is known here.
+    NotOurs(String),
+    /// So long it was not ready: what was missing.
+    NotReady(Duration, String),
+    /// It does not send what is needed.
+    Declined(&'static str, String),
+    /// It stands where the scenario does not allow it to be.
+    Misplaced(String),
+    /// Another mode than guided: someone has taken over.
+    TakenOver(String),
+    /// It was disarmed.
+    Disarmed,
+    /// Its own failsafe has acted.
+    Failsafe(String),
+    /// It has left its geofence.
+    Fence,
+    /// Nothing was heard of it for so long.
+    Silent(Duration),
+    /// It did not say for so long where it is.
+    Lost(Duration),
+    /// It was to be somewhere within so long and was so far off.
+    Late(Duration, String),
+    /// No label came within so long.
+    NoLabel(Duration, String),
+    /// It is where no lattice reaches.
+    OffLattice,
+    /// A label contradicts what is known.
+    Refused(String),
+    /// A signal to this program.
+    Interrupted(i32),
+    /// The link broke.
+    Broken(String),
+}
+
+impl Failure {
+    /// Whether nothing more may be sent, as someone else drives it now, or can be.
+    pub const fn is_out_of_our_hands(&self) -> bool {
+        matches!(self, Self::TakenOver(_) | Self::Broken(_))
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let s = |time: &Duration| time.as_secs_f64();
+        match self {
+            Self::NotOurs(found) => write!(
+                f,
+                "found {found}, expected ArduPilot on a rover (MAV_TYPE_GROUND_ROVER), a boat \
+                 (MAV_TYPE_SURFACE_BOAT) or a submarine (MAV_TYPE_SUBMARINE)"
+            ),
+            Self::NotReady(time, missing) => {
+                write!(f, "not ready within {} s: expected {missing}", s(time))
+            }
+            Self::Declined(message, how) => {
+                write!(f, "the vehicle does not send {message}: {how}")
+            }
+            Self::Misplaced(why) => write!(f, "the vehicle stands where it may not be: {why}"),
+            Self::TakenOver(mode) => {
+                write!(f, "the mode is {mode}, no longer GUIDED: someone has taken over")
+            }
+            Self::Disarmed => f.write_str("the vehicle was disarmed"),
+            Self::Failsafe(state) => write!(f, "the vehicle's failsafe has acted: {state}"),
+            Self::Fence => f.write_str("the vehicle has left its geofence"),
+            Self::Silent(time) => write!(f, "no heartbeat for {} s", s(time)),
+            Self::Lost(time) => write!(f, "no position for {} s", s(time)),
+            Self::Late(time, off) => write!(f, "not there within {} s: {off}", s(time)),
+            Self::NoLabel(time, source) => write!(f, "no label within {} s: {source}", s(time)),
+            Self::OffLattice => f.write_str("the position is beyond 8192 m, or no number"),
+            Self::Refused(why) => f.write_str(why),
+            Self::Interrupted(signal) => write!(f, "interrupted by signal {signal}"),
+            Self::Broken(why) => write!(f, "the link broke: {why}"),
+        }
+    }
+}

@@ -1,0 +1,185 @@
+//! A mission that a vehicle flies: the planner's loop around a pilot and a link.
+
+use std::time::Duration;
+
+use planner_core::belief::sample::Reading;
+use planner_core::motion::dynamics::Pose;
+use planner_core::planner::{Motion, Planner as _};
+use planner_core::robot::agent::{Agent, AgentError, Event};
+use planner_core::robot::body::Body;
+
+use crate::fly::failure::Failure;
+use crate::fly::frame::{self, Ned};
+use crate::fly::link::Link;
+use crate::fly::orders::Order;
+use crate::fly::pilot::Pilot;
+use crate::mission::definition::Mission;
+use crate::mission::flight::Flown;
+use crate::mission::recording::{Recorder, Recording};
+use crate::mission::results::Ending;
+use crate::mission::terrain::check_inside;
+use crate::output::notes::{announce, count, warn};
+
+/// How long is waited for a message before it is looked for what is due.
+const ROUND: Duration = Duration::from_millis(20);
+
+/// How long something is waited for before it is said.
+const PATIENCE: Duration = Duration::from_secs(1);
+
+/// A vehicle at the other end of a link: a body like any other.
+pub struct Control<L> {
+    link: L,
+    pilot: Pilot,
+    interrupted: fn() -> Option<i32>,
+}
+
+/// A mission that was flown, as far as it went.
+pub struct Flight {
+    /// The mission as it went.
+    pub recording: Recording,
+    /// Why it went no further, and what became of the vehicle.
+    pub failure: Option<(Failure, String)>,
+}
+
+impl<L: Link> Control<L> {
+    /// A pilot at a link; `interrupted` tells when the program is to end.
+    pub const fn new(link: L, pilot: Pilot, interrupted: fn() -> Option<i32>) -> Self {
+        Self { link, pilot, interrupted }
+    }
+
+    /// The link.
+    pub const fn link(&self) -> &L {
+        &self.link
+    }
+
+    /// Sends what is due and hears what comes next.
+    fn round(&mut self) {
+        if let Some(signal) = (self.interrupted)() {
+            self.pilot.end(self.link.now(), Some(Failure::Interrupted(signal)));
+        }
+        for message in self.pilot.due(self.link.now()) {
+            self.link.send(&message);
+        }
+        match self.link.receive(self.link.now() + ROUND) {
+            Ok(Some((header, message))) => self.pilot.hear(self.link.now(), header, &message),
+            Ok(None) => {}
+            Err(error) => self.pilot.give_up(Failure::Broken(error.to_string())),
+        }
+    }
+
+    /// Waits until the vehicle is ready to be flown, and says what for.
+    fn prepare(&mut self) -> Result<(), Failure> {
+        let (mut awaited, mut since, mut is_said) = (None, self.link.now(), false);
+        while !self.pilot.is_ready() {
+            if let Some(failure) = self.pilot.failure() {
+                return Err(failure.clone());
+            }
+            let now = self.link.now();
+            let missing = self.pilot.missing(now);
+            if missing != awaited {
+                (awaited, since, is_said) = (missing, now, false);
+            }
+            if let Some(awaited) = awaited.as_ref().filter(|_| !is_said && now >= since + PATIENCE)
+            {
+                announce(format_args!("waiting for {awaited}"));
+                is_said = true;
+            }
+            self.round();
+        }
+        Ok(())
+    }
+
+    /// Where the mission begins: where the vehicle is.
+    fn start(&self, mission: &Mission) -> Result<Pose, Failure> {
+        let (fix, yaw) = self.pilot.whereabouts().ok_or(Failure::OffLattice)?;
+        let pose = frame::pose(mission.start, fix.at, yaw).ok_or(Failure::OffLattice)?;
+        check_inside("its position", pose.site, &mission.config.area)
+            .map_err(|error| Failure::Misplaced(error.to_string()))?;
+        let off = fix.at.distance(mission.start.site.into());
+        announce(format_args!(
+            "ready at x = {:.2}, z = {:.2}, {off:.2} m from the scenario's start: the mission begins here",
+            fix.at.east, fix.at.north,
+        ));
+        Ok(pose)
+    }
+
+    /// Brings the vehicle to rest, whatever has happened.
+    fn end(&mut self, failure: Option<Failure>) {
+        self.pilot.end(self.link.now(), failure);
+        while !self.pilot.is_over() {
+            self.round();
+        }
+    }
+}
+
+impl<L: Link> Body for Control<L> {
+    type Error = Failure;
+
+    fn perform(&mut self, motion: &Motion, pose: &mut Pose) -> Result<Option<Reading>, Failure> {
+        let Motion { target, wants_label, .. } = *motion;
+        let order = Order {
+            to: Ned::from(target.site),
+            yaw: frame::yaw(target.heading),
+            is_turn: target.site == pose.site,
+        };
+        self.pilot.order(self.link.now(), order, wants_label);
+        loop {
+            if let Some(arrival) = self.pilot.take_arrival() {
+                let reached = frame::pose(target, arrival.fix.at, arrival.yaw);
+                *pose = reached.ok_or(Failure::OffLattice)?;
+                return Ok(arrival.label.map(Reading::Side));
+            }
+            if let Some(failure) = self.pilot.failure() {
+                return Err(failure.clone());
+            }
+            self.round();
+        }
+    }
+}
+
+/// Flies a mission.
+///
+/// # Errors
+/// When it did not begin: nothing that moves was sent.
+pub fn fly<L: Link>(mut mission: Mission, control: &mut Control<L>) -> Result<Flight, Failure> {
+    control.prepare()?;
+    mission.start = control.start(&mission)?;
+    let mut planner = mission.planner();
+    let mut recorder = Recorder::new(mission.clone());
+    let bar = count("steps flown").ok();
+    let (mut ending, mut failure) = (Ending::Steps, None);
+    let mut agent = Agent::new(&mut *planner, &mut *control, mission.start);
+    for _ in 0..mission.steps {
+        match agent.step() {
+            Ok(Event::Step(step)) => recorder.take(&step, None, agent.planner.belief()),
+            Ok(Event::Stopped(reason)) => {
+                ending = Ending::Stopped(reason);
+                break;
+            }
+            Err(AgentError::Body(error)) => failure = Some(error),
+            Err(AgentError::Refused(refused)) => {
+                failure = Some(Failure::Refused(recorder.refusal(&refused).to_string()));
+            }
+        }
+        if failure.is_some() {
+            ending = Ending::BrokenOff;
+            break;
+        }
+        if let Some(bar) = &bar {
+            bar.inc(1);
+        }
+    }
+    let belief = planner.belief().boxed();
+    control.end(failure.clone());
+    if let Some(bar) = bar {
+        bar.finish_and_clear();
+    }
+    let farewell = control.pilot.farewell();
+    if failure.is_none() && !control.pilot.is_at_rest() {
+        warn("the vehicle", farewell);
+    }
+    let said = control.pilot.warning().map(|it| format!("; it last warned: {it}"));
+    let told = |failure| (failure, format!("{farewell}{}", said.unwrap_or_default()));
+    let recording = recorder.end(Flown { ending, belief });
+    Ok(Flight { recording, failure: failure.map(told) })
+}

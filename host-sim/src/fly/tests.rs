@@ -1,0 +1,381 @@
+//! Flights of the ideal vehicle on a link that a test spoils, in the time of both: each message lost, and each failure.
+
+use std::time::Duration;
+
+use anyhow::{Result, bail};
+use mavlink::MavHeader;
+use mavlink::dialects::common::{
+    COMMAND_ACK_DATA, FENCE_STATUS_DATA, MavCmd, MavMessage, MavModeFlag, MavResult, MavState,
+    MavType, PositionTargetTypemask as Ignored,
+};
+
+use crate::fly::failure::Failure;
+use crate::fly::flight::{self, Control, Flight};
+use crate::fly::ideal::Ideal;
+use crate::fly::label::LabelSource;
+use crate::fly::limits::Limits;
+use crate::fly::link::Link;
+use crate::fly::orders::AUTOPILOT;
+use crate::fly::pilot::Pilot;
+use crate::mission::definition::Mission;
+use crate::mission::recording::Recording;
+use crate::mission::scenario::{self, Overrides, PAPER_NOISELESS};
+use crate::report::trace;
+
+const SYSTEM: u8 = 3;
+
+/// What becomes of a message: by the time, by its number among those that go its way.
+type Spoil<'a> = Box<dyn FnMut(Duration, usize, MavMessage) -> Vec<MavMessage> + 'a>;
+
+/// An ideal vehicle on a spoiled link.
+struct Spoiled<'a> {
+    ideal: Ideal,
+    there: Spoil<'a>,
+    back: Spoil<'a>,
+    /// How many have gone either way.
+    gone: [usize; 2],
+    waiting: Vec<MavMessage>,
+    breaks_at: Option<Duration>,
+}
+
+impl Link for Spoiled<'_> {
+    fn now(&self) -> Duration {
+        self.ideal.now()
+    }
+
+    fn send(&mut self, message: &MavMessage) {
+        self.gone[0] += 1;
+        for message in (self.there)(self.ideal.now(), self.gone[0] - 1, message.clone()) {
+            self.ideal.send(&message);
+        }
+    }
+
+    fn receive(&mut self, until: Duration) -> Result<Option<(MavHeader, MavMessage)>> {
+        if self.breaks_at.is_some_and(|at| self.now() >= at) {
+            bail!("gone");
+        }
+        if self.waiting.is_empty() {
+            let Some((_, message)) = self.ideal.receive(until)? else { return Ok(None) };
+            self.gone[1] += 1;
+            self.waiting = (self.back)(self.ideal.now(), self.gone[1] - 1, message);
+        }
+        let header = MavHeader { system_id: SYSTEM.into(), component_id: AUTOPILOT, sequence: 0 };
+        Ok(self.waiting.pop().map(|message| (header, message)))
+    }
+}
+
+fn mission() -> Mission {
+    let text = format!("tolerance = 0.02\n{PAPER_NOISELESS}");
+    let overrides = Overrides { steps: Some(4), ..Overrides::default() };
+    scenario::parse("m", &text, overrides).expect("a scenario")
+}
+
+fn as_it_is(_: Duration, _: usize, message: MavMessage) -> Vec<MavMessage> {
+    vec![message]
+}
+
+/// A flight, and what the vehicle was sent.
+struct Flown {
+    flight: Result<Flight, Failure>,
+    sent: Vec<(Duration, MavMessage)>,
+    gone: [usize; 2],
+}
+
+impl Flown {
+    fn trace(&self) -> String {
+        match &self.flight {
+            Ok(flight) => trace::lines(&flight.recording.results),
+            Err(failure) => panic!("{failure}"),
+        }
+    }
+
+    fn failure(&self) -> Option<&Failure> {
+        match &self.flight {
+            Ok(flight) => flight.failure.as_ref().map(|it| &it.0),
+            Err(failure) => Some(failure),
+        }
+    }
+}
+
+fn fly_with(
+    there: Spoil<'_>,
+    back: Spoil<'_>,
+    breaks_at: Option<Duration>,
+    interrupted: fn() -> Option<i32>,
+) -> Flown {
+    let (mission, second) = (mission(), Duration::from_secs(1));
+    let labels = LabelSource::new("WET".parse().expect("a name"), None);
+    let ideal = Ideal::new(&mission, SYSTEM, labels.clone());
+    let limits =
+        Limits { acceptance: 0.02, ready: 60 * second, motion: 20 * second, label: 5 * second };
+    let waiting = Vec::new();
+    let link = Spoiled { ideal, there, back, gone: [0; 2], waiting, breaks_at };
+    let mut control = Control::new(link, Pilot::new(SYSTEM, labels, limits), interrupted);
+    let flight = flight::fly(mission, &mut control);
+    let link = control.link();
+    Flown { flight, sent: link.ideal.sent().to_vec(), gone: link.gone }
+}
+
+fn fly<'a>(
+    there: impl FnMut(Duration, usize, MavMessage) -> Vec<MavMessage> + 'a,
+    back: impl FnMut(Duration, usize, MavMessage) -> Vec<MavMessage> + 'a,
+) -> Flown {
+    fly_with(Box::new(there), Box::new(back), None, || None)
+}
+
+fn of_run() -> String {
+    trace::lines(&Recording::of(&mission()).expect("labels are true").results)
+}
+
+/// Whether a message moves a vehicle.
+fn moves(message: &MavMessage) -> bool {
+    let MavMessage::SET_POSITION_TARGET_LOCAL_NED(it) = message else { return false };
+    !is_stop(message) || (it.vx, it.vy, it.vz, it.yaw_rate) != (0.0, 0.0, 0.0, 0.0)
+}
+
+fn is_stop(message: &MavMessage) -> bool {
+    matches!(message, MavMessage::SET_POSITION_TARGET_LOCAL_NED(it)
+        if it.type_mask.contains(Ignored::POSITION_TARGET_TYPEMASK_X_IGNORE)
+            && !it.type_mask.contains(Ignored::POSITION_TARGET_TYPEMASK_VX_IGNORE))
+}
+
+#[test]
+fn an_ideal_vehicle_flies_what_run_flies_and_is_stopped_in_the_end() {
+    let flown = fly(as_it_is, as_it_is);
+    assert_eq!(flown.failure(), None);
+    assert_eq!(flown.trace(), of_run());
+    assert!(flown.sent.last().is_some_and(|(_, it)| is_stop(it)));
+    for (_, message) in &flown.sent {
+        match message {
+            MavMessage::HEARTBEAT(it) => assert_eq!(it.mavtype, MavType::MAV_TYPE_GCS),
+            MavMessage::COMMAND_LONG(it) => {
+                assert_eq!(it.command, MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL);
+                assert_eq!((it.target_system, it.target_component), (SYSTEM, AUTOPILOT));
+            }
+            MavMessage::SET_POSITION_TARGET_LOCAL_NED(it) => {
+                assert_eq!((it.target_system, it.target_component), (SYSTEM, AUTOPILOT));
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+}
+
+#[test]
+fn each_message_may_be_lost_or_doubled_either_way() {
+    let expected = of_run();
+    let [there, back] = fly(as_it_is, as_it_is).gone;
+    for copies in [0, 2] {
+        for lost in 0..there {
+            let spoil = |_, number, message| vec![message; if number == lost { copies } else { 1 }];
+            assert_eq!(fly(spoil, as_it_is).trace(), expected, "to it, number {lost}, {copies}");
+        }
+        // Every seventh does: of all kinds of messages each is hit.
+        for lost in (0..back).step_by(7) {
+            let spoil = |_, number, message| vec![message; if number == lost { copies } else { 1 }];
+            assert_eq!(fly(as_it_is, spoil).trace(), expected, "from it, number {lost}, {copies}");
+        }
+    }
+}
+
+/// Labels that come late tell of a place before: they are passed over by the vehicle's own time. Those from the way are
+/// wrong here, so that one that counts is found out.
+#[test]
+fn a_label_from_before_does_not_count() {
+    let (mut under_way, mut is_moving) = (Vec::new(), false);
+    let flown = fly(as_it_is, |_, _, mut message| {
+        match &mut message {
+            MavMessage::LOCAL_POSITION_NED(it) => is_moving = (it.vx, it.vy) != (0.0, 0.0),
+            MavMessage::NAMED_VALUE_FLOAT(it) => {
+                if is_moving {
+                    it.value = -it.value;
+                }
+                under_way.push(message);
+                return if under_way.len() > 20 { vec![under_way.remove(0)] } else { vec![] };
+            }
+            _ => {}
+        }
+        vec![message]
+    });
+    assert_eq!(flown.trace(), of_run());
+}
+
+/// Nor does it take a vehicle for arrived that passes its target, or for stopped that does not say so.
+#[test]
+fn a_vehicle_that_never_rests_does_not_arrive_and_is_told_to_stop_for_long() {
+    let flown = fly(as_it_is, |_, _, mut message| {
+        if let MavMessage::LOCAL_POSITION_NED(it) = &mut message {
+            it.vx = 0.5;
+        }
+        vec![message]
+    });
+    assert!(matches!(flown.failure(), Some(Failure::Late(..))), "{:?}", flown.failure());
+    let stops = flown.sent.iter().filter(|(_, it)| is_stop(it));
+    let times: Vec<_> = stops.map(|(at, _)| at.as_secs_f64()).collect();
+    assert!(times[times.len() - 1] - times[0] > 4.5, "{times:?}");
+}
+
+/// A heartbeat has no time of its own: one from before the vehicle was armed is waited for.
+#[test]
+fn a_heartbeat_from_before_it_was_armed_is_no_failure() {
+    let mut late = None;
+    let flown = fly(as_it_is, |now, _, message| {
+        let mut messages = vec![message];
+        if let MavMessage::HEARTBEAT(it) = &mut messages[0]
+            && now < Duration::from_secs(2)
+        {
+            it.base_mode = MavModeFlag::empty();
+            late = Some(messages[0].clone());
+        }
+        // Heard once more when it was armed for half a second.
+        if now > Duration::from_millis(2600) {
+            messages.extend(late.take());
+        }
+        messages
+    });
+    assert_eq!(flown.trace(), of_run());
+    assert_eq!(flown.failure(), None);
+}
+
+/// Into the flight, while the vehicle drives.
+const THEN: Duration = Duration::from_secs(4);
+
+/// What a vehicle says from then on, for each failure, what that is, and whether it hears stops.
+#[test]
+fn each_failure_ends_with_stops_alone() {
+    type Change = fn(MavMessage) -> Vec<MavMessage>;
+    fn beat(
+        message: MavMessage,
+        change: impl FnOnce(&mut mavlink::dialects::common::HEARTBEAT_DATA),
+    ) -> Vec<MavMessage> {
+        let MavMessage::HEARTBEAT(mut it) = message else { return vec![message] };
+        change(&mut it);
+        vec![MavMessage::HEARTBEAT(it)]
+    }
+    let cases: [(&str, Change); 8] = [
+        ("the mode is HOLD", |it| beat(it, |beat| beat.custom_mode = 4)),
+        ("the vehicle was disarmed", |it| beat(it, |beat| beat.base_mode = MavModeFlag::empty())),
+        ("failsafe has acted: system status MAV_STATE_EMERGENCY", |it| {
+            beat(it, |beat| beat.system_status = MavState::MAV_STATE_EMERGENCY)
+        }),
+        ("has left its geofence", |it| {
+            let breach = FENCE_STATUS_DATA { breach_status: 1, ..FENCE_STATUS_DATA::default() };
+            vec![it, MavMessage::FENCE_STATUS(breach)]
+        }),
+        ("no heartbeat for 5 s", |it| {
+            if matches!(it, MavMessage::HEARTBEAT(_)) { vec![] } else { vec![it] }
+        }),
+        ("no position for 2 s", |it| {
+            if matches!(it, MavMessage::LOCAL_POSITION_NED(_)) { vec![] } else { vec![it] }
+        }),
+        ("no label within 5 s", |it| {
+            if matches!(it, MavMessage::NAMED_VALUE_FLOAT(_)) { vec![] } else { vec![it] }
+        }),
+        ("not there within 20 s", |it| match it {
+            MavMessage::LOCAL_POSITION_NED(mut it) => {
+                it.x += 5.0;
+                vec![MavMessage::LOCAL_POSITION_NED(it)]
+            }
+            it => vec![it],
+        }),
+    ];
+    for (expected, change) in cases {
+        let flown = fly(
+            as_it_is,
+            |now, _, message| {
+                if now < THEN { vec![message] } else { change(message) }
+            },
+        );
+        let failure = flown.failure().expect("it failed").to_string();
+        assert!(failure.contains(expected), "{expected}: {failure}");
+        ends_at_rest(&flown);
+    }
+}
+
+/// After the first stop there are stops alone; of a vehicle that someone else drives there is none.
+fn ends_at_rest(flown: &Flown) {
+    let failure = flown.failure().expect("it failed");
+    let (trace, first) = (flown.trace(), flown.sent.iter().position(|it| is_stop(&it.1)));
+    assert!(trace.contains("\"reason\":\"broken off\""), "{failure}: {trace}");
+    if failure.is_out_of_our_hands() {
+        assert_eq!(first, None, "{failure}");
+        // A heartbeat a second tells it.
+        let late =
+            flown.sent.iter().filter(|(at, it)| moves(it) && *at > THEN + Duration::from_secs(1));
+        assert_eq!(late.count(), 0, "{failure}");
+        return;
+    }
+    let stops = &flown.sent[first.unwrap_or_else(|| panic!("{failure}: no stop"))..];
+    assert!(stops.iter().all(|(_, it)| !moves(it)), "{failure}");
+    let lasted = stops[stops.len() - 1].0.saturating_sub(stops[0].0);
+    assert!(lasted >= Duration::from_millis(1800), "{failure}: {lasted:?}");
+}
+
+#[test]
+fn a_signal_stops_the_vehicle_and_a_broken_link_ends_at_once() {
+    use std::sync::atomic::{AtomicBool, Ordering};
+    static ASKED: AtomicBool = AtomicBool::new(false);
+    let back: Spoil = Box::new(|now, _, message| {
+        ASKED.fetch_or(now >= THEN, Ordering::Relaxed);
+        vec![message]
+    });
+    let asked = || ASKED.load(Ordering::Relaxed).then_some(2);
+    let flown = fly_with(Box::new(as_it_is), back, None, asked);
+    assert_eq!(flown.failure(), Some(&Failure::Interrupted(2)));
+    ends_at_rest(&flown);
+    let flown = fly_with(Box::new(as_it_is), Box::new(as_it_is), Some(THEN), || None);
+    assert_eq!(flown.failure(), Some(&Failure::Broken("gone".to_owned())));
+    ends_at_rest(&flown);
+}
+
+/// A vehicle that is not ready is waited for, and is sent nothing that moves.
+#[test]
+fn nothing_moves_before_the_vehicle_is_ready() {
+    type Change = fn(&mut mavlink::dialects::common::HEARTBEAT_DATA);
+    let cases: [(&str, Change); 5] = [
+        ("expected mode GUIDED, it is in MANUAL", |it| it.custom_mode = 0),
+        ("expected its operator to arm it", |it| it.base_mode = MavModeFlag::empty()),
+        ("expected a vehicle that is well", |it| it.system_status = MavState::MAV_STATE_CRITICAL),
+        ("found MAV_TYPE_QUADROTOR, expected ArduPilot", |it| {
+            it.mavtype = MavType::MAV_TYPE_QUADROTOR;
+        }),
+        ("found MAV_AUTOPILOT_PX4, expected ArduPilot", |it| {
+            it.autopilot = mavlink::dialects::common::MavAutopilot::MAV_AUTOPILOT_PX4;
+        }),
+    ];
+    let quiet = |flown: &Flown, expected: &str| {
+        let Err(failure) = &flown.flight else { panic!("{expected}: it flew") };
+        assert!(failure.to_string().contains(expected), "{expected}: {failure}");
+        let setpoints = flown.sent.iter().filter(|(_, it)| moves(it) || is_stop(it));
+        assert_eq!(setpoints.count(), 0, "{expected}");
+    };
+    for (expected, change) in cases {
+        let flown = fly(as_it_is, |_, _, mut message| {
+            if let MavMessage::HEARTBEAT(it) = &mut message {
+                change(it);
+            }
+            vec![message]
+        });
+        quiet(&flown, expected);
+    }
+    let declined = fly(as_it_is, |_, _, message| {
+        let command = MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL;
+        let ack = COMMAND_ACK_DATA { command, result: MavResult::MAV_RESULT_UNSUPPORTED };
+        vec![if matches!(message, MavMessage::COMMAND_ACK(_)) {
+            MavMessage::COMMAND_ACK(ack)
+        } else {
+            message
+        }]
+    });
+    quiet(&declined, "does not send LOCAL_POSITION_NED: MAV_RESULT_UNSUPPORTED");
+    let unlabelled = fly(as_it_is, |_, _, message| {
+        if matches!(message, MavMessage::NAMED_VALUE_FLOAT(_)) { vec![] } else { vec![message] }
+    });
+    quiet(&unlabelled, "expected the named value WET");
+    let elsewhere = fly(as_it_is, |_, _, mut message| {
+        if let MavMessage::LOCAL_POSITION_NED(it) = &mut message {
+            it.x -= 30.0;
+        }
+        vec![message]
+    });
+    quiet(&elsewhere, "stands where it may not be: its position: found (2, -29)");
+}

@@ -1,0 +1,155 @@
+//! What is known of the vehicle, by what it says. Messages may come late, twice or not at all: of those that have the
+//! vehicle's time only newer ones count.
+
+use std::time::Duration;
+
+use mavlink::dialects::common::{MavMessage, MavModeFlag, MavSeverity, MavState};
+
+use crate::fly::autopilot::Craft;
+use crate::fly::failure::Failure;
+use crate::fly::frame::Ned;
+use crate::fly::label::{LabelSource, Told};
+
+/// Where it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fix {
+    /// By the vehicle's clock, milliseconds.
+    pub at_ms: u32,
+    /// The place.
+    pub at: Ned,
+    /// Depth below the origin, metres.
+    pub down: f32,
+    /// Metres a second over ground.
+    pub speed: f64,
+}
+
+/// Which way it faces.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Facing {
+    /// By the vehicle's clock, milliseconds.
+    pub at_ms: u32,
+    /// Radians.
+    pub yaw: f32,
+}
+
+/// What its heartbeat said.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Status {
+    /// What it is.
+    pub craft: Craft,
+    /// The number of its mode.
+    pub mode: u32,
+    /// Whether its motors may run.
+    pub is_armed: bool,
+    /// How it is.
+    pub state: MavState,
+}
+
+impl Status {
+    /// Why it cannot be flown as it is, the gravest first.
+    pub fn fault(&self) -> Option<Failure> {
+        if self.mode != self.craft.guided() {
+            return Some(Failure::TakenOver(self.craft.mode(self.mode)));
+        }
+        if !self.is_armed {
+            return Some(Failure::Disarmed);
+        }
+        match self.state {
+            MavState::MAV_STATE_CRITICAL
+            | MavState::MAV_STATE_EMERGENCY
+            | MavState::MAV_STATE_POWEROFF
+            | MavState::MAV_STATE_FLIGHT_TERMINATION => {
+                Some(Failure::Failsafe(format!("system status {:?}", self.state)))
+            }
+            _ => None,
+        }
+    }
+}
+
+/// What is new.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum News {
+    /// How it is.
+    Status(Status),
+    /// Where it is.
+    Fix(Fix),
+    /// A label.
+    Label(Told),
+    /// It left its geofence.
+    Breach,
+}
+
+/// A vehicle as it is known. Times are ours.
+#[derive(Clone, Debug, Default)]
+pub struct Vehicle {
+    /// The last heartbeat, and when it came.
+    pub status: Option<(Duration, Status)>,
+    /// The last position, and when it came.
+    pub fix: Option<(Duration, Fix)>,
+    /// The last attitude.
+    pub facing: Option<Facing>,
+    /// The last label.
+    pub label: Option<Told>,
+    /// Whether it is outside of its geofence.
+    pub is_outside: bool,
+    /// The last warning that it gave.
+    pub warning: Option<String>,
+}
+
+impl Vehicle {
+    /// Takes in a message of its autopilot; what is new.
+    ///
+    /// # Errors
+    /// When it is no vehicle that is known here.
+    pub fn hear(
+        &mut self,
+        now: Duration,
+        message: &MavMessage,
+        labels: &LabelSource,
+    ) -> Result<Option<News>, Failure> {
+        if let Some(told) = labels.read(message) {
+            self.label = Some(told);
+            return Ok(Some(News::Label(told)));
+        }
+        match message {
+            MavMessage::HEARTBEAT(it) => {
+                let status = Status {
+                    craft: Craft::of(it)?,
+                    mode: it.custom_mode,
+                    is_armed: it.base_mode.contains(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED),
+                    state: it.system_status,
+                };
+                self.status = Some((now, status));
+                return Ok(Some(News::Status(status)));
+            }
+            MavMessage::LOCAL_POSITION_NED(it) => {
+                let is_number = [it.x, it.y, it.z, it.vx, it.vy].iter().all(|it| it.is_finite());
+                let is_newer = self.fix.is_none_or(|(_, last)| it.time_boot_ms > last.at_ms);
+                if is_number && is_newer {
+                    let speed = libm::hypot(f64::from(it.vx), f64::from(it.vy));
+                    let at = Ned { north: it.x, east: it.y };
+                    let fix = Fix { at_ms: it.time_boot_ms, at, down: it.z, speed };
+                    self.fix = Some((now, fix));
+                    return Ok(Some(News::Fix(fix)));
+                }
+            }
+            MavMessage::ATTITUDE(it) => {
+                let is_newer = self.facing.is_none_or(|last| it.time_boot_ms > last.at_ms);
+                if it.yaw.is_finite() && is_newer {
+                    self.facing = Some(Facing { at_ms: it.time_boot_ms, yaw: it.yaw });
+                }
+            }
+            MavMessage::FENCE_STATUS(it) => {
+                self.is_outside = it.breach_status != 0;
+                return Ok(self.is_outside.then_some(News::Breach));
+            }
+            MavMessage::STATUSTEXT(it)
+                if it.severity as u8 <= MavSeverity::MAV_SEVERITY_WARNING as u8 =>
+            {
+                self.warning = it.text.to_str().ok().map(str::to_owned);
+            }
+            _ => {}
+        }
+        Ok(None)
+    }
+}

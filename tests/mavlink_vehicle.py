@@ -1,0 +1,297 @@
+#!/usr/bin/env python3
+"""A simulated ArduPilot vehicle, by pymavlink alone: a rover, boat or submarine in guided mode, on a bad link, to which
+things happen.
+
+    python3 -m pip install pymavlink==2.4.50
+    python3 tests/mavlink_vehicle.py
+
+Reads a mission a line (JSON, see `Vehicle`), says by a line that it is there, flies until it reads another line, and says by
+one more what it was sent and whether it moved when it should not have. What it takes in guided mode, and how, is what
+`Rover/GCS_MAVLink_Rover.cpp` and `ArduSub/GCS_MAVLink_Sub.cpp` of ArduPilot take. Its clock runs ten times as fast as the
+wall's; the link, heartbeats and failures keep to the wall.
+"""
+
+import heapq
+import json
+import math
+import os
+import random
+import select
+import socket
+import sys
+import time
+
+os.environ["MAVLINK20"] = "1"
+from pymavlink.dialects.v20 import common as mavlink  # noqa: E402
+
+HASTE = 10.0  # seconds of its clock in a second
+TICK = 0.02  # seconds from one position to the next
+SPEED = 3.0  # metres in a second of its clock
+LATE = 0.3  # seconds that the link delays at most
+GUID_TIMEOUT = 3.0  # seconds of its clock after which a velocity is let go of
+
+CRAFTS = {
+    "rover": (mavlink.MAV_TYPE_GROUND_ROVER, 15, 4),
+    "boat": (mavlink.MAV_TYPE_SURFACE_BOAT, 15, 4),
+    "sub": (mavlink.MAV_TYPE_SUBMARINE, 4, 16),
+}
+POSITION, VELOCITY, ACCELERATION, YAW, YAW_RATE = 0x007, 0x038, 0x1C0, 0x400, 0x800
+# Failures that a message of ours tells.
+TOLD = {"mode", "disarm", "fence", "failsafe"}
+
+
+class Vehicle:
+    """Keys of a mission: `port` to speak to, or null to be spoken to; `seed`, `craft`, `line` ([a, b, c], positive on
+    the +1 side of a east + b north + c), `start` ([north, east, yaw]), `label` (a name, or "channel:N"); `drop`, `late`,
+    `double`, probabilities of a message each way; `fault` and, for which setpoint of a new place it comes, `at`."""
+
+    def __init__(self, mission):
+        self.mission = mission
+        self.random = random.Random(mission["seed"])
+        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.socket.bind(("127.0.0.1", 0))
+        self.peer = ("127.0.0.1", mission["port"]) if mission["port"] else None
+        self.mav = mavlink.MAVLink(None, srcSystem=1, srcComponent=mavlink.MAV_COMP_ID_AUTOPILOT1)
+        self.type, self.guided, self.hold = CRAFTS[mission["craft"]]
+        self.began = time.monotonic()
+        self.now = self.began
+        self.under_way = []  # (when, number, is it for us, bytes)
+        self.number = 0
+        self.north, self.east, self.yaw = mission["start"]
+        self.mode, self.armed, self.status = self.hold, False, mavlink.MAV_STATE_STANDBY
+        self.goal = None  # ("go", north, east, yaw), ("turn", yaw) or ("speed", vn, ve, when)
+        self.places, self.fault_at, self.told_at = [], None, None
+        self.intervals, self.speed, self.breached = set(), (0.0, 0.0), False
+        self.due = {}
+        # What is told in the end.
+        self.received = {}
+        self.table = []
+        self.illicit = []  # what may never be sent
+        self.early = 0  # setpoints before it was armed in guided mode
+        self.first_stop, self.last_stop = None, None
+        self.moved_after = 0.0  # metres after the stops that count
+        self.orders_after = 0  # setpoints that came when the link knew of the failure
+
+    # The link.
+
+    def launch(self, incoming, data):
+        """A message begins its way, which may lose, delay and double it; when it arrives, if it does."""
+        mission, arrival = self.mission, None
+        if self.random.random() < mission["drop"]:
+            return None
+        for _ in range(2 if self.random.random() < mission["double"] else 1):
+            late = self.random.uniform(0, LATE) if self.random.random() < mission["late"] else 0.0
+            self.number += 1
+            when = self.now + late
+            heapq.heappush(self.under_way, (when, self.number, incoming, data))
+            arrival = when if arrival is None else min(arrival, when)
+        return arrival
+
+    def say(self, message, tells=False):
+        if self.fault() == "silent":
+            return
+        arrival = self.launch(False, message.pack(self.mav))
+        if tells and arrival is not None and self.told_at is None and self.peer:
+            self.told_at = arrival
+
+    def deliver(self):
+        while self.under_way and self.under_way[0][0] <= self.now:
+            _, _, incoming, data = heapq.heappop(self.under_way)
+            if incoming:
+                for message in self.mav.parse_buffer(data) or []:
+                    self.take(message)
+            elif self.peer:
+                try:
+                    self.socket.sendto(data, self.peer)
+                except ConnectionRefusedError:
+                    pass
+
+    # What it is sent.
+
+    def take(self, message):
+        kind = message.get_type()
+        self.received[kind] = self.received.get(kind, 0) + 1
+        fields = {k: v for k, v in message.to_dict().items() if k != "mavpackettype"}
+        self.table.append([round(self.now - self.began, 3), kind, fields])
+        if kind == "HEARTBEAT":
+            if (message.get_srcSystem(), message.type) != (255, mavlink.MAV_TYPE_GCS):
+                self.illicit.append("a heartbeat of another")
+        elif kind == "COMMAND_LONG":
+            if message.command != mavlink.MAV_CMD_SET_MESSAGE_INTERVAL:
+                self.illicit.append(f"command {message.command}")
+                return
+            if (message.target_system, message.target_component) == (1, 1):
+                self.intervals.add(int(message.param1))
+                self.say(self.mav.command_ack_encode(message.command, 0, 0, 0, 255, 190))
+        elif kind == "SET_POSITION_TARGET_LOCAL_NED":
+            self.steer(message)
+        else:
+            self.illicit.append(kind)
+
+    def steer(self, it):
+        """As ArduPilot takes a setpoint."""
+        if (it.target_system, it.target_component) != (1, 1):
+            self.illicit.append("a setpoint for another")
+            return
+        has = {name: not it.type_mask & mask for name, mask in [
+            ("position", POSITION), ("velocity", VELOCITY), ("acceleration", ACCELERATION),
+            ("yaw", YAW), ("rate", YAW_RATE)]}
+        is_stop = has["velocity"] and has["rate"] and (it.vx, it.vy, it.vz, it.yaw_rate) == (0, 0, 0, 0)
+        if self.told_at is not None and self.now > self.told_at + LATE + 0.05:
+            if not is_stop or self.mission["fault"] == "mode":
+                self.orders_after += 1
+        if self.mode != self.guided or not self.armed:
+            self.early += self.fault() is None
+            return
+        if it.coordinate_frame != mavlink.MAV_FRAME_LOCAL_NED or has["acceleration"]:
+            self.illicit.append("a setpoint that is not taken")
+            return
+        if has["position"]:
+            self.goal = ("go", it.x, it.y, it.yaw if has["yaw"] and self.mission["craft"] == "sub" else None)
+            self.visit((it.x, it.y, it.yaw))
+        elif has["velocity"]:
+            # Rover makes a heading of the velocity unless yaw or its rate is told.
+            if not (has["yaw"] or has["rate"]) and self.mission["craft"] != "sub":
+                self.yaw = math.atan2(it.vy, it.vx)
+            self.goal = ("speed", it.vx, it.vy, self.now)
+            if is_stop:
+                self.first_stop = self.first_stop or self.now
+                if self.now >= self.first_stop + LATE:
+                    self.last_stop = self.last_stop or self.now
+        elif has["yaw"] and self.mission["craft"] != "sub":
+            self.goal = ("turn", it.yaw)
+            self.visit((self.north, self.east, it.yaw))
+
+    def visit(self, place):
+        if not self.places or self.places[-1] != place:
+            if place not in self.places[-3:]:  # a late one is no new place
+                self.places.append(place)
+
+    # What happens to it.
+
+    def fault(self):
+        return self.mission["fault"] if self.fault_at is not None else None
+
+    def happen(self):
+        if self.mode == self.hold and not self.armed and self.fault_at is None:
+            # Its operator makes it ready, a step at a time.
+            if self.now > self.began + 0.3:
+                self.mode = self.guided
+        elif not self.armed and self.fault_at is None:
+            if self.now > self.began + 0.5:
+                self.armed, self.status = True, mavlink.MAV_STATE_ACTIVE
+        fault = self.mission["fault"]
+        if fault and self.fault_at is None and len(self.places) >= self.mission["at"]:
+            self.fault_at = self.now
+            if fault == "mode":
+                self.mode, self.goal = self.hold, None
+            elif fault == "disarm":
+                self.armed, self.goal = False, None
+            elif fault == "failsafe":
+                self.status = mavlink.MAV_STATE_CRITICAL
+            elif fault == "fence":
+                self.breached = True
+            elif fault == "interrupt":
+                self.tell({"interrupt": True})
+
+    def drive(self, seconds):
+        before = (self.north, self.east)
+        if not self.armed or self.mode != self.guided or self.fault() == "stuck":
+            pass
+        elif self.goal and self.goal[0] == "go":
+            _, north, east, yaw = self.goal
+            left = math.hypot(north - self.north, east - self.east)
+            if left > 0:
+                self.yaw = math.atan2(east - self.east, north - self.north)
+            if left <= SPEED * seconds:
+                self.north, self.east = north, east
+            else:
+                part = SPEED * seconds / left
+                self.north += part * (north - self.north)
+                self.east += part * (east - self.east)
+            if yaw is not None:
+                self.yaw = yaw
+        elif self.goal and self.goal[0] == "turn":
+            self.yaw = self.goal[1]
+        elif self.goal and (self.now - self.goal[3]) * HASTE < GUID_TIMEOUT:
+            self.north += self.goal[1] * seconds
+            self.east += self.goal[2] * seconds
+        way = math.hypot(self.north - before[0], self.east - before[1])
+        self.speed = ((self.north - before[0]) / seconds, (self.east - before[1]) / seconds)
+        if self.last_stop is not None:
+            self.moved_after += way
+
+    # What it says.
+
+    def speak(self):
+        ms = int((self.now - self.began) * HASTE * 1000) + 1000
+        fault = self.fault()
+        every = lambda what, seconds: self.now >= self.due.get(what, 0) and not self.due.update({what: self.now + seconds})
+        if fault != "heartless" and every("heartbeat", 0.2):
+            base = mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED
+            base |= mavlink.MAV_MODE_FLAG_SAFETY_ARMED if self.armed else 0
+            self.say(self.mav.heartbeat_encode(self.type, mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA, base, self.mode, self.status),
+                     fault in TOLD - {"fence"})
+            # Others on the same link, of which nothing counts.
+            other = mavlink.MAVLink(None, srcSystem=1, srcComponent=mavlink.MAV_COMP_ID_GIMBAL)
+            self.launch(False, other.heartbeat_encode(mavlink.MAV_TYPE_GIMBAL, mavlink.MAV_AUTOPILOT_INVALID, 0, 0, 4).pack(other))
+            other = mavlink.MAVLink(None, srcSystem=7, srcComponent=1)
+            self.launch(False, other.local_position_ned_encode(ms + 10**6, 9, 9, 9, 9, 9, 9).pack(other))
+        if 162 in self.intervals and every("fence", 0.2):
+            self.say(self.mav.fence_status_encode(int(self.breached), int(self.breached), 0, 0), fault == "fence")
+        if 32 in self.intervals and fault != "lost":
+            self.say(self.mav.local_position_ned_encode(ms, self.north, self.east, 0, *self.speed, 0))
+        if 30 in self.intervals:
+            yaw = math.remainder(self.yaw, math.tau)
+            self.say(self.mav.attitude_encode(ms, 0, 0, yaw, 0, 0, 0))
+        if fault != "mute" and every("label", 0.04):
+            a, b, c = self.mission["line"]
+            is_above = (a * self.east + b * self.north + c > 0) != (fault == "lie")
+            name = self.mission["label"]
+            if not name.startswith("channel:"):
+                self.say(self.mav.named_value_float_encode(ms, name.encode(), 1.0 if is_above else -1.0))
+            elif 65 in self.intervals:
+                channels = [1500] * 18
+                channels[int(name[8:]) - 1] = 1900 if is_above else 1100
+                self.say(self.mav.rc_channels_encode(ms, 18, *channels, 0))
+
+    def tell(self, what):
+        print(json.dumps(what), flush=True)
+
+    def fly(self):
+        self.tell({"port": self.socket.getsockname()[1]})
+        next_tick, ends_at = self.now, None
+        while ends_at is None or self.now < ends_at:
+            wait = max(0.0, next_tick - time.monotonic())
+            if self.under_way:
+                wait = min(wait, max(0.0, self.under_way[0][0] - time.monotonic()))
+            ready, _, _ = select.select([self.socket] + ([] if ends_at else [sys.stdin]), [], [], wait)
+            self.now = time.monotonic()
+            if self.socket in ready:
+                data, peer = self.socket.recvfrom(2048)
+                self.peer = self.peer or peer
+                self.launch(True, data)
+            if sys.stdin in ready:
+                sys.stdin.readline()
+                ends_at = self.now + 2 * LATE
+            self.deliver()
+            if self.now >= next_tick:
+                next_tick = max(next_tick + TICK, self.now)
+                self.happen()
+                self.drive(TICK * HASTE)
+                self.speak()
+        reacted = None
+        if self.told_at is not None and self.first_stop is not None:
+            reacted = self.first_stop - self.told_at
+        self.tell({
+            "received": self.received, "illicit": self.illicit, "early": self.early,
+            "places": len(self.places), "happened": self.fault_at is not None,
+            "was_stopped": self.last_stop is not None, "moved_after": self.moved_after,
+            "orders_after": self.orders_after, "reacted": reacted,
+            "table": self.table if self.mission.get("table") else None,
+        })
+        self.socket.close()
+
+
+for line in iter(sys.stdin.readline, ""):
+    Vehicle(json.loads(line)).fly()
