@@ -40,7 +40,7 @@ fn missions() -> Vec<Mission> {
     let example = |text| scenario::parse("", text, Overrides::default()).expect("a good scenario");
     let mut missions = vec![example(scenario::PAPER_NOISELESS), example(scenario::PAPER_NOISY)];
     // Most of the time goes into looking ahead: the long runs have more of it.
-    for number in 0..cases(12, 40) {
+    for number in 0..cases(8, 40) {
         let (algorithm, is_noisy, grid) = match number % 4 {
             0 => (Algorithm::Cfc, false, Grid::Paper),
             1 => (Algorithm::Scc, true, Grid::Paper),

@@ -6,14 +6,15 @@
 //! | --- | --- | --- |
 //! | `alone` | Algorithm 1 | 16 samples |
 //! | `small` | Algorithm 1, look-ahead for true labels | 16 samples |
+//! | `medium` | as `small` | 64 labels beside 4 given |
 //! | `standard` | all algorithms | 32 labels beside 4 given, all 529 hypotheses |
 //! | `large` | all algorithms | 64 labels beside 4 given, all 2,081 hypotheses |
 //! | `vehicles` | all algorithms, all vehicles | as `standard` |
 //! | `panicking` | nothing | a panic: that of an index |
 //!
-//! All but `vehicles` have the unicycle alone. It is built for Arm and for RISC-V (`riscv32imac`), there for its size alone.
+//! All but `vehicles` have the unicycle alone. It is built for Arm, and for RISC-V (`riscv32imac`) as QEMU's `virt`.
 //! An emulator, or QEMU, plays the world at its standard streams; at the end of the input it exits.
-//! Ticks are the host's: instructions in the tests' emulator.
+//! Ticks are instructions: on Arm by the host's count in the tests' emulator, on RISC-V by the core's own.
 
 #[cfg(target_os = "none")]
 mod port;

@@ -36,11 +36,19 @@ pub struct Flight {
     pub lowest_stack: u32,
 }
 
-/// Flies missions of a workload, each from a reset, to their end or up to so many calls.
+/// Flies missions of a workload on a Cortex-M4F, each from a reset, to their end or up to so many calls.
 ///
 /// # Panics
 /// When one does not fly as on the host, or the program's own count is not that of its calls.
 pub fn fly(elf: &[u8], workload: &Workload, missions: &[u64]) -> Vec<Flight> {
+    fly_on(Core::M4F, elf, workload, missions)
+}
+
+/// As [`fly`], on any core.
+///
+/// # Panics
+/// As [`fly`].
+pub fn fly_on(core: Core, elf: &[u8], workload: &Workload, missions: &[u64]) -> Vec<Flight> {
     let most = workload.calls;
     let image = Image::read(elf);
     let seam = |role: &str| -> Vec<u32> {
@@ -49,7 +57,7 @@ pub fn fly(elf: &[u8], workload: &Workload, missions: &[u64]) -> Vec<Flight> {
     };
     let roles = ["plan", "observe", "estimates"].map(seam);
     let start = || {
-        let mut emulator = Emulator::load(elf, Core::M4F);
+        let mut emulator = Emulator::load(elf, core);
         roles.iter().flatten().for_each(|function| emulator.watch(*function));
         emulator
     };

@@ -8,6 +8,9 @@ use std::process::Command;
 use std::sync::{Mutex, PoisonError};
 use std::{env, fs, io};
 
+/// A package that is a workspace of its own, and its folder.
+const ALONE: (&str, &str) = ("microbit", "firmware/microbit");
+
 /// Builds the programs of a package in the release profile and returns the folder they are in.
 ///
 /// `scratch` is the test's `CARGO_TARGET_TMPDIR`; beside it is the target directory of all such
@@ -18,8 +21,9 @@ use std::{env, fs, io};
 pub fn build(scratch: &str, package: &str, target: &str) -> Result<PathBuf, String> {
     let directory = Path::new(scratch).with_file_name("elf");
     let mut cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    let workspace = if package == ALONE.0 { ALONE.1 } else { "" };
     cargo
-        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(".."))
+        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(workspace))
         .args(["build", "--quiet", "--release", "--package", package, "--target", target])
         .arg("--target-dir")
         .arg(&directory)

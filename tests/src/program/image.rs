@@ -116,6 +116,12 @@ impl Image {
         self.sections.iter().filter(|it| it.writable).map(|it| it.size).sum()
     }
 
+    /// As [`statics`](Self::statics), without a section.
+    pub fn statics_but(&self, section: &str) -> u32 {
+        let rest = self.sections.iter().filter(|it| it.writable && it.name != section);
+        rest.map(|it| it.size).sum()
+    }
+
     /// Functions by address.
     pub fn functions(&self) -> &[Symbol] {
         &self.functions

@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 use defmt_decoder::{DecodeError, Table};
 use host_sim::hil::cable::Cable;
 use host_sim::hil::faults::Faults;
+use host_sim::hil::firmware::STM32F405;
 use host_sim::hil::flight;
 use host_sim::hil::player::{Played, Player};
 use host_sim::hil::qemu::Emulator;
@@ -35,7 +36,8 @@ impl Chip {
     pub(crate) fn start(more: &[&str]) -> Option<Self> {
         let elf = firmware()?;
         let log = NamedTempFile::new().expect("a temporary file").into_temp_path();
-        let (emulator, link) = Emulator::start(elf, Some(&log), more).expect("QEMU runs it");
+        let (emulator, link) =
+            Emulator::start(elf, STM32F405.machine, Some(&log), more).expect("QEMU runs it");
         Some(Self { _emulator: emulator, link, log })
     }
 

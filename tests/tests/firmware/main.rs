@@ -4,6 +4,8 @@
 //! Without QEMU or the target's standard library the tests say so and pass; with `CI` set they fail.
 
 mod chip;
+mod resume;
+mod vehicle;
 
 use std::convert::Infallible;
 use std::fs;

@@ -1,0 +1,61 @@
+//! Asks for a mission, flies it, and asks for the next.
+
+use embassy_nrf::gpio::Input;
+use planner_core::link::delivery::LinkLost;
+use planner_core::link::message::{Algorithm, Declined, Setup};
+use planner_core::link::station::{Prepared, Station, Terms};
+use planner_core::planner::Planner;
+use planner_core::robot::hal::PinSensor;
+use planner_core::{AnyVehicle, Area};
+
+use crate::serial::Serial;
+use crate::stop;
+
+/// Samples that a mission can hold: 64 labels beside four given ones.
+const SAMPLES: usize = 68;
+
+/// What it plans with and where: any vehicle in a rectangle. Polygons with keep-outs, and tables of hypotheses, would not
+/// fit into 16 KB.
+type Known = Terms<AnyVehicle, Area>;
+
+/// What a mission has to do with.
+pub(crate) struct Board {
+    pub(crate) station: Station<Serial, PinSensor<Input<'static>>>,
+}
+
+impl Board {
+    pub(crate) fn run(&mut self) -> ! {
+        loop {
+            let setup = self.station.await_setup();
+            // How it went is the vehicle's to tell: the board has no log.
+            let _ = match self.station.terms(&setup) {
+                Ok(terms) => self.fly_with(&setup, terms),
+                Err(none) => self.station.give_up(none).map(drop),
+            };
+        }
+    }
+
+    fn fly_with(&mut self, setup: &Setup, terms: Known) -> Result<(), LinkLost> {
+        match setup.algorithm {
+            Algorithm::Cfc => self.fly(setup, &mut setup.cfc::<_, _, SAMPLES>(terms)),
+            Algorithm::Lookahead { evaluations, goal, noise: None } => {
+                self.fly(setup, &mut setup.lookahead::<_, _, SAMPLES>(terms, evaluations, goal))
+            }
+            _ => self.station.decline(Declined::Algorithm).map(drop),
+        }
+    }
+
+    /// The drive is enabled for as long as this takes.
+    fn fly<L: Planner>(
+        &mut self,
+        setup: &Setup,
+        planner: &mut Result<Prepared<L>, Declined>,
+    ) -> Result<(), LinkLost> {
+        if planner.is_ok() {
+            stop::begin();
+        }
+        let flown = self.station.fly(setup, planner, |_| {});
+        stop::end();
+        flown.map(drop)
+    }
+}

@@ -1,0 +1,13 @@
+#![cfg_attr(target_os = "none", no_std, no_main)]
+#![forbid(unsafe_code)]
+//! Algorithm 1 and look-ahead with 64 labels beside 4 given samples, for labels that are true.
+
+#[cfg(target_os = "none")]
+#[bare_core::entry]
+fn main() -> ! {
+    bare_core::true_labels::<68>()
+}
+
+/// On a host there is nothing to run.
+#[cfg(not(target_os = "none"))]
+fn main() {}
