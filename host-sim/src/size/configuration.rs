@@ -1,0 +1,109 @@
+//! A planner that is asked about, and the programs that were measured.
+
+use std::fmt;
+
+use serde::Serialize;
+
+/// A planner and what it is to hold.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Configuration {
+    /// Who plans.
+    pub planner: Planner,
+    /// Samples, the given ones included.
+    pub samples: u16,
+    /// Hypotheses; 1 where labels are true.
+    pub hypotheses: u16,
+    /// Any vehicle in any area, instead of the unicycle in a rectangle.
+    pub roams: bool,
+}
+
+/// Who plans.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Planner {
+    /// Algorithm 1.
+    Cfc,
+    /// Algorithm 2.
+    Scc,
+    /// Look-ahead.
+    Lookahead,
+}
+
+impl Configuration {
+    /// Whether labels may be wrong.
+    pub const fn is_noisy(self) -> bool {
+        self.hypotheses > 1
+    }
+}
+
+impl fmt::Display for Configuration {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let planner = match self.planner {
+            Planner::Cfc => "Algorithm 1",
+            Planner::Scc => "Algorithm 2",
+            Planner::Lookahead => "look-ahead",
+        };
+        write!(f, "{planner}, {} samples", self.samples)?;
+        if self.is_noisy() {
+            write!(f, ", {} hypotheses", self.hypotheses)?;
+        }
+        f.write_str(if self.roams {
+            ", any vehicle in any area"
+        } else {
+            ", a unicycle in a rectangle"
+        })
+    }
+}
+
+/// A program that was measured: what it can fly.
+#[derive(Clone, Copy, Debug)]
+pub struct Program {
+    /// Its name among the measurements.
+    pub name: &'static str,
+    planners: &'static [Planner],
+    samples: u16,
+    hypotheses: u16,
+    roams: bool,
+}
+
+const ALL: &[Planner] = &[Planner::Cfc, Planner::Scc, Planner::Lookahead];
+const TRUE: &[Planner] = &[Planner::Cfc, Planner::Lookahead];
+
+/// Those of `tests/bare-core`, the smaller before the larger.
+pub const PROGRAMS: [Program; 6] = [
+    Program::new("alone", &[Planner::Cfc], 16, 1),
+    Program::new("small", TRUE, 16, 1),
+    Program::new("medium", TRUE, 68, 1),
+    Program::new("standard", ALL, 36, 529),
+    Program { roams: true, ..Program::new("vehicles", ALL, 36, 529) },
+    Program::new("large", ALL, 68, 2_081),
+];
+
+impl Program {
+    const fn new(
+        name: &'static str,
+        planners: &'static [Planner],
+        samples: u16,
+        hypotheses: u16,
+    ) -> Self {
+        Self { name, planners, samples, hypotheses, roams: false }
+    }
+
+    /// Whether it has room for all that is asked.
+    pub fn covers(&self, asked: Configuration) -> bool {
+        self.planners.contains(&asked.planner)
+            && self.samples >= asked.samples
+            && self.hypotheses >= asked.hypotheses
+            && (self.roams || !asked.roams)
+    }
+
+    /// What it has room for.
+    pub fn room(&self) -> String {
+        let hypotheses = match self.hypotheses {
+            1 => String::new(),
+            hypotheses => format!(", {hypotheses} hypotheses"),
+        };
+        let roams = if self.roams { ", any vehicle in any area" } else { "" };
+        format!("{} samples{hypotheses}{roams}", self.samples)
+    }
+}

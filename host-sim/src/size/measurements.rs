@@ -1,0 +1,261 @@
+//! The committed measurements, and which of them bound a configuration from above.
+//!
+//! Programs were measured with room for so much; a configuration gets the figures of the smallest program that has
+//! room for it. So no figure is estimated, and each is an upper bound of what a program made to measure takes.
+
+use anyhow::{Context as _, Result, bail};
+use serde::Serialize;
+use toml::Table;
+
+use crate::size::configuration::{Configuration, PROGRAMS, Planner, Program};
+
+/// What `cargo test -p tests --test budgets` holds the code to.
+const BUDGETS: &str = include_str!("../../../tests/budgets.toml");
+
+/// What `--test cores` holds it to on the others.
+const CORES: &str = include_str!("../../../tests/cores.toml");
+
+/// A core that was measured.
+#[derive(Clone, Copy, Debug)]
+pub struct Core {
+    /// What people call it.
+    pub name: &'static str,
+    /// What compiles for it.
+    pub target: &'static str,
+    /// What it is called in `tests/cores.toml`.
+    key: &'static str,
+}
+
+/// A Cortex-M4 with single precision: all was measured on it.
+pub const M4F: Core =
+    Core { name: "Cortex-M4F", target: "thumbv7em-none-eabihf", key: "cortex-m4f" };
+
+/// Those that were measured besides, in fewer programs.
+pub const OTHERS: [Core; 2] = [
+    Core { name: "Cortex-M0", target: "thumbv6m-none-eabi", key: "cortex-m0" },
+    Core { name: "RISC-V RV32IMAC", target: "riscv32imac-unknown-none-elf", key: "riscv32imac" },
+];
+
+/// What a configuration takes, at most.
+#[derive(Clone, Debug, Serialize)]
+pub struct Size {
+    /// The program whose flash and stack these are.
+    pub program: &'static str,
+    /// What it has room for.
+    pub room: String,
+    /// Bytes of flash on each core, with the link and all.
+    pub flash: Vec<Flash>,
+    /// Bytes of flash for the planner alone, on the Cortex-M4F.
+    pub flash_of_planner: u64,
+    /// Bytes of stack at most, the planner on it; a bound from the machine code of the Cortex-M4F.
+    pub stack: u64,
+    /// Bytes of RAM that are not stack.
+    pub static_ram: u64,
+    /// What calls take.
+    pub calls: Vec<Call>,
+    /// What they take on other cores.
+    pub others: Vec<Other>,
+}
+
+/// Bytes of flash on a core.
+#[derive(Clone, Debug, Serialize)]
+pub struct Flash {
+    /// Which.
+    pub core: &'static str,
+    /// Bytes.
+    pub bytes: u64,
+}
+
+/// What a call takes of a core.
+#[derive(Clone, Debug, Serialize)]
+pub struct Call {
+    /// `plan`, `observe` or `estimates`.
+    pub call: &'static str,
+    /// The program that was timed.
+    pub program: &'static str,
+    /// Instructions, the median of the states that were recorded.
+    pub median: u64,
+    /// The worst of these.
+    pub worst: u64,
+    /// Milliseconds of the worst: on the Cortex-M4F an estimate by the manual's table, without wait states.
+    pub worst_ms: f64,
+}
+
+/// What calls take on a core that was measured in fewer programs.
+#[derive(Clone, Debug, Serialize)]
+pub struct Other {
+    /// Which.
+    pub core: &'static str,
+    /// The program that was measured.
+    pub program: &'static str,
+    /// The deepest stack that was seen, bytes: no bound.
+    pub stack_seen: u64,
+    /// Its clock, MHz.
+    pub mhz: f64,
+    /// What calls take; milliseconds are the least, by an instruction a cycle.
+    pub calls: Vec<Call>,
+}
+
+/// What a configuration takes at a clock.
+///
+/// # Errors
+/// When nothing as large was measured.
+pub fn size(asked: Configuration, mhz: f64) -> Result<Size> {
+    let budgets: Table = BUDGETS.parse().context("tests/budgets.toml")?;
+    let mut covering = PROGRAMS.iter().filter(|it| it.covers(asked));
+    let Some(program) = covering.next() else {
+        bail!("nothing as large was measured as {asked}: the largest is {}", largest(asked));
+    };
+    let flash_of = |core: &Core| {
+        let bytes = committed(&budgets, core.target, program.name)?;
+        Some(Flash { core: core.name, bytes })
+    };
+    let of_program = |figure: &str| {
+        let value = committed(&budgets, program.name, figure);
+        value.with_context(|| format!("tests/budgets.toml: [{}] has no {figure}", program.name))
+    };
+    let first = Flash { core: M4F.name, bytes: of_program("flash")? };
+    let calls =
+        [("plan", plan(asked)), ("observe", observe(asked)), ("estimates", estimate(asked))];
+    Ok(Size {
+        program: program.name,
+        room: program.room(),
+        flash: [first].into_iter().chain(OTHERS.iter().filter_map(flash_of)).collect(),
+        flash_of_planner: of_program("flash_of_planner")?,
+        stack: of_program("stack")?,
+        static_ram: of_program("static_ram")?,
+        calls: calls
+            .into_iter()
+            .filter_map(|(call, figures)| timed(&budgets, asked, call, figures, mhz))
+            .collect(),
+        others: others(asked)?,
+    })
+}
+
+/// What the first program that has room takes of each other core.
+fn others(asked: Configuration) -> Result<Vec<Other>> {
+    let cores: Table = CORES.parse().context("tests/cores.toml")?;
+    let asked = Configuration { roams: false, ..asked };
+    let plan = match asked.planner {
+        Planner::Lookahead if asked.is_noisy() => "forecast_plan",
+        Planner::Lookahead => "lookahead_plan",
+        Planner::Cfc | Planner::Scc => "plan",
+    };
+    let of = |core: &Core| {
+        let mhz = cores.get("clocks")?.get(core.key)?.as_integer()? as f64 / 1e6;
+        let figures = |program: &Program| cores.get(core.key)?.get(program.name)?.as_table();
+        let (program, figures) = PROGRAMS
+            .iter()
+            .filter(|it| it.covers(asked))
+            .find_map(|it| Some((it.name, figures(it)?)))?;
+        let read = |name: &str| u64::try_from(figures.get(name)?.as_integer()?).ok();
+        let call = |(call, figure): (&'static str, &str)| {
+            let (median, worst) =
+                (read(&format!("{figure}_median"))?, read(&format!("{figure}_worst"))?);
+            let worst_ms = worst as f64 / (mhz * 1_000.0);
+            Some(Call { call, program, median, worst, worst_ms })
+        };
+        let calls = [("plan", plan), ("observe", "observe"), ("estimates", "estimate")];
+        let calls = calls.into_iter().filter_map(call).collect();
+        Some(Other { core: core.name, program, stack_seen: read("stack")?, mhz, calls })
+    };
+    Ok(OTHERS.iter().filter_map(of).collect())
+}
+
+/// The figures of the first program that has room and was timed.
+fn timed(
+    budgets: &Table,
+    asked: Configuration,
+    call: &'static str,
+    figures: &[&str],
+    mhz: f64,
+) -> Option<Call> {
+    // What a call takes does not depend on which vehicles the program knows besides.
+    let asked = Configuration { roams: false, ..asked };
+    let with_room = PROGRAMS.iter().filter(|it| it.covers(asked));
+    with_room.flat_map(|program| figures.iter().map(move |figure| (program, figure))).find_map(
+        |(Program { name, .. }, figure)| {
+            let read = |of: &str| committed(budgets, name, &format!("{figure}_{of}"));
+            let (median, worst) = (read("median")?, read("worst")?);
+            let worst_ms = read("worst_cycles")? as f64 / (mhz * 1_000.0);
+            Some(Call { call, program: name, median, worst, worst_ms })
+        },
+    )
+}
+
+/// What plans are called among the measurements.
+const fn plan(asked: Configuration) -> &'static [&'static str] {
+    match asked.planner {
+        Planner::Cfc => &["plan", "cfc_plan"],
+        Planner::Scc => &["mixture_plan_at_10"],
+        Planner::Lookahead if asked.is_noisy() => &["forecast_plan"],
+        Planner::Lookahead => &["lookahead_fine_plan"],
+    }
+}
+
+const fn observe(asked: Configuration) -> &'static [&'static str] {
+    if asked.is_noisy() { &["scc_observe_at_32"] } else { &["observe", "cfc_observe"] }
+}
+
+const fn estimate(asked: Configuration) -> &'static [&'static str] {
+    if asked.is_noisy() { &["scc_estimate_at_32"] } else { &["estimate", "cfc_estimate"] }
+}
+
+/// The largest that was measured for the same planner.
+fn largest(asked: Configuration) -> String {
+    let same = Configuration { samples: 0, hypotheses: asked.hypotheses.min(2), ..asked };
+    let last = PROGRAMS.iter().rfind(|it| it.covers(same));
+    last.map_or_else(|| "none".to_owned(), Program::room)
+}
+
+fn committed(budgets: &Table, section: &str, figure: &str) -> Option<u64> {
+    let value = budgets.get(section)?.get(figure)?.get("committed")?.as_integer()?;
+    u64::try_from(value).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_program_has_its_figures() {
+        for planner in [Planner::Cfc, Planner::Scc, Planner::Lookahead] {
+            for (samples, hypotheses) in [(16, 1), (36, 1), (36, 529), (68, 2_081)] {
+                let hypotheses =
+                    if planner == Planner::Scc { hypotheses.max(2) } else { hypotheses };
+                if planner == Planner::Cfc && hypotheses > 1 {
+                    continue;
+                }
+                let asked = Configuration { planner, samples, hypotheses, roams: false };
+                let size = size(asked, 168.0).unwrap_or_else(|error| panic!("{asked}: {error}"));
+                assert_eq!(size.flash.len(), 3, "{asked}: {size:?}");
+                assert!(size.stack > 4_000 && size.flash_of_planner > 20_000, "{asked}: {size:?}");
+                let timed: Vec<_> = size.calls.iter().map(|it| it.call).collect();
+                // With 2,081 hypotheses Algorithm 1 alone was timed.
+                if samples < 68 {
+                    assert_eq!(timed, ["plan", "observe", "estimates"], "{asked}");
+                }
+                if samples == 16 && hypotheses == 1 {
+                    let cores: Vec<_> = size.others.iter().map(|it| it.core).collect();
+                    assert_eq!(cores, OTHERS.map(|it| it.name));
+                    assert!(size.others.iter().all(|it| it.calls.len() == 3), "{size:?}");
+                }
+                for call in size.calls.iter().chain(size.others.iter().flat_map(|it| &it.calls)) {
+                    assert!(call.median <= call.worst && call.worst_ms > 0.0, "{asked}: {call:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn more_never_takes_less() {
+        let asked = |samples, hypotheses, roams| {
+            let planner = Planner::Lookahead;
+            size(Configuration { planner, samples, hypotheses, roams }, 168.0).expect("measured")
+        };
+        let sizes =
+            [asked(4, 1, false), asked(17, 1, false), asked(36, 529, false), asked(37, 530, false)];
+        assert!(sizes.windows(2).all(|it| it[0].stack < it[1].stack));
+        assert!(asked(36, 1, true).flash_of_planner > asked(36, 529, false).flash_of_planner);
+    }
+}
