@@ -5,10 +5,13 @@
 
 pub mod campaign;
 pub mod cli;
+#[cfg(feature = "mavlink")]
+pub mod fly;
 pub mod hil;
 pub mod mission;
 pub mod output;
 pub mod reference;
 pub mod replay;
 pub mod report;
+pub mod size;
 pub mod world;

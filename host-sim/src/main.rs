@@ -19,8 +19,15 @@ fn main() -> ExitCode {
     let done = interruption::watch()
         .context("signals cannot be watched")
         .and_then(|()| cli.execute())
-        .and_then(|text| print(|stdout| write!(stdout, "{text}")));
-    done.map_or_else(|error| fail(&error), |()| ExitCode::SUCCESS)
+        .and_then(|done| print(|stdout| write!(stdout, "{}", done.text)).map(|()| done.failure));
+    match done {
+        Ok(None) => ExitCode::SUCCESS,
+        Ok(Some((why, status))) => {
+            notes::error(&why);
+            ExitCode::from(status)
+        }
+        Err(error) => fail(&error),
+    }
 }
 
 /// Prints help or a version, or what is wrong with the arguments.

@@ -5,12 +5,15 @@ use clap::{CommandFactory as _, Parser, Subcommand};
 
 use crate::cli::campaign::{CampaignArgs, campaign};
 use crate::cli::completions::{Completions, completions};
+use crate::cli::done::Done;
 use crate::cli::figure::{FigureArgs, figure};
+use crate::cli::fly::{FlyArgs, fly};
 use crate::cli::hil::{HilArgs, hil};
 use crate::cli::init::{Init, init};
 use crate::cli::reference::{ReferenceArgs, reference};
 use crate::cli::replay::{ReplayArgs, replay};
 use crate::cli::run::{RunArgs, run};
+use crate::cli::size::{SizeArgs, size};
 use crate::cli::{help, paper};
 use crate::output::notes::{self, Loudness};
 
@@ -43,8 +46,12 @@ pub(crate) enum Command {
     Figure(FigureArgs),
     /// Have a board, or its firmware under emulation, fly a mission
     Hil(HilArgs),
+    /// Fly a mission with a vehicle that speaks `MAVLink`
+    Fly(Box<FlyArgs>),
     /// Solve the paper's full-horizon problem of a scenario, and say what the planners pay above its optimum
     Reference(ReferenceArgs),
+    /// Say what a planner takes of a chip: flash, RAM, instructions
+    Size(SizeArgs),
     /// Write a commented scenario to begin with
     Init(Init),
     /// Print a script by which a shell completes commands and flags
@@ -52,26 +59,29 @@ pub(crate) enum Command {
 }
 
 impl Cli {
-    /// Does what was asked and returns what to print.
+    /// Does what was asked.
     ///
     /// # Errors
     /// One message that names the culprit.
-    pub fn execute(self) -> Result<String> {
+    pub fn execute(self) -> Result<Done> {
         notes::set(match (self.quiet, self.verbose) {
             (true, _) => Loudness::Quiet,
             (_, true) => Loudness::Verbose,
             _ => Loudness::Usual,
         });
-        match self.command {
+        let text = match self.command {
+            Some(Command::Fly(args)) => return fly(&args),
             None => paper::tell(),
             Some(Command::Run(args)) => run(&args),
             Some(Command::Replay(args)) => replay(&args),
             Some(Command::Campaign(args)) => campaign(*args),
             Some(Command::Figure(args)) => figure(&args),
+            Some(Command::Size(args)) => size(&args),
             Some(Command::Hil(args)) => hil(&args),
             Some(Command::Reference(args)) => reference(&args),
             Some(Command::Init(args)) => init(&args),
             Some(Command::Completions(args)) => completions(&args, Self::command()),
-        }
+        };
+        Ok(Done { text: text?, failure: None })
     }
 }

@@ -19,7 +19,7 @@ use crate::cli::merge::{MergeArgs, merge};
 use crate::cli::passage::{Destination, Passage, ToFly};
 use crate::cli::told::{Opening, tell};
 use crate::output::file::{Output, json, place_for, prepare};
-use crate::output::partial::{Begin, Partial};
+use crate::output::partial::{Begin, Partial, Record};
 
 #[derive(Debug, Args)]
 #[command(args_conflicts_with_subcommands = true, after_help = help::CAMPAIGN)]
@@ -139,8 +139,10 @@ impl Opening for Begun<'_> {
                 output.write_all(header.as_bytes())?;
                 Destination::Output(output)
             } else {
-                let begin = Begin { header: &header, record: &json(&record), resume };
-                let mut partial = Partial::open(path, &place, begin, |found| record.check(found))?;
+                let (text, check) = (json(&record), |found: &str| record.check(found));
+                let beside = Some(Record { text: &text, check: &check });
+                let begin = Begin { holds: "rows", header: &header, record: beside, resume };
+                let mut partial = Partial::open(path, &place, begin)?;
                 if resume {
                     recorded.push(go_on::<M>(&mut partial, &planners, &mut to_fly)?);
                 }

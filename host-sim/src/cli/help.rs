@@ -11,6 +11,7 @@ Examples:
 Exit status:
   0    done
   2    bad input, or an output that cannot be written; one message says which
+  1    a flight that failed: the vehicle was stopped, what was flown is written
   129, 130, 143    ended by SIGHUP, SIGINT (Ctrl-C) or SIGTERM; no file is left half written
 
 Colours and progress bars are for terminals alone; NO_COLOR=1 turns colours off there too.";
@@ -31,7 +32,23 @@ pub(crate) const HIL: &str = "\
 Examples:
   host-sim hil mission.toml --emulator         the firmware under QEMU; it is built where needed
   host-sim hil mission.toml --port /dev/ttyUSB0
-  host-sim hil mission.toml --emulator --fault drop=0.1,delay=20ms --timing t.csv";
+  host-sim hil mission.toml --emulator --fault drop=0.1,delay=20ms --timing t.csv
+  host-sim hil mission.toml --port /dev/ttyUSB0 --trace t.jsonl --resume    goes on where it was stopped";
+
+#[cfg(feature = "mavlink")]
+pub(crate) const FLY: &str = "\
+Examples:
+  host-sim fly mission.toml --dry-run --label WET       what an ideal vehicle would be sent
+  host-sim fly mission.toml --mavlink udp:127.0.0.1:14550 --label WET
+  host-sim fly mission.toml --mavlink serial:/dev/ttyUSB0:57600 --label channel:7 --trace t.jsonl
+
+The scenario's x points east and its z north of the origin of the vehicle's local position. It needs a tolerance, how far
+that position may be off, and no truth. The mission begins where the vehicle is, once its operator has armed it in
+guided mode: this program does neither. Addresses: udp:HOST:PORT listens, as udpin does; udpout:HOST:PORT speaks first;
+tcp:HOST:PORT; serial:DEVICE:BAUD. Autopilots: ArduPilot Rover, of boats too, and Sub.
+
+On every failure, and on Ctrl-C, the vehicle is told to stop until it says that it is at rest, unless someone has taken it
+over; what was flown is written all the same, and the exit status is 1. See docs/mavlink.md.";
 
 pub(crate) const REPLAY: &str = "\
 Examples:
@@ -56,6 +73,14 @@ pub(crate) const FIGURE: &str = "\
 Examples:
   host-sim figure all
   host-sim figure 7 --out pictures";
+
+pub(crate) const SIZE: &str = "\
+Examples:
+  host-sim size --samples 16
+  host-sim size --samples 36 --hypotheses 529 --mhz 64
+
+A configuration is told the figures of the smallest program that was measured with room for it, so each is a bound.
+Instructions are exact, milliseconds an estimate by the manual's table, flash is that of a whole program with the link.";
 
 pub(crate) const REFERENCE: &str = "\
 Examples:

@@ -5,7 +5,13 @@ mod campaign;
 mod campaign_flags;
 mod campaign_record;
 mod completions;
+pub mod done;
 mod figure;
+#[cfg(feature = "mavlink")]
+mod fly;
+#[cfg(not(feature = "mavlink"))]
+#[path = "no_fly.rs"]
+mod fly;
 mod format;
 mod help;
 mod hil;
@@ -16,4 +22,5 @@ mod passage;
 mod reference;
 mod replay;
 mod run;
+mod size;
 mod told;

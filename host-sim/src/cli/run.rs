@@ -111,13 +111,17 @@ impl Run {
     }
 
     pub(crate) fn mission(&self) -> Result<Mission> {
-        self.mission_by(self.algorithm)
+        self.mission_by(self.algorithm, scenario::read)
     }
 
-    /// The mission as this one plans it, or who the file names.
-    fn mission_by(&self, algorithm: Option<Algorithm>) -> Result<Mission> {
+    /// The mission as this one plans it, or who the file names, by a way to read the file.
+    pub(crate) fn mission_by(
+        &self,
+        algorithm: Option<Algorithm>,
+        read: fn(&Path, Overrides) -> Result<Mission>,
+    ) -> Result<Mission> {
         let Self { steps, seed, .. } = *self;
-        let mission = scenario::read(&self.scenario, Overrides { algorithm, steps, seed })?;
+        let mission = read(&self.scenario, Overrides { algorithm, steps, seed })?;
         if self.candidates.is_some() && !mission.is_noisy() {
             bail!("--candidates: found a mission without noise, expected one with noisy labels");
         }
@@ -132,7 +136,7 @@ impl Run {
         check_once(planners)?;
         let mission = |&planner: &Algorithm| {
             let mission = self
-                .mission_by(Some(planner))
+                .mission_by(Some(planner), scenario::read)
                 .with_context(|| format!("--compare {}", planner.name()))?;
             if mission.noise.is_some() && !mission.is_noisy() {
                 let (name, planner) = (self.name(), planner.name());

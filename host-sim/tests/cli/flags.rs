@@ -45,13 +45,22 @@ fn a_chip_that_cannot_be_is_refused() {
     fs::write(folder.path().join("many.toml"), many).expect("a file");
     let other = env!("CARGO_BIN_EXE_host-sim");
     let other = format!("--emulator={other}");
-    let cases: [(&[&str], &[&str]); 13] = [
+    let cases: [(&[&str], &[&str]); 19] = [
         (&["m.toml"], &["--port", "--emulator"]),
+        (&["m.toml", "--emulator", "--resume"], &["--trace"]),
         (&["m.toml", &other], &["host-sim", "firmware's ELF"]),
         (&["m.toml", "--port", "x", "--emulator"], &["--port", "--emulator"]),
         (&["m.toml", "--port", "no-such-device"], &["no-such-device", "expected a serial port"]),
         (&["m.toml", "--emulator"], &["release/firmware", "in the repository", "--emulator=ELF"]),
         (&["m.toml", "--emulator=m.toml"], &["m.toml", "ELF", "cargo firmware"]),
+        (
+            &["m.toml", "--emulator", "--machine", "microbit"],
+            &["release/microbit", "--emulator=ELF"],
+        ),
+        (&["m.toml", "--emulator", "--machine", "raspi0"], &["--machine raspi0", "--emulator=ELF"]),
+        (&["m.toml", "--emulator", "--machine", "virt,x=1"], &["virt,x=1", "name of a machine"]),
+        (&["m.toml", "--emulator", "--machine", ""], &["--machine", "name of a machine"]),
+        (&["m.toml", "--port", "x", "--machine", "microbit"], &["--machine", "--port"]),
         (&["m.toml", "--port", "x", "--log", "l"], &["--log", "--port"]),
         (&["m.toml", "--emulator", "--baud", "9600"], &["--baud", "--emulator"]),
         (&["m.toml", "--emulator", "--fault", "drop=2"], &["drop", "found 2", "[0, 1]"]),

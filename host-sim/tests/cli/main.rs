@@ -10,6 +10,7 @@ mod campaigns;
 mod comfort;
 mod figures;
 mod flags;
+mod flying;
 mod interruption;
 mod missions;
 mod outputs;
@@ -20,6 +21,7 @@ mod resuming;
 mod samples;
 mod scenarios;
 mod shards;
+mod size;
 mod stopping;
 
 const GOOD: &str = include_str!("../../scenarios/paper-noiseless.toml");
