@@ -1,7 +1,7 @@
 // A report's page in a real browser: that it steps by buttons, keys and slider, that it loads nothing, that it fits
-// and that axe finds nothing, in light and dark, wide and narrow.
+// and that axe finds nothing: wide and in light, narrow and in dark; with `all` also the other way round.
 //
-//   node page.mjs PAGE.html FOLDER
+//   node page.mjs PAGE.html FOLDER [all]
 //
 // saves what the page looked like in the folder. Ends with status 1 and a line for each fault.
 
@@ -13,7 +13,7 @@ import { pathToFileURL } from 'node:url';
 import { chromium } from 'playwright-core';
 
 const AXE = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
-const [file, folder] = process.argv.slice(2);
+const [file, folder, extent] = process.argv.slice(2);
 const name = basename(file, '.html');
 const faults = [];
 
@@ -111,26 +111,26 @@ const browser = await chromium.launch({
 });
 mkdirSync(folder, { recursive: true });
 const address = pathToFileURL(resolve(file)).href;
-for (const [width, height] of [[1280, 900], [360, 740]]) {
-  for (const colorScheme of ['light', 'dark']) {
-    const what = `${name}, ${width} px, ${colorScheme}`;
-    const context = await browser.newContext({ viewport: { width, height }, colorScheme, reducedMotion: colorScheme === 'dark' ? 'reduce' : 'no-preference' });
-    const page = await context.newPage();
-    page.on('console', (message) => check(false, `${what}: the console says ${message.text()}`));
-    page.on('pageerror', (error) => check(false, `${what}: ${error}`));
-    page.on('request', (request) => check(request.url() === address, `${what}: it loads ${request.url()}`));
-    await page.goto(address);
-    const chapters = await page.locator('#chapters option').count();
-    for (let chapter = 0; chapter < chapters; chapter += 1) {
-      if (chapters > 1) await page.selectOption('#chapters', String(chapter));
-      if (colorScheme === 'light') await check_stepping(page);
-      await page.fill('#slider', '5');
-      await page.waitForTimeout(500); // the robot has come to rest
-      await check_looks(page, `${what}, chapter ${chapter}`);
-      await page.screenshot({ path: join(folder, `${name}-${width}-${colorScheme}-${chapter}.png`), fullPage: true });
-    }
-    await context.close();
+const looks = [[1280, 900, 'light'], [360, 740, 'dark']];
+if (extent === 'all') looks.push([1280, 900, 'dark'], [360, 740, 'light']);
+for (const [width, height, colorScheme] of looks) {
+  const what = `${name}, ${width} px, ${colorScheme}`;
+  const context = await browser.newContext({ viewport: { width, height }, colorScheme, reducedMotion: colorScheme === 'dark' ? 'reduce' : 'no-preference' });
+  const page = await context.newPage();
+  page.on('console', (message) => check(false, `${what}: the console says ${message.text()}`));
+  page.on('pageerror', (error) => check(false, `${what}: ${error}`));
+  page.on('request', (request) => check(request.url() === address, `${what}: it loads ${request.url()}`));
+  await page.goto(address);
+  const chapters = await page.locator('#chapters option').count();
+  for (let chapter = 0; chapter < chapters; chapter += 1) {
+    if (chapters > 1) await page.selectOption('#chapters', String(chapter));
+    if (colorScheme === 'light') await check_stepping(page);
+    await page.fill('#slider', '5');
+    await page.waitForTimeout(500); // the robot has come to rest
+    await check_looks(page, `${what}, chapter ${chapter}`);
+    await page.screenshot({ path: join(folder, `${name}-${width}-${colorScheme}-${chapter}.png`), fullPage: true });
   }
+  await context.close();
 }
 // Without scripts there are the last pictures and the tables; and on paper no controls.
 const still = await browser.newPage({ javaScriptEnabled: false, viewport: { width: 360, height: 740 } });

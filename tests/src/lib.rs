@@ -1,6 +1,7 @@
 //! What the cross-crate tests share: adversarial sites and the slow twin of the version space;
 //! programs for a chip ([`program`]), a core to run them on ([`emulator`]), what they may take
-//! ([`budget`]); a debugger for QEMU ([`debugger`]); beliefs to ask ([`known`]); areas with keep-outs ([`terrain`]).
+//! ([`budget`]); machines of QEMU's
+//! ([`machines`]) and a debugger for them ([`debugger`]); beliefs to ask ([`known`]); areas with keep-outs ([`terrain`]).
 
 use planner_core::belief::sample::{Label, Sample};
 use planner_core::geometry::lattice::{LIMIT, Site, Vector};
@@ -12,6 +13,7 @@ pub mod debugger;
 pub mod emulator;
 pub mod known;
 pub mod link;
+pub mod machines;
 pub mod program;
 pub mod terrain;
 pub mod twins;

@@ -18,7 +18,16 @@ const CAR: &str = include_str!("../../host-sim/scenarios/car-among-keep-outs.tom
 const CHROMIUM: &str = "/usr/bin/chromium";
 
 #[test]
-fn pages_in_a_browser() {
+fn examples_in_a_browser() {
+    look_at("examples", examples);
+}
+
+#[test]
+fn a_car_in_a_browser() {
+    look_at("car", car);
+}
+
+fn look_at(name: &str, page: fn() -> String) {
     let scratch = env!("CARGO_TARGET_TMPDIR");
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("browser");
     if let Some(missing) = missing(&folder) {
@@ -27,15 +36,15 @@ fn pages_in_a_browser() {
     }
     let place = Path::new(scratch).join("pages");
     fs::create_dir_all(&place).expect("a folder");
-    for (name, html) in [("examples", examples()), ("car", car())] {
-        let file = place.join(format!("{name}.html"));
-        fs::write(&file, html).expect("a page");
-        let mut node = Command::new("node");
-        let run = node.current_dir(&folder).arg("page.mjs").args([&file, &place]).output();
-        let run = run.expect("node starts");
-        let said = [run.stdout, run.stderr].concat();
-        assert!(run.status.success(), "{}", String::from_utf8_lossy(&said));
-    }
+    let file = place.join(format!("{name}.html"));
+    fs::write(&file, page()).expect("a page");
+    let mut node = Command::new("node");
+    node.current_dir(&folder).arg("page.mjs").args([&file, &place]);
+    // Each width in each scheme: a long run's.
+    node.args(tests::LONG.then_some("all"));
+    let run = node.output().expect("node starts");
+    let said = [run.stdout, run.stderr].concat();
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&said));
 }
 
 /// What is not there that the browser needs.
