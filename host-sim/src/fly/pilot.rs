@@ -318,6 +318,8 @@ impl Pilot {
             return Some(format!("its word that it sends {message}"));
         }
         let unheard = if self.vehicle.fix.is_none_or(|it| !fresh(it.0, LOST)) {
+            // It may have been started anew, and its clock with it.
+            (self.vehicle.fix, self.vehicle.facing) = (None, None);
             Some("its local position (LOCAL_POSITION_NED)".to_owned())
         } else if self.vehicle.facing.is_none() {
             Some("its attitude (ATTITUDE)".to_owned())

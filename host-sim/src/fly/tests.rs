@@ -177,6 +177,28 @@ fn each_message_may_be_lost_or_doubled_either_way() {
     }
 }
 
+/// Its clock goes back by a quarter of an hour then.
+#[test]
+fn a_vehicle_may_be_started_anew_before_the_flight() {
+    const EARLIER: u32 = 1_000_000;
+    let second = Duration::from_secs(1);
+    let flown = fly(as_it_is, |now, _, mut message| {
+        if now > 9 * second {
+            return vec![message];
+        }
+        match &mut message {
+            _ if now > 2 * second => return vec![],
+            // Without its labels it is not ready.
+            MavMessage::NAMED_VALUE_FLOAT(_) => return vec![],
+            MavMessage::LOCAL_POSITION_NED(it) => it.time_boot_ms += EARLIER,
+            MavMessage::ATTITUDE(it) => it.time_boot_ms += EARLIER,
+            _ => {}
+        }
+        vec![message]
+    });
+    assert_eq!(flown.trace(), of_run());
+}
+
 /// Labels that come late tell of a place before: they are passed over by the vehicle's own time. Those from the way are
 /// wrong here, so that one that counts is found out.
 #[test]
