@@ -119,3 +119,174 @@ impl<P: Planner, B: Body> Agent<P, B> {
         self.take_in(motion, reading)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use core::cell::Cell;
+    use core::convert::Infallible;
+    use core::future;
+    use core::pin::pin;
+    use core::task::{Context, Poll, Waker};
+
+    use nalgebra::Point2;
+
+    use super::*;
+    use crate::belief::sample::{Label, Sample};
+    use crate::belief::tolerance::Tolerance;
+    use crate::belief::version_space::VersionSpace;
+    use crate::geometry::area::Area;
+    use crate::geometry::heading::Heading;
+    use crate::geometry::lattice::Site;
+    use crate::motion::unicycle::Unicycle;
+    use crate::planner::cfc::{self, Cfc};
+    use crate::planner::config::{Config, Crossing};
+    use crate::planner::lookahead::{self, Lookahead};
+    use crate::robot::hal;
+
+    const STEPS: usize = 24;
+
+    fn at(x: f64, z: f64) -> Site {
+        Site::try_from(Point2::new(x, z)).unwrap()
+    }
+
+    fn label(site: Site) -> Label {
+        let at = Point2::<f64>::from(site);
+        if at.y > 0.41 * at.x + 3.5 { Label::Positive } else { Label::Negative }
+    }
+
+    fn start() -> Pose {
+        Pose { site: at(2.0, 1.0), heading: Heading(0) }
+    }
+
+    fn config() -> Config {
+        Config {
+            area: Area::new(at(0.0, 0.0), at(20.0, 20.0)).unwrap(),
+            varrho: lookahead::VARRHO,
+            crossing: Crossing::default(),
+            following: cfc::FOLLOWING,
+            tolerance: Tolerance::NONE,
+        }
+    }
+
+    fn known() -> VersionSpace<32> {
+        let given = [at(2.0, 1.0), at(2.0, 8.0), at(18.0, 16.0), at(18.0, 5.0)];
+        VersionSpace::new(&given.map(|site| Sample { site, label: label(site) })).unwrap()
+    }
+
+    /// A robot with drivers of either kind; while it is stuck, those that are awaited never end.
+    #[derive(Clone, Copy)]
+    struct Robot<'a> {
+        at: &'a Cell<Pose>,
+        stuck: &'a Cell<Option<Driver>>,
+    }
+
+    #[derive(Clone, Copy, PartialEq)]
+    enum Driver {
+        Drive,
+        Sensor,
+    }
+
+    impl hal::Drive for Robot<'_> {
+        type Error = Infallible;
+
+        fn drive(&mut self, motion: &Motion) -> Result<Pose, Infallible> {
+            self.at.set(motion.target);
+            Ok(motion.target)
+        }
+    }
+
+    impl hal::LabelSensor for Robot<'_> {
+        type Error = Infallible;
+
+        fn read(&mut self) -> Result<Reading, Infallible> {
+            Ok(label(self.at.get().site).into())
+        }
+    }
+
+    impl Robot<'_> {
+        /// Ends when it is asked for the second time.
+        async fn wait_for(self, driver: Driver) {
+            if self.stuck.get() == Some(driver) {
+                future::pending::<()>().await;
+            }
+            let mut is_asked_again = false;
+            future::poll_fn(|context| {
+                if core::mem::replace(&mut is_asked_again, true) {
+                    return Poll::Ready(());
+                }
+                context.waker().wake_by_ref();
+                Poll::Pending
+            })
+            .await;
+        }
+    }
+
+    impl Drive for Robot<'_> {
+        type Error = Infallible;
+
+        async fn drive(&mut self, motion: &Motion) -> Result<Pose, Infallible> {
+            self.wait_for(Driver::Drive).await;
+            hal::Drive::drive(self, motion)
+        }
+    }
+
+    impl LabelSensor for Robot<'_> {
+        type Error = Infallible;
+
+        async fn read(&mut self) -> Result<Reading, Infallible> {
+            self.wait_for(Driver::Sensor).await;
+            hal::LabelSensor::read(self)
+        }
+    }
+
+    /// A step that is asked three times, which is enough for one whose drivers end, and then dropped.
+    fn step(agent: &mut Agent<impl Planner, impl Body<Error: Debug>>) -> Option<Event> {
+        let mut step = pin!(agent.step_async());
+        let mut context = Context::from_waker(Waker::noop());
+        (0..3).find_map(|_| match step.as_mut().poll(&mut context) {
+            Poll::Ready(event) => Some(event.unwrap()),
+            Poll::Pending => None,
+        })
+    }
+
+    /// The same motions and readings whether drivers are called or awaited, and whether each step but every third was
+    /// dropped before, as it drove or as it sensed.
+    fn missions_are_the_same(planner: impl Planner + Clone) {
+        let [here, there] = [Cell::new(start()), Cell::new(start())];
+        let (stuck, free) = (Cell::new(None), Cell::new(None));
+        let robot = |at, stuck| {
+            let robot = Robot { at, stuck };
+            Vehicle { drive: robot, sensor: robot }
+        };
+        let mut called = Agent::new(planner.clone(), robot(&here, &free), start());
+        let mut awaited = Agent::new(planner, robot(&there, &stuck), start());
+        for number in 0..STEPS {
+            let before = awaited.pose();
+            let sticks = [None, Some(Driver::Drive), Some(Driver::Sensor)][number % 3];
+            stuck.set(sticks);
+            let cut = step(&mut awaited);
+            let is_cut = cut.is_none();
+            let event = cut.or_else(|| {
+                let has_come = if sticks == Some(Driver::Drive) { before } else { there.get() };
+                assert_eq!(awaited.pose(), has_come);
+                awaited.relocate(before);
+                stuck.set(None);
+                step(&mut awaited)
+            });
+            let [expected, event] = [called.step().ok(), event].map(|event| match event {
+                Some(Event::Step(it)) => (it.motion.target, it.pose, it.reading),
+                other => panic!("step {number}: {other:?}"),
+            });
+            assert_eq!(event, expected, "step {number}");
+            // Where no label is wanted none is read.
+            let wants = [false, true, event.2.is_some()];
+            assert_eq!(is_cut, wants[number % 3], "step {number}");
+        }
+    }
+
+    #[test]
+    fn a_mission_is_the_same_with_drivers_that_are_awaited() {
+        missions_are_the_same(Lookahead::new(config(), Unicycle::paper(), known()));
+        missions_are_the_same(Cfc::new(config(), Unicycle::paper(), known()));
+    }
+}
