@@ -12,6 +12,7 @@ use planner_core::motion::unicycle::Grid;
 use planner_core::planner::scc::Policy;
 use tests::LONG;
 use tests::budget::hardest::Hardest;
+use tests::budget::readme::{self, grouped};
 use tests::budget::timing;
 use tests::budget::workload::{DOUBT, Workload};
 use tests::debugger::{self, Debugger};
@@ -210,6 +211,27 @@ fn microbit() -> Option<Figures> {
     Some(figures)
 }
 
+/// The committed figures, as the readme has them.
+fn table(document: &DocumentMut) -> String {
+    const COLUMNS: [(&str, &str, &str); 7] = [
+        ("M0, micro:bit", "cortex-m0", "microbit"),
+        ("M0, *small*", "cortex-m0", "small"),
+        ("M0, *standard*", "cortex-m0", "standard"),
+        ("M4F, *small*", "cortex-m4f", "small"),
+        ("M4F, *standard*", "cortex-m4f", "standard"),
+        ("RISC-V, *small*", "riscv32imac", "small"),
+        ("RISC-V, *standard*", "riscv32imac", "standard"),
+    ];
+    let sizes = ["flash", "static_ram", "stack"].map(str::to_owned);
+    let calls = ["plan", "observe", "estimate", "lookahead_plan", "forecast_plan"];
+    let times = calls.map(|call| ["median", "worst"].map(|of| format!("{call}_{of}")));
+    let names: Vec<_> = sizes.iter().chain(times.as_flattened()).map(String::as_str).collect();
+    readme::table(&COLUMNS.map(|it| it.0), &names, |column, name| {
+        let (_, core, program) = COLUMNS[column];
+        document.get(core)?.get(program)?.get(name)?.as_integer().map(grouped)
+    })
+}
+
 #[test]
 fn every_core_takes_what_is_committed() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(FILE);
@@ -238,6 +260,9 @@ fn every_core_takes_what_is_committed() {
                 table[&name] = value(figure as i64);
             }
         }
+    }
+    if !readme::holds("cores", &table(&document)) {
+        changes.push(format!("the readme's table is not that of {FILE}"));
     }
     if env::var_os("UPDATE_EXPECT").is_some() {
         fs::write(path, document.to_string()).expect("writes the figures");

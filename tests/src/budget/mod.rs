@@ -2,6 +2,7 @@
 
 pub mod footprint;
 pub mod hardest;
+pub mod readme;
 pub mod table;
 pub mod timing;
 pub mod workload;

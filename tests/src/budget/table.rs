@@ -7,12 +7,10 @@ use std::{env, fs};
 use toml_edit::{Array, DocumentMut, Item, Value};
 
 use crate::LONG;
+use crate::budget::readme::{self, grouped};
 
 /// The file, from the workspace's root.
 const FILE: &str = "tests/budgets.toml";
-
-/// What stands around the table in the readme.
-const MARKERS: [&str; 2] = ["<!-- budgets -->\n", "<!-- /budgets -->"];
 
 /// A clock to give cycles as time: the chip's, cycles in a microsecond.
 const CYCLES_PER_US: f64 = 168.0;
@@ -160,16 +158,11 @@ impl Budgets {
                 }
             }
         }
-        let readme = fs::read_to_string(root("README.md")).expect("the readme");
-        let (before, rest) = readme.split_once(MARKERS[0]).expect("a place for the table");
-        let (_, after) = rest.split_once(MARKERS[1]).expect("its end");
-        let table = table(&self.document);
-        let wanted = format!("{before}{}{table}{}{after}", MARKERS[0], MARKERS[1]);
+        if !readme::holds("budgets", &table(&self.document)) {
+            self.failures.push(format!("the readme's table is not that of {FILE}"));
+        }
         if self.updating {
             fs::write(root(FILE), self.document.to_string()).expect("writes the budgets");
-            fs::write(root("README.md"), wanted).expect("writes the readme");
-        } else if wanted != readme {
-            self.failures.push(format!("the readme's table is not that of {FILE}"));
         }
         (self.report, self.failures)
     }
@@ -221,34 +214,13 @@ fn table(document: &DocumentMut) -> String {
             }
         }
     }
-    let mut table =
-        format!("| | {} |\n| --- |{}\n", programs.join(" | "), " ---: |".repeat(programs.len()));
-    for name in names {
-        let _ = write!(table, "| {} |", name.replace('_', " "));
-        for program in programs {
-            let figure = read(program, name).map_or(String::new(), grouped);
-            let cycles = read(program, &format!("{name}_cycles"));
-            let time = cycles.map_or(String::new(), |it| {
-                format!(", {:.2} ms", it as f64 / CYCLES_PER_US / 1_000.0)
-            });
-            let _ = write!(table, " {figure}{time} |");
-        }
-        table.push('\n');
-    }
-    table
-}
-
-/// An integer with commas.
-fn grouped(value: i64) -> String {
-    let digits = value.to_string();
-    let mut grouped = String::new();
-    for (place, digit) in digits.chars().enumerate() {
-        if place > 0 && (digits.len() - place).is_multiple_of(3) {
-            grouped.push(',');
-        }
-        grouped.push(digit);
-    }
-    grouped
+    readme::table(&programs, &names, |program, name| {
+        let figure = grouped(read(programs[program], name)?);
+        let cycles = read(programs[program], &format!("{name}_cycles"));
+        let time = cycles
+            .map_or(String::new(), |it| format!(", {:.2} ms", it as f64 / CYCLES_PER_US / 1_000.0));
+        Some(figure + &time)
+    })
 }
 
 fn root(file: &str) -> std::path::PathBuf {
