@@ -9,14 +9,16 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 pub mod budget;
+pub mod chip;
 pub mod debugger;
 pub mod emulator;
 pub mod known;
-pub mod link;
 pub mod machines;
+pub mod missions;
 pub mod program;
 pub mod terrain;
 pub mod twins;
+pub mod wire;
 
 /// Whether the long runs are asked for, with the feature `long`.
 pub const LONG: bool = cfg!(feature = "long");

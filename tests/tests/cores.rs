@@ -18,8 +18,8 @@ use tests::budget::workload::{DOUBT, Workload};
 use tests::debugger::{self, Debugger};
 use tests::emulator::Core;
 use tests::emulator::missions;
-use tests::link::of_any_vehicle;
 use tests::machines::{Kind, Machine, NRF51, riscv};
+use tests::missions::of_any_vehicle;
 use tests::program::image::Image;
 use toml_edit::{DocumentMut, Item, Table, value};
 
@@ -33,7 +33,7 @@ const RANDOM: u64 = 4;
 /// Bytes by which flash may differ from what is committed. Cargo names planner-core by where it is, as the micro:bit's
 /// firmware is a workspace of its own; functions are ordered by such names, and lie closer in one order than in another:
 /// of sixteen folders ten gave 84,340 bytes, and six 84,336. Programs of the workspace are the same everywhere.
-fn layout(program: &str, figure: &str) -> u64 {
+fn leeway(program: &str, figure: &str) -> u64 {
     if (program, figure) == ("microbit", "flash") { 16 } else { 0 }
 }
 
@@ -254,14 +254,14 @@ fn every_core_takes_what_is_committed() {
         let table = of_core.entry(program).or_insert(Item::Table(Table::new()));
         for (name, figure) in figures {
             let committed = table.get(&name).and_then(Item::as_integer);
-            let is_held = |held: i64| figure.abs_diff(held as u64) <= layout(program, &name);
+            let is_held = |held: i64| figure.abs_diff(held as u64) <= leeway(program, &name);
             if !committed.is_some_and(is_held) {
                 changes.push(format!("{core}.{program}.{name}: {figure}, committed {committed:?}"));
                 table[&name] = value(figure as i64);
             }
         }
     }
-    if !readme::holds("cores", &table(&document)) {
+    if !readme::write_or_compare("cores", &table(&document)) {
         changes.push(format!("the readme's table is not that of {FILE}"));
     }
     if env::var_os("UPDATE_EXPECT").is_some() {

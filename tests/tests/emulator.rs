@@ -25,7 +25,7 @@ use tests::budget::workload::Workload;
 use tests::cases;
 use tests::emulator::missions::{self, CORES};
 use tests::emulator::{Core, Emulator};
-use tests::link::of_any_vehicle;
+use tests::missions::of_any_vehicle;
 use tests::program::build;
 
 /// Missions of every vehicle by every algorithm, of some with robots that err.

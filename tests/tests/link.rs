@@ -38,7 +38,9 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use tests::link::{SEED, WAIT, Way, Wire, fly, mission, of_any_vehicle, stopping};
+use tests::chip::{self, FarEnd, Off, Socket, fly};
+use tests::missions::{SEED, mission, of_any_vehicle, stopping};
+use tests::wire::{WAIT, Way, Wire};
 
 /// A wire with the vehicle at its other end.
 struct Network {
@@ -59,19 +61,15 @@ impl Network {
     }
 }
 
-/// The chip's end of a network.
-#[derive(Clone, Copy)]
-struct Plug<'a>(&'a RefCell<Network>);
-
-impl Port for Plug<'_> {
-    fn send(&mut self, frame: &[u8]) {
-        let mut net = self.0.borrow_mut();
-        net.frames_of_chip += 1;
-        net.wire.ask(frame);
+impl FarEnd for Network {
+    fn send(&mut self, frame: &[u8]) -> Result<(), Off> {
+        self.frames_of_chip += 1;
+        self.wire.ask(frame);
+        Ok(())
     }
 
     fn receive(&mut self) -> Option<u8> {
-        let Network { wire, player, failure, .. } = &mut *self.0.borrow_mut();
+        let Self { wire, player, failure, .. } = self;
         wire.answer(|byte| {
             player.hear(byte).unwrap_or_else(|error| {
                 *failure = Some(error.to_string());
@@ -81,11 +79,10 @@ impl Port for Plug<'_> {
     }
 }
 
-type Chip<'a> = Station<Plug<'a>, Infallible>;
+type Chip<'a> = Station<Socket<'a, Network>, Infallible>;
 
 fn chip(network: &RefCell<Network>) -> Chip<'_> {
-    let clock = ClockRate { per_second: 1, emulated: false };
-    Station { link: Link::new(Plug(network)), sensor: None, ticks: || 0, clock }
+    chip::chip(network, None)
 }
 
 #[test]
@@ -222,7 +219,7 @@ fn outlines_of_no_polygon_are_refused() {
 
 #[test]
 fn a_cut_link_ends_every_mission_within_the_bound_and_with_no_motion_after_it() {
-    let bound = WAIT * u32::from(Link::<Plug<'_>>::ATTEMPTS);
+    let bound = WAIT * u32::from(Link::<Socket<'_, Network>>::ATTEMPTS);
     (0..1000u64).into_par_iter().for_each(|number| {
         let mission = mission(number);
         let network = RefCell::new(Network::new(&mission, Faults::default()));
@@ -300,7 +297,7 @@ fn a_chip_declines_what_it_has_no_room_for_and_says_how_much_it_has() {
 /// Frames of every message, of missions with all that makes messages long.
 fn corpus() -> Vec<Vec<u8>> {
     /// Hears what passes.
-    struct Tap<'a>(Plug<'a>, &'a RefCell<Vec<Vec<u8>>>);
+    struct Tap<'a>(Socket<'a, Network>, &'a RefCell<Vec<Vec<u8>>>);
     impl Port for Tap<'_> {
         fn send(&mut self, frame: &[u8]) {
             self.1.borrow_mut().push(frame.to_vec());
@@ -322,7 +319,7 @@ fn corpus() -> Vec<Vec<u8>> {
     for mission in missions {
         let network = RefCell::new(Network::new(&mission, Faults::default()));
         let clock = ClockRate { per_second: 168_000_000, emulated: true };
-        let link = Link::new(Tap(Plug(&network), &frames));
+        let link = Link::new(Tap(Socket(&network), &frames));
         let mut chip = Station::<_, Infallible> { link, sensor: None, ticks: || 77, clock };
         let setup = chip.await_setup();
         assert!(fly(&mut chip, &setup).is_ok());

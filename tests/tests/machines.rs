@@ -13,8 +13,8 @@ use planner_core::belief::goal::{Accuracy, Goal};
 use planner_core::motion::unicycle::Grid;
 use rayon::prelude::*;
 use tests::cases;
-use tests::link::of_any_vehicle;
 use tests::machines::{Kind, Machine, NRF51, STM32, riscv};
+use tests::missions::of_any_vehicle;
 
 const SEED: u64 = 8;
 

@@ -18,8 +18,8 @@ use planner_core::link::message::LabelSource;
 use tests::budget::footprint::SEAM;
 use tests::budget::workload::DOUBT;
 use tests::debugger::{self, Debugger};
-use tests::link::of_any_vehicle;
 use tests::machines::{Machine, NRF51};
+use tests::missions::of_any_vehicle;
 use tests::program::image::Image;
 
 const SCRATCH: &str = env!("CARGO_TARGET_TMPDIR");

@@ -11,7 +11,7 @@ use planner_core::link::frame::{Decoder, Envelope, Frame};
 use planner_core::link::message::{
     self, Capacity, ClockRate, LabelSource, PROTOCOL, Reply, Request,
 };
-use tests::link::mission;
+use tests::missions::mission;
 
 /// A player and what a chip of our own says to it.
 struct Liar {

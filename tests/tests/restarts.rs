@@ -7,7 +7,6 @@ use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::convert::Infallible;
 use std::fmt::Debug;
-use std::panic::{self, AssertUnwindSafe};
 use std::time::Duration;
 
 use host_sim::hil::faults::Faults;
@@ -17,13 +16,12 @@ use host_sim::mission::recording::Recording;
 use host_sim::world::robot::Robot;
 use planner_core::link::delivery::{Heard, Link, Port, Responder};
 use planner_core::link::frame::{Decoder, Frame};
-use planner_core::link::message::{
-    self, ClockRate, Declined, LabelSource, PROTOCOL, Reply, Request,
-};
-use planner_core::link::station::{Flown, Station};
+use planner_core::link::message::{self, Declined, LabelSource, PROTOCOL, Reply, Request};
 use planner_core::motion::dynamics::Pose;
 use rayon::prelude::*;
-use tests::link::{Wire, fly, mission};
+use tests::chip::{FarEnd, Off, power_up};
+use tests::missions::mission;
+use tests::wire::Wire;
 
 /// A vehicle that serves one mission after the other, over a network that it is at the end of.
 struct Garage {
@@ -103,9 +101,6 @@ struct Yard {
     flown_after: Option<(usize, Duration)>,
 }
 
-/// The chip's power failed.
-struct Off;
-
 impl Yard {
     fn new(mission: &Mission, faults: Faults, seed: u64, restart: Restart) -> Self {
         Self {
@@ -118,8 +113,9 @@ impl Yard {
             flown_after: None,
         }
     }
+}
 
-    /// What the chip sends; its power may fail instead.
+impl FarEnd for Yard {
     fn send(&mut self, frame: &[u8]) -> Result<(), Off> {
         if frame != self.last {
             (self.last, self.asked) = (frame.to_vec(), self.asked + 1);
@@ -154,42 +150,6 @@ impl Yard {
     }
 }
 
-/// The chip's end of a yard.
-#[derive(Clone, Copy)]
-struct Socket<'a>(&'a RefCell<Yard>);
-
-impl Port for Socket<'_> {
-    fn send(&mut self, frame: &[u8]) {
-        let sent = self.0.borrow_mut().send(frame);
-        if let Err(off) = sent {
-            panic::resume_unwind(Box::new(off));
-        }
-    }
-
-    fn receive(&mut self) -> Option<u8> {
-        self.0.borrow_mut().receive()
-    }
-}
-
-/// A chip from its start: it flies missions until one ends as it should, or its power fails.
-fn run(yard: &RefCell<Yard>) -> Result<(), Off> {
-    let clock = ClockRate { per_second: 1, emulated: false };
-    let ended = panic::catch_unwind(AssertUnwindSafe(|| {
-        let link = Link::new(Socket(yard));
-        let mut chip = Station { link, sensor: None::<Infallible>, ticks: || 0, clock };
-        loop {
-            let setup = chip.await_setup();
-            if matches!(fly(&mut chip, &setup), Ok(Flown::Ended(_))) {
-                break;
-            }
-        }
-    }));
-    ended.map_err(|cause| match cause.downcast::<Off>() {
-        Ok(off) => *off,
-        Err(other) => panic::resume_unwind(other),
-    })
-}
-
 /// Restarts one end or both at each request of a mission: for each, the requests and the time until the
 /// next mission flew.
 fn restarts(number: u64, faults: Faults) -> Vec<(usize, Duration)> {
@@ -203,10 +163,10 @@ fn restarts(number: u64, faults: Faults) -> Vec<(usize, Duration)> {
             let context = format!("mission {number}: {restart:?}");
             let seed = number * 1_000 + at as u64;
             let yard = RefCell::new(Yard::new(&mission, faults, seed, restart));
-            let off = run(&yard).is_err();
+            let off = power_up(&yard, None::<Infallible>).is_err();
             assert_eq!(off, chip, "{context}");
             if off {
-                assert!(run(&yard).is_ok(), "{context}");
+                assert!(power_up(&yard, None::<Infallible>).is_ok(), "{context}");
             }
             let Yard { garage, flown_after, .. } = yard.into_inner();
             assert!(garage.ended && garage.motions == motions, "{context}");

@@ -6,7 +6,6 @@
 use std::cell::RefCell;
 use std::convert::Infallible;
 use std::fs;
-use std::panic::{self, AssertUnwindSafe};
 use std::path::Path;
 
 use host_sim::hil::faults::Faults;
@@ -17,12 +16,12 @@ use host_sim::mission::definition::Mission;
 use host_sim::mission::recording::Recording;
 use host_sim::report::trace;
 use planner_core::belief::sample::Reading;
-use planner_core::link::delivery::{Link, Port};
 use planner_core::link::message::{self, ClockRate, LabelSource, Reply, Request};
-use planner_core::link::station::{Flown, Station};
 use planner_core::robot::hal::LabelSensor;
 use rayon::prelude::*;
-use tests::link::{Wire, fly, mission, of_any_vehicle};
+use tests::chip::{FarEnd, Off, power_up};
+use tests::missions::{mission, of_any_vehicle};
+use tests::wire::Wire;
 
 /// Which end restarts, just before the chip sends its so-many-th frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,9 +43,6 @@ struct Yard<'a> {
     frames: u64,
     restarts: Vec<Restart>,
 }
-
-/// The chip's power failed.
-struct Off;
 
 impl<'a> Yard<'a> {
     fn new(mission: &'a Mission, labels: LabelSource, place: Option<&'a Path>) -> Self {
@@ -73,7 +69,9 @@ impl<'a> Yard<'a> {
         }
         self.player = Some(player);
     }
+}
 
+impl FarEnd for Yard<'_> {
     fn send(&mut self, frame: &[u8]) -> Result<(), Off> {
         self.frames += 1;
         while let Some(restart) = self.restarts.pop() {
@@ -99,25 +97,11 @@ impl<'a> Yard<'a> {
     }
 }
 
-#[derive(Clone, Copy)]
-struct Socket<'a, 'b>(&'a RefCell<Yard<'b>>);
-
-impl Port for Socket<'_, '_> {
-    fn send(&mut self, frame: &[u8]) {
-        let sent = self.0.borrow_mut().send(frame);
-        if let Err(off) = sent {
-            panic::resume_unwind(Box::new(off));
-        }
-    }
-
-    fn receive(&mut self) -> Option<u8> {
-        self.0.borrow_mut().receive()
-    }
-}
-
 /// The chip's own sensor: it reads where the robot stands, wherever the chip believes to be. In noise one place in nine
 /// reads wrong, always the same.
-impl LabelSensor for Socket<'_, '_> {
+struct Sensor<'a, 'b>(&'a RefCell<Yard<'b>>);
+
+impl LabelSensor for Sensor<'_, '_> {
     type Error = Infallible;
 
     fn read(&mut self) -> Result<Reading, Infallible> {
@@ -134,23 +118,7 @@ impl LabelSensor for Socket<'_, '_> {
 /// Chips, one after the other as their power fails, until the mission is over; the trace.
 fn flown(yard: Yard<'_>) -> String {
     let (place, yard) = (yard.place, RefCell::new(yard));
-    let clock = ClockRate { per_second: 1, emulated: false };
-    let ended = || {
-        let socket = Socket(&yard);
-        let mut chip =
-            Station { link: Link::new(socket), sensor: Some(socket), ticks: || 0, clock };
-        loop {
-            let setup = chip.await_setup();
-            if matches!(fly(&mut chip, &setup), Ok(Flown::Ended(_))) {
-                break;
-            }
-        }
-    };
-    while let Err(cause) = panic::catch_unwind(AssertUnwindSafe(ended)) {
-        if !cause.is::<Off>() {
-            panic::resume_unwind(cause);
-        }
-    }
+    while power_up(&yard, Some(Sensor(&yard))).is_err() {}
     let Yard { player, restarts, .. } = yard.into_inner();
     assert!(restarts.is_empty(), "{restarts:?} never came");
     let played = player.expect("it has started").finish().expect("the mission is over");

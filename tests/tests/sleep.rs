@@ -27,7 +27,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use tests::cases;
-use tests::link::{by_turns, of_any_vehicle, stopping};
+use tests::missions::{by_turns, of_any_vehicle, stopping};
 
 static CHECK: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 

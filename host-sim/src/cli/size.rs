@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use anyhow::{Result, bail};
-use clap::{Args, ValueEnum};
+use clap::Args;
 
 use crate::cli::format::Format;
 use crate::cli::help;
@@ -14,8 +14,8 @@ use crate::size::measurements::{Call, Flash, M4F, Other, Size, size as measured}
 #[command(after_help = help::SIZE)]
 pub(crate) struct SizeArgs {
     /// Who plans
-    #[arg(long, value_enum, default_value_t = Algorithm::Lookahead)]
-    algorithm: Algorithm,
+    #[arg(long, value_enum, default_value_t = Planner::Lookahead)]
+    algorithm: Planner,
     /// Samples, the given ones included
     #[arg(long, value_name = "N", default_value_t = 36, value_parser = clap::value_parser!(u16).range(3..))]
     samples: u16,
@@ -31,16 +31,6 @@ pub(crate) struct SizeArgs {
     /// How to print
     #[arg(long, value_enum, default_value_t)]
     format: Format,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
-enum Algorithm {
-    /// Algorithm 1
-    Cfc,
-    /// Algorithm 2
-    Scc,
-    /// Look-ahead
-    Lookahead,
 }
 
 fn clock(word: &str) -> Result<f64> {
@@ -61,11 +51,7 @@ pub(crate) fn size(args: &SizeArgs) -> Result<String> {
 }
 
 fn configuration(args: &SizeArgs) -> Result<Configuration> {
-    let planner = match args.algorithm {
-        Algorithm::Cfc => Planner::Cfc,
-        Algorithm::Scc => Planner::Scc,
-        Algorithm::Lookahead => Planner::Lookahead,
-    };
+    let planner = args.algorithm;
     let hypotheses = match (planner, args.hypotheses) {
         (Planner::Cfc, Some(_)) => bail!("--hypotheses: Algorithm 1 takes labels to be true"),
         (Planner::Scc, None) => {

@@ -27,7 +27,7 @@ use crate::fly::limits::{
 use crate::fly::orders::{AUTOPILOT, Envelope, Order, heartbeat};
 use crate::fly::requests::Requests;
 use crate::fly::stage::{Arrival, Motion, Stage};
-use crate::fly::vehicle::{Fix, News, Vehicle};
+use crate::fly::vehicle::{Fix, News, Status, Vehicle};
 
 /// Who flies a vehicle.
 #[derive(Debug)]
@@ -262,6 +262,13 @@ impl Pilot {
             Stage::Over => return,
             Stage::Preparing { since, complete } => {
                 let since = since.unwrap_or(now);
+                if self.fix(now).is_none() {
+                    // It may have been started anew, and its clock with it.
+                    (self.vehicle.fix, self.vehicle.facing) = (None, None);
+                }
+                if self.status(now).is_some() && self.unheard(now).is_some() {
+                    self.requests.renew(now);
+                }
                 let missing = self.missing(now);
                 let complete = complete.or(Some(now)).filter(|_| missing.is_none());
                 self.stage = Stage::Preparing { since: Some(since), complete };
@@ -301,25 +308,26 @@ impl Pilot {
             }
             _ => {}
         }
-        if self.vehicle.status.is_none_or(|(last, _)| now >= last + SILENCE) {
+        if self.status(now).is_none() {
             self.end(now, Some(Failure::Silent(SILENCE)));
-        } else if self.vehicle.fix.is_none_or(|(last, _)| now >= last + LOST) {
+        } else if self.fix(now).is_none() {
             self.end(now, Some(Failure::Lost(LOST)));
         }
     }
 
-    /// What is missing before the flight can begin, for people.
-    pub fn missing(&mut self, now: Duration) -> Option<String> {
-        let fresh = |last: Duration, limit| now < last + limit;
-        let Some((_, status)) = self.vehicle.status.filter(|it| fresh(it.0, SILENCE)) else {
-            return Some(format!("a heartbeat of system {}", self.system));
-        };
-        if let Some(message) = self.requests.missing() {
-            return Some(format!("its word that it sends {message}"));
-        }
-        let unheard = if self.vehicle.fix.is_none_or(|it| !fresh(it.0, LOST)) {
-            // It may have been started anew, and its clock with it.
-            (self.vehicle.fix, self.vehicle.facing) = (None, None);
+    /// How the vehicle is, if it has said so of late.
+    fn status(&self, now: Duration) -> Option<Status> {
+        self.vehicle.status.filter(|it| now < it.0 + SILENCE).map(|it| it.1)
+    }
+
+    /// Where it is, if it has said so of late.
+    fn fix(&self, now: Duration) -> Option<Fix> {
+        self.vehicle.fix.filter(|it| now < it.0 + LOST).map(|it| it.1)
+    }
+
+    /// What it does not say that it is to say.
+    fn unheard(&self, now: Duration) -> Option<String> {
+        if self.fix(now).is_none() {
             Some("its local position (LOCAL_POSITION_NED)".to_owned())
         } else if self.vehicle.facing.is_none() {
             Some("its attitude (ATTITUDE)".to_owned())
@@ -327,10 +335,19 @@ impl Pilot {
             Some(self.labels.source.to_string())
         } else {
             None
+        }
+    }
+
+    /// What is missing before the flight can begin, for people.
+    pub fn missing(&self, now: Duration) -> Option<String> {
+        let Some(status) = self.status(now) else {
+            return Some(format!("a heartbeat of system {}", self.system));
         };
-        if unheard.is_some() {
-            self.requests.renew(now);
-            return unheard;
+        if let Some(message) = self.requests.missing() {
+            return Some(format!("its word that it sends {message}"));
+        }
+        if let Some(unheard) = self.unheard(now) {
+            return Some(unheard);
         }
         match status.fault() {
             Some(Failure::TakenOver(mode)) => Some(format!("mode GUIDED, it is in {mode}")),

@@ -18,14 +18,14 @@ pub struct Configuration {
 }
 
 /// Who plans.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum Planner {
-    /// Algorithm 1.
+    /// Algorithm 1
     Cfc,
-    /// Algorithm 2.
+    /// Algorithm 2
     Scc,
-    /// Look-ahead.
+    /// Look-ahead
     Lookahead,
 }
 

@@ -39,7 +39,7 @@ pub fn grouped(value: i64) -> String {
 ///
 /// # Panics
 /// If the readme has no place for it, or cannot be written.
-pub fn holds(name: &str, table: &str) -> bool {
+pub fn write_or_compare(name: &str, table: &str) -> bool {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../README.md");
     let readme = fs::read_to_string(&path).expect("the readme");
     let [begin, end] = [format!("<!-- {name} -->\n"), format!("<!-- /{name} -->")];

@@ -35,7 +35,7 @@ use tempfile::NamedTempFile;
 use tests::budget::footprint::{self, Footprint};
 use tests::cases;
 use tests::debugger::{self, Debugger};
-use tests::link::{by_turns, of_any_vehicle};
+use tests::missions::{by_turns, of_any_vehicle};
 use tests::program::image::Image;
 
 use crate::chip::{Chip, firmware};

@@ -1,0 +1,100 @@
+//! A chip within the test's own thread: what it flies, what its port leads to, and its power, which may fail.
+
+use std::cell::RefCell;
+use std::panic::{self, AssertUnwindSafe};
+
+use planner_core::link::delivery::{Link, LinkLost, Port};
+use planner_core::link::message::{self, ClockRate, MissionArea};
+use planner_core::link::station::{Flown, Station, Terms};
+use planner_core::motion::any_vehicle::AnyVehicle;
+use planner_core::robot::hal::LabelSensor;
+
+/// A chip's power failed.
+#[derive(Clone, Copy, Debug)]
+pub struct Off;
+
+/// What a chip's port leads to: a wire with a vehicle at its end.
+pub trait FarEnd {
+    /// The chip sends a frame.
+    ///
+    /// # Errors
+    /// When its power fails as it does.
+    fn send(&mut self, frame: &[u8]) -> Result<(), Off>;
+
+    /// The next byte that the chip hears; `None` once it has waited in vain.
+    fn receive(&mut self) -> Option<u8>;
+}
+
+/// A chip's port.
+#[derive(Debug)]
+pub struct Socket<'a, F>(pub &'a RefCell<F>);
+
+impl<F: FarEnd> Port for Socket<'_, F> {
+    fn send(&mut self, frame: &[u8]) {
+        let sent = self.0.borrow_mut().send(frame);
+        if let Err(off) = sent {
+            panic::resume_unwind(Box::new(off));
+        }
+    }
+
+    fn receive(&mut self) -> Option<u8> {
+        self.0.borrow_mut().receive()
+    }
+}
+
+/// A chip, with a label sensor or none.
+pub fn chip<F: FarEnd, S: LabelSensor>(
+    end: &RefCell<F>,
+    sensor: Option<S>,
+) -> Station<Socket<'_, F>, S> {
+    let clock = ClockRate { per_second: 1, emulated: false };
+    Station { link: Link::new(Socket(end)), sensor, ticks: || 0, clock }
+}
+
+/// A chip from its start: it flies missions until one ends as it should.
+///
+/// # Errors
+/// When its power fails before.
+pub fn power_up<F: FarEnd, S: LabelSensor>(end: &RefCell<F>, sensor: Option<S>) -> Result<(), Off> {
+    let ended = panic::catch_unwind(AssertUnwindSafe(|| {
+        let mut chip = chip(end, sensor);
+        loop {
+            let setup = chip.await_setup();
+            if matches!(fly(&mut chip, &setup), Ok(Flown::Ended(_))) {
+                break;
+            }
+        }
+    }));
+    ended.map_err(|cause| match cause.downcast::<Off>() {
+        Ok(off) => *off,
+        Err(other) => panic::resume_unwind(other),
+    })
+}
+
+/// What the firmware does with a setup.
+///
+/// # Errors
+/// As [`Station::fly`].
+pub fn fly<P: Port, S: LabelSensor>(
+    chip: &mut Station<P, S>,
+    setup: &message::Setup,
+) -> Result<Flown, LinkLost> {
+    let terms: Terms<AnyVehicle, MissionArea> = match chip.terms(setup) {
+        Ok(terms) => terms,
+        Err(none) => return chip.give_up(none),
+    };
+    match setup.algorithm {
+        message::Algorithm::Cfc => chip.fly(setup, &mut setup.cfc::<_, _, 68>(terms), |_| {}),
+        message::Algorithm::Lookahead { evaluations, goal, noise: None } => {
+            chip.fly(setup, &mut setup.lookahead::<_, _, 68>(terms, evaluations, goal), |_| {})
+        }
+        message::Algorithm::Lookahead { evaluations, goal, noise: Some((noise, prior)) } => {
+            let mut planner = setup.forecast::<_, _, 36, 529>(terms, evaluations, goal);
+            chip.fly(setup, &mut setup.prepare(&mut planner, prior, noise), |_| {})
+        }
+        message::Algorithm::Scc { noise, policy, prior } => {
+            let mut planner = setup.scc::<_, _, 36, 529>(terms, policy);
+            chip.fly(setup, &mut setup.prepare(&mut planner, prior, noise), |_| {})
+        }
+    }
+}

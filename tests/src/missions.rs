@@ -1,0 +1,105 @@
+//! Missions of every algorithm and vehicle, as a chip may be asked to fly them.
+
+use host_sim::campaign::standard_field;
+use host_sim::mission::algorithm::Algorithm;
+use host_sim::mission::definition::Mission;
+use host_sim::world::errors::Errors;
+use host_sim::world::noise::{Extent, NoiseModel};
+use planner_core::belief::goal::{Accuracy, Goal};
+use planner_core::belief::tolerance::Tolerance;
+use planner_core::geometry::heading::Heading;
+use planner_core::motion::any_vehicle::AnyVehicle;
+use planner_core::motion::boat::Boat;
+use planner_core::motion::car::{self, Car};
+use planner_core::motion::unicycle::{Grid, Unicycle};
+use rand::SeedableRng as _;
+use rand_chacha::ChaCha8Rng;
+
+use crate::terrain;
+
+/// Of missions, faults and noise.
+pub const SEED: u64 = 4;
+
+/// Missions of all that a chip flies by turns: every third by look-ahead, of these every other with labels that
+/// may be wrong, the others by both algorithms; every fourth pair with the fine fan.
+pub fn mission(number: u64) -> Mission {
+    by_turns(SEED, number, 10)
+}
+
+/// As [`mission`], of another seed and with so many steps.
+pub fn by_turns(seed: u64, number: u64, steps: u32) -> Mission {
+    let is_even = number.is_multiple_of(2);
+    let algorithm = match (number % 3, is_even) {
+        (2, _) => Algorithm::Lookahead,
+        (_, true) => Algorithm::Cfc,
+        (_, false) => Algorithm::Scc,
+    };
+    let mut mission = standard_field::standard(seed, number, algorithm, steps);
+    mission.vehicle = if number % 8 < 6 { Grid::Paper } else { Grid::Fine }.into();
+    if !is_even {
+        mission.noise = Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.5) });
+    }
+    mission
+}
+
+/// Missions by look-ahead that are to end when enough is known, as most of them do within their steps: the slopes or
+/// the uncertain ground of true labels and of labels that may be wrong, by turns.
+///
+/// # Panics
+/// Never: its angles are finite.
+pub fn stopping(number: u64) -> Mission {
+    let mut mission = standard_field::standard(SEED, number, Algorithm::Lookahead, 18);
+    let is_noisy = number % 4 >= 2;
+    mission.noise = is_noisy.then_some(NoiseModel { p: 0.9, extent: Extent::OutsideBalls(0.5) });
+    let (degrees, share) = if is_noisy { (10.0, 100_000) } else { (1.0, 5_000) };
+    let accuracy = if number.is_multiple_of(2) {
+        Accuracy::SlopeArc(Heading::from_radians(f64::to_radians(degrees)).expect("an angle"))
+    } else {
+        Accuracy::Misclassified(share)
+    };
+    mission.goal = Some(Goal { accuracy, level: 900_000 });
+    mission
+}
+
+/// Missions of every vehicle by every algorithm: 12 are all pairs of these; every second four of them with a robot
+/// that errs, and a tolerance for that; two of five in a polygon with keep-outs.
+///
+/// # Panics
+/// Never: these are vehicles.
+pub fn of_any_vehicle(number: u64, steps: u32) -> Mission {
+    const TURN_STEP_URAD: u32 = 7_000;
+    let (algorithm, is_noisy) = [
+        (Algorithm::Cfc, false),
+        (Algorithm::Scc, true),
+        (Algorithm::Lookahead, false),
+        (Algorithm::Lookahead, true),
+    ][number as usize % 4];
+    let mut mission = standard_field::standard(SEED + 3, number, algorithm, steps);
+    let steps_of = |sharpest: f64| Unicycle::new(TURN_STEP_URAD, sharpest, 17, 150);
+    let made = match number % 3 {
+        0 => steps_of(1.2).map(AnyVehicle::Unicycle),
+        1 => steps_of(0.349).and_then(Boat::new).map(AnyVehicle::Boat),
+        _ => Car::new(car::Shape {
+            radius_mm: 1_500,
+            shortest_mm: 400,
+            turn_step_urad: TURN_STEP_URAD,
+            speeds: 21,
+            speed_step_mm: 100,
+        })
+        .map(AnyVehicle::Car),
+    };
+    mission.vehicle = made.expect("a vehicle");
+    if is_noisy {
+        mission.noise = Some(NoiseModel { p: 0.8, extent: Extent::OutsideBalls(0.5) });
+    }
+    if number % 5 < 2 {
+        let mut rng = ChaCha8Rng::seed_from_u64(SEED + 4);
+        rng.set_stream(number);
+        mission.config.area = terrain::around(&mission, &mut rng);
+    }
+    if number / 4 % 2 == 1 {
+        mission.errors = Errors { motion: 0.05, turn: 0.02, position: 0.05, heading: 0.01 };
+        mission.config.tolerance = Tolerance::new(0.15).expect("a length");
+    }
+    mission
+}
