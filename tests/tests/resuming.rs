@@ -9,7 +9,6 @@ use std::fs;
 use std::path::Path;
 
 use host_sim::hil::faults::Faults;
-use host_sim::hil::logbook::Logbook;
 use host_sim::hil::player::Player;
 use host_sim::hil::setup;
 use host_sim::mission::definition::Mission;
@@ -60,13 +59,11 @@ impl<'a> Yard<'a> {
         // It ends before the next one starts.
         drop(self.player.take());
         let player = Player::new(self.mission, self.labels, 1_000 * self.starts);
-        let mut player = player.expect("a mission for a chip").resuming();
-        if let Some(place) = self.place {
-            let start = player.start();
-            let logbook =
-                Logbook::open(place, &start, |read| Ok(trace::step(player.retrace(read)?)));
-            player = player.with_logbook(logbook.expect("its own steps"));
-        }
+        let player = player.expect("a mission for a chip");
+        let player = match self.place {
+            Some(place) => player.keeping(place).expect("its own steps"),
+            None => player.resuming(),
+        };
         self.player = Some(player);
     }
 }

@@ -12,11 +12,9 @@ use crate::cli::run::{Format, Run};
 use crate::hil::faults::Faults;
 use crate::hil::firmware::{Firmware, STM32F405};
 use crate::hil::flight::{self, Chip, Timings};
-use crate::hil::logbook::Logbook;
 use crate::hil::player::Player;
 use crate::output::file::{place_for, prepare, temporary};
 use crate::output::notes::announce;
-use crate::report::trace as lines;
 
 /// The speed of the firmware's serial lines, bits per second.
 const BAUD: u32 = 115_200;
@@ -141,9 +139,7 @@ pub(crate) fn hil(args: &HilArgs) -> Result<String> {
     let mut player =
         Player::new(&mission, labels, flight::start_number()).with_context(|| args.run.name())?;
     if let Some(path) = growing {
-        let start = player.start();
-        let logbook = Logbook::open(path, &start, |read| Ok(lines::step(player.retrace(read)?)))?;
-        player = player.resuming().with_logbook(logbook);
+        player = player.keeping(path)?;
     }
     let chip = if let Some(device) = &args.port {
         Chip::Board { device: device.clone(), baud: args.baud.unwrap_or(BAUD) }

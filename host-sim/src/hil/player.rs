@@ -7,6 +7,8 @@
 //! A chip that restarts in the middle of a mission flies it again from its beginning. What it asks for then has been
 //! done, up to where it was: it is answered from memory, and nothing moves until something new is asked.
 
+use std::path::Path;
+
 use anyhow::{Context as _, Result, anyhow, bail};
 use planner_core::belief::estimate::Estimates;
 use planner_core::belief::sample::Reading;
@@ -25,7 +27,8 @@ use crate::mission::definition::Mission;
 use crate::mission::flight::Flown;
 use crate::mission::planners::AnyPlanner;
 use crate::mission::recording::{Recorder, Recording};
-use crate::mission::results::{Ending, Start, StepResult};
+use crate::mission::results::{Ending, StepResult};
+use crate::report::trace;
 use crate::world::robot::Robot;
 
 /// A chip that has asked so often for a mission hears nothing: five times as often as it sends a request.
@@ -114,20 +117,20 @@ impl Player {
         Self { resumes: true, ..self }
     }
 
-    /// The same, which keeps its steps on disc from here on.
-    #[must_use]
-    pub fn with_logbook(self, logbook: Logbook) -> Self {
-        Self { logbook: Some(logbook), ..self }
+    /// The same, whose steps outlive this program too: they are kept on disc as they are taken, and those that are there
+    /// are made again first.
+    ///
+    /// # Errors
+    /// As [`Logbook::open`].
+    pub fn keeping(mut self, path: &Path) -> Result<Self> {
+        let start = self.recorder.start();
+        let logbook = Logbook::open(path, &start, |read| Ok(trace::step(self.retrace(read)?)))?;
+        Ok(Self { logbook: Some(logbook), ..self.resuming() })
     }
 
     /// Where its steps are kept.
     pub const fn logbook(&self) -> Option<&Logbook> {
         self.logbook.as_ref()
-    }
-
-    /// What the mission begins with.
-    pub fn start(&self) -> Start {
-        self.recorder.start()
     }
 
     /// Where the robot says that it is.
@@ -312,7 +315,7 @@ impl Player {
     ///
     /// # Errors
     /// When the mission has no such step.
-    pub fn retrace(&mut self, read: Option<Reading>) -> Result<&StepResult> {
+    fn retrace(&mut self, read: Option<Reading>) -> Result<&StepResult> {
         let motion = match self.planner.plan(self.pose) {
             Plan::Move(motion) if self.steps() < usize::from(self.setup.steps) => motion,
             _ => bail!("expected no more than {} steps", self.steps()),

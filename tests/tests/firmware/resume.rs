@@ -5,7 +5,6 @@ use std::io::{Read as _, Write as _};
 
 use host_sim::hil::faults::Faults;
 use host_sim::hil::flight;
-use host_sim::hil::logbook::Logbook;
 use host_sim::hil::player::Player;
 use host_sim::mission::definition::Mission;
 use host_sim::report::trace;
@@ -56,13 +55,8 @@ fn a_host_that_restarts_goes_on() {
         let mission = random(number);
         let Some(mut chip) = Chip::start(&[]) else { return };
         let place = folder.path().join(format!("{number}.jsonl"));
-        let start = || {
-            let mut player = player(&mission, LabelSource::Vehicle);
-            let begin = player.start();
-            let logbook =
-                Logbook::open(&place, &begin, |read| Ok(trace::step(player.retrace(read)?)));
-            player.with_logbook(logbook.expect("its own steps"))
-        };
+        let start =
+            || player(&mission, LabelSource::Vehicle).keeping(&place).expect("its own steps");
         let mut first = start();
         play_until(4, &mut chip, &mut first);
         drop(first);
