@@ -8,6 +8,7 @@ use planner_core::geometry::lattice::{LIMIT, Site, Vector};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
+pub mod anything;
 pub mod budget;
 pub mod chip;
 pub mod debugger;

@@ -1,0 +1,102 @@
+//! The harness's own geometry: paths as points in metres, and how far they leave an area. It shares no code with the
+//! planner.
+
+use planner_core::geometry::lattice::{Site, UNITS_PER_METRE};
+use planner_core::link::message::MissionArea;
+use planner_core::motion::dynamics::Pose;
+
+/// A point in metres.
+pub type Point = [f64; 2];
+
+/// A site in metres.
+pub fn metres(site: Site) -> Point {
+    [site.x(), site.z()].map(|units| f64::from(units) / f64::from(UNITS_PER_METRE))
+}
+
+/// An area in metres.
+#[derive(Clone, Debug)]
+pub struct Ground {
+    /// Its corners, counter-clockwise.
+    pub border: Vec<Point>,
+    /// Keep-outs: all within a radius of a hull.
+    pub keep_outs: Vec<(Vec<Point>, f64)>,
+}
+
+impl Ground {
+    /// The ground of a mission.
+    pub fn of(area: &MissionArea) -> Self {
+        let points = |sites: &[Site]| sites.iter().map(|site| metres(*site)).collect::<Vec<_>>();
+        let keep_out = |it: &planner_core::geometry::terrain::RoundedHull<_>| {
+            (points(it.hull.corners()), f64::from(it.radius) / f64::from(UNITS_PER_METRE))
+        };
+        Self { border: points(area.corners()), keep_outs: area.hulls().map(keep_out).collect() }
+    }
+
+    /// How far inside the border a point lies; negative outside.
+    pub fn depth(&self, p: Point) -> f64 {
+        edges(&self.border)
+            .map(|(a, b)| cross(sub(b, a), sub(p, a)) / norm(sub(b, a)))
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// The distance from the nearest keep-out; negative within one.
+    pub fn clearance(&self, p: Point) -> f64 {
+        let from = |(hull, radius): &(Vec<Point>, f64)| distance_to_hull(p, hull) - radius;
+        self.keep_outs.iter().map(from).fold(f64::INFINITY, f64::min)
+    }
+
+    /// How far a point is from where the robot must not be; negative there.
+    pub fn margin(&self, p: Point) -> f64 {
+        self.depth(p).min(self.clearance(p))
+    }
+}
+
+/// Points along a motion, close enough to each other to notice what lies between.
+pub fn path(from: Pose, to: Pose, [length, turn]: [f64; 2], is_car: bool, points: u32) -> Vec<Point> {
+    let (start, end) = (metres(from.site), metres(to.site));
+    (0..=points)
+        .map(|k| {
+            let share = f64::from(k) / f64::from(points);
+            if !is_car || k == points {
+                return [0, 1].map(|i| start[i] + share * (end[i] - start[i]));
+            }
+            let half = 0.5 * turn * share;
+            let chord = length * share * if half == 0.0 { 1.0 } else { half.sin() / half };
+            let (sin, cos) = (from.heading.radians() + half).sin_cos();
+            [start[0] + chord * cos, start[1] + chord * sin]
+        })
+        .collect()
+}
+
+fn sub(a: Point, b: Point) -> Point {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+fn cross(a: Point, b: Point) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+fn dot(a: Point, b: Point) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+fn norm(a: Point) -> f64 {
+    dot(a, a).sqrt()
+}
+
+fn edges(corners: &[Point]) -> impl Iterator<Item = (Point, Point)> + '_ {
+    corners.iter().copied().zip(corners.iter().copied().cycle().skip(1))
+}
+
+fn distance_to_hull(p: Point, hull: &[Point]) -> f64 {
+    if hull.len() > 2 && edges(hull).all(|(a, b)| cross(sub(b, a), sub(p, a)) >= 0.0) {
+        return 0.0;
+    }
+    let to_edge = |(a, b): (Point, Point)| {
+        let along = sub(b, a);
+        let t = dot(sub(p, a), along) / dot(along, along).max(1e-30);
+        let t = t.clamp(0.0, 1.0);
+        norm(sub(p, [a[0] + t * along[0], a[1] + t * along[1]]))
+    };
+    edges(hull).map(to_edge).fold(f64::INFINITY, f64::min)
+}

@@ -1,0 +1,145 @@
+//! Confirms by brute force why a mission ended.
+
+use host_sim::mission::definition::Mission;
+use host_sim::mission::read_out::ReadOut;
+use host_sim::mission::results::Ending;
+use planner_core::belief::consistent_lines::{Certainty, ConsistentLines};
+use planner_core::geometry::lattice::{Site, Vector};
+use planner_core::geometry::region::Region as _;
+use planner_core::link::message::MissionArea;
+use planner_core::motion::any_vehicle::AnyVehicle;
+use planner_core::motion::dynamics::{Dynamics as _, Pose, Side};
+use planner_core::planner::StopReason;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// Sequences of motions that are tried, and the motions of each.
+const SEQUENCES: u32 = 1_500;
+const LENGTH: u32 = 6;
+
+/// Places of the area that are asked.
+const PLACES: u32 = 4_000;
+
+/// Open ground is thin if it is less than this share of the area.
+const THIN: f64 = 0.005;
+
+/// What is wrong with the reason for which a mission ended at a pose; `None` if it is true.
+pub fn refute(mission: &Mission, belief: &dyn ReadOut, pose: Pose, end: Ending) -> Option<String> {
+    let Ending::Stopped(reason) = end else { return None };
+    let area = mission.config.area.inset(mission.config.tolerance.units()).expect("drawn so");
+    let judge = Judge { mission, belief, area };
+    match reason {
+        StopReason::SamplesFull => (!belief.is_full()).then(|| "there is room".to_owned()),
+        StopReason::Known => {
+            let goal = mission.goal.map(|goal| goal.in_bounds_of(&mission.config.area));
+            let met = goal.is_some_and(|it| belief.meets(it, mission.config.area.bounds()));
+            (!met).then(|| "the goal is not met".to_owned())
+        }
+        StopReason::OutsideArea => {
+            area.contains(pose.site).then(|| "it is inside the area".to_owned())
+        }
+        StopReason::Resolution | StopReason::Undecided => judge.open_ground(pose),
+        StopReason::Cornered => judge.way_on(pose),
+        _ => judge.open_ground(pose),
+    }
+}
+
+struct Judge<'a> {
+    mission: &'a Mission,
+    belief: &'a dyn ReadOut,
+    area: MissionArea,
+}
+
+impl Judge<'_> {
+    /// Whether a label at a place inside the area can tell something.
+    fn is_open(&self, site: Site) -> bool {
+        if !self.area.contains(site) {
+            return false;
+        }
+        match self.belief.version_space() {
+            Some(space) => can_cut_either_way(space.lines(), site),
+            None => (0.001..0.999).contains(&self.belief.chance(site)),
+        }
+    }
+
+    fn rng(&self) -> ChaCha8Rng {
+        ChaCha8Rng::seed_from_u64(self.mission.seed)
+    }
+
+    fn open_ground(&self, pose: Pose) -> Option<String> {
+        let mut rng = self.rng();
+        let (from, to) = (self.area.bounds().min(), self.area.bounds().max());
+        let mut inside = 0;
+        let open = (0..PLACES)
+            .filter(|_| {
+                let (x, z) = (rng.random_range(from.x()..=to.x()), rng.random_range(from.z()..=to.z()));
+                let site = Site::new(x, z).expect("inside");
+                inside += u32::from(self.area.contains(site));
+                self.is_open(site)
+            })
+            .count();
+        let share = open as f64 / f64::from(inside.max(1));
+        (share > THIN).then(|| format!("{:.2} % of the area is open, at {pose:?}", 100.0 * share))
+    }
+
+    /// Random sequences of motions that stay inside: whether one ends on open ground where the vehicle is safe.
+    fn way_on(&self, pose: Pose) -> Option<String> {
+        let mut rng = self.rng();
+        let vehicle = &self.mission.vehicle;
+        for _ in 0..SEQUENCES {
+            let mut at = pose;
+            for motions in 1..=LENGTH {
+                let Some(next) = random_motion(vehicle, at, &mut rng) else { continue };
+                if !self.may_go(at, next) {
+                    continue;
+                }
+                if next.site != at.site
+                    && self.is_open(next.site)
+                    && vehicle.keeps_inside(at, next, &self.area)
+                {
+                    return Some(format!("{motions} motions lead to {next:?} from {pose:?}"));
+                }
+                at = next;
+            }
+        }
+        None
+    }
+
+    fn may_go(&self, from: Pose, to: Pose) -> bool {
+        let ends = self.area.contains(to.site) || !self.area.contains(from.site);
+        ends && self.mission.config.area.contains(to.site)
+            && self.mission.vehicle.stays_inside(from, to, &self.area)
+    }
+}
+
+fn can_cut_either_way(lines: ConsistentLines<'_>, site: Site) -> bool {
+    let is_open = |by: Vector| {
+        site.step(by).is_ok_and(|place| lines.certainty(place) == Certainty::Uncertain)
+    };
+    let none = Vector::new(0, 0).expect("small");
+    is_open(none) && (is_open(lines.shift) || is_open(lines.shift.reversed()))
+}
+
+fn random_motion(vehicle: &AnyVehicle, pose: Pose, rng: &mut ChaCha8Rng) -> Option<Pose> {
+    let side = if rng.random() { Side::Left } else { Side::Right };
+    if rng.random_range(0..3) == 0
+        && let Some((_, turned)) = vehicle.turn_in_place(pose, side)
+    {
+        return Some(turned);
+    }
+    let speeds = vehicle.grid().speeds();
+    let speed = rng.random_range(1..speeds);
+    let fan = vehicle.fan();
+    let [left, right] = vehicle.rays_at(speed).unwrap_or([fan.left, fan.right]);
+    let count = if side == Side::Left { left } else { right.saturating_add(1) };
+    if count == 0 {
+        return None;
+    }
+    // The sharpest and the straight ones are tried more often.
+    let n = match rng.random_range(0..4) {
+        0 => 0,
+        1 => count - 1,
+        _ => rng.random_range(0..count),
+    };
+    vehicle.arrive(pose, &vehicle.ray(pose, side, n), speed).ok()
+}
