@@ -16,23 +16,41 @@ use crate::geometry::lattice::Site;
 pub struct Area {
     min: Site,
     max: Site,
+    /// How far the border lies outside, lattice units: see [`inset`](Self::inset).
+    margin: u32,
 }
 
 impl Area {
     /// The rectangle with these corners; `None` unless it has an inside.
     pub fn new(min: Site, max: Site) -> Option<Self> {
-        (min.x() < max.x() && min.z() < max.z()).then_some(Self { min, max })
+        (min.x() < max.x() && min.z() < max.z()).then_some(Self { min, max, margin: 0 })
     }
 
     /// The part that is at least so many lattice units away from the border: where to aim if motions end that
-    /// far off. `None` if that has no inside.
-    pub fn inset(&self, margin: u32) -> Option<Self> {
-        let margin = i32::try_from(margin).ok()?;
+    /// far off. It remembers where the border is. `None` if that part has no inside.
+    pub fn inset(&self, by: u32) -> Option<Self> {
+        let margin = i32::try_from(by).ok()?;
         let inwards = |site: Site, by: i32| {
             let (x, z) = (site.x().checked_add(by)?, site.z().checked_add(by)?);
             Site::new(x, z).ok()
         };
-        Self::new(inwards(self.min, margin)?, inwards(self.max, -margin)?)
+        let inset = Self::new(inwards(self.min, margin)?, inwards(self.max, -margin)?)?;
+        Some(Self { margin: self.margin.saturating_add(by), ..inset })
+    }
+
+    /// The area of which this is an inset part.
+    #[must_use]
+    pub fn whole(&self) -> Self {
+        let margin = self.margin as i32;
+        let outwards = |site: Site, by: i32| {
+            Site::new(site.x().saturating_add(by), site.z().saturating_add(by)).unwrap_or(site)
+        };
+        Self { min: outwards(self.min, -margin), max: outwards(self.max, margin), margin: 0 }
+    }
+
+    /// How far the border lies outside of this part of an area, lattice units.
+    pub const fn margin(&self) -> u32 {
+        self.margin
     }
 
     /// The corner of smallest coordinates.

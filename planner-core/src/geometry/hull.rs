@@ -100,8 +100,55 @@ pub(crate) fn edges(corners: &[Site]) -> impl Iterator<Item = (Site, Site)> + Cl
 
 /// Whether all of one hull is further than `by` lattice units from all of another. Corners go round in either order.
 ///
-/// Cost: each corner of one with each edge of the other, two or three multiplications of 64 bits each.
+/// Cost: if their boxes are further apart, a comparison for each corner. If an edge of one separates them, a cross product
+/// for each corner of one and edge of the other. Otherwise, near corners, several of these.
 pub fn are_apart(a: &[Site], b: &[Site], by: u32) -> bool {
+    have_boxes_apart(a, b, by)
+        || has_edge_between(a, b, by)
+        || has_edge_between(b, a, by)
+        || have_corners_apart(a, b, by)
+}
+
+/// Whether the boxes around two hulls are further apart than this: then the hulls are.
+pub(crate) fn have_boxes_apart(a: &[Site], b: &[Site], by: u32) -> bool {
+    let by = i64::from(by);
+    let apart = |of: fn(Site) -> i32| {
+        let range = |hull: &[Site]| {
+            hull.iter().fold((i32::MAX, i32::MIN), |(low, high), q| {
+                (low.min(of(*q)), high.max(of(*q)))
+            })
+        };
+        let ((low_a, high_a), (low_b, high_b)) = (range(a), range(b));
+        let gap = |low: i32, high: i32| i64::from(low) - i64::from(high) > by;
+        gap(low_a, high_b) || gap(low_b, high_a)
+    };
+    apart(Site::x) || apart(Site::z)
+}
+
+/// Whether the line of one of a hull's edges has all of the hull on one side and all of another further than this on
+/// the other.
+fn has_edge_between(hull: &[Site], other: &[Site], by: u32) -> bool {
+    let square = |a: u64| u128::from(a) * u128::from(a);
+    // On which side of its edges a hull lies: on none, if it is a segment or a point.
+    let side = if let [a, b, c, ..] = *hull { orient(a, b, c).signum() } else { 0 };
+    edges(hull).any(|(from, to)| {
+        let along = to - from;
+        let (low, high) = other.iter().fold((i64::MAX, i64::MIN), |(low, high), q| {
+            let off = along.cross(*q - from);
+            (low.min(off), high.max(off))
+        });
+        let nearest = match side {
+            1 => high.saturating_neg(),
+            -1 => low,
+            _ => low.max(high.saturating_neg()),
+        };
+        let length = along.dot(along).unsigned_abs();
+        nearest > 0 && square(nearest.unsigned_abs()) > square(by.into()) * u128::from(length)
+    })
+}
+
+/// The same by all pairs of a corner of one and an edge of the other: exact in all cases.
+fn have_corners_apart(a: &[Site], b: &[Site], by: u32) -> bool {
     // The nearest points of hulls that do not meet are a corner of one and a point of the other's edge.
     !meet(a, b)
         && a.iter().all(|corner| edges(b).all(|edge| is_further(*corner, edge, by)))

@@ -1,7 +1,7 @@
 //! Where motions may go: a convex area, but for keep-outs.
 
 use crate::geometry::area::Area;
-use crate::geometry::hull::are_apart;
+use crate::geometry::hull::{are_apart, have_boxes_apart};
 use crate::geometry::lattice::{Site, Vector};
 
 /// Where motions may go: a convex area, but for convex places that none of them touches.
@@ -27,6 +27,10 @@ pub trait Region: Copy {
     #[must_use]
     fn inset(&self, margin: u32) -> Option<Self>;
 
+    /// All of it again, of which this is an [inset](Self::inset) part.
+    #[must_use]
+    fn whole(&self) -> Self;
+
     /// The sides that cut its rectangle.
     fn sides(&self) -> impl Iterator<Item = HalfPlane> {
         core::iter::empty()
@@ -48,6 +52,23 @@ pub trait Region: Copy {
         let bounds = [q.x() - min.x(), q.z() - min.z(), max.x() - q.x(), max.z() - q.z()];
         let side = |it: HalfPlane| it.at(q).checked_div(it.length.into()).unwrap_or(0) as i32;
         bounds.into_iter().chain(self.sides().map(side)).min().unwrap_or(0)
+    }
+
+    /// Whether a motion from one position may come to another, as far as the border is concerned.
+    ///
+    /// Of an [inset](Self::inset) area the margin is for errors alone: from inside no motion leads into it. From within
+    /// the margin, where an error has brought the agent, motions may use it but not leave the area. From outside they may
+    /// go anywhere. Each side of the border is judged by itself.
+    fn confines(&self, from: Site, to: Site) -> bool {
+        let bounds = self.bounds();
+        let inside = |q: Site| {
+            let (min, max) = (bounds.min(), bounds.max());
+            [q.x() - min.x(), q.z() - min.z(), max.x() - q.x(), max.z() - q.z()]
+        };
+        let margin = i64::from(bounds.margin());
+        let by_bounds = |(from, to): (i32, i32)| may_go(from.into(), to.into(), margin);
+        inside(from).into_iter().zip(inside(to)).all(by_bounds)
+            && self.sides().all(|it| may_go(it.at(from), it.at(to), margin * i64::from(it.length)))
     }
 
     /// Whether the agent may be at a position.
@@ -72,6 +93,11 @@ pub trait Region: Copy {
     }
 }
 
+/// Whether a motion may change how far inside a side the agent is, of which the border lies a margin outside.
+const fn may_go(from: i64, to: i64, margin: i64) -> bool {
+    to >= 0 || from < 0 && (to >= -margin || from < -margin)
+}
+
 impl Region for Area {
     fn bounds(&self) -> Area {
         *self
@@ -79,6 +105,10 @@ impl Region for Area {
 
     fn inset(&self, margin: u32) -> Option<Self> {
         Self::inset(self, margin)
+    }
+
+    fn whole(&self) -> Self {
+        Self::whole(self)
     }
 }
 
@@ -119,6 +149,11 @@ pub struct KeepOut<'a> {
 }
 
 impl KeepOut<'_> {
+    /// Whether the box around a hull comes as near as the margin to the box around it. Cheap.
+    pub(crate) fn is_near(&self, hull: &[Site]) -> bool {
+        !have_boxes_apart(self.corners, hull, self.radius.saturating_add(self.margin))
+    }
+
     /// Whether a hull stays clear of it, by this and the margin at least.
     pub fn is_clear_of(&self, hull: &[Site], by: u32) -> bool {
         let by = self.radius.saturating_add(self.margin).saturating_add(by);

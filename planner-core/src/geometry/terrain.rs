@@ -1,5 +1,7 @@
 //! A convex polygon with keep-outs.
 
+use heapless::Vec;
+
 use crate::geometry::area::Area;
 use crate::geometry::hull::{Hull, NoHull, edges};
 use crate::geometry::lattice::{LIMIT, Site, Vector};
@@ -14,8 +16,6 @@ pub struct Terrain<const C: usize, const K: usize> {
     /// Those of the polygon's edges, rounded up.
     lengths: [u32; C],
     keep_outs: [Option<RoundedHull<C>>; K],
-    /// How far positions stay from the border and from keep-outs besides.
-    margin: u32,
 }
 
 /// All within a distance of a hull, in lattice units below 2^30: a disc, if that is a point.
@@ -68,7 +68,7 @@ impl<const C: usize, const K: usize> Terrain<C, K> {
             }
             *place = Some(*keep_out);
         }
-        Ok(Self { polygon, bounds, lengths: lengths(&polygon), keep_outs: kept, margin: 0 })
+        Ok(Self { polygon, bounds, lengths: lengths(&polygon), keep_outs: kept })
     }
 
     /// Its corners, counter-clockwise.
@@ -81,6 +81,39 @@ impl<const C: usize, const K: usize> Terrain<C, K> {
         self.keep_outs.iter().flatten()
     }
 
+    /// Whether some position is as far from all of its sides as its margin says: of all places where two such sides
+    /// meet, moved inwards, one is inside then, and of the sides of its rectangle too.
+    fn has_inside(&self) -> bool {
+        let (min, max) = (self.bounds.min(), self.bounds.max());
+        let box_corners = [(min.x(), min.z()), (max.x(), min.z()), (max.x(), max.z()), (min.x(), max.z())];
+        let mut polygon: Vec<[f32; 2], 24, u8> = Vec::new();
+        for (x, z) in box_corners {
+            let _ = polygon.push([(x - min.x()) as f32, (z - min.z()) as f32]);
+        }
+        for side in self.sides() {
+            let value = |[x, z]: [f32; 2]| {
+                let from = side.from - min;
+                let along = [side.along.x as f32, side.along.z as f32];
+                along[0] * (z - from.z as f32) - along[1] * (x - from.x as f32)
+                    - side.margin as f32 * side.length as f32
+            };
+            let mut rest: Vec<[f32; 2], 24, u8> = Vec::new();
+            let next = polygon.iter().copied().cycle().skip(1);
+            for (a, b) in polygon.iter().copied().zip(next) {
+                let (at_a, at_b) = (value(a), value(b));
+                if at_a >= 0.0 {
+                    let _ = rest.push(a);
+                }
+                if (at_a >= 0.0) != (at_b >= 0.0) {
+                    let t = at_a / (at_a - at_b);
+                    let _ = rest.push([a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]);
+                }
+            }
+            polygon = rest;
+        }
+        !polygon.is_empty()
+    }
+
     /// The middle of its corners, which is inside.
     pub fn middle(&self) -> Site {
         middle_of(self.corners())
@@ -91,7 +124,7 @@ impl<const C: usize, const K: usize> Terrain<C, K> {
 impl<const C: usize, const K: usize> From<Area> for Terrain<C, K> {
     fn from(bounds: Area) -> Self {
         let polygon = Hull::of(bounds);
-        Self { polygon, bounds, lengths: lengths(&polygon), keep_outs: [None; K], margin: 0 }
+        Self { polygon, bounds, lengths: lengths(&polygon), keep_outs: [None; K] }
     }
 }
 
@@ -137,7 +170,7 @@ impl<const C: usize, const K: usize> Region for Terrain<C, K> {
     fn share_of_bounds(&self) -> f32 {
         let middle = self.middle();
         let twice = |(a, b): (Site, Site)| (a - middle).cross(b - middle) as f32;
-        let [x, z] = self.bounds.half_sides().map(|half| half as f32 + self.margin as f32);
+        let [x, z] = self.bounds.half_sides().map(|half| half as f32 + self.bounds.margin() as f32);
         edges(self.corners()).map(twice).sum::<f32>() / (8.0 * x * z)
     }
 
@@ -153,15 +186,19 @@ impl<const C: usize, const K: usize> Region for Terrain<C, K> {
     }
 
     fn inset(&self, margin: u32) -> Option<Self> {
-        let bounds = self.bounds.inset(margin)?;
-        Some(Self { bounds, margin: self.margin.saturating_add(margin), ..*self })
+        let inset = Self { bounds: self.bounds.inset(margin)?, ..*self };
+        inset.has_inside().then_some(inset)
+    }
+
+    fn whole(&self) -> Self {
+        Self { bounds: self.bounds.whole(), ..*self }
     }
 
     fn sides(&self) -> impl Iterator<Item = HalfPlane> {
         edges(self.corners()).zip(self.lengths).filter_map(|((from, to), length)| {
             let along = to - from;
             let cuts = along.x != 0 && along.z != 0;
-            cuts.then_some(HalfPlane { from, along, length, margin: self.margin })
+            cuts.then_some(HalfPlane { from, along, length, margin: self.bounds.margin() })
         })
     }
 
@@ -169,7 +206,7 @@ impl<const C: usize, const K: usize> Region for Terrain<C, K> {
         self.hulls().map(|RoundedHull { hull, radius }| KeepOut {
             corners: hull.corners(),
             radius: *radius,
-            margin: self.margin,
+            margin: self.bounds.margin(),
         })
     }
 }

@@ -222,15 +222,14 @@ pub trait Dynamics {
             && has_orbit_inside(self, to, area, |orbit| orbit.radius.saturating_add(orbit.margin))
     }
 
-    /// Whether all of a motion to a place inside the area stays there, or it begins outside; and it touches no
+    /// Whether all of a motion to a place that the border [allows](Region::confines) stays there, and touches no
     /// keep-out.
     fn stays_inside<G: Region>(&self, from: Pose, to: Pose, area: &G) -> bool {
         let Some(corner) = self.corner(from, to) else {
             return area.lets_pass(&[from.site, to.site]);
         };
         from.site.step(corner).is_ok_and(|corner| {
-            (area.encloses(corner) || !area.encloses(from.site))
-                && area.lets_pass(&[from.site, corner, to.site])
+            area.confines(from.site, corner) && area.lets_pass(&[from.site, corner, to.site])
         })
     }
 

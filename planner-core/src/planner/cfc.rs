@@ -104,19 +104,22 @@ impl<D: Dynamics, const N: usize, G: Region> Cfc<D, N, G> {
     /// Where positions err and no place is left at which either label would cut, one where one would is enough.
     fn find(&self, pose: Pose) -> (Result<Found, DeadEnd>, Phase, Effort) {
         let lines = self.space.lines();
-        let found = self.find_among(lines, pose);
-        let is_left = found.0.is_err() && self.space.tolerance() != Tolerance::NONE;
-        if is_left { self.find_among(lines.loosely(), pose) } else { found }
+        if self.space.tolerance() == Tolerance::NONE {
+            return self.find_among(lines, pose, LOOKS);
+        }
+        let found = self.find_among(lines, pose, LOOKS / 2);
+        if found.0.is_err() { self.find_among(lines.loosely(), pose, LOOKS / 2) } else { found }
     }
 
     fn find_among(
         &self,
         lines: ConsistentLines<'_>,
         pose: Pose,
+        looks: u32,
     ) -> (Result<Found, DeadEnd>, Phase, Effort) {
         let slopes = self.space.slope_arc();
         let problem = self.problem_of(self.phase, slopes, lines);
-        let mut search = problem.search(&self.dynamics, pose, Effort::of(LOOKS));
+        let mut search = problem.search(&self.dynamics, pose, Effort::of(looks));
         let search = search.open();
         let mut followed = None;
         if self.phase == Phase::Following {

@@ -52,9 +52,6 @@ const SECOND_CIRCLES: u16 = 3;
 /// Where no label is worth as much, turns in place are considered.
 const POOR: f32 = 0.9;
 
-/// Rays that the recovery ladder looks at, at most, where positions do not err.
-const LADDER_LOOKS: u32 = 128;
-
 /// Looks two labels ahead, with `D`'s dynamics and what `B` knows and expects.
 ///
 /// Of its [`Config`] it takes the area and `varrho`, for which [`VARRHO`] is a good choice.
@@ -134,7 +131,7 @@ impl<D: Dynamics, B: Foresight, G: Region> Lookahead<D, B, G> {
             for (label, chance) in [(Label::Positive, above), (Label::Negative, 1.0 - above)] {
                 if is_better(total, &best) {
                     let after = outlook.after(target.site, label);
-                    let next = second(lookout, &after, target);
+                    let next = second(lookout, &after, target, None);
                     total -= chance * (ENOUGH - next);
                 }
             }
@@ -149,7 +146,8 @@ impl<D: Dynamics, B: Foresight, G: Region> Lookahead<D, B, G> {
                     continue;
                 };
                 let effort = self.dynamics.ray_of(pose, action).map_or(0, |ray| ray.effort);
-                let next = second(lookout, &outlook, target);
+                // Nothing is learnt by a turn: what the next plan would refuse is worth nothing.
+                let next = second(lookout, &outlook, target, Some(self.foresight.ground()));
                 let total = next - lookout.cost(0, effort);
                 if next > 0.0 && is_better(total, &best) {
                     best = Some(Decision { action, target, worth: total, wants_label: false });
@@ -162,37 +160,39 @@ impl<D: Dynamics, B: Foresight, G: Region> Lookahead<D, B, G> {
     /// What the ladder finds where no label is in reach.
     fn recover(&self, pose: Pose) -> (Result<Found, DeadEnd>, Effort) {
         let lines = self.foresight.ground();
-        let found = self.recover_among(lines, pose);
-        let is_left = found.0.is_err() && self.config.tolerance != Tolerance::NONE;
-        if is_left { self.recover_among(lines.loosely(), pose) } else { found }
+        if self.config.tolerance == Tolerance::NONE {
+            return self.recover_among(lines, pose, LOOKS);
+        }
+        let found = self.recover_among(lines, pose, LOOKS / 2);
+        if found.0.is_err() { self.recover_among(lines.loosely(), pose, LOOKS / 2) } else { found }
     }
 
     fn recover_among(
         &self,
         lines: ConsistentLines<'_>,
         pose: Pose,
+        looks: u32,
     ) -> (Result<Found, DeadEnd>, Effort) {
         let (area, varrho) = (self.config.area, self.config.varrho);
         let rule = ArcRule::default();
         let problem = Problem { lines, area, varrho, rule };
-        // With a tolerance it comes here often, and rays are passed over by small turns, as they are at keep-outs.
-        let exact = self.config.tolerance == Tolerance::NONE && area.keep_outs().next().is_none();
-        let effort = Effort::of(if exact { LADDER_LOOKS } else { LOOKS });
-        let mut search = problem.search(&self.dynamics, pose, effort);
+        let mut search = problem.search(&self.dynamics, pose, Effort::of(looks));
         let search = search.open();
         let found = solve_or_recover(&problem, search, None);
         (found, search.effort)
     }
 }
 
-/// What the best label after one more motion is worth; nothing if there is none.
+/// What the best label after one more motion is worth; nothing if there is none. With `ground` only ends count on which
+/// these lines disagree.
 fn second<D: Dynamics, P: Prediction, G: Region>(
     lookout: &mut Lookout<'_, D, G>,
     prediction: &P,
     pose: Pose,
+    ground: Option<ConsistentLines<'_>>,
 ) -> f32 {
     let mut most = 0.0;
-    lookout.look(prediction, pose, SECOND_CIRCLES, &mut Sought::Worth(&mut most));
+    lookout.look(prediction, pose, SECOND_CIRCLES, &mut Sought::Worth(&mut most, ground));
     most
 }
 

@@ -102,6 +102,7 @@ impl<D: Dynamics, G: Region> Search<'_, D, G> {
     /// Sees what there is. A step of its own, so that all of this is made where it stays.
     #[must_use]
     pub(crate) fn open(&mut self) -> &mut Self {
+        self.effort.take(self.view.looks());
         self.view.open();
         self
     }
@@ -154,6 +155,7 @@ impl<D: Dynamics, G: Region> Search<'_, D, G> {
             if arms.iter().all(Arm::is_empty)
                 || best.is_some_and(|(best, _)| straight_ahead() < best.objective)
                 || !self.view.enter_circle(speed)
+                || !self.effort.take(1)
             {
                 break;
             }
@@ -208,8 +210,9 @@ impl<D: Dynamics, G: Region> Search<'_, D, G> {
         if let Some(turn) = self.view.outside_until(heading, side) {
             return Verdict::Infeasible { turn, on_inner_circles_too: false };
         }
-        let Some(looks) = self.effort.looks.checked_sub(1) else { return Verdict::NoneBetter };
-        self.effort.looks = looks;
+        if !self.effort.take(1) {
+            return Verdict::NoneBetter;
+        }
         let grid = self.dynamics.grid();
         let ray = self.dynamics.ray(pose, side, n);
         let value = self.varrho.objective(grid.reach_mm(speed), ray.effort);
@@ -245,6 +248,10 @@ impl<D: Dynamics, G: Region> Search<'_, D, G> {
         self.effort.examined += 1;
         if !self.view.is_uncertain(target.site) {
             return Err(self.view.passed_over());
+        }
+        // The way and two circles, at most.
+        for _ in 0..2 {
+            self.effort.take_sweep(self.view.area(), &[pose.site, target.site]);
         }
         if !self.dynamics.keeps_inside(pose, target, self.view.area()) {
             self.is_hemmed_in = true;

@@ -12,6 +12,7 @@ use crate::geometry::approximate::{single, sqrt};
 use crate::geometry::heading::Heading;
 use crate::geometry::lattice::{Site, Vector};
 use crate::geometry::region::{KeepOut, Region};
+use crate::search::objective::Effort;
 use crate::search::view::View;
 
 /// Waypoints that are considered: those of the first keep-outs.
@@ -36,7 +37,14 @@ struct Waypoint {
 
 /// With what the shortest way from a position to uncertain ground begins; `straight` is the nearest, be it in sight or
 /// not. `None` if no way leads there.
-pub(crate) fn begin<G: Region>(view: &View<'_, G>, from: Site, straight: Vector) -> Option<Way> {
+///
+/// Cost: the looks of the sweeps between waypoints. When they are used up it is the best way so far.
+pub(crate) fn begin<G: Region>(
+    view: &View<'_, G>,
+    from: Site,
+    straight: Vector,
+    effort: &mut Effort,
+) -> Option<Way> {
     let area = view.area();
     if area.keep_outs().next().is_none() {
         return Some(Way::Straight(straight));
@@ -66,6 +74,9 @@ pub(crate) fn begin<G: Region>(view: &View<'_, G>, from: Site, straight: Vector)
         else {
             break;
         };
+        if !effort.take(4) {
+            break;
+        }
         nearest.is_settled = true;
         let (site, length, first) = (nearest.site, nearest.length, nearest.first);
         if let Some((_, rest)) = way_out(site)
@@ -75,7 +86,10 @@ pub(crate) fn begin<G: Region>(view: &View<'_, G>, from: Site, straight: Vector)
         }
         for other in &mut waypoints {
             let through = length + distance(other.site - site);
-            if through < other.length && clear(site, other.site) {
+            if through < other.length
+                && effort.take_sweep(area, &[site, other.site])
+                && clear(site, other.site)
+            {
                 (other.length, other.first) = (through, first);
             }
         }

@@ -50,8 +50,8 @@ pub(crate) const ENOUGH: f32 = 0.98;
 pub(crate) enum Sought<'a> {
     /// The best prospects whose ends these lines disagree on.
     Prospects(&'a mut Prospects, ConsistentLines<'a>),
-    /// What the best of them is worth.
-    Worth(&'a mut f32),
+    /// What the best of them is worth, of those whose ends these lines disagree on if there are such lines.
+    Worth(&'a mut f32, Option<ConsistentLines<'a>>),
 }
 
 impl Sought<'_> {
@@ -62,8 +62,9 @@ impl Sought<'_> {
                 prospects.add(new, *lines);
                 true
             }
-            Self::Worth(most) => {
-                if new.worth > **most {
+            Self::Worth(most, ground) => {
+                let is_open = || ground.is_none_or(|lines| lines.can_cut(new.target.site));
+                if new.worth > **most && is_open() {
                     **most = if new.worth < ENOUGH { new.worth } else { ENOUGH };
                 }
                 **most < ENOUGH

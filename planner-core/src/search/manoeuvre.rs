@@ -1,13 +1,17 @@
 //! The way to where a label can be asked, for a vehicle that cannot turn on the spot.
 //!
-//! It holds its circle to one side for some motions (shorter ones where it is not safe and its own would leave the
-//! area), until it has gone round at most, and drives straight on from there for some more: `L..L S..S` or `R..R S..S`.
-//! After each of these motions it sees whether the problem is feasible there, and the first motion of the fewest is the
-//! one to make. Where there is none it looks at *long* ways, which after up to eight straight motions go round to either
-//! side once more, as the shortest paths of a car do (Dubins, 1957): `L..L S..S R..R` and the like. So that it is never cornered for want of caution, each motion ends
-//! [safe](Dynamics::keeps_inside); only where it is not safe to begin with, or outside, it may take some that do not,
-//! and if nothing is feasible on any such way, it goes where it is safe. Where keep-outs are in the way it goes as near
-//! as such ways come to the first waypoint round them (`detour`).
+//! A *short* way holds the vehicle's circle to one side for some motions, a whole turn at most, and goes straight on from
+//! there: `L..L S..S` or `R..R S..S`. A *long* way goes round to either side once more after up to eight straight motions,
+//! as the shortest paths of a car do (Dubins, 1957): `L..L S..S R..R` and the like. The search returns the first motion of
+//! the shortest way to a pose from where the problem is feasible: a short one if there is one, else a long one.
+//!
+//! Each motion of a way ends [safe](Dynamics::keeps_inside), so the vehicle is never cornered for want of caution. Where it
+//! is not safe to begin with, an error has brought it there. Then motions may use the margin that the area keeps for
+//! errors, and shorter motions that bulge less; and if no way leads to a label, the shortest one leads to where it is safe.
+//! Where keep-outs are in the way, the search returns the way that comes nearest to the first waypoint round them (`detour`).
+//!
+//! The search is anytime: it draws on the plan's looks, tries likely ways first, and returns the best way so far when they
+//! are used up.
 //!
 //! **It ends**, though it has no state. What is left of a way is a way too, of one motion less: so each motion lowers
 //! the number of motions to where a label can be asked, by a short way, or as long as there is none, by a long one, or
@@ -27,10 +31,13 @@ use crate::search::objective::Effort;
 use crate::search::problem::Problem;
 
 /// A way has so many motions at most.
-const MOST: u32 = 1_024;
+const MOST: u32 = 8_192;
 
-/// Rays that all this looks at, at most.
-const LOOKS: u32 = 65_536;
+/// A round branches off in 32 places at most: where the first bits of its heading change.
+const BRANCH_BITS: u32 = 32 - 5;
+
+/// A straight drive searches so many poses with uncertain ground in reach at most.
+const SEARCHES: u32 = 6;
 
 /// A way round keep-outs comes nearer to its waypoint at least by the rest of this share.
 const LEAST: f32 = 0.95;
@@ -49,29 +56,28 @@ type Course = (Leg, u32);
 enum Start {
     /// Inside the area, with a circle to one side to stay on for ever.
     Safe,
-    /// Inside, with none.
+    /// Inside with no such circle, or where an error has brought it: within the margin.
     Unsafe,
     /// Outside: motions may be so too.
     Outside,
 }
 
-/// A way round to one side.
-struct Round {
-    /// Where it began.
-    from: Pose,
-    side: Side,
-    /// Where it has come to, by so many motions in all.
+/// Where a way has come to.
+#[derive(Clone, Copy)]
+struct Place {
     pose: Pose,
-    motions: u32,
-    /// The turn since it began.
-    turned: u32,
     /// The first motion of all.
     first: Option<Leg>,
+    motions: u32,
+    /// How far one can go from here with no uncertain ground in reach, lattice units.
+    free: f32,
 }
 
 struct Manoeuvre<'d, 'p, 'a, D, R, G> {
     problem: &'p Problem<'a, R, G>,
     dynamics: &'d D,
+    /// Where motions stay.
+    ground: G,
     effort: Effort,
     /// The shortest way to where the problem is feasible.
     shortest: Option<Course>,
@@ -86,14 +92,13 @@ struct Manoeuvre<'d, 'p, 'a, D, R, G> {
     comes_near: bool,
     is_hemmed_in: bool,
     looks_at_long_ways: bool,
-    /// How far inside motions end at least; negative, outside.
+    /// From outside: how far inside motions end at least; negative.
     depth: i32,
 }
 
 /// The first motion of the shortest way to where the problem is feasible, or else as near as ways come to a waypoint.
 ///
-/// Cost: for each motion of a round, and each straight one beyond near uncertain ground, one search; where that finds
-/// nothing, one for each motion of the long ways, up to 65,536 looks in all.
+/// Cost: the looks that the search has left, at most.
 ///
 /// # Errors
 /// Why there is none.
@@ -102,39 +107,38 @@ pub(crate) fn manoeuvre<D: Dynamics, R: DirectionRule, G: Region>(
     search: &mut Search<'_, D, G>,
     waypoint: Option<Site>,
 ) -> Result<Leg, DeadEnd> {
-    let (dynamics, from) = (search.dynamics, search.pose);
+    let (dynamics, from, area) = (search.dynamics, search.pose, problem.area);
+    let start = match area.contains(from.site) {
+        true if dynamics.is_safe(from, &area) => Start::Safe,
+        _ if area.whole().contains(from.site) => Start::Unsafe,
+        _ => Start::Outside,
+    };
     let mut it = Manoeuvre {
         problem,
         dynamics,
-        effort: Effort { looks: LOOKS, ..search.effort },
+        ground: if start == Start::Safe { area } else { area.whole() },
+        effort: search.effort,
         shortest: None,
         escape: None,
         waypoint,
-        nearest: f32::INFINITY,
+        nearest: waypoint.map_or(0.0, |waypoint| LEAST * distance(waypoint - from.site)),
         approach: None,
-        start: match problem.area.contains(from.site) {
-            true if dynamics.is_safe(from, &problem.area) => Start::Safe,
-            true => Start::Unsafe,
-            false => Start::Outside,
-        },
+        start,
         comes_near: search.view.own_label == Certainty::Uncertain,
         is_hemmed_in: search.is_hemmed_in,
         looks_at_long_ways: false,
-        depth: 0,
+        depth: area.whole().depth(from.site),
     };
-    let depth = if it.start == Start::Outside { problem.area.depth(from.site) } else { 0 };
-    it.nearest = it.waypoint.map_or(0.0, |waypoint| LEAST * distance(waypoint - from.site));
-    for (long, depth) in [(false, depth), (true, depth), (false, i32::MIN), (true, i32::MIN)] {
-        (it.looks_at_long_ways, it.depth) = (long, depth);
-        let is_needed = it.shortest.or(it.escape).is_none() && it.start == Start::Outside;
-        if it.shortest.is_none() && (is_needed || depth != i32::MIN) {
-            it.drive_on(from, None, 0, search.view.out_of_reach_for());
-            for side in [Side::Left, Side::Right] {
-                let mut round =
-                    Round { from, side, pose: from, turned: 0, first: None, motions: 0 };
-                while let Some((first, free)) = it.hold(&mut round) {
-                    it.drive_on(round.pose, Some(first), round.motions, free);
-                }
+    let free = search.view.out_of_reach_for();
+    let place = Place { pose: from, first: None, motions: 0, free };
+    // From outside, if that is to no avail, by ways that lead further out.
+    let depths = [it.depth, i32::MIN];
+    for depth in depths.into_iter().take(if start == Start::Outside { 2 } else { 1 }) {
+        for is_long in [false, true] {
+            let is_found = it.shortest.is_some() || depth == i32::MIN && it.escape.is_some();
+            if !is_found {
+                (it.looks_at_long_ways, it.depth) = (is_long, depth);
+                it.try_ways(place);
             }
         }
     }
@@ -151,10 +155,12 @@ pub(crate) fn manoeuvre<D: Dynamics, R: DirectionRule, G: Region>(
 }
 
 /// Where the way round keep-outs to uncertain ground begins, if there are any.
-pub(crate) fn waypoint<D: Dynamics, G: Region>(search: &Search<'_, D, G>) -> Option<Site> {
+pub(crate) fn waypoint<D: Dynamics, G: Region>(search: &mut Search<'_, D, G>) -> Option<Site> {
     let (view, from) = (&search.view, search.pose.site);
     view.area().keep_outs().next()?;
-    let (Way::Straight(way) | Way::Round(way)) = detour::begin(view, from, view.way_out()?)?;
+    let way = view.way_out()?;
+    let (Way::Straight(way) | Way::Round(way)) =
+        detour::begin(&search.view, from, way, &mut search.effort)?;
     from.step(way).ok()
 }
 
@@ -163,42 +169,55 @@ fn distance(way: Vector) -> f32 {
 }
 
 impl<D: Dynamics, R: DirectionRule, G: Region> Manoeuvre<'_, '_, '_, D, R, G> {
+    /// Tries all ways of a kind: straight on, then from places on a round to either side.
+    fn try_ways(&mut self, from: Place) {
+        self.drive_on(from);
+        for side in [Side::Left, Side::Right] {
+            self.go_round(from, side, Self::drive_on);
+        }
+    }
+
     /// Whether a way of so many motions is worth knowing.
     fn is_short(&self, motions: u32) -> bool {
         motions < self.shortest.map_or(MOST, |(_, least)| least) && self.effort.is_enough()
     }
 
-    /// Holds the circle for one motion more, and looks there: the first motion of all, and how far from there no
-    /// uncertain ground is in reach. `None` when the round is over.
-    fn hold(&mut self, round: &mut Round) -> Option<(Leg, f32)> {
-        let Round { from, side, pose, .. } = *round;
-        round.motions += 1;
-        let (action, after) = self.sharpest(pose, side)?;
-        let turned = match side {
-            Side::Left => after.heading.0.wrapping_sub(from.heading.0),
-            Side::Right => from.heading.0.wrapping_sub(after.heading.0),
-        };
-        // Beyond a whole turn there is nothing new.
-        if turned <= round.turned || !self.is_short(round.motions) {
-            return None;
+    /// Holds the circle to a side, looks at each place, and from some of them does what else a way does.
+    fn go_round(&mut self, from: Place, side: Side, mut branch: impl FnMut(&mut Self, Place)) {
+        let (mut place, mut turned) = (from, 0_u32);
+        while self.is_short(place.motions + 1) {
+            let Some((action, after)) = self.sharpest(place.pose, side) else { return };
+            let left = after.heading.0.wrapping_sub(from.pose.heading.0);
+            let turn = if side == Side::Left { left } else { left.wrapping_neg() };
+            if turn <= turned {
+                return; // beyond a whole turn there is nothing new
+            }
+            turned = turn;
+            let before = place.pose.heading.0;
+            place.pose = after;
+            place.motions += 1;
+            place.first = place.first.or(Some((action, after)));
+            if !self.look(&mut place) {
+                return;
+            }
+            // By the heading alone, so that what is left of a way branches off in the same places.
+            if before >> BRANCH_BITS != after.heading.0 >> BRANCH_BITS {
+                branch(self, place);
+            }
         }
-        let first = *round.first.get_or_insert((action, after));
-        (round.pose, round.turned) = (after, turned);
-        let free = self.look(after, (first, round.motions))?;
-        Some((first, free))
     }
 
     /// The motion that holds its circle to a side. Where that would leave the area, and it is not safe either way, the
     /// longest of the sharpest shorter ones that stays: they bulge less.
-    fn sharpest(&self, pose: Pose, side: Side) -> Option<Leg> {
-        let (dynamics, area, grid) = (self.dynamics, &self.problem.area, self.dynamics.grid());
-        let stays = |after: Pose| self.stays(pose, after);
+    fn sharpest(&mut self, pose: Pose, side: Side) -> Option<Leg> {
+        let (dynamics, area, grid) = (self.dynamics, self.problem.area, self.dynamics.grid());
         let action = dynamics.orbit(pose, side)?.action;
         let after = dynamics.target(pose, action)?;
-        if stays(after) && (self.start == Start::Outside || self.may_hold(pose, after, side)) {
+        if self.stays(pose, after) && (self.start == Start::Outside || self.may_hold(pose, after, side))
+        {
             return Some((action, after));
         }
-        if dynamics.is_safe(pose, area) {
+        if dynamics.is_safe(pose, &area) {
             return None;
         }
         let (_, speed) = grid.split(action);
@@ -206,16 +225,21 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Manoeuvre<'_, '_, '_, D, R, G> {
             let [left, right] = dynamics.rays_at(speed)?;
             let n = if side == Side::Left { left.saturating_sub(1) } else { right };
             let ray = (n > 0).then(|| dynamics.ray(pose, side, n))?;
-            let after = dynamics.arrive(pose, &ray, speed).ok().filter(|after| stays(*after))?;
-            Some((grid.action(ray.index, speed), after))
+            let after = dynamics.arrive(pose, &ray, speed).ok()?;
+            self.stays(pose, after).then(|| (grid.action(ray.index, speed), after))
         })
     }
 
-    /// Whether a motion stays inside, or from outside ends no further out than it may; and touches no keep-out.
-    fn stays(&self, pose: Pose, after: Pose) -> bool {
-        let area = &self.problem.area;
-        (area.encloses(after.site) || area.depth(after.site) >= self.depth && self.depth < 0)
-            && self.dynamics.stays_inside(pose, after, area)
+    /// Whether a motion stays where motions may go, or from outside ends no further out than it may; and touches no
+    /// keep-out.
+    fn stays(&mut self, pose: Pose, after: Pose) -> bool {
+        let ground = &self.ground;
+        self.effort.take(1);
+        self.effort.take_sweep(ground, &[pose.site, after.site]);
+        let ends = ground.encloses(after.site)
+            || self.start == Start::Outside && ground.depth(after.site) >= self.depth;
+        ends && ground.confines(pose.site, after.site)
+            && self.dynamics.stays_inside(pose, after, ground)
     }
 
     /// Whether one more motion round to a side leaves it safe, if it is: on the circle that it goes round, whatever
@@ -228,93 +252,132 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Manoeuvre<'_, '_, '_, D, R, G> {
             || dynamics.orbit(after, side).is_some_and(fits)
     }
 
-    /// Drives straight on, after so many motions that began with `first`. No uncertain ground is in reach for a
-    /// distance.
-    fn drive_on(&mut self, from: Pose, first: Option<Leg>, before: u32, mut free: f32) {
-        let (mut pose, mut first, mut motions) = (from, first, before);
-        while let Some(leg) = self.straight(pose) {
-            motions += 1;
-            if !self.is_short(motions) {
+    /// Drives straight on.
+    fn drive_on(&mut self, from: Place) {
+        let (mut place, mut searches) = (from, 0);
+        while searches < SEARCHES && self.is_short(place.motions + 1) {
+            let Some((leg, motions)) = self.straight(place) else { return };
+            let (_, after) = leg;
+            place.first = place.first.or(Some(leg));
+            place.free -= distance(after.site - place.pose.site);
+            place.pose = after;
+            place.motions += motions;
+            if !self.is_short(place.motions) {
                 return;
             }
-            let first = *first.get_or_insert(leg);
-            let by = leg.1.site - pose.site;
-            free -= sqrt(single(by.dot(by)));
-            pose = leg.1;
-            if free > 0.0 {
-                self.note(pose, (first, motions));
-            } else {
-                let Some(next) = self.look(pose, (first, motions)) else { return };
-                free = next;
+            if place.free > 0.0 {
+                self.note(&place);
+            } else if !self.look(&mut place) {
+                return;
             }
+            searches += u32::from(place.free <= 0.0);
             if self.looks_at_long_ways {
                 for side in [Side::Left, Side::Right] {
-                    let first = Some(first);
-                    let mut round = Round { from: pose, side, pose, turned: 0, first, motions };
-                    while self.hold(&mut round).is_some() {}
+                    self.go_round(place, side, |_, _| {});
                 }
-                if motions - before == STRAIGHT {
+                if place.motions - from.motions >= STRAIGHT {
                     return;
                 }
             }
         }
     }
 
-    /// The fastest drive straight ahead that ends safe, or from where it is not safe, inside.
-    fn straight(&self, pose: Pose) -> Option<Leg> {
-        let (dynamics, area) = (self.dynamics, &self.problem.area);
-        let is_safe = dynamics.is_safe(pose, area);
-        let drives = || self.drives_ahead(pose);
-        drives()
-            .find(|(_, it)| area.contains(it.site) && dynamics.keeps_inside(pose, *it, area))
-            .or_else(|| if is_safe { None } else { drives().next() })
-    }
-
-    /// The drives straight ahead that stay inside, the fastest first.
-    fn drives_ahead(&self, pose: Pose) -> impl Iterator<Item = Leg> {
-        let (dynamics, grid) = (self.dynamics, self.dynamics.grid());
+    /// The drive straight ahead: several of the fastest motions at once, if no uncertain ground is in reach meanwhile
+    /// and the vehicle is safe all along; else one that ends safe, or from where it is not safe, inside.
+    fn straight(&mut self, from: Place) -> Option<(Leg, u32)> {
+        let (dynamics, grid, pose) = (self.dynamics, self.dynamics.grid(), from.pose);
+        let fastest = grid.speeds().saturating_sub(1);
         let ray = dynamics.ray(pose, Side::Left, 0);
-        (1..grid.speeds()).rev().filter_map(move |speed| {
+        if from.first.is_some() && !self.looks_at_long_ways {
+            let mut count = (from.free / (f32::from(fastest) * grid.step_units())) as u32;
+            while count > 1 {
+                if let Some(after) = self.advance(pose, ray.displacement(fastest), count) {
+                    return Some(((grid.action(ray.index, fastest), after), count));
+                }
+                count /= 2;
+            }
+        }
+        let is_safe = dynamics.is_safe(pose, &self.problem.area);
+        let mut otherwise = None;
+        for speed in (1..=fastest).rev() {
             let exists = dynamics.rays_at(speed).is_none_or(|[left, _]| left > 0);
-            let target = exists.then(|| dynamics.arrive(pose, &ray, speed).ok()).flatten()?;
-            self.stays(pose, target).then(|| (grid.action(ray.index, speed), target))
-        })
+            let Some(after) = exists.then(|| dynamics.arrive(pose, &ray, speed).ok()).flatten() else {
+                continue;
+            };
+            if !self.stays(pose, after) {
+                if self.effort.is_enough() { continue } else { break }
+            }
+            let leg = (grid.action(ray.index, speed), after);
+            let area = &self.problem.area;
+            if area.contains(after.site) && dynamics.keeps_inside(pose, after, area) {
+                return Some((leg, 1));
+            }
+            otherwise = otherwise.or(Some((leg, 1)));
+        }
+        if is_safe { None } else { otherwise }
     }
 
-    /// Sees whether the problem is feasible at the end of a way: then it is the shortest, and there is nothing to
-    /// go on for. Else how far from there no uncertain ground is in reach.
-    fn look(&mut self, pose: Pose, way: Course) -> Option<f32> {
-        self.note(pose, way);
-        self.effort.looks = self.effort.looks.saturating_sub(1);
-        let mut there = self.problem.search(self.dynamics, pose, self.effort);
+    /// Where so many motions straight ahead lead, if its circle to one side stays inside all along.
+    fn advance(&mut self, pose: Pose, by: Vector, count: u32) -> Option<Pose> {
+        let area = &self.problem.area;
+        let times = |v: i32| v.checked_mul(count as i32);
+        let by = Vector::new(times(by.x)?, times(by.z)?)?;
+        let after = Pose { site: pose.site.step(by).ok()?, ..pose };
+        self.effort.take(2);
+        self.effort.take_sweep(area, &[pose.site, after.site]);
+        let is_clear = |orbit: Orbit| {
+            let radius = orbit.radius.saturating_add(orbit.margin);
+            let centres = [pose, after].map(|it| it.site.step(orbit.centre));
+            let [Ok(from), Ok(to)] = centres else { return false };
+            area.contains_disc(from, radius)
+                && area.contains_disc(to, radius)
+                && area.keep_outs().all(|it| it.is_clear_of(&[from, to], radius.unsigned_abs()))
+        };
+        let mut orbits = [Side::Left, Side::Right].into_iter();
+        let stays = area.contains(after.site)
+            && area.lets_pass(&[pose.site, after.site])
+            && orbits.any(|side| self.dynamics.orbit(pose, side).is_some_and(is_clear));
+        stays.then_some(after)
+    }
+
+    /// Sees whether the problem is feasible at the end of a way: then it is the shortest, and there is no reason to go
+    /// on. Else updates how far one can go from there with no uncertain ground in reach.
+    fn look(&mut self, place: &mut Place) -> bool {
+        self.note(place);
+        let mut there = self.problem.search(self.dynamics, place.pose, self.effort);
         let there = there.open();
-        let free = there.view.out_of_reach_for();
-        if free > 0.0 {
-            return Some(free);
+        place.free = there.view.out_of_reach_for();
+        if place.free > 0.0 {
+            self.effort = there.effort;
+            return true;
         }
         self.comes_near = true;
-        let best = there.best_between([pose.heading; 2], &self.problem.rule);
+        let best = there.best_between([place.pose.heading; 2], &self.problem.rule);
         self.effort = there.effort;
         self.is_hemmed_in |= there.is_hemmed_in;
-        if best.is_some() {
-            self.shortest = Some(way);
-            return None;
+        if best.is_some()
+            && let Some(first) = place.first
+        {
+            self.shortest = Some((first, place.motions));
+            return false;
         }
-        Some(free)
+        true
     }
 
-    fn note(&mut self, pose: Pose, way: Course) {
-        let (_, motions) = way;
+    /// Notes what else the end of a way is good for: it is safe there, or nearer to the waypoint.
+    fn note(&mut self, place: &Place) {
+        let Some(first) = place.first else { return };
+        let (pose, course) = (place.pose, (first, place.motions));
         let distance = self.waypoint.map_or(f32::INFINITY, |it| distance(it - pose.site));
         if distance < self.nearest {
-            (self.nearest, self.approach) = (distance, Some(way));
+            (self.nearest, self.approach) = (distance, Some(course));
         }
         if self.start != Start::Safe
-            && self.escape.is_none_or(|(_, least)| motions < least)
+            && self.escape.is_none_or(|(_, least)| place.motions < least)
             && self.problem.area.contains(pose.site)
             && self.dynamics.keeps_inside(pose, pose, &self.problem.area)
         {
-            self.escape = Some(way);
+            self.escape = Some(course);
         }
     }
 }

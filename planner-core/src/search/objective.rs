@@ -1,10 +1,14 @@
 //! What a motion is worth, what was chosen by that, and what it may cost to find it.
 
+use crate::geometry::lattice::Site;
+use crate::geometry::region::Region;
 use crate::motion::action::Action;
 use crate::motion::dynamics::Pose;
 
-/// Rays that a plan of Algorithm 1, or of Algorithm 2 by the joint reading, looks at at most. With the
-/// paper's grid 520 are the most that a plan of 3,000 standard missions of 60 steps needed.
+/// The most looks that a plan takes. A look at a ray is one; what else takes long counts as so many as take as long.
+///
+/// One look takes up to some 2,000 instructions of a Cortex-M4, so that a plan stays below 20 million. With the paper's
+/// grid 520 rays are the most that a plan of 3,000 standard missions of 60 steps needed.
 pub const LOOKS: u32 = 8_192;
 
 /// The weight of the control in the objective, in [0, 1), to six decimal places.
@@ -60,7 +64,7 @@ pub struct Choice {
 /// What searches may still cost, and have cost.
 #[derive(Clone, Copy)]
 pub(crate) struct Effort {
-    /// Rays that may still be looked at.
+    /// Looks that may still be taken.
     pub(crate) looks: u32,
     /// Actions whose position was looked at so far.
     pub(crate) examined: u32,
@@ -69,6 +73,19 @@ pub(crate) struct Effort {
 impl Effort {
     pub(crate) const fn of(looks: u32) -> Self {
         Self { looks, examined: 0 }
+    }
+
+    /// Takes so many looks; whether there were as many.
+    pub(crate) const fn take(&mut self, looks: u32) -> bool {
+        let is_enough = looks <= self.looks;
+        self.looks = self.looks.saturating_sub(looks);
+        is_enough
+    }
+
+    /// Takes the looks that it costs to see whether a hull touches a keep-out: one for each two corners of those nearby.
+    pub(crate) fn take_sweep<G: Region>(&mut self, area: &G, hull: &[Site]) -> bool {
+        let near = area.keep_outs().filter(|it| it.is_near(hull));
+        self.take(near.map(|it| 1 + it.corners.len() as u32 / 2).sum())
     }
 
     /// Whether no search has ended for want of looks.

@@ -107,7 +107,7 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule, G: Region>(
         return Ok(found(Some(Recovery::Reorient))(turn));
     }
     let way = ladder.search.view.way_out().ok_or(DeadEnd::Resolution)?;
-    let leg = match (home, detour::begin(&ladder.search.view, pose.site, way)) {
+    let leg = match (home, detour::begin(&ladder.search.view, pose.site, way, &mut ladder.search.effort)) {
         (Some(home), _) => home.ok_or(DeadEnd::Outside),
         (None, Some(Way::Round(way))) => ladder.leg(pose, way).ok_or(DeadEnd::Cornered),
         (None, Some(Way::Straight(way))) if ladder.search.view.is_far(way) => {
@@ -127,7 +127,12 @@ pub(crate) fn turn_round<D: Dynamics, R: DirectionRule, G: Region>(
 ) -> Option<Found> {
     let is_free = goes_round(search.dynamics, search.pose)
         && search.dynamics.is_safe(search.pose, &problem.area);
-    let (action, target) = is_free.then(|| manoeuvre(problem, search, None).ok()).flatten()?;
+    // It may use half of the looks: something else is known to be feasible, or comes after it.
+    let spared = search.effort.looks / 2;
+    search.effort.looks -= spared;
+    let found = is_free.then(|| manoeuvre(problem, search, None).ok()).flatten();
+    search.effort.looks += spared;
+    let (action, target) = found?;
     Some(Found { recovery: Some(Recovery::Transit), action, target })
 }
 
@@ -166,7 +171,7 @@ impl<D: Dynamics, G: Region> Ladder<'_, '_, '_, D, G> {
         // What lies ahead is known by now: after each turn, what lies beyond it.
         let (mut to_left, mut to_right, mut turned) = (left.1, right.1, sharpest);
         while turned < Heading::HALF_TURN.0 && self.search.effort.is_enough() {
-            self.search.effort.looks -= 1;
+            self.search.effort.take(1);
             let headings = [to_left.heading, to_right.heading];
             match self.search.best_between(headings, &self.problem.rule) {
                 Some((_, Side::Left)) => return Some(left),
@@ -250,7 +255,7 @@ impl<D: Dynamics, G: Region> Ladder<'_, '_, '_, D, G> {
         while (turned < Heading::HALF_TURN.0 || coarse && turns < TURNS)
             && self.search.effort.is_enough()
         {
-            self.search.effort.looks -= 1;
+            self.search.effort.take(1);
             for (side, after) in sides.into_iter().zip(&mut after) {
                 *after = dynamics.turn_in_place(*after, side)?.1;
                 match self.drive(*after, bearing, goal) {
@@ -266,7 +271,7 @@ impl<D: Dynamics, G: Region> Ladder<'_, '_, '_, D, G> {
 
     /// The fastest drive that brings a point nearer, if its bearing lies within the fan: along the
     /// nearest ray, or along the one on the other side of the bearing.
-    fn drive(&self, pose: Pose, bearing: Heading, goal: Vector) -> Drive {
+    fn drive(&mut self, pose: Pose, bearing: Heading, goal: Vector) -> Drive {
         let dynamics = self.search.dynamics;
         let (grid, rays) = (dynamics.grid(), dynamics.around(pose, bearing));
         let aside = bearing.0.wrapping_sub(rays[0].heading.0) as i32;
@@ -275,12 +280,19 @@ impl<D: Dynamics, G: Region> Ladder<'_, '_, '_, D, G> {
         }
         for ray in rays {
             for speed in (1..grid.speeds()).rev().filter(|speed| nears(&ray, *speed, goal)) {
+                if !self.search.effort.take(1) {
+                    return Drive::Blocked;
+                }
                 let area = &self.problem.area;
                 let stays = |target: &Pose| {
-                    (area.contains(target.site) || !area.contains(pose.site))
+                    area.confines(pose.site, target.site)
                         && dynamics.stays_inside(pose, *target, area)
                 };
-                if let Some(target) = dynamics.arrive(pose, &ray, speed).ok().filter(stays) {
+                let target = dynamics.arrive(pose, &ray, speed).ok();
+                if let Some(target) = target {
+                    self.search.effort.take_sweep(area, &[pose.site, target.site]);
+                }
+                if let Some(target) = target.filter(stays) {
                     return Drive::Leg((grid.action(ray.index, speed), target));
                 }
             }

@@ -46,6 +46,10 @@ impl<G: Region> Region for Counted<G> {
         self.0.inset(margin).map(Self)
     }
 
+    fn whole(&self) -> Self {
+        Self(self.0.whole())
+    }
+
     fn sides(&self) -> impl Iterator<Item = HalfPlane> {
         self.0.sides()
     }

@@ -27,7 +27,10 @@ const THIN: f64 = 0.005;
 pub fn refute(mission: &Mission, belief: &dyn ReadOut, pose: Pose, end: Ending) -> Option<String> {
     let Ending::Stopped(reason) = end else { return None };
     let area = mission.config.area.inset(mission.config.tolerance.units()).expect("drawn so");
-    let judge = Judge { mission, belief, area };
+    // Who is not safe may use the margin in order to become so.
+    let is_safe = area.contains(pose.site) && mission.vehicle.is_safe(pose, &area);
+    let ground = if is_safe { area } else { mission.config.area };
+    let judge = Judge { mission, belief, area, ground };
     match reason {
         StopReason::SamplesFull => (!belief.is_full()).then(|| "there is room".to_owned()),
         StopReason::Known => {
@@ -47,7 +50,10 @@ pub fn refute(mission: &Mission, belief: &dyn ReadOut, pose: Pose, end: Ending) 
 struct Judge<'a> {
     mission: &'a Mission,
     belief: &'a dyn ReadOut,
+    /// Where motions aim.
     area: MissionArea,
+    /// Where motions stay.
+    ground: MissionArea,
 }
 
 impl Judge<'_> {
@@ -56,9 +62,10 @@ impl Judge<'_> {
         if !self.area.contains(site) {
             return false;
         }
-        match self.belief.version_space() {
-            Some(space) => can_cut_either_way(space.lines(), site),
-            None => (0.001..0.999).contains(&self.belief.chance(site)),
+        match (self.belief.version_space(), self.belief.hypotheses()) {
+            (Some(space), _) => can_cut_either_way(space.lines(), site),
+            (_, Some(table)) => table.start().certainty(site) == Certainty::Uncertain,
+            (None, None) => false,
         }
     }
 
@@ -106,9 +113,7 @@ impl Judge<'_> {
     }
 
     fn may_go(&self, from: Pose, to: Pose) -> bool {
-        let ends = self.area.contains(to.site) || !self.area.contains(from.site);
-        ends && self.mission.config.area.contains(to.site)
-            && self.mission.vehicle.stays_inside(from, to, &self.area)
+        self.ground.contains(to.site) && self.mission.vehicle.stays_inside(from, to, &self.ground)
     }
 }
 
