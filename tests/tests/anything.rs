@@ -47,3 +47,15 @@ fn random_missions_keep_every_invariant() {
     println!("{motions} motions, {labels} labels, {} asked at most by mission {}", worst.0, worst.1);
     assert!(found.is_empty(), "{found:?}");
 }
+
+#[test]
+fn one() {
+    let Ok(number) = std::env::var("ONE") else { return };
+    let mission = draw(SEED, number.parse().expect("a number"));
+    let vehicle = planner_core::motion::any_vehicle::Shape::from(mission.vehicle);
+    println!("{:?} {vehicle:?}\n{:?}\n{:?} {:?} {:?} {:?}", mission.algorithm,
+        tests::anything::plain::Ground::of(&mission.config.area), mission.config.tolerance.metres(), mission.noise, mission.errors, mission.goal);
+    let flight = fly(&mission, MOST_ASKED);
+    println!("{:?} {} motions {} labels", flight.ending, flight.motions, flight.labels);
+    for finding in flight.findings { println!("{finding:?}"); }
+}

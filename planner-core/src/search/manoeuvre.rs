@@ -36,6 +36,9 @@ const MOST: u32 = 8_192;
 /// A round branches off in 32 places at most: where the first bits of its heading change.
 const BRANCH_BITS: u32 = 32 - 5;
 
+/// A search of one pose takes so many looks at most.
+const LOOKS_A_SEARCH: u32 = 128;
+
 /// A straight drive searches so many poses with uncertain ground in reach at most.
 const SEARCHES: u32 = 6;
 
@@ -352,8 +355,10 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Manoeuvre<'_, '_, '_, D, R, G> {
             return true;
         }
         self.comes_near = true;
+        let kept = there.effort.keep_back(LOOKS_A_SEARCH);
         let best = there.best_between([place.pose.heading; 2], &self.problem.rule);
         self.effort = there.effort;
+        self.effort.give_back(kept);
         self.is_hemmed_in |= there.is_hemmed_in;
         if best.is_some()
             && let Some(first) = place.first

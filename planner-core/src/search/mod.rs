@@ -19,3 +19,4 @@ pub mod objective;
 pub mod problem;
 pub mod recovery;
 pub(crate) mod view;
+pub(crate) mod wander;

@@ -75,6 +75,18 @@ impl Effort {
         Self { looks, examined: 0 }
     }
 
+    /// Keeps back all but so many looks, which [`give_back`](Self::give_back) adds again.
+    pub(crate) const fn keep_back(&mut self, all_but: u32) -> u32 {
+        let kept = self.looks.saturating_sub(all_but);
+        self.looks -= kept;
+        kept
+    }
+
+    /// Adds looks that were kept back.
+    pub(crate) const fn give_back(&mut self, kept: u32) {
+        self.looks += kept;
+    }
+
     /// Takes so many looks; whether there were as many.
     pub(crate) const fn take(&mut self, looks: u32) -> bool {
         let is_enough = looks <= self.looks;

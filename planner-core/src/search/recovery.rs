@@ -39,6 +39,7 @@ use crate::search::detour::{self, Way};
 use crate::search::direction_rule::{ArcRule, DirectionRule};
 use crate::search::manoeuvre::{manoeuvre, waypoint};
 use crate::search::problem::Problem;
+use crate::search::wander::wander;
 
 /// A transit among uncertain ground looks this many motions ahead. Twice as many find nothing more in
 /// 1,000 standard missions of 60 steps.
@@ -86,7 +87,10 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule, G: Region>(
     let mut ladder = Ladder { problem: problem.undirected(), search };
     // Before the search has used up its looks.
     let home = (!area.contains(pose.site)).then(|| ladder.leg(pose, area.way_home(pose.site)));
+    // The rest is for what comes after it.
+    let kept = ladder.search.effort.keep_back(ladder.search.effort.looks / 2);
     let Findings { best, best_forbidden } = ladder.search.best(&problem.rule, before);
+    ladder.search.effort.give_back(kept);
     if let Some((best, _)) = best {
         return Ok(found(None)((best.action, best.target)));
     }
@@ -96,26 +100,14 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule, G: Region>(
         }
         return Ok(found(Some(Recovery::Undirected))((best.action, best.target)));
     }
-    if goes_round(ladder.search.dynamics, ladder.search.pose) {
-        ladder.search.view.way_out().ok_or(DeadEnd::Resolution)?;
-        let waypoint = waypoint(ladder.search);
-        let leg = manoeuvre(&ladder.problem, ladder.search, waypoint);
-        return leg.map(found(Some(Recovery::Transit)));
-    }
-    // Where nothing is in reach no turn finds anything, so that the order does not matter.
-    if let Some(turn) = ladder.reorient() {
-        return Ok(found(Some(Recovery::Reorient))(turn));
-    }
-    let way = ladder.search.view.way_out().ok_or(DeadEnd::Resolution)?;
-    let leg = match (home, detour::begin(&ladder.search.view, pose.site, way, &mut ladder.search.effort)) {
-        (Some(home), _) => home.ok_or(DeadEnd::Outside),
-        (None, Some(Way::Round(way))) => ladder.leg(pose, way).ok_or(DeadEnd::Cornered),
-        (None, Some(Way::Straight(way))) if ladder.search.view.is_far(way) => {
-            ladder.leg(pose, way).ok_or(DeadEnd::Cornered)
-        }
-        (None, _) => ladder.transit(),
-    };
-    leg.map(found(Some(Recovery::Transit)))
+    // The last rung has looks of its own.
+    let kept = ladder.search.effort.keep_back(ladder.search.effort.looks / 2);
+    let climbed = ladder.climb(home);
+    ladder.search.effort.give_back(kept);
+    climbed.or_else(|why| {
+        let leg = wander(&ladder.problem, ladder.search).ok_or(why)?;
+        Ok(found(Some(Recovery::Transit))(leg))
+    })
 }
 
 /// The way to where a problem is feasible in a direction that its rule allows, for a vehicle that has to go round in
@@ -128,10 +120,9 @@ pub(crate) fn turn_round<D: Dynamics, R: DirectionRule, G: Region>(
     let is_free = goes_round(search.dynamics, search.pose)
         && search.dynamics.is_safe(search.pose, &problem.area);
     // It may use half of the looks: something else is known to be feasible, or comes after it.
-    let spared = search.effort.looks / 2;
-    search.effort.looks -= spared;
+    let kept = search.effort.keep_back(search.effort.looks / 2);
     let found = is_free.then(|| manoeuvre(problem, search, None).ok()).flatten();
-    search.effort.looks += spared;
+    search.effort.give_back(kept);
     let (action, target) = found?;
     Some(Found { recovery: Some(Recovery::Transit), action, target })
 }
@@ -162,6 +153,33 @@ struct Ladder<'s, 'p, 'a, D, G> {
 }
 
 impl<D: Dynamics, G: Region> Ladder<'_, '_, '_, D, G> {
+    /// The rungs 2 to 4, or a manoeuvre; `home` is the way back from outside, if that is where the agent is.
+    fn climb(&mut self, home: Option<Option<Leg>>) -> Result<Found, DeadEnd> {
+        let found = |recovery| move |(action, target)| Found { recovery, action, target };
+        let pose = self.search.pose;
+        if goes_round(self.search.dynamics, pose) {
+            self.search.view.way_out().ok_or(DeadEnd::Resolution)?;
+            let waypoint = waypoint(self.search);
+            let leg = manoeuvre(&self.problem, self.search, waypoint);
+            return leg.map(found(Some(Recovery::Transit)));
+        }
+        // Where nothing is in reach no turn finds anything, so that the order does not matter.
+        if let Some(turn) = self.reorient() {
+            return Ok(found(Some(Recovery::Reorient))(turn));
+        }
+        let Search { view, effort, .. } = &mut *self.search;
+        let way = view.way_out().ok_or(DeadEnd::Resolution)?;
+        let leg = match (home, detour::begin(view, pose.site, way, effort)) {
+            (Some(home), _) => home.ok_or(DeadEnd::Outside),
+            (None, Some(Way::Round(way))) => self.leg(pose, way).ok_or(DeadEnd::Cornered),
+            (None, Some(Way::Straight(way))) if self.search.view.is_far(way) => {
+                self.leg(pose, way).ok_or(DeadEnd::Cornered)
+            }
+            (None, _) => self.transit(),
+        };
+        leg.map(found(Some(Recovery::Transit)))
+    }
+
     /// The first of the fewest turns in place beyond which the undirected problem is feasible.
     fn reorient(&mut self) -> Option<Leg> {
         let (dynamics, pose) = (self.search.dynamics, self.search.pose);
