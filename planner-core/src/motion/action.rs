@@ -42,7 +42,7 @@ pub struct ActionGrid {
 pub enum BadGrid {
     /// It has no action, or more than 2^32.
     Actions,
-    /// Its steps of speed are nothing, or one of its motions is 100 m long or longer.
+    /// Its steps of speed are nothing, or 100 m or more, or one of its motions is 3,000 m long or longer.
     Reach,
     /// Its step of turning is nothing or more than half a turn, or its sharpest turn is less than a
     /// milliradian or more than half a turn.
@@ -56,7 +56,7 @@ impl core::fmt::Display for BadGrid {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str(match self {
             Self::Actions => "an action grid has 1 to 2^32 actions",
-            Self::Reach => "steps of speed are 1 mm or more, and a motion is shorter than 100 m",
+            Self::Reach => "steps of speed are 1 mm or more and below 100 m, and a motion is shorter than 3000 m",
             Self::Turn => {
                 "a step of turning is 1 to 3141592 urad, and the sharpest turn from 0.001 to pi rad"
             }
@@ -73,8 +73,11 @@ impl ActionGrid {
     /// Fractional bits of a ray's step.
     pub const STEP_BITS: u32 = 8;
 
-    /// The longest admissible motion, millimetres: what keeps a ray's steps within an `i32`.
-    pub const LONGEST_MM: u32 = 100_000;
+    /// Motions are shorter than this, millimetres: so the objective, with six decimal places, fits an `i64`.
+    pub const LONGEST_MM: u32 = 3_000_000;
+
+    /// Steps of speed are smaller than this, millimetres: so a ray's step, with 8 fractional bits, fits an `i32`.
+    pub const LONGEST_STEP_MM: u32 = 100_000;
 
     /// A grid of `rays` directions with the speeds `0, step, ..., (speeds - 1) step`.
     ///
@@ -86,8 +89,8 @@ impl ActionGrid {
             return Err(BadGrid::Actions);
         }
         let reach = (speeds as u64 - 1) * speed_step_mm as u64;
-        let longest = if reach > speed_step_mm as u64 { reach } else { speed_step_mm as u64 };
-        if speed_step_mm == 0 || longest >= Self::LONGEST_MM as u64 {
+        let is_step = speed_step_mm > 0 && speed_step_mm < Self::LONGEST_STEP_MM;
+        if !is_step || reach >= Self::LONGEST_MM as u64 {
             return Err(BadGrid::Reach);
         }
         // To the nearest, in 32 bits: whole metres, and of the rest an eighth of numerator and denominator.

@@ -45,14 +45,16 @@ impl Ray {
     pub const STEP_BITS: u32 = ActionGrid::STEP_BITS;
 
     /// Displacement at a speed of the grid, to the nearest lattice units.
-    pub const fn displacement(&self, speed: u16) -> Vector {
+    pub fn displacement(&self, speed: u16) -> Vector {
         const HALF: i32 = 1 << (Ray::STEP_BITS - 1);
+        // Whole units and the rest of each step apart, so that 32 bits hold any motion: see ActionGrid::LONGEST_MM.
+        const REST: i32 = (1 << Ray::STEP_BITS) - 1;
         let k = speed as i32;
-        // The longest motion, 100 m, is below 2^31 of these units: see ActionGrid::LONGEST_MM.
-        Vector {
-            x: k.wrapping_mul(self.step.x).wrapping_add(HALF) >> Self::STEP_BITS,
-            z: k.wrapping_mul(self.step.z).wrapping_add(HALF) >> Self::STEP_BITS,
-        }
+        let times = |step: i32| {
+            let rest = (step & REST).wrapping_mul(k).wrapping_add(HALF) >> Self::STEP_BITS;
+            (step >> Self::STEP_BITS).wrapping_mul(k).wrapping_add(rest)
+        };
+        Vector { x: times(self.step.x), z: times(self.step.z) }
     }
 }
 

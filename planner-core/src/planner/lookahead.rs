@@ -49,6 +49,13 @@ pub const EVALUATIONS: u32 = 512;
 const FIRST_CIRCLES: u16 = 6;
 const SECOND_CIRCLES: u16 = 3;
 
+/// Circles on which the first step may end if none of the usual ones has an open place.
+const MOST_CIRCLES: u16 = 24;
+
+/// Motions are usually no longer than this part of the area's side: longer ones have nothing more to tell, and end near
+/// the border, from where less is in reach.
+const USUAL: f32 = 0.125;
+
 /// Where no label is worth as much, turns in place are considered.
 const POOR: f32 = 0.9;
 
@@ -114,8 +121,8 @@ impl<D: Dynamics, B: Foresight, G: Region> Lookahead<D, B, G> {
     fn decide(&self, lookout: &mut Lookout<'_, D, G>, pose: Pose) -> Option<Decision> {
         let outlook = self.foresight.outlook(pose.site);
         let mut prospects = Prospects::new();
-        let all = self.dynamics.grid().speeds();
-        for circles in [FIRST_CIRCLES, all] {
+        let fastest = self.dynamics.grid().speeds().saturating_sub(1);
+        for circles in [(FIRST_CIRCLES, lookout.usual), (MOST_CIRCLES, fastest)] {
             if prospects.as_slice().is_empty() {
                 let mut sought = Sought::Prospects(&mut prospects, self.foresight.ground());
                 lookout.look(&outlook, pose, circles, &mut sought);
@@ -183,6 +190,15 @@ impl<D: Dynamics, B: Foresight, G: Region> Lookahead<D, B, G> {
     }
 }
 
+/// The fastest of the speeds that are usual, at least one; and the weight of lengths: as if its reach were the paper's 2 m.
+fn usual<D: Dynamics, G: Region>(dynamics: &D, area: &G) -> (u16, f32) {
+    let grid = dynamics.grid();
+    let side = area.bounds().half_sides().into_iter().map(|half| half as f32).sum::<f32>();
+    let most = (USUAL * side / grid.step_units()) as u16;
+    let fastest = grid.speeds().saturating_sub(1).min(most).max(1);
+    (fastest, 2_000.0 / grid.reach_mm(fastest) as f32)
+}
+
 /// What the best label after one more motion is worth; nothing if there is none. With `ground` only ends count on which
 /// these lines disagree.
 fn second<D: Dynamics, P: Prediction, G: Region>(
@@ -192,7 +208,7 @@ fn second<D: Dynamics, P: Prediction, G: Region>(
     ground: Option<ConsistentLines<'_>>,
 ) -> f32 {
     let mut most = 0.0;
-    lookout.look(prediction, pose, SECOND_CIRCLES, &mut Sought::Worth(&mut most, ground));
+    lookout.look(prediction, pose, (SECOND_CIRCLES, lookout.usual), &mut Sought::Worth(&mut most, ground));
     most
 }
 
@@ -209,7 +225,8 @@ impl<D: Dynamics, B: Foresight, G: Region> Planner for Lookahead<D, B, G> {
         }
         self.foresight.prepare();
         let (dynamics, evaluations) = (&self.dynamics, self.evaluations);
-        let mut lookout = Lookout { dynamics, area, varrho, evaluations };
+        let (usual, scale) = usual(dynamics, &area);
+        let mut lookout = Lookout { dynamics, area, varrho, usual, scale, evaluations };
         if let Some(decision) = self.decide(&mut lookout, pose) {
             let Decision { action, target, wants_label, .. } = decision;
             let looks = lookout.evaluations;
@@ -356,7 +373,8 @@ mod tests {
         for evaluations in [0, 1, 2, 5, 10, 20, 50, 100, 150, 200, 300, 400, 512, 1_000, 5_000] {
             let dynamics = &planner.dynamics;
             let Config { area, varrho, .. } = planner.config;
-            let mut lookout = Lookout { dynamics, area, varrho, evaluations };
+            let (usual, scale) = usual(dynamics, &area);
+            let mut lookout = Lookout { dynamics, area, varrho, usual, scale, evaluations };
             let decision = planner.decide(&mut lookout, pose);
             assert!(lookout.evaluations <= evaluations);
             let worth = decision.map_or(f32::NEG_INFINITY, |decision| decision.worth);

@@ -48,7 +48,7 @@ pub const FOLLOWING: Following = Following::Unrestricted;
 
 /// Rays that all hypotheses of a vote look at together, at most: then those that were asked decide. The
 /// paper's example has been seen to need 26,000 at 60 labels.
-pub const VOTE_LOOKS: u32 = 65_536;
+pub const VOTE_LOOKS: u32 = 32_768;
 
 /// How the hypotheses choose an action together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -161,7 +161,11 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Region> Scc<D, N, H, G> {
             let rule = UnionRule { arcs: slopes.arcs(), among: !self.is_even() };
             return self.find_on_start(rule, pose, effort);
         }
-        let elected = self.elect(pose, effort).and_then(|action| {
+        // The rest is for the ladder.
+        let kept = effort.keep_back(effort.looks / 2);
+        let elected = self.elect(pose, effort);
+        effort.give_back(kept);
+        let elected = elected.and_then(|action| {
             let target = self.dynamics.target(pose, action)?;
             Some(Found { recovery: None, action, target })
         });

@@ -199,6 +199,9 @@ impl<D: Dynamics, G: Region> Search<'_, D, G> {
         hunt: &mut Hunt<'_, R>,
     ) -> Verdict {
         let (n, side) = rank;
+        if !self.effort.take(1) {
+            return Verdict::NoneBetter;
+        }
         let heading = self.dynamics.heading(pose, side, n);
         if let Some(turn) = self.view.leaves_area_until(heading, side) {
             return Verdict::Infeasible { turn, on_inner_circles_too: true };
@@ -209,9 +212,6 @@ impl<D: Dynamics, G: Region> Search<'_, D, G> {
         }
         if let Some(turn) = self.view.outside_until(heading, side) {
             return Verdict::Infeasible { turn, on_inner_circles_too: false };
-        }
-        if !self.effort.take(1) {
-            return Verdict::NoneBetter;
         }
         let grid = self.dynamics.grid();
         let ray = self.dynamics.ray(pose, side, n);
@@ -246,7 +246,13 @@ impl<D: Dynamics, G: Region> Search<'_, D, G> {
     fn worthwhile_end(&mut self, pose: Pose, ray: &Ray, speed: u16) -> Result<Pose, u32> {
         let target = self.dynamics.arrive(pose, ray, speed).map_err(|_| 0_u32)?;
         self.effort.examined += 1;
-        if !self.view.is_uncertain(target.site) {
+        let area = self.view.area();
+        if !area.contains(target.site) {
+            // Where a rectangle ends is seen before. Of other areas it may not be.
+            let is_plain = area.sides().next().is_none() && area.keep_outs().next().is_none();
+            return Err(if is_plain { 0 } else { HEMMED_IN });
+        }
+        if !self.view.can_cut(target.site) {
             return Err(self.view.passed_over());
         }
         // The way and two circles, at most.

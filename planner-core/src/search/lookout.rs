@@ -78,6 +78,10 @@ pub(crate) struct Lookout<'a, D, G> {
     pub(crate) dynamics: &'a D,
     pub(crate) area: G,
     pub(crate) varrho: Varrho,
+    /// The fastest of the speeds that are usual.
+    pub(crate) usual: u16,
+    /// Metres of the paper's action set in a metre of this one.
+    pub(crate) scale: f32,
     pub(crate) evaluations: u32,
 }
 
@@ -91,21 +95,21 @@ struct Probe {
 impl<D: Dynamics, G: Region> Lookout<'_, D, G> {
     /// What a motion costs: its squared control, weighed.
     pub(crate) fn cost(&self, reach_mm: u32, effort: u32) -> f32 {
-        let reach = reach_mm as f32;
+        let reach = reach_mm as f32 * self.scale;
         let weight = self.varrho.millionths as f32 * 1e-12;
         weight * (reach * reach + effort as f32)
     }
 
-    /// Looks at so many circles, evenly spaced, the innermost first. Ends before when a prospect is enough,
-    /// or no more ends may be asked.
+    /// Looks at so many circles, evenly spaced up to the one of a speed, the innermost first. Ends before when a prospect
+    /// is enough, or no more ends may be asked.
     pub(crate) fn look<P: Prediction>(
         &mut self,
         prediction: &P,
         pose: Pose,
-        circles: u16,
+        (circles, fastest): (u16, u16),
         sought: &mut Sought<'_>,
     ) {
-        let fastest = u32::from(self.dynamics.grid().speeds().saturating_sub(1));
+        let fastest = u32::from(fastest);
         let circles = NonZeroU32::new(u32::from(circles).min(fastest)).unwrap_or(NonZeroU32::MIN);
         for k in 1..=circles.get() {
             let speed = (fastest * k + circles.get() - 1) / circles;

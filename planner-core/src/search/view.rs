@@ -169,9 +169,9 @@ impl<'a, G: Region> View<'a, G> {
         0.999 * self.certain_within - reach
     }
 
-    /// Whether a position is inside the area, and a label there can tell something. Exact.
-    pub(crate) fn is_uncertain(&self, site: Site) -> bool {
-        self.area.contains(site) && self.lines.can_cut(site)
+    /// Whether a label at a position can tell something. Exact.
+    pub(crate) fn can_cut(&self, site: Site) -> bool {
+        self.lines.can_cut(site)
     }
 
     /// How far a turn passes over where a label tells nothing because positions err: half of what these err by.

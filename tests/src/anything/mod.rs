@@ -8,3 +8,14 @@ pub mod draw;
 pub mod flight;
 pub mod plain;
 pub mod reason;
+
+use planner_core::motion::any_vehicle::AnyVehicle;
+
+/// What people call a vehicle.
+pub const fn kind(vehicle: &AnyVehicle) -> &'static str {
+    match vehicle {
+        AnyVehicle::Unicycle(_) => "unicycle",
+        AnyVehicle::Boat(_) => "boat",
+        AnyVehicle::Car(_) => "car",
+    }
+}
