@@ -118,3 +118,23 @@ fn more_reach_never_hurts() {
         }
     }
 }
+
+#[test]
+fn one() {
+    let Ok(one) = std::env::var("ONE") else { return };
+    let mut it = one.split(' ');
+    let kind = it.next().unwrap();
+    let side: f64 = it.next().unwrap().parse().unwrap();
+    let percent: f64 = it.next().unwrap().parse().unwrap();
+    for number in 0..20 {
+        let mut mission = scaled(number, side / standard_field::SIDE_M);
+        mission.vehicle = vehicle(kind, 1e3 * side * percent / 100.0);
+        eprintln!("=== {number}");
+        let (mut n, mut l) = (0, 0);
+        let flown = mission.fly(|step, _| {
+            n += 1; l += u32::from(step.reading.is_some());
+            eprintln!("step {n} {:?} {:?}", step.motion.recovery, step.pose);
+        }).unwrap();
+        eprintln!("END {:?} {l}", flown.ending);
+    }
+}

@@ -3,6 +3,7 @@
 
 use crate::belief::edge::Edge;
 use crate::belief::sample::{Label, Sample};
+use crate::geometry::approximate::{single, sqrt};
 use crate::geometry::arc::SlopeArc;
 use crate::geometry::lattice::{Site, Vector};
 use crate::geometry::line::Bound;
@@ -111,6 +112,37 @@ impl<'a> ConsistentLines<'a> {
                 Self { is_loose: true, .. } => shifts.any(is_uncertain),
                 _ => shifts.all(is_uncertain),
             }
+    }
+
+    /// Within this distance of a position where [no label is worth it](Self::can_cut) there is no other, lattice units.
+    /// In single precision, on the safe side.
+    pub(crate) fn dull_within(self, q: Site) -> f32 {
+        let certain_within = |by: Vector| {
+            let place = q.step(by).ok();
+            place.map_or(0.0, |place| self.certain_within(place))
+        };
+        let here = certain_within(Vector::default());
+        if self.shift == Vector::default() {
+            return here;
+        }
+        let [a, b] = [self.shift, self.shift.reversed()].map(certain_within);
+        let shifted = if (a < b) == self.is_loose { a } else { b };
+        if here > shifted { here } else { shifted }
+    }
+
+    /// Within this distance of a position all lines agree as they do there; 0 where they do not.
+    fn certain_within(self, q: Site) -> f32 {
+        let (mut least, mut signs) = (f32::INFINITY, [false; 2]);
+        for bound in self.bounds() {
+            let value = bound.at(q);
+            let [below, above] = &mut signs;
+            *below |= value < 0;
+            *above |= value > 0;
+            let distance = single(value).abs() / sqrt(single(bound.along.dot(bound.along)));
+            least = if distance < least { distance } else { least };
+        }
+        let least = 0.999 * least - 2.0;
+        if signs == [true; 2] || least < 0.0 { 0.0 } else { least }
     }
 
     /// Where a label read at a position is taken in; `None` off the lattice, where it tells nothing.

@@ -118,10 +118,11 @@ impl Car {
         (self.orbit_speed, self.orbit_turn) = (speed, self.turns_at(speed));
         let turn = self.turn(self.orbit_turn);
         let (sin, cos) = sin_cos(turn);
-        let chord = i64::from(speed) * i64::from(self.grid.step_length());
+        // With 4 fractional bits.
+        let chord = (i64::from(speed) * i64::from(self.grid.step_length())) >> (Ray::STEP_BITS - 4);
         let per = |a: i64, b: i32| (a * i64::from(ONE)).checked_div(i64::from(b));
         // No turn, no circle: nothing divides by it.
-        let radius = per(chord, sin).ok_or(BadGrid::Circle)? >> (Ray::STEP_BITS + 1);
+        let radius = per(chord, sin).ok_or(BadGrid::Circle)? >> (4 + 1);
         let tangents = per(radius, cos).ok_or(BadGrid::Circle)? + 2;
         let rounds = i64::from(u32::MAX / turn.0.max(1) / 2) + 2;
         let margin = rounds * (2 + (i64::from(speed) >> Ray::STEP_BITS));

@@ -51,6 +51,9 @@ const LEAST: NonZeroU32 = NonZeroU32::MIN.saturating_add(1);
 /// fan, so that only finer ones lose an action to it, near the border; they would use up a plan's looks there.
 const HEMMED_IN: u32 = Heading::turn_of(0.004);
 
+/// From a ray whose end is certain, rays at this distance are looked at one by one.
+const COARSE: u32 = Heading::turn_of(0.001);
+
 /// The rays to one side of a heading that may still lead anywhere.
 struct Arm {
     pose: Pose,
@@ -253,7 +256,9 @@ impl<D: Dynamics, G: Region> Search<'_, D, G> {
             return Err(if is_plain { 0 } else { HEMMED_IN });
         }
         if !self.view.can_cut(target.site) {
-            return Err(self.view.passed_over());
+            // Where rays are far apart the next one is looked at.
+            let is_coarse = self.dynamics.fan().spacing.0 > COARSE;
+            return Err(if is_coarse { 0 } else { self.view.passed_over(target.site) });
         }
         // The way and two circles, at most.
         for _ in 0..2 {

@@ -174,11 +174,13 @@ impl<'a, G: Region> View<'a, G> {
         self.lines.can_cut(site)
     }
 
-    /// How far a turn passes over where a label tells nothing because positions err: half of what these err by.
-    pub(crate) fn passed_over(&self) -> u32 {
+    /// From a position where no label is worth it, how far a turn leads to none on the same circle; and where positions
+    /// err, half of what they err by, at least.
+    pub(crate) fn passed_over(&self, site: Site) -> u32 {
         let Vector { x, z } = self.lines.shift;
         let shift = (x as f32).abs().max((z as f32).abs());
-        let turn = 0.25 * shift * self.inverse_radius;
+        let (dull, skipped) = (self.lines.dull_within(site), 0.25 * shift);
+        let turn = if dull > skipped { dull } else { skipped } * self.inverse_radius;
         Angle::radians(if turn < 1.0 { turn } else { 1.0 }).turn()
     }
 
