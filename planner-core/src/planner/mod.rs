@@ -93,19 +93,25 @@ impl Motion {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum StopReason {
-    /// What is uncertain is thinner than the action grid can hit, or lies outside the area.
+    /// What is uncertain is thinner than the action grid can hit, or lies outside the area. Finer turns and speeds may hit it.
     Resolution,
     /// The sample buffer is full.
     SamplesFull,
     /// The agent is outside the mission area, and no motion leads back.
     OutsideArea,
-    /// There is uncertain ground, but no motion that leads towards it: the border is in the way, or the
-    /// agent cannot turn.
+    /// There is uncertain ground, but no motion that leads towards it: the border or a keep-out is in the way, or the
+    /// agent cannot turn. Elsewhere, or facing another way, it may go on.
     Cornered,
     /// The line is known as well as was asked for.
     Known,
-    /// A plan may look at so many rays, and none of these was a way on.
+    /// There is uncertain ground, but none of the ways that a plan tries leads there. Shorter motions or finer turns may
+    /// find one.
     Undecided,
+    /// What is uncertain is so thin that no label can tell more, as positions err by the [tolerance]. Only better positions
+    /// help.
+    ///
+    /// [tolerance]: crate::belief::tolerance::Tolerance
+    Tolerance,
 }
 
 impl From<DeadEnd> for StopReason {
@@ -114,6 +120,7 @@ impl From<DeadEnd> for StopReason {
             DeadEnd::Resolution => Self::Resolution,
             DeadEnd::Cornered => Self::Cornered,
             DeadEnd::Undecided => Self::Undecided,
+            DeadEnd::Tolerance => Self::Tolerance,
             DeadEnd::Outside => Self::OutsideArea,
         }
     }

@@ -1,5 +1,7 @@
 //! Why a search for a way on has found none.
 
+use crate::belief::consistent_lines::ConsistentLines;
+use crate::geometry::lattice::{Site, Vector};
 use crate::geometry::region::Region;
 
 /// Why there is no way on.
@@ -7,17 +9,63 @@ use crate::geometry::region::Region;
 pub(crate) enum DeadEnd {
     /// What is uncertain is thinner than the action grid can hit, or lies outside the area.
     Resolution,
+    /// What is uncertain is so thin that no label can tell more, as positions err.
+    Tolerance,
     /// There is uncertain ground, but no motion that leads towards it: the border or a keep-out is in the
     /// way, or the agent cannot turn.
     Cornered,
-    /// A plan may look at so many rays, and none of these was a way on.
+    /// There is uncertain ground, but none of the ways that a plan tries leads there.
     Undecided,
     /// The agent is outside the area, and no motion leads back.
     Outside,
 }
 
-/// What it is where uncertain ground is in reach and no action asks there: it is too thin, unless it may lie behind a
-/// keep-out.
-pub(crate) fn dead_end_at<G: Region>(area: &G) -> DeadEnd {
-    if area.keep_outs().next().is_some() { DeadEnd::Cornered } else { DeadEnd::Resolution }
+/// Places of the area that are asked.
+const PLACES: u32 = 256;
+
+/// The ground is open if labels can tell something at more than so many of them.
+const FEW: usize = 2;
+
+impl DeadEnd {
+    /// The reason that is true of the ground: it says that this is thin if and only if it is.
+    ///
+    /// Cost: one orientation for each edge and place, some 200,000 instructions. A mission pays it once.
+    pub(crate) fn confirmed<G: Region>(self, lines: ConsistentLines<'_>, area: &G) -> Self {
+        let lines = lines.loosely();
+        if self == Self::Outside {
+            return self;
+        }
+        let is_open = |k: &u32| place(area, *k).is_some_and(|it| lines.can_cut(it));
+        if (0..PLACES).filter(is_open).count() > FEW {
+            return if self == Self::Resolution { Self::Undecided } else { self };
+        }
+        let errs = lines.shift != Vector::default();
+        if errs && !can_cut_between(lines) { Self::Tolerance } else { Self::Resolution }
+    }
+}
+
+/// One of the places that are spread evenly over an area's rectangle, if it lies inside. No line passes many of them.
+fn place<G: Region>(area: &G, k: u32) -> Option<Site> {
+    // The additive recurrence of the plastic number (Roberts, 2018).
+    const STEPS: [u32; 2] = [3_242_174_889, 2_447_445_414];
+    let (min, max) = (area.bounds().min(), area.bounds().max());
+    let part = |step: u32, from: i32, to: i32| {
+        let share = u64::from(k.wrapping_mul(step));
+        from + ((u64::from((to - from).unsigned_abs()) * share) >> 32) as i32
+    };
+    let (x, z) = (part(STEPS[0], min.x(), max.x()), part(STEPS[1], min.z(), max.z()));
+    Site::new(x, z).ok().filter(|site| area.contains(*site))
+}
+
+/// Whether a label can tell something at a quarter, a half or three quarters of the way between samples of both labels.
+fn can_cut_between(lines: ConsistentLines<'_>) -> bool {
+    lines.support().any(|a| {
+        lines.support().filter(|b| a.label != b.label).any(|b| {
+            let way = b.site - a.site;
+            (1..4).any(|k| {
+                let by = Vector { x: way.x / 4 * k, z: way.z / 4 * k };
+                a.site.step(by).is_ok_and(|site| lines.can_cut(site))
+            })
+        })
+    })
 }

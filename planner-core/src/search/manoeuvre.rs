@@ -24,7 +24,7 @@ use crate::geometry::region::Region;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Orbit, Pose, Side};
 use crate::search::circles::Search;
-use crate::search::dead_end::{DeadEnd, dead_end_at};
+use crate::search::dead_end::DeadEnd;
 use crate::search::detour::{self, Way};
 use crate::search::direction_rule::DirectionRule;
 use crate::search::objective::Effort;
@@ -151,7 +151,7 @@ pub(crate) fn manoeuvre<D: Dynamics, R: DirectionRule, G: Region>(
         None if !it.effort.is_enough() => Err(DeadEnd::Undecided),
         None if it.start == Start::Outside => Err(DeadEnd::Outside),
         None if it.start == Start::Safe && it.comes_near && !it.is_hemmed_in => {
-            Err(dead_end_at(&problem.area))
+            Err(DeadEnd::Resolution)
         }
         None => Err(DeadEnd::Cornered),
     }

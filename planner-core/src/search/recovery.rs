@@ -34,7 +34,7 @@ use crate::geometry::region::Region;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Pose, Ray, Side};
 use crate::search::circles::{Findings, Search};
-use crate::search::dead_end::{DeadEnd, dead_end_at};
+use crate::search::dead_end::DeadEnd;
 use crate::search::detour::{self, Way};
 use crate::search::direction_rule::{ArcRule, DirectionRule};
 use crate::search::manoeuvre::{manoeuvre, waypoint};
@@ -105,7 +105,8 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule, G: Region>(
     let climbed = ladder.climb(home);
     ladder.search.effort.give_back(kept);
     climbed.or_else(|why| {
-        let leg = wander(&ladder.problem, ladder.search).ok_or(why)?;
+        let leg = wander(&ladder.problem, ladder.search);
+        let leg = leg.ok_or_else(|| why.confirmed(problem.lines, &area))?;
         Ok(found(Some(Recovery::Transit))(leg))
     })
 }
@@ -217,7 +218,7 @@ impl<D: Dynamics, G: Region> Ladder<'_, '_, '_, D, G> {
                     Approach::Feasible(leg, motions) => {
                         (nearest, horizon) = (Some(leg), motions - 1);
                     }
-                    Approach::Fruitless => otherwise = dead_end_at(&self.problem.area),
+                    Approach::Fruitless => otherwise = DeadEnd::Resolution,
                     Approach::Blocked => {}
                 }
             }

@@ -21,7 +21,7 @@ const LENGTH: u32 = 6;
 const PLACES: u32 = 4_000;
 
 /// Open ground is thin if it is less than this share of the area.
-const THIN: f64 = 0.005;
+const THIN: f64 = 0.02;
 
 /// What is wrong with the reason for which a mission ended at a pose; `None` if it is true.
 pub fn refute(mission: &Mission, belief: &dyn ReadOut, pose: Pose, end: Ending) -> Option<String> {
@@ -41,9 +41,9 @@ pub fn refute(mission: &Mission, belief: &dyn ReadOut, pose: Pose, end: Ending) 
         StopReason::OutsideArea => {
             area.contains(pose.site).then(|| "it is inside the area".to_owned())
         }
-        StopReason::Resolution | StopReason::Undecided => judge.open_ground(pose),
-        StopReason::Cornered => judge.way_on(pose),
-        _ => judge.open_ground(pose),
+        StopReason::Resolution | StopReason::Tolerance => judge.open_ground(pose),
+        StopReason::Cornered | StopReason::Undecided => judge.way_on(pose),
+        _ => Some("an unknown reason".to_owned()),
     }
 }
 
