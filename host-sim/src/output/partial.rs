@@ -103,7 +103,10 @@ impl Partial {
             let mut found = Vec::new();
             File::open(&self.path)?.read_to_end(&mut found)?;
             if !header.as_bytes().starts_with(&found) {
-                bail!("found something else than {} under their header", self.holds);
+                bail!(
+                    "found something else than {} under their header, expected them: remove the file to begin anew",
+                    self.holds
+                );
             }
             self.file.set_len(0)?;
             self.file.write_all(header.as_bytes())?;
