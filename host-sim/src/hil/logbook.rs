@@ -72,7 +72,7 @@ impl Logbook {
     pub fn complete(mut self, end: &End) -> Result<()> {
         let written = self.partial.write_all(trace::end(end).as_bytes());
         written.with_context(|| self.partial.name().to_owned())?;
-        self.partial.complete(|_| None)
+        self.partial.complete(|_, _| None)
     }
 
     /// Where to find what is finished.
@@ -88,7 +88,8 @@ impl Logbook {
 fn begins(line: &[u8], header: &str) -> Result<()> {
     const NONE: &str = "found something else than the start of this mission's trace, expected that start: remove the \
         file to begin the mission anew";
-    let whole = line.strip_suffix(b"\n").and_then(|line| str::from_utf8(line).ok()).context(NONE)?;
+    let whole =
+        line.strip_suffix(b"\n").and_then(|line| str::from_utf8(line).ok()).context(NONE)?;
     let found: Value = serde_json::from_str(whole).ok().context(NONE)?;
     if found["record"] != "start" {
         bail!(NONE);
