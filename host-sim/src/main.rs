@@ -6,10 +6,8 @@ use std::process::ExitCode;
 use anyhow::{Context as _, Result};
 use clap::Parser as _;
 use host_sim::cli::arguments::Cli;
-use host_sim::output::{interruption, notes};
-
-/// What bad input ends with.
-const REFUSED: u8 = 2;
+use host_sim::cli::done::REFUSED;
+use host_sim::output::{interruption, notes, plain};
 
 fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
@@ -32,7 +30,13 @@ fn main() -> ExitCode {
 
 /// Prints help or a version, or what is wrong with the arguments.
 fn tell_answer(answer: &clap::Error) -> ExitCode {
-    let told = print(|_| answer.print());
+    let words = answer.render().to_string();
+    let tame = plain::message(&words);
+    let told = if tame == words {
+        print(|_| answer.print())
+    } else {
+        print(|_| write!(io::stderr(), "{tame}"))
+    };
     if answer.use_stderr() {
         // Where nobody hears it the status has to do.
         return ExitCode::from(REFUSED);
