@@ -1,5 +1,7 @@
 //! `host-sim`: the simulator's command line.
 
+use std::env;
+use std::ffi::OsString;
 use std::io::{self, ErrorKind, Write};
 use std::process::ExitCode;
 
@@ -30,12 +32,13 @@ fn main() -> ExitCode {
 
 /// Prints help or a version, or what is wrong with the arguments.
 fn tell_answer(answer: &clap::Error) -> ExitCode {
-    let words = answer.render().to_string();
-    let tame = plain::message(&words);
-    let told = if tame == words {
+    // With its styles, clap would print what was given as it is.
+    let is_tame = |it: OsString| it.to_str().is_some_and(|it| plain::message(it) == it);
+    let told = if !answer.use_stderr() || env::args_os().all(is_tame) {
         print(|_| answer.print())
     } else {
-        print(|_| write!(io::stderr(), "{tame}"))
+        let words = plain::message(&answer.render().to_string());
+        print(|_| write!(io::stderr(), "{words}"))
     };
     if answer.use_stderr() {
         // Where nobody hears it the status has to do.

@@ -137,7 +137,7 @@ impl Ledger {
             }
             read.add(&part);
             let from = number;
-            number += part.iter().filter(|byte| **byte == b'\n').count() as u64;
+            number += part.split(|byte| *byte == b'\n').count() as u64 - 1;
             if read.checksum != noted.checksum {
                 // After a loss of power there are zeros where nothing had been written yet.
                 let changed = (!part.contains(&0)).then_some((from, number));

@@ -235,7 +235,7 @@ fn steps(steps: &[StepResult], start: &Start) -> Table {
             signed(step.label),
             arcs(&step.slope_arcs),
             range(step.intercept),
-            format!("{:.2}", step.bits),
+            fixed(step.bits, 2),
             note.to_owned(),
         ];
         table.row(motion(step).into_iter().chain(left));
@@ -275,7 +275,7 @@ fn noisy_steps(steps: &[StepResult]) -> Table {
             format!("{}{wrong}", signed(step.fact)),
             noisy.hypotheses.to_string(),
             format!("{:.2}", noisy.entropy),
-            format!("{:.2}", step.bits),
+            fixed(step.bits, 2),
             format!("{}{trusted}", arcs(&step.slope_arcs)),
         ];
         table.row(motion(step).into_iter().chain(said));
