@@ -39,9 +39,10 @@ fn names_of_files_do_not_steer_a_terminal() {
         let samples = format!("{name}.csv");
         fs::write(folder.path().join(&samples), "x,z,label\n0,0,1\n0,9,-1\n9,0,1\n")
             .expect("a file");
-        for args in
-            [&["replay", &samples, "--figure", "g.svg"][..], &["reference", name, "--horizon", "1"]]
-        {
+        for args in [
+            &["replay", &samples, "--figure", "g.svg"][..],
+            &["reference", name, "--horizon", "1", "--turn-step", "0.25"],
+        ] {
             let output = host_sim(folder.path(), args);
             let said = text(&output.stdout) + &text(&output.stderr);
             assert!(output.status.success() && is_tame(&said), "{args:?}: {said:?}");
