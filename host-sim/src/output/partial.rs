@@ -113,7 +113,10 @@ impl Partial {
         let mut counted = file.metadata().with_context(|| name.clone())?.len();
         if let (Some(Record { check, .. }), Some(record), true) = (begin.record, &record, is_there)
         {
-            let found = Ledger::open(record).with_context(|| format!("{name}.json"))?;
+            let expected = || {
+                format!("{name}.json: expected the record of {name}: remove {name} to begin anew")
+            };
+            let found = Ledger::open(record).with_context(expected)?;
             counted = judge(&found, check, &path, &name)?;
             ledger = Some(found);
         }

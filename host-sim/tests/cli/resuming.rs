@@ -160,7 +160,7 @@ fn the_rows_of_another_campaign_are_refused() {
     edit(r#""seed":1"#, r#""sow":1"#);
     refuses(folder.path(), &resume, &[PARTIAL, "its record", "sow", "remove"]);
     fs::remove_file(folder.path().join(RECORD)).expect("a file");
-    refuses(folder.path(), &resume, &[RECORD]);
+    refuses(folder.path(), &resume, &[RECORD, "remove c.csv.partial to begin anew"]);
     fs::write(folder.path().join(RECORD), &kept[1]).expect("a file");
     fs::write(folder.path().join(PARTIAL), [b"algorithm,", &kept[0][..]].concat()).expect("a file");
     refuses(folder.path(), &resume, &[PARTIAL, "found lines 1 to", "checksum", "remove"]);
