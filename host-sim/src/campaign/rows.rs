@@ -137,6 +137,9 @@ impl<R: Read, C: Checkpoint> RowReader<R, C> {
             if cell.parse().is_ok_and(|number: f64| !number.is_finite()) {
                 bail!("{}: found {cell} for {title}, expected a finite number", place());
             }
+            if cell.chars().any(char::is_control) {
+                bail!("{}: found {cell:?} for {title}, expected no control characters", place());
+            }
         }
         let read = if self.planners.are_named {
             self.record.deserialize::<(String, C, Course)>(None)

@@ -93,7 +93,9 @@ fn rows_that_cannot_be_are_refused_by_their_line() {
     // Shard 2 of 4 has the fields 3 to 5, three stages each.
     let header = rows.replace("field,step", "field,stop");
     let word = rows.replacen(",steps,", ",steps,x", 1);
-    let cases: [(String, &[&str]); 13] = [
+    let bell = rows.replacen(",steps,", ",steps\x07,", 1);
+    let cases: [(String, &[&str]); 14] = [
+        (bell, &["s2.csv:2: found \"steps\\u{7}\" for ended", "control"]),
         (header, &["s2.csv:1", "field,stop", "expected"]),
         (word, &["s2.csv:2", "field"]),
         (with_cell(&rows, 2, 2, "NaN"), &["s2.csv:2: found NaN", "bits", "finite"]),
