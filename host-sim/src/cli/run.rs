@@ -151,9 +151,11 @@ impl Run {
         let name = self.name();
         let flown = missions.iter().map(Recording::until_refusal);
         let (recordings, refusals): (Vec<_>, Vec<_>) = flown.unzip();
-        let refusal = planners.iter().zip(refusals).find_map(|(planner, refusal)| {
-            refusal.map(|it| it.context(format!("--compare {}", planner.name())))
+        let refusals = planners.iter().zip(refusals).filter_map(|(planner, refusal)| {
+            refusal.map(|it| format!("--compare {}: {it:#}", planner.name()))
         });
+        let refusals = refusals.collect::<Vec<_>>();
+        let refusal = (!refusals.is_empty()).then(|| anyhow!(refusals.join("; ")));
         let page = page(&self.title(), &recordings.iter().collect::<Vec<_>>());
         if let Some(report) = report {
             report.write(page)?;

@@ -55,6 +55,13 @@ fn a_comparison_shows_what_was_flown_until_a_contradiction() {
     let folder = doubtful();
     let args = ["run", "m.toml", "-q", "--compare", "cfc,lookahead", "--report", "r.html"];
     let said = contradicted(folder.path(), &args);
+    let output = host_sim(folder.path(), &args);
+    let message = text(&output.stderr);
+    assert!(
+        message.contains("--compare cfc: step ")
+            && message.contains("; --compare lookahead: step "),
+        "{message}"
+    );
     assert!(said.contains("Algorithm 1") && said.contains("look-ahead"), "{said}");
     let page = fs::read_to_string(folder.path().join("r.html")).expect("a page");
     assert!(page.contains("Broken off") && page.ends_with("</html>\n"));
