@@ -2,6 +2,7 @@
 #include "planner.h"
 
 #include <stdio.h>
+#include <string.h>
 
 static uint64_t memory[4096];
 
@@ -71,5 +72,48 @@ int main(void) {
     IS(planner_plan(planner, pose, &motion), PLANNER_STATUS_OK);
     IS(planner_observe(planner, motion.target, PLANNER_READING_BOUNDARY), PLANNER_STATUS_OK);
     IS(planner_estimate(planner, &line), PLANNER_STATUS_OK);
+
+    /* Whether a sample is positive is a byte, and may be any byte of the caller's memory. */
+    planner_t *running = planner;
+    double bits = planner_bits(planner);
+    planner_mission doubtful = good;
+    doubtful.p = 0.85;
+    for (int byte = 2; byte < 256; byte++) {
+        planner_sample garbled[4];
+        memcpy(garbled, given, sizeof garbled);
+        memset(&garbled[byte % 4].is_positive, byte, 1);
+        IS(planner_begin(&planner, at, size, &good, garbled, 4), PLANNER_STATUS_GIVEN);
+        IS(planner_begin(&planner, at, size, &doubtful, garbled, 4), PLANNER_STATUS_GIVEN);
+    }
+    /* A planner that cannot begin leaves the one that is in that memory as it was. */
+    const planner_sample one_label[] = {{2.0, 1.0, true}, {2.0, 8.0, true}, {18.0, 16.0, true}};
+    const planner_mission *missions[] = {&good, &doubtful};
+    for (int kind = 0; kind < 4; kind++) {
+        if (kind == 2) {
+            IS(planner_begin(&running, at, size, &doubtful, given, 4), PLANNER_STATUS_OK);
+            planner = running;
+            IS(planner_observe(planner, motion.target, PLANNER_READING_POSITIVE), PLANNER_STATUS_OK);
+            bits = planner_bits(planner);
+        }
+        const planner_mission *mission = missions[kind % 2];
+        IS(planner_begin(&planner, at, size, mission, inseparable, 4), PLANNER_STATUS_GIVEN);
+        IS(planner_begin(&planner, at, size, mission, one_label, 3), PLANNER_STATUS_GIVEN);
+        IS(planner_begin(&planner, at, size, mission, given, 2), PLANNER_STATUS_GIVEN);
+        IS(planner_begin(&planner, at, planner_bytes(mission) - 1, mission, given, 4), PLANNER_STATUS_MEMORY);
+        IS(planner == running, 1);
+        IS(planner_bits(planner) == bits, 1);
+        IS(planner_plan(planner, pose, &motion), PLANNER_STATUS_OK);
+    }
+
+    /* What is uncertain is thinner than motions of a millimetre hit, and there are more of them than a plan looks at. */
+    const double far = 20000.0 / 65536.0, near = 2.0 / 65536.0, side = 400000.0 / 65536.0;
+    const planner_sample strip[] = {{-far, -near, false}, {far, -near, false}, {-far, near, true}, {far, near, true}};
+    const planner_mission tiny = {
+        .min_x = -side, .min_z = -side, .max_x = side, .max_z = side, .p = 1.0,
+        .sharpest = 1.57, .turn_step_urad = 100, .step_mm = 1, .steps = 1,
+    };
+    const planner_pose beside = {0.1, 100.0 / 65536.0, 0.0};
+    IS(planner_begin(&planner, at, size, &tiny, strip, 4), PLANNER_STATUS_OK);
+    IS(planner_plan(planner, beside, &motion), PLANNER_STATUS_UNDECIDED);
     return failed;
 }

@@ -1,15 +1,15 @@
 //! `host-sim`: the simulator's command line.
 
+use std::env;
+use std::ffi::OsString;
 use std::io::{self, ErrorKind, Write};
 use std::process::ExitCode;
 
 use anyhow::{Context as _, Result};
 use clap::Parser as _;
 use host_sim::cli::arguments::Cli;
-use host_sim::output::{interruption, notes};
-
-/// What bad input ends with.
-const REFUSED: u8 = 2;
+use host_sim::cli::done::REFUSED;
+use host_sim::output::{interruption, notes, plain};
 
 fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
@@ -32,7 +32,14 @@ fn main() -> ExitCode {
 
 /// Prints help or a version, or what is wrong with the arguments.
 fn tell_answer(answer: &clap::Error) -> ExitCode {
-    let told = print(|_| answer.print());
+    // With its styles, clap would print what was given as it is.
+    let is_tame = |it: OsString| it.to_str().is_some_and(|it| plain::message(it) == it);
+    let told = if !answer.use_stderr() || env::args_os().all(is_tame) {
+        print(|_| answer.print())
+    } else {
+        let words = plain::message(&answer.render().to_string());
+        print(|_| write!(io::stderr(), "{words}"))
+    };
     if answer.use_stderr() {
         // Where nobody hears it the status has to do.
         return ExitCode::from(REFUSED);

@@ -1,6 +1,7 @@
 //! The hypothesis table against brute force over all sequences of labels.
 
 use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 
 use host_sim::world::World;
 use nalgebra::Point2;
@@ -402,4 +403,39 @@ fn a_cell_that_cannot_hold_its_edges_holds_more_lines_and_says_so() {
     }
     println!("{outer} cells kept lines that they should not have");
     assert!(outer > 100);
+}
+
+/// Labels that are right one time in two tell nothing. Cells that cannot hold all their edges overlap; then they come to
+/// more than the whole.
+#[test]
+fn labels_never_tell_less_than_nothing() {
+    fn least<const E: usize>() -> (f64, u16) {
+        let mut rng = ChaCha8Rng::seed_from_u64(1);
+        let at = |x, z| Site::try_from(Point2::<f64>::new(x, z)).expect("on the lattice");
+        let given = [(2.0, 1.0, -1), (2.0, 8.0, 1), (18.0, 16.0, 1), (18.0, 5.0, -1)].map(|it| {
+            let label = if it.2 > 0 { Label::Positive } else { Label::Negative };
+            Sample { site: at(it.0, it.1), label }
+        });
+        let reliability = Reliability::new(0.500_001).expect("a probability");
+        let noise = Noise { reliability, ..Noise::NONE };
+        let (mut least, mut outer) = (f64::INFINITY, 0);
+        for _ in 0..20 {
+            let table = Hypotheses::<68, 600, E>::new(&given, Prior::Area, noise);
+            let mut table = table.expect("they are apart");
+            for _ in 0..40 {
+                let angle = rng.random_range(0.0..TAU);
+                let site = at(10.0 + 3.0 * angle.cos(), 8.0 + 3.0 * angle.sin());
+                let label = if rng.random() { Label::Positive } else { Label::Negative };
+                table.take(Sample { site, label }, reliability).expect("there is room");
+                least = least.min(Posterior::new(&table).information());
+            }
+            outer += table.outer_cells();
+        }
+        (least, outer)
+    }
+    let (all, outer) = least::<15>();
+    assert!(all >= 0.0 && outer == 0, "{all}, {outer}");
+    for (bits, outer) in [least::<4>(), least::<5>(), least::<6>()] {
+        assert!(bits >= 0.0 && outer > 0, "{bits}, {outer}");
+    }
 }

@@ -55,7 +55,7 @@ mod long {
         ("lost", 1, "no position for 2 s; it was told to stop, and does not say that it is at"),
         ("stuck", 1, "not there within 8 s"),
         ("mute", 1, "no label within 3 s"),
-        ("lie", 1, "contradicts the region of certainty it lies in; it was told to stop"),
+        ("lie", 1, "`noise` for labels that are wrong; it was told to stop"),
         ("interrupt", 130, "interrupted by signal 2; it was told to stop, and says that it is at"),
     ];
 

@@ -11,6 +11,8 @@ use planner_core::link::frame::{Decoder, Envelope, Frame};
 use planner_core::link::message::{
     self, Capacity, ClockRate, LabelSource, PROTOCOL, Reply, Request,
 };
+use planner_core::motion::dynamics::Pose;
+use planner_core::planner::Motion;
 use tests::missions::mission;
 
 /// A player and what a chip of our own says to it.
@@ -21,7 +23,11 @@ struct Liar {
 
 impl Liar {
     fn new(mission: &Mission) -> Self {
-        let player = Player::new(mission, LabelSource::Vehicle, 1).expect("a mission for a chip");
+        Self::with(mission, LabelSource::Vehicle)
+    }
+
+    fn with(mission: &Mission, labels: LabelSource) -> Self {
+        let player = Player::new(mission, labels, 1).expect("a mission for a chip");
         let mut liar = Self { player, link: (0, 0) };
         liar.says(Request::Hello { protocol: PROTOCOL }).expect("it offers a mission");
         let capacity = Capacity { samples: 68, hypotheses: 1 };
@@ -98,4 +104,32 @@ fn a_player_compares_every_estimate_to_the_last_bit() {
         let error = judge(wrong).expect_err("it was found out");
         assert!(error.starts_with(name), "{error}");
     }
+}
+
+/// The board's sensor reads what cannot be: what was flown until then is there all the same.
+#[test]
+fn a_player_keeps_what_was_flown_until_a_contradiction() {
+    let mission = mission(0);
+    let known = mission.given.samples()[0];
+    let took = message::Took::default();
+    let first = Recording::of(&mission).expect("labels are true").steps[0].motion;
+    let to_known = Motion { target: Pose { site: known.site, ..first.target }, ..first };
+    let mut chip = Liar::with(&mission, LabelSource::Chip);
+    let asks = |motion, last| Request::Move(message::Move { motion, last, took });
+    let certain = Some(Reading::Side(known.label));
+    for (motion, last) in [(to_known, None), (to_known, certain)] {
+        assert!(matches!(chip.says(asks(motion, last)), Ok(Reply::Arrived { .. })));
+    }
+    let end = message::MissionEnd {
+        reason: message::EndReason::Steps,
+        last: Some((-known.label).into()),
+        took,
+        estimates: mission.given.estimates(),
+    };
+    assert!(matches!(chip.says(Request::End(end)), Ok(Reply::Noted)));
+    let (played, failure) = chip.player.finish_as_far_as_flown().expect("it has begun");
+    let error = failure.expect("a contradiction").to_string();
+    assert!(error.starts_with("step 2: label ") && error.contains("contradicts"), "{error}");
+    assert_eq!(played.recording.results.end.reason, "broken off");
+    assert_eq!(played.recording.results.steps.len(), 1);
 }

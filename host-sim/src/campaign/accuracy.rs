@@ -106,6 +106,8 @@ impl ensemble::Checkpoint for Checkpoint {
 impl Measure for Accuracy {
     type Checkpoint = Checkpoint;
 
+    const IS_WHOLE: bool = true;
+
     fn stages(&self, steps: u32) -> Vec<u32> {
         let last = (!STEPS.contains(&steps)).then_some(steps);
         STEPS.into_iter().filter(|&stage| stage <= steps).chain(last).collect()

@@ -154,6 +154,8 @@ impl Checkpoint {
 impl Measure for Calibrated {
     type Checkpoint = Checkpoint;
 
+    const IS_WHOLE: bool = false;
+
     fn stages(&self, _: u32) -> Vec<u32> {
         LABELS.to_vec()
     }

@@ -84,6 +84,9 @@ pub trait Measure: Sync {
     /// What is taken down at some stage of a mission.
     type Checkpoint: Checkpoint;
 
+    /// Whether each mission has a row at each stage, also at those that it did not reach.
+    const IS_WHOLE: bool;
+
     /// The stages at which missions of so many steps are compared, in rising order.
     fn stages(&self, steps: u32) -> Vec<u32>;
 
@@ -172,11 +175,13 @@ impl Campaign {
         mission
     }
 
-    fn stages<M: Measure>(&self, measure: &M) -> Vec<u32> {
+    /// The stages at which its missions have rows.
+    pub(super) fn stages<M: Measure>(&self, measure: &M) -> Vec<u32> {
         if self.every { (1..=self.steps).collect() } else { measure.stages(self.steps) }
     }
 
-    fn measured<M: Measure>(
+    /// The rows of a field.
+    pub(super) fn measured<M: Measure>(
         &self,
         measure: &M,
         number: u64,

@@ -2,10 +2,12 @@
 //! summary of the rows.
 
 pub mod accuracy;
+pub mod behaviour;
 pub mod calibration;
 pub mod course;
 pub mod ensemble;
 pub mod field_record;
+pub mod order;
 pub mod rows;
 pub mod shard;
 mod sorting;

@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use crate::campaign::course::Course;
 use crate::campaign::ensemble::{Checkpoint, Measured};
+use crate::campaign::order::Order;
 
 /// Who planned, one after the other, and whether a first column says so, as where planners are compared.
 #[derive(Clone, Debug)]
@@ -91,19 +92,19 @@ pub struct RowReader<R, C> {
     name: String,
     csv: csv::Reader<R>,
     record: StringRecord,
+    titles: Vec<String>,
     planners: Planners,
-    /// Planner, field and stage of the row before.
-    before: Option<(usize, u64, u32)>,
+    order: Order,
     /// A row that was read and belongs to a later planner.
     ahead: Option<RowRead<C>>,
 }
 
 impl<R: Read, C: Checkpoint> RowReader<R, C> {
-    /// Reads those that a file of this name has under its header.
+    /// Reads those that a file of this name has under its header. They are to come in this order.
     ///
     /// # Errors
     /// Names the file if it has another header.
-    pub fn new(name: &str, from: R, planners: &Planners) -> Result<Self> {
+    pub fn new(name: &str, from: R, planners: &Planners, order: Order) -> Result<Self> {
         let mut csv = ReaderBuilder::new().has_headers(false).quoting(false).from_reader(from);
         let mut record = StringRecord::new();
         csv.read_record(&mut record).with_context(|| name.to_owned())?;
@@ -112,14 +113,16 @@ impl<R: Read, C: Checkpoint> RowReader<R, C> {
         if found != expected.trim_end() {
             bail!("{name}:1: found the columns {found:?}, expected {:?}", expected.trim_end());
         }
-        let planners = planners.clone();
-        Ok(Self { name: name.to_owned(), csv, record, planners, before: None, ahead: None })
+        let titles = record.iter().map(str::to_owned).collect();
+        let (name, planners) = (name.to_owned(), planners.clone());
+        Ok(Self { name, csv, record, titles, planners, order, ahead: None })
     }
 
     /// The next row; `None` at the end.
     ///
     /// # Errors
-    /// Names the file and the line of what is no row, or of one that is out of order.
+    /// Names the file and the line of what is no row, has a number that is not finite, or is out of order, and of the
+    /// end where rows are missing.
     pub fn read(&mut self) -> Result<Option<RowRead<C>>> {
         if let Some(row) = self.ahead.take() {
             return Ok(Some(row));
@@ -127,7 +130,16 @@ impl<R: Read, C: Checkpoint> RowReader<R, C> {
         let at = self.csv.position().clone();
         let place = || format!("{}:{}", self.name, at.line());
         if !self.csv.read_record(&mut self.record).with_context(place)? {
+            self.order.end().with_context(place)?;
             return Ok(None);
+        }
+        for (cell, title) in self.record.iter().zip(&self.titles) {
+            if cell.parse().is_ok_and(|number: f64| !number.is_finite()) {
+                bail!("{}: found {cell} for {title}, expected a finite number", place());
+            }
+            if cell.chars().any(char::is_control) {
+                bail!("{}: found {cell:?} for {title}, expected no control characters", place());
+            }
         }
         let read = if self.planners.are_named {
             self.record.deserialize::<(String, C, Course)>(None)
@@ -140,15 +152,8 @@ impl<R: Read, C: Checkpoint> RowReader<R, C> {
             let expected = self.planners.names.join(", ");
             bail!("{}: found the planner {name:?}, expected one of {expected}", place());
         };
-        let now = (planner, checkpoint.field(), checkpoint.stage());
-        if self.before.is_some_and(|before| before >= now) {
-            let (_, field, stage) = now;
-            bail!(
-                "{}: found field {field} at {stage}, expected rows by field and stage, each once",
-                place()
-            );
-        }
-        self.before = Some(now);
+        let row = (planner, checkpoint.field(), checkpoint.stage());
+        self.order.take(row).with_context(place)?;
         Ok(Some(RowRead { planner, begins: at.byte(), row: Measured { checkpoint, course } }))
     }
 

@@ -71,17 +71,17 @@ impl Cli {
         });
         let text = match self.command {
             Some(Command::Fly(args)) => return fly(&args),
+            Some(Command::Run(args)) => return run(&args),
+            Some(Command::Hil(args)) => return hil(&args),
             None => paper::tell(),
-            Some(Command::Run(args)) => run(&args),
             Some(Command::Replay(args)) => replay(&args),
             Some(Command::Campaign(args)) => campaign(*args),
             Some(Command::Figure(args)) => figure(&args),
             Some(Command::Size(args)) => size(&args),
-            Some(Command::Hil(args)) => hil(&args),
             Some(Command::Reference(args)) => reference(&args),
             Some(Command::Init(args)) => init(&args),
             Some(Command::Completions(args)) => completions(&args, Self::command()),
         };
-        Ok(Done { text: text?, failure: None })
+        text.map(Done::from)
     }
 }

@@ -7,8 +7,10 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, Result, bail};
 use clap::{Args, Subcommand};
 
+use crate::campaign::behaviour::behaviour;
 use crate::campaign::ensemble::{Campaign, Checkpoint as _, Measure};
 use crate::campaign::field_record::FieldRecord;
+use crate::campaign::order::Order;
 use crate::campaign::rows::{Planners, RowReader, RowWriter};
 use crate::campaign::shard::Shard;
 use crate::cli::campaign_flags::CampaignFlags;
@@ -18,6 +20,7 @@ use crate::cli::help;
 use crate::cli::merge::{MergeArgs, merge};
 use crate::cli::passage::{Destination, Passage, ToFly};
 use crate::cli::told::{Opening, tell};
+use crate::output::ending;
 use crate::output::file::{Output, json, place_for, prepare};
 use crate::output::partial::{Begin, Partial, Record};
 
@@ -81,6 +84,7 @@ pub(crate) fn campaign(args: CampaignArgs) -> Result<String> {
     let rows: Vec<_> = csv.iter().map(|path| ("the place of --csv", &**path)).collect();
     let asked = [("--fields-csv", fields_csv.as_deref()), ("--figure", figure.as_deref())];
     let [output, drawn] = prepare(&rows, asked)?;
+    csv.as_deref().map_or(Ok(()), |path| ending::check("--csv", path))?;
     if let (Some(output), Some(campaign)) = (output, campaigns.of_each.first()) {
         write_fields(campaign, fields.clone(), output)?;
     }
@@ -91,6 +95,7 @@ pub(crate) fn campaign(args: CampaignArgs) -> Result<String> {
         resume,
         is_shard: part.is_some(),
         record,
+        campaigns: &campaigns.of_each,
         planners: campaigns.planners(),
         to_fly,
     };
@@ -117,13 +122,14 @@ struct Begun<'a> {
     resume: bool,
     is_shard: bool,
     record: CampaignRecord,
+    campaigns: &'a [Campaign],
     planners: Planners,
     to_fly: ToFly,
 }
 
 impl Opening for Begun<'_> {
     fn open<M: Measure>(self, measure: &M) -> Result<Passage<'_, M>> {
-        let Self { csv, resume, is_shard, record, planners, mut to_fly } = self;
+        let Self { csv, resume, is_shard, mut record, campaigns, planners, mut to_fly } = self;
         let (mut recorded, mut writer) = (Vec::new(), None);
         if let Some(path) = csv {
             let header = planners.header::<M::Checkpoint>()?;
@@ -139,12 +145,15 @@ impl Opening for Begun<'_> {
                 output.write_all(header.as_bytes())?;
                 Destination::Output(output)
             } else {
+                let fields = record.flags.fields;
+                record.behaviour = Some(behaviour(campaigns, fields, &planners, measure)?);
                 let (text, check) = (json(&record), |found: &str| record.check(found));
                 let beside = Some(Record { text: &text, check: &check });
                 let begin = Begin { holds: "rows", header: &header, record: beside, resume };
                 let mut partial = Partial::open(path, &place, begin)?;
                 if resume {
-                    recorded.push(go_on::<M>(&mut partial, &planners, &mut to_fly)?);
+                    let order = Order::new(measure, campaigns, to_fly.fields.clone()).beginning();
+                    recorded.push(go_on::<M>(&mut partial, &planners, &order, &mut to_fly)?);
                 }
                 partial.announce();
                 Destination::Partial(partial, is_shard.then(|| record.into()))
@@ -160,20 +169,18 @@ impl Opening for Begun<'_> {
 fn go_on<M: Measure>(
     partial: &mut Partial,
     planners: &Planners,
+    order: &Order,
     to_fly: &mut ToFly,
 ) -> Result<RowReader<Box<dyn Read>, M::Checkpoint>> {
     let name = partial.name().to_owned();
     let read = |bytes| {
         let from: Box<dyn Read> = Box::new(partial.reader(bytes)?);
-        RowReader::<_, M::Checkpoint>::new(&name, from, planners)
+        RowReader::<_, M::Checkpoint>::new(&name, from, planners, order.clone())
     };
     let mut kept = planners.header::<M::Checkpoint>()?.len() as u64;
     let mut rows = read(u64::MAX)?;
     while let Ok(Some(row)) = rows.read() {
         let at = (row.planner, row.row.checkpoint.field());
-        if !to_fly.fields.contains(&at.1) {
-            break;
-        }
         if at != to_fly.from {
             (to_fly.from, kept) = (at, row.begins);
         }

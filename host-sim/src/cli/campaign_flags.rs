@@ -27,7 +27,7 @@ pub(crate) struct CampaignFlags {
     /// Number of standard fields
     #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) fields: u64,
-    /// Steps in each
+    /// Steps in each, 1 to 64
     #[arg(long, default_value_t = 20)]
     steps: u32,
     /// Measure at every step (or label), not only at those of the usual tables

@@ -9,6 +9,7 @@ use serde_json::Value;
 use crate::campaign::shard::Shard;
 use crate::cli::campaign_flags::CampaignFlags;
 use crate::mission::vehicle::Source;
+use crate::output::checksum::Checksum;
 
 /// Which rows a file has.
 #[derive(Debug, Serialize, Deserialize)]
@@ -20,16 +21,49 @@ pub(crate) struct CampaignRecord {
     pub(crate) flags: CampaignFlags,
     /// Which fields.
     pub(crate) shard: Shard,
+    /// What this build flies with these flags, see [`behaviour`](crate::campaign::behaviour). Builds of before there
+    /// was one wrote none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) behaviour: Option<Checksum>,
     /// Length of the complete file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) bytes: Option<u64>,
+    /// Of the complete file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) checksum: Option<Checksum>,
 }
 
 impl CampaignRecord {
     /// Of what this program writes.
     pub(crate) fn new(flags: CampaignFlags, shard: Shard) -> Self {
         let version = env!("CARGO_PKG_VERSION").to_owned();
-        Self { version, flags, shard, bytes: None }
+        Self { version, flags, shard, behaviour: None, bytes: None, checksum: None }
+    }
+
+    /// Reads the record of a complete shard.
+    ///
+    /// # Errors
+    /// Says what is wrong with it.
+    pub(crate) fn of_shard(text: &str) -> Result<Self> {
+        if !text.ends_with('\n') {
+            bail!("found a record that was cut off, expected a whole one: fly the shard again");
+        }
+        let record: Self =
+            serde_json::from_str(text).context("expected the record of a campaign's shard")?;
+        let (fields, shard) = (record.flags.fields, record.shard);
+        if shard.of > fields {
+            bail!("found shard {shard} of {fields} fields, expected at most as many shards");
+        }
+        for (key, is_there) in
+            [("behaviour", record.behaviour.is_some()), ("checksum", record.checksum.is_some())]
+        {
+            if !is_there {
+                bail!(
+                    "found no {key}, expected one, which this version writes: fly the shard again"
+                );
+            }
+        }
+        Ok(record)
     }
 
     /// Whether rows with this record are those that this one would have.
@@ -45,7 +79,7 @@ impl CampaignRecord {
         Ok(())
     }
 
-    /// Whether another is of the same version and the same flags.
+    /// Whether another is of the same version, flags and build.
     ///
     /// # Errors
     /// Names the one that differs.
@@ -53,6 +87,7 @@ impl CampaignRecord {
         if found.version != self.version {
             bail!("found a campaign of version {}, expected {}", found.version, self.version);
         }
+        let found_behaviour = found.behaviour;
         let (mut expected, mut found) = (flags_told(&self.flags)?, flags_told(&found.flags)?);
         let flags: BTreeSet<_> = expected.keys().chain(found.keys()).cloned().collect();
         for flag in flags {
@@ -61,6 +96,11 @@ impl CampaignRecord {
             if found != expected {
                 bail!("found a campaign with {found}, expected {expected}");
             }
+        }
+        if self.behaviour != found_behaviour {
+            bail!(
+                "found a campaign of another build, which flies other missions, expected one of this build"
+            );
         }
         Ok(())
     }

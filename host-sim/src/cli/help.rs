@@ -11,7 +11,8 @@ Examples:
 Exit status:
   0    done
   1    a flight that failed: the vehicle was stopped, what was flown is written
-  2    bad input, or an output that cannot be written; one message says which
+  2    bad input, or an output that cannot be written; one message says which. Also a label that contradicts
+       what is known: what was flown until then is printed and written
   129, 130, 143    ended by SIGHUP, SIGINT (Ctrl-C) or SIGTERM; no file is left half written
 
 Colours and progress bars are for terminals alone; NO_COLOR=1 turns colours off there too.";

@@ -7,6 +7,7 @@ use anyhow::{Context as _, Result, bail};
 use clap::{Args, ValueEnum};
 use planner_core::link::message::LabelSource;
 
+use crate::cli::done::Done;
 use crate::cli::help;
 use crate::cli::run::{Format, Run};
 use crate::hil::faults::Faults;
@@ -109,7 +110,7 @@ fn machine(name: &str) -> Result<String, String> {
 }
 
 /// Flies it, and what to print.
-pub(crate) fn hil(args: &HilArgs) -> Result<String> {
+pub(crate) fn hil(args: &HilArgs) -> Result<Done> {
     let mission = args.run.mission()?;
     let emulated = args.emulated()?;
     let (chip, board) = match &args.port {
@@ -167,12 +168,16 @@ pub(crate) fn hil(args: &HilArgs) -> Result<String> {
         announce(logbook.farewell());
     }
     let turnarounds = flown?;
-    let mut played = player.finish().with_context(|| args.run.name())?;
+    let played = player.finish_as_far_as_flown().with_context(|| args.run.name());
+    let (mut played, failure) = played?;
     let timings = Timings::new(&played, &turnarounds);
     let rows = timings.csv()?;
     let mut text = args.run.tell([trace, figure, candidates, report, mcap], &played.recording)?;
-    if let Some(logbook) = played.logbook.take() {
-        logbook.complete(&played.recording.results.end)?;
+    match (played.logbook.take(), &failure) {
+        (Some(logbook), None) => logbook.complete(&played.recording.results.end)?,
+        // A sensor or a vehicle that failed may work again, so the mission can go on.
+        (Some(logbook), Some(_)) => announce(logbook.farewell()),
+        (None, _) => {}
     }
     if let Some(output) = timing {
         output.write(rows)?;
@@ -181,5 +186,5 @@ pub(crate) fn hil(args: &HilArgs) -> Result<String> {
         text.push('\n');
         text.push_str(&timings.report());
     }
-    Ok(text)
+    Ok(args.run.done(text, failure))
 }

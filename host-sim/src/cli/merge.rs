@@ -1,19 +1,21 @@
 //! `campaign merge`: the shards of a campaign, put together.
 
 use std::fs::{self, File};
-use std::io::{Read, Write as _};
+use std::io::{self, Read, Write as _};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, Result, bail};
 use clap::Args;
 
-use crate::campaign::ensemble::Measure;
+use crate::campaign::ensemble::{Campaign, Measure};
+use crate::campaign::order::Order;
 use crate::campaign::rows::{Planners, RowReader, RowWriter};
 use crate::cli::campaign_record::CampaignRecord;
 use crate::cli::format::Format;
 use crate::cli::help;
 use crate::cli::passage::{Destination, Passage};
 use crate::cli::told::{Opening, tell};
+use crate::output::checksum::Checksum;
 use crate::output::file::{Output, prepare};
 use crate::output::partial::with_suffix;
 
@@ -49,7 +51,8 @@ pub(crate) fn merge(args: &MergeArgs) -> Result<String> {
     let shards = in_order(records.collect::<Result<_>>()?)?;
     let campaigns = shards[0].record.flags.campaigns()?;
     let planners = campaigns.planners();
-    let told = tell(&campaigns, Shards { recorded: &shards, planners, output }, args.format)?;
+    let shards = Shards { recorded: &shards, campaigns: &campaigns.of_each, planners, output };
+    let told = tell(&campaigns, shards, args.format)?;
     if let Some(output) = drawn {
         output.write(told.curves.svg())?;
     }
@@ -67,12 +70,20 @@ fn read<'a>(path: &'a Path, record: &Path) -> Result<Recorded<'a>> {
     let name = record.display();
     let text = fs::read_to_string(record)
         .with_context(|| format!("{name}: expected the record of {}", path.display()))?;
-    let record: CampaignRecord = serde_json::from_str(&text)
-        .with_context(|| format!("{name}: expected the record of a campaign's shard"))?;
-    let found = fs::metadata(path).with_context(|| path.display().to_string())?.len();
+    let record = CampaignRecord::of_shard(&text).with_context(|| name.to_string())?;
+    let shard = path.display();
+    let mut checksum = Checksum::default();
+    let found = File::open(path).and_then(|mut file| io::copy(&mut file, &mut checksum));
+    let found = found.with_context(|| shard.to_string())?;
     if record.bytes != Some(found) {
         let expected = record.bytes.map_or("none".to_owned(), |bytes| bytes.to_string());
-        bail!("{}: found {found} bytes, expected {expected}, as {name} has it", path.display());
+        bail!("{shard}: found {found} bytes, expected {expected}, as {name} has it");
+    }
+    if let Some(expected) = record.checksum.filter(|it| *it != checksum) {
+        bail!(
+            "{shard}: found rows of checksum {checksum}, expected {expected}, as {name} has it: they were changed, fly \
+             the shard again"
+        );
     }
     Ok(Recorded { path, record })
 }
@@ -109,17 +120,20 @@ fn in_order(mut shards: Vec<Recorded>) -> Result<Vec<Recorded>> {
 /// Shards that are to be put together.
 struct Shards<'a> {
     recorded: &'a [Recorded<'a>],
+    campaigns: &'a [Campaign],
     planners: Planners,
     output: Option<Output>,
 }
 
 impl Opening for Shards<'_> {
     fn open<M: Measure>(self, measure: &M) -> Result<Passage<'_, M>> {
-        let Self { recorded, planners, output } = self;
+        let Self { recorded, campaigns, planners, output } = self;
         let recorded = recorded.iter().map(|it| {
             let name = it.path.display().to_string();
             let from: Box<dyn Read> = Box::new(File::open(it.path).with_context(|| name.clone())?);
-            RowReader::new(&name, from, &planners)
+            let CampaignRecord { flags, shard, .. } = &it.record;
+            let order = Order::new(measure, campaigns, shard.fields(flags.fields));
+            RowReader::new(&name, from, &planners, order)
         });
         let recorded = recorded.collect::<Result<_>>()?;
         let writer = match output {

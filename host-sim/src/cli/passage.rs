@@ -27,8 +27,8 @@ impl Destination {
     /// All is written.
     pub(crate) fn complete(self) -> Result<()> {
         match self {
-            Self::Partial(partial, record) => partial.complete(|bytes| {
-                record.map(|it| json(&CampaignRecord { bytes: Some(bytes), ..*it }))
+            Self::Partial(partial, record) => partial.complete(|bytes, checksum| {
+                record.map(|it| json(&CampaignRecord { bytes: Some(bytes), checksum, ..*it }))
             }),
             Self::Output(output) => output.complete(),
         }

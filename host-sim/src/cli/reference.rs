@@ -10,6 +10,7 @@ use crate::cli::help;
 use crate::mission::scenario::{self, Overrides};
 use crate::mission::vehicle::with_steps;
 use crate::output::file::{json, prepare};
+use crate::output::plain;
 use crate::reference::instance::Instance;
 use crate::reference::objective::LineCost;
 use crate::reference::solution::Solution;
@@ -43,7 +44,7 @@ pub(crate) struct ReferenceArgs {
 
 /// Solves it, and what to print.
 pub(crate) fn reference(args: &ReferenceArgs) -> Result<String> {
-    let name = args.scenario.display().to_string();
+    let name = plain::name(&args.scenario.display().to_string());
     let mut mission = scenario::read(&args.scenario, Overrides::default())?;
     if args.speed_step.is_some() || args.turn_step.is_some() {
         mission.vehicle =

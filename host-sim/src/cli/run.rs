@@ -1,12 +1,12 @@
 //! `run`: one mission.
 
-use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, Result, bail};
+use anyhow::{Context as _, Result, anyhow, bail};
 use clap::{Args, ValueEnum};
 
 use crate::cli::campaign_flags::check_once;
+use crate::cli::done::{Done, REFUSED};
 use crate::cli::help;
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::Mission;
@@ -14,6 +14,7 @@ use crate::mission::recording::Recording;
 use crate::mission::scenario::{self, Overrides};
 use crate::output::file::{Output, prepare};
 use crate::output::notes::warn;
+use crate::output::plain;
 use crate::report::examples::{Flown, side_by_side};
 use crate::report::page::{Chapter, Page};
 use crate::report::picture::Picture;
@@ -26,7 +27,7 @@ pub(crate) struct Run {
     /// Who plans [default: the file's]
     #[arg(long)]
     pub(crate) algorithm: Option<Algorithm>,
-    /// Steps at most [default: the file's]
+    /// Steps at most: 1 to 68 less the oracle's points [default: the file's]
     #[arg(long)]
     pub(crate) steps: Option<u32>,
     /// Seed of whatever is random [default: the file's]
@@ -81,15 +82,16 @@ pub(crate) struct RunArgs {
 }
 
 /// Flies it, and what to print.
-pub(crate) fn run(args: &RunArgs) -> Result<String> {
+pub(crate) fn run(args: &RunArgs) -> Result<Done> {
     let RunArgs { run, compare } = args;
     if !compare.is_empty() {
         return run.compare(compare);
     }
     let mission = run.mission()?;
     let outputs = prepare(&[run.input()], run.outputs())?;
-    let recording = Recording::of(&mission).with_context(|| run.name())?;
-    run.tell(outputs, &recording)
+    let (recording, refusal) = Recording::until_refusal(&mission);
+    let text = run.tell(outputs, &recording)?;
+    Ok(run.done(text, refusal))
 }
 
 /// A page of missions that were flown from the same start, under the scenario's name.
@@ -102,12 +104,12 @@ fn page(scenario: &str, recordings: &[&Recording]) -> String {
 
 impl Run {
     pub(crate) fn name(&self) -> String {
-        self.scenario.display().to_string()
+        plain::name(&self.scenario.display().to_string())
     }
 
     /// What figures and pages are called.
-    fn title(&self) -> Cow<'_, str> {
-        self.scenario.file_stem().unwrap_or_default().to_string_lossy()
+    fn title(&self) -> String {
+        plain::name(&self.scenario.file_stem().unwrap_or_default().to_string_lossy())
     }
 
     pub(crate) fn mission(&self) -> Result<Mission> {
@@ -132,7 +134,7 @@ impl Run {
     }
 
     /// Flies the mission by each of these, and writes the page that shows them; what to print.
-    fn compare(&self, planners: &[Algorithm]) -> Result<String> {
+    fn compare(&self, planners: &[Algorithm]) -> Result<Done> {
         check_once(planners)?;
         let mission = |&planner: &Algorithm| {
             let mission = self
@@ -147,13 +149,18 @@ impl Run {
         let missions = planners.iter().map(mission).collect::<Result<Vec<_>>>()?;
         let [report] = prepare(&[self.input()], [("--report", self.report.as_deref())])?;
         let name = self.name();
-        let fly = |mission: &Mission| Recording::of(mission).with_context(|| name.clone());
-        let recordings = missions.iter().map(fly).collect::<Result<Vec<_>>>()?;
+        let flown = missions.iter().map(Recording::until_refusal);
+        let (recordings, refusals): (Vec<_>, Vec<_>) = flown.unzip();
+        let refusals = planners.iter().zip(refusals).filter_map(|(planner, refusal)| {
+            refusal.map(|it| format!("--compare {}: {it:#}", planner.name()))
+        });
+        let refusals = refusals.collect::<Vec<_>>();
+        let refusal = (!refusals.is_empty()).then(|| anyhow!(refusals.join("; ")));
         let page = page(&self.title(), &recordings.iter().collect::<Vec<_>>());
         if let Some(report) = report {
             report.write(page)?;
         }
-        Ok(match self.format {
+        let text = match self.format {
             Format::Text => side_by_side(recordings.iter().map(|recording| Flown {
                 example: &name,
                 planner: recording.mission.algorithm.title(),
@@ -162,7 +169,15 @@ impl Run {
             })),
             Format::Json => recordings.iter().map(|it| trace::lines(&it.results)).collect(),
             Format::Flat => recordings.iter().map(|it| flat::lines(&it.results)).collect(),
-        })
+        };
+        Ok(self.done(text, refusal))
+    }
+
+    /// What was done, and the refusal that broke the mission off, if one did.
+    pub(crate) fn done(&self, text: String, refusal: Option<anyhow::Error>) -> Done {
+        let name = self.name();
+        let failure = refusal.map(|it| (anyhow!("{name}: {it:#}"), REFUSED));
+        Done { text, failure }
     }
 
     pub(crate) fn input(&self) -> (&'static str, &Path) {

@@ -39,18 +39,14 @@ impl Logbook {
         let mut text = Vec::new();
         let name = partial.name().to_owned();
         partial.reader(u64::MAX)?.read_to_end(&mut text).with_context(|| name.clone())?;
-        let mut kept = 0;
-        // What has no end was cut off as it was written.
-        for (line, number) in text.split_inclusive(|byte| *byte == b'\n').zip(1..) {
+        let mut lines = text.split_inclusive(|byte| *byte == b'\n').zip(1..);
+        let first = lines.next().map_or(&[][..], |(line, _)| line);
+        begins(first, &header).with_context(|| format!("{name}:1"))?;
+        let mut kept = first.len() as u64;
+        for (line, number) in lines {
+            // A line without an end was cut off while it was written.
             let Some(line) = line.strip_suffix(b"\n") else { break };
-            let is_one = std::str::from_utf8(line).ok().map_or(Ok(false), |line| {
-                if number == 1 {
-                    same(line, &header).map(|()| true)
-                } else {
-                    follow(line, &mut make)
-                }
-            });
-            if !is_one.with_context(|| format!("{name}:{number}"))? {
+            if !follow(line, &mut make).with_context(|| format!("{name}:{number}"))? {
                 break;
             }
             kept += line.len() as u64 + 1;
@@ -76,7 +72,7 @@ impl Logbook {
     pub fn complete(mut self, end: &End) -> Result<()> {
         let written = self.partial.write_all(trace::end(end).as_bytes());
         written.with_context(|| self.partial.name().to_owned())?;
-        self.partial.complete(|_| None)
+        self.partial.complete(|_, _| None)
     }
 
     /// Where to find what is finished.
@@ -85,8 +81,25 @@ impl Logbook {
     }
 }
 
-/// Has the step of a line made again; `false` if that is the mission's end, which is told once more.
-fn follow(line: &str, make: impl FnOnce(Option<Reading>) -> Result<String>) -> Result<bool> {
+/// Checks that the first line is the start of this mission's trace.
+///
+/// # Errors
+/// Names the first key that has another value, or says that the line is no start at all.
+fn begins(line: &[u8], header: &str) -> Result<()> {
+    const NONE: &str = "found something else than the start of this mission's trace, expected that start: remove the \
+        file to begin the mission anew";
+    let whole =
+        line.strip_suffix(b"\n").and_then(|line| str::from_utf8(line).ok()).context(NONE)?;
+    let found: Value = serde_json::from_str(whole).ok().context(NONE)?;
+    if found["record"] != "start" {
+        bail!(NONE);
+    }
+    same(whole, header)
+}
+
+/// Makes the step of a line again; `false` if the line is the mission's end, which is written once more.
+fn follow(line: &[u8], make: impl FnOnce(Option<Reading>) -> Result<String>) -> Result<bool> {
+    let line = str::from_utf8(line).context("expected a step")?;
     let found: Value = serde_json::from_str(line).context("expected a step")?;
     match found["record"].as_str() {
         Some("end") => return Ok(false),

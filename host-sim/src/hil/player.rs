@@ -362,11 +362,25 @@ impl Player {
     /// # Errors
     /// When it is not over, the chip declined it, or it came to nothing.
     pub fn finish(self) -> Result<Played> {
+        let (played, failure) = self.finish_as_far_as_flown()?;
+        failure.map_or(Ok(played), Err)
+    }
+
+    /// The mission as far as it was flown, and why it was broken off, if it was.
+    ///
+    /// # Errors
+    /// When it is not over, or did not begin.
+    pub fn finish_as_far_as_flown(self) -> Result<(Played, Option<anyhow::Error>)> {
         let Self { recorder, planner, took, ending, clock, outcome, logbook, .. } = self;
         let unfinished = || anyhow!("the mission broke off after step {}", recorder.steps().len());
-        let reason = outcome.unwrap_or_else(|| Err(unfinished()))?;
-        let clock = clock.ok_or_else(unfinished)?;
+        let (reason, failure, clock) = match (outcome.ok_or_else(unfinished)?, clock) {
+            (Ok(reason), Some(clock)) => (reason, None, clock),
+            (Err(why), Some(clock)) => (Ending::BrokenOff, Some(why), clock),
+            (Ok(_), None) => return Err(unfinished()),
+            (Err(why), None) => return Err(why),
+        };
         let flown = Flown { ending: reason, belief: planner.belief().boxed() };
-        Ok(Played { recording: recorder.end(flown), took, ending, clock, logbook })
+        let recording = recorder.end(flown);
+        Ok((Played { recording, took, ending, clock, logbook }, failure))
     }
 }

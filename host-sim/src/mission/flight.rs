@@ -23,21 +23,20 @@ impl Mission {
     /// # Errors
     /// [`Refused`] when a sample contradicts what is known.
     pub fn fly(&self, mut watch: impl FnMut(&Step, &dyn ReadOut)) -> Result<Flown, Refused> {
-        self.fly_in_sight(|step, _, belief| watch(step, belief))
+        let (flown, refused) = self.fly_in_sight(|step, _, belief| watch(step, belief));
+        refused.map_or(Ok(flown), Err)
     }
 
-    /// As [`fly`](Self::fly), for one who sees too where the robot truly is, if it errs.
-    ///
-    /// # Errors
-    /// As there.
+    /// Flies it as far as no sample contradicts what is known, and returns the one that does. `watch` also sees where
+    /// the robot truly is, if it errs.
     pub fn fly_in_sight(
         &self,
         mut watch: impl FnMut(&Step, Option<Pose>, &dyn ReadOut),
-    ) -> Result<Flown, Refused> {
+    ) -> (Flown, Option<Refused>) {
         let mut planner = self.planner();
         let mut robot = self.robot();
         let mut agent = Agent::new(&mut *planner, &mut *robot, self.start);
-        let mut ending = Ending::Steps;
+        let (mut ending, mut refused) = (Ending::Steps, None);
         for _ in 0..self.steps {
             match agent.step() {
                 Ok(Event::Step(step)) => {
@@ -47,10 +46,13 @@ impl Mission {
                     ending = Ending::Stopped(reason);
                     break;
                 }
-                Err(AgentError::Refused(refused)) => return Err(refused),
+                Err(AgentError::Refused(why)) => {
+                    (ending, refused) = (Ending::BrokenOff, Some(why));
+                    break;
+                }
                 Err(AgentError::Body(never)) => match never {},
             }
         }
-        Ok(Flown { ending, belief: agent.planner.belief().boxed() })
+        (Flown { ending, belief: agent.planner.belief().boxed() }, refused)
     }
 }

@@ -107,7 +107,8 @@ impl Recorder {
             Refused::Contradiction(sample) => {
                 let (at, label) = (Point2::<f64>::from(sample.site), sample.label.sign());
                 anyhow!(
-                    "step {step}: label {label} at ({}, {}) contradicts the region of certainty it lies in",
+                    "step {step}: label {label} at ({}, {}) contradicts the region of certainty it lies in: \
+                     `tolerance` allows for positions that err, `noise` for labels that are wrong",
                     at.x,
                     at.y,
                 )
@@ -136,11 +137,18 @@ impl Recording {
     /// # Errors
     /// Names the sample that the planner refused.
     pub fn of(mission: &Mission) -> Result<Self> {
+        let (recording, refusal) = Self::until_refusal(mission);
+        refusal.map_or(Ok(recording), Err)
+    }
+
+    /// Flies a mission and records it as far as it goes. The error names the sample that the planner refused, if one
+    /// broke the mission off.
+    pub fn until_refusal(mission: &Mission) -> (Self, Option<anyhow::Error>) {
         let mut recorder = Recorder::new(mission.clone());
-        match mission.fly_in_sight(|step, truth, belief| recorder.take(step, truth, belief)) {
-            Ok(flown) => Ok(recorder.end(flown)),
-            Err(refused) => Err(recorder.refusal(&refused)),
-        }
+        let (flown, refused) =
+            mission.fly_in_sight(|step, truth, belief| recorder.take(step, truth, belief));
+        let refusal = refused.map(|it| recorder.refusal(&it));
+        (recorder.end(flown), refusal)
     }
 }
 

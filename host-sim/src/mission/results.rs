@@ -299,12 +299,13 @@ impl Results {
 
     /// Metres travelled.
     pub fn travelled(&self) -> f64 {
-        self.steps.iter().map(|step| f64::from(step.action.v)).sum()
+        // A sum of nothing would be less than nothing: -0.
+        self.steps.iter().fold(0.0, |sum, step| sum + f64::from(step.action.v))
     }
 
     /// The control cost.
     pub fn cost(&self) -> f64 {
-        self.steps.iter().map(StepResult::cost).sum()
+        self.steps.iter().fold(0.0, |sum, step| sum + step.cost())
     }
 }
 
@@ -400,7 +401,7 @@ pub enum Ending {
     Steps,
     /// The planner had no further motion.
     Stopped(StopReason),
-    /// A real vehicle could not go on.
+    /// A real vehicle could not go on, or a label contradicted what was known.
     BrokenOff,
 }
 

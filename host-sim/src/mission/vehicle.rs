@@ -5,7 +5,7 @@ use nalgebra::Point2;
 use planner_core::geometry::area::Area;
 use planner_core::geometry::region::Region as _;
 use planner_core::link::message::MissionArea;
-use planner_core::motion::action::BadGrid;
+use planner_core::motion::action::{ActionGrid, BadGrid};
 use planner_core::motion::any_vehicle::{AnyVehicle, Shape};
 use planner_core::motion::boat::Boat;
 use planner_core::motion::car::{self, Car};
@@ -40,7 +40,7 @@ pub struct VehicleTable {
     /// What moves
     #[arg(long = "vehicle", value_enum, value_name = "KIND", default_value_t)]
     pub(crate) kind: Kind,
-    /// The longest motion, metres [default: 2]
+    /// The longest motion, metres, below 100 [default: 2]
     #[arg(long, value_name = "METRES")]
     #[serde(skip_serializing_if = "Option::is_none")]
     reach: Option<f64>,
@@ -111,6 +111,11 @@ impl VehicleTable {
         let step = self.step.unwrap_or(0.1);
         let speed_step_mm = whole(&name("step"), step, 1e3)?;
         let reach_mm = whole(&name("reach"), self.reach.unwrap_or(2.0), 1e3)?;
+        if reach_mm >= ActionGrid::LONGEST_MM {
+            let found = format!("{} m", f64::from(reach_mm) / 1e3);
+            let expected = format!("less than {} m", ActionGrid::LONGEST_MM / 1000);
+            return wrong(&name("reach"), found, expected);
+        }
         let steps = u16::try_from(reach_mm / speed_step_mm).unwrap_or(u16::MAX);
         if reach_mm % speed_step_mm != 0 || steps == u16::MAX {
             let found = format!("{} with steps of {step}", f64::from(reach_mm) / 1e3);

@@ -8,6 +8,7 @@ use anyhow::{Context as _, Result, bail};
 use serde::Serialize;
 use tempfile::NamedTempFile;
 
+use crate::output::ending;
 use crate::output::interruption::unfinished;
 use crate::output::notes::mention;
 use crate::output::place::Place;
@@ -86,6 +87,7 @@ pub fn prepare<const N: usize>(
         if let Some((other, _)) = taken.iter().find(|(_, other)| other.is(&found)) {
             bail!("{}: found {other}, expected a place of its own for {what}", path.display());
         }
+        ending::check(what, path)?;
         taken.push((format!("the place of {what}"), found.clone()));
         *place = Some(found);
     }

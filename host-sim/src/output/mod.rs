@@ -1,7 +1,11 @@
 //! What comes out: files that appear whole or not at all, whatever interrupts the program, and what is told beside.
 
+pub mod checksum;
+pub(crate) mod ending;
 pub mod file;
 pub mod interruption;
+mod ledger;
 pub mod notes;
 pub mod partial;
 pub mod place;
+pub mod plain;

@@ -8,6 +8,8 @@ use anstyle::{AnsiColor, Style};
 use anyhow::Result;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+use crate::output::plain::message;
+
 /// How much is told.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
@@ -36,6 +38,7 @@ fn is_told(from: Loudness) -> bool {
 pub fn warn(subject: impl Display, warning: impl Display) {
     if is_told(Loudness::Usual) {
         let style = Style::new().bold().fg_color(Some(AnsiColor::Yellow.into()));
+        let [subject, warning] = [subject.to_string(), warning.to_string()].map(|it| message(&it));
         anstream::eprintln!("{subject}: {style}warning{style:#}: {warning}");
     }
 }
@@ -43,14 +46,14 @@ pub fn warn(subject: impl Display, warning: impl Display) {
 /// Says what takes a while.
 pub fn announce(what: impl Display) {
     if is_told(Loudness::Usual) {
-        anstream::eprintln!("{what}");
+        anstream::eprintln!("{}", message(&what.to_string()));
     }
 }
 
 /// Says what only some want to know.
 pub fn mention(what: impl Display) {
     if is_told(Loudness::Verbose) {
-        anstream::eprintln!("{what}");
+        anstream::eprintln!("{}", message(&what.to_string()));
     }
 }
 
@@ -60,7 +63,7 @@ pub fn error(error: &anyhow::Error) {
     // Where nobody hears it the status has to do.
     let _ = std::io::Write::write_fmt(
         &mut anstream::stderr(),
-        format_args!("{style}error{style:#}: {error:#}\n"),
+        format_args!("{style}error{style:#}: {}\n", message(&format!("{error:#}"))),
     );
 }
 

@@ -2,17 +2,20 @@
 //! with. It is moved to its place when it is complete.
 //!
 //! Where it does not tell by itself what is being done, a record of that stands beside it, so that nobody goes on with
-//! another's. The record is there before the file is, and goes when the file has become complete.
+//! another's, and checksums ([`ledger`](super::ledger)), so that nobody goes on with what was changed. The record is there
+//! before the file is, and goes when the file has become complete.
 
 use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read as _, Write};
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, Result, bail};
+use anyhow::{Context as _, Result, anyhow, bail};
 
+use crate::output::checksum::Checksum;
 use crate::output::file::{Output, hand_on_permissions, prepare};
 use crate::output::interruption::unfinished;
+use crate::output::ledger::Ledger;
 use crate::output::place::Place;
 
 /// A file that is not complete. Dropped, it stays if it has more than a header.
@@ -21,7 +24,10 @@ pub struct Partial {
     place: PathBuf,
     path: PathBuf,
     record: Option<PathBuf>,
+    ledger: Option<Ledger>,
     file: File,
+    /// Bytes of what is there that can be counted on.
+    counted: u64,
     /// As the file's user names it.
     name: String,
     /// What it holds.
@@ -51,6 +57,22 @@ pub(crate) struct Record<'a> {
     pub(crate) check: &'a dyn Fn(&str) -> Result<()>,
 }
 
+/// Judges what is there by its record and its checksums: how many bytes can be counted on.
+fn judge(
+    ledger: &Ledger,
+    check: &dyn Fn(&str) -> Result<()>,
+    path: &Path,
+    name: &str,
+) -> Result<u64> {
+    let anew = || format!("remove {name} and {name}.json to begin anew");
+    let record = ledger.record().with_context(|| format!("{name}.json"))?;
+    let Some(record) = record else {
+        bail!("{name}.json: found a record that was cut off, expected a whole one: {}", anew());
+    };
+    let judged = check(&record).and_then(|()| ledger.verify(path));
+    judged.map_err(|why| anyhow!("{name}: {why:#}: {}", anew()))
+}
+
 /// A path with something after it.
 pub(crate) fn with_suffix(path: &Path, suffix: &str) -> PathBuf {
     let mut path = OsString::from(path);
@@ -76,13 +98,11 @@ impl Partial {
                 begin.holds
             );
         }
-        if let (Some(Record { text, check }), Some(record)) = (begin.record, &record) {
-            if is_there {
-                let found = fs::read_to_string(record).with_context(|| format!("{name}.json"))?;
-                check(&found).with_context(|| name.clone())?;
-            } else {
-                fs::write(record, text).with_context(|| format!("{name}.json"))?;
-            }
+        let mut ledger = None;
+        if let (Some(Record { text, .. }), Some(record), false) = (begin.record, &record, is_there)
+        {
+            let begun = Ledger::begin(record, text);
+            ledger = Some(begun.with_context(|| format!("{name}.json"))?);
         }
         let mut options = OpenOptions::new();
         let file = options.read(true).append(true).create_new(!is_there).open(&path);
@@ -90,23 +110,39 @@ impl Partial {
         if let Err(TryLockError::WouldBlock) = file.try_lock() {
             bail!("{name}: found another program writing it, expected none");
         }
+        let mut counted = file.metadata().with_context(|| name.clone())?.len();
+        if let (Some(Record { check, .. }), Some(record), true) = (begin.record, &record, is_there)
+        {
+            let expected = || {
+                format!("{name}.json: expected the record of {name}: remove {name} to begin anew")
+            };
+            let found = Ledger::open(record).with_context(expected)?;
+            counted = judge(&found, check, &path, &name)?;
+            ledger = Some(found);
+        }
         let (place, holds) = (place.path().to_owned(), begin.holds);
+        let is_worth_keeping = is_there;
         let mut partial =
-            Self { place, path, record, file, name, holds, is_worth_keeping: is_there };
+            Self { place, path, record, ledger, file, counted, name, holds, is_worth_keeping };
         partial.begin(begin.header).with_context(|| partial.name.clone())?;
         Ok(partial)
     }
 
     /// Writes the header if it is not there in full.
     fn begin(&mut self, header: &str) -> Result<()> {
-        if self.file.metadata()?.len() < header.len() as u64 {
+        if self.counted < header.len() as u64 {
             let mut found = Vec::new();
-            File::open(&self.path)?.read_to_end(&mut found)?;
+            File::open(&self.path)?.take(header.len() as u64).read_to_end(&mut found)?;
             if !header.as_bytes().starts_with(&found) {
-                bail!("found something else than {} under their header", self.holds);
+                bail!(
+                    "found something else than {} under their header, expected them: remove the file to begin anew",
+                    self.holds
+                );
             }
-            self.file.set_len(0)?;
+            self.cut(0)?;
             self.file.write_all(header.as_bytes())?;
+            self.note(header.as_bytes())?;
+            self.counted = header.len() as u64;
         }
         Ok(())
     }
@@ -116,12 +152,12 @@ impl Partial {
         &self.name
     }
 
-    /// So much of what is there, from its start.
+    /// So much of what is there, from its start, and no more than can be counted on.
     ///
     /// # Errors
     /// When it cannot be opened.
     pub(crate) fn reader(&self, bytes: u64) -> io::Result<io::Take<File>> {
-        Ok(File::open(&self.path)?.take(bytes))
+        Ok(File::open(&self.path)?.take(bytes.min(self.counted)))
     }
 
     /// Keeps so many bytes of what is there.
@@ -129,7 +165,13 @@ impl Partial {
     /// # Errors
     /// When it cannot be cut.
     pub(crate) fn cut(&mut self, bytes: u64) -> io::Result<()> {
-        self.file.set_len(bytes)
+        self.file.set_len(bytes)?;
+        self.ledger.as_mut().map_or(Ok(()), |it| it.cut(&self.path, bytes))
+    }
+
+    /// Notes that the file has grown.
+    fn note(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.ledger.as_mut().map_or(Ok(()), |it| it.grown(bytes))
     }
 
     /// From here on an interruption says that it is there.
@@ -143,14 +185,17 @@ impl Partial {
         format!("finished {holds} are in {name}; the same command with --resume goes on with them")
     }
 
-    /// Moves it to its place. What is to stand beside it for good is told by its length.
+    /// Moves it to its place. What is to stand beside it for good is made from its length and its checksum.
     ///
     /// # Errors
     /// Names the file that could not be written or moved.
-    pub(crate) fn complete(&self, beside: impl FnOnce(u64) -> Option<String>) -> Result<()> {
+    pub(crate) fn complete(
+        &self,
+        beside: impl FnOnce(u64, Option<Checksum>) -> Option<String>,
+    ) -> Result<()> {
         let named = || self.name.clone();
         let bytes = self.file.metadata().with_context(named)?.len();
-        if let Some(record) = beside(bytes) {
+        if let Some(record) = beside(bytes, self.ledger.as_ref().map(Ledger::checksum)) {
             let path = with_suffix(&self.place, ".json");
             let [output] = prepare(&[], [("the record", Some(&path))])?;
             output.map_or(Ok(()), |it: Output| it.write(record))?;
@@ -166,7 +211,9 @@ impl Partial {
 impl Write for Partial {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.is_worth_keeping = true;
-        self.file.write(bytes)
+        let written = self.file.write(bytes)?;
+        self.note(&bytes[..written])?;
+        Ok(written)
     }
 
     fn flush(&mut self) -> io::Result<()> {

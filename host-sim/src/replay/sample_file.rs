@@ -7,6 +7,7 @@ use anyhow::{Result, anyhow};
 use csv::ByteRecord;
 use planner_core::belief::sample::{Label, Sample};
 
+use crate::output::plain;
 use crate::replay::columns::{Columns, Places};
 use crate::replay::delimiter::Delimiter;
 use crate::replay::frame::Frame;
@@ -36,7 +37,7 @@ impl SampleFile {
     /// # Errors
     /// Names the file and the line, what was found and what was expected.
     pub(crate) fn read(path: &Path, layout: &Layout) -> Result<Self> {
-        let name = path.display().to_string();
+        let name = plain::name(&path.display().to_string());
         let text = fs::read(path)
             .map_err(|error| anyhow!("{name}: expected a readable CSV file: {error}"))?;
         Self::parse(&name, &text, layout)

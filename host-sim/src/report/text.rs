@@ -10,13 +10,22 @@ use crate::world::noise::limit;
 
 /// Slope intervals as text.
 pub fn arcs(intervals: &[[f64; 2]]) -> String {
-    let one = |[from, to]: &[f64; 2]| format!("{from:.2} to {to:.2}");
+    let one = |[from, to]: &[f64; 2]| format!("{} to {}", fixed(*from, 2), fixed(*to, 2));
     intervals.iter().map(one).collect::<Vec<_>>().join(" or ")
 }
 
 /// An intercept range as text.
 pub fn range(intercept: Option<[f64; 2]>) -> String {
-    intercept.map_or("unbounded".into(), |[low, high]| format!("{low:.3} to {high:.3}"))
+    intercept.map_or("unbounded".into(), |[low, high]| {
+        format!("{} to {}", fixed(low, 3), fixed(high, 3))
+    })
+}
+
+/// A number with so many decimal places. What is rounded to nothing has no sign.
+fn fixed(value: f64, places: usize) -> String {
+    let text = format!("{value:.places$}");
+    let is_nothing = text.bytes().all(|it| b"-0.".contains(&it));
+    if is_nothing { text.replace('-', "") } else { text }
 }
 
 /// A line as text, with its angle: `z` by `x`, or, where it is steep, `x` by `z`.
@@ -163,10 +172,10 @@ fn beginning(title: &str, start: &Start) -> String {
     );
     let _ = writeln!(
         text,
-        "It starts at ({}, {}), heading {:.1} deg; slopes {} deg are possible.\n",
+        "It starts at ({}, {}), heading {} deg; slopes {} deg are possible.\n",
         start.pose.x,
         start.pose.z,
-        start.pose.heading.to_degrees(),
+        fixed(start.pose.heading.to_degrees(), 1),
         arcs(&start.slope_arcs),
     );
     if start.labels_err {
@@ -196,9 +205,9 @@ fn motion(step: &StepResult) -> [String; 5] {
     [
         step.step.to_string(),
         step.problem.unwrap_or("-").to_owned(),
-        format!("{:.1}", f64::from(step.action.w).to_degrees()),
-        format!("{:.1}", step.action.v),
-        format!("({:.3}, {:.3})", step.pose.x, step.pose.z),
+        fixed(f64::from(step.action.w).to_degrees(), 1),
+        fixed(step.action.v.into(), 1),
+        format!("({}, {})", fixed(step.pose.x, 3), fixed(step.pose.z, 3)),
     ]
 }
 
@@ -226,7 +235,7 @@ fn steps(steps: &[StepResult], start: &Start) -> Table {
             signed(step.label),
             arcs(&step.slope_arcs),
             range(step.intercept),
-            format!("{:.2}", step.bits),
+            fixed(step.bits, 2),
             note.to_owned(),
         ];
         table.row(motion(step).into_iter().chain(left));
@@ -266,7 +275,7 @@ fn noisy_steps(steps: &[StepResult]) -> Table {
             format!("{}{wrong}", signed(step.fact)),
             noisy.hypotheses.to_string(),
             format!("{:.2}", noisy.entropy),
-            format!("{:.2}", step.bits),
+            fixed(step.bits, 2),
             format!("{}{trusted}", arcs(&step.slope_arcs)),
         ];
         table.row(motion(step).into_iter().chain(said));

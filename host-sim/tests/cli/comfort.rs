@@ -23,7 +23,17 @@ fn what_init_writes_flies_and_is_not_replaced_unasked() {
         prints(folder, &["init", "m.toml", "--kind", kind, "--force"]);
         assert_ne!(fs::read_to_string(folder.join("m.toml")).expect("a file"), "mine");
     }
+    // What it says to do next, here and in the file, is about the file that it wrote.
     let folder = folder();
+    let said = prints(folder.path(), &["init", "harbour.toml"]);
+    let file = fs::read_to_string(folder.path().join("harbour.toml")).expect("a file");
+    for text in [&said, &file] {
+        let next = "host-sim run harbour.toml --figure harbour.svg";
+        assert!(text.contains(next) && !text.contains("mission."), "{text}");
+    }
+    prints(folder.path(), &["init", "my harbour.toml"]);
+    let file = fs::read_to_string(folder.path().join("my harbour.toml")).expect("a file");
+    assert!(file.contains("host-sim run 'my harbour.toml' --figure 'my harbour.svg'"), "{file}");
     refuses(folder.path(), &["init", "nowhere/m.toml"], &["nowhere/m.toml", "place to write"]);
     refuses(folder.path(), &["init", "--kind", "boat"], &["boat", "--kind", "true, noisy, car"]);
     prints(folder.path(), &["init"]);

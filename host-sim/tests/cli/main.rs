@@ -8,9 +8,13 @@ use tempfile::TempDir;
 
 mod campaigns;
 mod comfort;
+mod contradictions;
+mod edited;
+mod endings;
 mod figures;
 mod flags;
 mod flying;
+mod hostile;
 mod interruption;
 mod missions;
 mod outputs;

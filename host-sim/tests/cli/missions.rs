@@ -194,3 +194,23 @@ fn a_noisy_run_adds_to_the_trace() {
     assert!(end["credible"]["probability"].as_f64() >= Some(0.9));
     assert!(end["credible"]["cells"].as_u64() >= Some(1));
 }
+
+/// A mission that needs no step has travelled nothing, and no motion turns by less than nothing.
+#[test]
+fn nothing_is_not_printed_as_less_than_nothing() {
+    let folder = folder();
+    let known = format!("algorithm = \"lookahead\"\nstop = {{ slope_arc_deg = 80 }}\n{GOOD}");
+    let known = known.replace("algorithm = \"cfc\"\n", "");
+    fs::write(folder.path().join("m.toml"), known).expect("a file");
+    let said = prints(folder.path(), &["run", "m.toml"]);
+    assert!(said.contains("0 samples in 0 steps, 0.0 m travelled, control cost 0.0."), "{said}");
+    fs::write(folder.path().join("n.toml"), GOOD).expect("a file");
+    for algorithm in ["cfc", "lookahead", "random", "margin"] {
+        for seed in 1..=5 {
+            let seed = seed.to_string();
+            let flags = ["run", "n.toml", "--algorithm", algorithm, "--steps", "60", "--seed"];
+            let said = prints(folder.path(), &[&flags[..], &[&seed]].concat());
+            assert!(!said.contains("-0.0 "), "{said}");
+        }
+    }
+}

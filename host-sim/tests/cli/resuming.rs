@@ -158,12 +158,12 @@ fn the_rows_of_another_campaign_are_refused() {
     edit(r#""version":""#, r#""version":"0."#);
     refuses(folder.path(), &resume, &[PARTIAL, "of version 0."]);
     edit(r#""seed":1"#, r#""sow":1"#);
-    refuses(folder.path(), &resume, &[PARTIAL, "its record", "sow"]);
+    refuses(folder.path(), &resume, &[PARTIAL, "its record", "sow", "remove"]);
     fs::remove_file(folder.path().join(RECORD)).expect("a file");
-    refuses(folder.path(), &resume, &[RECORD]);
+    refuses(folder.path(), &resume, &[RECORD, "remove c.csv.partial to begin anew"]);
     fs::write(folder.path().join(RECORD), &kept[1]).expect("a file");
     fs::write(folder.path().join(PARTIAL), [b"algorithm,", &kept[0][..]].concat()).expect("a file");
-    refuses(folder.path(), &resume, &[PARTIAL, ":1: found the columns", "expected \"field,step"]);
+    refuses(folder.path(), &resume, &[PARTIAL, "found lines 1 to", "checksum", "remove"]);
 }
 
 #[test]
@@ -223,8 +223,15 @@ fn the_steps_of_another_mission_are_refused() {
         lines[at] = line;
         lines.join("\n") + "\n"
     };
-    let cases: [(String, &[&str], &[&str]); 6] = [
+    let torn_start = format!("{}\n", &lines[0][..40]);
+    let zeros = "\0".repeat(5_000);
+    let cases: [(String, &[&str], &[&str]); 11] = [
         (other, &[], &[":1: found seed 2, expected 1"]),
+        ("\0".repeat(500), &[], &["found something else than", "remove"]),
+        (zeros.clone(), &[], &[":1: found", "start of this mission's trace", "remove"]),
+        (zeros + "\n" + &trace, &[], &[":1: found", "start of this mission's trace", "remove"]),
+        (torn_start + &lines[1..].join("\n") + "\n", &[], &[":1: found", "remove"]),
+        (format!("{}{}", "x".repeat(1_000_000), &trace), &[], &[":1: found", "remove"]),
         (with(3, &wrong), &[], &[":4: found label", &format!("expected {}", label[0])]),
         (with(2, "{}"), &[], &[":3: expected a step"]),
         (with(2, "?"), &[], &[":3: expected a step"]),
@@ -245,6 +252,20 @@ fn the_steps_of_another_mission_are_refused() {
     refuses(folder.path(), &HIL, &["m.toml", "firmware's ELF"]);
     assert_eq!(read(folder.path(), "t.jsonl.partial"), (lines.join("\n") + "\n").into_bytes());
     assert!(steps > 5);
+    // A start that is not whole is written anew, as is one that a loss of power left without its end.
+    for bytes in [0, 1, lines[0].len() - 1, lines[0].len()] {
+        fs::write(folder.path().join("t.jsonl.partial"), &trace[..bytes]).expect("a file");
+        refuses(folder.path(), &HIL, &["m.toml", "firmware's ELF"]);
+        let kept = read(folder.path(), "t.jsonl.partial");
+        assert_eq!(text(&kept), format!("{}\n", lines[0]), "{bytes}");
+    }
+    // What is no text ends the steps only where it has no end of its own.
+    for (tail, is_torn) in [(&b"\xff\xfe"[..], true), (b"\xff\xfe\n", false)] {
+        let partial = [lines[..3].join("\n").as_bytes(), b"\n", tail].concat();
+        fs::write(folder.path().join("t.jsonl.partial"), partial).expect("a file");
+        let parts = if is_torn { ["m.toml", "ELF"] } else { ["t.jsonl.partial:4", "a step"] };
+        refuses(folder.path(), &HIL, &parts);
+    }
 }
 
 #[test]

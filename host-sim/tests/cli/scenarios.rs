@@ -71,7 +71,7 @@ fn bad_scenarios_are_refused_by_file_and_field() {
 #[test]
 fn bad_vehicles_are_refused() {
     let folder = folder();
-    let cases: [(&str, &str, &[&str]); 18] = [
+    let cases: [(&str, &str, &[&str]); 20] = [
         ("", "{ kind = \"tank\" }", &["bad.toml:1", "tank", "`car`"]),
         ("", "[\"car\", 3.0]", &["bad.toml:1", "a table"]),
         ("", "{ radius = 3.0 }", &["bad.toml:1", "missing field `kind`"]),
@@ -84,6 +84,16 @@ fn bad_vehicles_are_refused() {
         ("", "{ kind = \"car\", radius = nan }", &["vehicle.radius", "found NaN", "metres"]),
         ("", "{ kind = \"car\", radius = 3.0, shortest = 2.1 }", &["vehicle", "goes round it"]),
         ("", "{ kind = \"boat\", reach = 2.05 }", &["vehicle.reach", "found 2.05", "steps"]),
+        (
+            "",
+            "{ kind = \"unicycle\", reach = 100 }",
+            &["vehicle.reach: found 100 m", "less than 100 m"],
+        ),
+        (
+            "",
+            "{ kind = \"car\", reach = 200, radius = 3 }",
+            &["vehicle.reach: found 200 m", "100 m"],
+        ),
         ("", "{ kind = \"boat\", step = 0.0 }", &["vehicle.step", "found 0", "millimetre"]),
         ("", "{ kind = \"boat\", sharpest = 4.0 }", &["vehicle", "0.001 to pi rad"]),
         ("", "{ kind = \"unicycle\", turn_step = 1e-9 }", &["vehicle.turn_step", "microradian"]),

@@ -54,9 +54,14 @@ typedef enum {
    */
   PLANNER_STATUS_READING,
   /*
-   Refused: no line separates the given samples, or they are collinear, too many or of one label.
+   Refused: no line separates the given samples, or they are collinear, too many or of one label, or one says
+   something else than 0 or 1 for whether it is positive.
    */
   PLANNER_STATUS_GIVEN,
+  /*
+   Stopped: a plan may look at so many motions, and none of these led on. From another pose one may.
+   */
+  PLANNER_STATUS_UNDECIDED,
 } planner_status;
 
 /*
@@ -161,9 +166,9 @@ typedef struct {
    */
   double z;
   /*
-   Whether it lies on the side of +1.
+   1 if it lies on the side of +1, 0 if on that of -1; `true` and `false` are these.
    */
-  bool is_positive;
+  uint8_t is_positive;
 } planner_sample;
 
 /*
@@ -235,10 +240,12 @@ size_t planner_bytes(const planner_mission *mission);
 
 /*
  Makes a planner in so many bytes of memory that is aligned to 8, from 3 to 16 given samples of both labels, and
- writes where it is. It is that memory's beginning: there is nothing to free.
+ writes where it is. It is that memory's beginning: there is nothing to free. A call that is refused writes nothing:
+ a planner that is in that memory stays as it was.
 
  # Safety
- `memory` must be null or writable for so many bytes, `given` null or readable for so many samples.
+ `memory` must be null or writable for so many bytes, `given` null or readable for so many samples, and none of them
+ in that memory.
  */
 planner_status planner_begin(planner_t **made,
                              void *memory,

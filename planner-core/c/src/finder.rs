@@ -4,11 +4,12 @@
 //! refused; that others are as the header asks for is the caller's promise.
 
 use core::ffi::c_void;
-use core::mem::{align_of, size_of};
+use core::mem::{MaybeUninit, align_of, size_of};
 
 use planner_core::belief::outlook::Foresight;
 use planner_core::{
-    Belief as _, Forecast, Lookahead, Plan, Planner as _, Prior, Refused, Unicycle, VersionSpace,
+    Belief as _, Forecast, Hypotheses, Lookahead, Plan, Planner as _, Prior, Refused, Unicycle,
+    VersionSpace,
 };
 
 use crate::types::{Line, Mission, Motion, Pose, Reading, Sample, Status};
@@ -106,13 +107,15 @@ pub extern "C" fn bytes(mission: Option<&Mission>) -> usize {
 }
 
 /// Makes a planner in so many bytes of memory that is aligned to 8, from 3 to 16 given samples of both labels, and
-/// writes where it is. It is that memory's beginning: there is nothing to free.
+/// writes where it is. It is that memory's beginning: there is nothing to free. A call that is refused writes nothing:
+/// a planner that is in that memory stays as it was.
 ///
 /// # Safety
-/// `memory` must be null or writable for so many bytes, `given` null or readable for so many samples.
+/// `memory` must be null or writable for so many bytes, `given` null or readable for so many samples, and none of them
+/// in that memory.
 #[unsafe(export_name = "planner_begin")]
 pub unsafe extern "C" fn begin(
-    made: Option<&mut *mut Finder>,
+    made: Option<&mut MaybeUninit<*mut Finder>>,
     memory: *mut c_void,
     bytes: usize,
     mission: Option<&Mission>,
@@ -131,7 +134,7 @@ pub unsafe extern "C" fn begin(
     // SAFETY: the caller promises so much memory.
     match unsafe { begin_in(memory, bytes, mission, given) } {
         Ok(finder) => {
-            *made = finder;
+            made.write(finder);
             Status::Ok
         }
         Err(status) => status,
@@ -165,6 +168,9 @@ unsafe fn begin_in(
     const { assert!(align_of::<Held<True>>() <= 8 && align_of::<Held<Doubtful>>() <= 8) };
     // SAFETY (of both writes): there is room, and it is aligned.
     if let Some(noise) = noise {
+        // What is in that memory stays if the samples are refused: a table with room for them alone tells.
+        let table = Hypotheses::<MOST_GIVEN, 1>::new(samples, Prior::Area, noise);
+        table.map_err(|_| Status::Given)?;
         let planner = Lookahead::new(config, unicycle, Forecast::NONE).until(goal);
         let held = Held { finder: Finder { kind: Kind::Doubtful }, planner };
         let place = memory.cast::<Held<Doubtful>>();
@@ -190,7 +196,7 @@ unsafe fn begin_in(
 pub unsafe extern "C" fn plan(
     finder: *mut Finder,
     pose: Pose,
-    motion: Option<&mut Motion>,
+    motion: Option<&mut MaybeUninit<Motion>>,
 ) -> Status {
     // SAFETY: the caller promises it.
     let (Some(finder), Some(place)) = (unsafe { asked(finder) }, motion) else {
@@ -202,7 +208,7 @@ pub unsafe extern "C" fn plan(
     };
     match finder.plan(pose) {
         Plan::Move(motion) => {
-            *place = motion.into();
+            place.write(motion.into());
             Status::Ok
         }
         Plan::Stop(reason) => reason.into(),
@@ -233,13 +239,16 @@ pub unsafe extern "C" fn observe(finder: *mut Finder, pose: Pose, reading: i32) 
 /// # Safety
 /// `finder` must be null or from `planner_begin`.
 #[unsafe(export_name = "planner_estimate")]
-pub unsafe extern "C" fn estimate(finder: *mut Finder, line: Option<&mut Line>) -> Status {
+pub unsafe extern "C" fn estimate(
+    finder: *mut Finder,
+    line: Option<&mut MaybeUninit<Line>>,
+) -> Status {
     // SAFETY: the caller promises it.
     let (Some(finder), Some(place)) = (unsafe { asked(finder) }, line) else {
         return Status::Memory;
     };
     let Some(centre) = finder.centre() else { return Status::Resolution };
-    *place = centre;
+    place.write(centre);
     Status::Ok
 }
 

@@ -32,8 +32,11 @@ pub enum Status {
     Position,
     /// Refused: there is no such reading.
     Reading,
-    /// Refused: no line separates the given samples, or they are collinear, too many or of one label.
+    /// Refused: no line separates the given samples, or they are collinear, too many or of one label, or one says
+    /// something else than 0 or 1 for whether it is positive.
     Given,
+    /// Stopped: a plan may look at so many motions, and none of these led on. From another pose one may.
+    Undecided,
 }
 
 /// What was read. It comes as a number, as an enumeration of C may hold any.
@@ -100,13 +103,17 @@ pub struct Sample {
     pub x: f64,
     /// Metres.
     pub z: f64,
-    /// Whether it lies on the side of +1.
-    pub is_positive: bool,
+    /// 1 if it lies on the side of +1, 0 if on that of -1; `true` and `false` are these.
+    pub is_positive: u8,
 }
 
 impl Sample {
     pub(crate) fn read(self) -> Result<planner_core::Sample, Status> {
-        let label = if self.is_positive { Label::Positive } else { Label::Negative };
+        let label = match self.is_positive {
+            0 => Label::Negative,
+            1 => Label::Positive,
+            _ => return Err(Status::Given),
+        };
         Ok(planner_core::Sample { site: site(self.x, self.z)?, label })
     }
 }
@@ -228,6 +235,7 @@ impl From<StopReason> for Status {
             StopReason::Known => Self::Known,
             StopReason::SamplesFull => Self::Full,
             StopReason::OutsideArea | StopReason::Cornered => Self::Stuck,
+            StopReason::Undecided => Self::Undecided,
             _ => Self::Resolution,
         }
     }

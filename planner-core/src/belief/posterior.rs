@@ -179,15 +179,22 @@ impl<'a, const N: usize, const H: usize, const E: usize> Posterior<'a, N, H, E> 
 
     /// What the labels told of the line, bits: the divergence of this posterior from the uniform
     /// distribution over the starting lines. Of noiseless labels it is `log2` of the share of the
-    /// starting lines that are left.
+    /// starting lines that are left. Never below 0.
     pub fn information(&self) -> f64 {
-        let start = f64::from(area(self.hypotheses.start()));
+        let area_of = |h| self.hypotheses.log_area(h).exp();
+        let mut start = f64::from(area(self.hypotheses.start()));
+        if self.hypotheses.outer_cells() > 0 {
+            // Outer cells overlap, so their areas can come to more than the whole: shares are of their sum then.
+            start = start.max(self.hypotheses.iter().map(area_of).sum());
+        }
         let term = |h| {
             let p = self.probability(h);
-            let share = self.hypotheses.log_area(h).exp() / start;
+            let share = area_of(h) / start;
             if p > 0.0 { p * libm::log2(p / share) } else { 0.0 }
         };
-        self.hypotheses.iter().map(term).sum()
+        let bits: f64 = self.hypotheses.iter().map(term).sum();
+        // A divergence is 0 at least; areas are rounded, by some 3e-7 of themselves.
+        if bits < 0.0 { 0.0 } else { bits }
     }
 
     /// The probability that a site lies on the +1 side.

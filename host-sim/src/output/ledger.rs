@@ -1,0 +1,157 @@
+//! What stands beside a file that grows, as JSON Lines: a record of what is being done, then a checkpoint each time
+//! that the file has grown: its length and the checksum of all of it.
+//!
+//! After an interruption the checkpoints tell which bytes of the file are as they were written. The end of either file
+//! may be lost; what follows the last checkpoint is not counted on.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufRead as _, BufReader, Read as _, Seek as _, SeekFrom, Write as _};
+use std::path::{Path, PathBuf};
+
+use anyhow::{Result, bail};
+use serde::{Deserialize, Serialize};
+
+use crate::output::checksum::Checksum;
+use crate::output::file::json;
+
+/// A file's length, and the checksum of so much of it.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Checkpoint {
+    bytes: u64,
+    checksum: Checksum,
+}
+
+/// The record and the checkpoints of a file that is being written.
+#[derive(Debug)]
+pub(crate) struct Ledger {
+    path: PathBuf,
+    file: File,
+    now: Checkpoint,
+}
+
+/// How far a file is as it was written.
+struct Verified {
+    /// The last checkpoint that holds.
+    last: Checkpoint,
+    /// Bytes of the ledger up to it.
+    ledger: u64,
+    /// The lines of the file in which it is something else, if it is.
+    changed: Option<(u64, u64)>,
+}
+
+impl Ledger {
+    /// Begins one, of a file that has nothing in it yet.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub(crate) fn begin(path: &Path, record: &str) -> io::Result<Self> {
+        fs::write(path, record)?;
+        Self::open(path)
+    }
+
+    /// Opens the one that is there.
+    ///
+    /// # Errors
+    /// When it cannot be read or written.
+    pub(crate) fn open(path: &Path) -> io::Result<Self> {
+        let file = OpenOptions::new().append(true).open(path)?;
+        Ok(Self { path: path.to_owned(), file, now: Checkpoint::default() })
+    }
+
+    /// Its first line, if that is whole.
+    ///
+    /// # Errors
+    /// When it cannot be read.
+    pub(crate) fn record(&self) -> io::Result<Option<String>> {
+        let mut line = Vec::new();
+        BufReader::new(File::open(&self.path)?).read_until(b'\n', &mut line)?;
+        let is_whole = line.ends_with(b"\n") && !line.contains(&0);
+        Ok(String::from_utf8(line).ok().filter(|_| is_whole))
+    }
+
+    /// How many bytes of a file can be counted on.
+    ///
+    /// # Errors
+    /// Names the lines that are not as they were written.
+    pub(crate) fn verify(&self, file: &Path) -> Result<u64> {
+        let Verified { last, changed, .. } = self.walk(File::open(file)?, u64::MAX)?;
+        if let Some((from, to)) = changed {
+            bail!("found lines {from} to {to} that do not fit their checksum");
+        }
+        Ok(last.bytes)
+    }
+
+    /// The file was cut to so many bytes.
+    ///
+    /// # Errors
+    /// When either cannot be read, or this cannot be noted.
+    pub(crate) fn cut(&mut self, file: &Path, bytes: u64) -> io::Result<()> {
+        let Verified { last, ledger, .. } = self.walk(File::open(file)?, bytes)?;
+        self.file.set_len(ledger)?;
+        self.now = last;
+        let (mut file, mut rest) = (File::open(file)?, Vec::new());
+        file.seek(SeekFrom::Start(last.bytes))?;
+        file.read_to_end(&mut rest)?;
+        if rest.is_empty() { Ok(()) } else { self.grown(&rest) }
+    }
+
+    /// The file has grown by this.
+    ///
+    /// # Errors
+    /// When it cannot be noted.
+    pub(crate) fn grown(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.now.add(bytes);
+        self.file.write_all(json(&self.now).as_bytes())
+    }
+
+    /// The checksum of the whole file.
+    pub(crate) fn checksum(&self) -> Checksum {
+        self.now.checksum
+    }
+
+    /// Compares a file with the checkpoints, as far as they are whole and not beyond its length or so many bytes.
+    fn walk(&self, file: File, most: u64) -> io::Result<Verified> {
+        let mut file = BufReader::new(file);
+        let mut lines = BufReader::new(File::open(&self.path)?);
+        let mut line = Vec::new();
+        let mut ledger = lines.read_until(b'\n', &mut line)? as u64;
+        let (mut last, mut read) = (Checkpoint::default(), Checkpoint::default());
+        let mut number = 1;
+        loop {
+            line.clear();
+            lines.read_until(b'\n', &mut line)?;
+            let noted = line.strip_suffix(b"\n").and_then(|it| serde_json::from_slice(it).ok());
+            let Some(noted): Option<Checkpoint> =
+                noted.filter(|it: &Checkpoint| it.bytes > read.bytes)
+            else {
+                break;
+            };
+            if noted.bytes > most {
+                break;
+            }
+            let mut part = Vec::new();
+            let wanted = noted.bytes - read.bytes;
+            if (file.by_ref().take(wanted).read_to_end(&mut part)? as u64) < wanted {
+                break;
+            }
+            read.add(&part);
+            let from = number;
+            number += part.split(|byte| *byte == b'\n').count() as u64 - 1;
+            if read.checksum != noted.checksum {
+                // After a loss of power there are zeros where nothing had been written yet.
+                let changed = (!part.contains(&0)).then_some((from, number));
+                return Ok(Verified { last, ledger, changed });
+            }
+            (last, ledger) = (noted, ledger + line.len() as u64);
+        }
+        Ok(Verified { last, ledger, changed: None })
+    }
+}
+
+impl Checkpoint {
+    fn add(&mut self, bytes: &[u8]) {
+        self.bytes += bytes.len() as u64;
+        self.checksum.add(bytes);
+    }
+}
