@@ -150,7 +150,8 @@ NO_SPACE = Choice(Collinear=None, OneLabel=None, NotSeparable="u32", TooMany=Non
 BAD_GRID = Choice(Actions=None, Reach=None, Turn=None, Circle=None)
 NO_VEHICLE = Choice(Kind=None, Grid=BAD_GRID, Room={"across_mm": "u32"})
 STOP = Choice(
-    Resolution=None, SamplesFull=None, OutsideArea=None, Cornered=None, Known=None, Undecided=None
+    Resolution=None, SamplesFull=None, OutsideArea=None, Cornered=None, Known=None, Undecided=None,
+    Tolerance=None,
 )
 REFUSED = Choice(Contradiction=SAMPLE, Full=SAMPLE)
 REQUEST = Choice(
@@ -159,7 +160,7 @@ REQUEST = Choice(
     Ready={"capacity": CAPACITY, "clock": {"per_second": "u32", "emulated": "bool"}},
     Declined=Choice(
         Protocol="u16", Algorithm=None, Capacity=CAPACITY, Given=NO_SPACE, Labels=None,
-        Vehicle=NO_VEHICLE, Area=None,
+        Vehicle=NO_VEHICLE, Area=None, Tolerance=None,
     ),
     Move={"motion": MOTION, "last": Optional(READING), "took": TOOK},
     End={

@@ -113,7 +113,7 @@ fn run<D: Dynamics + Copy>(case: &Case, dynamics: D, world: &World) -> Option<()
     };
     let (x, z, heading) = case.start;
     let start = Pose { site: world.site(x.into(), z.into())?, heading: Heading(heading) };
-    let cfc = Cfc::new(config, dynamics, space.clone());
+    let cfc = Cfc::new(config, dynamics, space.clone()).expect("settings that agree");
     fly_true(case, cfc, world, start, &config, |planner, pose| {
         let few = dynamics.grid().actions() <= FEW && config.area.contains(pose.site);
         let slow = few.then(|| planner.problem().solve_exhaustively(&dynamics, pose).best);
@@ -131,7 +131,7 @@ fn run<D: Dynamics + Copy>(case: &Case, dynamics: D, world: &World) -> Option<()
     };
     let goal = Goal { accuracy, level: 500_000 + case.start.2 % 500_000 };
     for goal in [None, Some(goal)] {
-        let planner = Lookahead::new(config, dynamics, space.clone()).until(goal);
+        let planner = Lookahead::new(config, dynamics, space.clone()).expect("settings that agree").until(goal);
         fly_true(case, planner, world, start, &config, |planner, pose| {
             let plan = look_ahead(planner, pose);
             let known = plan == Plan::Stop(StopReason::Known);
@@ -152,10 +152,10 @@ fn run<D: Dynamics + Copy>(case: &Case, dynamics: D, world: &World) -> Option<()
         let noise =
             Noise { reliability, trusted_radius: case.trusted_radius, tolerance: Tolerance::NONE };
         let table = Hypotheses::<16, 24>::new(&oracle, prior, noise).ok()?;
-        let scc = Scc::new(config, policy, dynamics, table);
+        let scc = Scc::new(config, policy, dynamics, table).expect("settings that agree");
         fly_any(case, scc, world, start, &config, |planner, pose| planner.plan(pose));
         let forecast = Forecast::<16, 24>::new(&oracle, prior, noise).ok()?;
-        let planner = Lookahead::new(config, dynamics, forecast).until(Some(goal));
+        let planner = Lookahead::new(config, dynamics, forecast).expect("settings that agree").until(Some(goal));
         fly_any(case, planner, world, start, &config, look_ahead);
     }
     Some(())

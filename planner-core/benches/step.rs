@@ -49,7 +49,7 @@ fn states() -> Vec<(Cfc32, Pose)> {
     let corners = [(2.0, 1.0), (2.0, 8.0), (18.0, 16.0), (18.0, 5.0)].map(|(x, z)| at(x, z));
     let oracle = corners.map(|site| Sample { site, label: label(site) });
     let space = VersionSpace::new(&oracle).expect("separable");
-    let mut planner = Cfc::new(config(), Unicycle::paper(), space);
+    let mut planner = Cfc::new(config(), Unicycle::paper(), space).expect("settings that agree");
     let mut pose = Pose { site: corners[0], heading: Heading(0) };
     let mut states = Vec::new();
     for _ in 0..24 {
@@ -110,7 +110,7 @@ fn noisy(labels: usize) -> (Scc<Unicycle, 36, 529>, Pose) {
     let hypotheses =
         Hypotheses::new(planner.belief().samples(), Prior::Area, noise).expect("an oracle");
     let config = Config { following: scc::FOLLOWING, ..config() };
-    let mut planner = Scc::new(config, Policy::default(), Unicycle::paper(), hypotheses);
+    let mut planner = Scc::new(config, Policy::default(), Unicycle::paper(), hypotheses).expect("settings that agree");
     let mut pose = start;
     let mut taken = 0;
     while taken < labels {

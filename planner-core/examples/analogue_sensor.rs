@@ -41,7 +41,7 @@ pub(crate) fn main() -> Result {
     let tolerance = Tolerance::new(0.06).ok_or("no length")?;
     let config = Config { tolerance, ..field::config()? };
     let space = VersionSpace::<32>::new(&field::given()?)?.within(tolerance)?;
-    let planner = Lookahead::new(config, Unicycle::paper(), space);
+    let planner = Lookahead::new(config, Unicycle::paper(), space)?;
     let vehicle = Vehicle { drive: Tracks(&world), sensor };
     let mut agent = Agent::new(planner, vehicle, field::start()?);
     while let Event::Step(step) = agent.step()? {

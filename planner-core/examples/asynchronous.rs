@@ -46,7 +46,7 @@ impl<B: I2c> LabelSensor for Fluorometer<B> {
 pub(crate) fn main() -> Result {
     let world = World::new()?;
     let space = VersionSpace::<24>::new(&field::given()?)?;
-    let planner = Lookahead::new(field::config()?, Unicycle::paper(), space);
+    let planner = Lookahead::new(field::config()?, Unicycle::paper(), space)?;
     let vehicle = Vehicle { drive: Tracks(&world, NoTime), sensor: Fluorometer(Bus(&world)) };
     let mut agent = Agent::new(planner, vehicle, field::start()?);
     pollster::block_on(async {

@@ -21,7 +21,7 @@ pub(crate) fn main() -> Result {
     let slopes = Heading::from_radians(8_f64.to_radians()).ok_or("no angle")?;
     let goal = Goal { accuracy: Accuracy::SlopeArc(slopes), level: 900_000 };
     let mut planner =
-        Lookahead::new(field::config()?, Unicycle::paper(), forecast).until(Some(goal));
+        Lookahead::new(field::config()?, Unicycle::paper(), forecast)?.until(Some(goal));
     let mut labels = 0;
     let reason = loop {
         let motion = match planner.plan(world.pose()) {

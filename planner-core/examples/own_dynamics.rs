@@ -80,7 +80,7 @@ pub(crate) fn main() -> Result {
 
     let world = World::new()?;
     let space = VersionSpace::<32>::new(&field::given()?)?;
-    let mut planner = Lookahead::new(field::config()?, dynamics, space);
+    let mut planner = Lookahead::new(field::config()?, dynamics, space)?;
     for _ in 0..24 {
         let Plan::Move(motion) = planner.plan(world.pose()) else { break };
         println!("{:+4.0} degrees, {:.2} m", motion.control.w.to_degrees(), motion.control.v);

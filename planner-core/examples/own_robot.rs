@@ -43,7 +43,7 @@ pub(crate) fn main() -> Result {
     let space = VersionSpace::<32>::new(&field::given()?)?;
     let slopes = Heading::from_radians(0.2_f64.to_radians()).ok_or("no angle")?;
     let goal = Goal { accuracy: Accuracy::SlopeArc(slopes), level: 0 };
-    let planner = Lookahead::new(field::config()?, Unicycle::paper(), space).until(Some(goal));
+    let planner = Lookahead::new(field::config()?, Unicycle::paper(), space)?.until(Some(goal));
     let vehicle = Vehicle { drive: Tracks(&world), sensor: Probe(&world) };
     let mut agent = Agent::new(planner, vehicle, field::start()?);
     loop {

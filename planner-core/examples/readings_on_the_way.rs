@@ -16,7 +16,7 @@ const READINGS: i32 = 5;
 pub(crate) fn main() -> Result {
     let world = World::new()?;
     let space = VersionSpace::<68>::new(&field::given()?)?;
-    let mut planner = Lookahead::new(field::config()?, Unicycle::paper(), space);
+    let mut planner = Lookahead::new(field::config()?, Unicycle::paper(), space)?;
     let mut motions = 0;
     while motions < 12 {
         let from = world.pose().site;

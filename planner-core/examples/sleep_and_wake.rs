@@ -19,7 +19,7 @@ type Backup = [u8; 512];
 /// As it is made at every start, from what the program has.
 fn planner() -> Result<Finder> {
     let space = VersionSpace::new(&field::given()?)?;
-    Ok(Lookahead::new(field::config()?, Unicycle::paper(), space))
+    Ok(Lookahead::new(field::config()?, Unicycle::paper(), space)?)
 }
 
 /// From power on to power off: one motion, or none if the mission is over.

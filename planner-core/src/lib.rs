@@ -110,7 +110,7 @@
 //! let start = Pose { site: oracle[0].site, heading: Heading(0) };
 //! let world = World(Cell::new(start));
 //! // Room for 32 samples, these four included.
-//! let planner = Cfc::new(config, Unicycle::paper(), VersionSpace::<32>::new(&oracle)?);
+//! let planner = Cfc::new(config, Unicycle::paper(), VersionSpace::<32>::new(&oracle)?)?;
 //! let vehicle = Vehicle { drive: &world, sensor: &world };
 //! let mut agent = Agent::new(planner, vehicle, start);
 //! for _ in 0..10 {

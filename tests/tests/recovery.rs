@@ -81,7 +81,7 @@ fn a_coarse_fan_does_not_turn_on_the_spot_for_ever() {
     starts.par_iter().for_each(|&(i, j, k)| {
         let site = at(0.5 + f64::from(i), 0.5 + f64::from(j));
         let pose = Pose { site, heading: Heading(k << 28) };
-        let mut planner = Cfc::new(config, coarse, space.clone());
+        let mut planner = Cfc::new(config, coarse, space.clone()).expect("settings that agree");
         let (end, motions) = chase(&mut planner, pose).expect("it comes to an end");
         assert!(end.is_ok() && motions < 24, "from {pose:?}: {end:?} after {motions} motions");
     });
@@ -120,7 +120,7 @@ fn any(rng: &mut ChaCha8Rng) -> Any {
 fn fly<D: Dynamics>(dynamics: D, number: u64, rng: &mut ChaCha8Rng) -> StopReason {
     contract::check(&dynamics).expect("a grid of ours");
     let mission = standard_field::standard(21, number, Algorithm::Cfc, 1);
-    let mut planner = Cfc::new(mission.config, dynamics, mission.given.clone());
+    let mut planner = Cfc::new(mission.config, dynamics, mission.given.clone()).expect("settings that agree");
     let mut pose = Pose { heading: Heading(rng.random_range(0..=u32::MAX)), ..mission.start };
     loop {
         let (end, _) = chase(&mut planner, pose).unwrap_or_else(|Endless| {

@@ -289,7 +289,7 @@ fn a_plan_has_so_many_looks_and_says_when_they_do_not_do() {
         following: cfc::FOLLOWING,
         tolerance: Tolerance::NONE,
     };
-    let planner = |dynamics| Cfc::new(config, dynamics, space.clone().expect("they are apart"));
+    let planner = |dynamics| Cfc::new(config, dynamics, space.clone().expect("they are apart")).expect("settings that agree");
     let pose = |z, quarters: u32| Pose {
         site: Site::new(0, z).expect("on the lattice"),
         heading: Heading(quarters << 30),

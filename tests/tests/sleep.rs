@@ -88,15 +88,15 @@ where
 fn asleep_as_asked(mission: &Mission) -> Result<String, String> {
     let (config, vehicle, goal) = (mission.config, mission.vehicle, mission.goal);
     match mission.algorithm {
-        Algorithm::Cfc => asleep(mission, || Cfc::new(config, vehicle, mission.lines())),
+        Algorithm::Cfc => asleep(mission, || Cfc::new(config, vehicle, mission.lines()).expect("settings that agree")),
         Algorithm::Scc => {
-            asleep(mission, || Scc::new(config, mission.policy, vehicle, mission.table()))
+            asleep(mission, || Scc::new(config, mission.policy, vehicle, mission.table()).expect("settings that agree"))
         }
         Algorithm::Lookahead if mission.is_noisy() => {
-            asleep(mission, || Lookahead::new(config, vehicle, mission.forecast()).until(goal))
+            asleep(mission, || Lookahead::new(config, vehicle, mission.forecast()).expect("settings that agree").until(goal))
         }
         Algorithm::Lookahead => {
-            asleep(mission, || Lookahead::new(config, vehicle, mission.lines()).until(goal))
+            asleep(mission, || Lookahead::new(config, vehicle, mission.lines()).expect("settings that agree").until(goal))
         }
         Algorithm::Margin | Algorithm::Random => panic!("no planner of planner-core"),
     }
@@ -160,7 +160,7 @@ fn labels_keep_the_reliability_that_they_came_with() {
         let make = || {
             let forecast = Forecast::<36, 529>::new(mission.given.samples(), Prior::Area, noise)
                 .expect("four");
-            Lookahead::new(mission.config, mission.vehicle, forecast)
+            Lookahead::new(mission.config, mission.vehicle, forecast).expect("settings that agree")
         };
         let told = |first: f64| {
             let mut planner = make();
@@ -204,9 +204,9 @@ fn planners<const N: usize>()
     let space = VersionSpace::new(given).expect("four points");
     let noise = Noise { reliability: Reliability::new(0.8).expect("a probability"), ..Noise::NONE };
     let table = Hypotheses::new(given, Prior::Area, noise).expect("four points");
-    let mut cfc = Cfc::new(config, unicycle, space.clone());
-    let mut lookahead = Lookahead::new(config, unicycle, space);
-    let mut scc = Scc::new(config, Policy::Joint, unicycle, table);
+    let mut cfc = Cfc::new(config, unicycle, space.clone()).expect("settings that agree");
+    let mut lookahead = Lookahead::new(config, unicycle, space).expect("settings that agree");
+    let mut scc = Scc::new(config, Policy::Joint, unicycle, table).expect("settings that agree");
     for label in [Label::Positive, Label::Negative, Label::Positive] {
         let Plan::Move(motion) = lookahead.plan(mission.start) else { panic!("no motion") };
         let reading = Some(label.into());

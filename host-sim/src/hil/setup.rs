@@ -89,6 +89,7 @@ pub(crate) fn declined(declined: Declined, setup: &Setup) -> anyhow::Error {
         Declined::Given(error) => anyhow!("oracle: declined by the board: {error}"),
         Declined::Vehicle(why) => anyhow!("vehicle: declined by the board: expected {why}"),
         Declined::Area => anyhow!("area: declined by the board: {declined}"),
+        Declined::Tolerance => anyhow!("tolerance: declined by the board: {declined}"),
         Declined::Labels => anyhow!("--labels: found chip, but this board has no label sensor"),
     }
 }

@@ -17,6 +17,9 @@ use crate::mission::margin::Margin;
 use crate::mission::random_walk::RandomWalk;
 use crate::mission::read_out::ReadOut;
 
+/// Why a planner can be made of a mission's settings.
+const FITS: &str = "settings that contradict each other were refused";
+
 /// A planner whose belief can be read out.
 pub type AnyPlanner = Box<dyn Planner<Belief = dyn ReadOut>>;
 
@@ -45,6 +48,9 @@ fn erased(planner: impl Planner<Belief: ReadOut + Sized + 'static> + 'static) ->
 
 impl Mission {
     /// The planner, as yet without a label.
+    ///
+    /// # Panics
+    /// When settings contradict each other, which scenario files and flags are refused for.
     pub fn planner(&self) -> AnyPlanner {
         match self.vehicle {
             AnyVehicle::Unicycle(unicycle) => self.planner_of(unicycle),
@@ -57,13 +63,13 @@ impl Mission {
         let config = self.config;
         let (area, rng) = (config.area, ChaCha8Rng::seed_from_u64(self.seed));
         match self.algorithm {
-            Algorithm::Cfc => erased(Cfc::new(config, dynamics, self.lines())),
-            Algorithm::Scc => erased(Scc::new(config, self.policy, dynamics, self.table())),
+            Algorithm::Cfc => erased(Cfc::new(config, dynamics, self.lines()).expect(FITS)),
+            Algorithm::Scc => erased(Scc::new(config, self.policy, dynamics, self.table()).expect(FITS)),
             Algorithm::Lookahead if self.is_noisy() => {
-                erased(Lookahead::new(config, dynamics, self.forecast()).until(self.goal))
+                erased(Lookahead::new(config, dynamics, self.forecast()).expect(FITS).until(self.goal))
             }
             Algorithm::Lookahead => {
-                erased(Lookahead::new(config, dynamics, self.lines()).until(self.goal))
+                erased(Lookahead::new(config, dynamics, self.lines()).expect(FITS).until(self.goal))
             }
             Algorithm::Margin if self.is_noisy() => {
                 erased(Margin { dynamics, area, belief: self.table() })

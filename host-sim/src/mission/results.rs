@@ -417,6 +417,7 @@ impl Ending {
             Self::Stopped(StopReason::Known) => "known",
             Self::Stopped(StopReason::Cornered) => "cornered",
             Self::Stopped(StopReason::Undecided) => "undecided",
+            Self::Stopped(StopReason::Tolerance) => "tolerance",
             Self::Stopped(_) => "stopped",
         }
     }

@@ -11,7 +11,7 @@ use planner_core::motion::boat::Boat;
 use planner_core::motion::car::{self, Car};
 use planner_core::motion::dynamics::Dynamics as _;
 use planner_core::motion::unicycle::{self, Grid, Unicycle};
-use planner_core::planner::config::Config;
+use planner_core::planner::config::{Config, ConfigError};
 use serde::{Deserialize, Serialize};
 
 use crate::mission::algorithm::Algorithm;
@@ -239,17 +239,21 @@ fn check_suits(name: &str, vehicle: &AnyVehicle, algorithm: Algorithm) -> Result
     }
 }
 
-/// Whether a vehicle can move in its area.
+/// Whether a vehicle can move in its area, less the tolerance.
 ///
 /// # Errors
-/// Names the vehicle, the area, and how much it needs.
+/// Names the tolerance, or the vehicle, the area, and how much it needs.
 pub fn check_room(
     source: Source,
     vehicle: &AnyVehicle,
     config: &Config<MissionArea>,
 ) -> Result<()> {
-    config.admits(vehicle).or_else(|none| {
-        wrong(&source.name("kind"), of_area(config.area.bounds(), config.tolerance.metres()), none)
+    let tolerance = config.tolerance.metres();
+    config.admits(vehicle).or_else(|error| match error {
+        ConfigError::Room(none) => {
+            wrong(&source.name("kind"), of_area(config.area.bounds(), tolerance), none)
+        }
+        _ => wrong("tolerance", tolerance, "less: no place is as far from the border of the area"),
     })
 }
 

@@ -122,6 +122,10 @@ fn end(results: &Results, estimates: &[(&str, Option<LineRecord>); 3]) -> String
     if let Some(goal) = &results.end.goal {
         text += &promise(goal);
     }
+    if let Some(remedy) = remedy(results) {
+        text += remedy;
+        text.push('\n');
+    }
     text.push('\n');
     if let Some(noisy) = &results.end.noisy {
         text += &outcome(noisy);
@@ -135,8 +139,30 @@ pub(crate) fn why(reason: &str) -> &str {
         "steps" => "all steps are taken",
         "known" => "what was asked for is known",
         "resolution" => "what is uncertain is thinner than the action grid can hit",
+        "tolerance" => "what is uncertain is so thin that no label tells more, as positions err by the tolerance",
+        "samples full" => "the planner has no room for another sample",
+        "outside area" => "the robot is outside the area, and no motion leads back",
+        "cornered" => "no motion leads to uncertain ground, as the border or a keep-out is in the way",
+        "undecided" => "none of the ways that a plan tries leads to uncertain ground",
         other => other,
     }
+}
+
+/// What a person can change so that a mission goes further, if it ended before its steps.
+fn remedy(results: &Results) -> Option<&'static str> {
+    let is_unmet = results.end.goal.as_ref().is_some_and(|goal| !goal.is_met);
+    Some(match results.end.reason {
+        "resolution" => "To go on, allow finer turns and speeds: turn_step, step.",
+        "tolerance" if is_unmet => {
+            "This goal cannot be reached with this tolerance: accept a wider one, or bring better positions."
+        }
+        "tolerance" => "To know more, bring better positions: a smaller tolerance.",
+        "samples full" => "A planner with room for more samples goes on.",
+        "outside area" => "Bring the robot back, or enlarge the area.",
+        "cornered" => "To go on, turn or move the robot by hand, allow sharper turns, or enlarge the area.",
+        "undecided" => "To go on, allow shorter motions or finer turns, or move the robot by hand.",
+        _ => return None,
+    })
 }
 
 /// What is known for sure, or as surely as was asked.

@@ -59,9 +59,17 @@ typedef enum {
    */
   PLANNER_STATUS_GIVEN,
   /*
-   Stopped: a plan may look at so many motions, and none of these led on. From another pose one may.
+   Stopped: there is uncertain ground, but none of the ways that a plan tries leads there. From another pose one may.
    */
   PLANNER_STATUS_UNDECIDED,
+  /*
+   Refused: the tolerance leaves nothing of the area, as no place is as far from its border.
+   */
+  PLANNER_STATUS_TOLERANCE_TOO_LARGE,
+  /*
+   Stopped: what is uncertain is so thin that no label can tell more, as positions err.
+   */
+  PLANNER_STATUS_IMPRECISE,
 } planner_status;
 
 /*

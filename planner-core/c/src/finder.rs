@@ -171,7 +171,8 @@ unsafe fn begin_in(
         // What is in that memory stays if the samples are refused: a table with room for them alone tells.
         let table = Hypotheses::<MOST_GIVEN, 1>::new(samples, Prior::Area, noise);
         table.map_err(|_| Status::Given)?;
-        let planner = Lookahead::new(config, unicycle, Forecast::NONE).until(goal);
+        let planner = Lookahead::new(config, unicycle, Forecast::NONE);
+        let planner = planner.map_err(|_| Status::ToleranceTooLarge)?.until(goal);
         let held = Held { finder: Finder { kind: Kind::Doubtful }, planner };
         let place = memory.cast::<Held<Doubtful>>();
         unsafe { place.write(held) };
@@ -181,7 +182,8 @@ unsafe fn begin_in(
     } else {
         let space = VersionSpace::new(samples).and_then(|it| it.within(config.tolerance));
         let space = space.map_err(|_| Status::Given)?;
-        let planner = Lookahead::new(config, unicycle, space).until(goal);
+        let planner = Lookahead::new(config, unicycle, space);
+        let planner = planner.map_err(|_| Status::ToleranceTooLarge)?.until(goal);
         let held = Held { finder: Finder { kind: Kind::True }, planner };
         unsafe { memory.cast::<Held<True>>().write(held) };
     }

@@ -35,8 +35,12 @@ pub enum Status {
     /// Refused: no line separates the given samples, or they are collinear, too many or of one label, or one says
     /// something else than 0 or 1 for whether it is positive.
     Given,
-    /// Stopped: a plan may look at so many motions, and none of these led on. From another pose one may.
+    /// Stopped: there is uncertain ground, but none of the ways that a plan tries leads there. From another pose one may.
     Undecided,
+    /// Refused: the tolerance leaves nothing of the area, as no place is as far from its border.
+    ToleranceTooLarge,
+    /// Stopped: what is uncertain is so thin that no label can tell more, as positions err.
+    Imprecise,
 }
 
 /// What was read. It comes as a number, as an enumeration of C may hold any.
@@ -234,6 +238,7 @@ impl From<StopReason> for Status {
         match reason {
             StopReason::Known => Self::Known,
             StopReason::SamplesFull => Self::Full,
+            StopReason::Tolerance => Self::Imprecise,
             StopReason::OutsideArea | StopReason::Cornered => Self::Stuck,
             StopReason::Undecided => Self::Undecided,
             _ => Self::Resolution,

@@ -244,6 +244,8 @@ pub enum Declined {
     Vehicle(NoVehicle),
     /// The chip cannot plan in this area: if it is more than a rectangle, the chip may have no more.
     Area,
+    /// The tolerance leaves nothing of the area.
+    Tolerance,
 }
 
 impl core::fmt::Display for Declined {
@@ -255,6 +257,7 @@ impl core::fmt::Display for Declined {
                 write!(f, "the chip holds {samples} samples and {hypotheses} hypotheses")
             }
             Self::Given(why) => why.fmt(f),
+            Self::Tolerance => f.write_str("the tolerance leaves nothing of the area"),
             Self::Labels => f.write_str("the chip has no label sensor"),
             Self::Vehicle(why) => why.fmt(f),
             Self::Area => f.write_str("the chip cannot plan in this area"),

@@ -22,7 +22,7 @@ use crate::link::message::{
 use crate::motion::any_vehicle::{NoVehicle, Shape};
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::cfc::Cfc;
-use crate::planner::config::Config;
+use crate::planner::config::{Config, ConfigError};
 use crate::planner::lookahead::Lookahead;
 use crate::planner::scc::{Policy, Scc};
 use crate::planner::{Motion, Plan, Planner};
@@ -56,8 +56,10 @@ impl Setup {
         let dynamics = D::try_from(self.vehicle).map_err(Declined::Vehicle)?;
         let Config { varrho, crossing, following, tolerance, .. } = self.config;
         let config = Config { area, varrho, crossing, following, tolerance };
-        let fits = config.admits(&dynamics);
-        fits.map_err(|none| Declined::Vehicle(NoVehicle::Room(none)))?;
+        let config = config.inset_for(&dynamics).map_err(|error| match error {
+            ConfigError::Tolerance(_) => Declined::Tolerance,
+            ConfigError::Room(none) => Declined::Vehicle(NoVehicle::Room(none)),
+        })?;
         Ok(Terms { dynamics, config })
     }
 
@@ -89,7 +91,7 @@ impl Setup {
         let capacity = Capacity { samples: N as u16, hypotheses: 1 };
         self.check(capacity)?;
         let space = self.space()?;
-        Ok(Prepared { planner: Cfc::new(config, dynamics, space), capacity })
+        Ok(Prepared { planner: Cfc::of((config, dynamics), space), capacity })
     }
 
     /// Look-ahead for this mission, with labels that are true.
@@ -116,7 +118,7 @@ impl Setup {
         Terms { dynamics, config }: Terms<D, G>,
         policy: Policy,
     ) -> Scc<D, N, H, G> {
-        Scc::new(config, policy, dynamics, Hypotheses::NONE)
+        Scc::of((config, dynamics), policy, Hypotheses::NONE)
     }
 
     /// Look-ahead with labels that may be wrong, with none of its samples yet: the memory for
@@ -153,7 +155,7 @@ impl Setup {
 pub struct Terms<D, G> {
     /// How the vehicle moves.
     pub dynamics: D,
-    /// What the mission fixes beforehand.
+    /// What the mission fixes beforehand, its area less the margin of the tolerance.
     pub config: Config<G>,
 }
 

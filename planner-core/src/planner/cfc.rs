@@ -20,7 +20,7 @@ use crate::geometry::arc::SlopeArc;
 use crate::geometry::area::Area;
 use crate::geometry::region::Region;
 use crate::motion::dynamics::{Dynamics, Pose};
-use crate::planner::config::{Config, Following, first_to_second};
+use crate::planner::config::{Config, ConfigError, Following, first_to_second};
 use crate::planner::snapshot::{NotRestored, Persist, Snapshot};
 use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
 use crate::search::dead_end::DeadEnd;
@@ -69,9 +69,22 @@ pub struct Cfc<D, const N: usize, G = Area> {
 
 impl<D: Dynamics, const N: usize, G: Region> Cfc<D, N, G> {
     /// A planner that knows the oracle's samples; its past label is that of the first of them.
-    pub fn new(config: Config<G>, dynamics: D, space: VersionSpace<N>) -> Self {
+    ///
+    /// # Errors
+    /// [`ConfigError`].
+    pub fn new(
+        config: Config<G>,
+        dynamics: D,
+        space: VersionSpace<N>,
+    ) -> Result<Self, ConfigError> {
+        let config = config.inset_for(&dynamics)?;
+        Ok(Self::of((config, dynamics), space))
+    }
+
+    /// The same of settings that are inset.
+    pub(crate) fn of((config, dynamics): (Config<G>, D), space: VersionSpace<N>) -> Self {
         let past = space.first_label();
-        Self { config: config.inset(), dynamics, space, phase: Phase::Crossing, past }
+        Self { config, dynamics, space, phase: Phase::Crossing, past }
     }
 
     /// Where the algorithm stands.
@@ -233,7 +246,7 @@ mod tests {
             tolerance: Tolerance::NONE,
         };
         let space = VersionSpace::new(&corners.map(sample)).unwrap();
-        Cfc::new(config, Unicycle::paper(), space)
+        Cfc::new(config, Unicycle::paper(), space).unwrap()
     }
 
     fn see<const N: usize>(planner: &mut Cfc<Unicycle, N>, x: f64, z: f64, label: Label) -> Phase {

@@ -57,18 +57,48 @@ pub struct Config<G = Area> {
     pub tolerance: Tolerance,
 }
 
+/// A mission's settings contradict each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum ConfigError {
+    /// The tolerance leaves no place for motions to end: none is as far as this from the border.
+    Tolerance(Tolerance),
+    /// The vehicle's turning circle has no room there.
+    Room(NoRoom),
+}
+
+impl core::fmt::Display for ConfigError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Tolerance(tolerance) => write!(
+                f,
+                "a tolerance of {} m leaves nothing of the area: no place is as far from the border",
+                tolerance.metres()
+            ),
+            Self::Room(none) => none.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for ConfigError {}
+
 impl<G: Region> Config<G> {
     /// Whether a vehicle can move where motions may end.
     ///
     /// # Errors
-    /// [`NoRoom`].
-    pub fn admits<D: Dynamics>(self, dynamics: &D) -> Result<(), NoRoom> {
-        dynamics.fits(self.inset().area.bounds())
+    /// [`ConfigError`].
+    pub fn admits<D: Dynamics>(self, dynamics: &D) -> Result<(), ConfigError> {
+        self.inset_for(dynamics).map(drop)
     }
 
-    /// The same for the area that motions may aim for: all but a margin of the tolerance, if that leaves any.
-    pub(crate) fn inset(self) -> Self {
-        Self { area: self.area.inset(self.tolerance.units()).unwrap_or(self.area), ..self }
+    /// The same for the area that motions aim for, if a vehicle can move there: all but a margin of the tolerance.
+    pub(crate) fn inset_for<D: Dynamics>(self, dynamics: &D) -> Result<Self, ConfigError> {
+        let area = self.area.inset(self.tolerance.units());
+        let area = area.ok_or(ConfigError::Tolerance(self.tolerance))?;
+        dynamics.fits(area.bounds()).map_err(ConfigError::Room)?;
+        Ok(Self { area, ..self })
     }
 
     /// The directions in which P1, or P3, looks for the opposite label when the boundary's slopes lie

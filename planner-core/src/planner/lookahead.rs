@@ -28,7 +28,7 @@ use crate::geometry::area::Area;
 use crate::geometry::region::Region;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Pose, Side};
-use crate::planner::config::Config;
+use crate::planner::config::{Config, ConfigError};
 use crate::planner::snapshot::{NotRestored, Persist, Snapshot};
 use crate::planner::{Motion, Plan, Planner, StopReason};
 use crate::search::dead_end::DeadEnd;
@@ -83,11 +83,16 @@ struct Decision {
 
 impl<D: Dynamics, B: Foresight, G: Region> Lookahead<D, B, G> {
     /// A planner with what is known so far.
-    pub fn new(config: Config<G>, dynamics: D, foresight: B) -> Self {
-        Self::of((config, dynamics), foresight, EVALUATIONS, None)
+    ///
+    /// # Errors
+    /// [`ConfigError`].
+    #[inline] // it is made where it stays, as it may be large
+    pub fn new(config: Config<G>, dynamics: D, foresight: B) -> Result<Self, ConfigError> {
+        let config = config.inset_for(&dynamics)?;
+        Ok(Self::of((config, dynamics), foresight, EVALUATIONS, None))
     }
 
-    /// The same with all that it can be told: it is made where it stays, as it may be large.
+    /// The same of settings that are inset, with all that it can be told.
     #[inline]
     pub(crate) fn of(
         (config, dynamics): (Config<G>, D),
@@ -96,7 +101,7 @@ impl<D: Dynamics, B: Foresight, G: Region> Lookahead<D, B, G> {
         goal: Option<Goal>,
     ) -> Self {
         let goal = goal.map(|goal| goal.in_bounds_of(&config.area));
-        let (bounds, config) = (config.area.bounds(), config.inset());
+        let bounds = config.area.bounds().whole();
         Self { config, bounds, dynamics, foresight, evaluations, goal }
     }
 
@@ -330,7 +335,7 @@ mod tests {
 
         fn true_labels<const N: usize>(self) -> Lookahead<Unicycle, VersionSpace<N>> {
             let space = VersionSpace::new(&self.given()).unwrap();
-            Lookahead::new(config(), Unicycle::paper(), space)
+            Lookahead::new(config(), Unicycle::paper(), space).unwrap()
         }
 
         fn doubtful(self) -> Lookahead<Unicycle, Forecast<36, 529>> {
@@ -340,7 +345,7 @@ mod tests {
                 tolerance: Tolerance::NONE,
             };
             let forecast = Forecast::new(&self.given(), Prior::Area, noise).unwrap();
-            Lookahead::new(config(), Unicycle::paper(), forecast)
+            Lookahead::new(config(), Unicycle::paper(), forecast).unwrap()
         }
 
         /// Makes so many steps with true labels, and has each looked at before.

@@ -33,7 +33,7 @@ use crate::geometry::area::Area;
 use crate::geometry::region::Region;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Pose};
-use crate::planner::config::{Config, Following, first_to_second};
+use crate::planner::config::{Config, ConfigError, Following, first_to_second};
 use crate::planner::snapshot::{NotRestored, Persist, Snapshot};
 use crate::planner::vote::Ballot;
 use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
@@ -76,13 +76,28 @@ pub struct Scc<D, const N: usize, const H: usize, G = Area> {
 
 impl<D: Dynamics, const N: usize, const H: usize, G: Region> Scc<D, N, H, G> {
     /// A planner over a table of hypotheses, whose prior weighs their votes.
+    ///
+    /// # Errors
+    /// [`ConfigError`].
+    #[inline] // it is made where it stays, as it may be large
     pub fn new(
         config: Config<G>,
         policy: Policy,
         dynamics: D,
         hypotheses: Hypotheses<N, H>,
+    ) -> Result<Self, ConfigError> {
+        let config = config.inset_for(&dynamics)?;
+        Ok(Self::of((config, dynamics), policy, hypotheses))
+    }
+
+    /// The same of settings that are inset.
+    #[inline]
+    pub(crate) fn of(
+        (config, dynamics): (Config<G>, D),
+        policy: Policy,
+        hypotheses: Hypotheses<N, H>,
     ) -> Self {
-        Self { config: config.inset(), policy, dynamics, hypotheses }
+        Self { config, policy, dynamics, hypotheses }
     }
 
     /// Begins again, in place, with what other given samples leave: see [`Hypotheses::restart`].

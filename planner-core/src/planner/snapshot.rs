@@ -8,7 +8,7 @@
 //! awake:   let bytes = to_slice(&(agent.pose(), agent.planner.snapshot()), &mut backup)?;
 //! asleep:  power may go; `backup` must not
 //! woken:   let (pose, snapshot) = from_bytes(backup)?;
-//!          let mut planner = Cfc::new(config, dynamics, space);    // as it was made at the start
+//!          let mut planner = Cfc::new(config, dynamics, space)?;    // as it was made at the start
 //!          planner.restore(&snapshot)?;
 //!          let agent = Agent::new(planner, vehicle, pose);
 //! ```

@@ -286,7 +286,7 @@ mod tests {
 
     #[test]
     fn a_mission_is_the_same_with_drivers_that_are_awaited() {
-        missions_are_the_same(Lookahead::new(config(), Unicycle::paper(), known()));
-        missions_are_the_same(Cfc::new(config(), Unicycle::paper(), known()));
+        missions_are_the_same(Lookahead::new(config(), Unicycle::paper(), known()).unwrap());
+        missions_are_the_same(Cfc::new(config(), Unicycle::paper(), known()).unwrap());
     }
 }

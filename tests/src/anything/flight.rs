@@ -65,10 +65,10 @@ pub fn fly(mission: &Mission, most_asked: u64) -> Flight {
     let vehicle = mission.vehicle;
     let fly = Fly { mission, ground: Ground::of(&area), most_asked };
     match (mission.algorithm, mission.is_noisy()) {
-        (Algorithm::Cfc, _) => fly.with(Cfc::new(config, vehicle, mission.lines())),
-        (Algorithm::Scc, _) => fly.with(Scc::new(config, mission.policy, vehicle, mission.table())),
-        (_, true) => fly.with(Lookahead::new(config, vehicle, mission.forecast()).until(mission.goal)),
-        (_, false) => fly.with(Lookahead::new(config, vehicle, mission.lines()).until(mission.goal)),
+        (Algorithm::Cfc, _) => fly.with(Cfc::new(config, vehicle, mission.lines()).expect("settings that agree")),
+        (Algorithm::Scc, _) => fly.with(Scc::new(config, mission.policy, vehicle, mission.table()).expect("settings that agree")),
+        (_, true) => fly.with(Lookahead::new(config, vehicle, mission.forecast()).expect("settings that agree").until(mission.goal)),
+        (_, false) => fly.with(Lookahead::new(config, vehicle, mission.lines()).expect("settings that agree").until(mission.goal)),
     }
 }
 
