@@ -14,7 +14,18 @@ fn rows_without_a_value_are_skipped_and_counted() {
     let rows = rows(60);
     let expected = answer(folder.path(), &plain(&rows), &[]);
     assert_eq!(expected["skipped"], json!({ "rows": 0 }));
-    for gap in ["NaN,2,1", "1,,1", "1,2", "1,2,nan", "-9999,2,1", "1,-9999.0,-1", "1,2,NA", "1,2,null", "n/a,2,1", "1,2,-9999"] {
+    for gap in [
+        "NaN,2,1",
+        "1,,1",
+        "1,2",
+        "1,2,nan",
+        "-9999,2,1",
+        "1,-9999.0,-1",
+        "1,2,NA",
+        "1,2,null",
+        "n/a,2,1",
+        "1,2,-9999",
+    ] {
         // The third row, and the last.
         let mut lines: Vec<_> = plain(&rows).lines().map(str::to_owned).collect();
         lines.insert(3, gap.to_owned());
@@ -71,7 +82,11 @@ fn measured_values_are_labels_by_a_threshold() {
         ("x,z,label\n1,2,yes\n", &["--threshold", "1"], &["s.csv:2", "\"yes\"", "--threshold"]),
         (content, &["--threshold", "9"], &["s.csv", "one label", "--threshold"]),
         (content, &["--threshold", "NaN"], &["--threshold", "finite number"]),
-        ("{\"record\":\"start\",\"oracle\":[],\"p\":1}\n", &["--threshold", "1"], &["--threshold", "trace"]),
+        (
+            "{\"record\":\"start\",\"oracle\":[],\"p\":1}\n",
+            &["--threshold", "1"],
+            &["--threshold", "trace"],
+        ),
     ] {
         fs::write(folder.path().join("s.csv"), content).expect("a file");
         refuses(folder.path(), &[&["replay", "s.csv"], flags].concat(), parts);
@@ -82,7 +97,8 @@ fn measured_values_are_labels_by_a_threshold() {
 fn numbers_may_have_separators_between_thousands() {
     let folder = folder();
     // Positions beyond a thousand metres, with a tenth.
-    let rows: Vec<_> = rows(60).into_iter().map(|([x, z], l)| ([100.0 * x, 100.0 * z], l)).collect();
+    let rows: Vec<_> =
+        rows(60).into_iter().map(|([x, z], l)| ([100.0 * x, 100.0 * z], l)).collect();
     let tenth = |v: f64| format!("{v:.1}");
     let expected = {
         let content = file("x,z,label", &rows, |[x, z], l| format!("{x:.1},{z:.1},{}", sign(l)));
@@ -98,14 +114,25 @@ fn numbers_may_have_separators_between_thousands() {
         format!("{whole}{decimal}{rest}")
     };
     for (group, decimal, delimiter) in [
-        (",", ".", ";"), (".", ",", ";"), (" ", ",", ";"), ("'", ".", ";"), ("\u{a0}", ",", "\t"),
-        ("\u{202f}", ",", "|"), ("\u{2019}", ".", ","), (" ", ".", ","), ("'", ".", " "),
+        (",", ".", ";"),
+        (".", ",", ";"),
+        (" ", ",", ";"),
+        ("'", ".", ";"),
+        ("\u{a0}", ",", "\t"),
+        ("\u{202f}", ",", "|"),
+        ("\u{2019}", ".", ","),
+        (" ", ".", ","),
+        ("'", ".", " "),
     ] {
         let d = delimiter;
         let content = file(&format!("x{d}z{d}label"), &rows, |[x, z], l| {
             format!("{}{d}{}{d}{}", grouped(x, group, decimal), grouped(z, group, decimal), sign(l))
         });
-        assert_eq!(answer(folder.path(), &content, &[]), expected, "{group:?} {decimal:?} {content}");
+        assert_eq!(
+            answer(folder.path(), &content, &[]),
+            expected,
+            "{group:?} {decimal:?} {content}"
+        );
     }
     // In quotes between commas.
     let content = file("x,z,label", &rows, |[x, z], l| {
@@ -118,8 +145,14 @@ fn numbers_may_have_separators_between_thousands() {
     assert_eq!(answer(folder.path(), clear, &[]), answer(folder.path(), plain, &[]));
     for (content, parts) in [
         // Which of the two 1,234 is, and 1.234, nobody knows here.
-        ("x;z;label\n1,234;1;-1\n12.5;2;1\n3;2;1\n", &["s.csv:2", "\"1,234\"", "1234 or 1.234", "line 3"][..]),
-        ("x;z;label\n12,5;1;-1\n1.234;2;1\n3;2;1\n", &["s.csv:3", "\"1.234\"", "1234 or 1.234", "line 2"]),
+        (
+            "x;z;label\n1,234;1;-1\n12.5;2;1\n3;2;1\n",
+            &["s.csv:2", "\"1,234\"", "1234 or 1.234", "line 3"][..],
+        ),
+        (
+            "x;z;label\n12,5;1;-1\n1.234;2;1\n3;2;1\n",
+            &["s.csv:3", "\"1.234\"", "1234 or 1.234", "line 2"],
+        ),
         ("x,z,label\n\"1,234\",1,-1\n12,2,1\n", &["s.csv:2", "\"1,234\"", "1234 or 1.234"]),
         ("x;z;label\n1,234.5;1;-1\n1.234,5;2;1\n", &["s.csv:3", "\"1.234,5\"", "line 2"]),
         ("x;z;label\n1,234.5;1;-1\n12,5;2;1\n", &["s.csv:3", "\"12,5\"", "line 2"]),
@@ -152,9 +185,15 @@ fn an_unknown_column_is_told_by_the_flag_that_names_columns() {
     fs::write(folder.path().join("1_gps.csv"), content).expect("a file");
     for (flags, parts) in [
         (&[][..], &["1_gps.csv:1", "\"Breite,Laenge,oil\"", "--columns"][..]),
-        (&["--columns", "label=oil"], &["1_gps.csv:1", "\"Breite,Laenge,oil\"", "--columns", "lat="]),
+        (
+            &["--columns", "label=oil"],
+            &["1_gps.csv:1", "\"Breite,Laenge,oil\"", "--columns", "lat="],
+        ),
         (&["--columns", "lat=Breite,lon=Länge,label=oil"], &["--columns lon=Länge", "1_gps.csv:1"]),
-        (&["--columns", "lat=Breite,lon=7,label=oil"], &["--columns lon=7", "1_gps.csv:1", "up to 3"]),
+        (
+            &["--columns", "lat=Breite,lon=7,label=oil"],
+            &["--columns lon=7", "1_gps.csv:1", "up to 3"],
+        ),
         (&["--columns", "lat=Breite,lon=Breite,label=oil"], &["--columns", "one column for two"]),
     ] {
         refuses(folder.path(), &[&["replay", "1_gps.csv"], flags].concat(), parts);

@@ -35,7 +35,8 @@ fn read_back(path: &std::path::Path) -> Value {
 #[test]
 fn geojson_points_are_samples() {
     let folder = folder();
-    let table = file("lat,lon,label", &places(), |[lat, lon], l| format!("{lat},{lon},{}", sign(l)));
+    let table =
+        file("lat,lon,label", &places(), |[lat, lon], l| format!("{lat},{lon},{}", sign(l)));
     let expected = answer(folder.path(), &table, &[]);
     let of = |value: &dyn Fn(bool) -> Value, key: &str| {
         let point = |(at, label): &([f64; 2], bool)| point(*at, &json!({ key: value(*label) }));
@@ -58,7 +59,8 @@ fn geojson_points_are_samples() {
     let mut features = kinds[0].0.clone();
     features[4]["properties"]["label"] = Value::Null;
     features[7]["geometry"] = Value::Null;
-    features[9]["geometry"] = json!({ "type": "LineString", "coordinates": [[9.9, 53.5], [9.8, 53.5]] });
+    features[9]["geometry"] =
+        json!({ "type": "LineString", "coordinates": [[9.9, 53.5], [9.8, 53.5]] });
     let content = collection(&features);
     let found = answer(folder.path(), &content, &[]);
     assert_eq!(found["skipped"], json!({ "rows": 3, "first": 5 }));
@@ -79,18 +81,43 @@ fn geojson_that_cannot_be_read_is_refused_by_feature() {
     };
     let at = |x: f64, y: f64| json!({ "type": "Point", "coordinates": [x, y] });
     let mut utm: Value =
-        serde_json::from_str(&one(at(565_000.0, 5_932_000.0), json!({ "label": 1 }))).expect("JSON");
+        serde_json::from_str(&one(at(565_000.0, 5_932_000.0), json!({ "label": 1 })))
+            .expect("JSON");
     utm["crs"] = json!({ "type": "name", "properties": { "name": "urn:ogc:def:crs:EPSG::25832" } });
     let cases: [(String, &[&str], &[&str]); 9] = [
-        (one(at(9.9, 53.5), json!({ "oil": 1, "depth": 2 })), &[], &["s.csv: feature 1", "--columns label=", "oil", "depth"]),
-        (one(at(9.9, 53.5), json!({ "oil": 1 })), &["--columns", "label=wet"], &["--columns label=wet", "oil"]),
-        (one(at(9.9, 53.5), json!({ "label": 3 })), &[], &["s.csv: feature 1: label", "3", "--threshold"]),
+        (
+            one(at(9.9, 53.5), json!({ "oil": 1, "depth": 2 })),
+            &[],
+            &["s.csv: feature 1", "--columns label=", "oil", "depth"],
+        ),
+        (
+            one(at(9.9, 53.5), json!({ "oil": 1 })),
+            &["--columns", "label=wet"],
+            &["--columns label=wet", "oil"],
+        ),
+        (
+            one(at(9.9, 53.5), json!({ "label": 3 })),
+            &[],
+            &["s.csv: feature 1: label", "3", "--threshold"],
+        ),
         (one(at(9.9, 53.5), json!({ "label": [1] })), &[], &["s.csv: feature 1: label", "[1]"]),
-        (one(at(9.9, 53.5), json!({ "label": 1 })), &["--columns", "lat=a,lon=b"], &["--columns", "label=", "GeoJSON"]),
-        (one(at(9.9, 53.5), json!({ "label": 1 })), &["--delimiter", ";"], &["--delimiter", "GeoJSON"]),
+        (
+            one(at(9.9, 53.5), json!({ "label": 1 })),
+            &["--columns", "lat=a,lon=b"],
+            &["--columns", "label=", "GeoJSON"],
+        ),
+        (
+            one(at(9.9, 53.5), json!({ "label": 1 })),
+            &["--delimiter", ";"],
+            &["--delimiter", "GeoJSON"],
+        ),
         (utm.to_string(), &[], &["s.csv", "EPSG:25832", "--crs EPSG:25832"]),
         ("{\"type\":\"FeatureCollection\",\"features\":[".to_owned(), &[], &["s.csv:1", "GeoJSON"]),
-        ("{\"type\":\"Polygon\",\"coordinates\":[]}".to_owned(), &[], &["s.csv", "Polygon", "FeatureCollection"]),
+        (
+            "{\"type\":\"Polygon\",\"coordinates\":[]}".to_owned(),
+            &[],
+            &["s.csv", "Polygon", "FeatureCollection"],
+        ),
     ];
     for (content, flags, parts) in cases {
         fs::write(folder.path().join("s.csv"), content).expect("a file");
@@ -114,7 +141,8 @@ fn gpx(kind: &str, inner: impl Fn(bool) -> String) -> String {
 #[test]
 fn gpx_points_are_samples() {
     let folder = folder();
-    let table = file("lat,lon,label", &places(), |[lat, lon], l| format!("{lat},{lon},{}", sign(l)));
+    let table =
+        file("lat,lon,label", &places(), |[lat, lon], l| format!("{lat},{lon},{}", sign(l)));
     let expected = answer(folder.path(), &table, &[]);
     let answers = |l: bool| if l { "yes" } else { "no" };
     let kinds: [(String, &[&str]); 5] = [
@@ -161,8 +189,16 @@ fn gpx_that_cannot_be_read_is_refused_by_line() {
         (gpx(point), &[], &["s.csv:2", "--columns label=", "name", "sym"]),
         (gpx(point), &["--columns", "label=wet"], &["--columns label=wet", "name", "sym"]),
         (gpx(point), &["--columns", "x=a,z=b,label=name"], &["--columns", "label=", "GPX"]),
-        (gpx("<wpt lon=\"9.9\"><name>yes</name></wpt>"), &["--columns", "label=name"], &["s.csv:2", "lat"]),
-        (gpx("<wpt lat=\"x\" lon=\"9.9\"><name>yes</name></wpt>"), &["--columns", "label=name"], &["s.csv:2", "lat", "\"x\""]),
+        (
+            gpx("<wpt lon=\"9.9\"><name>yes</name></wpt>"),
+            &["--columns", "label=name"],
+            &["s.csv:2", "lat"],
+        ),
+        (
+            gpx("<wpt lat=\"x\" lon=\"9.9\"><name>yes</name></wpt>"),
+            &["--columns", "label=name"],
+            &["s.csv:2", "lat", "\"x\""],
+        ),
         (gpx(""), &[], &["s.csv", "no points", "wpt"]),
         ("<gpx>\n<wpt\n".to_owned(), &[], &["s.csv:", "XML"]),
         ("<kml></kml>".to_owned(), &[], &["s.csv:1", "\"kml\"", "gpx"]),
@@ -242,7 +278,11 @@ fn latitudes_that_look_like_longitudes_are_told() {
     };
     let features: Vec<_> = rows(60).iter().map(feature).collect();
     fs::write(folder.path().join("s.csv"), collection(&features)).expect("a file");
-    refuses(folder.path(), &["replay", "s.csv"], &["s.csv: feature 1: ", "swapped", "longitude first"]);
+    refuses(
+        folder.path(),
+        &["replay", "s.csv"],
+        &["s.csv: feature 1: ", "swapped", "longitude first"],
+    );
     // One bad latitude among good ones is no swap.
     let one = "lat,lon,label\n53.5,9.9,1\n95,9.9,1\n53.5,9.8,-1\n";
     fs::write(folder.path().join("s.csv"), one).expect("a file");
