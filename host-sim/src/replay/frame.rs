@@ -43,11 +43,6 @@ impl Frame {
     ) -> Result<Self> {
         let middle = || bounds(positions).map(|[least, most]| least.midpoint(most).round());
         if let Some(crs) = crs {
-            if is_geographic {
-                bail!(
-                    "--crs {crs}: found latitude and longitude, expected metres (--columns x=TITLE,z=TITLE)"
-                );
-            }
             let origin = origin.unwrap_or_else(middle);
             crs.check(origin)?;
             return Ok(Self::Projected { crs: Box::new(crs.clone()), origin });
@@ -71,7 +66,6 @@ impl Frame {
             Self::Plain => [x, z],
             Self::About([x0, z0]) | Self::Projected { origin: [x0, z0], .. } => [x - x0, z - z0],
             Self::Geographic { ellipsoid, origin: [lat, lon] } => {
-                check_degrees([x, z])?;
                 let (metres, azimuth, ..): (f64, f64, f64, f64) =
                     ellipsoid.inverse(*lat, *lon, x, z);
                 let (sin, cos) = libm::sincos(azimuth.to_radians());
@@ -180,8 +174,11 @@ fn geographic_middle(positions: &[[f64; 2]]) -> [f64; 2] {
     [lat, libm::remainder(lon + first, 360.0)].map(|degrees| (degrees * 1e4).round() / 1e4)
 }
 
-/// Checks latitude and longitude.
-fn check_degrees([lat, lon]: [f64; 2]) -> Result<()> {
+/// Checks a latitude and a longitude.
+///
+/// # Errors
+/// Which of them is none, and what was expected.
+pub(crate) fn check_degrees([lat, lon]: [f64; 2]) -> Result<()> {
     if !(-90.0..=90.0).contains(&lat) {
         bail!("lat: found {lat}, expected a latitude from -90 to 90 degrees");
     }

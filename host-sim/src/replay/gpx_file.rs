@@ -27,11 +27,6 @@ fn pass(
     settled: Option<Decimal>,
 ) -> Result<(Rows, Option<Decimal>)> {
     let wanted = label_name(name, "GPX", layout)?;
-    if let Some(crs) = &layout.crs {
-        bail!(
-            "--crs {crs}: found GPX in {name}, which has latitudes and longitudes, expected metres"
-        );
-    }
     let text = std::str::from_utf8(text)
         .map_err(|error| anyhow!("{name}: expected XML in UTF-8: {error}"))?;
     let document = Document::parse(text)

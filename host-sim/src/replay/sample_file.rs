@@ -6,7 +6,7 @@ use std::path::Path;
 use anyhow::{Result, anyhow, bail};
 use planner_core::belief::sample::{Label, Sample};
 
-use crate::replay::frame::Frame;
+use crate::replay::frame::{Frame, check_degrees};
 use crate::replay::rows::{Layout, Rows, Skipped, Unit};
 use crate::replay::{geojson_file, gpx_file, swapped, table_file, trace_file};
 
@@ -66,10 +66,27 @@ impl SampleFile {
                 unit.name()
             );
         }
-        if rows.is_geographic
-            && let Some((index, why)) = swapped::first(&rows, layout)
+        if rows.is_geographic {
+            if let Some(crs) = &layout.crs {
+                bail!(
+                    "--crs {crs}: found latitude and longitude in {name}, expected metres (--columns x=TITLE,z=TITLE)"
+                );
+            }
+            if let Some((index, why)) = swapped::first(&rows, layout) {
+                bail!("{}: {why}", at(index));
+            }
+            for (index, position) in rows.positions.iter().enumerate() {
+                check_degrees(*position).map_err(|error| anyhow!("{}: {error}", at(index)))?;
+            }
+        }
+        if let (Some(threshold), [first, others @ ..]) = (layout.threshold, &rows.labels[..])
+            && others.iter().all(|label| label == first)
         {
-            bail!("{}: {why}", at(index));
+            let (count, side) =
+                (rows.labels.len(), if first.sign() > 0 { "above" } else { "not above" });
+            bail!(
+                "--threshold {threshold}: all {count} values of {name} are {side} it, expected values on both sides"
+            );
         }
         let frame = Frame::of(&rows.positions, rows.is_geographic, layout)
             .map_err(|error| anyhow!("{name}: {error}"))?;

@@ -80,7 +80,7 @@ fn measured_values_are_labels_by_a_threshold() {
     for (content, flags, parts) in [
         ("x,z,label\n1,2,0.7\n", &[][..], &["s.csv:2", "0.7", "--threshold"][..]),
         ("x,z,label\n1,2,yes\n", &["--threshold", "1"], &["s.csv:2", "\"yes\"", "--threshold"]),
-        (content, &["--threshold", "9"], &["s.csv", "one label", "--threshold"]),
+        (content, &["--threshold", "9"], &["s.csv", "--threshold 9", "both sides"]),
         (content, &["--threshold", "NaN"], &["--threshold", "finite number"]),
         (
             "{\"record\":\"start\",\"oracle\":[],\"p\":1}\n",

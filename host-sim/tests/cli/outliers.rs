@@ -38,12 +38,12 @@ fn rows_that_explain_it_as_well_are_all_named() {
         ("x,z,label\n0,0,1\n1,1,-1\n2,2,1\n5,0,-1\n3,9,1\n", &["s.csv:", "without line"]),
         // The same place and label twice: both go together.
         (
-            "x,z,label\n0,0,-1\n9,0,-1\n4,1,-1\n4,7,-1\n4,7,-1\n0,5,1\n9,5,1\n4,9,1\n",
+            "x,z,label\n0,0,-1\n9,0,-1\n4,1,-1\n4,8,-1\n4,8,-1\n0,5,1\n9,5,1\n0,9,1\n9,9,1\n",
             &["s.csv:5:", "lines 5 and 6", "same position"],
         ),
         // Two wrong labels far apart: no single row explains them.
         (
-            "x,z,label\n0,0,-1\n9,0,-1\n4,1,1\n5,1,1\n4,8,-1\n0,5,1\n9,5,1\n4,9,1\n",
+            "x,z,label\n0,0,-1\n9,0,-1\n4,2,-1\n4,1,1\n4,8,-1\n0,5,1\n9,5,1\n4,9,1\n",
             &["s.csv:", "no single row", "--p"],
         ),
         // Both labels at one place: either may be wrong.
