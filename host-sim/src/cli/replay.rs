@@ -20,11 +20,11 @@ use crate::replay::rows::Layout;
 #[derive(Debug, Args)]
 #[command(after_help = help::REPLAY)]
 pub(crate) struct ReplayArgs {
-    /// The samples: a CSV file with the columns x, z (metres) or lat, lon (degrees) and label, GeoJSON points, GPX, or a trace
-    /// of ours
+    /// The samples: a CSV file with the columns x, z (metres) or lat, lon (degrees) and label, a map of points (`.geojson`), GPX,
+    /// or a trace of ours
     pub(crate) samples: PathBuf,
-    /// Its columns by title or number, as x=easting,z=northing,label=wet or lat=3,lon=4,label=7; of GeoJSON the property
-    /// and of GPX the element that is the label, as label=wet
+    /// Its columns by title or number, as x=easting,z=northing,label=wet or lat=3,lon=4,label=7; for a map of points the
+    /// property, and for GPX the element, that holds the label, as label=wet
     #[arg(long, value_name = "LIST", value_parser = Columns::from_str)]
     pub(crate) columns: Option<Columns>,
     /// What is between them, if it is not clear: comma, semicolon, tab, pipe, space

@@ -2,6 +2,7 @@
 
 use std::fmt;
 use std::str::FromStr;
+use std::sync::Arc;
 
 use anyhow::{Context as _, Result, anyhow, bail};
 use geographiclib_rs::{Geodesic, InverseGeodesic as _};
@@ -12,7 +13,12 @@ use proj4rs::transform::transform;
 #[derive(Clone)]
 pub struct Crs {
     code: u16,
-    proj: Proj,
+    systems: Arc<Systems>,
+}
+
+/// The system, and degrees of WGS84. Each is some 600 bytes.
+struct Systems {
+    own: Proj,
     degrees: Proj,
 }
 
@@ -47,7 +53,7 @@ impl FromStr for Crs {
         if proj.is_geocent() || !proj.has_inverse() || !proj.is_normalized_axis() {
             bail!("EPSG:{code} has other axes than east and north, expected a map in metres");
         }
-        Ok(Self { code, proj, degrees })
+        Ok(Self { code, systems: Arc::new(Systems { own: proj, degrees }) })
     }
 }
 
@@ -70,7 +76,7 @@ impl Crs {
     /// The system does not reach there.
     pub(crate) fn degrees(&self, [x, z]: [f64; 2]) -> Result<[f64; 2]> {
         let mut at = (x, z);
-        let found = transform(&self.proj, &self.degrees, &mut at);
+        let found = transform(&self.systems.own, &self.systems.degrees, &mut at);
         let place = [at.1, at.0].map(f64::to_degrees);
         match found {
             Ok(()) if place.iter().all(|it| it.is_finite()) => Ok(place),

@@ -31,7 +31,7 @@ pub(crate) enum Frame {
     /// Latitude and longitude, degrees, about an origin.
     Geographic { ellipsoid: Box<Geodesic>, origin: [f64; 2] },
     /// Metres of a known system, about an origin.
-    Projected { crs: Box<Crs>, origin: [f64; 2] },
+    Projected { crs: Crs, origin: [f64; 2] },
 }
 
 impl Frame {
@@ -45,7 +45,7 @@ impl Frame {
         if let Some(crs) = crs {
             let origin = origin.unwrap_or_else(middle);
             crs.check(origin)?;
-            return Ok(Self::Projected { crs: Box::new(crs.clone()), origin });
+            return Ok(Self::Projected { crs: crs.clone(), origin });
         }
         if is_geographic {
             let origin = origin.unwrap_or_else(|| geographic_middle(positions));

@@ -31,7 +31,7 @@ const FLOAT32: i32 = 7;
 pub(super) fn of(entity: &Entity, size: f64) -> PointCloud {
     let mut cloud = Cloud { spacing: SPACING * size, data: Vec::new() };
     for line in &entity.lines {
-        let places: Vec<_> = line.points.iter().map(|point| point.place()).collect();
+        let places: Vec<_> = line.points.iter().map(Point::place).collect();
         cloud.strip(&places, line.kind == 1, line.color);
     }
     for triangles in &entity.triangles {
@@ -60,7 +60,7 @@ pub(super) fn of(entity: &Entity, size: f64) -> PointCloud {
 /// The corners of a polygon that is drawn as a fan of triangles about its first corner.
 fn outline(triangles: &Triangles) -> Vec<Place> {
     let corners = triangles.points.chunks_exact(3).enumerate();
-    let corners = corners.flat_map(|(k, corner)| if k == 0 { &corner[..] } else { &corner[2..] });
+    let corners = corners.flat_map(|(k, corner)| if k == 0 { corner } else { &corner[2..] });
     corners.map(Point::place).collect()
 }
 

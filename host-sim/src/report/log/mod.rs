@@ -49,13 +49,12 @@ impl Log {
         self.write(scenes, second, drawn)?;
         for entity in &drawn.entities {
             let topic = format!("/map/{}", entity.id.replace(' ', "_"));
-            let channel = match self.clouds.get(&topic) {
-                Some(channel) => *channel,
-                None => {
-                    let channel = self.channel(&topic, CLOUD)?;
-                    self.clouds.insert(topic, channel);
-                    channel
-                }
+            let channel = if let Some(channel) = self.clouds.get(&topic) {
+                *channel
+            } else {
+                let channel = self.channel(&topic, CLOUD)?;
+                self.clouds.insert(topic, channel);
+                channel
             };
             self.write(channel, second, &cloud::of(entity, size))?;
         }
