@@ -3,7 +3,7 @@
 use anyhow::{Context as _, Result, anyhow, bail};
 use roxmltree::{Document, Node};
 
-use crate::replay::geojson_file::{label_name, no_label};
+use crate::replay::label_name::{label_name, no_label};
 use crate::replay::label_words::LabelWords;
 use crate::replay::missing::is_missing;
 use crate::replay::numbers::{self, Decimal, Numbers};

@@ -12,6 +12,7 @@ pub mod geojson;
 pub mod geojson_file;
 pub mod gpx_file;
 pub mod hull;
+pub mod label_name;
 pub mod label_words;
 pub mod line_posterior;
 pub mod line_set;
