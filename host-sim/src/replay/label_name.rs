@@ -29,6 +29,7 @@ pub(crate) fn no_label(
     layout: &Layout,
     others: &[String],
 ) -> anyhow::Error {
+    let others: Vec<_> = others.iter().map(|other| format!("{other:?}")).collect();
     let others = if others.is_empty() { "nothing".to_owned() } else { others.join(", ") };
     match layout.columns {
         Some(_) => anyhow!(
