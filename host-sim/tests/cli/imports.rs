@@ -63,10 +63,9 @@ fn measured_values_are_labels_by_a_threshold() {
     let rows = rows(60);
     let expected = answer(folder.path(), &plain(&rows), &[]);
     let measured = |above: f64, below: f64| {
-        let content = file("x,z,salinity", &rows, |[x, z], l| {
+        file("x,z,salinity", &rows, |[x, z], l| {
             format!("{x},{z},{}", if l { above } else { below } + x / 1000.0)
-        });
-        content
+        })
     };
     let flags = |threshold: &'static str| ["--columns", "label=salinity", "--threshold", threshold];
     let content = measured(34.2, 33.1);

@@ -5,7 +5,7 @@ use std::fs;
 
 use serde_json::{Value, json};
 
-use crate::recordings::{answer, degrees, file, near, number, rows, sign};
+use crate::recordings::{answer, degrees, file, near, rows, sign};
 use crate::{folder, prints, refuses};
 
 const ORIGIN: [f64; 2] = [53.5334, 9.9424];
@@ -283,5 +283,5 @@ fn latitudes_that_look_like_longitudes_are_told() {
     let one = "lat,lon,label\n53.5,9.9,1\n95,9.9,1\n53.5,9.8,-1\n";
     fs::write(folder.path().join("s.csv"), one).expect("a file");
     refuses(folder.path(), &["replay", "s.csv"], &["s.csv:3: ", "lat: found 95"]);
-    assert!(number(&expected["samples"]) == 60.0);
+    assert_eq!(expected["samples"], 60);
 }

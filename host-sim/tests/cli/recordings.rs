@@ -597,20 +597,3 @@ fn bad_flags_and_files_are_refused_by_what_is_wrong() {
     let args = ["replay", "s.csv", "--delimiter", "comma"];
     refuses(folder.path(), &args, &["s.csv", "a trace", "--delimiter"]);
 }
-
-#[test]
-fn hundreds_of_thousands_of_doubtful_rows_with_a_tolerance_have_an_answer() {
-    let folder = folder();
-    let mut state = 3;
-    let mut content = String::from("x,z,label\n");
-    for _ in 0..400_000 {
-        let [x, z] = [0; 2].map(|_| (random(&mut state) * 100_000.0).round() / 100.0);
-        // Off by some metres, and one label in a hundred wrong.
-        let off = 6.0 * (random(&mut state) + random(&mut state) - 1.0);
-        let label = (z + off > SLOPE * x + 200.0) != (random(&mut state) < 0.01);
-        content += &format!("{x},{z},{}\n", sign(label));
-    }
-    let found = answer(folder.path(), &content, &["--p", "0.99", "--tolerance", "10"]);
-    assert!(hold(&found["slope_arcs"], SLOPE.atan().to_degrees()), "{}", found["slope_arcs"]);
-    near(&found["estimates"]["centre"]["slope"], SLOPE, 2e-3);
-}

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::time::{Duration, Instant};
 
+use crate::recordings::{SLOPE, answer, hold, near, random, sign};
 use crate::{folder, prints, refuses};
 
 #[test]
@@ -198,4 +199,21 @@ fn a_steep_line_is_told_by_where_it_is() {
         let margin = words.lines().find(|line| line.starts_with("maximum margin")).expect("one");
         assert_eq!(margin["maximum margin".len()..].trim(), centre);
     }
+}
+
+#[test]
+fn hundreds_of_thousands_of_doubtful_rows_with_a_tolerance_have_an_answer() {
+    let folder = folder();
+    let mut state = 3;
+    let mut rows = String::from("x,z,label\n");
+    for _ in 0..400_000 {
+        let [x, z] = [0; 2].map(|_| (random(&mut state) * 100_000.0).round() / 100.0);
+        // Off by some metres, and one label in a hundred wrong.
+        let off = 6.0 * (random(&mut state) + random(&mut state) - 1.0);
+        let label = (z + off > SLOPE * x + 200.0) != (random(&mut state) < 0.01);
+        writeln!(rows, "{x},{z},{}", sign(label)).expect("a string");
+    }
+    let found = answer(folder.path(), &rows, &["--p", "0.99", "--tolerance", "10"]);
+    assert!(hold(&found["slope_arcs"], SLOPE.atan().to_degrees()), "{}", found["slope_arcs"]);
+    near(&found["estimates"]["centre"]["slope"], SLOPE, 2e-3);
 }
