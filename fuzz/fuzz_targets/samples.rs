@@ -2,11 +2,13 @@
 //! Recorded samples: what they determine has every sample on its side, or one line says what is wrong and
 //! where.
 
+use host_sim::replay::answer::Trust;
 use host_sim::replay::record::Replay;
+use host_sim::replay::rows::Layout;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &[u8]| {
-    match Replay::parse("it.csv", text) {
+    match Replay::parse("it.csv", text, &Layout::default(), Trust::default()) {
         Ok(replay) => {
             let record = serde_json::to_value(replay.record()).expect("a plain structure");
             let (samples, matter) = (record["samples"].as_u64(), record["matter"].as_u64());

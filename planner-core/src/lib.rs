@@ -129,7 +129,7 @@
 //!
 //! - Algorithm 1 takes labels to be true. A sample that contradicts a region of certainty is a typed
 //!   error ([`belief::Refused`]) and leaves the planner as it was.
-//! - Positions lie within 8,192 m of the origin, one motion is shorter than 100 m, and a buffer holds
+//! - Positions lie within 8,192 m of the origin, one motion is shorter than 3,000 m, and a buffer holds
 //!   3 to 128 samples.
 //! - The boundary is one straight line. P1 and P2 look one step ahead, look-ahead two.
 

@@ -7,7 +7,6 @@ use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::Mission;
 use host_sim::world::World;
 use nalgebra::{Point2, Vector2};
-use planner_core::belief::Belief as _;
 use planner_core::belief::sample::Sample;
 use planner_core::belief::version_space::VersionSpace;
 use planner_core::geometry::area::Area;

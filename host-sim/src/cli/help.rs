@@ -56,7 +56,10 @@ Examples:
   host-sim replay samples.csv
   host-sim replay samples.csv --figure samples.svg --format json
   host-sim replay survey.csv --columns x=easting,z=northing,label=wet
-  host-sim replay boat.csv --columns label=oil --p 0.95 --tolerance 4.5 --geojson oil.geojson";
+  host-sim replay boat.csv --columns label=oil --p 0.95 --tolerance 4.5 --geojson oil.geojson
+  host-sim replay salinity.csv --columns label=psu --threshold 34    above 34 is +1
+  host-sim replay utm.csv --crs EPSG:25832 --geojson line.geojson    metres of UTM zone 32
+  host-sim replay track.gpx --columns label=name                     <name>yes</name> at each point";
 
 pub(crate) const CAMPAIGN: &str = "\
 Examples:

@@ -12,6 +12,7 @@ use crate::cli::help;
 use crate::output::file::{json, prepare};
 use crate::replay::answer::Trust;
 use crate::replay::columns::Columns;
+use crate::replay::crs::Crs;
 use crate::replay::delimiter::Delimiter;
 use crate::replay::record::Replay;
 use crate::replay::rows::Layout;
@@ -19,14 +20,25 @@ use crate::replay::rows::Layout;
 #[derive(Debug, Args)]
 #[command(after_help = help::REPLAY)]
 pub(crate) struct ReplayArgs {
-    /// The samples: a CSV file with the columns x, z (metres) or lat, lon (degrees) and label, or a trace of ours
+    /// The samples: a CSV file with the columns x, z (metres) or lat, lon (degrees) and label, a map of points (`.geojson`), GPX,
+    /// or a trace of ours
     pub(crate) samples: PathBuf,
-    /// Its columns by title or number, as x=easting,z=northing,label=wet or lat=3,lon=4,label=7
+    /// Its columns by title or number, as x=easting,z=northing,label=wet or lat=3,lon=4,label=7; for a map of points the
+    /// property, and for GPX the element, that holds the label, as label=wet
     #[arg(long, value_name = "LIST", value_parser = Columns::from_str)]
     pub(crate) columns: Option<Columns>,
     /// What is between them, if it is not clear: comma, semicolon, tab, pipe, space
     #[arg(long, value_name = "NAME", value_parser = Delimiter::from_str)]
     pub(crate) delimiter: Option<Delimiter>,
+    /// Labels are measured values: above this they are +1, else -1
+    #[arg(long, value_name = "V", value_parser = threshold, allow_hyphen_values = true)]
+    pub(crate) threshold: Option<f64>,
+    /// Refuse a row without a position or a label; else such rows are skipped and counted
+    #[arg(long)]
+    pub(crate) strict: bool,
+    /// The system that metres are of, such as EPSG:25832 (UTM zone 32), so that they have a place on a map
+    #[arg(long, value_name = "EPSG:N", value_parser = Crs::from_str)]
+    pub(crate) crs: Option<Crs>,
     /// Take positions about this place, in the file's own coordinates; the middle of the data where they are far away
     #[arg(long, value_name = "X,Z", value_parser = origin, allow_hyphen_values = true)]
     pub(crate) origin: Option<[f64; 2]>,
@@ -39,7 +51,7 @@ pub(crate) struct ReplayArgs {
     /// Write a figure here
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) figure: Option<PathBuf>,
-    /// Write the answer for a map here; positions are to be latitude and longitude
+    /// Write the answer for a map here; positions are to be latitude and longitude, or metres with --crs
     #[arg(long, value_name = "FILE.geojson")]
     pub(crate) geojson: Option<PathBuf>,
     /// What to print
@@ -51,6 +63,11 @@ fn origin(text: &str) -> Result<[f64; 2]> {
     let number = |part: &str| part.trim().parse::<f64>().ok().filter(|value| value.is_finite());
     let pair = text.split_once(',').and_then(|(a, b)| Some([number(a)?, number(b)?]));
     pair.context("expected two numbers with a comma between")
+}
+
+fn threshold(text: &str) -> Result<f64> {
+    let value = text.parse::<f64>().ok().filter(|value| value.is_finite());
+    value.context("expected a finite number")
 }
 
 fn probability(text: &str) -> Result<f64> {
@@ -69,8 +86,14 @@ fn tolerance(text: &str) -> Result<f64> {
 pub(crate) fn replay(args: &ReplayArgs) -> Result<String> {
     let asked = [("--figure", args.figure.as_deref()), ("--geojson", args.geojson.as_deref())];
     let [figure, geojson] = prepare(&[("the samples", &args.samples)], asked)?;
-    let layout =
-        Layout { columns: args.columns.clone(), delimiter: args.delimiter, origin: args.origin };
+    let layout = Layout {
+        columns: args.columns.clone(),
+        delimiter: args.delimiter,
+        origin: args.origin,
+        crs: args.crs.clone(),
+        threshold: args.threshold,
+        strict: args.strict,
+    };
     let trust = Trust { p: args.p, tolerance: args.tolerance.unwrap_or(0.0) };
     let replay = Replay::read(&args.samples, &layout, trust)?;
     // Both are made before either is written.

@@ -9,14 +9,15 @@ use planner_core::geometry::line::Line;
 
 use crate::mission::read_out::LEVEL;
 use crate::replay::doubt::{Doubt, Votes};
-use crate::replay::hull::in_order;
+use crate::replay::hull::{Row, in_order};
 use crate::replay::line_posterior::{Cell, LinePosterior, TooOpen};
 use crate::replay::line_set::{self, ByNormal, intercepts, slope_arcs};
+use crate::replay::outlier::{Repeats, outliers};
 use crate::replay::patch::Mass;
 use crate::replay::sample_file::SampleFile;
-use crate::replay::separation::Separation;
+use crate::replay::separation::{self, Separation};
 use crate::replay::shortest_pairs::bisector;
-use crate::replay::tolerant::{NoSeparation, TolerantSeparation};
+use crate::replay::tolerant::{self, NoSeparation, TolerantSeparation};
 use crate::report::picture::area_around;
 use crate::world::polygon::Polygon;
 
@@ -90,10 +91,10 @@ impl Answer {
 fn exact(file: &SampleFile) -> Result<Answer> {
     let rows = in_order(&file.samples);
     let lines = Separation::of(&file.samples, &rows).map_err(|why| match why {
-        NoVersionSpace::NotSeparable(index) => anyhow!(
-            "{}: no line separates this sample from those above it by their labels",
-            file.place(index)
-        ),
+        NoVersionSpace::NotSeparable(index) => {
+            let outliers = outliers(&file.samples, &rows, separation::are_separable);
+            contradiction(file, index, &outliers, "")
+        }
         why => {
             anyhow!("{}: {why}; expected samples of both labels, not all on one line", file.name)
         }
@@ -114,10 +115,12 @@ fn exact(file: &SampleFile) -> Result<Answer> {
 fn tolerant(file: &SampleFile, tolerance: f64) -> Result<Answer> {
     let rows = in_order(&file.samples);
     let lines = TolerantSeparation::of(&file.samples, &rows, tolerance).map_err(|why| match why {
-        NoSeparation::Contradiction(index) => anyhow!(
-            "{}: no line separates this sample from those above it by their labels, wherever within {tolerance} m they are",
-            file.place(index)
-        ),
+        NoSeparation::Contradiction(index) => {
+            let are_separable = |rows: &[Row]| tolerant::are_separable(rows, tolerance);
+            let outliers = outliers(&file.samples, &rows, are_separable);
+            let within = format!(", wherever within {tolerance} m they are");
+            contradiction(file, index, &outliers, &within)
+        }
         NoSeparation::OneLabel => {
             anyhow!("{}: the samples share one label; expected samples of both labels", file.name)
         }
@@ -137,6 +140,52 @@ fn tolerant(file: &SampleFile, tolerance: f64) -> Result<Answer> {
         doubt: None,
         bounds: lines.bounds(),
     })
+}
+
+/// No line agrees with the samples up to one; without some of them, each alone, one would.
+fn contradiction(
+    file: &SampleFile,
+    index: usize,
+    outliers: &[Repeats],
+    within: &str,
+) -> anyhow::Error {
+    const DOUBT: &str = "say by --p how often labels are right";
+    let unit = file.unit.name();
+    let named = |rows: &Repeats| {
+        let lines: Vec<_> = rows.iter().map(|row| file.line(*row).to_string()).collect();
+        match &lines[..] {
+            [one] => format!("{unit} {one}"),
+            several => {
+                format!("{unit}s {} (of the same position and label)", several.join(" and "))
+            }
+        }
+    };
+    let none = format!("no line separates this sample from those above it by their labels{within}");
+    let others = |rows: &Repeats| file.samples.len() - rows.len();
+    match outliers {
+        [] => anyhow!("{}: {none}, and no single row is to blame; {DOUBT}", file.place(index)),
+        [rows] if rows.len() == 1 => anyhow!(
+            "{}: no line separates this sample from the others by their labels{within}, but without this row one separates \
+             the other {}; correct or remove it, or {DOUBT}",
+            file.place(rows[0]),
+            others(rows)
+        ),
+        [rows] => anyhow!(
+            "{}: no line separates this sample from the others by their labels{within}, but without {} one separates the \
+             other {}; correct or remove them, or {DOUBT}",
+            file.place(rows[0]),
+            named(rows),
+            others(rows)
+        ),
+        several => {
+            let named: Vec<_> = several.iter().map(named).collect();
+            anyhow!(
+                "{}: {none}; one does without {}; or {DOUBT}",
+                file.place(index),
+                named.join(", or without ")
+            )
+        }
+    }
 }
 
 fn doubted(file: &SampleFile, p: f64, tolerance: Option<f64>) -> Result<Answer> {

@@ -100,17 +100,31 @@ const fn roles(is_geographic: bool) -> [Role; 2] {
 }
 
 impl Columns {
-    /// Where the first row of a file says that they are; `is_number` says whether a field is one.
+    /// The name of the label's column, where one says it.
+    pub(crate) fn label(&self) -> Option<&str> {
+        self.title(Role::Label)
+    }
+
+    /// Whether columns of positions are named.
+    pub(crate) fn name_positions(&self) -> bool {
+        self.named.iter().any(|(role, _)| *role != Role::Label)
+    }
+
+    fn title(&self, role: Role) -> Option<&str> {
+        self.named.iter().find(|(named, _)| *named == role).map(|(_, title)| title.as_str())
+    }
+
+    /// Where the first row of a file says that they are, at some place; `is_value` says whether a field is no title.
     ///
     /// # Errors
-    /// What was found and what was expected.
+    /// Names the place, or the flag, what was found and what was expected.
     pub(crate) fn places(
         &self,
+        at: &str,
         first: &[&str],
-        is_number: impl Fn(&str) -> bool,
+        is_value: impl Fn(&str) -> bool,
     ) -> Result<Places> {
-        let titles: Vec<_> =
-            first.iter().map(|it| it.trim_start_matches('\u{feff}').trim()).collect();
+        let titles: Vec<_> = first.iter().map(|it| it.trim()).collect();
         let is_geographic = self.is_geographic(&titles);
         let [first, second] = roles(is_geographic);
         let wanted = [first, second, Role::Label];
@@ -118,24 +132,25 @@ impl Columns {
         let mut places = [0; 3];
         let mut all_by_number = true;
         for (role, place) in wanted.into_iter().zip(&mut places) {
-            let (found, by_number) = self.place(role, &titles, &expected)?;
+            let (found, by_number) = self.place(at, role, &titles, &expected)?;
             if !by_number && titles[found + 1..].contains(&titles[found]) {
                 let title = titles[found];
-                bail!("found the column {title} twice, expected each of {expected} once");
+                bail!("{at}: found the column {title} twice, expected each of {expected} once");
             }
             *place = found;
             all_by_number &= by_number;
         }
         let [a, b, label] = places;
         if a == b || a == label || b == label {
-            bail!("found one column for two of {expected}, expected a column for each");
+            bail!(
+                "--columns: found one column for two of {expected} at {at}, expected a column for each"
+            );
         }
         // Without a header, what stands in the columns is not a title.
-        let has_header = !(all_by_number && [a, b].iter().any(|place| is_number(titles[*place])));
-        if !has_header
-            && let Some(bad) = [a, b].into_iter().find(|place| !is_number(titles[*place]))
+        let has_header = !(all_by_number && [a, b].iter().any(|place| is_value(titles[*place])));
+        if !has_header && let Some(bad) = [a, b].into_iter().find(|place| !is_value(titles[*place]))
         {
-            bail!("found {:?}, expected a finite number in column {}", titles[bad], bad + 1);
+            bail!("{at}: found {:?}, expected a finite number in column {}", titles[bad], bad + 1);
         }
         Ok(Places { position: [a, b], label, is_geographic, has_header })
     }
@@ -150,23 +165,38 @@ impl Columns {
     }
 
     /// The column of a role, and whether it is known by its number alone.
-    fn place(&self, role: Role, titles: &[&str], expected: &str) -> Result<(usize, bool)> {
+    fn place(
+        &self,
+        at: &str,
+        role: Role,
+        titles: &[&str],
+        expected: &str,
+    ) -> Result<(usize, bool)> {
         let header = || titles.join(",");
-        let Some((_, title)) = self.named.iter().find(|(named, _)| *named == role) else {
+        let Some(title) = self.title(role) else {
             let place = titles.iter().position(|title| role.is_usual(title));
-            if let ([one], None) = (titles, place)
-                && !one.is_empty()
-            {
-                bail!("found the one column {one:?}, expected {expected}");
-            }
-            let place = place
-                .ok_or_else(|| anyhow!("found the header {:?}, expected {expected}", header()))?;
+            let place = place.ok_or_else(|| {
+                let found = match titles {
+                    [one] if !one.is_empty() => format!("the one column {one:?}"),
+                    _ => format!("the header {:?}", header()),
+                };
+                // Positions may as well be of the other kind, unless one of this kind is named.
+                let either = if self.name_positions() || role == Role::Label {
+                    expected.to_owned()
+                } else {
+                    format!("{expected}, or lat,lon,label")
+                };
+                anyhow!(
+                    "{at}: found {found}, expected {either}; other columns are named by {}",
+                    self.example(role)
+                )
+            })?;
             if let Some(again) = titles[place + 1..].iter().find(|title| role.is_usual(title)) {
-                bail!("found the column {again} twice, expected each of {expected} once");
+                bail!("{at}: found the column {again} twice, expected each of {expected} once");
             }
             return Ok((place, false));
         };
-        if let Some(place) = titles.iter().position(|other| other == title) {
+        if let Some(place) = titles.iter().position(|other| *other == title) {
             // A number may be what stands there, in a file without titles.
             if title.parse::<f64>().is_err() {
                 return Ok((place, false));
@@ -174,13 +204,31 @@ impl Columns {
         }
         let number = title.parse::<usize>().ok().filter(|n| (1..=titles.len()).contains(n));
         let place = number.ok_or_else(|| {
-            let count = titles.len();
-            let role = role.name();
+            let (count, role) = (titles.len(), role.name());
             anyhow!(
-                "found the columns {:?}, expected {title:?} among them for {role}, or a number up to {count}",
+                "--columns {role}={title}: found the columns {:?} at {at}, expected {title:?} among them for {role}, or a number up to {count}",
                 header()
             )
         })?;
         Ok((place - 1, true))
+    }
+
+    /// How one names the columns of a file that has other titles.
+    fn example(&self, role: Role) -> String {
+        let named = self.named.iter().map(|(role, title)| format!("{}={title}", role.name()));
+        let named: Vec<_> = named.collect();
+        match role {
+            Role::Label => "--columns label=TITLE".to_owned(),
+            _ if named.is_empty() => {
+                "--columns lat=TITLE,lon=TITLE,label=TITLE, or x=...,z=...,label=...".to_owned()
+            }
+            _ if self.name_positions() => {
+                format!("--columns {},{}=TITLE", named.join(","), role.name())
+            }
+            _ => {
+                let named = named.join(",");
+                format!("--columns lat=TITLE,lon=TITLE,{named} or x=TITLE,z=TITLE,{named}")
+            }
+        }
     }
 }

@@ -1,6 +1,5 @@
 //! What stands between the fields of a row.
 
-use std::borrow::Cow;
 use std::str::FromStr;
 
 use anyhow::{Result, bail};
@@ -48,19 +47,5 @@ impl Delimiter {
             Self::Pipe => b'|',
             Self::Space => b' ',
         }
-    }
-
-    /// A finite number; where fields do not end at commas it may have a decimal one.
-    pub(crate) fn number(self, field: &str) -> Option<f64> {
-        let has_decimal_comma = self != Self::Comma && field.contains(',');
-        let text = if has_decimal_comma {
-            if field.contains('.') {
-                return None;
-            }
-            Cow::Owned(field.replacen(',', ".", 1))
-        } else {
-            Cow::Borrowed(field)
-        };
-        text.parse().ok().filter(|value: &f64| value.is_finite())
     }
 }

@@ -17,10 +17,12 @@ pub(crate) struct Doubt {
 }
 
 /// How positions are spread.
-#[derive(Clone, Copy, Debug)]
+#[derive(Debug)]
 struct Blur {
     /// Standard deviation, metres.
     sigma: f64,
+    /// What a label +1 tells, by the distance in deviations: from -[`FAR`] on, [`NODES`] a deviation.
+    told: Vec<Told>,
     /// By bins of the distance in deviations, about 0: what the first and the second derivative of the logarithm by the
     /// distance in metres are at most there, whichever the label.
     bounds: [[f64; 2]; BINS],
@@ -31,6 +33,9 @@ const BINS: usize = 28;
 
 /// Places in each at which the bounds are found.
 const STEPS: usize = 100;
+
+/// Places a deviation at which what a label tells is tabulated: between them it is a cubic polynomial, to some 1e-9.
+const NODES: f64 = 128.0;
 
 /// The labels recorded at one position.
 #[derive(Clone, Copy, Debug)]
@@ -68,25 +73,25 @@ impl Doubt {
     /// Labels that are true with a probability, and positions that are off by a tolerance in metres at most, which is
     /// three deviations.
     pub(crate) fn new(p: f64, tolerance: Option<f64>) -> Self {
-        let mut doubt = Self { p, blur: None };
-        let Some(tolerance) = tolerance else { return doubt };
+        let Some(tolerance) = tolerance else { return Self { p, blur: None } };
         let sigma = tolerance / 3.0;
-        let mut blur = Blur { sigma, bounds: [[0.0; 2]; BINS] };
-        doubt.blur = Some(blur);
+        let exactly = |t: f64| blurred_label(p, sigma, t);
         let step = 0.5 / STEPS as f64;
-        let slope = |k: usize| doubt.label(sigma * (k as f64 * step - FAR)).slope;
+        let slope = |k: usize| exactly(k as f64 * step - FAR).slope;
+        let mut bounds = [[0.0; 2]; BINS];
         for k in 0..BINS * STEPS {
             let (here, next) = (slope(k), slope(k + 1));
             // The maxima lie between the steps, by less than a hundredth above.
             let found = [1.01 * here.max(next), 1.01 * (next - here).abs() / (step * sigma)];
             // Of the other label it is the mirror image.
             for bin in [k / STEPS, BINS - 1 - k / STEPS] {
-                let [steepest, sharpest] = &mut blur.bounds[bin];
+                let [steepest, sharpest]: &mut [f64; 2] = &mut bounds[bin];
                 (*steepest, *sharpest) = (steepest.max(found[0]), sharpest.max(found[1]));
             }
         }
-        doubt.blur = Some(blur);
-        doubt
+        let nodes = (2.0 * FAR * NODES) as usize;
+        let told = (0..=nodes).map(|k| exactly(k as f64 / NODES - FAR)).collect();
+        Self { p, blur: Some(Blur { sigma, told, bounds }) }
     }
 
     /// What a wrong label takes: the logarithm of the odds.
@@ -96,13 +101,13 @@ impl Doubt {
 
     /// How far from a line positions tell no side for certain; 0 where they are true.
     pub(crate) fn blurred_within(&self) -> f64 {
-        self.blur.map_or(0.0, |blur| FAR * blur.sigma)
+        self.blur.as_ref().map_or(0.0, |blur| FAR * blur.sigma)
     }
 
     /// Bounds of the first and the second derivative by the distance, for a label of lines so far from it, or nearer or
     /// further by no more than `spread`, metres.
     pub(crate) fn bounds(&self, distance: f64, spread: f64) -> [f64; 2] {
-        let Some(Blur { sigma, bounds }) = self.blur else { return [0.0; 2] };
+        let Some(Blur { sigma, bounds, .. }) = &self.blur else { return [0.0; 2] };
         let bin = |at: f64| ((at / sigma + FAR) * 2.0).clamp(0.0, BINS as f64 - 1.0) as usize;
         let within = &bounds[bin(distance - spread)..=bin(distance + spread)];
         within.iter().fold([0.0; 2], |[a, b]: [f64; 2], it| [a.max(it[0]), b.max(it[1])])
@@ -110,24 +115,27 @@ impl Doubt {
 
     /// A label +1 of a line that has its position so many metres on its +1 side.
     fn label(&self, distance: f64) -> Told {
-        let Some(Blur { sigma, .. }) = self.blur else {
-            let log = if distance >= 0.0 { 0.0 } else { -self.odds() };
-            return Told { log, slope: 0.0 };
-        };
-        let t = distance / sigma;
-        let gain = 2.0 * self.p - 1.0;
-        let chance = 1.0 - self.p + gain * normal_integral(t);
-        Told { log: libm::log(chance / self.p), slope: gain * normal_density(t) / (sigma * chance) }
+        match &self.blur {
+            None => {
+                let log = if distance >= 0.0 { 0.0 } else { -self.odds() };
+                Told { log, slope: 0.0 }
+            }
+            Some(blur) => blur.label(distance),
+        }
     }
 
     /// All labels of a position near a line, so many metres on its +1 side.
     pub(crate) fn near(&self, votes: &Votes, distance: f64) -> Told {
-        let (plus, minus) = (self.label(distance), self.label(-distance));
-        let [positive, negative] = [votes.positive, votes.negative].map(f64::from);
-        Told {
-            log: positive * plus.log + negative * minus.log,
-            slope: positive * plus.slope - negative * minus.slope,
+        let mut told = Told::default();
+        for (count, side) in [(votes.positive, 1.0), (votes.negative, -1.0)] {
+            // Nearly all positions have one label.
+            if count > 0 {
+                let label = self.label(side * distance);
+                told.log += f64::from(count) * label.log;
+                told.slope += side * f64::from(count) * label.slope;
+            }
         }
+        told
     }
 
     /// All labels of a position that is on a side of a line for certain.
@@ -137,6 +145,30 @@ impl Doubt {
         }
         let wrong = if side == Label::Positive { votes.negative } else { votes.positive };
         if wrong == 0 { 0.0 } else { -f64::from(wrong) * self.odds() }
+    }
+}
+
+/// A label +1 that is true with a probability, of a position so many deviations on the +1 side of a line.
+fn blurred_label(p: f64, sigma: f64, t: f64) -> Told {
+    let gain = 2.0 * p - 1.0;
+    let chance = 1.0 - p + gain * normal_integral(t);
+    Told { log: libm::log(chance / p), slope: gain * normal_density(t) / (sigma * chance) }
+}
+
+impl Blur {
+    /// The same from the table, by the distance in metres.
+    fn label(&self, distance: f64) -> Told {
+        let at = ((distance / self.sigma + FAR) * NODES).clamp(0.0, (self.told.len() - 1) as f64);
+        let k = (at as usize).min(self.told.len() - 2);
+        let (from, to) = (self.told[k], self.told[k + 1]);
+        // Hermite's cubic polynomial through both values and slopes.
+        let (u, apart) = (at - k as f64, self.sigma / NODES);
+        let (rise, first, last) = (to.log - from.log, apart * from.slope, apart * to.slope);
+        let (b, c) = (3.0 * rise - 2.0 * first - last, first + last - 2.0 * rise);
+        Told {
+            log: from.log + u * (first + u * (b + u * c)),
+            slope: (first + u * (2.0 * b + 3.0 * u * c)) / apart,
+        }
     }
 }
 
@@ -183,5 +215,25 @@ impl Votes {
             }
         }
         Ok(all)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_table_of_what_a_label_tells_is_as_good_as_the_formula() {
+        for (p, tolerance) in [(0.6, 0.3), (0.99, 10.0), (0.999_999, 2.0)] {
+            let sigma = tolerance / 3.0;
+            let doubt = Doubt::new(p, Some(tolerance));
+            // Beyond, a position is on its side for certain.
+            for k in -7_000..=7_000 {
+                let t = f64::from(k) / 1_000.0;
+                let (found, wanted) = (doubt.label(t * sigma), blurred_label(p, sigma, t));
+                assert!((found.log - wanted.log).abs() < 1e-7, "{p}: {t}");
+                assert!((found.slope - wanted.slope).abs() * sigma < 1e-5, "{p}: {t}");
+            }
+        }
     }
 }

@@ -12,6 +12,9 @@ use nalgebra::Point2;
 use planner_core::geometry::lattice::{LIMIT, Site, UNITS_PER_METRE};
 use planner_core::geometry::line::Line;
 
+use crate::replay::crs::Crs;
+use crate::replay::rows::Layout;
+
 /// How far the lattice reaches, metres.
 const REACH: f64 = LIMIT as f64 / UNITS_PER_METRE as f64;
 
@@ -27,6 +30,8 @@ pub(crate) enum Frame {
     About([f64; 2]),
     /// Latitude and longitude, degrees, about an origin.
     Geographic { ellipsoid: Box<Geodesic>, origin: [f64; 2] },
+    /// Metres of a known system, about an origin.
+    Projected { crs: Crs, origin: [f64; 2] },
 }
 
 impl Frame {
@@ -34,20 +39,24 @@ impl Frame {
     pub(crate) fn of(
         positions: &[[f64; 2]],
         is_geographic: bool,
-        origin: Option<[f64; 2]>,
+        &Layout { origin, ref crs, .. }: &Layout,
     ) -> Result<Self> {
+        let middle = || bounds(positions).map(|[least, most]| least.midpoint(most).round());
+        if let Some(crs) = crs {
+            let origin = origin.unwrap_or_else(middle);
+            crs.check(origin)?;
+            return Ok(Self::Projected { crs: crs.clone(), origin });
+        }
         if is_geographic {
             let origin = origin.unwrap_or_else(|| geographic_middle(positions));
-            check(origin).map_err(|error| anyhow!("the origin: {error}"))?;
+            check_degrees(origin).map_err(|error| anyhow!("the origin: {error}"))?;
             return Ok(Self::Geographic { ellipsoid: Box::new(Geodesic::wgs84()), origin });
         }
         let is_near = |at: &[f64; 2]| Site::try_from(Point2::from(*at)).is_ok();
         Ok(match origin {
             Some(origin) => Self::About(origin),
             None if positions.len() < FEWEST || positions.iter().all(is_near) => Self::Plain,
-            None => {
-                Self::About(bounds(positions).map(|[least, most]| least.midpoint(most).round()))
-            }
+            None => Self::About(middle()),
         })
     }
 
@@ -55,9 +64,8 @@ impl Frame {
     pub(crate) fn site(&self, [x, z]: [f64; 2]) -> Result<Site> {
         let at = match self {
             Self::Plain => [x, z],
-            Self::About([x0, z0]) => [x - x0, z - z0],
+            Self::About([x0, z0]) | Self::Projected { origin: [x0, z0], .. } => [x - x0, z - z0],
             Self::Geographic { ellipsoid, origin: [lat, lon] } => {
-                check([x, z])?;
                 let (metres, azimuth, ..): (f64, f64, f64, f64) =
                     ellipsoid.inverse(*lat, *lon, x, z);
                 let (sin, cos) = libm::sincos(azimuth.to_radians());
@@ -66,7 +74,9 @@ impl Frame {
         };
         Site::try_from(Point2::from(at)).map_err(|error| match self {
             Self::Plain => anyhow!("({x}, {z}): {error}"),
-            Self::About([a, b]) | Self::Geographic { origin: [a, b], .. } => anyhow!(
+            Self::About([a, b])
+            | Self::Geographic { origin: [a, b], .. }
+            | Self::Projected { origin: [a, b], .. } => anyhow!(
                 "({x}, {z}): found {:.0} m from the origin ({a}, {b}), expected less than {REACH} m along each axis",
                 libm::hypot(at[0], at[1])
             ),
@@ -77,7 +87,9 @@ impl Frame {
     pub(crate) const fn origin(&self) -> Option<[f64; 2]> {
         match self {
             Self::Plain => None,
-            Self::About(origin) | Self::Geographic { origin, .. } => Some(*origin),
+            Self::About(origin)
+            | Self::Geographic { origin, .. }
+            | Self::Projected { origin, .. } => Some(*origin),
         }
     }
 
@@ -89,14 +101,38 @@ impl Frame {
     pub(crate) fn recorded(&self, at: Point2<f64>) -> [f64; 2] {
         match self {
             Self::Plain => at.into(),
-            Self::About([x, z]) => [at.x + x, at.y + z],
+            Self::About([x, z]) | Self::Projected { origin: [x, z], .. } => [at.x + x, at.y + z],
             Self::Geographic { ellipsoid, origin: [lat, lon] } => {
                 let azimuth = libm::atan2(at.x, at.y).to_degrees();
                 let (lat, lon): (f64, f64) =
                     ellipsoid.direct(*lat, *lon, azimuth, libm::hypot(at.x, at.y));
-                // To a tenth of a millimetre.
-                [lat, lon].map(|degrees| (degrees * 1e9).round() / 1e9)
+                [lat, lon].map(to_grain)
             }
+        }
+    }
+
+    /// The system that metres are of, where it is known.
+    pub(crate) fn crs(&self) -> Option<&Crs> {
+        match self {
+            Self::Projected { crs, .. } => Some(crs),
+            _ => None,
+        }
+    }
+
+    /// Whether positions have a latitude and a longitude.
+    pub(crate) fn is_on_globe(&self) -> bool {
+        matches!(self, Self::Geographic { .. } | Self::Projected { .. })
+    }
+
+    /// Latitude and longitude of a position.
+    ///
+    /// # Errors
+    /// Metres have none by themselves.
+    pub(crate) fn degrees(&self, at: Point2<f64>) -> Result<[f64; 2]> {
+        match self {
+            Self::Geographic { .. } => Ok(self.recorded(at)),
+            Self::Projected { crs, .. } => Ok(crs.degrees(self.recorded(at))?.map(to_grain)),
+            Self::Plain | Self::About(_) => bail!("found metres, expected latitude and longitude"),
         }
     }
 
@@ -104,10 +140,17 @@ impl Frame {
     pub(crate) fn line(&self, [a, b, c]: [f64; 3]) -> Option<Line> {
         match self {
             Self::Plain => Line::from_coefficients(a, b, c),
-            Self::About([x, z]) => Line::from_coefficients(a, b, c - a * x - b * z),
+            Self::About([x, z]) | Self::Projected { origin: [x, z], .. } => {
+                Line::from_coefficients(a, b, c - a * x - b * z)
+            }
             Self::Geographic { .. } => None,
         }
     }
+}
+
+/// Degrees to a tenth of a millimetre.
+fn to_grain(degrees: f64) -> f64 {
+    (degrees * 1e9).round() / 1e9
 }
 
 /// The least and the most of both coordinates.
@@ -131,7 +174,11 @@ fn geographic_middle(positions: &[[f64; 2]]) -> [f64; 2] {
     [lat, libm::remainder(lon + first, 360.0)].map(|degrees| (degrees * 1e4).round() / 1e4)
 }
 
-fn check([lat, lon]: [f64; 2]) -> Result<()> {
+/// Checks a latitude and a longitude.
+///
+/// # Errors
+/// Which of them is none, and what was expected.
+pub(crate) fn check_degrees([lat, lon]: [f64; 2]) -> Result<()> {
     if !(-90.0..=90.0).contains(&lat) {
         bail!("lat: found {lat}, expected a latitude from -90 to 90 degrees");
     }

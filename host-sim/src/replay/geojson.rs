@@ -3,7 +3,6 @@
 use anyhow::{Context as _, Result, bail};
 use nalgebra::Point2;
 use planner_core::geometry::area::Area;
-use planner_core::geometry::line::Line;
 use serde_json::{Value, json};
 
 use crate::replay::record::Replay;
@@ -17,9 +16,10 @@ impl Replay {
     /// the 180th meridian.
     pub fn geojson(&self) -> Result<String> {
         let name = &self.file.name;
-        if !self.file.frame.is_geographic() {
+        if !self.file.frame.is_on_globe() {
             bail!(
-                "--geojson: found positions in metres in {name}, expected latitude and longitude (--columns lat=...,lon=...)"
+                "--geojson: found positions in metres in {name}, expected latitude and longitude \
+                 (--columns lat=TITLE,lon=TITLE), or the system of the metres (--crs EPSG:...)"
             );
         }
         let area = area_around(&self.file.samples)
@@ -28,7 +28,7 @@ impl Replay {
         for (polygon, label) in self.answer.ground(area).into_iter().zip([1, -1]) {
             if polygon.0.len() >= 3 {
                 let ring = polygon.0.iter().chain(polygon.0.first()).map(|at| self.degrees(*at));
-                let ring: Vec<_> = ring.collect();
+                let ring = ring.collect::<Result<Vec<_>>>()?;
                 let level = self.answer.doubt.as_ref().map(|doubt| doubt.probability);
                 features.push(feature(
                     "Polygon",
@@ -37,15 +37,17 @@ impl Replay {
                 ));
             }
         }
-        let mut line = |kind: &str, line: Option<Line>| {
-            if let Some(ends) = line.and_then(|line| self.ends(&line)) {
-                let ends = ends.map(|at| self.degrees(at));
+        let most_likely = self.answer.doubt.as_ref().map(|doubt| doubt.most_likely);
+        for (kind, line) in [
+            ("centre", self.answer.centre),
+            ("maximum_margin", self.answer.maximum_margin),
+            ("most_likely", most_likely),
+        ] {
+            if let Some([from, to]) = line.and_then(|line| self.ends(&line)) {
+                let ends = [self.degrees(from)?, self.degrees(to)?];
                 features.push(feature("LineString", &json!(ends), &json!({ "kind": kind })));
             }
-        };
-        line("centre", self.answer.centre);
-        line("maximum_margin", self.answer.maximum_margin);
-        line("most_likely", self.answer.doubt.as_ref().map(|doubt| doubt.most_likely));
+        }
         let disagreeing = self.answer.doubt.as_ref().map(|doubt| &doubt.disagreeing);
         for (index, sample) in self.file.samples.iter().enumerate() {
             let disagrees = disagreeing.map(|them| them.binary_search(&index).is_ok());
@@ -57,9 +59,9 @@ impl Replay {
             if let Some(disagrees) = disagrees {
                 told["disagrees"] = disagrees.into();
             }
-            features.push(feature("Point", &json!(self.degrees(sample.site.into())), &told));
+            features.push(feature("Point", &json!(self.degrees(sample.site.into())?), &told));
         }
-        if self.crosses_meridian(area_corners(area)) {
+        if self.crosses_meridian(area_corners(area))? {
             bail!(
                 "--geojson: {name} lies on both sides of the 180th meridian, expected positions on one"
             );
@@ -68,14 +70,15 @@ impl Replay {
     }
 
     /// Longitude and latitude.
-    fn degrees(&self, at: Point2<f64>) -> [f64; 2] {
-        let [lat, lon] = self.file.frame.recorded(at);
-        [lon, lat]
+    fn degrees(&self, at: Point2<f64>) -> Result<[f64; 2]> {
+        let [lat, lon] = self.file.frame.degrees(at)?;
+        Ok([lon, lat])
     }
 
-    fn crosses_meridian(&self, corners: [Point2<f64>; 4]) -> bool {
-        let lons = corners.map(|corner| self.degrees(corner)[0]);
-        lons.iter().any(|a| lons.iter().any(|b| (a - b).abs() > 180.0))
+    fn crosses_meridian(&self, corners: [Point2<f64>; 4]) -> Result<bool> {
+        let lons = corners.iter().map(|corner| Ok(self.degrees(*corner)?[0]));
+        let lons = lons.collect::<Result<Vec<_>>>()?;
+        Ok(lons.iter().any(|a| lons.iter().any(|b| (a - b).abs() > 180.0)))
     }
 }
 

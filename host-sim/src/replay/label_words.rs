@@ -1,10 +1,13 @@
-//! The labels of a file, as its recorder wrote them: -1 and 1, 0 and 1, true and false, or yes and no.
+//! The labels of a file, as its recorder wrote them: -1 and 1, 0 and 1, true and false, yes and no, or ja and nein; or values
+//! that were measured, of which those above a threshold are +1.
 //!
 //! A file has one kind. A 0 may as well say that nothing was measured, so it stands for -1 only in a file that has
 //! a 1 as well.
 
-use anyhow::{Result, anyhow, bail};
+use anyhow::{Context as _, Result, anyhow, bail};
 use planner_core::belief::sample::Label;
+
+use crate::replay::numbers::Numbers;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
@@ -12,6 +15,7 @@ enum Kind {
     Bits,
     Truth,
     Answers,
+    GermanAnswers,
 }
 
 /// The labels read so far.
@@ -21,16 +25,34 @@ pub(crate) struct LabelWords {
     kind: Option<(Kind, usize)>,
     /// The line of the first 1, which is of two kinds.
     one: Option<usize>,
+    /// Above it a value is +1, where labels are values.
+    threshold: Option<f64>,
 }
 
-const EXPECTED: &str = "-1 or 1, 0 or 1, true or false, yes or no";
+const EXPECTED: &str = "-1 or 1, 0 or 1, true or false, yes or no, ja or nein";
 
 impl LabelWords {
+    /// Of words, or of values beside a threshold.
+    pub(crate) fn of(threshold: Option<f64>) -> Self {
+        Self { threshold, ..Self::default() }
+    }
+
     /// The label that a field on some line is.
     ///
     /// # Errors
     /// What was found and what was expected.
-    pub(crate) fn read(&mut self, field: &str, line: usize) -> Result<Label> {
+    pub(crate) fn read(
+        &mut self,
+        field: &str,
+        numbers: &mut Numbers,
+        line: usize,
+    ) -> Result<Label> {
+        if let Some(threshold) = self.threshold {
+            let value = numbers.read(field, line).with_context(|| {
+                format!("label: found {field:?}, expected a finite number, as --threshold says")
+            })?;
+            return Ok(if value > threshold { Label::Positive } else { Label::Negative });
+        }
         let is = |word: &str| field.eq_ignore_ascii_case(word);
         let (kind, is_positive) = match field.parse::<f64>() {
             Ok(1.0) => {
@@ -43,9 +65,14 @@ impl LabelWords {
             }
             Ok(-1.0) => (Kind::Signs, false),
             Ok(0.0) => (Kind::Bits, false),
-            Ok(other) if other.is_finite() => bail!("label: found {other}, expected {EXPECTED}"),
+            Ok(other) if other.is_finite() => {
+                bail!(
+                    "label: found {other}, expected {EXPECTED}, or for measured values --threshold"
+                )
+            }
             _ if is("true") || is("false") => (Kind::Truth, is("true")),
             _ if is("yes") || is("no") => (Kind::Answers, is("yes")),
+            _ if is("ja") || is("nein") => (Kind::GermanAnswers, is("ja")),
             _ => bail!("label: found {field:?}, expected a finite number or a word: {EXPECTED}"),
         };
         let is_number = matches!(kind, Kind::Signs | Kind::Bits);
@@ -68,7 +95,7 @@ impl LabelWords {
     /// The line of a 0 where there is no 1, and what was expected.
     pub(crate) fn end(self) -> Result<(), (usize, anyhow::Error)> {
         match self {
-            Self { kind: Some((Kind::Bits, line)), one: None } => Err((
+            Self { kind: Some((Kind::Bits, line)), one: None, .. } => Err((
                 line,
                 anyhow!("label: found 0 and nowhere a 1 in the file, expected {EXPECTED}"),
             )),

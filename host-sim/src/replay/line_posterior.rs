@@ -69,7 +69,7 @@ const MOST_CELLS: usize = 1_000_000;
 const MOST_WORK: u64 = 3_000_000_000;
 
 /// What one position near a line costs where it is blurred, in others.
-const BLURRED_WORK: u64 = 20;
+const BLURRED_WORK: u64 = 5;
 
 /// Positions that may cut a box that is done.
 const FEW: usize = 8;

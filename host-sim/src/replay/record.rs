@@ -25,6 +25,7 @@ pub struct Replay {
 #[derive(Serialize)]
 pub struct Record {
     samples: usize,
+    skipped: SkippedRecord,
     #[serde(skip_serializing_if = "Option::is_none")]
     matter: Option<usize>,
     slope_arcs: Vec<[f64; 2]>,
@@ -33,11 +34,22 @@ pub struct Record {
     #[serde(skip_serializing_if = "Option::is_none")]
     origin: Option<[f64; 2]>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    crs: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     in_file: Option<EstimatesInFile>,
     #[serde(skip_serializing_if = "Option::is_none")]
     tolerance: Option<f64>,
     #[serde(flatten)]
     doubt: Option<DoubtRecord>,
+}
+
+/// Rows that lack a value.
+#[derive(Serialize)]
+struct SkippedRecord {
+    rows: usize,
+    /// The line of the first, or its feature.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    first: Option<usize>,
 }
 
 /// The estimates where the file has them.
@@ -147,11 +159,16 @@ impl Replay {
             |indices: &[usize]| indices.iter().map(|it| self.file.line(*it)).collect();
         Record {
             samples: self.file.samples.len(),
+            skipped: SkippedRecord {
+                rows: self.file.skipped.count,
+                first: self.file.skipped.first.as_ref().map(|first| first.0),
+            },
             matter: doubt.is_none().then_some(bounding.len()),
             slope_arcs: slope_arcs.clone(),
             intercept: *intercept,
             estimates,
             origin: self.file.frame.origin(),
+            crs: self.file.frame.crs().map(ToString::to_string),
             in_file: self.file.frame.origin().map(|_| EstimatesInFile {
                 bisector: in_file(self.answer.bisector),
                 centre: in_file(self.answer.centre),

@@ -1,8 +1,10 @@
 //! Rows as they were recorded, and how a file of them is to be read.
 
+use anyhow::{Result, bail};
 use planner_core::belief::sample::Label;
 
 use crate::replay::columns::Columns;
+use crate::replay::crs::Crs;
 use crate::replay::delimiter::Delimiter;
 
 /// How a file is to be read, as far as one says so.
@@ -14,6 +16,56 @@ pub struct Layout {
     pub delimiter: Option<Delimiter>,
     /// The place that positions are taken about.
     pub origin: Option<[f64; 2]>,
+    /// The system of coordinates that metres are of.
+    pub crs: Option<Crs>,
+    /// Labels are measured values: above this they are +1.
+    pub threshold: Option<f64>,
+    /// A row without a value is an error.
+    pub strict: bool,
+}
+
+/// What the rows of a file are called, and what numbers them from 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Unit {
+    /// A row, by the line on which it begins.
+    #[default]
+    Line,
+    /// A feature of `GeoJSON`, by its place among the features.
+    Feature,
+}
+
+impl Unit {
+    /// The file and the place in it.
+    pub(crate) fn place(self, file: &str, number: usize) -> String {
+        match self {
+            Self::Line => format!("{file}:{number}"),
+            Self::Feature => format!("{file}: feature {number}"),
+        }
+    }
+
+    /// What is skipped.
+    pub(crate) const fn row(self) -> &'static str {
+        match self {
+            Self::Line => "row",
+            Self::Feature => "feature",
+        }
+    }
+
+    /// What numbers it.
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Line => "line",
+            Self::Feature => "feature",
+        }
+    }
+}
+
+/// Rows without a value, which are no samples.
+#[derive(Debug, Default)]
+pub(crate) struct Skipped {
+    pub(crate) count: usize,
+    /// The place of the first, and what it lacks.
+    pub(crate) first: Option<(usize, String)>,
 }
 
 /// Rows as they were recorded.
@@ -22,13 +74,17 @@ pub(crate) struct Rows {
     /// Metres, or latitude and longitude.
     pub(crate) positions: Vec<[f64; 2]>,
     pub(crate) labels: Vec<Label>,
-    /// The line of the file on which each begins.
+    /// The line of the file on which each begins, or the number of its feature.
     pub(crate) lines: Vec<usize>,
+    pub(crate) unit: Unit,
+    pub(crate) skipped: Skipped,
     /// The rows whose labels are certain, whatever `p` is.
     pub(crate) certain: Vec<usize>,
     /// How often the others are true, where the file tells it.
     pub(crate) p: Option<f64>,
     pub(crate) is_geographic: bool,
+    /// The titles of the columns of positions, of a table that has titles.
+    pub(crate) titles: Option<[String; 2]>,
 }
 
 impl Rows {
@@ -36,5 +92,18 @@ impl Rows {
         self.positions.push(position);
         self.labels.push(label);
         self.lines.push(line);
+    }
+
+    /// Leaves a row out, which lacks something.
+    ///
+    /// # Errors
+    /// What it lacks, where the layout is strict.
+    pub(crate) fn skip(&mut self, layout: &Layout, line: usize, lacks: String) -> Result<()> {
+        if layout.strict {
+            bail!("{lacks}, expected a value in each {}, as --strict says", self.unit.row());
+        }
+        self.skipped.count += 1;
+        self.skipped.first.get_or_insert((line, lacks));
+        Ok(())
     }
 }

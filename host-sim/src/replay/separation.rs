@@ -75,17 +75,24 @@ impl Separation {
     }
 }
 
+/// Whether a line separates some rows in order.
+pub(crate) fn are_separable(rows: &[Row]) -> bool {
+    first_are_separable(rows, usize::MAX)
+}
+
+/// The same of the first so many samples of their record.
+fn first_are_separable(rows: &[Row], count: usize) -> bool {
+    let hulls = Facing::of(rows, count);
+    hulls.are_of_one_label() || hulls.ends().is_some()
+}
+
 /// The index of the first sample that no line separates from those before it, where there is one. The more
 /// samples, the fewer lines: so it is found by halving.
 fn first_inseparable(samples: &[Sample], rows: &[Row]) -> usize {
-    let are_separable = |count| {
-        let hulls = Facing::of(rows, count);
-        hulls.are_of_one_label() || hulls.ends().is_some()
-    };
     let (mut separable, mut inseparable) = (0, samples.len());
     while inseparable - separable > 1 {
         let middle = separable.midpoint(inseparable);
-        if are_separable(middle) {
+        if first_are_separable(rows, middle) {
             separable = middle;
         } else {
             inseparable = middle;

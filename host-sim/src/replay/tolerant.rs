@@ -87,8 +87,7 @@ impl TolerantSeparation {
         rows: &[Row],
         tolerance: f64,
     ) -> Result<Self, NoSeparation> {
-        // Positions were rounded to the lattice.
-        let tolerance = tolerance + 1.0 / f64::from(UNITS_PER_METRE);
+        let tolerance = with_rounding(tolerance);
         let all = Facing::of(rows, samples.len());
         if all.are_of_one_label() {
             return Err(NoSeparation::OneLabel);
@@ -96,10 +95,7 @@ impl TolerantSeparation {
         let stretches = stretches(&all, tolerance);
         if stretches.is_empty() {
             // The more samples, the fewer lines.
-            let agree = |count: usize| {
-                let some = Facing::of(rows, count);
-                some.are_of_one_label() || !self::stretches(&some, tolerance).is_empty()
-            };
+            let agree = |count: usize| first_are_separable(rows, count, tolerance);
             let (mut good, mut bad) = (0, samples.len());
             while bad - good > 1 {
                 let middle = good.midpoint(bad);
@@ -201,6 +197,22 @@ impl TolerantSeparation {
         let [low, high] = stretch.distances(at, self.tolerance);
         Some((unit(at), low.midpoint(high)))
     }
+}
+
+/// Metres, with what positions are rounded by to the lattice.
+fn with_rounding(tolerance: f64) -> f64 {
+    tolerance + 1.0 / f64::from(UNITS_PER_METRE)
+}
+
+/// Whether a line agrees with some rows in order within a tolerance.
+pub(crate) fn are_separable(rows: &[Row], tolerance: f64) -> bool {
+    first_are_separable(rows, usize::MAX, with_rounding(tolerance))
+}
+
+/// The same of the first so many samples of their record, within a tolerance that has the rounding.
+fn first_are_separable(rows: &[Row], count: usize, tolerance: f64) -> bool {
+    let some = Facing::of(rows, count);
+    some.are_of_one_label() || !stretches(&some, tolerance).is_empty()
 }
 
 /// The directions in which lines are left.

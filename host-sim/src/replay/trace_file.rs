@@ -41,18 +41,16 @@ struct Pose {
     z: f64,
 }
 
-/// Whether a text is one: its first character begins a record.
-pub(crate) fn is_one(text: &[u8]) -> bool {
-    text.trim_ascii_start().first() == Some(&b'{')
-}
-
 /// The rows of a trace. What was sensed on the boundary itself tells no side, and is left out.
 ///
 /// # Errors
 /// Names the file and the line, what was found and what was expected.
 pub(crate) fn parse(name: &str, text: &[u8], layout: &Layout) -> Result<Rows> {
-    if layout.columns.is_some() || layout.delimiter.is_some() {
-        bail!("{name}: found a trace, expected no --columns and no --delimiter with it");
+    let Layout { columns, delimiter, threshold, crs, .. } = layout;
+    if columns.is_some() || delimiter.is_some() || threshold.is_some() || crs.is_some() {
+        bail!(
+            "{name}: found a trace, expected no --columns, --delimiter, --threshold and --crs with it"
+        );
     }
     let mut rows = Rows::default();
     for (line, record) in (1..).zip(text.split(|byte| *byte == b'\n')) {

@@ -6,6 +6,7 @@ use planner_core::geometry::line::Line;
 
 use crate::replay::answer::{Answer, Doubted};
 use crate::replay::record::{LineInFile, Replay};
+use crate::replay::rows::Skipped;
 use crate::report::text;
 
 /// Lines of a file that are named in words; the record has all.
@@ -14,7 +15,8 @@ const MOST_NAMED: usize = 20;
 impl Replay {
     /// What the samples determine, in words.
     pub fn report(&self) -> String {
-        let mut text = format!("{}: {}.\n{}\n", self.file.name, self.headline(), self.about());
+        let (skipped, about) = (self.skipped(), self.about());
+        let mut text = format!("{}: {}.\n{skipped}{about}\n", self.file.name, self.headline());
         // Writing to a string cannot fail.
         let mut row = |name: &str, value: &str| {
             let _ = writeln!(text, "{name:<28} {value}");
@@ -53,6 +55,15 @@ impl Replay {
         }
     }
 
+    /// Rows that are no samples.
+    fn skipped(&self) -> String {
+        let (Skipped { count, first }, unit) = (&self.file.skipped, self.file.unit);
+        let Some((line, lacks)) = first else { return String::new() };
+        let (row, name) = (unit.row(), unit.name());
+        let s = if *count == 1 { "" } else { "s" };
+        format!("Skipped {count} {row}{s} without a value, the first on {name} {line} ({lacks}).\n")
+    }
+
     /// What positions are about.
     fn about(&self) -> String {
         match self.file.frame.origin() {
@@ -60,7 +71,10 @@ impl Replay {
             Some([lat, lon]) if self.file.frame.is_geographic() => format!(
                 "Metres to the east (x) and the north (z) of latitude {lat}, longitude {lon}.\n"
             ),
-            Some([x, z]) => format!("Metres about the origin ({x}, {z}).\n"),
+            Some([x, z]) => {
+                let of = self.file.frame.crs().map_or(String::new(), |crs| format!(" of {crs}"));
+                format!("Metres{of} about the origin ({x}, {z}).\n")
+            }
         }
     }
 
@@ -94,8 +108,11 @@ impl Replay {
             .map(|index| self.file.line(*index).to_string())
             .collect();
         let more = if count > lines.len() { " and others" } else { "" };
-        let where_they_are =
-            if count == 0 { String::new() } else { format!(": lines {}{more}", lines.join(", ")) };
+        let where_they_are = if count == 0 {
+            String::new()
+        } else {
+            format!(": {}s {}{more}", self.file.unit.name(), lines.join(", "))
+        };
         let _ = writeln!(
             text,
             "Disagree with the most likely line: {count} of {} samples{where_they_are}.",

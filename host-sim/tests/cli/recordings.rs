@@ -10,27 +10,27 @@ use serde_json::Value;
 
 use crate::{GOOD, folder, prints, refuses};
 
-const SLOPE: f64 = 0.41;
-const INTERCEPT: f64 = 3.5;
+pub(crate) const SLOPE: f64 = 0.41;
+pub(crate) const INTERCEPT: f64 = 3.5;
 
 /// Where and on which side.
-type Row = ([f64; 2], bool);
+pub(crate) type Row = ([f64; 2], bool);
 
 /// Numbers that fill [0, 1) evenly enough.
-fn random(state: &mut u64) -> f64 {
+pub(crate) fn random(state: &mut u64) -> f64 {
     *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
     (*state >> 11) as f64 / (1_u64 << 53) as f64
 }
 
 /// Samples of an area of 20 m by 20 m, to the millimetre, with true labels.
-fn rows(count: usize) -> Vec<Row> {
+pub(crate) fn rows(count: usize) -> Vec<Row> {
     let mut state = 7;
     let mut place = || (random(&mut state) * 20_000.0).round() / 1_000.0;
     let places = (0..count).map(|_| [place(), place()]);
     places.map(|[x, z]| ([x, z], z > SLOPE * x + INTERCEPT)).collect()
 }
 
-fn file(header: &str, rows: &[Row], row: impl Fn([f64; 2], bool) -> String) -> String {
+pub(crate) fn file(header: &str, rows: &[Row], row: impl Fn([f64; 2], bool) -> String) -> String {
     let lines = rows.iter().map(|(at, label)| row(*at, *label));
     [header.to_owned()]
         .into_iter()
@@ -41,31 +41,31 @@ fn file(header: &str, rows: &[Row], row: impl Fn([f64; 2], bool) -> String) -> S
         + "\n"
 }
 
-fn sign(label: bool) -> i8 {
+pub(crate) fn sign(label: bool) -> i8 {
     if label { 1 } else { -1 }
 }
 
-fn plain(rows: &[Row]) -> String {
+pub(crate) fn plain(rows: &[Row]) -> String {
     file("x,z,label", rows, |[x, z], label| format!("{x},{z},{}", sign(label)))
 }
 
-fn answer(folder: &Path, content: &str, flags: &[&str]) -> Value {
+pub(crate) fn answer(folder: &Path, content: &str, flags: &[&str]) -> Value {
     fs::write(folder.join("s.csv"), content).expect("a file");
     let args = [&["replay", "s.csv", "--format", "json"], flags].concat();
     serde_json::from_str(&prints(folder, &args)).expect("JSON")
 }
 
-fn number(value: &Value) -> f64 {
+pub(crate) fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
 }
 
 /// Whether intervals of an answer hold a number.
-fn hold(intervals: &Value, wanted: f64) -> bool {
+pub(crate) fn hold(intervals: &Value, wanted: f64) -> bool {
     let holds = |it: &Value| number(&it[0]) <= wanted && wanted <= number(&it[1]);
     intervals.as_array().expect("intervals").iter().any(holds)
 }
 
-fn near(found: &Value, wanted: f64, within: f64) {
+pub(crate) fn near(found: &Value, wanted: f64, within: f64) {
     assert!((number(found) - wanted).abs() <= within, "{found} is not {wanted} to {within}");
 }
 
@@ -161,7 +161,7 @@ fn eastings_and_northings_are_taken_about_their_middle() {
 
 /// Latitude and longitude of a place so far to the east and north of another, by the radii of curvature there: good to
 /// some millimetres within 100 m.
-fn degrees([lat, lon]: [f64; 2], [x, z]: [f64; 2]) -> [f64; 2] {
+pub(crate) fn degrees([lat, lon]: [f64; 2], [x, z]: [f64; 2]) -> [f64; 2] {
     let (a, e2) = (6_378_137.0, 0.006_694_379_990_14);
     let w = 1.0 - e2 * lat.to_radians().sin().powi(2);
     let (along, across) = (a * (1.0 - e2) / w.powf(1.5), a / w.sqrt());
@@ -562,7 +562,7 @@ fn bad_flags_and_files_are_refused_by_what_is_wrong() {
         ("x,z,label\n1,2,1\n1,3,false\n", &[], &["s.csv:3", "found false", "line 2", "one kind"]),
         ("x,z,label\n1,2,0\n1,3,0\n4,3,0\n", &[], &["s.csv:2", "found 0", "0 or 1"]),
         ("x,z,label\n1,2,maybe\n", &[], &["s.csv:2", "\"maybe\"", "yes or no"]),
-        ("x;z;label\n1;2,5;1\n1.234,5;2;1\n", &[], &["s.csv:3", "\"1.234,5\"", "finite number"]),
+        ("x;z;label\n1;2,5;1\n1.23,5;2;1\n", &[], &["s.csv:3", "\"1.23,5\"", "finite number"]),
         ("lat,lon,label\n91,9,1\n", &[], &["s.csv", "91", "latitude"]),
         (
             "lat,lon,label\n51,9,1\n51,361,1\n51,9,1\n",

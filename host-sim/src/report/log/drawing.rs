@@ -3,7 +3,7 @@
 use planner_core::belief::sample::Label;
 
 use crate::report::log::messages::{
-    Color, Entity, FRAME, Line, Point, Pose, SceneUpdate, Solid, Timestamp, Triangles,
+    Color, Entity, FRAME, Line, Point, Pose, ROBOT, SceneUpdate, Solid, Timestamp, Triangles,
 };
 use crate::report::page::scene::{BandRecord, Flight, GroundRecord, Mark, Place, Scene};
 use crate::report::picture::Kind;
@@ -16,15 +16,15 @@ const THICK: f64 = 3.0;
 /// A sample's size as a share of the area's.
 const SAMPLE: f64 = 0.012;
 
-/// The start: all that stands still.
+/// The start: all that stands still, and every name under which a step draws. Rerun shows an error for a name that comes later.
 pub(super) fn begin(flight: &Flight) -> SceneUpdate {
     let size = SAMPLE * flight.size();
     let border = line(&flight.area, true, THIN, opaque(style::PATH.colour));
     let keep_outs = flight.keep_outs.iter().map(|ring| fan(ring, opaque(KEEP_OUT)));
-    let truth = flight.truth.iter().map(|truth| line(&truth.ends, false, THICK, BLACK));
     let mut entities = vec![
         Entity { lines: vec![border], triangles: keep_outs.collect(), ..entity("area", 0) },
-        Entity { lines: truth.collect(), ..entity("true line", 0) },
+        entity("path", 0),
+        entity("samples", 0),
         samples(
             "given",
             0,
@@ -32,10 +32,22 @@ pub(super) fn begin(flight: &Flight) -> SceneUpdate {
             1.5 * size,
         ),
     ];
+    if let Some(truth) = &flight.truth {
+        let line = line(&truth.ends, false, THICK, opaque(TRUTH));
+        entities.push(Entity { lines: vec![line], ..entity("true line", 0) });
+    }
     if let Some(scene) = flight.scenes.first() {
         entities.extend(known(scene, 0));
     }
     SceneUpdate { entities }
+}
+
+/// The robot: a triangle that points ahead, in the robot's own frame.
+pub(super) fn robot(flight: &Flight) -> Entity {
+    let size = SAMPLE * flight.size();
+    let corners = [[1.5 * size, 0.0], [-size, size], [-size, -size]];
+    let border = line(&corners, true, THICK, opaque(style::PATH.colour));
+    Entity { lines: vec![border], frame_id: ROBOT.to_owned(), ..entity("robot", 0) }
 }
 
 /// What each step adds.
@@ -112,7 +124,8 @@ fn samples(id: &str, second: u32, samples: impl Iterator<Item = (Place, i8)>, si
 
 const KEEP_OUT: &str = "#c9c9c9";
 const SHADE: &str = "#8653a6";
-const BLACK: Color = Color { r: 0.0, g: 0.0, b: 0.0, a: 1.0 };
+/// Viewers have a dark ground or a light one, so the true line is not black, as it is in figures.
+const TRUTH: &str = "#cc79a7";
 
 /// A colour as figures name it, `#rrggbb`.
 fn opaque(name: &str) -> Color {

@@ -8,11 +8,18 @@ pub(super) const POSE: (&str, &[u8]) =
     ("foxglove.PoseInFrame", include_bytes!("../../../schemas/foxglove.PoseInFrame.bin"));
 pub(super) const SCENE: (&str, &[u8]) =
     ("foxglove.SceneUpdate", include_bytes!("../../../schemas/foxglove.SceneUpdate.bin"));
+pub(super) const CLOUD: (&str, &[u8]) =
+    ("foxglove.PointCloud", include_bytes!("../../../schemas/foxglove.PointCloud.bin"));
+pub(super) const TRANSFORM: (&str, &[u8]) =
+    ("foxglove.FrameTransform", include_bytes!("../../../schemas/foxglove.FrameTransform.bin"));
 pub(super) const STEP: (&str, &[u8]) =
     ("host_sim.Step", include_bytes!("../../../schemas/host_sim.Step.bin"));
 
 /// What all places are told in.
 pub(super) const FRAME: &str = "field";
+
+/// The frame that moves with the robot.
+pub(super) const ROBOT: &str = "robot";
 
 /// A point, a vector: `z` of a place in the plane is the viewer's `y`.
 #[derive(Clone, Copy, PartialEq, Message)]
@@ -28,6 +35,11 @@ pub(super) struct Point {
 impl Point {
     pub(super) const fn at([x, y]: [f64; 2]) -> Self {
         Self { x, y, z: 0.0 }
+    }
+
+    /// Where it is in the plane.
+    pub(super) const fn place(&self) -> [f64; 2] {
+        [self.x, self.y]
     }
 
     pub(super) const fn cube(size: f64) -> Self {
@@ -50,9 +62,9 @@ pub(super) struct Quaternion {
 #[derive(Clone, Copy, PartialEq, Message)]
 pub(super) struct Pose {
     #[prost(message, optional, tag = "1")]
-    position: Option<Point>,
+    pub(super) position: Option<Point>,
     #[prost(message, optional, tag = "2")]
-    orientation: Option<Quaternion>,
+    pub(super) orientation: Option<Quaternion>,
 }
 
 impl Pose {
@@ -87,6 +99,50 @@ pub(super) struct PoseInFrame {
     pub(super) frame_id: String,
     #[prost(message, optional, tag = "3")]
     pub(super) pose: Option<Pose>,
+}
+
+/// Where a frame is in another.
+#[derive(Clone, PartialEq, Message)]
+pub(super) struct FrameTransform {
+    #[prost(message, optional, tag = "1")]
+    pub(super) timestamp: Option<Timestamp>,
+    #[prost(string, tag = "2")]
+    pub(super) parent_frame_id: String,
+    #[prost(string, tag = "3")]
+    pub(super) child_frame_id: String,
+    #[prost(message, optional, tag = "4")]
+    pub(super) translation: Option<Point>,
+    #[prost(message, optional, tag = "5")]
+    pub(super) rotation: Option<Quaternion>,
+}
+
+/// Points, packed as their fields say.
+#[derive(Clone, PartialEq, Message)]
+pub(super) struct PointCloud {
+    #[prost(message, optional, tag = "1")]
+    pub(super) timestamp: Option<Timestamp>,
+    #[prost(string, tag = "2")]
+    pub(super) frame_id: String,
+    #[prost(message, optional, tag = "3")]
+    pub(super) pose: Option<Pose>,
+    /// Bytes of a point.
+    #[prost(fixed32, tag = "4")]
+    pub(super) point_stride: u32,
+    #[prost(message, repeated, tag = "5")]
+    pub(super) fields: Vec<PackedField>,
+    #[prost(bytes = "vec", tag = "6")]
+    pub(super) data: Vec<u8>,
+}
+
+/// A field of a point: its name, its first byte and its numeric type.
+#[derive(Clone, PartialEq, Eq, Message)]
+pub(super) struct PackedField {
+    #[prost(string, tag = "1")]
+    pub(super) name: String,
+    #[prost(fixed32, tag = "2")]
+    pub(super) offset: u32,
+    #[prost(int32, tag = "3")]
+    pub(super) kind: i32,
 }
 
 #[derive(Clone, Copy, PartialEq, Message)]

@@ -1,11 +1,15 @@
-//! A mission as an MCAP log, which Foxglove, Rerun and `PlotJuggler` open: `/pose` where the robot reported to be,
-//! `/scene` what is drawn of it, `/step` what there is to plot. A step takes a second; the start is at 0.
+//! A mission as an MCAP log for Foxglove, Rerun and `PlotJuggler`. A step takes a second; the start is at 0.
+//!
+//! `/pose` and `/tf` say where the robot reported to be, `/scene` draws the mission, `/step` has numbers to plot. Rerun reads no
+//! scenes, so `/robot` and `/map/...` have the same drawing as clouds of points.
 
+mod cloud;
 mod drawing;
 mod messages;
 
 use std::collections::BTreeMap;
 use std::io::Cursor;
+use std::iter;
 
 use anyhow::{Context as _, Result};
 use mcap::records::MessageHeader;
@@ -16,7 +20,8 @@ use crate::mission::recording::Recording;
 use crate::mission::results::{PoseRecord, Results};
 use crate::report::flat;
 use crate::report::log::messages::{
-    FRAME, POSE, Plotted, Pose, PoseInFrame, SCENE, STEP, Timestamp,
+    CLOUD, FRAME, FrameTransform, POSE, Plotted, Pose, PoseInFrame, ROBOT, SCENE, STEP,
+    SceneUpdate, TRANSFORM, Timestamp,
 };
 use crate::report::page::scene::Flight;
 
@@ -25,6 +30,8 @@ const PROTOBUF: &str = "protobuf";
 /// A log that is being written.
 struct Log {
     writer: Writer<Cursor<Vec<u8>>>,
+    /// Topics of clouds, each from its first cloud on.
+    clouds: BTreeMap<String, Channel>,
 }
 
 /// Where messages of a kind go.
@@ -35,6 +42,23 @@ impl Log {
     fn channel(&mut self, topic: &str, (schema, descriptors): (&str, &[u8])) -> Result<Channel> {
         let schema = self.writer.add_schema(schema, PROTOBUF, descriptors)?;
         Ok(Channel(self.writer.add_channel(schema, topic, PROTOBUF, &BTreeMap::new())?))
+    }
+
+    /// Writes the drawing of a second, as a scene and as clouds: one for each entity, of an area of some size.
+    fn draw(&mut self, scenes: Channel, second: u32, drawn: &SceneUpdate, size: f64) -> Result<()> {
+        self.write(scenes, second, drawn)?;
+        for entity in &drawn.entities {
+            let topic = format!("/map/{}", entity.id.replace(' ', "_"));
+            let channel = if let Some(channel) = self.clouds.get(&topic) {
+                *channel
+            } else {
+                let channel = self.channel(&topic, CLOUD)?;
+                self.clouds.insert(topic, channel);
+                channel
+            };
+            self.write(channel, second, &cloud::of(entity, size))?;
+        }
+        Ok(())
     }
 
     /// Takes down what holds from a second on.
@@ -58,18 +82,23 @@ impl Log {
 pub fn mcap(recording: &Recording) -> Result<Vec<u8>> {
     let options = WriteOptions::new().compression(None).library("host-sim");
     let writer = options.create(Cursor::new(Vec::new())).context("the log could not be begun")?;
-    let mut log = Log { writer };
+    let mut log = Log { writer, clouds: BTreeMap::new() };
     let (poses, scenes, steps) =
         (log.channel("/pose", POSE)?, log.channel("/scene", SCENE)?, log.channel("/step", STEP)?);
+    let (frames, robot) = (log.channel("/tf", TRANSFORM)?, log.channel("/robot", CLOUD)?);
     let results = &recording.results;
     let flight = Flight::of(recording.mission.algorithm.title(), recording);
-    log.write(poses, 0, &pose(0, &results.start.pose))?;
-    log.write(scenes, 0, &drawing::begin(&flight))?;
-    for (second, step) in (1..).zip(&results.steps) {
-        log.write(poses, second, &pose(second, &step.pose))?;
+    let size = flight.size();
+    log.write(robot, 0, &cloud::of(&drawing::robot(&flight), size))?;
+    log.draw(scenes, 0, &drawing::begin(&flight), size)?;
+    let stops = iter::once(&results.start.pose).chain(results.steps.iter().map(|it| &it.pose));
+    for (second, at) in (0..).zip(stops) {
+        let pose = pose(second, at);
+        log.write(frames, second, &transform(&pose))?;
+        log.write(poses, second, &pose)?;
     }
     for (second, drawn) in (1..).zip(drawing::steps(&flight)) {
-        log.write(scenes, second, &drawn)?;
+        log.draw(scenes, second, &drawn, size)?;
     }
     for (second, plotted) in (1..).zip(plotted(results, &flight)) {
         log.write(steps, second, &plotted)?;
@@ -81,6 +110,17 @@ pub fn mcap(recording: &Recording) -> Result<Vec<u8>> {
 fn pose(second: u32, &PoseRecord { x, z, heading }: &PoseRecord) -> PoseInFrame {
     let (timestamp, frame_id) = (Some(Timestamp::of(second)), FRAME.to_owned());
     PoseInFrame { timestamp, frame_id, pose: Some(Pose::new([x, z], heading)) }
+}
+
+/// The robot's frame at a pose.
+fn transform(PoseInFrame { timestamp, frame_id, pose }: &PoseInFrame) -> FrameTransform {
+    FrameTransform {
+        timestamp: *timestamp,
+        parent_frame_id: frame_id.clone(),
+        child_frame_id: ROBOT.to_owned(),
+        translation: pose.and_then(|pose| pose.position),
+        rotation: pose.and_then(|pose| pose.orientation),
+    }
 }
 
 /// The numbers of each step, as flat rows have them, and how far the estimate is off.

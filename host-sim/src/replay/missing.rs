@@ -1,0 +1,18 @@
+//! What stands in a file where nothing was measured.
+
+/// Words for it, in any case.
+const WORDS: [&str; 9] = ["", "nan", "na", "n/a", "null", "none", "nil", "nodata", "no data"];
+
+/// Numbers for it, as loggers and GIS write them.
+const NUMBERS: [f64; 2] = [-9999.0, -99999.0];
+
+/// Whether a field says that there is no value.
+pub(crate) fn is_missing(field: &str) -> bool {
+    WORDS.iter().any(|word| field.eq_ignore_ascii_case(word))
+        || field.starts_with("-9999") && field.parse().is_ok_and(is_missing_number)
+}
+
+/// Whether a number says that there is no value.
+pub(crate) fn is_missing_number(value: f64) -> bool {
+    value.is_nan() || NUMBERS.contains(&value)
+}

@@ -1,0 +1,61 @@
+//! Which row is to blame where no line separates a record.
+//!
+//! The first row that leaves no line need not be the wrong one: after a wrong label early in a file, a true one contradicts it
+//! sooner or later. But a row without which a line separates the rest is part of every set of rows that no line separates.
+//! A smallest such set has four rows at most where positions are true (Kirchberger's theorem). So one such set is found, and each of its
+//! rows is left out of the record once.
+
+use planner_core::belief::sample::{Label, Sample};
+
+use crate::replay::hull::{Hull, Row};
+
+/// Samples that repeat each other, by their indices: one leaves them out together.
+pub(crate) type Repeats = Vec<usize>;
+
+/// The samples each of which, left out alone, leaves both labels and a line that separates them.
+///
+/// `rows` are the rows [in order](crate::replay::hull::in_order) of the samples, and no line separates them. `are_separable`
+/// says whether a line separates some rows in order. It is asked for all rows a few times.
+pub(crate) fn outliers(
+    samples: &[Sample],
+    rows: &[Row],
+    are_separable: impl Fn(&[Row]) -> bool,
+) -> Vec<Repeats> {
+    let explains = |row: &Row| {
+        let rest: Vec<_> = rows.iter().filter(|other| *other != row).copied().collect();
+        let has = |label| rest.iter().any(|row| row.sample.label == label);
+        has(Label::Positive) && has(Label::Negative) && are_separable(&rest)
+    };
+    let repeats = |row: Row| {
+        let is_it = |index: &usize| samples[*index] == row.sample;
+        (row.index..samples.len()).filter(is_it).collect()
+    };
+    let contradicting = smallest_contradiction(rows, &are_separable);
+    let mut found: Vec<Repeats> = contradicting.into_iter().filter(explains).map(repeats).collect();
+    found.sort();
+    found
+}
+
+/// Rows that no line separates, while one separates them without any one of them.
+fn smallest_contradiction(rows: &[Row], are_separable: impl Fn(&[Row]) -> bool) -> Vec<Row> {
+    // What lies within the hulls changes nothing.
+    let corners = |label| Hull::of(rows.iter(), label).corners().collect::<Vec<_>>();
+    let mut others = [corners(Label::Positive), corners(Label::Negative)].concat();
+    let mut needed: Vec<Row> = Vec::new();
+    let agree = |needed: &[Row], others: &[Row]| {
+        let mut some = [needed, others].concat();
+        some.sort_unstable_by_key(|row| (row.site().x(), row.site().z(), row.sample.label.sign()));
+        are_separable(&some)
+    };
+    while agree(&needed, &[]) && !others.is_empty() {
+        // The first so many of the others do not contradict what is needed, and with one more they do.
+        let (mut good, mut bad) = (0, others.len());
+        while bad - good > 1 {
+            let middle = good.midpoint(bad);
+            *(if agree(&needed, &others[..middle]) { &mut good } else { &mut bad }) = middle;
+        }
+        needed.push(others[good]);
+        others.truncate(good);
+    }
+    needed
+}
