@@ -114,6 +114,22 @@ impl<'a> ConsistentLines<'a> {
             }
     }
 
+    /// Whether a label that is read at a position may tell something new: where positions err, whichever label it may be, and
+    /// as no such label was read nearby.
+    pub(crate) fn may_tell(self, q: Site) -> bool {
+        self.loosely().can_cut(q)
+            && (self.shift == Vector::default() || !self.samples.iter().any(|it| self.is_told(q, it)))
+    }
+
+    /// Whether a sample says what its label would say at a position: it was taken in nearer to where that would be taken
+    /// in than half of what positions err by.
+    fn is_told(self, q: Site, sample: &Sample) -> bool {
+        self.place(q, sample.label).is_some_and(|place| {
+            let off = place - sample.site;
+            off.dot(off) < self.shift.dot(self.shift) / 4
+        })
+    }
+
     /// Within this distance of a position where [no label is worth it](Self::can_cut) there is no other, lattice units.
     /// In single precision, on the safe side.
     pub(crate) fn dull_within(self, q: Site) -> f32 {

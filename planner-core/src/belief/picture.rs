@@ -10,6 +10,7 @@ use heapless::Vec;
 
 use crate::belief::consistent_lines::ConsistentLines;
 use crate::belief::outlook::{Foresight, Outlook, Prediction, entropy};
+use crate::belief::weight::LogWeight;
 use crate::belief::sample::{Label, Reading};
 use crate::belief::version_space::VersionSpace;
 use crate::belief::{Belief, Refused};
@@ -191,6 +192,11 @@ impl Picture {
     }
 }
 
+/// The logarithm of a share to base 2; of next to none that of very little.
+fn log2(share: f32) -> f32 {
+    LogWeight::of(if share < 1e-6 { 1e-6 } else { share }) * core::f32::consts::LOG2_E
+}
+
 /// The measure of a polygon of lines, from one of them to the others in turn.
 #[inline]
 fn measure<'a>(apex: Vertex, rest: impl Iterator<Item = &'a Vertex>) -> f32 {
@@ -231,11 +237,10 @@ impl Prediction for Picture {
         if self.shift == Vector::default() {
             return entropy(share);
         }
-        // Either label leaves more than what agrees with it at the site. Of the share that both leave nothing is
-        // told: for halves that is `1 - log2(1 + both)`, which is near to this.
-        let [most, least] = [Label::Positive, Label::Negative]
+        // Either label leaves more than what agrees with it at the site: what agrees at the place where it is taken in.
+        let [positive, negative] = [Label::Positive, Label::Negative]
             .map(|label| self.share(self.place(site, label)).clamp(0.0, 1.0));
-        entropy(share) * (1.0 - (most - least))
+        -share * log2(positive) - (1.0 - share) * log2(1.0 - negative)
     }
 }
 

@@ -23,8 +23,8 @@ use crate::belief::goal::Goal;
 use crate::belief::outlook::{Foresight, Outlook, Prediction};
 use crate::belief::sample::{Label, Reading};
 use crate::belief::told::Replay;
-use crate::belief::tolerance::Tolerance;
 use crate::geometry::area::Area;
+use crate::geometry::lattice::Vector;
 use crate::geometry::region::Region;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Pose, Side};
@@ -55,6 +55,9 @@ const MOST_CIRCLES: u16 = 24;
 /// Motions are usually no longer than this part of the area's side: longer ones have nothing more to tell, and end near
 /// the border, from where less is in reach.
 const USUAL: f32 = 0.125;
+
+/// A label that is expected to tell less is not worth its way, in shares of one that tells the most.
+const LEAST: f32 = 0.15;
 
 /// Where no label is worth as much, turns in place are considered.
 const POOR: f32 = 0.9;
@@ -169,26 +172,19 @@ impl<D: Dynamics, B: Foresight, G: Region> Lookahead<D, B, G> {
         best
     }
 
-    /// What the ladder finds where no label is in reach.
-    fn recover(&self, pose: Pose) -> (Result<Found, DeadEnd>, Effort) {
-        let lines = self.foresight.ground();
-        if self.config.tolerance == Tolerance::NONE {
-            return self.recover_among(lines, pose, LOOKS);
-        }
-        let found = self.recover_among(lines, pose, LOOKS / 2);
-        if found.0.is_err() { self.recover_among(lines.loosely(), pose, LOOKS / 2) } else { found }
+    /// What a label is expected to tell at least. Where positions err there is always one more that tells next to nothing.
+    fn least(&self) -> f32 {
+        let errs = self.foresight.ground().shift != Vector::default();
+        if errs { LEAST } else { 0.0 }
     }
 
-    fn recover_among(
-        &self,
-        lines: ConsistentLines<'_>,
-        pose: Pose,
-        looks: u32,
-    ) -> (Result<Found, DeadEnd>, Effort) {
+    /// What the ladder finds where no label is in reach that is worth it.
+    fn recover(&self, pose: Pose) -> (Result<Found, DeadEnd>, Effort) {
+        let lines = self.foresight.ground();
         let (area, varrho) = (self.config.area, self.config.varrho);
         let rule = ArcRule::default();
         let problem = Problem { lines, area, varrho, rule };
-        let mut search = problem.search(&self.dynamics, pose, Effort::of(looks));
+        let mut search = problem.search(&self.dynamics, pose, Effort::of(LOOKS));
         let search = search.open();
         let found = solve_or_recover(&problem, search, None);
         (found, search.effort)
@@ -231,7 +227,8 @@ impl<D: Dynamics, B: Foresight, G: Region> Planner for Lookahead<D, B, G> {
         self.foresight.prepare();
         let (dynamics, evaluations) = (&self.dynamics, self.evaluations);
         let (usual, scale) = usual(dynamics, &area);
-        let mut lookout = Lookout { dynamics, area, varrho, usual, scale, evaluations };
+        let least = self.least();
+        let mut lookout = Lookout { dynamics, area, varrho, usual, scale, least, evaluations };
         if let Some(decision) = self.decide(&mut lookout, pose) {
             let Decision { action, target, wants_label, .. } = decision;
             let looks = lookout.evaluations;
@@ -280,6 +277,7 @@ mod tests {
     use crate::belief::goal::Accuracy;
     use crate::belief::noise::{Noise, Reliability};
     use crate::belief::sample::Sample;
+    use crate::belief::tolerance::Tolerance;
     use crate::belief::version_space::VersionSpace;
     use crate::belief::weight::Prior;
     use crate::geometry::heading::Heading;
@@ -379,7 +377,8 @@ mod tests {
             let dynamics = &planner.dynamics;
             let Config { area, varrho, .. } = planner.config;
             let (usual, scale) = usual(dynamics, &area);
-            let mut lookout = Lookout { dynamics, area, varrho, usual, scale, evaluations };
+            let least = planner.least();
+            let mut lookout = Lookout { dynamics, area, varrho, usual, scale, least, evaluations };
             let decision = planner.decide(&mut lookout, pose);
             assert!(lookout.evaluations <= evaluations);
             let worth = decision.map_or(f32::NEG_INFINITY, |decision| decision.worth);

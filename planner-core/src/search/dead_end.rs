@@ -31,7 +31,6 @@ impl DeadEnd {
     ///
     /// Cost: one orientation for each edge and place, some 200,000 instructions. A mission pays it once.
     pub(crate) fn confirmed<G: Region>(self, lines: ConsistentLines<'_>, area: &G) -> Self {
-        let lines = lines.loosely();
         if self == Self::Outside {
             return self;
         }

@@ -63,7 +63,7 @@ impl Sought<'_> {
                 true
             }
             Self::Worth(most, ground) => {
-                let is_open = || ground.is_none_or(|lines| lines.can_cut(new.target.site));
+                let is_open = || ground.is_none_or(|lines| lines.may_tell(new.target.site));
                 if new.worth > **most && is_open() {
                     **most = if new.worth < ENOUGH { new.worth } else { ENOUGH };
                 }
@@ -82,6 +82,8 @@ pub(crate) struct Lookout<'a, D, G> {
     pub(crate) usual: u16,
     /// Metres of the paper's action set in a metre of this one.
     pub(crate) scale: f32,
+    /// What a label is expected to tell at least.
+    pub(crate) least: f32,
     pub(crate) evaluations: u32,
 }
 
@@ -144,9 +146,10 @@ impl<D: Dynamics, G: Region> Lookout<'_, D, G> {
         {
             let grid = self.dynamics.grid();
             let cost = self.cost(grid.reach_mm(speed), ray.effort);
-            let worth = prediction.information(target.site, share) - cost;
+            let information = prediction.information(target.site, share);
+            let worth = information - cost;
             let action = grid.action(ray.index, speed);
-            if !sought.find(Prospect { action, target, share, worth }) {
+            if information >= self.least && !sought.find(Prospect { action, target, share, worth }) {
                 return None;
             }
         }
@@ -242,7 +245,7 @@ impl Prospects {
         };
         let rank = self.list.iter().take_while(|old| old.worth >= new.worth).count();
         let (better, _) = self.list.split_at_checked(rank).unwrap_or_default();
-        if rank >= PROSPECTS || better.iter().any(is_near) || !lines.can_cut(new.target.site) {
+        if rank >= PROSPECTS || better.iter().any(is_near) || !lines.may_tell(new.target.site) {
             return;
         }
         // What does not find room is the worst.
