@@ -27,20 +27,28 @@ const PLACES: u32 = 256;
 const FEW: usize = 2;
 
 impl DeadEnd {
-    /// The reason that is true of the ground: it says that this is thin if and only if it is.
-    ///
-    /// Cost: one orientation for each edge and place, some 200,000 instructions. A mission pays it once.
-    pub(crate) fn confirmed<G: Region>(self, lines: ConsistentLines<'_>, area: &G) -> Self {
-        if self == Self::Outside {
-            return self;
-        }
-        let is_open = |k: &u32| place(area, *k).is_some_and(|it| lines.can_cut(it));
-        if (0..PLACES).filter(is_open).count() > FEW {
-            return if self == Self::Resolution { Self::Undecided } else { self };
-        }
+    /// The reason that is true where the ground is not open.
+    pub(crate) fn of_thin_ground(self, lines: ConsistentLines<'_>) -> Self {
         let errs = lines.shift != Vector::default();
-        if errs && !can_cut_between(lines) { Self::Tolerance } else { Self::Resolution }
+        match self {
+            Self::Outside => self,
+            _ if errs && !is_broad(lines) => Self::Tolerance,
+            _ => Self::Resolution,
+        }
     }
+
+    /// The reason that is true where it is.
+    pub(crate) fn of_open_ground(self) -> Self {
+        if self == Self::Resolution { Self::Undecided } else { self }
+    }
+}
+
+/// Whether labels can tell something in more than next to none of an area.
+///
+/// Cost: one orientation for each edge and place, some 100,000 instructions.
+pub(crate) fn is_open<G: Region>(lines: ConsistentLines<'_>, area: &G) -> bool {
+    let can_cut = |k: &u32| place(area, *k).is_some_and(|it| lines.can_cut(it));
+    (0..PLACES).filter(can_cut).count() > FEW
 }
 
 /// One of the places that are spread evenly over an area's rectangle, if it lies inside. No line passes many of them.
@@ -56,8 +64,12 @@ fn place<G: Region>(area: &G, k: u32) -> Option<Site> {
     Site::new(x, z).ok().filter(|site| area.contains(*site))
 }
 
-/// Whether a label can tell something at a quarter, a half or three quarters of the way between samples of both labels.
-fn can_cut_between(lines: ConsistentLines<'_>) -> bool {
+/// Whether lines lie so far apart, somewhere between samples of both labels, that a label could tell something if
+/// positions erred twice as much. Then it is not their error that leaves no place to ask.
+fn is_broad(lines: ConsistentLines<'_>) -> bool {
+    let Vector { x, z } = lines.shift;
+    let twice = |v: i32| v.saturating_mul(2);
+    let lines = ConsistentLines { shift: Vector { x: twice(x), z: twice(z) }, ..lines };
     lines.support().any(|a| {
         lines.support().filter(|b| a.label != b.label).any(|b| {
             let way = b.site - a.site;

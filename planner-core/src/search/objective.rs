@@ -9,7 +9,7 @@ use crate::motion::dynamics::Pose;
 ///
 /// One look takes up to some 1,000 instructions of a Cortex-M4, so that a plan stays below 20 million. With the paper's
 /// grid 520 rays are the most that a plan of 3,000 standard missions of 60 steps needed.
-pub const LOOKS: u32 = 24_576;
+pub const LOOKS: u32 = 16_384;
 
 /// The weight of the control in the objective, in [0, 1), to six decimal places.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -34,7 +34,7 @@ use crate::geometry::region::Region;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Pose, Ray, Side};
 use crate::search::circles::{Findings, Search};
-use crate::search::dead_end::DeadEnd;
+use crate::search::dead_end::{DeadEnd, is_open};
 use crate::search::detour::{self, Way};
 use crate::search::direction_rule::{ArcRule, DirectionRule};
 use crate::search::manoeuvre::{manoeuvre, waypoint};
@@ -44,6 +44,9 @@ use crate::search::wander::wander;
 /// A transit among uncertain ground looks this many motions ahead. Twice as many find nothing more in
 /// 1,000 standard missions of 60 steps.
 const HORIZON: u32 = 16;
+
+/// Looks that the rungs take at first.
+const FIRST_LOOKS: u32 = 1_024;
 
 /// A heading this far from a bearing drives along it.
 const ALONG: u32 = Heading::turn_of(0.125);
@@ -100,13 +103,19 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule, G: Region>(
         }
         return Ok(found(Some(Recovery::Undirected))((best.action, best.target)));
     }
-    // The last rung has looks of its own.
+    // Few looks find a way nearly always. More of them are worth it where there is much ground to find.
+    let kept = ladder.search.effort.keep_back(FIRST_LOOKS);
+    let climbed = ladder.climb(home);
+    ladder.search.effort.give_back(kept);
+    let Err(why) = climbed else { return climbed };
+    if why == DeadEnd::Outside || !is_open(problem.lines, &area) {
+        return Err(why.of_thin_ground(problem.lines));
+    }
     let kept = ladder.search.effort.keep_back(ladder.search.effort.looks / 2);
     let climbed = ladder.climb(home);
     ladder.search.effort.give_back(kept);
     climbed.or_else(|why| {
-        let leg = wander(&ladder.problem, ladder.search);
-        let leg = leg.ok_or_else(|| why.confirmed(problem.lines, &area))?;
+        let leg = wander(&ladder.problem, ladder.search).ok_or(why.of_open_ground())?;
         Ok(found(Some(Recovery::Transit))(leg))
     })
 }

@@ -69,6 +69,11 @@ impl Judge<'_> {
         }
     }
 
+    /// Whether either label at a place can tell something, where positions err.
+    fn is_told_apart(&self, site: Site) -> bool {
+        self.belief.version_space().is_none_or(|space| space.lines().can_cut(site))
+    }
+
     fn rng(&self) -> ChaCha8Rng {
         ChaCha8Rng::seed_from_u64(self.mission.seed)
     }
@@ -82,7 +87,7 @@ impl Judge<'_> {
                 let (x, z) = (rng.random_range(from.x()..=to.x()), rng.random_range(from.z()..=to.z()));
                 let site = Site::new(x, z).expect("inside");
                 inside += u32::from(self.area.contains(site));
-                self.is_open(site)
+                self.is_open(site) && self.is_told_apart(site)
             })
             .count();
         let share = open as f64 / f64::from(inside.max(1));
