@@ -105,15 +105,14 @@ int main(void) {
         IS(planner_plan(planner, pose, &motion), PLANNER_STATUS_OK);
     }
 
-    /* What is uncertain is thinner than motions of a millimetre hit, and there are more of them than a plan looks at. */
-    const double far = 20000.0 / 65536.0, near = 2.0 / 65536.0, side = 400000.0 / 65536.0;
-    const planner_sample strip[] = {{-far, -near, false}, {far, -near, false}, {-far, near, true}, {far, near, true}};
-    const planner_mission tiny = {
-        .min_x = -side, .min_z = -side, .max_x = side, .max_z = side, .p = 1.0,
-        .sharpest = 1.57, .turn_step_urad = 100, .step_mm = 1, .steps = 1,
-    };
-    const planner_pose beside = {0.1, 100.0 / 65536.0, 0.0};
-    IS(planner_begin(&planner, at, size, &tiny, strip, 4), PLANNER_STATUS_OK);
-    IS(planner_plan(planner, beside, &motion), PLANNER_STATUS_UNDECIDED);
+    /* A tolerance that leaves nothing of the area, and one that leaves no label that tells more. */
+    planner_mission vague = good;
+    vague.tolerance = 10.0;
+    IS(planner_begin(&planner, at, size, &vague, given, 4), PLANNER_STATUS_TOLERANCE_TOO_LARGE);
+    vague.tolerance = 2.0;
+    const planner_sample narrow[] = {{2.0, 9.0, false}, {2.0, 11.0, true}, {18.0, 11.0, true}, {18.0, 9.0, false}};
+    const planner_pose middle = {10.0, 10.0, 0.0};
+    IS(planner_begin(&planner, at, size, &vague, narrow, 4), PLANNER_STATUS_OK);
+    IS(planner_plan(planner, middle, &motion), PLANNER_STATUS_IMPRECISE);
     return failed;
 }

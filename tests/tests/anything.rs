@@ -10,7 +10,7 @@ use tests::cases;
 const SEED: u64 = 21;
 
 /// What a plan may ask of its area, in corners of keep-outs; some 100 instructions each.
-const MOST_ASKED: u64 = 200_000;
+const MOST_ASKED: u64 = 1_500_000;
 
 #[test]
 fn random_missions_keep_every_invariant() {

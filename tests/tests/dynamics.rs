@@ -60,7 +60,7 @@ fn what_is_no_grid_is_refused_by_what_is_wrong_with_it() {
     for (rays, speeds) in [(0, 21), (5, 0), (u32::MAX, 2), (65_538, u16::MAX)] {
         assert_eq!(ActionGrid::new(rays, speeds, 100), Err(BadGrid::Actions), "{rays} {speeds}");
     }
-    for (speeds, step_mm) in [(21, 0), (21, 5_000), (1, 100_000), (2, u32::MAX), (1, u32::MAX)] {
+    for (speeds, step_mm) in [(21, 0), (61, 50_000), (1, 100_000), (2, u32::MAX), (1, u32::MAX)] {
         assert_eq!(ActionGrid::new(5, speeds, step_mm), Err(BadGrid::Reach), "{speeds} {step_mm}");
     }
     let longest = ActionGrid::new(1, 2, 99_999).expect("a grid");
@@ -512,7 +512,7 @@ fn what_cannot_go_round_is_no_car() {
         (Shape { turn_step_urad: 0, ..good }, BadGrid::Turn),
         (Shape { turn_step_urad: 785_399, ..good }, BadGrid::Turn),
         (Shape { speed_step_mm: 0, ..good }, BadGrid::Reach),
-        (Shape { speed_step_mm: 5_000, ..good }, BadGrid::Reach),
+        (Shape { speeds: 601, speed_step_mm: 5_000, ..good }, BadGrid::Reach),
         (Shape { speeds: 0, ..good }, BadGrid::Actions),
     ] {
         assert_eq!(Car::new(bad).map(|_| ()), Err(why), "{bad:?}");

@@ -223,7 +223,8 @@ fn true_labels_teach_what_they_should() {
         // A search that closes in more slowly finds as good places, but asks more of them.
         println!("seed {seed}: {:.1} places asked a plan", summary.mean_examined);
         assert!(summary.mean_examined <= 120.0, "seed {seed}: {}", summary.mean_examined);
-        assert!(summary.most_examined <= planner_core::planner::lookahead::EVALUATIONS);
+        // Where no label is in reach the ladder looks for a way on.
+        assert!(summary.most_examined <= planner_core::search::objective::LOOKS);
     }
 }
 

@@ -195,7 +195,7 @@ fn stays_inside<D: Dynamics>(dynamics: &D, size: [f64; 2], from: Pose, to: Pose)
 /// Whether a vehicle could go on, by trying: from where the mission ended to every pose within some motions, but one of
 /// those that are alike (a small square and few degrees), with a share of all actions; and from each every action.
 /// A label that can be asked in a pose that is safe with a circle of the turning radius and a tenth more contradicts
-/// "cornered", and more than few such labels contradict "resolution".
+/// "cornered" and "undecided", and more than few such labels contradict "resolution".
 fn contradicts<D: Dynamics>(
     dynamics: &D,
     field: &Field,
@@ -205,7 +205,8 @@ fn contradicts<D: Dynamics>(
     reason: StopReason,
 ) -> bool {
     const POSES: usize = 4_000;
-    if reason != StopReason::Cornered && reason != StopReason::Resolution {
+    let is_hemmed_in = matches!(reason, StopReason::Cornered | StopReason::Undecided);
+    if !is_hemmed_in && reason != StopReason::Resolution {
         return true;
     }
     let grid = dynamics.grid();
@@ -242,7 +243,7 @@ fn contradicts<D: Dynamics>(
                 let is_uncertain = belief.lines().certainty(target.site) == Certainty::Uncertain;
                 hits += u64::from(is_uncertain && is_safe(target));
                 // Standing safe is a way on too where it was not.
-                if reason == StopReason::Cornered && hits > 0 {
+                if is_hemmed_in && hits > 0 {
                     return true;
                 }
                 if seen.len() < POSES && seen.insert(alike(target)) {

@@ -86,13 +86,13 @@ fn bad_vehicles_are_refused() {
         ("", "{ kind = \"boat\", reach = 2.05 }", &["vehicle.reach", "found 2.05", "steps"]),
         (
             "",
-            "{ kind = \"unicycle\", reach = 100 }",
-            &["vehicle.reach: found 100 m", "less than 100 m"],
+            "{ kind = \"unicycle\", reach = 3000 }",
+            &["vehicle.reach: found 3000 m", "less than 3000 m"],
         ),
         (
             "",
-            "{ kind = \"car\", reach = 200, radius = 3 }",
-            &["vehicle.reach: found 200 m", "100 m"],
+            "{ kind = \"car\", reach = 4000, radius = 3 }",
+            &["vehicle.reach: found 4000 m", "3000 m"],
         ),
         ("", "{ kind = \"boat\", step = 0.0 }", &["vehicle.step", "found 0", "millimetre"]),
         ("", "{ kind = \"boat\", sharpest = 4.0 }", &["vehicle", "0.001 to pi rad"]),

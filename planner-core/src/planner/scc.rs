@@ -48,7 +48,7 @@ pub const FOLLOWING: Following = Following::Unrestricted;
 
 /// Rays that all hypotheses of a vote look at together, at most: then those that were asked decide. The
 /// paper's example has been seen to need 26,000 at 60 labels.
-pub const VOTE_LOOKS: u32 = 24_576;
+pub const VOTE_LOOKS: u32 = 16_384;
 
 /// How the hypotheses choose an action together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -37,7 +37,7 @@ const MOST: u32 = 8_192;
 const BRANCH_BITS: u32 = 32 - 5;
 
 /// A search of one pose takes so many looks at most.
-const LOOKS_A_SEARCH: u32 = 128;
+const LOOKS_A_SEARCH: u32 = 1_024;
 
 /// A straight drive searches so many poses with uncertain ground in reach at most.
 const SEARCHES: u32 = 6;

@@ -103,16 +103,20 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule, G: Region>(
         }
         return Ok(found(Some(Recovery::Undirected))((best.action, best.target)));
     }
-    // Few looks find a way nearly always. More of them are worth it where there is much ground to find.
-    let kept = ladder.search.effort.keep_back(FIRST_LOOKS);
+    // Few looks find a way nearly always, unless it has to go round. More of them are worth it where there is much ground
+    // to find.
+    let goes_round = goes_round(ladder.search.dynamics, pose);
+    let first = if goes_round { ladder.search.effort.looks / 2 } else { FIRST_LOOKS };
+    let kept = ladder.search.effort.keep_back(first);
     let climbed = ladder.climb(home);
     ladder.search.effort.give_back(kept);
     let Err(why) = climbed else { return climbed };
+    let climbed = Err(why);
     if why == DeadEnd::Outside || !is_open(problem.lines, &area) {
         return Err(why.of_thin_ground(problem.lines));
     }
     let kept = ladder.search.effort.keep_back(ladder.search.effort.looks / 2);
-    let climbed = ladder.climb(home);
+    let climbed = if goes_round { climbed } else { ladder.climb(home) };
     ladder.search.effort.give_back(kept);
     climbed.or_else(|why| {
         let leg = wander(&ladder.problem, ladder.search).ok_or(why.of_open_ground())?;
