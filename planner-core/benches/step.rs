@@ -110,7 +110,8 @@ fn noisy(labels: usize) -> (Scc<Unicycle, 36, 529>, Pose) {
     let hypotheses =
         Hypotheses::new(planner.belief().samples(), Prior::Area, noise).expect("an oracle");
     let config = Config { following: scc::FOLLOWING, ..config() };
-    let mut planner = Scc::new(config, Policy::default(), Unicycle::paper(), hypotheses).expect("settings that agree");
+    let mut planner = Scc::new(config, Policy::default(), Unicycle::paper(), hypotheses)
+        .expect("settings that agree");
     let mut pose = start;
     let mut taken = 0;
     while taken < labels {

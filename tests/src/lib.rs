@@ -1,6 +1,6 @@
 //! What the cross-crate tests share: adversarial sites and the slow twin of the version space;
 //! programs for a chip ([`program`]), a core to run them on ([`emulator`]), what they may take
-//! ([`budget`]); machines of QEMU's
+//! ([`budget`]); missions in which everything is drawn at random ([`anything`]); machines of QEMU's
 //! ([`machines`]) and a debugger for them ([`debugger`]); beliefs to ask ([`known`]); areas with keep-outs ([`terrain`]).
 
 use planner_core::belief::sample::{Label, Sample};

@@ -1,61 +1,77 @@
 //! Missions in which everything is drawn at random keep what every mission must keep.
+//!
+//! `cargo test` flies 400 of them, a long run 20,000. A finding names its mission, which flies again by
+//!
+//! ```sh
+//! FROM=17 COUNT=1 cargo test -p tests --test anything -- --nocapture
+//! ```
 
 use std::collections::BTreeMap;
+use std::panic::catch_unwind;
 
+use host_sim::mission::definition::Mission;
 use rayon::prelude::*;
 use tests::anything::draw::draw;
-use tests::anything::flight::{Finding, fly};
+use tests::anything::flight::{Finding, Flight, fly};
+use tests::anything::plain::Ground;
+use tests::anything::{asked_for, kind};
 use tests::cases;
 
 const SEED: u64 = 21;
 
-/// What a plan may ask of its area, in corners of keep-outs; some 100 instructions each.
+/// What a plan asks of its area at most, in corners of keep-outs. On a chip `anything_on_a_chip` counts instructions.
 const MOST_ASKED: u64 = 1_500_000;
+
+/// Of 1,000 missions so many may end for a reason that a brute force refutes: it finds a way that the planner does not.
+const FALSE_REASONS: usize = 30;
 
 #[test]
 fn random_missions_keep_every_invariant() {
-    let from: u64 = std::env::var("FROM").map_or(0, |it| it.parse().expect("a number"));
-    let count: u64 = std::env::var("COUNT").map_or(cases(400, 20_000), |it| it.parse().expect("a number"));
-    let flights: Vec<_> = (from..from + count)
+    let numbers = asked_for(cases(400, 20_000));
+    let flown: Vec<_> = numbers
+        .clone()
         .into_par_iter()
         .map(|number| {
             let mission = draw(SEED, number);
-            let flight = std::panic::catch_unwind(|| fly(&mission, MOST_ASKED));
-            (number, mission, flight.unwrap_or_else(|_| panic!("mission {number} panics")))
+            let flight = catch_unwind(|| fly(&mission, MOST_ASKED));
+            (number, flight.unwrap_or_else(|_| panic!("mission {number} panics")), mission)
         })
         .collect();
-    let (mut found, mut endings) = (BTreeMap::<Finding, u32>::new(), BTreeMap::new());
-    let mut worst = (0, 0);
-    for (number, mission, flight) in &flights {
+    let mut endings = BTreeMap::<_, u32>::new();
+    for (_, flight, mission) in &flown {
+        let ending = format!("{}: {:?}", kind(&mission.vehicle), flight.ending);
+        *endings.entry(ending).or_default() += 1;
+    }
+    println!("{endings:#?}");
+    let sum = |of: fn(&Flight) -> u32| flown.iter().map(|(_, flight, _)| of(flight)).sum::<u32>();
+    let asked = flown.iter().map(|(number, flight, _)| (flight.asked, *number)).max();
+    println!(
+        "{} motions, {} labels; most asked: {asked:?}",
+        sum(|it| it.motions),
+        sum(|it| it.labels)
+    );
+    let mut findings = Vec::new();
+    for (number, flight, mission) in &flown {
         for (finding, text) in &flight.findings {
-            *found.entry(*finding).or_default() += 1;
-            let kind = format!("{:?}", mission.vehicle);
-            let kind = kind.split('(').next().unwrap_or_default();
-            println!("{number} {finding:?} {kind} {:?} tol {} errs {}: {text}", mission.algorithm,
-                mission.config.tolerance.metres(), mission.errors.position > 0.0 || mission.errors.motion > 0.0);
+            println!("{}{finding:?}: {text}\n", about(*number, mission));
+            findings.push((*finding, *number));
         }
-        let kind = format!("{:?}", mission.vehicle);
-        let kind = kind.split('(').next().unwrap_or_default().to_owned();
-        *endings.entry((kind, format!("{:?}", flight.ending))).or_insert(0) += 1;
-        worst = worst.max((flight.asked, *number));
     }
-    for (ending, count) in endings {
-        println!("{ending:?}: {count}");
-    }
-    let motions: u32 = flights.iter().map(|(.., flight)| flight.motions).sum();
-    let labels: u32 = flights.iter().map(|(.., flight)| flight.labels).sum();
-    println!("{motions} motions, {labels} labels, {} asked at most by mission {}", worst.0, worst.1);
-    assert!(found.is_empty(), "{found:?}");
+    let (refuted, broken): (Vec<_>, Vec<_>) =
+        findings.into_iter().partition(|(finding, _)| *finding == Finding::FalseReason);
+    assert!(broken.is_empty(), "{broken:?}");
+    let most = (flown.len() * FALSE_REASONS).div_ceil(1_000);
+    println!("{} of {} end for a reason that is refuted", refuted.len(), flown.len());
+    assert!(refuted.len() <= most, "{refuted:?}");
 }
 
-#[test]
-fn one() {
-    let Ok(number) = std::env::var("ONE") else { return };
-    let mission = draw(SEED, number.parse().expect("a number"));
-    let vehicle = planner_core::motion::any_vehicle::Shape::from(mission.vehicle);
-    println!("{:?} {vehicle:?}\n{:?}\n{:?} {:?} {:?} {:?}", mission.algorithm,
-        tests::anything::plain::Ground::of(&mission.config.area), mission.config.tolerance.metres(), mission.noise, mission.errors, mission.goal);
-    let flight = fly(&mission, MOST_ASKED);
-    println!("{:?} {} motions {} labels", flight.ending, flight.motions, flight.labels);
-    for finding in flight.findings { println!("{finding:?}"); }
+/// What a mission is, for one who looks into a finding.
+fn about(number: u64, mission: &Mission) -> String {
+    let Mission { algorithm, vehicle, errors, noise, goal, start, .. } = mission;
+    let tolerance = mission.config.tolerance.metres();
+    format!(
+        "mission {number}: {algorithm:?}, {vehicle:?}\n{:?}\nstart {start:?}, tolerance {tolerance}, {errors:?}, \
+         {noise:?}, {goal:?}\n",
+        Ground::of(&mission.config.area)
+    )
 }

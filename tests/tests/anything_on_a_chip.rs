@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 use tests::anything::draw::draw;
-use tests::anything::kind;
+use tests::anything::{asked_for, kind};
 use tests::budget::footprint::SEAM;
-use tests::emulator::missions::{self, CORES};
+use tests::cases;
 use tests::emulator::Emulator;
+use tests::emulator::missions::{self, CORES};
 use tests::program::image::Image;
 
 const SEED: u64 = 21;
@@ -30,8 +31,6 @@ fn no_plan_takes_more_than_its_bound() {
         .filter(|it| it.name.strip_prefix(SEAM) == Some("plan"))
         .map(|it| it.address)
         .collect();
-    let from: u64 = std::env::var("FROM").map_or(0, |it| it.parse().expect("a number"));
-    let count: u64 = std::env::var("COUNT").map_or(tests::cases(60, 1_000), |it| it.parse().expect("a number"));
     let start = || {
         let mut emulator = Emulator::load(&elf, core);
         plans.iter().for_each(|function| emulator.watch(*function));
@@ -41,11 +40,12 @@ fn no_plan_takes_more_than_its_bound() {
         let mut mission = draw(SEED, number);
         mission.steps = LABELS;
         emulator.restart();
-        missions::fly(emulator, &mission).unwrap_or_else(|error| panic!("mission {number}: {error}"));
+        missions::fly(emulator, &mission)
+            .unwrap_or_else(|error| panic!("mission {number}: {error}"));
         let worst = emulator.calls().iter().map(|call| call.instructions).max().unwrap_or(0);
         (format!("{} {:?}", kind(&mission.vehicle), mission.algorithm), worst, number)
     };
-    let worst: Vec<_> = (from..from + count).into_par_iter().map_init(start, fly).collect();
+    let worst: Vec<_> = asked_for(cases(24, 400)).into_par_iter().map_init(start, fly).collect();
     let mut by_kind = BTreeMap::<String, Vec<(u64, u64)>>::new();
     for (kind, worst, number) in worst {
         by_kind.entry(kind).or_default().push((worst, number));

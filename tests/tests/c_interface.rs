@@ -84,10 +84,18 @@ fn flown_here(is_doubtful: bool) -> String {
         let reliability = Reliability::new(0.85).expect("a probability");
         let noise = Noise { reliability, ..Noise::NONE };
         let forecast = Forecast::<36, 529>::new(&given, Prior::Area, noise).expect("four points");
-        flown(Lookahead::new(config, unicycle, forecast).expect("settings that agree").until(goal), start, true)
+        flown(
+            Lookahead::new(config, unicycle, forecast).expect("settings that agree").until(goal),
+            start,
+            true,
+        )
     } else {
         let space = VersionSpace::<68>::new(&given).expect("four points");
-        flown(Lookahead::new(config, unicycle, space).expect("settings that agree").until(goal), start, false)
+        flown(
+            Lookahead::new(config, unicycle, space).expect("settings that agree").until(goal),
+            start,
+            false,
+        )
     }
 }
 

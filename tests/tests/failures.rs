@@ -94,8 +94,14 @@ fn missions_go_on_from_where_a_drive_has_failed() {
     for number in 0..150 {
         let mission = standard_field::standard(8, number, Algorithm::Cfc, 20);
         let (config, space) = (mission.config, mission.given);
-        let cfc = fly(number, Cfc::new(config, Unicycle::paper(), space.clone()).expect("settings that agree"));
-        let lookahead = fly(number, Lookahead::new(config, Unicycle::paper(), space).expect("settings that agree"));
+        let cfc = fly(
+            number,
+            Cfc::new(config, Unicycle::paper(), space.clone()).expect("settings that agree"),
+        );
+        let lookahead = fly(
+            number,
+            Lookahead::new(config, Unicycle::paper(), space).expect("settings that agree"),
+        );
         failed += cfc.0 + lookahead.0;
         outside += cfc.1 + lookahead.1;
     }

@@ -141,7 +141,8 @@ fn mixed(number: u64) -> [[f64; 2]; 3] {
     mission.noise = Some(noise(0.8));
     let mut known: Table = mission.table();
     let dynamics = Unicycle::from(Grid::Paper);
-    let mut planner = Lookahead::new(mission.config, dynamics, mission.forecast()).expect("settings that agree");
+    let mut planner =
+        Lookahead::new(mission.config, dynamics, mission.forecast()).expect("settings that agree");
     let (mut pose, mut told, mut marks) = (mission.start, [0.0; 2], Vec::new());
     let mut labels = 0;
     while labels < 30 {

@@ -83,7 +83,8 @@ fn every_plan_is_what_trying_all_actions_would_make_it() {
     (0..cases(100, 2_000)).into_par_iter().for_each(|number| {
         let mission = standard_field::standard(12, number, Algorithm::Cfc, 60);
         let mut robot = Ideal { world: mission.world };
-        let mut planner = Cfc::new(mission.config, unicycle, mission.given.clone()).expect("settings that agree");
+        let mut planner =
+            Cfc::new(mission.config, unicycle, mission.given.clone()).expect("settings that agree");
         let mut pose = mission.start;
         for step in 1..=mission.steps {
             let slow = planner.problem().solve_exhaustively(&unicycle, pose).best;

@@ -120,7 +120,8 @@ fn any(rng: &mut ChaCha8Rng) -> Any {
 fn fly<D: Dynamics>(dynamics: D, number: u64, rng: &mut ChaCha8Rng) -> StopReason {
     contract::check(&dynamics).expect("a grid of ours");
     let mission = standard_field::standard(21, number, Algorithm::Cfc, 1);
-    let mut planner = Cfc::new(mission.config, dynamics, mission.given.clone()).expect("settings that agree");
+    let mut planner =
+        Cfc::new(mission.config, dynamics, mission.given.clone()).expect("settings that agree");
     let mut pose = Pose { heading: Heading(rng.random_range(0..=u32::MAX)), ..mission.start };
     loop {
         let (end, _) = chase(&mut planner, pose).unwrap_or_else(|Endless| {

@@ -64,7 +64,8 @@ fn a_vote_is_the_sum_over_hypotheses_computed_the_slow_way() {
             let mut elections = 0;
             let flown = mission.fly(|step, belief| {
                 let planner = |table: Table| -> Planner64 {
-                    Scc::new(mission.config, policy, Unicycle::paper(), table).expect("settings that agree")
+                    Scc::new(mission.config, policy, Unicycle::paper(), table)
+                        .expect("settings that agree")
                 };
                 // From where it was and, facing elsewhere, where it was not.
                 let elsewhere = Pose { heading: Heading(from.heading.0.wrapping_mul(77)), ..from };

@@ -22,10 +22,10 @@ use planner_core::motion::unicycle::Unicycle;
 use planner_core::planner::cfc::{self, Cfc};
 use planner_core::planner::config::{Config, Crossing};
 use planner_core::planner::{Plan, Planner as _};
-use planner_core::search::recovery::Recovery;
 use planner_core::search::direction_rule::ArcRule;
 use planner_core::search::objective::{LOOKS, Varrho};
 use planner_core::search::problem::{Problem, Solution};
+use planner_core::search::recovery::Recovery;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -290,7 +290,10 @@ fn a_plan_has_so_many_looks_and_says_when_they_do_not_do() {
         following: cfc::FOLLOWING,
         tolerance: Tolerance::NONE,
     };
-    let planner = |dynamics| Cfc::new(config, dynamics, space.clone().expect("they are apart")).expect("settings that agree");
+    let planner = |dynamics| {
+        Cfc::new(config, dynamics, space.clone().expect("they are apart"))
+            .expect("settings that agree")
+    };
     let pose = |z, quarters: u32| Pose {
         site: Site::new(0, z).expect("on the lattice"),
         heading: Heading(quarters << 30),

@@ -88,16 +88,22 @@ where
 fn asleep_as_asked(mission: &Mission) -> Result<String, String> {
     let (config, vehicle, goal) = (mission.config, mission.vehicle, mission.goal);
     match mission.algorithm {
-        Algorithm::Cfc => asleep(mission, || Cfc::new(config, vehicle, mission.lines()).expect("settings that agree")),
-        Algorithm::Scc => {
-            asleep(mission, || Scc::new(config, mission.policy, vehicle, mission.table()).expect("settings that agree"))
-        }
-        Algorithm::Lookahead if mission.is_noisy() => {
-            asleep(mission, || Lookahead::new(config, vehicle, mission.forecast()).expect("settings that agree").until(goal))
-        }
-        Algorithm::Lookahead => {
-            asleep(mission, || Lookahead::new(config, vehicle, mission.lines()).expect("settings that agree").until(goal))
-        }
+        Algorithm::Cfc => asleep(mission, || {
+            Cfc::new(config, vehicle, mission.lines()).expect("settings that agree")
+        }),
+        Algorithm::Scc => asleep(mission, || {
+            Scc::new(config, mission.policy, vehicle, mission.table()).expect("settings that agree")
+        }),
+        Algorithm::Lookahead if mission.is_noisy() => asleep(mission, || {
+            Lookahead::new(config, vehicle, mission.forecast())
+                .expect("settings that agree")
+                .until(goal)
+        }),
+        Algorithm::Lookahead => asleep(mission, || {
+            Lookahead::new(config, vehicle, mission.lines())
+                .expect("settings that agree")
+                .until(goal)
+        }),
         Algorithm::Margin | Algorithm::Random => panic!("no planner of planner-core"),
     }
 }

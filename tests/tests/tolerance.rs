@@ -19,8 +19,8 @@ use planner_core::belief::tolerance::Tolerance;
 use planner_core::belief::weight::Prior;
 use planner_core::geometry::lattice::Site;
 use planner_core::geometry::line::Line;
-use planner_core::planner::StopReason;
 use planner_core::planner::Stage;
+use planner_core::planner::StopReason;
 use rayon::prelude::*;
 use tests::cases;
 use tests::twins::probit::{Probit, Told};
@@ -269,9 +269,9 @@ fn paper(algorithm: Algorithm, errors: Errors) -> Vec<f64> {
         let is_told = flown.ending == Ending::Stopped(StopReason::Tolerance);
         let centre = flown.belief.estimates().centre.filter(|_| is_told);
         let last = centre.map(|centre| Line::from(centre).angle_to_deg(&truth));
-        degrees.or(last).unwrap_or_else(|| {
-            panic!("seed {seed}: {labels} labels, then {:?}", flown.ending)
-        })
+        degrees
+            .or(last)
+            .unwrap_or_else(|| panic!("seed {seed}: {labels} labels, then {:?}", flown.ending))
     };
     let mut degrees: Vec<f64> = (0..300).into_par_iter().map(each).collect();
     degrees.sort_by(f64::total_cmp);

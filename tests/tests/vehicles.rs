@@ -132,9 +132,19 @@ fn fly<D: Dynamics + Copy + Debug>(
         Config { area: field.area, varrho, crossing, following, tolerance: Tolerance::NONE };
     let given = field.given.clone();
     if algorithm == Algorithm::Cfc {
-        fly_by(field, dynamics, radius_m, Cfc::new(config, dynamics, given).expect("settings that agree"))
+        fly_by(
+            field,
+            dynamics,
+            radius_m,
+            Cfc::new(config, dynamics, given).expect("settings that agree"),
+        )
     } else {
-        fly_by(field, dynamics, radius_m, Lookahead::new(config, dynamics, given).expect("settings that agree"))
+        fly_by(
+            field,
+            dynamics,
+            radius_m,
+            Lookahead::new(config, dynamics, given).expect("settings that agree"),
+        )
     }
 }
 

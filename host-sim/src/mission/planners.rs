@@ -64,10 +64,12 @@ impl Mission {
         let (area, rng) = (config.area, ChaCha8Rng::seed_from_u64(self.seed));
         match self.algorithm {
             Algorithm::Cfc => erased(Cfc::new(config, dynamics, self.lines()).expect(FITS)),
-            Algorithm::Scc => erased(Scc::new(config, self.policy, dynamics, self.table()).expect(FITS)),
-            Algorithm::Lookahead if self.is_noisy() => {
-                erased(Lookahead::new(config, dynamics, self.forecast()).expect(FITS).until(self.goal))
+            Algorithm::Scc => {
+                erased(Scc::new(config, self.policy, dynamics, self.table()).expect(FITS))
             }
+            Algorithm::Lookahead if self.is_noisy() => erased(
+                Lookahead::new(config, dynamics, self.forecast()).expect(FITS).until(self.goal),
+            ),
             Algorithm::Lookahead => {
                 erased(Lookahead::new(config, dynamics, self.lines()).expect(FITS).until(self.goal))
             }

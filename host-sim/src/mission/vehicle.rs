@@ -253,7 +253,11 @@ pub fn check_room(
         ConfigError::Room(none) => {
             wrong(&source.name("kind"), of_area(config.area.bounds(), tolerance), none)
         }
-        _ => wrong(&source.name("tolerance"), tolerance, "less: no place is as far from the border of the area"),
+        _ => wrong(
+            &source.name("tolerance"),
+            tolerance,
+            "less: no place is as far from the border of the area",
+        ),
     })
 }
 

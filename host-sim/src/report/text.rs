@@ -139,10 +139,14 @@ pub(crate) fn why(reason: &str) -> &str {
         "steps" => "all steps are taken",
         "known" => "what was asked for is known",
         "resolution" => "what is uncertain is thinner than the action grid can hit",
-        "tolerance" => "what is uncertain is so thin that no label tells more, as positions err by the tolerance",
+        "tolerance" => {
+            "what is uncertain is so thin that no label tells more, as positions err by the tolerance"
+        }
         "samples full" => "the planner has no room for another sample",
         "outside area" => "the robot is outside the area, and no motion leads back",
-        "cornered" => "no motion leads to uncertain ground, as the border or a keep-out is in the way",
+        "cornered" => {
+            "no motion leads to uncertain ground, as the border or a keep-out is in the way"
+        }
         "undecided" => "none of the ways that a plan tries leads to uncertain ground",
         other => other,
     }
@@ -159,7 +163,9 @@ fn remedy(results: &Results) -> Option<&'static str> {
         "tolerance" => "To know more, bring better positions: a smaller tolerance.",
         "samples full" => "A planner with room for more samples goes on.",
         "outside area" => "Bring the robot back, or enlarge the area.",
-        "cornered" => "To go on, turn or move the robot by hand, allow sharper turns, or enlarge the area.",
+        "cornered" => {
+            "To go on, turn or move the robot by hand, allow sharper turns, or enlarge the area."
+        }
         "undecided" => "To go on, allow shorter motions or finer turns, or move the robot by hand.",
         _ => return None,
     })

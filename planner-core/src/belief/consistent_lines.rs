@@ -118,7 +118,8 @@ impl<'a> ConsistentLines<'a> {
     /// as no such label was read nearby.
     pub(crate) fn may_tell(self, q: Site) -> bool {
         self.loosely().can_cut(q)
-            && (self.shift == Vector::default() || !self.samples.iter().any(|it| self.is_told(q, it)))
+            && (self.shift == Vector::default()
+                || !self.samples.iter().any(|it| self.is_told(q, it)))
     }
 
     /// Whether a sample says what its label would say at a position: it was taken in nearer to where that would be taken

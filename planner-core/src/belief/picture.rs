@@ -10,9 +10,9 @@ use heapless::Vec;
 
 use crate::belief::consistent_lines::ConsistentLines;
 use crate::belief::outlook::{Foresight, Outlook, Prediction, entropy};
-use crate::belief::weight::LogWeight;
 use crate::belief::sample::{Label, Reading};
 use crate::belief::version_space::VersionSpace;
+use crate::belief::weight::LogWeight;
 use crate::belief::{Belief, Refused};
 use crate::geometry::approximate::{METRE, UnitVector, cross, inverse_sqrt};
 use crate::geometry::lattice::{Site, Vector};

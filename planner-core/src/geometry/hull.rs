@@ -114,9 +114,8 @@ pub(crate) fn have_boxes_apart(a: &[Site], b: &[Site], by: u32) -> bool {
     let by = i64::from(by);
     let apart = |of: fn(Site) -> i32| {
         let range = |hull: &[Site]| {
-            hull.iter().fold((i32::MAX, i32::MIN), |(low, high), q| {
-                (low.min(of(*q)), high.max(of(*q)))
-            })
+            hull.iter()
+                .fold((i32::MAX, i32::MIN), |(low, high), q| (low.min(of(*q)), high.max(of(*q))))
         };
         let ((low_a, high_a), (low_b, high_b)) = (range(a), range(b));
         let gap = |low: i32, high: i32| i64::from(low) - i64::from(high) > by;

@@ -85,7 +85,8 @@ impl<const C: usize, const K: usize> Terrain<C, K> {
     /// meet, moved inwards, one is inside then, and of the sides of its rectangle too.
     fn has_inside(&self) -> bool {
         let (min, max) = (self.bounds.min(), self.bounds.max());
-        let box_corners = [(min.x(), min.z()), (max.x(), min.z()), (max.x(), max.z()), (min.x(), max.z())];
+        let box_corners =
+            [(min.x(), min.z()), (max.x(), min.z()), (max.x(), max.z()), (min.x(), max.z())];
         let mut polygon: Vec<[f32; 2], 24, u8> = Vec::new();
         for (x, z) in box_corners {
             let _ = polygon.push([(x - min.x()) as f32, (z - min.z()) as f32]);
@@ -94,7 +95,8 @@ impl<const C: usize, const K: usize> Terrain<C, K> {
             let value = |[x, z]: [f32; 2]| {
                 let from = side.from - min;
                 let along = [side.along.x as f32, side.along.z as f32];
-                along[0] * (z - from.z as f32) - along[1] * (x - from.x as f32)
+                along[0] * (z - from.z as f32)
+                    - along[1] * (x - from.x as f32)
                     - side.margin as f32 * side.length as f32
             };
             let mut rest: Vec<[f32; 2], 24, u8> = Vec::new();

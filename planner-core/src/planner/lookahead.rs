@@ -209,7 +209,12 @@ fn second<D: Dynamics, P: Prediction, G: Region>(
     ground: Option<ConsistentLines<'_>>,
 ) -> f32 {
     let mut most = 0.0;
-    lookout.look(prediction, pose, (SECOND_CIRCLES, lookout.usual), &mut Sought::Worth(&mut most, ground));
+    lookout.look(
+        prediction,
+        pose,
+        (SECOND_CIRCLES, lookout.usual),
+        &mut Sought::Worth(&mut most, ground),
+    );
     most
 }
 

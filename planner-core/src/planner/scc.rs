@@ -39,7 +39,7 @@ use crate::planner::vote::Ballot;
 use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
 use crate::search::dead_end::DeadEnd;
 use crate::search::direction_rule::{ArcRule, ArcUnion, DirectionRule, UnionRule};
-use crate::search::objective::{Effort, LOOKS};
+use crate::search::objective::{Effort, LOOKS, OPENING};
 use crate::search::problem::Problem;
 use crate::search::recovery::{Found, Recovery, solve_or_recover};
 
@@ -48,7 +48,7 @@ pub const FOLLOWING: Following = Following::Unrestricted;
 
 /// Rays that all hypotheses of a vote look at together, at most: then those that were asked decide. The
 /// paper's example has been seen to need 26,000 at 60 labels.
-pub const VOTE_LOOKS: u32 = 16_384;
+pub const VOTE_LOOKS: u32 = 12_288;
 
 /// How the hypotheses choose an action together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -157,6 +157,7 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Region> Scc<D, N, H, G> {
                 if votes < least || votes >= asked_down_to {
                     continue;
                 }
+                effort.take(OPENING);
                 let best = self.problem(hypothesis).find(effort, &self.dynamics, pose);
                 ballot.cast(votes, best.map(|best| best.action));
                 if best.is_some() && ballot.is_decided() {

@@ -94,6 +94,8 @@ struct Hunt<'r, R> {
     rule: &'r R,
     /// Whether the best forbidden action is wanted.
     keeps_forbidden: bool,
+    /// Whether rays are so far apart that each is looked at.
+    is_coarse: bool,
     found: Findings,
 }
 
@@ -105,7 +107,6 @@ impl<D: Dynamics, G: Region> Search<'_, D, G> {
     /// Sees what there is. A step of its own, so that all of this is made where it stays.
     #[must_use]
     pub(crate) fn open(&mut self) -> &mut Self {
-        self.effort.take(self.view.looks());
         self.view.open();
         self
     }
@@ -122,7 +123,7 @@ impl<D: Dynamics, G: Region> Search<'_, D, G> {
             Some(found) => found,
             None => Findings { best: None, best_forbidden: None },
         };
-        let mut hunt = Hunt { rule, keeps_forbidden: true, found };
+        let mut hunt = Hunt { rule, keeps_forbidden: true, is_coarse: false, found };
         self.look_around([self.pose.heading; 2], &mut hunt);
         hunt.found
     }
@@ -134,7 +135,7 @@ impl<D: Dynamics, G: Region> Search<'_, D, G> {
         rule: &R,
     ) -> Option<(Choice, Side)> {
         let found = Findings { best: None, best_forbidden: None };
-        let mut hunt = Hunt { rule, keeps_forbidden: false, found };
+        let mut hunt = Hunt { rule, keeps_forbidden: false, is_coarse: false, found };
         self.look_around(headings, &mut hunt);
         hunt.found.best.map(|(choice, (_, side))| (choice, side))
     }
@@ -146,6 +147,7 @@ impl<D: Dynamics, G: Region> Search<'_, D, G> {
     ) {
         let (grid, fan, site) = (self.dynamics.grid(), self.dynamics.fan(), self.pose.site);
         let spacing = NonZeroU32::new(fan.spacing.0).map_or(LEAST, |spacing| spacing.max(LEAST));
+        hunt.is_coarse = fan.spacing.0 > COARSE;
         let arm = |heading, side, first, end| {
             let pose = Pose { site, heading };
             Arm { pose, side, spacing, first, end }
@@ -158,7 +160,7 @@ impl<D: Dynamics, G: Region> Search<'_, D, G> {
             if arms.iter().all(Arm::is_empty)
                 || best.is_some_and(|(best, _)| straight_ahead() < best.objective)
                 || !self.view.enter_circle(speed)
-                || !self.effort.take(1)
+                || speed.is_multiple_of(4) && !self.effort.take(4)
             {
                 break;
             }
@@ -202,9 +204,6 @@ impl<D: Dynamics, G: Region> Search<'_, D, G> {
         hunt: &mut Hunt<'_, R>,
     ) -> Verdict {
         let (n, side) = rank;
-        if !self.effort.take(1) {
-            return Verdict::NoneBetter;
-        }
         let heading = self.dynamics.heading(pose, side, n);
         if let Some(turn) = self.view.leaves_area_until(heading, side) {
             return Verdict::Infeasible { turn, on_inner_circles_too: true };
@@ -216,6 +215,8 @@ impl<D: Dynamics, G: Region> Search<'_, D, G> {
         if let Some(turn) = self.view.outside_until(heading, side) {
             return Verdict::Infeasible { turn, on_inner_circles_too: false };
         }
+        let Some(looks) = self.effort.looks.checked_sub(1) else { return Verdict::NoneBetter };
+        self.effort.looks = looks;
         let grid = self.dynamics.grid();
         let ray = self.dynamics.ray(pose, side, n);
         let value = self.varrho.objective(grid.reach_mm(speed), ray.effort);
@@ -226,7 +227,7 @@ impl<D: Dynamics, G: Region> Search<'_, D, G> {
         let choice = |target| (Choice { action, target, objective: value }, rank);
         let only_these = |turn| Verdict::Infeasible { turn, on_inner_circles_too: false };
         if hunt.rule.admits(ray.step) {
-            let target = match self.worthwhile_end(pose, &ray, speed) {
+            let target = match self.worthwhile_end(pose, &ray, speed, hunt.is_coarse) {
                 Ok(target) => target,
                 Err(turn) => return only_these(turn),
             };
@@ -234,7 +235,7 @@ impl<D: Dynamics, G: Region> Search<'_, D, G> {
             return Verdict::Best;
         }
         if hunt.keeps_forbidden && is_better(value, rank, hunt.found.best_forbidden.as_ref()) {
-            let target = match self.worthwhile_end(pose, &ray, speed) {
+            let target = match self.worthwhile_end(pose, &ray, speed, hunt.is_coarse) {
                 Ok(target) => target,
                 Err(turn) => return only_these(turn),
             };
@@ -246,7 +247,13 @@ impl<D: Dynamics, G: Region> Search<'_, D, G> {
 
     /// The pose at a ray's end, if that is inside the area and a label there can tell something, and the way there
     /// and what may come of it stay inside too; else the turn within which the search takes no other ray for better.
-    fn worthwhile_end(&mut self, pose: Pose, ray: &Ray, speed: u16) -> Result<Pose, u32> {
+    fn worthwhile_end(
+        &mut self,
+        pose: Pose,
+        ray: &Ray,
+        speed: u16,
+        is_coarse: bool,
+    ) -> Result<Pose, u32> {
         let target = self.dynamics.arrive(pose, ray, speed).map_err(|_| 0_u32)?;
         self.effort.examined += 1;
         let area = self.view.area();
@@ -256,8 +263,6 @@ impl<D: Dynamics, G: Region> Search<'_, D, G> {
             return Err(if is_plain { 0 } else { HEMMED_IN });
         }
         if !self.view.can_cut(target.site) {
-            // Where rays are far apart the next one is looked at.
-            let is_coarse = self.dynamics.fan().spacing.0 > COARSE;
             return Err(if is_coarse { 0 } else { self.view.passed_over(target.site) });
         }
         // The way and two circles, at most.

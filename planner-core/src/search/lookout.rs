@@ -149,7 +149,8 @@ impl<D: Dynamics, G: Region> Lookout<'_, D, G> {
             let information = prediction.information(target.site, share);
             let worth = information - cost;
             let action = grid.action(ray.index, speed);
-            if information >= self.least && !sought.find(Prospect { action, target, share, worth }) {
+            if information >= self.least && !sought.find(Prospect { action, target, share, worth })
+            {
                 return None;
             }
         }

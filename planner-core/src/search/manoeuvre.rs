@@ -27,7 +27,7 @@ use crate::search::circles::Search;
 use crate::search::dead_end::DeadEnd;
 use crate::search::detour::{self, Way};
 use crate::search::direction_rule::DirectionRule;
-use crate::search::objective::Effort;
+use crate::search::objective::{Effort, OPENING};
 use crate::search::problem::Problem;
 
 /// A way has so many motions at most.
@@ -216,7 +216,8 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Manoeuvre<'_, '_, '_, D, R, G> {
         let (dynamics, area, grid) = (self.dynamics, self.problem.area, self.dynamics.grid());
         let action = dynamics.orbit(pose, side)?.action;
         let after = dynamics.target(pose, action)?;
-        if self.stays(pose, after) && (self.start == Start::Outside || self.may_hold(pose, after, side))
+        if self.stays(pose, after)
+            && (self.start == Start::Outside || self.may_hold(pose, after, side))
         {
             return Some((action, after));
         }
@@ -304,7 +305,8 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Manoeuvre<'_, '_, '_, D, R, G> {
         let mut otherwise = None;
         for speed in (1..=fastest).rev() {
             let exists = dynamics.rays_at(speed).is_none_or(|[left, _]| left > 0);
-            let Some(after) = exists.then(|| dynamics.arrive(pose, &ray, speed).ok()).flatten() else {
+            let Some(after) = exists.then(|| dynamics.arrive(pose, &ray, speed).ok()).flatten()
+            else {
                 continue;
             };
             if !self.stays(pose, after) {
@@ -347,6 +349,7 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Manoeuvre<'_, '_, '_, D, R, G> {
     /// on. Else updates how far one can go from there with no uncertain ground in reach.
     fn look(&mut self, place: &mut Place) -> bool {
         self.note(place);
+        self.effort.take(OPENING);
         let mut there = self.problem.search(self.dynamics, place.pose, self.effort);
         let there = there.open();
         place.free = there.view.out_of_reach_for();

@@ -11,6 +11,9 @@ use crate::motion::dynamics::Pose;
 /// grid 520 rays are the most that a plan of 3,000 standard missions of 60 steps needed.
 pub const LOOKS: u32 = 16_384;
 
+/// The looks that it costs to open a view, where many are opened.
+pub(crate) const OPENING: u32 = 2;
+
 /// The weight of the control in the objective, in [0, 1), to six decimal places.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -97,7 +100,8 @@ impl Effort {
     /// Takes the looks that it costs to see whether a hull touches a keep-out: one for each two corners of those nearby.
     pub(crate) fn take_sweep<G: Region>(&mut self, area: &G, hull: &[Site]) -> bool {
         let near = area.keep_outs().filter(|it| it.is_near(hull));
-        self.take(near.map(|it| 1 + it.corners.len() as u32 / 2).sum())
+        let looks = near.map(|it| 1 + it.corners.len() as u32 / 2).sum();
+        looks == 0 || self.take(looks)
     }
 
     /// Whether no search has ended for want of looks.

@@ -81,11 +81,6 @@ impl<'a, G: Region> View<'a, G> {
         }
     }
 
-    /// The looks that it costs to open it: one for each eight bounds.
-    pub(crate) fn looks(&self) -> u32 {
-        1 + self.lines.edges.len() as u32 / 8
-    }
-
     /// Sees what there is.
     pub(crate) fn open(&mut self) {
         let reach = f32::from(self.speeds) * self.step * (1.0 + self.margin);

@@ -11,7 +11,7 @@ use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Pose, Side};
 use crate::search::circles::Search;
 use crate::search::direction_rule::DirectionRule;
-use crate::search::objective::Effort;
+use crate::search::objective::{Effort, OPENING};
 use crate::search::problem::Problem;
 
 /// The search after a motion, and after a pair, takes so many looks at most.
@@ -56,6 +56,7 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Wander<'_, '_, '_, D, R, G> {
     }
 
     fn is_feasible(&mut self, pose: Pose, looks: u32) -> bool {
+        self.effort.take(OPENING);
         let kept = self.effort.keep_back(looks);
         let mut there = self.problem.search(self.dynamics, pose, self.effort);
         let there = there.open();
@@ -77,7 +78,8 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Wander<'_, '_, '_, D, R, G> {
         }
         let (length, ray) = ((kind - 2) / RAYS, (kind - 2) % RAYS);
         let fastest = grid.speeds().saturating_sub(1);
-        let speed = [fastest, fastest.div_ceil(2), fastest.div_ceil(5)].get(length as usize).copied()?;
+        let speed =
+            [fastest, fastest.div_ceil(2), fastest.div_ceil(5)].get(length as usize).copied()?;
         let [left, right] = dynamics.rays_at(speed).unwrap_or_else(|| {
             let fan = dynamics.fan();
             [fan.left, fan.right]

@@ -143,7 +143,10 @@ fn area(rng: &mut ChaCha8Rng, side: f64) -> Option<MissionArea> {
                 RoundedHull { hull: Hull::new(&[site(Point2::from(middle))?]).ok()?, radius }
             } else {
                 let count = rng.random_range(2..=6);
-                RoundedHull { hull: Hull::new(&on_circle(rng, middle, size, count)).ok()?, radius: 0 }
+                RoundedHull {
+                    hull: Hull::new(&on_circle(rng, middle, size, count)).ok()?,
+                    radius: 0,
+                }
             });
         }
     }
@@ -197,7 +200,8 @@ fn vehicle(rng: &mut ChaCha8Rng, side: f64) -> Option<AnyVehicle> {
         _ => {
             let radius_mm = (reach_mm * scale(rng, 0.1, 3.0)) as u32;
             let shortest_mm = speed_step_mm * rng.random_range(1..=3);
-            let shape = car::Shape { radius_mm, shortest_mm, turn_step_urad, speeds, speed_step_mm };
+            let shape =
+                car::Shape { radius_mm, shortest_mm, turn_step_urad, speeds, speed_step_mm };
             AnyVehicle::Car(Car::new(shape).ok()?)
         }
     })

@@ -65,10 +65,23 @@ pub fn fly(mission: &Mission, most_asked: u64) -> Flight {
     let vehicle = mission.vehicle;
     let fly = Fly { mission, ground: Ground::of(&area), most_asked };
     match (mission.algorithm, mission.is_noisy()) {
-        (Algorithm::Cfc, _) => fly.with(Cfc::new(config, vehicle, mission.lines()).expect("settings that agree")),
-        (Algorithm::Scc, _) => fly.with(Scc::new(config, mission.policy, vehicle, mission.table()).expect("settings that agree")),
-        (_, true) => fly.with(Lookahead::new(config, vehicle, mission.forecast()).expect("settings that agree").until(mission.goal)),
-        (_, false) => fly.with(Lookahead::new(config, vehicle, mission.lines()).expect("settings that agree").until(mission.goal)),
+        (Algorithm::Cfc, _) => {
+            fly.with(Cfc::new(config, vehicle, mission.lines()).expect("settings that agree"))
+        }
+        (Algorithm::Scc, _) => fly.with(
+            Scc::new(config, mission.policy, vehicle, mission.table())
+                .expect("settings that agree"),
+        ),
+        (_, true) => fly.with(
+            Lookahead::new(config, vehicle, mission.forecast())
+                .expect("settings that agree")
+                .until(mission.goal),
+        ),
+        (_, false) => fly.with(
+            Lookahead::new(config, vehicle, mission.lines())
+                .expect("settings that agree")
+                .until(mission.goal),
+        ),
     }
 }
 
@@ -112,7 +125,8 @@ impl Fly<'_> {
                 flight.note(Finding::Undone, format!("{last:?}, then {motion:?}"));
             }
             if !been.insert((pose.site, pose.heading.0)) && mission.errors == Errors::default() {
-                flight.note(Finding::Endless, format!("at {pose:?} again after {fruitless} motions"));
+                flight
+                    .note(Finding::Endless, format!("at {pose:?} again after {fruitless} motions"));
                 break;
             }
             before = Some((pose, motion));

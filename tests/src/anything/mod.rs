@@ -9,6 +9,9 @@ pub mod flight;
 pub mod plain;
 pub mod reason;
 
+use std::env;
+use std::ops::Range;
+
 use planner_core::motion::any_vehicle::AnyVehicle;
 
 /// What people call a vehicle.
@@ -18,4 +21,14 @@ pub const fn kind(vehicle: &AnyVehicle) -> &'static str {
         AnyVehicle::Boat(_) => "boat",
         AnyVehicle::Car(_) => "car",
     }
+}
+
+/// The numbers of missions to fly: so many, or those that `FROM` and `COUNT` in the environment ask for.
+///
+/// # Panics
+/// When these are no numbers.
+pub fn asked_for(count: u64) -> Range<u64> {
+    let number = |name: &str| env::var(name).ok().map(|it| it.parse::<u64>().expect("a number"));
+    let from = number("FROM").unwrap_or(0);
+    from..from + number("COUNT").unwrap_or(count)
 }

@@ -52,7 +52,13 @@ impl Ground {
 }
 
 /// Points along a motion, close enough to each other to notice what lies between.
-pub fn path(from: Pose, to: Pose, [length, turn]: [f64; 2], is_car: bool, points: u32) -> Vec<Point> {
+pub fn path(
+    from: Pose,
+    to: Pose,
+    [length, turn]: [f64; 2],
+    is_car: bool,
+    points: u32,
+) -> Vec<Point> {
     let (start, end) = (metres(from.site), metres(to.site));
     (0..=points)
         .map(|k| {

@@ -84,7 +84,8 @@ impl Judge<'_> {
         let mut inside = 0;
         let open = (0..PLACES)
             .filter(|_| {
-                let (x, z) = (rng.random_range(from.x()..=to.x()), rng.random_range(from.z()..=to.z()));
+                let (x, z) =
+                    (rng.random_range(from.x()..=to.x()), rng.random_range(from.z()..=to.z()));
                 let site = Site::new(x, z).expect("inside");
                 inside += u32::from(self.area.contains(site));
                 self.is_open(site) && self.is_told_apart(site)
