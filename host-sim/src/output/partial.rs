@@ -2,7 +2,7 @@
 //! with. It is moved to its place when it is complete.
 //!
 //! Where it does not tell by itself what is being done, a record of that stands beside it, so that nobody goes on with
-//! another's, and checksums ([`ledger`](super::ledger)), so that nobody goes on with what was changed. The record is there
+//! another's, and checksums (`ledger`), so that nobody goes on with what was changed. The record is there
 //! before the file is, and goes when the file has become complete.
 
 use std::ffi::OsString;

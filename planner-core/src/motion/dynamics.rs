@@ -49,7 +49,7 @@ impl Ray {
         const HALF: i32 = 1 << (Ray::STEP_BITS - 1);
         // Whole units and the rest of each step apart, so that 32 bits hold any motion: see ActionGrid::LONGEST_MM.
         const REST: i32 = (1 << Ray::STEP_BITS) - 1;
-        let k = speed as i32;
+        let k = i32::from(speed);
         let times = |step: i32| {
             let rest = (step & REST).wrapping_mul(k).wrapping_add(HALF) >> Self::STEP_BITS;
             (step >> Self::STEP_BITS).wrapping_mul(k).wrapping_add(rest)

@@ -310,7 +310,10 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Manoeuvre<'_, '_, '_, D, R, G> {
                 continue;
             };
             if !self.stays(pose, after) {
-                if self.effort.is_enough() { continue } else { break }
+                if self.effort.is_enough() {
+                    continue;
+                }
+                break;
             }
             let leg = (grid.action(ray.index, speed), after);
             let area = &self.problem.area;

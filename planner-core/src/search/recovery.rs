@@ -89,7 +89,9 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule, G: Region>(
     let (area, pose) = (problem.area, search.pose);
     let mut ladder = Ladder { problem: problem.undirected(), search };
     // Before the search has used up its looks.
-    let home = (!area.contains(pose.site)).then(|| ladder.leg(pose, area.way_home(pose.site)));
+    let is_outside = !area.contains(pose.site);
+    let home =
+        is_outside.then(|| ladder.leg(pose, area.way_home(pose.site)).ok_or(DeadEnd::Outside));
     // The rest is for what comes after it.
     let kept = ladder.search.effort.keep_back(ladder.search.effort.looks / 2);
     let Findings { best, best_forbidden } = ladder.search.best(&problem.rule, before);
@@ -168,7 +170,7 @@ struct Ladder<'s, 'p, 'a, D, G> {
 
 impl<D: Dynamics, G: Region> Ladder<'_, '_, '_, D, G> {
     /// The rungs 2 to 4, or a manoeuvre; `home` is the way back from outside, if that is where the agent is.
-    fn climb(&mut self, home: Option<Option<Leg>>) -> Result<Found, DeadEnd> {
+    fn climb(&mut self, home: Option<Result<Leg, DeadEnd>>) -> Result<Found, DeadEnd> {
         let found = |recovery| move |(action, target)| Found { recovery, action, target };
         let pose = self.search.pose;
         if goes_round(self.search.dynamics, pose) {
@@ -184,7 +186,7 @@ impl<D: Dynamics, G: Region> Ladder<'_, '_, '_, D, G> {
         let Search { view, effort, .. } = &mut *self.search;
         let way = view.way_out().ok_or(DeadEnd::Resolution)?;
         let leg = match (home, detour::begin(view, pose.site, way, effort)) {
-            (Some(home), _) => home.ok_or(DeadEnd::Outside),
+            (Some(home), _) => home,
             (None, Some(Way::Round(way))) => self.leg(pose, way).ok_or(DeadEnd::Cornered),
             (None, Some(Way::Straight(way))) if self.search.view.is_far(way) => {
                 self.leg(pose, way).ok_or(DeadEnd::Cornered)

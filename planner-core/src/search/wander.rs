@@ -72,7 +72,7 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Wander<'_, '_, '_, D, R, G> {
             return None;
         }
         let (dynamics, grid) = (self.dynamics, self.dynamics.grid());
-        let side = if kind % 2 == 0 { Side::Left } else { Side::Right };
+        let side = if kind.is_multiple_of(2) { Side::Left } else { Side::Right };
         if kind < 2 {
             return dynamics.turn_in_place(from, side);
         }

@@ -24,9 +24,12 @@ const PLACES: u32 = 4_000;
 const THIN: f64 = 0.02;
 
 /// What is wrong with the reason for which a mission ended at a pose; `None` if it is true.
+///
+/// # Panics
+/// When the tolerance leaves nothing of the area.
 pub fn refute(mission: &Mission, belief: &dyn ReadOut, pose: Pose, end: Ending) -> Option<String> {
     let Ending::Stopped(reason) = end else { return None };
-    let area = mission.config.area.inset(mission.config.tolerance.units()).expect("drawn so");
+    let area = mission.config.area.inset(mission.config.tolerance.units()).expect("an area");
     // Who is not safe may use the margin in order to become so.
     let is_safe = area.contains(pose.site) && mission.vehicle.is_safe(pose, &area);
     let ground = if is_safe { area } else { mission.config.area };
