@@ -80,6 +80,7 @@ impl Source {
     pub(crate) fn name(self, key: &str) -> String {
         match (self, key) {
             (Self::File, "kind") => "vehicle".to_owned(),
+            (Self::File, "tolerance") => key.to_owned(),
             (Self::File, _) => format!("vehicle.{key}"),
             (Self::Flags, "kind") => "--vehicle".to_owned(),
             (Self::Flags, "step") => "--speed-step".to_owned(),
@@ -253,11 +254,10 @@ pub fn check_room(
         ConfigError::Room(none) => {
             wrong(&source.name("kind"), of_area(config.area.bounds(), tolerance), none)
         }
-        _ => wrong(
-            &source.name("tolerance"),
-            tolerance,
-            "less: no place is as far from the border of the area",
-        ),
+        _ => {
+            let found = format!("{tolerance} m");
+            wrong(&source.name("tolerance"), found, "less than half the breadth of the area")
+        }
     })
 }
 

@@ -81,8 +81,8 @@ impl<const C: usize, const K: usize> Terrain<C, K> {
         self.keep_outs.iter().flatten()
     }
 
-    /// Whether some position is as far from all of its sides as its margin says: of all places where two such sides
-    /// meet, moved inwards, one is inside then, and of the sides of its rectangle too.
+    /// Whether some position is as far from all of its sides as its margin says. It clips the rectangle by the sides, in
+    /// single precision, so a part as thin as some lattice units may go either way.
     fn has_inside(&self) -> bool {
         let (min, max) = (self.bounds.min(), self.bounds.max());
         let box_corners =

@@ -46,8 +46,8 @@ use crate::search::recovery::{Found, Recovery, solve_or_recover};
 /// With this P2 Algorithm 2 learns the most.
 pub const FOLLOWING: Following = Following::Unrestricted;
 
-/// Rays that all hypotheses of a vote look at together, at most: then those that were asked decide. The
-/// paper's example has been seen to need 26,000 at 60 labels.
+/// Looks that a plan with a vote takes at most: half of them for the vote, the rest for the ladder. When the half is used
+/// up, the hypotheses that were asked decide, which are the heaviest. The paper's example would take 26,000 at 60 labels.
 pub const VOTE_LOOKS: u32 = 12_288;
 
 /// How the hypotheses choose an action together.
