@@ -46,7 +46,7 @@ use crate::search::wander::wander;
 const HORIZON: u32 = 16;
 
 /// Looks that the rungs take at first.
-const FIRST_LOOKS: u32 = 1_024;
+const FIRST_LOOKS: u32 = 2_048;
 
 /// A heading this far from a bearing drives along it.
 const ALONG: u32 = Heading::turn_of(0.125);
