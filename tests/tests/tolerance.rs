@@ -266,7 +266,8 @@ fn paper(algorithm: Algorithm, errors: Errors) -> Vec<f64> {
         });
         let flown = flown.unwrap_or_else(|refused| panic!("seed {seed}: {refused}"));
         // Where no further label is worth its way, what is known then counts.
-        let is_told = flown.ending == Ending::Stopped(StopReason::Tolerance);
+        let is_told =
+            matches!(flown.ending, Ending::Stopped(StopReason::Tolerance | StopReason::Undecided));
         let centre = flown.belief.estimates().centre.filter(|_| is_told);
         let last = centre.map(|centre| Line::from(centre).angle_to_deg(&truth));
         degrees
