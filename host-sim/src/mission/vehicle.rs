@@ -250,14 +250,12 @@ pub fn check_room(
     config: &Config<MissionArea>,
 ) -> Result<()> {
     let tolerance = config.tolerance.metres();
-    config.admits(vehicle).or_else(|error| match error {
-        ConfigError::Room(none) => {
-            wrong(&source.name("kind"), of_area(config.area.bounds(), tolerance), none)
+    config.admits(vehicle).or_else(|error| {
+        if let ConfigError::Room(none) = error {
+            return wrong(&source.name("kind"), of_area(config.area.bounds(), tolerance), none);
         }
-        _ => {
-            let found = format!("{tolerance} m");
-            wrong(&source.name("tolerance"), found, "less than half the breadth of the area")
-        }
+        let found = format!("{tolerance} m");
+        wrong(&source.name("tolerance"), found, "less than half the breadth of the area")
     })
 }
 
