@@ -21,6 +21,7 @@ use crate::geometry::area::Area;
 use crate::geometry::region::Region;
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::config::{Config, ConfigError, Following, first_to_second};
+use crate::planner::silence::Silence;
 use crate::planner::snapshot::{NotRestored, Persist, Snapshot};
 use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
 use crate::search::dead_end::DeadEnd;
@@ -65,6 +66,7 @@ pub struct Cfc<D, const N: usize, G = Area> {
     phase: Phase,
     /// The label of the past position.
     past: Label,
+    silence: Silence,
 }
 
 impl<D: Dynamics, const N: usize, G: Region> Cfc<D, N, G> {
@@ -84,7 +86,7 @@ impl<D: Dynamics, const N: usize, G: Region> Cfc<D, N, G> {
     /// The same of settings that are inset.
     pub(crate) fn of((config, dynamics): (Config<G>, D), space: VersionSpace<N>) -> Self {
         let past = space.first_label();
-        Self { config, dynamics, space, phase: Phase::Crossing, past }
+        Self { config, dynamics, space, phase: Phase::Crossing, past, silence: Silence::NONE }
     }
 
     /// Where the algorithm stands.
@@ -166,7 +168,10 @@ impl<D: Dynamics, const N: usize, G: Region> Planner for Cfc<D, N, G> {
             Phase::Following => Some(Stage::P2),
         };
         match found {
-            Ok(found) => Plan::Move(Motion::of(stage, &found, &self.dynamics, effort)),
+            Ok(found) => {
+                let motion = Motion::of(stage, &found, &self.dynamics, effort);
+                self.silence.keep(pose, motion, &self.dynamics)
+            }
             Err(dead_end) => Plan::Stop(dead_end.into()),
         }
     }
@@ -177,9 +182,11 @@ impl<D: Dynamics, const N: usize, G: Region> Planner for Cfc<D, N, G> {
             if let Certainty::Certain(label) = self.space.certainty(pose.site) {
                 self.past = label;
             }
+            self.silence.observe(false);
             return Ok(());
         };
         self.space.take(pose.site, reading, self.past)?;
+        self.silence.observe(true);
         let crossing = core::mem::replace(&mut self.phase, Phase::Crossing) == Phase::Crossing;
         if let Reading::Side(label) = reading {
             if crossing && label != self.past {
@@ -195,18 +202,18 @@ impl<D: Dynamics, const N: usize, G: Region> Planner for Cfc<D, N, G> {
     }
 }
 
-/// It remembers its phase, and the label of the past position.
+/// It remembers its phase, the label of the past position, and how it turned since.
 impl<D: Dynamics, const N: usize, G: Region> Persist for Cfc<D, N, G> {
-    type Snapshot = Snapshot<Told<N>, (Phase, Label)>;
+    type Snapshot = Snapshot<Told<N>, (Phase, Label, Silence)>;
 
     fn snapshot(&self) -> Self::Snapshot {
-        Snapshot::new(self.space.told(), (self.phase, self.past))
+        Snapshot::new(self.space.told(), (self.phase, self.past, self.silence))
     }
 
     fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), NotRestored> {
-        let (told, &(phase, past)) = snapshot.open()?;
+        let (told, &(phase, past, silence)) = snapshot.open()?;
         self.space.replay(told)?;
-        (self.phase, self.past) = (phase, past);
+        (self.phase, self.past, self.silence) = (phase, past, silence);
         Ok(())
     }
 }

@@ -29,6 +29,7 @@ use crate::geometry::region::Region;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Pose, Side};
 use crate::planner::config::{Config, ConfigError};
+use crate::planner::silence::Silence;
 use crate::planner::snapshot::{NotRestored, Persist, Snapshot};
 use crate::planner::{Motion, Plan, Planner, StopReason};
 use crate::search::dead_end::DeadEnd;
@@ -74,6 +75,7 @@ pub struct Lookahead<D, B, G = Area> {
     foresight: B,
     evaluations: u32,
     goal: Option<Goal>,
+    silence: Silence,
 }
 
 /// What to do, and what the two labels after it are worth.
@@ -105,7 +107,8 @@ impl<D: Dynamics, B: Foresight, G: Region> Lookahead<D, B, G> {
     ) -> Self {
         let goal = goal.map(|goal| goal.in_bounds_of(&config.area));
         let bounds = config.area.bounds().whole();
-        Self { config, bounds, dynamics, foresight, evaluations, goal }
+        let silence = Silence::NONE;
+        Self { config, bounds, dynamics, foresight, evaluations, goal, silence }
     }
 
     /// The same, with so many ends of motions to ask for a plan at most instead of [`EVALUATIONS`].
@@ -122,6 +125,7 @@ impl<D: Dynamics, B: Foresight, G: Region> Lookahead<D, B, G> {
 
     /// What is known and expected: to begin again with, or to take in a label of a reliability of its own.
     pub const fn foresight(&mut self) -> &mut B {
+        self.silence = Silence::NONE;
         &mut self.foresight
     }
 
@@ -239,19 +243,24 @@ impl<D: Dynamics, B: Foresight, G: Region> Planner for Lookahead<D, B, G> {
             let looks = lookout.evaluations;
             let effort = Effort { looks, examined: evaluations - looks };
             let found = Found { recovery: None, action, target };
-            return Plan::Move(Motion {
-                wants_label,
-                ..Motion::of(None, &found, dynamics, effort)
-            });
+            let motion = Motion { wants_label, ..Motion::of(None, &found, dynamics, effort) };
+            return self.silence.keep(pose, motion, dynamics);
         }
         match self.recover(pose) {
-            (Ok(found), effort) => Plan::Move(Motion::of(None, &found, dynamics, effort)),
+            (Ok(found), effort) => {
+                let motion = Motion::of(None, &found, dynamics, effort);
+                self.silence.keep(pose, motion, dynamics)
+            }
             (Err(dead_end), _) => Plan::Stop(dead_end.into()),
         }
     }
 
     fn observe(&mut self, pose: Pose, reading: Option<Reading>) -> Result<(), Refused> {
-        reading.map_or(Ok(()), |reading| self.foresight.observe(pose.site, reading))
+        if let Some(reading) = reading {
+            self.foresight.observe(pose.site, reading)?;
+        }
+        self.silence.observe(reading.is_some());
+        Ok(())
     }
 
     fn belief(&self) -> &B::Belief {
@@ -260,15 +269,17 @@ impl<D: Dynamics, B: Foresight, G: Region> Planner for Lookahead<D, B, G> {
 }
 
 impl<D: Dynamics, B: Foresight + Replay, G: Region> Persist for Lookahead<D, B, G> {
-    type Snapshot = Snapshot<B::Told>;
+    type Snapshot = Snapshot<B::Told, Silence>;
 
     fn snapshot(&self) -> Self::Snapshot {
-        Snapshot::new(self.foresight.told(), ())
+        Snapshot::new(self.foresight.told(), self.silence)
     }
 
     fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), NotRestored> {
-        let (told, ()) = snapshot.open()?;
-        Ok(self.foresight.replay(told)?)
+        let (told, &silence) = snapshot.open()?;
+        self.foresight.replay(told)?;
+        self.silence = silence;
+        Ok(())
     }
 }
 

@@ -11,6 +11,7 @@ mod checked;
 pub mod config;
 pub mod lookahead;
 pub mod scc;
+pub mod silence;
 pub mod snapshot;
 mod vote;
 

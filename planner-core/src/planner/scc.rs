@@ -34,6 +34,7 @@ use crate::geometry::region::Region;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::config::{Config, ConfigError, Following, first_to_second};
+use crate::planner::silence::Silence;
 use crate::planner::snapshot::{NotRestored, Persist, Snapshot};
 use crate::planner::vote::Ballot;
 use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
@@ -72,6 +73,7 @@ pub struct Scc<D, const N: usize, const H: usize, G = Area> {
     policy: Policy,
     dynamics: D,
     hypotheses: Hypotheses<N, H>,
+    silence: Silence,
 }
 
 impl<D: Dynamics, const N: usize, const H: usize, G: Region> Scc<D, N, H, G> {
@@ -97,7 +99,7 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Region> Scc<D, N, H, G> {
         policy: Policy,
         hypotheses: Hypotheses<N, H>,
     ) -> Self {
-        Self { config, policy, dynamics, hypotheses }
+        Self { config, policy, dynamics, hypotheses, silence: Silence::NONE }
     }
 
     /// Begins again, in place, with what other given samples leave: see [`Hypotheses::restart`].
@@ -110,7 +112,9 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Region> Scc<D, N, H, G> {
         prior: Prior,
         noise: Noise,
     ) -> Result<(), NoVersionSpace> {
-        self.hypotheses.restart(given, prior, noise)
+        self.hypotheses.restart(given, prior, noise)?;
+        self.silence = Silence::NONE;
+        Ok(())
     }
 
     fn is_even(&self) -> bool {
@@ -226,13 +230,20 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Region> Planner for Scc<D, 
         };
         let mut effort = Effort::of(if self.policy == Policy::Joint { LOOKS } else { VOTE_LOOKS });
         match self.find(pose, &mut effort) {
-            Ok(found) => Plan::Move(Motion::of(Some(stage), &found, &self.dynamics, effort)),
+            Ok(found) => {
+                let motion = Motion::of(Some(stage), &found, &self.dynamics, effort);
+                self.silence.keep(pose, motion, &self.dynamics)
+            }
             Err(dead_end) => Plan::Stop(dead_end.into()),
         }
     }
 
     fn observe(&mut self, pose: Pose, reading: Option<Reading>) -> Result<(), Refused> {
-        reading.map_or(Ok(()), |reading| self.hypotheses.observe(pose.site, reading))
+        if let Some(reading) = reading {
+            self.hypotheses.observe(pose.site, reading)?;
+        }
+        self.silence.observe(reading.is_some());
+        Ok(())
     }
 
     fn belief(&self) -> &Hypotheses<N, H> {
@@ -241,14 +252,16 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Region> Planner for Scc<D, 
 }
 
 impl<D: Dynamics, const N: usize, const H: usize, G: Region> Persist for Scc<D, N, H, G> {
-    type Snapshot = Snapshot<Told<N>>;
+    type Snapshot = Snapshot<Told<N>, Silence>;
 
     fn snapshot(&self) -> Self::Snapshot {
-        Snapshot::new(self.hypotheses.told(), ())
+        Snapshot::new(self.hypotheses.told(), self.silence)
     }
 
     fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), NotRestored> {
-        let (told, ()) = snapshot.open()?;
-        Ok(self.hypotheses.replay(told)?)
+        let (told, &silence) = snapshot.open()?;
+        self.hypotheses.replay(told)?;
+        self.silence = silence;
+        Ok(())
     }
 }

@@ -1,7 +1,8 @@
 //! Sleep and wake: what has to outlive a planner for the next one to plan the same.
 //!
 //! Settings (area, dynamics, noise, goal) are the program's and stay there. What a mission adds to them is what
-//! its belief was told and, for Algorithm 1, where it stands: a [`Snapshot`] is that, and no more. With the
+//! its belief was told, how it turned since the last label and, for Algorithm 1, where it stands: a [`Snapshot`] is that,
+//! and no more. With the
 //! feature `serde` it goes to bytes and back, in any format that serde has:
 //!
 //! ```text
@@ -19,13 +20,13 @@
 use crate::belief::told::NotReplayed;
 use crate::planner::Planner;
 
-/// The version of snapshots: it is the first that is written, and changes when what follows does.
-pub const VERSION: u16 = 1;
+/// The version of snapshots: it is what is written first, and changes when what follows does.
+pub const VERSION: u16 = 2;
 
 /// What a planner has to remember over a sleep: what its belief was told (`T`), and what else it plans by (`M`).
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Snapshot<T, M = ()> {
+pub struct Snapshot<T, M> {
     version: u16,
     told: T,
     memory: M,

@@ -120,10 +120,7 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule, G: Region>(
     let kept = ladder.search.effort.keep_back(ladder.search.effort.looks / 2);
     let climbed = if goes_round { climbed } else { ladder.climb(home) };
     ladder.search.effort.give_back(kept);
-    climbed.or_else(|why| {
-        let leg = wander(&ladder.problem, ladder.search).ok_or(why.of_open_ground())?;
-        Ok(found(Some(Recovery::Transit))(leg))
-    })
+    climbed.or_else(|why| wander(&ladder.problem, ladder.search).ok_or(why.of_open_ground()))
 }
 
 /// The way to where a problem is feasible in a direction that its rule allows, for a vehicle that has to go round in
