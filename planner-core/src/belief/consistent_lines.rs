@@ -123,11 +123,11 @@ impl<'a> ConsistentLines<'a> {
     }
 
     /// Whether a sample says what its label would say at a position: it was taken in nearer to where that would be taken
-    /// in than half of what positions err by.
+    /// in than what positions err by.
     fn is_told(self, q: Site, sample: &Sample) -> bool {
         self.place(q, sample.label).is_some_and(|place| {
             let off = place - sample.site;
-            off.dot(off) < self.shift.dot(self.shift) / 4
+            off.dot(off) < self.shift.dot(self.shift)
         })
     }
 

@@ -32,7 +32,7 @@ use crate::planner::config::{Config, ConfigError};
 use crate::planner::silence::Silence;
 use crate::planner::snapshot::{NotRestored, Persist, Snapshot};
 use crate::planner::{Motion, Plan, Planner, StopReason};
-use crate::search::dead_end::DeadEnd;
+use crate::search::dead_end::{DeadEnd, is_broad};
 use crate::search::direction_rule::ArcRule;
 use crate::search::lookout::{ENOUGH, Lookout, Prospect, Prospects, Sought};
 use crate::search::objective::{Effort, LOOKS, Varrho};
@@ -234,6 +234,7 @@ impl<D: Dynamics, B: Foresight, G: Region> Planner for Lookahead<D, B, G> {
             return Plan::Stop(StopReason::SamplesFull);
         }
         self.foresight.prepare();
+        self.silence.next_is_dull = false;
         let (dynamics, evaluations) = (&self.dynamics, self.evaluations);
         let (usual, scale) = usual(dynamics, &area);
         let least = self.least();
@@ -249,6 +250,12 @@ impl<D: Dynamics, B: Foresight, G: Region> Planner for Lookahead<D, B, G> {
         match self.recover(pose) {
             (Ok(found), effort) => {
                 let motion = Motion::of(None, &found, dynamics, effort);
+                // No label in reach is worth its way: this one is on the way to others.
+                let is_dull = least > 0.0 && motion.wants_label;
+                let bears_it = !is_dull || self.silence.bears_a_dull_label();
+                if !bears_it && !is_broad(self.foresight.ground()) {
+                    return Plan::Stop(StopReason::Tolerance);
+                }
                 self.silence.keep(pose, motion, dynamics)
             }
             (Err(dead_end), _) => Plan::Stop(dead_end.into()),

@@ -5,11 +5,13 @@
 //!
 //! - who turned on the spot and read no label goes on turning to the same side, until it drives;
 //! - it does not turn on the spot to where it has been before;
-//! - it stops after four full turns, of all kinds of motions together, without a label. Straight ways may be of any length.
+//! - it stops after four full turns, of all kinds of motions together, without a label. Straight ways may be of any length;
+//! - where positions err, look-ahead stops after sixteen labels in a row that were not expected to tell much.
 //!
 //! Of 20,000 random missions 5 went round before. In 17 a label came after more than four full turns.
 
 use crate::geometry::heading::Heading;
+use crate::geometry::lattice::Site;
 use crate::motion::dynamics::{Dynamics, Pose, Side};
 use crate::planner::{Motion, Plan, StopReason};
 
@@ -18,6 +20,9 @@ const FULL_TURN: u32 = 1 << 24;
 
 /// So much turning without a label is too much.
 const MOST: u32 = 4 * FULL_TURN;
+
+/// So many dull labels in a row are enough.
+const MOST_DULL: u8 = 16;
 
 /// A heading so near to another is the same.
 const NEAR: u32 = Heading::turn_of(0.001);
@@ -45,15 +50,34 @@ pub struct Silence {
     turned: u32,
     /// Those on the spot since the last drive, less full turns.
     on_the_spot: i32,
+    /// Where it was before the last of them.
+    spot: Option<Site>,
     /// The motion before, and the one that was planned last.
     last: Turn,
     next: Turn,
+    /// Labels in a row that were not expected to tell much.
+    dull: u8,
+    /// Whether the next one is such.
+    pub(crate) next_is_dull: bool,
 }
 
 impl Silence {
     /// A label has just come.
-    pub(crate) const NONE: Self =
-        Self { turned: 0, on_the_spot: 0, last: Turn::None, next: Turn::None };
+    pub(crate) const NONE: Self = Self {
+        turned: 0,
+        on_the_spot: 0,
+        spot: None,
+        last: Turn::None,
+        next: Turn::None,
+        dull: 0,
+        next_is_dull: false,
+    };
+
+    /// Takes note that the next label is not expected to tell much; whether one may be read all the same.
+    pub(crate) const fn bears_a_dull_label(&mut self) -> bool {
+        self.next_is_dull = true;
+        self.dull < MOST_DULL
+    }
 
     /// What a planner does that has found this motion from a pose.
     pub(crate) fn keep<D: Dynamics>(&mut self, pose: Pose, found: Motion, dynamics: &D) -> Plan {
@@ -64,6 +88,10 @@ impl Silence {
         let motion = self.steady(pose, found, dynamics);
         let by = motion.target.heading.0.wrapping_sub(pose.heading.0) as i32;
         let is_drive = motion.target.site != pose.site;
+        if self.spot.replace(pose.site) != Some(pose.site) {
+            // Its position errs: from here there may be more.
+            self.on_the_spot = 0;
+        }
         self.next = if is_drive { Turn::Driving(by) } else { Turn::InPlace(by) };
         let after = self.after(self.next);
         let has_been_here = !is_drive && after.on_the_spot.unsigned_abs() < NEAR;
@@ -93,24 +121,24 @@ impl Silence {
 
     /// Takes in that the motion was made, and whether a label came of it. Who planned to read one need not say.
     pub(crate) fn observe(&mut self, has_label: bool) {
-        *self = if has_label { Self::NONE } else { self.after(self.next) };
+        let dull = if self.next_is_dull { self.dull.saturating_add(1) } else { 0 };
+        *self = if has_label { Self { dull, ..Self::NONE } } else { self.after(self.next) };
     }
 
     fn after(self, turn: Turn) -> Self {
         let (by, on_the_spot) = match turn {
-            Turn::None => return Self::NONE,
+            Turn::None => return Self { dull: self.dull, ..Self::NONE },
             Turn::Driving(by) => (by, 0),
             Turn::InPlace(by) => (by, self.on_the_spot.wrapping_add(by)),
         };
         let turned = self.turned.saturating_add(by.unsigned_abs() >> 8);
-        Self { turned, on_the_spot, last: turn, next: Turn::None }
+        Self { turned, on_the_spot, last: turn, next: Turn::None, ..self }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::lattice::Site;
     use crate::motion::unicycle::Unicycle;
 
     fn start() -> Pose {

@@ -43,12 +43,17 @@ impl DeadEnd {
     }
 }
 
-/// Whether labels can tell something in more than next to none of an area.
+/// The way to the nearest place where labels can tell something, if there are such in more than next to none of an area.
 ///
 /// Cost: one orientation for each edge and place, some 100,000 instructions.
-pub(crate) fn is_open<G: Region>(lines: ConsistentLines<'_>, area: &G) -> bool {
-    let can_cut = |k: &u32| place(area, *k).is_some_and(|it| lines.can_cut(it));
-    (0..PLACES).filter(can_cut).count() > FEW
+pub(crate) fn way_to_open_ground<G: Region>(
+    lines: ConsistentLines<'_>,
+    area: &G,
+    from: Site,
+) -> Option<Vector> {
+    let open = || (0..PLACES).filter_map(|k| place(area, k)).filter(|it| lines.can_cut(*it));
+    let nearest = open().map(|it| it - from).min_by_key(|way| way.dot(*way));
+    nearest.filter(|_| open().nth(FEW).is_some())
 }
 
 /// One of the places that are spread evenly over an area's rectangle, if it lies inside. No line passes many of them.
@@ -66,7 +71,7 @@ fn place<G: Region>(area: &G, k: u32) -> Option<Site> {
 
 /// Whether lines lie so far apart, somewhere between samples of both labels, that a label could tell something if
 /// positions erred twice as much. Then it is not their error that leaves no place to ask.
-fn is_broad(lines: ConsistentLines<'_>) -> bool {
+pub(crate) fn is_broad(lines: ConsistentLines<'_>) -> bool {
     let Vector { x, z } = lines.shift;
     let twice = |v: i32| v.saturating_mul(2);
     let lines = ConsistentLines { shift: Vector { x: twice(x), z: twice(z) }, ..lines };

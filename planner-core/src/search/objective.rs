@@ -7,9 +7,9 @@ use crate::motion::dynamics::Pose;
 
 /// The most looks that a plan takes. A look at a ray is one; what else takes long counts as so many as take as long.
 ///
-/// One look takes up to some 1,000 instructions of a Cortex-M4, so that a plan stays below 20 million. With the paper's
+/// One look takes up to some 1,900 instructions of a Cortex-M4, so that a plan stays below 20 million. With the paper's
 /// grid 520 rays are the most that a plan of 3,000 standard missions of 60 steps needed.
-pub const LOOKS: u32 = 12_288;
+pub const LOOKS: u32 = 10_240;
 
 /// The looks that it costs to open a view, where many are opened.
 pub(crate) const OPENING: u32 = 2;

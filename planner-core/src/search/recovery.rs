@@ -34,7 +34,7 @@ use crate::geometry::region::Region;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Pose, Ray, Side};
 use crate::search::circles::{Findings, Search};
-use crate::search::dead_end::{DeadEnd, is_open};
+use crate::search::dead_end::{DeadEnd, way_to_open_ground};
 use crate::search::detour::{self, Way};
 use crate::search::direction_rule::{ArcRule, DirectionRule};
 use crate::search::manoeuvre::{manoeuvre, waypoint};
@@ -114,13 +114,17 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule, G: Region>(
     ladder.search.effort.give_back(kept);
     let Err(why) = climbed else { return climbed };
     let climbed = Err(why);
-    if why == DeadEnd::Outside || !is_open(problem.lines, &area) {
+    let open = way_to_open_ground(problem.lines, &area, pose.site);
+    let Some(open) = open.filter(|_| why != DeadEnd::Outside) else {
         return Err(why.of_thin_ground(problem.lines));
-    }
+    };
     let kept = ladder.search.effort.keep_back(ladder.search.effort.looks / 2);
     let climbed = if goes_round { climbed } else { ladder.climb(home) };
     ladder.search.effort.give_back(kept);
-    climbed.or_else(|why| wander(&ladder.problem, ladder.search).ok_or(why.of_open_ground()))
+    climbed.or_else(|why| {
+        let leg = ladder.drive_far(open).map(found(Some(Recovery::Transit)));
+        leg.or_else(|| wander(&ladder.problem, ladder.search)).ok_or(why.of_open_ground())
+    })
 }
 
 /// The way to where a problem is feasible in a direction that its rule allows, for a vehicle that has to go round in
@@ -191,6 +195,15 @@ impl<D: Dynamics, G: Region> Ladder<'_, '_, '_, D, G> {
             (None, _) => self.transit(),
         };
         leg.map(found(Some(Recovery::Transit)))
+    }
+
+    /// One motion on the way to a place beyond reach, unless the vehicle has to go round to turn.
+    fn drive_far(&mut self, way: Vector) -> Option<Leg> {
+        let (dynamics, pose) = (self.search.dynamics, self.search.pose);
+        let grid = dynamics.grid();
+        let reach = f32::from(grid.speeds().saturating_sub(1)) * grid.step_units();
+        let is_far = sqrt(single(way.dot(way))) > reach && !goes_round(dynamics, pose);
+        if is_far { self.leg(pose, way) } else { None }
     }
 
     /// The first of the fewest turns in place beyond which the undirected problem is feasible.
