@@ -9,23 +9,26 @@
 
 use std::collections::BTreeMap;
 
+use planner_core::planner::lookahead;
 use rayon::prelude::*;
 use tests::anything::asked_for;
-use tests::cases;
 use tests::garden::chords;
-use tests::garden::flight::{Finder, Outcome, fly};
-use tests::garden::lawn::{Garden, Setting};
+use tests::garden::flight::{Ended, Finder, Outcome, fly};
+use tests::garden::lawn::{Garden, Setting, Start, Vehicle};
+use tests::garden::rover::{Drift, Fixes};
+use tests::{LONG, cases};
 
 /// Motions without a label, one after the other, at most.
 const FRUITLESS: u32 = 20;
 
 /// What became of the missions of a row.
 struct Row {
+    setting: Setting,
     flown: Vec<(u64, Outcome)>,
 }
 
 impl Row {
-    fn fly(setting: Setting, finder: Finder) -> Self {
+    fn fly(name: &str, setting: Setting, finder: Finder) -> Self {
         let one = |number| {
             let garden = Garden::draw(setting, number);
             let outcome = match finder {
@@ -34,7 +37,10 @@ impl Row {
             };
             (number, outcome)
         };
-        Self { flown: asked_for(cases(40, 200)).into_par_iter().map(one).collect() }
+        let flown = asked_for(cases(40, 200)).into_par_iter().map(one).collect();
+        let row = Self { setting, flown };
+        row.print(name);
+        row
     }
 
     /// A quantile of something of all missions.
@@ -44,40 +50,116 @@ impl Row {
         all[(share * (all.len() - 1) as f64).round() as usize]
     }
 
+    fn median(&self, of: impl Fn(&Outcome) -> f64) -> f64 {
+        self.quantile(0.5, of)
+    }
+
+    /// The numbers of the missions of which something holds.
+    fn which(&self, of: impl Fn(&Outcome) -> bool) -> Vec<u64> {
+        self.flown.iter().filter(|(_, it)| of(it)).map(|(number, _)| *number).collect()
+    }
+
     fn print(&self, name: &str) {
         let mut endings = BTreeMap::<_, u32>::new();
         for (_, it) in &self.flown {
             *endings.entry(it.ended).or_default() += 1;
         }
-        let bumps = self.flown.iter().filter(|(_, it)| it.is_bump()).count();
-        let sum = |of: fn(&Outcome) -> u32| self.flown.iter().map(|(_, it)| of(it)).sum::<u32>();
         println!(
-            "{name:<28} {:>4} missions, {bumps:>3} bumps (nearest {:.3} m), {:.1} labels, {:.1} motions, {:.1} m, slope error {:.2} \
-             ({:.2}) deg, {} in a row, {} undone, off {:.3} m, {endings:?}",
+            "| {name} | {} | {} | {} | {:.3} | {:.0} | {:.1} | {:.2} ({:.2}) | {:.2} ({:.2}) | {} | {:.3}, {:.3} |",
             self.flown.len(),
+            format!("{endings:?}").replace(['{', '}'], ""),
+            self.which(Outcome::is_bump).len(),
             self.quantile(0.0, |it| it.nearest.0),
-            self.quantile(0.5, |it| f64::from(it.labels)),
-            self.quantile(0.5, |it| f64::from(it.motions)),
-            self.quantile(0.5, |it| it.driven),
-            self.quantile(0.5, |it| it.slope_error),
+            self.median(|it| f64::from(it.labels)),
+            self.median(|it| it.driven),
+            self.median(|it| it.slope_error),
             self.quantile(0.9, |it| it.slope_error),
+            self.median(|it| it.last_error),
+            self.quantile(0.9, |it| it.last_error),
             self.quantile(1.0, |it| f64::from(it.fruitless)),
-            sum(|it| it.undone),
+            self.median(|it| it.deviation),
             self.quantile(1.0, |it| it.most_off),
         );
     }
+
+    /// Prints the missions of which something holds, and how many there are.
+    fn find(&self, what: &str, of: impl Fn(&Outcome) -> bool) -> usize {
+        let found = self.which(of);
+        for (number, it) in self.flown.iter().filter(|(number, _)| found.contains(number)) {
+            println!(
+                "  {what}: mission {number}, {:?} {}, {} motions, {} undone, nearest {:?}",
+                it.ended, it.last_word, it.motions, it.undone, it.nearest
+            );
+        }
+        found.len()
+    }
+
+    /// What breaks a porter's trust: missions that do not end, turn to and fro, or touch something.
+    fn broken(&self) -> usize {
+        let known = self.flown.iter().all(|(_, it)| it.most_off <= self.setting.largest_error());
+        assert!(known, "the drift is larger than was told");
+        self.find("endless", |it| it.ended == Ended::NotItself || it.fruitless > FRUITLESS)
+            + self.find("undone", |it| it.undone > 0)
+            + self.find("bump", Outcome::is_bump)
+            + self.find("lost", |it| matches!(it.ended, Ended::Outside | Ended::Refused))
+    }
+}
+
+fn heading() {
+    println!(
+        "| row | missions | endings | bumps | nearest, m | labels | m driven for 30 | slope error after 30, deg | at the end | \
+         motions without a label | positions off: deviation, most, m |"
+    );
 }
 
 #[test]
-fn every_mission_ends_without_a_bump() {
-    let row = |finder| Row::fly(Setting::GARDEN, finder);
-    for (name, finder) in [
-        ("look-ahead", Finder::Lookahead),
-        ("Algorithm 2", Finder::Scc),
-        ("bisected chords", Finder::Chords),
-        ("bisected edge", Finder::Edge),
-    ] {
-        row(finder).print(name);
+fn every_mission_ends_without_a_bump_and_knows_more_than_by_hand() {
+    heading();
+    let garden = Setting::GARDEN;
+    let lookahead = Row::fly("look-ahead", garden, Finder::Lookahead);
+    let default = Setting { varrho: lookahead::VARRHO.value(), ..garden };
+    let default = Row::fly("look-ahead, its default varrho", default, Finder::Lookahead);
+    let scc = Row::fly("Algorithm 2", garden, Finder::Scc);
+    let chords = Row::fly("bisected chords", garden, Finder::Chords);
+    let edge = Row::fly("bisected edge", garden, Finder::Edge);
+    for row in [&lookahead, &default, &scc] {
+        assert_eq!(row.broken(), 0);
     }
-    let _ = FRUITLESS;
+    scc.find("no way", |it| it.ended == Ended::NoWay);
+    let [ours, by_chords, by_edge] =
+        [&lookahead, &chords, &edge].map(|row| row.median(|it| it.slope_error));
+    assert!(ours <= by_chords && ours <= by_edge, "{ours} of {by_chords}, {by_edge}");
+}
+
+/// Settings that a porter may come to. Only what is known to hold is asserted.
+#[test]
+fn other_gardens() {
+    if !LONG && std::env::var("COUNT").is_err() {
+        return;
+    }
+    heading();
+    let garden = Setting::GARDEN;
+    let twice = Drift { scale: 0.02, compass: 0.0349, ..Drift::ROVER };
+    let seldom = Drift { every: 16.0, ..Drift::ROVER };
+    let car = Setting { vehicle: Vehicle::Car, fixes: Fixes::AtStops, ..garden };
+    let at_stops = Setting { fixes: Fixes::AtStops, ..garden };
+    let error = at_stops.largest_error();
+    for (name, setting) in [
+        ("fixes at stops", at_stops),
+        ("fixes at stops, padded", Setting { padding: error, ..at_stops }),
+        ("start within the tolerance", Setting { start: Start::Near, ..garden }),
+        ("reach 0.5 m", Setting { reach: 0.5, ..garden }),
+        ("reach 20 m", Setting { reach: 20.0, ..garden }),
+        ("drift twice as large", Setting { drift: twice, blur: 0.2, ..garden }),
+        ("a fix each 16 m", Setting { drift: seldom, blur: 0.2, ..garden }),
+        ("p = 0.8", Setting { p: 0.8, ..garden }),
+        ("car, fixes at stops", car),
+        ("varrho 0", Setting { varrho: 0.0, ..garden }),
+    ] {
+        for finder in [Finder::Lookahead, Finder::Scc] {
+            let row = Row::fly(&format!("{name}, {finder:?}"), setting, finder);
+            println!("  broken: {}", row.broken());
+            row.find("no way", |it| it.ended == Ended::NoWay);
+        }
+    }
 }

@@ -52,6 +52,7 @@ pub fn find(garden: &Garden, finder: Finder) -> Outcome {
     let Hand { rover, mut outcome } = hand;
     let estimate = chords.and_then(|[a, b]| through(a.middle(), b.middle()));
     outcome.compare(&rover, estimate, &garden.line);
+    outcome.last_error = outcome.slope_error;
     outcome.ended = Ended::Labels;
     outcome.close(&rover)
 }

@@ -4,12 +4,13 @@ use planner_core::belief::forecast::Forecast;
 use planner_core::belief::goal::{Accuracy, Goal};
 use planner_core::belief::hypotheses::Hypotheses;
 use planner_core::belief::noise::{Noise, Reliability};
+use planner_core::belief::tolerance::Tolerance;
 use planner_core::belief::weight::Prior;
 use planner_core::geometry::heading::Heading;
 use planner_core::geometry::line::Line;
 use planner_core::motion::dynamics::Pose;
 use planner_core::planner::config::{Config, Crossing};
-use planner_core::planner::lookahead::{self, Lookahead};
+use planner_core::planner::lookahead::Lookahead;
 use planner_core::planner::scc::{self, Policy, Scc};
 use planner_core::planner::{Motion, Planner, StopReason};
 use planner_core::robot::agent::{Agent, AgentError, Event};
@@ -79,6 +80,8 @@ pub struct Outcome {
     /// The angle between the estimate and the true line after [`COMPARED`] labels or at the end, degrees. A quarter
     /// turn where there is no estimate.
     pub slope_error: f64,
+    /// The same at the mission's end.
+    pub last_error: f64,
     /// The most motions in a row without a label.
     pub fruitless: u32,
     /// Motions without a label that undid the one before.
@@ -87,6 +90,8 @@ pub struct Outcome {
     pub nearest: (f64, Point),
     /// The largest error of a position.
     pub most_off: f64,
+    /// The standard deviation of positions at which labels were read, an axis.
+    pub deviation: f64,
 }
 
 impl Outcome {
@@ -97,10 +102,12 @@ impl Outcome {
         motions: 0,
         driven: 0.0,
         slope_error: 90.0,
+        last_error: 90.0,
         fruitless: 0,
         undone: 0,
         nearest: (f64::INFINITY, [0.0; 2]),
         most_off: 0.0,
+        deviation: 0.0,
     };
 
     /// Whether the rover touched what it must not.
@@ -115,6 +122,7 @@ impl Outcome {
 
     pub(super) fn close(mut self, rover: &Rover<'_>) -> Self {
         (self.nearest, self.most_off) = (rover.nearest, rover.most_off);
+        self.deviation = rover.deviation();
         self
     }
 }
@@ -127,7 +135,7 @@ pub fn fly(garden: &Garden, finder: Finder) -> Outcome {
     let noise = Noise {
         reliability: Reliability::new(garden.setting.p).expect("a probability"),
         trusted_radius: 0,
-        tolerance: garden.tolerance(),
+        tolerance: Tolerance::new(garden.setting.blur).expect("a tolerance"),
     };
     let config = |varrho| Config {
         area: garden.lawn,
@@ -143,7 +151,8 @@ pub fn fly(garden: &Garden, finder: Finder) -> Outcome {
         return with(garden, planner.expect("settings that agree"));
     }
     let forecast = Forecast::<SAMPLES, HYPOTHESES>::new(&garden.given, Prior::Area, noise);
-    let (config, dynamics) = (config(lookahead::VARRHO), garden.setting.dynamics(1));
+    let (config, dynamics) =
+        (config(Varrho::new(garden.setting.varrho).expect("a weight")), garden.setting.dynamics(1));
     let planner = Lookahead::new(config, dynamics, forecast.expect("four places"));
     with(garden, planner.expect("settings that agree").until(Some(goal())))
 }
@@ -192,6 +201,8 @@ fn with<P: Planner>(garden: &Garden, planner: P) -> Outcome {
             }
         }
     }
+    let centre = agent.planner.estimates().centre.map(Line::from);
+    outcome.last_error = centre.map_or(90.0, |line| line.angle_to_deg(&garden.line));
     outcome.close(agent.body())
 }
 

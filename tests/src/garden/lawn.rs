@@ -68,6 +68,10 @@ pub struct Setting {
     pub start: Start,
     /// By how much more the planner keeps out than the trees, the corner and the border are wide, metres.
     pub padding: f64,
+    /// What the belief is told of position errors: three standard deviations an axis, metres.
+    pub blur: f64,
+    /// The weight of the control in look-ahead.
+    pub varrho: f64,
 }
 
 impl Setting {
@@ -80,6 +84,8 @@ impl Setting {
         p: 0.97,
         start: Start::Anywhere,
         padding: 0.0,
+        blur: 0.1,
+        varrho: 0.000_5,
     };
 
     /// The largest error of a position, metres: what the planner is told.
@@ -192,9 +198,9 @@ fn attempt(setting: Setting, number: u64, rng: &mut ChaCha8Rng) -> Option<Garden
     };
     let mut given = Vec::new();
     for label in [Label::Negative, Label::Positive, Label::Positive, Label::Negative] {
-        let place = (0..100).filter_map(|_| clear(rng)).find(|p| {
-            f64::from(label.sign()) * line.distance(Point2::from(*p)) > FAR
-        })?;
+        let place = (0..100)
+            .filter_map(|_| clear(rng))
+            .find(|p| f64::from(label.sign()) * line.distance(Point2::from(*p)) > FAR)?;
         given.push(Sample { site: site(place), label });
     }
     let given = <[Sample; 4]>::try_from(given).ok()?;
@@ -207,14 +213,21 @@ fn attempt(setting: Setting, number: u64, rng: &mut ChaCha8Rng) -> Option<Garden
         }
     };
     let start = Pose { site: site(start), heading: Heading(rng.random()) };
-    Some(Garden { number, setting, lawn: lawn(&ground, setting.padding)?, ground, line, given, start })
+    Some(Garden {
+        number,
+        setting,
+        lawn: lawn(&ground, setting.padding)?,
+        ground,
+        line,
+        given,
+        start,
+    })
 }
 
 /// The ground in the planner's words, with all keep-outs wider by some metres and the border as much inside.
 fn lawn(ground: &Ground, padding: f64) -> Option<Lawn> {
-    let hull = |corners: &[Point]| {
-        Hull::new(&corners.iter().copied().map(site).collect::<Vec<_>>()).ok()
-    };
+    let hull =
+        |corners: &[Point]| Hull::new(&corners.iter().copied().map(site).collect::<Vec<_>>()).ok();
     let moved = |[x, z]: Point| [x, z].map(|v| v.clamp(padding, SIDE - padding));
     let border: Vec<Point> = ground.border.iter().copied().map(moved).collect();
     let keep_out = |(corners, radius): &(Vec<Point>, f64)| {

@@ -75,6 +75,9 @@ pub struct Rover<'a> {
     pub nearest: (f64, Point),
     /// The largest error of a position so far.
     pub most_off: f64,
+    /// The sum of the squares of position errors at labels, and how many there were.
+    squares: f64,
+    reads: f64,
 }
 
 impl<'a> Rover<'a> {
@@ -99,6 +102,8 @@ impl<'a> Rover<'a> {
             driven: 0.0,
             nearest: (f64::INFINITY, believed),
             most_off: 0.0,
+            squares: 0.0,
+            reads: 0.0,
         };
         // What a fix is off is the same either way round; the start is where it was said to be.
         rover.take_fix();
@@ -174,14 +179,16 @@ impl<'a> Rover<'a> {
 
     /// What its sensor says where it truly is: sometimes the other side.
     pub fn read(&mut self) -> Label {
+        self.squares += distance(self.truth, self.believed).powi(2);
+        self.reads += 1.0;
         let distance = self.garden.line.distance(Point2::from(self.truth));
         let label = if distance > 0.0 { Label::Positive } else { Label::Negative };
         if self.sensor.random_range(0.0..1.0) < self.garden.setting.p { label } else { -label }
     }
 
-    /// Where it believes to be.
-    pub const fn believed(&self) -> Point {
-        self.believed
+    /// The standard deviation of positions at which labels were read, an axis.
+    pub fn deviation(&self) -> f64 {
+        (self.squares / (2.0 * self.reads)).sqrt()
     }
 }
 
