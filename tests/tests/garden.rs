@@ -8,6 +8,7 @@
 //! ```
 
 use std::collections::BTreeMap;
+use std::env;
 
 use planner_core::planner::lookahead;
 use rayon::prelude::*;
@@ -20,6 +21,13 @@ use tests::{LONG, cases};
 
 /// Motions without a label, one after the other, at most.
 const FRUITLESS: u32 = 20;
+
+/// Missions of other gardens that are known to be broken: two bump, one turns to and fro.
+const KNOWN: [(&str, u64); 3] = [
+    ("start within the tolerance, Lookahead", 139),
+    ("start within the tolerance, Scc", 161),
+    ("reach 20 m, Scc", 88),
+];
 
 /// What became of the missions of a row.
 struct Row {
@@ -82,26 +90,27 @@ impl Row {
         );
     }
 
-    /// Prints the missions of which something holds, and how many there are.
-    fn find(&self, what: &str, of: impl Fn(&Outcome) -> bool) -> usize {
-        let found = self.which(of);
-        for (number, it) in self.flown.iter().filter(|(number, _)| found.contains(number)) {
+    /// Prints the missions of which something holds, and returns their numbers.
+    fn find(&self, what: &str, of: impl Fn(&Outcome) -> bool) -> Vec<u64> {
+        for (number, it) in self.flown.iter().filter(|(_, it)| of(it)) {
             println!(
-                "  {what}: mission {number}, {:?} {}, {} motions, {} undone, nearest {:?}",
-                it.ended, it.last_word, it.motions, it.undone, it.nearest
+                "  {what}: mission {number}, {:?} {}, {} motions, {} labels, {} undone, nearest {:?}",
+                it.ended, it.last_word, it.motions, it.labels, it.undone, it.nearest
             );
         }
-        found.len()
+        self.which(of)
     }
 
-    /// What breaks a porter's trust: missions that do not end, turn to and fro, or touch something.
-    fn broken(&self) -> usize {
+    /// The missions that break a porter's trust: they do not end, turn to and fro, or touch something.
+    fn broken(&self) -> Vec<u64> {
         let known = self.flown.iter().all(|(_, it)| it.most_off <= self.setting.largest_error());
         assert!(known, "the drift is larger than was told");
-        self.find("endless", |it| it.ended == Ended::NotItself || it.fruitless > FRUITLESS)
-            + self.find("undone", |it| it.undone > 0)
-            + self.find("bump", Outcome::is_bump)
-            + self.find("lost", |it| matches!(it.ended, Ended::Outside | Ended::Refused))
+        let mut broken =
+            self.find("endless", |it| it.ended == Ended::NotItself || it.fruitless > FRUITLESS);
+        broken.extend(self.find("undone", |it| it.undone > 0));
+        broken.extend(self.find("bump", Outcome::is_bump));
+        broken.extend(self.find("lost", |it| matches!(it.ended, Ended::Outside | Ended::Refused)));
+        broken
     }
 }
 
@@ -123,7 +132,7 @@ fn every_mission_ends_without_a_bump_and_knows_more_than_by_hand() {
     let chords = Row::fly("bisected chords", garden, Finder::Chords);
     let edge = Row::fly("bisected edge", garden, Finder::Edge);
     for row in [&lookahead, &default, &scc] {
-        assert_eq!(row.broken(), 0);
+        assert_eq!(row.broken(), [0; 0]);
     }
     scc.find("no way", |it| it.ended == Ended::NoWay);
     let [ours, by_chords, by_edge] =
@@ -131,12 +140,19 @@ fn every_mission_ends_without_a_bump_and_knows_more_than_by_hand() {
     assert!(ours <= by_chords && ours <= by_edge, "{ours} of {by_chords}, {by_edge}");
 }
 
-/// Settings that a porter may come to. Only what is known to hold is asserted.
+/// Settings that a porter may come to, in the long runs. `ROW` in the environment picks rows by a part of their name:
+///
+/// ```sh
+/// ROW=car COUNT=20 cargo test -p tests --features long --test garden other -- --nocapture
+/// ```
+///
+/// A `varrho` of 0 is not asserted: turns are free then, and look-ahead turns to and fro in some missions.
 #[test]
 fn other_gardens() {
-    if !LONG && std::env::var("COUNT").is_err() {
+    if !LONG {
         return;
     }
+    let asked = env::var("ROW").unwrap_or_default();
     heading();
     let garden = Setting::GARDEN;
     let twice = Drift { scale: 0.02, compass: 0.0349, ..Drift::ROVER };
@@ -157,9 +173,15 @@ fn other_gardens() {
         ("varrho 0", Setting { varrho: 0.0, ..garden }),
     ] {
         for finder in [Finder::Lookahead, Finder::Scc] {
-            let row = Row::fly(&format!("{name}, {finder:?}"), setting, finder);
-            println!("  broken: {}", row.broken());
+            let name = format!("{name}, {finder:?}");
+            if !name.contains(&asked) {
+                continue;
+            }
+            let row = Row::fly(&name, setting, finder);
             row.find("no way", |it| it.ended == Ended::NoWay);
+            let new = |number: &u64| !KNOWN.contains(&(name.as_str(), *number));
+            let broken: Vec<_> = row.broken().into_iter().filter(new).collect();
+            assert!(broken.is_empty() || setting.varrho == 0.0, "{name}: {broken:?}");
         }
     }
 }

@@ -69,7 +69,7 @@ pub enum Ended {
 pub struct Outcome {
     /// How it ended.
     pub ended: Ended,
-    /// What the planner said, and where.
+    /// What the planner said in the end, and where; or the last motion that undid another.
     pub last_word: String,
     /// Labels taken.
     pub labels: u32,
@@ -190,6 +190,8 @@ fn with<P: Planner>(garden: &Garden, planner: P) -> Outcome {
             && is_same(start, step.motion.target)
         {
             outcome.undone += 1;
+            outcome.last_word =
+                format!("undone: {:?} to {:?}", step.motion.recovery, step.motion.target);
         }
         before = Some((from, step.motion));
         outcome.fruitless = outcome.fruitless.max(fruitless);
