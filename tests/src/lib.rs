@@ -13,6 +13,7 @@ pub mod budget;
 pub mod chip;
 pub mod debugger;
 pub mod emulator;
+pub mod garden;
 pub mod known;
 pub mod machines;
 pub mod missions;

@@ -1,0 +1,10 @@
+//! A garden as a porter would simulate it: an L-shaped lawn with two trees, a rover whose odometry drifts, and labels that
+//! are sometimes wrong.
+//!
+//! [`lawn`] draws a mission. [`rover`] moves, drifts and senses. [`flight`] flies a planner and checks how it went.
+//! [`chords`] finds the line as one would by hand.
+
+pub mod chords;
+pub mod flight;
+pub mod lawn;
+pub mod rover;
