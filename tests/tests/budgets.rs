@@ -207,6 +207,7 @@ const CFC: Workload = Workload {
     calls: None,
     vehicle: AnyVehicle::Unicycle(Unicycle::paper()),
     noise: None,
+    position: 0.0,
 };
 
 const LOOKAHEAD: Workload =

@@ -64,6 +64,7 @@ fn flown(program: &str) -> Vec<Flown> {
         calls: None,
         vehicle: AnyVehicle::from(grid),
         noise,
+        position: 0.0,
     };
     let flown = |figure, all, hardest, workload| Flown { figure, all, hardest, workload };
     let (cfc, lookahead) = (Algorithm::Cfc, Algorithm::Lookahead);

@@ -56,8 +56,10 @@ pub struct VersionSpace<const N: usize> {
     /// How many of them it was made of. A whole word, so that the cell begins at one.
     given: usize,
     cell: LineCell<N>,
-    /// How far off a position may be, and by how much that shifts the next sample.
+    /// How far off a position may be at most.
     tolerance: Tolerance,
+    /// How far off the next is expected to be, which is as far as the last, and by how much that would shift it.
+    expected: Tolerance,
     shift: Vector,
 }
 
@@ -91,7 +93,8 @@ impl<const N: usize> VersionSpace<N> {
             return Err(NoVersionSpace::OneLabel);
         }
         let (tolerance, shift) = (Tolerance::NONE, Vector::default());
-        Ok(Self { samples: buffer, given: samples.len(), cell, tolerance, shift })
+        let (expected, given) = (tolerance, samples.len());
+        Ok(Self { samples: buffer, given, cell, tolerance, expected, shift })
     }
 
     /// The same, for further samples whose positions may be off by so much. Those it was made of are where
@@ -101,12 +104,35 @@ impl<const N: usize> VersionSpace<N> {
     /// [`NoVersionSpace::TooVague`].
     pub fn within(self, tolerance: Tolerance) -> Result<Self, NoVersionSpace> {
         let shift = self.shift_by(tolerance).ok_or(NoVersionSpace::TooVague)?;
-        Ok(Self { tolerance, shift, ..self })
+        Ok(Self { tolerance, expected: tolerance, shift, ..self })
     }
 
-    /// How far off a position may be.
+    /// How far off a position may be at most.
     pub const fn tolerance(&self) -> Tolerance {
         self.tolerance
+    }
+
+    /// How far off the next position is expected to be: as far as the last, or by the tolerance before the first.
+    pub const fn expected(&self) -> Tolerance {
+        self.expected
+    }
+
+    /// Expects the next position to be off by so much, when samples were taken in as they are.
+    pub(crate) fn expect(&mut self, expected: Tolerance) -> Result<(), Refused> {
+        let shift = if expected <= self.tolerance { self.shift_by(expected) } else { None };
+        self.shift = shift.ok_or(Refused::Tolerance(expected))?;
+        self.expected = expected;
+        Ok(())
+    }
+
+    /// By how much a sample is shifted whose position may be off by so much.
+    fn shift_within(&self, tolerance: Tolerance) -> Result<Vector, Refused> {
+        if tolerance == self.expected {
+            return Ok(self.shift);
+        }
+        // A smaller one shifts by less, and there is a shift for the largest.
+        let shift = if tolerance <= self.tolerance { self.shift_by(tolerance) } else { None };
+        shift.ok_or(Refused::Tolerance(tolerance))
     }
 
     /// The samples, in the order in which they came.
@@ -155,29 +181,41 @@ impl<const N: usize> VersionSpace<N> {
     /// # Errors
     /// As [`insert`](Self::insert), never for a true reading.
     pub fn take(&mut self, site: Site, reading: Reading, either: Label) -> Result<Label, Refused> {
+        self.take_within(site, reading, either, self.tolerance)
+    }
+
+    /// As [`take`](Self::take), of a site that may be off by so much, at most by the [tolerance](Self::tolerance). It is
+    /// shifted by no more than that takes, so the less it may be off, the more it tells.
+    ///
+    /// # Errors
+    /// As `take`, and [`Refused::Tolerance`].
+    pub fn take_within(
+        &mut self,
+        site: Site,
+        reading: Reading,
+        either: Label,
+        tolerance: Tolerance,
+    ) -> Result<Label, Refused> {
+        let shift = self.shift_within(tolerance)?;
         let label = match reading {
             Reading::Side(label) => label,
             Reading::Boundary => match self.certainty(site) {
                 Certainty::Uncertain => either,
                 Certainty::Certain(label) if self.bounds().any(|bound| bound.at(site) == 0) => {
+                    (self.expected, self.shift) = (tolerance, shift);
                     return Ok(label);
                 }
                 Certainty::Certain(label) => -label,
             },
         };
-        if let Some(site) = self.lines().place(site, label) {
-            self.insert_next(Sample { site, label })?;
+        let place = ConsistentLines { shift, ..self.lines() }.place(site, label);
+        let cut = place.map(|site| self.insert(Sample { site, label })).transpose()?;
+        (self.expected, self.shift) = (tolerance, shift);
+        if cut == Some(Cut::Smaller) && tolerance != Tolerance::NONE {
+            // Arcs only narrow: there is always one.
+            self.shift = self.shift_by(tolerance).unwrap_or(shift);
         }
         Ok(label)
-    }
-
-    /// Takes a sample as it is, and shifts those that follow by what it leaves.
-    pub(crate) fn insert_next(&mut self, sample: Sample) -> Result<(), Refused> {
-        if self.insert(sample)? == Cut::Smaller && self.tolerance != Tolerance::NONE {
-            // Arcs only narrow: there is always one.
-            self.shift = self.shift_by(self.tolerance).unwrap_or(self.shift);
-        }
-        Ok(())
     }
 
     /// By how much a tolerance shifts the next sample.
@@ -231,6 +269,15 @@ impl<const N: usize> Belief for VersionSpace<N> {
     /// As [`take`](Self::take), with +1 for a site on the boundary.
     fn observe(&mut self, site: Site, reading: Reading) -> Result<(), Refused> {
         self.take(site, reading, Label::Positive).map(|_| ())
+    }
+
+    fn observe_within(
+        &mut self,
+        site: Site,
+        reading: Reading,
+        tolerance: Tolerance,
+    ) -> Result<(), Refused> {
+        self.take_within(site, reading, Label::Positive, tolerance).map(|_| ())
     }
 
     fn estimates(&self) -> Estimates {

@@ -23,6 +23,7 @@ use crate::belief::goal::Goal;
 use crate::belief::outlook::{Foresight, Outlook, Prediction};
 use crate::belief::sample::{Label, Reading};
 use crate::belief::told::Replay;
+use crate::belief::tolerance::Tolerance;
 use crate::geometry::area::Area;
 use crate::geometry::lattice::Vector;
 use crate::geometry::region::Region;
@@ -254,6 +255,16 @@ impl<D: Dynamics, B: Foresight, G: Region> Planner for Lookahead<D, B, G> {
         reading.map_or(Ok(()), |reading| self.foresight.observe(pose.site, reading))
     }
 
+    fn observe_within(
+        &mut self,
+        pose: Pose,
+        reading: Option<Reading>,
+        tolerance: Tolerance,
+    ) -> Result<(), Refused> {
+        let observe = |reading| self.foresight.observe_within(pose.site, reading, tolerance);
+        reading.map_or(Ok(()), observe)
+    }
+
     fn belief(&self) -> &B::Belief {
         self.foresight.belief()
     }
@@ -282,7 +293,6 @@ mod tests {
     use crate::belief::goal::Accuracy;
     use crate::belief::noise::{Noise, Reliability};
     use crate::belief::sample::Sample;
-    use crate::belief::tolerance::Tolerance;
     use crate::belief::version_space::VersionSpace;
     use crate::belief::weight::Prior;
     use crate::geometry::heading::Heading;

@@ -27,6 +27,7 @@ use crate::belief::hypotheses::{Hypotheses, Hypothesis};
 use crate::belief::noise::Noise;
 use crate::belief::sample::{Reading, Sample};
 use crate::belief::told::{Replay as _, Told};
+use crate::belief::tolerance::Tolerance;
 use crate::belief::version_space::NoVersionSpace;
 use crate::belief::weight::Prior;
 use crate::geometry::area::Area;
@@ -233,6 +234,16 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Region> Planner for Scc<D, 
 
     fn observe(&mut self, pose: Pose, reading: Option<Reading>) -> Result<(), Refused> {
         reading.map_or(Ok(()), |reading| self.hypotheses.observe(pose.site, reading))
+    }
+
+    fn observe_within(
+        &mut self,
+        pose: Pose,
+        reading: Option<Reading>,
+        tolerance: Tolerance,
+    ) -> Result<(), Refused> {
+        let observe = |reading| self.hypotheses.observe_within(pose.site, reading, tolerance);
+        reading.map_or(Ok(()), observe)
     }
 
     fn belief(&self) -> &Hypotheses<N, H> {

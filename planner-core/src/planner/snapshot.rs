@@ -19,8 +19,9 @@
 use crate::belief::told::NotReplayed;
 use crate::planner::Planner;
 
-/// The version of snapshots: it is the first that is written, and changes when what follows does.
-pub const VERSION: u16 = 1;
+/// The version of snapshots: it is the first that is written, and changes when what follows does. From 2 on they hold the
+/// tolerances that observations brought.
+pub const VERSION: u16 = 2;
 
 /// What a planner has to remember over a sleep: what its belief was told (`T`), and what else it plans by (`M`).
 #[derive(Clone, Debug, PartialEq, Eq)]
