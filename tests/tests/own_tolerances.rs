@@ -7,8 +7,10 @@ use host_sim::mission::definition::Mission;
 use host_sim::world::noise::{Extent, NoiseModel};
 use nalgebra::{Point2, Vector2};
 use planner_core::belief::Refused;
-use planner_core::belief::sample::{Label, Reading};
+use planner_core::belief::estimate::area;
+use planner_core::belief::sample::{Label, Reading, Sample};
 use planner_core::belief::tolerance::Tolerance;
+use planner_core::belief::version_space::NoVersionSpace;
 use planner_core::geometry::lattice::Site;
 use planner_core::geometry::line::Line;
 use planner_core::motion::dynamics::Pose;
@@ -155,6 +157,65 @@ fn no_line_is_cut_off_that_the_reports_leave() {
     assert!(labels > 10_000 && left > 2 * labels, "{labels} labels, {left} lines");
 }
 
+/// Given samples whose positions err too, each by its own tolerance: no line is cut off that they leave, and all is much less
+/// than what one of the largest tolerance leaves for all.
+#[test]
+fn given_samples_may_err() {
+    let (mut own_bits, mut tested, mut vague) = (0.0, 0, 0);
+    for number in 0..cases(2_000, 20_000) {
+        let mission = mission(54, number, Algorithm::Cfc);
+        let truth = *mission.world.line().expect("a line divides it");
+        let mut rng = ChaCha8Rng::seed_from_u64(number);
+        let mut twin = Twin::new(&mission, &mut rng);
+        let reports: Vec<_> = mission
+            .given
+            .samples()
+            .iter()
+            .map(|sample| {
+                let err = [0.0, 0.1, 0.5, 1.0][rng.random_range(0..4)];
+                let (off, angle) = (0.999 * err, rng.random_range(0.0..std::f64::consts::TAU));
+                let at =
+                    Point2::<f64>::from(sample.site) + off * Vector2::new(angle.cos(), angle.sin());
+                let site = Site::try_from(at).expect("on the lattice");
+                twin.keep((site.into(), sample.label, err + 1e-4));
+                (Sample { site, ..*sample }, metres(err))
+            })
+            .collect();
+        assert!(twin.0.iter().any(|line| line.angle_to_deg(&truth) < 1e-9), "the truth agrees");
+        let most: Vec<_> = reports.iter().map(|(sample, _)| (*sample, metres(1.0))).collect();
+        match VersionSpace::<16>::of_uncertain(&reports) {
+            Ok(space) => {
+                // A report is rounded to the lattice, which the twin allows for and no line of it may need.
+                let strict = reports.iter().fold(twin, |mut twin, (sample, tolerance)| {
+                    twin.keep((sample.site.into(), sample.label, tolerance.metres()));
+                    twin
+                });
+                assert_eq!(strict.lost(&space), 0, "field {number}: {reports:?}");
+                tested += 1;
+                if let Ok(all) = VersionSpace::<16>::of_uncertain(&most) {
+                    let area = |space: &VersionSpace<16>| f64::from(area(space.lines()));
+                    own_bits += (area(&all) / area(&space)).log2();
+                }
+            }
+            Err(NoVersionSpace::TooVague) => vague += 1,
+            Err(other) => panic!("field {number}: {other}"),
+        }
+    }
+    println!(
+        "{tested} fields, {vague} too vague; {:.2} bits by own tolerances",
+        own_bits / f64::from(tested)
+    );
+    assert!(
+        tested > 10 * vague && own_bits > 0.2 * f64::from(tested),
+        "{tested} {vague} {own_bits}"
+    );
+    // Exact samples are taken as they are.
+    let mission = mission(54, 1, Algorithm::Cfc);
+    let exact: Vec<_> = mission.given.samples().iter().map(|it| (*it, Tolerance::NONE)).collect();
+    let space = VersionSpace::<16>::of_uncertain(&exact).expect("exact ones");
+    assert_eq!(space.samples(), mission.given.samples());
+}
+
 /// The bits that missions learn whose error grows with the way, in order.
 fn bits(kind: &str, tells: impl Fn(f64) -> f64 + Sync) -> Vec<f64> {
     // A dead reckoning: from 2 cm to the most.
@@ -204,26 +265,28 @@ fn own_tolerances_tell_more_than_the_most() {
     }
 }
 
+/// A planner refuses more than was configured, stays as it was, and takes in as much as was configured.
+fn refuses<P: Planner<Belief: planner_core::Belief>>(
+    planner: &mut P,
+    start: Pose,
+    more: Tolerance,
+) {
+    let Plan::Move(motion) = planner.plan(start) else { panic!("no motion") };
+    let reading = Some(Reading::Side(Label::Positive));
+    let before = planner.belief().chance(motion.target.site).to_bits();
+    let refused = planner.observe_within(motion.target, reading, more);
+    assert_eq!(refused, Err(Refused::Tolerance(more)));
+    assert_eq!(planner.belief().chance(motion.target.site).to_bits(), before);
+    assert_eq!(planner.plan(start), Plan::Move(motion));
+    planner.observe_within(motion.target, reading, metres(MOST)).expect("as configured");
+    assert_ne!(planner.belief().chance(motion.target.site).to_bits(), before);
+}
+
 #[test]
 fn more_than_was_configured_is_refused_and_changes_nothing() {
     let mut mission = mission(53, 3, Algorithm::Cfc);
     let (config, vehicle, start) = (mission.config, mission.vehicle, mission.start);
     let more = metres(MOST + 0.01);
-    fn refuses<P: Planner<Belief: planner_core::Belief>>(
-        planner: &mut P,
-        start: Pose,
-        more: Tolerance,
-    ) {
-        let Plan::Move(motion) = planner.plan(start) else { panic!("no motion") };
-        let reading = Some(Reading::Side(Label::Positive));
-        let before = planner.belief().chance(motion.target.site).to_bits();
-        let refused = planner.observe_within(motion.target, reading, more);
-        assert_eq!(refused, Err(Refused::Tolerance(more)));
-        assert_eq!(planner.belief().chance(motion.target.site).to_bits(), before);
-        assert_eq!(planner.plan(start), Plan::Move(motion));
-        planner.observe_within(motion.target, reading, metres(MOST)).expect("as configured");
-        assert_ne!(planner.belief().chance(motion.target.site).to_bits(), before);
-    }
     refuses(&mut Cfc::new(config, vehicle, mission.lines()).expect("room"), start, more);
     refuses(&mut Lookahead::new(config, vehicle, mission.lines()).expect("room"), start, more);
     mission.noise = Some(NoiseModel { p: 0.9, extent: Extent::OutsideBalls(0.0) });

@@ -31,6 +31,7 @@ const BEYOND: i32 = 64 * ONE;
 
 /// `2^-f` for `f` from 0 to 1 in 32 parts, in units of 2^-16. Between entries it is taken for a straight line: to
 /// 6 10^-5 of it.
+#[expect(clippy::indexing_slicing, reason = "an error is one of compilation")]
 const POWERS: [u32; 33] = {
     let mut table = [0; 33];
     let mut k = 0;
@@ -42,6 +43,7 @@ const POWERS: [u32; 33] = {
 };
 
 /// `log2(m)` for `m` from 1 to 2 in 64 parts, in units of 2^-16. To 5 10^-5.
+#[expect(clippy::indexing_slicing, reason = "an error is one of compilation")]
 const LOGARITHMS: [u32; 65] = {
     let mut table = [0; 65];
     let mut k = 0;
@@ -54,6 +56,7 @@ const LOGARITHMS: [u32; 65] = {
 };
 
 /// `log2(1 + 2^-x)` for `x` from 0 to 16 in parts of 1/16, in units of 2^-16. To 10^-4.
+#[expect(clippy::indexing_slicing, reason = "an error is one of compilation")]
 const SOFT: [u16; 257] = {
     let mut table = [0; 257];
     let mut k = 0;
@@ -67,6 +70,7 @@ const SOFT: [u16; 257] = {
 };
 
 /// `1 / sqrt(f)` for `f` from 1/4 to 1 in 192 parts, in units of 2^-14. To 6 10^-5 of it.
+#[expect(clippy::indexing_slicing, reason = "an error is one of compilation")]
 const ROOTS: [u16; 193] = {
     let mut table = [0; 193];
     let mut k = 0;
@@ -86,6 +90,7 @@ const ROOTS: [u16; 193] = {
 };
 
 /// `1 / n`, in units of 2^-16.
+#[expect(clippy::indexing_slicing, reason = "an error is one of compilation")]
 const PARTS: [i32; 16] = {
     let mut table = [ONE; 16];
     let mut n = 1;
@@ -206,7 +211,7 @@ impl Ruler {
     /// The normal's length is right to 10^-4 of it, and its direction as its units allow.
     fn of(Bound { through, along }: Bound) -> Self {
         let square = along.dot(along).unsigned_abs();
-        let even = square.leading_zeros() & 62;
+        let even = square.leading_zeros() & !1;
         let top = (square.wrapping_shl(even) >> 32) as u32; // from 2^30 on
         let k = (top >> 24).saturating_sub(64) as usize;
         let [from, to] = [k, k + 1].map(|k| ROOTS.get(k).copied().unwrap_or(1 << 14));

@@ -97,6 +97,38 @@ impl<const N: usize> VersionSpace<N> {
         Ok(Self { samples: buffer, given, cell, tolerance, expected, shift })
     }
 
+    /// The version space of samples whose positions may be off, each by a tolerance of its own. No line is cut off that
+    /// agrees with some place within the tolerance of each sample.
+    ///
+    /// [`given`](Self::given) returns the samples where they were taken in, as those of a table of hypotheses may be.
+    ///
+    /// Every two samples of opposite labels exclude directions, however their positions err. The directions that
+    /// are left say by how much samples are [shifted](crate::belief::tolerance). The lines that are left then have fewer
+    /// directions, so the samples are shifted anew, three times in all. `O(n^2)` for `n` samples, in double precision,
+    /// the same on every machine.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new) of the shifted samples, and [`NoVersionSpace::TooVague`].
+    pub fn of_uncertain(samples: &[(Sample, Tolerance)]) -> Result<Self, NoVersionSpace> {
+        let mut slopes = directions_left(samples).ok_or(NoVersionSpace::TooVague)?;
+        for _ in 1..3 {
+            slopes = Self::shifted(samples, slopes)?.slope_arc();
+        }
+        Self::shifted(samples, slopes)
+    }
+
+    /// The version space of samples, each shifted by what it takes when the lines' slopes are these.
+    fn shifted(samples: &[(Sample, Tolerance)], slopes: SlopeArc) -> Result<Self, NoVersionSpace> {
+        let mut shifted: heapless::Vec<Sample, N> = heapless::Vec::new();
+        for &(Sample { site, label }, tolerance) in samples {
+            let shift = tolerance.shift(slopes).ok_or(NoVersionSpace::TooVague)?;
+            let shift = if label == Label::Positive { shift } else { shift.reversed() };
+            let site = site.step(shift).map_err(|_| NoVersionSpace::TooVague)?;
+            shifted.push(Sample { site, label }).map_err(|_| NoVersionSpace::TooMany)?;
+        }
+        Self::new(&shifted)
+    }
+
     /// The same, for further samples whose positions may be off by so much. Those it was made of are where
     /// they are.
     ///
@@ -303,6 +335,51 @@ impl<const N: usize> Belief for VersionSpace<N> {
     fn chance(&self, site: Site) -> f64 {
         share_above(self.lines(), site).into()
     }
+}
+
+/// Directions among which are those of all lines that samples leave whose positions may be off; `None` if these are too
+/// many to shift samples by.
+///
+/// Let `w` run from a sample of label -1 to one of label +1, and let their tolerances sum up to `s`. The unit normal `n` of
+/// a line that agrees with both has `n . w >= -s`. So normals are excluded within `acos(s / |w|)` of `-w`.
+fn directions_left(samples: &[(Sample, Tolerance)]) -> Option<SlopeArc> {
+    use core::f64::consts::{FRAC_PI_2, PI, TAU};
+    let of = |label| samples.iter().filter(move |(sample, _)| sample.label == label);
+    let excluded = || {
+        let pairs = of(Label::Negative).flat_map(|a| of(Label::Positive).map(move |b| (a, b)));
+        pairs.filter_map(|((a, one), (b, other))| {
+            let w = a.site - b.site;
+            let length = libm::hypot(f64::from(w.x), f64::from(w.z));
+            // Two units more than the sum, and a little less of an angle, for rounding.
+            let sum = f64::from(one.units()) + f64::from(other.units()) + 2.0;
+            let middle = libm::atan2(f64::from(w.z), f64::from(w.x));
+            (sum < length).then(|| (middle, libm::acos(sum / length) - 1e-6))
+        })
+    };
+    // The first of them, and all that overlap with it or with one that does. To leave out any is safe.
+    let (middle, half) = excluded().next()?;
+    let (mut from, mut to) = (middle - half, middle + half);
+    for _ in 0..samples.len() {
+        let before = (from, to);
+        for (middle, half) in excluded() {
+            let about = 0.5 * (from + to);
+            let off = middle - about;
+            let middle = about + (off - TAU * libm::round(off / TAU));
+            if middle - half <= to && middle + half >= from {
+                (from, to) = (from.min(middle - half), to.max(middle + half));
+            }
+        }
+        if (from, to) == before {
+            break;
+        }
+    }
+    // Normals from `to` on to `from`: directions are a quarter turn behind.
+    let is_narrow = PI + 0.07 < to - from && to - from < TAU;
+    let unit = |angle: f64| {
+        let (sin, cos) = libm::sincos(angle - FRAC_PI_2);
+        Vector { x: (cos * f64::from(1 << 28)) as i32, z: (sin * f64::from(1 << 28)) as i32 }
+    };
+    is_narrow.then(|| SlopeArc::new(unit(to), unit(from)))
 }
 
 /// The first of these collinear samples up to which no line separates them: it lies between two of the

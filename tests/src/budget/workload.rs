@@ -82,6 +82,9 @@ impl Workload {
     }
 
     /// The mission with a number.
+    ///
+    /// # Panics
+    /// When positions err by more than a tolerance can be.
     pub fn mission(&self, number: u64) -> Mission {
         let mut mission = standard_field::standard(SEED, number, self.algorithm, self.steps);
         (mission.policy, mission.vehicle) = (self.policy, self.vehicle);
