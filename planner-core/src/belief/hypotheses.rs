@@ -30,7 +30,7 @@ use crate::belief::noise::{Noise, Reliability};
 use crate::belief::pruned::PrunedMass;
 use crate::belief::sample::{Label, Sample, SampleBuffer};
 use crate::belief::told::{NotReplayed, Replay, Told};
-use crate::belief::tolerance::Tolerance;
+use crate::belief::tolerance::{Short, Tolerance};
 use crate::belief::version_space::{NoVersionSpace, VersionSpace};
 use crate::belief::weight::{Coarse, LogWeight, Prior};
 use crate::geometry::lattice::Site;
@@ -71,8 +71,8 @@ impl<const E: usize> Hypothesis<E> {
 
 /// Up to `H` hypotheses over up to `N` samples, the given ones included; a cell has up to `E` edges.
 ///
-/// `24 H + 16 N` bytes and some 40 for `E = 15`: with the four oracle points, 3,672 bytes for all
-/// hypotheses of 16 labels (`H` = 137), 13,336 for 32 (529), 51,096 for 64 (2,081).
+/// `24 H + 14 N` bytes and some 40 for `E = 15`: with the four oracle points, 3,624 bytes for all
+/// hypotheses of 16 labels (`H` = 137), 13,264 for 32 (529), 50,960 for 64 (2,081).
 ///
 /// Weights are exact but for the logarithms of a label's odds (to 10^-10 each) and of a cell's measure
 /// (to 10^-6), however certain labels are.
@@ -87,7 +87,7 @@ impl<const E: usize> Hypothesis<E> {
 pub struct Hypotheses<const N: usize, const H: usize, const E: usize = 15> {
     samples: SampleBuffer<N>,
     /// How far the position of each label taken in may be off.
-    tolerances: List<Tolerance, N>,
+    tolerances: List<Short, N>,
     given: u8,
     start: LineCell<E>,
     table: List<Hypothesis<E>, H>,
@@ -103,7 +103,7 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
         assert!(H >= 1, "a table holds at least one hypothesis");
         Self {
             samples: SampleBuffer::new(),
-            tolerances: List::filled(Tolerance::NONE),
+            tolerances: List::filled(Short::NONE),
             given: 0,
             start: LineCell::NONE,
             table: List::filled(Hypothesis::NONE),
@@ -189,7 +189,12 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
 
     /// The same for a position that may be off by so much.
     pub(crate) fn reliability_within(&self, site: Site, tolerance: Tolerance) -> Reliability {
-        Noise { tolerance, ..self.noise }.at(site, self.given())
+        Noise { tolerance: self.rounded(tolerance), ..self.noise }.at(site, self.given())
+    }
+
+    /// A tolerance as it is kept.
+    fn rounded(&self, tolerance: Tolerance) -> Tolerance {
+        Short::of(tolerance).at_most(self.noise.tolerance)
     }
 
     /// The logarithm of the measure of a hypothesis's lines, radian metres, to 10^-6; at least -96.
@@ -280,8 +285,8 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
     }
 
     /// How far the position of each of them may be off.
-    pub(crate) fn tolerances(&self) -> &[Tolerance] {
-        &self.tolerances
+    pub(crate) fn tolerances(&self) -> impl Iterator<Item = Tolerance> + Clone {
+        self.tolerances.iter().map(|it| it.at_most(self.noise.tolerance))
     }
 
     /// The weights of the lines on the label's side of a sample and on the other: where positions err alike, as each
@@ -310,7 +315,7 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
         if !self.is_blurred() {
             return;
         }
-        for (&label, &tolerance) in self.labels().iter().zip(self.tolerances.iter()) {
+        for (&label, tolerance) in self.labels().iter().zip(self.tolerances()) {
             let reliability = self.reliability_within(label.site, tolerance);
             let _ = doubts.push(Doubt::new(label, reliability, tolerance)); // there is as much room
         }
@@ -393,7 +398,7 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
             self.make_room(sample.site);
         }
         let Ok(index) = self.samples.push(sample) else { return Err(Refused::Full(sample)) };
-        let _ = self.tolerances.push(tolerance); // there is as much room
+        let _ = self.tolerances.push(Short::of(tolerance)); // there is as much room
         let mut doubts = List::filled(Doubt::NONE);
         self.doubts(&mut doubts);
         for k in 0..self.table.len() {
@@ -525,7 +530,7 @@ impl<const N: usize, const H: usize, const E: usize> Replay for Hypotheses<N, H,
 
     fn told(&self) -> Told<N> {
         let labels = self.labels().iter().zip(self.tolerances());
-        let believed = labels.map(|(label, &it)| self.reliability_within(label.site, it));
+        let believed = labels.map(|(label, it)| self.reliability_within(label.site, it));
         Told::new(self.given(), self.samples(), believed)
             .within(self.tolerances(), self.noise.tolerance)
     }

@@ -43,9 +43,13 @@ impl<const N: usize> Told<N> {
     }
 
     /// The same, of positions that may be off by so much, unless all may be by the tolerance configured.
-    pub(crate) fn within(mut self, tolerances: &[Tolerance], configured: Tolerance) -> Self {
-        if tolerances.iter().any(|it| *it != configured) {
-            self.tolerances = tolerances.iter().copied().collect();
+    pub(crate) fn within(
+        mut self,
+        tolerances: impl Iterator<Item = Tolerance> + Clone,
+        configured: Tolerance,
+    ) -> Self {
+        if tolerances.clone().any(|it| it != configured) {
+            self.tolerances = tolerances.collect();
         }
         self
     }
@@ -146,7 +150,7 @@ impl<const N: usize> Replay for VersionSpace<N> {
 
     fn told(&self) -> Told<N> {
         let told = Told::new(self.given(), self.samples(), core::iter::empty());
-        told.within(&[self.expected()], self.tolerance())
+        told.within(core::iter::once(self.expected()), self.tolerance())
     }
 
     fn replay(&mut self, told: &Told<N>) -> Result<(), NotReplayed> {

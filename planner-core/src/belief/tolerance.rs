@@ -82,6 +82,31 @@ impl Tolerance {
     }
 }
 
+/// A tolerance in two bytes, rounded up by a thousandth at most: eleven digits and an exponent. All zeros for none.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Short(u16);
+
+impl Short {
+    const DIGITS: u32 = 11;
+
+    pub(crate) const NONE: Self = Self(0);
+
+    pub(crate) const fn of(Tolerance { units }: Tolerance) -> Self {
+        let exponent = (u32::BITS - units.leading_zeros()).saturating_sub(Self::DIGITS);
+        let digits = (units + (1 << exponent) - 1) >> exponent;
+        // Rounded up to one digit more, it is a power of two.
+        let carry = digits >> Self::DIGITS;
+        Self(((exponent + carry) << Self::DIGITS | digits >> carry) as u16)
+    }
+
+    /// What it stands for, but no more than the most that was configured.
+    pub(crate) fn at_most(self, most: Tolerance) -> Tolerance {
+        let Self(code) = self;
+        let units = u32::from(code & ((1 << Self::DIGITS) - 1)) << (code >> Self::DIGITS);
+        most.min(Tolerance { units })
+    }
+}
+
 impl TryFrom<u32> for Tolerance {
     type Error = TooMuch;
 
@@ -142,6 +167,19 @@ mod tests {
             }
             let most = e * 1.002 + 4.0;
             assert!(along(angle - half) < most && along(angle + half) < most, "{round}");
+        }
+    }
+
+    #[test]
+    fn short_ones_are_a_thousandth_more_at_most_and_stay_what_they_are() {
+        let most = Tolerance { units: MOST };
+        let numbers = (0..5_000).chain((0..30_000).map(|n| n * 2_236)).chain([MOST - 1, MOST]);
+        for units in numbers {
+            let exact = Tolerance { units };
+            let short = Short::of(exact).at_most(most);
+            assert!(short >= exact && short.units <= units + units / 1_000, "{units}");
+            assert_eq!(Short::of(short).at_most(most), short, "{units}");
+            assert_eq!(Short::of(exact).at_most(exact), exact);
         }
     }
 
