@@ -72,7 +72,7 @@ impl<const E: usize> Hypothesis<E> {
 /// Up to `H` hypotheses over up to `N` samples, the given ones included; a cell has up to `E` edges.
 ///
 /// `24 H + 14 N` bytes and some 40 for `E = 15`: with the four oracle points, 3,624 bytes for all
-/// hypotheses of 16 labels (`H` = 137), 13,264 for 32 (529), 50,960 for 64 (2,081).
+/// hypotheses of 16 labels (`H` = 137), 13,256 for 32 (529), 50,952 for 64 (2,081).
 ///
 /// Weights are exact but for the logarithms of a label's odds (to 10^-10 each) and of a cell's measure
 /// (to 10^-6), however certain labels are.
