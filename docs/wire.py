@@ -153,7 +153,7 @@ STOP = Choice(
     Resolution=None, SamplesFull=None, OutsideArea=None, Cornered=None, Known=None, Undecided=None,
     Tolerance=None,
 )
-REFUSED = Choice(Contradiction=SAMPLE, Full=SAMPLE)
+REFUSED = Choice(Contradiction=SAMPLE, Full=SAMPLE, Tolerance="u32")
 REQUEST = Choice(
     Hello={"protocol": "u16"},
     Outline={"number": "u8"},

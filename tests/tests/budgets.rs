@@ -19,8 +19,9 @@ use tests::budget::footprint::{self, Footprint};
 use tests::budget::hardest::Hardest;
 use tests::budget::table::Budgets;
 use tests::budget::timing::{self, Flight, Took};
+use tests::budget::tolerance::Costs;
 use tests::budget::workload::{DOUBT, Workload};
-use tests::emulator::Call;
+use tests::emulator::{Call, Core};
 use tests::program::build;
 use tests::program::image::Image;
 
@@ -207,6 +208,7 @@ const CFC: Workload = Workload {
     calls: None,
     vehicle: AnyVehicle::Unicycle(Unicycle::paper()),
     noise: None,
+    position: 0.0,
 };
 
 const LOOKAHEAD: Workload =
@@ -268,7 +270,20 @@ fn time_standard(books: &mut Books, elf: &[u8]) -> u32 {
     let workload = Workload { random: 60, searched: 0, ..scc };
     let flown = Flown::of(books, elf, "standard, estimates", workload);
     flown.record(books, ["standard", "scc_estimate_at_32"], |it| &it.estimates);
+    record_tolerance(books, elf);
     stack.max(flown.stack())
+}
+
+/// Enters what observing and waking take under a tolerance.
+fn record_tolerance(books: &mut Books, elf: &[u8]) {
+    for (kind, doubtful) in [("cfc", false), ("scc", true)] {
+        let costs = Costs::worst_under_tolerance(Core::M4F, elf, doubtful, 2);
+        let mut enter = |name: &str, figure| {
+            books.budgets.figure("standard", &format!("{kind}_{name}_worst"), figure);
+        };
+        enter("tolerance_observe", costs.observe_worst);
+        enter("tolerance_wake", costs.wake_worst);
+    }
 }
 
 fn time_large(books: &mut Books, elf: &[u8], fits: bool) -> u32 {

@@ -14,6 +14,7 @@ use tests::LONG;
 use tests::budget::hardest::Hardest;
 use tests::budget::readme::{self, grouped};
 use tests::budget::timing;
+use tests::budget::tolerance::Costs;
 use tests::budget::workload::{DOUBT, Workload};
 use tests::debugger::{self, Debugger};
 use tests::emulator::Core;
@@ -64,6 +65,7 @@ fn flown(program: &str) -> Vec<Flown> {
         calls: None,
         vehicle: AnyVehicle::from(grid),
         noise,
+        position: 0.0,
     };
     let flown = |figure, all, hardest, workload| Flown { figure, all, hardest, workload };
     let (cfc, lookahead) = (Algorithm::Cfc, Algorithm::Lookahead);
@@ -146,6 +148,11 @@ fn cortex(core: Core, target: &str, program: &str) -> Option<Figures> {
         each.map(|it| [count(&it.plans), count(&it.observations), count(&it.estimates)]).collect()
     });
     figures.insert("stack".into(), (0x2002_0000 - lowest).into());
+    for (kind, doubtful) in [("", false), ("scc_", true)].iter().filter(|_| program == "standard") {
+        let costs = Costs::worst_under_tolerance(core, &elf, *doubtful, 2);
+        figures.insert(format!("{kind}tolerance_observe_worst"), costs.observe_worst);
+        figures.insert(format!("{kind}tolerance_wake_worst"), costs.wake_worst);
+    }
     Some(figures)
 }
 
@@ -225,7 +232,10 @@ fn table(document: &DocumentMut) -> String {
     let sizes = ["flash", "static_ram", "stack"].map(str::to_owned);
     let calls = ["plan", "observe", "estimate", "lookahead_plan", "forecast_plan"];
     let times = calls.map(|call| ["median", "worst"].map(|of| format!("{call}_{of}")));
-    let names: Vec<_> = sizes.iter().chain(times.as_flattened()).map(String::as_str).collect();
+    let tolerance = ["observe", "wake"]
+        .map(|of| ["", "scc_"].map(|kind| format!("{kind}tolerance_{of}_worst")));
+    let names = sizes.iter().chain(times.as_flattened()).chain(tolerance.as_flattened());
+    let names: Vec<_> = names.map(String::as_str).collect();
     readme::table(&COLUMNS.map(|it| it.0), &names, |column, name| {
         let (_, core, program) = COLUMNS[column];
         document.get(core)?.get(program)?.get(name)?.as_integer().map(grouped)

@@ -191,6 +191,68 @@ fn labels_keep_the_reliability_that_they_came_with() {
     }
 }
 
+/// Plans of a planner whose observations each bring a tolerance of their own; with `make` it sleeps after each of them.
+fn plans_with_own_tolerances<P: Sleeper>(
+    mission: &Mission,
+    mut planner: P,
+    make: Option<&dyn Fn() -> P>,
+) -> Vec<Plan> {
+    let truth = mission.world.line().expect("a line divides it");
+    let (mut pose, mut plans) = (mission.start, Vec::new());
+    for step in 0..mission.steps {
+        let plan = planner.plan(pose);
+        plans.push(plan);
+        let Plan::Move(motion) = plan else { break };
+        pose = motion.target;
+        let is_above = truth.distance(pose.site.into()) >= 0.0;
+        let label = if is_above { Label::Positive } else { Label::Negative };
+        let reading = motion.wants_label.then_some(label.into());
+        let metres = [0.01, 0.5, 0.0, 0.2, 0.07][step as usize % 5];
+        let tolerance = Tolerance::new(metres).expect("a distance");
+        // Every third does not say.
+        let observed = match step % 3 {
+            2 => planner.observe(pose, reading),
+            _ => planner.observe_within(pose, reading, tolerance),
+        };
+        observed.expect("a true label");
+        if let Some(make) = make {
+            (planner, pose) = sleep(planner, pose, &make);
+        }
+    }
+    plans
+}
+
+/// How many plans differ where each observation brings a tolerance of its own: none.
+#[test]
+fn own_tolerances_outlive_a_sleep() {
+    fn check<P: Sleeper>(what: &str, mission: &Mission, make: impl Fn() -> P) {
+        let awake = plans_with_own_tolerances(mission, make(), None);
+        let asleep = plans_with_own_tolerances(mission, make(), Some(&make));
+        let differ = awake.iter().zip(&asleep).filter(|(a, b)| a != b).count();
+        assert_eq!((differ, asleep.len()), (0, awake.len()), "{what}");
+        assert!(awake.len() > 4, "{what}: {} plans", awake.len());
+    }
+    for number in 0..cases(8, 200) {
+        let mut mission = standard_field::standard(47, number, Algorithm::Cfc, 24);
+        mission.config.tolerance = Tolerance::new(0.5).expect("a distance");
+        let (config, vehicle) = (mission.config, mission.vehicle);
+        let agree = "settings that agree";
+        check("Cfc", &mission, || Cfc::new(config, vehicle, mission.lines()).expect(agree));
+        check("Lookahead", &mission, || {
+            Lookahead::new(config, vehicle, mission.lines()).expect(agree)
+        });
+        let mission = Mission { steps: 14, ..noisy(mission, 0.9) };
+        check("Lookahead in noise", &mission, || {
+            Lookahead::new(config, vehicle, mission.forecast()).expect(agree)
+        });
+        for policy in [Policy::Joint, Policy::MixtureOfOwn] {
+            check("Scc", &mission, || {
+                Scc::new(config, policy, vehicle, mission.table()).expect(agree)
+            });
+        }
+    }
+}
+
 /// Where they begin.
 fn start() -> Pose {
     standard_field::standard(46, 2, Algorithm::Cfc, 0).start

@@ -17,6 +17,7 @@ use nalgebra::Point2;
 use planner_core::belief::Refused;
 use planner_core::belief::consistent_lines::Certainty;
 use planner_core::belief::sample::Reading;
+use planner_core::belief::tolerance::Tolerance;
 use planner_core::geometry::lattice::Site;
 use planner_core::geometry::line::Line;
 use planner_core::geometry::region::Region as _;
@@ -150,6 +151,16 @@ impl<D: Dynamics, B: ReadOut> Planner for Margin<D, B> {
 
     fn observe(&mut self, pose: Pose, reading: Option<Reading>) -> Result<(), Refused> {
         reading.map_or(Ok(()), |reading| self.belief.observe(pose.site, reading))
+    }
+
+    fn observe_within(
+        &mut self,
+        pose: Pose,
+        reading: Option<Reading>,
+        tolerance: Tolerance,
+    ) -> Result<(), Refused> {
+        let observe = |reading| self.belief.observe_within(pose.site, reading, tolerance);
+        reading.map_or(Ok(()), observe)
     }
 
     fn belief(&self) -> &B {

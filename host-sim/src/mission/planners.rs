@@ -2,6 +2,7 @@
 
 use planner_core::belief::Refused;
 use planner_core::belief::sample::Reading;
+use planner_core::belief::tolerance::Tolerance;
 use planner_core::motion::any_vehicle::AnyVehicle;
 use planner_core::motion::dynamics::{Dynamics, Pose};
 use planner_core::planner::cfc::Cfc;
@@ -35,6 +36,15 @@ impl<P: Planner<Belief: ReadOut + Sized + 'static>> Planner for Erased<P> {
 
     fn observe(&mut self, pose: Pose, reading: Option<Reading>) -> Result<(), Refused> {
         self.0.observe(pose, reading)
+    }
+
+    fn observe_within(
+        &mut self,
+        pose: Pose,
+        reading: Option<Reading>,
+        tolerance: Tolerance,
+    ) -> Result<(), Refused> {
+        self.0.observe_within(pose, reading, tolerance)
     }
 
     fn belief(&self) -> &(dyn ReadOut + 'static) {

@@ -1,6 +1,7 @@
 //! A planner that moves at random: what any planner has to beat.
 
 use planner_core::belief::sample::Reading;
+use planner_core::belief::tolerance::Tolerance;
 use planner_core::belief::{Belief, Refused};
 use planner_core::geometry::region::Region as _;
 use planner_core::link::message::MissionArea;
@@ -61,6 +62,16 @@ impl<D: Dynamics, B: Belief> Planner for RandomWalk<D, B> {
 
     fn observe(&mut self, pose: Pose, reading: Option<Reading>) -> Result<(), Refused> {
         reading.map_or(Ok(()), |reading| self.belief.observe(pose.site, reading))
+    }
+
+    fn observe_within(
+        &mut self,
+        pose: Pose,
+        reading: Option<Reading>,
+        tolerance: Tolerance,
+    ) -> Result<(), Refused> {
+        let observe = |reading| self.belief.observe_within(pose.site, reading, tolerance);
+        reading.map_or(Ok(()), observe)
     }
 
     fn belief(&self) -> &B {

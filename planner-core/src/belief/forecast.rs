@@ -10,6 +10,7 @@ use crate::belief::noise::{Noise, Reliability};
 use crate::belief::outlook::{Foresight, Outlook, Prediction, entropy};
 use crate::belief::sample::{Label, Reading, Sample};
 use crate::belief::told::{NotReplayed, Replay, Told};
+use crate::belief::tolerance::Tolerance;
 use crate::belief::version_space::NoVersionSpace;
 use crate::belief::weight::Prior;
 use crate::geometry::lattice::Site;
@@ -64,7 +65,20 @@ impl<const N: usize, const H: usize> Forecast<N, H> {
     /// # Errors
     /// As there, with the forecast as it was.
     pub fn take(&mut self, sample: Sample, reliability: Reliability) -> Result<(), Refused> {
-        self.table.take(sample, reliability)?;
+        self.take_within(sample, reliability, self.table.noise().tolerance)
+    }
+
+    /// As [`take`](Self::take), of a position that may be off by so much, see [`Hypotheses::take_within`].
+    ///
+    /// # Errors
+    /// As there, with the forecast as it was.
+    pub fn take_within(
+        &mut self,
+        sample: Sample,
+        reliability: Reliability,
+        tolerance: Tolerance,
+    ) -> Result<(), Refused> {
+        self.table.take_within(sample, reliability, tolerance)?;
         let _ = self.believed.push(reliability); // there is as much room
         Ok(())
     }
@@ -74,13 +88,16 @@ impl<const N: usize, const H: usize> Replay for Forecast<N, H> {
     type Told = Told<N>;
 
     fn told(&self) -> Told<N> {
-        Told::new(self.table.given(), self.table.samples(), self.believed.iter().copied())
+        let believed = self.believed.iter().copied();
+        let told = Told::new(self.table.given(), self.table.samples(), believed);
+        told.within(self.table.tolerances(), self.table.noise().tolerance)
     }
 
     fn replay(&mut self, told: &Told<N>) -> Result<(), NotReplayed> {
         self.restart(told.given(), self.table.prior(), self.table.noise())?;
-        for (sample, reliability) in told.doubtful_labels()? {
-            self.take(sample, reliability)?;
+        let most = self.table.noise().tolerance;
+        for (sample, reliability, tolerance) in told.doubtful_labels(most)? {
+            self.take_within(sample, reliability, tolerance)?;
         }
         Ok(())
     }
@@ -97,6 +114,17 @@ impl<const N: usize, const H: usize> Foresight for Forecast<N, H> {
     fn observe(&mut self, site: Site, reading: Reading) -> Result<(), Refused> {
         let Reading::Side(label) = reading else { return Ok(()) };
         self.take(Sample { site, label }, self.table.reliability(site))
+    }
+
+    fn observe_within(
+        &mut self,
+        site: Site,
+        reading: Reading,
+        tolerance: Tolerance,
+    ) -> Result<(), Refused> {
+        let Reading::Side(label) = reading else { return self.table.admits(tolerance) };
+        let reliability = self.table.reliability_within(site, tolerance);
+        self.take_within(Sample { site, label }, reliability, tolerance)
     }
 
     fn prepare(&mut self) {

@@ -19,19 +19,18 @@
 //!
 //! [`Posterior::pruned_mass`]: crate::belief::posterior::Posterior::pruned_mass
 
-use core::ops::Add as _;
-
 use crate::belief::Refused;
+use crate::belief::blur::{Blur, Doubt, Scale};
 use crate::belief::cell::LineCell;
 use crate::belief::consistent_lines::{Certainty, ConsistentLines};
 use crate::belief::edge::Edge;
-use crate::belief::estimate::{area, centre};
+use crate::belief::estimate::area;
 use crate::belief::list::List;
 use crate::belief::noise::{Noise, Reliability};
 use crate::belief::pruned::PrunedMass;
 use crate::belief::sample::{Label, Sample, SampleBuffer};
 use crate::belief::told::{NotReplayed, Replay, Told};
-use crate::belief::tolerance::Tolerance;
+use crate::belief::tolerance::{Short, Tolerance};
 use crate::belief::version_space::{NoVersionSpace, VersionSpace};
 use crate::belief::weight::{Coarse, LogWeight, Prior};
 use crate::geometry::lattice::Site;
@@ -72,8 +71,8 @@ impl<const E: usize> Hypothesis<E> {
 
 /// Up to `H` hypotheses over up to `N` samples, the given ones included; a cell has up to `E` edges.
 ///
-/// `24 H + 12 N` bytes and some 40 for `E = 15`: with the four oracle points, 3,584 bytes for all
-/// hypotheses of 16 labels (`H` = 137), 13,184 for 32 (529), 50,816 for 64 (2,081).
+/// `24 H + 14 N` bytes and some 40 for `E = 15`: with the four oracle points, 3,624 bytes for all
+/// hypotheses of 16 labels (`H` = 137), 13,256 for 32 (529), 50,952 for 64 (2,081).
 ///
 /// Weights are exact but for the logarithms of a label's odds (to 10^-10 each) and of a cell's measure
 /// (to 10^-6), however certain labels are.
@@ -87,6 +86,8 @@ impl<const E: usize> Hypothesis<E> {
 #[derive(Clone, Debug)]
 pub struct Hypotheses<const N: usize, const H: usize, const E: usize = 15> {
     samples: SampleBuffer<N>,
+    /// How far the position of each label taken in may be off.
+    tolerances: List<Short, N>,
     given: u8,
     start: LineCell<E>,
     table: List<Hypothesis<E>, H>,
@@ -102,6 +103,7 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
         assert!(H >= 1, "a table holds at least one hypothesis");
         Self {
             samples: SampleBuffer::new(),
+            tolerances: List::filled(Short::NONE),
             given: 0,
             start: LineCell::NONE,
             table: List::filled(Hypothesis::NONE),
@@ -140,6 +142,7 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
         let space = VersionSpace::<N>::new(given)?;
         let start: LineCell<E> = space.cell().resized().ok_or(NoVersionSpace::TooMany)?;
         self.samples = space.into_samples();
+        self.tolerances.clear();
         self.given = given.len() as u8;
         self.start = start;
         self.table.clear();
@@ -182,6 +185,16 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
     /// How far a label at a site can be believed.
     pub fn reliability(&self, site: Site) -> Reliability {
         self.noise.at(site, self.given())
+    }
+
+    /// The same for a position that may be off by so much.
+    pub(crate) fn reliability_within(&self, site: Site, tolerance: Tolerance) -> Reliability {
+        Noise { tolerance: self.rounded(tolerance), ..self.noise }.at(site, self.given())
+    }
+
+    /// A tolerance as it is kept.
+    fn rounded(&self, tolerance: Tolerance) -> Tolerance {
+        Short::of(tolerance).at_most(self.noise.tolerance)
     }
 
     /// The logarithm of the measure of a hypothesis's lines, radian metres, to 10^-6; at least -96.
@@ -271,6 +284,11 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
         self.samples.get(usize::from(self.given)..).unwrap_or(&[])
     }
 
+    /// How far the position of each of them may be off.
+    pub(crate) fn tolerances(&self) -> impl Iterator<Item = Tolerance> + Clone {
+        self.tolerances.iter().map(|it| it.at_most(self.noise.tolerance))
+    }
+
     /// The weights of the lines on the label's side of a sample and on the other: where positions err alike, as each
     /// hypothesis is [told](Self::told_by) for itself.
     fn weights(&self, reliability: Reliability) -> (Option<LogWeight>, Option<LogWeight>) {
@@ -286,37 +304,35 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
     }
 
     /// The chances that the true position is on the +1 side and on the -1 side where a site is reported, on average
-    /// over the lines of a hypothesis; `None` if these are too near each other to tell their mean.
-    ///
-    /// Their distances are taken to spread evenly about that of their mean, as far as to the nearer of the extremes.
-    pub(crate) fn sides<'a>(
-        &'a self,
-        hypothesis: &'a Hypothesis<E>,
-    ) -> Option<impl Fn(Site) -> [f32; 2] + 'a> {
-        let (tolerance, lines) = (self.noise.tolerance, self.lines(hypothesis));
-        let mean = centre(lines)?.distances();
-        Some(move |site| {
-            let mean = mean(site);
-            let spread = lines.bounds().map(|bound| bound.distance(site));
-            let (least, most) =
-                spread.fold((mean, mean), |(least, most), it| (least.min(it), most.max(it)));
-            let half = (mean - least).min(most - mean);
-            tolerance.sides(mean - half, mean + half)
-        })
+    /// over the lines of a hypothesis.
+    pub(crate) fn sides(&self, hypothesis: &Hypothesis<E>, site: Site) -> [f32; 2] {
+        Blur::<E>::of(self.lines(hypothesis)).sides(site, Scale::by(self.noise.tolerance))
+    }
+
+    /// The labels as hypotheses are weighed by them where positions err; none where they do not.
+    #[inline(never)] // its list is not for all of the stack's time
+    fn doubts(&self, doubts: &mut List<Doubt, N>) {
+        if !self.is_blurred() {
+            return;
+        }
+        for (&label, tolerance) in self.labels().iter().zip(self.tolerances()) {
+            let reliability = self.reliability_within(label.site, tolerance);
+            let _ = doubts.push(Doubt::new(label, reliability, tolerance)); // there is as much room
+        }
     }
 
     /// What some labels make a hypothesis weigh where positions err.
-    fn told_by(&self, hypothesis: &Hypothesis<E>, labels: &[Sample]) -> LogWeight {
-        if !self.is_blurred() {
+    fn told_by(&self, hypothesis: &Hypothesis<E>, labels: &[Doubt]) -> LogWeight {
+        if labels.is_empty() {
             return LogWeight::ZERO;
         }
-        let Some(sides) = self.sides(hypothesis) else { return LogWeight::ZERO };
-        let told = |&Sample { site, label }: &Sample| {
-            let [above, below] = sides(site);
-            let is_above = label == Label::Positive;
-            self.reliability(site).among(if is_above { [above, below] } else { [below, above] })
-        };
-        labels.iter().map(told).fold(LogWeight::ZERO, LogWeight::add)
+        Blur::<E>::of(self.lines(hypothesis)).told(labels)
+    }
+
+    /// Whether a position may be off by so much.
+    pub(crate) fn admits(&self, tolerance: Tolerance) -> Result<(), Refused> {
+        let is_within = tolerance <= self.noise.tolerance;
+        is_within.then_some(()).ok_or(Refused::Tolerance(tolerance))
     }
 
     /// Takes in a label that is read at a site, as far as it can be believed there.
@@ -324,18 +340,47 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
     /// # Errors
     /// As [`take`](Self::take).
     pub fn read(&mut self, site: Site, label: Label) -> Result<(), Refused> {
-        self.take(Sample { site, label }, self.reliability(site))
+        self.read_within(site, label, self.noise.tolerance)
+    }
+
+    /// As [`read`](Self::read), of a label whose own position may be off by so much.
+    ///
+    /// # Errors
+    /// As [`take_within`](Self::take_within).
+    pub fn read_within(
+        &mut self,
+        site: Site,
+        label: Label,
+        tolerance: Tolerance,
+    ) -> Result<(), Refused> {
+        let reliability = self.reliability_within(site, tolerance);
+        self.take_within(Sample { site, label }, reliability, tolerance)
     }
 
     /// Takes in a label of some reliability: splits the hypotheses that the sample cuts and weighs
     /// all. One orientation an edge, and for each of the at most `t + 1` that split two cuts and two
-    /// measures, in integers and single precision; where positions err also a centre for each, and for those
-    /// that split all labels anew. There a label is as reliable as the noise says.
+    /// measures, in integers and single precision; where positions err each is weighed by the distances of its vertices, and
+    /// those that split by all labels anew: some eight times the cost. There a label is as reliable as the noise says.
     ///
     /// # Errors
     /// [`Refused::Contradiction`] when a label that is certain leaves no hypothesis, and
     /// [`Refused::Full`]; the table is then as it was.
     pub fn take(&mut self, sample: Sample, reliability: Reliability) -> Result<(), Refused> {
+        self.take_within(sample, reliability, self.noise.tolerance)
+    }
+
+    /// As [`take`](Self::take), of a label whose own position may be off by so much: at most by the
+    /// [noise](Self::noise)'s tolerance. The less it may be off, the more the label tells.
+    ///
+    /// # Errors
+    /// As `take`, and [`Refused::Tolerance`]; the table is then as it was.
+    pub fn take_within(
+        &mut self,
+        sample: Sample,
+        reliability: Reliability,
+        tolerance: Tolerance,
+    ) -> Result<(), Refused> {
+        self.admits(tolerance)?;
         let (agree, disagree) = self.weights(reliability);
         let weight = |label: Label| if label == sample.label { agree } else { disagree };
         let survives = |hypothesis: &Hypothesis<E>| match self.certainty(hypothesis, sample.site) {
@@ -353,8 +398,11 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
             self.make_room(sample.site);
         }
         let Ok(index) = self.samples.push(sample) else { return Err(Refused::Full(sample)) };
+        let _ = self.tolerances.push(Short::of(tolerance)); // there is as much room
+        let mut doubts = List::filled(Doubt::NONE);
+        self.doubts(&mut doubts);
         for k in 0..self.table.len() {
-            self.update(k, Edge::new(index, sample.label), reliability);
+            self.update(k, Edge::new(index, sample.label), reliability, &doubts);
         }
         if !doubtful {
             self.table.retain(|hypothesis| !hypothesis.cell.edges().is_empty());
@@ -392,14 +440,15 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
 
     /// Weighs the `k`-th hypothesis by the newest sample, splitting it first if the sample cuts it.
     /// One that becomes impossible is left without edges.
-    fn update(&mut self, k: usize, edge: Edge, reliability: Reliability) {
+    fn update(&mut self, k: usize, edge: Edge, reliability: Reliability, doubts: &[Doubt]) {
         let (agree, disagree) = self.weights(reliability);
-        let Some((newest, labels)) = self.labels().split_last() else { return };
+        let Some(newest) = self.samples.get(edge.index()) else { return };
+        let (before, newest_doubt) = doubts.split_at(doubts.len().saturating_sub(1));
         let Some(whole) = self.table.get(k).copied() else { return };
         match self.certainty(&whole, newest.site) {
             Certainty::Certain(certain) => {
                 let weight = if certain == edge.label() { agree } else { disagree };
-                let told = self.told_by(&whole, core::slice::from_ref(newest));
+                let told = self.told_by(&whole, newest_doubt);
                 let Some(place) = self.table.get_mut(k) else { return };
                 match weight {
                     Some(weight) => place.weigh(weight + told),
@@ -413,8 +462,8 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
                 let weight = match self.prior {
                     Prior::Area => LogWeight::ZERO - self.log_area(&whole),
                     Prior::Sequences => LogWeight::ZERO,
-                } - self.told_by(&whole, labels);
-                let mut part = |edge, by| self.part(&whole, edge, weight + by);
+                } - self.told_by(&whole, before);
+                let mut part = |edge, by| self.part(&whole, edge, weight + by, doubts);
                 let agreeing = agree.map(|by| part(edge, by));
                 let other = disagree.map(|by| part(opposite, by));
                 let (kept, split_off) =
@@ -444,12 +493,18 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
 
     /// The part of a hypothesis on one side of a sample, weighed anew and by the measure of its lines if
     /// that is the prior.
-    fn part(&mut self, whole: &Hypothesis<E>, edge: Edge, weight: LogWeight) -> Hypothesis<E> {
+    fn part(
+        &mut self,
+        whole: &Hypothesis<E>,
+        edge: Edge,
+        weight: LogWeight,
+        doubts: &[Doubt],
+    ) -> Hypothesis<E> {
         let mut part = *whole;
         if part.cell.cut(&self.samples, edge).is_err() {
             self.outer_cells = self.outer_cells.saturating_add(1);
         }
-        let weight = weight + self.told_by(&part, self.labels());
+        let weight = weight + self.told_by(&part, doubts);
         part.weigh(match self.prior {
             Prior::Area => weight + self.log_area(&part),
             Prior::Sequences => weight,
@@ -474,14 +529,16 @@ impl<const N: usize, const H: usize, const E: usize> Replay for Hypotheses<N, H,
     type Told = Told<N>;
 
     fn told(&self) -> Told<N> {
-        let believed = self.labels().iter().map(|label| self.reliability(label.site));
+        let labels = self.labels().iter().zip(self.tolerances());
+        let believed = labels.map(|(label, it)| self.reliability_within(label.site, it));
         Told::new(self.given(), self.samples(), believed)
+            .within(self.tolerances(), self.noise.tolerance)
     }
 
     fn replay(&mut self, told: &Told<N>) -> Result<(), NotReplayed> {
         self.restart(told.given(), self.prior, self.noise)?;
-        for (sample, reliability) in told.doubtful_labels()? {
-            self.take(sample, reliability)?;
+        for (sample, reliability, tolerance) in told.doubtful_labels(self.noise.tolerance)? {
+            self.take_within(sample, reliability, tolerance)?;
         }
         Ok(())
     }

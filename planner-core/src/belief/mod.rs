@@ -9,6 +9,7 @@
 //! a position that errs is good for a [`tolerance`]. What has to be kept of a belief over a sleep is what it was [`told`].
 //! Nothing here knows how the robot moves.
 
+pub(crate) mod blur;
 pub mod cell;
 pub(crate) mod column;
 pub mod columns;
@@ -36,6 +37,7 @@ pub mod weight;
 use crate::belief::estimate::Estimates;
 use crate::belief::goal::Goal;
 use crate::belief::sample::{Reading, Sample};
+use crate::belief::tolerance::Tolerance;
 use crate::geometry::area::Area;
 use crate::geometry::lattice::Site;
 
@@ -51,6 +53,18 @@ pub trait Belief {
     /// # Errors
     /// [`Refused`] when the reading contradicts what is known or cannot be stored.
     fn observe(&mut self, site: Site, reading: Reading) -> Result<(), Refused>;
+
+    /// As [`observe`](Self::observe), of a site that may be off by so much, at most by the tolerance configured. The
+    /// less it may be off, the more the reading tells.
+    ///
+    /// # Errors
+    /// As `observe`, and [`Refused::Tolerance`].
+    fn observe_within(
+        &mut self,
+        site: Site,
+        reading: Reading,
+        tolerance: Tolerance,
+    ) -> Result<(), Refused>;
 
     /// The line as far as it is known.
     fn estimates(&self) -> Estimates;
@@ -77,6 +91,8 @@ pub enum Refused {
     Contradiction(Sample),
     /// The buffer is full.
     Full(Sample),
+    /// The position may be off by so much, which is more than the tolerance that was configured.
+    Tolerance(Tolerance),
 }
 
 impl core::fmt::Display for Refused {
@@ -90,6 +106,11 @@ impl core::fmt::Display for Refused {
                 s.site.z()
             ),
             Self::Full(_) => f.write_str("the sample buffer is full"),
+            Self::Tolerance(tolerance) => write!(
+                f,
+                "a position that may be off by {} m is beyond the tolerance that was configured",
+                tolerance.metres()
+            ),
         }
     }
 }

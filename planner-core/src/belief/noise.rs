@@ -2,7 +2,7 @@
 
 use crate::belief::sample::Sample;
 use crate::belief::tolerance::Tolerance;
-use crate::belief::weight::{Coarse, LogWeight};
+use crate::belief::weight::LogWeight;
 use crate::geometry::lattice::Site;
 
 /// How far a label can be believed: it is true with probability `p`.
@@ -53,16 +53,14 @@ impl Reliability {
 
     /// As [`probability`](Self::probability), in single precision.
     pub(crate) fn single(self) -> f32 {
-        let weight = |it: Option<LogWeight>| it.map_or(0.0, LogWeight::exp_single);
-        let (agree, disagree) = (weight(self.agree()), weight(self.disagree()));
+        let [agree, disagree] = self.weights();
         agree / (agree + disagree)
     }
 
-    /// What lines weigh that tell the label with these chances rightly and wrongly, relative to the likelier side.
-    pub(crate) fn among(self, [rightly, wrongly]: [f32; 2]) -> LogWeight {
+    /// What lines weigh that agree with the label and that do not, relative to the likelier side.
+    pub(crate) fn weights(self) -> [f32; 2] {
         let weight = |it: Option<LogWeight>| it.map_or(0.0, LogWeight::exp_single);
-        let chance = rightly * weight(self.agree()) + wrongly * weight(self.disagree());
-        Coarse::of(chance).into()
+        [weight(self.agree()), weight(self.disagree())]
     }
 
     /// The logarithm of the odds, in units of 2^-32.

@@ -2,6 +2,7 @@
 
 use crate::belief::consistent_lines::ConsistentLines;
 use crate::belief::sample::{Label, Reading};
+use crate::belief::tolerance::Tolerance;
 use crate::belief::{Belief, Refused};
 use crate::geometry::lattice::Site;
 
@@ -23,6 +24,17 @@ pub trait Foresight {
     /// # Errors
     /// As [`Belief::observe`].
     fn observe(&mut self, site: Site, reading: Reading) -> Result<(), Refused>;
+
+    /// Takes in what was read at a site that may be off by so much.
+    ///
+    /// # Errors
+    /// As [`Belief::observe_within`].
+    fn observe_within(
+        &mut self,
+        site: Site,
+        reading: Reading,
+        tolerance: Tolerance,
+    ) -> Result<(), Refused>;
 
     /// Makes ready for what is asked next, until something is observed.
     fn prepare(&mut self);

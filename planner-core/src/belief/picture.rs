@@ -11,6 +11,7 @@ use heapless::Vec;
 use crate::belief::consistent_lines::ConsistentLines;
 use crate::belief::outlook::{Foresight, Outlook, Prediction, entropy};
 use crate::belief::sample::{Label, Reading};
+use crate::belief::tolerance::Tolerance;
 use crate::belief::version_space::VersionSpace;
 use crate::belief::weight::LogWeight;
 use crate::belief::{Belief, Refused};
@@ -215,6 +216,15 @@ impl<const N: usize> Foresight for VersionSpace<N> {
 
     fn observe(&mut self, site: Site, reading: Reading) -> Result<(), Refused> {
         Belief::observe(self, site, reading)
+    }
+
+    fn observe_within(
+        &mut self,
+        site: Site,
+        reading: Reading,
+        tolerance: Tolerance,
+    ) -> Result<(), Refused> {
+        Belief::observe_within(self, site, reading, tolerance)
     }
 
     fn prepare(&mut self) {}

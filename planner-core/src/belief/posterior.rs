@@ -11,6 +11,7 @@ use crate::belief::goal::Goal;
 use crate::belief::hypotheses::{Hypotheses, Hypothesis};
 use crate::belief::moments::Moments;
 use crate::belief::sample::Reading;
+use crate::belief::tolerance::Tolerance;
 use crate::belief::weight::LogWeight;
 use crate::belief::{Belief, Refused};
 use crate::geometry::arc::SlopeArc;
@@ -66,6 +67,16 @@ impl<const N: usize, const H: usize, const E: usize> Belief for Hypotheses<N, H,
     fn observe(&mut self, site: Site, reading: Reading) -> Result<(), Refused> {
         let Reading::Side(label) = reading else { return Ok(()) };
         self.read(site, label)
+    }
+
+    fn observe_within(
+        &mut self,
+        site: Site,
+        reading: Reading,
+        tolerance: Tolerance,
+    ) -> Result<(), Refused> {
+        let Reading::Side(label) = reading else { return self.admits(tolerance) };
+        self.read_within(site, label, tolerance)
     }
 
     /// The bisector of the labels as they were seen, the posterior [mean](Posterior::mean), and the maximum
@@ -208,8 +219,8 @@ impl<'a, const N: usize, const H: usize, const E: usize> Posterior<'a, N, H, E> 
     fn chance(&self, site: Site) -> f64 {
         let table = self.hypotheses;
         let above = if table.is_blurred() {
-            let sides = |h| Some(f64::from(table.sides(h)?(site)[0]) * self.probability(h));
-            table.iter().filter_map(sides).sum()
+            let above = |h| f64::from(table.sides(h, site)[0]) * self.probability(h);
+            table.iter().map(above).sum()
         } else {
             self.share_above(site)
         };

@@ -10,10 +10,11 @@ use heapless::Vec;
 use crate::belief::Refused;
 use crate::belief::noise::Reliability;
 use crate::belief::sample::Sample;
+use crate::belief::tolerance::Tolerance;
 use crate::belief::version_space::{NoVersionSpace, VersionSpace};
 
-/// Up to `N` samples, the given ones first. `20 N` bytes and some 16; in postcard's form some 10 bytes a sample,
-/// and 16 where labels may be wrong.
+/// Up to `N` samples, the given ones first. `24 N` bytes and some 16; in postcard's form some 10 bytes a sample, 16 where
+/// labels may be wrong, and up to 4 more where each brings a tolerance of its own.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Told<const N: usize> {
@@ -21,6 +22,9 @@ pub struct Told<const N: usize> {
     samples: Vec<Sample, N, u8>,
     /// Of the labels taken in since; of none where all are true.
     reliabilities: Vec<Reliability, N, u8>,
+    /// How far the position of each of these labels may be off; of none where all may be by as much as is configured.
+    /// Where labels are true, only the last is kept: it says how far the next may be off.
+    tolerances: Vec<Tolerance, N, u8>,
 }
 
 impl<const N: usize> Told<N> {
@@ -34,7 +38,25 @@ impl<const N: usize> Told<N> {
             given: given.len() as u8,
             samples: all.iter().copied().collect(),
             reliabilities: believed.collect(),
+            tolerances: Vec::new(),
         }
+    }
+
+    /// The same, of positions that may be off by so much, unless all may be by the tolerance configured.
+    pub(crate) fn within(
+        mut self,
+        tolerances: impl Iterator<Item = Tolerance> + Clone,
+        configured: Tolerance,
+    ) -> Self {
+        if tolerances.clone().any(|it| it != configured) {
+            self.tolerances = tolerances.collect();
+        }
+        self
+    }
+
+    /// How far the next position is expected to be off where labels are true, if not by the tolerance configured.
+    pub(crate) fn expected(&self) -> Option<Tolerance> {
+        self.tolerances.last().copied()
     }
 
     /// The samples that were given.
@@ -56,11 +78,16 @@ impl<const N: usize> Told<N> {
     /// The labels where they may be wrong.
     pub(crate) fn doubtful_labels(
         &self,
-    ) -> Result<impl Iterator<Item = (Sample, Reliability)>, NotReplayed> {
+        configured: Tolerance,
+    ) -> Result<impl Iterator<Item = (Sample, Reliability, Tolerance)>, NotReplayed> {
         let labels = self.labels();
-        let are_doubtful = self.reliabilities.len() == labels.len();
-        let believed = self.reliabilities.iter().copied();
-        are_doubtful.then(|| labels.iter().copied().zip(believed)).ok_or(NotReplayed::Kind)
+        let are_alike = self.tolerances.is_empty() || self.tolerances.len() == labels.len();
+        if self.reliabilities.len() != labels.len() || !are_alike {
+            return Err(NotReplayed::Kind);
+        }
+        let within = self.tolerances.iter().copied().chain(core::iter::repeat(configured));
+        let labels = labels.iter().copied().zip(self.reliabilities.iter().copied()).zip(within);
+        Ok(labels.map(|((sample, reliability), tolerance)| (sample, reliability, tolerance)))
     }
 }
 
@@ -116,19 +143,22 @@ impl From<Refused> for NotReplayed {
     }
 }
 
-/// Samples are told where they were taken in, which under a tolerance is not where they were read.
+/// Samples are told where they were taken in, which under a tolerance is not where they were read. So they are taken in
+/// as they are, and their tolerances are not told; only the last is, by which the next label is expected to be shifted.
 impl<const N: usize> Replay for VersionSpace<N> {
     type Told = Told<N>;
 
     fn told(&self) -> Told<N> {
-        Told::new(self.given(), self.samples(), core::iter::empty())
+        let told = Told::new(self.given(), self.samples(), core::iter::empty());
+        told.within(core::iter::once(self.expected()), self.tolerance())
     }
 
     fn replay(&mut self, told: &Told<N>) -> Result<(), NotReplayed> {
         *self = Self::new(told.given())?.within(self.tolerance())?;
         for &sample in told.true_labels()? {
-            self.insert_next(sample)?;
+            self.insert(sample)?;
         }
+        self.expect(told.expected().unwrap_or(self.tolerance()))?;
         Ok(())
     }
 }

@@ -15,17 +15,16 @@
 //!
 //! A label that may be wrong is not shifted but doubted: the nearer a line passes, the more. The true position is
 //! spread about the reported one, so a line that has the latter `s` on its +1 side tells a label +1 with
-//! probability `p Phi(s / sigma) + (1 - p) Phi(-s / sigma)`, see [`Hypotheses`].
+//! probability `p Phi(s / sigma) + (1 - p) Phi(-s / sigma)`, see [`Hypotheses`] (and `belief/blur.rs` for how).
 //!
 //! [`Hypotheses`]: crate::belief::hypotheses::Hypotheses
 
-use crate::belief::weight::LogWeight;
-use crate::geometry::approximate::{METRE, UnitVector};
+use crate::geometry::approximate::UnitVector;
 use crate::geometry::arc::SlopeArc;
 use crate::geometry::lattice::{UNITS_PER_METRE, Vector};
 
 /// How far a position may be from where it is reported to be.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "u32", into = "u32"))]
@@ -81,25 +80,30 @@ impl Tolerance {
         let [x, z] = sum.map(|v| v * scale);
         (x.abs() < FARTHEST && z.abs() < FARTHEST).then_some(Vector { x: x as i32, z: z as i32 })
     }
+}
 
-    /// The chances that the true position is on the +1 side of a line and on the other: on average over lines that
-    /// have the reported one between `least` and `most` metres on it.
-    ///
-    /// The tolerance is three standard deviations, and a logistic curve stands for the normal one, to 0.01: its
-    /// integral is `log(1 + e^x)`.
-    pub(crate) fn sides(self, least: f32, most: f32) -> [f32; 2] {
-        let scale = 3.0 * 1.702 / (self.units as f32 * METRE);
-        let exp = |x: f32| LogWeight::near(x).exp_single();
-        let integral = |x: f32| x.max(0.0) + LogWeight::of(1.0 + exp(-x.abs()));
-        let (middle, half) = (0.5 * scale * (least + most), 0.5 * scale * (most - least));
-        // What is further off: the smaller, and the curve is hollow there.
-        let far = middle.abs();
-        let odds = exp(-far);
-        let mut smaller = odds / (1.0 + odds);
-        if half > 0.05 {
-            smaller = smaller.max((integral(half - far) - integral(-half - far)) / (2.0 * half));
-        }
-        if middle < 0.0 { [smaller, 1.0 - smaller] } else { [1.0 - smaller, smaller] }
+/// A tolerance in two bytes, rounded up by a thousandth at most: eleven digits and an exponent. All zeros for none.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Short(u16);
+
+impl Short {
+    const DIGITS: u32 = 11;
+
+    pub(crate) const NONE: Self = Self(0);
+
+    pub(crate) const fn of(Tolerance { units }: Tolerance) -> Self {
+        let exponent = (u32::BITS - units.leading_zeros()).saturating_sub(Self::DIGITS);
+        let digits = (units + (1 << exponent) - 1) >> exponent;
+        // Rounded up to one digit more, it is a power of two.
+        let carry = digits >> Self::DIGITS;
+        Self(((exponent + carry) << Self::DIGITS | digits >> carry) as u16)
+    }
+
+    /// What it stands for, but no more than the most that was configured.
+    pub(crate) fn at_most(self, most: Tolerance) -> Tolerance {
+        let Self(code) = self;
+        let units = u32::from(code & ((1 << Self::DIGITS) - 1)) << (code >> Self::DIGITS);
+        most.min(Tolerance { units })
     }
 }
 
@@ -163,6 +167,19 @@ mod tests {
             }
             let most = e * 1.002 + 4.0;
             assert!(along(angle - half) < most && along(angle + half) < most, "{round}");
+        }
+    }
+
+    #[test]
+    fn short_ones_are_a_thousandth_more_at_most_and_stay_what_they_are() {
+        let most = Tolerance { units: MOST };
+        let numbers = (0..5_000).chain((0..30_000).map(|n| n * 2_236)).chain([MOST - 1, MOST]);
+        for units in numbers {
+            let exact = Tolerance { units };
+            let short = Short::of(exact).at_most(most);
+            assert!(short >= exact && short.units <= units + units / 1_000, "{units}");
+            assert_eq!(Short::of(short).at_most(most), short, "{units}");
+            assert_eq!(Short::of(exact).at_most(exact), exact);
         }
     }
 

@@ -56,8 +56,10 @@ pub struct VersionSpace<const N: usize> {
     /// How many of them it was made of. A whole word, so that the cell begins at one.
     given: usize,
     cell: LineCell<N>,
-    /// How far off a position may be, and by how much that shifts the next sample.
+    /// How far off a position may be at most.
     tolerance: Tolerance,
+    /// How far off the next is expected to be, which is as far as the last, and by how much that would shift it.
+    expected: Tolerance,
     shift: Vector,
 }
 
@@ -91,7 +93,40 @@ impl<const N: usize> VersionSpace<N> {
             return Err(NoVersionSpace::OneLabel);
         }
         let (tolerance, shift) = (Tolerance::NONE, Vector::default());
-        Ok(Self { samples: buffer, given: samples.len(), cell, tolerance, shift })
+        let (expected, given) = (tolerance, samples.len());
+        Ok(Self { samples: buffer, given, cell, tolerance, expected, shift })
+    }
+
+    /// The version space of samples whose positions may be off, each by a tolerance of its own. No line is cut off that
+    /// agrees with some place within the tolerance of each sample.
+    ///
+    /// [`given`](Self::given) returns the samples where they were taken in, as those of a table of hypotheses may be.
+    ///
+    /// Every two samples of opposite labels exclude directions, however their positions err. The directions that
+    /// are left say by how much samples are [shifted](crate::belief::tolerance). The lines that are left then have fewer
+    /// directions, so the samples are shifted anew, three times in all. `O(n^2)` for `n` samples, in double precision,
+    /// the same on every machine.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new) of the shifted samples, and [`NoVersionSpace::TooVague`].
+    pub fn of_uncertain(samples: &[(Sample, Tolerance)]) -> Result<Self, NoVersionSpace> {
+        let mut slopes = directions_left(samples).ok_or(NoVersionSpace::TooVague)?;
+        for _ in 1..3 {
+            slopes = Self::shifted(samples, slopes)?.slope_arc();
+        }
+        Self::shifted(samples, slopes)
+    }
+
+    /// The version space of samples, each shifted by what it takes when the lines' slopes are these.
+    fn shifted(samples: &[(Sample, Tolerance)], slopes: SlopeArc) -> Result<Self, NoVersionSpace> {
+        let mut shifted: heapless::Vec<Sample, N> = heapless::Vec::new();
+        for &(Sample { site, label }, tolerance) in samples {
+            let shift = tolerance.shift(slopes).ok_or(NoVersionSpace::TooVague)?;
+            let shift = if label == Label::Positive { shift } else { shift.reversed() };
+            let site = site.step(shift).map_err(|_| NoVersionSpace::TooVague)?;
+            shifted.push(Sample { site, label }).map_err(|_| NoVersionSpace::TooMany)?;
+        }
+        Self::new(&shifted)
     }
 
     /// The same, for further samples whose positions may be off by so much. Those it was made of are where
@@ -101,12 +136,35 @@ impl<const N: usize> VersionSpace<N> {
     /// [`NoVersionSpace::TooVague`].
     pub fn within(self, tolerance: Tolerance) -> Result<Self, NoVersionSpace> {
         let shift = self.shift_by(tolerance).ok_or(NoVersionSpace::TooVague)?;
-        Ok(Self { tolerance, shift, ..self })
+        Ok(Self { tolerance, expected: tolerance, shift, ..self })
     }
 
-    /// How far off a position may be.
+    /// How far off a position may be at most.
     pub const fn tolerance(&self) -> Tolerance {
         self.tolerance
+    }
+
+    /// How far off the next position is expected to be: as far as the last, or by the tolerance before the first.
+    pub const fn expected(&self) -> Tolerance {
+        self.expected
+    }
+
+    /// Expects the next position to be off by so much, when samples were taken in as they are.
+    pub(crate) fn expect(&mut self, expected: Tolerance) -> Result<(), Refused> {
+        let shift = if expected <= self.tolerance { self.shift_by(expected) } else { None };
+        self.shift = shift.ok_or(Refused::Tolerance(expected))?;
+        self.expected = expected;
+        Ok(())
+    }
+
+    /// By how much a sample is shifted whose position may be off by so much.
+    fn shift_within(&self, tolerance: Tolerance) -> Result<Vector, Refused> {
+        if tolerance == self.expected {
+            return Ok(self.shift);
+        }
+        // A smaller one shifts by less, and there is a shift for the largest.
+        let shift = if tolerance <= self.tolerance { self.shift_by(tolerance) } else { None };
+        shift.ok_or(Refused::Tolerance(tolerance))
     }
 
     /// The samples, in the order in which they came.
@@ -155,29 +213,41 @@ impl<const N: usize> VersionSpace<N> {
     /// # Errors
     /// As [`insert`](Self::insert), never for a true reading.
     pub fn take(&mut self, site: Site, reading: Reading, either: Label) -> Result<Label, Refused> {
+        self.take_within(site, reading, either, self.tolerance)
+    }
+
+    /// As [`take`](Self::take), of a site that may be off by so much, at most by the [tolerance](Self::tolerance). It is
+    /// shifted by no more than that takes, so the less it may be off, the more it tells.
+    ///
+    /// # Errors
+    /// As `take`, and [`Refused::Tolerance`].
+    pub fn take_within(
+        &mut self,
+        site: Site,
+        reading: Reading,
+        either: Label,
+        tolerance: Tolerance,
+    ) -> Result<Label, Refused> {
+        let shift = self.shift_within(tolerance)?;
         let label = match reading {
             Reading::Side(label) => label,
             Reading::Boundary => match self.certainty(site) {
                 Certainty::Uncertain => either,
                 Certainty::Certain(label) if self.bounds().any(|bound| bound.at(site) == 0) => {
+                    (self.expected, self.shift) = (tolerance, shift);
                     return Ok(label);
                 }
                 Certainty::Certain(label) => -label,
             },
         };
-        if let Some(site) = self.lines().place(site, label) {
-            self.insert_next(Sample { site, label })?;
+        let place = ConsistentLines { shift, ..self.lines() }.place(site, label);
+        let cut = place.map(|site| self.insert(Sample { site, label })).transpose()?;
+        (self.expected, self.shift) = (tolerance, shift);
+        if cut == Some(Cut::Smaller) && tolerance != Tolerance::NONE {
+            // Arcs only narrow: there is always one.
+            self.shift = self.shift_by(tolerance).unwrap_or(shift);
         }
         Ok(label)
-    }
-
-    /// Takes a sample as it is, and shifts those that follow by what it leaves.
-    pub(crate) fn insert_next(&mut self, sample: Sample) -> Result<(), Refused> {
-        if self.insert(sample)? == Cut::Smaller && self.tolerance != Tolerance::NONE {
-            // Arcs only narrow: there is always one.
-            self.shift = self.shift_by(self.tolerance).unwrap_or(self.shift);
-        }
-        Ok(())
     }
 
     /// By how much a tolerance shifts the next sample.
@@ -233,6 +303,15 @@ impl<const N: usize> Belief for VersionSpace<N> {
         self.take(site, reading, Label::Positive).map(|_| ())
     }
 
+    fn observe_within(
+        &mut self,
+        site: Site,
+        reading: Reading,
+        tolerance: Tolerance,
+    ) -> Result<(), Refused> {
+        self.take_within(site, reading, Label::Positive, tolerance).map(|_| ())
+    }
+
     fn estimates(&self) -> Estimates {
         Estimates {
             bisector: bisector(self.samples()),
@@ -256,6 +335,51 @@ impl<const N: usize> Belief for VersionSpace<N> {
     fn chance(&self, site: Site) -> f64 {
         share_above(self.lines(), site).into()
     }
+}
+
+/// Directions among which are those of all lines that samples leave whose positions may be off; `None` if these are too
+/// many to shift samples by.
+///
+/// Let `w` run from a sample of label -1 to one of label +1, and let their tolerances sum up to `s`. The unit normal `n` of
+/// a line that agrees with both has `n . w >= -s`. So normals are excluded within `acos(s / |w|)` of `-w`.
+fn directions_left(samples: &[(Sample, Tolerance)]) -> Option<SlopeArc> {
+    use core::f64::consts::{FRAC_PI_2, PI, TAU};
+    let of = |label| samples.iter().filter(move |(sample, _)| sample.label == label);
+    let excluded = || {
+        let pairs = of(Label::Negative).flat_map(|a| of(Label::Positive).map(move |b| (a, b)));
+        pairs.filter_map(|((a, one), (b, other))| {
+            let w = a.site - b.site;
+            let length = libm::hypot(f64::from(w.x), f64::from(w.z));
+            // Two units more than the sum, and a little less of an angle, for rounding.
+            let sum = f64::from(one.units()) + f64::from(other.units()) + 2.0;
+            let middle = libm::atan2(f64::from(w.z), f64::from(w.x));
+            (sum < length).then(|| (middle, libm::acos(sum / length) - 1e-6))
+        })
+    };
+    // The first of them, and all that overlap with it or with one that does. To leave out any is safe.
+    let (middle, half) = excluded().next()?;
+    let (mut from, mut to) = (middle - half, middle + half);
+    for _ in 0..samples.len() {
+        let before = (from, to);
+        for (middle, half) in excluded() {
+            let about = 0.5 * (from + to);
+            let off = middle - about;
+            let middle = about + (off - TAU * libm::round(off / TAU));
+            if middle - half <= to && middle + half >= from {
+                (from, to) = (from.min(middle - half), to.max(middle + half));
+            }
+        }
+        if (from, to) == before {
+            break;
+        }
+    }
+    // Normals from `to` on to `from`: directions are a quarter turn behind.
+    let is_narrow = PI + 0.07 < to - from && to - from < TAU;
+    let unit = |angle: f64| {
+        let (sin, cos) = libm::sincos(angle - FRAC_PI_2);
+        Vector { x: (cos * f64::from(1 << 28)) as i32, z: (sin * f64::from(1 << 28)) as i32 }
+    };
+    is_narrow.then(|| SlopeArc::new(unit(to), unit(from)))
 }
 
 /// The first of these collinear samples up to which no line separates them: it lies between two of the

@@ -19,11 +19,6 @@ impl LogWeight {
         Self(libm::round(log * Self::ONE as f64) as i64)
     }
 
-    /// A logarithm in single precision, cut to what that can tell.
-    pub(crate) fn near(log: f32) -> Self {
-        Coarse((log * Coarse::ONE as f32) as i32).into()
-    }
-
     /// The logarithm of a positive number, as one.
     pub(crate) fn of(value: f32) -> f32 {
         Coarse::of(value).0 as f32 / Coarse::ONE as f32

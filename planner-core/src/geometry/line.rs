@@ -2,7 +2,6 @@
 
 use nalgebra::{Point2, Vector2};
 
-use crate::geometry::approximate::{METRE, UnitVector, cross};
 use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
 use crate::geometry::local_line::LocalLine;
 
@@ -100,11 +99,6 @@ impl Bound {
     /// Positive when `q` is on the +1 side, negative on the other, zero on the line. Exact.
     pub fn at(&self, q: Site) -> i64 {
         self.along.cross(q - self.through)
-    }
-
-    /// How far `q` is on the +1 side, metres, in single precision.
-    pub(crate) fn distance(&self, q: Site) -> f32 {
-        cross(self.along, q - self.through) * (UnitVector::of(self.along).per_length * METRE)
     }
 
     /// The intercept in metres; `None` for a vertical line.

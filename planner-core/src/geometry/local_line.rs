@@ -1,6 +1,6 @@
 //! Lines in single precision that lose nothing: each in a frame of its own, exact and near to it.
 
-use crate::geometry::approximate::{METRE, UnitVector, cross, inverse_sqrt};
+use crate::geometry::approximate::{METRE, UnitVector, cross};
 use crate::geometry::lattice::{Site, Vector};
 
 /// Axes about a site: along a direction, and to its left.
@@ -58,16 +58,6 @@ impl LocalLine {
     /// How far to the left it passes the site, against the first axis, metres.
     pub const fn intercept(&self) -> f32 {
         self.intercept
-    }
-
-    /// How far sites lie on its +1 side, metres.
-    pub(crate) fn distances(self) -> impl Fn(Site) -> f32 {
-        let frame = Frame::new(self.about, self.along);
-        let scale = inverse_sqrt(1.0 + self.slope * self.slope);
-        move |site| {
-            let [ahead, left] = frame.place(site);
-            scale * (left - self.slope * ahead - self.intercept)
-        }
     }
 }
 

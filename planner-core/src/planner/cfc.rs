@@ -119,7 +119,7 @@ impl<D: Dynamics, const N: usize, G: Region> Cfc<D, N, G> {
     /// Where positions err and no place is left at which either label would cut, one where one would is enough.
     fn find(&self, pose: Pose) -> (Result<Found, DeadEnd>, Phase, Effort) {
         let lines = self.space.lines();
-        if self.space.tolerance() == Tolerance::NONE {
+        if self.space.expected() == Tolerance::NONE {
             return self.find_among(lines, pose, LOOKS);
         }
         let found = self.find_among(lines, pose, LOOKS / 2);
@@ -177,6 +177,15 @@ impl<D: Dynamics, const N: usize, G: Region> Planner for Cfc<D, N, G> {
     }
 
     fn observe(&mut self, pose: Pose, reading: Option<Reading>) -> Result<(), Refused> {
+        self.observe_within(pose, reading, self.space.tolerance())
+    }
+
+    fn observe_within(
+        &mut self,
+        pose: Pose,
+        reading: Option<Reading>,
+        tolerance: Tolerance,
+    ) -> Result<(), Refused> {
         let Some(reading) = reading else {
             // Ground that was merely crossed: its label is known where it is certain.
             if let Certainty::Certain(label) = self.space.certainty(pose.site) {
@@ -185,7 +194,7 @@ impl<D: Dynamics, const N: usize, G: Region> Planner for Cfc<D, N, G> {
             self.silence.observe(false);
             return Ok(());
         };
-        self.space.take(pose.site, reading, self.past)?;
+        self.space.take_within(pose.site, reading, self.past, tolerance)?;
         self.silence.observe(true);
         let crossing = core::mem::replace(&mut self.phase, Phase::Crossing) == Phase::Crossing;
         if let Reading::Side(label) = reading {

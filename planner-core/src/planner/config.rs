@@ -52,8 +52,9 @@ pub struct Config<G = Area> {
     pub crossing: Crossing,
     /// How P2 follows the boundary.
     pub following: Following,
-    /// How far a position may be from where it is reported: motions keep so far from the area's border. A
-    /// [version space](crate::belief::version_space::VersionSpace::within) is told besides.
+    /// How far a position may be from where it is reported, at most: motions keep so far from the area's border. A
+    /// [version space](crate::belief::version_space::VersionSpace::within) is told besides. An observation may bring a smaller
+    /// one of its own, see [`Planner::observe_within`](crate::planner::Planner::observe_within).
     pub tolerance: Tolerance,
 }
 

@@ -23,6 +23,7 @@ use crate::belief::goal::Goal;
 use crate::belief::outlook::{Foresight, Outlook, Prediction};
 use crate::belief::sample::{Label, Reading};
 use crate::belief::told::Replay;
+use crate::belief::tolerance::Tolerance;
 use crate::geometry::area::Area;
 use crate::geometry::lattice::Vector;
 use crate::geometry::region::Region;
@@ -270,6 +271,19 @@ impl<D: Dynamics, B: Foresight, G: Region> Planner for Lookahead<D, B, G> {
         Ok(())
     }
 
+    fn observe_within(
+        &mut self,
+        pose: Pose,
+        reading: Option<Reading>,
+        tolerance: Tolerance,
+    ) -> Result<(), Refused> {
+        if let Some(reading) = reading {
+            self.foresight.observe_within(pose.site, reading, tolerance)?;
+        }
+        self.silence.observe(reading.is_some());
+        Ok(())
+    }
+
     fn belief(&self) -> &B::Belief {
         self.foresight.belief()
     }
@@ -300,7 +314,6 @@ mod tests {
     use crate::belief::goal::Accuracy;
     use crate::belief::noise::{Noise, Reliability};
     use crate::belief::sample::Sample;
-    use crate::belief::tolerance::Tolerance;
     use crate::belief::version_space::VersionSpace;
     use crate::belief::weight::Prior;
     use crate::geometry::heading::Heading;

@@ -20,6 +20,7 @@ pub use checked::OutOfRange;
 
 use crate::belief::estimate::Estimates;
 use crate::belief::sample::Reading;
+use crate::belief::tolerance::Tolerance;
 use crate::belief::{Belief, Refused};
 use crate::motion::action::{Action, Control};
 use crate::motion::dynamics::{Dynamics, Pose};
@@ -152,6 +153,25 @@ pub trait Planner {
     /// then as it was.
     fn observe(&mut self, pose: Pose, reading: Option<Reading>) -> Result<(), Refused>;
 
+    /// As [`observe`](Self::observe), of a position that may be off by so much: what a localisation reports that knows its
+    /// own error. The less it may be off, the more the label tells.
+    ///
+    /// The tolerance that was configured is the most that any position may be off: motions keep so far from the border
+    /// and from keep-outs, whatever single observations bring. Without a reading the tolerance has no effect. A planner without this method takes every position to be
+    /// off by that.
+    ///
+    /// # Errors
+    /// As `observe`, and [`Refused::Tolerance`] where it is more than was configured.
+    fn observe_within(
+        &mut self,
+        pose: Pose,
+        reading: Option<Reading>,
+        tolerance: Tolerance,
+    ) -> Result<(), Refused> {
+        let _ = tolerance;
+        self.observe(pose, reading)
+    }
+
     /// What is known.
     fn belief(&self) -> &Self::Belief;
 
@@ -170,6 +190,15 @@ impl<T: Planner + ?Sized> Planner for &mut T {
 
     fn observe(&mut self, pose: Pose, reading: Option<Reading>) -> Result<(), Refused> {
         T::observe(self, pose, reading)
+    }
+
+    fn observe_within(
+        &mut self,
+        pose: Pose,
+        reading: Option<Reading>,
+        tolerance: Tolerance,
+    ) -> Result<(), Refused> {
+        T::observe_within(self, pose, reading, tolerance)
     }
 
     fn belief(&self) -> &T::Belief {

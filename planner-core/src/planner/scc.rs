@@ -27,6 +27,7 @@ use crate::belief::hypotheses::{Hypotheses, Hypothesis};
 use crate::belief::noise::Noise;
 use crate::belief::sample::{Reading, Sample};
 use crate::belief::told::{Replay as _, Told};
+use crate::belief::tolerance::Tolerance;
 use crate::belief::version_space::NoVersionSpace;
 use crate::belief::weight::Prior;
 use crate::geometry::area::Area;
@@ -241,6 +242,19 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Region> Planner for Scc<D, 
     fn observe(&mut self, pose: Pose, reading: Option<Reading>) -> Result<(), Refused> {
         if let Some(reading) = reading {
             self.hypotheses.observe(pose.site, reading)?;
+        }
+        self.silence.observe(reading.is_some());
+        Ok(())
+    }
+
+    fn observe_within(
+        &mut self,
+        pose: Pose,
+        reading: Option<Reading>,
+        tolerance: Tolerance,
+    ) -> Result<(), Refused> {
+        if let Some(reading) = reading {
+            self.hypotheses.observe_within(pose.site, reading, tolerance)?;
         }
         self.silence.observe(reading.is_some());
         Ok(())

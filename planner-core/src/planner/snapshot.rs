@@ -20,7 +20,8 @@
 use crate::belief::told::NotReplayed;
 use crate::planner::Planner;
 
-/// The version of snapshots: it is what is written first, and changes when what follows does.
+/// The version of snapshots: it is what is written first, and changes when what follows does. From 2 on they hold the
+/// tolerances that observations brought, and how a planner turned since the last label.
 pub const VERSION: u16 = 2;
 
 /// What a planner has to remember over a sleep: what its belief was told (`T`), and what else it plans by (`M`).

@@ -5,4 +5,5 @@ pub mod hardest;
 pub mod readme;
 pub mod table;
 pub mod timing;
+pub mod tolerance;
 pub mod workload;

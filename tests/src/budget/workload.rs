@@ -13,8 +13,10 @@ use host_sim::campaign::standard_field::{self, SIDE_M};
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::Mission;
 use host_sim::mission::results::Ending;
+use host_sim::world::errors::CUT;
 use host_sim::world::noise::{Extent, NoiseModel};
 use nalgebra::Point2;
+use planner_core::belief::tolerance::Tolerance;
 use planner_core::geometry::heading::Heading;
 use planner_core::geometry::lattice::Site;
 use planner_core::motion::any_vehicle::AnyVehicle;
@@ -45,6 +47,8 @@ pub struct Workload {
     pub vehicle: AnyVehicle,
     /// How labels are flipped, if they are.
     pub noise: Option<NoiseModel>,
+    /// Standard deviation of a reported position, metres; the planner is told a tolerance of three.
+    pub position: f64,
 }
 
 /// Seven labels in ten are true, and all near the oracle's points.
@@ -78,10 +82,15 @@ impl Workload {
     }
 
     /// The mission with a number.
+    ///
+    /// # Panics
+    /// When positions err by more than a tolerance can be.
     pub fn mission(&self, number: u64) -> Mission {
         let mut mission = standard_field::standard(SEED, number, self.algorithm, self.steps);
         (mission.policy, mission.vehicle) = (self.policy, self.vehicle);
         mission.noise = self.noise;
+        mission.errors.position = self.position;
+        mission.config.tolerance = Tolerance::new(CUT * self.position).expect("a distance");
         if number >= self.random && number % 2 == 1 {
             mission.start = facing_out(number / 2 % 4);
         }

@@ -1,0 +1,296 @@
+//! Observations that bring the tolerance of their own position: no line is cut off that they leave, they tell more than
+//! the most that positions may err by, and more than that is refused.
+
+use host_sim::campaign::standard_field;
+use host_sim::mission::algorithm::Algorithm;
+use host_sim::mission::definition::Mission;
+use host_sim::world::noise::{Extent, NoiseModel};
+use nalgebra::{Point2, Vector2};
+use planner_core::belief::Refused;
+use planner_core::belief::estimate::area;
+use planner_core::belief::sample::{Label, Reading, Sample};
+use planner_core::belief::tolerance::Tolerance;
+use planner_core::belief::version_space::NoVersionSpace;
+use planner_core::geometry::lattice::Site;
+use planner_core::geometry::line::Line;
+use planner_core::motion::dynamics::Pose;
+use planner_core::planner::Plan;
+use planner_core::{Belief as _, Cfc, Lookahead, Planner, Scc, VersionSpace};
+use rand::{RngExt as _, SeedableRng as _};
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+use tests::cases;
+
+/// The most that a position may be off, metres.
+const MOST: f64 = 0.8;
+
+fn metres(tolerance: f64) -> Tolerance {
+    Tolerance::new(tolerance).expect("a distance")
+}
+
+/// A field whose positions may be off by [`MOST`].
+fn mission(seed: u64, number: u64, algorithm: Algorithm) -> Mission {
+    let mut mission = standard_field::standard(seed, number, algorithm, 24);
+    mission.config.tolerance = metres(MOST);
+    mission
+}
+
+/// A label as it was reported: where, which, and how far that may be off.
+type Report = (Point2<f64>, Label, f64);
+
+/// Flies a mission whose positions are off by as much as `errs` says for each step, at most, and which says so.
+fn fly<P: Planner>(
+    mission: &Mission,
+    planner: &mut P,
+    rng: &mut ChaCha8Rng,
+    errs: impl Fn(u32, &mut ChaCha8Rng) -> f64,
+    tells: impl Fn(f64) -> f64,
+    mut seen: impl FnMut(&P, Report),
+) {
+    let truth = *mission.world.line().expect("a line divides it");
+    let mut pose = mission.start;
+    for step in 0..mission.steps {
+        let Plan::Move(motion) = planner.plan(pose) else { return };
+        let is = Point2::<f64>::from(motion.target.site);
+        let (err, angle) = (errs(step, rng), rng.random_range(0.0..std::f64::consts::TAU));
+        // As far off as it may be, half of the time.
+        let off = 0.999 * err * rng.random_range(0.0..2.0_f64).min(1.0);
+        let reported = is + off * Vector2::new(angle.cos(), angle.sin());
+        let site = Site::try_from(reported).expect("on the lattice");
+        pose = Pose { site, ..motion.target };
+        // A position is rounded to the lattice: that is an error too.
+        let told = if err == 0.0 { Point2::<f64>::from(site) } else { is };
+        let label = if truth.distance(told) >= 0.0 { Label::Positive } else { Label::Negative };
+        let reading = motion.wants_label.then_some(Reading::Side(label));
+        let taken = planner.observe_within(pose, reading, metres(tells(err)));
+        taken.unwrap_or_else(|refused| panic!("a true label is refused: {refused}"));
+        if reading.is_some() {
+            seen(planner, (reported, label, err));
+        }
+    }
+}
+
+/// The slow twin: lines drawn at random, of which those stay that no report excludes. A report excludes the lines that
+/// are further on its wrong side than it may be off.
+struct Twin(Vec<Line>);
+
+impl Twin {
+    fn new(mission: &Mission, rng: &mut ChaCha8Rng) -> Self {
+        let truth = *mission.world.line().expect("a line divides it");
+        let [a, b, c] = truth.coefficients();
+        let mut near = |spread: f64| {
+            let [a, b, c] = [a, b, c / 20.0].map(|it| it + rng.random_range(-spread..=spread));
+            Line::from_coefficients(a, b, 20.0 * c)
+        };
+        let spreads = [0.3, 0.1, 0.03, 0.01, 0.003];
+        let drawn = spreads
+            .iter()
+            .flat_map(|spread| (0..40).filter_map(|_| near(*spread)).collect::<Vec<_>>());
+        Self(drawn.chain([truth]).collect())
+    }
+
+    fn keep(&mut self, (at, label, off): Report) {
+        let sign = f64::from(label.sign());
+        self.0.retain(|line| sign * line.distance(at) >= -off - 1e-9);
+    }
+
+    /// Those that a version space has cut off.
+    fn lost<const N: usize>(&self, space: &VersionSpace<N>) -> usize {
+        let agrees = |line: &&Line| {
+            space.samples().iter().all(|sample| {
+                f64::from(sample.label.sign()) * line.distance(sample.site.into()) >= -1e-7
+            })
+        };
+        self.0.iter().filter(|line| !agrees(line)).count()
+    }
+}
+
+/// In random missions, with tolerances of nothing, a little, and as much as is allowed.
+#[test]
+fn no_line_is_cut_off_that_the_reports_leave() {
+    let errs = |_: u32, rng: &mut ChaCha8Rng| match rng.random_range(0..4) {
+        0 => 0.0,
+        1 => MOST,
+        2 => rng.random_range(0.0..0.05),
+        _ => rng.random_range(0.0..MOST),
+    };
+    let counts = (0..cases(2_000, 20_000)).into_par_iter().map(|number| {
+        let algorithm = if number % 8 == 0 { Algorithm::Lookahead } else { Algorithm::Cfc };
+        let mission = mission(51, number, algorithm);
+        let mut rng = ChaCha8Rng::seed_from_u64(number);
+        let mut twin = Twin::new(&mission, &mut rng);
+        for sample in mission.given.samples() {
+            twin.keep((sample.site.into(), sample.label, 0.0));
+        }
+        let (mut labels, mut left) = (0, 0);
+        let mut check = |space: &VersionSpace<_>, report: Report| {
+            twin.keep(report);
+            assert_eq!(twin.lost(space), 0, "mission {number}: {report:?} cut lines off");
+            (labels, left) = (labels + 1, left + twin.0.len());
+        };
+        let (config, vehicle) = (mission.config, mission.vehicle);
+        if algorithm == Algorithm::Lookahead {
+            let mut planner = Lookahead::new(config, vehicle, mission.lines()).expect("room");
+            fly(
+                &mission,
+                &mut planner,
+                &mut rng,
+                errs,
+                |err| err,
+                |it, report| check(it.belief(), report),
+            );
+        } else {
+            let mut planner = Cfc::new(config, vehicle, mission.lines()).expect("room");
+            fly(
+                &mission,
+                &mut planner,
+                &mut rng,
+                errs,
+                |err| err,
+                |it, report| check(it.belief(), report),
+            );
+        }
+        [labels, left]
+    });
+    let [labels, left] = counts.reduce(|| [0, 0], |[a, b], [c, d]| [a + c, b + d]);
+    println!("{labels} labels, {} lines of the twin left at each", left / labels);
+    assert!(labels > 10_000 && left > 2 * labels, "{labels} labels, {left} lines");
+}
+
+/// Given samples whose positions err too, each by its own tolerance: no line is cut off that they leave, and all is much less
+/// than what one of the largest tolerance leaves for all.
+#[test]
+fn given_samples_may_err() {
+    let (mut own_bits, mut tested, mut vague) = (0.0, 0, 0);
+    for number in 0..cases(2_000, 20_000) {
+        let mission = mission(54, number, Algorithm::Cfc);
+        let truth = *mission.world.line().expect("a line divides it");
+        let mut rng = ChaCha8Rng::seed_from_u64(number);
+        let mut twin = Twin::new(&mission, &mut rng);
+        let reports: Vec<_> = mission
+            .given
+            .samples()
+            .iter()
+            .map(|sample| {
+                let err = [0.0, 0.1, 0.5, 1.0][rng.random_range(0..4)];
+                let (off, angle) = (0.999 * err, rng.random_range(0.0..std::f64::consts::TAU));
+                let at =
+                    Point2::<f64>::from(sample.site) + off * Vector2::new(angle.cos(), angle.sin());
+                let site = Site::try_from(at).expect("on the lattice");
+                twin.keep((site.into(), sample.label, err + 1e-4));
+                (Sample { site, ..*sample }, metres(err))
+            })
+            .collect();
+        assert!(twin.0.iter().any(|line| line.angle_to_deg(&truth) < 1e-9), "the truth agrees");
+        let most: Vec<_> = reports.iter().map(|(sample, _)| (*sample, metres(1.0))).collect();
+        match VersionSpace::<16>::of_uncertain(&reports) {
+            Ok(space) => {
+                // A report is rounded to the lattice, which the twin allows for and no line of it may need.
+                let strict = reports.iter().fold(twin, |mut twin, (sample, tolerance)| {
+                    twin.keep((sample.site.into(), sample.label, tolerance.metres()));
+                    twin
+                });
+                assert_eq!(strict.lost(&space), 0, "field {number}: {reports:?}");
+                tested += 1;
+                if let Ok(all) = VersionSpace::<16>::of_uncertain(&most) {
+                    let area = |space: &VersionSpace<16>| f64::from(area(space.lines()));
+                    own_bits += (area(&all) / area(&space)).log2();
+                }
+            }
+            Err(NoVersionSpace::TooVague) => vague += 1,
+            Err(other) => panic!("field {number}: {other}"),
+        }
+    }
+    println!(
+        "{tested} fields, {vague} too vague; {:.2} bits by own tolerances",
+        own_bits / f64::from(tested)
+    );
+    assert!(
+        tested > 10 * vague && own_bits > 0.2 * f64::from(tested),
+        "{tested} {vague} {own_bits}"
+    );
+    // Exact samples are taken as they are.
+    let mission = mission(54, 1, Algorithm::Cfc);
+    let exact: Vec<_> = mission.given.samples().iter().map(|it| (*it, Tolerance::NONE)).collect();
+    let space = VersionSpace::<16>::of_uncertain(&exact).expect("exact ones");
+    assert_eq!(space.samples(), mission.given.samples());
+}
+
+/// The bits that missions learn whose error grows with the way, in order.
+fn bits(kind: &str, tells: impl Fn(f64) -> f64 + Sync) -> Vec<f64> {
+    // A dead reckoning: from 2 cm to the most.
+    let errs = |step: u32, _: &mut ChaCha8Rng| (0.02 + 0.04 * f64::from(step)).min(MOST);
+    let each = |number: u64| {
+        let algorithm = match kind {
+            "cfc" => Algorithm::Cfc,
+            "scc" => Algorithm::Scc,
+            _ => Algorithm::Lookahead,
+        };
+        let mut mission = mission(52, number, algorithm);
+        let mut rng = ChaCha8Rng::seed_from_u64(number);
+        let (config, vehicle) = (mission.config, mission.vehicle);
+        if kind == "cfc" || kind == "look-ahead" {
+            if kind == "cfc" {
+                let mut planner = Cfc::new(config, vehicle, mission.lines()).expect("room");
+                fly(&mission, &mut planner, &mut rng, errs, &tells, |_, _| {});
+                return planner.belief().information();
+            }
+            let mut planner = Lookahead::new(config, vehicle, mission.lines()).expect("room");
+            fly(&mission, &mut planner, &mut rng, errs, &tells, |_, _| {});
+            return planner.belief().information();
+        }
+        mission.noise = Some(NoiseModel { p: 0.95, extent: Extent::OutsideBalls(0.0) });
+        if kind == "scc" {
+            let mut planner =
+                Scc::new(config, mission.policy, vehicle, mission.table()).expect("room");
+            fly(&mission, &mut planner, &mut rng, errs, &tells, |_, _| {});
+            return planner.belief().information();
+        }
+        let mut planner = Lookahead::new(config, vehicle, mission.forecast()).expect("room");
+        fly(&mission, &mut planner, &mut rng, errs, &tells, |_, _| {});
+        planner.belief().information()
+    };
+    let mut bits: Vec<f64> = (0..cases(60, 1_000)).into_par_iter().map(each).collect();
+    bits.sort_by(f64::total_cmp);
+    bits
+}
+
+#[test]
+fn own_tolerances_tell_more_than_the_most() {
+    for (kind, least) in [("cfc", 0.5), ("look-ahead", 0.5), ("scc", 0.1), ("forecast", 0.3)] {
+        let [own, most] = [bits(kind, |err| err), bits(kind, |_| MOST)];
+        let [own, most] = [own, most].map(|bits| bits[bits.len() / 2]);
+        println!("{kind}: {own:.2} bits with own tolerances, {most:.2} with the most");
+        assert!(own > most + least, "{kind}: {own} and {most} bits");
+    }
+}
+
+/// A planner refuses more than was configured, stays as it was, and takes in as much as was configured.
+fn refuses<P: Planner<Belief: planner_core::Belief>>(
+    planner: &mut P,
+    start: Pose,
+    more: Tolerance,
+) {
+    let Plan::Move(motion) = planner.plan(start) else { panic!("no motion") };
+    let reading = Some(Reading::Side(Label::Positive));
+    let before = planner.belief().chance(motion.target.site).to_bits();
+    let refused = planner.observe_within(motion.target, reading, more);
+    assert_eq!(refused, Err(Refused::Tolerance(more)));
+    assert_eq!(planner.belief().chance(motion.target.site).to_bits(), before);
+    assert_eq!(planner.plan(start), Plan::Move(motion));
+    planner.observe_within(motion.target, reading, metres(MOST)).expect("as configured");
+    assert_ne!(planner.belief().chance(motion.target.site).to_bits(), before);
+}
+
+#[test]
+fn more_than_was_configured_is_refused_and_changes_nothing() {
+    let mut mission = mission(53, 3, Algorithm::Cfc);
+    let (config, vehicle, start) = (mission.config, mission.vehicle, mission.start);
+    let more = metres(MOST + 0.01);
+    refuses(&mut Cfc::new(config, vehicle, mission.lines()).expect("room"), start, more);
+    refuses(&mut Lookahead::new(config, vehicle, mission.lines()).expect("room"), start, more);
+    mission.noise = Some(NoiseModel { p: 0.9, extent: Extent::OutsideBalls(0.0) });
+    refuses(&mut Lookahead::new(config, vehicle, mission.forecast()).expect("room"), start, more);
+    let scc = Scc::new(config, mission.policy, vehicle, mission.table());
+    refuses(&mut scc.expect("room"), start, more);
+}
