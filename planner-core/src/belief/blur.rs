@@ -236,7 +236,12 @@ pub(crate) struct Blur<const E: usize> {
 
 impl<const E: usize> Blur<E> {
     pub(crate) fn of(lines: ConsistentLines<'_>) -> Self {
-        Self { rulers: lines.bounds().map(Ruler::of).collect() }
+        let mut rulers = Vec::new();
+        for bound in lines.bounds() {
+            // There are no more vertices than edges, and `E` of these at most.
+            let _ = rulers.push(Ruler::of(bound));
+        }
+        Self { rulers }
     }
 
     /// The chances that the true position is on the +1 side and on the -1 side where a site is reported, on average
