@@ -161,10 +161,23 @@ impl<'a, const N: usize, const H: usize> Labels<'a, N, H> {
 
     /// What a label is expected to tell, over what one can.
     fn information(&self, site: Site, share: f32) -> f32 {
-        let p = self.p(site);
-        (entropy(chance(share, p)) - entropy(p)) / self.capacity
+        information(share, self.p(site), (self.table.noise().reliability.single(), self.capacity))
     }
 }
+
+/// What a label that is true with a probability is expected to tell, over what one can tell: its reliability, and the bits.
+fn information(share: f32, p: f32, (most, capacity): (f32, f32)) -> f32 {
+    if most < FAINT {
+        // `1 - entropy` by its series, as no digits of that are left.
+        let told = |bias: f32| bias * bias * (1.0 + bias * bias / 6.0);
+        let bias = 2.0 * p - 1.0;
+        return (told(bias) - told(bias * (2.0 * share - 1.0))) / told(2.0 * most - 1.0);
+    }
+    (entropy(chance(share, p)) - entropy(p)) / capacity
+}
+
+/// Labels that are true less often are faint.
+const FAINT: f32 = 0.5625;
 
 /// The chance of a label +1 where it is true with probability `p`.
 fn chance(share: f32, p: f32) -> f32 {
@@ -219,5 +232,32 @@ impl<const N: usize, const H: usize> Outlook for Expected<'_, N, H> {
         let heights = self.columns.heights(site);
         let columns = self.columns.after(heights, label, self.labels.p(site));
         ExpectedAfter { labels: self.labels, columns }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By the definition, in double precision; and at the bound both ways agree.
+    #[test]
+    fn faint_labels_tell_a_share_of_what_they_can() {
+        let bits = |p: f64| -p * libm::log2(p) - (1.0 - p) * libm::log2(1.0 - p);
+        for most in [0.500_001_f32, 0.500_1, 0.501, 0.52, 0.562_4, 0.562_6, 0.7] {
+            let capacity = 1.0 - entropy(most);
+            for k in 0..=20 {
+                let share = k as f32 / 20.0;
+                let got = f64::from(information(share, most, (most, capacity)));
+                let (p, bias) = (f64::from(most), 2.0 * f64::from(share) - 1.0);
+                let full = 1.0 - bits(p);
+                // For the faintest the definition has no digits left either: by its first term.
+                let is = if p < 0.51 {
+                    1.0 - bias * bias
+                } else {
+                    (bits(0.5 + (p - 0.5) * bias) - bits(p)) / full
+                };
+                assert!((got - is).abs() < 0.02, "{most}, {share}: {got}, {is}");
+            }
+        }
     }
 }

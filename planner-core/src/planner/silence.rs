@@ -21,6 +21,12 @@ const FULL_TURN: u32 = 1 << 24;
 /// So much turning without a label is too much.
 const MOST: u32 = 4 * FULL_TURN;
 
+/// A motion that turns by more than this counts as [`LEAST`] at least, so that wide circles end as well.
+const SLIGHT: u32 = FULL_TURN / 128;
+
+/// See [`SLIGHT`].
+const LEAST: u32 = FULL_TURN / 32;
+
 /// So many dull labels in a row are enough.
 const MOST_DULL: u8 = 16;
 
@@ -131,7 +137,9 @@ impl Silence {
             Turn::Driving(by) => (by, 0),
             Turn::InPlace(by) => (by, self.on_the_spot.wrapping_add(by)),
         };
-        let turned = self.turned.saturating_add(by.unsigned_abs() >> 8);
+        let by = by.unsigned_abs() >> 8;
+        let by = if by > SLIGHT { by.max(LEAST) } else { by };
+        let turned = self.turned.saturating_add(by);
         Self { turned, on_the_spot, last: turn, next: Turn::None, ..self }
     }
 }

@@ -9,7 +9,7 @@ use crate::motion::dynamics::Pose;
 ///
 /// One look takes up to some 1,900 instructions of a Cortex-M4, so that a plan stays below 20 million. With the paper's
 /// grid 520 rays are the most that a plan of 3,000 standard missions of 60 steps needed.
-pub const LOOKS: u32 = 10_240;
+pub const LOOKS: u32 = 9_216;
 
 /// The looks that it costs to open a view, where many are opened.
 pub(crate) const OPENING: u32 = 2;

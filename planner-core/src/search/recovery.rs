@@ -22,10 +22,14 @@
 //! (1), and before Algorithm 1 gives P2 up, it takes such a way to where the problem is feasible with its rule: its fan
 //! may lie where the rule allows no direction, and straight on it would learn next to nothing.
 //!
-//! **It ends**, though it has no state. What is known does not change before the next sample, and each
-//! motion lowers a measure: far, the distance to uncertain ground and then the turns to the next drive;
-//! near, the turns of (3), or where it has none the motions of (4), which stay near. What is near never
-//! becomes far again. Outside, the distance to the middle and then the turns; inside, no motion leads out.
+//! Where all of this fails and there is open ground, it drives to the nearest beyond reach, or draws motions at random
+//! (`wander`).
+//!
+//! **It ends**, though it has no state, as long as looks suffice. What is known does not change before the next sample, and
+//! each motion lowers a measure: far, the distance to uncertain ground and then the turns to the next drive; near, the turns of
+//! (3), or where it has none the motions of (4), which stay near. What is near never becomes far again. Outside, the distance to
+//! the middle and then the turns; inside, no motion leads out. Where looks do not suffice, what the planner remembers
+//! ends the mission, see [`Silence`](crate::planner::silence::Silence).
 
 use crate::geometry::approximate::{heading_of, single, sqrt};
 use crate::geometry::heading::Heading;
@@ -122,8 +126,11 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule, G: Region>(
     let climbed = if goes_round { climbed } else { ladder.climb(home) };
     ladder.search.effort.give_back(kept);
     climbed.or_else(|why| {
-        let leg = ladder.drive_far(open).map(found(Some(Recovery::Transit)));
-        leg.or_else(|| wander(&ladder.problem, ladder.search)).ok_or(why.of_open_ground())
+        let way = ladder.drive_far(open).map(|leg| (leg, false));
+        let way = way.or_else(|| wander(&ladder.problem, ladder.search));
+        let (leg, has_label) = way.ok_or(why.of_open_ground())?;
+        let recovery = if has_label { Recovery::Undirected } else { Recovery::Transit };
+        Ok(found(Some(recovery))(leg))
     })
 }
 

@@ -17,7 +17,6 @@ use crate::search::circles::Search;
 use crate::search::direction_rule::DirectionRule;
 use crate::search::objective::{Effort, OPENING};
 use crate::search::problem::Problem;
-use crate::search::recovery::{Found, Recovery};
 
 /// The search after a motion, and after a pair, takes so many looks at most.
 const LOOKS_A_SEARCH: [u32; 2] = [96, 16];
@@ -36,24 +35,20 @@ struct Wander<'d, 'p, 'a, D, R, G> {
     state: u64,
 }
 
-/// The first motion of a few after which a label can be asked. It draws on the looks that the search has left.
+/// The first motion of a few after which a label can be asked, and whether it is the only one. It draws on the looks that the
+/// search has left.
 pub(crate) fn wander<D: Dynamics, R: DirectionRule, G: Region>(
     problem: &Problem<'_, R, G>,
     search: &mut Search<'_, D, G>,
-) -> Option<Found> {
+) -> Option<(Leg, bool)> {
     let (dynamics, from) = (search.dynamics, search.pose);
     let mut it = Wander { problem, dynamics, effort: search.effort, state: 0 };
-    let found = |recovery| move |(action, target)| Found { recovery, action, target };
-    let drawn = DRAWN.into_iter().find_map(|(count, motions)| {
-        (0..count).find_map(|_| {
-            let (leg, is_last) = it.draw_way(from, motions)?;
-            let recovery = if is_last { Recovery::Undirected } else { Recovery::Transit };
-            Some(found(Some(recovery))(leg))
-        })
-    });
+    let drawn = DRAWN
+        .into_iter()
+        .find_map(|(count, motions)| (0..count).find_map(|_| it.draw_way(from, motions)));
     let searched = drawn.or_else(|| {
         let leg = it.one(from, LOOKS_A_SEARCH[0]).or_else(|| it.two(from));
-        leg.map(found(Some(Recovery::Transit)))
+        leg.map(|leg| (leg, false))
     });
     search.effort = it.effort;
     searched
