@@ -42,7 +42,7 @@ impl Drift {
     /// The largest error of a position so many metres after a fix.
     ///
     /// A metre that is believed is truly `(1 + s)` metres, turned by `c`. The difference of the two is `s + 2 sin(c / 2)`
-    /// at most. The last term is for steps of [`STEP`] that overrun the place of the fix.
+    /// at most. The last term is for steps that overrun the place of the fix.
     pub fn most_after(&self, way: f64) -> f64 {
         self.fix + (self.scale + 2.0 * (0.5 * self.compass).sin()) * (way + STEP) + 1e-3
     }
