@@ -144,6 +144,12 @@ impl Budgets {
         }
     }
 
+    /// The names of all sections but one.
+    pub fn others(&self, section: &str) -> Vec<String> {
+        let names = self.document.iter().map(|(name, _)| name.to_owned());
+        names.filter(|name| name != section).collect()
+    }
+
     /// Compares the readme's table, or writes both files; what to tell, and what failed. Sections that
     /// could not be measured are left as they are.
     ///
