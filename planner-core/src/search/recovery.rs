@@ -25,11 +25,12 @@
 //! Where all of this fails and there is open ground, it drives to the nearest beyond reach, or draws motions at random
 //! (`wander`).
 //!
-//! **It ends**, though it has no state, as long as looks suffice. What is known does not change before the next sample, and
-//! each motion lowers a measure: far, the distance to uncertain ground and then the turns to the next drive; near, the turns of
-//! (3), or where it has none the motions of (4), which stay near. What is near never becomes far again. Outside, the distance to
-//! the middle and then the turns; inside, no motion leads out. Where looks do not suffice, what the planner remembers
-//! ends the mission, see [`Silence`](crate::planner::silence::Silence).
+//! **Rungs 1 to 4 end**, though they have no state, as long as looks suffice: what is known does not change before the next
+//! sample, and each motion lowers a measure. Far, that is the distance to uncertain ground, and then the turns to the next drive.
+//! Near, it is the turns of (3), or where it has none the motions of (4), which stay near. What is near never becomes far again.
+//! Outside, it is the distance to the middle, and then the turns. Inside, no motion leads out. The ways after rung 4 lower no
+//! measure. For these the planner counts turns, see [`Silence`](crate::planner::silence::Silence). It does not count a way to
+//! and fro without turns.
 
 use crate::geometry::approximate::{heading_of, single, sqrt};
 use crate::geometry::heading::Heading;
