@@ -11,6 +11,7 @@ one more what it was sent and whether it moved when it should not have. What it 
 wall's; the link, heartbeats and failures keep to the wall.
 """
 
+import collections
 import heapq
 import json
 import math
@@ -18,6 +19,7 @@ import os
 import random
 import select
 import socket
+import struct
 import sys
 import time
 
@@ -37,7 +39,17 @@ CRAFTS = {
 }
 POSITION, VELOCITY, ACCELERATION, YAW, YAW_RATE = 0x007, 0x038, 0x1C0, 0x400, 0x800
 # Failures that a message of ours tells.
-TOLD = {"mode", "disarm", "fence", "failsafe"}
+TOLD = {"mode", "disarm", "fence", "failsafe", "ekf", "restart"}
+SLIDE = (3.3, 2.0)  # metres, within so many seconds of its clock
+
+
+# Of these nothing more is sent, not even stops.
+LEFT_ALONE = {"mode", "ekf", "restart"}
+
+
+def f32(number):
+    """A number in single precision, as messages have it."""
+    return struct.unpack("<f", struct.pack("<f", number))[0]
 
 
 class Vehicle:
@@ -68,8 +80,11 @@ class Vehicle:
         self.table = []
         self.illicit = []  # what may never be sent
         self.early = 0  # setpoints before it was armed in guided mode
-        self.first_stop, self.last_stop = None, None
-        self.moved_after = 0.0  # metres after the stops that count
+        self.reported = collections.deque(maxlen=400)  # places that it has said it is at
+        self.first_stop = None  # after the failure
+        self.stops = []  # when, since the last setpoint that is none
+        self.track = []  # (when, metres)
+        self.text_at = None  # when it says why
         self.orders_after = 0  # setpoints that came when the link knew of the failure
 
     # The link.
@@ -137,8 +152,11 @@ class Vehicle:
             ("position", POSITION), ("velocity", VELOCITY), ("acceleration", ACCELERATION),
             ("yaw", YAW), ("rate", YAW_RATE)]}
         is_stop = has["velocity"] and has["rate"] and (it.vx, it.vy, it.vz, it.yaw_rate) == (0, 0, 0, 0)
+        if self.mission["craft"] == "sub" and has["position"]:
+            # Velocities of zero do not stop Sub: the place where it is does.
+            is_stop = (it.x, it.y) in self.reported
         if self.told_at is not None and self.now > self.told_at + LATE + 0.05:
-            if not is_stop or self.mission["fault"] == "mode":
+            if not is_stop or self.mission["fault"] in LEFT_ALONE:
                 self.orders_after += 1
         if self.mode != self.guided or not self.armed:
             self.early += self.fault() is None
@@ -146,18 +164,18 @@ class Vehicle:
         if it.coordinate_frame != mavlink.MAV_FRAME_LOCAL_NED or has["acceleration"]:
             self.illicit.append("a setpoint that is not taken")
             return
+        self.stops = self.stops + [self.now] if is_stop else []
+        if is_stop and self.fault() is not None:
+            self.first_stop = self.first_stop or self.now
         if has["position"]:
             self.goal = ("go", it.x, it.y, it.yaw if has["yaw"] and self.mission["craft"] == "sub" else None)
-            self.visit((it.x, it.y, it.yaw))
+            if not is_stop:
+                self.visit((it.x, it.y, it.yaw))
         elif has["velocity"]:
             # Rover makes a heading of the velocity unless yaw or its rate is told.
             if not (has["yaw"] or has["rate"]) and self.mission["craft"] != "sub":
                 self.yaw = math.atan2(it.vy, it.vx)
             self.goal = ("speed", it.vx, it.vy, self.now)
-            if is_stop:
-                self.first_stop = self.first_stop or self.now
-                if self.now >= self.first_stop + LATE:
-                    self.last_stop = self.last_stop or self.now
         elif has["yaw"] and self.mission["craft"] != "sub":
             self.goal = ("turn", it.yaw)
             self.visit((self.north, self.east, it.yaw))
@@ -187,6 +205,12 @@ class Vehicle:
                 self.mode, self.goal = self.hold, None
             elif fault == "disarm":
                 self.armed, self.goal = False, None
+            elif fault == "ekf":
+                # Both in one heartbeat, and why a moment later.
+                self.mode, self.goal, self.status = self.hold, None, mavlink.MAV_STATE_CRITICAL
+                self.text_at = self.now + 0.3
+            elif fault == "restart":
+                self.status, self.armed, self.goal = mavlink.MAV_STATE_BOOT, False, None
             elif fault == "failsafe":
                 self.status = mavlink.MAV_STATE_CRITICAL
             elif fault == "fence":
@@ -218,8 +242,14 @@ class Vehicle:
             self.east += self.goal[2] * seconds
         way = math.hypot(self.north - before[0], self.east - before[1])
         self.speed = ((self.north - before[0]) / seconds, (self.east - before[1]) / seconds)
-        if self.last_stop is not None:
-            self.moved_after += way
+        self.track.append((self.now, way))
+
+    def slid(self):
+        """How far its positions have slid to the north, with its estimator."""
+        if self.fault() != "slide":
+            return 0.0
+        metres, seconds = SLIDE
+        return metres * min((self.now - self.fault_at) * HASTE / seconds, 1.0)
 
     # What it says.
 
@@ -238,9 +268,14 @@ class Vehicle:
             other = mavlink.MAVLink(None, srcSystem=7, srcComponent=1)
             self.launch(False, other.local_position_ned_encode(ms + 10**6, 9, 9, 9, 9, 9, 9).pack(other))
         if 162 in self.intervals and every("fence", 0.2):
-            self.say(self.mav.fence_status_encode(int(self.breached), int(self.breached), 0, 0), fault == "fence")
+            self.say(self.mav.fence_status_encode(int(self.breached), int(self.breached), 0, 0,
+                     2 if fault == "held" else 1), fault == "fence")
         if 32 in self.intervals and fault != "lost":
-            self.say(self.mav.local_position_ned_encode(ms, self.north, self.east, 0, *self.speed, 0))
+            north, east = f32(self.north + self.slid()), f32(self.east)
+            self.reported.append((north, east))
+            self.say(self.mav.local_position_ned_encode(ms, north, east, 0, *self.speed, 0))
+        if self.text_at is not None and self.text_at <= self.now < self.text_at + 0.3:
+            self.say(self.mav.statustext_encode(mavlink.MAV_SEVERITY_CRITICAL, b"EKF failsafe"))
         if 30 in self.intervals:
             yaw = math.remainder(self.yaw, math.tau)
             self.say(self.mav.attitude_encode(ms, 0, 0, yaw, 0, 0, 0))
@@ -280,13 +315,16 @@ class Vehicle:
                 self.happen()
                 self.drive(TICK * HASTE)
                 self.speak()
+        # From the last of its setpoints on there were stops alone: what may be late has come by then.
+        stopped = self.stops[0] + LATE + 0.1 if len(self.stops) > 1 else None
+        moved_after = sum(way for when, way in self.track if stopped is not None and when > stopped)
         reacted = None
         if self.told_at is not None and self.first_stop is not None:
             reacted = self.first_stop - self.told_at
         self.tell({
             "received": self.received, "illicit": self.illicit, "early": self.early,
             "places": len(self.places), "happened": self.fault_at is not None,
-            "was_stopped": self.last_stop is not None, "moved_after": self.moved_after,
+            "was_stopped": stopped is not None, "moved_after": moved_after,
             "orders_after": self.orders_after, "reacted": reacted,
             "table": self.table if self.mission.get("table") else None,
         })

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use anyhow::{Context as _, Result, anyhow, bail};
 use clap::Args;
+use planner_core::geometry::line::Line;
 use planner_core::motion::any_vehicle::AnyVehicle;
 use planner_core::motion::dynamics::Dynamics as _;
 
@@ -24,6 +25,7 @@ use crate::mission::strict::wrong;
 use crate::output::file::prepare;
 use crate::output::interruption;
 use crate::output::notes::warn;
+use crate::world::World;
 
 /// What a flight that failed ends with.
 const FAILED: u8 = 1;
@@ -72,14 +74,15 @@ fn seconds(text: &str) -> Result<Duration> {
 /// Flies it, and what to print.
 pub(crate) fn fly(args: &FlyArgs) -> Result<Done> {
     let run = &args.run;
-    let read = if args.dry_run { scenario::read } else { scenario::read_real };
-    let mission = run.mission_by(run.algorithm, read)?;
+    let mission = run.mission_by(run.algorithm, scenario::read_real)?;
     let acceptance = acceptance(&mission, args.acceptance, &run.name())?;
     let labels = LabelSource::new(args.label.clone(), threshold(args.threshold)?);
     let &FlyArgs { system, wait: ready, motion_time: motion, label_time: label, .. } = args;
-    let limits = Limits { acceptance, ready, motion, label };
+    let tolerance = mission.config.tolerance.metres();
+    let limits = Limits { acceptance, tolerance, ready, motion, label };
     let pilot = Pilot::new(system, labels.clone(), limits);
     let Some(address) = &args.mavlink else {
+        let mission = sensed(mission, &run.name())?;
         let ideal = Ideal::new(&mission, system, labels);
         let mut control = Control::new(ideal, pilot, || None);
         let flight = flight::fly(mission, &mut control);
@@ -88,7 +91,7 @@ pub(crate) fn fly(args: &FlyArgs) -> Result<Done> {
         return Ok(Done { text: sent::table(control.link().sent()), failure });
     };
     let outputs = prepare(&[run.input()], run.outputs())?;
-    let socket = Socket::open(address).context("--mavlink")?;
+    let socket = Socket::open(address, system).context("--mavlink")?;
     interruption::defer();
     let mut control = Control::new(socket, pilot, interruption::deferred);
     let name = run.name();
@@ -110,6 +113,20 @@ pub(crate) fn fly(args: &FlyArgs) -> Result<Done> {
             Ok(Done { text: String::new(), failure: Some((failure, status(&why))) })
         }
     }
+}
+
+/// A mission whose truth an ideal vehicle can sense: where the file tells none, a line that the oracle leaves.
+fn sensed(mut mission: Mission, name: &str) -> Result<Mission> {
+    if mission.world.line().is_none() {
+        let belief = mission.planner().belief().boxed();
+        let Some(line) = belief.estimates().centre.map(Line::from) else {
+            let expected =
+                "a line, or an oracle that a line separates, for the ideal vehicle to sense";
+            return wrong("truth", "none", expected).with_context(|| name.to_owned());
+        };
+        mission.world = World::divided_by(line);
+    }
+    Ok(mission)
 }
 
 /// A signal has a status of its own, as elsewhere.

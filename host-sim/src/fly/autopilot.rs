@@ -78,6 +78,11 @@ impl Craft {
         }
     }
 
+    /// Whether it has not yet begun.
+    pub const fn is_initialising(self, mode: u32) -> bool {
+        !matches!(self, Self::Submarine) && mode == 16
+    }
+
     /// What it calls a mode.
     pub fn mode(self, number: u32) -> String {
         let modes: &[(u32, &str)] = if self == Self::Submarine { &SUB } else { &ROVER };

@@ -16,16 +16,22 @@ pub enum Failure {
     Misplaced(String),
     /// Another mode than guided: someone has taken over.
     TakenOver(String),
+    /// Its autopilot was started anew.
+    Restarted,
     /// It was disarmed.
     Disarmed,
     /// Its own failsafe has acted.
     Failsafe(String),
     /// It has left its geofence.
     Fence,
+    /// Its geofence holds it back.
+    HeldBack,
     /// Nothing was heard of it for so long.
     Silent(Duration),
     /// It did not say for so long where it is.
     Lost(Duration),
+    /// It was moved by so many metres without moving.
+    Slid(f64),
     /// It was to be somewhere within so long and was so far off.
     Late(Duration, String),
     /// No label came within so long.
@@ -43,7 +49,7 @@ pub enum Failure {
 impl Failure {
     /// Whether nothing more may be sent, as someone else drives it now, or can be.
     pub const fn is_out_of_our_hands(&self) -> bool {
-        matches!(self, Self::TakenOver(_) | Self::Broken(_))
+        matches!(self, Self::TakenOver(_) | Self::Restarted | Self::Broken(_))
     }
 }
 
@@ -64,13 +70,23 @@ impl fmt::Display for Failure {
             }
             Self::Misplaced(why) => write!(f, "the vehicle stands where it may not be: {why}"),
             Self::TakenOver(mode) => {
-                write!(f, "the mode is {mode}, no longer GUIDED: someone has taken over")
+                write!(f, "the mode is {mode}, no longer GUIDED: its failsafe or its operator")
             }
+            Self::Restarted => f.write_str("the autopilot was started anew"),
             Self::Disarmed => f.write_str("the vehicle was disarmed"),
             Self::Failsafe(state) => write!(f, "the vehicle's failsafe has acted: {state}"),
             Self::Fence => f.write_str("the vehicle has left its geofence"),
+            Self::HeldBack => f.write_str(
+                "the vehicle's fence holds it back (breach_mitigation): the place it was sent to is too near \
+                 the fence or beyond it",
+            ),
             Self::Silent(time) => write!(f, "no heartbeat for {} s", s(time)),
             Self::Lost(time) => write!(f, "no position for {} s", s(time)),
+            Self::Slid(metres) => write!(
+                f,
+                "its position slid by {metres:.1} m that its speed does not explain: its estimator or its origin \
+                 was corrected, and what it sensed before lies elsewhere"
+            ),
             Self::Late(time, off) => write!(f, "not there within {} s: {off}", s(time)),
             Self::NoLabel(time, source) => write!(f, "no label within {} s: {source}", s(time)),
             Self::OffLattice => f.write_str("the position is beyond 8192 m, or no number"),

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use planner_core::belief::sample::Reading;
+use planner_core::link::message::MissionArea;
 use planner_core::motion::dynamics::Pose;
 use planner_core::planner::{Motion, Planner as _};
 use planner_core::robot::agent::{Agent, AgentError, Event};
@@ -16,7 +17,7 @@ use crate::fly::pilot::Pilot;
 use crate::mission::definition::Mission;
 use crate::mission::flight::Flown;
 use crate::mission::recording::{Recorder, Recording};
-use crate::mission::results::Ending;
+use crate::mission::results::{Ending, Leg, Legs};
 use crate::mission::terrain::check_inside;
 use crate::output::notes::{announce, count, warn};
 
@@ -31,6 +32,11 @@ pub struct Control<L> {
     link: L,
     pilot: Pilot,
     interrupted: fn() -> Option<i32>,
+    /// Where it may be.
+    area: Option<MissionArea>,
+    /// The motions so far, and since when their times count.
+    legs: Vec<Leg>,
+    began: Duration,
 }
 
 /// A mission that was flown, as far as it went.
@@ -44,7 +50,7 @@ pub struct Flight {
 impl<L: Link> Control<L> {
     /// A pilot at a link; `interrupted` tells when the program is to end.
     pub const fn new(link: L, pilot: Pilot, interrupted: fn() -> Option<i32>) -> Self {
-        Self { link, pilot, interrupted }
+        Self { link, pilot, interrupted, area: None, legs: Vec::new(), began: Duration::ZERO }
     }
 
     /// The link.
@@ -63,7 +69,7 @@ impl<L: Link> Control<L> {
         match self.link.receive(self.link.now() + ROUND) {
             Ok(Some((header, message))) => self.pilot.hear(self.link.now(), header, &message),
             Ok(None) => {}
-            Err(error) => self.pilot.give_up(Failure::Broken(error.to_string())),
+            Err(error) => self.pilot.give_up(self.link.now(), Failure::Broken(error.to_string())),
         }
     }
 
@@ -90,17 +96,25 @@ impl<L: Link> Control<L> {
     }
 
     /// Where the mission begins: where the vehicle is.
-    fn start(&self, mission: &Mission) -> Result<Pose, Failure> {
+    fn start(&mut self, mission: &Mission) -> Result<Pose, Failure> {
         let (fix, yaw) = self.pilot.whereabouts().ok_or(Failure::OffLattice)?;
         let pose = frame::pose(mission.start, fix.at, yaw).ok_or(Failure::OffLattice)?;
-        check_inside("its position", pose.site, &mission.config.area)
-            .map_err(|error| Failure::Misplaced(error.to_string()))?;
+        self.area = Some(mission.config.area);
+        self.began = self.link.now();
+        self.check(pose)?;
         let off = fix.at.distance(mission.start.site.into());
         announce(format_args!(
             "ready at x = {:.2}, z = {:.2}, {off:.2} m from the scenario's start: the mission begins here",
             fix.at.east, fix.at.north,
         ));
         Ok(pose)
+    }
+
+    /// Whether the vehicle is where it may be.
+    fn check(&self, pose: Pose) -> Result<(), Failure> {
+        let inside =
+            self.area.map_or(Ok(()), |area| check_inside("its position", pose.site, &area));
+        inside.map_err(|error| Failure::Misplaced(error.to_string()))
     }
 
     /// Brings the vehicle to rest, whatever has happened.
@@ -122,11 +136,23 @@ impl<L: Link> Body for Control<L> {
             yaw: frame::yaw(target.heading),
             is_turn: target.site == pose.site,
         };
-        self.pilot.order(self.link.now(), order, wants_label);
+        let began = self.link.now();
+        self.pilot.order(began, order, wants_label);
         loop {
             if let Some(arrival) = self.pilot.take_arrival() {
                 let reached = frame::pose(target, arrival.fix.at, arrival.yaw);
                 *pose = reached.ok_or(Failure::OffLattice)?;
+                // What is there is as near as motions leave room for.
+                if arrival.is_short {
+                    self.check(*pose)?;
+                }
+                let seconds = |at: Duration| millis(at.saturating_sub(self.began).as_secs_f64());
+                let (began, ended) = (seconds(began), seconds(self.link.now()));
+                self.legs.push(Leg {
+                    began,
+                    ended,
+                    off: millis(arrival.fix.at.distance(order.to)),
+                });
                 return Ok(arrival.label.map(Reading::Side));
             }
             if let Some(failure) = self.pilot.failure() {
@@ -134,6 +160,21 @@ impl<L: Link> Body for Control<L> {
             }
             self.round();
         }
+    }
+}
+
+/// Thousandths are enough.
+fn millis(number: f64) -> f64 {
+    (number * 1e3).round() / 1e3
+}
+
+/// Says how well the vehicle went where it was sent. Of an ideal vehicle there is nothing to say.
+fn tell(Legs { motions, seconds, off, off_most, tolerance }: &Legs) {
+    if *off_most > 0.0 {
+        announce(format_args!(
+            "{motions} motions, {seconds:.1} s each in the median. It came to rest {off:.2} m from where it was sent, \
+             {off_most:.2} m at most. A tolerance of {tolerance:.1} m covers that; add what its position errs by."
+        ));
     }
 }
 
@@ -170,16 +211,19 @@ pub fn fly<L: Link>(mut mission: Mission, control: &mut Control<L>) -> Result<Fl
         }
     }
     let belief = planner.belief().boxed();
+    recorder.take_legs(&control.legs);
     control.end(failure.clone());
     if let Some(bar) = bar {
         bar.finish_and_clear();
     }
     let farewell = control.pilot.farewell();
     if failure.is_none() && !control.pilot.is_at_rest() {
-        warn("the vehicle", farewell);
+        warn("the vehicle", &farewell);
     }
-    let said = control.pilot.warning().map(|it| format!("; it last warned: {it}"));
-    let told = |failure| (failure, format!("{farewell}{}", said.unwrap_or_default()));
+    let told = |failure| (failure, farewell);
     let recording = recorder.end(Flown { ending, belief });
+    if let Some(legs) = &recording.results.end.flown {
+        tell(legs);
+    }
     Ok(Flight { recording, failure: failure.map(told) })
 }

@@ -16,8 +16,10 @@ pub mod orders;
 pub mod pilot;
 pub mod requests;
 pub mod sent;
+pub mod slide;
 pub mod socket;
 pub mod stage;
+mod udp;
 pub mod vehicle;
 
 #[cfg(test)]

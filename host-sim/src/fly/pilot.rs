@@ -6,10 +6,12 @@
 //!       |                         |                +------driven off----------+                 |
 //!       |                         +-------------------------taken-------------------------------+
 //!       +--not in time--> Over <--at rest, or nobody tells-- Stopping <--a failure, or the end-- any
+//!                          ^                                     |                                |
+//!                          +--a second later-- Listening <-------+------someone else drives it----+
 //! ```
 //!
 //! A failure is for good: after it nothing is sent but stops and heartbeats, and not even those once someone else drives
-//! the vehicle. Stops are repeated until the vehicle says that it is at rest, and for long enough that a setpoint
+//! the vehicle: it is listened to, as an autopilot says why a moment after it has acted. Stops are repeated until the vehicle says that it is at rest, and for long enough that a setpoint
 //! which is late cannot come after the last of them.
 
 use std::time::Duration;
@@ -18,16 +20,20 @@ use mavlink::MavHeader;
 use mavlink::dialects::common::MavMessage;
 
 use crate::fly::failure::Failure;
-use crate::fly::frame::{ALIKE, apart};
 use crate::fly::label::LabelSource;
 use crate::fly::limits::{
-    HEARTBEAT, LEAST_STOP, LOST, Limits, MOST_STOP, SETPOINT, SETTLED_MS, SILENCE, SLOW, STEADY,
-    STOP,
+    HEARTBEAT, LEAST_STOP, LISTEN, LOST, Limits, MOST_STOP, SETTLED_MS, SILENCE, STEADY,
 };
 use crate::fly::orders::{AUTOPILOT, Envelope, Order, heartbeat};
 use crate::fly::requests::Requests;
+use crate::fly::slide::Slide;
 use crate::fly::stage::{Arrival, Motion, Stage};
 use crate::fly::vehicle::{Fix, News, Status, Vehicle};
+
+mod arriving;
+mod driving;
+mod farewell;
+mod waiting;
 
 /// Who flies a vehicle.
 #[derive(Debug)]
@@ -39,9 +45,12 @@ pub struct Pilot {
     requests: Requests,
     stage: Stage,
     beat: Option<Duration>,
+    slide: Slide,
     /// The depth that is kept: the one at the start.
     down: f32,
     failure: Option<Failure>,
+    /// When it failed.
+    ended: Option<Duration>,
     /// Whether the vehicle has said that it is at rest, when all was over.
     rests: bool,
 }
@@ -51,10 +60,23 @@ impl Pilot {
     pub fn new(system: u8, labels: LabelSource, limits: Limits) -> Self {
         let requests = Requests::new(&labels.source);
         let stage = Stage::Preparing { since: None, complete: None };
-        let vehicle = Vehicle::default();
-        let (beat, failure) = (None, None);
+        let (vehicle, slide) = (Vehicle::default(), Slide::default());
+        let (beat, failure, ended) = (None, None, None);
         let (down, rests) = (0.0, false);
-        Self { system, labels, limits, vehicle, requests, stage, beat, down, failure, rests }
+        Self {
+            system,
+            labels,
+            limits,
+            vehicle,
+            requests,
+            stage,
+            beat,
+            slide,
+            down,
+            failure,
+            ended,
+            rests,
+        }
     }
 
     /// Whether all is there that a flight needs.
@@ -72,23 +94,9 @@ impl Pilot {
         self.failure.as_ref()
     }
 
-    /// What became of the vehicle in the end, for people.
-    pub const fn farewell(&self) -> &'static str {
-        match &self.failure {
-            Some(failure) if failure.is_out_of_our_hands() => "nothing more was sent to it",
-            _ if self.rests => "it was told to stop, and says that it is at rest",
-            _ => "it was told to stop, and does not say that it is at rest",
-        }
-    }
-
     /// Whether the vehicle has said that it is at rest, when all was over.
     pub const fn is_at_rest(&self) -> bool {
         self.rests
-    }
-
-    /// The vehicle's last warning.
-    pub fn warning(&self) -> Option<&str> {
-        self.vehicle.warning.as_deref()
     }
 
     /// Where the vehicle is and which way it faces, once that is known.
@@ -105,30 +113,34 @@ impl Pilot {
     }
 
     /// Sends the vehicle somewhere; nowhere unless it is ready.
-    pub const fn order(&mut self, now: Duration, order: Order, wants_label: bool) {
-        if let Stage::Ready = self.stage {
-            let motion = Motion { order, wants_label, began: now, sent: None };
+    pub fn order(&mut self, now: Duration, order: Order, wants_label: bool) {
+        if let (Stage::Ready, Some((_, fix))) = (self.stage, self.vehicle.fix) {
+            let motion = Motion { order, wants_label, from: fix.at, began: now, sent: None };
             self.stage = Stage::Moving { motion, rests: None };
         }
     }
 
     /// Ends the flight: the vehicle is stopped, if it was ever moved.
     pub fn end(&mut self, now: Duration, failure: Option<Failure>) {
-        if matches!(self.stage, Stage::Stopping { .. } | Stage::Over) {
+        if matches!(self.stage, Stage::Stopping { .. } | Stage::Listening { .. } | Stage::Over) {
             return;
         }
+        self.ended = failure.as_ref().map(|_| now);
         let was_never_ours = matches!(self.stage, Stage::Preparing { .. });
         let is_out_of_hands = failure.as_ref().is_some_and(Failure::is_out_of_our_hands);
         self.failure = failure;
-        self.stage = if was_never_ours || is_out_of_hands {
+        self.stage = if was_never_ours {
             Stage::Over
+        } else if is_out_of_hands {
+            Stage::Listening { until: now + LISTEN }
         } else {
-            Stage::Stopping { began: now, sent: None, rests: None }
+            Stage::Stopping { began: now, hold: self.hold(now), sent: None, rests: None }
         };
     }
 
     /// Ends the flight at once, as nothing can be sent any more.
-    pub fn give_up(&mut self, failure: Failure) {
+    pub fn give_up(&mut self, now: Duration, failure: Failure) {
+        self.ended.get_or_insert(now);
         self.failure.get_or_insert(failure);
         self.stage = Stage::Over;
     }
@@ -153,11 +165,11 @@ impl Pilot {
     fn heed(&mut self, now: Duration, news: News) {
         match (self.stage, news) {
             // What is wrong before the flight is what it waits for.
-            (Stage::Preparing { .. } | Stage::Over, _) => {}
+            (Stage::Preparing { .. } | Stage::Listening { .. } | Stage::Over, _) => {}
             (Stage::Stopping { .. }, News::Status(status))
                 if status.fault().is_some_and(|it| it.is_out_of_our_hands()) =>
             {
-                self.stage = Stage::Over;
+                self.stage = Stage::Listening { until: now + LISTEN };
             }
             (_, News::Status(status)) => {
                 if let Some(fault) = status.fault() {
@@ -165,69 +177,31 @@ impl Pilot {
                 }
             }
             (_, News::Breach) => self.end(now, Some(Failure::Fence)),
-            (_, News::Fix(fix)) => self.locate(now, fix),
+            (Stage::Moving { .. }, News::HeldBack) => self.end(now, Some(Failure::HeldBack)),
+            (Stage::Stopping { .. }, News::Restart) => {
+                self.stage = Stage::Listening { until: now + LISTEN };
+            }
+            (_, News::Restart) => self.end(now, Some(Failure::Restarted)),
+            (Stage::Stopping { .. }, News::Fix(fix)) => self.locate(now, fix),
+            (_, News::Fix(fix)) => match self.slide.take(fix, self.limits.tolerance) {
+                Some(metres) => self.end(now, Some(Failure::Slid(metres))),
+                None => self.locate(now, fix),
+            },
             // What was sensed on the way may come late.
-            (Stage::Sensing { motion, arrived_ms, since, told: None }, News::Label(told))
-                if told.at_ms >= arrived_ms =>
+            (Stage::Sensing { motion, arrived, since, told: None }, News::Label(told))
+                if told.at_ms >= arrived.at_ms =>
             {
-                self.stage = Stage::Sensing { motion, arrived_ms, since, told: Some(told) };
+                self.stage = Stage::Sensing { motion, arrived, since, told: Some(told) };
             }
             _ => {}
         }
-    }
-
-    /// The vehicle says where it is.
-    fn locate(&mut self, now: Duration, fix: Fix) {
-        match self.stage {
-            Stage::Moving { motion, rests } => {
-                if !self.is_there(&motion.order, fix) {
-                    self.stage = Stage::Moving { motion, rests: None };
-                    return;
-                }
-                let since = rests.unwrap_or(fix.at_ms);
-                let faces = self.vehicle.facing.filter(|it| it.at_ms >= since);
-                self.stage = Stage::Moving { motion, rests: Some(since) };
-                let Some(faces) = faces.filter(|_| fix.at_ms - since >= SETTLED_MS) else { return };
-                self.stage = if motion.wants_label {
-                    let arrived_ms = fix.at_ms;
-                    Stage::Sensing { motion, arrived_ms, since: now, told: None }
-                } else {
-                    Stage::There(Arrival { fix, yaw: faces.yaw, label: None })
-                };
-            }
-            Stage::Sensing { motion, told, .. } => {
-                if !self.is_there(&motion.order, fix) {
-                    self.stage = Stage::Moving { motion, rests: None };
-                    return;
-                }
-                // It was there before the label, and is there after it.
-                let told = told.filter(|told| fix.at_ms >= told.at_ms);
-                if let Some((told, faces)) = told.zip(self.vehicle.facing) {
-                    let label = Some(told.label);
-                    self.stage = Stage::There(Arrival { fix, yaw: faces.yaw, label });
-                }
-            }
-            Stage::Stopping { began, sent, rests } => {
-                let rests = rests.or(sent.map(|_| fix.at_ms)).filter(|_| fix.speed <= SLOW);
-                self.stage = Stage::Stopping { began, sent, rests };
-            }
-            _ => {}
-        }
-    }
-
-    /// Whether the vehicle rests where it was sent.
-    fn is_there(&self, order: &Order, fix: Fix) -> bool {
-        let faces = |yaw: f32| !order.is_turn || apart(yaw, order.yaw) < ALIKE;
-        fix.at.distance(order.to) <= self.limits.acceptance
-            && fix.speed <= SLOW
-            && self.vehicle.facing.is_some_and(|it| faces(it.yaw))
     }
 
     /// What is to be sent now. Who calls this calls it often: it looks for what did not come in time, too.
     pub fn due(&mut self, now: Duration) -> Vec<MavMessage> {
         self.look(now);
         let mut due = Vec::new();
-        if self.is_over() {
+        if matches!(self.stage, Stage::Listening { .. } | Stage::Over) {
             return due;
         }
         if self.beat.is_none_or(|last| now >= last + HEARTBEAT) {
@@ -235,22 +209,9 @@ impl Pilot {
             due.push(heartbeat());
         }
         let envelope = Envelope { system: self.system, now };
-        let is_due = |sent: Option<Duration>, every| sent.is_none_or(|last| now >= last + every);
-        match &mut self.stage {
-            Stage::Preparing { .. } if self.vehicle.status.is_some() => {
-                due.extend(self.requests.due(envelope));
-            }
-            Stage::Moving { motion, .. } if is_due(motion.sent, SETPOINT) => {
-                if let Some((_, status)) = self.vehicle.status {
-                    motion.sent = Some(now);
-                    due.push(envelope.setpoint(&motion.order, status.craft, self.down));
-                }
-            }
-            Stage::Stopping { sent, .. } if is_due(*sent, STOP) => {
-                *sent = Some(now);
-                due.push(envelope.stop());
-            }
-            _ => {}
+        due.extend(self.drive(envelope));
+        if matches!(self.stage, Stage::Preparing { .. }) && self.vehicle.status.is_some() {
+            due.extend(self.requests.due(envelope));
         }
         due
     }
@@ -260,6 +221,12 @@ impl Pilot {
         let limits = self.limits;
         match self.stage {
             Stage::Over => return,
+            Stage::Listening { until } => {
+                if now >= until {
+                    self.stage = Stage::Over;
+                }
+                return;
+            }
             Stage::Preparing { since, complete } => {
                 let since = since.unwrap_or(now);
                 if self.fix(now).is_none() {
@@ -276,7 +243,7 @@ impl Pilot {
                     None if complete.is_some_and(|it| now < it + STEADY) => {}
                     None => {
                         self.stage = Stage::Ready;
-                        self.vehicle.warning = None;
+                        self.vehicle.warnings.clear();
                         self.down = self.vehicle.fix.map_or(0.0, |it| it.1.down);
                     }
                     Some(missing) if now >= since + limits.ready => {
@@ -296,8 +263,7 @@ impl Pilot {
                 return;
             }
             Stage::Moving { motion, .. } if now >= motion.began + limits.motion => {
-                let off = self.vehicle.fix.map_or(0.0, |it| it.1.at.distance(motion.order.to));
-                let off = format!("it is {off:.2} m from where it was sent");
+                let off = self.off(&motion.order);
                 self.end(now, Some(Failure::Late(limits.motion, off)));
                 return;
             }
@@ -323,38 +289,5 @@ impl Pilot {
     /// Where it is, if it has said so of late.
     fn fix(&self, now: Duration) -> Option<Fix> {
         self.vehicle.fix.filter(|it| now < it.0 + LOST).map(|it| it.1)
-    }
-
-    /// What it does not say that it is to say.
-    fn unheard(&self, now: Duration) -> Option<String> {
-        if self.fix(now).is_none() {
-            Some("its local position (LOCAL_POSITION_NED)".to_owned())
-        } else if self.vehicle.facing.is_none() {
-            Some("its attitude (ATTITUDE)".to_owned())
-        } else if self.vehicle.label.is_none() {
-            Some(self.labels.source.to_string())
-        } else {
-            None
-        }
-    }
-
-    /// What is missing before the flight can begin, for people.
-    pub fn missing(&self, now: Duration) -> Option<String> {
-        let Some(status) = self.status(now) else {
-            return Some(format!("a heartbeat of system {}", self.system));
-        };
-        if let Some(message) = self.requests.missing() {
-            return Some(format!("its word that it sends {message}"));
-        }
-        if let Some(unheard) = self.unheard(now) {
-            return Some(unheard);
-        }
-        match status.fault() {
-            Some(Failure::TakenOver(mode)) => Some(format!("mode GUIDED, it is in {mode}")),
-            Some(Failure::Disarmed) => Some("its operator to arm it".to_owned()),
-            Some(other) => Some(format!("a vehicle that is well: {other}")),
-            None if self.vehicle.is_outside => Some("a vehicle inside its geofence".to_owned()),
-            None => None,
-        }
     }
 }

@@ -119,6 +119,7 @@ mod tests {
         let ack = COMMAND_ACK_DATA {
             command: MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL,
             result: MavResult::MAV_RESULT_ACCEPTED,
+            ..COMMAND_ACK_DATA::default()
         };
         let mut asked = Vec::new();
         for tenth in 0..40 {

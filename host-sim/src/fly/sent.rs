@@ -10,14 +10,34 @@ use crate::report::table::{Column, Table};
 /// A message, and when it was sent.
 pub type Sent = (Duration, MavMessage);
 
-/// The table of messages, each with the fields that it uses.
+/// The table of messages, each with the fields that it uses: those that come again in one row, with their first time.
 pub fn table(sent: &[Sent]) -> String {
-    let columns =
-        [Column::right("s", 8), Column::left("message", 29).apart(), Column::left("fields", 0)];
-    let mut table = Table::new(columns);
+    let columns = [
+        Column::right("s", 8),
+        Column::right("times", 5),
+        Column::left("message", 29).apart(),
+        Column::left("fields", 0),
+    ];
+    let mut rows: Vec<(Duration, usize, &'static str, String)> = Vec::new();
     for (at, message) in sent {
-        let at = format!("{:.2}", at.as_secs_f64());
-        table.row([at, message.message_name().to_owned(), fields(message)]);
+        let (name, fields) = (message.message_name(), fields(message));
+        // Heartbeats go on all the time, and what is the same comes in a row.
+        let is_same = |row: &&mut (Duration, usize, &str, String)| row.2 == name && row.3 == fields;
+        let heartbeat = matches!(message, MavMessage::HEARTBEAT(_));
+        let last = rows.len().saturating_sub(1);
+        let same = if heartbeat {
+            rows.iter_mut().find(is_same)
+        } else {
+            rows[last..].iter_mut().find(is_same)
+        };
+        match same {
+            Some(row) => row.1 += 1,
+            None => rows.push((*at, 1, name, fields)),
+        }
+    }
+    let mut table = Table::new(columns);
+    for (at, times, name, fields) in rows {
+        table.row([format!("{:.2}", at.as_secs_f64()), times.to_string(), name.to_owned(), fields]);
     }
     table.to_string()
 }

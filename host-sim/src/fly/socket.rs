@@ -1,7 +1,8 @@
 //! A link to a real vehicle: an address, a thread that reads, a clock.
 
+use std::io::ErrorKind;
 use std::sync::Arc;
-use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -12,6 +13,7 @@ use mavlink::{Connection, MavConnection as _, MavHeader, connect};
 
 use crate::fly::link::Link;
 use crate::fly::orders::{OWN_COMPONENT, OWN_SYSTEM};
+use crate::fly::udp;
 
 /// What an address begins with, and what the library calls that. Of these `udp` is what other ground stations mean by
 /// it: to listen, and to answer whoever speaks.
@@ -24,19 +26,26 @@ const FORMS: [(&str, &str); 6] = [
     ("serial", "serial"),
 ];
 
+/// What carries messages.
+enum Way {
+    Udp(udp::Sender),
+    /// TCP, or a serial line.
+    Stream(Arc<Connection<MavMessage>>),
+}
+
 /// A link by UDP, TCP or a serial line.
 pub struct Socket {
-    connection: Arc<Connection<MavMessage>>,
+    way: Way,
     arriving: Receiver<(MavHeader, MavMessage)>,
     opened: Instant,
 }
 
 impl Socket {
-    /// Opens an address.
+    /// Opens an address, to speak to the vehicle of a system id.
     ///
     /// # Errors
     /// When it is none, or cannot be opened.
-    pub fn open(address: &str) -> Result<Self> {
+    pub fn open(address: &str, system: u8) -> Result<Self> {
         let form = address
             .split_once(':')
             .and_then(|(form, rest)| Some((FORMS.iter().find(|it| it.0 == form)?.1, rest)));
@@ -46,32 +55,55 @@ impl Socket {
                  tcp:HOST:PORT or serial:DEVICE:BAUD"
             );
         };
-        let connection = connect::<MavMessage>(&format!("{form}:{rest}"))
-            .with_context(|| format!("{address}: expected an address that can be opened"))?;
-        let connection = Arc::new(connection);
-        let reader = Arc::clone(&connection);
-        let (sender, arriving) = mpsc::channel();
-        // Ends with the connection, or when nobody listens any more.
-        thread::spawn(move || {
-            loop {
-                match reader.recv() {
-                    Ok(arrived) => {
-                        if sender.send(arrived).is_err() {
-                            return;
-                        }
-                    }
-                    // What is no message that is known is passed over.
-                    Err(MessageReadError::Parse(_)) => {}
-                    Err(MessageReadError::Io(_)) if form.starts_with("udp") => {
-                        // Nobody listens at the other end yet.
-                        thread::sleep(Duration::from_millis(10));
-                    }
-                    Err(_) => return,
-                }
-            }
-        });
-        Ok(Self { connection, arriving, opened: Instant::now() })
+        let (to, arriving) = mpsc::channel();
+        let expected = || format!("{address}: expected an address that can be opened");
+        let way = if form.starts_with("udp") {
+            let opened = udp::open(rest, form == "udpin", system).with_context(expected)?;
+            let (sender, mut reader) = opened;
+            listen(to, move || reader.receive().map_err(|error| error.kind()));
+            Way::Udp(sender)
+        } else {
+            let connection = connect::<MavMessage>(&format!("{form}:{rest}"));
+            let connection = Arc::new(connection.with_context(expected)?);
+            let reader = Arc::clone(&connection);
+            listen(to, move || match reader.recv() {
+                Ok(arrived) => Ok(vec![arrived]),
+                Err(MessageReadError::Io(error)) => Err(error.kind()),
+                // What is no message that is known is passed over.
+                Err(MessageReadError::Parse(_)) => Ok(Vec::new()),
+            });
+            Way::Stream(connection)
+        };
+        Ok(Self { way, arriving, opened: Instant::now() })
     }
+}
+
+/// Hands on what arrives, until the link breaks or nobody listens any more.
+fn listen(
+    to: Sender<(MavHeader, MavMessage)>,
+    mut receive: impl FnMut() -> Result<Vec<(MavHeader, MavMessage)>, ErrorKind> + Send + 'static,
+) {
+    thread::spawn(move || {
+        loop {
+            match receive() {
+                Ok(arrived) => {
+                    if arrived.into_iter().any(|it| to.send(it).is_err()) {
+                        return;
+                    }
+                }
+                // By UDP: nobody listens at the other end yet.
+                Err(ErrorKind::ConnectionRefused) => thread::sleep(Duration::from_millis(10)),
+                // A pause: the library reads TCP with a time-out of 100 ms.
+                Err(kind) if is_pause(kind) => {}
+                Err(_) => return,
+            }
+        }
+    });
+}
+
+/// Whether nothing came, rather than never will.
+const fn is_pause(error: ErrorKind) -> bool {
+    matches!(error, ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted)
 }
 
 impl Link for Socket {
@@ -81,8 +113,11 @@ impl Link for Socket {
 
     fn send(&mut self, message: &MavMessage) {
         let header = MavHeader { system_id: OWN_SYSTEM, component_id: OWN_COMPONENT, sequence: 0 };
-        // The connection counts; what it does not take is lost.
-        let _ = self.connection.send(&header, message);
+        match &mut self.way {
+            Way::Udp(sender) => sender.send(header, message),
+            // The connection counts; what it does not take is lost.
+            Way::Stream(connection) => drop(connection.send(&header, message)),
+        }
     }
 
     fn receive(&mut self, until: Duration) -> Result<Option<(MavHeader, MavMessage)>> {
@@ -91,5 +126,86 @@ impl Link for Socket {
             Err(RecvTimeoutError::Timeout) => Ok(None),
             Err(RecvTimeoutError::Disconnected) => bail!("it was closed at its other end"),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write as _;
+    use std::net::{TcpListener, UdpSocket};
+
+    use mavlink::{MavlinkVersion, write_versioned_msg};
+
+    use super::*;
+    use crate::fly::orders::heartbeat;
+
+    #[test]
+    fn a_tcp_link_outlives_pauses_and_ends_with_its_other_end() {
+        let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
+        let address = listener.local_addr().expect("bound");
+        let mut link = Socket::open(&format!("tcp:{address}"), 1).expect("it listens");
+        let (mut vehicle, _) = listener.accept().expect("a connection");
+        // Silent for much longer than the library's time-out, twice.
+        for _ in 0..2 {
+            let until = link.now() + Duration::from_millis(350);
+            assert!(link.receive(until).expect("a pause is no end").is_none());
+            let mut bytes = Vec::new();
+            write_versioned_msg(&mut bytes, MavlinkVersion::V2, MavHeader::default(), &heartbeat())
+                .expect("it fits");
+            vehicle.write_all(&bytes).expect("it is connected");
+            let until = link.now() + Duration::from_secs(10);
+            assert!(link.receive(until).expect("it is open").is_some());
+        }
+        drop(vehicle);
+        let until = link.now() + Duration::from_secs(10);
+        let error = link.receive(until).expect_err("it was closed").to_string();
+        assert_eq!(error, "it was closed at its other end");
+    }
+
+    fn bytes(system_id: u32, message: &MavMessage) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        let header = MavHeader { system_id, component_id: 1, sequence: 0 };
+        write_versioned_msg(&mut bytes, MavlinkVersion::V2, header, message).expect("it fits");
+        bytes
+    }
+
+    /// Who is answered is the vehicle, whoever speaks last.
+    #[test]
+    fn strangers_do_not_take_a_vehicle_s_messages_away() {
+        let free = UdpSocket::bind("127.0.0.1:0").expect("a port");
+        let address = free.local_addr().expect("bound");
+        drop(free);
+        let mut link = Socket::open(&format!("udp:{address}"), 7).expect("it is free");
+        let [vehicle, stranger, second] = [0; 3].map(|_| {
+            let socket = UdpSocket::bind("127.0.0.1:0").expect("a port");
+            socket.set_read_timeout(Some(Duration::from_millis(300))).expect("it is long");
+            socket.connect(address).expect("it is local");
+            socket
+        });
+        let mut hears = |socket: &UdpSocket| {
+            link.send(&heartbeat());
+            socket.recv(&mut [0; 300]).is_ok()
+        };
+        let send = |socket: &UdpSocket, bytes: &[u8]| {
+            socket.send(bytes).expect("it listens");
+            thread::sleep(Duration::from_millis(100));
+        };
+        // A byte is no vehicle, and another system is not this one.
+        send(&stranger, &[0xFD]);
+        send(&second, &bytes(8, &heartbeat()));
+        assert!(!hears(&stranger) && !hears(&second));
+        // A message may come in parts.
+        let parts = bytes(7, &heartbeat());
+        send(&vehicle, &parts[..5]);
+        send(&stranger, &[0xFD]);
+        send(&vehicle, &parts[5..]);
+        assert!(hears(&vehicle));
+        send(&stranger, &[0xFD]);
+        send(&second, &bytes(7, &heartbeat()));
+        assert!(hears(&vehicle) && !hears(&stranger) && !hears(&second));
+        // One heartbeat was heard, of three that came.
+        let until = link.now() + Duration::from_millis(300);
+        assert!(link.receive(until).expect("it is open").is_some());
+        assert!(link.receive(until).expect("it is open").is_none());
     }
 }

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use planner_core::belief::sample::Label;
 
+use crate::fly::frame::Ned;
 use crate::fly::label::Told;
 use crate::fly::orders::Order;
 use crate::fly::vehicle::Fix;
@@ -17,6 +18,8 @@ pub struct Arrival {
     pub yaw: f32,
     /// What it sensed.
     pub label: Option<Label>,
+    /// Whether it rests near where it was sent, not there.
+    pub is_short: bool,
 }
 
 /// A motion that is to be made.
@@ -24,8 +27,25 @@ pub struct Arrival {
 pub(crate) struct Motion {
     pub order: Order,
     pub wants_label: bool,
+    /// Where it was.
+    pub from: Ned,
     pub began: Duration,
-    pub sent: Option<Duration>,
+    pub sent: Option<Sent>,
+}
+
+/// When a setpoint was sent, and how the vehicle was then.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sent {
+    pub at: Duration,
+    pub place: Ned,
+    pub yaw: f32,
+}
+
+/// Where a vehicle is to stay that velocities of zero do not stop.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Hold {
+    pub at: Ned,
+    pub yaw: f32,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -36,22 +56,27 @@ pub(crate) enum Stage {
         complete: Option<Duration>,
     },
     Ready,
-    /// At rest there since that, by its clock.
+    /// At rest there since that, by its clock and by ours.
     Moving {
         motion: Motion,
-        rests: Option<u32>,
+        rests: Option<(u32, Duration)>,
     },
     Sensing {
         motion: Motion,
-        arrived_ms: u32,
+        arrived: Fix,
         since: Duration,
         told: Option<Told>,
     },
     There(Arrival),
     Stopping {
         began: Duration,
+        hold: Option<Hold>,
         sent: Option<Duration>,
         rests: Option<u32>,
+    },
+    /// Someone else drives it: it is listened to, and sent nothing.
+    Listening {
+        until: Duration,
     },
     Over,
 }

@@ -3,12 +3,18 @@
 
 use std::time::Duration;
 
-use mavlink::dialects::common::{MavMessage, MavModeFlag, MavSeverity, MavState};
+use mavlink::dialects::common::{FenceMitigate, MavMessage, MavModeFlag, MavSeverity, MavState};
 
 use crate::fly::autopilot::Craft;
 use crate::fly::failure::Failure;
 use crate::fly::frame::Ned;
 use crate::fly::label::{LabelSource, Told};
+
+/// By how much its clock goes back when it was started anew; messages are never so late.
+const RESTART_MS: u32 = 10_000;
+
+/// Warnings that are kept.
+const MOST_WARNINGS: usize = 8;
 
 /// Where it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,8 +25,15 @@ pub struct Fix {
     pub at: Ned,
     /// Depth below the origin, metres.
     pub down: f32,
+    /// Metres a second over ground, to the north and to the east.
+    pub velocity: [f64; 2],
+}
+
+impl Fix {
     /// Metres a second over ground.
-    pub speed: f64,
+    pub fn speed(&self) -> f64 {
+        libm::hypot(self.velocity[0], self.velocity[1])
+    }
 }
 
 /// Which way it faces.
@@ -46,8 +59,17 @@ pub struct Status {
 }
 
 impl Status {
+    /// Whether its autopilot is not yet there.
+    const fn is_starting(&self) -> bool {
+        matches!(self.state, MavState::MAV_STATE_BOOT | MavState::MAV_STATE_UNINIT)
+            || self.craft.is_initialising(self.mode)
+    }
+
     /// Why it cannot be flown as it is, the gravest first.
     pub fn fault(&self) -> Option<Failure> {
+        if self.is_starting() {
+            return Some(Failure::Restarted);
+        }
         if self.mode != self.craft.guided() {
             return Some(Failure::TakenOver(self.craft.mode(self.mode)));
         }
@@ -77,6 +99,10 @@ pub enum News {
     Label(Told),
     /// It left its geofence.
     Breach,
+    /// Its geofence holds it back.
+    HeldBack,
+    /// Its clock went back.
+    Restart,
 }
 
 /// A vehicle as it is known. Times are ours.
@@ -92,8 +118,8 @@ pub struct Vehicle {
     pub label: Option<Told>,
     /// Whether it is outside of its geofence.
     pub is_outside: bool,
-    /// The last warning that it gave.
-    pub warning: Option<String>,
+    /// The last warnings that it gave, and when.
+    pub warnings: Vec<(Duration, String)>,
 }
 
 impl Vehicle {
@@ -125,10 +151,13 @@ impl Vehicle {
             MavMessage::LOCAL_POSITION_NED(it) => {
                 let is_number = [it.x, it.y, it.z, it.vx, it.vy].iter().all(|it| it.is_finite());
                 let is_newer = self.fix.is_none_or(|(_, last)| it.time_boot_ms > last.at_ms);
+                if self.fix.is_some_and(|(_, last)| it.time_boot_ms + RESTART_MS < last.at_ms) {
+                    return Ok(Some(News::Restart));
+                }
                 if is_number && is_newer {
-                    let speed = libm::hypot(f64::from(it.vx), f64::from(it.vy));
+                    let velocity = [it.vx, it.vy].map(f64::from);
                     let at = Ned { north: it.x, east: it.y };
-                    let fix = Fix { at_ms: it.time_boot_ms, at, down: it.z, speed };
+                    let fix = Fix { at_ms: it.time_boot_ms, at, down: it.z, velocity };
                     self.fix = Some((now, fix));
                     return Ok(Some(News::Fix(fix)));
                 }
@@ -141,12 +170,23 @@ impl Vehicle {
             }
             MavMessage::FENCE_STATUS(it) => {
                 self.is_outside = it.breach_status != 0;
-                return Ok(self.is_outside.then_some(News::Breach));
+                let is_held_back = it.breach_mitigation == FenceMitigate::FENCE_MITIGATE_VEL_LIMIT;
+                return Ok(match (self.is_outside, is_held_back) {
+                    (true, _) => Some(News::Breach),
+                    (false, true) => Some(News::HeldBack),
+                    (false, false) => None,
+                });
             }
             MavMessage::STATUSTEXT(it)
                 if it.severity as u8 <= MavSeverity::MAV_SEVERITY_WARNING as u8 =>
             {
-                self.warning = it.text.to_str().ok().map(str::to_owned);
+                let text = it.text.to_str().unwrap_or_default().trim().to_owned();
+                // Some say the same again and again.
+                self.warnings.retain(|(_, other)| *other != text);
+                self.warnings.push((now, text));
+                if self.warnings.len() > MOST_WARNINGS {
+                    self.warnings.remove(0);
+                }
             }
             _ => {}
         }

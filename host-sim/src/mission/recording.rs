@@ -17,8 +17,8 @@ use crate::mission::definition::{Mission, Table};
 use crate::mission::flight::Flown;
 use crate::mission::read_out::{Knowledge, LEVEL, ReadOut};
 use crate::mission::results::{
-    BestRecord, CredibleRecord, End, EstimateRecords, KeepOutRecord, LineError, NoisyEnd,
-    NoisyStep, Results, Start, StepResult, VERSION, recovery_name, stage_name,
+    BestRecord, CredibleRecord, End, EstimateRecords, KeepOutRecord, Leg, Legs, LineError,
+    NoisyEnd, NoisyStep, Results, Start, StepResult, VERSION, recovery_name, stage_name,
 };
 use crate::mission::stop::GoalRecord;
 use crate::mission::vehicle::VehicleTable;
@@ -77,12 +77,20 @@ impl Recorder {
                 pruned_mass: doubt.pruned_mass,
                 entropy: doubt.entropy,
             }),
+            flown: None,
             fact: self
                 .mission
                 .world
                 .line()
                 .map(|line| reading(line, true_pose.unwrap_or(step.pose).site).sign()),
         });
+    }
+
+    /// Takes down how a real vehicle made the steps so far.
+    pub fn take_legs(&mut self, legs: &[Leg]) {
+        for (step, leg) in self.results.iter_mut().zip(legs) {
+            step.flown = Some(*leg);
+        }
     }
 
     /// What the mission begins with.
@@ -125,6 +133,7 @@ impl Recorder {
             estimates: beside_truth(&mission, belief.estimates()),
             noisy: belief.hypotheses().and_then(|table| noisy_end(table, &mission.world)),
             goal: GoalRecord::of(&mission, &*belief),
+            flown: Legs::of(&results.iter().filter_map(|step| step.flown).collect::<Vec<_>>()),
         };
         let results = Results { start: start(&mission), steps: results, end };
         Recording { mission, steps, results, belief }

@@ -1,0 +1,67 @@
+//! Setpoints: where to go, again only when that does no harm, and stops.
+//!
+//! `ArduPilot` begins a leg anew with each setpoint, and its S-curve with it: Sub that is sent one a second crawls. So a
+//! setpoint is sent again soon only to a vehicle that does not stir, which may not have heard it.
+
+use std::time::Duration;
+
+use mavlink::dialects::common::MavMessage;
+
+use crate::fly::autopilot::Craft;
+use crate::fly::frame::{ALIKE, apart};
+use crate::fly::limits::{AGAIN, HOLD, SETPOINT, SLOW, STIRS, STOP};
+use crate::fly::orders::{Envelope, Order};
+use crate::fly::pilot::Pilot;
+use crate::fly::stage::{Hold, Motion, Sent, Stage};
+
+impl Pilot {
+    /// The setpoint or the stop that is due.
+    pub(super) fn drive(&mut self, envelope: Envelope) -> Option<MavMessage> {
+        let now = envelope.now;
+        let craft = self.vehicle.status?.1.craft;
+        match self.stage {
+            Stage::Moving { mut motion, rests } if self.is_due(now, &motion) => {
+                let (fix, yaw) = self.whereabouts()?;
+                motion.sent = Some(Sent { at: now, place: fix.at, yaw });
+                self.stage = Stage::Moving { motion, rests };
+                Some(envelope.setpoint(&motion.order, craft, self.down))
+            }
+            Stage::Stopping { began, hold, sent, rests } => {
+                // The first is sent twice at once: one may be lost.
+                let is_early = sent.is_some_and(|it| it < began + STOP);
+                let every = if hold.is_some() && !is_early { HOLD } else { STOP };
+                if sent.is_some_and(|last| now < last + every) {
+                    return None;
+                }
+                self.stage = Stage::Stopping { began, hold, sent: Some(now), rests };
+                Some(hold.map_or_else(
+                    || envelope.stop(),
+                    |Hold { at: to, yaw }| {
+                        envelope.setpoint(&Order { to, yaw, is_turn: false }, craft, self.down)
+                    },
+                ))
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether a setpoint is to be sent, for the first time or again.
+    fn is_due(&self, now: Duration, motion: &Motion) -> bool {
+        let Some(sent) = motion.sent else { return true };
+        if now >= sent.at + AGAIN {
+            return true;
+        }
+        let Some((fix, yaw)) = self.whereabouts() else { return false };
+        let stirs = fix.speed() > SLOW
+            || fix.at.distance(sent.place) > STIRS
+            || apart(yaw, sent.yaw) > ALIKE;
+        now >= sent.at + SETPOINT && !stirs && !self.is_there(motion, fix)
+    }
+
+    /// Where a vehicle stays that is to stop, if a place has to be told: Sub does not stop by velocities of zero.
+    pub(super) fn hold(&self, now: Duration) -> Option<Hold> {
+        let (_, status) = self.vehicle.status?;
+        let (fix, (_, yaw)) = self.fix(now).zip(self.whereabouts())?;
+        (status.craft == Craft::Submarine).then_some(Hold { at: fix.at, yaw })
+    }
+}

@@ -1,0 +1,42 @@
+//! What a flight waits for before it begins.
+
+use std::time::Duration;
+
+use crate::fly::failure::Failure;
+use crate::fly::pilot::Pilot;
+
+impl Pilot {
+    /// What it does not say that it is to say.
+    pub(super) fn unheard(&self, now: Duration) -> Option<String> {
+        if self.fix(now).is_none() {
+            Some("its local position (LOCAL_POSITION_NED)".to_owned())
+        } else if self.vehicle.facing.is_none() {
+            Some("its attitude (ATTITUDE)".to_owned())
+        } else if self.vehicle.label.is_none() {
+            Some(self.labels.source.to_string())
+        } else {
+            None
+        }
+    }
+
+    /// What is missing before the flight can begin, for people.
+    pub fn missing(&self, now: Duration) -> Option<String> {
+        let Some(status) = self.status(now) else {
+            return Some(format!("a heartbeat of system {}", self.system));
+        };
+        if let Some(message) = self.requests.missing() {
+            return Some(format!("its word that it sends {message}"));
+        }
+        if let Some(unheard) = self.unheard(now) {
+            return Some(unheard);
+        }
+        match status.fault() {
+            Some(Failure::TakenOver(mode)) => Some(format!("mode GUIDED, it is in {mode}")),
+            Some(Failure::Restarted) => Some("its autopilot to have started".to_owned()),
+            Some(Failure::Disarmed) => Some("its operator to arm it".to_owned()),
+            Some(other) => Some(format!("a vehicle that is well: {other}")),
+            None if self.vehicle.is_outside => Some("a vehicle inside its geofence".to_owned()),
+            None => None,
+        }
+    }
+}

@@ -1,0 +1,175 @@
+//! What autopilots do that the ideal vehicle does not: seen of `ArduPilot`'s own simulation.
+
+use mavlink::dialects::common::MavMessage;
+
+use super::*;
+
+/// A setpoint's place, moved so far towards the area's middle (10, 10).
+fn nearer_the_middle(message: MavMessage, by: f32) -> MavMessage {
+    let MavMessage::SET_POSITION_TARGET_LOCAL_NED(mut it) = message else { return message };
+    if !it.type_mask.contains(Ignored::POSITION_TARGET_TYPEMASK_X_IGNORE) {
+        let (north, east) = (10.0 - it.x, 10.0 - it.y);
+        let part = by / north.hypot(east);
+        (it.x, it.y) = (it.x + part * north, it.y + part * east);
+    }
+    MavMessage::SET_POSITION_TARGET_LOCAL_NED(it)
+}
+
+/// A rover that steers like a car rests beside where it was sent.
+#[test]
+fn a_vehicle_that_rests_near_its_target_has_arrived_where_it_is() {
+    let flown = fly(|_, _, message| vec![nearer_the_middle(message, 0.7)], as_it_is);
+    assert_eq!(flown.failure(), None);
+    assert_ne!(flown.trace(), of_run());
+    let Ok(flight) = &flown.flight else { panic!("it flew") };
+    for step in &flight.recording.steps {
+        let off = Ned::from(step.pose.site).distance(step.motion.target.site.into());
+        assert!((off - 0.7).abs() < 0.01, "{off}");
+    }
+    // Which the trace tells, with times, and what would cover it.
+    let steps = &flight.recording.results.steps;
+    let legs: Vec<_> = steps.iter().filter_map(|step| step.flown).collect();
+    assert_eq!(legs.len(), 4);
+    assert!(legs.iter().all(|leg| leg.ended > leg.began + 5.0 && (leg.off - 0.7).abs() < 0.01));
+    assert!(legs.windows(2).all(|pair| pair[0].ended <= pair[1].began));
+    let told = flight.recording.results.end.flown.expect("it flew");
+    assert_eq!((told.motions, told.off_most <= told.tolerance), (4, true), "{told:?}");
+    assert!(told.tolerance < 0.85, "{told:?}");
+    let line = trace::step(&steps[0]);
+    assert!(line.contains(",\"flown\":{\"began\":0.0,\"ended\":"), "{line}");
+}
+
+#[test]
+fn one_that_rests_outside_of_the_area_has_not_arrived() {
+    let flown = fly(
+        |_, _, mut message| {
+            if let MavMessage::SET_POSITION_TARGET_LOCAL_NED(it) = &mut message {
+                it.x = it.x.min(-0.2);
+            }
+            vec![message]
+        },
+        as_it_is,
+    );
+    assert!(matches!(flown.failure(), Some(Failure::Misplaced(_))), "{:?}", flown.failure());
+}
+
+/// Nor has one that does not move at all, however near its target is.
+#[test]
+fn a_vehicle_that_is_stuck_does_not_arrive() {
+    let flown = fly(|_, _, message| if moves(&message) { vec![] } else { vec![message] }, as_it_is);
+    assert!(matches!(flown.failure(), Some(Failure::Late(..))), "{:?}", flown.failure());
+}
+
+/// Each setpoint begins a leg anew, and its S-curve with it: a vehicle that moves is left alone for ten seconds.
+#[test]
+fn a_setpoint_is_sent_again_only_to_a_vehicle_that_does_not_stir() {
+    let flown = fly(as_it_is, as_it_is);
+    let goes = flown.sent.iter().filter(|(_, it)| moves(it)).count();
+    assert_eq!(goes, 4, "one a step");
+    // One that is lost is sent again a second later.
+    let mut lost = 0;
+    let losing = fly(
+        |_, _, message| {
+            lost += usize::from(moves(&message));
+            if moves(&message) && lost <= 3 { vec![] } else { vec![message] }
+        },
+        as_it_is,
+    );
+    assert_eq!(losing.trace(), of_run());
+    // One that never says that it is there, though it moves, is sent again after ten.
+    let mut number = 0_u8;
+    let restless = fly(as_it_is, |_, _, mut message| {
+        if let MavMessage::LOCAL_POSITION_NED(it) = &mut message {
+            number = (number + 1) % 4;
+            it.vx += if number < 2 { 0.5 } else { -0.5 };
+        }
+        vec![message]
+    });
+    let goes: Vec<_> = restless.sent.iter().filter(|(_, it)| moves(it)).map(|it| it.0).collect();
+    assert_eq!(goes.len(), 2, "{goes:?}");
+    assert!(goes[1].saturating_sub(goes[0]) >= Duration::from_secs(10), "{goes:?}");
+}
+
+/// Velocities of zero do not stop Sub, which coasts on: a place does, the one where stopping began.
+#[test]
+fn a_submarine_is_stopped_by_a_place() {
+    let mut at = (0.0, 0.0);
+    let mut there = None;
+    let flown = fly(as_it_is, |now, _, mut message| {
+        match &mut message {
+            MavMessage::HEARTBEAT(it) => {
+                (it.mavtype, it.custom_mode) = (MavType::MAV_TYPE_SUBMARINE, 4);
+                if now >= THEN {
+                    it.system_status = MavState::MAV_STATE_CRITICAL;
+                    there.get_or_insert(at);
+                }
+            }
+            MavMessage::LOCAL_POSITION_NED(it) => at = (it.x, it.y),
+            _ => {}
+        }
+        vec![message]
+    });
+    assert!(matches!(flown.failure(), Some(Failure::Failsafe(_))), "{:?}", flown.failure());
+    let there = there.expect("it failed");
+    let since = flown.sent.iter().position(|(_, it)| {
+        matches!(it, MavMessage::SET_POSITION_TARGET_LOCAL_NED(it) if (it.x, it.y) == there)
+    });
+    let stops: Vec<_> = flown.sent[since.expect("it is told where to stay")..]
+        .iter()
+        .filter(|(_, it)| !matches!(it, MavMessage::HEARTBEAT(_)))
+        .collect();
+    let is_hold = |it: &MavMessage| {
+        matches!(it, MavMessage::SET_POSITION_TARGET_LOCAL_NED(it)
+            if (it.x, it.y) == there && it.type_mask.bits() == 0x9F8)
+    };
+    assert!(stops.iter().all(|(_, it)| is_hold(it)), "{stops:?}");
+    assert!(stops.len() >= 3, "{stops:?}");
+    assert!(!flown.sent.iter().any(|(_, it)| is_stop(it)));
+}
+
+/// A glitch of the receiver, or another origin: 6 m at once, or 3.3 m in two seconds.
+#[test]
+fn positions_that_move_without_the_vehicle_end_the_flight() {
+    for (metres, seconds) in [(6.0, 0.0), (3.3, 2.0)] {
+        let flown = fly(as_it_is, |now, _, mut message| {
+            if let MavMessage::LOCAL_POSITION_NED(it) = &mut message
+                && now >= THEN
+            {
+                let part = (now.saturating_sub(THEN).as_secs_f32() / seconds).min(1.0);
+                it.x += metres * part;
+            }
+            vec![message]
+        });
+        assert!(matches!(flown.failure(), Some(Failure::Slid(_))), "{:?}", flown.failure());
+    }
+}
+
+/// A rover that steers like a car cannot turn on the spot, and is told to be a `boat`.
+#[test]
+fn a_turn_that_does_not_turn_fails() {
+    let second = Duration::from_secs(1);
+    let labels = LabelSource::new("WET".parse().expect("a name"), None);
+    let mut ideal = Ideal::new(&mission(), SYSTEM, labels.clone());
+    let mut pilot = Pilot::new(SYSTEM, labels, LIMITS);
+    let mut is_ordered = false;
+    while pilot.failure().is_none() && ideal.now() < 60 * second {
+        let now = ideal.now();
+        if pilot.is_ready() && !is_ordered {
+            let (fix, yaw) = pilot.whereabouts().expect("it is ready");
+            pilot.order(now, Order { to: fix.at, yaw: yaw + 1.0, is_turn: true }, false);
+            is_ordered = true;
+        }
+        for message in pilot.due(now) {
+            // Its yaw is not heard.
+            if !moves(&message) {
+                ideal.send(&message);
+            }
+        }
+        if let Ok(Some((header, message))) = ideal.receive(now + second / 50) {
+            pilot.hear(ideal.now(), header, &message);
+        }
+        assert_eq!(pilot.take_arrival(), None);
+    }
+    let failure = pilot.failure().expect("it does not turn").to_string();
+    assert!(failure.contains("it lacks 57 degrees of its turn: a vehicle that"), "{failure}");
+}

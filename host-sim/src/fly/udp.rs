@@ -1,0 +1,148 @@
+//! A link by UDP that answers the vehicle, and nobody else.
+//!
+//! Anybody can send to a port. Who is answered, and listened to, is the address from which the vehicle's first heartbeat
+//! came: one byte of a stranger, or a second vehicle, changes nothing. After long silence, longer than any flight outlives,
+//! the vehicle may speak from another address, as one that was started anew does.
+
+use std::collections::VecDeque;
+use std::net::{SocketAddr, ToSocketAddrs as _, UdpSocket};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use anyhow::{Context as _, Result};
+use mavlink::dialects::common::MavMessage;
+use mavlink::error::MessageReadError;
+use mavlink::{MavHeader, MavlinkReader, MavlinkVersion, write_versioned_msg};
+
+use crate::fly::orders::AUTOPILOT;
+
+/// After so long without a word the vehicle may speak from elsewhere: a flight ends after 5 s, and stops 5 s later.
+const FORGOTTEN: Duration = Duration::from_secs(15);
+
+/// Addresses that are listened to until the vehicle has spoken.
+const MOST_STRANGERS: usize = 8;
+
+/// No datagram is longer.
+const LONGEST: usize = 65_536;
+
+/// The bytes of an address, in which messages may be cut anywhere.
+type Bytes = MavlinkReader<VecDeque<u8>>;
+
+/// Whom we speak to.
+#[derive(Clone, Debug, Default)]
+struct Peer(Arc<Mutex<Option<SocketAddr>>>);
+
+impl Peer {
+    fn get(&self) -> Option<SocketAddr> {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn set(&self, peer: SocketAddr) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(peer);
+    }
+}
+
+/// The sending half.
+pub(crate) struct Sender {
+    socket: UdpSocket,
+    peer: Peer,
+    sequence: u8,
+}
+
+/// The receiving half.
+pub(crate) struct Receiver {
+    socket: UdpSocket,
+    peer: Peer,
+    /// Whether the address is told and stays.
+    is_fixed: bool,
+    system: u8,
+    heard: Instant,
+    streams: VecDeque<(SocketAddr, Bytes)>,
+}
+
+/// Opens a port to listen at, or one to speak to an address from.
+///
+/// # Errors
+/// When that cannot be done.
+pub(crate) fn open(address: &str, listens: bool, system: u8) -> Result<(Sender, Receiver)> {
+    let expected = || format!("{address}: expected an address that can be opened");
+    let all: Vec<_> = address.to_socket_addrs().with_context(expected)?.collect();
+    let found = all.iter().find(|it| it.is_ipv4()).or(all.first()).with_context(expected)?;
+    let (peer, own) = (Peer::default(), if found.is_ipv4() { "0.0.0.0:0" } else { "[::]:0" });
+    let socket = if listens { UdpSocket::bind(found) } else { UdpSocket::bind(own) };
+    let socket = socket.with_context(expected)?;
+    if !listens {
+        peer.set(*found);
+    }
+    let sender = Sender { socket: socket.try_clone()?, peer: peer.clone(), sequence: 0 };
+    let (heard, streams) = (Instant::now(), VecDeque::new());
+    Ok((sender, Receiver { socket, peer, is_fixed: !listens, system, heard, streams }))
+}
+
+impl Sender {
+    /// Sends a message to the vehicle, if it has spoken. What the socket does not take is lost.
+    pub(crate) fn send(&mut self, header: MavHeader, message: &MavMessage) {
+        let Some(peer) = self.peer.get() else { return };
+        let (header, mut bytes) = (MavHeader { sequence: self.sequence, ..header }, Vec::new());
+        self.sequence = self.sequence.wrapping_add(1);
+        if write_versioned_msg(&mut bytes, MavlinkVersion::V2, header, message).is_ok() {
+            let _ = self.socket.send_to(&bytes, peer);
+        }
+    }
+}
+
+impl Receiver {
+    /// The messages of the next datagram.
+    ///
+    /// # Errors
+    /// When there is none.
+    pub(crate) fn receive(&mut self) -> std::io::Result<Vec<(MavHeader, MavMessage)>> {
+        let mut datagram = vec![0; LONGEST];
+        let (length, from) = self.socket.recv_from(&mut datagram)?;
+        let known = self.peer.get();
+        let is_forgotten = !self.is_fixed && self.heard.elapsed() > FORGOTTEN;
+        if known.is_some_and(|it| it != from) && !is_forgotten {
+            return Ok(Vec::new());
+        }
+        let messages = messages(self.stream(from), &datagram[..length]);
+        if messages.iter().any(|it| self.is_vehicle(it)) && known != Some(from) {
+            self.peer.set(from);
+            self.streams.retain(|it| it.0 == from);
+        }
+        if self.peer.get() != Some(from) {
+            return Ok(Vec::new());
+        }
+        self.heard = Instant::now();
+        Ok(messages)
+    }
+
+    fn stream(&mut self, from: SocketAddr) -> &mut Bytes {
+        if let Some(number) = self.streams.iter().position(|it| it.0 == from) {
+            self.streams.swap(0, number);
+        } else {
+            self.streams.truncate(MOST_STRANGERS - 1);
+            self.streams.push_front((from, MavlinkReader::new(VecDeque::new())));
+        }
+        &mut self.streams[0].1
+    }
+
+    /// Whether that is a heartbeat of the system that is to be flown.
+    fn is_vehicle(&self, (header, message): &(MavHeader, MavMessage)) -> bool {
+        let is_it = (header.system_id, header.component_id) == (self.system.into(), AUTOPILOT);
+        is_it && matches!(message, MavMessage::HEARTBEAT(_))
+    }
+}
+
+/// The messages that end in these bytes.
+fn messages(stream: &mut Bytes, bytes: &[u8]) -> Vec<(MavHeader, MavMessage)> {
+    stream.get_mut().extend(bytes);
+    let mut messages = Vec::new();
+    loop {
+        match stream.read_any_message() {
+            Ok(message) => messages.push(message),
+            // What is no message that is known is passed over.
+            Err(MessageReadError::Parse(_)) => {}
+            Err(_) => return messages,
+        }
+    }
+}
