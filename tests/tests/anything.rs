@@ -23,7 +23,7 @@ const SEED: u64 = 21;
 const MOST_ASKED: u64 = 1_500_000;
 
 /// Of 1,000 missions so many may end for a reason that a brute force refutes: it finds a way that the planner does not.
-const FALSE_REASONS: usize = 20;
+const FALSE_REASONS: usize = 15;
 
 #[test]
 fn random_missions_keep_every_invariant() {

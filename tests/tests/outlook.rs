@@ -128,8 +128,10 @@ fn labelled<const N: usize, const H: usize>(
     while forecast.belief().taken() < most {
         let site = any_site(rng, mission);
         let label = if rng.random_bool(0.5) { Label::Positive } else { Label::Negative };
-        let _ = forecast.observe(site, Reading::Side(label)); // a trusted ball may refuse it
-        forecast.observe(site, Reading::Boundary).expect("it tells nothing");
+        let tolerance = forecast.belief().tolerance();
+        // A trusted ball may refuse it.
+        let _ = forecast.observe_within(site, Reading::Side(label), tolerance);
+        forecast.observe_within(site, Reading::Boundary, tolerance).expect("it tells nothing");
     }
 }
 

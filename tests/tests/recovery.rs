@@ -1,6 +1,6 @@
 //! The recovery ladder to its end: whatever the grid, a mission goes on to a sample or stops.
 
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, HashMap};
 use std::sync::Mutex;
 
 use host_sim::campaign::standard_field;
@@ -31,7 +31,8 @@ fn at(x: f64, z: f64) -> Site {
     Site::try_from(Point2::new(x, z)).expect("near")
 }
 
-/// A pose came back before anything was learnt: the mission would go on for ever.
+/// A pose came back twice before anything was learnt: the mission would go on for ever. Once it may, as a planner remembers
+/// that it has driven far, and then takes another way back.
 #[derive(Debug)]
 struct Endless;
 
@@ -41,14 +42,17 @@ fn chase<D: Dynamics, G: Region>(
     planner: &mut Cfc<D, CAPACITY, G>,
     mut pose: Pose,
 ) -> Result<(Result<Pose, StopReason>, usize), Endless> {
-    let mut been = HashSet::new();
+    let (mut been, mut motions) = (HashMap::new(), 0);
     loop {
-        if !been.insert((pose.site, pose.heading.0)) {
+        motions += 1;
+        let times = been.entry((pose.site, pose.heading.0)).or_insert(0);
+        *times += 1;
+        if *times > 2 {
             return Err(Endless);
         }
         match planner.plan(pose) {
-            Plan::Stop(reason) => return Ok((Err(reason), been.len())),
-            Plan::Move(motion) if motion.wants_label => return Ok((Ok(motion.target), been.len())),
+            Plan::Stop(reason) => return Ok((Err(reason), motions)),
+            Plan::Move(motion) if motion.wants_label => return Ok((Ok(motion.target), motions)),
             Plan::Move(motion) => {
                 pose = motion.target;
                 planner.observe(pose, None).expect("nothing was read");

@@ -149,10 +149,6 @@ impl<D: Dynamics, B: ReadOut> Planner for Margin<D, B> {
         })
     }
 
-    fn observe(&mut self, pose: Pose, reading: Option<Reading>) -> Result<(), Refused> {
-        reading.map_or(Ok(()), |reading| self.belief.observe(pose.site, reading))
-    }
-
     fn observe_within(
         &mut self,
         pose: Pose,

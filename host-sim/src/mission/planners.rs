@@ -34,10 +34,6 @@ impl<P: Planner<Belief: ReadOut + Sized + 'static>> Planner for Erased<P> {
         self.0.plan(pose)
     }
 
-    fn observe(&mut self, pose: Pose, reading: Option<Reading>) -> Result<(), Refused> {
-        self.0.observe(pose, reading)
-    }
-
     fn observe_within(
         &mut self,
         pose: Pose,

@@ -60,10 +60,6 @@ impl<D: Dynamics, B: Belief> Planner for RandomWalk<D, B> {
         }
     }
 
-    fn observe(&mut self, pose: Pose, reading: Option<Reading>) -> Result<(), Refused> {
-        reading.map_or(Ok(()), |reading| self.belief.observe(pose.site, reading))
-    }
-
     fn observe_within(
         &mut self,
         pose: Pose,

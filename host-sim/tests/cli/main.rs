@@ -30,6 +30,7 @@ mod scenarios;
 mod shards;
 mod size;
 mod stopping;
+mod tolerances;
 
 const GOOD: &str = include_str!("../../scenarios/paper-noiseless.toml");
 

@@ -111,11 +111,6 @@ impl<const N: usize, const H: usize> Foresight for Forecast<N, H> {
         &self.table
     }
 
-    fn observe(&mut self, site: Site, reading: Reading) -> Result<(), Refused> {
-        let Reading::Side(label) = reading else { return Ok(()) };
-        self.take(Sample { site, label }, self.table.reliability(site))
-    }
-
     fn observe_within(
         &mut self,
         site: Site,

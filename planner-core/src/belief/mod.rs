@@ -48,17 +48,22 @@ pub trait Belief {
     /// Whether another sample would be refused for want of room.
     fn is_full(&self) -> bool;
 
-    /// Takes in what was read at a site.
+    /// How far off a position may be at most, as it was configured.
+    fn tolerance(&self) -> Tolerance;
+
+    /// Takes in what was read at a site, which may be off by the [tolerance](Self::tolerance).
     ///
     /// # Errors
     /// [`Refused`] when the reading contradicts what is known or cannot be stored.
-    fn observe(&mut self, site: Site, reading: Reading) -> Result<(), Refused>;
+    fn observe(&mut self, site: Site, reading: Reading) -> Result<(), Refused> {
+        self.observe_within(site, reading, self.tolerance())
+    }
 
-    /// As [`observe`](Self::observe), of a site that may be off by so much, at most by the tolerance configured. The
-    /// less it may be off, the more the reading tells.
+    /// Takes in what was read at a site that may be off by so much, at most by the tolerance. The less it may be off, the
+    /// more the reading tells.
     ///
     /// # Errors
-    /// As `observe`, and [`Refused::Tolerance`].
+    /// As [`observe`](Self::observe), and [`Refused::Tolerance`].
     fn observe_within(
         &mut self,
         site: Site,

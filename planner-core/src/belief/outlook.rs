@@ -19,12 +19,6 @@ pub trait Foresight {
     /// What is known.
     fn belief(&self) -> &Self::Belief;
 
-    /// Takes in what was read at a site.
-    ///
-    /// # Errors
-    /// As [`Belief::observe`].
-    fn observe(&mut self, site: Site, reading: Reading) -> Result<(), Refused>;
-
     /// Takes in what was read at a site that may be off by so much.
     ///
     /// # Errors

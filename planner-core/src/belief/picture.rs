@@ -214,10 +214,6 @@ impl<const N: usize> Foresight for VersionSpace<N> {
         self
     }
 
-    fn observe(&mut self, site: Site, reading: Reading) -> Result<(), Refused> {
-        Belief::observe(self, site, reading)
-    }
-
     fn observe_within(
         &mut self,
         site: Site,

@@ -63,12 +63,11 @@ impl<const N: usize, const H: usize, const E: usize> Belief for Hypotheses<N, H,
         self.is_full()
     }
 
-    /// A reading on the boundary agrees with both sides, and tells nothing here.
-    fn observe(&mut self, site: Site, reading: Reading) -> Result<(), Refused> {
-        let Reading::Side(label) = reading else { return Ok(()) };
-        self.read(site, label)
+    fn tolerance(&self) -> Tolerance {
+        self.noise().tolerance
     }
 
+    /// A reading on the boundary agrees with both sides, and tells nothing here.
     fn observe_within(
         &mut self,
         site: Site,

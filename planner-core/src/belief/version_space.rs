@@ -298,11 +298,11 @@ impl<const N: usize> Belief for VersionSpace<N> {
         self.samples.is_full()
     }
 
-    /// As [`take`](Self::take), with +1 for a site on the boundary.
-    fn observe(&mut self, site: Site, reading: Reading) -> Result<(), Refused> {
-        self.take(site, reading, Label::Positive).map(|_| ())
+    fn tolerance(&self) -> Tolerance {
+        self.tolerance
     }
 
+    /// As [`take_within`](Self::take_within), with +1 for a site on the boundary.
     fn observe_within(
         &mut self,
         site: Site,

@@ -101,6 +101,12 @@ impl Orbit {
     pub fn is_inside<G: Region>(&self, site: Site, area: &G, radius: i32) -> bool {
         site.step(self.centre).is_ok_and(|centre| area.contains_disc(centre, radius))
     }
+
+    /// The radius and margin, and twice what positions err, which is the area's own margin.
+    pub(crate) fn with_room(&self, area: Area) -> i32 {
+        let err = area.margin() as i32;
+        self.radius.saturating_add(self.margin).saturating_add(err).saturating_add(err)
+    }
 }
 
 /// An area is too small for a vehicle's circle.
@@ -207,7 +213,7 @@ pub trait Dynamics {
     fn fits(&self, area: Area) -> Result<(), NoRoom> {
         let pose = Pose { site: area.middle(), heading: Heading(0) };
         let Some(orbit) = self.orbit(pose, Side::Left) else { return Ok(()) };
-        let radius = orbit.radius.saturating_add(orbit.margin).unsigned_abs();
+        let radius = orbit.with_room(area).unsigned_abs();
         let across_mm = (u64::from(radius) * 2_000).div_ceil(UNITS_PER_METRE as u64) as u32;
         area.inset(radius).map(drop).ok_or(NoRoom { across_mm })
     }
@@ -217,11 +223,17 @@ pub trait Dynamics {
         has_orbit_inside(self, pose, area, |orbit| orbit.radius)
     }
 
-    /// Whether a motion to a place inside the area stays there, and ends where it is safe, with a margin
-    /// for the rounding of a round.
+    /// Whether a motion to a place inside the area stays there and ends where it is safe. There is a margin for the
+    /// rounding of a round.
     fn keeps_inside<G: Region>(&self, from: Pose, to: Pose, area: &G) -> bool {
         self.stays_inside(from, to, area)
             && has_orbit_inside(self, to, area, |orbit| orbit.radius.saturating_add(orbit.margin))
+    }
+
+    /// The same, with room for two errors of its position: so that they do not push its circle out.
+    fn keeps_room<G: Region>(&self, from: Pose, to: Pose, area: &G) -> bool {
+        let room = |orbit: &Orbit| orbit.with_room(area.bounds());
+        self.stays_inside(from, to, area) && has_orbit_inside(self, to, area, room)
     }
 
     /// Whether all of a motion to a place that the border [allows](Region::confines) stays there, and touches no

@@ -24,6 +24,7 @@ use crate::planner::config::{Config, ConfigError, Following, first_to_second};
 use crate::planner::silence::Silence;
 use crate::planner::snapshot::{NotRestored, Persist, Snapshot};
 use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
+use crate::search::course::Course;
 use crate::search::dead_end::DeadEnd;
 use crate::search::direction_rule::ArcRule;
 use crate::search::objective::{Choice, Effort, LOOKS};
@@ -117,13 +118,17 @@ impl<D: Dynamics, const N: usize, G: Region> Cfc<D, N, G> {
 
     /// The motion to make, the phase that it belongs to, and what it cost to find it.
     /// Where positions err and no place is left at which either label would cut, one where one would is enough.
-    fn find(&self, pose: Pose) -> (Result<Found, DeadEnd>, Phase, Effort) {
+    fn find(&self, pose: Pose, course: &mut Course) -> (Result<Found, DeadEnd>, Phase, Effort) {
         let lines = self.space.lines();
         if self.space.expected() == Tolerance::NONE {
-            return self.find_among(lines, pose, LOOKS);
+            return self.find_among(lines, pose, LOOKS, course);
         }
-        let found = self.find_among(lines, pose, LOOKS / 2);
-        if found.0.is_err() { self.find_among(lines.loosely(), pose, LOOKS / 2) } else { found }
+        let found = self.find_among(lines, pose, LOOKS / 2, course);
+        if found.0.is_err() {
+            self.find_among(lines.loosely(), pose, LOOKS / 2, course)
+        } else {
+            found
+        }
     }
 
     fn find_among(
@@ -131,6 +136,7 @@ impl<D: Dynamics, const N: usize, G: Region> Cfc<D, N, G> {
         lines: ConsistentLines<'_>,
         pose: Pose,
         looks: u32,
+        course: &mut Course,
     ) -> (Result<Found, DeadEnd>, Phase, Effort) {
         let slopes = self.space.slope_arc();
         let problem = self.problem_of(self.phase, slopes, lines);
@@ -140,7 +146,7 @@ impl<D: Dynamics, const N: usize, G: Region> Cfc<D, N, G> {
         if self.phase == Phase::Following {
             let findings = search.best(&problem.rule, None);
             if let Some((Choice { action, target, .. }, _)) = findings.best {
-                let found = Found { recovery: None, action, target };
+                let found = Found::of(None, (action, target));
                 return (Ok(found), Phase::Following, search.effort);
             }
             if let Some(turned) = turn_round(&problem, search) {
@@ -149,7 +155,7 @@ impl<D: Dynamics, const N: usize, G: Region> Cfc<D, N, G> {
             followed = Some(findings);
         }
         let crossing = self.problem_of(Phase::Crossing, slopes, lines);
-        let found = solve_or_recover(&crossing, search, followed);
+        let found = solve_or_recover(&crossing, search, followed, course);
         (found, Phase::Crossing, search.effort)
     }
 }
@@ -161,7 +167,8 @@ impl<D: Dynamics, const N: usize, G: Region> Planner for Cfc<D, N, G> {
         if self.space.is_full() {
             return Plan::Stop(StopReason::SamplesFull);
         }
-        let (found, phase, effort) = self.find(pose);
+        let mut course = self.silence.course();
+        let (found, phase, effort) = self.find(pose, &mut course);
         self.phase = phase;
         let stage = match phase {
             Phase::Crossing => Some(Stage::P1),
@@ -170,14 +177,10 @@ impl<D: Dynamics, const N: usize, G: Region> Planner for Cfc<D, N, G> {
         match found {
             Ok(found) => {
                 let motion = Motion::of(stage, &found, &self.dynamics, effort);
-                self.silence.keep(pose, motion, &self.dynamics)
+                self.silence.keep(pose, (motion, course), &self.dynamics)
             }
             Err(dead_end) => Plan::Stop(dead_end.into()),
         }
-    }
-
-    fn observe(&mut self, pose: Pose, reading: Option<Reading>) -> Result<(), Refused> {
-        self.observe_within(pose, reading, self.space.tolerance())
     }
 
     fn observe_within(
@@ -211,7 +214,7 @@ impl<D: Dynamics, const N: usize, G: Region> Planner for Cfc<D, N, G> {
     }
 }
 
-/// It remembers its phase, the label of the past position, and how it turned since.
+/// It remembers its phase, the label of the past position, how it turned since, and the way that is under way.
 impl<D: Dynamics, const N: usize, G: Region> Persist for Cfc<D, N, G> {
     type Snapshot = Snapshot<Told<N>, (Phase, Label, Silence)>;
 

@@ -33,6 +33,7 @@ use crate::planner::config::{Config, ConfigError};
 use crate::planner::silence::Silence;
 use crate::planner::snapshot::{NotRestored, Persist, Snapshot};
 use crate::planner::{Motion, Plan, Planner, StopReason};
+use crate::search::course::Course;
 use crate::search::dead_end::{DeadEnd, is_broad};
 use crate::search::direction_rule::ArcRule;
 use crate::search::lookout::{ENOUGH, Lookout, Prospect, Prospects, Sought};
@@ -184,14 +185,14 @@ impl<D: Dynamics, B: Foresight, G: Region> Lookahead<D, B, G> {
     }
 
     /// What the ladder finds where no label is in reach that is worth it.
-    fn recover(&self, pose: Pose) -> (Result<Found, DeadEnd>, Effort) {
+    fn recover(&self, pose: Pose, course: &mut Course) -> (Result<Found, DeadEnd>, Effort) {
         let lines = self.foresight.ground();
         let (area, varrho) = (self.config.area, self.config.varrho);
         let rule = ArcRule::default();
         let problem = Problem { lines, area, varrho, rule };
         let mut search = problem.search(&self.dynamics, pose, Effort::of(LOOKS));
         let search = search.open();
-        let found = solve_or_recover(&problem, search, None);
+        let found = solve_or_recover(&problem, search, None, course);
         (found, search.effort)
     }
 }
@@ -235,40 +236,32 @@ impl<D: Dynamics, B: Foresight, G: Region> Planner for Lookahead<D, B, G> {
             return Plan::Stop(StopReason::SamplesFull);
         }
         self.foresight.prepare();
-        self.silence.next_is_dull = false;
         let (dynamics, evaluations) = (&self.dynamics, self.evaluations);
         let (usual, scale) = usual(dynamics, &area);
         let least = self.least();
         let mut lookout = Lookout { dynamics, area, varrho, usual, scale, least, evaluations };
         if let Some(decision) = self.decide(&mut lookout, pose) {
             let Decision { action, target, wants_label, .. } = decision;
+            self.silence.bears(false);
             let looks = lookout.evaluations;
             let effort = Effort { looks, examined: evaluations - looks };
-            let found = Found { recovery: None, action, target };
+            let found = Found::of(None, (action, target));
             let motion = Motion { wants_label, ..Motion::of(None, &found, dynamics, effort) };
-            return self.silence.keep(pose, motion, dynamics);
+            return self.silence.keep(pose, (motion, self.silence.course()), dynamics);
         }
-        match self.recover(pose) {
+        let mut course = self.silence.course();
+        match self.recover(pose, &mut course) {
             (Ok(found), effort) => {
                 let motion = Motion::of(None, &found, dynamics, effort);
                 // No label in reach is worth its way: this one is on the way to others.
                 let is_dull = least > 0.0 && motion.wants_label;
-                let bears_it = !is_dull || self.silence.bears_a_dull_label();
-                if !bears_it && !is_broad(self.foresight.ground()) {
+                if !self.silence.bears(is_dull) && !is_broad(self.foresight.ground()) {
                     return Plan::Stop(StopReason::Tolerance);
                 }
-                self.silence.keep(pose, motion, dynamics)
+                self.silence.keep(pose, (motion, course), dynamics)
             }
             (Err(dead_end), _) => Plan::Stop(dead_end.into()),
         }
-    }
-
-    fn observe(&mut self, pose: Pose, reading: Option<Reading>) -> Result<(), Refused> {
-        if let Some(reading) = reading {
-            self.foresight.observe(pose.site, reading)?;
-        }
-        self.silence.observe(reading.is_some());
-        Ok(())
     }
 
     fn observe_within(

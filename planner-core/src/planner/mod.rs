@@ -75,7 +75,7 @@ impl Motion {
         dynamics: &D,
         effort: Effort,
     ) -> Self {
-        let &Found { recovery, action, target } = found;
+        let &Found { recovery, action, target, .. } = found;
         Self {
             stage,
             recovery,
@@ -146,19 +146,21 @@ pub trait Planner {
     /// The next motion from a pose.
     fn plan(&mut self, pose: Pose) -> Plan;
 
-    /// Takes in where the motion ended and what was sensed there, if a sample was taken.
+    /// Takes in where the motion ended and what was sensed there, if a sample was taken. The position may be off by the
+    /// tolerance that was configured.
     ///
     /// # Errors
     /// [`Refused`] when the reading contradicts what is known or cannot be stored; the planner is
     /// then as it was.
-    fn observe(&mut self, pose: Pose, reading: Option<Reading>) -> Result<(), Refused>;
+    fn observe(&mut self, pose: Pose, reading: Option<Reading>) -> Result<(), Refused> {
+        self.observe_within(pose, reading, self.belief().tolerance())
+    }
 
     /// As [`observe`](Self::observe), of a position that may be off by so much: what a localisation reports that knows its
     /// own error. The less it may be off, the more the label tells.
     ///
-    /// The tolerance that was configured is the most that any position may be off: motions keep so far from the border
-    /// and from keep-outs, whatever single observations bring. Without a reading the tolerance has no effect. A planner without this method takes every position to be
-    /// off by that.
+    /// Any position may be off by the tolerance that was configured, at most: motions keep so far from the border and from
+    /// keep-outs, whatever single observations bring. Without a reading it has no effect.
     ///
     /// # Errors
     /// As `observe`, and [`Refused::Tolerance`] where it is more than was configured.
@@ -167,10 +169,7 @@ pub trait Planner {
         pose: Pose,
         reading: Option<Reading>,
         tolerance: Tolerance,
-    ) -> Result<(), Refused> {
-        let _ = tolerance;
-        self.observe(pose, reading)
-    }
+    ) -> Result<(), Refused>;
 
     /// What is known.
     fn belief(&self) -> &Self::Belief;
@@ -186,10 +185,6 @@ impl<T: Planner + ?Sized> Planner for &mut T {
 
     fn plan(&mut self, pose: Pose) -> Plan {
         T::plan(self, pose)
-    }
-
-    fn observe(&mut self, pose: Pose, reading: Option<Reading>) -> Result<(), Refused> {
-        T::observe(self, pose, reading)
     }
 
     fn observe_within(

@@ -39,6 +39,7 @@ use crate::planner::silence::Silence;
 use crate::planner::snapshot::{NotRestored, Persist, Snapshot};
 use crate::planner::vote::Ballot;
 use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
+use crate::search::course::Course;
 use crate::search::dead_end::DeadEnd;
 use crate::search::direction_rule::{ArcRule, ArcUnion, DirectionRule, UnionRule};
 use crate::search::objective::{Effort, LOOKS, OPENING};
@@ -50,7 +51,7 @@ pub const FOLLOWING: Following = Following::Unrestricted;
 
 /// Looks that a plan with a vote takes at most: half of them for the vote, the rest for the ladder. When the half is used
 /// up, the hypotheses that were asked decide, which are the heaviest. The paper's example would take 26,000 at 60 labels.
-pub const VOTE_LOOKS: u32 = 12_288;
+pub const VOTE_LOOKS: u32 = 11_520;
 
 /// How the hypotheses choose an action together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -174,13 +175,13 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Region> Scc<D, N, H, G> {
         ballot.winner()
     }
 
-    fn find(&self, pose: Pose, effort: &mut Effort) -> Result<Found, DeadEnd> {
+    fn find(&self, pose: Pose, effort: &mut Effort, course: &mut Course) -> Result<Found, DeadEnd> {
         if self.policy == Policy::Joint {
             // P3 and P4 as printed: travel in no retained hypothesis's slopes, or in some one's.
             let slopes = self.hypotheses.iter().map(|h| self.hypotheses.lines(h).slope_arc());
             let slopes: ArcUnion = slopes.collect();
             let rule = UnionRule { arcs: slopes.arcs(), among: !self.is_even() };
-            return self.find_on_start(rule, pose, effort);
+            return self.find_on_start(rule, pose, effort, course);
         }
         // The rest is for the ladder.
         let kept = effort.keep_back(effort.looks / 2);
@@ -188,11 +189,11 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Region> Scc<D, N, H, G> {
         effort.give_back(kept);
         let elected = elected.and_then(|action| {
             let target = self.dynamics.target(pose, action)?;
-            Some(Found { recovery: None, action, target })
+            Some(Found::of(None, (action, target)))
         });
         elected.map_or_else(
             || {
-                let found = self.find_on_start(ArcRule::default(), pose, effort)?;
+                let found = self.find_on_start(ArcRule::default(), pose, effort, course)?;
                 let recovery = found.recovery.or(Some(Recovery::Undirected));
                 Ok(Found { recovery, ..found })
             },
@@ -206,11 +207,12 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Region> Scc<D, N, H, G> {
         rule: impl DirectionRule,
         pose: Pose,
         effort: &mut Effort,
+        course: &mut Course,
     ) -> Result<Found, DeadEnd> {
         let problem = self.on(self.hypotheses.start(), rule);
         let mut search = problem.search(&self.dynamics, pose, *effort);
         let search = search.open();
-        let found = solve_or_recover(&problem, search, None);
+        let found = solve_or_recover(&problem, search, None, course);
         *effort = search.effort;
         found
     }
@@ -230,21 +232,14 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Region> Planner for Scc<D, 
             (_, false) => Stage::P4,
         };
         let mut effort = Effort::of(if self.policy == Policy::Joint { LOOKS } else { VOTE_LOOKS });
-        match self.find(pose, &mut effort) {
+        let mut course = self.silence.course();
+        match self.find(pose, &mut effort, &mut course) {
             Ok(found) => {
                 let motion = Motion::of(Some(stage), &found, &self.dynamics, effort);
-                self.silence.keep(pose, motion, &self.dynamics)
+                self.silence.keep(pose, (motion, course), &self.dynamics)
             }
             Err(dead_end) => Plan::Stop(dead_end.into()),
         }
-    }
-
-    fn observe(&mut self, pose: Pose, reading: Option<Reading>) -> Result<(), Refused> {
-        if let Some(reading) = reading {
-            self.hypotheses.observe(pose.site, reading)?;
-        }
-        self.silence.observe(reading.is_some());
-        Ok(())
     }
 
     fn observe_within(

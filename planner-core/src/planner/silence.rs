@@ -1,7 +1,7 @@
-//! What a planner remembers of the motions since the last label, so that no mission goes round for ever.
+//! What a planner remembers of the motions since the last label, so that every mission ends.
 //!
 //! A plan is a search of bounded cost. From here it may find a way to the left, and after that motion a way to the right.
-//! So a planner keeps four rules, whatever its search finds:
+//! So a planner goes on with a way that was hard to find (`Course`), and keeps four rules, whatever its search finds:
 //!
 //! - who turned on the spot and read no label goes on turning to the same side, until it drives;
 //! - it does not turn on the spot to where it has been before;
@@ -15,6 +15,7 @@ use crate::geometry::heading::Heading;
 use crate::geometry::lattice::Site;
 use crate::motion::dynamics::{Dynamics, Pose, Side};
 use crate::planner::{Motion, Plan, StopReason};
+use crate::search::course::Course;
 
 /// A full turn, in the units of [`Silence::turned`].
 const FULL_TURN: u32 = 1 << 24;
@@ -62,10 +63,13 @@ pub struct Silence {
     /// The motion before, and the one that was planned last.
     last: Turn,
     next: Turn,
+    /// The way that the motion before was part of, and the same of the one that was planned last.
+    course: Course,
+    next_course: Course,
     /// Labels in a row that were not expected to tell much.
     dull: u8,
     /// Whether the next one is such.
-    pub(crate) next_is_dull: bool,
+    next_is_dull: bool,
 }
 
 impl Silence {
@@ -76,23 +80,38 @@ impl Silence {
         spot: None,
         last: Turn::None,
         next: Turn::None,
+        course: Course::NONE,
+        next_course: Course::NONE,
         dull: 0,
         next_is_dull: false,
     };
 
-    /// Takes note that the next label is not expected to tell much; whether one may be read all the same.
-    pub(crate) const fn bears_a_dull_label(&mut self) -> bool {
-        self.next_is_dull = true;
-        self.dull < MOST_DULL
+    /// The way of several motions that is under way.
+    pub(crate) const fn course(&self) -> Course {
+        self.course
     }
 
-    /// What a planner does that has found this motion from a pose.
-    pub(crate) fn keep<D: Dynamics>(&mut self, pose: Pose, found: Motion, dynamics: &D) -> Plan {
-        self.next = Turn::None;
+    /// Takes note whether the next label is expected to tell much; whether one may be read all the same.
+    pub(crate) const fn bears(&mut self, is_dull: bool) -> bool {
+        self.next_is_dull = is_dull;
+        !is_dull || self.dull < MOST_DULL
+    }
+
+    /// What a planner does that has found this motion from a pose, and the course that it is part of.
+    pub(crate) fn keep<D: Dynamics>(
+        &mut self,
+        pose: Pose,
+        (found, course): (Motion, Course),
+        dynamics: &D,
+    ) -> Plan {
+        (self.next, self.next_course) = (Turn::None, course);
         if found.wants_label {
             return Plan::Move(found);
         }
         let motion = self.steady(pose, found, dynamics);
+        if motion.action != found.action {
+            self.next_course = self.next_course.without_way();
+        }
         let by = motion.target.heading.0.wrapping_sub(pose.heading.0) as i32;
         let is_drive = motion.target.site != pose.site;
         if self.spot.replace(pose.site) != Some(pose.site) {
@@ -141,7 +160,8 @@ impl Silence {
         let by = by.unsigned_abs() >> 8;
         let by = if by > SLIGHT { by.max(LEAST) } else { by };
         let turned = self.turned.saturating_add(by);
-        Self { turned, on_the_spot, last: turn, next: Turn::None, ..self }
+        let course = self.next_course;
+        Self { turned, on_the_spot, last: turn, next: Turn::None, course, ..self }
     }
 }
 
@@ -176,17 +196,20 @@ mod tests {
         for n in 0..3 {
             let side = if n == 0 { Side::Left } else { Side::Right };
             // Asked twice it says the same.
-            let plan = silence.keep(pose, turn(pose, side), &Unicycle::paper());
-            assert_eq!(silence.keep(pose, turn(pose, side), &Unicycle::paper()), plan);
+            let plan = silence.keep(pose, (turn(pose, side), Course::NONE), &Unicycle::paper());
+            assert_eq!(
+                silence.keep(pose, (turn(pose, side), Course::NONE), &Unicycle::paper()),
+                plan
+            );
             assert_eq!(plan, Plan::Move(turn(pose, Side::Left)), "{n}");
             silence.observe(false);
             pose = turn(pose, Side::Left).target;
         }
-        let plan = silence.keep(pose, turn(pose, Side::Left), &Unicycle::paper());
+        let plan = silence.keep(pose, (turn(pose, Side::Left), Course::NONE), &Unicycle::paper());
         assert_eq!(plan, Plan::Stop(StopReason::Undecided));
         // A label makes it new.
         silence.observe(true);
-        let plan = silence.keep(pose, turn(pose, Side::Right), &Unicycle::paper());
+        let plan = silence.keep(pose, (turn(pose, Side::Right), Course::NONE), &Unicycle::paper());
         assert_eq!(plan, Plan::Move(turn(pose, Side::Right)));
     }
 
@@ -199,7 +222,7 @@ mod tests {
                 let site = if pose.site == away { start().site } else { away };
                 let target = Pose { site, heading: Heading(pose.heading.0.wrapping_add(by)) };
                 let motion = Motion { target, ..turn(pose, Side::Left) };
-                let plan = silence.keep(pose, motion, &Unicycle::paper());
+                let plan = silence.keep(pose, (motion, Course::NONE), &Unicycle::paper());
                 if let Plan::Stop(_) = plan {
                     return Some(motions);
                 }

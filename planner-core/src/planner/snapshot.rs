@@ -1,9 +1,8 @@
 //! Sleep and wake: what has to outlive a planner for the next one to plan the same.
 //!
-//! Settings (area, dynamics, noise, goal) are the program's and stay there. What a mission adds to them is what
-//! its belief was told, how it turned since the last label and, for Algorithm 1, where it stands: a [`Snapshot`] is that,
-//! and no more. With the
-//! feature `serde` it goes to bytes and back, in any format that serde has:
+//! Settings (area, dynamics, noise, goal) are the program's and stay there. A [`Snapshot`] is what a mission adds to them,
+//! and no more: what its belief was told, how it turned since the last label, and the way that is under way. For Algorithm 1
+//! it is also where that stands. With the feature `serde` it goes to bytes and back, in any format that serde has:
 //!
 //! ```text
 //! awake:   let bytes = to_slice(&(agent.pose(), agent.planner.snapshot()), &mut backup)?;
@@ -21,8 +20,8 @@ use crate::belief::told::NotReplayed;
 use crate::planner::Planner;
 
 /// The version of snapshots: it is what is written first, and changes when what follows does. From 2 on they hold the
-/// tolerances that observations brought, and how a planner turned since the last label.
-pub const VERSION: u16 = 2;
+/// tolerances that observations brought, and how a planner turned since the last label; from 3 on the way that is under way.
+pub const VERSION: u16 = 3;
 
 /// What a planner has to remember over a sleep: what its belief was told (`T`), and what else it plans by (`M`).
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -269,7 +269,7 @@ impl<D: Dynamics, G: Region> Search<'_, D, G> {
         for _ in 0..2 {
             self.effort.take_sweep(self.view.area(), &[pose.site, target.site]);
         }
-        if !self.dynamics.keeps_inside(pose, target, self.view.area()) {
+        if !self.dynamics.keeps_room(pose, target, self.view.area()) {
             self.is_hemmed_in = true;
             return Err(HEMMED_IN);
         }

@@ -142,7 +142,7 @@ impl<D: Dynamics, G: Region> Lookout<'_, D, G> {
         if share > 0.0
             && share < 1.0
             && self.area.contains(target.site)
-            && self.dynamics.keeps_inside(pose, target, &self.area)
+            && self.dynamics.keeps_room(pose, target, &self.area)
         {
             let grid = self.dynamics.grid();
             let cost = self.cost(grid.reach_mm(speed), ray.effort);

@@ -5,7 +5,7 @@
 //! as the shortest paths of a car do (Dubins, 1957): `L..L S..S R..R` and the like. The search returns the first motion of
 //! the shortest way to a pose from where the problem is feasible: a short one if there is one, else a long one.
 //!
-//! Each motion of a way ends [safe](Dynamics::keeps_inside), so the vehicle is never cornered for want of caution. Where it
+//! Each motion of a way ends [safe](Dynamics::keeps_room), so the vehicle is never cornered for want of caution. Where it
 //! is not safe to begin with, an error has brought it there. Then motions may use the margin that the area keeps for
 //! errors, and shorter motions that bulge less; and if no way leads to a label, the shortest one leads to where it is safe.
 //! Where keep-outs are in the way, the search returns the way that comes nearest to the first waypoint round them (`detour`).
@@ -252,7 +252,7 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Manoeuvre<'_, '_, '_, D, R, G> {
         let (dynamics, area) = (self.dynamics, &self.problem.area);
         let fits = |orbit: Orbit| orbit.is_inside(after.site, area, orbit.radius);
         !dynamics.is_safe(pose, area)
-            || dynamics.keeps_inside(pose, after, area)
+            || dynamics.keeps_room(pose, after, area)
             || dynamics.orbit(after, side).is_some_and(fits)
     }
 
@@ -317,7 +317,7 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Manoeuvre<'_, '_, '_, D, R, G> {
             }
             let leg = (grid.action(ray.index, speed), after);
             let area = &self.problem.area;
-            if area.contains(after.site) && dynamics.keeps_inside(pose, after, area) {
+            if area.contains(after.site) && dynamics.keeps_room(pose, after, area) {
                 return Some((leg, 1));
             }
             otherwise = otherwise.or(Some((leg, 1)));
@@ -386,7 +386,7 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Manoeuvre<'_, '_, '_, D, R, G> {
         if self.start != Start::Safe
             && self.escape.is_none_or(|(_, least)| place.motions < least)
             && self.problem.area.contains(pose.site)
-            && self.dynamics.keeps_inside(pose, pose, &self.problem.area)
+            && self.dynamics.keeps_room(pose, pose, &self.problem.area)
         {
             self.escape = Some(course);
         }

@@ -9,6 +9,7 @@
 //! most (`lookout`).
 
 pub(crate) mod circles;
+pub(crate) mod course;
 pub(crate) mod crossing;
 pub(crate) mod dead_end;
 mod detour;

@@ -3,16 +3,19 @@
 //! The paper is silent here, and P1 comes to it once in some fourteen steps. In this order:
 //!
 //! 1. *Undirected*: the same problem without its rule on directions.
-//! 2. *Transit, far*: where no uncertain ground of the area is within reach, the way to the nearest:
-//!    drives that bring it nearer by an eighth of their length at least, or the fewest turns in place
-//!    after which there is such a drive. No sample is taken.
+//! 2. *Transit, far*: where no uncertain ground of the area is within reach, the way to the nearest. Each drive brings it
+//!    nearer by an eighth of its length at least; else there are the fewest turns in place after which a drive does.
+//!    No sample is taken.
 //! 3. *Reorient*: turn in place, the fewest sharpest turns after which (1) is feasible beyond them; of
 //!    left and right, the one with the better action there. No sample is taken.
 //! 4. *Transit, near*: some is within reach and yet no action hits it: to the nearest pose (counted in
 //!    motions, 16 at most) from which (1) is feasible, and that leaves the reach of uncertain ground
 //!    nowhere. Eight bearings are considered, along the bisector of the slope arc both ways, across
 //!    it both ways, and between.
-//! 5. Nothing: there is a reason why, which the planner stops with.
+//! 5. *Courses*, where there is open ground: a drive to the nearest beyond reach, once; then a way drawn at random (`wander`).
+//!    For a vehicle that has to go round to turn also a drive drawn at random, to try again from elsewhere. The next plans go
+//!    on with what was begun (`course`).
+//! 6. Nothing: there is a reason why, which the planner stops with.
 //!
 //! Where keep-outs are in the way of (2) it goes round them (`detour`).
 //!
@@ -22,15 +25,13 @@
 //! (1), and before Algorithm 1 gives P2 up, it takes such a way to where the problem is feasible with its rule: its fan
 //! may lie where the rule allows no direction, and straight on it would learn next to nothing.
 //!
-//! Where all of this fails and there is open ground, it drives to the nearest beyond reach, or draws motions at random
-//! (`wander`).
+//! **Rungs 1 to 4 end**, though they have no state, as long as looks suffice. What is known does not change before the next
+//! sample, and each motion lowers a measure. Far, that is the distance to uncertain ground, then the turns to the next drive.
+//! Near, it is the turns of (3), or where it has none the motions of (4), which stay near. What is near never becomes far
+//! again. Outside, it is the distance to the middle, and then the turns. Inside, no motion leads out.
 //!
-//! **Rungs 1 to 4 end**, though they have no state, as long as looks suffice: what is known does not change before the next
-//! sample, and each motion lowers a measure. Far, that is the distance to uncertain ground, and then the turns to the next drive.
-//! Near, it is the turns of (3), or where it has none the motions of (4), which stay near. What is near never becomes far again.
-//! Outside, it is the distance to the middle, and then the turns. Inside, no motion leads out. The ways after rung 4 lower no
-//! measure. For these the planner counts turns, see [`Silence`](crate::planner::silence::Silence). It does not count a way to
-//! and fro without turns.
+//! **Courses end**: there is one drive far, sixteen to elsewhere, and a way that is drawn has at most six motions and a label.
+//! Where errors or want of looks spoil all that, the planner counts turns, see [`Silence`](crate::planner::silence::Silence).
 
 use crate::geometry::approximate::{heading_of, single, sqrt};
 use crate::geometry::heading::Heading;
@@ -39,12 +40,13 @@ use crate::geometry::region::Region;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Pose, Ray, Side};
 use crate::search::circles::{Findings, Search};
+use crate::search::course::{Course, Far};
 use crate::search::dead_end::{DeadEnd, way_to_open_ground};
 use crate::search::detour::{self, Way};
 use crate::search::direction_rule::{ArcRule, DirectionRule};
 use crate::search::manoeuvre::{manoeuvre, waypoint};
 use crate::search::problem::Problem;
-use crate::search::wander::wander;
+use crate::search::wander::{drift, stays, wander};
 
 /// A transit among uncertain ground looks this many motions ahead. Twice as many find nothing more in
 /// 1,000 standard missions of 60 steps.
@@ -56,9 +58,12 @@ const FIRST_LOOKS: u32 = 2_048;
 /// A heading this far from a bearing drives along it.
 const ALONG: u32 = Heading::turn_of(0.125);
 
-/// Turns in place that a leg considers one after the other, even where fewer are half a turn, if rays are
-/// so few that each turn brings others.
+/// Turns in place that a leg considers one after the other, if rays are so few that each turn brings others. Fewer may be
+/// half a turn.
 const TURNS: u32 = 8;
+
+/// Motions to try from elsewhere, without a label.
+const TRIES: u8 = 16;
 
 /// What was done as the problem itself had no feasible action.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,8 +85,14 @@ pub(crate) struct Found {
     pub(crate) target: Pose,
 }
 
+impl Found {
+    pub(crate) const fn of(recovery: Option<Recovery>, (action, target): Leg) -> Self {
+        Self { recovery, action, target }
+    }
+}
+
 /// The problem's best action from where a search is, or the ladder's. `before` is what that search found
-/// by another rule, see [`Search::best`].
+/// by another rule, see [`Search::best`], and `course` what was begun since the last label.
 ///
 /// # Errors
 /// Why there is neither.
@@ -89,8 +100,8 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule, G: Region>(
     problem: &Problem<'_, R, G>,
     search: &mut Search<'_, D, G>,
     before: Option<Findings>,
+    course: &mut Course,
 ) -> Result<Found, DeadEnd> {
-    let found = |recovery| move |(action, target)| Found { recovery, action, target };
     let (area, pose) = (problem.area, search.pose);
     let mut ladder = Ladder { problem: problem.undirected(), search };
     // Before the search has used up its looks.
@@ -102,14 +113,18 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule, G: Region>(
     let Findings { best, best_forbidden } = ladder.search.best(&problem.rule, before);
     ladder.search.effort.give_back(kept);
     if let Some((best, _)) = best {
-        return Ok(found(None)((best.action, best.target)));
+        return Ok(Found::of(None, (best.action, best.target)));
     }
     if let Some((best, _)) = best_forbidden {
         if let Some(turned) = turn_round(problem, ladder.search) {
             return Ok(turned);
         }
-        return Ok(found(Some(Recovery::Undirected))((best.action, best.target)));
+        return Ok(Found::of(Some(Recovery::Undirected), (best.action, best.target)));
     }
+    if let Some(found) = ladder.go_on(course) {
+        return Ok(found);
+    }
+    *course = course.without_way();
     // Few looks find a way nearly always, unless it has to go round. More of them are worth it where there is much ground
     // to find.
     let goes_round = goes_round(ladder.search.dynamics, pose);
@@ -118,26 +133,23 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule, G: Region>(
     let climbed = ladder.climb(home);
     ladder.search.effort.give_back(kept);
     let Err(why) = climbed else { return climbed };
-    let climbed = Err(why);
     let open = way_to_open_ground(problem.lines, &area, pose.site);
     let Some(open) = open.filter(|_| why != DeadEnd::Outside) else {
         return Err(why.of_thin_ground(problem.lines));
     };
     let kept = ladder.search.effort.keep_back(ladder.search.effort.looks / 2);
-    let climbed = if goes_round { climbed } else { ladder.climb(home) };
+    let climbed = if goes_round { Err(why) } else { ladder.climb(home) };
     ladder.search.effort.give_back(kept);
     climbed.or_else(|why| {
-        let way = ladder.drive_far(open).map(|leg| (leg, false));
-        let way = way.or_else(|| wander(&ladder.problem, ladder.search));
-        let (leg, has_label) = way.ok_or(why.of_open_ground())?;
-        let recovery = if has_label { Recovery::Undirected } else { Recovery::Transit };
-        Ok(found(Some(recovery))(leg))
+        let way = ladder.begin_far(open, course);
+        let way = way.or_else(|| ladder.begin_drawn(course));
+        let way = way.or_else(|| ladder.go_elsewhere(course));
+        way.ok_or(why.of_open_ground())
     })
 }
 
-/// The way to where a problem is feasible in a direction that its rule allows, for a vehicle that has to go round in
-/// order to turn and is safe: its fan may lie where the rule allows none, and straight on it would learn next to
-/// nothing.
+/// The way to where a problem is feasible in a direction that its rule allows. It is for a vehicle that has to go round in
+/// order to turn, and is safe: its fan may lie where the rule allows none. Straight on it would learn next to nothing.
 pub(crate) fn turn_round<D: Dynamics, R: DirectionRule, G: Region>(
     problem: &Problem<'_, R, G>,
     search: &mut Search<'_, D, G>,
@@ -148,8 +160,7 @@ pub(crate) fn turn_round<D: Dynamics, R: DirectionRule, G: Region>(
     let kept = search.effort.keep_back(search.effort.looks / 2);
     let found = is_free.then(|| manoeuvre(problem, search, None).ok()).flatten();
     search.effort.give_back(kept);
-    let (action, target) = found?;
-    Some(Found { recovery: Some(Recovery::Transit), action, target })
+    found.map(|leg| Found::of(Some(Recovery::Transit), leg))
 }
 
 /// Whether a vehicle has to go round in order to turn.
@@ -180,17 +191,16 @@ struct Ladder<'s, 'p, 'a, D, G> {
 impl<D: Dynamics, G: Region> Ladder<'_, '_, '_, D, G> {
     /// The rungs 2 to 4, or a manoeuvre; `home` is the way back from outside, if that is where the agent is.
     fn climb(&mut self, home: Option<Result<Leg, DeadEnd>>) -> Result<Found, DeadEnd> {
-        let found = |recovery| move |(action, target)| Found { recovery, action, target };
         let pose = self.search.pose;
         if goes_round(self.search.dynamics, pose) {
             self.search.view.way_out().ok_or(DeadEnd::Resolution)?;
             let waypoint = waypoint(self.search);
             let leg = manoeuvre(&self.problem, self.search, waypoint);
-            return leg.map(found(Some(Recovery::Transit)));
+            return leg.map(|leg| Found::of(Some(Recovery::Transit), leg));
         }
         // Where nothing is in reach no turn finds anything, so that the order does not matter.
         if let Some(turn) = self.reorient() {
-            return Ok(found(Some(Recovery::Reorient))(turn));
+            return Ok(Found::of(Some(Recovery::Reorient), turn));
         }
         let Search { view, effort, .. } = &mut *self.search;
         let way = view.way_out().ok_or(DeadEnd::Resolution)?;
@@ -202,16 +212,74 @@ impl<D: Dynamics, G: Region> Ladder<'_, '_, '_, D, G> {
             }
             (None, _) => self.transit(),
         };
-        leg.map(found(Some(Recovery::Transit)))
+        leg.map(|leg| Found::of(Some(Recovery::Transit), leg))
+    }
+
+    /// The next motion of a course, if it can be made.
+    fn go_on(&mut self, course: &mut Course) -> Option<Found> {
+        let pose = self.search.pose;
+        if let Far::To(place) = course.far {
+            let drive = self.drive_far(place - pose.site);
+            if drive.is_some() {
+                return drive;
+            }
+            course.far = Far::Over;
+        }
+        let (action, is_last) = course.next()?;
+        let target = self.search.dynamics.target(pose, action)?;
+        let Search { dynamics, effort, .. } = &mut *self.search;
+        let turns = target.site == pose.site;
+        if !turns && !stays(*dynamics, &self.problem.area, effort, [pose, target])
+            || is_last && (turns || !self.problem.lines.can_cut(target.site))
+        {
+            return None;
+        }
+        let recovery = if is_last { Recovery::Undirected } else { Recovery::Transit };
+        Some(Found::of(Some(recovery), (action, target)))
+    }
+
+    /// The first motion to open ground, which lies so far off, if it is beyond reach and there was no such drive.
+    fn begin_far(&mut self, way: Vector, course: &mut Course) -> Option<Found> {
+        if course.far != Far::Not {
+            return None;
+        }
+        let place = self.search.pose.site.step(way).ok()?;
+        let found = self.drive_far(way)?;
+        course.far = Far::To(place);
+        Some(found)
     }
 
     /// One motion on the way to a place beyond reach, unless the vehicle has to go round to turn.
-    fn drive_far(&mut self, way: Vector) -> Option<Leg> {
+    #[inline(never)] // it is called in two places, where time does not matter
+    fn drive_far(&mut self, way: Vector) -> Option<Found> {
         let (dynamics, pose) = (self.search.dynamics, self.search.pose);
         let grid = dynamics.grid();
         let reach = f32::from(grid.speeds().saturating_sub(1)) * grid.step_units();
         let is_far = sqrt(single(way.dot(way))) > reach && !goes_round(dynamics, pose);
-        if is_far { self.leg(pose, way) } else { None }
+        let leg = if is_far { self.leg(pose, way)? } else { return None };
+        Some(Found::of(Some(Recovery::Transit), leg))
+    }
+
+    /// The first motion of a way that is drawn at random.
+    fn begin_drawn(&mut self, course: &mut Course) -> Option<Found> {
+        let way = wander(&self.problem, self.search)?;
+        let (first, rest) = way.split_first()?;
+        *course = course.with_way(rest.iter().map(|leg| leg.0));
+        let recovery = if rest.is_empty() { Recovery::Undirected } else { Recovery::Transit };
+        Some(Found::of(Some(recovery), *first))
+    }
+
+    /// A drive drawn at random, to try again from elsewhere, for a vehicle that has to go round to turn.
+    fn go_elsewhere(&mut self, course: &mut Course) -> Option<Found> {
+        course.tries = course.tries.saturating_add(1);
+        let tries = course.tries;
+        let Search { dynamics, pose, .. } = *self.search;
+        // Who is not safe is so near the border that driving on makes it worse.
+        let is_free = goes_round(dynamics, pose) && dynamics.is_safe(pose, &self.problem.area);
+        let leg = (tries <= TRIES && is_free)
+            .then(|| drift(&self.problem, self.search, tries))
+            .flatten()?;
+        Some(Found::of(Some(Recovery::Transit), leg))
     }
 
     /// The first of the fewest turns in place beyond which the undirected problem is feasible.
@@ -291,6 +359,7 @@ impl<D: Dynamics, G: Region> Ladder<'_, '_, '_, D, G> {
 
     /// One motion on the way to a point: the drive that brings it nearer, or the first of the fewest
     /// turns in place after which there is one.
+    #[inline(never)] // it is called in four places
     fn leg(&mut self, pose: Pose, goal: Vector) -> Option<Leg> {
         let (dynamics, bearing) = (self.search.dynamics, heading_of(goal));
         let coarse = dynamics.fan().spacing.0 / 2 > ALONG;

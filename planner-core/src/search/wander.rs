@@ -1,31 +1,40 @@
-//! The last rung of the recovery ladder: motions of any kind, after which a label can be asked.
+//! The last rung of the recovery ladder: motions drawn at random, after which a label can be asked.
 //!
 //! Uncertain ground may be within reach where no action hits it that the other rungs look at: neither from here nor along
-//! the ways that they follow. So this tries
+//! the ways that they follow. So this draws motions, one at a time, then up to six in a row. It goes on as long as the plan has
+//! looks, and takes the first way that ends where a label can tell something.
 //!
-//! 1. motions drawn at random, one at a time, then up to six in a row, whether one ends where a label can tell something;
-//! 2. a few motions of each kind, and pairs of them, and after each whether the problem is feasible. That is a search of
-//!    all actions, so it also hits ground that is too thin to be drawn.
-//!
-//! What is drawn depends on the pose alone, so a plan is the same on every machine. **It ends**, though a way of several
-//! motions may not be found again after the first: [`Silence`](crate::planner::silence::Silence) sees to that.
+//! The numbers drawn are the same in each plan, so a plan is the same on every machine. The next plans go on with a way that was
+//! drawn, see `course`.
+
+use heapless::Vec;
 
 use crate::geometry::region::Region;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Pose, Side};
 use crate::search::circles::Search;
+use crate::search::course::REST;
 use crate::search::direction_rule::DirectionRule;
-use crate::search::objective::{Effort, OPENING};
+use crate::search::objective::Effort;
 use crate::search::problem::Problem;
 
-/// The search after a motion, and after a pair, takes so many looks at most.
-const LOOKS_A_SEARCH: [u32; 2] = [96, 16];
+/// What a drive costs that is drawn, with all that is asked of it.
+const LOOKS_A_DRIVE: u32 = 2;
 
 /// Sequences that are drawn, and the most motions of each.
-const DRAWN: [(u32, u32); 2] = [(256, 1), (192, 6)];
+const DRAWN: [(u32, u32); 2] = [(256, 1), (4_096, MOTIONS as u32)];
+
+/// Motions of a way.
+const MOTIONS: usize = 1 + REST;
+
+/// Drives of which one is looked for that stays inside.
+const DRIFTS: u32 = 64;
 
 /// An action and where it leads.
 type Leg = (Action, Pose);
+
+/// A way, at whose end a label can be asked.
+type Drawn = Vec<Leg, MOTIONS, u8>;
 
 struct Wander<'d, 'p, 'a, D, R, G> {
     problem: &'p Problem<'a, R, G>,
@@ -35,50 +44,71 @@ struct Wander<'d, 'p, 'a, D, R, G> {
     state: u64,
 }
 
-/// The first motion of a few after which a label can be asked, and whether it is the only one. It draws on the looks that the
-/// search has left.
+/// A few motions after which a label can be asked. It draws on the looks that the search has left.
 pub(crate) fn wander<D: Dynamics, R: DirectionRule, G: Region>(
     problem: &Problem<'_, R, G>,
     search: &mut Search<'_, D, G>,
-) -> Option<(Leg, bool)> {
+) -> Option<Drawn> {
     let (dynamics, from) = (search.dynamics, search.pose);
     let mut it = Wander { problem, dynamics, effort: search.effort, state: 0 };
     let drawn = DRAWN
         .into_iter()
         .find_map(|(count, motions)| (0..count).find_map(|_| it.draw_way(from, motions)));
-    let searched = drawn.or_else(|| {
-        let leg = it.one(from, LOOKS_A_SEARCH[0]).or_else(|| it.two(from));
-        leg.map(|leg| (leg, false))
-    });
     search.effort = it.effort;
-    searched
+    drawn
+}
+
+/// The first of a few drives, drawn at random, that stays inside.
+pub(crate) fn drift<D: Dynamics, R: DirectionRule, G: Region>(
+    problem: &Problem<'_, R, G>,
+    search: &Search<'_, D, G>,
+    number: u8,
+) -> Option<Leg> {
+    let (dynamics, from) = (search.dynamics, search.pose);
+    // The plan has used up its looks by now; these few are beyond.
+    let effort = Effort::of(3 * DRIFTS);
+    let mut it = Wander { problem, dynamics, effort, state: u64::from(number) };
+    (0..DRIFTS).find_map(|_| it.draw(from).filter(|leg| leg.1.site != from.site))
 }
 
 impl<D: Dynamics, R: DirectionRule, G: Region> Wander<'_, '_, '_, D, R, G> {
-    /// The first of so many motions drawn at random, if one of them ends where a label tells something, and whether it is
-    /// that one.
-    fn draw_way(&mut self, from: Pose, motions: u32) -> Option<(Leg, bool)> {
-        let (mut first, mut at) = (None, from);
+    /// So many motions drawn at random, up to the first that ends where a label tells something. What leads back to where it
+    /// has been is left out.
+    fn draw_way(&mut self, from: Pose, motions: u32) -> Option<Drawn> {
+        let mut way = Drawn::new();
         for _ in 0..motions {
+            let at = way.last().map_or(from, |leg| leg.1);
             let Some(leg) = self.draw(at) else { continue };
-            let is_last = first.is_none();
-            let first = *first.get_or_insert(leg);
-            if leg.1.site != at.site && self.problem.lines.can_cut(leg.1.site) {
-                return Some((first, is_last));
+            let known = way.iter().position(|it| it.1 == leg.1).map(|it| it + 1);
+            if let Some(until) = known.or((leg.1 == from).then_some(0)) {
+                way.truncate(until);
+                continue;
             }
-            at = leg.1;
+            way.push(leg).ok()?;
+            if self.is_open(at, leg.1) {
+                return Some(way);
+            }
         }
         None
     }
 
+    /// Whether a motion ends where a label tells something and the vehicle is safe.
+    fn is_open(&self, from: Pose, to: Pose) -> bool {
+        let Problem { lines, area, .. } = self.problem;
+        to.site != from.site && lines.can_cut(to.site) && self.dynamics.is_safe(to, area)
+    }
+
     /// A motion drawn at random, if it stays inside. The sharpest and the straight ones are drawn more often.
     fn draw(&mut self, from: Pose) -> Option<Leg> {
+        if !self.effort.take(1) {
+            return None;
+        }
         let (dynamics, grid) = (self.dynamics, self.dynamics.grid());
         let side = if self.below(2) == 0 { Side::Left } else { Side::Right };
         if self.below(3) == 0
             && let Some(turned) = dynamics.turn_in_place(from, side)
         {
-            return self.effort.take(1).then_some(turned);
+            return Some(turned);
         }
         let speed = 1 + self.below(u32::from(grid.speeds().saturating_sub(1))) as u16;
         let last = self.last_ray(speed, side)?;
@@ -87,7 +117,13 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Wander<'_, '_, '_, D, R, G> {
             1 => last,
             _ => self.below(last.saturating_add(1)),
         };
-        self.drive(from, side, number, speed)
+        if !self.effort.take(LOOKS_A_DRIVE) {
+            return None;
+        }
+        let ray = dynamics.ray(from, side, number);
+        let after = dynamics.arrive(from, &ray, speed).ok()?;
+        let stays = stays(dynamics, &self.problem.area, &mut self.effort, [from, after]);
+        stays.then(|| (grid.action(ray.index, speed), after))
     }
 
     /// A number below a bound: the high half of a linear congruence (Knuth).
@@ -97,76 +133,34 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Wander<'_, '_, '_, D, R, G> {
         (((self.state >> 32) * u64::from(bound)) >> 32) as u32
     }
 
-    /// The first motion after which the problem is feasible, in so many looks for each.
-    fn one(&mut self, from: Pose, looks: u32) -> Option<Leg> {
-        (0..KINDS).find_map(|kind| {
-            let leg = self.motion(from, kind)?;
-            self.is_feasible(leg.1, looks).then_some(leg)
-        })
-    }
-
-    /// The first of the first pair of motions after which it is feasible.
-    fn two(&mut self, from: Pose) -> Option<Leg> {
-        (0..KINDS).find_map(|kind| {
-            let leg = self.motion(from, kind)?;
-            self.one(leg.1, LOOKS_A_SEARCH[1]).map(|_| leg)
-        })
-    }
-
-    fn is_feasible(&mut self, pose: Pose, looks: u32) -> bool {
-        self.effort.take(OPENING);
-        let kept = self.effort.keep_back(looks);
-        let mut there = self.problem.search(self.dynamics, pose, self.effort);
-        let there = there.open();
-        let best = there.best_between([pose.heading; 2], &self.problem.rule);
-        self.effort = there.effort;
-        self.effort.give_back(kept);
-        best.is_some()
-    }
-
-    /// A motion of a kind, if there is one that stays inside: turns in place, and drives of three lengths along seven rays.
-    fn motion(&mut self, from: Pose, kind: u32) -> Option<Leg> {
-        let (dynamics, grid) = (self.dynamics, self.dynamics.grid());
-        let side = if kind.is_multiple_of(2) { Side::Left } else { Side::Right };
-        if kind < 2 {
-            let turned = dynamics.turn_in_place(from, side)?;
-            return self.effort.take(1).then_some(turned);
-        }
-        let (length, ray) = ((kind - 2) / RAYS, (kind - 2) % RAYS);
-        let fastest = grid.speeds().saturating_sub(1);
-        let speed =
-            [fastest, fastest.div_ceil(2), fastest.div_ceil(5)].get(length as usize).copied()?;
-        let last = self.last_ray(speed, side)?;
-        // Straight ahead, then a third of the sharpest turn, two thirds and all of it, to either side.
-        let number = (u64::from(last) * u64::from(ray.div_ceil(2)) / 3) as u32;
-        self.drive(from, side, number, speed)
-    }
-
     /// The number of the last ray to a side, at a speed.
     fn last_ray(&self, speed: u16, side: Side) -> Option<u32> {
         let [left, right] = self.dynamics.rays_at(speed).unwrap_or_else(|| {
             let fan = self.dynamics.fan();
             [fan.left, fan.right]
         });
-        if side == Side::Left { left.checked_sub(1) } else { Some(right) }
-    }
-
-    /// A drive, if it stays inside.
-    fn drive(&mut self, from: Pose, side: Side, number: u32, speed: u16) -> Option<Leg> {
-        if !self.effort.take(1) {
-            return None;
-        }
-        let ray = self.dynamics.ray(from, side, number);
-        let after = self.dynamics.arrive(from, &ray, speed).ok()?;
-        let area = &self.problem.area;
-        self.effort.take_sweep(area, &[from.site, after.site]);
-        let stays = area.contains(after.site) && self.dynamics.keeps_inside(from, after, area);
-        stays.then(|| (self.dynamics.grid().action(ray.index, speed), after))
+        // Without any on the left there is none straight ahead: the speed has none at all.
+        left.checked_sub(1).map(|last| if side == Side::Left { last } else { right })
     }
 }
 
-/// Rays that are tried: straight ahead and three to either side.
-const RAYS: u32 = 7;
-
-/// Kinds of motions: two turns, and three lengths along each ray.
-const KINDS: u32 = 2 + 3 * RAYS;
+/// Whether a drive stays inside, and ends where the vehicle is safe, unless it is not where it begins.
+#[inline(never)]
+pub(crate) fn stays<D: Dynamics, G: Region>(
+    dynamics: &D,
+    area: &G,
+    effort: &mut Effort,
+    [from, to]: [Pose; 2],
+) -> bool {
+    let way = [from.site, to.site];
+    effort.take_sweep(area, &way);
+    if !area.contains(to.site) {
+        return false;
+    }
+    if dynamics.keeps_inside(from, to, area) {
+        return true;
+    }
+    effort.take_sweep(area, &way);
+    effort.take_sweep(area, &way);
+    !dynamics.is_safe(from, area) && dynamics.stays_inside(from, to, area)
+}

@@ -1,0 +1,71 @@
+//! A way of several motions that a plan begins where it finds nothing better, and that the next plans go on with.
+//!
+//! Without it, each plan would begin another: what is best depends on where the robot is.
+
+use crate::geometry::lattice::Site;
+use crate::motion::action::Action;
+
+/// Motions after the first of a way.
+pub(crate) const REST: usize = 5;
+
+/// What is left of such a way. A label ends it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Course {
+    /// Its motions, the next of them last. The first is for a label.
+    rest: [Action; REST],
+    /// So many of them are left.
+    left: u8,
+    /// How often a motion to try from elsewhere was asked for.
+    pub(crate) tries: u8,
+    pub(crate) far: Far,
+}
+
+/// A drive to open ground beyond reach. Without a label there is only one, so that there is no way back and forth.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) enum Far {
+    /// There was none.
+    #[default]
+    Not,
+    /// On the way to here.
+    To(Site),
+    /// It is over.
+    Over,
+}
+
+impl Course {
+    /// Nothing was begun since the last label.
+    pub(crate) const NONE: Self =
+        Self { rest: [Action(0); REST], left: 0, tries: 0, far: Far::Not };
+
+    /// The same with another way to go.
+    pub(crate) fn with_way(self, motions: impl DoubleEndedIterator<Item = Action>) -> Self {
+        let mut course = self.without_way();
+        for (place, motion) in course.rest.iter_mut().zip(motions.rev()) {
+            *place = motion;
+            course.left += 1;
+        }
+        course
+    }
+
+    /// Takes the next motion, and says whether it is the last.
+    pub(crate) fn next(&mut self) -> Option<(Action, bool)> {
+        self.left = self.left.checked_sub(1)?;
+        let motion = self.rest.get(usize::from(self.left))?;
+        Some((*motion, self.left == 0))
+    }
+
+    /// The same with its way given up.
+    pub(crate) const fn without_way(self) -> Self {
+        Self { tries: self.tries, far: self.far, ..Self::NONE }
+    }
+}
+
+impl Default for Course {
+    fn default() -> Self {
+        Self::NONE
+    }
+}
