@@ -633,7 +633,7 @@ fn compare<D: Dynamics>(it: &D, area: Area, rng: &mut ChaCha8Rng) -> [u32; 2] {
             inside
         };
         let stays = [Side::Left, Side::Right].map(goes_round);
-        let is_safe = it.keeps_inside(from, from, &area);
+        let is_safe = it.keeps_inside(from, from, &area, 0);
         assert!(!is_safe || stays.contains(&true), "{from:?}");
         assert!(!is_safe || it.is_safe(from, &area));
         count[usize::from(is_safe)] += 1;

@@ -229,7 +229,7 @@ fn first_of_all(
             for action in (0..actions).map(Action) {
                 if let Some(to) = vehicle.target(from, action)
                     && area.contains(to.site)
-                    && vehicle.keeps_room(from, to, &area)
+                    && vehicle.keeps_inside(from, to, &area, vehicle.room(from, &area))
                 {
                     longer.push((
                         [poses.as_slice(), &[to]].concat(),

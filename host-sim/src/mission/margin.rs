@@ -62,7 +62,7 @@ impl<D: Dynamics, B: ReadOut> Margin<D, B> {
                 let action = grid.action(ray.index, speed);
                 let target = self.dynamics.target(pose, action)?;
                 let is_inside = self.area.contains(target.site)
-                    && self.dynamics.keeps_inside(pose, target, &self.area);
+                    && self.dynamics.keeps_inside(pose, target, &self.area, 0);
                 let comes_back = self.comes_back(pose.site, target.site)
                     && self.dynamics.stays_inside(pose, target, &self.area);
                 (is_inside || comes_back).then(|| Drive {

@@ -43,7 +43,7 @@ impl<D: Dynamics, B: Belief> Planner for RandomWalk<D, B> {
                 let comes_back = is_outside && to_middle(target.site) <= to_middle(pose.site);
                 comes_back && self.dynamics.stays_inside(pose, *target, &self.area)
                     || self.area.contains(target.site)
-                        && self.dynamics.keeps_inside(pose, *target, &self.area)
+                        && self.dynamics.keeps_inside(pose, *target, &self.area, 0)
             });
             if let Some(target) = target {
                 return Plan::Move(Motion {

@@ -108,7 +108,8 @@ impl Instance {
     pub fn target(&self, from: Pose, action: Action) -> Option<Pose> {
         let (vehicle, area) = (&self.mission.vehicle, &self.mission.config.area);
         let to = vehicle.target(from, action)?;
-        (area.contains(to.site) && vehicle.keeps_room(from, to, area)).then_some(to)
+        (area.contains(to.site) && vehicle.keeps_inside(from, to, area, vehicle.room(from, area)))
+            .then_some(to)
     }
 
     /// What a sequence costs that goes on like this from here, at least, if its motions cost so much at least yet; of

@@ -102,10 +102,9 @@ impl Orbit {
         site.step(self.centre).is_ok_and(|centre| area.contains_disc(centre, radius))
     }
 
-    /// The radius and margin, and twice what positions err, which is the area's own margin.
-    pub(crate) fn with_room(&self, area: Area) -> i32 {
-        let err = area.margin() as i32;
-        self.radius.saturating_add(self.margin).saturating_add(err).saturating_add(err)
+    /// The radius, the margin, and so much room.
+    pub(crate) fn with_room(&self, room: i32) -> i32 {
+        self.radius.saturating_add(self.margin).saturating_add(room)
     }
 }
 
@@ -213,7 +212,7 @@ pub trait Dynamics {
     fn fits(&self, area: Area) -> Result<(), NoRoom> {
         let pose = Pose { site: area.middle(), heading: Heading(0) };
         let Some(orbit) = self.orbit(pose, Side::Left) else { return Ok(()) };
-        let radius = orbit.with_room(area).unsigned_abs();
+        let radius = orbit.with_room(two_errors(area)).unsigned_abs();
         let across_mm = (u64::from(radius) * 2_000).div_ceil(UNITS_PER_METRE as u64) as u32;
         area.inset(radius).map(drop).ok_or(NoRoom { across_mm })
     }
@@ -223,17 +222,20 @@ pub trait Dynamics {
         has_orbit_inside(self, pose, area, |orbit| orbit.radius)
     }
 
-    /// Whether a motion to a place inside the area stays there and ends where it is safe. There is a margin for the
-    /// rounding of a round.
-    fn keeps_inside<G: Region>(&self, from: Pose, to: Pose, area: &G) -> bool {
-        self.stays_inside(from, to, area)
-            && has_orbit_inside(self, to, area, |orbit| orbit.radius.saturating_add(orbit.margin))
+    /// The room that motions from a pose leave around the circle at their end, so that two errors of the position do not
+    /// push it out; lattice units. None where the pose itself has no such room: one motion need not win it.
+    fn room<G: Region>(&self, from: Pose, area: &G) -> i32 {
+        let room = two_errors(area.bounds());
+        let has_room =
+            room > 0 && has_orbit_inside(self, from, area, |orbit| orbit.with_room(room));
+        if has_room { room } else { 0 }
     }
 
-    /// The same, with room for two errors of its position: so that they do not push its circle out.
-    fn keeps_room<G: Region>(&self, from: Pose, to: Pose, area: &G) -> bool {
-        let room = |orbit: &Orbit| orbit.with_room(area.bounds());
-        self.stays_inside(from, to, area) && has_orbit_inside(self, to, area, room)
+    /// Whether a motion to a place inside the area stays there and ends where it is safe, with so much
+    /// [`room`](Self::room). There is a margin for the rounding of a round.
+    fn keeps_inside<G: Region>(&self, from: Pose, to: Pose, area: &G, room: i32) -> bool {
+        self.stays_inside(from, to, area)
+            && has_orbit_inside(self, to, area, |orbit| orbit.with_room(room))
     }
 
     /// Whether all of a motion to a place that the border [allows](Region::confines) stays there, and touches no
@@ -292,6 +294,11 @@ pub trait Dynamics {
         let ray = self.ray_of(pose, action)?;
         self.arrive(pose, &ray, speed).ok()
     }
+}
+
+/// Twice what positions err, which is the area's own margin; lattice units.
+fn two_errors(area: Area) -> i32 {
+    (area.margin() as i32).saturating_mul(2)
 }
 
 /// Whether the agent needs no orbit, or the disc of one of so large a radius lies inside the area.

@@ -65,6 +65,8 @@ pub struct Cfc<D, const N: usize, G = Area> {
     dynamics: D,
     space: VersionSpace<N>,
     phase: Phase,
+    /// What the next plan begins with. It is not what the last plan ended with, so that a plan asked for twice is the same.
+    due: Phase,
     /// The label of the past position.
     past: Label,
     silence: Silence,
@@ -87,7 +89,8 @@ impl<D: Dynamics, const N: usize, G: Region> Cfc<D, N, G> {
     /// The same of settings that are inset.
     pub(crate) fn of((config, dynamics): (Config<G>, D), space: VersionSpace<N>) -> Self {
         let past = space.first_label();
-        Self { config, dynamics, space, phase: Phase::Crossing, past, silence: Silence::NONE }
+        let (phase, due, silence) = (Phase::Crossing, Phase::Crossing, Silence::NONE);
+        Self { config, dynamics, space, phase, due, past, silence }
     }
 
     /// Where the algorithm stands.
@@ -118,17 +121,13 @@ impl<D: Dynamics, const N: usize, G: Region> Cfc<D, N, G> {
 
     /// The motion to make, the phase that it belongs to, and what it cost to find it.
     /// Where positions err and no place is left at which either label would cut, one where one would is enough.
-    fn find(&self, pose: Pose, course: &mut Course) -> (Result<Found, DeadEnd>, Phase, Effort) {
+    fn find(&self, pose: Pose) -> (Result<Found, DeadEnd>, Phase, Effort) {
         let lines = self.space.lines();
         if self.space.expected() == Tolerance::NONE {
-            return self.find_among(lines, pose, LOOKS, course);
+            return self.find_among(lines, pose, LOOKS);
         }
-        let found = self.find_among(lines, pose, LOOKS / 2, course);
-        if found.0.is_err() {
-            self.find_among(lines.loosely(), pose, LOOKS / 2, course)
-        } else {
-            found
-        }
+        let found = self.find_among(lines, pose, LOOKS / 2);
+        if found.0.is_err() { self.find_among(lines.loosely(), pose, LOOKS / 2) } else { found }
     }
 
     fn find_among(
@@ -136,20 +135,19 @@ impl<D: Dynamics, const N: usize, G: Region> Cfc<D, N, G> {
         lines: ConsistentLines<'_>,
         pose: Pose,
         looks: u32,
-        course: &mut Course,
     ) -> (Result<Found, DeadEnd>, Phase, Effort) {
-        let slopes = self.space.slope_arc();
-        let problem = self.problem_of(self.phase, slopes, lines);
+        let (slopes, course) = (self.space.slope_arc(), self.silence.course());
+        let problem = self.problem_of(self.due, slopes, lines);
         let mut search = problem.search(&self.dynamics, pose, Effort::of(looks));
         let search = search.open();
         let mut followed = None;
-        if self.phase == Phase::Following {
+        if self.due == Phase::Following {
             let findings = search.best(&problem.rule, None);
             if let Some((Choice { action, target, .. }, _)) = findings.best {
-                let found = Found::of(None, (action, target));
+                let found = Found::of(None, (action, target), Course::NONE);
                 return (Ok(found), Phase::Following, search.effort);
             }
-            if let Some(turned) = turn_round(&problem, search) {
+            if let Some(turned) = turn_round(&problem, search, course) {
                 return (Ok(turned), Phase::Following, search.effort);
             }
             followed = Some(findings);
@@ -167,8 +165,7 @@ impl<D: Dynamics, const N: usize, G: Region> Planner for Cfc<D, N, G> {
         if self.space.is_full() {
             return Plan::Stop(StopReason::SamplesFull);
         }
-        let mut course = self.silence.course();
-        let (found, phase, effort) = self.find(pose, &mut course);
+        let (found, phase, effort) = self.find(pose);
         self.phase = phase;
         let stage = match phase {
             Phase::Crossing => Some(Stage::P1),
@@ -177,7 +174,7 @@ impl<D: Dynamics, const N: usize, G: Region> Planner for Cfc<D, N, G> {
         match found {
             Ok(found) => {
                 let motion = Motion::of(stage, &found, &self.dynamics, effort);
-                self.silence.keep(pose, (motion, course), &self.dynamics)
+                self.silence.keep(pose, motion, found.course, &self.dynamics)
             }
             Err(dead_end) => Plan::Stop(dead_end.into()),
         }
@@ -195,6 +192,7 @@ impl<D: Dynamics, const N: usize, G: Region> Planner for Cfc<D, N, G> {
                 self.past = label;
             }
             self.silence.observe(false);
+            self.due = self.phase;
             return Ok(());
         };
         self.space.take_within(pose.site, reading, self.past, tolerance)?;
@@ -206,6 +204,7 @@ impl<D: Dynamics, const N: usize, G: Region> Planner for Cfc<D, N, G> {
             }
             self.past = label;
         }
+        self.due = self.phase;
         Ok(())
     }
 
@@ -216,16 +215,16 @@ impl<D: Dynamics, const N: usize, G: Region> Planner for Cfc<D, N, G> {
 
 /// It remembers its phase, the label of the past position, how it turned since, and the way that is under way.
 impl<D: Dynamics, const N: usize, G: Region> Persist for Cfc<D, N, G> {
-    type Snapshot = Snapshot<Told<N>, (Phase, Label, Silence)>;
+    type Snapshot = Snapshot<Told<N>, ([Phase; 2], Label, Silence)>;
 
     fn snapshot(&self) -> Self::Snapshot {
-        Snapshot::new(self.space.told(), (self.phase, self.past, self.silence))
+        Snapshot::new(self.space.told(), ([self.phase, self.due], self.past, self.silence))
     }
 
     fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), NotRestored> {
-        let (told, &(phase, past, silence)) = snapshot.open()?;
+        let (told, &([phase, due], past, silence)) = snapshot.open()?;
         self.space.replay(told)?;
-        (self.phase, self.past, self.silence) = (phase, past, silence);
+        (self.phase, self.due, self.past, self.silence) = (phase, due, past, silence);
         Ok(())
     }
 }

@@ -33,7 +33,6 @@ use crate::planner::config::{Config, ConfigError};
 use crate::planner::silence::Silence;
 use crate::planner::snapshot::{NotRestored, Persist, Snapshot};
 use crate::planner::{Motion, Plan, Planner, StopReason};
-use crate::search::course::Course;
 use crate::search::dead_end::{DeadEnd, is_broad};
 use crate::search::direction_rule::ArcRule;
 use crate::search::lookout::{ENOUGH, Lookout, Prospect, Prospects, Sought};
@@ -185,14 +184,14 @@ impl<D: Dynamics, B: Foresight, G: Region> Lookahead<D, B, G> {
     }
 
     /// What the ladder finds where no label is in reach that is worth it.
-    fn recover(&self, pose: Pose, course: &mut Course) -> (Result<Found, DeadEnd>, Effort) {
+    fn recover(&self, pose: Pose) -> (Result<Found, DeadEnd>, Effort) {
         let lines = self.foresight.ground();
         let (area, varrho) = (self.config.area, self.config.varrho);
         let rule = ArcRule::default();
         let problem = Problem { lines, area, varrho, rule };
         let mut search = problem.search(&self.dynamics, pose, Effort::of(LOOKS));
         let search = search.open();
-        let found = solve_or_recover(&problem, search, None, course);
+        let found = solve_or_recover(&problem, search, None, self.silence.course());
         (found, search.effort)
     }
 }
@@ -239,18 +238,19 @@ impl<D: Dynamics, B: Foresight, G: Region> Planner for Lookahead<D, B, G> {
         let (dynamics, evaluations) = (&self.dynamics, self.evaluations);
         let (usual, scale) = usual(dynamics, &area);
         let least = self.least();
-        let mut lookout = Lookout { dynamics, area, varrho, usual, scale, least, evaluations };
+        let mut lookout =
+            Lookout { dynamics, area, varrho, usual, scale, room: 0, least, evaluations };
         if let Some(decision) = self.decide(&mut lookout, pose) {
             let Decision { action, target, wants_label, .. } = decision;
             self.silence.bears(false);
             let looks = lookout.evaluations;
             let effort = Effort { looks, examined: evaluations - looks };
-            let found = Found::of(None, (action, target));
+            let course = self.silence.course().without_way();
+            let found = Found::of(None, (action, target), course);
             let motion = Motion { wants_label, ..Motion::of(None, &found, dynamics, effort) };
-            return self.silence.keep(pose, (motion, self.silence.course()), dynamics);
+            return self.silence.keep(pose, motion, course, dynamics);
         }
-        let mut course = self.silence.course();
-        match self.recover(pose, &mut course) {
+        match self.recover(pose) {
             (Ok(found), effort) => {
                 let motion = Motion::of(None, &found, dynamics, effort);
                 // No label in reach is worth its way: this one is on the way to others.
@@ -258,7 +258,7 @@ impl<D: Dynamics, B: Foresight, G: Region> Planner for Lookahead<D, B, G> {
                 if !self.silence.bears(is_dull) && !is_broad(self.foresight.ground()) {
                     return Plan::Stop(StopReason::Tolerance);
                 }
-                self.silence.keep(pose, (motion, course), dynamics)
+                self.silence.keep(pose, motion, found.course, dynamics)
             }
             (Err(dead_end), _) => Plan::Stop(dead_end.into()),
         }
@@ -407,7 +407,8 @@ mod tests {
             let Config { area, varrho, .. } = planner.config;
             let (usual, scale) = usual(dynamics, &area);
             let least = planner.least();
-            let mut lookout = Lookout { dynamics, area, varrho, usual, scale, least, evaluations };
+            let mut lookout =
+                Lookout { dynamics, area, varrho, usual, scale, room: 0, least, evaluations };
             let decision = planner.decide(&mut lookout, pose);
             assert!(lookout.evaluations <= evaluations);
             let worth = decision.map_or(f32::NEG_INFINITY, |decision| decision.worth);

@@ -101,7 +101,8 @@ impl Silence {
     pub(crate) fn keep<D: Dynamics>(
         &mut self,
         pose: Pose,
-        (found, course): (Motion, Course),
+        found: Motion,
+        course: Course,
         dynamics: &D,
     ) -> Plan {
         (self.next, self.next_course) = (Turn::None, course);
@@ -160,8 +161,8 @@ impl Silence {
         let by = by.unsigned_abs() >> 8;
         let by = if by > SLIGHT { by.max(LEAST) } else { by };
         let turned = self.turned.saturating_add(by);
-        let course = self.next_course;
-        Self { turned, on_the_spot, last: turn, next: Turn::None, course, ..self }
+        let (course, next_course) = (self.next_course, Course::NONE);
+        Self { turned, on_the_spot, last: turn, next: Turn::None, course, next_course, ..self }
     }
 }
 
@@ -196,20 +197,20 @@ mod tests {
         for n in 0..3 {
             let side = if n == 0 { Side::Left } else { Side::Right };
             // Asked twice it says the same.
-            let plan = silence.keep(pose, (turn(pose, side), Course::NONE), &Unicycle::paper());
+            let plan = silence.keep(pose, turn(pose, side), Course::NONE, &Unicycle::paper());
             assert_eq!(
-                silence.keep(pose, (turn(pose, side), Course::NONE), &Unicycle::paper()),
+                silence.keep(pose, turn(pose, side), Course::NONE, &Unicycle::paper()),
                 plan
             );
             assert_eq!(plan, Plan::Move(turn(pose, Side::Left)), "{n}");
             silence.observe(false);
             pose = turn(pose, Side::Left).target;
         }
-        let plan = silence.keep(pose, (turn(pose, Side::Left), Course::NONE), &Unicycle::paper());
+        let plan = silence.keep(pose, turn(pose, Side::Left), Course::NONE, &Unicycle::paper());
         assert_eq!(plan, Plan::Stop(StopReason::Undecided));
         // A label makes it new.
         silence.observe(true);
-        let plan = silence.keep(pose, (turn(pose, Side::Right), Course::NONE), &Unicycle::paper());
+        let plan = silence.keep(pose, turn(pose, Side::Right), Course::NONE, &Unicycle::paper());
         assert_eq!(plan, Plan::Move(turn(pose, Side::Right)));
     }
 
@@ -222,7 +223,7 @@ mod tests {
                 let site = if pose.site == away { start().site } else { away };
                 let target = Pose { site, heading: Heading(pose.heading.0.wrapping_add(by)) };
                 let motion = Motion { target, ..turn(pose, Side::Left) };
-                let plan = silence.keep(pose, (motion, Course::NONE), &Unicycle::paper());
+                let plan = silence.keep(pose, motion, Course::NONE, &Unicycle::paper());
                 if let Plan::Stop(_) = plan {
                     return Some(motions);
                 }

@@ -24,6 +24,8 @@ pub(crate) struct Search<'a, D, G> {
     pub(crate) varrho: Varrho,
     pub(crate) view: View<'a, G>,
     pub(crate) effort: Effort,
+    /// The [room](Dynamics::room) that its motions leave.
+    pub(crate) room: i32,
     /// Whether there was an end on uncertain ground with the border in the way.
     pub(crate) is_hemmed_in: bool,
 }
@@ -269,7 +271,7 @@ impl<D: Dynamics, G: Region> Search<'_, D, G> {
         for _ in 0..2 {
             self.effort.take_sweep(self.view.area(), &[pose.site, target.site]);
         }
-        if !self.dynamics.keeps_room(pose, target, self.view.area()) {
+        if !self.dynamics.keeps_inside(pose, target, self.view.area(), self.room) {
             self.is_hemmed_in = true;
             return Err(HEMMED_IN);
         }

@@ -17,7 +17,7 @@ pub(crate) struct Course {
     rest: [Action; REST],
     /// So many of them are left.
     left: u8,
-    /// How often a motion to try from elsewhere was asked for.
+    /// So many motions to try from elsewhere were made.
     pub(crate) tries: u8,
     pub(crate) far: Far,
 }
@@ -56,6 +56,16 @@ impl Course {
         self.left = self.left.checked_sub(1)?;
         let motion = self.rest.get(usize::from(self.left))?;
         Some((*motion, self.left == 0))
+    }
+
+    /// The same with another state of the drive far.
+    pub(crate) const fn with_far(self, far: Far) -> Self {
+        Self { far, ..self }
+    }
+
+    /// The same after so many motions to try from elsewhere.
+    pub(crate) const fn with_tries(self, tries: u8) -> Self {
+        Self { tries, ..self }
     }
 
     /// The same with its way given up.

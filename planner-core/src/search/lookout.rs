@@ -82,6 +82,8 @@ pub(crate) struct Lookout<'a, D, G> {
     pub(crate) usual: u16,
     /// Metres of the paper's action set in a metre of this one.
     pub(crate) scale: f32,
+    /// The [room](Dynamics::room) that motions leave.
+    pub(crate) room: i32,
     /// What a label is expected to tell at least.
     pub(crate) least: f32,
     pub(crate) evaluations: u32,
@@ -111,6 +113,7 @@ impl<D: Dynamics, G: Region> Lookout<'_, D, G> {
         (circles, fastest): (u16, u16),
         sought: &mut Sought<'_>,
     ) {
+        self.room = self.dynamics.room(pose, &self.area);
         let fastest = u32::from(fastest);
         let circles = NonZeroU32::new(u32::from(circles).min(fastest)).unwrap_or(NonZeroU32::MIN);
         for k in 1..=circles.get() {
@@ -142,7 +145,7 @@ impl<D: Dynamics, G: Region> Lookout<'_, D, G> {
         if share > 0.0
             && share < 1.0
             && self.area.contains(target.site)
-            && self.dynamics.keeps_room(pose, target, &self.area)
+            && self.dynamics.keeps_inside(pose, target, &self.area, self.room)
         {
             let grid = self.dynamics.grid();
             let cost = self.cost(grid.reach_mm(speed), ray.effort);

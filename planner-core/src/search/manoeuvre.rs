@@ -5,7 +5,7 @@
 //! as the shortest paths of a car do (Dubins, 1957): `L..L S..S R..R` and the like. The search returns the first motion of
 //! the shortest way to a pose from where the problem is feasible: a short one if there is one, else a long one.
 //!
-//! Each motion of a way ends [safe](Dynamics::keeps_room), so the vehicle is never cornered for want of caution. Where it
+//! Each motion of a way ends [safe](Dynamics::keeps_inside), so the vehicle is never cornered for want of caution. Where it
 //! is not safe to begin with, an error has brought it there. Then motions may use the margin that the area keeps for
 //! errors, and shorter motions that bulge less; and if no way leads to a label, the shortest one leads to where it is safe.
 //! Where keep-outs are in the way, the search returns the way that comes nearest to the first waypoint round them (`detour`).
@@ -52,7 +52,7 @@ const STRAIGHT: u32 = 8;
 type Leg = (Action, Pose);
 
 /// The first motion of a way, and the number of its motions.
-type Course = (Leg, u32);
+type Begun = (Leg, u32);
 
 /// Where all ways begin.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -83,13 +83,13 @@ struct Manoeuvre<'d, 'p, 'a, D, R, G> {
     ground: G,
     effort: Effort,
     /// The shortest way to where the problem is feasible.
-    shortest: Option<Course>,
+    shortest: Option<Begun>,
     /// From where it is not safe: the shortest way to where it is.
-    escape: Option<Course>,
+    escape: Option<Begun>,
     /// Where the way round keep-outs begins, how near a way has come to that, and the way.
     waypoint: Option<Site>,
     nearest: f32,
-    approach: Option<Course>,
+    approach: Option<Begun>,
     start: Start,
     /// Whether uncertain ground was in reach somewhere.
     comes_near: bool,
@@ -252,7 +252,7 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Manoeuvre<'_, '_, '_, D, R, G> {
         let (dynamics, area) = (self.dynamics, &self.problem.area);
         let fits = |orbit: Orbit| orbit.is_inside(after.site, area, orbit.radius);
         !dynamics.is_safe(pose, area)
-            || dynamics.keeps_room(pose, after, area)
+            || dynamics.keeps_inside(pose, after, area, dynamics.room(pose, area))
             || dynamics.orbit(after, side).is_some_and(fits)
     }
 
@@ -302,6 +302,7 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Manoeuvre<'_, '_, '_, D, R, G> {
             }
         }
         let is_safe = dynamics.is_safe(pose, &self.problem.area);
+        let room = dynamics.room(pose, &self.problem.area);
         let mut otherwise = None;
         for speed in (1..=fastest).rev() {
             let exists = dynamics.rays_at(speed).is_none_or(|[left, _]| left > 0);
@@ -317,7 +318,7 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Manoeuvre<'_, '_, '_, D, R, G> {
             }
             let leg = (grid.action(ray.index, speed), after);
             let area = &self.problem.area;
-            if area.contains(after.site) && dynamics.keeps_room(pose, after, area) {
+            if area.contains(after.site) && dynamics.keeps_inside(pose, after, area, room) {
                 return Some((leg, 1));
             }
             otherwise = otherwise.or(Some((leg, 1)));
@@ -327,14 +328,14 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Manoeuvre<'_, '_, '_, D, R, G> {
 
     /// Where so many motions straight ahead lead, if its circle to one side stays inside all along.
     fn advance(&mut self, pose: Pose, by: Vector, count: u32) -> Option<Pose> {
-        let area = &self.problem.area;
+        let (area, room) = (&self.problem.area, self.dynamics.room(pose, &self.problem.area));
         let times = |v: i32| v.checked_mul(count as i32);
         let by = Vector::new(times(by.x)?, times(by.z)?)?;
         let after = Pose { site: pose.site.step(by).ok()?, ..pose };
         self.effort.take(2);
         self.effort.take_sweep(area, &[pose.site, after.site]);
         let is_clear = |orbit: Orbit| {
-            let radius = orbit.radius.saturating_add(orbit.margin);
+            let radius = orbit.with_room(room);
             let centres = [pose, after].map(|it| it.site.step(orbit.centre));
             let [Ok(from), Ok(to)] = centres else { return false };
             area.contains_disc(from, radius)
@@ -378,17 +379,17 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Manoeuvre<'_, '_, '_, D, R, G> {
     /// Notes what else the end of a way is good for: it is safe there, or nearer to the waypoint.
     fn note(&mut self, place: &Place) {
         let Some(first) = place.first else { return };
-        let (pose, course) = (place.pose, (first, place.motions));
+        let (pose, begun) = (place.pose, (first, place.motions));
         let distance = self.waypoint.map_or(f32::INFINITY, |it| distance(it - pose.site));
         if distance < self.nearest {
-            (self.nearest, self.approach) = (distance, Some(course));
+            (self.nearest, self.approach) = (distance, Some(begun));
         }
         if self.start != Start::Safe
             && self.escape.is_none_or(|(_, least)| place.motions < least)
             && self.problem.area.contains(pose.site)
-            && self.dynamics.keeps_room(pose, pose, &self.problem.area)
+            && self.dynamics.keeps_inside(pose, pose, &self.problem.area, 0)
         {
-            self.escape = Some(course);
+            self.escape = Some(begun);
         }
     }
 }

@@ -98,12 +98,13 @@ impl<'a, R: DirectionRule, G: Region> Problem<'a, R, G> {
         'a: 'd,
     {
         let view = View::new(self.lines, self.area, pose.site, dynamics.grid());
-        Search { dynamics, pose, varrho: self.varrho, view, effort, is_hemmed_in: false }
+        let room = dynamics.room(pose, &self.area);
+        Search { dynamics, pose, varrho: self.varrho, view, effort, room, is_hemmed_in: false }
     }
 
     /// Solves the problem by trying every action: the slow twin of [`solve`](Self::solve).
     pub fn solve_exhaustively<D: Dynamics>(&self, dynamics: &D, pose: Pose) -> Solution {
-        let grid = dynamics.grid();
+        let (grid, room) = (dynamics.grid(), dynamics.room(pose, &self.area));
         let mut solution = Solution { proven: true, ..Solution::default() };
         for ray in dynamics.rays(pose) {
             for speed in 0..grid.speeds() {
@@ -113,7 +114,7 @@ impl<'a, R: DirectionRule, G: Region> Problem<'a, R, G> {
                 let feasible = |target: &Pose| {
                     speed > 0
                         && self.area.contains(target.site)
-                        && dynamics.keeps_inside(pose, *target, &self.area)
+                        && dynamics.keeps_inside(pose, *target, &self.area, room)
                         && self.rule.admits(ray.step)
                         && self.lines.can_cut(target.site)
                 };

@@ -46,7 +46,7 @@ use crate::search::detour::{self, Way};
 use crate::search::direction_rule::{ArcRule, DirectionRule};
 use crate::search::manoeuvre::{manoeuvre, waypoint};
 use crate::search::problem::Problem;
-use crate::search::wander::{drift, stays, wander};
+use crate::search::wander::{drift, is_open, stays, wander};
 
 /// A transit among uncertain ground looks this many motions ahead. Twice as many find nothing more in
 /// 1,000 standard missions of 60 steps.
@@ -78,16 +78,21 @@ pub enum Recovery {
     Transit,
 }
 
-/// An action, where it leads, and the rung on which it was found.
+/// An action, where it leads, the rung on which it was found, and what is to come of the course after it.
 pub(crate) struct Found {
     pub(crate) recovery: Option<Recovery>,
     pub(crate) action: Action,
     pub(crate) target: Pose,
+    pub(crate) course: Course,
 }
 
 impl Found {
-    pub(crate) const fn of(recovery: Option<Recovery>, (action, target): Leg) -> Self {
-        Self { recovery, action, target }
+    pub(crate) const fn of(
+        recovery: Option<Recovery>,
+        (action, target): Leg,
+        course: Course,
+    ) -> Self {
+        Self { recovery, action, target, course }
     }
 }
 
@@ -100,52 +105,32 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule, G: Region>(
     problem: &Problem<'_, R, G>,
     search: &mut Search<'_, D, G>,
     before: Option<Findings>,
-    course: &mut Course,
+    course: Course,
 ) -> Result<Found, DeadEnd> {
     let (area, pose) = (problem.area, search.pose);
-    let mut ladder = Ladder { problem: problem.undirected(), search };
+    // What is found is no part of the way that is under way, but where the ladder goes on with that.
+    let mut ladder = Ladder { problem: problem.undirected(), search, course: course.without_way() };
     // Before the search has used up its looks.
     let is_outside = !area.contains(pose.site);
     let home =
         is_outside.then(|| ladder.leg(pose, area.way_home(pose.site)).ok_or(DeadEnd::Outside));
-    // The rest is for what comes after it.
-    let kept = ladder.search.effort.keep_back(ladder.search.effort.looks / 2);
-    let Findings { best, best_forbidden } = ladder.search.best(&problem.rule, before);
-    ladder.search.effort.give_back(kept);
-    if let Some((best, _)) = best {
-        return Ok(Found::of(None, (best.action, best.target)));
-    }
-    if let Some((best, _)) = best_forbidden {
-        if let Some(turned) = turn_round(problem, ladder.search) {
-            return Ok(turned);
-        }
-        return Ok(Found::of(Some(Recovery::Undirected), (best.action, best.target)));
-    }
-    if let Some(found) = ladder.go_on(course) {
+    let found = ladder.solve(problem, before).or_else(|| ladder.go_on(course));
+    if let Some(found) = found {
         return Ok(found);
     }
-    *course = course.without_way();
     // Few looks find a way nearly always, unless it has to go round. More of them are worth it where there is much ground
     // to find.
     let goes_round = goes_round(ladder.search.dynamics, pose);
-    let first = if goes_round { ladder.search.effort.looks / 2 } else { FIRST_LOOKS };
-    let kept = ladder.search.effort.keep_back(first);
-    let climbed = ladder.climb(home);
-    ladder.search.effort.give_back(kept);
+    let half = |ladder: &Ladder<'_, '_, '_, D, G>| ladder.search.effort.looks / 2;
+    let first = if goes_round { half(&ladder) } else { FIRST_LOOKS };
+    let climbed = ladder.climb(home, first);
     let Err(why) = climbed else { return climbed };
     let open = way_to_open_ground(problem.lines, &area, pose.site);
     let Some(open) = open.filter(|_| why != DeadEnd::Outside) else {
         return Err(why.of_thin_ground(problem.lines));
     };
-    let kept = ladder.search.effort.keep_back(ladder.search.effort.looks / 2);
-    let climbed = if goes_round { Err(why) } else { ladder.climb(home) };
-    ladder.search.effort.give_back(kept);
-    climbed.or_else(|why| {
-        let way = ladder.begin_far(open, course);
-        let way = way.or_else(|| ladder.begin_drawn(course));
-        let way = way.or_else(|| ladder.go_elsewhere(course));
-        way.ok_or(why.of_open_ground())
-    })
+    let climbed = if goes_round { climbed } else { ladder.climb(home, half(&ladder)) };
+    climbed.or_else(|why| ladder.begin(open).ok_or(why.of_open_ground()))
 }
 
 /// The way to where a problem is feasible in a direction that its rule allows. It is for a vehicle that has to go round in
@@ -153,6 +138,7 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule, G: Region>(
 pub(crate) fn turn_round<D: Dynamics, R: DirectionRule, G: Region>(
     problem: &Problem<'_, R, G>,
     search: &mut Search<'_, D, G>,
+    course: Course,
 ) -> Option<Found> {
     let is_free = goes_round(search.dynamics, search.pose)
         && search.dynamics.is_safe(search.pose, &problem.area);
@@ -160,7 +146,7 @@ pub(crate) fn turn_round<D: Dynamics, R: DirectionRule, G: Region>(
     let kept = search.effort.keep_back(search.effort.looks / 2);
     let found = is_free.then(|| manoeuvre(problem, search, None).ok()).flatten();
     search.effort.give_back(kept);
-    found.map(|leg| Found::of(Some(Recovery::Transit), leg))
+    found.map(|leg| Found::of(Some(Recovery::Transit), leg, course.without_way()))
 }
 
 /// Whether a vehicle has to go round in order to turn.
@@ -186,21 +172,54 @@ struct Ladder<'s, 'p, 'a, D, G> {
     problem: Problem<'p, ArcRule, G>,
     /// From where the agent is.
     search: &'s mut Search<'a, D, G>,
+    /// What was begun since the last label, without the way that was under way.
+    course: Course,
 }
 
 impl<D: Dynamics, G: Region> Ladder<'_, '_, '_, D, G> {
-    /// The rungs 2 to 4, or a manoeuvre; `home` is the way back from outside, if that is where the agent is.
-    fn climb(&mut self, home: Option<Result<Leg, DeadEnd>>) -> Result<Found, DeadEnd> {
+    /// The problem itself, with half of the looks, or the first rung: the rest is for what comes after it.
+    fn solve<R: DirectionRule>(
+        &mut self,
+        problem: &Problem<'_, R, G>,
+        before: Option<Findings>,
+    ) -> Option<Found> {
+        let kept = self.search.effort.keep_back(self.search.effort.looks / 2);
+        let Findings { best, best_forbidden } = self.search.best(&problem.rule, before);
+        self.search.effort.give_back(kept);
+        if let Some((best, _)) = best {
+            return Some(Found::of(None, (best.action, best.target), self.course));
+        }
+        let (best, _) = best_forbidden?;
+        turn_round(problem, self.search, self.course).or_else(|| {
+            let leg = (best.action, best.target);
+            Some(Found::of(Some(Recovery::Undirected), leg, self.course))
+        })
+    }
+
+    fn transits(&self, leg: Leg) -> Found {
+        Found::of(Some(Recovery::Transit), leg, self.course)
+    }
+
+    /// The rungs 2 to 4, or a manoeuvre, with so many looks; `home` is the way back from outside, if that is where the
+    /// agent is.
+    fn climb(&mut self, home: Option<Result<Leg, DeadEnd>>, looks: u32) -> Result<Found, DeadEnd> {
+        let kept = self.search.effort.keep_back(looks);
+        let climbed = self.climb_on(home);
+        self.search.effort.give_back(kept);
+        climbed
+    }
+
+    fn climb_on(&mut self, home: Option<Result<Leg, DeadEnd>>) -> Result<Found, DeadEnd> {
         let pose = self.search.pose;
         if goes_round(self.search.dynamics, pose) {
             self.search.view.way_out().ok_or(DeadEnd::Resolution)?;
             let waypoint = waypoint(self.search);
             let leg = manoeuvre(&self.problem, self.search, waypoint);
-            return leg.map(|leg| Found::of(Some(Recovery::Transit), leg));
+            return leg.map(|leg| self.transits(leg));
         }
         // Where nothing is in reach no turn finds anything, so that the order does not matter.
         if let Some(turn) = self.reorient() {
-            return Ok(Found::of(Some(Recovery::Reorient), turn));
+            return Ok(Found::of(Some(Recovery::Reorient), turn, self.course));
         }
         let Search { view, effort, .. } = &mut *self.search;
         let way = view.way_out().ok_or(DeadEnd::Resolution)?;
@@ -212,41 +231,45 @@ impl<D: Dynamics, G: Region> Ladder<'_, '_, '_, D, G> {
             }
             (None, _) => self.transit(),
         };
-        leg.map(|leg| Found::of(Some(Recovery::Transit), leg))
+        leg.map(|leg| self.transits(leg))
     }
 
     /// The next motion of a course, if it can be made.
-    fn go_on(&mut self, course: &mut Course) -> Option<Found> {
+    fn go_on(&mut self, mut course: Course) -> Option<Found> {
         let pose = self.search.pose;
         if let Far::To(place) = course.far {
             let drive = self.drive_far(place - pose.site);
             if drive.is_some() {
                 return drive;
             }
-            course.far = Far::Over;
+            course = course.with_far(Far::Over);
+            self.course = self.course.with_far(Far::Over);
         }
         let (action, is_last) = course.next()?;
         let target = self.search.dynamics.target(pose, action)?;
         let Search { dynamics, effort, .. } = &mut *self.search;
-        let turns = target.site == pose.site;
-        if !turns && !stays(*dynamics, &self.problem.area, effort, [pose, target])
-            || is_last && (turns || !self.problem.lines.can_cut(target.site))
-        {
-            return None;
-        }
+        let stays = target.site == pose.site
+            || stays(*dynamics, &self.problem.area, effort, [pose, target]);
+        let can_go = stays && (!is_last || is_open(&self.problem, *dynamics, [pose, target]));
         let recovery = if is_last { Recovery::Undirected } else { Recovery::Transit };
-        Some(Found::of(Some(recovery), (action, target)))
+        can_go.then(|| Found::of(Some(recovery), (action, target), course))
+    }
+
+    /// Begins a course: to open ground, which lies so far off, or one that is drawn at random.
+    fn begin(&mut self, open: Vector) -> Option<Found> {
+        let far = self.begin_far(open);
+        let drawn = far.or_else(|| self.begin_drawn());
+        drawn.or_else(|| self.go_elsewhere())
     }
 
     /// The first motion to open ground, which lies so far off, if it is beyond reach and there was no such drive.
-    fn begin_far(&mut self, way: Vector, course: &mut Course) -> Option<Found> {
-        if course.far != Far::Not {
+    fn begin_far(&mut self, way: Vector) -> Option<Found> {
+        if self.course.far != Far::Not {
             return None;
         }
         let place = self.search.pose.site.step(way).ok()?;
         let found = self.drive_far(way)?;
-        course.far = Far::To(place);
-        Some(found)
+        Some(Found { course: self.course.with_far(Far::To(place)), ..found })
     }
 
     /// One motion on the way to a place beyond reach, unless the vehicle has to go round to turn.
@@ -257,29 +280,26 @@ impl<D: Dynamics, G: Region> Ladder<'_, '_, '_, D, G> {
         let reach = f32::from(grid.speeds().saturating_sub(1)) * grid.step_units();
         let is_far = sqrt(single(way.dot(way))) > reach && !goes_round(dynamics, pose);
         let leg = if is_far { self.leg(pose, way)? } else { return None };
-        Some(Found::of(Some(Recovery::Transit), leg))
+        Some(self.transits(leg))
     }
 
     /// The first motion of a way that is drawn at random.
-    fn begin_drawn(&mut self, course: &mut Course) -> Option<Found> {
+    fn begin_drawn(&mut self) -> Option<Found> {
         let way = wander(&self.problem, self.search)?;
         let (first, rest) = way.split_first()?;
-        *course = course.with_way(rest.iter().map(|leg| leg.0));
+        let course = self.course.with_way(rest.iter().map(|leg| leg.0));
         let recovery = if rest.is_empty() { Recovery::Undirected } else { Recovery::Transit };
-        Some(Found::of(Some(recovery), *first))
+        Some(Found::of(Some(recovery), *first, course))
     }
 
     /// A drive drawn at random, to try again from elsewhere, for a vehicle that has to go round to turn.
-    fn go_elsewhere(&mut self, course: &mut Course) -> Option<Found> {
-        course.tries = course.tries.saturating_add(1);
-        let tries = course.tries;
+    fn go_elsewhere(&mut self) -> Option<Found> {
+        let tries = self.course.tries.checked_add(1).filter(|tries| *tries <= TRIES)?;
         let Search { dynamics, pose, .. } = *self.search;
         // Who is not safe is so near the border that driving on makes it worse.
         let is_free = goes_round(dynamics, pose) && dynamics.is_safe(pose, &self.problem.area);
-        let leg = (tries <= TRIES && is_free)
-            .then(|| drift(&self.problem, self.search, tries))
-            .flatten()?;
-        Some(Found::of(Some(Recovery::Transit), leg))
+        let leg = if is_free { drift(&self.problem, self.search, tries)? } else { return None };
+        Some(Found { course: self.course.with_tries(tries), ..self.transits(leg) })
     }
 
     /// The first of the fewest turns in place beyond which the undirected problem is feasible.

@@ -53,7 +53,8 @@ pub(crate) fn wander<D: Dynamics, R: DirectionRule, G: Region>(
     let mut it = Wander { problem, dynamics, effort: search.effort, state: 0 };
     let drawn = DRAWN
         .into_iter()
-        .find_map(|(count, motions)| (0..count).find_map(|_| it.draw_way(from, motions)));
+        .flat_map(|(count, motions)| (0..count).map(move |_| motions))
+        .find_map(|motions| it.draw_way(from, motions));
     search.effort = it.effort;
     drawn
 }
@@ -78,6 +79,9 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Wander<'_, '_, '_, D, R, G> {
         let mut way = Drawn::new();
         for _ in 0..motions {
             let at = way.last().map_or(from, |leg| leg.1);
+            if !self.effort.is_enough() {
+                return None;
+            }
             let Some(leg) = self.draw(at) else { continue };
             let known = way.iter().position(|it| it.1 == leg.1).map(|it| it + 1);
             if let Some(until) = known.or((leg.1 == from).then_some(0)) {
@@ -85,17 +89,11 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Wander<'_, '_, '_, D, R, G> {
                 continue;
             }
             way.push(leg).ok()?;
-            if self.is_open(at, leg.1) {
+            if is_open(self.problem, self.dynamics, [at, leg.1]) {
                 return Some(way);
             }
         }
         None
-    }
-
-    /// Whether a motion ends where a label tells something and the vehicle is safe.
-    fn is_open(&self, from: Pose, to: Pose) -> bool {
-        let Problem { lines, area, .. } = self.problem;
-        to.site != from.site && lines.can_cut(to.site) && self.dynamics.is_safe(to, area)
     }
 
     /// A motion drawn at random, if it stays inside. The sharpest and the straight ones are drawn more often.
@@ -139,9 +137,20 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Wander<'_, '_, '_, D, R, G> {
             let fan = self.dynamics.fan();
             [fan.left, fan.right]
         });
-        // Without any on the left there is none straight ahead: the speed has none at all.
-        left.checked_sub(1).map(|last| if side == Side::Left { last } else { right })
+        // Without any on the left there is none straight ahead: the speed has none at all. A fan that reaches all around
+        // has them all on the left.
+        left.checked_sub(1).map(|last| if side == Side::Left || right == 0 { last } else { right })
     }
+}
+
+/// Whether a motion ends where a label tells something and the vehicle is safe.
+pub(crate) fn is_open<D: Dynamics, R, G: Region>(
+    problem: &Problem<'_, R, G>,
+    dynamics: &D,
+    [from, to]: [Pose; 2],
+) -> bool {
+    let Problem { lines, area, .. } = problem;
+    to.site != from.site && lines.can_cut(to.site) && dynamics.is_safe(to, area)
 }
 
 /// Whether a drive stays inside, and ends where the vehicle is safe, unless it is not where it begins.
@@ -153,14 +162,18 @@ pub(crate) fn stays<D: Dynamics, G: Region>(
     [from, to]: [Pose; 2],
 ) -> bool {
     let way = [from.site, to.site];
-    effort.take_sweep(area, &way);
     if !area.contains(to.site) {
         return false;
     }
-    if dynamics.keeps_inside(from, to, area) {
+    // The way and two circles, twice.
+    for _ in 0..3 {
+        effort.take_sweep(area, &way);
+    }
+    if dynamics.keeps_inside(from, to, area, 0) {
         return true;
     }
-    effort.take_sweep(area, &way);
-    effort.take_sweep(area, &way);
+    for _ in 0..3 {
+        effort.take_sweep(area, &way);
+    }
     !dynamics.is_safe(from, area) && dynamics.stays_inside(from, to, area)
 }

@@ -38,6 +38,8 @@ pub enum Finding {
     FalseReason,
     /// A plan took more than its stated work.
     TooLong,
+    /// A planner that was asked twice said two things.
+    Fickle,
 }
 
 /// How a mission went.
@@ -106,6 +108,9 @@ impl Fly<'_> {
             flight.asked = flight.asked.max(asked);
             if asked > self.most_asked {
                 flight.note(Finding::TooLong, format!("{asked} asked at {pose:?}"));
+            }
+            if flight.motions.is_multiple_of(4) && planner.plan(pose) != plan {
+                flight.note(Finding::Fickle, format!("another plan when asked twice at {pose:?}"));
             }
             let motion = match plan {
                 Plan::Move(motion) => motion,

@@ -111,7 +111,7 @@ impl Judge<'_> {
                 }
                 if next.site != at.site
                     && self.is_open(next.site)
-                    && vehicle.keeps_inside(at, next, &self.area)
+                    && vehicle.keeps_inside(at, next, &self.area, 0)
                 {
                     return Some(format!("{motions} motions lead to {next:?} from {pose:?}"));
                 }
