@@ -26,7 +26,7 @@ use planner_core::motion::action::Action;
 use planner_core::motion::any_vehicle::AnyVehicle;
 use planner_core::motion::boat::Boat;
 use planner_core::motion::car::{self, Car};
-use planner_core::motion::dynamics::{Dynamics as _, Pose};
+use planner_core::motion::dynamics::{Dynamics as _, Pose, room_for_errors};
 use planner_core::motion::unicycle::Unicycle;
 use tests::cases;
 
@@ -229,7 +229,7 @@ fn first_of_all(
             for action in (0..actions).map(Action) {
                 if let Some(to) = vehicle.target(from, action)
                     && area.contains(to.site)
-                    && vehicle.keeps_inside(from, to, &area, vehicle.room(from, &area))
+                    && vehicle.keeps_inside(from, to, &area, room_for_errors(&area))
                 {
                     longer.push((
                         [poses.as_slice(), &[to]].concat(),

@@ -178,7 +178,7 @@ fn equals_exhaustive_search_anywhere_for_any_grid() {
         }
         let boat = Boat::new(coarse).expect("a boat");
         count += check(&boat, &space, area, varrho, pose, &context).0;
-        // Where positions err, motions leave room; from where there is none they need not.
+        // Where positions err, motions leave room.
         let inset = area.inset(1 << rng.random_range(0..18));
         if let Some(inset) = inset.filter(|inset| inset.contains(pose.site)) {
             for car in cars() {

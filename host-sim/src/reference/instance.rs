@@ -5,7 +5,7 @@ use planner_core::belief::sample::{Label, Sample};
 use planner_core::belief::tolerance::Tolerance;
 use planner_core::geometry::region::Region as _;
 use planner_core::motion::action::{Action, Control};
-use planner_core::motion::dynamics::{Dynamics as _, Pose};
+use planner_core::motion::dynamics::{Dynamics as _, Pose, room_for_errors};
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::Mission;
@@ -108,7 +108,7 @@ impl Instance {
     pub fn target(&self, from: Pose, action: Action) -> Option<Pose> {
         let (vehicle, area) = (&self.mission.vehicle, &self.mission.config.area);
         let to = vehicle.target(from, action)?;
-        (area.contains(to.site) && vehicle.keeps_inside(from, to, area, vehicle.room(from, area)))
+        (area.contains(to.site) && vehicle.keeps_inside(from, to, area, room_for_errors(area)))
             .then_some(to)
     }
 

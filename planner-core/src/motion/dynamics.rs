@@ -212,7 +212,7 @@ pub trait Dynamics {
     fn fits(&self, area: Area) -> Result<(), NoRoom> {
         let pose = Pose { site: area.middle(), heading: Heading(0) };
         let Some(orbit) = self.orbit(pose, Side::Left) else { return Ok(()) };
-        let radius = orbit.with_room(two_errors(area)).unsigned_abs();
+        let radius = orbit.with_room(room_for_errors(&area)).unsigned_abs();
         let across_mm = (u64::from(radius) * 2_000).div_ceil(UNITS_PER_METRE as u64) as u32;
         area.inset(radius).map(drop).ok_or(NoRoom { across_mm })
     }
@@ -222,17 +222,8 @@ pub trait Dynamics {
         has_orbit_inside(self, pose, area, |orbit| orbit.radius)
     }
 
-    /// The room that motions from a pose leave around the circle at their end, so that two errors of the position do not
-    /// push it out; lattice units. None where the pose itself has no such room: one motion need not win it.
-    fn room<G: Region>(&self, from: Pose, area: &G) -> i32 {
-        let room = two_errors(area.bounds());
-        let has_room =
-            room > 0 && has_orbit_inside(self, from, area, |orbit| orbit.with_room(room));
-        if has_room { room } else { 0 }
-    }
-
-    /// Whether a motion to a place inside the area stays there and ends where it is safe, with so much
-    /// [`room`](Self::room). There is a margin for the rounding of a round.
+    /// Whether a motion to a place inside the area stays there and ends where it is safe, with so much room
+    /// around its circle, in lattice units. There is a margin for the rounding of a round.
     fn keeps_inside<G: Region>(&self, from: Pose, to: Pose, area: &G, room: i32) -> bool {
         self.stays_inside(from, to, area)
             && has_orbit_inside(self, to, area, |orbit| orbit.with_room(room))
@@ -296,9 +287,10 @@ pub trait Dynamics {
     }
 }
 
-/// Twice what positions err, which is the area's own margin; lattice units.
-fn two_errors(area: Area) -> i32 {
-    (area.margin() as i32).saturating_mul(2)
+/// Room for two errors of the position, so that they do not push a circle out; lattice units. How much positions err is the
+/// area's own margin.
+pub fn room_for_errors<G: Region>(area: &G) -> i32 {
+    (area.bounds().margin() as i32).saturating_mul(2)
 }
 
 /// Whether the agent needs no orbit, or the disc of one of so large a radius lies inside the area.

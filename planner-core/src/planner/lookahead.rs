@@ -238,8 +238,7 @@ impl<D: Dynamics, B: Foresight, G: Region> Planner for Lookahead<D, B, G> {
         let (dynamics, evaluations) = (&self.dynamics, self.evaluations);
         let (usual, scale) = usual(dynamics, &area);
         let least = self.least();
-        let mut lookout =
-            Lookout { dynamics, area, varrho, usual, scale, room: 0, least, evaluations };
+        let mut lookout = Lookout { dynamics, area, varrho, usual, scale, least, evaluations };
         if let Some(decision) = self.decide(&mut lookout, pose) {
             let Decision { action, target, wants_label, .. } = decision;
             self.silence.bears(false);
@@ -407,8 +406,7 @@ mod tests {
             let Config { area, varrho, .. } = planner.config;
             let (usual, scale) = usual(dynamics, &area);
             let least = planner.least();
-            let mut lookout =
-                Lookout { dynamics, area, varrho, usual, scale, room: 0, least, evaluations };
+            let mut lookout = Lookout { dynamics, area, varrho, usual, scale, least, evaluations };
             let decision = planner.decide(&mut lookout, pose);
             assert!(lookout.evaluations <= evaluations);
             let worth = decision.map_or(f32::NEG_INFINITY, |decision| decision.worth);

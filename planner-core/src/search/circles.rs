@@ -12,7 +12,7 @@ use core::num::NonZeroU32;
 use crate::belief::consistent_lines::Certainty;
 use crate::geometry::heading::Heading;
 use crate::geometry::region::Region;
-use crate::motion::dynamics::{Dynamics, Pose, Ray, Side};
+use crate::motion::dynamics::{Dynamics, Pose, Ray, Side, room_for_errors};
 use crate::search::direction_rule::DirectionRule;
 use crate::search::objective::{Choice, Effort, Varrho};
 use crate::search::view::View;
@@ -24,8 +24,6 @@ pub(crate) struct Search<'a, D, G> {
     pub(crate) varrho: Varrho,
     pub(crate) view: View<'a, G>,
     pub(crate) effort: Effort,
-    /// The [room](Dynamics::room) that its motions leave.
-    pub(crate) room: i32,
     /// Whether there was an end on uncertain ground with the border in the way.
     pub(crate) is_hemmed_in: bool,
 }
@@ -271,7 +269,12 @@ impl<D: Dynamics, G: Region> Search<'_, D, G> {
         for _ in 0..2 {
             self.effort.take_sweep(self.view.area(), &[pose.site, target.site]);
         }
-        if !self.dynamics.keeps_inside(pose, target, self.view.area(), self.room) {
+        if !self.dynamics.keeps_inside(
+            pose,
+            target,
+            self.view.area(),
+            room_for_errors(self.view.area()),
+        ) {
             self.is_hemmed_in = true;
             return Err(HEMMED_IN);
         }

@@ -14,7 +14,7 @@ use crate::belief::outlook::Prediction;
 use crate::geometry::lattice::UNITS_PER_METRE;
 use crate::geometry::region::Region;
 use crate::motion::action::Action;
-use crate::motion::dynamics::{Dynamics, Fan, Pose, Ray, Side};
+use crate::motion::dynamics::{Dynamics, Fan, Pose, Ray, Side, room_for_errors};
 use crate::search::objective::Varrho;
 
 /// Rays of a circle that are asked first are a twelfth of a turn apart, about.
@@ -82,8 +82,6 @@ pub(crate) struct Lookout<'a, D, G> {
     pub(crate) usual: u16,
     /// Metres of the paper's action set in a metre of this one.
     pub(crate) scale: f32,
-    /// The [room](Dynamics::room) that motions leave.
-    pub(crate) room: i32,
     /// What a label is expected to tell at least.
     pub(crate) least: f32,
     pub(crate) evaluations: u32,
@@ -113,7 +111,6 @@ impl<D: Dynamics, G: Region> Lookout<'_, D, G> {
         (circles, fastest): (u16, u16),
         sought: &mut Sought<'_>,
     ) {
-        self.room = self.dynamics.room(pose, &self.area);
         let fastest = u32::from(fastest);
         let circles = NonZeroU32::new(u32::from(circles).min(fastest)).unwrap_or(NonZeroU32::MIN);
         for k in 1..=circles.get() {
@@ -145,7 +142,7 @@ impl<D: Dynamics, G: Region> Lookout<'_, D, G> {
         if share > 0.0
             && share < 1.0
             && self.area.contains(target.site)
-            && self.dynamics.keeps_inside(pose, target, &self.area, self.room)
+            && self.dynamics.keeps_inside(pose, target, &self.area, room_for_errors(&self.area))
         {
             let grid = self.dynamics.grid();
             let cost = self.cost(grid.reach_mm(speed), ray.effort);

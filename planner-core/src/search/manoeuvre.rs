@@ -22,7 +22,7 @@ use crate::geometry::approximate::{single, sqrt};
 use crate::geometry::lattice::{Site, Vector};
 use crate::geometry::region::Region;
 use crate::motion::action::Action;
-use crate::motion::dynamics::{Dynamics, Orbit, Pose, Side};
+use crate::motion::dynamics::{Dynamics, Orbit, Pose, Side, room_for_errors};
 use crate::search::circles::Search;
 use crate::search::dead_end::DeadEnd;
 use crate::search::detour::{self, Way};
@@ -252,8 +252,15 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Manoeuvre<'_, '_, '_, D, R, G> {
         let (dynamics, area) = (self.dynamics, &self.problem.area);
         let fits = |orbit: Orbit| orbit.is_inside(after.site, area, orbit.radius);
         !dynamics.is_safe(pose, area)
-            || dynamics.keeps_inside(pose, after, area, dynamics.room(pose, area))
+            || dynamics.keeps_inside(pose, after, area, self.room(pose))
             || dynamics.orbit(after, side).is_some_and(fits)
+    }
+
+    /// The room that a motion leaves. Where there is none to begin with, one motion need not win it.
+    fn room(&self, from: Pose) -> i32 {
+        let (area, room) = (&self.problem.area, room_for_errors(&self.problem.area));
+        let has_room = room > 0 && self.dynamics.keeps_inside(from, from, area, room);
+        if has_room { room } else { 0 }
     }
 
     /// Drives straight on.
@@ -302,7 +309,7 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Manoeuvre<'_, '_, '_, D, R, G> {
             }
         }
         let is_safe = dynamics.is_safe(pose, &self.problem.area);
-        let room = dynamics.room(pose, &self.problem.area);
+        let room = self.room(pose);
         let mut otherwise = None;
         for speed in (1..=fastest).rev() {
             let exists = dynamics.rays_at(speed).is_none_or(|[left, _]| left > 0);
@@ -328,7 +335,7 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Manoeuvre<'_, '_, '_, D, R, G> {
 
     /// Where so many motions straight ahead lead, if its circle to one side stays inside all along.
     fn advance(&mut self, pose: Pose, by: Vector, count: u32) -> Option<Pose> {
-        let (area, room) = (&self.problem.area, self.dynamics.room(pose, &self.problem.area));
+        let (area, room) = (&self.problem.area, self.room(pose));
         let times = |v: i32| v.checked_mul(count as i32);
         let by = Vector::new(times(by.x)?, times(by.z)?)?;
         let after = Pose { site: pose.site.step(by).ok()?, ..pose };

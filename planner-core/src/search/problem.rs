@@ -18,7 +18,7 @@
 use crate::belief::consistent_lines::ConsistentLines;
 use crate::geometry::area::Area;
 use crate::geometry::region::Region;
-use crate::motion::dynamics::{Dynamics, Pose};
+use crate::motion::dynamics::{Dynamics, Pose, room_for_errors};
 use crate::search::circles::Search;
 use crate::search::direction_rule::{ArcRule, DirectionRule};
 use crate::search::objective::{Choice, Effort, Varrho};
@@ -98,13 +98,12 @@ impl<'a, R: DirectionRule, G: Region> Problem<'a, R, G> {
         'a: 'd,
     {
         let view = View::new(self.lines, self.area, pose.site, dynamics.grid());
-        let room = dynamics.room(pose, &self.area);
-        Search { dynamics, pose, varrho: self.varrho, view, effort, room, is_hemmed_in: false }
+        Search { dynamics, pose, varrho: self.varrho, view, effort, is_hemmed_in: false }
     }
 
     /// Solves the problem by trying every action: the slow twin of [`solve`](Self::solve).
     pub fn solve_exhaustively<D: Dynamics>(&self, dynamics: &D, pose: Pose) -> Solution {
-        let (grid, room) = (dynamics.grid(), dynamics.room(pose, &self.area));
+        let (grid, room) = (dynamics.grid(), room_for_errors(&self.area));
         let mut solution = Solution { proven: true, ..Solution::default() };
         for ray in dynamics.rays(pose) {
             for speed in 0..grid.speeds() {
