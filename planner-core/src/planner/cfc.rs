@@ -121,13 +121,17 @@ impl<D: Dynamics, const N: usize, G: Region> Cfc<D, N, G> {
 
     /// The motion to make, the phase that it belongs to, and what it cost to find it.
     /// Where positions err and no place is left at which either label would cut, one where one would is enough.
-    fn find(&self, pose: Pose) -> (Result<Found, DeadEnd>, Phase, Effort) {
+    fn find(&self, pose: Pose, course: &mut Course) -> (Result<Found, DeadEnd>, Phase, Effort) {
         let lines = self.space.lines();
         if self.space.expected() == Tolerance::NONE {
-            return self.find_among(lines, pose, LOOKS);
+            return self.find_among(lines, pose, LOOKS, course);
         }
-        let found = self.find_among(lines, pose, LOOKS / 2);
-        if found.0.is_err() { self.find_among(lines.loosely(), pose, LOOKS / 2) } else { found }
+        let found = self.find_among(lines, pose, LOOKS / 2, course);
+        if found.0.is_err() {
+            *course = self.silence.course();
+            return self.find_among(lines.loosely(), pose, LOOKS / 2, course);
+        }
+        found
     }
 
     fn find_among(
@@ -135,8 +139,9 @@ impl<D: Dynamics, const N: usize, G: Region> Cfc<D, N, G> {
         lines: ConsistentLines<'_>,
         pose: Pose,
         looks: u32,
+        course: &mut Course,
     ) -> (Result<Found, DeadEnd>, Phase, Effort) {
-        let (slopes, course) = (self.space.slope_arc(), self.silence.course());
+        let slopes = self.space.slope_arc();
         let problem = self.problem_of(self.due, slopes, lines);
         let mut search = problem.search(&self.dynamics, pose, Effort::of(looks));
         let search = search.open();
@@ -144,10 +149,11 @@ impl<D: Dynamics, const N: usize, G: Region> Cfc<D, N, G> {
         if self.due == Phase::Following {
             let findings = search.best(&problem.rule, None);
             if let Some((Choice { action, target, .. }, _)) = findings.best {
-                let found = Found::of(None, (action, target), Course::NONE);
+                let found = Found::of(None, (action, target));
                 return (Ok(found), Phase::Following, search.effort);
             }
-            if let Some(turned) = turn_round(&problem, search, course) {
+            if let Some(turned) = turn_round(&problem, search) {
+                course.give_up_way();
                 return (Ok(turned), Phase::Following, search.effort);
             }
             followed = Some(findings);
@@ -165,7 +171,8 @@ impl<D: Dynamics, const N: usize, G: Region> Planner for Cfc<D, N, G> {
         if self.space.is_full() {
             return Plan::Stop(StopReason::SamplesFull);
         }
-        let (found, phase, effort) = self.find(pose);
+        let mut course = self.silence.course();
+        let (found, phase, effort) = self.find(pose, &mut course);
         self.phase = phase;
         let stage = match phase {
             Phase::Crossing => Some(Stage::P1),
@@ -174,7 +181,7 @@ impl<D: Dynamics, const N: usize, G: Region> Planner for Cfc<D, N, G> {
         match found {
             Ok(found) => {
                 let motion = Motion::of(stage, &found, &self.dynamics, effort);
-                self.silence.keep(pose, motion, found.course, &self.dynamics)
+                self.silence.keep(pose, motion, course, &self.dynamics)
             }
             Err(dead_end) => Plan::Stop(dead_end.into()),
         }

@@ -33,6 +33,7 @@ use crate::planner::config::{Config, ConfigError};
 use crate::planner::silence::Silence;
 use crate::planner::snapshot::{NotRestored, Persist, Snapshot};
 use crate::planner::{Motion, Plan, Planner, StopReason};
+use crate::search::course::Course;
 use crate::search::dead_end::{DeadEnd, is_broad};
 use crate::search::direction_rule::ArcRule;
 use crate::search::lookout::{ENOUGH, Lookout, Prospect, Prospects, Sought};
@@ -184,14 +185,14 @@ impl<D: Dynamics, B: Foresight, G: Region> Lookahead<D, B, G> {
     }
 
     /// What the ladder finds where no label is in reach that is worth it.
-    fn recover(&self, pose: Pose) -> (Result<Found, DeadEnd>, Effort) {
+    fn recover(&self, pose: Pose, course: &mut Course) -> (Result<Found, DeadEnd>, Effort) {
         let lines = self.foresight.ground();
         let (area, varrho) = (self.config.area, self.config.varrho);
         let rule = ArcRule::default();
         let problem = Problem { lines, area, varrho, rule };
         let mut search = problem.search(&self.dynamics, pose, Effort::of(LOOKS));
         let search = search.open();
-        let found = solve_or_recover(&problem, search, None, self.silence.course());
+        let found = solve_or_recover(&problem, search, None, course);
         (found, search.effort)
     }
 }
@@ -244,12 +245,14 @@ impl<D: Dynamics, B: Foresight, G: Region> Planner for Lookahead<D, B, G> {
             self.silence.bears(false);
             let looks = lookout.evaluations;
             let effort = Effort { looks, examined: evaluations - looks };
-            let course = self.silence.course().without_way();
-            let found = Found::of(None, (action, target), course);
+            let found = Found::of(None, (action, target));
+            let mut course = self.silence.course();
+            course.give_up_way();
             let motion = Motion { wants_label, ..Motion::of(None, &found, dynamics, effort) };
             return self.silence.keep(pose, motion, course, dynamics);
         }
-        match self.recover(pose) {
+        let mut course = self.silence.course();
+        match self.recover(pose, &mut course) {
             (Ok(found), effort) => {
                 let motion = Motion::of(None, &found, dynamics, effort);
                 // No label in reach is worth its way: this one is on the way to others.
@@ -257,7 +260,7 @@ impl<D: Dynamics, B: Foresight, G: Region> Planner for Lookahead<D, B, G> {
                 if !self.silence.bears(is_dull) && !is_broad(self.foresight.ground()) {
                     return Plan::Stop(StopReason::Tolerance);
                 }
-                self.silence.keep(pose, motion, found.course, dynamics)
+                self.silence.keep(pose, motion, course, dynamics)
             }
             (Err(dead_end), _) => Plan::Stop(dead_end.into()),
         }

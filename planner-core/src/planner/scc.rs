@@ -175,13 +175,13 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Region> Scc<D, N, H, G> {
         ballot.winner()
     }
 
-    fn find(&self, pose: Pose, effort: &mut Effort) -> Result<Found, DeadEnd> {
+    fn find(&self, pose: Pose, effort: &mut Effort, course: &mut Course) -> Result<Found, DeadEnd> {
         if self.policy == Policy::Joint {
             // P3 and P4 as printed: travel in no retained hypothesis's slopes, or in some one's.
             let slopes = self.hypotheses.iter().map(|h| self.hypotheses.lines(h).slope_arc());
             let slopes: ArcUnion = slopes.collect();
             let rule = UnionRule { arcs: slopes.arcs(), among: !self.is_even() };
-            return self.find_on_start(rule, pose, effort);
+            return self.find_on_start(rule, pose, effort, course);
         }
         // The rest is for the ladder.
         let kept = effort.keep_back(effort.looks / 2);
@@ -189,11 +189,11 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Region> Scc<D, N, H, G> {
         effort.give_back(kept);
         let elected = elected.and_then(|action| {
             let target = self.dynamics.target(pose, action)?;
-            Some(Found::of(None, (action, target), Course::NONE))
+            Some(Found::of(None, (action, target)))
         });
         elected.map_or_else(
             || {
-                let found = self.find_on_start(ArcRule::default(), pose, effort)?;
+                let found = self.find_on_start(ArcRule::default(), pose, effort, course)?;
                 let recovery = found.recovery.or(Some(Recovery::Undirected));
                 Ok(Found { recovery, ..found })
             },
@@ -207,11 +207,12 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Region> Scc<D, N, H, G> {
         rule: impl DirectionRule,
         pose: Pose,
         effort: &mut Effort,
+        course: &mut Course,
     ) -> Result<Found, DeadEnd> {
         let problem = self.on(self.hypotheses.start(), rule);
         let mut search = problem.search(&self.dynamics, pose, *effort);
         let search = search.open();
-        let found = solve_or_recover(&problem, search, None, self.silence.course());
+        let found = solve_or_recover(&problem, search, None, course);
         *effort = search.effort;
         found
     }
@@ -231,10 +232,11 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Region> Planner for Scc<D, 
             (_, false) => Stage::P4,
         };
         let mut effort = Effort::of(if self.policy == Policy::Joint { LOOKS } else { VOTE_LOOKS });
-        match self.find(pose, &mut effort) {
+        let mut course = self.silence.course();
+        match self.find(pose, &mut effort, &mut course) {
             Ok(found) => {
                 let motion = Motion::of(Some(stage), &found, &self.dynamics, effort);
-                self.silence.keep(pose, motion, found.course, &self.dynamics)
+                self.silence.keep(pose, motion, course, &self.dynamics)
             }
             Err(dead_end) => Plan::Stop(dead_end.into()),
         }

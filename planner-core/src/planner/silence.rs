@@ -111,7 +111,7 @@ impl Silence {
         }
         let motion = self.steady(pose, found, dynamics);
         if motion.action != found.action {
-            self.next_course = self.next_course.without_way();
+            self.next_course.give_up_way();
         }
         let by = motion.target.heading.0.wrapping_sub(pose.heading.0) as i32;
         let is_drive = motion.target.site != pose.site;

@@ -41,36 +41,27 @@ impl Course {
     pub(crate) const NONE: Self =
         Self { rest: [Action(0); REST], left: 0, tries: 0, far: Far::Not };
 
-    /// The same with another way to go.
-    pub(crate) fn with_way(self, motions: impl DoubleEndedIterator<Item = Action>) -> Self {
-        let mut course = self.without_way();
-        for (place, motion) in course.rest.iter_mut().zip(motions.rev()) {
+    /// Begins another way.
+    pub(crate) fn begin_way(&mut self, motions: impl DoubleEndedIterator<Item = Action>) {
+        self.give_up_way();
+        for (place, motion) in self.rest.iter_mut().zip(motions.rev()) {
             *place = motion;
-            course.left += 1;
+            self.left += 1;
         }
-        course
     }
 
     /// Takes the next motion, and says whether it is the last.
     pub(crate) fn next(&mut self) -> Option<(Action, bool)> {
         self.left = self.left.checked_sub(1)?;
-        let motion = self.rest.get(usize::from(self.left))?;
-        Some((*motion, self.left == 0))
+        let motion = self.rest.get_mut(usize::from(self.left))?;
+        Some((core::mem::replace(motion, Action(0)), self.left == 0))
     }
 
-    /// The same with another state of the drive far.
-    pub(crate) const fn with_far(self, far: Far) -> Self {
-        Self { far, ..self }
-    }
-
-    /// The same after so many motions to try from elsewhere.
-    pub(crate) const fn with_tries(self, tries: u8) -> Self {
-        Self { tries, ..self }
-    }
-
-    /// The same with its way given up.
-    pub(crate) const fn without_way(self) -> Self {
-        Self { tries: self.tries, far: self.far, ..Self::NONE }
+    /// Gives up its way.
+    pub(crate) fn give_up_way(&mut self) {
+        if self.left > 0 {
+            (self.rest, self.left) = (Self::NONE.rest, 0);
+        }
     }
 }
 

@@ -78,26 +78,22 @@ pub enum Recovery {
     Transit,
 }
 
-/// An action, where it leads, the rung on which it was found, and what is to come of the course after it.
+/// An action, where it leads, and the rung on which it was found.
 pub(crate) struct Found {
     pub(crate) recovery: Option<Recovery>,
     pub(crate) action: Action,
     pub(crate) target: Pose,
-    pub(crate) course: Course,
 }
 
 impl Found {
-    pub(crate) const fn of(
-        recovery: Option<Recovery>,
-        (action, target): Leg,
-        course: Course,
-    ) -> Self {
-        Self { recovery, action, target, course }
+    pub(crate) const fn of(recovery: Option<Recovery>, (action, target): Leg) -> Self {
+        Self { recovery, action, target }
     }
 }
 
 /// The problem's best action from where a search is, or the ladder's. `before` is what that search found
-/// by another rule, see [`Search::best`], and `course` what was begun since the last label.
+/// by another rule, see [`Search::best`], and `course` what was begun since the last label: it becomes what is to come
+/// after that action. Where there is none it is of no use.
 ///
 /// # Errors
 /// Why there is neither.
@@ -105,16 +101,15 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule, G: Region>(
     problem: &Problem<'_, R, G>,
     search: &mut Search<'_, D, G>,
     before: Option<Findings>,
-    course: Course,
+    course: &mut Course,
 ) -> Result<Found, DeadEnd> {
     let (area, pose) = (problem.area, search.pose);
-    // What is found is no part of the way that is under way, but where the ladder goes on with that.
-    let mut ladder = Ladder { problem: problem.undirected(), search, course: course.without_way() };
+    let mut ladder = Ladder { problem: problem.undirected(), search, course };
     // Before the search has used up its looks.
     let is_outside = !area.contains(pose.site);
     let home =
         is_outside.then(|| ladder.leg(pose, area.way_home(pose.site)).ok_or(DeadEnd::Outside));
-    let found = ladder.solve(problem, before).or_else(|| ladder.go_on(course));
+    let found = ladder.solve(problem, before).or_else(|| ladder.go_on());
     if let Some(found) = found {
         return Ok(found);
     }
@@ -138,7 +133,6 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule, G: Region>(
 pub(crate) fn turn_round<D: Dynamics, R: DirectionRule, G: Region>(
     problem: &Problem<'_, R, G>,
     search: &mut Search<'_, D, G>,
-    course: Course,
 ) -> Option<Found> {
     let is_free = goes_round(search.dynamics, search.pose)
         && search.dynamics.is_safe(search.pose, &problem.area);
@@ -146,7 +140,7 @@ pub(crate) fn turn_round<D: Dynamics, R: DirectionRule, G: Region>(
     let kept = search.effort.keep_back(search.effort.looks / 2);
     let found = is_free.then(|| manoeuvre(problem, search, None).ok()).flatten();
     search.effort.give_back(kept);
-    found.map(|leg| Found::of(Some(Recovery::Transit), leg, course.without_way()))
+    found.map(|leg| Found::of(Some(Recovery::Transit), leg))
 }
 
 /// Whether a vehicle has to go round in order to turn.
@@ -172,8 +166,8 @@ struct Ladder<'s, 'p, 'a, D, G> {
     problem: Problem<'p, ArcRule, G>,
     /// From where the agent is.
     search: &'s mut Search<'a, D, G>,
-    /// What was begun since the last label, without the way that was under way.
-    course: Course,
+    /// What was begun since the last label.
+    course: &'s mut Course,
 }
 
 impl<D: Dynamics, G: Region> Ladder<'_, '_, '_, D, G> {
@@ -187,17 +181,15 @@ impl<D: Dynamics, G: Region> Ladder<'_, '_, '_, D, G> {
         let Findings { best, best_forbidden } = self.search.best(&problem.rule, before);
         self.search.effort.give_back(kept);
         if let Some((best, _)) = best {
-            return Some(Found::of(None, (best.action, best.target), self.course));
+            return Some(Found::of(None, (best.action, best.target)));
         }
         let (best, _) = best_forbidden?;
-        turn_round(problem, self.search, self.course).or_else(|| {
-            let leg = (best.action, best.target);
-            Some(Found::of(Some(Recovery::Undirected), leg, self.course))
-        })
-    }
-
-    fn transits(&self, leg: Leg) -> Found {
-        Found::of(Some(Recovery::Transit), leg, self.course)
+        let turned = turn_round(problem, self.search);
+        if turned.is_some() {
+            self.course.give_up_way();
+            return turned;
+        }
+        Some(Found::of(Some(Recovery::Undirected), (best.action, best.target)))
     }
 
     /// The rungs 2 to 4, or a manoeuvre, with so many looks; `home` is the way back from outside, if that is where the
@@ -215,11 +207,11 @@ impl<D: Dynamics, G: Region> Ladder<'_, '_, '_, D, G> {
             self.search.view.way_out().ok_or(DeadEnd::Resolution)?;
             let waypoint = waypoint(self.search);
             let leg = manoeuvre(&self.problem, self.search, waypoint);
-            return leg.map(|leg| self.transits(leg));
+            return leg.map(|leg| Found::of(Some(Recovery::Transit), leg));
         }
         // Where nothing is in reach no turn finds anything, so that the order does not matter.
         if let Some(turn) = self.reorient() {
-            return Ok(Found::of(Some(Recovery::Reorient), turn, self.course));
+            return Ok(Found::of(Some(Recovery::Reorient), turn));
         }
         let Search { view, effort, .. } = &mut *self.search;
         let way = view.way_out().ok_or(DeadEnd::Resolution)?;
@@ -231,28 +223,37 @@ impl<D: Dynamics, G: Region> Ladder<'_, '_, '_, D, G> {
             }
             (None, _) => self.transit(),
         };
-        leg.map(|leg| self.transits(leg))
+        leg.map(|leg| Found::of(Some(Recovery::Transit), leg))
     }
 
     /// The next motion of a course, if it can be made.
-    fn go_on(&mut self, mut course: Course) -> Option<Found> {
+    fn go_on(&mut self) -> Option<Found> {
         let pose = self.search.pose;
-        if let Far::To(place) = course.far {
+        if let Far::To(place) = self.course.far {
             let drive = self.drive_far(place - pose.site);
             if drive.is_some() {
                 return drive;
             }
-            course = course.with_far(Far::Over);
-            self.course = self.course.with_far(Far::Over);
+            self.course.far = Far::Over;
         }
-        let (action, is_last) = course.next()?;
+        let found = self.next_motion();
+        if found.is_none() {
+            self.course.give_up_way();
+        }
+        found
+    }
+
+    /// The next motion of the way that is under way.
+    fn next_motion(&mut self) -> Option<Found> {
+        let pose = self.search.pose;
+        let (action, is_last) = self.course.next()?;
         let target = self.search.dynamics.target(pose, action)?;
         let Search { dynamics, effort, .. } = &mut *self.search;
         let stays = target.site == pose.site
             || stays(*dynamics, &self.problem.area, effort, [pose, target]);
         let can_go = stays && (!is_last || is_open(&self.problem, *dynamics, [pose, target]));
         let recovery = if is_last { Recovery::Undirected } else { Recovery::Transit };
-        can_go.then(|| Found::of(Some(recovery), (action, target), course))
+        can_go.then(|| Found::of(Some(recovery), (action, target)))
     }
 
     /// Begins a course: to open ground, which lies so far off, or one that is drawn at random.
@@ -269,7 +270,8 @@ impl<D: Dynamics, G: Region> Ladder<'_, '_, '_, D, G> {
         }
         let place = self.search.pose.site.step(way).ok()?;
         let found = self.drive_far(way)?;
-        Some(Found { course: self.course.with_far(Far::To(place)), ..found })
+        self.course.far = Far::To(place);
+        Some(found)
     }
 
     /// One motion on the way to a place beyond reach, unless the vehicle has to go round to turn.
@@ -280,16 +282,16 @@ impl<D: Dynamics, G: Region> Ladder<'_, '_, '_, D, G> {
         let reach = f32::from(grid.speeds().saturating_sub(1)) * grid.step_units();
         let is_far = sqrt(single(way.dot(way))) > reach && !goes_round(dynamics, pose);
         let leg = if is_far { self.leg(pose, way)? } else { return None };
-        Some(self.transits(leg))
+        Some(Found::of(Some(Recovery::Transit), leg))
     }
 
     /// The first motion of a way that is drawn at random.
     fn begin_drawn(&mut self) -> Option<Found> {
         let way = wander(&self.problem, self.search)?;
         let (first, rest) = way.split_first()?;
-        let course = self.course.with_way(rest.iter().map(|leg| leg.0));
+        self.course.begin_way(rest.iter().map(|leg| leg.0));
         let recovery = if rest.is_empty() { Recovery::Undirected } else { Recovery::Transit };
-        Some(Found::of(Some(recovery), *first, course))
+        Some(Found::of(Some(recovery), *first))
     }
 
     /// A drive drawn at random, to try again from elsewhere, for a vehicle that has to go round to turn.
@@ -299,7 +301,8 @@ impl<D: Dynamics, G: Region> Ladder<'_, '_, '_, D, G> {
         // Who is not safe is so near the border that driving on makes it worse.
         let is_free = goes_round(dynamics, pose) && dynamics.is_safe(pose, &self.problem.area);
         let leg = if is_free { drift(&self.problem, self.search, tries)? } else { return None };
-        Some(Found { course: self.course.with_tries(tries), ..self.transits(leg) })
+        self.course.tries = tries;
+        Some(Found::of(Some(Recovery::Transit), leg))
     }
 
     /// The first of the fewest turns in place beyond which the undirected problem is feasible.

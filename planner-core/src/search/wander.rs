@@ -53,8 +53,7 @@ pub(crate) fn wander<D: Dynamics, R: DirectionRule, G: Region>(
     let mut it = Wander { problem, dynamics, effort: search.effort, state: 0 };
     let drawn = DRAWN
         .into_iter()
-        .flat_map(|(count, motions)| (0..count).map(move |_| motions))
-        .find_map(|motions| it.draw_way(from, motions));
+        .find_map(|(count, motions)| (0..count).find_map(|_| it.draw_way(from, motions)));
     search.effort = it.effort;
     drawn
 }
@@ -76,12 +75,12 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Wander<'_, '_, '_, D, R, G> {
     /// So many motions drawn at random, up to the first that ends where a label tells something. What leads back to where it
     /// has been is left out.
     fn draw_way(&mut self, from: Pose, motions: u32) -> Option<Drawn> {
+        if !self.effort.is_enough() {
+            return None;
+        }
         let mut way = Drawn::new();
         for _ in 0..motions {
             let at = way.last().map_or(from, |leg| leg.1);
-            if !self.effort.is_enough() {
-                return None;
-            }
             let Some(leg) = self.draw(at) else { continue };
             let known = way.iter().position(|it| it.1 == leg.1).map(|it| it + 1);
             if let Some(until) = known.or((leg.1 == from).then_some(0)) {
