@@ -89,7 +89,7 @@ static int areas(const planner_mission *good, const planner_sample *given) {
     BLAMES(&lawn, given, 4, PLANNER_STATUS_KEEP_OUT, "keep_outs", 1);
     area = one, area.keep_outs[0].corners[0].z = 9000.0;
     BLAMES(&lawn, given, 4, PLANNER_STATUS_KEEP_OUT, "keep_outs", 0);
-    const double no_radii[] = {-1.0, 8192.0, 1e300, 0.0 / 0.0};
+    const double no_radii[] = {-1.0, 8191.999991, 8192.0, 1e300, 0.0 / 0.0};
     for (size_t i = 0; i < sizeof no_radii / sizeof *no_radii; i++) {
         area = one, area.keep_outs[0].radius = no_radii[i];
         BLAMES(&lawn, given, 4, PLANNER_STATUS_KEEP_OUT, "keep_outs", 0);

@@ -1,6 +1,7 @@
 //! Where motions may go: a convex polygon or a rectangle, but for keep-outs.
 
 use planner_core::geometry::lattice::UNITS_PER_METRE;
+use planner_core::geometry::terrain::NoTerrain;
 use planner_core::{Hull, RoundedHull, Site, Terrain};
 
 use crate::types::{Point, Status};
@@ -59,7 +60,11 @@ impl Area {
         for (number, (place, keep_out)) in read.iter_mut().zip(keep_outs).enumerate() {
             *place = keep_out.read().ok_or(refusal.about(number))?;
         }
-        Ground::new(polygon, read.get(..keep_outs.len()).unwrap_or(&read)).map_err(|_| refusal)
+        let read = read.get(..keep_outs.len()).unwrap_or(&read);
+        Ground::new(polygon, read).map_err(|why| match why {
+            NoTerrain::KeepOut(number) => refusal.about(number),
+            _ => refusal,
+        })
     }
 }
 
