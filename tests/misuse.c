@@ -167,6 +167,28 @@ static int observations(const planner_mission *good, const planner_mission *doub
         IS(planner_chance(planner, here, &chance), PLANNER_STATUS_OK);
         IS(chance > 0.5 && chance <= 1.0, 1);
         chance = 7.0;
+        if (!takes_it) continue;
+        /* Two labels that are certain and contradict each other: the second leaves all as it was. */
+        planner_motion before, after;
+        planner_pose close = pose;
+        close.z += 0.01;
+        IS(planner_observe_believed(planner, pose, positive, 1.0), PLANNER_STATUS_OK);
+        IS(planner_plan(planner, pose, &before), PLANNER_STATUS_OK);
+        double bits = planner_bits(planner);
+        IS(planner_observe_believed(planner, pose, PLANNER_READING_NEGATIVE, 1.0), PLANNER_STATUS_CONTRADICTION);
+        IS(planner_observe_believed(planner, pose, positive, 0.0), PLANNER_STATUS_CONTRADICTION);
+        IS(planner_bits(planner) == bits, 1);
+        IS(planner_plan(planner, pose, &after), PLANNER_STATUS_OK);
+        IS(before.target.x == after.target.x && before.target.z == after.target.z, 1);
+        IS(planner_observe_believed(planner, close, PLANNER_READING_BOUNDARY, 0.7), PLANNER_STATUS_OK);
+        IS(planner_observe_believed(planner, close, PLANNER_READING_NONE, 0.7), PLANNER_STATUS_OK);
+        IS(planner_bits(planner) == bits, 1);
+        planner_status status = PLANNER_STATUS_OK;
+        for (int labels = 0; labels < 40 && status == PLANNER_STATUS_OK; labels++) {
+            close.x -= 0.2;
+            status = planner_observe_believed(planner, close, positive, 0.7);
+        }
+        IS(status, PLANNER_STATUS_FULL);
     }
     return failed;
 }
