@@ -1,5 +1,5 @@
-//! Drivers that are awaited: a drive that waits for its motors by embedded-hal-async's delay, a sensor behind its
-//! I2C bus. Any executor runs it: here one that blocks, on a chip embassy's.
+//! Drivers that are awaited: a drive that waits for its motors by embedded-hal-async's delay, a threshold on what a
+//! converter measures behind its I2C bus. Any executor runs it: here one that blocks, on a chip embassy's.
 //!
 //! `cargo run -p planner-core --example asynchronous`
 
@@ -10,9 +10,9 @@ use std::convert::Infallible;
 use embedded_hal_async::delay::DelayNs;
 use embedded_hal_async::i2c::{ErrorType, I2c, Operation};
 use field::{Result, World};
-use planner_core::robot::asynchronous::{Drive, LabelSensor};
+use planner_core::robot::asynchronous::Drive;
 use planner_core::{
-    Agent, Event, Label, Lookahead, Motion, Planner as _, Pose, Reading, Unicycle, Vehicle,
+    Agent, Event, Label, Lookahead, Motion, Planner as _, Pose, ThresholdSensor, Unicycle, Vehicle,
     VersionSpace,
 };
 
@@ -29,25 +29,20 @@ impl<D: DelayNs> Drive for Tracks<'_, D> {
     }
 }
 
-/// Your sensor: a converter on an I2C bus, a concentration in its first register.
-struct Fluorometer<B>(B);
-
-impl<B: I2c> LabelSensor for Fluorometer<B> {
-    type Error = B::Error;
-
-    async fn read(&mut self) -> std::result::Result<Reading, B::Error> {
-        let mut parts_per_billion = [0; 2];
-        self.0.write_read(0x48, &[0], &mut parts_per_billion).await?;
-        let is_above = u16::from_be_bytes(parts_per_billion) > 500;
-        Ok(if is_above { Label::Positive } else { Label::Negative }.into())
-    }
+/// Your converter on an I2C bus: a concentration in its first register, parts per billion.
+async fn measure(bus: &mut impl I2c<Error = Infallible>) -> std::result::Result<i32, Infallible> {
+    let mut register = [0; 2];
+    bus.write_read(0x48, &[0], &mut register).await?;
+    Ok(u16::from_be_bytes(register).into())
 }
 
 pub(crate) fn main() -> Result {
     let world = World::new()?;
     let space = VersionSpace::<24>::new(&field::given()?)?;
     let planner = Lookahead::new(field::config()?, Unicycle::paper(), space)?;
-    let vehicle = Vehicle { drive: Tracks(&world, NoTime), sensor: Fluorometer(Bus(&world)) };
+    let mut bus = Bus(&world);
+    let sensor = ThresholdSensor::new(async || measure(&mut bus).await, 500..=500, Label::Positive);
+    let vehicle = Vehicle { drive: Tracks(&world, NoTime), sensor };
     let mut agent = Agent::new(planner, vehicle, field::start()?);
     pollster::block_on(async {
         while let Event::Step(step) = agent.step_async().await? {

@@ -6,12 +6,14 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use planner_core::belief::goal::Accuracy;
+use planner_core::belief::outlook::Foresight;
 use planner_core::belief::tolerance::Tolerance;
+use planner_core::geometry::lattice::UNITS_PER_METRE;
 use planner_core::nalgebra::Point2;
 use planner_core::{
-    Area, Belief as _, Config, Crossing, Forecast, Goal, Heading, Label, Line, Lookahead, Noise,
-    Plan, Planner, Pose, Prior, Reliability, Sample, Site, StopReason, Unicycle, VersionSpace, cfc,
-    lookahead,
+    Area, Belief as _, Config, Crossing, Forecast, Goal, Heading, Hull, Label, Line, Lookahead,
+    Noise, Plan, Planner, Pose, Prior, Reliability, RoundedHull, Sample, Site, StopReason, Terrain,
+    Unicycle, VersionSpace, cfc, lookahead,
 };
 use tests::program::build::{build, has_tool, skip};
 
@@ -61,80 +63,246 @@ fn flown<P: Planner<Belief: Sized>>(mut planner: P, start: Pose, is_doubtful: bo
     lines + &format!("line {a:.9} {b:.9} {c:.9}, {bits:.6} bits")
 }
 
-fn flown_here(is_doubtful: bool) -> String {
-    let at = |x, z| Site::try_from(Point2::<f64>::new(x, z)).expect("near");
-    let given = [
-        Sample { site: at(2.0, 1.0), label: Label::Negative },
-        Sample { site: at(2.0, 8.0), label: Label::Positive },
-        Sample { site: at(18.0, 16.0), label: Label::Positive },
-        Sample { site: at(18.0, 5.0), label: Label::Negative },
-    ];
-    let config = Config {
-        area: Area::new(at(0.0, 0.0), at(20.0, 20.0)).expect("an area"),
+fn at(x: f64, z: f64) -> Site {
+    Site::try_from(Point2::new(x, z)).expect("near")
+}
+
+fn given() -> [Sample; 4] {
+    let given = [(2.0, 1.0, -1), (2.0, 8.0, 1), (18.0, 16.0, 1), (18.0, 5.0, -1)];
+    given.map(|(x, z, sign)| {
+        let label = if sign > 0 { Label::Positive } else { Label::Negative };
+        Sample { site: at(x, z), label }
+    })
+}
+
+fn start() -> Pose {
+    Pose { site: at(2.0, 1.0), heading: Heading(0) }
+}
+
+fn config<G>(area: G, tolerance: Tolerance) -> Config<G> {
+    Config {
+        area,
         varrho: lookahead::VARRHO,
         crossing: Crossing::default(),
         following: cfc::FOLLOWING,
-        tolerance: Tolerance::NONE,
-    };
-    let unicycle = Unicycle::new(10_000, 1.57, 21, 50).expect("a grid");
-    let slopes = Heading::from_radians(if is_doubtful { 0.21 } else { 0.0035 }).expect("an angle");
-    let goal = Some(Goal { accuracy: Accuracy::SlopeArc(slopes), level: 900_000 });
-    let start = Pose { site: given[0].site, heading: Heading(0) };
-    if is_doubtful {
-        let reliability = Reliability::new(0.85).expect("a probability");
-        let noise = Noise { reliability, ..Noise::NONE };
-        let forecast = Forecast::<36, 529>::new(&given, Prior::Area, noise).expect("four points");
-        flown(
-            Lookahead::new(config, unicycle, forecast).expect("settings that agree").until(goal),
-            start,
-            true,
-        )
-    } else {
-        let space = VersionSpace::<68>::new(&given).expect("four points");
-        flown(
-            Lookahead::new(config, unicycle, space).expect("settings that agree").until(goal),
-            start,
-            false,
-        )
+        tolerance,
     }
+}
+
+fn slopes(radians: f64, level: u32) -> Goal {
+    let most = Heading::from_radians(radians).expect("an angle");
+    Goal { accuracy: Accuracy::SlopeArc(most), level }
+}
+
+fn reliability(p: f64) -> Reliability {
+    Reliability::new(p).expect("a probability")
+}
+
+fn flown_here(is_doubtful: bool) -> String {
+    let config = config(Area::new(at(0.0, 0.0), at(20.0, 20.0)).expect("an area"), Tolerance::NONE);
+    let unicycle = Unicycle::new(10_000, 1.57, 21, 50).expect("a grid");
+    let goal = slopes(if is_doubtful { 0.21 } else { 0.0035 }, 900_000);
+    if is_doubtful {
+        let noise = Noise { reliability: reliability(0.85), ..Noise::NONE };
+        let forecast = Forecast::<36, 529>::new(&given(), Prior::Area, noise).expect("four points");
+        let planner = Lookahead::new(config, unicycle, forecast).expect("settings that agree");
+        flown(planner.until(Some(goal)), start(), true)
+    } else {
+        let space = VersionSpace::<68>::new(&given()).expect("four points");
+        let planner = Lookahead::new(config, unicycle, space).expect("settings that agree");
+        flown(planner.until(Some(goal)), start(), false)
+    }
+}
+
+type Ground = Terrain<8, 8>;
+
+/// The area of `asleep.c`.
+fn ground() -> Ground {
+    let hull = |corners: &[(f64, f64)]| {
+        let corners: Vec<Site> = corners.iter().map(|&(x, z)| at(x, z)).collect();
+        Hull::new(&corners).expect("a convex polygon")
+    };
+    let border = hull(&[(0.0, 0.0), (20.0, 0.0), (20.0, 17.0), (8.0, 20.0), (0.0, 20.0)]);
+    let keep_outs = [
+        (hull(&[(5.0, 6.0)]), UNITS_PER_METRE),
+        (hull(&[(9.0, 7.0), (11.0, 7.0), (10.0, 9.0)]), 0),
+        (hull(&[(13.0, 9.0), (16.0, 9.5)]), UNITS_PER_METRE / 4),
+    ];
+    let rounded = |(hull, radius): (_, i32)| RoundedHull { hull, radius: radius.unsigned_abs() };
+    Terrain::new(border, &keep_outs.map(rounded)).expect("an area")
+}
+
+/// An observation as `asleep.c` makes it: the planner, where it is, what was read, which label it is, and whether that is
+/// wrong.
+type Observe<B> = fn(&mut Lookahead<Unicycle, B, Ground>, Pose, Option<Label>, u32, bool);
+
+fn observe_within<B: Foresight>(
+    planner: &mut Lookahead<Unicycle, B, Ground>,
+    pose: Pose,
+    label: Option<Label>,
+    number: u32,
+    _: bool,
+) {
+    let tolerance = Tolerance::new(0.02 * f64::from(number % 5 + 1)).expect("a tolerance");
+    let observed = planner.observe_within(pose, label.map(Into::into), tolerance);
+    observed.expect("a possible label");
+}
+
+fn observe_believed(
+    planner: &mut Lookahead<Unicycle, Forecast<36, 529>, Ground>,
+    pose: Pose,
+    label: Option<Label>,
+    _: u32,
+    is_wrong: bool,
+) {
+    let Some(label) = label else { return planner.observe(pose, None).expect("no label") };
+    let reliability = reliability(if is_wrong { 0.6 } else { 0.95 });
+    let sample = Sample { site: pose.site, label };
+    planner.foresight().take(sample, reliability).expect("room");
+}
+
+/// What `asleep.c` prints, by a planner that stays awake.
+fn awake<B: Foresight<Belief: Sized>>(
+    (belief, tolerance): (B, Tolerance),
+    goal: Goal,
+    observe: Observe<B>,
+) -> String {
+    let unicycle = Unicycle::new(10_000, 1.57, 41, 50).expect("a grid");
+    let planner = Lookahead::new(config(ground(), tolerance), unicycle, belief);
+    let mut planner = planner.expect("settings that agree").until(Some(goal));
+    let is_doubtful = goal.level < 900_000;
+    let (mut pose, mut labels, mut said, mut status) = (start(), 0, String::new(), 0);
+    let print = |said: &mut String, number: f64| {
+        let _ = write!(said, "{:016x} ", number.to_bits());
+    };
+    for _ in 0..80 {
+        let motion = match planner.plan(pose) {
+            Plan::Move(motion) => motion,
+            Plan::Stop(reason) => {
+                status = match reason {
+                    StopReason::Known => 1,
+                    StopReason::SamplesFull => 3,
+                    StopReason::Undecided => 11,
+                    StopReason::Tolerance => 13,
+                    other => panic!("{other:?}"),
+                };
+                break;
+            }
+        };
+        pose = motion.target;
+        let here = Point2::<f64>::from(pose.site);
+        let label = motion.wants_label.then(|| {
+            labels += 1;
+            let is_wrong = is_doubtful && labels % 7 == 3;
+            let is_above = here.y > 0.41 * here.x + 3.5;
+            (if is_above == is_wrong { Label::Negative } else { Label::Positive }, is_wrong)
+        });
+        let chance = planner.belief().chance(pose.site);
+        for number in [here.x, here.y, pose.heading.radians(), chance] {
+            print(&mut said, number);
+        }
+        let _ = writeln!(said, "{}", label.map_or(2, |(label, _)| label.sign()));
+        let is_wrong = label.is_some_and(|(_, is_wrong)| is_wrong);
+        observe(&mut planner, pose, label.map(|(label, _)| label), labels, is_wrong);
+    }
+    let line = Line::from(planner.estimates().centre.expect("a line")).coefficients();
+    for number in line.into_iter().chain([planner.belief().information()]) {
+        print(&mut said, number);
+    }
+    said + &status.to_string()
+}
+
+/// What `asleep.c` prints in one of its modes.
+fn awake_in(mode: &str) -> String {
+    let noise = |tolerance| Noise { reliability: reliability(0.85), tolerance, ..Noise::NONE };
+    let forecast = |tolerance| {
+        Forecast::<36, 529>::new(&given(), Prior::Area, noise(tolerance)).expect("four points")
+    };
+    let tolerance = Tolerance::new(0.1).expect("a tolerance");
+    match mode {
+        "true" => {
+            let space = VersionSpace::<68>::new(&given()).and_then(|it| it.within(tolerance));
+            let space = space.expect("four points");
+            awake((space, tolerance), slopes(0.02, 900_000), observe_within)
+        }
+        "doubtful" => {
+            let belief = (forecast(Tolerance::NONE), Tolerance::NONE);
+            awake(belief, slopes(0.15, 600_000), observe_believed)
+        }
+        _ => awake((forecast(tolerance), tolerance), slopes(0.15, 600_000), observe_within),
+    }
+}
+
+/// A C program, built against the library; `None` without a compiler.
+fn program(library: &Path, source: &Path) -> PathBuf {
+    let name = source.file_name().expect("a name");
+    let program = Path::new(SCRATCH).join(name).with_extension("program");
+    let built = Command::new("cc")
+        .args(["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-I"])
+        .arg(folder().join("include"))
+        .arg(source)
+        .arg(library.join("libplanner_c.a"))
+        .args(["-lm", "-lpthread", "-ldl", "-o"])
+        .arg(&program)
+        .output()
+        .expect("cc starts");
+    assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
+    program
+}
+
+/// What a program prints, which ends well.
+fn said(program: &Path, argument: &str) -> String {
+    let run = Command::new(program).arg(argument).output().expect("it starts");
+    let (said, errors) = (run.stdout, String::from_utf8_lossy(&run.stderr).into_owned());
+    assert!(run.status.success(), "{} {argument}: {errors}", program.display());
+    String::from_utf8(said).expect("text")
 }
 
 #[test]
 fn a_c_program_flies_the_same_missions() {
     if !has_tool("cc") {
-        skip(SCRATCH, "the C program", "there is no C compiler `cc`");
+        skip(SCRATCH, "the C programs", "there is no C compiler `cc`");
         return;
     }
     let library = build(SCRATCH, "planner-c", host()).unwrap_or_else(|errors| panic!("{errors}"));
-    for (source, arguments) in [("example.c", ["", "doubtful"]), ("misuse.c", [""; 2])] {
-        let program = Path::new(SCRATCH).join(source).with_extension("program");
-        let built = Command::new("cc")
-            .args(["-std=c11", "-Wall", "-Wextra", "-Werror", "-I"])
-            .arg(folder().join("include"))
-            .arg(if source == "example.c" { folder().join(source) } else { misuse() })
-            .arg(library.join("libplanner_c.a"))
-            .args(["-lm", "-lpthread", "-ldl", "-o"])
-            .arg(&program)
-            .output()
-            .expect("cc starts");
-        assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
-        for (argument, is_doubtful) in arguments.into_iter().zip([false, true]) {
-            let run = Command::new(&program).arg(argument).output().expect("it starts");
-            let (said, errors) = (run.stdout, String::from_utf8_lossy(&run.stderr).into_owned());
-            assert!(run.status.success(), "{source} {argument}: {errors}");
-            let said = String::from_utf8(said).expect("text");
-            if source == "example.c" {
-                let (flight, bytes) = said.trim_end().rsplit_once(", ").expect("bytes at the end");
-                assert_eq!(flight, flown_here(is_doubtful), "{argument}");
-                println!("{argument}: {} lines, {bytes}", flight.lines().count());
-            }
-        }
+    let example = program(&library, &folder().join("example.c"));
+    for (argument, is_doubtful) in [("", false), ("doubtful", true)] {
+        let said = said(&example, argument);
+        let (flight, bytes) = said.trim_end().rsplit_once(", ").expect("bytes at the end");
+        assert_eq!(flight, flown_here(is_doubtful), "{argument}");
+        println!("{argument}: {} lines, {bytes}", flight.lines().count());
+    }
+    print!("{}", said(&program(&library, &here("misuse.c")), ""));
+    let asleep = program(&library, &here("asleep.c"));
+    for mode in ["true", "doubtful", "blurred"] {
+        let said = said(&asleep, mode);
+        assert_eq!(said, awake_in(mode), "{mode}");
+        println!("asleep, {mode}: {} motions", said.lines().count() - 1);
     }
 }
 
-/// A program that calls wrongly and checks what it is told.
-fn misuse() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("misuse.c")
+/// The header alone, in the oldest dialects that it is for.
+#[test]
+fn the_header_compiles_as_c99_and_as_cpp11() {
+    for (compiler, standard, language) in [("cc", "c99", "c"), ("c++", "c++11", "c++")] {
+        if !has_tool(compiler) {
+            skip(SCRATCH, "the C header", &format!("there is no compiler `{compiler}`"));
+            continue;
+        }
+        let built = Command::new(compiler)
+            .arg(format!("-std={standard}"))
+            .args(["-pedantic", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "-x", language])
+            .arg(folder().join("include/planner.h"))
+            .output()
+            .expect("it starts");
+        let errors = String::from_utf8_lossy(&built.stderr).into_owned();
+        assert!(built.status.success(), "{standard}: {errors}");
+    }
+}
+
+/// A program of the tests' own: one that calls wrongly and checks what it is told, and one that sleeps.
+fn here(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
 }
 
 /// The target that these tests run on.

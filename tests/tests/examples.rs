@@ -6,6 +6,8 @@
 mod analogue_sensor;
 #[path = "../../planner-core/examples/asynchronous.rs"]
 mod asynchronous;
+#[path = "../../planner-core/examples/garden.rs"]
+mod garden;
 #[path = "../../planner-core/examples/noisy_labels.rs"]
 mod noisy_labels;
 #[path = "../../planner-core/examples/own_dynamics.rs"]
@@ -24,6 +26,7 @@ fn each_finds_its_line() {
     };
     works("analogue_sensor", analogue_sensor::main);
     works("asynchronous", asynchronous::main);
+    works("garden", garden::main);
     works("noisy_labels", noisy_labels::main);
     works("own_dynamics", own_dynamics::main);
     works("own_robot", own_robot::main);

@@ -1,4 +1,13 @@
-/* A planner that finds a straight boundary from few samples. Made from planner-core/c/src: change it there. */
+/* A planner that finds a straight boundary from few samples. Made from planner-core/c/src: change it there.
+ *
+ * A mission is a struct of numbers. `planner_begin` makes a planner of it in your memory, and `planner_check` says what
+ * it would refuse. Ask `planner_plan` for a motion, make it, and tell `planner_observe` where it ended and what was read.
+ * An observation can bring a tolerance or a reliability of its own. `planner_estimate`, `planner_chance` and
+ * `planner_bits` read out what is known. `planner_save` and `planner_restore` carry a planner over a sleep: it makes the
+ * same plans as if it had stayed awake. Nothing is allocated, and all capacities are fixed. A call that is refused says
+ * why and changes nothing. Names and meanings stay as they are; more may be added.
+ */
+
 
 #ifndef PLANNER_H
 #define PLANNER_H
@@ -8,6 +17,21 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+/*
+ Corners that an area can have, and each keep-out in it.
+ */
+#define PLANNER_CORNERS 8
+
+/*
+ Keep-outs that an area can have.
+ */
+#define PLANNER_KEEP_OUTS 8
+
+/*
+ Bytes that a snapshot can have: those of a planner that is full, as far from the origin as a position can be, fit in.
+ */
+#define PLANNER_SNAPSHOT_BYTES 1020
 
 /*
  What a call came to.
@@ -70,6 +94,34 @@ typedef enum {
    Stopped: what is uncertain is so thin that no label can tell more, as positions err.
    */
   PLANNER_STATUS_IMPRECISE,
+  /*
+   Refused: the area is no convex polygon, has too many corners, or comes beside a rectangle.
+   */
+  PLANNER_STATUS_AREA,
+  /*
+   Refused: a keep-out is no convex polygon, has too many corners or no possible radius, or there are too many.
+   */
+  PLANNER_STATUS_KEEP_OUT,
+  /*
+   Refused: an observation's tolerance is above the mission's, or below 0, or no number.
+   */
+  PLANNER_STATUS_TOLERANCE,
+  /*
+   Refused: an observation's `p` is no probability, or this mission takes no other `p` than its own.
+   */
+  PLANNER_STATUS_RELIABILITY,
+  /*
+   Refused: the snapshot is spoilt, or never was one.
+   */
+  PLANNER_STATUS_SNAPSHOT_SPOILT,
+  /*
+   Refused: another version of the planner made the snapshot.
+   */
+  PLANNER_STATUS_SNAPSHOT_VERSION,
+  /*
+   Refused: a planner of this mission cannot have made the snapshot.
+   */
+  PLANNER_STATUS_SNAPSHOT_MISSION,
 } planner_status;
 
 /*
@@ -109,6 +161,61 @@ typedef int32_t planner_reading;
  A planner, in memory of the caller.
  */
 typedef struct planner_t planner_t;
+
+/*
+ A place.
+ */
+typedef struct {
+  /*
+   Metres.
+   */
+  double x;
+  /*
+   Metres.
+   */
+  double z;
+} planner_point;
+
+/*
+ What no motion touches: all places within a radius of a point, of a straight wall or of a convex polygon.
+ */
+typedef struct {
+  /*
+   Its corners in order, either way round. One is a disc's middle, two are the ends of a wall.
+   */
+  planner_point corners[PLANNER_CORNERS];
+  /*
+   How far it reaches beyond them, metres.
+   */
+  double radius;
+  /*
+   How many corners it has, from 1 to `PLANNER_CORNERS`.
+   */
+  uint8_t corner_count;
+} planner_keep_out;
+
+/*
+ Where motions may go: a convex polygon, but for keep-outs.
+ */
+typedef struct {
+  /*
+   The polygon's corners in order, either way round.
+   */
+  planner_point corners[PLANNER_CORNERS];
+  /*
+   What no motion touches.
+   */
+  planner_keep_out keep_outs[PLANNER_KEEP_OUTS];
+  /*
+   How many corners the polygon has, from 3 to `PLANNER_CORNERS`. Then the mission's rectangle is all zeros. Or 0
+   for the mission's rectangle in place of a polygon.
+   */
+  uint8_t corner_count;
+  /*
+   How many keep-outs there are, up to `PLANNER_KEEP_OUTS`.
+   */
+  uint8_t keep_out_count;
+} planner_area;
 
 /*
  What is fixed beforehand.
@@ -159,7 +266,33 @@ typedef struct {
    How many such steps the longest motion has.
    */
   uint16_t steps;
+  /*
+   With p below 1: the probability that `slopes` holds when the planner stops, at most 0.9999; 0 for 0.9.
+   */
+  double level;
+  /*
+   A polygon and keep-outs; null for the rectangle with nothing in it. It is read while a call runs, and not after.
+   */
+  const planner_area *area;
 } planner_mission;
+
+/*
+ What `planner_begin` says of a mission, and which part of it that is about.
+ */
+typedef struct {
+  /*
+   What it says.
+   */
+  planner_status status;
+  /*
+   The number of the sample or of the keep-out that is refused, from 0; -1 if it is none of these.
+   */
+  int32_t number;
+  /*
+   What is refused: a field of the mission or of its area, `"given"` for the samples, `""` for nothing. Never null.
+   */
+  const char *what;
+} planner_verdict;
 
 /*
  A sample that is known before the mission.
@@ -237,6 +370,20 @@ typedef struct {
   double c;
 } planner_line;
 
+/*
+ What a planner has to remember over a sleep. It may be kept as it is, or as its first `count` bytes alone.
+ */
+typedef struct {
+  /*
+   How many of the bytes belong to it; the others are zeros.
+   */
+  uint32_t count;
+  /*
+   The same on every machine.
+   */
+  uint8_t bytes[PLANNER_SNAPSHOT_BYTES];
+} planner_snapshot;
+
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
@@ -247,13 +394,24 @@ extern "C" {
 size_t planner_bytes(const planner_mission *mission);
 
 /*
+ What `planner_begin` will say of a mission and its given samples, and which part of them that is about. It needs no
+ memory, and touches no planner.
+
+ # Safety
+ As for `planner_begin`.
+ */
+planner_verdict planner_check(const planner_mission *mission,
+                              const planner_sample *given,
+                              size_t count);
+
+/*
  Makes a planner in so many bytes of memory that is aligned to 8, from 3 to 16 given samples of both labels, and
  writes where it is. It is that memory's beginning: there is nothing to free. A call that is refused writes nothing:
  a planner that is in that memory stays as it was.
 
  # Safety
- `memory` must be null or writable for so many bytes, `given` null or readable for so many samples, and none of them
- in that memory.
+ `memory` must be null or writable for so many bytes, `given` null or readable for so many samples, the mission's area
+ null or readable, and none of them in that memory.
  */
 planner_status planner_begin(planner_t **made,
                              void *memory,
@@ -279,6 +437,33 @@ planner_status planner_plan(planner_t *finder, planner_pose pose, planner_motion
 planner_status planner_observe(planner_t *finder, planner_pose pose, int32_t reading);
 
 /*
+ As `planner_observe`, of a position that may be off by so many metres, at most by the mission's tolerance. The less it
+ may be off, the more the label tells.
+
+ # Safety
+ `finder` must be null or from `planner_begin`.
+ */
+planner_status planner_observe_within(planner_t *finder,
+                                      planner_pose pose,
+                                      int32_t reading,
+                                      double tolerance);
+
+/*
+ As `planner_observe`, of a label that is right with probability `p`, from 0 to 1. Below 1/2 it rather says the other
+ side.
+
+ A mission takes other values than its own `p` if that is below 1 and its tolerance is 0. Where positions err, every
+ label counts by the mission's `p`.
+
+ # Safety
+ `finder` must be null or from `planner_begin`.
+ */
+planner_status planner_observe_believed(planner_t *finder,
+                                        planner_pose pose,
+                                        int32_t reading,
+                                        double p);
+
+/*
  The line as far as it is known: the mean of all lines that are left, or in noise of their distribution.
 
  # Safety
@@ -294,6 +479,33 @@ planner_status planner_estimate(planner_t *finder,
  `finder` must be null or from `planner_begin`.
  */
 double planner_bits(planner_t *finder);
+
+/*
+ The chance that a label read at a place is +1, errors of the sensor included; from 0 to 1.
+
+ # Safety
+ `finder` must be null or from `planner_begin`.
+ */
+planner_status planner_chance(planner_t *finder, planner_point at, double *chance);
+
+/*
+ Writes what a planner has to remember over a sleep. Keep it, and the robot's pose.
+
+ # Safety
+ `finder` must be null or from `planner_begin`.
+ */
+planner_status planner_save(planner_t *finder, planner_snapshot *snapshot);
+
+/*
+ Lets a planner go on from where another was, that was begun with the same mission. Begin it first as at the start: what
+ it was told since is forgotten, the given samples included. It takes as long as the labels took when they came. A
+ planner that refuses a snapshot stays as it was.
+
+ # Safety
+ `finder` must be null or from `planner_begin`.
+ */
+planner_status planner_restore(planner_t *finder,
+                               const planner_snapshot *snapshot);
 
 #ifdef __cplusplus
 }  // extern "C"

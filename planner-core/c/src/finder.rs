@@ -7,12 +7,20 @@ use core::ffi::c_void;
 use core::mem::{MaybeUninit, align_of, size_of};
 
 use planner_core::belief::outlook::Foresight;
+use planner_core::belief::told::Replay;
+use planner_core::belief::tolerance::Tolerance;
+use planner_core::belief::version_space::NoVersionSpace;
 use planner_core::{
-    Belief as _, Forecast, Hypotheses, Lookahead, Plan, Planner as _, Prior, Refused, Unicycle,
-    VersionSpace,
+    Belief as _, Config, Forecast, Goal, Hypotheses, Lookahead, Noise, Persist, Plan, Planner as _,
+    Prior, Refused, Reliability, Site, Unicycle, VersionSpace,
 };
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
-use crate::types::{Line, Mission, Motion, Pose, Reading, Sample, Status};
+use crate::area::Ground;
+use crate::snapshot::Snapshot;
+use crate::types::{Line, Mission, Motion, Point, Pose, Reading, Sample, Status};
+use crate::verdict::{Refusal, Verdict};
 
 /// Samples that a planner of true labels has room for, the given ones included.
 const TRUE_SAMPLES: usize = 68;
@@ -22,8 +30,8 @@ const HYPOTHESES: usize = 529;
 /// Given samples at most.
 const MOST_GIVEN: usize = 16;
 
-type True = Lookahead<Unicycle, VersionSpace<TRUE_SAMPLES>>;
-type Doubtful = Lookahead<Unicycle, Forecast<DOUBTFUL_SAMPLES, HYPOTHESES>>;
+type True = Lookahead<Unicycle, VersionSpace<TRUE_SAMPLES>, Ground>;
+type Doubtful = Lookahead<Unicycle, Forecast<DOUBTFUL_SAMPLES, HYPOTHESES>, Ground>;
 
 /// A planner, in memory of the caller.
 #[repr(align(8))]
@@ -45,29 +53,110 @@ struct Held<P> {
     planner: P,
 }
 
-/// What is asked of either planner.
-trait Asked {
-    fn plan(&mut self, pose: planner_core::Pose) -> Plan;
-    fn observe(
-        &mut self,
-        pose: planner_core::Pose,
-        reading: Option<planner_core::Reading>,
-    ) -> Result<(), Refused>;
-    fn centre(&self) -> Option<Line>;
-    fn bits(&self) -> f64;
+/// How reliable labels are, and whether one may have a reliability of its own.
+trait Believe: Foresight {
+    /// That of all labels of the mission; the other ones too, or why there are none.
+    fn usual(known: &Self::Belief) -> (Reliability, Result<(), Status>);
+
+    /// Takes in a label of another reliability.
+    fn take(&mut self, sample: planner_core::Sample, believed: Reliability) -> Result<(), Refused>;
 }
 
-impl<B: Foresight> Asked for Lookahead<Unicycle, B> {
-    fn plan(&mut self, pose: planner_core::Pose) -> Plan {
-        planner_core::Planner::plan(self, pose)
+/// Labels are always right.
+impl<const N: usize> Believe for VersionSpace<N> {
+    fn usual(_: &Self) -> (Reliability, Result<(), Status>) {
+        (Reliability::CERTAIN, Err(Status::Reliability))
     }
 
+    fn take(&mut self, sample: planner_core::Sample, _: Reliability) -> Result<(), Refused> {
+        self.insert(sample).map(drop)
+    }
+}
+
+/// Where positions err, the table takes every label to be as reliable as the noise says.
+impl<const N: usize, const H: usize> Believe for Forecast<N, H> {
+    fn usual(known: &Hypotheses<N, H>) -> (Reliability, Result<(), Status>) {
+        let Noise { reliability, tolerance, .. } = known.noise();
+        let is_exact = tolerance == Tolerance::NONE;
+        (reliability, is_exact.then_some(()).ok_or(Status::Reliability))
+    }
+
+    fn take(&mut self, sample: planner_core::Sample, believed: Reliability) -> Result<(), Refused> {
+        Self::take(self, sample, believed)
+    }
+}
+
+/// What is asked of either planner.
+trait Asked {
     fn observe(
         &mut self,
         pose: planner_core::Pose,
         reading: Option<planner_core::Reading>,
-    ) -> Result<(), Refused> {
-        planner_core::Planner::observe(self, pose, reading)
+    ) -> Result<(), Status>;
+
+    fn observe_within(
+        &mut self,
+        pose: planner_core::Pose,
+        reading: Option<planner_core::Reading>,
+        tolerance: Tolerance,
+    ) -> Result<(), Status>;
+
+    fn observe_believed(
+        &mut self,
+        pose: planner_core::Pose,
+        reading: Option<planner_core::Reading>,
+        believed: Reliability,
+    ) -> Result<(), Status>;
+
+    fn centre(&self) -> Option<Line>;
+    fn bits(&self) -> f64;
+    fn chance(&self, site: Site) -> f64;
+    fn save(&self) -> Option<Snapshot>;
+    fn restore(&mut self, snapshot: &Snapshot) -> Result<(), Status>;
+}
+
+impl<B> Asked for Lookahead<Unicycle, B, Ground>
+where
+    B: Believe + Replay<Told: Serialize + DeserializeOwned>,
+{
+    fn observe(
+        &mut self,
+        pose: planner_core::Pose,
+        reading: Option<planner_core::Reading>,
+    ) -> Result<(), Status> {
+        planner_core::Planner::observe(self, pose, reading).map_err(Status::from)
+    }
+
+    fn observe_within(
+        &mut self,
+        pose: planner_core::Pose,
+        reading: Option<planner_core::Reading>,
+        tolerance: Tolerance,
+    ) -> Result<(), Status> {
+        planner_core::Planner::observe_within(self, pose, reading, tolerance).map_err(Status::from)
+    }
+
+    fn observe_believed(
+        &mut self,
+        pose: planner_core::Pose,
+        reading: Option<planner_core::Reading>,
+        believed: Reliability,
+    ) -> Result<(), Status> {
+        let (usual, others) = B::usual(self.belief());
+        if believed == usual {
+            return Asked::observe(self, pose, reading);
+        }
+        others?;
+        let Some(planner_core::Reading::Side(label)) = reading else {
+            return Asked::observe(self, pose, reading);
+        };
+        let before = self.snapshot();
+        let sample = planner_core::Sample { site: pose.site, label };
+        self.foresight().take(sample, believed).map_err(|refused| {
+            // It forgot its last turns. The snapshot is its own.
+            let _ = Persist::restore(self, &before);
+            refused.into()
+        })
     }
 
     fn centre(&self) -> Option<Line> {
@@ -77,28 +166,56 @@ impl<B: Foresight> Asked for Lookahead<Unicycle, B> {
     fn bits(&self) -> f64 {
         self.belief().information()
     }
+
+    fn chance(&self, site: Site) -> f64 {
+        self.belief().chance(site)
+    }
+
+    fn save(&self) -> Option<Snapshot> {
+        Snapshot::of(self)
+    }
+
+    fn restore(&mut self, snapshot: &Snapshot) -> Result<(), Status> {
+        snapshot.wake(self)
+    }
+}
+
+/// What a pointer leads to.
+enum Either<'a> {
+    True(&'a mut True),
+    Doubtful(&'a mut Doubtful),
 }
 
 /// What a pointer leads to; `None` if it is null.
 ///
 /// # Safety
 /// It must be null or what [`begin`] wrote, and nobody else may use that meanwhile.
-unsafe fn asked<'a>(finder: *mut Finder) -> Option<&'a mut dyn Asked> {
+unsafe fn asked<'a>(finder: *mut Finder) -> Option<Either<'a>> {
     if finder.is_null() {
         return None;
     }
     // SAFETY: only `begin` makes a finder, and it writes after it the planner of its kind.
     unsafe {
         Some(match (*finder).kind {
-            Kind::True => &mut (*finder.cast::<Held<True>>()).planner,
-            Kind::Doubtful => &mut (*finder.cast::<Held<Doubtful>>()).planner,
+            Kind::True => Either::True(&mut (*finder.cast::<Held<True>>()).planner),
+            Kind::Doubtful => Either::Doubtful(&mut (*finder.cast::<Held<Doubtful>>()).planner),
         })
     }
 }
 
+/// Asks either planner the same. No table of methods: a program carries only those that it calls.
+macro_rules! ask {
+    ($either:expr, $planner:ident => $asked:expr) => {
+        match $either {
+            Either::True($planner) => $asked,
+            Either::Doubtful($planner) => $asked,
+        }
+    };
+}
+
 /// How much memory the planner of a mission takes, bytes; 0 if there is no such mission.
 #[unsafe(export_name = "planner_bytes")]
-pub extern "C" fn bytes(mission: Option<&Mission>) -> usize {
+pub extern "C" fn bytes(mission: Option<&Mission<'_>>) -> usize {
     match mission.map(Mission::noise) {
         Some(Ok(None)) => size_of::<Held<True>>(),
         Some(Ok(Some(_))) => size_of::<Held<Doubtful>>(),
@@ -106,33 +223,108 @@ pub extern "C" fn bytes(mission: Option<&Mission>) -> usize {
     }
 }
 
+/// A mission that is possible, and its given samples.
+struct Possible {
+    config: Config<Ground>,
+    unicycle: Unicycle,
+    goal: Option<Goal>,
+    noise: Option<Noise>,
+    samples: [planner_core::Sample; MOST_GIVEN],
+    count: usize,
+}
+
+impl Possible {
+    fn new(mission: &Mission<'_>, given: &[Sample]) -> Result<Self, Refusal> {
+        let refusal = |status| Refusal::of(status, c"given");
+        let label = planner_core::Label::Negative;
+        let mut samples = [planner_core::Sample { site: Site::ORIGIN, label }; MOST_GIVEN];
+        let places = samples.get_mut(..given.len()).ok_or(refusal(Status::Given))?;
+        for (number, (place, sample)) in places.iter_mut().zip(given).enumerate() {
+            *place = sample.read().map_err(|status| refusal(status).about(number))?;
+        }
+        let (config, unicycle, noise) = (mission.config()?, mission.unicycle()?, mission.noise()?);
+        let goal = mission.goal()?;
+        let count = given.len();
+        let possible = Self { config, unicycle, goal, noise, samples, count };
+        // With room for these samples alone.
+        let is_found = if let Some(noise) = noise {
+            Hypotheses::<MOST_GIVEN, 1>::new(possible.given(), Prior::Area, noise).map(drop)
+        } else {
+            VersionSpace::<MOST_GIVEN>::new(possible.given())
+                .and_then(|it| it.within(config.tolerance))
+                .map(drop)
+        };
+        is_found.map_err(|why| match why {
+            NoVersionSpace::NotSeparable(number) => refusal(Status::Given).about(number),
+            _ => refusal(Status::Given),
+        })?;
+        let too_large = Refusal::of(Status::ToleranceTooLarge, c"tolerance");
+        config.admits(&unicycle).map_err(|_| too_large)?;
+        Ok(possible)
+    }
+
+    fn given(&self) -> &[planner_core::Sample] {
+        self.samples.get(..self.count).unwrap_or_default()
+    }
+}
+
+/// The given samples.
+///
+/// # Safety
+/// `given` must be null or readable for so many samples.
+unsafe fn samples<'a>(given: *const Sample, count: usize) -> Result<&'a [Sample], Refusal> {
+    if given.is_null() || !given.is_aligned() {
+        return Err(Refusal::of(Status::Memory, c""));
+    }
+    if count > MOST_GIVEN {
+        return Err(Refusal::of(Status::Given, c"given"));
+    }
+    // SAFETY: the caller promises so many samples.
+    Ok(unsafe { core::slice::from_raw_parts(given, count) })
+}
+
+/// What `planner_begin` will say of a mission and its given samples, and which part of them that is about. It needs no
+/// memory, and touches no planner.
+///
+/// # Safety
+/// As for `planner_begin`.
+#[unsafe(export_name = "planner_check")]
+pub unsafe extern "C" fn check(
+    mission: Option<&Mission<'_>>,
+    given: *const Sample,
+    count: usize,
+) -> Verdict {
+    let Some(mission) = mission else { return Err(Refusal::of(Status::Memory, c"")).into() };
+    // SAFETY: the caller promises it.
+    let given = unsafe { samples(given, count) };
+    given.and_then(|given| Possible::new(mission, given)).map(drop).into()
+}
+
 /// Makes a planner in so many bytes of memory that is aligned to 8, from 3 to 16 given samples of both labels, and
 /// writes where it is. It is that memory's beginning: there is nothing to free. A call that is refused writes nothing:
 /// a planner that is in that memory stays as it was.
 ///
 /// # Safety
-/// `memory` must be null or writable for so many bytes, `given` null or readable for so many samples, and none of them
-/// in that memory.
+/// `memory` must be null or writable for so many bytes, `given` null or readable for so many samples, the mission's area
+/// null or readable, and none of them in that memory.
 #[unsafe(export_name = "planner_begin")]
 pub unsafe extern "C" fn begin(
     made: Option<&mut MaybeUninit<*mut Finder>>,
     memory: *mut c_void,
     bytes: usize,
-    mission: Option<&Mission>,
+    mission: Option<&Mission<'_>>,
     given: *const Sample,
     count: usize,
 ) -> Status {
     let (Some(made), Some(mission)) = (made, mission) else { return Status::Memory };
-    if given.is_null() || !given.is_aligned() {
-        return Status::Memory;
-    }
-    if count > MOST_GIVEN {
-        return Status::Given;
-    }
     // SAFETY: the caller promises so many samples.
-    let given = unsafe { core::slice::from_raw_parts(given, count) };
+    let given = unsafe { samples(given, count) };
+    let possible = match given.and_then(|given| Possible::new(mission, given)) {
+        Ok(possible) => possible,
+        Err(refusal) => return refusal.status,
+    };
     // SAFETY: the caller promises so much memory.
-    match unsafe { begin_in(memory, bytes, mission, given) } {
+    match unsafe { begin_in(memory, bytes, &possible) } {
         Ok(finder) => {
             made.write(finder);
             Status::Ok
@@ -146,19 +338,9 @@ pub unsafe extern "C" fn begin(
 unsafe fn begin_in(
     memory: *mut c_void,
     bytes: usize,
-    mission: &Mission,
-    given: &[Sample],
+    possible: &Possible,
 ) -> Result<*mut Finder, Status> {
-    let mut samples = [planner_core::Sample {
-        site: planner_core::Site::ORIGIN,
-        label: planner_core::Label::Negative,
-    }; MOST_GIVEN];
-    for (place, sample) in samples.iter_mut().zip(given) {
-        *place = sample.read()?;
-    }
-    let samples = samples.get(..given.len()).ok_or(Status::Given)?;
-    let (config, unicycle, goal) = (mission.config()?, mission.unicycle()?, mission.goal()?);
-    let noise = mission.noise()?;
+    let &Possible { config, unicycle, goal, noise, .. } = possible;
     let needed =
         if noise.is_none() { size_of::<Held<True>>() } else { size_of::<Held<Doubtful>>() };
     let is_room = !memory.is_null() && bytes >= needed && memory.addr().is_multiple_of(8);
@@ -168,9 +350,6 @@ unsafe fn begin_in(
     const { assert!(align_of::<Held<True>>() <= 8 && align_of::<Held<Doubtful>>() <= 8) };
     // SAFETY (of both writes): there is room, and it is aligned.
     if let Some(noise) = noise {
-        // What is in that memory stays if the samples are refused: a table with room for them alone tells.
-        let table = Hypotheses::<MOST_GIVEN, 1>::new(samples, Prior::Area, noise);
-        table.map_err(|_| Status::Given)?;
         let planner = Lookahead::new(config, unicycle, Forecast::NONE);
         let planner = planner.map_err(|_| Status::ToleranceTooLarge)?.until(goal);
         let held = Held { finder: Finder { kind: Kind::Doubtful }, planner };
@@ -178,9 +357,9 @@ unsafe fn begin_in(
         unsafe { place.write(held) };
         // In place: it is large. SAFETY: it has just been written.
         let forecast = unsafe { &mut *place }.planner.foresight();
-        forecast.restart(samples, Prior::Area, noise).map_err(|_| Status::Given)?;
+        forecast.restart(possible.given(), Prior::Area, noise).map_err(|_| Status::Given)?;
     } else {
-        let space = VersionSpace::new(samples).and_then(|it| it.within(config.tolerance));
+        let space = VersionSpace::new(possible.given()).and_then(|it| it.within(config.tolerance));
         let space = space.map_err(|_| Status::Given)?;
         let planner = Lookahead::new(config, unicycle, space);
         let planner = planner.map_err(|_| Status::ToleranceTooLarge)?.until(goal);
@@ -208,7 +387,7 @@ pub unsafe extern "C" fn plan(
         Ok(pose) => pose,
         Err(status) => return status,
     };
-    match finder.plan(pose) {
+    match ask!(finder, it => it.plan(pose)) {
         Plan::Move(motion) => {
             place.write(motion.into());
             Status::Ok
@@ -224,15 +403,80 @@ pub unsafe extern "C" fn plan(
 #[unsafe(export_name = "planner_observe")]
 pub unsafe extern "C" fn observe(finder: *mut Finder, pose: Pose, reading: i32) -> Status {
     // SAFETY: the caller promises it.
+    unsafe {
+        take_in(
+            finder,
+            pose,
+            reading,
+            |finder, pose, reading| ask!(finder, it => Asked::observe(it, pose, reading)),
+        )
+    }
+}
+
+/// As `planner_observe`, of a position that may be off by so many metres, at most by the mission's tolerance. The less it
+/// may be off, the more the label tells.
+///
+/// # Safety
+/// `finder` must be null or from `planner_begin`.
+#[unsafe(export_name = "planner_observe_within")]
+pub unsafe extern "C" fn observe_within(
+    finder: *mut Finder,
+    pose: Pose,
+    reading: i32,
+    tolerance: f64,
+) -> Status {
+    // SAFETY: the caller promises it.
+    unsafe {
+        take_in(finder, pose, reading, |finder, pose, reading| {
+            let tolerance = Tolerance::new(tolerance).ok_or(Status::Tolerance)?;
+            ask!(finder, it => Asked::observe_within(it, pose, reading, tolerance))
+        })
+    }
+}
+
+/// As `planner_observe`, of a label that is right with probability `p`, from 0 to 1. Below 1/2 it rather says the other
+/// side.
+///
+/// A mission takes other values than its own `p` if that is below 1 and its tolerance is 0. Where positions err, every
+/// label counts by the mission's `p`.
+///
+/// # Safety
+/// `finder` must be null or from `planner_begin`.
+#[unsafe(export_name = "planner_observe_believed")]
+pub unsafe extern "C" fn observe_believed(
+    finder: *mut Finder,
+    pose: Pose,
+    reading: i32,
+    p: f64,
+) -> Status {
+    // SAFETY: the caller promises it.
+    unsafe {
+        take_in(finder, pose, reading, |finder, pose, reading| {
+            let believed = Reliability::new(p).ok_or(Status::Reliability)?;
+            ask!(finder, it => it.observe_believed(pose, reading, believed))
+        })
+    }
+}
+
+/// Takes in what was read at a pose, each of which is checked.
+///
+/// # Safety
+/// `finder` must be null or from `planner_begin`.
+unsafe fn take_in(
+    finder: *mut Finder,
+    pose: Pose,
+    reading: i32,
+    observe: impl FnOnce(
+        Either<'_>,
+        planner_core::Pose,
+        Option<planner_core::Reading>,
+    ) -> Result<(), Status>,
+) -> Status {
+    // SAFETY: the caller promises it.
     let Some(finder) = (unsafe { asked(finder) }) else { return Status::Memory };
-    let (pose, reading) = match (pose.read(), Reading::read(reading)) {
-        (Ok(pose), Ok(reading)) => (pose, reading),
-        (Err(status), _) | (_, Err(status)) => return status,
-    };
-    match finder.observe(pose, reading) {
-        Ok(()) => Status::Ok,
-        Err(Refused::Full(_)) => Status::Full,
-        Err(_) => Status::Contradiction,
+    match (pose.read(), Reading::read(reading)) {
+        (Ok(pose), Ok(reading)) => observe(finder, pose, reading).err().unwrap_or(Status::Ok),
+        (Err(status), _) | (_, Err(status)) => status,
     }
 }
 
@@ -249,7 +493,7 @@ pub unsafe extern "C" fn estimate(
     let (Some(finder), Some(place)) = (unsafe { asked(finder) }, line) else {
         return Status::Memory;
     };
-    let Some(centre) = finder.centre() else { return Status::Resolution };
+    let Some(centre) = ask!(finder, it => it.centre()) else { return Status::Resolution };
     place.write(centre);
     Status::Ok
 }
@@ -261,5 +505,59 @@ pub unsafe extern "C" fn estimate(
 #[unsafe(export_name = "planner_bits")]
 pub unsafe extern "C" fn bits(finder: *mut Finder) -> f64 {
     // SAFETY: the caller promises it.
-    unsafe { asked(finder) }.map_or(f64::NAN, |finder| finder.bits())
+    unsafe { asked(finder) }.map_or(f64::NAN, |finder| ask!(finder, it => it.bits()))
+}
+
+/// The chance that a label read at a place is +1, errors of the sensor included; from 0 to 1.
+///
+/// # Safety
+/// `finder` must be null or from `planner_begin`.
+#[unsafe(export_name = "planner_chance")]
+pub unsafe extern "C" fn chance(
+    finder: *mut Finder,
+    at: Point,
+    chance: Option<&mut MaybeUninit<f64>>,
+) -> Status {
+    // SAFETY: the caller promises it.
+    let (Some(finder), Some(place)) = (unsafe { asked(finder) }, chance) else {
+        return Status::Memory;
+    };
+    match at.read() {
+        Ok(site) => place.write(ask!(finder, it => it.chance(site))),
+        Err(status) => return status,
+    };
+    Status::Ok
+}
+
+/// Writes what a planner has to remember over a sleep. Keep it, and the robot's pose.
+///
+/// # Safety
+/// `finder` must be null or from `planner_begin`.
+#[unsafe(export_name = "planner_save")]
+pub unsafe extern "C" fn save(
+    finder: *mut Finder,
+    snapshot: Option<&mut MaybeUninit<Snapshot>>,
+) -> Status {
+    // SAFETY: the caller promises it.
+    let (Some(finder), Some(place)) = (unsafe { asked(finder) }, snapshot) else {
+        return Status::Memory;
+    };
+    let Some(saved) = ask!(finder, it => it.save()) else { return Status::Memory };
+    place.write(saved);
+    Status::Ok
+}
+
+/// Lets a planner go on from where another was, that was begun with the same mission. Begin it first as at the start: what
+/// it was told since is forgotten, the given samples included. It takes as long as the labels took when they came. A
+/// planner that refuses a snapshot stays as it was.
+///
+/// # Safety
+/// `finder` must be null or from `planner_begin`.
+#[unsafe(export_name = "planner_restore")]
+pub unsafe extern "C" fn restore(finder: *mut Finder, snapshot: Option<&Snapshot>) -> Status {
+    // SAFETY: the caller promises it.
+    let (Some(finder), Some(snapshot)) = (unsafe { asked(finder) }, snapshot) else {
+        return Status::Memory;
+    };
+    ask!(finder, it => Asked::restore(it, snapshot)).err().unwrap_or(Status::Ok)
 }

@@ -1,7 +1,7 @@
 #![cfg_attr(target_os = "none", no_std)]
 
-//! `planner-core` behind a C interface: look-ahead for a unicycle in a rectangle, with labels that are true or
-//! sometimes wrong.
+//! `planner-core` behind a C interface: look-ahead for a unicycle in a rectangle or a convex polygon with keep-outs, with
+//! labels that are true or sometimes wrong.
 //!
 //! `include/planner.h` is made from these sources, `example.c` is a program that uses it. There is no allocation: a
 //! planner lives in memory of the caller, which may be moved. Nothing is global, so there may be many.
@@ -11,11 +11,20 @@
 //! # target/thumbv7em-none-eabihf/release/libplanner_c.a
 //! ```
 
+mod area;
 mod finder;
+mod snapshot;
 mod types;
+mod verdict;
 
-pub use finder::{begin, bits, bytes, estimate, observe, plan};
-pub use types::{Line, Mission, Motion, Pose, Reading, Sample, Status};
+pub use area::{Area, CORNERS, KEEP_OUTS, KeepOut};
+pub use finder::{
+    begin, bits, bytes, chance, check, estimate, observe, observe_believed, observe_within, plan,
+    restore, save,
+};
+pub use snapshot::{SNAPSHOT_BYTES, Snapshot};
+pub use types::{Line, Mission, Motion, Point, Pose, Reading, Sample, Status};
+pub use verdict::Verdict;
 
 /// The C program's own end: the planner has no panics, and yet Rust asks.
 #[cfg(target_os = "none")]

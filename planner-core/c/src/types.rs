@@ -1,12 +1,18 @@
 //! What goes over the interface: plain numbers, in metres and radians.
 
+use core::ffi::CStr;
+
 use planner_core::belief::goal::Accuracy;
 use planner_core::belief::tolerance::Tolerance;
+use planner_core::motion::action::BadGrid;
 use planner_core::nalgebra::Point2;
 use planner_core::{
-    Area, Config, Crossing, Goal, Heading, Label, Noise, Reliability, Site, StopReason, Unicycle,
-    lookahead,
+    Config, Crossing, Goal, Heading, Hull, Label, Noise, Refused, Reliability, Site, StopReason,
+    Unicycle, lookahead,
 };
+
+use crate::area::{Area, Ground};
+use crate::verdict::Refusal;
 
 /// What a call came to.
 #[repr(C)]
@@ -41,6 +47,30 @@ pub enum Status {
     ToleranceTooLarge,
     /// Stopped: what is uncertain is so thin that no label can tell more, as positions err.
     Imprecise,
+    /// Refused: the area is no convex polygon, has too many corners, or comes beside a rectangle.
+    Area,
+    /// Refused: a keep-out is no convex polygon, has too many corners or no possible radius, or there are too many.
+    KeepOut,
+    /// Refused: an observation's tolerance is above the mission's, or below 0, or no number.
+    Tolerance,
+    /// Refused: an observation's `p` is no probability, or this mission takes no other `p` than its own.
+    Reliability,
+    /// Refused: the snapshot is spoilt, or never was one.
+    SnapshotSpoilt,
+    /// Refused: another version of the planner made the snapshot.
+    SnapshotVersion,
+    /// Refused: a planner of this mission cannot have made the snapshot.
+    SnapshotMission,
+}
+
+impl From<Refused> for Status {
+    fn from(refused: Refused) -> Self {
+        match refused {
+            Refused::Full(_) => Self::Full,
+            Refused::Tolerance(_) => Self::Tolerance,
+            _ => Self::Contradiction,
+        }
+    }
 }
 
 /// What was read. It comes as a number, as an enumeration of C may hold any.
@@ -71,6 +101,23 @@ impl Reading {
     }
 }
 
+/// A place.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct Point {
+    /// Metres.
+    pub x: f64,
+    /// Metres.
+    pub z: f64,
+}
+
+impl Point {
+    /// On the lattice.
+    pub(crate) fn read(self) -> Result<Site, Status> {
+        Site::try_from(Point2::new(self.x, self.z)).map_err(|_| Status::Position)
+    }
+}
+
 /// Where the robot is.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
@@ -86,7 +133,7 @@ pub struct Pose {
 impl Pose {
     /// On the lattice.
     pub(crate) fn read(self) -> Result<planner_core::Pose, Status> {
-        let site = site(self.x, self.z)?;
+        let site = Point { x: self.x, z: self.z }.read()?;
         let heading = Heading::from_radians(self.heading).ok_or(Status::Position)?;
         Ok(planner_core::Pose { site, heading })
     }
@@ -118,14 +165,14 @@ impl Sample {
             1 => Label::Positive,
             _ => return Err(Status::Given),
         };
-        Ok(planner_core::Sample { site: site(self.x, self.z)?, label })
+        Ok(planner_core::Sample { site: Point { x: self.x, z: self.z }.read()?, label })
     }
 }
 
 /// What is fixed beforehand.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
-pub struct Mission {
+pub struct Mission<'a> {
     /// The area's lower left corner, metres.
     pub min_x: f64,
     /// The same.
@@ -149,42 +196,100 @@ pub struct Mission {
     pub step_mm: u32,
     /// How many such steps the longest motion has.
     pub steps: u16,
+    /// With p below 1: the probability that `slopes` holds when the planner stops, at most 0.9999; 0 for 0.9.
+    pub level: f64,
+    /// A polygon and keep-outs; null for the rectangle with nothing in it. It is read while a call runs, and not after.
+    pub area: Option<&'a Area>,
 }
 
-impl Mission {
-    pub(crate) fn config(&self) -> Result<Config, Status> {
-        let corners = (site(self.min_x, self.min_z)?, site(self.max_x, self.max_z)?);
+/// The level of a promise, unless the mission says another, and the highest; millionths.
+const USUAL_LEVEL: u32 = 900_000;
+const HIGHEST_LEVEL: f64 = 0.9999;
+
+impl Mission<'_> {
+    pub(crate) fn config(&self) -> Result<Config<Ground>, Refusal> {
+        let area = match self.area {
+            None => Ground::from(self.rectangle()?),
+            Some(area) if area.corner_count == 0 => {
+                area.with_keep_outs(Hull::of(self.rectangle()?))?
+            }
+            Some(area) => {
+                let sides = [self.min_x, self.min_z, self.max_x, self.max_z];
+                if sides.into_iter().any(|side| side != 0.0) {
+                    return Err(Refusal::of(Status::Area, c"area"));
+                }
+                area.with_keep_outs(area.polygon()?)?
+            }
+        };
         Ok(Config {
-            area: Area::new(corners.0, corners.1).ok_or(Status::Mission)?,
+            area,
             varrho: lookahead::VARRHO,
             crossing: Crossing::default(),
             following: planner_core::cfc::FOLLOWING,
-            tolerance: Tolerance::new(self.tolerance).ok_or(Status::Mission)?,
+            tolerance: self.tolerance()?,
         })
     }
 
-    pub(crate) fn unicycle(&self) -> Result<Unicycle, Status> {
-        let speeds = self.steps.checked_add(1).ok_or(Status::Mission)?;
-        let made = Unicycle::new(self.turn_step_urad, self.sharpest, speeds, self.step_mm);
-        made.map_err(|_| Status::Mission)
+    fn rectangle(&self) -> Result<planner_core::Area, Refusal> {
+        let corner = |(x, x_name), (z, z_name)| {
+            let beyond = |name| move |status| Refusal::of(status, name);
+            Point { x, z: 0.0 }.read().map_err(beyond(x_name))?;
+            Point { x, z }.read().map_err(beyond(z_name))
+        };
+        let min = corner((self.min_x, c"min_x"), (self.min_z, c"min_z"))?;
+        let max = corner((self.max_x, c"max_x"), (self.max_z, c"max_z"))?;
+        let what = if min.x() < max.x() { c"max_z" } else { c"max_x" };
+        planner_core::Area::new(min, max).ok_or(Refusal::of(Status::Mission, what))
     }
 
-    pub(crate) fn goal(&self) -> Result<Option<Goal>, Status> {
+    fn tolerance(&self) -> Result<Tolerance, Refusal> {
+        Tolerance::new(self.tolerance).ok_or(Refusal::of(Status::Mission, c"tolerance"))
+    }
+
+    pub(crate) fn unicycle(&self) -> Result<Unicycle, Refusal> {
+        let refused = |what: &'static CStr| Refusal::of(Status::Mission, what);
+        let speeds = self.steps.checked_add(1).ok_or(refused(c"steps"))?;
+        let made = Unicycle::new(self.turn_step_urad, self.sharpest, speeds, self.step_mm);
+        made.map_err(|bad| {
+            // With a turn and a step that are possible for certain: what is still refused is something else.
+            let is_turn = Unicycle::new(self.turn_step_urad, 1.0, 2, 1).is_err();
+            let is_step = Unicycle::new(1_000_000, 1.0, 2, self.step_mm).is_err();
+            refused(match bad {
+                BadGrid::Turn if is_turn => c"turn_step_urad",
+                BadGrid::Turn => c"sharpest",
+                _ if is_step => c"step_mm",
+                _ => c"steps",
+            })
+        })
+    }
+
+    pub(crate) fn goal(&self) -> Result<Option<Goal>, Refusal> {
+        let level = self.level()?;
         if self.slopes == 0.0 {
             return Ok(None);
         }
         let inside = self.slopes > 0.0 && self.slopes < core::f64::consts::FRAC_PI_2;
         let arc = inside.then(|| Heading::from_radians(self.slopes)).flatten();
-        let accuracy = Accuracy::SlopeArc(arc.ok_or(Status::Mission)?);
-        Ok(Some(Goal { accuracy, level: 900_000 }))
+        let arc = arc.ok_or(Refusal::of(Status::Mission, c"slopes"))?;
+        Ok(Some(Goal { accuracy: Accuracy::SlopeArc(arc), level }))
+    }
+
+    /// In millionths. Promises about true labels have none.
+    fn level(&self) -> Result<u32, Refusal> {
+        if self.level == 0.0 {
+            return Ok(USUAL_LEVEL);
+        }
+        let is_possible = self.p < 1.0 && self.level > 0.0 && self.level <= HIGHEST_LEVEL;
+        let millionths = (self.level * 1e6 + 0.5) as u32;
+        is_possible.then_some(millionths).ok_or(Refusal::of(Status::Mission, c"level"))
     }
 
     /// What is known of the noise, if there is any.
-    pub(crate) fn noise(&self) -> Result<Option<Noise>, Status> {
+    pub(crate) fn noise(&self) -> Result<Option<Noise>, Refusal> {
         let is_useful = self.p > 0.5 && self.p <= 1.0;
         let reliability = is_useful.then(|| Reliability::new(self.p)).flatten();
-        let reliability = reliability.ok_or(Status::Mission)?;
-        let tolerance = Tolerance::new(self.tolerance).ok_or(Status::Mission)?;
+        let reliability = reliability.ok_or(Refusal::of(Status::Mission, c"p"))?;
+        let tolerance = self.tolerance()?;
         Ok((self.p < 1.0).then_some(Noise { reliability, trusted_radius: 0, tolerance }))
     }
 }
@@ -244,8 +349,4 @@ impl From<StopReason> for Status {
             _ => Self::Resolution,
         }
     }
-}
-
-fn site(x: f64, z: f64) -> Result<Site, Status> {
-    Site::try_from(Point2::new(x, z)).map_err(|_| Status::Position)
 }

@@ -1,10 +1,30 @@
 //! The same seam for drivers that are asynchronous: a robot that awaits its motors and its sensor, so that whatever
 //! else runs on the chip runs meanwhile.
 //!
-//! Planning does no input or output, so there is one planner for both. The traits are those of [`hal`](super::hal)
+//! Planning does no input or output, so there is one planner for both. The traits are those of [`hal`]
 //! and [`body`](super::body) with `async` before each method, as those of embedded-hal-async are to those of
 //! embedded-hal. No executor is asked for; futures are not required to be `Send`, so it takes one that stays on
 //! its thread, such as embassy's.
+//!
+//! [`ThresholdSensor`] and [`PinSensor`] are sensors here as well. What a threshold measures is then an `async` closure:
+//!
+//! ```
+//! use planner_core::robot::asynchronous::LabelSensor as _;
+//! use planner_core::{Label, Reading, ThresholdSensor};
+//!
+//! # struct Converter;
+//! # impl Converter {
+//! #     async fn convert(&mut self) -> Result<u16, &'static str> { Ok(530) }
+//! # }
+//! # let mut converter = Converter;
+//! # pollster::block_on(async {
+//! let measure = async || converter.convert().await.map(i32::from);
+//! let mut sensor = ThresholdSensor::new(measure, 450..=520, Label::Positive);
+//! assert_eq!(sensor.read().await?, Reading::Side(Label::Positive));
+//! # Ok::<(), &str>(())
+//! # })?;
+//! # Ok::<(), &str>(())
+//! ```
 //!
 //! A step that is dropped before its end leaves the planner as it was and the robot wherever it has come: stop it,
 //! and tell the agent where it is ([`relocate`](Agent::relocate)).
@@ -13,11 +33,15 @@
 
 use core::fmt::Debug;
 
+use embedded_hal::digital::InputPin;
+
 use crate::belief::sample::Reading;
 use crate::motion::dynamics::Pose;
 use crate::planner::{Motion, Planner};
 use crate::robot::agent::{Agent, AgentError, Event};
 use crate::robot::body::{Vehicle, VehicleError};
+use crate::robot::hal::{self, PinSensor};
+use crate::robot::threshold::ThresholdSensor;
 
 /// Senses on which side of the boundary the vehicle stands.
 pub trait LabelSensor {
@@ -36,6 +60,25 @@ impl<T: LabelSensor + ?Sized> LabelSensor for &mut T {
 
     async fn read(&mut self) -> Result<Reading, Self::Error> {
         T::read(self).await
+    }
+}
+
+/// The level of a pin is there at once, so nothing is awaited.
+impl<P: InputPin> LabelSensor for PinSensor<P> {
+    type Error = P::Error;
+
+    async fn read(&mut self) -> Result<Reading, P::Error> {
+        hal::LabelSensor::read(self)
+    }
+}
+
+/// A read that is dropped before its end leaves the label that was read last.
+impl<F: AsyncFnMut() -> Result<i32, E>, E: Debug> LabelSensor for ThresholdSensor<F> {
+    type Error = E;
+
+    async fn read(&mut self) -> Result<Reading, E> {
+        let value = (self.measure)().await?;
+        Ok(self.judge(value).into())
     }
 }
 
@@ -141,7 +184,6 @@ mod tests {
     use crate::planner::cfc::{self, Cfc};
     use crate::planner::config::{Config, Crossing};
     use crate::planner::lookahead::{self, Lookahead};
-    use crate::robot::hal;
 
     const STEPS: usize = 24;
 
@@ -281,6 +323,70 @@ mod tests {
             // Where no label is wanted none is read.
             let wants = [false, true, event.2.is_some()];
             assert_eq!(is_cut, wants[number % 3], "step {number}");
+        }
+    }
+
+    /// What a sensor reads when it is awaited; none if it does not end when it is asked three times.
+    fn awaited<S: LabelSensor>(sensor: &mut S) -> Option<Result<Reading, S::Error>> {
+        let mut read = pin!(sensor.read());
+        let mut context = Context::from_waker(Waker::noop());
+        (0..3).find_map(|_| match read.as_mut().poll(&mut context) {
+            Poll::Ready(reading) => Some(reading),
+            Poll::Pending => None,
+        })
+    }
+
+    #[test]
+    fn a_threshold_reads_the_same_whether_it_is_called_or_awaited() {
+        let (at, stuck) = (Cell::new(start()), Cell::new(None));
+        let robot = Robot { at: &at, stuck: &stuck };
+        let values = [9, 15, 10, 20, 21, 15, i32::MIN, 15, i32::MAX];
+        for above in [Label::Positive, Label::Negative] {
+            for first in 0..values.len() {
+                let (mut one, mut other) = (values[first..].iter(), values[first..].iter());
+                let measure = || one.next().copied().ok_or("no conversion");
+                let mut called = ThresholdSensor::new(measure, 10..=20, above);
+                let measure = async || {
+                    robot.wait_for(Driver::Sensor).await;
+                    other.next().copied().ok_or("no conversion")
+                };
+                let mut sensor = ThresholdSensor::new(measure, 10..=20, above);
+                for _ in 0..=values.len() {
+                    // One that is dropped before its end measures nothing, and leaves the label as it was.
+                    stuck.set(Some(Driver::Sensor));
+                    assert_eq!(awaited(&mut sensor), None);
+                    stuck.set(None);
+                    assert_eq!(awaited(&mut sensor), Some(hal::LabelSensor::read(&mut called)));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_pin_reads_the_same_whether_it_is_called_or_awaited() {
+        struct Wire(bool);
+
+        impl embedded_hal::digital::ErrorType for Wire {
+            type Error = Infallible;
+        }
+
+        impl InputPin for Wire {
+            fn is_high(&mut self) -> Result<bool, Infallible> {
+                Ok(self.0)
+            }
+
+            fn is_low(&mut self) -> Result<bool, Infallible> {
+                Ok(!self.0)
+            }
+        }
+
+        for level in [true, false] {
+            for high in [Label::Positive, Label::Negative] {
+                let mut sensor = PinSensor::new(Wire(level), high);
+                let reading = Reading::Side(if level { high } else { -high });
+                assert_eq!(awaited(&mut sensor), Some(Ok(reading)));
+                assert_eq!(hal::LabelSensor::read(&mut sensor), Ok(reading));
+            }
         }
     }
 

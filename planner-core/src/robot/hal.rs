@@ -59,7 +59,8 @@ impl<T: Drive + ?Sized> Drive for &mut T {
     }
 }
 
-/// A label sensor on a digital pin, such as a comparator behind a photodiode or a float switch.
+/// A label sensor on a digital pin, such as a comparator behind a photodiode or a float switch. It serves [drivers that
+/// are awaited](crate::robot::asynchronous) as well.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PinSensor<P> {

@@ -29,9 +29,12 @@ use crate::robot::hal::LabelSensor;
 /// assert_eq!(read(), Err("no conversion"));
 /// # Ok::<(), &str>(())
 /// ```
+///
+/// With a `measure` that is an `async` closure it is the same sensor for [drivers that are
+/// awaited](crate::robot::asynchronous).
 #[derive(Clone, Debug)]
 pub struct ThresholdSensor<F> {
-    measure: F,
+    pub(super) measure: F,
     low: i32,
     high: i32,
     above: Label,
@@ -49,13 +52,9 @@ impl<F> ThresholdSensor<F> {
     pub fn release(self) -> F {
         self.measure
     }
-}
 
-impl<F: FnMut() -> Result<i32, E>, E: Debug> LabelSensor for ThresholdSensor<F> {
-    type Error = E;
-
-    fn read(&mut self) -> Result<Reading, E> {
-        let value = (self.measure)()?;
+    /// The label of a value, which becomes the last one.
+    pub(super) fn judge(&mut self, value: i32) -> Label {
         let by_the_middle = || {
             let is_above = value.abs_diff(self.low) > value.abs_diff(self.high);
             if is_above { self.above } else { -self.above }
@@ -66,7 +65,16 @@ impl<F: FnMut() -> Result<i32, E>, E: Debug> LabelSensor for ThresholdSensor<F> 
             _ => self.last.unwrap_or_else(by_the_middle),
         };
         self.last = Some(label);
-        Ok(label.into())
+        label
+    }
+}
+
+impl<F: FnMut() -> Result<i32, E>, E: Debug> LabelSensor for ThresholdSensor<F> {
+    type Error = E;
+
+    fn read(&mut self) -> Result<Reading, E> {
+        let value = (self.measure)()?;
+        Ok(self.judge(value).into())
     }
 }
 

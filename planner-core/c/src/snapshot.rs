@@ -1,0 +1,69 @@
+//! What outlives a planner's sleep, as bytes: the planner's snapshot in postcard's form, then a check sum of it.
+
+use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
+use planner_core::planner::snapshot::{NotRestored, Persist, VERSION};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use crate::types::Status;
+
+/// Bytes that a snapshot can have: those of a planner that is full, as far from the origin as a position can be, fit in.
+pub const SNAPSHOT_BYTES: usize = 1020;
+
+/// What a planner has to remember over a sleep. It may be kept as it is, or as its first `count` bytes alone.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct Snapshot {
+    /// How many of the bytes belong to it; the others are zeros.
+    pub count: u32,
+    /// The same on every machine.
+    pub bytes: [u8; SNAPSHOT_BYTES],
+}
+
+static CHECK: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
+
+/// Bytes of the check sum.
+const SUM: usize = 4;
+
+impl Snapshot {
+    /// What a planner has to remember; `None` if it does not fit, which it does.
+    pub(crate) fn of<P: Persist<Snapshot: Serialize>>(planner: &P) -> Option<Self> {
+        let mut bytes = [0; SNAPSHOT_BYTES];
+        let room = bytes.get_mut(..SNAPSHOT_BYTES - SUM)?;
+        let used = postcard::to_slice(&planner.snapshot(), room).ok()?.len();
+        let sum = CHECK.checksum(bytes.get(..used)?).to_le_bytes();
+        bytes.get_mut(used..used + SUM)?.copy_from_slice(&sum);
+        Some(Self { count: (used + SUM) as u32, bytes })
+    }
+
+    /// Lets a planner go on from it. One that does not is as it was.
+    pub(crate) fn wake<P>(&self, planner: &mut P) -> Result<(), Status>
+    where
+        P: Persist<Snapshot: DeserializeOwned>,
+    {
+        let bytes = self.checked().ok_or(Status::SnapshotSpoilt)?;
+        let (version, _) =
+            postcard::take_from_bytes::<u16>(bytes).map_err(|_| Status::SnapshotSpoilt)?;
+        if version != VERSION {
+            return Err(Status::SnapshotVersion);
+        }
+        let read: P::Snapshot = postcard::from_bytes(bytes).map_err(|_| Status::SnapshotMission)?;
+        let before = planner.snapshot();
+        planner.restore(&read).map_err(|refused| {
+            // It made this one itself.
+            let _ = planner.restore(&before);
+            match refused {
+                NotRestored::Version(_) => Status::SnapshotVersion,
+                NotRestored::Told(_) => Status::SnapshotMission,
+            }
+        })
+    }
+
+    /// The bytes before the check sum, if that is right.
+    fn checked(&self) -> Option<&[u8]> {
+        let all = self.bytes.get(..usize::try_from(self.count).ok()?)?;
+        let (bytes, sum) = all.split_last_chunk::<SUM>()?;
+        let is_right = !bytes.is_empty() && CHECK.checksum(bytes) == u32::from_le_bytes(*sum);
+        is_right.then_some(bytes)
+    }
+}
