@@ -33,10 +33,11 @@ pub(crate) struct Motion {
     pub sent: Option<Sent>,
 }
 
-/// When a setpoint was sent, and how the vehicle was then.
+/// When a setpoint was sent, and when the vehicle last stirred since, and how it was then.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sent {
     pub at: Duration,
+    pub stirred: Duration,
     pub place: Ned,
     pub yaw: f32,
 }
@@ -56,10 +57,10 @@ pub(crate) enum Stage {
         complete: Option<Duration>,
     },
     Ready,
-    /// At rest there since that, by its clock and by ours.
+    /// At rest there since that, by its clock.
     Moving {
         motion: Motion,
-        rests: Option<(u32, Duration)>,
+        rests: Option<u32>,
     },
     Sensing {
         motion: Motion,

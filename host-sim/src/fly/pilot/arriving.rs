@@ -9,14 +9,14 @@ use std::time::Duration;
 use planner_core::belief::sample::Label;
 
 use crate::fly::frame::{ALIKE, apart};
-use crate::fly::limits::{LEAST_WAY, NEAR, RESIGNED_MS, SETPOINT, SETTLED_MS, SLOW};
+use crate::fly::limits::{LEAST_WAY, NEAR, RESIGNED_MS, SETTLED_MS, SLOW, STIRS};
 use crate::fly::pilot::Pilot;
-use crate::fly::stage::{Arrival, Motion, Stage};
+use crate::fly::stage::{Arrival, Motion, Sent, Stage};
 use crate::fly::vehicle::Fix;
 
 /// Where a vehicle is, as to where it was sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Standing {
+pub(super) enum Standing {
     /// It rests there.
     There,
     /// It rests near it.
@@ -55,18 +55,11 @@ impl Pilot {
     }
 
     /// A motion goes on, or comes to its end; it rests since that.
-    fn approach(
-        &mut self,
-        now: Duration,
-        motion: Motion,
-        rests: Option<(u32, Duration)>,
-        fix: Fix,
-    ) {
-        let (since, ours) = rests.unwrap_or((fix.at_ms, now));
+    fn approach(&mut self, now: Duration, mut motion: Motion, rests: Option<u32>, fix: Fix) {
+        self.note_stirring(now, &mut motion, fix);
+        let since = rests.unwrap_or(fix.at_ms);
         let long_enough = match self.standing(&motion, fix) {
             Standing::There => SETTLED_MS,
-            // A setpoint that came late may have led it astray: it has been sent again by then.
-            Standing::Near if now < ours + 3 * SETPOINT => u32::MAX,
             Standing::Near => RESIGNED_MS,
             Standing::Away => {
                 self.stage = Stage::Moving { motion, rests: None };
@@ -74,7 +67,7 @@ impl Pilot {
             }
         };
         let faces = self.vehicle.facing.filter(|it| it.at_ms >= since);
-        self.stage = Stage::Moving { motion, rests: Some((since, ours)) };
+        self.stage = Stage::Moving { motion, rests: Some(since) };
         let Some(faces) = faces.filter(|_| fix.at_ms - since >= long_enough) else { return };
         self.stage = if motion.wants_label {
             Stage::Sensing { motion, arrived: fix, since: now, told: None }
@@ -88,7 +81,7 @@ impl Pilot {
         Arrival { fix, yaw, label, is_short }
     }
 
-    fn standing(&self, motion: &Motion, fix: Fix) -> Standing {
+    pub(super) fn standing(&self, motion: &Motion, fix: Fix) -> Standing {
         let order = &motion.order;
         let off = fix.at.distance(order.to);
         let faces = |yaw: f32| !order.is_turn || apart(yaw, order.yaw) < ALIKE;
@@ -103,8 +96,14 @@ impl Pilot {
         if !order.is_turn && has_come && off <= NEAR { Standing::Near } else { Standing::Away }
     }
 
-    /// Whether the vehicle rests where it was sent.
-    pub(super) fn is_there(&self, motion: &Motion, fix: Fix) -> bool {
-        self.standing(motion, fix) == Standing::There
+    /// Notes when the vehicle stirs, wherever it is by then: a setpoint that came late may have led it away and back.
+    fn note_stirring(&self, now: Duration, motion: &mut Motion, fix: Fix) {
+        let Some((sent, facing)) = motion.sent.as_mut().zip(self.vehicle.facing) else { return };
+        let stirs = fix.speed() > SLOW
+            || fix.at.distance(sent.place) > STIRS
+            || apart(facing.yaw, sent.yaw) > ALIKE;
+        if stirs {
+            *sent = Sent { at: sent.at, stirred: now, place: fix.at, yaw: facing.yaw };
+        }
     }
 }

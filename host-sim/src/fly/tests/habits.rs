@@ -21,6 +21,8 @@ fn a_vehicle_that_rests_near_its_target_has_arrived_where_it_is() {
     let flown = fly(|_, _, message| vec![nearer_the_middle(message, 0.7)], as_it_is);
     assert_eq!(flown.failure(), None);
     assert_ne!(flown.trace(), of_run());
+    // It is not sent there again: what steers like a car would drive a circle, each time.
+    assert_eq!(flown.sent.iter().filter(|(_, it)| moves(it)).count(), 4, "one a step");
     let Ok(flight) = &flown.flight else { panic!("it flew") };
     for step in &flight.recording.steps {
         let off = Ned::from(step.pose.site).distance(step.motion.target.site.into());
@@ -172,4 +174,40 @@ fn a_turn_that_does_not_turn_fails() {
     }
     let failure = pilot.failure().expect("it does not turn").to_string();
     assert!(failure.contains("it lacks 57 degrees of its turn: a vehicle that"), "{failure}");
+}
+
+/// Two copies of a setpoint, of which one is late: it leads the vehicle back, when it was on its way to the next place.
+#[test]
+fn a_vehicle_that_a_late_setpoint_led_astray_is_sent_its_own_again() {
+    let (mut goes, mut late, mut places) = (Vec::new(), None, Vec::new());
+    let flown = fly(
+        |now, _, message| {
+            if !moves(&message) {
+                // The copy comes with the next heartbeat, while the vehicle drives.
+                return late.take_if(|_| goes.len() == 2).into_iter().chain([message]).collect();
+            }
+            if goes.is_empty() {
+                let mut copy = message.clone();
+                if let MavMessage::SET_POSITION_TARGET_LOCAL_NED(it) = &mut copy {
+                    // A rover faces the way that it drove.
+                    it.yaw += 1.0;
+                }
+                late = Some(copy);
+            }
+            goes.push(now);
+            vec![message]
+        },
+        |now, _, message| {
+            if let MavMessage::LOCAL_POSITION_NED(it) = &message {
+                places.push((now, it.vx.hypot(it.vy)));
+            }
+            vec![message]
+        },
+    );
+    assert_eq!(flown.failure(), None);
+    assert_eq!(flown.trace(), of_run());
+    assert_eq!(goes.len(), 5, "one a step, and one again: {goes:?}");
+    let moved = places.iter().rfind(|(at, speed)| *at < goes[2] && *speed > 0.0);
+    let rested = goes[2].saturating_sub(moved.expect("it was led astray").0);
+    assert!((1.0..1.3).contains(&rested.as_secs_f64()), "{rested:?}");
 }
