@@ -1,5 +1,7 @@
 //! What autopilots do that the ideal vehicle does not: seen of `ArduPilot`'s own simulation.
 
+use std::collections::VecDeque;
+
 use mavlink::dialects::common::MavMessage;
 
 use super::*;
@@ -210,4 +212,41 @@ fn a_vehicle_that_a_late_setpoint_led_astray_is_sent_its_own_again() {
     let moved = places.iter().rfind(|(at, speed)| *at < goes[2] && *speed > 0.0);
     let rested = goes[2].saturating_sub(moved.expect("it was led astray").0);
     assert!((1.0..1.3).contains(&rested.as_secs_f64()), "{rested:?}");
+}
+
+/// A link of a computer that is busy or asleep for three seconds, once the vehicle drives: messages wait meanwhile.
+struct Busy {
+    ideal: Ideal,
+    waiting: VecDeque<(MavHeader, MavMessage)>,
+    is_over: bool,
+}
+
+impl Link for Busy {
+    fn now(&self) -> Duration {
+        self.ideal.now()
+    }
+
+    fn send(&mut self, message: &MavMessage) {
+        self.ideal.send(message);
+        let until = self.now() + Duration::from_secs(3);
+        while moves(message) && !self.is_over && self.now() < until {
+            self.waiting.extend(self.ideal.receive(until).expect("it is never broken"));
+        }
+        self.is_over |= moves(message);
+    }
+
+    fn receive(&mut self, until: Duration) -> Result<Option<(MavHeader, MavMessage)>> {
+        self.waiting.pop_front().map_or_else(|| self.ideal.receive(until), |it| Ok(Some(it)))
+    }
+}
+
+#[test]
+fn a_computer_that_was_busy_hears_what_came_before_it_judges() {
+    let labels = LabelSource::new("WET".parse().expect("a name"), None);
+    let ideal = Ideal::new(&mission(), SYSTEM, labels.clone());
+    let link = Busy { ideal, waiting: VecDeque::new(), is_over: false };
+    let mut control = Control::new(link, Pilot::new(SYSTEM, labels, LIMITS), || None);
+    let flight = flight::fly(mission(), &mut control).expect("it begins");
+    assert!(flight.failure.is_none(), "{:?}", flight.failure);
+    assert!(control.link().is_over);
 }
