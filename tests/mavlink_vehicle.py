@@ -7,8 +7,9 @@ things happen.
 
 Reads a mission a line (JSON, see `Vehicle`), says by a line that it is there, flies until it reads another line, and says by
 one more what it was sent and whether it moved when it should not have. What it takes in guided mode, and how, is what
-`Rover/GCS_MAVLink_Rover.cpp` and `ArduSub/GCS_MAVLink_Sub.cpp` of ArduPilot take. Its clock runs ten times as fast as the
-wall's; the link, heartbeats and failures keep to the wall.
+`Rover/GCS_MAVLink_Rover.cpp` and `ArduSub/GCS_MAVLink_Sub.cpp` of ArduPilot take. Its clock counts its ticks, of which each
+is a fifth of a second to it and a fiftieth of one to the wall: on a busy machine it is slow, and no less smooth. The link and
+heartbeats keep to the wall.
 """
 
 import collections
@@ -53,7 +54,7 @@ def f32(number):
 
 
 class Vehicle:
-    """Keys of a mission: `port` to speak to, or null to be spoken to; `seed`, `craft`, `line` ([a, b, c], positive on
+    """Keys of a mission: `host`, an address of its own, and the `port` there to speak to, or null to be spoken to; `seed`, `craft`, `line` ([a, b, c], positive on
     the +1 side of a east + b north + c), `start` ([north, east, yaw]), `label` (a name, or "channel:N"); `drop`, `late`,
     `double`, probabilities of a message each way; `fault` and, for which setpoint of a new place it comes, `at`."""
 
@@ -61,18 +62,21 @@ class Vehicle:
         self.mission = mission
         self.random = random.Random(mission["seed"])
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self.socket.bind(("127.0.0.1", 0))
-        self.peer = ("127.0.0.1", mission["port"]) if mission["port"] else None
+        self.socket.bind((mission["host"], 0))
+        self.peer = (mission["host"], mission["port"]) if mission["port"] else None
         self.mav = mavlink.MAVLink(None, srcSystem=1, srcComponent=mavlink.MAV_COMP_ID_AUTOPILOT1)
         self.type, self.guided, self.hold = CRAFTS[mission["craft"]]
         self.began = time.monotonic()
         self.now = self.began
+        self.clock = 0.0  # its own, seconds
+        self.late = 0.0  # how late a tick, or a heartbeat of ours, came at most, seconds of the wall
+        self.beat = None  # when the last of those came
         self.under_way = []  # (when, number, is it for us, bytes)
         self.number = 0
         self.north, self.east, self.yaw = mission["start"]
         self.mode, self.armed, self.status = self.hold, False, mavlink.MAV_STATE_STANDBY
         self.goal = None  # ("go", north, east, yaw), ("turn", yaw) or ("speed", vn, ve, when)
-        self.places, self.fault_at, self.told_at = [], None, None
+        self.places, self.fault_at, self.fault_clock, self.told_at = [], None, None, None
         self.intervals, self.speed, self.breached = set(), (0.0, 0.0), False
         self.due = {}
         # What is told in the end.
@@ -164,7 +168,7 @@ class Vehicle:
         if it.coordinate_frame != mavlink.MAV_FRAME_LOCAL_NED or has["acceleration"]:
             self.illicit.append("a setpoint that is not taken")
             return
-        self.stops = self.stops + [self.now] if is_stop else []
+        self.stops = self.stops + [self.clock] if is_stop else []
         if is_stop and self.fault() is not None:
             self.first_stop = self.first_stop or self.now
         if has["position"]:
@@ -175,7 +179,7 @@ class Vehicle:
             # Rover makes a heading of the velocity unless yaw or its rate is told.
             if not (has["yaw"] or has["rate"]) and self.mission["craft"] != "sub":
                 self.yaw = math.atan2(it.vy, it.vx)
-            self.goal = ("speed", it.vx, it.vy, self.now)
+            self.goal = ("speed", it.vx, it.vy, self.clock)
         elif has["yaw"] and self.mission["craft"] != "sub":
             self.goal = ("turn", it.yaw)
             self.visit((self.north, self.east, it.yaw))
@@ -200,7 +204,7 @@ class Vehicle:
                 self.armed, self.status = True, mavlink.MAV_STATE_ACTIVE
         fault = self.mission["fault"]
         if fault and self.fault_at is None and len(self.places) >= self.mission["at"]:
-            self.fault_at = self.now
+            self.fault_at, self.fault_clock = self.now, self.clock
             if fault == "mode":
                 self.mode, self.goal = self.hold, None
             elif fault == "disarm":
@@ -237,24 +241,24 @@ class Vehicle:
                 self.yaw = yaw
         elif self.goal and self.goal[0] == "turn":
             self.yaw = self.goal[1]
-        elif self.goal and (self.now - self.goal[3]) * HASTE < GUID_TIMEOUT:
+        elif self.goal and self.clock - self.goal[3] < GUID_TIMEOUT:
             self.north += self.goal[1] * seconds
             self.east += self.goal[2] * seconds
         way = math.hypot(self.north - before[0], self.east - before[1])
         self.speed = ((self.north - before[0]) / seconds, (self.east - before[1]) / seconds)
-        self.track.append((self.now, way))
+        self.track.append((self.clock, way))
 
     def slid(self):
         """How far its positions have slid to the north, with its estimator."""
         if self.fault() != "slide":
             return 0.0
         metres, seconds = SLIDE
-        return metres * min((self.now - self.fault_at) * HASTE / seconds, 1.0)
+        return metres * min((self.clock - self.fault_clock) / seconds, 1.0)
 
     # What it says.
 
     def speak(self):
-        ms = int((self.now - self.began) * HASTE * 1000) + 1000
+        ms = round(self.clock * 1000) + 1000
         fault = self.fault()
         every = lambda what, seconds: self.now >= self.due.get(what, 0) and not self.due.update({what: self.now + seconds})
         if fault != "heartless" and every("heartbeat", 0.2):
@@ -305,18 +309,23 @@ class Vehicle:
             if self.socket in ready:
                 data, peer = self.socket.recvfrom(2048)
                 self.peer = self.peer or peer
+                if data[7:10] == bytes(3):
+                    self.late = max(self.late, self.now - (self.beat or self.now) - 1.0)
+                    self.beat = self.now
                 self.launch(True, data)
             if sys.stdin in ready:
                 sys.stdin.readline()
                 ends_at = self.now + 2 * LATE
             self.deliver()
             if self.now >= next_tick:
+                self.late = max(self.late, self.now - next_tick)
                 next_tick = max(next_tick + TICK, self.now)
+                self.clock += TICK * HASTE
                 self.happen()
                 self.drive(TICK * HASTE)
                 self.speak()
         # From the last of its setpoints on there were stops alone: what may be late has come by then.
-        stopped = self.stops[0] + LATE + 0.1 if len(self.stops) > 1 else None
+        stopped = self.stops[0] + (LATE + 0.1) * HASTE if len(self.stops) > 1 else None
         moved_after = sum(way for when, way in self.track if stopped is not None and when > stopped)
         reacted = None
         if self.told_at is not None and self.first_stop is not None:
@@ -325,7 +334,7 @@ class Vehicle:
             "received": self.received, "illicit": self.illicit, "early": self.early,
             "places": len(self.places), "happened": self.fault_at is not None,
             "was_stopped": stopped is not None, "moved_after": moved_after,
-            "orders_after": self.orders_after, "reacted": reacted,
+            "orders_after": self.orders_after, "reacted": reacted, "late": self.late,
             "table": self.table if self.mission.get("table") else None,
         })
         self.socket.close()

@@ -25,7 +25,7 @@ mod long {
     use std::sync::Mutex;
     use std::sync::atomic::{AtomicU64, Ordering};
     use std::time::Instant;
-    use std::{fs, thread};
+    use std::{fs, io, thread};
 
     use host_sim::campaign::standard_field::standard;
     use host_sim::mission::algorithm::Algorithm;
@@ -40,8 +40,12 @@ mod long {
     const SEED: u64 = 14;
     const MISSIONS: u64 = 200;
 
-    /// So many at a time: they mostly wait.
+    /// So many at a time: they mostly wait, and need a fiftieth of a core each.
     const AT_ONCE: usize = 14;
+
+    /// From so many seconds on that a vehicle's tick or a heartbeat of ours came late, the machine was too busy to judge a
+    /// mission that failed.
+    const LATE: f64 = 0.05;
 
     /// What happens to a vehicle, and what the flight then ends with. A vehicle that was taken over or disarmed does not
     /// hear stops.
@@ -166,10 +170,13 @@ mod long {
             let label = if number % 4 < 2 { "WET" } else { "channel:7" };
             // It is spoken to, or speaks first.
             let listens = !number.is_multiple_of(3);
-            let socket = UdpSocket::bind("127.0.0.1:0").expect("a port");
+            // An address of its own: what another vehicle still says to a port that was left comes to nobody.
+            let host = format!("127.0.{}.{}", 1 + number / 250, 1 + number % 250);
+            let socket = UdpSocket::bind((&*host, 0)).expect("a port");
             let port = socket.local_addr().expect("bound").port();
             drop(socket);
             vehicle.tell(&json!({
+                "host": host,
                 "port": if listens { json!(port) } else { Value::Null },
                 "seed": number,
                 "craft": crafts[number as usize / 3 % 3],
@@ -183,9 +190,9 @@ mod long {
             }));
             let theirs = vehicle.hear()["port"].as_u64().expect("a port");
             let address = if listens {
-                format!("udp:127.0.0.1:{port}")
+                format!("udp:{host}:{port}")
             } else {
-                format!("udpout:127.0.0.1:{theirs}")
+                format!("udpout:{host}:{theirs}")
             };
             let (file, written) = (folder.join("m.toml"), folder.join("t.jsonl"));
             fs::write(&file, &self.scenario).expect("a file");
@@ -227,6 +234,11 @@ mod long {
     }
 
     impl Flown {
+        /// How late the machine was at most, seconds.
+        fn late(&self) -> f64 {
+            self.told["late"].as_f64().unwrap_or(0.0)
+        }
+
         /// What is wrong with it.
         fn faults(&self, case: &Case) -> Vec<String> {
             let mut faults = Vec::new();
@@ -296,7 +308,19 @@ mod long {
                 });
             }
         });
-        let flown = flown.into_inner().expect("no panic");
+        let mut flown = flown.into_inner().expect("no panic");
+        let (folder, mut vehicle) = (tempfile::tempdir().expect("a folder"), Vehicle::new());
+        for (number, it) in &mut flown {
+            let case = Case::new(*number);
+            let (faults, late) = (it.faults(&case), it.late());
+            if !faults.is_empty() && late > LATE {
+                let why = format!("the machine was busy for {late:.2} s ({})", faults.join("; "));
+                // Straight to the handle: libtest shows it though the test passes.
+                let line = format!("AGAIN, alone: mission {number} of seed {SEED}: {why}\n");
+                let _ = io::stderr().write_all(line.as_bytes());
+                *it = case.fly(&program, &mut vehicle, folder.path());
+            }
+        }
         tell(&flown, began.elapsed().as_secs_f64());
         let faults: Vec<_> = flown
             .iter()
