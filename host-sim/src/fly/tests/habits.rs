@@ -17,6 +17,15 @@ fn nearer_the_middle(message: MavMessage, by: f32) -> MavMessage {
     MavMessage::SET_POSITION_TARGET_LOCAL_NED(it)
 }
 
+/// A vehicle that goes round and round where it says that it is, at 2 rad/s.
+pub(super) fn circling(now: Duration, message: MavMessage, radius: f32) -> MavMessage {
+    let MavMessage::LOCAL_POSITION_NED(mut it) = message else { return message };
+    let (sine, cosine) = (2.0 * now.as_secs_f32()).sin_cos();
+    (it.x, it.y) = (it.x + radius * cosine, it.y + radius * sine);
+    (it.vx, it.vy) = (it.vx - 2.0 * radius * sine, it.vy + 2.0 * radius * cosine);
+    MavMessage::LOCAL_POSITION_NED(it)
+}
+
 /// A rover that steers like a car rests beside where it was sent.
 #[test]
 fn a_vehicle_that_rests_near_its_target_has_arrived_where_it_is() {
@@ -80,18 +89,49 @@ fn a_setpoint_is_sent_again_only_to_a_vehicle_that_does_not_stir() {
         as_it_is,
     );
     assert_eq!(losing.trace(), of_run());
-    // One that never says that it is there, though it moves, is sent again after ten.
-    let mut number = 0_u8;
-    let restless = fly(as_it_is, |_, _, mut message| {
-        if let MavMessage::LOCAL_POSITION_NED(it) = &mut message {
-            number = (number + 1) % 4;
-            it.vx += if number < 2 { 0.5 } else { -0.5 };
-        }
-        vec![message]
-    });
+    // One that never rests is sent again after ten.
+    let restless = fly(as_it_is, |now, _, message| vec![circling(now, message, 1.0)]);
     let goes: Vec<_> = restless.sent.iter().filter(|(_, it)| moves(it)).map(|it| it.0).collect();
     assert_eq!(goes.len(), 2, "{goes:?}");
     assert!(goes[1].saturating_sub(goes[0]) >= Duration::from_secs(10), "{goes:?}");
+}
+
+/// In a current or in waves a vehicle holds its place, but is never at rest.
+#[test]
+fn a_vehicle_that_stays_within_the_acceptance_has_arrived_though_it_wobbles() {
+    // Its place is exact, and its speed over ground is not.
+    let mut number = 0_u8;
+    let flown = fly(as_it_is, |_, _, mut message| {
+        if let MavMessage::LOCAL_POSITION_NED(it) = &mut message {
+            number = (number + 1) % 4;
+            it.vx += if number < 2 { 0.3 } else { -0.3 };
+        }
+        vec![message]
+    });
+    assert_eq!(flown.failure(), None);
+    assert_eq!(flown.trace(), of_run());
+    // Or it wobbles within the acceptance, 0.02 m.
+    let flown = fly(as_it_is, |now, _, message| vec![circling(now, message, 0.01)]);
+    assert_eq!(flown.failure(), None);
+    let Ok(flight) = &flown.flight else { panic!("it flew") };
+    let legs: Vec<_> = flight.recording.results.steps.iter().filter_map(|it| it.flown).collect();
+    assert_eq!(legs.len(), 4);
+    assert!(legs.iter().all(|leg| leg.off <= 0.02), "{legs:?}");
+}
+
+#[test]
+fn so_has_one_that_stays_near_its_target() {
+    let flown = fly(
+        |_, _, message| vec![nearer_the_middle(message, 0.7)],
+        |now, _, message| vec![circling(now, message, 0.2)],
+    );
+    assert_eq!(flown.failure(), None);
+    let Ok(flight) = &flown.flight else { panic!("it flew") };
+    let legs: Vec<_> = flight.recording.results.steps.iter().filter_map(|it| it.flown).collect();
+    assert_eq!(legs.len(), 4);
+    assert!(legs.iter().all(|leg| (0.45..0.95).contains(&leg.off)), "{legs:?}");
+    // Its setpoint begins a leg anew, so that it is sent each ten seconds at most.
+    assert!(flown.sent.iter().filter(|(_, it)| moves(it)).count() <= 8);
 }
 
 /// Velocities of zero do not stop Sub, which coasts on: a place does, the one where stopping began.
