@@ -28,8 +28,12 @@ os.environ["MAVLINK20"] = "1"
 from pymavlink.dialects.v20 import common as mavlink  # noqa: E402
 
 HASTE = 10.0  # seconds of its clock in a second
+CRAWL_HASTE = 3.0  # while it crawls
 TICK = 0.02  # seconds from one position to the next
 SPEED = 3.0  # metres in a second of its clock
+BRAKES = {"rover": 2.0, "boat": 2.0, "sub": 0.05}  # what it slows down by when it is to stop, as it coasts
+CRAWL, CRAWL_GAIN = 0.3, 0.15  # of a leg with an S-curve, which each setpoint begins anew
+SWAY = 0.3  # of a boat that holds its place in waves
 LATE = 0.3  # seconds that the link delays at most
 GUID_TIMEOUT = 3.0  # seconds of its clock after which a velocity is let go of
 
@@ -79,6 +83,7 @@ class Vehicle:
         self.places, self.fault_at, self.fault_clock, self.told_at = [], None, None, None
         self.intervals, self.speed, self.breached = set(), (0.0, 0.0), False
         self.due = {}
+        self.haste, self.crawl = HASTE, None  # (place, time in its first setpoint, when it was last begun anew)
         # What is told in the end.
         self.received = {}
         self.table = []
@@ -89,6 +94,8 @@ class Vehicle:
         self.stops = []  # when, since the last setpoint that is none
         self.track = []  # (when, metres)
         self.text_at = None  # when it says why
+        self.restarted = 0  # setpoints that began a leg anew without need
+        self.habits = dict.fromkeys(["coasted", "crawled", "swayed", "pivots"], 0)
         self.orders_after = 0  # setpoints that came when the link knew of the failure
 
     # The link.
@@ -175,6 +182,7 @@ class Vehicle:
             self.goal = ("go", it.x, it.y, it.yaw if has["yaw"] and self.mission["craft"] == "sub" else None)
             if not is_stop:
                 self.visit((it.x, it.y, it.yaw))
+                self.begin_leg((it.x, it.y), it.time_boot_ms)
         elif has["velocity"]:
             # Rover makes a heading of the velocity unless yaw or its rate is told.
             if not (has["yaw"] or has["rate"]) and self.mission["craft"] != "sub":
@@ -183,6 +191,21 @@ class Vehicle:
         elif has["yaw"] and self.mission["craft"] != "sub":
             self.goal = ("turn", it.yaw)
             self.visit((self.north, self.east, it.yaw))
+
+    def begin_leg(self, place, told_at):
+        """Sub begins its S-curve anew with each setpoint. Here it does so on one leg of a mission, which lasts."""
+        left = math.hypot(place[0] - self.north, place[1] - self.east)
+        if self.crawl is None:
+            is_it = self.mission["craft"] == "sub" and len(self.places) == self.mission["at"]
+            if is_it and self.mission["fault"] is None and left > 1:
+                self.haste, self.crawl = CRAWL_HASTE, [place, told_at, self.clock]
+        elif self.crawl[0] == place:
+            # A setpoint that was lost is sent again after a second at rest.
+            since = self.clock - 0.7 * CRAWL_HASTE
+            moved = sum(way for when, way in self.track if when > since)
+            is_under_way = self.haste == CRAWL_HASTE
+            self.restarted += is_under_way and moved > 0.1 and 0 < told_at - self.crawl[1] < 9000
+            self.crawl[2] = self.clock
 
     def visit(self, place):
         if not self.places or self.places[-1] != place:
@@ -203,7 +226,7 @@ class Vehicle:
             if self.now > self.began + 0.5:
                 self.armed, self.status = True, mavlink.MAV_STATE_ACTIVE
         fault = self.mission["fault"]
-        if fault and self.fault_at is None and len(self.places) >= self.mission["at"]:
+        if fault not in (None, "car") and self.fault_at is None and len(self.places) >= self.mission["at"]:
             self.fault_at, self.fault_clock = self.now, self.clock
             if fault == "mode":
                 self.mode, self.goal = self.hold, None
@@ -223,27 +246,47 @@ class Vehicle:
                 self.tell({"interrupt": True})
 
     def drive(self, seconds):
-        before = (self.north, self.east)
-        if not self.armed or self.mode != self.guided or self.fault() == "stuck":
+        """So long by its clock."""
+        before, craft = (self.north, self.east), self.mission["craft"]
+        kind, *goal = self.goal if self.goal and self.armed and self.mode == self.guided else (None,)
+        is_braking = kind is None or kind == "speed" and (
+            goal[:2] == [0, 0] or self.clock - goal[2] >= GUID_TIMEOUT)
+        if self.fault() == "stuck":
             pass
-        elif self.goal and self.goal[0] == "go":
-            _, north, east, yaw = self.goal
+        elif is_braking:
+            speed = math.hypot(*self.speed)
+            part = max(0.0, speed - BRAKES[craft] * seconds) / speed if speed else 0.0
+            self.north += part * self.speed[0] * seconds
+            self.east += part * self.speed[1] * seconds
+            self.habits["coasted"] += part * speed * seconds
+        elif kind == "go":
+            north, east, yaw = goal
             left = math.hypot(north - self.north, east - self.east)
             if left > 0:
                 self.yaw = math.atan2(east - self.east, north - self.north)
-            if left <= SPEED * seconds:
+            speed = SPEED
+            if self.crawl and self.crawl[0] == (north, east):
+                speed = min(CRAWL, CRAWL_GAIN * (self.clock - self.crawl[2]))
+                self.habits["crawled"] += min(left, speed * seconds)
+            if left <= speed * seconds:
                 self.north, self.east = north, east
             else:
-                part = SPEED * seconds / left
+                part = speed * seconds / left
                 self.north += part * (north - self.north)
                 self.east += part * (east - self.east)
             if yaw is not None:
                 self.yaw = yaw
-        elif self.goal and self.goal[0] == "turn":
-            self.yaw = self.goal[1]
-        elif self.goal and self.clock - self.goal[3] < GUID_TIMEOUT:
-            self.north += self.goal[1] * seconds
-            self.east += self.goal[2] * seconds
+        elif kind == "turn":
+            # What steers like a car does not turn on the spot.
+            if self.mission["fault"] == "car":
+                if abs(math.remainder(goal[0] - self.yaw, math.tau)) > 0.1:
+                    self.fault_at = self.fault_at or self.now
+                    self.habits["pivots"] += 1
+            else:
+                self.yaw = goal[0]
+        else:
+            self.north += goal[0] * seconds
+            self.east += goal[1] * seconds
         way = math.hypot(self.north - before[0], self.east - before[1])
         self.speed = ((self.north - before[0]) / seconds, (self.east - before[1]) / seconds)
         self.track.append((self.clock, way))
@@ -277,7 +320,11 @@ class Vehicle:
         if 32 in self.intervals and fault != "lost":
             north, east = f32(self.north + self.slid()), f32(self.east)
             self.reported.append((north, east))
-            self.say(self.mav.local_position_ned_encode(ms, north, east, 0, *self.speed, 0))
+            sway = 0.0
+            if self.mission["craft"] == "boat" and self.mission["fault"] is None:
+                self.habits["swayed"] += 1
+                sway = SWAY if self.habits["swayed"] % 4 < 2 else -SWAY
+            self.say(self.mav.local_position_ned_encode(ms, north, east, 0, self.speed[0] + sway, self.speed[1], 0))
         if self.text_at is not None and self.text_at <= self.now < self.text_at + 0.3:
             self.say(self.mav.statustext_encode(mavlink.MAV_SEVERITY_CRITICAL, b"EKF failsafe"))
         if 30 in self.intervals:
@@ -320,9 +367,11 @@ class Vehicle:
             if self.now >= next_tick:
                 self.late = max(self.late, self.now - next_tick)
                 next_tick = max(next_tick + TICK, self.now)
-                self.clock += TICK * HASTE
+                if self.crawl and (self.north, self.east) == self.crawl[0]:
+                    self.haste = HASTE
+                self.clock += TICK * self.haste
                 self.happen()
-                self.drive(TICK * HASTE)
+                self.drive(TICK * self.haste)
                 self.speak()
         # From the last of its setpoints on there were stops alone: what may be late has come by then.
         stopped = self.stops[0] + (LATE + 0.1) * HASTE if len(self.stops) > 1 else None
@@ -335,6 +384,7 @@ class Vehicle:
             "places": len(self.places), "happened": self.fault_at is not None,
             "was_stopped": stopped is not None, "moved_after": moved_after,
             "orders_after": self.orders_after, "reacted": reacted, "late": self.late,
+            "restarted": self.restarted, "habits": self.habits,
             "table": self.table if self.mission.get("table") else None,
         })
         self.socket.close()
