@@ -38,6 +38,18 @@ CRAFTS = {
     "boat": ("ardurover", "motorboat", ["rover", "motorboat"], 15, 4),
     "sub": ("ardusub", "vectored", ["sub"], 4, 16),
 }
+# How long the machine let something wait at most, seconds: a serial line or the operator's link for the simulation, which
+# says something each tenth of a second at least, or the flight's own loop.
+STALLS = {}
+
+
+def alive(what, times={}):
+    """It goes on: how long it had not."""
+    now = time.time()
+    STALLS[what] = max(STALLS.get(what, 0.0), now - times.get(what, now))
+    times[what] = now
+
+
 LABEL = """
 local function update()
   local p = ahrs:get_relative_position_NED_origin()
@@ -72,6 +84,7 @@ def bridge(port, name):
                     if not data:
                         return
                     os.write(ours, data)
+                    alive("serial")
             except OSError:
                 return
 
@@ -111,6 +124,7 @@ class Operator:
             if kind == "HEARTBEAT" and it.get_srcComponent() == 1:
                 state.update(mode=mavutil.mode_string_v10(it), armed=bool(it.base_mode & 128))
             elif kind == "LOCAL_POSITION_NED":
+                alive("operator")
                 state.update(n=it.x, e=it.y, v=math.hypot(it.vx, it.vy), ms=it.time_boot_ms)
             elif kind == "SIMSTATE" and self.remote:
                 north = (it.lat / 1e7 - self.home[0]) * 111319.5
@@ -194,11 +208,13 @@ def main():
         state, began, event = operator.state, time.time(), flight.get("event")
         from_there, from_then = (state["n"], state["e"]), state["ms"]
         # How late the machine was at most, and how much of its speed-up the simulation made: both say whether it was too busy.
-        late, woke, pace = 0.0, time.time(), None
+        stalls, pace = {}, None
+        STALLS.clear()
         while fly.poll() is None and time.time() < began + flight.get("limit", 200):
-            late, woke = max(late, time.time() - woke - 0.02), time.time()
-            if (event or "event" not in flight or flight["event"] is None) and woke > began + 1:
-                pace = (state["ms"] - from_then) / 1e3 / (woke - began) / flight["speedup"]
+            alive("flight")
+            if (event or not flight.get("event")) and time.time() > began + 1:
+                pace = (state["ms"] - from_then) / 1e3 / (time.time() - began) / flight["speedup"]
+                stalls = dict(STALLS)
             way = math.hypot(state["n"] - from_there[0], state["e"] - from_there[1])
             if event and way > flight.get("at", 0) and state["v"] > 0.3:
                 operator.happen(event, vehicle, fly, hold)
@@ -216,7 +232,7 @@ def main():
             "status": fly.returncode, "said": text, "seconds": round(time.time() - began, 1),
             "moved_after": round(math.hypot(state["n"] - ended[0], state["e"] - ended[1]), 2),
             "mode": state["mode"], "armed": state["armed"], "happened": event is None, "texts": state["texts"][-6:],
-            "late": round(late, 2), "pace": pace and round(pace, 2)}))
+            "late": round(max(stalls.values(), default=0.0), 2), "stalls": stalls, "pace": pace and round(pace, 2)}))
     finally:
         vehicle.send_signal(signal.SIGCONT)
         vehicle.kill()
