@@ -7,8 +7,9 @@ watches what the vehicle does after.
 
 SIMULATORS has `ardurover`, `ardusub` and `params/` with ArduPilot's parameters of its frames. FOLDER has the scenario,
 `m.toml`; logs and the trace `t.jsonl` go there. Keys: `craft` (skid, car, boat, sub), `link` (udp, tcp, serial), `number`
-(apart from others that run beside it), `speedup`, `wind` (metres a second), `line` (slope and intercept, which a Lua script on
-the vehicle tells as `WET`), `params`, `event` (see `happen`), `at` (metres from where it began) and `after` (seconds). What
+(below 256, apart from others that run beside it), `speedup`, `wind` (metres a second), `line` (slope and intercept: a Lua script on the
+vehicle tells its side as `WET`, by the position that it estimates), `is_true` (channel 7 of the remote control tells it instead, by
+the true position), `params`, `event` (see `happen`), `at` (metres from where it began) and `after` (seconds). What
 came of it is a line of JSON.
 """
 
@@ -18,6 +19,7 @@ import os
 import select
 import signal
 import socket
+import struct
 import subprocess
 import sys
 import threading
@@ -36,6 +38,18 @@ CRAFTS = {
     "boat": ("ardurover", "motorboat", ["rover", "motorboat"], 15, 4),
     "sub": ("ardusub", "vectored", ["sub"], 4, 16),
 }
+# How long the machine let something wait at most, seconds: a serial line or the operator's link for the simulation, which
+# says something each tenth of a second at least, or the flight's own loop.
+STALLS = {}
+
+
+def alive(what, times={}):
+    """It goes on: how long it had not."""
+    now = time.time()
+    STALLS[what] = max(STALLS.get(what, 0.0), now - times.get(what, now))
+    times[what] = now
+
+
 LABEL = """
 local function update()
   local p = ahrs:get_relative_position_NED_origin()
@@ -70,6 +84,7 @@ def bridge(port, name):
                     if not data:
                         return
                     os.write(ours, data)
+                    alive("serial")
             except OSError:
                 return
 
@@ -79,8 +94,8 @@ def bridge(port, name):
 class Operator:
     """Whoever stands beside the vehicle: a second ground station, of another number than ours."""
 
-    def __init__(self, port):
-        self.state = {"n": 0.0, "e": 0.0, "v": 0.0, "mode": None, "armed": False, "ekf": 0, "texts": []}
+    def __init__(self, port, line, remote):
+        self.state = {"n": 0.0, "e": 0.0, "v": 0.0, "ms": 0, "mode": None, "armed": False, "ekf": 0, "texts": []}
         self.link = None
         until = time.time() + 30
         while self.link is None and time.time() < until:
@@ -91,6 +106,8 @@ class Operator:
         if self.link is None:
             raise SystemExit("the simulation does not open its second port")
         self.is_over = False
+        # Where it truly began is the origin of its numbers, give or take what its receiver errs by.
+        self.line, self.remote, self.home = line, remote, (-35.363261, 149.165230)
         self.thread = threading.Thread(target=self.hear, daemon=True)
         self.thread.start()
 
@@ -107,7 +124,14 @@ class Operator:
             if kind == "HEARTBEAT" and it.get_srcComponent() == 1:
                 state.update(mode=mavutil.mode_string_v10(it), armed=bool(it.base_mode & 128))
             elif kind == "LOCAL_POSITION_NED":
-                state.update(n=it.x, e=it.y, v=math.hypot(it.vx, it.vy))
+                alive("operator")
+                state.update(n=it.x, e=it.y, v=math.hypot(it.vx, it.vy), ms=it.time_boot_ms)
+            elif kind == "SIMSTATE" and self.remote:
+                north = (it.lat / 1e7 - self.home[0]) * 111319.5
+                east = (it.lng / 1e7 - self.home[1]) * 111319.5 * math.cos(math.radians(self.home[0]))
+                is_above = north > self.line[0] * east + self.line[1]
+                channels = [1500] * 6 + [1900 if is_above else 1100, 1800]
+                socket.socket(socket.AF_INET, socket.SOCK_DGRAM).sendto(struct.pack("<8H", *channels), self.remote)
             elif kind == "EKF_STATUS_REPORT":
                 state["ekf"] = it.flags
             elif kind == "STATUSTEXT":
@@ -172,17 +196,25 @@ def main():
          "--serial1", "tcp:2"],
         cwd=folder, stdout=open(folder + "/vehicle.log", "w"), stderr=subprocess.STDOUT)
     try:
-        operator = Operator(base + 2)
-        for message in (32, 193, 162):
+        remote = ("127.0.0.1", 5501 + 10 * number) if flight.get("is_true") else None
+        operator = Operator(base + 2, flight["line"], remote)
+        for message in (32, 193, 162) + ((164,) if remote else ()):
             operator.command(511, message, 1e5)
             time.sleep(0.1)
         fly = subprocess.Popen(
-            [program, "fly", "m.toml", "--mavlink", address, "--label", "WET", "--trace", "t.jsonl", "--wait", "90"],
+            [program, "fly", "m.toml", "--mavlink", address, "--label", "channel:7" if remote else "WET", "--trace", "t.jsonl", "--wait", "90"],
             cwd=folder, stdout=open(folder + "/out.txt", "w"), stderr=open(folder + "/said.txt", "w"))
         operator.ready(guided)
         state, began, event = operator.state, time.time(), flight.get("event")
-        from_there = (state["n"], state["e"])
+        from_there, from_then = (state["n"], state["e"]), state["ms"]
+        # How late the machine was at most, and how much of its speed-up the simulation made: both say whether it was too busy.
+        stalls, pace = {}, None
+        STALLS.clear()
         while fly.poll() is None and time.time() < began + flight.get("limit", 200):
+            alive("flight")
+            if (event or not flight.get("event")) and time.time() > began + 1:
+                pace = (state["ms"] - from_then) / 1e3 / (time.time() - began) / flight["speedup"]
+                stalls = dict(STALLS)
             way = math.hypot(state["n"] - from_there[0], state["e"] - from_there[1])
             if event and way > flight.get("at", 0) and state["v"] > 0.3:
                 operator.happen(event, vehicle, fly, hold)
@@ -199,7 +231,8 @@ def main():
         print(json.dumps({
             "status": fly.returncode, "said": text, "seconds": round(time.time() - began, 1),
             "moved_after": round(math.hypot(state["n"] - ended[0], state["e"] - ended[1]), 2),
-            "mode": state["mode"], "armed": state["armed"], "happened": event is None, "texts": state["texts"][-6:]}))
+            "mode": state["mode"], "armed": state["armed"], "happened": event is None, "texts": state["texts"][-6:],
+            "late": round(max(stalls.values(), default=0.0), 2), "stalls": stalls, "pace": pace and round(pace, 2)}))
     finally:
         vehicle.send_signal(signal.SIGCONT)
         vehicle.kill()

@@ -7,8 +7,9 @@ things happen.
 
 Reads a mission a line (JSON, see `Vehicle`), says by a line that it is there, flies until it reads another line, and says by
 one more what it was sent and whether it moved when it should not have. What it takes in guided mode, and how, is what
-`Rover/GCS_MAVLink_Rover.cpp` and `ArduSub/GCS_MAVLink_Sub.cpp` of ArduPilot take. Its clock runs ten times as fast as the
-wall's; the link, heartbeats and failures keep to the wall.
+`Rover/GCS_MAVLink_Rover.cpp` and `ArduSub/GCS_MAVLink_Sub.cpp` of ArduPilot take. Its clock counts its ticks, of which each
+is a fifth of a second to it and a fiftieth of one to the wall: on a busy machine it is slow, and no less smooth. The link and
+heartbeats keep to the wall.
 """
 
 import collections
@@ -27,8 +28,12 @@ os.environ["MAVLINK20"] = "1"
 from pymavlink.dialects.v20 import common as mavlink  # noqa: E402
 
 HASTE = 10.0  # seconds of its clock in a second
+CRAWL_HASTE = 3.0  # while it crawls
 TICK = 0.02  # seconds from one position to the next
 SPEED = 3.0  # metres in a second of its clock
+BRAKES = {"rover": 2.0, "boat": 2.0, "sub": 0.05}  # what it slows down by when it is to stop, as it coasts
+CRAWL, CRAWL_GAIN = 0.3, 0.15  # of a leg with an S-curve, which each setpoint begins anew
+SWAY = 0.3  # of a boat that holds its place in waves
 LATE = 0.3  # seconds that the link delays at most
 GUID_TIMEOUT = 3.0  # seconds of its clock after which a velocity is let go of
 
@@ -53,7 +58,7 @@ def f32(number):
 
 
 class Vehicle:
-    """Keys of a mission: `port` to speak to, or null to be spoken to; `seed`, `craft`, `line` ([a, b, c], positive on
+    """Keys of a mission: `host`, an address of its own, and the `port` there to speak to, or null to be spoken to; `seed`, `craft`, `line` ([a, b, c], positive on
     the +1 side of a east + b north + c), `start` ([north, east, yaw]), `label` (a name, or "channel:N"); `drop`, `late`,
     `double`, probabilities of a message each way; `fault` and, for which setpoint of a new place it comes, `at`."""
 
@@ -61,20 +66,24 @@ class Vehicle:
         self.mission = mission
         self.random = random.Random(mission["seed"])
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self.socket.bind(("127.0.0.1", 0))
-        self.peer = ("127.0.0.1", mission["port"]) if mission["port"] else None
+        self.socket.bind((mission["host"], 0))
+        self.peer = (mission["host"], mission["port"]) if mission["port"] else None
         self.mav = mavlink.MAVLink(None, srcSystem=1, srcComponent=mavlink.MAV_COMP_ID_AUTOPILOT1)
         self.type, self.guided, self.hold = CRAFTS[mission["craft"]]
         self.began = time.monotonic()
         self.now = self.began
+        self.clock = 0.0  # its own, seconds
+        self.late = 0.0  # how late a tick, or a heartbeat of ours, came at most, seconds of the wall
+        self.beat = None  # when the last of those came
         self.under_way = []  # (when, number, is it for us, bytes)
         self.number = 0
         self.north, self.east, self.yaw = mission["start"]
         self.mode, self.armed, self.status = self.hold, False, mavlink.MAV_STATE_STANDBY
         self.goal = None  # ("go", north, east, yaw), ("turn", yaw) or ("speed", vn, ve, when)
-        self.places, self.fault_at, self.told_at = [], None, None
+        self.places, self.fault_at, self.fault_clock, self.told_at = [], None, None, None
         self.intervals, self.speed, self.breached = set(), (0.0, 0.0), False
         self.due = {}
+        self.haste, self.crawl = HASTE, None  # (place, time in its first setpoint, when it was last begun anew)
         # What is told in the end.
         self.received = {}
         self.table = []
@@ -85,6 +94,8 @@ class Vehicle:
         self.stops = []  # when, since the last setpoint that is none
         self.track = []  # (when, metres)
         self.text_at = None  # when it says why
+        self.restarted = 0  # setpoints that began a leg anew without need
+        self.habits = dict.fromkeys(["coasted", "crawled", "swayed", "pivots"], 0)
         self.orders_after = 0  # setpoints that came when the link knew of the failure
 
     # The link.
@@ -164,21 +175,37 @@ class Vehicle:
         if it.coordinate_frame != mavlink.MAV_FRAME_LOCAL_NED or has["acceleration"]:
             self.illicit.append("a setpoint that is not taken")
             return
-        self.stops = self.stops + [self.now] if is_stop else []
+        self.stops = self.stops + [self.clock] if is_stop else []
         if is_stop and self.fault() is not None:
             self.first_stop = self.first_stop or self.now
         if has["position"]:
             self.goal = ("go", it.x, it.y, it.yaw if has["yaw"] and self.mission["craft"] == "sub" else None)
             if not is_stop:
                 self.visit((it.x, it.y, it.yaw))
+                self.begin_leg((it.x, it.y), it.time_boot_ms)
         elif has["velocity"]:
             # Rover makes a heading of the velocity unless yaw or its rate is told.
             if not (has["yaw"] or has["rate"]) and self.mission["craft"] != "sub":
                 self.yaw = math.atan2(it.vy, it.vx)
-            self.goal = ("speed", it.vx, it.vy, self.now)
+            self.goal = ("speed", it.vx, it.vy, self.clock)
         elif has["yaw"] and self.mission["craft"] != "sub":
             self.goal = ("turn", it.yaw)
             self.visit((self.north, self.east, it.yaw))
+
+    def begin_leg(self, place, told_at):
+        """Sub begins its S-curve anew with each setpoint. Here it does so on one leg of a mission, which lasts."""
+        left = math.hypot(place[0] - self.north, place[1] - self.east)
+        if self.crawl is None:
+            is_it = self.mission["craft"] == "sub" and len(self.places) == self.mission["at"]
+            if is_it and self.mission["fault"] is None and left > 1:
+                self.haste, self.crawl = CRAWL_HASTE, [place, told_at, self.clock]
+        elif self.crawl[0] == place:
+            # A setpoint that was lost is sent again after a second at rest.
+            since = self.clock - 0.7 * CRAWL_HASTE
+            moved = sum(way for when, way in self.track if when > since)
+            is_under_way = self.haste == CRAWL_HASTE
+            self.restarted += is_under_way and moved > 0.1 and 0 < told_at - self.crawl[1] < 9000
+            self.crawl[2] = self.clock
 
     def visit(self, place):
         if not self.places or self.places[-1] != place:
@@ -199,8 +226,8 @@ class Vehicle:
             if self.now > self.began + 0.5:
                 self.armed, self.status = True, mavlink.MAV_STATE_ACTIVE
         fault = self.mission["fault"]
-        if fault and self.fault_at is None and len(self.places) >= self.mission["at"]:
-            self.fault_at = self.now
+        if fault not in (None, "car") and self.fault_at is None and len(self.places) >= self.mission["at"]:
+            self.fault_at, self.fault_clock = self.now, self.clock
             if fault == "mode":
                 self.mode, self.goal = self.hold, None
             elif fault == "disarm":
@@ -219,42 +246,62 @@ class Vehicle:
                 self.tell({"interrupt": True})
 
     def drive(self, seconds):
-        before = (self.north, self.east)
-        if not self.armed or self.mode != self.guided or self.fault() == "stuck":
+        """So long by its clock."""
+        before, craft = (self.north, self.east), self.mission["craft"]
+        kind, *goal = self.goal if self.goal and self.armed and self.mode == self.guided else (None,)
+        is_braking = kind is None or kind == "speed" and (
+            goal[:2] == [0, 0] or self.clock - goal[2] >= GUID_TIMEOUT)
+        if self.fault() == "stuck":
             pass
-        elif self.goal and self.goal[0] == "go":
-            _, north, east, yaw = self.goal
+        elif is_braking:
+            speed = math.hypot(*self.speed)
+            part = max(0.0, speed - BRAKES[craft] * seconds) / speed if speed else 0.0
+            self.north += part * self.speed[0] * seconds
+            self.east += part * self.speed[1] * seconds
+            self.habits["coasted"] += part * speed * seconds
+        elif kind == "go":
+            north, east, yaw = goal
             left = math.hypot(north - self.north, east - self.east)
             if left > 0:
                 self.yaw = math.atan2(east - self.east, north - self.north)
-            if left <= SPEED * seconds:
+            speed = SPEED
+            if self.crawl and self.crawl[0] == (north, east):
+                speed = min(CRAWL, CRAWL_GAIN * (self.clock - self.crawl[2]))
+                self.habits["crawled"] += min(left, speed * seconds)
+            if left <= speed * seconds:
                 self.north, self.east = north, east
             else:
-                part = SPEED * seconds / left
+                part = speed * seconds / left
                 self.north += part * (north - self.north)
                 self.east += part * (east - self.east)
             if yaw is not None:
                 self.yaw = yaw
-        elif self.goal and self.goal[0] == "turn":
-            self.yaw = self.goal[1]
-        elif self.goal and (self.now - self.goal[3]) * HASTE < GUID_TIMEOUT:
-            self.north += self.goal[1] * seconds
-            self.east += self.goal[2] * seconds
+        elif kind == "turn":
+            # What steers like a car does not turn on the spot.
+            if self.mission["fault"] == "car":
+                if abs(math.remainder(goal[0] - self.yaw, math.tau)) > 0.1:
+                    self.fault_at = self.fault_at or self.now
+                    self.habits["pivots"] += 1
+            else:
+                self.yaw = goal[0]
+        else:
+            self.north += goal[0] * seconds
+            self.east += goal[1] * seconds
         way = math.hypot(self.north - before[0], self.east - before[1])
         self.speed = ((self.north - before[0]) / seconds, (self.east - before[1]) / seconds)
-        self.track.append((self.now, way))
+        self.track.append((self.clock, way))
 
     def slid(self):
         """How far its positions have slid to the north, with its estimator."""
         if self.fault() != "slide":
             return 0.0
         metres, seconds = SLIDE
-        return metres * min((self.now - self.fault_at) * HASTE / seconds, 1.0)
+        return metres * min((self.clock - self.fault_clock) / seconds, 1.0)
 
     # What it says.
 
     def speak(self):
-        ms = int((self.now - self.began) * HASTE * 1000) + 1000
+        ms = round(self.clock * 1000) + 1000
         fault = self.fault()
         every = lambda what, seconds: self.now >= self.due.get(what, 0) and not self.due.update({what: self.now + seconds})
         if fault != "heartless" and every("heartbeat", 0.2):
@@ -273,7 +320,11 @@ class Vehicle:
         if 32 in self.intervals and fault != "lost":
             north, east = f32(self.north + self.slid()), f32(self.east)
             self.reported.append((north, east))
-            self.say(self.mav.local_position_ned_encode(ms, north, east, 0, *self.speed, 0))
+            sway = 0.0
+            if self.mission["craft"] == "boat" and self.mission["fault"] is None:
+                self.habits["swayed"] += 1
+                sway = SWAY if self.habits["swayed"] % 4 < 2 else -SWAY
+            self.say(self.mav.local_position_ned_encode(ms, north, east, 0, self.speed[0] + sway, self.speed[1], 0))
         if self.text_at is not None and self.text_at <= self.now < self.text_at + 0.3:
             self.say(self.mav.statustext_encode(mavlink.MAV_SEVERITY_CRITICAL, b"EKF failsafe"))
         if 30 in self.intervals:
@@ -305,18 +356,25 @@ class Vehicle:
             if self.socket in ready:
                 data, peer = self.socket.recvfrom(2048)
                 self.peer = self.peer or peer
+                if data[7:10] == bytes(3):
+                    self.late = max(self.late, self.now - (self.beat or self.now) - 1.0)
+                    self.beat = self.now
                 self.launch(True, data)
             if sys.stdin in ready:
                 sys.stdin.readline()
                 ends_at = self.now + 2 * LATE
             self.deliver()
             if self.now >= next_tick:
+                self.late = max(self.late, self.now - next_tick)
                 next_tick = max(next_tick + TICK, self.now)
+                if self.crawl and (self.north, self.east) == self.crawl[0]:
+                    self.haste = HASTE
+                self.clock += TICK * self.haste
                 self.happen()
-                self.drive(TICK * HASTE)
+                self.drive(TICK * self.haste)
                 self.speak()
         # From the last of its setpoints on there were stops alone: what may be late has come by then.
-        stopped = self.stops[0] + LATE + 0.1 if len(self.stops) > 1 else None
+        stopped = self.stops[0] + (LATE + 0.1) * HASTE if len(self.stops) > 1 else None
         moved_after = sum(way for when, way in self.track if stopped is not None and when > stopped)
         reacted = None
         if self.told_at is not None and self.first_stop is not None:
@@ -325,7 +383,8 @@ class Vehicle:
             "received": self.received, "illicit": self.illicit, "early": self.early,
             "places": len(self.places), "happened": self.fault_at is not None,
             "was_stopped": stopped is not None, "moved_after": moved_after,
-            "orders_after": self.orders_after, "reacted": reacted,
+            "orders_after": self.orders_after, "reacted": reacted, "late": self.late,
+            "restarted": self.restarted, "habits": self.habits,
             "table": self.table if self.mission.get("table") else None,
         })
         self.socket.close()

@@ -17,11 +17,12 @@ fn flights_against_ardupilot_are_for_the_long_run() {
 
 #[cfg(feature = "long")]
 mod long {
+    use std::io::Write as _;
     use std::path::{Path, PathBuf};
     use std::process::Command;
     use std::sync::Mutex;
     use std::sync::atomic::{AtomicUsize, Ordering};
-    use std::{env, fs, thread};
+    use std::{env, fs, io, process, thread};
 
     use serde_json::{Value, json};
     use tests::program::build;
@@ -31,6 +32,14 @@ mod long {
 
     /// The slope of the line that is sought, degrees: 0.3 m a metre.
     const TRUE_SLOPE: f64 = 16.699;
+
+    /// What is said of a simulation that is not there in time.
+    const UNOPENED: &str = "the simulation does not open its second port";
+
+    /// A machine is too busy to judge a flight that failed if it is late by so many seconds, or if a simulation makes less
+    /// than this part of its speed-up.
+    const LATE: f64 = 0.3;
+    const PACE: f64 = 0.8;
 
     /// How far off it may be found after twenty steps, where the oracle leaves some 80 degrees at first.
     const SLOPE_WITHIN: f64 = 8.0;
@@ -52,12 +61,18 @@ oracle = [
         link: &'static str,
         wind: f64,
         speedup: f64,
+        is_true: bool,
         /// What happens, what is told of it, the status, and how far the vehicle may go after the end, metres.
         fault: Option<(&'static str, &'static str, i32, f64)>,
     }
 
     const fn finishes(craft: &'static str, link: &'static str, wind: f64, speedup: f64) -> Case {
-        Case { craft, link, wind, speedup, fault: None }
+        Case { craft, link, wind, speedup, is_true: false, fault: None }
+    }
+
+    /// Labels by the true position of a vehicle that goes by the estimated one.
+    const fn finishes_by_truth(craft: &'static str, link: &'static str) -> Case {
+        Case { is_true: true, ..finishes(craft, link, 0.0, 5.0) }
     }
 
     const fn fails(
@@ -72,17 +87,19 @@ oracle = [
             link,
             wind: 0.0,
             speedup: 2.0,
+            is_true: false,
             fault: Some((event, told, status, after)),
         }
     }
 
     /// The longest first. The heartbeat is one a second of ours, so Sub, which gives up after five of its own, is not flown
     /// faster than four times.
-    const CASES: [Case; 10] = [
+    const CASES: [Case; 11] = [
         finishes("sub", "udp", 0.0, 3.0),
         finishes("boat", "serial", 5.0, 5.0),
         finishes("car", "tcp", 0.0, 5.0),
         finishes("skid", "udp", 0.0, 5.0),
+        finishes_by_truth("skid", "udp"),
         fails(
             "udp",
             "hold",
@@ -138,7 +155,7 @@ oracle = [
                 json!({ "WP_RADIUS": 0.5 })
             };
             let flight = json!({
-                "craft": self.craft, "link": self.link, "number": 20 + number,
+                "craft": self.craft, "link": self.link, "number": number, "is_true": self.is_true,
                 "speedup": self.speedup, "wind": self.wind, "line": [0.3, 5.0], "params": params,
                 "event": self.fault.map(|it| it.0), "at": 12, "after": 3,
             });
@@ -150,8 +167,11 @@ oracle = [
                 .output()
                 .expect("python3");
             let text = String::from_utf8_lossy(&output.stdout);
-            let last = text.lines().last().and_then(|line| serde_json::from_str(line).ok());
+            let mut last = text.lines().last().and_then(|line| serde_json::from_str(line).ok());
             let errors = String::from_utf8_lossy(&output.stderr);
+            if errors.contains(UNOPENED) {
+                last = Some(json!({ "said": UNOPENED, "late": f64::MAX }));
+            }
             let came = last.unwrap_or_else(|| panic!("{} by {}: {errors}", self.craft, self.link));
             (came, fs::read_to_string(folder.path().join("t.jsonl")).unwrap_or_default())
         }
@@ -222,27 +242,58 @@ oracle = [
             return build::skip(env!("CARGO_TARGET_TMPDIR"), what, why);
         }
         let program = build::flying(env!("CARGO_TARGET_TMPDIR")).expect("it builds");
-        let (next, faults) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
+        let (next, failed, faults) = (AtomicUsize::new(0), Mutex::new(Vec::new()), &mut Vec::new());
+        // Ports of its own, beside another run of this: the simulation takes numbers below 256.
+        let own = 20 + process::id() as usize % 19 * 12;
         thread::scope(|scope| {
             for _ in 0..AT_ONCE {
                 scope.spawn(|| {
                     loop {
                         let number = next.fetch_add(1, Ordering::Relaxed);
                         let Some(case) = CASES.get(number) else { break };
-                        let (came, trace) = case.fly(number, &simulators, &program);
-                        tell(case, &came, &trace);
-                        faults.lock().expect("no panic").extend(case.faults(&came, &trace));
+                        let (came, trace) = case.fly(own + number, &simulators, &program);
+                        let wrong = case.faults(&came, &trace);
+                        if wrong.is_empty() {
+                            tell(case, &came, &trace);
+                        } else {
+                            failed.lock().expect("no panic").push((number, came, wrong));
+                        }
                     }
                 });
             }
         });
-        let faults = faults.into_inner().expect("no panic");
+        for (number, came, wrong) in failed.into_inner().expect("no panic") {
+            let what = wrong.join("; ");
+            if !was_busy(&came) {
+                faults.push(what);
+                continue;
+            }
+            let line = format!("AGAIN, alone, as the machine was too busy: {what}\n");
+            // Straight to the handle: libtest shows it though the test passes.
+            let _ = io::stderr().write_all(line.as_bytes());
+            let (came, trace) = CASES[number].fly(own + number, &simulators, &program);
+            let wrong = CASES[number].faults(&came, &trace);
+            if wrong.is_empty() {
+                tell(&CASES[number], &came, &trace);
+            } else if was_busy(&came) {
+                let why = format!("the machine is too busy: {}", wrong.join("; "));
+                build::leave_out(env!("CARGO_TARGET_TMPDIR"), "a flight of ArduPilot", &why);
+            } else {
+                faults.push(wrong.join("; "));
+            }
+        }
         assert!(faults.is_empty(), "{}", faults.join("\n"));
+    }
+
+    /// Whether a flight tells nothing, as the machine was too busy.
+    fn was_busy(came: &Value) -> bool {
+        let [late, pace] = ["late", "pace"].map(|it| came[it].as_f64());
+        late.is_some_and(|it| it > LATE) || pace.is_some_and(|it| it < PACE)
     }
 
     /// A row of the tables in `docs/mavlink.md`: the seconds of a motion are the vehicle's.
     fn tell(case: &Case, came: &Value, trace: &str) {
-        let Case { craft, link, wind, speedup, fault } = case;
+        let Case { craft, link, wind, speedup, is_true, fault } = case;
         let after = &came["moved_after"];
         if let Some((event, told, ..)) = fault {
             return println!("| {craft} | {link} | {event} | {told} | {after} m after |");
@@ -250,6 +301,7 @@ oracle = [
         let slope = slope(trace).unwrap_or(f64::NAN);
         let flown = end(trace).map(|it| it["flown"].clone()).unwrap_or_default();
         let seconds = flown["seconds"].as_f64().unwrap_or(f64::NAN) * speedup;
+        let craft = if *is_true { format!("{craft}, true labels") } else { (*craft).to_owned() };
         println!(
             "| {craft} | {link} | {wind} | {slope:.2} ({TRUE_SLOPE:.2}) | {seconds:.1} | {} to {} | {after} m after |",
             flown["off"], flown["off_most"],

@@ -25,7 +25,7 @@ mod long {
     use std::sync::Mutex;
     use std::sync::atomic::{AtomicU64, Ordering};
     use std::time::Instant;
-    use std::{fs, thread};
+    use std::{fs, io, thread};
 
     use host_sim::campaign::standard_field::standard;
     use host_sim::mission::algorithm::Algorithm;
@@ -40,12 +40,16 @@ mod long {
     const SEED: u64 = 14;
     const MISSIONS: u64 = 200;
 
-    /// So many at a time: they mostly wait.
+    /// So many at a time: they mostly wait, and need a fiftieth of a core each.
     const AT_ONCE: usize = 14;
+
+    /// From so many seconds on that a vehicle's tick or a heartbeat of ours came late, the machine was too busy to judge a
+    /// mission that failed.
+    const LATE: f64 = 0.05;
 
     /// What happens to a vehicle, and what the flight then ends with. A vehicle that was taken over or disarmed does not
     /// hear stops.
-    const FAULTS: [(&str, i32, &str); 15] = [
+    const FAULTS: [(&str, i32, &str); 16] = [
         ("mode", 1, "its failsafe or its operator; nothing more was sent to it"),
         (
             "ekf",
@@ -66,6 +70,7 @@ mod long {
         ("heartless", 1, "no heartbeat for 5 s; it was told to stop, and says that it is at rest"),
         ("lost", 1, "no position for 2 s; it was told to stop, and does not say that it is at"),
         ("stuck", 1, "not there within 8 s"),
+        ("car", 1, "of its turn: a vehicle that does not turn on the spot is a `boat`"),
         ("mute", 1, "no label within 3 s"),
         ("lie", 1, "`noise` for labels that are wrong; it was told to stop"),
         ("interrupt", 130, "interrupted by signal 2; it was told to stop, and says that it is at"),
@@ -133,8 +138,8 @@ mod long {
                  vehicle = {{ kind = \"{vehicle}\" }}\nstart = {{ heading = {:?} }}\n\
                  truth = {{ line = [{a:?}, {b:?}, {c:?}] }}\noracle = [\n",
                 algorithm.name(),
-                // What takes a while to come out needs a mission that lasts.
-                if fault.is_some_and(|it| ["lie", "heartless"].contains(&it.0)) { 40 } else { 8 },
+                // What happens may be told late, and takes a while to come out.
+                if fault.is_some() { 40 } else { 8 },
                 field.start.heading.radians(),
             );
             for sample in field.given.samples() {
@@ -166,10 +171,13 @@ mod long {
             let label = if number % 4 < 2 { "WET" } else { "channel:7" };
             // It is spoken to, or speaks first.
             let listens = !number.is_multiple_of(3);
-            let socket = UdpSocket::bind("127.0.0.1:0").expect("a port");
+            // An address of its own: what another vehicle still says to a port that was left comes to nobody.
+            let host = format!("127.0.{}.{}", 1 + number / 250, 1 + number % 250);
+            let socket = UdpSocket::bind((&*host, 0)).expect("a port");
             let port = socket.local_addr().expect("bound").port();
             drop(socket);
             vehicle.tell(&json!({
+                "host": host,
                 "port": if listens { json!(port) } else { Value::Null },
                 "seed": number,
                 "craft": crafts[number as usize / 3 % 3],
@@ -183,9 +191,9 @@ mod long {
             }));
             let theirs = vehicle.hear()["port"].as_u64().expect("a port");
             let address = if listens {
-                format!("udp:127.0.0.1:{port}")
+                format!("udp:{host}:{port}")
             } else {
-                format!("udpout:127.0.0.1:{theirs}")
+                format!("udpout:{host}:{theirs}")
             };
             let (file, written) = (folder.join("m.toml"), folder.join("t.jsonl"));
             fs::write(&file, &self.scenario).expect("a file");
@@ -227,6 +235,11 @@ mod long {
     }
 
     impl Flown {
+        /// How late the machine was at most, seconds.
+        fn late(&self) -> f64 {
+            self.told["late"].as_f64().unwrap_or(0.0)
+        }
+
         /// What is wrong with it.
         fn faults(&self, case: &Case) -> Vec<String> {
             let mut faults = Vec::new();
@@ -242,7 +255,10 @@ mod long {
             check(told["early"] == 0, format!("{} setpoints before it was ready", told["early"]));
             check(told["moved_after"] == 0.0, format!("moved {} m after", told["moved_after"]));
             check(told["orders_after"] == 0, format!("{} orders after", told["orders_after"]));
-            let Some((name, expected, part)) = case.fault else {
+            check(told["restarted"] == 0, format!("{} legs begun anew", told["restarted"]));
+            // What does not turn on the spot flies a mission in which it need not.
+            let fault = case.fault.filter(|it| it.0 != "car" || told["happened"] == true);
+            let Some((name, expected, part)) = fault else {
                 check(status == Some(0), format!("status {status:?}: {message}"));
                 check(self.written == self.expected, "another trace than run's".to_owned());
                 check(told["was_stopped"] == true, "it was not stopped in the end".to_owned());
@@ -296,7 +312,19 @@ mod long {
                 });
             }
         });
-        let flown = flown.into_inner().expect("no panic");
+        let mut flown = flown.into_inner().expect("no panic");
+        let (folder, mut vehicle) = (tempfile::tempdir().expect("a folder"), Vehicle::new());
+        for (number, it) in &mut flown {
+            let case = Case::new(*number);
+            let (faults, late) = (it.faults(&case), it.late());
+            if !faults.is_empty() && late > LATE {
+                let why = format!("the machine was busy for {late:.2} s ({})", faults.join("; "));
+                // Straight to the handle: libtest shows it though the test passes.
+                let line = format!("AGAIN, alone: mission {number} of seed {SEED}: {why}\n");
+                let _ = io::stderr().write_all(line.as_bytes());
+                *it = case.fly(&program, &mut vehicle, folder.path());
+            }
+        }
         tell(&flown, began.elapsed().as_secs_f64());
         let faults: Vec<_> = flown
             .iter()
@@ -308,6 +336,20 @@ mod long {
             })
             .collect();
         assert!(faults.is_empty(), "{}", faults.join("\n"));
+        let habits = habits(&flown);
+        assert!(habits.len() == 4 && habits.values().all(|it| *it > 0.0), "{habits:?}");
+    }
+
+    /// How much vehicles did of what real ones do: metres coasted and crawled, positions while they swayed, turns on the
+    /// spot that were passed over.
+    fn habits(flown: &BTreeMap<u64, Flown>) -> BTreeMap<String, f64> {
+        let mut sums = BTreeMap::new();
+        for it in flown.values() {
+            for (habit, much) in it.told["habits"].as_object().expect("habits") {
+                *sums.entry(habit.clone()).or_insert(0.0) += much.as_f64().expect("a number");
+            }
+        }
+        sums
     }
 
     /// How many ended how, and what vehicles were sent.
@@ -320,7 +362,7 @@ mod long {
             }
         }
         println!("{} missions in {seconds:.0} s: {ends:?}", flown.len());
-        println!("Vehicles were sent: {sent:?}");
+        println!("Vehicles were sent: {sent:?}; their habits: {:?}", habits(flown));
         let table = flown.get(&0).and_then(|it| it.told["table"].as_array());
         for row in table.into_iter().flatten() {
             println!("{row}");

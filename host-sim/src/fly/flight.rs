@@ -24,6 +24,9 @@ use crate::output::notes::{announce, count, warn};
 /// How long is waited for a message before it is looked for what is due.
 const ROUND: Duration = Duration::from_millis(20);
 
+/// Messages that are heard at once at most, before it is looked for what is due.
+const MOST_WAITING: usize = 1000;
+
 /// How long something is waited for before it is said.
 const PATIENCE: Duration = Duration::from_secs(1);
 
@@ -58,18 +61,25 @@ impl<L: Link> Control<L> {
         &self.link
     }
 
-    /// Sends what is due and hears what comes next.
+    /// Hears what has come, and sends what is due then: while the planner thinks, or the computer sleeps, messages wait.
     fn round(&mut self) {
         if let Some(signal) = (self.interrupted)() {
             self.pilot.end(self.link.now(), Some(Failure::Interrupted(signal)));
         }
+        let mut until = self.link.now() + ROUND;
+        for _ in 0..MOST_WAITING {
+            match self.link.receive(until) {
+                Ok(Some((header, message))) => self.pilot.hear(self.link.now(), header, &message),
+                Ok(None) => break,
+                Err(error) => {
+                    self.pilot.give_up(self.link.now(), Failure::Broken(error.to_string()));
+                    break;
+                }
+            }
+            until = self.link.now();
+        }
         for message in self.pilot.due(self.link.now()) {
             self.link.send(&message);
-        }
-        match self.link.receive(self.link.now() + ROUND) {
-            Ok(Some((header, message))) => self.pilot.hear(self.link.now(), header, &message),
-            Ok(None) => {}
-            Err(error) => self.pilot.give_up(self.link.now(), Failure::Broken(error.to_string())),
         }
     }
 

@@ -47,8 +47,12 @@ pub(crate) const SLOW: f64 = 0.15;
 /// How long it must have been at rest, by its own clock.
 pub(crate) const SETTLED_MS: u32 = 500;
 
-/// How long it must have been at rest near where it was sent to have ended its motion there, by its own clock.
+/// How long it must have been at rest near where it was sent to have ended its motion there, by its own clock. So long it
+/// must have stayed, too, where it never rests: in a current or in waves.
 pub(crate) const RESIGNED_MS: u32 = 5000;
+
+/// How far from a place near its target a vehicle may be that stays there though it never rests, metres.
+pub(crate) const WOBBLES: f64 = 0.5;
 
 /// How far from where it was sent that is at most, metres.
 pub(crate) const NEAR: f64 = 3.0;

@@ -116,7 +116,7 @@ impl Pilot {
     pub fn order(&mut self, now: Duration, order: Order, wants_label: bool) {
         if let (Stage::Ready, Some((_, fix))) = (self.stage, self.vehicle.fix) {
             let motion = Motion { order, wants_label, from: fix.at, began: now, sent: None };
-            self.stage = Stage::Moving { motion, rests: None };
+            self.stage = Stage::Moving { motion, rest: None };
         }
     }
 
@@ -188,10 +188,11 @@ impl Pilot {
                 None => self.locate(now, fix),
             },
             // What was sensed on the way may come late.
-            (Stage::Sensing { motion, arrived, since, told: None }, News::Label(told))
+            (Stage::Sensing { motion, arrived, is_calm, since, told: None }, News::Label(told))
                 if told.at_ms >= arrived.at_ms =>
             {
-                self.stage = Stage::Sensing { motion, arrived, since, told: Some(told) };
+                let told = Some(told);
+                self.stage = Stage::Sensing { motion, arrived, is_calm, since, told };
             }
             _ => {}
         }

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context as _, Result, bail};
 use mavlink::dialects::common::MavMessage;
 use mavlink::error::MessageReadError;
-use mavlink::{Connection, MavConnection as _, MavHeader, connect};
+use mavlink::{Connectable as _, Connection, ConnectionAddress, MavConnection as _, MavHeader};
 
 use crate::fly::link::Link;
 use crate::fly::orders::{OWN_COMPONENT, OWN_SYSTEM};
@@ -25,6 +25,9 @@ const FORMS: [(&str, &str); 6] = [
     ("tcpout", "tcpout"),
     ("serial", "serial"),
 ];
+
+/// How long a serial line is waited for at a time. The library asks it a thousand times a second otherwise.
+const SERIAL_PAUSE: Duration = Duration::from_millis(100);
 
 /// What carries messages.
 enum Way {
@@ -63,7 +66,11 @@ impl Socket {
             listen(to, move || reader.receive().map_err(|error| error.kind()));
             Way::Udp(sender)
         } else {
-            let connection = connect::<MavMessage>(&format!("{form}:{rest}"));
+            let address = ConnectionAddress::parse_address(&format!("{form}:{rest}"));
+            let connection = match address.with_context(expected)? {
+                ConnectionAddress::Serial(line) => line.timeout(SERIAL_PAUSE).connect(),
+                other => other.connect(),
+            };
             let connection = Arc::new(connection.with_context(expected)?);
             let reader = Arc::clone(&connection);
             listen(to, move || match reader.recv() {

@@ -33,10 +33,11 @@ pub(crate) struct Motion {
     pub sent: Option<Sent>,
 }
 
-/// When a setpoint was sent, and how the vehicle was then.
+/// When a setpoint was sent, and when the vehicle last stirred since, and how it was then.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sent {
     pub at: Duration,
+    pub stirred: Duration,
     pub place: Ned,
     pub yaw: f32,
 }
@@ -48,6 +49,17 @@ pub(crate) struct Hold {
     pub yaw: f32,
 }
 
+/// How a vehicle rests where it was sent, or near that. Times are by its clock, milliseconds.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rest {
+    /// It has stayed there since then.
+    pub since: u32,
+    /// Where it was then.
+    pub place: Ned,
+    /// It has been slow since then.
+    pub slow: Option<u32>,
+}
+
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Stage {
     /// Since when it waits, and since when all is there.
@@ -56,14 +68,15 @@ pub(crate) enum Stage {
         complete: Option<Duration>,
     },
     Ready,
-    /// At rest there since that, by its clock and by ours.
     Moving {
         motion: Motion,
-        rests: Option<(u32, Duration)>,
+        rest: Option<Rest>,
     },
     Sensing {
         motion: Motion,
         arrived: Fix,
+        /// Whether it came to rest, rather than wobbles.
+        is_calm: bool,
         since: Duration,
         told: Option<Told>,
     },

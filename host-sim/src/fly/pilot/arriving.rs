@@ -3,25 +3,28 @@
 //! `ArduPilot` ends a leg where it likes: within its own radius, or where a rover that steers like a car has passed its
 //! target. The planner takes the place where the vehicle is, so any place is good that the vehicle has come to. One that
 //! does not move at all is stuck. A turn that does not turn is none.
+//!
+//! In a current or in waves a vehicle holds its place and never rests. It has arrived when it has stayed for long: within the
+//! acceptance of its target, or about a place near that.
 
 use std::time::Duration;
 
 use planner_core::belief::sample::Label;
 
 use crate::fly::frame::{ALIKE, apart};
-use crate::fly::limits::{LEAST_WAY, NEAR, RESIGNED_MS, SETPOINT, SETTLED_MS, SLOW};
+use crate::fly::limits::{LEAST_WAY, NEAR, RESIGNED_MS, SETTLED_MS, SLOW, STIRS, WOBBLES};
 use crate::fly::pilot::Pilot;
-use crate::fly::stage::{Arrival, Motion, Stage};
+use crate::fly::stage::{Arrival, Motion, Rest, Sent, Stage};
 use crate::fly::vehicle::Fix;
 
 /// Where a vehicle is, as to where it was sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Standing {
-    /// It rests there.
+pub(super) enum Standing {
+    /// It is there.
     There,
-    /// It rests near it.
+    /// It is near it.
     Near,
-    /// It moves, or is elsewhere.
+    /// It is elsewhere.
     Away,
 }
 
@@ -29,14 +32,14 @@ impl Pilot {
     /// The vehicle says where it is.
     pub(super) fn locate(&mut self, now: Duration, fix: Fix) {
         match self.stage {
-            Stage::Moving { motion, rests } => self.approach(now, motion, rests, fix),
-            Stage::Sensing { motion, arrived, told, .. } => {
-                let stays = self.standing(&motion, fix) == Standing::There
-                    || !motion.order.is_turn
-                        && fix.speed() <= SLOW
-                        && fix.at.distance(arrived.at) <= self.limits.acceptance;
-                if !stays {
-                    self.stage = Stage::Moving { motion, rests: None };
+            Stage::Moving { motion, rest } => self.approach(now, motion, rest, fix),
+            Stage::Sensing { motion, arrived, is_calm, told, .. } => {
+                let acceptance = self.limits.acceptance;
+                let within = if is_calm { acceptance } else { acceptance.max(WOBBLES) };
+                let is_there = self.standing(&motion, fix) == Standing::There
+                    || !motion.order.is_turn && fix.at.distance(arrived.at) <= within;
+                if !is_there || is_calm && fix.speed() > SLOW {
+                    self.stage = Stage::Moving { motion, rest: None };
                     return;
                 }
                 // It was there before the label, and is there after it.
@@ -54,30 +57,30 @@ impl Pilot {
         }
     }
 
-    /// A motion goes on, or comes to its end; it rests since that.
-    fn approach(
-        &mut self,
-        now: Duration,
-        motion: Motion,
-        rests: Option<(u32, Duration)>,
-        fix: Fix,
-    ) {
-        let (since, ours) = rests.unwrap_or((fix.at_ms, now));
-        let long_enough = match self.standing(&motion, fix) {
-            Standing::There => SETTLED_MS,
-            // A setpoint that came late may have led it astray: it has been sent again by then.
-            Standing::Near if now < ours + 3 * SETPOINT => u32::MAX,
-            Standing::Near => RESIGNED_MS,
-            Standing::Away => {
-                self.stage = Stage::Moving { motion, rests: None };
-                return;
-            }
+    /// A motion goes on, or comes to its end: the vehicle has come to rest, or has stayed for long.
+    fn approach(&mut self, now: Duration, mut motion: Motion, rest: Option<Rest>, fix: Fix) {
+        self.note_stirring(now, &mut motion, fix);
+        let standing = self.standing(&motion, fix);
+        if standing == Standing::Away {
+            self.stage = Stage::Moving { motion, rest: None };
+            return;
+        }
+        let (since, place) = (fix.at_ms, fix.at);
+        let mut rest = rest.unwrap_or(Rest { since, place, slow: None });
+        if standing == Standing::Near && place.distance(rest.place) > WOBBLES {
+            rest = Rest { since, place, ..rest };
+        }
+        rest.slow = rest.slow.or(Some(since)).filter(|_| fix.speed() <= SLOW);
+        self.stage = Stage::Moving { motion, rest: Some(rest) };
+        let settles = if standing == Standing::There { SETTLED_MS } else { RESIGNED_MS };
+        let is_calm = rest.slow.is_some_and(|slow| fix.at_ms - slow >= settles);
+        let ends = is_calm || fix.at_ms - rest.since >= RESIGNED_MS;
+        let until = rest.slow.unwrap_or(rest.since);
+        let Some(faces) = self.vehicle.facing.filter(|it| ends && it.at_ms >= until) else {
+            return;
         };
-        let faces = self.vehicle.facing.filter(|it| it.at_ms >= since);
-        self.stage = Stage::Moving { motion, rests: Some((since, ours)) };
-        let Some(faces) = faces.filter(|_| fix.at_ms - since >= long_enough) else { return };
         self.stage = if motion.wants_label {
-            Stage::Sensing { motion, arrived: fix, since: now, told: None }
+            Stage::Sensing { motion, arrived: fix, is_calm, since: now, told: None }
         } else {
             Stage::There(self.arrival(&motion, fix, faces.yaw, None))
         };
@@ -88,11 +91,11 @@ impl Pilot {
         Arrival { fix, yaw, label, is_short }
     }
 
-    fn standing(&self, motion: &Motion, fix: Fix) -> Standing {
+    pub(super) fn standing(&self, motion: &Motion, fix: Fix) -> Standing {
         let order = &motion.order;
         let off = fix.at.distance(order.to);
         let faces = |yaw: f32| !order.is_turn || apart(yaw, order.yaw) < ALIKE;
-        if fix.speed() > SLOW || !self.vehicle.facing.is_some_and(|it| faces(it.yaw)) {
+        if !self.vehicle.facing.is_some_and(|it| faces(it.yaw)) {
             return Standing::Away;
         }
         if off <= self.limits.acceptance {
@@ -103,8 +106,11 @@ impl Pilot {
         if !order.is_turn && has_come && off <= NEAR { Standing::Near } else { Standing::Away }
     }
 
-    /// Whether the vehicle rests where it was sent.
-    pub(super) fn is_there(&self, motion: &Motion, fix: Fix) -> bool {
-        self.standing(motion, fix) == Standing::There
+    /// Notes when the vehicle stirs, wherever it is by then: a setpoint that came late may have led it away and back.
+    fn note_stirring(&self, now: Duration, motion: &mut Motion, fix: Fix) {
+        let Some((sent, facing)) = motion.sent.as_mut().zip(self.vehicle.facing) else { return };
+        if fix.at.distance(sent.place) > STIRS || apart(facing.yaw, sent.yaw) > ALIKE {
+            *sent = Sent { at: sent.at, stirred: now, place: fix.at, yaw: facing.yaw };
+        }
     }
 }

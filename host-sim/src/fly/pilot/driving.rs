@@ -8,10 +8,10 @@ use std::time::Duration;
 use mavlink::dialects::common::MavMessage;
 
 use crate::fly::autopilot::Craft;
-use crate::fly::frame::{ALIKE, apart};
-use crate::fly::limits::{AGAIN, HOLD, SETPOINT, SLOW, STIRS, STOP};
+use crate::fly::limits::{AGAIN, HOLD, SETPOINT, SLOW, STOP};
 use crate::fly::orders::{Envelope, Order};
 use crate::fly::pilot::Pilot;
+use crate::fly::pilot::arriving::Standing;
 use crate::fly::stage::{Hold, Motion, Sent, Stage};
 
 impl Pilot {
@@ -20,10 +20,10 @@ impl Pilot {
         let now = envelope.now;
         let craft = self.vehicle.status?.1.craft;
         match self.stage {
-            Stage::Moving { mut motion, rests } if self.is_due(now, &motion) => {
+            Stage::Moving { mut motion, rest } if self.is_due(now, &motion) => {
                 let (fix, yaw) = self.whereabouts()?;
-                motion.sent = Some(Sent { at: now, place: fix.at, yaw });
-                self.stage = Stage::Moving { motion, rests };
+                motion.sent = Some(Sent { at: now, stirred: now, place: fix.at, yaw });
+                self.stage = Stage::Moving { motion, rest };
                 Some(envelope.setpoint(&motion.order, craft, self.down))
             }
             Stage::Stopping { began, hold, sent, rests } => {
@@ -47,15 +47,14 @@ impl Pilot {
 
     /// Whether a setpoint is to be sent, for the first time or again.
     fn is_due(&self, now: Duration, motion: &Motion) -> bool {
-        let Some(sent) = motion.sent else { return true };
-        if now >= sent.at + AGAIN {
-            return true;
+        let Some((sent, (heard, fix))) = motion.sent.zip(self.vehicle.fix) else { return true };
+        match self.standing(motion, fix) {
+            Standing::There => false,
+            // A rover that steers like a car and has passed its target would drive a circle to it.
+            Standing::Near if fix.speed() <= SLOW => false,
+            // What came a second later says that it has not stirred since.
+            _ => now >= sent.at + AGAIN || heard >= sent.stirred + SETPOINT,
         }
-        let Some((fix, yaw)) = self.whereabouts() else { return false };
-        let stirs = fix.speed() > SLOW
-            || fix.at.distance(sent.place) > STIRS
-            || apart(yaw, sent.yaw) > ALIKE;
-        now >= sent.at + SETPOINT && !stirs && !self.is_there(motion, fix)
     }
 
     /// Where a vehicle stays that is to stop, if a place has to be told: Sub does not stop by velocities of zero.

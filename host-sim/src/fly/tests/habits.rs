@@ -1,5 +1,7 @@
 //! What autopilots do that the ideal vehicle does not: seen of `ArduPilot`'s own simulation.
 
+use std::collections::VecDeque;
+
 use mavlink::dialects::common::MavMessage;
 
 use super::*;
@@ -15,12 +17,23 @@ fn nearer_the_middle(message: MavMessage, by: f32) -> MavMessage {
     MavMessage::SET_POSITION_TARGET_LOCAL_NED(it)
 }
 
+/// A vehicle that goes round and round where it says that it is, at 2 rad/s.
+pub(super) fn circling(now: Duration, message: MavMessage, radius: f32) -> MavMessage {
+    let MavMessage::LOCAL_POSITION_NED(mut it) = message else { return message };
+    let (sine, cosine) = (2.0 * now.as_secs_f32()).sin_cos();
+    (it.x, it.y) = (it.x + radius * cosine, it.y + radius * sine);
+    (it.vx, it.vy) = (it.vx - 2.0 * radius * sine, it.vy + 2.0 * radius * cosine);
+    MavMessage::LOCAL_POSITION_NED(it)
+}
+
 /// A rover that steers like a car rests beside where it was sent.
 #[test]
 fn a_vehicle_that_rests_near_its_target_has_arrived_where_it_is() {
     let flown = fly(|_, _, message| vec![nearer_the_middle(message, 0.7)], as_it_is);
     assert_eq!(flown.failure(), None);
     assert_ne!(flown.trace(), of_run());
+    // It is not sent there again: what steers like a car would drive a circle, each time.
+    assert_eq!(flown.sent.iter().filter(|(_, it)| moves(it)).count(), 4, "one a step");
     let Ok(flight) = &flown.flight else { panic!("it flew") };
     for step in &flight.recording.steps {
         let off = Ned::from(step.pose.site).distance(step.motion.target.site.into());
@@ -76,18 +89,49 @@ fn a_setpoint_is_sent_again_only_to_a_vehicle_that_does_not_stir() {
         as_it_is,
     );
     assert_eq!(losing.trace(), of_run());
-    // One that never says that it is there, though it moves, is sent again after ten.
-    let mut number = 0_u8;
-    let restless = fly(as_it_is, |_, _, mut message| {
-        if let MavMessage::LOCAL_POSITION_NED(it) = &mut message {
-            number = (number + 1) % 4;
-            it.vx += if number < 2 { 0.5 } else { -0.5 };
-        }
-        vec![message]
-    });
+    // One that never rests is sent again after ten.
+    let restless = fly(as_it_is, |now, _, message| vec![circling(now, message, 1.0)]);
     let goes: Vec<_> = restless.sent.iter().filter(|(_, it)| moves(it)).map(|it| it.0).collect();
     assert_eq!(goes.len(), 2, "{goes:?}");
     assert!(goes[1].saturating_sub(goes[0]) >= Duration::from_secs(10), "{goes:?}");
+}
+
+/// In a current or in waves a vehicle holds its place, but is never at rest.
+#[test]
+fn a_vehicle_that_stays_within_the_acceptance_has_arrived_though_it_wobbles() {
+    // Its place is exact, and its speed over ground is not.
+    let mut number = 0_u8;
+    let flown = fly(as_it_is, |_, _, mut message| {
+        if let MavMessage::LOCAL_POSITION_NED(it) = &mut message {
+            number = (number + 1) % 4;
+            it.vx += if number < 2 { 0.3 } else { -0.3 };
+        }
+        vec![message]
+    });
+    assert_eq!(flown.failure(), None);
+    assert_eq!(flown.trace(), of_run());
+    // Or it wobbles within the acceptance, 0.02 m.
+    let flown = fly(as_it_is, |now, _, message| vec![circling(now, message, 0.01)]);
+    assert_eq!(flown.failure(), None);
+    let Ok(flight) = &flown.flight else { panic!("it flew") };
+    let legs: Vec<_> = flight.recording.results.steps.iter().filter_map(|it| it.flown).collect();
+    assert_eq!(legs.len(), 4);
+    assert!(legs.iter().all(|leg| leg.off <= 0.02), "{legs:?}");
+}
+
+#[test]
+fn so_has_one_that_stays_near_its_target() {
+    let flown = fly(
+        |_, _, message| vec![nearer_the_middle(message, 0.7)],
+        |now, _, message| vec![circling(now, message, 0.2)],
+    );
+    assert_eq!(flown.failure(), None);
+    let Ok(flight) = &flown.flight else { panic!("it flew") };
+    let legs: Vec<_> = flight.recording.results.steps.iter().filter_map(|it| it.flown).collect();
+    assert_eq!(legs.len(), 4);
+    assert!(legs.iter().all(|leg| (0.45..0.95).contains(&leg.off)), "{legs:?}");
+    // Its setpoint begins a leg anew, so that it is sent each ten seconds at most.
+    assert!(flown.sent.iter().filter(|(_, it)| moves(it)).count() <= 8);
 }
 
 /// Velocities of zero do not stop Sub, which coasts on: a place does, the one where stopping began.
@@ -172,4 +216,77 @@ fn a_turn_that_does_not_turn_fails() {
     }
     let failure = pilot.failure().expect("it does not turn").to_string();
     assert!(failure.contains("it lacks 57 degrees of its turn: a vehicle that"), "{failure}");
+}
+
+/// Two copies of a setpoint, of which one is late: it leads the vehicle back, when it was on its way to the next place.
+#[test]
+fn a_vehicle_that_a_late_setpoint_led_astray_is_sent_its_own_again() {
+    let (mut goes, mut late, mut places) = (Vec::new(), None, Vec::new());
+    let flown = fly(
+        |now, _, message| {
+            if !moves(&message) {
+                // The copy comes with the next heartbeat, while the vehicle drives.
+                return late.take_if(|_| goes.len() == 2).into_iter().chain([message]).collect();
+            }
+            if goes.is_empty() {
+                let mut copy = message.clone();
+                if let MavMessage::SET_POSITION_TARGET_LOCAL_NED(it) = &mut copy {
+                    // A rover faces the way that it drove.
+                    it.yaw += 1.0;
+                }
+                late = Some(copy);
+            }
+            goes.push(now);
+            vec![message]
+        },
+        |now, _, message| {
+            if let MavMessage::LOCAL_POSITION_NED(it) = &message {
+                places.push((now, it.vx.hypot(it.vy)));
+            }
+            vec![message]
+        },
+    );
+    assert_eq!(flown.failure(), None);
+    assert_eq!(flown.trace(), of_run());
+    assert_eq!(goes.len(), 5, "one a step, and one again: {goes:?}");
+    let moved = places.iter().rfind(|(at, speed)| *at < goes[2] && *speed > 0.0);
+    let rested = goes[2].saturating_sub(moved.expect("it was led astray").0);
+    assert!((1.0..1.3).contains(&rested.as_secs_f64()), "{rested:?}");
+}
+
+/// A link of a computer that is busy or asleep for three seconds, once the vehicle drives: messages wait meanwhile.
+struct Busy {
+    ideal: Ideal,
+    waiting: VecDeque<(MavHeader, MavMessage)>,
+    is_over: bool,
+}
+
+impl Link for Busy {
+    fn now(&self) -> Duration {
+        self.ideal.now()
+    }
+
+    fn send(&mut self, message: &MavMessage) {
+        self.ideal.send(message);
+        let until = self.now() + Duration::from_secs(3);
+        while moves(message) && !self.is_over && self.now() < until {
+            self.waiting.extend(self.ideal.receive(until).expect("it is never broken"));
+        }
+        self.is_over |= moves(message);
+    }
+
+    fn receive(&mut self, until: Duration) -> Result<Option<(MavHeader, MavMessage)>> {
+        self.waiting.pop_front().map_or_else(|| self.ideal.receive(until), |it| Ok(Some(it)))
+    }
+}
+
+#[test]
+fn a_computer_that_was_busy_hears_what_came_before_it_judges() {
+    let labels = LabelSource::new("WET".parse().expect("a name"), None);
+    let ideal = Ideal::new(&mission(), SYSTEM, labels.clone());
+    let link = Busy { ideal, waiting: VecDeque::new(), is_over: false };
+    let mut control = Control::new(link, Pilot::new(SYSTEM, labels, LIMITS), || None);
+    let flight = flight::fly(mission(), &mut control).expect("it begins");
+    assert!(flight.failure.is_none(), "{:?}", flight.failure);
+    assert!(control.link().is_over);
 }
