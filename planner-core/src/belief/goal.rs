@@ -1,8 +1,8 @@
-//! When what is known of the line is enough.
+//! When the line is known well enough.
 //!
-//! A goal is a promise about the lines that are left, by exact or outer bounds. With labels that are true
-//! the line is one of them, so the promise is kept. With labels that may be wrong it is about a credible
-//! set, and kept with at least the probability that the set holds.
+//! A goal is a promise about the lines that are left, checked by exact or outer bounds. If labels are true, the line is
+//! one of these lines, so the promise holds. If labels may be wrong, the promise is about a credible set. It then holds
+//! with at least the probability of that set.
 
 use crate::geometry::approximate::{METRE, cross, single, sqrt};
 use crate::geometry::arc::SlopeArc;
@@ -52,12 +52,12 @@ pub enum Accuracy {
 /// Points along the area at which the breadth of the uncertain ground is taken.
 const STATIONS: u16 = 16;
 
-/// What rounding may take from a promise, as a share of it.
+/// The most that rounding takes from a promise, as a share of it.
 const ROUNDING: f32 = 1e-4;
 
 impl Accuracy {
-    /// Whether the lines between these vertices, of one cell or of several, are as near to each other.
-    /// Conservative: yes is always true.
+    /// Whether the lines between these vertices, of one cell or of several, are as close to each other as the goal
+    /// asks. Conservative: `true` is always correct.
     pub fn is_met(self, bounds: impl Iterator<Item = Bound> + Clone, area: Area) -> bool {
         let Some(arc) = SlopeArc::spanning(bounds.clone().map(|bound| bound.along)) else {
             return false;
@@ -82,9 +82,9 @@ fn is_narrower(arc: SlopeArc, turn: Heading) -> bool {
 
 /// The share of an area on which lines of a narrow arc disagree, or somewhat more.
 ///
-/// In a frame at the middle of the area, its first axis along the arc's bisector, the ground lies between
-/// the highest of the lines and the lowest. Its breadth is a convex function, so the trapezoids between some
-/// points of it are no less than it is; they reach as far as there is such ground inside the area.
+/// The frame is at the middle of the area, and its first axis runs along the arc's bisector. There the ground lies
+/// between the highest of the lines and the lowest. Its breadth is a convex function, so trapezoids between some points
+/// of the function are an upper bound. They reach as far as there is such ground inside the area.
 fn uncertain_share(arc: SlopeArc, bounds: impl Iterator<Item = Bound> + Clone, area: Area) -> f32 {
     let along = arc.bisector();
     let (x, z) = (along.x as f32, along.z as f32);
