@@ -16,9 +16,9 @@
 //!  | <-------------------------------- Noted --  |
 //! ```
 //!
-//! A mission that was cut off needs no message of its own: planners are deterministic, so it is flown again from its
-//! beginning, and the vehicle answers the motions that it has made from memory, without moving. `docs/protocol.md`
-//! has all this byte by byte.
+//! A mission that was cut off needs no message of its own. Planners are deterministic, so it is flown again from its
+//! beginning. The vehicle answers the motions that it has already made from memory, without moving. `docs/protocol.md`
+//! describes the protocol byte by byte.
 //!
 //! A message goes as a [`Frame`](crate::link::frame::Frame); delivery (loss, repetition, lateness) is [`link`](crate::link::delivery)'s.
 
