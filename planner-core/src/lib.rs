@@ -14,10 +14,10 @@
 //!
 //! # The idea
 //!
-//! All lines that agree with the samples so far are the **version space**. In the space of homogeneous lines `(A, B,
-//! C)` each sample is a half-space, so the version space is a convex cone. Seen as a polygon, its edges belong to the
-//! samples that still matter, and its vertices are lines through two of them. A cyclic list of sample indices describes
-//! it completely ([`belief::cell`]).
+//! All lines that agree with the samples so far are the **version space**. In the space of homogeneous lines
+//! `(A, B, C)` each sample is a half-space, so the version space is a convex cone. Seen as a polygon, its edges belong
+//! to the samples that still matter, and its vertices are lines through two of them. A cyclic list of sample indices
+//! describes it completely ([`belief::cell`]).
 //!
 //! On an integer lattice of 15 micrometres ([`geometry::lattice`]) one predicate decides every question about that
 //! list. It is exact in 64-bit integers:
@@ -44,7 +44,7 @@
 //! - **Fixed memory.** No allocation, no `unsafe`, no recursion; capacities are const generics. A
 //!   planner for 32 samples is some 500 bytes ([`planner::cfc::Cfc`]).
 //!
-//! # The storeys
+//! # Modules, from the bottom up
 //!
 //! Each module uses only those above it in this table.
 //!

@@ -97,8 +97,8 @@ fn widest<F: Fn(usize) -> Option<Sample>>(trapezoids: Trapezoids<F>) -> Option<L
 }
 
 /// The paper's printed estimate. Take the two shortest pairs of opposite labels that share no point, `p1(-) p2(+)` and
-/// `p3(+) p4(-)`. The diagonals `p1 p3` and `p2 p4` cross in `pm`. The estimate is the bisector of the angle `p1 pm
-/// p2`.
+/// `p3(+) p4(-)`. The diagonals `p1 p3` and `p2 p4` cross in `pm`. The estimate is the bisector of the angle
+/// `p1 pm p2`.
 ///
 /// `None` when there are no two such pairs or their diagonals do not cross. When the pairs lie side
 /// by side it is a poor estimate: prefer [`centre`]. `O(n^2)` for `n` samples.

@@ -1,10 +1,10 @@
 //! The hypothesis table: every separable sequence of true labels, with its weight, in fixed memory.
 //!
 //! Of the `2^t` sequences that `t` labels could have, only those matter that some line realises (Section III-B). Each
-//! is a cell of the arrangement that the samples' lines draw on the starting polygon. So there are at most `1 + t + t
-//! (t - 1) / 2`: 56 for 10 labels, 529 for 32, 2,081 for 64. A hypothesis is such a cell with a weight, 24 bytes in
-//! all. A sample splits the cells that it cuts and reweights the others. The table is the whole distribution, exactly,
-//! until it is full.
+//! is a cell of the arrangement that the samples' lines draw on the starting polygon. So there are at most
+//! `1 + t + t (t - 1) / 2`: 56 for 10 labels, 529 for 32, 2,081 for 64. A hypothesis is such a cell with a weight, 24
+//! bytes in all. A sample splits the cells that it cuts and reweights the others. The table is the whole distribution,
+//! exactly, until it is full.
 //!
 //! - *Full table.* Before a sample is taken in, the least likely hypotheses are dropped whole. A bound on the mass that
 //!   they may have reached since is [`Posterior::pruned_mass`].

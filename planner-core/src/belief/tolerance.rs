@@ -2,8 +2,8 @@
 //!
 //! **Labels that are true** are shifted. Let the true position be within `e` of the reported `q`. Let `n` be the unit
 //! normals of all lines that are left, pointing to their +1 sides. Let them lie within `d` of the middle one `b`. If a
-//! line has the true position on its +1 side, `q` lies no further than `e` on its other side. The place `q + (e / cos
-//! d) b` then satisfies
+//! line has the true position on its +1 side, `q` lies no further than `e` on its other side. The place
+//! `q + (e / cos d) b` then satisfies
 //!
 //! ```text
 //!   n . (q + (e / cos d) b) + c  >=  -e + (e / cos d) (n . b)  >=  -e + e  =  0
