@@ -1,4 +1,4 @@
-//! How accurate the line is after so many steps with true labels, and what that cost.
+//! The accuracy of the line after a number of steps with true labels, and its cost.
 
 use std::collections::BTreeMap;
 

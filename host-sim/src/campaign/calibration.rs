@@ -1,4 +1,5 @@
-//! What labels that may err tell of what they can tell, and whether the probabilities that are stated hold.
+//! The information gained from labels that may be wrong, as a share of what is possible, and whether the stated
+//! probabilities hold.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! The command line: what can be asked. The contract is in ARCHITECTURE.md; each command has a file of its own.
+//! The command line: commands and flags. The contract is in ARCHITECTURE.md; each command has a file of its own.
 
 use anyhow::Result;
 use clap::{CommandFactory as _, Parser, Subcommand};

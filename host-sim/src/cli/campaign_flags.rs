@@ -1,4 +1,4 @@
-//! What determines a campaign, as flags: they say what to fly, and beside rows they tell what was flown.
+//! The flags that determine a campaign. They say what to fly; stored beside rows, they record what was flown.
 
 use std::slice;
 

@@ -1,4 +1,4 @@
-//! `replay`: what samples determine that were recorded elsewhere.
+//! `replay`: what samples recorded elsewhere determine.
 
 use std::path::PathBuf;
 use std::str::FromStr;

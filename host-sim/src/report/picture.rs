@@ -1,4 +1,4 @@
-//! What a figure shows: plain data, made of a mission's results and of what is known in the end.
+//! The content of a figure: plain data, made from a mission's results and the final knowledge.
 
 use nalgebra::{Point2, Rotation2, Vector2};
 use planner_core::belief::estimate;
@@ -165,8 +165,8 @@ impl Picture {
         self
     }
 
-    /// The lines that violate the fewest labels of a noisy mission, with their counts of violations,
-    /// and of the one among them that a plain maximum margin would choose.
+    /// The lines that violate the fewest labels of a noisy mission, with their numbers of violations. The first is the
+    /// one that a plain maximum margin would choose.
     pub fn of_candidates(title: &str, recording: &Recording) -> Option<Self> {
         const KINDS: [Kind; 3] = [Kind::MaximumMargin, Kind::SecondBest, Kind::ThirdBest];
         let table = recording.belief.hypotheses()?;

@@ -1,5 +1,5 @@
-//! What is really there: what a place reads, and the line that divides the plane, if one does; robots
-//! that move and sense in it; shapes in metres.
+//! The real world of a simulation: what a place reads, and the line that divides the plane, if one does; robots that
+//! move and sense in it; shapes in metres.
 
 pub mod errors;
 pub mod noise;

@@ -1,5 +1,5 @@
-//! What a log is made of: Foxglove's messages as far as they are used here, and one of our own. Tags and kinds are
-//! those of the schemas, which go into the log beside them.
+//! The messages of a log: Foxglove's, as far as they are used here, and one of our own. Tags and kinds are those of the
+//! schemas, which go into the log beside them.
 
 use prost::Message;
 

@@ -1,8 +1,7 @@
-//! What a report shows of a mission: where it takes place, and a scene for the start and for each step. Plain data,
-//! which the page draws.
+//! The data of a mission that a page draws: where the mission takes place, and a scene for the start and for each step.
 //!
-//! What was known after each step comes of the steps themselves: a planner that plans nothing takes them in once more.
-//! So it is the same for a mission that a chip has planned.
+//! The knowledge after each step is computed from the steps: a planner that plans nothing takes them in again. So it is
+//! the same for a mission that a chip has planned.
 
 use nalgebra::Point2;
 use planner_core::belief::sample::Sample;
