@@ -11,10 +11,10 @@ use crate::campaign::course::Course;
 use crate::campaign::ensemble::{Checkpoint, Measured};
 use crate::campaign::order::Order;
 
-/// Who planned, one after the other, and whether a first column says so, as where planners are compared.
+/// The planners in order, and whether the first column names them, as it does where planners are compared.
 #[derive(Clone, Debug)]
 pub struct Planners {
-    /// What rows call them.
+    /// Their names in the rows.
     pub names: Vec<String>,
     /// Whether rows do.
     pub are_named: bool,

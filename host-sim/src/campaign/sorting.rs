@@ -24,7 +24,7 @@ const MERGED: usize = 16 << 20;
 /// A value in its slot. Equal ones stay in the order in which they came.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Value {
-    /// What is sorted together. Below 2^31.
+    /// The slot whose values are sorted together. Below 2^31.
     pub(crate) slot: u32,
     /// Goes with the value and plays no part in its order.
     pub(crate) is_marked: bool,

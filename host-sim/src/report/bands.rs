@@ -16,7 +16,7 @@ use crate::mission::definition::Table;
 use crate::mission::read_out::LEVEL;
 use crate::world::polygon::Polygon;
 
-/// Where bands begin: the least probability that lines pass a place of each. What is below the first is blank.
+/// The thresholds of the bands: the least probability that lines pass a place of each. Ground below the first is blank.
 pub const LEAST: [f64; 5] = [0.01, 0.2, 0.4, 0.6, 0.8];
 
 /// The share of the area from which on a band is worth its shade.

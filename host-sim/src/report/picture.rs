@@ -79,7 +79,7 @@ pub struct Named {
     pub beside: Option<String>,
 }
 
-/// What a line is, for its colour.
+/// The kind of a line, for its colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// The estimate that is recommended.
@@ -201,7 +201,7 @@ impl Picture {
     }
 }
 
-/// What a figure of a mission shows, in a line.
+/// The caption of a mission's figure, in one line.
 fn note(Recording { mission, results, .. }: &Recording) -> String {
     let labels = if mission.noise.is_some() { ", labels may be wrong" } else { "" };
     let (steps, planner) = (results.steps.len(), mission.algorithm.title());
