@@ -15,14 +15,14 @@ use crate::belief::version_space::NoVersionSpace;
 use crate::belief::weight::Prior;
 use crate::geometry::lattice::Site;
 
-/// Directions that stand for all.
+/// The number of directions that represent all lines.
 const DIRECTIONS: usize = 16;
 
 /// Up to `H` hypotheses over up to `N` samples, and what they expect of the next labels.
 #[derive(Clone, Debug)]
 pub struct Forecast<const N: usize, const H: usize> {
     table: Hypotheses<N, H>,
-    /// How far each label of the table is believed.
+    /// The reliability of each label of the table.
     believed: List<Reliability, N>,
     columns: Columns<DIRECTIONS>,
 }

@@ -12,12 +12,12 @@ use crate::geometry::lattice::Vector;
 use crate::geometry::line::Bound;
 use crate::geometry::region::Region;
 
-/// What a mission is to find out.
+/// The goal of a mission: how well the line must be known, and with which probability.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Goal {
-    /// How well the line is to be known.
+    /// The accuracy with which the line must be known.
     pub accuracy: Accuracy,
     /// The probability that the promise holds, in millionths, at least; certain where labels are true.
     pub level: u32,
@@ -44,8 +44,7 @@ impl Goal {
 pub enum Accuracy {
     /// Any two of the lines make an angle of this at most, below a quarter turn.
     SlopeArc(Heading),
-    /// The ground on which some two of the lines disagree is this share of the area at most, in
-    /// millionths.
+    /// The ground on which not all of the lines agree is at most this share of the area, in millionths.
     Misclassified(u32),
 }
 

@@ -238,12 +238,12 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
         hypothesis.cell.lines(&self.samples)
     }
 
-    /// How often a cell could not hold another edge and kept lines that it should not have.
+    /// How often a cell had no room for another edge and kept lines that it should have dropped.
     pub fn outer_cells(&self) -> u16 {
         self.outer_cells
     }
 
-    /// Mass given up, at most, on the scale of the weights held.
+    /// An upper bound on the pruned mass, on the scale of the weights in the table.
     pub(crate) fn pruned_mass(&self) -> f64 {
         f64::from(self.pruned.mass(self.prior))
     }
@@ -414,7 +414,7 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
         Ok(())
     }
 
-    /// Gives up the least likely hypotheses until those that a sample at `q` splits find room.
+    /// Drops the least likely hypotheses until there is room for those that a sample at `q` splits off.
     fn make_room(&mut self, q: Site) {
         // Exact cells tile the starting polygon, and a line crosses at most one more of them than
         // there are other lines.
@@ -459,8 +459,8 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
             }
             Certainty::Uncertain => {
                 let opposite = Edge::new(edge.index() as u8, -edge.label());
-                // A cell's measure is the same each time it is taken, as is what it is told: nothing is lost in
-                // the quotients.
+                // A cell's measure is the same each time it is computed, and so is the weight of its labels. So the
+                // quotients lose nothing.
                 let weight = match self.prior {
                     Prior::Area => LogWeight::ZERO - self.log_area(&whole),
                     Prior::Sequences => LogWeight::ZERO,

@@ -54,7 +54,7 @@ pub trait Belief {
     /// Whether another sample would be refused for want of room.
     fn is_full(&self) -> bool;
 
-    /// How far off a position may be at most, as it was configured.
+    /// The configured tolerance: how far off a position may be at most.
     fn tolerance(&self) -> Tolerance;
 
     /// Takes in what was read at a site, which may be off by the [tolerance](Self::tolerance).

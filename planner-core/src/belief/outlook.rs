@@ -33,14 +33,14 @@ pub trait Foresight {
     /// Prepares the outlook. It stays valid until something is observed.
     fn prepare(&mut self);
 
-    /// What is expected, as it is asked from a site.
+    /// The outlook for questions asked from a site.
     fn outlook(&self, from: Site) -> Self::Outlook<'_>;
 
     /// The lines on whose uncertain ground a label may tell something.
     fn ground(&self) -> ConsistentLines<'_>;
 }
 
-/// What a label at a place is expected to be, and to tell.
+/// A prediction of the label at a place, and of the information that it carries.
 ///
 /// In single precision, and the same on every machine. A prediction chooses where to go; the belief decides what is
 /// known.
@@ -54,7 +54,7 @@ pub trait Prediction {
     fn information(&self, site: Site, share: f32) -> f32;
 }
 
-/// A prediction that can be asked what it will be.
+/// A prediction that can also predict its own state after one more label.
 pub trait Outlook: Prediction {
     /// The prediction when one more label is known.
     type After<'a>: Prediction

@@ -43,9 +43,9 @@ pub struct Best<'a, const E: usize> {
 /// The smallest set of hypotheses that holds at least a stated probability.
 #[derive(Clone, Copy, Debug)]
 pub struct Credible {
-    /// What was asked.
+    /// The probability that was asked for.
     pub level: f64,
-    /// What the set holds: whole hypotheses overshoot.
+    /// The probability of the set. It exceeds the level, as hypotheses are taken whole.
     pub probability: f64,
     /// Number of hypotheses.
     pub cells: usize,
@@ -53,7 +53,7 @@ pub struct Credible {
     pub slope_arc: SlopeArc,
     /// The range of the intercepts of their lines, metres; `None` when unbounded.
     pub intercept: Option<[f64; 2]>,
-    /// The smallest weight in the set and the number of those of that weight that belong to it.
+    /// The smallest weight in the set, and the number of hypotheses of that weight in the set.
     cut: Option<(LogWeight, usize)>,
 }
 

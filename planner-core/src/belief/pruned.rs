@@ -1,10 +1,10 @@
-//! What a full table of hypotheses gave up: a bound, in single precision and rounded up.
+//! An upper bound on the mass that a full table of hypotheses dropped, in single precision and rounded up.
 
 use crate::belief::noise::Reliability;
 use crate::belief::weight::LogWeight;
 use crate::belief::weight::Prior;
 
-/// Mass given up, at most, by both priors, on the scale of the weights held.
+/// Upper bounds on the mass dropped, by both priors, on the scale of the weights in the table.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PrunedMass {
     area: f32,

@@ -20,10 +20,10 @@ use crate::belief::version_space::{NoVersionSpace, VersionSpace};
 pub struct Told<const N: usize> {
     given: u8,
     samples: Vec<Sample, N, u8>,
-    /// Of the labels taken in since; of none where all are true.
+    /// The reliabilities of the labels taken in since. Empty if all labels are true.
     reliabilities: Vec<Reliability, N, u8>,
-    /// How far the position of each of these labels may be off; of none where all may be by as much as is configured.
-    /// Where labels are true, only the last is kept: it says how far the next may be off.
+    /// How far the position of each of these labels may be off. Empty if all have the configured tolerance. If labels
+    /// are true, only the last is kept: it says how far the next may be off.
     tolerances: Vec<Tolerance, N, u8>,
 }
 
@@ -111,7 +111,7 @@ pub trait Replay {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum NotReplayed {
-    /// It was told to a belief of the other kind, as to whether labels may be wrong.
+    /// It comes from a belief of the other kind: one for true labels, the other for labels that may be wrong.
     Kind,
     /// The given samples.
     Given(NoVersionSpace),

@@ -272,7 +272,7 @@ pub trait Dynamics {
     /// when the agent cannot turn on the spot, or has no reason to as it can leave in any direction.
     fn turn_in_place(&self, pose: Pose, side: Side) -> Option<(Action, Pose)>;
 
-    /// What an action asks of the vehicle.
+    /// The control that an action asks of the vehicle.
     fn control(&self, action: Action) -> Control;
 
     /// The ray to which an action belongs.
