@@ -31,9 +31,9 @@ pub(crate) enum Clock {
 impl Clock {
     /// Sets the clock up.
     ///
-    /// The HAL's own waits have no bound. Under emulation none is reached; on the chip only after
-    /// the crystal was seen to run. What can still hang, the PLL, ends by the watchdog, and after
-    /// that the crystal is left alone, so that no loop of resets comes of it.
+    /// The HAL's own waits have no bound. Under emulation none is reached. On the chip they are reached only after the
+    /// crystal was seen to run. The PLL can still hang, and then the watchdog resets the chip. After that reset the
+    /// crystal is not used, so there is no loop of resets.
     pub(crate) fn start(rcc: pac::RCC, reset: Reset) -> (Self, Rcc) {
         let clock = Self::find(&rcc, reset);
         let config = match clock {

@@ -4,10 +4,9 @@
 )]
 //! The log: defmt frames to RTT, for a probe, and to USART2, for a wire or an emulator.
 //!
-//! Neither waits for a reader. A frame that does not fit is dropped whole, and counted, so that the
-//! stream stays decodable. That is why the logger is our own: of the crates only `defmt-brtt` has
-//! both ways, and it spins in a critical section when a probe has gone away, and drops parts of
-//! frames; `defmt-serial` blocks.
+//! Neither output waits for a reader. A frame that does not fit is dropped whole and counted, so the stream stays
+//! decodable. No published logger does this. Only `defmt-brtt` has both outputs, but it spins in a critical section
+//! when a probe has gone away, and it drops parts of frames. `defmt-serial` blocks.
 
 use core::cell::UnsafeCell;
 use core::mem;
@@ -149,8 +148,8 @@ unsafe impl defmt::Logger for Logger {
         // SAFETY: defmt pairs this with `release`.
         let restore = unsafe { critical_section::acquire() };
         Log::with(|log| {
-            // A panic or a fault may have broken off a frame in the making, which goes, or one on its
-            // way out, which the separator ends.
+            // A panic or a fault may have cut off a frame while it was being built, which is dropped. Or it cut off a
+            // frame on its way out, which the separator ends.
             log.frame.clear();
             log.too_long = false;
             log.restore = restore;

@@ -1,5 +1,5 @@
-//! Sleep and wake: after each motion the chip is off, and what it needs to go on is some hundred bytes in memory that
-//! keeps them (a backup domain, FRAM, a sector of flash).
+//! Sleep and wake: the chip is off after each motion. To continue it needs some hundred bytes in memory that outlives
+//! the sleep (a backup domain, FRAM, a sector of flash).
 //!
 //! `cargo run -p planner-core --features serde --example sleep_and_wake`
 

@@ -14,42 +14,39 @@
 //!
 //! # The idea
 //!
-//! All lines that agree with the samples so far are the **version space**. In the space of
-//! homogeneous lines `(A, B, C)` each sample is a half-space, so the version space is a convex cone:
-//! seen as a polygon, its edges belong to the samples that still matter and its vertices are lines
-//! through two of them. A cyclic list of sample indices holds all of it ([`belief::cell`]).
+//! All lines that agree with the samples so far are the **version space**. In the space of homogeneous lines
+//! `(A, B, C)` each sample is a half-space, so the version space is a convex cone. Seen as a polygon, its edges belong
+//! to the samples that still matter, and its vertices are lines through two of them. A cyclic list of sample indices
+//! describes it completely ([`belief::cell`]).
 //!
-//! On an integer lattice of 15 micrometres ([`geometry::lattice`]) one predicate decides everything about that
-//! list, and it is exact in 64-bit integers:
+//! On an integer lattice of 15 micrometres ([`geometry::lattice`]) one predicate decides every question about that
+//! list. It is exact in 64-bit integers:
 //!
 //! ```text
 //! orient(a, b, q) = (b.x - a.x)(q.z - a.z) - (b.z - a.z)(q.x - a.x)
 //! ```
 //!
-//! Where to go next? Where a label would tell the most: where half of the lines left say +1. Look-ahead
-//! ([`planner::lookahead`]) finds such places among the ends of the robot's motions, two labels deep, and learns
-//! nearly a bit a step; the paper's two algorithms follow the boundary by rules of direction.
+//! The best next place is where a label would tell the most: where half of the lines left say +1. Look-ahead
+//! ([`planner::lookahead`]) finds such places among the ends of the robot's motions, two labels deep. It learns nearly
+//! a bit a step. The paper's two algorithms follow the boundary by rules of direction.
 //!
 //! # What follows
 //!
-//! - **Certainty is exact.** A position that all lines left label alike lies in a *region of
-//!   certainty*; a sample there would tell nothing, or reveal a fault. No tolerance, no misjudged
-//!   cut, for a vertical boundary and kilometres from the origin as for any other
-//!   ([`belief::version_space`]).
+//! - **Certainty is exact.** A position that all lines left label alike lies in a *region of certainty*. A sample there
+//!   would tell nothing, or reveal a fault. There is no tolerance and no misjudged cut, even for a vertical boundary or
+//!   kilometres from the origin ([`belief::version_space`]).
 //! - **Motions come from an integer-indexed grid** ([`motion::action`], [`motion::dynamics`]), and the one-step
 //!   problems are solved exactly by looking at a few of its actions ([`search::problem`]).
-//! - **Noisy labels in fixed memory.** The sequences of true labels that some line realises are cells
-//!   too, at most 529 for 32 labels; a table of weighed cells is the whole posterior
-//!   ([`belief::hypotheses`],
-//!   [`belief::posterior`]).
-//! - **The same on every machine.** Integers decide; floating point proposes directions and reads
-//!   results out, by IEEE arithmetic and libm. One mission gives one trace, on a PC and on a chip.
+//! - **Noisy labels in fixed memory.** The sequences of true labels that some line realises are cells too, at most 529
+//!   for 32 labels. A table of weighted cells is the whole posterior ([`belief::hypotheses`], [`belief::posterior`]).
+//! - **The same on every machine.** Integers decide. Floating point only proposes directions and reads results out,
+//!   with IEEE arithmetic and libm. So a mission has the same trace on a PC and on a chip.
 //! - **Fixed memory.** No allocation, no `unsafe`, no recursion; capacities are const generics. A
 //!   planner for 32 samples is some 500 bytes ([`planner::cfc::Cfc`]).
 //!
-//! # The storeys
+//! # Modules, from the bottom up
 //!
-//! Each folder reads only those above it in this table.
+//! Each module uses only those above it in this table.
 //!
 //! | module | holds |
 //! | --- | --- |
@@ -61,9 +58,8 @@
 //! | [`robot`] | what you implement, [`Drive`] and [`LabelSensor`], and the loop that joins it to a planner, [`Agent`] |
 //! | `link` | with the feature `wire`: a mission whose planner and vehicle are apart |
 //!
-//! A planner is asked for a motion with [`plan`](Planner::plan) and told what came of it with
-//! [`observe`](Planner::observe); what it knows is its [`belief`](Planner::belief). The feature `defmt`
-//! derives `Format` for what is public.
+//! [`plan`](Planner::plan) returns the next motion, [`observe`](Planner::observe) takes in its result, and
+//! [`belief`](Planner::belief) is what the planner knows. The feature `defmt` derives `Format` for the public types.
 //!
 //! ```
 //! use core::cell::Cell;

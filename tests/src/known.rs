@@ -1,4 +1,4 @@
-//! What is known after some labels: tables of labels that may be wrong, version spaces of true ones.
+//! Beliefs after some labels: tables for labels that may be wrong, version spaces for true ones.
 
 use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;

@@ -1,7 +1,10 @@
-//! What the cross-crate tests share: adversarial sites and the slow twin of the version space;
-//! programs for a chip ([`program`]), a core to run them on ([`emulator`]), what they may take
-//! ([`budget`]); missions in which everything is drawn at random ([`anything`]); machines of QEMU's
-//! ([`machines`]) and a debugger for them ([`debugger`]); beliefs to ask ([`known`]); areas with keep-outs ([`terrain`]).
+//! What the cross-crate tests share.
+//!
+//! - Adversarial sites, and the slow twin of the version space.
+//! - Programs for a chip ([`program`]), a core to run them on ([`emulator`]), and their limits ([`budget`]).
+//! - Missions in which everything is drawn at random ([`anything`]).
+//! - QEMU's machines ([`machines`]) and a debugger for them ([`debugger`]).
+//! - Beliefs to ask ([`known`]), and areas with keep-outs ([`terrain`]).
 
 use planner_core::belief::sample::{Label, Sample};
 use planner_core::geometry::lattice::{LIMIT, Site, Vector};

@@ -1,4 +1,4 @@
-//! Missions in which everything is drawn at random keep what every mission must keep.
+//! Missions with random settings satisfy every property that any mission must have.
 //!
 //! `cargo test` flies 400 of them, a long run 20,000. A finding names its mission, which flies again by
 //!

@@ -1,5 +1,5 @@
-//! The planner behind its C interface: the header is that of the sources, and a C program flies as the same missions
-//! do here.
+//! The planner behind its C interface. The header matches the sources, and a C program flies the same missions as this
+//! crate.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

@@ -1,5 +1,4 @@
-//! Dynamics: what the constructors take keeps the contract, what they refuse is named, and a broken
-//! promise is found out.
+//! Dynamics: accepted parameters keep the contract, refused ones are named, and a broken promise is found.
 
 use nalgebra::Point2;
 use planner_core::geometry::area::Area;

@@ -1,8 +1,8 @@
-//! One trace on every machine: missions on bare Arm cores, in the emulator that is part of these
-//! tests, are those of the host, byte for byte.
+//! One trace on every machine: missions on bare Arm cores, in the emulator of these tests, equal those of the host byte
+//! for byte.
 //!
-//! The programs are the planner with the chip's side of the link, compiled for Armv7E-M with a
-//! single-precision unit and for Armv6-M, which has neither that nor a divider nor long multiplies.
+//! The programs are the planner with the chip's side of the link. They are compiled for two cores: Armv7E-M with a
+//! single-precision unit, and Armv6-M, which has no such unit, no divider and no long multiplies.
 
 use std::fs;
 use std::hash::{DefaultHasher, Hasher as _};

@@ -1,5 +1,5 @@
-//! What look-ahead promises, against slow twins: ground that is clipped in double precision, slopes by their arc
-//! tangents, and of doubtful labels the hypotheses that hold a level.
+//! The promises of look-ahead's goals, against slow twins. The twins clip ground in double precision and compute slopes
+//! by arc tangents. For doubtful labels they use the hypotheses that have the level's probability.
 
 use std::f64::consts::PI;
 

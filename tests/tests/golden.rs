@@ -1,7 +1,8 @@
-//! What stays as it is unless someone means to change it: the standard scenarios to the last step
-//! (`golden/scenarios.txt`), and by their hashes the traces of 200 missions, the figures and what campaigns
-//! print for programs (`golden/hashes.txt`). `UPDATE_EXPECT=1 cargo test -p tests --test golden` writes
-//! them anew.
+//! Results that change only on purpose.
+//!
+//! `golden/scenarios.txt` contains the standard scenarios to the last step. `golden/hashes.txt` contains hashes of the
+//! traces of 200 missions, of the figures, and of the output of campaigns for programs.
+//! `UPDATE_EXPECT=1 cargo test -p tests --test golden` writes both anew.
 
 use std::fmt::Write as _;
 use std::path::Path;

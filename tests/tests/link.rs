@@ -1,8 +1,7 @@
-//! The link: missions over one that loses, cuts, spoils, doubles and delays frames, and a decoder fed
-//! with garbage.
+//! The link: missions over one that loses, cuts, spoils, doubles and delays frames, and a decoder fed with garbage.
 //!
-//! Chip and vehicle run here, in one thread and in virtual time, so that a thousand missions with all
-//! their waits take seconds, and each is the same whenever it is run.
+//! Chip and vehicle run here in one thread and in virtual time. So a thousand missions with all their waits take
+//! seconds, and each gives the same result in every run.
 
 use std::cell::RefCell;
 use std::collections::BTreeSet;

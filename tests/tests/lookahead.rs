@@ -58,8 +58,8 @@ fn mission(number: u64, steps: u32, accuracy: Accuracy) -> Mission {
     mission
 }
 
-/// With true labels every mission that ends as the line is known keeps what it promised: of the centre, of the
-/// true line, and of any two lines that are left.
+/// With true labels, a mission that ends because the line is known keeps its promise: for the centre, for the true
+/// line, and for any two lines that are left.
 #[test]
 fn true_labels_keep_every_promise() {
     for accuracy in [slope_arc(), Accuracy::Misclassified((MISCLASSIFIED * 1e6) as u32)] {
@@ -95,9 +95,9 @@ fn true_labels_keep_every_promise() {
     }
 }
 
-/// With labels that may be wrong the lines of a set, which holds the true one with at least the level, make
-/// angles of so much at most: of the missions that end as the line is known the share whose true line makes no
-/// larger an angle with each line of the set is at least the level.
+/// With labels that may be wrong, a goal bounds the angles between the lines of a set. The set contains the true line
+/// with at least the probability `LEVEL`. Take the missions that end because the line is known. In at least that share
+/// of them, the true line makes no larger angle with any line of the set.
 #[test]
 fn labels_that_may_be_wrong_keep_promises_as_often_as_stated() {
     for p in [0.8, 0.9] {

@@ -1,7 +1,7 @@
 //! One trace on every machine: the same missions here, on the firmwares of two boards and on a RISC-V core, byte for
 //! byte. All but the first run under QEMU.
 //!
-//! They are missions that the smallest of them flies, the micro:bit: labels are true, areas are rectangles.
+//! The smallest machine, the micro:bit, must be able to fly them. So labels are true and areas are rectangles.
 
 use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
@@ -20,7 +20,7 @@ const SEED: u64 = 8;
 
 const MACHINES: [Kind; 3] = [STM32, NRF51, riscv("vehicles")];
 
-/// The paper's example, standard fields by both planners with both fans, some of them until enough is known, and every
+/// The paper's example; standard fields by both planners with both fans, some of them until enough is known; and every
 /// vehicle, half of them with robots that err.
 fn missions() -> Vec<Mission> {
     let overrides = Overrides::default();

@@ -1,5 +1,7 @@
-//! Margin sampling beside a slow twin that knows samples alone: it tries every action, finds the maximum-margin line
-//! among all pairs of samples, and calls a place uncertain if samples of either label there could be separated.
+//! Margin sampling beside a slow twin that knows samples alone.
+//!
+//! The twin tries every action and finds the maximum-margin line among all pairs of samples. It calls a place uncertain
+//! if a sample of either label there could be separated from the others.
 
 use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;

@@ -1,4 +1,4 @@
-//! What look-ahead predicts by, against slow twins: pictures against the exact shares of version spaces, forecasts
+//! The predictions of look-ahead against slow twins: pictures against the exact shares of version spaces, forecasts
 //! against tables and entropies in double precision.
 
 use std::f64::consts::PI;

@@ -1,5 +1,5 @@
-//! Observations that bring the tolerance of their own position. No line is cut off that they leave. They tell more than
-//! the most that positions may err by does, and a wider tolerance than that is refused.
+//! Observations that bring the tolerance of their own position. They never cut off a line that agrees with them. They
+//! tell more than observations with the configured tolerance, and a wider tolerance than that is refused.
 
 use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;

@@ -1,4 +1,4 @@
-//! The player finds out a chip that took in, or estimates, something else than it does.
+//! The player detects a chip that takes in, or estimates, something different.
 
 use host_sim::hil::player::Player;
 use host_sim::mission::definition::Mission;

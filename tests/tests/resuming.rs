@@ -1,5 +1,5 @@
-//! Missions that a restart cut off go on where they were, whichever end restarts and wherever: the trace is that of a
-//! mission that nothing cut off, byte for byte.
+//! Missions that a restart cuts off continue where they were, whichever end restarts and whenever. The trace equals
+//! that of an uninterrupted mission, byte for byte.
 //!
 //! Chip and vehicle run here, in one thread and in virtual time.
 

@@ -1,5 +1,5 @@
-//! Sleep and wake: missions whose planner goes to bytes and comes back after every plan and every label make the
-//! traces of missions that stay awake; bytes that are not such a planner's are refused.
+//! Sleep and wake. A planner is converted to bytes and back after every plan and every label: its mission has the trace
+//! of one that stays awake. Bytes that are not such a planner's are refused.
 
 use crc::{CRC_32_ISO_HDLC, Crc};
 use host_sim::campaign::standard_field;

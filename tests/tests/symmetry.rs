@@ -1,5 +1,5 @@
-//! Look-ahead has no place, no direction and no label that it prefers: a mission that is moved, turned by quarters, or
-//! has its labels swapped is planned as it was.
+//! Look-ahead prefers no place, no direction and no label. If a mission is moved, turned by quarters, or has its labels
+//! swapped, its plans stay the same.
 
 use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
@@ -67,8 +67,8 @@ impl View {
     }
 }
 
-/// How far apart the ends of the motions are, lattice units, that are planned for a mission and for a view of it,
-/// with the same labels and from the same poses all along.
+/// The distances between the ends of motions planned for a mission and for a view of it, lattice units. Both have the
+/// same labels and the same poses throughout.
 fn apart(mission: &Mission, view: View) -> Vec<f64> {
     let mut rng = ChaCha8Rng::seed_from_u64(mission.seed);
     let (mut here, mut there) = (mission.planner(), view.mission(mission).planner());
@@ -93,7 +93,7 @@ fn apart(mission: &Mission, view: View) -> Vec<f64> {
     apart
 }
 
-/// All that are planned for a view of some fields, labels true or not, on both fans.
+/// The distances for a view of some fields, with labels true or not, on both fans.
 fn of_fields(view: View, noisy: bool) -> Vec<f64> {
     let fields = if noisy { cases(12, 100) } else { cases(60, 500) };
     let fly = |number: u64| {
@@ -118,8 +118,9 @@ fn moved_it_plans_the_very_same() {
     }
 }
 
-/// Halves round up and not away from zero, sums are rounded in another order, and knots of a column that find no room
-/// are dropped from one end: so a few plans, that chose between as good as equals, choose the other.
+/// Three roundings are not symmetric. Halves round up and not away from zero, and sums are rounded in another order.
+/// Knots of a column that find no room are dropped from one end. So a few plans with two nearly equal choices make the
+/// other choice.
 #[test]
 fn turned_or_with_its_labels_swapped_it_plans_the_same_but_for_rounding() {
     let swapped = View { swaps: true, ..View::SAME };

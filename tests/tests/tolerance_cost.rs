@@ -1,5 +1,5 @@
-//! Observing a label and waking cost ten times as much under a tolerance as without, at most: on a core with floating
-//! point and on one without, for true labels and for doubtful ones.
+//! Under a tolerance, observing a label and waking cost at most ten times as much as without. This holds on a core with
+//! floating point and on one without, for true labels and for doubtful ones.
 
 use tests::budget::tolerance::{Costs, POSITIONS};
 use tests::cases;

@@ -1,4 +1,4 @@
-//! Vehicles that cannot turn on the spot: whole missions, and that they end for a reason that is true.
+//! Vehicles that cannot turn on the spot: whole missions, each of which must end for a true reason.
 
 use std::collections::{BTreeMap, HashSet, VecDeque};
 use std::f64::consts::{PI, TAU};
@@ -202,10 +202,11 @@ fn stays_inside<D: Dynamics>(dynamics: &D, size: [f64; 2], from: Pose, to: Pose)
     })
 }
 
-/// Whether a vehicle could go on, by trying: from where the mission ended to every pose within some motions, but one of
-/// those that are alike (a small square and few degrees), with a share of all actions; and from each every action.
-/// A label that can be asked in a pose that is safe with a circle of the turning radius and a tenth more contradicts
-/// "cornered" and "undecided", and more than few such labels contradict "resolution".
+/// Whether a vehicle could go on after all, found by trying. The test drives from the end of the mission to every pose
+/// within some motions, by a share of all actions. Of poses that are alike (a small square and few degrees) it keeps
+/// one. From each pose it tries every action. It looks for labels that can be asked in a pose that is safe with a
+/// circle of 1.1 times the turning radius. One such label contradicts "cornered" and "undecided", and more than a few
+/// contradict "resolution".
 fn contradicts<D: Dynamics>(
     dynamics: &D,
     field: &Field,

@@ -130,9 +130,9 @@ proptest! {
         match Space::new(&samples) {
             Ok(_) => prop_assert!(separable(&samples)),
             Err(NoVersionSpace::NotSeparable(i)) => {
-                // Decided by brute force where that is simple: a site with both labels, a site
-                // between two of the other label, or in a triangle of them, or two segments that
-                // cross, all among the samples up to this one and not among those before it.
+                // Brute force decides this simply. The samples up to this one, but not those before it, contain one of
+                // these: a site with both labels, a site between two of the other label or in a triangle of them, or
+                // two segments that cross.
                 prop_assert!(mixed(&samples[..=i]), "{i} is not too many");
                 prop_assert!(!mixed(&samples[..i]), "{i} is not the first");
             }

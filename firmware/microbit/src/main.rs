@@ -3,8 +3,8 @@
 #![deny(unsafe_code)]
 //! The planner on a BBC micro:bit (nRF51822, Cortex-M0, 16 KB of RAM), over a serial link to the vehicle.
 //!
-//! A plan takes the core for tens of milliseconds, so it runs in thread mode, and what must not wait for it runs
-//! above: embassy's interrupt executor has the task that guards the drive, interrupts take bytes in, and the planner
+//! A plan occupies the core for tens of milliseconds, so it runs in thread mode. Tasks that must not wait for it run
+//! above: embassy's interrupt executor runs the task that guards the drive, and interrupts take bytes in. The planner
 //! itself sleeps in an `async` wait when it has asked for something.
 //!
 //! | module | does |

@@ -1,4 +1,4 @@
-//! How accurate the line is after so many steps with true labels, and what that cost.
+//! The accuracy of the line after a number of steps with true labels, and its cost.
 
 use std::collections::BTreeMap;
 
@@ -24,7 +24,7 @@ const STEPS: [u32; 8] = [1, 2, 5, 10, 20, 30, 40, 60];
 /// The accuracy of the three estimates. A mission that ended earlier counts with what it knew at its end.
 pub struct Accuracy;
 
-/// What was known after some steps of one mission.
+/// The state of knowledge after some steps of one mission.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Checkpoint {
     field: u64,
@@ -65,7 +65,7 @@ pub struct Row {
     pub metres: f64,
 }
 
-/// What a campaign came to.
+/// The results of a campaign.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
     /// Who planned.
@@ -154,7 +154,7 @@ impl Measure for Accuracy {
     }
 }
 
-/// What of a checkpoint spreads, in the order of the row's columns.
+/// The values of a checkpoint whose spread is reported, in the order of the row's columns.
 const SPREAD: [fn(&Checkpoint) -> f64; 6] = [
     |it| it.centre_deg,
     |it| it.maximum_margin_deg,
@@ -174,7 +174,7 @@ struct Sums {
 }
 
 impl Summary {
-    /// What a campaign came to, from its rows in the order of the fields. Few of them are held at a time.
+    /// The results of a campaign, from its rows in the order of the fields. Memory holds few rows at a time.
     ///
     /// # Errors
     /// The first of the rows', or when a temporary file cannot be written.

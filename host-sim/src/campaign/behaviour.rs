@@ -1,4 +1,5 @@
-//! What a build flies: a checksum of the rows of the first fields. Builds that fly these alike are taken for one.
+//! A fingerprint of a build: a checksum of the rows of the first fields. Builds with equal checksums are treated as
+//! one.
 
 use anyhow::{Context as _, Result};
 

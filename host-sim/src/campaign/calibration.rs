@@ -1,4 +1,5 @@
-//! What labels that may err tell of what they can tell, and whether the probabilities that are stated hold.
+//! The information gained from labels that may be wrong, as a share of what is possible, and whether the stated
+//! probabilities hold.
 
 use std::collections::BTreeMap;
 
@@ -28,7 +29,7 @@ const LABELS: [u32; 6] = [1, 5, 10, 20, 30, 60];
 /// Bins of stated probabilities, each with as many missions.
 const BINS: u64 = 5;
 
-/// What a posterior states of one mission, and whether it is so.
+/// The statements of a posterior about one mission, and whether they hold.
 #[derive(Clone, Copy, Debug)]
 struct Statement {
     credible_probability: f64,
@@ -37,7 +38,7 @@ struct Statement {
     best_holds: bool,
 }
 
-/// What was known after some labels of one mission. Statements are by the area prior and by the paper's.
+/// The state of knowledge after some labels of one mission. Statements are by the area prior and by the paper's.
 #[allow(clippy::struct_excessive_bools)] // columns of a row, which has no nesting
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Checkpoint {
@@ -59,7 +60,7 @@ pub struct Checkpoint {
     paper_best_holds: bool,
 }
 
-/// How often what is stated is so, by one prior.
+/// How often statements hold, by one prior.
 #[derive(Clone, Debug, Serialize)]
 pub struct Calibration {
     /// The share of credible sets that hold the truth.
@@ -99,7 +100,7 @@ pub struct Row {
     pub calibration: [Calibration; 2],
 }
 
-/// What a campaign came to.
+/// The results of a campaign.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
     /// What was run.
@@ -238,7 +239,7 @@ struct StatementSums {
 const SORTED: u32 = 3;
 
 impl Summary {
-    /// What a campaign came to, from its rows in the order of the fields. Few of them are held at a time.
+    /// The results of a campaign, from its rows in the order of the fields. Memory holds few rows at a time.
     ///
     /// # Errors
     /// The first of the rows', or when a temporary file cannot be written.
@@ -272,7 +273,7 @@ impl Summary {
     }
 }
 
-/// What the labels of a table were expected to tell, by the exact distribution before each.
+/// The expected information of a table's labels, by the exact distribution before each.
 fn expected(mission: &Mission, table: &Table) -> f64 {
     let mut known = mission.table();
     let given = known.samples().len();
@@ -306,7 +307,7 @@ impl Sums {
     fn row(&self, labels: u32, limit: f64, sorted: &mut Sorted) -> Result<Row> {
         let mean = |sum: f64| sum / self.missions as f64;
         let (bits, expected_bits) = (mean(self.bits), mean(self.expected_bits));
-        // Of nothing there is no share.
+        // A share of zero is undefined.
         let share = |bits: f64| (limit > 0.0).then(|| bits / f64::from(labels) / limit);
         Ok(Row {
             labels,

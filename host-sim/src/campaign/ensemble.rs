@@ -79,7 +79,7 @@ pub struct Progress {
     pub metres: f64,
 }
 
-/// What is measured of every mission of a campaign.
+/// The measurements of every mission of a campaign.
 pub trait Measure: Sync {
     /// What is taken down at some stage of a mission.
     type Checkpoint: Checkpoint;
@@ -93,7 +93,7 @@ pub trait Measure: Sync {
     /// The stage that a mission has come to.
     fn stage(&self, progress: &Progress) -> u32;
 
-    /// What is taken down when a mission comes to one of these stages; `None` if it does not count.
+    /// The row of a mission at one of these stages; `None` if it does not count.
     fn checkpoint(
         &self,
         mission: &Mission,
@@ -145,7 +145,7 @@ impl Campaign {
     ) -> Result<Flight<'a, M>> {
         self.check()?;
         let bar = progress(block.end - block.start, "fields")?.with_message(self.algorithm.title());
-        // What was flown before says nothing of how fast it goes now.
+        // Missions flown before say nothing about the present speed.
         bar.set_position(from - block.start);
         bar.reset_eta();
         Ok(Flight {

@@ -5,8 +5,8 @@ use serde::Serialize;
 
 use crate::mission::definition::Mission;
 
-/// What the oracle gives, how the robot starts, and what is to be found. Lengths in metres, the heading in radians; the
-/// robot starts at the first of the oracle's points. The true line is `a x + b z + c = 0`, positive where labels are 1.
+/// The oracle's points, the robot's start, and the line to find. Lengths in metres, the heading in radians; the robot
+/// starts at the first of the oracle's points. The true line is `a x + b z + c = 0`, positive where labels are 1.
 #[derive(Clone, Debug, Serialize)]
 pub struct FieldRecord {
     field: u64,

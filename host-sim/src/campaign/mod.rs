@@ -1,5 +1,5 @@
-//! Many missions over standard fields, on all cores, and what they come to: a row of each mission and stage, and a
-//! summary of the rows.
+//! Many missions over standard fields, on all cores, and their results: a row for each mission and stage, and a summary
+//! of the rows.
 
 pub mod accuracy;
 pub mod behaviour;

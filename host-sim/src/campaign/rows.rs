@@ -1,5 +1,5 @@
-//! The rows of a campaign as CSV: what was known at a stage of a mission, then how it had gone so far. Floats are
-//! written with as many digits as give the same bits when they are read.
+//! The rows of a campaign as CSV: the state of knowledge at a stage of a mission, then its course so far. Floats are
+//! written with enough digits to restore the same bits.
 
 use std::io::{Read, Write};
 
@@ -11,10 +11,10 @@ use crate::campaign::course::Course;
 use crate::campaign::ensemble::{Checkpoint, Measured};
 use crate::campaign::order::Order;
 
-/// Who planned, one after the other, and whether a first column says so, as where planners are compared.
+/// The planners in order, and whether the first column names them, as it does where planners are compared.
 #[derive(Clone, Debug)]
 pub struct Planners {
-    /// What rows call them.
+    /// Their names in the rows.
     pub names: Vec<String>,
     /// Whether rows do.
     pub are_named: bool,
@@ -121,8 +121,8 @@ impl<R: Read, C: Checkpoint> RowReader<R, C> {
     /// The next row; `None` at the end.
     ///
     /// # Errors
-    /// Names the file and the line of what is no row, has a number that is not finite, or is out of order, and of the
-    /// end where rows are missing.
+    /// Names the file and the line if that is no row, has a number that is not finite, or is out of order. If rows are
+    /// missing, it names the end of the file.
     pub fn read(&mut self) -> Result<Option<RowRead<C>>> {
         if let Some(row) = self.ahead.take() {
             return Ok(Some(row));

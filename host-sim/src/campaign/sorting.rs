@@ -1,8 +1,8 @@
 //! Any number of values in ascending order, in bounded memory.
 //!
-//! Medians and percentiles are exact, and so is the split into bins of equal size. So values are sorted, by slots (a
-//! stage and what was measured there): as many as memory holds at a time, in a run; runs go to a temporary file and are
-//! merged as they are read. Where all fit into one run there is no file.
+//! Medians and percentiles are exact, and so is the split into bins of equal size. So all values are sorted by slot (a
+//! stage and what was measured there). Memory holds one run of values at a time. Runs go to a temporary file and are
+//! merged as they are read. If all values fit into one run, there is no file.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -24,7 +24,7 @@ const MERGED: usize = 16 << 20;
 /// A value in its slot. Equal ones stay in the order in which they came.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Value {
-    /// What is sorted together. Below 2^31.
+    /// The slot whose values are sorted together. Below 2^31.
     pub(crate) slot: u32,
     /// Goes with the value and plays no part in its order.
     pub(crate) is_marked: bool,

@@ -1,12 +1,11 @@
-//! The standard fields: the seeded ensemble on which planners are measured.
+//! The standard fields: the seeded ensemble on which planners are measured. A field is drawn in three steps.
 //!
 //! 1. A guide line through a point uniform in [6, 14]^2, with a uniform direction.
-//! 2. The oracle's points in the paper's order `-, +, +, -`: two towards one end of the guide line,
-//!    two towards the other, 3 to 8 m along it from that point and 1.5 to 5 m off it on the sides
-//!    that their labels say. All is drawn again when one leaves the area. Initial heading uniform,
-//!    start at `p1`.
-//! 3. The true line, uniform from the version space of those four points by the measure
-//!    d(angle) d(offset): by rejection, over lines that meet the area's circumscribed disc.
+//! 2. The oracle's points in the paper's order `-, +, +, -`: two towards one end of the guide line, two towards the
+//!    other. They lie 3 to 8 m along the line from that point, and 1.5 to 5 m off it on the sides of their labels. All
+//!    are drawn again if one leaves the area. The initial heading is uniform, and the start is at `p1`.
+//! 3. The true line, uniform from the version space of those four points by the measure d(angle) d(offset). It is drawn
+//!    by rejection, over lines that meet the area's circumscribed disc.
 
 use nalgebra::{Point2, Vector2};
 use planner_core::belief::sample::{Label, Reading, Sample};

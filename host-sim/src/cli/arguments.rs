@@ -1,4 +1,4 @@
-//! The command line: what can be asked. The contract is in ARCHITECTURE.md; each command has a file of its own.
+//! The command line: commands and flags. The contract is in ARCHITECTURE.md; each command has a file of its own.
 
 use anyhow::Result;
 use clap::{CommandFactory as _, Parser, Subcommand};
@@ -26,10 +26,10 @@ use crate::output::notes::{self, Loudness};
 pub struct Cli {
     #[command(subcommand)]
     pub(crate) command: Option<Command>,
-    /// Tell results and errors alone: no progress, no warnings
+    /// Print results and errors alone: no progress, no warnings
     #[arg(short, long, global = true)]
     pub(crate) quiet: bool,
-    /// Tell what is written and built, too
+    /// Also print which files are written and what is built
     #[arg(short, long, global = true, conflicts_with = "quiet")]
     pub(crate) verbose: bool,
 }
@@ -38,7 +38,7 @@ pub struct Cli {
 pub(crate) enum Command {
     /// Run one mission
     Run(RunArgs),
-    /// Say what samples determine that were recorded elsewhere
+    /// Print what samples recorded elsewhere determine
     Replay(ReplayArgs),
     /// Run the standard fields and print tables
     Campaign(Box<CampaignArgs>),
@@ -50,11 +50,11 @@ pub(crate) enum Command {
     Fly(Box<FlyArgs>),
     /// Solve the paper's full-horizon problem of a scenario, and say what the planners pay above its optimum
     Reference(ReferenceArgs),
-    /// Say what a planner takes of a chip: flash, RAM, instructions
+    /// Print what a planner needs on a chip: flash, RAM, instructions
     Size(SizeArgs),
     /// Write a commented scenario to begin with
     Init(Init),
-    /// Print a script by which a shell completes commands and flags
+    /// Print a script with which a shell completes commands and flags
     Completions(Completions),
 }
 

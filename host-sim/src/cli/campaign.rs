@@ -34,7 +34,7 @@ pub(crate) struct CampaignArgs {
     /// Write a row for each field and stage here, as they are finished
     #[arg(long, value_name = "FILE")]
     pub(crate) csv: Option<PathBuf>,
-    /// Go on with the finished rows of the same command, if it was stopped
+    /// Continue after the finished rows of the same command, if it was stopped
     #[arg(long, requires = "csv")]
     pub(crate) resume: bool,
     /// Fly one of N blocks of the fields only, the first is 1/N; `campaign merge` puts them together
@@ -164,8 +164,8 @@ impl Opening for Begun<'_> {
     }
 }
 
-/// Reads what was finished, up to the first row that is not whole. The last field's rows may not be all: it is flown
-/// again, and what comes out is the same.
+/// Reads the finished rows, up to the first incomplete one. Rows of the last field may be missing: it is flown again,
+/// with the same result.
 fn go_on<M: Measure>(
     partial: &mut Partial,
     planners: &Planners,

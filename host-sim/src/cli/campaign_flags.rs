@@ -1,4 +1,4 @@
-//! What determines a campaign, as flags: they say what to fly, and beside rows they tell what was flown.
+//! The flags that determine a campaign. They say what to fly; stored beside rows, they record what was flown.
 
 use std::slice;
 
@@ -20,7 +20,7 @@ use crate::world::noise::{Extent, NoiseModel};
 /// Points that the oracle gives in a standard field.
 const ORACLE: usize = 4;
 
-/// What determines the rows of a campaign.
+/// The settings that determine the rows of a campaign.
 #[derive(Debug, Args, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) struct CampaignFlags {
@@ -71,7 +71,7 @@ pub(crate) struct CampaignFlags {
     /// Standard deviation of where motions end, metres an axis
     #[arg(long, value_name = "METRES", default_value_t = 0.0)]
     motion_error: f64,
-    /// How far off planners are told that positions are, at most, metres [default: 3 times the position error]
+    /// The largest position error that planners assume, metres [default: 3 times the position error]
     #[arg(long, value_name = "METRES")]
     tolerance: Option<f64>,
     /// How hypotheses choose an action together (scc) [default: mixture-of-own]
@@ -89,7 +89,7 @@ pub(crate) struct Campaigns {
     pub(crate) of_each: Vec<Campaign>,
     /// Whether they are compared, and not a single one.
     pub(crate) are_compared: bool,
-    /// Whether they are measured by what labels that may err tell.
+    /// Whether the rows measure labels that may be wrong.
     pub(crate) labels_err: bool,
 }
 
@@ -151,7 +151,7 @@ impl CampaignFlags {
         if self.compare.is_empty() { slice::from_ref(&self.algorithm) } else { &self.compare }
     }
 
-    /// What moves when this one plans.
+    /// The vehicle of this planner.
     fn moving(&self, planner: Algorithm) -> Result<AnyVehicle> {
         self.vehicle.vehicle(Source::Flags, planner, self.fan.is_some(), self.grid(planner))
     }

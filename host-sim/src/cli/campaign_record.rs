@@ -1,4 +1,4 @@
-//! What is kept beside rows that are part of something: which campaign they belong to, and which fields.
+//! The record stored beside partial rows: which campaign they belong to, and which fields.
 
 use std::collections::{BTreeMap, BTreeSet};
 

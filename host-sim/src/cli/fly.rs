@@ -1,4 +1,4 @@
-//! `fly`: a mission that a vehicle flies which speaks `MAVLink`.
+//! `fly`: a mission flown by a vehicle that speaks `MAVLink`.
 
 use std::time::Duration;
 

@@ -1,4 +1,4 @@
-//! What results are printed as.
+//! The formats in which results are printed.
 
 use clap::ValueEnum;
 

@@ -1,4 +1,4 @@
-//! What help says beyond each flag: examples first, then what an exit status means.
+//! Help texts beyond the flags: examples first, then the meaning of exit statuses.
 
 pub(crate) const MAIN: &str = "\
 Examples:

@@ -26,7 +26,7 @@ const BAUD: u32 = 115_200;
 pub(crate) struct HilArgs {
     #[command(flatten)]
     pub(crate) run: Run,
-    /// The serial port that a board is at
+    /// The serial port of the board
     #[arg(long, value_name = "DEVICE")]
     pub(crate) port: Option<String>,
     /// The port's speed, bits per second [default: 115200]
@@ -36,7 +36,8 @@ pub(crate) struct HilArgs {
     #[arg(long, value_name = "ELF", num_args = 0..=1, require_equals = true)]
     #[expect(clippy::option_option, reason = "as clap tells a flag from one with a value")]
     pub(crate) emulator: Option<Option<PathBuf>>,
-    /// The machine that QEMU is: netduinoplus2, microbit, or the name of one for your ELF [default: netduinoplus2]
+    /// The machine that QEMU emulates: netduinoplus2, microbit, or the name of one for your ELF [default:
+    /// netduinoplus2]
     #[arg(long, value_name = "NAME", conflicts_with = "port", value_parser = machine)]
     pub(crate) machine: Option<String>,
     /// Write the emulated board's log here, for defmt-print
@@ -51,7 +52,7 @@ pub(crate) struct HilArgs {
     /// Write what each step took here
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) timing: Option<PathBuf>,
-    /// Go on with the steps of the same command, if it was stopped, and where the board restarts
+    /// Continue the steps of the same command, if it was stopped, and after a restart of the board
     #[arg(long, requires = "trace")]
     pub(crate) resume: bool,
 }

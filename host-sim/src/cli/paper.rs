@@ -1,4 +1,5 @@
-//! The bare command: the paper's two examples, as printed, as the planners here fly them by default, and as look-ahead does.
+//! The bare command: the paper's two examples. Each is flown as printed, as the planners here fly it by default, and by
+//! look-ahead.
 
 use std::fs;
 use std::path::Path;

@@ -1,5 +1,5 @@
-//! The way of a campaign's rows: out of files that have them already, then out of missions that are flown, in the
-//! order of planners and fields; into a file; and into the summary. None holds more than a few.
+//! The path of a campaign's rows. They come from files that already contain them, then from missions that are flown, in
+//! the order of planners and fields. They go into a file and into the summary. No stage holds more than a few rows.
 
 use std::cmp::Ordering;
 use std::io::{self, Read, Write};

@@ -28,10 +28,10 @@ pub(crate) struct ReferenceArgs {
     /// What a line costs, where labels are true [default: slope]
     #[arg(long, value_enum, value_name = "COST")]
     pub(crate) line: Option<LineCost>,
-    /// From one length of motions to the next, metres [default: the vehicle's]
+    /// The step between lengths of motions, metres [default: the vehicle's]
     #[arg(long, value_name = "METRES")]
     pub(crate) speed_step: Option<f64>,
-    /// From one direction to the next, radians [default: the vehicle's]
+    /// The step between directions, radians [default: the vehicle's]
     #[arg(long, value_name = "RADIANS")]
     pub(crate) turn_step: Option<f64>,
     /// Write a figure of the optimum here

@@ -1,4 +1,4 @@
-//! `replay`: what samples determine that were recorded elsewhere.
+//! `replay`: what samples recorded elsewhere determine.
 
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -20,14 +20,14 @@ use crate::replay::rows::Layout;
 #[derive(Debug, Args)]
 #[command(after_help = help::REPLAY)]
 pub(crate) struct ReplayArgs {
-    /// The samples: a CSV file with the columns x, z (metres) or lat, lon (degrees) and label, a map of points (`.geojson`), GPX,
-    /// or a trace of ours
+    /// The samples: a CSV file, a map of points (`.geojson`), GPX, or a trace of ours. A CSV file has the columns x, z
+    /// (metres) or lat, lon (degrees), and label
     pub(crate) samples: PathBuf,
-    /// Its columns by title or number, as x=easting,z=northing,label=wet or lat=3,lon=4,label=7; for a map of points the
-    /// property, and for GPX the element, that holds the label, as label=wet
+    /// The file's columns by title or number, as x=easting,z=northing,label=wet or lat=3,lon=4,label=7; for a map of
+    /// points the property, and for GPX the element, that contains the label, as label=wet
     #[arg(long, value_name = "LIST", value_parser = Columns::from_str)]
     pub(crate) columns: Option<Columns>,
-    /// What is between them, if it is not clear: comma, semicolon, tab, pipe, space
+    /// The delimiter between columns, if it is not clear: comma, semicolon, tab, pipe, space
     #[arg(long, value_name = "NAME", value_parser = Delimiter::from_str)]
     pub(crate) delimiter: Option<Delimiter>,
     /// Labels are measured values: above this they are +1, else -1
@@ -36,7 +36,7 @@ pub(crate) struct ReplayArgs {
     /// Refuse a row without a position or a label; else such rows are skipped and counted
     #[arg(long)]
     pub(crate) strict: bool,
-    /// The system that metres are of, such as EPSG:25832 (UTM zone 32), so that they have a place on a map
+    /// The coordinate system of positions in metres, such as EPSG:25832 (UTM zone 32), to place them on a map
     #[arg(long, value_name = "EPSG:N", value_parser = Crs::from_str)]
     pub(crate) crs: Option<Crs>,
     /// Take positions about this place, in the file's own coordinates; the middle of the data where they are far away

@@ -1,4 +1,4 @@
-//! `size`: what a planner takes of a chip.
+//! `size`: the flash, RAM and time that a planner needs on a chip.
 
 use std::fmt::Write as _;
 

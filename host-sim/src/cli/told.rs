@@ -1,4 +1,4 @@
-//! What campaigns come to, from their rows: a table for people, a record for programs, curves to look at.
+//! The results of campaigns, from their rows: a table for people, a record for programs, curves to look at.
 
 use anyhow::Result;
 

@@ -1,4 +1,4 @@
-//! The firmwares for the emulator: built where this is run in the repository, target and all.
+//! The firmwares for the emulator: built if this program runs in the repository, with the target if necessary.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};

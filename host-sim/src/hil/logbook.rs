@@ -1,7 +1,7 @@
-//! The trace of a mission as far as it has been flown: it grows on disc beside its place, and outlives this program.
+//! The trace of a mission so far: it grows on disc beside its place and outlives this program.
 //!
-//! It needs no record of which mission it is of. A mission is the same whenever it is flown, so its steps are made
-//! again, and each makes the line that is there, or this is no trace of it.
+//! It needs no record of which mission it belongs to, as a mission is the same whenever it is flown. To resume, the
+//! steps are computed again. Each must reproduce the line in the file, or the file is no trace of this mission.
 
 use std::io::{Read as _, Write as _};
 use std::path::Path;

@@ -1,11 +1,11 @@
 //! The world that a chip plans in: bytes of the link in, frames out.
 //!
-//! Knows nothing of ports and clocks, so a serial line, an emulator and a test's own network can all
-//! carry the bytes. Each reading is taken in here as on the chip. What is known then is the same, or
-//! the estimates at the end would differ, and that is an error.
+//! It knows nothing of ports and clocks, so a serial line, an emulator and a test's own network can all carry the
+//! bytes. Each reading is taken in here as on the chip. So both must know the same in the end: different final
+//! estimates are an error.
 //!
-//! A chip that restarts in the middle of a mission flies it again from its beginning. What it asks for then has been
-//! done, up to where it was: it is answered from memory, and nothing moves until something new is asked.
+//! A chip that restarts in the middle of a mission flies it again from its beginning. Its requests up to that point
+//! have been carried out already, so they are answered from memory. Nothing moves until a new request arrives.
 
 use std::path::Path;
 

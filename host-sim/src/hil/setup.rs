@@ -1,4 +1,4 @@
-//! A mission as a chip is told it, and why a chip may not want it.
+//! The setup of a mission as it is sent to a chip, and the reasons why a chip may decline it.
 
 use anyhow::{Result, anyhow, bail};
 use heapless::Vec as BoundedVec;

@@ -1,16 +1,16 @@
-//! Margin sampling, the usual rule of active learning: what a planner made for this problem has to beat.
+//! Margin sampling, the usual rule of active learning: a baseline that a planner made for this problem has to beat.
 //!
-//! It asks where the maximum-margin line of what is known is least sure: of all drives that stay in the area and
-//! end on uncertain ground, the one whose end is nearest to that line. Of labels that are true, ground is uncertain
-//! where the lines left disagree; of labels that may err, where those disagreed that were there at the start, and the
-//! line is the most likely hypothesis's.
+//! It samples where the maximum-margin line is least certain. Of all drives that stay in the area and end on uncertain
+//! ground, it makes the one whose end is nearest to that line. If labels are true, ground is uncertain where the
+//! remaining lines disagree. If labels may be wrong, ground is uncertain where the starting lines disagree, and the
+//! line is that of the most likely hypothesis.
 //!
-//! The rule is made for places that can be asked at will. Where no uncertain end is in reach it would wait for ever,
-//! as nothing is learnt by waiting, so it goes on without a label:
+//! The rule assumes that every place can be sampled at will. If no uncertain end is in reach it would wait for ever, as
+//! waiting teaches nothing. So it then moves without a label:
 //!
-//! 1. *Reorient*: a turn in place after which there is such a drive; to the side where it ends nearer to the line.
-//! 2. *Transit*: the drive that ends nearest to the line, on certain ground. A drive is never of length 0, so next
-//!    time other places are in reach, also where what is uncertain is thinner than the action grid.
+//! 1. *Reorient*: a turn in place after which there is such a drive, to the side where that ends nearer to the line.
+//! 2. *Transit*: the drive that ends nearest to the line, on certain ground. A drive is never of length 0, so other
+//!    places are in reach next time. This helps also where uncertain ground is thinner than the action grid.
 //! 3. In a corner that no drive leads out of: a turn to the left, until one does.
 
 use nalgebra::Point2;

@@ -1,4 +1,4 @@
-//! The planner of a mission, whatever it knows the line by.
+//! The planner of a mission, whichever belief it has.
 
 use planner_core::belief::Refused;
 use planner_core::belief::sample::Reading;

@@ -1,4 +1,4 @@
-//! A planner that moves at random: what any planner has to beat.
+//! A planner that moves at random: a baseline that any planner has to beat.
 
 use planner_core::belief::sample::Reading;
 use planner_core::belief::tolerance::Tolerance;
@@ -11,8 +11,8 @@ use planner_core::planner::{Motion, Plan, Planner, StopReason};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-/// Takes each action with equal probability among those that stay in the area; from outside, where an error has brought
-/// it, also among those that do not lead further from its middle, without a label until it is inside.
+/// Takes each action that stays in the area with equal probability. If an error has brought it outside, it also takes
+/// actions that lead no further from the area's middle. It reads no label until it is inside.
 pub struct RandomWalk<D, B> {
     /// The action set.
     pub dynamics: D,

@@ -1,5 +1,5 @@
-//! A mission's results: plain data, computed once. Serialised they are the records of the trace, whose
-//! contract is in ARCHITECTURE.md; what reports tell beyond that is skipped there.
+//! A mission's results: plain data, computed once. Serialised, they are the records of the trace, whose contract is in
+//! ARCHITECTURE.md. Fields that only reports use are not serialised.
 
 use nalgebra::Point2;
 use planner_core::belief::estimate::Estimates;

@@ -1,7 +1,7 @@
-//! What is enough to know, as scenario files ask for it and results promise it.
+//! The goal of a mission, as scenario files ask for it and results promise it.
 //!
-//! A promise is kept if it is asked a little more strictly than it was made: single precision takes less than that
-//! from it.
+//! A promise is checked a little more strictly than it was made. The difference is larger than the rounding of single
+//! precision, so a promise that passes is kept.
 
 use anyhow::Result;
 use planner_core::belief::goal::{Accuracy, Goal};

@@ -1,5 +1,5 @@
-//! Shapes of values in scenario files, taken literally. By itself serde takes an array for a table, its fields
-//! in order, and of an array with too many elements the first.
+//! Values in scenario files, read strictly. On its own, serde accepts an array for a table, with its fields in order.
+//! Of an array with too many elements it takes the first ones.
 
 use std::fmt::{self, Display};
 use std::marker::PhantomData;

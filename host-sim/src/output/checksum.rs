@@ -1,6 +1,6 @@
 //! A checksum of what is written: FNV-1a, 64 bits.
 //!
-//! It finds out what was changed by accident or by hand, and not who forges rows and checksum together.
+//! It detects changes made by accident or by hand. It does not detect a forger who changes rows and checksum together.
 
 use std::fmt::{self, Display, Formatter};
 use std::io::{self, Write};

@@ -1,9 +1,9 @@
-//! Interruption by a signal: what is undone before the program ends.
+//! Interruption by a signal: cleans up before the program ends.
 //!
-//! A temporary file and a running emulator would outlive the program. Whoever makes one holds the lock while it
-//! is made and entered here, and while it becomes something that stays; the thread that waits for signals takes
-//! the lock and never gives it back. So nothing slips through between the making and the entry. Where there
-//! are no signals, nothing is ever undone from here.
+//! A temporary file and a running emulator would outlive the program, so a registry lists them. Code that makes one
+//! holds the registry's lock while it makes and enters it, and while the file becomes permanent. The thread that waits
+//! for signals takes the lock and never gives it back. So nothing is left out between making and entering. On systems
+//! without signals, nothing is cleaned up from here.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
@@ -72,8 +72,8 @@ mod by_signal {
 
     use super::{DEFERRED, Ordering, Unfinished, unfinished};
 
-    /// From here on an interruption, a request to end, and a terminal's going away undo what is unfinished and
-    /// end the program with 128 and the signal's number, as shells have it.
+    /// From here on, an interruption, a request to end, and the loss of the terminal remove unfinished files and
+    /// processes. They end the program with 128 plus the signal's number, as shells do.
     ///
     /// # Errors
     /// When signals cannot be watched.

@@ -1,8 +1,8 @@
-//! What stands beside a file that grows, as JSON Lines: a record of what is being done, then a checkpoint each time
-//! that the file has grown: its length and the checksum of all of it.
+//! The ledger beside a file that grows, as JSON Lines. It begins with a record of the work in progress. Each time the
+//! file has grown, a checkpoint follows: the file's length and the checksum of all of it.
 //!
 //! After an interruption the checkpoints tell which bytes of the file are as they were written. The end of either file
-//! may be lost; what follows the last checkpoint is not counted on.
+//! may be lost. Bytes after the last checkpoint are ignored.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufRead as _, BufReader, Read as _, Seek as _, SeekFrom, Write as _};

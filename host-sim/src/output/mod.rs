@@ -1,4 +1,4 @@
-//! What comes out: files that appear whole or not at all, whatever interrupts the program, and what is told beside.
+//! Output: files that appear whole or not at all, whatever interrupts the program, and messages beside them.
 
 pub mod checksum;
 pub(crate) mod ending;

@@ -1,5 +1,5 @@
-//! What is told beside the results, on standard error: warnings, progress, and what was written. How much of it
-//! is up to whoever starts the program.
+//! Messages beside the results, on standard error: warnings, progress, and which files were written. The user chooses
+//! how much is printed.
 
 use std::fmt::Display;
 use std::sync::atomic::{AtomicU8, Ordering};

@@ -1,9 +1,9 @@
-//! A file that grows beside its place, for hours perhaps, and outlives an interruption: what is there can be gone on
-//! with. It is moved to its place when it is complete.
+//! A file that grows beside its place, perhaps for hours. It outlives an interruption, and a later run can continue it.
+//! When it is complete, it is moved to its place.
 //!
-//! Where it does not tell by itself what is being done, a record of that stands beside it, so that nobody goes on with
-//! another's, and checksums (`ledger`), so that nobody goes on with what was changed. The record is there
-//! before the file is, and goes when the file has become complete.
+//! If the file does not show by itself which work it belongs to, a record beside it does. So nobody continues the file
+//! of another task. The record also contains checksums (`ledger`), so nobody continues a file that was changed. The
+//! record is written before the file, and removed when the file is complete.
 
 use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -84,7 +84,7 @@ impl Partial {
     /// Begins a file, or opens the one that is to be gone on with, if it is there.
     ///
     /// # Errors
-    /// Names the file that is there though none is to be gone on with, that another program is writing, or that
+    /// Names the file if it exists although none is to be continued. Also if another program is writing it, or if it
     /// cannot be written.
     pub(crate) fn open(path: &Path, place: &Place, begin: Begin) -> Result<Self> {
         let name = with_suffix(path, ".partial").display().to_string();

@@ -1,4 +1,4 @@
-//! Where a path leads: to a file, there or not yet, or to a stream; and whether two paths lead to the same.
+//! The destination of a path: a file, which may not exist yet, or a stream; and whether two paths lead to the same one.
 
 use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, ErrorKind};

@@ -1,5 +1,4 @@
-//! Text from outside as it can be shown on a terminal: no control character steers it, and nothing is repeated at
-//! length.
+//! Text from outside, made safe for a terminal: control characters are escaped, and very long words and lines are shortened.
 
 use std::fmt::Write as _;
 

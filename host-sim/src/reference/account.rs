@@ -1,5 +1,5 @@
-//! What a mission pays by a full-horizon problem, whoever planned it: the objective if the problem allows what it did, and
-//! which of its constraints it broke if not.
+//! The cost of a mission in a full-horizon problem, whoever planned it. If the problem does not allow the mission, the
+//! constraints that it broke.
 
 use planner_core::belief::sample::{Reading, Sample};
 use serde::Serialize;
@@ -44,8 +44,8 @@ pub const NO_LINE: &str = "line";
 pub const SHORT: &str = "steps";
 
 impl Account {
-    /// What a mission pays. A position counts as a sample with its true label, whether its label was asked for or not,
-    /// as the paper has a label at every step.
+    /// The cost of a mission. The paper has a label at every step. So each position counts as a sample with its true
+    /// label, whether that was asked for or not.
     pub fn of(
         instance: &Instance,
         planner: &'static str,

@@ -1,9 +1,9 @@
-//! How far samples of different labels are apart: the nearest points of their convex hulls.
+//! The distance between samples of different labels: the nearest points of their convex hulls.
 //!
-//! Of two disjoint convex polygons some nearest pair is a corner of one and a point of a side of the other. Any two
-//! samples of a label span a segment inside its hull, so the least of all distances from a sample to segments of the
-//! other label is that of the hulls. It never grows with another sample, also not by rounding, as a distance that has
-//! been taken stays among them.
+//! For two disjoint convex polygons, some nearest pair is a corner of one and a point on a side of the other. Any two
+//! samples of a label span a segment inside its hull. So the distance of the hulls is the least distance from a sample
+//! to a segment of the other label. It never grows with another sample, not even by rounding, as every distance
+//! computed before remains in the minimum.
 
 use nalgebra::Point2;
 use planner_core::belief::sample::Sample;

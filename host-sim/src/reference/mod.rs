@@ -1,5 +1,5 @@
-//! The paper's full-horizon problems (Sections II-A and II-B), solved offline on small instances: what the best
-//! sequence of `M` motions pays, beside what the algorithms pay that plan a step or two ahead.
+//! The paper's full-horizon problems (Sections II-A and II-B), solved offline on small instances. The cost of the best
+//! sequence of `M` motions is compared with that of algorithms that plan a step or two ahead.
 //!
 //! # What is printed
 //!
@@ -18,38 +18,40 @@
 //! # What it means here
 //!
 //! **The line is known to the optimiser.** The true line stands in constraint 4, and nothing is averaged or maximised
-//! over it. A policy is followed along one path only, so the best policy is the best sequence of motions for that
-//! line: an optimum in hindsight. A policy that has to find the line needs a criterion over the lines it might be,
-//! which the paper does not give; none of them pays less for this line than the optimum here, so what is above it is
-//! the price of not knowing, and of looking no further than a step.
+//! over it. A policy is followed along one path only. So the best policy is the best sequence of motions for that line:
+//! an optimum in hindsight. A policy that has to find the line needs a criterion over the possible lines, which the
+//! paper does not give. No such policy pays less for this line than the optimum here. So its excess is the price of not
+//! knowing the line and of looking no further than a step.
 //!
-//! **What the line costs has two readings,** as the paper's text and formula disagree ([`objective::LineCost`]). The
-//! text asks for the line that is furthest from the samples. In the classical formula for it the sides of constraint 1
-//! are scaled, so that the cost is `1 / (2 margin^2)`. The paper drops the scale of `z`, so a margin of one metre,
-//! measured along `z`, becomes a hard constraint, and `rho^2 / 2` prefers lines along the x axis. Printed is the
-//! default, the margin can be asked for.
+//! **The cost of the line has two readings,** as the paper's text and formula disagree ([`objective::LineCost`]). The
+//! text asks for the line that is furthest from the samples. The classical formula for it scales the sides of
+//! constraint 1, so that the cost is `1 / (2 margin^2)`. The paper drops the scale of `z`. So a margin of one metre
+//! along `z` becomes a hard constraint, and `rho^2 / 2` prefers lines along the x axis. The printed reading is the
+//! default; the margin is an option.
 //!
 //! **Errata.** The constraints of the oracle's points of label -1 are `<= -1`. In Section II-B agreement has to be
 //! maximised, not minimised; the best value is the same either way. The true label in Section II-B lacks a bracket.
 //! Arguments of policies end at `t - 1` in the problem and at `t` in the definition; in hindsight that is the same.
 //!
-//! **A line whose +1 side is below** is looked at upside down (half a turn leaves `rho` as it is); a vertical line has
-//! no printed cost and is refused.
+//! **A line whose +1 side is below** is solved upside down (half a turn does not change `rho`). A vertical line has no
+//! printed cost and is refused.
 //!
-//! **Motions** are those of the scenario's vehicle that stay in its area, as for the planners. Standing still is
-//! one, and a sample of its own. The paper's samples may lie anywhere, on certain ground too; that they may not is a
-//! rule of its one-step problems.
+//! **Motions** are those of the scenario's vehicle that stay in its area, as for the planners. Standing still is a
+//! motion, and gives a sample of its own. The paper's samples may lie anywhere, on certain ground too. Only its
+//! one-step problems forbid that.
 //!
-//! **Section II-B is solved by standing still.** Only true labels are in its cost, and any line that divides them has the best
-//! one, so the noise does not matter, and each motion costs. The optimum is `-(M + 1)`, reached without moving where a
-//! vehicle can stand still. The paper says of the like cost in Section II-A that it does not enforce learning (III-A).
+//! **Section II-B is solved by standing still.** Its cost contains only true labels, and any line that divides them has
+//! the best one. So the noise does not matter, and each motion costs. The optimum is `-(M + 1)`, reached without moving
+//! if a vehicle can stand still. The paper says of the similar cost in Section II-A that it does not enforce learning
+//! (III-A).
 //!
 //! # How it is solved
 //!
-//! By branch and bound over sequences of actions ([`search`]). A part of a sequence has cost what it has, its line
-//! costs no less with more samples, and the balance of labels asks for motions yet that cost no less than in a relaxed
-//! problem of two numbers, distance from the true line and heading ([`relaxation`]). What is left open ties, and they go to
-//! the sequence whose actions have the lower index. Sizes that would not end are refused before ([`size`]).
+//! By branch and bound over sequences of actions ([`search`]). The lower bound for a partial sequence is the sum of
+//! three terms: the cost so far, the cost of the line, which only grows with more samples, and the motions that the
+//! balance of labels still requires. The last term comes from a relaxed problem of two numbers, distance from the true
+//! line and heading ([`relaxation`]). Among equal costs the sequence with the lower action indices wins. Instances that
+//! are too large are refused beforehand ([`size`]).
 
 pub mod account;
 pub mod flight;

@@ -1,11 +1,14 @@
-//! What a balance of labels costs at least: the control of a relaxed problem, for which all is in a table.
+//! A lower bound on the control that balances the labels, from a relaxed problem that fits a table.
 //!
-//! Labels depend on the signed distance from the true line alone, and how that changes on the heading. So forget the
-//! position along the line, the area's border and what the line costs: left are two numbers, and the least control that
-//! balances the labels within the motions left is a dynamic program over them. Both are held in bins. From a bin a motion
-//! may end in each bin that it could reach from anywhere in its own, so the table tells too little, never too much:
-//! a turn comes first (its cost is the action's less the square of its reach), then one of the speeds in the direction of
-//! travel, and in the end the heading may be off that direction as far as any motion of the vehicle ends (a car's do).
+//! Labels depend on the signed distance from the true line alone, and changes of that distance depend on the heading.
+//! So the relaxed problem ignores the position along the line, the area's border and the cost of the line. Two numbers
+//! are left. A dynamic program over them computes the least control that balances the labels within the remaining
+//! motions.
+//!
+//! Both numbers are divided into bins. A motion may end in each bin that it could reach from anywhere in its own. So
+//! the table may give too low a cost, but never too high a cost. A motion has three parts. First comes a turn, whose
+//! cost is the action's less the square of its reach. Then comes one of the speeds, in the direction of travel. At the
+//! end, the heading may differ from that direction by as much as after any motion of the vehicle (it does for a car).
 
 use std::f64::consts::TAU;
 

@@ -1,8 +1,8 @@
 //! Branch and bound over sequences of motions, on all cores.
 //!
-//! A part of a sequence is given up when it costs more, at least, than the best whole one that is known; at the same cost,
-//! when its actions have the higher index. So the result is one and the same however the work is shared out: the
-//! cheapest sequence, and of those that cost the same, as they are rounded, the first in the order of its actions.
+//! A partial sequence is dropped if its lower bound is above the best complete one known. At equal cost it is dropped
+//! if its actions have the higher index. So the result does not depend on how the work is divided: it is the cheapest
+//! sequence, and among those of equal (rounded) cost, the first in the order of its actions.
 
 use std::cmp::Ordering;
 use std::sync::Mutex;

@@ -1,8 +1,8 @@
-//! How many motions a search will look at, before it begins.
+//! The number of motions that a search will look at, estimated before it begins.
 //!
-//! By Knuth's method: go down at random from branch to branch, and multiply up how many there were to choose from. The mean
-//! over many such ways is right on average. It takes the best sequence known beforehand for the best, so it counts
-//! rather too many. The ways are seeded, so an instance is refused always or never.
+//! By Knuth's method: go down at random from branch to branch, and multiply the numbers of choices on the way. The mean
+//! over many such ways is right on average. The estimate treats the best sequence known beforehand as the optimum, so
+//! it is rather too high. The ways are seeded, so an instance is refused always or never.
 
 use anyhow::{Result, bail};
 use rand::{RngExt as _, SeedableRng as _};

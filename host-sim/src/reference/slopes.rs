@@ -1,8 +1,8 @@
 //! The slopes of the lines `z = rho x + c` that have every sample a metre above or below, on the side of its label.
 //!
-//! An intercept fits if it is at most each upper sample's `z - rho x - 1` and at least each lower one's `z - rho x + 1`. So
-//! one exists for a slope exactly if that holds between any two samples of different labels, an upper one and a lower:
-//! `rho (x - x') <= z - z' - 2`. Each pair bounds the slope from one side, by a fraction of integers.
+//! An intercept fits if it is at most each upper sample's `z - rho x - 1` and at least each lower one's
+//! `z - rho x + 1`. So a slope has an intercept exactly if any upper and any lower sample satisfy
+//! `rho (x - x') <= z - z' - 2`. Each such pair bounds the slope from one side, by a fraction of integers.
 
 use std::cmp::Ordering;
 

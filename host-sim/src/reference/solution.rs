@@ -1,4 +1,4 @@
-//! An instance that is solved: the optimum, and beside it what the planners pay that do not know the line.
+//! A solved instance: the optimum, and the cost of planners that do not know the line.
 
 use anyhow::Result;
 use serde::Serialize;

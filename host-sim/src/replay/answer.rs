@@ -1,4 +1,4 @@
-//! What samples come to, by how far they are trusted: one answer, whichever way it was found.
+//! The answer that samples give, by how far they are trusted: one type, whichever way it was found.
 
 use anyhow::{Context as _, Result, anyhow, bail};
 use nalgebra::Point2;

@@ -1,4 +1,4 @@
-//! Which columns of a file hold positions and labels: by the titles that are usual, or as one is told.
+//! The columns of a file that contain positions and labels: found by usual titles, or named by the user.
 
 use std::str::FromStr;
 

@@ -1,4 +1,4 @@
-//! What stands between the fields of a row.
+//! The delimiter between the fields of a row.
 
 use std::str::FromStr;
 

@@ -1,9 +1,9 @@
-//! What a label tells of a line when labels may be wrong, and positions off.
+//! The weight that a label gives to a line if labels may be wrong and positions off.
 //!
-//! A label is true with probability `p`. Where the true position is spread about the recorded one, with a standard
-//! deviation of a third of the tolerance, a line that has the latter `s` metres on its +1 side reads +1 with
-//! probability `p Phi(s / sigma) + (1 - p) Phi(-s / sigma)`. All is told as a logarithm, relative to a label that is
-//! sure to lie on the likelier side.
+//! A label is true with probability `p`. The true position is spread about the recorded one, with a standard deviation
+//! of a third of the tolerance. Let a line have the recorded position `s` metres on its +1 side. Then a label +1 has
+//! the probability `p Phi(s / sigma) + (1 - p) Phi(-s / sigma)`. The weight is a logarithm, relative to a label that
+//! surely lies on the likelier side.
 
 use nalgebra::Point2;
 use planner_core::belief::sample::{Label, Sample};
@@ -104,8 +104,8 @@ impl Doubt {
         self.blur.as_ref().map_or(0.0, |blur| FAR * blur.sigma)
     }
 
-    /// Bounds of the first and the second derivative by the distance, for a label of lines so far from it, or nearer or
-    /// further by no more than `spread`, metres.
+    /// Upper bounds on the first and the second derivative by the distance, for any label. They hold for lines at this
+    /// distance from it, `spread` nearer or further, metres.
     pub(crate) fn bounds(&self, distance: f64, spread: f64) -> [f64; 2] {
         let Some(Blur { sigma, bounds, .. }) = &self.blur else { return [0.0; 2] };
         let bin = |at: f64| ((at / sigma + FAR) * 2.0).clamp(0.0, BINS as f64 - 1.0) as usize;

@@ -1,14 +1,14 @@
 //! Two convex hulls that face each other, one of each label.
 //!
-//! Take from each position labelled +1 each one labelled -1. The differences fill a convex polygon, which has
-//! an edge for each edge of the two hulls. A line separates the labels exactly if the origin lies outside of
-//! the polygon, and the rest can be seen from there:
+//! Subtract each position labelled -1 from each one labelled +1. The differences fill a convex polygon, which has an
+//! edge for each edge of the two hulls. A line separates the labels exactly if the origin lies outside of the polygon.
+//! The view from the origin shows the rest:
 //!
-//! - The polygon's two ends, as seen from the origin, are the two lines that touch both hulls and pass between
-//!   them. All that bounds a separating line is a corner of a hull on its stretch from one of these lines to
-//!   the other, which faces the other hull.
+//! - The polygon's two ends, as seen from the origin, are the two lines that touch both hulls and pass between them. On
+//!   each hull, these lines end a stretch that faces the other hull. Only corners on these stretches bound a separating
+//!   line.
 //!
-//! All is decided in integers, in a time that grows with the number of corners.
+//! Everything is decided in integers, in a time that grows with the number of corners.
 
 use planner_core::belief::sample::{Label, Sample};
 use planner_core::geometry::lattice::Vector;
@@ -92,8 +92,8 @@ impl Facing {
         (are_apart && self.separates(right, 1) && self.separates(left, -1)).then_some([right, left])
     }
 
-    /// Whether no sample is on the wrong side of the line through two; `side` is 1 if the positive ones are to
-    /// be on the left as seen from the negative one of the two, and -1 if on the right.
+    /// Whether no sample is on the wrong side of the line through two; `side` says where the positive samples must be,
+    /// seen from the negative one of the two: 1 is the left, -1 the right.
     fn separates(&self, pair: Pair, side: i64) -> bool {
         let height = |row: Row| side * pair.apart().cross(row.site() - pair.negative.site());
         self.positive.corners().all(|row| height(row) >= 0)

@@ -1,10 +1,10 @@
 //! Where recorded positions lie on the lattice, which reaches 8,192 m about its origin.
 //!
-//! Positions that are all within it stay as they are. Others, as eastings and northings of a map are, are taken
-//! about the middle of the data, rounded to whole metres, so that the shift itself rounds nothing. Latitude and
-//! longitude (WGS84) are projected about their middle, keeping distance and direction from there (azimuthal
-//! equidistant): x is to the east and z to the north. Within 8 km a straight line of this map is a straight way on the
-//! ground to less than a centimetre.
+//! Positions that are all within the lattice stay as they are. Others, such as the eastings and northings of a map, are
+//! shifted to the middle of the data. The shift is in whole metres, so it rounds nothing. Latitude and longitude
+//! (WGS84) are projected about their middle, keeping distance and direction from there (azimuthal equidistant): x is to
+//! the east and z to the north. Within 8 km a straight line of this map is a straight way on the ground to less than a
+//! centimetre.
 
 use anyhow::{Result, anyhow, bail};
 use geographiclib_rs::{DirectGeodesic as _, Geodesic, InverseGeodesic as _};

@@ -12,8 +12,8 @@ impl Replay {
     /// Samples, lines, and the ground that has either label by all lines left, or by all of the credible set.
     ///
     /// # Errors
-    /// For a file whose positions are metres, which have no place on a map by themselves, or that lie on both sides of
-    /// the 180th meridian.
+    /// For a file whose positions are in metres, as these have no place on a map by themselves. Also for positions on
+    /// both sides of the 180th meridian.
     pub fn geojson(&self) -> Result<String> {
         let name = &self.file.name;
         if !self.file.frame.is_on_globe() {

@@ -1,8 +1,8 @@
-//! The labels of a file, as its recorder wrote them: -1 and 1, 0 and 1, true and false, yes and no, or ja and nein; or values
-//! that were measured, of which those above a threshold are +1.
+//! The labels of a file, as its recorder wrote them. They are -1 and 1, 0 and 1, true and false, yes and no, or ja and
+//! nein. Or they are measured values, of which those above a threshold are +1.
 //!
-//! A file has one kind. A 0 may as well say that nothing was measured, so it stands for -1 only in a file that has
-//! a 1 as well.
+//! A file has one kind. A 0 may also mean that nothing was measured. So it counts as -1 only in a file that contains a
+//! 1 as well.
 
 use anyhow::{Context as _, Result, anyhow, bail};
 use planner_core::belief::sample::Label;

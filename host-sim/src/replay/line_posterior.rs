@@ -1,11 +1,12 @@
 //! The distribution over all lines through the ground of a record, when its labels may be wrong.
 //!
-//! Beforehand every line that crosses the ground is as likely as any other, by the measure of lines, whichever of its
-//! sides is +1. The plane of lines is halved again and again, best first: of a box the labels of most positions are
-//! settled, as all its lines have them on one side, and what the others could come to bounds its weight from above.
-//! A box that few positions cut is cut along them, exactly; where positions err, a box is done when what is left
-//! out of account over it is little. It ends when all boxes that are left weigh some millionths together, which is told. So the
-//! work depends on how much the labels leave open, and hardly on how many there are.
+//! Before any label, all lines that cross the ground are equally likely by the measure of lines, whichever of their
+//! sides is +1. The plane of lines is halved again and again, best first. All lines of a box have most positions on the
+//! same side, so the labels of these are settled. The other labels bound the box's weight from above.
+//!
+//! A box that few positions cut is cut along them, exactly. Where positions err, a box is done when the neglected part
+//! of its weight is small. The search ends when all remaining boxes together weigh some millionths, and this weight is
+//! reported. So the work depends on how much the labels leave open, and hardly on how many labels there are.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;

@@ -1,4 +1,4 @@
-//! What a set of lines comes to, told by the lines at its corners: slopes, intercepts, and the ground on which all agree.
+//! The results of a set of lines, from the lines at its corners: slopes, intercepts, and the ground on which all agree.
 
 use std::f64::consts::PI;
 

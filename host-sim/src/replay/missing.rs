@@ -1,4 +1,4 @@
-//! What stands in a file where nothing was measured.
+//! The text that stands in a file where nothing was measured.
 
 /// Words for it, in any case.
 const WORDS: [&str; 9] = ["", "nan", "na", "n/a", "null", "none", "nil", "nodata", "no data"];

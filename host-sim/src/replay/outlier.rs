@@ -1,9 +1,9 @@
-//! Which row is to blame where no line separates a record.
+//! Which row is to blame if no line separates a record.
 //!
-//! The first row that leaves no line need not be the wrong one: after a wrong label early in a file, a true one contradicts it
-//! sooner or later. But a row without which a line separates the rest is part of every set of rows that no line separates.
-//! A smallest such set has four rows at most where positions are true (Kirchberger's theorem). So one such set is found, and each of its
-//! rows is left out of the record once.
+//! The first row that leaves no line need not be the wrong one: after a wrong label early in a file, a true one
+//! contradicts it sooner or later. But consider a row without which a line separates the rest. It is part of every set
+//! of rows that no line separates. A smallest such set has four rows at most where positions are true (Kirchberger's
+//! theorem). So the search finds one such set, and leaves each of its rows out of the record once.
 
 use planner_core::belief::sample::{Label, Sample};
 

@@ -1,9 +1,9 @@
 //! Lines as points of a plane, and convex patches of them.
 //!
-//! Seen along an axis, or against it, a line that leans by an eighth turn at most is `left = slope ahead + offset`,
-//! with its +1 side to the left. In the plane of (slope, offset) a position is a straight line, which parts the lines
-//! that pass below it from those that pass above. So a patch that positions bound is a convex polygon. The measure
-//! of lines, d(angle) d(distance), is `(1 + slope^2)^(-3/2)` there.
+//! Take a line that leans by an eighth turn at most, seen along an axis or against it, with its +1 side to the left.
+//! Its equation is `left = slope ahead + offset`. In the plane of (slope, offset) a position is a straight line. It
+//! separates the lines that pass below the position from those that pass above. So a patch bounded by positions is a
+//! convex polygon. The measure of lines, d(angle) d(distance), has the density `(1 + slope^2)^(-3/2)` there.
 
 use nalgebra::{Point2, Vector2};
 

@@ -1,4 +1,4 @@
-//! What samples determine that were recorded elsewhere, by any means; as a record.
+//! What samples recorded elsewhere determine, by any means; as a record.
 
 use std::path::Path;
 

@@ -12,11 +12,11 @@ use crate::replay::delimiter::Delimiter;
 pub struct Layout {
     /// Its columns.
     pub columns: Option<Columns>,
-    /// What is between them.
+    /// The delimiter between them.
     pub delimiter: Option<Delimiter>,
-    /// The place that positions are taken about.
+    /// The place that becomes the origin of positions.
     pub origin: Option<[f64; 2]>,
-    /// The system of coordinates that metres are of.
+    /// The coordinate system of positions in metres.
     pub crs: Option<Crs>,
     /// Labels are measured values: above this they are +1.
     pub threshold: Option<f64>,

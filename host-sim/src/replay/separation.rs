@@ -101,8 +101,8 @@ fn first_inseparable(samples: &[Sample], rows: &[Row]) -> usize {
     separable
 }
 
-/// Turns a cycle of rows to the order in which `VersionSpace` has it, so that sums over it come out the same
-/// to the last bit: it begins with a triangle, and each sample that cuts it becomes the last.
+/// Puts a cycle of rows into the order of `VersionSpace`, so that sums over it are the same to the last bit. That order
+/// begins with a triangle, and each sample that cuts it becomes the last.
 fn in_sequence(samples: &[Sample], mut cycle: Vec<Row>) -> Vec<Sample> {
     let site = |index: usize| samples[index].site;
     let b = (0..samples.len()).find(|b| site(*b) != site(0)).unwrap_or_default();

@@ -1,15 +1,16 @@
 //! The lines that agree with a record whose positions may each be off by a tolerance, however many rows it has.
 //!
-//! A line agrees with a label if some place within the tolerance of the position has it. So of all lines with a unit
-//! normal `n`, those `n . q = r` are left for which
+//! A line agrees with a label if the label is true at some place within the tolerance of the position. So of all lines
+//! with a unit normal `n`, those `n . q = r` remain for which
 //!
 //! ```text
 //! max over -1 of n . q  -  tolerance  <=  r  <=  min over +1 of n . q  +  tolerance
 //! ```
 //!
-//! Between which two samples that is stays the same over a stretch of directions: the two are a corner of the polygon
-//! of differences (`Facing`), and the stretch lies between the normals of the corner's edges. Unlike what a planner
-//! does on its way, this does not depend on the order of the rows, and cuts off no more than it must.
+//! The two samples that attain these bounds stay the same over a stretch of directions. They form a corner of the
+//! polygon of differences (`Facing`), and the stretch lies between the normals of the corner's edges. A planner takes
+//! samples one by one, and its result depends on their order. This one does not, and it cuts off no more lines than it
+//! must.
 
 use std::f64::consts::{PI, TAU};
 

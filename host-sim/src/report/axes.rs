@@ -80,7 +80,7 @@ impl Axes {
         Spot::new(self.x.at(point.x), self.z.at(point.y))
     }
 
-    /// What is between them.
+    /// The rectangle between the axes.
     pub(crate) fn frame(&self) -> Frame {
         let ([left, right], [bottom, top]) = (self.x.pixels, self.z.pixels);
         Frame::between(Spot::new(left, top), Spot::new(right, bottom))

@@ -1,9 +1,10 @@
-//! How likely the line is to pass where: nested bands of ground, from the hypotheses of the credible set.
+//! Where the line is likely to pass: nested bands of ground, from the hypotheses of the credible set.
 //!
-//! All lines of the set have directions within less than half a turn, so a column across the middle one meets each
-//! line once. On a column the lines of a hypothesis fill an interval between two of its bounds. So the places of a
-//! column that lines of so much probability pass are intervals too, by a sum over sorted ends; and from one column to
-//! the next they join to polygons. Columns stand at every sample, where a hypothesis's ends turn, and closely between.
+//! The directions of all lines of the set lie within less than half a turn. So a column across the middle direction
+//! meets each line once. On a column the lines of a hypothesis fill an interval between two of its bounds. The places
+//! of a column through which lines of a given probability pass are intervals too, found by a sum over sorted ends. From
+//! one column to the next the intervals join to polygons. Columns stand at every sample, where a hypothesis's ends
+//! turn, and closely between.
 
 use nalgebra::{Point2, Vector2};
 use planner_core::belief::posterior::Posterior;
@@ -15,7 +16,7 @@ use crate::mission::definition::Table;
 use crate::mission::read_out::LEVEL;
 use crate::world::polygon::Polygon;
 
-/// Where bands begin: the least probability that lines pass a place of each. What is below the first is blank.
+/// The thresholds of the bands: the least probability that lines pass a place of each. Ground below the first is blank.
 pub const LEAST: [f64; 5] = [0.01, 0.2, 0.4, 0.6, 0.8];
 
 /// The share of the area from which on a band is worth its shade.

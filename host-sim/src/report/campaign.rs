@@ -79,7 +79,7 @@ fn counts<K: Display>(counts: &BTreeMap<K, u64>) -> String {
     if each.is_empty() { "none".into() } else { each.join(", ") }
 }
 
-/// What labels that may err tell, and whether what is stated holds.
+/// The information of labels that may be wrong, and whether statements hold.
 pub fn calibration(summary: &calibration::Summary) -> String {
     let calibration::Summary { title, limit, rows, .. } = summary;
     let mut table = Table::new([

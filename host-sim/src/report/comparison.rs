@@ -76,7 +76,7 @@ fn small(error: f64) -> String {
     if error < 0.001 { format!("{error:.1e}") } else { format!("{error:.4}") }
 }
 
-/// Those of the stages that were flown; else the last that was.
+/// The usual stages that were flown, or else the last one flown.
 fn stages(flown: impl Iterator<Item = u32> + Clone) -> Vec<u32> {
     let stages: Vec<_> = flown.clone().filter(|stage| STAGES.contains(stage)).collect();
     if stages.is_empty() { flown.last().into_iter().collect() } else { stages }

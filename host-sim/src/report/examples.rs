@@ -21,7 +21,7 @@ pub struct Flown<'a> {
     pub recording: &'a Recording,
 }
 
-/// What all flights came to, those of an example together.
+/// The results of all flights, grouped by example.
 pub fn side_by_side<'a>(flights: impl Iterator<Item = Flown<'a>>) -> String {
     let mut table = Table::new([
         Column::left("Side by side", 26),

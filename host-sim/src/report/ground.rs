@@ -1,4 +1,4 @@
-//! What is known of the ground, as shapes: what is certain, and how likely the line is to pass elsewhere.
+//! The knowledge of the ground, as shapes: certain ground, and how likely the line is to pass elsewhere.
 
 use planner_core::belief::sample::{Label, Sample};
 use planner_core::link::message::MissionArea;

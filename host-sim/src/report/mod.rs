@@ -1,5 +1,4 @@
-//! What is told of a mission: text for people, a trace for programs, a figure to look at,
-//! a page to step through.
+//! Reports on a mission: text for people, a trace for programs, a figure to look at, and a page to step through.
 
 mod axes;
 pub mod bands;

@@ -1,5 +1,5 @@
-//! The numbers of steps beside where these ended. Where it is too tight a number is left out, but for the first, the
-//! last and every fifth: these stand further away, and a thin line leads to them.
+//! The numbers of steps, placed beside the steps' ends. Where there is too little space a number is left out. The
+//! first, the last and every fifth are always shown: they stand further away, and a thin line leads to them.
 
 use nalgebra::Vector2;
 

@@ -1,5 +1,5 @@
-//! The paper's figures, drawn again from what is computed here: its own pictures are lost, but their captions and what
-//! the text says of them are not.
+//! The paper's figures, drawn again from what is computed here. Its own pictures are lost, but their captions and the
+//! text about them are not.
 
 use anyhow::{Context as _, Result, bail};
 use nalgebra::{Point2, Vector2};

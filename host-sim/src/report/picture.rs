@@ -1,4 +1,4 @@
-//! What a figure shows: plain data, made of a mission's results and of what is known in the end.
+//! The content of a figure: plain data, made from a mission's results and the final knowledge.
 
 use nalgebra::{Point2, Rotation2, Vector2};
 use planner_core::belief::estimate;
@@ -79,7 +79,7 @@ pub struct Named {
     pub beside: Option<String>,
 }
 
-/// What a line is, for its colour.
+/// The kind of a line, for its colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// The estimate that is recommended.
@@ -165,8 +165,8 @@ impl Picture {
         self
     }
 
-    /// The lines that violate the fewest labels of a noisy mission, with their counts of violations,
-    /// and of the one among them that a plain maximum margin would choose.
+    /// The lines that violate the fewest labels of a noisy mission, with their numbers of violations. The first is the
+    /// one that a plain maximum margin would choose.
     pub fn of_candidates(title: &str, recording: &Recording) -> Option<Self> {
         const KINDS: [Kind; 3] = [Kind::MaximumMargin, Kind::SecondBest, Kind::ThirdBest];
         let table = recording.belief.hypotheses()?;
@@ -201,7 +201,7 @@ impl Picture {
     }
 }
 
-/// What a figure of a mission shows, in a line.
+/// The caption of a mission's figure, in one line.
 fn note(Recording { mission, results, .. }: &Recording) -> String {
     let labels = if mission.noise.is_some() { ", labels may be wrong" } else { "" };
     let (steps, planner) = (results.steps.len(), mission.algorithm.title());

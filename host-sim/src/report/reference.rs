@@ -61,7 +61,7 @@ fn steps(steps: &[StepResult]) -> String {
     table.to_string()
 }
 
-/// What each pays.
+/// The cost of each.
 fn table(accounts: &[Account]) -> String {
     let mut table = Table::new([
         Column::left("", 18),
@@ -91,7 +91,7 @@ fn table(accounts: &[Account]) -> String {
     table.to_string()
 }
 
-/// What the constraints are that were broken.
+/// The constraints that were broken.
 fn broken(accounts: &[Account]) -> String {
     let mut text = String::new();
     for account in accounts {

@@ -18,7 +18,7 @@ pub(crate) enum Anchor {
     End,
 }
 
-/// How wide a text is at most, as the widest of usual fonts without serifs have it.
+/// The greatest width of a text, in the widest of the usual fonts without serifs.
 pub(crate) fn width(words: &str, size: f64) -> f64 {
     let wide = |c: char| match c {
         'i' | 'l' | 'j' | '.' | ',' | ':' | ';' | '\'' | '|' | '(' | ')' | 'I' => 0.36,

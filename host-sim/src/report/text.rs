@@ -48,10 +48,10 @@ pub fn line(line: &LineRecord) -> String {
 
 const BISECTOR: &str = "bisector (the paper's)";
 
-/// What the estimates are called that follow from all labels being true.
+/// The names of the estimates that assume all labels to be true.
 pub const NAMES: [&str; 3] = ["centre of the version space", "maximum margin", BISECTOR];
 
-/// What they are called where labels may err.
+/// Their names where labels may err.
 const NOISY_NAMES: [&str; 3] = ["posterior mean", "margin of the likeliest", BISECTOR];
 
 /// The estimates with these names, the recommended one first.
@@ -95,7 +95,7 @@ pub fn printed(title: &str, results: &Results) -> String {
     story(title, results) + "\n" + by_its_prior + &end(results, &printed_estimates(results))
 }
 
-/// What a mission came to, without its steps.
+/// The results of a mission, without its steps.
 pub fn outcome_alone(title: &str, results: &Results) -> String {
     format!("{title}\n{}", end(results, &estimates(results)))
 }
@@ -152,7 +152,7 @@ pub(crate) fn why(reason: &str) -> &str {
     }
 }
 
-/// What a person can change so that a mission goes further, if it ended before its steps.
+/// Advice on what to change so that a mission goes further, if it ended before its steps.
 fn remedy(results: &Results) -> Option<&'static str> {
     let is_unmet = results.end.goal.as_ref().is_some_and(|goal| !goal.is_met);
     Some(match results.end.reason {
@@ -171,7 +171,7 @@ fn remedy(results: &Results) -> Option<&'static str> {
     })
 }
 
-/// What is known for sure, or as surely as was asked.
+/// The knowledge that is certain, or as certain as was asked.
 pub(crate) fn promise(goal: &GoalRecord) -> String {
     let &GoalRecord { slope_arc_deg, misclassified, level, is_met } = goal;
     let sure = level.map_or(String::new(), |level| format!(" with probability {level} at least"));

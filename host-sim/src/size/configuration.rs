@@ -1,4 +1,4 @@
-//! A planner that is asked about, and the programs that were measured.
+//! The configuration of a planner that is asked about, and the programs that were measured.
 
 use std::fmt;
 

@@ -1,7 +1,7 @@
 //! The committed measurements, and which of them bound a configuration from above.
 //!
-//! Programs were measured with room for so much; a configuration gets the figures of the smallest program that has
-//! room for it. So no figure is estimated, and each is an upper bound of what a program made to measure takes.
+//! Each measured program has a certain capacity. A configuration gets the figures of the smallest program with enough
+//! capacity. So no figure is estimated, and each is an upper bound on what a program made to measure needs.
 
 use anyhow::{Context as _, Result, bail};
 use serde::Serialize;
@@ -9,10 +9,10 @@ use toml::Table;
 
 use crate::size::configuration::{Configuration, PROGRAMS, Planner, Program};
 
-/// What `cargo test -p tests --test budgets` holds the code to.
+/// The figures to which `cargo test -p tests --test budgets` holds the code.
 const BUDGETS: &str = include_str!("../../../tests/budgets.toml");
 
-/// What `--test cores` holds it to on the others.
+/// The figures to which `--test cores` holds it on the other cores.
 const CORES: &str = include_str!("../../../tests/cores.toml");
 
 /// A core that was measured.

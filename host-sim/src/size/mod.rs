@@ -1,4 +1,4 @@
-//! What a planner takes of a chip, from what was measured and committed.
+//! The flash, RAM and time that a planner needs on a chip, from committed measurements.
 
 pub mod configuration;
 pub mod measurements;

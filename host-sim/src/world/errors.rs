@@ -1,4 +1,5 @@
-//! A robot that errs: its motions end elsewhere than they should, and it is elsewhere than it says.
+//! A robot that errs: its motions end elsewhere than they should, and its true position differs from the one it
+//! reports.
 
 use std::convert::Infallible;
 
@@ -50,8 +51,8 @@ impl Erring {
 impl Body for Erring {
     type Error = Infallible;
 
-    /// Turns and drives from where it truly is by as much as the motion does from where it is taken to be, and by
-    /// its errors.
+    /// Turns and drives from the true pose. The turn and the length are those of the motion from the assumed pose, plus
+    /// the robot's errors.
     fn perform(&mut self, motion: &Motion, pose: &mut Pose) -> Result<Option<Reading>, Infallible> {
         let Self { errors, truth, .. } = *self;
         let turn = Heading(motion.target.heading.0.wrapping_sub(pose.heading.0)).radians();

@@ -1,5 +1,5 @@
-//! What is really there: what a place reads, and the line that divides the plane, if one does; robots
-//! that move and sense in it; shapes in metres.
+//! The real world of a simulation: what a place reads, and the line that divides the plane, if one does; robots that
+//! move and sense in it; shapes in metres.
 
 pub mod errors;
 pub mod noise;
@@ -12,7 +12,7 @@ use planner_core::belief::sample::{Label, Reading};
 use planner_core::geometry::lattice::Site;
 use planner_core::geometry::line::Line;
 
-/// What is really there: a straight boundary, if it is known. A real vehicle's is not.
+/// The real world: a straight boundary, if it is known. A real vehicle's is not.
 #[derive(Clone, Copy, Debug)]
 pub struct World {
     boundary: Option<Line>,
@@ -37,7 +37,7 @@ impl World {
         self.boundary.map_or(f64::NAN, |line| line.distance(Point2::from(site)))
     }
 
-    /// What a perfect sensor reads at a site: of a world that is not known, neither side.
+    /// The reading of a perfect sensor at a site: neither side if the world is not known.
     pub fn reading(&self, site: Site) -> Reading {
         side(self.distance(site))
     }
@@ -53,7 +53,7 @@ impl World {
     }
 }
 
-/// What a perfect sensor reads at a site if a line divides the plane.
+/// The reading of a perfect sensor at a site if a line divides the plane.
 pub fn reading(line: &Line, site: Site) -> Reading {
     side(line.distance(Point2::from(site)))
 }

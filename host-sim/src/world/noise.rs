@@ -34,7 +34,7 @@ pub enum Extent {
 }
 
 impl NoiseModel {
-    /// What a planner is told of it: of a band it can know `p` alone.
+    /// The noise as a planner is told of it: for a band, the planner can know only `p`.
     ///
     /// # Panics
     /// Never: a model holds a probability and a radius within the lattice.

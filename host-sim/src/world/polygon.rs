@@ -83,11 +83,11 @@ impl Polygon {
         lines.fold(self, |ground, line| ground.clip(&line, 1.0))
     }
 
-    /// The part of an area to which all lines give a label that some samples bound. `support` has these in
-    /// cyclic order; all of them lie in the area.
+    /// The part of an area to which all lines give `label`. The samples of `support`, in cyclic order, bound these
+    /// lines; all of them lie in the area.
     ///
-    /// It lies beyond the two lines that pass between the labels, and beyond the samples of the label, which
-    /// cut off the corner where the two lines cross.
+    /// This part lies beyond the two lines that pass between the labels. It also lies beyond the samples of the label,
+    /// which cut off the corner where the two lines cross.
     pub fn certain(area: impl Into<Self>, support: &[Sample], label: Label) -> Self {
         let next = support.iter().cycle().skip(1);
         let sides = support.iter().zip(next).filter(|(p, q)| p.label != q.label);

@@ -1,4 +1,4 @@
-//! What makes the tool pleasant: a scenario to begin with, completions, help with examples, more or less to read.
+//! Conveniences of the tool: a scenario to begin with, completions, help with examples, more or less to read.
 
 use std::fs;
 use std::process::Command;

@@ -1,4 +1,4 @@
-//! Rows of campaigns that somebody has changed, or that another build has flown: none is believed.
+//! Rows of campaigns that somebody has changed, or that another build has flown: none is accepted.
 
 use std::fs;
 use std::path::Path;

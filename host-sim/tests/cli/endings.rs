@@ -1,4 +1,4 @@
-//! The ending of an output's name says what is in it, or nothing.
+//! The ending of an output's name must match the output's format, or promise no format.
 #![cfg(unix)]
 
 use std::fs;

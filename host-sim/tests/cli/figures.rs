@@ -1,4 +1,5 @@
-//! Figures: what is drawn is named and named what is drawn, nothing lies outside, no two numbers overlap.
+//! Figures: everything drawn is named in the legend and everything named is drawn, nothing lies outside, and no two
+//! numbers overlap.
 
 use std::collections::BTreeSet;
 use std::fs;

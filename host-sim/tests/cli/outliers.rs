@@ -1,4 +1,4 @@
-//! `replay` of true labels that no line separates: the row that is to blame, where one is.
+//! `replay` of true labels that no line separates: the row that is to blame, if there is one.
 
 use std::fmt::Write as _;
 use std::fs;

@@ -1,5 +1,5 @@
-//! Campaigns and missions of a board that were stopped go on where they were, and what comes out is what it would have
-//! been.
+//! Campaigns and missions of a board that were stopped continue where they were. The output equals that of an
+//! uninterrupted run.
 
 use std::fs;
 use std::path::Path;
@@ -42,8 +42,8 @@ fn kill_early(folder: &Path, args: &[&str]) {
     assert!(!folder.join(ROWS).exists(), "{ROWS} is not whole");
 }
 
-/// A campaign that was killed, and one whose rows end at whatever byte, goes on to the rows, the table and the record
-/// of one that was not stopped.
+/// A campaign that was killed, or whose rows end at any byte, can be continued. It then gives the rows, the table and
+/// the record of one that was not stopped.
 fn goes_on(flags: &[&str]) {
     let whole = folder();
     let table = prints(whole.path(), &campaign(flags, &[]));

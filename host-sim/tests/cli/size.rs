@@ -1,4 +1,4 @@
-//! `size`: what a planner takes of a chip, from the committed measurements.
+//! `size`: the flash, RAM and time of a planner on a chip, from the committed measurements.
 
 use crate::{folder, prints, refuses};
 

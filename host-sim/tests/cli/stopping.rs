@@ -1,4 +1,4 @@
-//! Missions that end when enough is known, and what they promise; whose defaults a file has.
+//! Missions that end when enough is known, their promises, and the defaults that a file has.
 
 use std::fs;
 

@@ -1,4 +1,4 @@
-//! Missions whose positions err by so much that no label tells more end, and say what to change.
+//! Missions whose position errors are so large that no label tells more: they end, and say what to change.
 
 use std::fs;
 

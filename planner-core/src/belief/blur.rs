@@ -1,17 +1,20 @@
-//! How likely the lines of a hypothesis explain a label whose position errs: in integers and tables, as a table of
-//! hypotheses asks some thousand times a label, also where floating point is software.
+//! The likelihood of a label whose position errs, averaged over the lines of a hypothesis.
 //!
-//! Let the reported position lie `s` on a line's +1 side, and its error have the standard deviation `sigma`. The
-//! true position is on the +1 side with probability `Phi(s / sigma)`. The tolerance is three `sigma`. A logistic
-//! curve stands for the normal one, to 0.01. To base two it is `1 / (1 + 2^-x)`, and its integral
-//! `x + g(x)` with `g(x) = log2(1 + 2^-x)`.
+//! A table of hypotheses needs this value some thousand times for each label, also on chips without floating-point
+//! hardware. So it is computed from integers and tables.
 //!
-//! The lines of a hypothesis lie between its vertices, whose distances from the position are exact before they are
-//! rounded. The distances of all lines are taken to spread evenly about the mean of the vertices', as far as to the
-//! nearer of the extremes. Against the likelihood itself the shares that follow are off by 0.0024 on average
-//! (`cargo test -p tests --test tolerance`).
+//! Let the reported position lie `s` on a line's +1 side, and let its error have the standard deviation `sigma`. The
+//! true position is then on the +1 side with probability `Phi(s / sigma)`. The tolerance is three `sigma`. A logistic
+//! curve approximates the normal one to 0.01. To base two it is `1 / (1 + 2^-x)`, and its integral is `x + g(x)` with
+//! `g(x) = log2(1 + 2^-x)`.
 //!
-//! All is the same on every machine: what is not an integer is a sum, product or quotient in single precision.
+//! The lines of a hypothesis lie between its vertices. The distances of the vertices from the position are exact before
+//! they are rounded. The distances of all lines are assumed to spread evenly about the mean of the vertices' distances.
+//! They spread as far as the nearer of the two extremes. The shares that follow differ from the likelihood itself by
+//! 0.0024 on average (`cargo test -p tests --test tolerance`).
+//!
+//! The results are the same on every machine. Whatever is not an integer is a sum, product or quotient in single
+//! precision.
 
 use heapless::Vec;
 
@@ -26,11 +29,11 @@ use crate::geometry::line::Bound;
 /// The unit of arguments of the curve, and of its integral.
 const ONE: i32 = 1 << 16;
 
-/// Arguments beyond this are taken for it: the curve is there within 2^-64 of its end.
+/// Larger arguments are clamped to this value, where the curve is within 2^-64 of its limit.
 const BEYOND: i32 = 64 * ONE;
 
-/// `2^-f` for `f` from 0 to 1 in 32 parts, in units of 2^-16. Between entries it is taken for a straight line: to
-/// 6 10^-5 of it.
+/// `2^-f` for `f` from 0 to 1 in 32 parts, in units of 2^-16. Linear interpolation between entries has a relative error
+/// of 6 10^-5.
 #[expect(clippy::indexing_slicing, reason = "an error is one of compilation")]
 const POWERS: [u32; 33] = {
     let mut table = [0; 33];
@@ -244,8 +247,8 @@ impl<const E: usize> Blur<E> {
         Self { rulers }
     }
 
-    /// The chances that the true position is on the +1 side and on the -1 side where a site is reported, on average
-    /// over the lines.
+    /// The probabilities that the true position is on the +1 side and on the -1 side if `site` is reported. Both are
+    /// averages over the lines.
     pub(crate) fn sides(&self, site: Site, scale: Scale) -> [f32; 2] {
         let (mut least, mut most, mut sum) = (i32::MAX, i32::MIN, 0_i64);
         for ruler in &self.rulers {
@@ -263,14 +266,14 @@ impl<const E: usize> Blur<E> {
         if mean < 0 { [smaller, 1.0 - smaller] } else { [1.0 - smaller, smaller] }
     }
 
-    /// What some labels make the lines weigh.
+    /// The weight that some labels give the lines.
     pub(crate) fn told(&self, labels: &[Doubt]) -> LogWeight {
         let told = |doubt: &Doubt| doubt.among(self.sides(doubt.site, doubt.scale));
         labels.iter().map(told).fold(LogWeight::ZERO, core::ops::Add::add)
     }
 }
 
-/// What makes a distance an argument of the curve.
+/// Converts a distance into an argument of the curve.
 #[derive(Clone, Copy)]
 pub(crate) struct Scale {
     factor: u32,
@@ -280,7 +283,8 @@ pub(crate) struct Scale {
 impl Scale {
     pub(crate) const NONE: Self = Self { factor: 0, shift: 0 };
 
-    /// By a tolerance. One of a lattice unit at least: where positions do not err the curve is as good as a step.
+    /// The scale of a tolerance, which counts as one lattice unit at least. Where positions do not err, the curve is as
+    /// good as a step.
     pub(crate) fn by(tolerance: Tolerance) -> Self {
         // Of the logistic curve `3 * 1.702 / tolerance`, to base two.
         const FACTOR: u32 = 482_764;
@@ -302,7 +306,7 @@ impl Scale {
 pub(crate) struct Doubt {
     site: Site,
     scale: Scale,
-    /// What lines weigh that have the true position on the +1 side, and on the other.
+    /// The weights of lines that have the true position on the +1 side, and of the others.
     weights: [f32; 2],
 }
 
@@ -321,8 +325,8 @@ impl Doubt {
         Self { site, scale: Scale::by(tolerance), weights }
     }
 
-    /// What lines weigh that have the true position on the +1 side and on the other with these chances, relative to
-    /// the likelier label.
+    /// The weight of lines that have the true position on the +1 side and on the other with these probabilities. It is
+    /// relative to the likelier label.
     fn among(&self, [above, below]: [f32; 2]) -> LogWeight {
         let [if_above, if_below] = self.weights;
         logarithm(above * if_above + below * if_below)

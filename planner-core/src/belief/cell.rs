@@ -1,12 +1,12 @@
-//! A cell of lines: a cyclic list of signed sample indices, one byte each.
+//! A cell of lines, stored as a cyclic list of signed sample indices of one byte each.
 //!
-//! In the space of homogeneous lines `(A, B, C)` a sample `(x, z)` with label `y` admits the
-//! half-space `y (A x + B z + C) >= 0`. The lines that agree with a set of samples are a convex
-//! cone; seen as a polygon, each *edge* belongs to a sample that still matters and each *vertex*,
-//! between two edges, is the line through their two samples: a [`Bound`](crate::geometry::line::Bound). So a list of samples says
-//! it all, and one predicate, [`Bound::at`](crate::geometry::line::Bound::at), decides every question about it.
+//! In the space of homogeneous lines `(A, B, C)` a sample `(x, z)` with label `y` admits the half-space
+//! `y (A x + B z + C) >= 0`. So the lines that agree with a set of samples form a convex cone. Seen as a polygon, each
+//! *edge* of the cone belongs to a sample that still matters. Each *vertex*, between two edges, is the line through
+//! their two samples: a [`Bound`](crate::geometry::line::Bound). The list of samples therefore describes the whole
+//! cell, and one predicate, [`Bound::at`](crate::geometry::line::Bound::at), decides every question about it.
 //!
-//! A cell does not hold the samples: several cells can share one buffer of sites.
+//! A cell does not contain the samples, so several cells can share one buffer of them.
 
 use crate::belief::consistent_lines::{ConsistentLines, Kept, run_length};
 use crate::belief::edge::Edge;

@@ -1,9 +1,11 @@
 //! The lines of one direction, as a distribution over their offsets.
 //!
-//! Each sample is a threshold: of these lines those at smaller offsets have it on their +1 side. So the density
-//! is constant between neighbouring thresholds, and to cross one multiplies it by the odds of the label
-//! there, or ends it where the label is certain. What is kept are knots on the cumulative mass, straight
-//! lines between them: all there are, or of more than there is room for those that part the most mass.
+//! Each sample is a threshold: the lines at smaller offsets have it on their +1 side. So the density is constant
+//! between neighbouring thresholds. At a threshold it is multiplied by the odds of the label there, or ends if the
+//! label is certain.
+//!
+//! A column stores knots on the cumulative mass, with straight lines between them. It stores every knot if there is
+//! room, and otherwise the knots that separate the most mass.
 
 use core::mem::{swap, take};
 
@@ -14,8 +16,8 @@ use crate::belief::weight::LogWeight;
 use crate::geometry::heading::SinCos;
 use crate::geometry::lattice::Vector;
 
-/// By what a label multiplies the density of lines where the offset passes its site: a natural logarithm in
-/// units of 2^-16, cut to what single precision can tell, so that 128 of them add up without overflow.
+/// The factor by which a label multiplies the density of lines where the offset passes its site. It is a natural
+/// logarithm in units of 2^-16. It is limited to the range of single precision, so 128 steps add up without overflow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Step(i32);
 
@@ -128,11 +130,11 @@ impl Column {
         low.below + part * (high.below - low.below)
     }
 
-    /// Makes it that of a direction's lines. The thresholds may come in any order and are left in that of
-    /// their offsets, which is nearly that of a direction close by.
+    /// Computes the column of a direction. The thresholds may come in any order. They are left sorted by offset, which
+    /// is nearly the order for a direction close by.
     ///
-    /// Returns the logarithm of what the unit of its mass is, on a scale for all directions; `None` when there
-    /// is no line.
+    /// Returns the logarithm of the unit of its mass, on a scale common to all directions; `None` when there is no
+    /// line.
     pub(crate) fn lay<const S: usize>(
         &mut self,
         direction: SinCos,
@@ -173,8 +175,8 @@ impl Column {
     }
 
     #[inline(never)] // or it is unrolled for each
-    /// Keeps those between pieces that together hold more than a mass. Whether one place was left, for what
-    /// is beyond.
+    /// Keeps knots so that the pieces between them hold more than `least` mass each. Returns whether one place was left
+    /// for the knot beyond all offsets.
     fn keep_between(&mut self, knots: &[Knot], least: f32) -> bool {
         let Some((&first, others)) = knots.split_first() else { return false };
         let (mut kept, mut last) = (first, first);
@@ -192,8 +194,8 @@ impl Column {
     }
 }
 
-/// Adds knots where lines begin, at each threshold inside, and where they end. The density begins with a
-/// logarithm; it is 1 where it is the most.
+/// Adds knots where lines begin, at each threshold inside, and where they end. `log` is the density's logarithm at the
+/// beginning; the density is 1 at its maximum.
 fn pile_up<const S: usize>(
     knots: &mut List<Knot, S>,
     mut log: i32,

@@ -1,19 +1,24 @@
-//! The distribution over lines as columns: what labels would say, told quickly, to look ahead by.
+//! A fast, approximate distribution over lines, used to predict what the next labels would say.
 //!
-//! `K` directions stand for all. Lines of one direction differ by their offset alone, and their distribution over it
-//! is all but exact: a column. The share of the lines that have a place on their +1 side is what lies below that
-//! place in each column. After one more label, which is not taken yet, it is a sum over the same columns
-//! ([`After`]), so looking two labels ahead copies nothing.
+//! `K` directions represent all lines. Lines of one direction differ only in their offset, and a column stores their
+//! distribution over the offset almost exactly. The share of the lines that have a place on their +1 side is the mass
+//! below that place, summed over the columns. The share after one more label, which is not taken yet, is a sum over the
+//! same columns ([`After`]). So looking two labels ahead copies nothing.
 //!
-//! The columns are laid anew from the samples and from a table of hypotheses, in directions where its lines lie:
-//! they follow what is known however much it narrows, and no error stays. The table is exact and slow; this is
-//! for predictions.
+//! The columns are rebuilt from the samples and from a table of hypotheses, in directions in which the table's lines
+//! lie. So they follow the distribution however narrow it becomes, and errors do not accumulate. The table is exact and
+//! slow; the columns are for predictions.
 //!
-//! Over missions of up to 30 labels that are true with a probability from 0.6 to 0.9999, at places where the share
-//! is from 0.1 to 0.9, 16 directions tell it to 0.007 on average, 24 to 0.005 and 32 to 0.004; the worst seen are
-//! 0.08, 0.06 and 0.04 off (`cargo test -p tests --test columns --features long`).
+//! The errors of the share were measured over missions of up to 30 labels, true with a probability from 0.6 to 0.9999.
+//! The places are those where the share is from 0.1 to 0.9 (`cargo test -p tests --test columns --features long`):
 //!
-//! It is by the area prior, uniform over lines, whatever the table's prior is.
+//! | directions | mean error | worst error seen |
+//! | --- | --- | --- |
+//! | 16 | 0.007 | 0.08 |
+//! | 24 | 0.005 | 0.06 |
+//! | 32 | 0.004 | 0.04 |
+//!
+//! The columns use the area prior, uniform over lines, whatever the table's prior is.
 
 use crate::belief::column::{Column, Step, Threshold, exp};
 use crate::belief::directions::{Direction, directions};
@@ -23,8 +28,8 @@ use crate::belief::noise::Reliability;
 use crate::belief::sample::{Label, Sample};
 use crate::geometry::lattice::{Site, Vector};
 
-/// A column weighs so many times the mean, at most. One direction in some thousand meets a thin hypothesis by
-/// chance and would stand for much more than that: truncated importance sampling.
+/// A column's mass is limited to this many times the mean (truncated importance sampling). One direction in some
+/// thousand meets a thin hypothesis by chance and would otherwise represent much more than that.
 const MOST: f32 = 3.0;
 
 /// The lines of `K` directions. `136 K` bytes and 12: 2.2 kB for 16 directions.
@@ -42,8 +47,8 @@ impl<const K: usize> Columns<K> {
         Self { view: View { from: Site::ORIGIN, shift: 0 }, lines: [Column::NONE; K] }
     };
 
-    /// Lays the columns by the given samples of a table and the labels that it has taken in since, each of which is
-    /// believed so far, in directions of the lines that it leaves.
+    /// Computes the columns from the given samples of a table and the labels that it has taken in since. `believed`
+    /// contains the reliability of each label. The directions are those of the table's lines.
     ///
     /// `O(H + K S)`: some 150,000 instructions for 30 labels and 16 directions.
     pub fn lay<const N: usize, const H: usize, const E: usize>(
@@ -69,7 +74,7 @@ impl<const K: usize> Columns<K> {
         cut(&mut self.lines);
     }
 
-    /// The lines that have a site on their +1 side: their mass in each column. All lines have 1.
+    /// The mass of the lines in each column that have a site on their +1 side. All lines together have mass 1.
     pub fn heights(&self, site: Site) -> [f32; K] {
         let place = self.view.vector(site);
         self.lines.each_ref().map(|column| column.mass_above(place))
@@ -83,8 +88,9 @@ impl<const K: usize> Columns<K> {
         self.lines.iter().map(|column| column.mass_above(place)).sum()
     }
 
-    /// What will be known when a label is read at the site whose [`heights`](Self::heights) these are, where
-    /// labels are true with probability `p`. One that hardly can be read tells nothing, for want of digits.
+    /// The columns after a label is read at the site whose [`heights`](Self::heights) these are. Labels there are true
+    /// with probability `p`. A label that is almost impossible changes nothing, as single precision has no digits left
+    /// for it.
     pub fn after(&self, heights: [f32; K], label: Label, p: f32) -> After<'_, K> {
         let above: f32 = heights.iter().sum();
         let (plus, minus) = match label {
@@ -104,15 +110,15 @@ pub struct After<'a, const K: usize> {
     columns: &'a Columns<K>,
     /// Of its site.
     heights: [f32; K],
-    /// What the lines weigh that have its site on their +1 side.
+    /// The weight of the lines that have its site on their +1 side.
     plus: f32,
-    /// What the others weigh.
+    /// The weight of the others.
     minus: f32,
 }
 
 impl<const K: usize> After<'_, K> {
-    /// The share of the lines that will have another site on their +1 side. Of the lines of one direction
-    /// those that have both there are those that have the lower one.
+    /// The share of the lines that will have another site on their +1 side. Of the lines of one direction, those that
+    /// have both sites there are those that have the lower one there.
     pub fn share_above(&self, site: Site) -> f32 {
         let place = self.columns.view.vector(site);
         let (mut above, mut above_both) = (0.0, 0.0);
@@ -125,8 +131,8 @@ impl<const K: usize> After<'_, K> {
     }
 }
 
-/// Lays a column for each direction and makes them comparable. Each stands for an equal part of the density that
-/// its direction was drawn from, so it weighs as much more as there truly is in that direction.
+/// Computes a column for each direction and makes the columns comparable. Each represents an equal part of the density
+/// from which its direction was drawn. So its true mass is divided by that density.
 #[inline(never)] // and with slices, or loops are unrolled for their number
 fn lay_each<const N: usize>(
     columns: &mut [Column],
@@ -160,8 +166,8 @@ fn cut(columns: &mut [Column]) {
     }
 }
 
-/// Where sites lie as seen from the latest sample, which is near the line: in as fine units as fit, so that
-/// products keep all digits.
+/// Sites relative to the latest sample, which is near the line. The units are as fine as fit, so that products keep all
+/// digits.
 #[derive(Clone, Copy, Debug)]
 struct View {
     from: Site,

@@ -1,5 +1,6 @@
-//! The lines that agree with some samples: the edges of a cell beside the samples they name, and what can
-//! be read off the two.
+//! The lines that agree with some samples, and what can be read off them.
+//!
+//! A set of lines is the edges of a cell together with the samples that the edges name.
 
 use crate::belief::edge::Edge;
 use crate::belief::sample::{Label, Sample};
@@ -34,7 +35,7 @@ impl Certainty {
     }
 }
 
-/// How many edges there are from one to another in cyclic order, both included, of so many.
+/// The number of edges from one to another in cyclic order, both included; `all` is the number of edges.
 pub(crate) const fn run_length(first: usize, last: usize, all: usize) -> usize {
     if first <= last { last - first + 1 } else { last + all - first + 1 }
 }
@@ -67,8 +68,8 @@ pub struct ConsistentLines<'a> {
     pub edges: &'a [Edge],
     /// The buffer whose indices the edges are.
     pub samples: &'a [Sample],
-    /// By how much a further sample of label +1 is shifted as it is taken in, and one of label -1 the other
-    /// way: see [`Tolerance`](crate::belief::tolerance::Tolerance).
+    /// The displacement by which a further sample of label +1 is shifted when it is taken in. A sample of label -1 is
+    /// shifted the opposite way: see [`Tolerance`](crate::belief::tolerance::Tolerance).
     pub shift: Vector,
     /// Whether a place is worth asking where one label alone could cut.
     pub is_loose: bool,
@@ -100,8 +101,8 @@ impl<'a> ConsistentLines<'a> {
         Self { is_loose: true, ..self }
     }
 
-    /// Whether a label read at a position is worth it: not all lines agree there, nor do they where it would be taken
-    /// in, whichever it is.
+    /// Whether a label read at a position is worth it: the lines disagree there, and also at the places where a label
+    /// of either sign would be taken in. If [`is_loose`](Self::is_loose) is set, one of these places is enough.
     pub fn can_cut(self, q: Site) -> bool {
         let is_uncertain =
             |by| q.step(by).is_ok_and(|place| self.certainty(place) == Certainty::Uncertain);
@@ -114,16 +115,16 @@ impl<'a> ConsistentLines<'a> {
             }
     }
 
-    /// Whether a label that is read at a position may tell something new: where positions err, whichever label it may be, and
-    /// as no such label was read nearby.
+    /// Whether a label read at a position may tell something new. Where positions err, it is enough that a label of one
+    /// sign could cut, and no label nearby may have told the same.
     pub(crate) fn may_tell(self, q: Site) -> bool {
         self.loosely().can_cut(q)
             && (self.shift == Vector::default()
                 || !self.samples.iter().any(|it| self.is_told(q, it)))
     }
 
-    /// Whether a sample says what its label would say at a position: it was taken in nearer to where that would be taken
-    /// in than what positions err by.
+    /// Whether a sample already says what its label would say at a position. It does if it was taken in within the
+    /// position error of the place where that label would be taken in.
     fn is_told(self, q: Site, sample: &Sample) -> bool {
         self.place(q, sample.label).is_some_and(|place| {
             let off = place - sample.site;

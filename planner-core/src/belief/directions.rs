@@ -1,9 +1,10 @@
-//! Directions that stand for those of all lines, placed where the lines are.
+//! Directions that represent those of all lines, placed where the lines are.
 //!
-//! A density over directions is made of the table: the mass of each of the heaviest hypotheses spread evenly
-//! across its slope arc, and that of all others across the starting arc. It is only roughly the true one. So `K`
-//! equal parts of it are each told by their median direction *and the density there*: who knows how much truly
-//! lies in that direction weighs it by the quotient. (Importance sampling, stratified and without chance.)
+//! The table gives a density over directions. The mass of each of the heaviest hypotheses is spread evenly across its
+//! slope arc, and the mass of all others across the starting arc. This density is only roughly the true one. It is
+//! divided into `K` equal parts, and each part is represented by its median direction *and the density there*. A user
+//! who knows the true mass in that direction divides it by this density. (This is importance sampling, stratified and
+//! without chance.)
 
 use heapless::binary_heap::{BinaryHeap, Min};
 
@@ -21,8 +22,8 @@ pub(crate) struct Direction {
     pub(crate) density: f32,
 }
 
-/// Hypotheses whose own slope arcs are looked at. With more of them the chances that are told are no better; with
-/// half as many, some are off by a third.
+/// Hypotheses whose own slope arcs are used. More of them do not improve the predicted probabilities; with half as
+/// many, some are off by a third.
 const HEAVY: usize = 32;
 
 /// Where the lines of a table lie.
@@ -52,8 +53,8 @@ pub(crate) fn directions<const N: usize, const H: usize, const E: usize, const K
     density.medians()
 }
 
-/// The number whose logarithm this is, at most 0, to 6 %: between powers of two it is taken for a straight
-/// line, as the bits of a number are for its logarithm. Of a density one only has to know what it is.
+/// The number whose logarithm this is, at most 0, to 6 %. Between powers of two it is interpolated linearly, as the
+/// bits of a number approximate its logarithm. A density need not be accurate, as long as its value is known.
 fn rough_exp(LogWeight(units): LogWeight) -> f32 {
     /// Bits of a number in 2^-16 of its logarithm.
     const BITS: f32 = (1 << (23 - 16)) as f32 * core::f32::consts::LOG2_E;
@@ -69,8 +70,8 @@ struct Change {
     by: i64,
 }
 
-/// A density over directions, constant between changes. In integers, so that nothing of a narrow peak
-/// stays behind it; the unit is as small as lets 2^16 hypotheses of a weight of 1 add up.
+/// A density over directions, constant between changes. It is in integers, so that a narrow peak leaves no residue
+/// behind it. The unit is as small as lets 2^16 hypotheses of a weight of 1 add up.
 struct Density {
     first: Heading,
     mass: u64,

@@ -1,4 +1,4 @@
-//! Three estimates of the line, and how much of the version space is left.
+//! Three estimates of the line, and the size of the version space.
 //!
 //! | estimate | what it is | when to use it |
 //! | --- | --- | --- |
@@ -6,8 +6,8 @@
 //! | [`maximum_margin`] | the hard-margin separator (Section II-A) | to stay clear of both labels |
 //! | [`bisector`] | the paper's printed estimate (Section IV-A) | to compare with the paper |
 //!
-//! All are single precision in axes about a sample ([`LocalLine`]), so a mission kilometres from the origin
-//! loses nothing. They are no part of the planning loop.
+//! All are in single precision, in axes about a sample ([`LocalLine`]), so a mission kilometres from the origin loses
+//! no accuracy. The planning loop does not use them.
 
 use crate::belief::consistent_lines::{ConsistentLines, Kept, run_length};
 use crate::belief::moments::Moments;
@@ -58,14 +58,14 @@ pub fn share_above(lines: ConsistentLines<'_>, site: Site) -> f32 {
 /// The centre: the mean of the lines left, as unit normals with their offsets, by the measure
 /// d(angle) d(offset).
 ///
-/// Closed form, and the same wherever the origin lies and however the axes turn. The version space
-/// is convex, so its mean agrees with every sample. `None` if the version space is too thin for
-/// single precision, which none is that the lattice can tell.
+/// Closed form, and the same wherever the origin lies and however the axes turn. The version space is convex, so its
+/// mean agrees with every sample. `None` if the version space is too thin for single precision; none that the lattice
+/// can represent is.
 pub fn centre(lines: ConsistentLines<'_>) -> Option<LocalLine> {
     Moments::of(lines)?.mean()
 }
 
-/// [`centre`] of the samples that matter, in cyclic order, of any number.
+/// [`centre`] for the samples that matter, in cyclic order and of any number.
 pub fn centre_of(support: &[Sample]) -> Option<LocalLine> {
     Moments::over(Trapezoids::of(support.len(), |k| support.get(k).copied())?)?.mean()
 }
@@ -78,7 +78,7 @@ pub fn maximum_margin(lines: ConsistentLines<'_>) -> Option<LocalLine> {
     widest(lines.trapezoids()?)
 }
 
-/// [`maximum_margin`] of the samples that matter, in cyclic order, of any number.
+/// [`maximum_margin`] for the samples that matter, in cyclic order and of any number.
 pub fn maximum_margin_of(support: &[Sample]) -> Option<LocalLine> {
     widest(Trapezoids::of(support.len(), |k| support.get(k).copied())?)
 }
@@ -96,9 +96,9 @@ fn widest<F: Fn(usize) -> Option<Sample>>(trapezoids: Trapezoids<F>) -> Option<L
     LocalLine::new(widest.below, along, 0.0, 0.5 * width * METRE)
 }
 
-/// The paper's printed estimate: of all pairs of opposite labels the two shortest that share no
-/// point, `p1(-) p2(+)` and `p3(+) p4(-)`; through the crossing `pm` of the diagonals `p1 p3` and
-/// `p2 p4`, the bisector of the angle `p1 pm p2`.
+/// The paper's printed estimate. Take the two shortest pairs of opposite labels that share no point, `p1(-) p2(+)` and
+/// `p3(+) p4(-)`. The diagonals `p1 p3` and `p2 p4` cross in `pm`. The estimate is the bisector of the angle
+/// `p1 pm p2`.
 ///
 /// `None` when there are no two such pairs or their diagonals do not cross. When the pairs lie side
 /// by side it is a poor estimate: prefer [`centre`]. `O(n^2)` for `n` samples.

@@ -1,5 +1,5 @@
-//! What labels that may be wrong are expected to be: the exact table of hypotheses for what is known, and
-//! columns beside it to look ahead by.
+//! Predicts labels that may be wrong: an exact table of hypotheses describes what is known, and columns beside it serve
+//! to look ahead.
 
 use crate::belief::Refused;
 use crate::belief::columns::{After, Columns};
@@ -15,14 +15,14 @@ use crate::belief::version_space::NoVersionSpace;
 use crate::belief::weight::Prior;
 use crate::geometry::lattice::Site;
 
-/// Directions that stand for all.
+/// The number of directions that represent all lines.
 const DIRECTIONS: usize = 16;
 
 /// Up to `H` hypotheses over up to `N` samples, and what they expect of the next labels.
 #[derive(Clone, Debug)]
 pub struct Forecast<const N: usize, const H: usize> {
     table: Hypotheses<N, H>,
-    /// How far each label of the table is believed.
+    /// The reliability of each label of the table.
     believed: List<Reliability, N>,
     columns: Columns<DIRECTIONS>,
 }
@@ -154,13 +154,15 @@ impl<'a, const N: usize, const H: usize> Labels<'a, N, H> {
         self.table.reliability(site).single()
     }
 
-    /// What a label is expected to tell, over what one can.
+    /// The expected information of a label, as a share of the most that a label can carry.
     fn information(&self, site: Site, share: f32) -> f32 {
         information(share, self.p(site), (self.table.noise().reliability.single(), self.capacity))
     }
 }
 
-/// What a label that is true with a probability is expected to tell, over what one can tell: its reliability, and the bits.
+/// The expected information of a label that is true with probability `p`, as a share of the most that a label can
+/// carry. `most` is the reliability of labels outside the trusted balls, and `capacity` the bits that one of them can
+/// carry.
 fn information(share: f32, p: f32, (most, capacity): (f32, f32)) -> f32 {
     if most < FAINT {
         // `1 - entropy` by its series, as no digits of that are left.

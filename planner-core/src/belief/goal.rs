@@ -1,8 +1,8 @@
-//! When what is known of the line is enough.
+//! When the line is known well enough.
 //!
-//! A goal is a promise about the lines that are left, by exact or outer bounds. With labels that are true
-//! the line is one of them, so the promise is kept. With labels that may be wrong it is about a credible
-//! set, and kept with at least the probability that the set holds.
+//! A goal is a promise about the lines that are left, checked by exact or outer bounds. If labels are true, the line is
+//! one of these lines, so the promise holds. If labels may be wrong, the promise is about a credible set. It then holds
+//! with at least the probability of that set.
 
 use crate::geometry::approximate::{METRE, cross, single, sqrt};
 use crate::geometry::arc::SlopeArc;
@@ -12,12 +12,12 @@ use crate::geometry::lattice::Vector;
 use crate::geometry::line::Bound;
 use crate::geometry::region::Region;
 
-/// What a mission is to find out.
+/// The goal of a mission: how well the line must be known, and with which probability.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Goal {
-    /// How well the line is to be known.
+    /// The accuracy with which the line must be known.
     pub accuracy: Accuracy,
     /// The probability that the promise holds, in millionths, at least; certain where labels are true.
     pub level: u32,
@@ -44,20 +44,19 @@ impl Goal {
 pub enum Accuracy {
     /// Any two of the lines make an angle of this at most, below a quarter turn.
     SlopeArc(Heading),
-    /// The ground on which some two of the lines disagree is this share of the area at most, in
-    /// millionths.
+    /// The ground on which not all of the lines agree is at most this share of the area, in millionths.
     Misclassified(u32),
 }
 
 /// Points along the area at which the breadth of the uncertain ground is taken.
 const STATIONS: u16 = 16;
 
-/// What rounding may take from a promise, as a share of it.
+/// The most that rounding takes from a promise, as a share of it.
 const ROUNDING: f32 = 1e-4;
 
 impl Accuracy {
-    /// Whether the lines between these vertices, of one cell or of several, are as near to each other.
-    /// Conservative: yes is always true.
+    /// Whether the lines between these vertices, of one cell or of several, are as close to each other as the goal
+    /// asks. Conservative: `true` is always correct.
     pub fn is_met(self, bounds: impl Iterator<Item = Bound> + Clone, area: Area) -> bool {
         let Some(arc) = SlopeArc::spanning(bounds.clone().map(|bound| bound.along)) else {
             return false;
@@ -82,9 +81,9 @@ fn is_narrower(arc: SlopeArc, turn: Heading) -> bool {
 
 /// The share of an area on which lines of a narrow arc disagree, or somewhat more.
 ///
-/// In a frame at the middle of the area, its first axis along the arc's bisector, the ground lies between
-/// the highest of the lines and the lowest. Its breadth is a convex function, so the trapezoids between some
-/// points of it are no less than it is; they reach as far as there is such ground inside the area.
+/// The frame is at the middle of the area, and its first axis runs along the arc's bisector. There the ground lies
+/// between the highest of the lines and the lowest. Its breadth is a convex function, so trapezoids between some points
+/// of the function are an upper bound. They reach as far as there is such ground inside the area.
 fn uncertain_share(arc: SlopeArc, bounds: impl Iterator<Item = Bound> + Clone, area: Area) -> f32 {
     let along = arc.bisector();
     let (x, z) = (along.x as f32, along.z as f32);

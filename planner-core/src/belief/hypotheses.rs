@@ -1,21 +1,22 @@
 //! The hypothesis table: every separable sequence of true labels, with its weight, in fixed memory.
 //!
-//! Of the `2^t` sequences that `t` labels could have, those matter that some line realises (Section
-//! III-B). Each is a cell of the arrangement that the samples' lines draw on the starting polygon, so
-//! there are at most `1 + t + t (t - 1) / 2`: 56 for 10 labels, 529 for 32, 2,081 for 64. A hypothesis
-//! is such a cell with a weight, 24 bytes in all, and a sample splits the cells that it cuts and weighs
-//! the rest: the whole distribution, exactly, until the table is full.
+//! Of the `2^t` sequences that `t` labels could have, only those matter that some line realises (Section III-B). Each
+//! is a cell of the arrangement that the samples' lines draw on the starting polygon. So there are at most
+//! `1 + t + t (t - 1) / 2`: 56 for 10 labels, 529 for 32, 2,081 for 64. A hypothesis is such a cell with a weight, 24
+//! bytes in all. A sample splits the cells that it cuts and reweights the others. The table is the whole distribution,
+//! exactly, until it is full.
 //!
-//! - *Full table.* The least likely hypotheses go, in whole, before a sample is taken in. What they
-//!   can have come to since is bounded, see [`Posterior::pruned_mass`].
-//! - *A cell with more edges than it can hold* keeps the lines that the sample would have cut off: an
-//!   outer approximation, counted in [`outer_cells`](Hypotheses::outer_cells). With 15 edges it has
-//!   not been seen to happen: over the tests' missions of 64 labels a cell has 9 at most.
+//! - *Full table.* Before a sample is taken in, the least likely hypotheses are dropped whole. A bound on the mass that
+//!   they may have reached since is [`Posterior::pruned_mass`].
+//! - *A cell with more edges than it can hold* keeps the lines that the sample would have cut off. That is an outer
+//!   approximation, counted in [`outer_cells`](Hypotheses::outer_cells). With 15 edges it has not been seen to happen:
+//!   over the tests' missions of 64 labels a cell has 9 at most.
 //!
-//! Where positions err a label's weight is no step from one side of its site to the other: steps, however they
-//! are placed, claim to know more than there is. A hypothesis is weighed by the label's mean likelihood over its
-//! lines, and when it splits each part anew, by all labels. So weights follow the likelihood the more closely the
-//! narrower the cells, a label is one sample, and what pruning lost is told as it was when it was lost.
+//! Where positions err, the weight of a label does not change in a step from one side of its site to the other. Steps,
+//! wherever they are placed, would claim more knowledge than there is. Instead, a hypothesis is weighed by the label's
+//! mean likelihood over its lines. When a hypothesis splits, each part is weighed anew by all labels. So the narrower
+//! the cells, the more closely the weights follow the likelihood. Each label is still one sample. The pruned mass keeps
+//! the value that it had when it was lost.
 //!
 //! [`Posterior::pruned_mass`]: crate::belief::posterior::Posterior::pruned_mass
 
@@ -35,8 +36,8 @@ use crate::belief::version_space::{NoVersionSpace, VersionSpace};
 use crate::belief::weight::{Coarse, LogWeight, Prior};
 use crate::geometry::lattice::Site;
 
-/// A sequence of true labels that some line realises: the cell of the lines that do, and what it weighs
-/// if the labels seen are given. 24 bytes for `E = 15`.
+/// A sequence of true labels that some line realises: the cell of these lines, and the sequence's weight given the
+/// labels seen. 24 bytes for `E = 15`.
 #[derive(Clone, Copy, Debug)]
 pub struct Hypothesis<const E: usize> {
     cell: LineCell<E>,
@@ -46,8 +47,7 @@ pub struct Hypothesis<const E: usize> {
 }
 
 impl<const E: usize> Hypothesis<E> {
-    /// What no line realises. All its bytes are zero, so that memory is filled with it at no cost of
-    /// flash.
+    /// A placeholder that no line realises. All its bytes are zero, so memory filled with it costs no flash.
     const NONE: Self = Self { cell: LineCell::NONE, high: 0, low: 0 };
 
     fn new(cell: LineCell<E>, LogWeight(units): LogWeight) -> Self {
@@ -238,18 +238,18 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
         hypothesis.cell.lines(&self.samples)
     }
 
-    /// How often a cell could not hold another edge and kept lines that it should not have.
+    /// How often a cell had no room for another edge and kept lines that it should have dropped.
     pub fn outer_cells(&self) -> u16 {
         self.outer_cells
     }
 
-    /// Mass given up, at most, on the scale of the weights held.
+    /// An upper bound on the pruned mass, on the scale of the weights in the table.
     pub(crate) fn pruned_mass(&self) -> f64 {
         f64::from(self.pruned.mass(self.prior))
     }
 
-    /// A weight such that the hypotheses of at least that weight hold a probability, in millionths; their
-    /// set is a little larger than the smallest that does. `None` if as much has been given up.
+    /// A weight such that the hypotheses of at least that weight have a probability of `level`, in millionths. Their
+    /// set is a little larger than the smallest such set. `None` if too much mass has been given up.
     pub(crate) fn lightest_within(&self, level: u32) -> Option<LogWeight> {
         const BANDS: usize = 64;
         let mut bands = [0.0_f32; BANDS];
@@ -289,8 +289,8 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
         self.tolerances.iter().map(|it| it.at_most(self.noise.tolerance))
     }
 
-    /// The weights of the lines on the label's side of a sample and on the other: where positions err alike, as each
-    /// hypothesis is [told](Self::told_by) for itself.
+    /// The weights of the lines on the label's side of a sample and on the other. Where positions err, both weights are
+    /// alike, as each hypothesis is [weighed](Self::told_by) for itself.
     fn weights(&self, reliability: Reliability) -> (Option<LogWeight>, Option<LogWeight>) {
         if self.is_blurred() {
             return (Some(LogWeight::ZERO), Some(LogWeight::ZERO));
@@ -303,8 +303,8 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
         self.noise.tolerance != Tolerance::NONE
     }
 
-    /// The chances that the true position is on the +1 side and on the -1 side where a site is reported, on average
-    /// over the lines of a hypothesis.
+    /// The probabilities that the true position is on the +1 side and on the -1 side if `site` is reported. Both are
+    /// averages over the lines of a hypothesis.
     pub(crate) fn sides(&self, hypothesis: &Hypothesis<E>, site: Site) -> [f32; 2] {
         Blur::<E>::of(self.lines(hypothesis)).sides(site, Scale::by(self.noise.tolerance))
     }
@@ -321,7 +321,7 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
         }
     }
 
-    /// What some labels make a hypothesis weigh where positions err.
+    /// The weight that some labels give a hypothesis where positions err.
     fn told_by(&self, hypothesis: &Hypothesis<E>, labels: &[Doubt]) -> LogWeight {
         if labels.is_empty() {
             return LogWeight::ZERO;
@@ -357,10 +357,12 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
         self.take_within(Sample { site, label }, reliability, tolerance)
     }
 
-    /// Takes in a label of some reliability: splits the hypotheses that the sample cuts and weighs
-    /// all. One orientation an edge, and for each of the at most `t + 1` that split two cuts and two
-    /// measures, in integers and single precision; where positions err each is weighed by the distances of its vertices, and
-    /// those that split by all labels anew: some eight times the cost. There a label is as reliable as the noise says.
+    /// Takes in a label of some reliability: splits the hypotheses that the sample cuts and reweights all.
+    ///
+    /// Cost: one orientation for each edge, in integers. At most `t + 1` hypotheses split, each at the cost of two cuts
+    /// and two measures, in integers and single precision. Where positions err, each hypothesis is weighed by the
+    /// distances of its vertices, and those that split by all labels anew. That costs some eight times as much. A label
+    /// is then as reliable as the noise says.
     ///
     /// # Errors
     /// [`Refused::Contradiction`] when a label that is certain leaves no hypothesis, and
@@ -412,7 +414,7 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
         Ok(())
     }
 
-    /// Gives up the least likely hypotheses until those that a sample at `q` splits find room.
+    /// Drops the least likely hypotheses until there is room for those that a sample at `q` splits off.
     fn make_room(&mut self, q: Site) {
         // Exact cells tile the starting polygon, and a line crosses at most one more of them than
         // there are other lines.
@@ -457,8 +459,8 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
             }
             Certainty::Uncertain => {
                 let opposite = Edge::new(edge.index() as u8, -edge.label());
-                // A cell's measure is the same each time it is taken, as is what it is told: nothing is lost in
-                // the quotients.
+                // A cell's measure is the same each time it is computed, and so is the weight of its labels. So the
+                // quotients lose nothing.
                 let weight = match self.prior {
                     Prior::Area => LogWeight::ZERO - self.log_area(&whole),
                     Prior::Sequences => LogWeight::ZERO,
@@ -522,7 +524,7 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
     }
 }
 
-/// Its labels are as reliable as its noise says: those that were not are a [`Forecast`]'s to tell.
+/// All labels count as reliable as the table's noise says. A [`Forecast`] restores labels of other reliabilities.
 ///
 /// [`Forecast`]: crate::belief::forecast::Forecast
 impl<const N: usize, const H: usize, const E: usize> Replay for Hypotheses<N, H, E> {

@@ -1,7 +1,7 @@
-//! A list of copies in an array.
+//! A list in an array whose unused places are copies of one item.
 //!
-//! A `heapless::Vec` of the hypotheses begins as an image of itself in flash, all of it undefined:
-//! 12 kB for 529 of them. This begins as copies of an item.
+//! A `heapless::Vec` of the hypotheses would be stored in flash as an image of itself, all of it undefined: 12 kB for
+//! 529 of them. This list is filled with copies of an item instead.
 
 use core::mem::swap;
 use core::ops::{Deref, DerefMut};

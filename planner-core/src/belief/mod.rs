@@ -1,12 +1,18 @@
-//! What is known of the line: the lines that agree with the samples so far, or all separable label
-//! sequences with their probabilities.
+//! What is known of the line: either the lines that agree with all samples, or every separable label sequence with its
+//! probability.
 //!
-//! The lines that agree with some labels are a convex *cell*, held as a cyclic list of sample indices
-//! ([`cell`]). For labels that are true there is one cell, the [`version_space`]; for labels that may be
-//! wrong there is a table of weighed cells ([`hypotheses`]), read as a distribution ([`posterior`]).
-//! What the next labels are expected to tell is an [`outlook`]: a [`picture`] of the one cell, or [`columns`] beside the
-//! table in a [`forecast`]. When that is enough says a [`goal`], and what
-//! a position that errs is good for a [`tolerance`]. What has to be kept of a belief over a sleep is what it was [`told`].
+//! | module | contains |
+//! | --- | --- |
+//! | [`cell`] | the lines that agree with some labels: a convex *cell*, stored as a cyclic list of sample indices |
+//! | [`version_space`] | for labels that are true: the one cell that they leave |
+//! | [`hypotheses`], [`posterior`] | for labels that may be wrong: a table of weighted cells, and its distribution |
+//! | [`outlook`] | what the next labels are expected to tell |
+//! | [`picture`] | the outlook of the one cell |
+//! | [`forecast`], [`columns`] | the outlook of a table: columns beside it |
+//! | [`goal`] | decides when the line is known well enough |
+//! | [`tolerance`] | handles positions that err |
+//! | [`told`] | what must be kept of a belief over a sleep |
+//!
 //! Nothing here knows how the robot moves.
 
 pub(crate) mod blur;
@@ -41,14 +47,14 @@ use crate::belief::tolerance::Tolerance;
 use crate::geometry::area::Area;
 use crate::geometry::lattice::Site;
 
-/// What is known of the line: what planners ask, and what is read out.
+/// What is known of the line: the questions that planners ask, and the results that are read out.
 ///
 /// Every answer follows from the samples taken so far and from nothing else.
 pub trait Belief {
     /// Whether another sample would be refused for want of room.
     fn is_full(&self) -> bool;
 
-    /// How far off a position may be at most, as it was configured.
+    /// The configured tolerance: how far off a position may be at most.
     fn tolerance(&self) -> Tolerance;
 
     /// Takes in what was read at a site, which may be off by the [tolerance](Self::tolerance).
@@ -59,8 +65,8 @@ pub trait Belief {
         self.observe_within(site, reading, self.tolerance())
     }
 
-    /// Takes in what was read at a site that may be off by so much, at most by the tolerance. The less it may be off, the
-    /// more the reading tells.
+    /// Takes in a reading at a site that may be off by `tolerance`, at most by the configured one. The smaller the
+    /// tolerance, the more the reading tells.
     ///
     /// # Errors
     /// As [`observe`](Self::observe), and [`Refused::Tolerance`].
@@ -74,8 +80,8 @@ pub trait Belief {
     /// The line as far as it is known.
     fn estimates(&self) -> Estimates;
 
-    /// What the samples told of the line beyond those given at the start, bits: the divergence of what
-    /// is known from the uniform distribution over the lines that the given samples leave.
+    /// The information of the samples beyond those given at the start, bits. It is the divergence of the present
+    /// distribution from the uniform one over the lines that the given samples leave.
     fn information(&self) -> f64;
 
     /// Whether the line is known well enough.

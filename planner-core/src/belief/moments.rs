@@ -1,8 +1,8 @@
-//! Integrals over a cell of lines by the measure d(angle) d(offset), and the mean line that they make.
+//! Integrals over a cell of lines by the measure d(angle) d(offset), and the mean line that follows from them.
 //!
-//! They are taken in a frame that fits the cell: along its first direction, and about the sample past which
-//! its lines spread the least. There the cell's angles and offsets are small, and the integrals good to some
-//! 10^-6 of the cell's own extent, however thin it is and wherever it lies.
+//! The integrals are taken in a frame that fits the cell: along its first direction, and about the sample at which its
+//! lines spread the least. In this frame the cell's angles and offsets are small. So the integrals are accurate to some
+//! 10^-6 of the cell's own extent, however thin the cell is and wherever it lies.
 
 use core::f32::consts::FRAC_PI_2;
 
@@ -26,8 +26,8 @@ pub(crate) struct Moments {
     offset: f32,
 }
 
-/// A multiple of all integrals, as those over the thinnest cells of the lattice are smaller than single
-/// precision can tell.
+/// The factor of all integrals. Without it, integrals over the thinnest cells of the lattice would be too small for
+/// single precision.
 const SCALE: f32 = (1_u64 << 60) as f32;
 
 /// An end of a trapezoid of lines, in the frame.
@@ -72,11 +72,10 @@ impl Moments {
 
     /// Adds the integrals over a trapezoid.
     ///
-    /// Let its direction turn from `-h` to `h`. Width and offset are sinusoids of it, as the normal is: each has
-    /// an even part, a multiple of the cosine, which half the sum of its values at both ends gives, and an odd
-    /// part, a multiple of the sine, which half their difference gives. Of their products only the even ones
-    /// count, and they come down to the integrals of `cos^2`, `h + sin h cos h`, and of `sin^2`,
-    /// `h - sin h cos h`.
+    /// Let its direction turn from `-h` to `h`. Width, offset and normal are sinusoids of the direction. Each has an
+    /// even part, a multiple of the cosine, and an odd part, a multiple of the sine. Half the sum of the values at both
+    /// ends gives the even part, half their difference the odd one. Only even products contribute, and these reduce to
+    /// the integrals of `cos^2`, `h + sin h cos h`, and of `sin^2`, `h - sin h cos h`.
     fn add(&mut self, begins: End, ends: End) {
         let ([x0, z0], [x1, z1]) = (begins.unit, ends.unit);
         let (sin, cos) = (x0 * z1 - z0 * x1, x0 * x1 + z0 * z1);

@@ -7,8 +7,8 @@ use crate::geometry::lattice::Site;
 
 /// How far a label can be believed: it is true with probability `p`.
 ///
-/// Held as the logarithm of the odds `p / (1 - p)`, to 10^-10, which is all that a posterior needs of
-/// it: lines that agree with a label gain so much on those that do not.
+/// Stored as the logarithm of the odds `p / (1 - p)`, to 10^-10. A posterior needs nothing else: lines that agree with
+/// a label gain this much on those that do not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -57,7 +57,7 @@ impl Reliability {
         agree / (agree + disagree)
     }
 
-    /// What lines weigh that agree with the label and that do not, relative to the likelier side.
+    /// The weights of lines that agree with the label and of those that do not, relative to the likelier side.
     pub(crate) fn weights(self) -> [f32; 2] {
         let weight = |it: Option<LogWeight>| it.map_or(0.0, LogWeight::exp_single);
         [weight(self.agree()), weight(self.disagree())]
@@ -69,13 +69,12 @@ impl Reliability {
         self.log_odds.0
     }
 
-    /// What lines weigh that agree with the label, relative to the likelier side; `None` when no line
-    /// can.
+    /// The weight of lines that agree with the label, relative to the likelier side; `None` when no line can agree.
     pub(crate) fn agree(self) -> Option<LogWeight> {
         (self.log_odds.0 > -Self::BEYOND.0).then_some(LogWeight(self.log_odds.0.min(0)))
     }
 
-    /// What lines weigh that do not agree; `None` when all must.
+    /// The weight of lines that do not agree; `None` when all must agree.
     pub(crate) fn disagree(self) -> Option<LogWeight> {
         (self.log_odds < Self::BEYOND).then_some(LogWeight(self.log_odds.0.saturating_neg().min(0)))
     }
@@ -100,8 +99,8 @@ impl Noise {
     pub const NONE: Self =
         Self { reliability: Reliability::CERTAIN, trusted_radius: 0, tolerance: Tolerance::NONE };
 
-    /// The reliability of a label at a site: certain in a trusted ball (the paper's `B_r(p_j)`), by as much inside
-    /// it as the site may be off.
+    /// The reliability of a label at a site. It is certain in a trusted ball (the paper's `B_r(p_j)`), whose radius is
+    /// reduced by the tolerance.
     pub fn at(&self, site: Site, given: &[Sample]) -> Reliability {
         let radius = u64::from(self.trusted_radius.saturating_sub(self.tolerance.units()));
         let near = |s: &Sample| {

@@ -1,4 +1,4 @@
-//! What a label at a place is expected to tell, and what is expected after it: what a planner looks ahead with.
+//! The traits that look-ahead needs: what a label at a place is expected to tell, and the prediction after it.
 
 use crate::belief::consistent_lines::ConsistentLines;
 use crate::belief::sample::{Label, Reading};
@@ -30,30 +30,31 @@ pub trait Foresight {
         tolerance: Tolerance,
     ) -> Result<(), Refused>;
 
-    /// Makes ready for what is asked next, until something is observed.
+    /// Prepares the outlook. It stays valid until something is observed.
     fn prepare(&mut self);
 
-    /// What is expected, as it is asked from a site.
+    /// The outlook for questions asked from a site.
     fn outlook(&self, from: Site) -> Self::Outlook<'_>;
 
     /// The lines on whose uncertain ground a label may tell something.
     fn ground(&self) -> ConsistentLines<'_>;
 }
 
-/// What a label at a place is expected to be, and to tell.
+/// A prediction of the label at a place, and of the information that it carries.
 ///
-/// In single precision, and the same on every machine. It says where to go; what is known is the
-/// belief's to say.
+/// In single precision, and the same on every machine. A prediction chooses where to go; the belief decides what is
+/// known.
 pub trait Prediction {
-    /// The share of the lines, by their probability, that have a site on their +1 side. Where all agree it
-    /// may be beyond 0 or 1, the more the farther the site is from where they do not.
+    /// The share of the lines, by their probability, that have a site on their +1 side. Where all lines agree it may be
+    /// below 0 or above 1, and further so the farther the site is from uncertain ground.
     fn share_above(&self, site: Site) -> f32;
 
-    /// What a label is expected to tell at a site with this share above it, over what a label can tell.
+    /// The expected information of a label at a site with this share above it, as a share of the most that a label can
+    /// carry.
     fn information(&self, site: Site, share: f32) -> f32;
 }
 
-/// A prediction that can be asked what it will be.
+/// A prediction that can also predict its own state after one more label.
 pub trait Outlook: Prediction {
     /// The prediction when one more label is known.
     type After<'a>: Prediction
@@ -67,8 +68,8 @@ pub trait Outlook: Prediction {
     fn after(&self, site: Site, label: Label) -> Self::After<'_>;
 }
 
-/// The entropy of a coin that shows one side with this probability, bits: to 10^-3, and near one half to as
-/// much of what it lacks of a bit.
+/// The entropy of a coin that shows one side with this probability, bits. It is accurate to 10^-3; near one half, its
+/// difference from one bit has that relative accuracy.
 ///
 /// It is `1 - (x/1 + x^2/6 + x^3/15 + ...) / (2 ln 2)` with `x = (2p - 1)^2`; some higher powers stand for
 /// the terms after the first.

@@ -1,10 +1,12 @@
-//! A cell of lines as a polygon: each line a point of slope and offset, in a frame at a place.
+//! A cell of lines as a polygon: each line is a point of slope and offset, in a frame at a place.
 //!
-//! In a frame whose first axis runs along the cell's bisector a line is `z = slope x + offset`, and the
-//! lines of a cell are a convex polygon, with the cell's vertices as its own. A place cuts the polygon along
-//! a straight line, so the share of the lines that have it on their +1 side is the measure of one part of
-//! it, and what a label there would leave is that part. Cross products are exact in integers, all else is
-//! single precision: it predicts, and decides nothing about certainty.
+//! The first axis of the frame runs along the cell's bisector. In it a line is `z = slope x + offset`, and the lines of
+//! a cell form a convex polygon whose vertices are the cell's. A place cuts the polygon along a straight line. The
+//! lines that have the place on their +1 side are one part, and a label +1 there leaves that part. Its measure is their
+//! share.
+//!
+//! Cross products are exact in integers, and everything else is in single precision. A picture predicts; it decides
+//! nothing about certainty.
 
 use heapless::Vec;
 
@@ -18,7 +20,7 @@ use crate::belief::{Belief, Refused};
 use crate::geometry::approximate::{METRE, UnitVector, cross, inverse_sqrt};
 use crate::geometry::lattice::{Site, Vector};
 
-/// Vertices that a picture keeps: of a cell with more it shows so many, spread evenly.
+/// The number of vertices that a picture keeps. From a cell with more, it takes this many, spread evenly.
 const VERTICES: usize = 16;
 
 /// The directions of a picture: its first axis.
@@ -53,9 +55,9 @@ impl Vertex {
 
     /// The measure of the lines between three, radian metres; its sign is that of the way round.
     ///
-    /// The density is a function of the slope alone, the second derivative of its secant `sqrt(1 + m^2)`. So
-    /// the measure is the determinant of the three times the divided difference of their secants
-    /// (Hermite and Genocchi), here without a difference of near ones.
+    /// The density depends on the slope alone: it is the second derivative of the secant `sqrt(1 + m^2)`. So the
+    /// measure is the determinant of the three lines times the divided difference of their secants (Hermite and
+    /// Genocchi). This code computes it without subtracting nearly equal numbers.
     fn triangle(self, b: Self, c: Self) -> f32 {
         let determinant = (b.slope - self.slope) * (c.offset - self.offset)
             - (c.slope - self.slope) * (b.offset - self.offset);
@@ -69,7 +71,8 @@ impl Vertex {
         z - self.slope * x - self.offset
     }
 
-    /// Of this line and another the one between them that passes a place, by how far it lies above the two.
+    /// The line between this one and another that passes through a place. `above` and `above_other` are how far the
+    /// place lies above the two.
     fn between(self, above: f32, other: Self, above_other: f32) -> Self {
         let t = above / (above - above_other);
         Self::new(
@@ -151,7 +154,7 @@ impl Picture {
         Some(Part { start, first, count, end })
     }
 
-    /// What a label leaves that is taken in where all lines agree: everything.
+    /// The part that remains after a label where all lines agree: everything.
     fn whole(&self) -> Option<Part> {
         let (start, end) = (*self.vertices.first()?, *self.vertices.last()?);
         Some(Part { start, first: 1, count: self.vertices.len() - 2, end })
@@ -179,8 +182,8 @@ impl Picture {
         (measure(part.start, self.rest(&part)) / self.measure).clamp(0.0, 1.0)
     }
 
-    /// The share above a place on whose side all lines agree: beyond 0 or 1 by its distance from the
-    /// nearest of them over their breadth there.
+    /// The share above a place at which all lines agree. It lies beyond 0 or 1 by the distance to the nearest line over
+    /// the breadth of the lines there.
     fn beyond(&self, place: [f32; 2]) -> f32 {
         let (mut least, mut most) = (f32::INFINITY, f32::NEG_INFINITY);
         for vertex in &self.vertices {

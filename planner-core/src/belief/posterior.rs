@@ -1,9 +1,8 @@
-//! The posterior over hypotheses: what the labels seen say of the line.
+//! The posterior over hypotheses: the probabilities that the labels seen give to the lines.
 //!
-//! With a policy that depends on the information alone, Equation 8 comes to
-//! `weight = p^agree (1 - p)^disagree` over the samples outside the trusted balls, divided by the sum
-//! over all separable sequences. Every probability stands beside a bound on what pruning can have
-//! made of it: [`Posterior::pruned_mass`].
+//! The policy depends on the information alone, so Equation 8 reduces to a simple weight: `p^agree (1 - p)^disagree`
+//! over the samples outside the trusted balls. A probability is this weight divided by the sum over all separable
+//! sequences. A bound on the effect of pruning is [`Posterior::pruned_mass`].
 
 use crate::belief::consistent_lines::{ConsistentLines, intercepts};
 use crate::belief::estimate::{Estimates, area, bisector, maximum_margin, share_above};
@@ -44,9 +43,9 @@ pub struct Best<'a, const E: usize> {
 /// The smallest set of hypotheses that holds at least a stated probability.
 #[derive(Clone, Copy, Debug)]
 pub struct Credible {
-    /// What was asked.
+    /// The probability that was asked for.
     pub level: f64,
-    /// What the set holds: whole hypotheses overshoot.
+    /// The probability of the set. It exceeds the level, as hypotheses are taken whole.
     pub probability: f64,
     /// Number of hypotheses.
     pub cells: usize,
@@ -54,7 +53,7 @@ pub struct Credible {
     pub slope_arc: SlopeArc,
     /// The range of the intercepts of their lines, metres; `None` when unbounded.
     pub intercept: Option<[f64; 2]>,
-    /// The smallest weight in the set and the number of those of that weight that belong to it.
+    /// The smallest weight in the set, and the number of hypotheses of that weight in the set.
     cut: Option<(LogWeight, usize)>,
 }
 
@@ -78,7 +77,7 @@ impl<const N: usize, const H: usize, const E: usize> Belief for Hypotheses<N, H,
         self.read_within(site, label, tolerance)
     }
 
-    /// The bisector of the labels as they were seen, the posterior [mean](Posterior::mean), and the maximum
+    /// Returns the bisector of the labels as they were seen, the posterior [mean](Posterior::mean), and the maximum
     /// margin of the most likely hypothesis.
     fn estimates(&self) -> Estimates {
         let best = most_likely(self).map(|best| self.lines(best));
@@ -119,8 +118,8 @@ impl<'a, const N: usize, const H: usize, const E: usize> Posterior<'a, N, H, E> 
         hypothesis.weight().exp() / self.total
     }
 
-    /// An upper bound on the probability of all that was given up as the table was full: 0 when
-    /// nothing was. Every probability stated is too high by this share at most.
+    /// An upper bound on the probability of all hypotheses that were dropped because the table was full; 0 if none
+    /// were. Every probability stated is too high by this share at most.
     pub fn pruned_mass(&self) -> f64 {
         let pruned = self.hypotheses.pruned_mass();
         pruned / (pruned + self.total)
@@ -187,9 +186,9 @@ impl<'a, const N: usize, const H: usize, const E: usize> Posterior<'a, N, H, E> 
         self.hypotheses.iter().map(|h| term(self.probability(h))).sum()
     }
 
-    /// What the labels told of the line, bits: the divergence of this posterior from the uniform
-    /// distribution over the starting lines. Of noiseless labels it is `log2` of the share of the
-    /// starting lines that are left. Never below 0.
+    /// The information of the labels about the line, bits: the divergence of this posterior from the uniform
+    /// distribution over the starting lines. For noiseless labels it is `log2` of the share of the starting lines that
+    /// are left. Never below 0.
     pub fn information(&self) -> f64 {
         let area_of = |h| self.hypotheses.log_area(h).exp();
         let mut start = f64::from(area(self.hypotheses.start()));
@@ -227,9 +226,8 @@ impl<'a, const N: usize, const H: usize, const E: usize> Posterior<'a, N, H, E> 
         above * p + (1.0 - above) * (1.0 - p)
     }
 
-    /// The posterior mean of the line: each hypothesis adds its centre, as unit normals with their
-    /// offsets, by its probability. The mean over lines, so it needs no choice of a hypothesis and
-    /// moves smoothly as labels come in: the point estimate to use.
+    /// The posterior mean of the line: the point estimate to use. Each hypothesis adds its centre, as unit normals with
+    /// their offsets, by its probability. The mean needs no choice of a hypothesis and moves smoothly as labels arrive.
     pub fn mean(&self) -> Option<LocalLine> {
         mean(self.hypotheses)
     }

@@ -1,10 +1,10 @@
-//! What a full table of hypotheses gave up: a bound, in single precision and rounded up.
+//! An upper bound on the mass that a full table of hypotheses dropped, in single precision and rounded up.
 
 use crate::belief::noise::Reliability;
 use crate::belief::weight::LogWeight;
 use crate::belief::weight::Prior;
 
-/// Mass given up, at most, by both priors, on the scale of the weights held.
+/// Upper bounds on the mass dropped, by both priors, on the scale of the weights in the table.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PrunedMass {
     area: f32,
@@ -26,8 +26,8 @@ impl PrunedMass {
         self.sequences = up(self.sequences + by_sequences.exp_bound());
     }
 
-    /// After a label of some reliability. Relative to its likelier side a label only takes from what was
-    /// given up; but by the paper's prior a sequence that it split counts twice, once for each side.
+    /// Updates the bound after a label of some reliability. Relative to its likelier side, a label only reduces the
+    /// pruned mass. But by the paper's prior a sequence that the label split counts twice, once for each side.
     pub(crate) fn split(&mut self, reliability: Reliability) {
         if let (Some(agree), Some(disagree)) = (reliability.agree(), reliability.disagree()) {
             self.sequences = up(self.sequences * (1.0 + agree.min(disagree).exp_bound()));
@@ -44,7 +44,7 @@ impl PrunedMass {
     }
 }
 
-/// A bound of what a sum or product of two was rounded from.
+/// An upper bound on the exact value of a rounded sum or product.
 fn up(mass: f32) -> f32 {
     let mass = mass * (1.0 + 4.0 * f32::EPSILON);
     if mass < f32::MAX { mass } else { f32::MAX }

@@ -1,9 +1,7 @@
-//! What a belief was told, to be kept over a sleep: its samples in their order, and how far each label was
-//! believed.
+//! What a belief has taken in, to be kept over a sleep: its samples in order, and the reliability of each label.
 //!
-//! A belief follows from these and from nothing else, the same on every machine. So it is not its cells and
-//! weights that are kept but what made them: as few bytes as there are, and none that could contradict each
-//! other when they are read again.
+//! A belief follows from these alone, the same on every machine. So they are stored instead of cells and weights. That
+//! takes the fewest bytes, and the stored data cannot contradict each other when they are read again.
 
 use heapless::Vec;
 
@@ -13,22 +11,24 @@ use crate::belief::sample::Sample;
 use crate::belief::tolerance::Tolerance;
 use crate::belief::version_space::{NoVersionSpace, VersionSpace};
 
-/// Up to `N` samples, the given ones first. `24 N` bytes and some 16; in postcard's form some 10 bytes a sample, 16 where
-/// labels may be wrong, and up to 4 more where each brings a tolerance of its own.
+/// Up to `N` samples, the given ones first. `24 N` bytes and some 16.
+///
+/// Encoded by postcard, a sample takes some 10 bytes, or 16 where labels may be wrong. A tolerance of its own adds up
+/// to 4.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Told<const N: usize> {
     given: u8,
     samples: Vec<Sample, N, u8>,
-    /// Of the labels taken in since; of none where all are true.
+    /// The reliabilities of the labels taken in since. Empty if all labels are true.
     reliabilities: Vec<Reliability, N, u8>,
-    /// How far the position of each of these labels may be off; of none where all may be by as much as is configured.
-    /// Where labels are true, only the last is kept: it says how far the next may be off.
+    /// How far the position of each of these labels may be off. Empty if all have the configured tolerance. If labels
+    /// are true, only the last is kept: it says how far the next may be off.
     tolerances: Vec<Tolerance, N, u8>,
 }
 
 impl<const N: usize> Told<N> {
-    /// What was given, all that was told, and how far the labels among it are believed, if they may be wrong.
+    /// The given samples, all samples, and the reliabilities of the labels among them, if these may be wrong.
     pub(crate) fn new(
         given: &[Sample],
         all: &[Sample],
@@ -42,7 +42,7 @@ impl<const N: usize> Told<N> {
         }
     }
 
-    /// The same, of positions that may be off by so much, unless all may be by the tolerance configured.
+    /// Adds the tolerances of the positions, unless all equal the configured one.
     pub(crate) fn within(
         mut self,
         tolerances: impl Iterator<Item = Tolerance> + Clone,
@@ -91,7 +91,7 @@ impl<const N: usize> Told<N> {
     }
 }
 
-/// A belief that can tell what it was told, and be told it again.
+/// A belief that can export what it has taken in, and take it in again.
 pub trait Replay {
     /// All that it can be told.
     type Told;
@@ -99,19 +99,19 @@ pub trait Replay {
     /// What it was told.
     fn told(&self) -> Self::Told;
 
-    /// Begins again and takes in what was told, by the noise and the tolerance that it has. It costs what the labels
-    /// cost when they came.
+    /// Begins again and takes in what was exported, with this belief's own noise and tolerance. It costs as much as the
+    /// labels did when they came.
     ///
     /// # Errors
     /// [`NotReplayed`]. The belief knows then no more than what came before.
     fn replay(&mut self, told: &Self::Told) -> Result<(), NotReplayed>;
 }
 
-/// Why a belief did not take in what it was to be told again: it is not what this belief has told, or was spoilt.
+/// Why a belief did not take in an export: another belief made it, or it was spoilt.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum NotReplayed {
-    /// It was told to a belief of the other kind, as to whether labels may be wrong.
+    /// It comes from a belief of the other kind: one for true labels, the other for labels that may be wrong.
     Kind,
     /// The given samples.
     Given(NoVersionSpace),
@@ -143,8 +143,9 @@ impl From<Refused> for NotReplayed {
     }
 }
 
-/// Samples are told where they were taken in, which under a tolerance is not where they were read. So they are taken in
-/// as they are, and their tolerances are not told; only the last is, by which the next label is expected to be shifted.
+/// Samples are stored at the places where they were taken in. Under a tolerance these are not the places where they
+/// were read. So replaying inserts them as they are, without their tolerances. Only the last tolerance is stored: the
+/// next label is expected to be shifted by it.
 impl<const N: usize> Replay for VersionSpace<N> {
     type Told = Told<N>;
 

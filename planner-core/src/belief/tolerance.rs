@@ -1,21 +1,22 @@
-//! Positions that err: how a sample is taken in whose true place is near the one that was reported.
+//! Positions that err: where to insert a sample whose true place is only known to be near the reported one.
 //!
-//! Let the true position be within `e` of the reported `q`, and the unit normals `n` of all lines that are
-//! left, which point to their +1 sides, within `d` of the middle one `b`. A line that has the true position
-//! on its +1 side has `q` no further than `e` on its other. Of the place `q + (e / cos d) b` it is
+//! **Labels that are true** are shifted. Let the true position be within `e` of the reported `q`. Let `n` be the unit
+//! normals of all lines that are left, pointing to their +1 sides. Let them lie within `d` of the middle one `b`. If a
+//! line has the true position on its +1 side, `q` lies no further than `e` on its other side. The place
+//! `q + (e / cos d) b` then satisfies
 //!
 //! ```text
 //!   n . (q + (e / cos d) b) + c  >=  -e + (e / cos d) (n . b)  >=  -e + e  =  0
 //! ```
 //!
-//! so the label is true there whichever of the positions within `e` is the true one. A label +1 is taken
-//! in at the place *shifted* by this, a label -1 at the one shifted as far the other way, each as an exact
-//! sample: the truth is never cut off, and cells stay what they are. As the lines' arc narrows, `d` falls and
-//! the shift comes down to the tolerance.
+//! so a label +1 is true at that place, whichever position within `e` is the true one. The sample is inserted at this
+//! *shifted* place as an exact one. A label -1 is shifted as far the other way. So the true line is never cut off, and
+//! cells stay what they are. As the lines' arc narrows, `d` falls and the shift decreases towards the tolerance.
 //!
-//! A label that may be wrong is not shifted but doubted: the nearer a line passes, the more. The true position is
-//! spread about the reported one, so a line that has the latter `s` on its +1 side tells a label +1 with
-//! probability `p Phi(s / sigma) + (1 - p) Phi(-s / sigma)`, see [`Hypotheses`] (and `belief/blur.rs` for how).
+//! **Labels that may be wrong** are not shifted but doubted: the nearer a line passes, the more. The true position is
+//! spread about the reported one. Let a line have the reported position `s` on its +1 side. Then a label +1 has the
+//! probability `p Phi(s / sigma) + (1 - p) Phi(-s / sigma)` for that line, see [`Hypotheses`] and, for the calculation,
+//! `belief/blur.rs`.
 //!
 //! [`Hypotheses`]: crate::belief::hypotheses::Hypotheses
 
@@ -39,8 +40,8 @@ const MOST: u32 = 1 << 26;
 /// The longest shift, lattice units: 4,096 m.
 const FARTHEST: f32 = (1 << 28) as f32;
 
-/// What half the square of the sum of an arc's two unit normals, `1 + cos 2d`, is at least: arcs up to 88 degrees
-/// to either side of their middle have a shift. Rounding moves it by 10^-6 there.
+/// The least value of `1 + cos 2d`, half the square of the sum of an arc's two unit normals. Arcs up to 88 degrees to
+/// either side of their middle have a shift. Rounding changes the value by 10^-6 there.
 const LEAST: f32 = 2.4e-3;
 
 impl Tolerance {
@@ -63,8 +64,8 @@ impl Tolerance {
         self.units
     }
 
-    /// By how much a sample of label +1 is shifted when the lines' slopes are these; `None` where they
-    /// span so much that it would be shifted out of sight.
+    /// The displacement of a sample of label +1 for lines with these slopes; `None` if they span so much that the shift
+    /// would be too long.
     pub fn shift(self, slopes: SlopeArc) -> Option<Vector> {
         if self == Self::NONE {
             return Some(Vector { x: 0, z: 0 });

@@ -1,14 +1,13 @@
 //! A cell of lines as trapezoids, by direction.
 //!
-//! Of all lines of a cell with the same direction the offsets fill an interval. Its ends are those of the
-//! lines through two samples: one labelled +1, which lies above all these lines, and one labelled -1,
-//! which lies below. As the direction turns from the first of the cell to the last, the sample above runs
-//! through those labelled +1 in the cell's cyclic order, the sample below through the others against it.
-//! Between two directions where either changes lies a trapezoid of lines: it has the same two samples
-//! throughout.
+//! The offsets of all lines of a cell with the same direction fill an interval. Each end of it is the line through a
+//! sample. The sample labelled +1 lies above all these lines, and the one labelled -1 lies below. The direction turns
+//! from the first of the cell to the last. Meanwhile the sample above runs through those labelled +1 in the cell's
+//! cyclic order, and the sample below runs through the others against that order. Between two directions where either
+//! sample changes lies a trapezoid of lines: it has the same two samples throughout.
 //!
-//! So sums over a cell are sums of what is positive, and the widths at a trapezoid's ends, from which they
-//! are made, are exact integers over lengths: no digits cancel, however thin the cell.
+//! So a sum over a cell has only positive terms. The terms are made from the widths at a trapezoid's ends, and these
+//! are exact integers over lengths. No digits cancel, however thin the cell is.
 
 use crate::belief::consistent_lines::ConsistentLines;
 use crate::belief::sample::{Label, Sample};
@@ -34,7 +33,7 @@ impl Trapezoid {
         self.above - self.below
     }
 
-    /// The interval of the offsets at its end, whose unit vector is known: how wide, lattice units.
+    /// The width of the interval of offsets at the trapezoid's end, lattice units; `to` is the unit vector there.
     pub(crate) fn width_at_end(&self, to: UnitVector) -> f32 {
         cross(self.to, self.across()) * to.per_length
     }
@@ -125,8 +124,8 @@ impl<'a> ConsistentLines<'a> {
 /// The measure of a cell, d(angle) d(offset): radian metres, to 10^-6 of itself. No motion of the plane
 /// changes it.
 ///
-/// In a trapezoid whose direction turns by `t` the interval of the offsets is a sinusoid of the direction,
-/// and its integral is `tan(t/2)` times the sum of its widths at both ends.
+/// In a trapezoid the width of the interval of offsets is a sinusoid of the direction. If the direction turns by `t`,
+/// its integral is `tan(t/2)` times the sum of the widths at both ends.
 pub(crate) fn measure<F: Fn(usize) -> Option<Sample>>(mut trapezoids: Trapezoids<F>) -> f32 {
     let Some(first) = trapezoids.from else { return 0.0 };
     let (mut begins, mut width, mut sum) = (UnitVector::of(first), 0.0, 0.0);

@@ -58,7 +58,8 @@ pub struct VersionSpace<const N: usize> {
     cell: LineCell<N>,
     /// How far off a position may be at most.
     tolerance: Tolerance,
-    /// How far off the next is expected to be, which is as far as the last, and by how much that would shift it.
+    /// How far off the next position is expected to be, which is as far as the last; and the shift that follows from
+    /// it.
     expected: Tolerance,
     shift: Vector,
 }
@@ -97,13 +98,13 @@ impl<const N: usize> VersionSpace<N> {
         Ok(Self { samples: buffer, given, cell, tolerance, expected, shift })
     }
 
-    /// The version space of samples whose positions may be off, each by a tolerance of its own. No line is cut off that
-    /// agrees with some place within the tolerance of each sample.
+    /// The version space of samples whose positions may be off, each by a tolerance of its own. It keeps every line
+    /// that agrees with some place within the tolerance of each sample.
     ///
     /// [`given`](Self::given) returns the samples where they were taken in, as those of a table of hypotheses may be.
     ///
-    /// Every two samples of opposite labels exclude directions, however their positions err. The directions that
-    /// are left say by how much samples are [shifted](crate::belief::tolerance). The lines that are left then have fewer
+    /// Every two samples of opposite labels exclude directions, however their positions err. The remaining directions
+    /// determine by how much samples are [shifted](crate::belief::tolerance). The remaining lines then have fewer
     /// directions, so the samples are shifted anew, three times in all. `O(n^2)` for `n` samples, in double precision,
     /// the same on every machine.
     ///
@@ -203,12 +204,12 @@ impl<const N: usize> VersionSpace<N> {
 
     /// Takes a reading, and returns the label that the site has from now on.
     ///
-    /// A reading on the boundary says that the line passes here, so both labels are true of the closed
-    /// half-planes. On uncertain ground the sample gets `either` of them, whichever the caller likes;
-    /// where all lines agree it tells nothing and is passed over, and is true as long as one of them
-    /// passes here.
+    /// A reading on the boundary says that the line passes here, so both labels are true of the closed half-planes. On
+    /// uncertain ground the sample gets the label `either`, which the caller chooses. Where all lines agree the reading
+    /// tells nothing and is skipped. It is true as long as one of the lines passes here.
     ///
-    /// Under a [tolerance](Self::within) the sample is taken in where it is true of any position within it.
+    /// Under a [tolerance](Self::within) the sample is taken in at a place where it is true for any position within the
+    /// tolerance.
     ///
     /// # Errors
     /// As [`insert`](Self::insert), never for a true reading.
@@ -216,8 +217,8 @@ impl<const N: usize> VersionSpace<N> {
         self.take_within(site, reading, either, self.tolerance)
     }
 
-    /// As [`take`](Self::take), of a site that may be off by so much, at most by the [tolerance](Self::tolerance). It is
-    /// shifted by no more than that takes, so the less it may be off, the more it tells.
+    /// As [`take`](Self::take), of a site that may be off by so much, at most by the [tolerance](Self::tolerance). The
+    /// smaller the tolerance, the smaller the shift, and the more the sample tells.
     ///
     /// # Errors
     /// As `take`, and [`Refused::Tolerance`].
@@ -337,8 +338,8 @@ impl<const N: usize> Belief for VersionSpace<N> {
     }
 }
 
-/// Directions among which are those of all lines that samples leave whose positions may be off; `None` if these are too
-/// many to shift samples by.
+/// An arc that contains the directions of all lines left by samples whose positions may be off. `None` if it is too
+/// wide to shift samples by.
 ///
 /// Let `w` run from a sample of label -1 to one of label +1, and let their tolerances sum up to `s`. The unit normal `n` of
 /// a line that agrees with both has `n . w >= -s`. So normals are excluded within `acos(s / |w|)` of `-w`.
@@ -382,8 +383,8 @@ fn directions_left(samples: &[(Sample, Tolerance)]) -> Option<SlopeArc> {
     is_narrow.then(|| SlopeArc::new(unit(to), unit(from)))
 }
 
-/// The first of these collinear samples up to which no line separates them: it lies between two of the
-/// other label, or there is one of the other label between it and another, or at its site.
+/// The index of the first of these collinear samples up to which no line separates them. That sample lies between two
+/// of the other label, or at the site of one. Or one of the other label lies between it and another sample.
 fn first_inseparable_collinear(samples: &[Sample]) -> Option<usize> {
     let lies_between = |b: &Sample, [a, c]: [&Sample; 2]| {
         a.label == c.label && a.label != b.label && (a.site - b.site).dot(c.site - b.site) <= 0

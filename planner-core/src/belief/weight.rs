@@ -3,8 +3,8 @@
 
 use core::ops::{Add, Sub};
 
-/// A natural logarithm in units of 2^-32, far from overflow: 128 labels of the least probability that
-/// a double can hold come to 2^49.
+/// A natural logarithm in units of 2^-32. It is far from overflow: 128 labels of the least probability that a double
+/// can hold add up to 2^49.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct LogWeight(pub(crate) i64);
@@ -48,7 +48,7 @@ impl LogWeight {
         self.exp_single() * (1.0 + 8.0 * f32::EPSILON)
     }
 
-    /// Of a whole of 2^20 votes, how many go to a weight when the largest has all.
+    /// The votes of a weight, if the largest weight has all 2^20 votes.
     pub(crate) fn votes(self, largest: Self) -> u32 {
         const WHOLE: f32 = (1 << 20) as f32;
         ((self - largest).exp_single() * WHOLE + 0.5) as u32
@@ -73,8 +73,7 @@ impl Sub for LogWeight {
     }
 }
 
-/// A logarithm in units of 2^-24 (relative precision 6e-8), from -96 to 88: what floating point in
-/// single precision can tell.
+/// A logarithm in units of 2^-24 (relative precision 6e-8), from -96 to 88: the range of single precision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Coarse(i32);
 

@@ -1,5 +1,5 @@
-//! Quick approximations in single precision, the same on every machine. They propose and never decide:
-//! whoever uses one leaves a margin for its error.
+//! Quick approximations in single precision, the same on every machine. They propose and never decide: the caller
+//! leaves a margin for the error of each.
 
 use crate::geometry::angle::Angle;
 use crate::geometry::heading::Heading;

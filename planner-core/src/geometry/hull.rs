@@ -1,7 +1,7 @@
 //! Small convex hulls, and whether two of them keep apart: exact.
 //!
-//! A hull is given by its corners in order. One corner is a point, two are a segment: what a straight motion sweeps,
-//! a wall, the middle of a disc.
+//! A hull is given by its corners in order. One corner is a point, such as the middle of a disc. Two corners are a
+//! segment, such as a wall or the path of a straight motion.
 
 use crate::geometry::area::Area;
 use crate::geometry::lattice::{Site, orient};
@@ -124,8 +124,8 @@ pub(crate) fn have_boxes_apart(a: &[Site], b: &[Site], by: u32) -> bool {
     apart(Site::x) || apart(Site::z)
 }
 
-/// Whether the line of one of a hull's edges has all of the hull on one side and all of another further than this on
-/// the other.
+/// Whether one of a hull's edges separates it from another hull. All of the other hull must lie further than `by`
+/// beyond the edge's line.
 fn has_edge_between(hull: &[Site], other: &[Site], by: u32) -> bool {
     let square = |a: u64| u128::from(a) * u128::from(a);
     // On which side of its edges a hull lies: on none, if it is a segment or a point.
@@ -146,7 +146,7 @@ fn has_edge_between(hull: &[Site], other: &[Site], by: u32) -> bool {
     })
 }
 
-/// The same by all pairs of a corner of one and an edge of the other: exact in all cases.
+/// The same, computed from all pairs of a corner of one and an edge of the other. Exact in all cases.
 fn have_corners_apart(a: &[Site], b: &[Site], by: u32) -> bool {
     // The nearest points of hulls that do not meet are a corner of one and a point of the other's edge.
     !meet(a, b)

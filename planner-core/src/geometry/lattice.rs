@@ -1,9 +1,8 @@
 //! Integer positions and the one predicate that decides everything.
 //!
-//! A position is a [`Site`]: a point of the lattice with [`UNITS_PER_METRE`] units to the metre
-//! (15 micrometres apart, far below any localisation error) and coordinates below 2^29 units in
-//! size (8 km). On it [`orient`] is exact in `i64`: no tolerance, no misclassified cut, the same
-//! answer on every machine.
+//! A position is a [`Site`]: a point of a lattice with [`UNITS_PER_METRE`] units to the metre. Neighbouring points are
+//! 15 micrometres apart, far below any localisation error. Coordinates are below 2^29 units in size (8 km). On this
+//! lattice [`orient`] is exact in `i64`: no tolerance, no misclassified cut, and the same answer on every machine.
 
 use core::ops::Sub;
 

@@ -1,4 +1,4 @@
-//! Lines in single precision that lose nothing: each in a frame of its own, exact and near to it.
+//! Lines in single precision that lose no accuracy: each has a frame of its own, which is exact and near to it.
 
 use crate::geometry::approximate::{METRE, UnitVector, cross};
 use crate::geometry::lattice::{Site, Vector};
@@ -13,10 +13,10 @@ pub(crate) struct Frame {
 
 /// A line by slope and intercept in axes of its own: a site, and an exact direction near the line's.
 ///
-/// From `about` go any way along the direction; the line lies `intercept` metres, and `slope` times that
-/// way, to the left. The +1 side is to the left of it. What makes the line differ from the exact one through
-/// the site is small, so single precision is enough wherever it lies: a [`Line`](crate::geometry::line::Line)
-/// has it in metres from the origin, in double precision.
+/// At a distance `d` from `about` along the direction, the line lies `intercept + slope d` metres to the left. Its +1
+/// side is to the left of it. The line differs little from the exact one through the site, so single precision is
+/// enough wherever it lies. A [`Line`](crate::geometry::line::Line) describes it in metres from the origin, in double
+/// precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -1,8 +1,8 @@
-//! Points, directions and lines in the plane, in integers: what everything else is decided by.
+//! Points, directions and lines in the plane, in integers. Every decision in the crate rests on them.
 //!
-//! A position is a site of a lattice, a heading a binary angle, a displacement two integers; one predicate,
-//! [`lattice::orient`], says on which side of a line a site lies, exactly. Approximations in single
-//! precision only propose, with their errors stated.
+//! A position is a site of a lattice, a heading is a binary angle, and a displacement is two integers. One predicate,
+//! [`lattice::orient`], computes exactly on which side of a line a site lies. Approximations in single precision only
+//! propose, and state their errors.
 
 pub(crate) mod angle;
 pub(crate) mod approximate;

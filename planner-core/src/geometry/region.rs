@@ -1,23 +1,24 @@
-//! Where motions may go: a convex area, but for keep-outs.
+//! Where motions may go: a convex area without its keep-outs.
 
 use crate::geometry::area::Area;
 use crate::geometry::hull::{are_apart, have_boxes_apart};
 use crate::geometry::lattice::{Site, Vector};
 
-/// Where motions may go: a convex area, but for convex places that none of them touches.
+/// Where motions may go: a convex area without convex keep-outs, which no motion touches.
 ///
-/// [`Area`], a rectangle with nothing in it, costs nothing of what is for more;
+/// [`Area`], a rectangle with nothing in it, pays nothing for polygons and keep-outs.
 /// [`Terrain`](crate::geometry::terrain::Terrain) is a convex polygon with keep-outs.
 pub trait Region: Copy {
     /// The smallest rectangle around it.
     fn bounds(&self) -> Area;
 
-    /// What of its rectangle belongs to it, be it [inset](Self::inset) or not, as a share: 1, or less.
+    /// Fraction of the bounding rectangle that belongs to the region, whether it is [inset](Self::inset) or not; at
+    /// most 1.
     fn share_of_bounds(&self) -> f32 {
         1.0
     }
 
-    /// Where to go from a position that is outside, to come inside sooner or later.
+    /// The displacement by which an agent outside the region returns to its inside sooner or later.
     fn way_home(&self, from: Site) -> Vector {
         self.bounds().middle() - from
     }
@@ -56,9 +57,9 @@ pub trait Region: Copy {
 
     /// Whether a motion from one position may come to another, as far as the border is concerned.
     ///
-    /// Of an [inset](Self::inset) area the margin is for errors alone: from inside no motion leads into it. From within
-    /// the margin, where an error has brought the agent, motions may use it but not leave the area. From outside they may
-    /// go anywhere. Each side of the border is judged by itself.
+    /// The margin of an [inset](Self::inset) area is for errors alone: no motion leads into it from inside. If an error
+    /// has brought the agent into the margin, motions may use it but not leave the area. From outside, motions may go
+    /// anywhere. Each side of the border is judged by itself.
     fn confines(&self, from: Site, to: Site) -> bool {
         let bounds = self.bounds();
         let inside = |q: Site| {
@@ -83,17 +84,18 @@ pub trait Region: Copy {
             && self.keep_outs().all(|it| it.is_clear_of(&[centre], radius.unsigned_abs()))
     }
 
-    /// Whether what a motion sweeps, the hull of these positions, touches no keep-out; nor comes as near as that
-    /// from the outside of it.
+    /// Whether a motion stays clear of all keep-outs. `swept` are the corners of the hull that the motion sweeps. The
+    /// hull may not come nearer to a keep-out than its margin.
     ///
-    /// A motion that begins too near one already, as an error has brought it there, may go on as long as it stays
-    /// out of the keep-out itself.
+    /// If an error has brought the agent too near to a keep-out, a motion from there need only stay out of the keep-out
+    /// itself.
     fn lets_pass(&self, swept: &[Site]) -> bool {
         self.keep_outs().all(|it| it.lets_pass(swept))
     }
 }
 
-/// Whether a motion may change how far inside a side the agent is, of which the border lies a margin outside.
+/// Whether a motion may change the agent's depth inside a side from `from` to `to`. The border lies `margin` outside of
+/// that side.
 const fn may_go(from: i64, to: i64, margin: i64) -> bool {
     to >= 0 || from < 0 && (to >= -margin || from < -margin)
 }
@@ -131,13 +133,14 @@ impl HalfPlane {
         self.along.cross(q - self.from) - i64::from(self.margin) * i64::from(self.length)
     }
 
-    /// By how much that is more a distance further in, or somewhat more; lattice units, below 2^30.
+    /// The increase of [`at`](Self::at) for a distance further in, or somewhat more. The distance is in lattice units,
+    /// below 2^30.
     pub fn offset_of(&self, distance: i32) -> i64 {
         i64::from(distance) * i64::from(self.length)
     }
 }
 
-/// What no motion touches: all within a distance of a convex hull. A disc is what is within its radius of a point.
+/// Ground that no motion touches: all within a distance of a convex hull. A disc is all within its radius of a point.
 #[derive(Clone, Copy, Debug)]
 pub struct KeepOut<'a> {
     /// The hull's corners.

@@ -1,17 +1,16 @@
 //! Delivery: requests that are answered exactly once over a link that loses, cuts, spoils, doubles and
 //! delays frames, between ends that may restart at any time.
 //!
-//! Stop and wait. The chip numbers its requests and sends each until its reply comes or a bound is
-//! reached ([`Link`]); the vehicle acts on a number once and answers it again from memory
-//! ([`Responder`]). Within a session numbers only grow, so what comes late is old and is passed over:
-//! no motion is made twice, no sample counted twice, whichever way a frame is lost.
+//! Stop and wait. The chip numbers its requests and sends each until its reply comes or a bound is reached ([`Link`]);
+//! the vehicle acts on a number once and answers it again from memory ([`Responder`]). Within a session numbers only
+//! grow, so a late message is old and is ignored. No motion is made twice and no sample is counted twice, whichever way
+//! a frame is lost.
 //!
-//! **A session** is what lies between two restarts of either end. A hello belongs to none; its reply
-//! offers the one after that which runs, and the first request in it begins it. Until then the old
-//! one goes on: a hello that comes late offers a session that nobody takes up. So the chip need not
-//! tell its starts apart, and the vehicle does by the number that its [`Responder`] begins with. A
-//! request of any other session, or older than the last, is answered with [`Reply::Stale`]: whoever
-//! still waits for its reply has missed a restart.
+//! **A session** is the time between two restarts of either end. A hello belongs to no session. Its reply offers the
+//! session after the running one, and the first request in the offered session begins it. Until then the old session
+//! continues: a late hello offers a session that nobody takes up. So the chip need not distinguish its starts. The
+//! vehicle distinguishes its own by the number with which its [`Responder`] begins. A request of any other session, or
+//! older than the last, is answered with [`Reply::Stale`]: whoever still waits for its reply has missed a restart.
 //!
 //! ```text
 //!  chip                     vehicle, session 7 before

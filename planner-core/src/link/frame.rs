@@ -1,8 +1,7 @@
-//! Frames: how a message goes over the wire, and how it is found again in a stream of bytes.
+//! Frames: how a message goes over the wire, and how the receiver finds it in a stream of bytes.
 //!
-//! A frame holds one message: the way it goes, its session, its number, itself, in postcard's form, and a
-//! CRC-32 of these; COBS keeps zeros out, and a zero stands before and after. So a frame that was cut
-//! spoils itself alone.
+//! A frame contains one message: its direction, its session, its number, the message itself in postcard's form, and a
+//! CRC-32 of these. COBS removes zeros, and a zero stands before and after. So a frame that was cut spoils only itself.
 
 use core::ops::{Index, IndexMut};
 
@@ -71,7 +70,7 @@ fn encode<M: Message>(envelope: &Envelope<M>, into: &mut [u8]) -> postcard::Resu
     postcard::serialize_with_flavor(envelope, Once(checked))
 }
 
-/// What takes bytes, compiled once: every field of every message would else have a copy of it.
+/// A writer of bytes that is compiled once. Otherwise every field of every message would have a copy of it.
 struct Once<F>(F);
 
 impl<F: Flavor> Flavor for Once<F> {
@@ -87,12 +86,12 @@ impl<F: Flavor> Flavor for Once<F> {
     }
 }
 
-/// Takes what is written of a frame. COBS comes back to places that it has written to; postcard's own
-/// slice panics at others, and so would have a panic in every program.
+/// Takes the bytes of a frame. COBS writes again to places that it has written before. Postcard's own slice panics at
+/// places out of range, so it would put a panic into every program.
 struct Content<'a> {
     bytes: &'a mut [u8],
     written: usize,
-    /// What is at a place that there is not.
+    /// Dummy byte for out-of-range indices; avoids a panic.
     nowhere: u8,
 }
 

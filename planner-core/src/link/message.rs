@@ -1,4 +1,4 @@
-//! What a chip that plans and a vehicle that moves say to each other.
+//! The messages between a chip that plans and a vehicle that moves.
 //!
 //! The chip asks, the vehicle answers: every [`Request`] has one [`Reply`].
 //!
@@ -16,9 +16,9 @@
 //!  | <-------------------------------- Noted --  |
 //! ```
 //!
-//! A mission that was cut off needs no message of its own: planners are deterministic, so it is flown again from its
-//! beginning, and the vehicle answers the motions that it has made from memory, without moving. `docs/protocol.md`
-//! has all this byte by byte.
+//! A mission that was cut off needs no message of its own. Planners are deterministic, so it is flown again from its
+//! beginning. The vehicle answers the motions that it has already made from memory, without moving. `docs/protocol.md`
+//! describes the protocol byte by byte.
 //!
 //! A message goes as a [`Frame`](crate::link::frame::Frame); delivery (loss, repetition, lateness) is [`link`](crate::link::delivery)'s.
 
@@ -58,8 +58,8 @@ pub const MOST_KEEP_OUTS: usize = 8;
 /// Where the motions of a mission may go.
 pub type MissionArea = Terrain<MOST_CORNERS, MOST_KEEP_OUTS>;
 
-/// The border of an area, or what is kept out of, by its numbers: whether they are those of a convex polygon is for
-/// a chip to say that has room for one.
+/// The border of an area, or a keep-out, by its coordinates. A chip that has room for polygons checks whether they form
+/// a convex one.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Outline {
@@ -117,9 +117,9 @@ pub enum Reply {
     Arrived {
         /// Where it ended.
         pose: Pose,
-        /// What was sensed; `None` when no sample was taken, or the chip has the sensor and is to read it. Where
-        /// there is a reading the chip takes that, and leaves its own sensor alone: a mission that was cut off is
-        /// flown again from its beginning, and what was sensed then is told from memory.
+        /// The reading. `None` when no sample was taken, or when the chip has the sensor and must read it. If there is
+        /// a reading, the chip uses it and does not read its own sensor. That happens when a mission that was cut off
+        /// is flown again from its beginning: the vehicle then repeats the earlier reading from memory.
         reading: Option<Reading>,
     },
     /// To [`Request::Move`]: the vehicle could not make the motion.
@@ -145,8 +145,8 @@ pub struct Setup {
     /// If the area is more than that rectangle: how many keep-outs there are. Then the chip asks for
     /// [outlines](Request::Outline).
     pub keep_outs: Option<u8>,
-    /// What the vehicle can be asked to do. Whether there is such a vehicle is for the
-    /// [chip](Setup::terms) to say: it need know no kind but its own.
+    /// The parameters of the vehicle. The [chip](Setup::terms) decides whether it supports such a vehicle: it need know
+    /// no kind but its own.
     pub vehicle: Shape,
     /// The capacity asked for.
     pub capacity: Capacity,

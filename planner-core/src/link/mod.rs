@@ -1,8 +1,12 @@
-//! A mission whose planner and vehicle are apart: the chip plans, the vehicle at the other end of a wire
-//! moves and senses.
+//! A mission whose planner and vehicle are apart: the chip plans, and the vehicle at the other end of a wire moves and
+//! senses.
 //!
-//! What they say to each other is in [`message`], how it goes over a wire in [`frame`], how it is
-//! delivered exactly once in [`delivery`], and the chip's side of a mission in [`station`].
+//! | module | contains |
+//! | --- | --- |
+//! | [`message`] | what the two ends say to each other |
+//! | [`frame`] | how a message goes over a wire |
+//! | [`delivery`] | how a message is delivered exactly once |
+//! | [`station`] | the chip's side of a mission |
 
 pub mod delivery;
 pub mod frame;

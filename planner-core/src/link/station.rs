@@ -1,4 +1,4 @@
-//! The chip's side of a mission: it is asked for over a link, planned here, and driven elsewhere.
+//! The chip's side of a mission: a mission comes over a link, is planned here, and is driven elsewhere.
 
 use heapless::Vec;
 
@@ -301,9 +301,9 @@ impl<P: Port, S: LabelSensor> Station<P, S> {
         }
     }
 
-    /// What to plan with and where, of what the chip has: [`AnyVehicle`](crate::motion::any_vehicle::AnyVehicle) or
-    /// the [`Unicycle`](crate::motion::unicycle::Unicycle) alone, in a [`MissionArea`] or in an [`Area`] alone. What
-    /// is refused here no planner was made for, so it goes to [`give_up`](Self::give_up).
+    /// What to plan with and where, of what the chip has: [`AnyVehicle`](crate::motion::any_vehicle::AnyVehicle) or the
+    /// [`Unicycle`](crate::motion::unicycle::Unicycle) alone, in a [`MissionArea`] or in an [`Area`] alone. If this
+    /// refuses a setup, no planner exists for it, so pass the refusal to [`give_up`](Self::give_up).
     ///
     /// # Errors
     /// [`NoTerms`].
@@ -400,8 +400,8 @@ fn timed<T>(ticks: fn() -> u32, took: &mut u32, does: impl FnOnce() -> T) -> T {
     done
 }
 
-/// Where the planner begins. Functions of their own also in an optimised program, so that its size, its
-/// stack and its instructions can be told from those of the link.
+/// The entries of the planner. They stay separate functions in an optimised program. So its size, stack and
+/// instructions can be measured apart from those of the link.
 mod seam {
     use super::{Estimates, Plan, Planner, Pose, Reading, Refused};
 

@@ -1,8 +1,7 @@
 //! The integer-indexed action grid: a finite action set in which one `u32` names an action.
 //!
-//! Actions that share a direction of travel form a *ray*, and differ in speed alone. A grid has
-//! `rays` rays of `speeds` speeds, `0, step, 2 step, ...`; the index of an action is
-//! `ray * speeds + speed`.
+//! Actions that share a direction of travel form a *ray* and differ only in speed. A grid has `rays` rays, each with
+//! `speeds` speeds: `0, step, 2 step, ...`. The index of an action is `ray * speeds + speed`.
 
 use crate::geometry::lattice::UNITS_PER_METRE;
 
@@ -42,13 +41,13 @@ pub struct ActionGrid {
 pub enum BadGrid {
     /// It has no action, or more than 2^32.
     Actions,
-    /// Its steps of speed are nothing, or 100 m or more, or one of its motions is 3,000 m long or longer.
+    /// Its steps of speed are zero, or 100 m or more. Or one of its motions is 3,000 m long or longer.
     Reach,
-    /// Its step of turning is nothing or more than half a turn, or its sharpest turn is less than a
-    /// milliradian or more than half a turn.
+    /// Its step of turning is zero or more than half a turn. Or its sharpest turn is less than a milliradian or more
+    /// than half a turn.
     Turn,
-    /// Its turning circle is nothing, or of 2,048 m or more, or its motions are too short or its steps of turning
-    /// too large to go round it.
+    /// Its turning circle is zero, or of 2,048 m or more. Or its motions are too short, or its steps of turning too
+    /// large, to go round the circle.
     Circle,
 }
 

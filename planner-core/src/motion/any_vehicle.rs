@@ -8,7 +8,7 @@ use crate::motion::car::{self, Car};
 use crate::motion::dynamics::{Dynamics, Fan, NoRoom, Orbit, Pose, Ray, Side};
 use crate::motion::unicycle::{self, Grid, Unicycle};
 
-/// One vehicle of three kinds. A program that knows which it has is smaller and faster with that one.
+/// A vehicle of one of three kinds. A program that knows its vehicle is smaller and faster with that type.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum AnyVehicle {
@@ -20,7 +20,7 @@ pub enum AnyVehicle {
     Car(Car),
 }
 
-/// A vehicle by its numbers, from which it is made anew elsewhere.
+/// The parameters of a vehicle, from which the other end of a link can build it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -33,7 +33,7 @@ pub enum Shape {
     Car(car::Shape),
 }
 
-/// Why a shape is no vehicle to fly with.
+/// Why a shape gives no usable vehicle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

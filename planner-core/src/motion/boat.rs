@@ -6,11 +6,11 @@ use crate::motion::action::{Action, ActionGrid, BadGrid, Control};
 use crate::motion::dynamics::{Dynamics, Fan, Orbit, Pose, Ray, Side};
 use crate::motion::unicycle::Unicycle;
 
-/// A [`Unicycle`] that cannot turn on the spot: each step turns by at most its sharpest turn, then drives one step of
-/// speed at least.
+/// A [`Unicycle`] that cannot turn on the spot. Each step turns by at most its sharpest turn, then drives at least one
+/// step of speed.
 ///
-/// Of its own steps the smallest circle is that of the sharpest turn and the slowest speed, a polygon with the
-/// circumradius `v / (2 sin(w / 2))`.
+/// Its smallest circle combines the sharpest turn `w` with the slowest speed `v`. It is a polygon with the circumradius
+/// `v / (2 sin(w / 2))`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Boat {

@@ -29,8 +29,8 @@ pub struct Car {
     turns: u32,
     /// The step of chords as a binary angle with 32 fractional bits.
     step: u64,
-    /// The circle that it can go round: its speed, its ray, and in lattice units its radius, that of the polygon of
-    /// tangents about it, and how far rounding may move it in one round.
+    /// The circle that it can go round: its speed and its ray. Then come, in lattice units, its radius and the radius
+    /// of the polygon of tangents about it. The last is how far rounding may move it in one round.
     orbit_speed: u16,
     orbit_turn: u32,
     orbit_radius: i32,
@@ -68,8 +68,8 @@ impl Car {
     /// Turning circles are smaller than this, millimetres.
     pub const WIDEST_MM: u32 = 2_048_000;
 
-    /// A circle is gone round by motions that turn by twice this, or by the shortest: few are needed, and the
-    /// polygon of their tangents is not much wider than the circle.
+    /// A vehicle goes round its circle by motions that turn by twice this angle, or by the shortest motions. Few are
+    /// needed, and the polygon of their tangents is not much wider than the circle.
     pub const ORBIT: Heading = Heading(Heading::turn_of(0.26));
 
     /// A car of this shape.

@@ -1,7 +1,7 @@
-//! The contract of [`Dynamics`], checked: for implementations of your own.
+//! Checks the contract of [`Dynamics`], for implementations of your own.
 //!
-//! The search skips rays by what a fan promises of them, so dynamics that break a promise make wrong
-//! plans, not errors. Call [`check`] in a test.
+//! The search relies on the promises of a fan to skip rays. So dynamics that break a promise lead to wrong plans, not
+//! to errors. Call [`check`] in a test.
 //!
 //! ```
 //! use planner_core::motion::contract;
@@ -23,8 +23,8 @@ use crate::motion::dynamics::{Dynamics, Fan, Pose, Ray, Side};
 pub enum Broken {
     /// 1: the fan has not as many rays as the grid, or none on the left.
     Count,
-    /// 2: from the ray before, this one turns back or not at all, or further than the fan's spacing, or
-    /// the fan's sides overlap behind it.
+    /// 2: this ray turns back from the ray before, or not at all, or further than the fan's spacing. Or the fan's sides
+    /// overlap behind it.
     Spacing(Side, u32),
     /// 3: this ray asks for less effort than one before it.
     Effort(Side, u32),
@@ -32,16 +32,16 @@ pub enum Broken {
     Step(Side, u32),
     /// 5: this ray's index is not in the grid, is another ray's too, or does not lead back to it.
     Index(Side, u32),
-    /// 6: the turn in place to this side moves the agent, turns it the other way or not at all, or
-    /// leaves a gap between the fans.
+    /// 6: the turn in place to this side moves the agent, or turns it the other way or not at all. Or it leaves a gap
+    /// between the fans.
     TurnInPlace(Side),
-    /// 7: at this speed there are more rays than at a faster one, or at the fastest not all, or an action of it has
-    /// no ray or should have none.
+    /// 7: this speed has more rays than a faster one, or it is the fastest and has not all rays. Or an action of this
+    /// speed has no ray, or should have none.
     Speeds(u16),
     /// 8: this ray does not lead a displacement away, or its tangents do not meet in its corner.
     Arrival(Side, u32),
-    /// 9: the orbit to this side is missing where there is one to the other, turns the other way or not at all, or
-    /// leaves its radius within a round.
+    /// 9: the orbit to this side is missing although there is one to the other side. Or it turns the other way or not
+    /// at all, or leaves its radius within a round.
     Orbit(Side),
 }
 
@@ -174,8 +174,8 @@ fn leads_ahead<D: Dynamics>(dynamics: &D, ray: &Ray) -> bool {
     near(ray.step.x, exact.x) && near(ray.step.z, exact.z)
 }
 
-/// Whether the actions of a ray at the slowest speed and the fastest lead back to it, where it has them: as
-/// indices are below their number, and each gives its own ray back, none is used twice.
+/// Whether the actions of a ray at the slowest and the fastest speed lead back to it, if it has them. Indices are below
+/// their number, and each gives its own ray back, so none is used twice.
 fn is_named<D: Dynamics>(dynamics: &D, pose: Pose, ray: &Ray) -> bool {
     let grid = dynamics.grid();
     let back = |speed| dynamics.ray_of(pose, grid.action(ray.index, speed));

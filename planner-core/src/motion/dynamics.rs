@@ -1,12 +1,12 @@
 //! Dynamics: how an action moves the agent.
 //!
-//! The general one-step problem has any `phi` and any finite action set. What the search needs of
-//! them is here: the actions grouped into [`Ray`]s, which lie as a [`Fan`]. [`Unicycle`](crate::motion::unicycle) is
-//! the paper's dynamics, [`Holonomic`](crate::motion::holonomic) another.
+//! The paper's one-step problem allows any `phi` and any finite action set. This module defines what the search needs
+//! of them: the actions, grouped into [`Ray`]s that form a [`Fan`]. [`Unicycle`](crate::motion::unicycle) is the
+//! paper's dynamics, and [`Holonomic`](crate::motion::holonomic) is another.
 //!
-//! A vehicle that cannot turn on the spot has an [`Orbit`] to either side, the circle that it goes round by
-//! repeating one action: where that lies inside the area it is never cornered. [`Car`](crate::motion::car) drives
-//! along arcs, [`Boat`](crate::motion::boat) turns a little a step.
+//! A vehicle that cannot turn on the spot has an [`Orbit`] to either side, the circle that it follows by repeating one
+//! action. As long as that circle lies inside the area, the vehicle is never cornered. [`Car`](crate::motion::car)
+//! drives along arcs, and [`Boat`](crate::motion::boat) turns a little in each step.
 
 use crate::geometry::area::Area;
 use crate::geometry::heading::Heading;
@@ -25,8 +25,8 @@ pub struct Pose {
     pub heading: Heading,
 }
 
-/// The actions that share a direction of travel from a pose: that of the chord, for a vehicle that drives along
-/// arcs.
+/// The actions that share a direction of travel from a pose. For a vehicle that drives along arcs, it is the direction
+/// of the chord.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Ray {
@@ -68,8 +68,8 @@ pub enum Side {
     Right,
 }
 
-/// How the rays from a pose lie. They fan out from the 0th, straight ahead, to the left and to the
-/// right; see [`Dynamics`] for what is promised of them.
+/// The rays from a pose. They fan out from the 0th, straight ahead, to the left and to the right; see [`Dynamics`] for
+/// the contract.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Fan {
@@ -89,7 +89,7 @@ pub struct Orbit {
     pub action: Action,
     /// Its centre from the pose's position, lattice units.
     pub centre: Vector,
-    /// Within this distance of the centre all of the way lies, its [corners](Dynamics::corner) too; lattice units.
+    /// The whole way lies within this distance of the centre, its [corners](Dynamics::corner) too; lattice units.
     pub radius: i32,
     /// How far rounding to the lattice may move the centre in one round; lattice units.
     pub margin: i32,
@@ -113,7 +113,7 @@ impl Orbit {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct NoRoom {
-    /// What the circle takes from side to side, millimetres.
+    /// The width that the circle needs, millimetres.
     pub across_mm: u32,
 }
 
@@ -132,29 +132,28 @@ impl core::error::Error for NoRoom {}
 ///
 /// # Contract
 ///
-/// The search passes over rays that it has not looked at, so it takes these for granted, from every
-/// pose. [`contract::check`](crate::motion::contract::check) tells which one an implementation breaks.
+/// The search skips rays without looking at them, so it relies on these promises, from every pose.
+/// [`contract::check`](crate::motion::contract::check) tells which one an implementation breaks.
 ///
 /// 1. The fan has the grid's number of rays, one at least on the left.
-/// 2. To either side each ray turns further away from the 0th, by [`Fan::spacing`] at most, and the two
-///    sides together by a whole turn at most.
+/// 2. On either side each ray turns further away from the 0th than the one before, by [`Fan::spacing`] at most. The two
+///    sides together turn by a whole turn at most.
 /// 3. The effort never decreases from one ray of a side to the next, and the 0th's is the least of all.
 /// 4. [`Ray::heading`] is [`heading`](Self::heading)'s, and [`Ray::step`] points there, as long as one
 ///    step of the grid's speed.
 /// 5. Indices are those of the grid, each once, and [`ray_of`](Self::ray_of) gives the ray back.
-/// 6. A turn in place keeps the position, turns to its side by less than a whole turn, and by no more
-///    than the fan reaches to that side, so that the fans before and after leave no gap.
+/// 6. A turn in place keeps the position and turns to its side by less than a whole turn. It turns no further than the
+///    fan reaches to that side, so the fans before and after leave no gap.
 /// 7. [`rays_at`](Self::rays_at) is the whole fan at the fastest speed, never grows as the speed falls, and
 ///    [`ray_of`](Self::ray_of) knows just the actions that it has.
 /// 8. [`arrive`](Self::arrive) leads one [`displacement`](Ray::displacement) from the pose. The way there lies in the
-///    triangle of its ends and its [`corner`](Self::corner), where its tangents meet; in the straight line if it has
-///    none.
+///    triangle of its two ends and its [`corner`](Self::corner), where its tangents meet. If it has no corner, the way
+///    is the straight line.
 /// 9. There is an [`orbit`](Self::orbit) to both sides or to none. Repeating its action turns to its side and stays
 ///    within its radius, and within its radius and margin for a round.
 ///
-/// 1 to 5, 7 and 8 are what the search for the best action needs, of each algorithm. Where no action asks on uncertain
-/// ground, the recovery ladder needs 6 or 9, unless the fan reaches all around: a vehicle that has neither ends its
-/// mission there.
+/// The search for the best action needs 1 to 5, 7 and 8, in each algorithm. If no action ends on uncertain ground, the
+/// recovery ladder needs 6 or 9, unless the fan reaches all around. A vehicle that has neither ends its mission there.
 pub trait Dynamics {
     /// The action set.
     fn grid(&self) -> ActionGrid;
@@ -178,13 +177,13 @@ pub trait Dynamics {
         })
     }
 
-    /// How many rays a speed has, to the left with the 0th, and to the right: fewer than the fan, if a short motion
-    /// cannot turn as far as a long one. `None`: all of the fan.
+    /// The number of rays of a speed, to the left with the 0th, and to the right. There are fewer than in the fan if a
+    /// short motion cannot turn as far as a long one. `None`: all of the fan.
     fn rays_at(&self, _speed: u16) -> Option<[u32; 2]> {
         None
     }
 
-    /// Where a ray from a pose leads at a speed. It faces the way it has travelled, unless one says.
+    /// The pose to which a ray leads at a speed. By default the agent then faces in the direction of travel.
     ///
     /// # Errors
     /// [`OffLattice`] when that is beyond the lattice.
@@ -199,13 +198,13 @@ pub trait Dynamics {
         None
     }
 
-    /// The smallest circle that the agent can go round to a side, or nearly. `None` when it has no need to, as it
-    /// turns in place or leaves in any direction.
+    /// The smallest circle, or nearly, that the agent can go round to a side. `None` if it needs none, as it turns in
+    /// place or leaves in any direction.
     fn orbit(&self, _pose: Pose, _side: Side) -> Option<Orbit> {
         None
     }
 
-    /// Whether its circle fits an area somewhere; if not, no motion there leaves it a way to go on.
+    /// Whether the vehicle's circle fits somewhere in an area. If not, the vehicle is cornered after any motion there.
     ///
     /// # Errors
     /// [`NoRoom`].
@@ -222,8 +221,8 @@ pub trait Dynamics {
         has_orbit_inside(self, pose, area, |orbit| orbit.radius)
     }
 
-    /// Whether a motion to a place inside the area stays there and ends where it is safe, with so much room
-    /// around its circle, in lattice units. There is a margin for the rounding of a round.
+    /// Whether a motion to a place inside the area stays inside and ends safe. The circle must have `room` around it,
+    /// in lattice units, and a margin for the rounding of a round.
     fn keeps_inside<G: Region>(&self, from: Pose, to: Pose, area: &G, room: i32) -> bool {
         self.stays_inside(from, to, area)
             && has_orbit_inside(self, to, area, |orbit| orbit.with_room(room))
@@ -240,8 +239,8 @@ pub trait Dynamics {
         })
     }
 
-    /// The ray nearest to a heading, and the nearest within half a turn to the other side of it; the first
-    /// again where there is none. Some 70 headings are asked for, at most.
+    /// The ray nearest to a heading, and the nearest within half a turn on the other side of it. If there is none, the
+    /// second is the first again. Computes some 70 headings at most.
     fn around(&self, pose: Pose, heading: Heading) -> [Ray; 2] {
         let Fan { left, right, .. } = self.fan();
         let to_left = heading.0.wrapping_sub(self.heading(pose, Side::Left, 0).0);
@@ -273,7 +272,7 @@ pub trait Dynamics {
     /// when the agent cannot turn on the spot, or has no reason to as it can leave in any direction.
     fn turn_in_place(&self, pose: Pose, side: Side) -> Option<(Action, Pose)>;
 
-    /// What an action asks of the vehicle.
+    /// The control that an action asks of the vehicle.
     fn control(&self, action: Action) -> Control;
 
     /// The ray to which an action belongs.
@@ -287,8 +286,8 @@ pub trait Dynamics {
     }
 }
 
-/// Room for two errors of the position, so that they do not push a circle out; lattice units. How much positions err is the
-/// area's own margin.
+/// Room for two errors of the position, so that they do not push a circle out; lattice units. The area's own margin is
+/// the size of one error.
 pub fn room_for_errors<G: Region>(area: &G) -> i32 {
     (area.bounds().margin() as i32).saturating_mul(2)
 }

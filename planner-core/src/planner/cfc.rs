@@ -1,13 +1,13 @@
 //! Algorithm 1, control for classification (CFC): noiseless labels.
 //!
-//! As printed: P1 until the label flips, then P2 once, and again. Settled here:
+//! As printed, it solves P1 until the label flips, then P2 once, and repeats. Three points are settled here:
 //!
-//! - *The memory* that a flip is compared with is the label of the past position, as the text has it;
-//!   the listing leaves `Label` alone after P2. Over the standard fields the two hardly differ.
-//! - *P2 with no feasible action* is passed over: the listing runs it once and moves its counter on
-//!   "even if the objective is not met". P1 with none climbs the recovery ladder.
-//! - *P2's direction* is held to the bisector of the slope arc, see [`Following`]. Over 4,000 standard
-//!   fields this learns 0.65 bits a step in 10 steps where P2 as printed learns 0.56.
+//! - *The memory* that a flip is compared with is the label of the past position, as in the paper's text. The listing
+//!   does not change `Label` after P2. Over the standard fields the two hardly differ.
+//! - *P2 with no feasible action* is skipped: the listing runs it once and advances its counter "even if the objective
+//!   is not met". P1 with no feasible action climbs the recovery ladder.
+//! - *P2's direction* is restricted to the bisector of the slope arc, see [`Following`]. Over 4,000 standard fields
+//!   this learns 0.65 bits a step in 10 steps, and P2 as printed learns 0.56.
 
 use crate::belief::Belief as _;
 use crate::belief::Refused;
@@ -119,8 +119,8 @@ impl<D: Dynamics, const N: usize, G: Region> Cfc<D, N, G> {
         Problem { lines, area, varrho, rule }
     }
 
-    /// The motion to make, the phase that it belongs to, and what it cost to find it.
-    /// Where positions err and no place is left at which either label would cut, one where one would is enough.
+    /// The motion to make, its phase, and the effort of finding it. Where positions err, there may be no place left at
+    /// which either label would cut. Then a place is enough at which one of the labels would.
     fn find(&self, pose: Pose, course: &mut Course) -> (Result<Found, DeadEnd>, Phase, Effort) {
         let lines = self.space.lines();
         if self.space.expected() == Tolerance::NONE {

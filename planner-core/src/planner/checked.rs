@@ -1,4 +1,4 @@
-//! Values that hold an invariant are written as bare numbers, and checked when they are read.
+//! Serialises values that have an invariant: they are written as bare numbers, and checked when they are read.
 
 use crate::belief::noise::Reliability;
 use crate::geometry::area::Area;

@@ -1,4 +1,4 @@
-//! What a mission fixes beforehand: where it may go, what motion costs, how directions are held.
+//! What a mission fixes beforehand: where it may go, what motion costs, and which directions are allowed.
 
 use crate::belief::sample::Sample;
 use crate::belief::tolerance::Tolerance;
@@ -26,8 +26,9 @@ pub enum Crossing {
 
 /// How P2 follows the boundary.
 ///
-/// It has no default: what learns the most with Algorithm 1 ([`cfc::FOLLOWING`](crate::planner::cfc::FOLLOWING))
-/// costs Algorithm 2 a tenth of a bit in thirty labels, see [`scc::FOLLOWING`](crate::planner::scc::FOLLOWING).
+/// It has no default, as the algorithms need different ones. With [`cfc::FOLLOWING`](crate::planner::cfc::FOLLOWING)
+/// Algorithm 1 learns the most. The same value costs Algorithm 2 a tenth of a bit in thirty labels, see
+/// [`scc::FOLLOWING`](crate::planner::scc::FOLLOWING).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -52,9 +53,9 @@ pub struct Config<G = Area> {
     pub crossing: Crossing,
     /// How P2 follows the boundary.
     pub following: Following,
-    /// How far a position may be from where it is reported, at most: motions keep so far from the area's border. A
-    /// [version space](crate::belief::version_space::VersionSpace::within) is told besides. An observation may bring a smaller
-    /// one of its own, see [`Planner::observe_within`](crate::planner::Planner::observe_within).
+    /// The largest distance of a position from where it is reported. Motions stay this far from the area's border. Give
+    /// the same tolerance to the [version space](crate::belief::version_space::VersionSpace::within). An observation
+    /// may bring a smaller one of its own, see [`Planner::observe_within`](crate::planner::Planner::observe_within).
     pub tolerance: Tolerance,
 }
 

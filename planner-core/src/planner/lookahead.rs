@@ -1,19 +1,20 @@
 //! Look-ahead: the motion whose label, and the one after it, are expected to tell the most for their cost.
 //!
-//! A label tells most where it is as likely to be +1 as -1. Among the ends of all motions such places lie
-//! along a curve, and an agent that walks along it, and does not walk where the next step has none in
-//! reach, learns nearly as much as one that jumps anywhere. So a plan
+//! A label tells most where it is as likely to be +1 as -1. Among the ends of all motions such places lie along a
+//! curve. An agent can stay on this curve and avoid ends from which the next motion cannot reach it. It then learns
+//! nearly as much as an agent that jumps anywhere. So a plan
 //!
-//! 1. looks for the motions whose end is worth the most: what its label is expected to tell, as a share of
-//!    what a label can tell, less `varrho |u|^2`;
-//! 2. looks one step further from the best of them, after either label, and makes the motion for which the
-//!    two steps together are worth the most;
-//! 3. where no end is worth much, it considers turns in place as well;
-//! 4. where there is none it climbs the recovery ladder, as Algorithm 1 does.
+//! 1. looks for the motions whose ends are worth the most: the expected information of the label there, as a share of
+//!    the most that a label can carry, less `varrho |u|^2`;
+//! 2. looks one step further from the best of them, after either label, and makes the motion with the greatest worth of
+//!    both steps together;
+//! 3. considers turns in place as well, if no end is worth much;
+//! 4. climbs the recovery ladder, as Algorithm 1 does, if there is no such motion.
 //!
-//! It is an anytime search: a plan asks so many ends at most ([`EVALUATIONS`]), in an order that does not
-//! depend on how many, and keeps the best so far, so that more are never worse by its own measure.
-//! What it learns from is a [`Foresight`]: the version space where labels are true, a
+//! The search is anytime: a plan evaluates at most [`EVALUATIONS`] ends and keeps the best found so far. The order of
+//! the ends does not depend on the limit. So a higher limit never gives a worse motion by the plan's own measure.
+//!
+//! Look-ahead learns from a [`Foresight`]: the version space where labels are true, a
 //! [`Forecast`](crate::belief::forecast::Forecast) where they may be wrong.
 
 use crate::belief::Belief as _;
@@ -41,11 +42,12 @@ use crate::search::objective::{Effort, LOOKS, Varrho};
 use crate::search::problem::Problem;
 use crate::search::recovery::{Found, solve_or_recover};
 
-/// The weight of the control that serves it best: in shares of a label for a unit of `|u|^2`.
+/// The weight of the control with which look-ahead works best: in shares of a label for a unit of `|u|^2`.
 pub const VARRHO: Varrho = Varrho { millionths: 2_000 };
 
-/// Ends of motions that a plan asks, at most. It takes some 100; of 1,000 standard fields none asks more in
-/// its first 30 steps, and from there 2 in 100 end for want of more, as the strip is thinner than the lattice.
+/// The most ends of motions that a plan evaluates. A plan needs some 100. Of 1,000 standard fields none needs more than
+/// this limit in its first 30 steps. After that, 2 in 100 end because the limit is reached, as the strip is thinner
+/// than the lattice.
 pub const EVALUATIONS: u32 = 512;
 
 /// Circles on which the first step may end, and the second.
@@ -55,11 +57,11 @@ const SECOND_CIRCLES: u16 = 3;
 /// Circles on which the first step may end if none of the usual ones has an open place.
 const MOST_CIRCLES: u16 = 24;
 
-/// Motions are usually no longer than this part of the area's side: longer ones have nothing more to tell, and end near
-/// the border, from where less is in reach.
+/// Motions are usually no longer than this part of the area's side. Longer ones tell nothing more. They also end near
+/// the border, where less is in reach.
 const USUAL: f32 = 0.125;
 
-/// A label that is expected to tell less is not worth its way, in shares of one that tells the most.
+/// The least expected information of a label that is worth its way, as a share of the most that a label can carry.
 const LEAST: f32 = 0.15;
 
 /// Where no label is worth as much, turns in place are considered.
@@ -113,7 +115,7 @@ impl<D: Dynamics, B: Foresight, G: Region> Lookahead<D, B, G> {
         Self { config, bounds, dynamics, foresight, evaluations, goal, silence }
     }
 
-    /// The same, with so many ends of motions to ask for a plan at most instead of [`EVALUATIONS`].
+    /// The same, with a limit of `evaluations` ends of motions for each plan instead of [`EVALUATIONS`].
     #[must_use]
     pub fn within(self, evaluations: u32) -> Self {
         Self { evaluations, ..self }
@@ -147,7 +149,7 @@ impl<D: Dynamics, B: Foresight, G: Region> Lookahead<D, B, G> {
             |worth: f32, best: &Option<Decision>| best.as_ref().is_none_or(|it| worth > it.worth);
         for &Prospect { action, target, share, worth } in prospects.as_slice() {
             let above = outlook.chance(target.site, share);
-            // What it is worth at most, and, when both labels have been looked at, what it is worth.
+            // Starts as an upper bound on the worth. It is exact once both labels have been evaluated.
             let mut total = worth + ENOUGH;
             for (label, chance) in [(Label::Positive, above), (Label::Negative, 1.0 - above)] {
                 if is_better(total, &best) {
@@ -178,7 +180,8 @@ impl<D: Dynamics, B: Foresight, G: Region> Lookahead<D, B, G> {
         best
     }
 
-    /// What a label is expected to tell at least. Where positions err there is always one more that tells next to nothing.
+    /// The least information that a label must be expected to carry. Where positions err, there is always one more
+    /// label that tells next to nothing.
     fn least(&self) -> f32 {
         let errs = self.foresight.ground().shift != Vector::default();
         if errs { LEAST } else { 0.0 }
@@ -206,8 +209,8 @@ fn usual<D: Dynamics, G: Region>(dynamics: &D, area: &G) -> (u16, f32) {
     (fastest, 2_000.0 / grid.reach_mm(fastest) as f32)
 }
 
-/// What the best label after one more motion is worth; nothing if there is none. With `ground` only ends count on which
-/// these lines disagree.
+/// The worth of the best label after one more motion; 0 if there is none. If `ground` is given, only ends count on
+/// which these lines disagree.
 fn second<D: Dynamics, P: Prediction, G: Region>(
     lookout: &mut Lookout<'_, D, G>,
     prediction: &P,

@@ -1,9 +1,12 @@
-//! Planners: `plan()` gives the next motion, `observe()` takes in what came of it, and `belief()` is what is
-//! known so far.
+//! Planners: `plan()` returns the next motion, `observe()` takes in its result, and `belief()` is what is known so far.
 //!
-//! [`lookahead`] asks where labels are expected to tell the most, be they true or sometimes wrong. [`cfc`] is the
-//! paper's Algorithm 1, for labels that are true; [`scc`] its Algorithm 2, for labels that are sometimes wrong.
-//! [`config`] is what a mission fixes beforehand, a [`snapshot`] what a planner has to remember over a sleep.
+//! | module | planner |
+//! | --- | --- |
+//! | [`lookahead`] | goes where labels are expected to tell the most, whether they are true or sometimes wrong |
+//! | [`cfc`] | the paper's Algorithm 1, for labels that are true |
+//! | [`scc`] | the paper's Algorithm 2, for labels that are sometimes wrong |
+//!
+//! [`config`] is what a mission fixes beforehand. A [`snapshot`] is what a planner has to remember over a sleep.
 
 pub mod cfc;
 #[cfg(feature = "serde")]
@@ -62,8 +65,8 @@ pub struct Motion {
     pub wants_label: bool,
     /// Actions whose position was looked at to find it.
     pub examined: u32,
-    /// Whether it is what a search of all actions would find; else the plan's looks were used up, and it
-    /// is the best so far.
+    /// Whether a search of all actions would find the same. If not, the plan's looks were used up, and this is the best
+    /// motion found so far.
     pub proven: bool,
 }
 
@@ -138,7 +141,7 @@ pub enum Plan {
     Stop(StopReason),
 }
 
-/// A planner: asked for a motion, told what came of it, and at any time for what it knows.
+/// A planner: it returns motions, takes in their results, and reports at any time what it knows.
 pub trait Planner {
     /// What is known of the line.
     type Belief: Belief + ?Sized;
@@ -156,11 +159,11 @@ pub trait Planner {
         self.observe_within(pose, reading, self.belief().tolerance())
     }
 
-    /// As [`observe`](Self::observe), of a position that may be off by so much: what a localisation reports that knows its
-    /// own error. The less it may be off, the more the label tells.
+    /// As [`observe`](Self::observe), for a position that may be off by `tolerance`. Use it with a localisation that
+    /// reports its own error. The smaller the tolerance, the more the label tells.
     ///
-    /// Any position may be off by the tolerance that was configured, at most: motions keep so far from the border and from
-    /// keep-outs, whatever single observations bring. Without a reading it has no effect.
+    /// No position may be off by more than the tolerance that was configured. Motions stay that far from the border and
+    /// from keep-outs, whatever the tolerance of single observations. Without a reading, `tolerance` has no effect.
     ///
     /// # Errors
     /// As `observe`, and [`Refused::Tolerance`] where it is more than was configured.

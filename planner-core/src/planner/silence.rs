@@ -1,15 +1,16 @@
 //! What a planner remembers of the motions since the last label, so that every mission ends.
 //!
-//! A plan is a search of bounded cost. From here it may find a way to the left, and after that motion a way to the right.
-//! So a planner goes on with a way that was hard to find (`Course`), and keeps four rules, whatever its search finds:
+//! A plan is a search of bounded cost. From one pose it may find a way to the left, and after that motion a way to the
+//! right. So a planner follows a way that was hard to find (`Course`), and keeps four rules, whatever its search finds:
 //!
-//! - who turned on the spot and read no label goes on turning to the same side, until it drives;
-//! - it does not turn on the spot to where it has been before;
-//! - it stops after four full turns, of all kinds of motions together, without a label. Straight ways may be of any length;
+//! - a planner that turned on the spot and read no label continues to turn to the same side, until it drives;
+//! - it does not turn on the spot to a heading where it has been before;
+//! - it stops after four full turns, of all kinds of motions together, without a label. Straight ways may be of any
+//!   length;
 //! - where positions err, look-ahead stops after sixteen labels in a row that were not expected to tell much.
 //!
-//! Of 20,000 random missions five went round or undid a turn before. In 17 a label came after more than four full turns; they
-//! end there now.
+//! Without these rules, five of 20,000 random missions went round or undid a turn. In 17 a label came after more than
+//! four full turns; they now end there.
 
 use crate::geometry::heading::Heading;
 use crate::geometry::lattice::Site;
@@ -23,7 +24,7 @@ const FULL_TURN: u32 = 1 << 24;
 /// So much turning without a label is too much.
 const MOST: u32 = 4 * FULL_TURN;
 
-/// A motion that turns by more than this counts as [`LEAST`] at least, so that wide circles end as well.
+/// A motion that turns by more than this counts as at least [`LEAST`], so that wide circles end as well.
 const SLIGHT: u32 = FULL_TURN / 128;
 
 /// See [`SLIGHT`].
@@ -91,13 +92,13 @@ impl Silence {
         self.course
     }
 
-    /// Takes note whether the next label is expected to tell much; whether one may be read all the same.
+    /// Records whether the next label is expected to tell much. Returns whether it may be read all the same.
     pub(crate) const fn bears(&mut self, is_dull: bool) -> bool {
         self.next_is_dull = is_dull;
         !is_dull || self.dull < MOST_DULL
     }
 
-    /// What a planner does that has found this motion from a pose, and the course that it is part of.
+    /// The plan of a planner that has found this motion from a pose, and the course that the motion is part of.
     pub(crate) fn keep<D: Dynamics>(
         &mut self,
         pose: Pose,
@@ -146,7 +147,7 @@ impl Silence {
         })
     }
 
-    /// Takes in that the motion was made, and whether a label came of it. Who planned to read one need not say.
+    /// Records that the motion was made, and whether a label was read.
     pub(crate) fn observe(&mut self, has_label: bool) {
         let dull = if self.next_is_dull { self.dull.saturating_add(1) } else { 0 };
         *self = if has_label { Self { dull, ..Self::NONE } } else { self.after(self.next) };

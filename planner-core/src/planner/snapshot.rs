@@ -1,8 +1,9 @@
-//! Sleep and wake: what has to outlive a planner for the next one to plan the same.
+//! Sleep and wake: what a planner must store so that its successor plans the same.
 //!
-//! Settings (area, dynamics, noise, goal) are the program's and stay there. A [`Snapshot`] is what a mission adds to them,
-//! and no more: what its belief was told, how it turned since the last label, and the way that is under way. For Algorithm 1
-//! it is also where that stands. With the feature `serde` it goes to bytes and back, in any format that serde has:
+//! The settings (area, dynamics, noise, goal) are part of the program. A [`Snapshot`] contains only what a mission adds
+//! to them: the samples of the belief, the turns since the last label, and the way that is under way. For Algorithm 1
+//! it also contains the phase. With the feature `serde` a snapshot converts to bytes and back, in any format that serde
+//! supports:
 //!
 //! ```text
 //! awake:   let bytes = to_slice(&(agent.pose(), agent.planner.snapshot()), &mut backup)?;
@@ -13,14 +14,15 @@
 //!          let agent = Agent::new(planner, vehicle, pose);
 //! ```
 //!
-//! Keep a check sum beside bytes that may be spoilt: those that contradict themselves are refused, those that
-//! are merely untrue can not be told.
+//! Store a checksum with bytes that may be spoilt. `restore` refuses bytes that contradict themselves, but cannot
+//! detect bytes that are merely wrong.
 
 use crate::belief::told::NotReplayed;
 use crate::planner::Planner;
 
-/// The version of snapshots: it is what is written first, and changes when what follows does. From 2 on they hold the
-/// tolerances that observations brought, and how a planner turned since the last label; from 3 on the way that is under way.
+/// The version of snapshots. It is written first, and changes whenever the data that follow change. From 2 on they hold
+/// the tolerances that observations brought, and how a planner turned since the last label; from 3 on the way that is
+/// under way.
 pub const VERSION: u16 = 3;
 
 /// What a planner has to remember over a sleep: what its belief was told (`T`), and what else it plans by (`M`).
@@ -58,8 +60,8 @@ pub trait Persist: Planner {
     /// What it has to remember to plan the same again.
     fn snapshot(&self) -> Self::Snapshot;
 
-    /// Goes on from where another was, of the same type and with the same settings. What it was told itself is
-    /// forgotten. It costs what the labels cost when they came.
+    /// Continues from the state of another planner of the same type and with the same settings. This planner's own
+    /// samples are forgotten. It costs as much as the labels did when they came.
     ///
     /// # Errors
     /// [`NotRestored`]. The planner is then not to be flown with, but may be restored again.

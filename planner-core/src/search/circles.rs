@@ -1,11 +1,13 @@
 //! The search for the best action, circle by circle.
 //!
-//! The positions of one speed lie on a circle around the agent. Faster is better and turning less is:
-//! so the outermost circle comes first, on it to either side the first ray that will do, and the search
-//! ends where a circle is no better even straight ahead. Rays that are known to end on certain ground are
-//! passed over (see `view`), and as certain ground of one label is convex, a ray whose end has the label of
-//! the agent's own position is passed over for good; so is one that leaves the area, convex too, within the
-//! shortest motion. What is left is settled by the exact predicate.
+//! The positions of one speed lie on a circle around the agent. A faster motion is better, and so is a smaller turn. So
+//! the search begins with the outermost circle. On each side it looks for the first ray that will do. It ends at a
+//! circle that is no better even straight ahead.
+//!
+//! Rays that are known to end on certain ground are skipped (see `view`). Two kinds of rays are skipped on all inner
+//! circles too. One kind ends on ground that has the label of the agent's own position, as certain ground of one label
+//! is convex. The other kind leaves the area, which is convex too, within the shortest motion. The exact predicate
+//! decides all other rays.
 
 use core::num::NonZeroU32;
 
@@ -24,7 +26,7 @@ pub(crate) struct Search<'a, D, G> {
     pub(crate) varrho: Varrho,
     pub(crate) view: View<'a, G>,
     pub(crate) effort: Effort,
-    /// Whether there was an end on uncertain ground with the border in the way.
+    /// Whether some motion ended on uncertain ground but could not stay inside the area.
     pub(crate) is_hemmed_in: bool,
 }
 
@@ -43,12 +45,13 @@ pub(crate) struct Findings {
     pub(crate) best_forbidden: Option<Ranked>,
 }
 
-/// The spacing that the search takes a fan to have at least. Taking it for wider than it is only looks at
-/// more rays; and as rays that move are at most 2^31, `next + turn / LEAST + 1` is below 2^32.
+/// The least spacing that the search assumes of a fan. If the fan is narrower, the search only looks at more rays.
+/// There are at most 2^31 rays that move, so `next + turn / LEAST + 1` is below 2^32.
 const LEAST: NonZeroU32 = NonZeroU32::MIN.saturating_add(1);
 
-/// Rays this near to one that leads to the border are taken to lead there too. Less than the 10 mrad of the paper's
-/// fan, so that only finer ones lose an action to it, near the border; they would use up a plan's looks there.
+/// Rays this near to one that leads to the border are assumed to lead there too. The angle is less than the 10 mrad of
+/// the paper's fan, so only finer fans lose an action to it, near the border. Without it they would use up a plan's
+/// looks there.
 const HEMMED_IN: u32 = Heading::turn_of(0.004);
 
 /// From a ray whose end is certain, rays at this distance are looked at one by one.
@@ -83,13 +86,13 @@ impl Arm {
 enum Verdict {
     /// It will do, and is the best so far.
     Best,
-    /// It will not, nor will the ends of rays that a turn of so much reaches.
+    /// It will not, and neither will the ends of rays within this turn.
     Infeasible { turn: u32, on_inner_circles_too: bool },
     /// None beyond it is better than the best so far, or the looks are used up.
     NoneBetter,
 }
 
-/// What is searched for, and what has been found so far.
+/// The object of a search, and its results so far.
 struct Hunt<'r, R> {
     rule: &'r R,
     /// Whether the best forbidden action is wanted.
@@ -104,15 +107,15 @@ fn is_better(value: i64, rank: Rank, than: Option<&Ranked>) -> bool {
 }
 
 impl<D: Dynamics, G: Region> Search<'_, D, G> {
-    /// Sees what there is. A step of its own, so that all of this is made where it stays.
+    /// Computes the view. This is a separate step, so that the search is built where it stays.
     #[must_use]
     pub(crate) fn open(&mut self) -> &mut Self {
         self.view.open();
         self
     }
 
-    /// The best action by a rule. `before` is what an earlier search by another rule found, if that
-    /// found no action: where there is none under any rule nothing is looked at again.
+    /// The best action by a rule. `before` is the result of an earlier search by another rule, if that found no action.
+    /// If it found none under any rule, this search looks at nothing again.
     pub(crate) fn best<R: DirectionRule>(
         &mut self,
         rule: &R,
@@ -195,7 +198,7 @@ impl<D: Dynamics, G: Region> Search<'_, D, G> {
         }
     }
 
-    /// The verdict on a ray from a pose, by what is seen of it if that will do, and else by its end.
+    /// The verdict on a ray from a pose: by the view if that decides, and else by the ray's end.
     fn judge<R: DirectionRule>(
         &mut self,
         pose: Pose,
@@ -245,8 +248,9 @@ impl<D: Dynamics, G: Region> Search<'_, D, G> {
         Verdict::Infeasible { turn, on_inner_circles_too: true }
     }
 
-    /// The pose at a ray's end, if that is inside the area and a label there can tell something, and the way there
-    /// and what may come of it stay inside too; else the turn within which the search takes no other ray for better.
+    /// The pose at a ray's end, if a label there can tell something. The end and the way there must lie inside the
+    /// area, and the vehicle must be able to stay inside afterwards. Otherwise returns a turn: the search assumes that
+    /// no ray within it is better.
     fn worthwhile_end(
         &mut self,
         pose: Pose,

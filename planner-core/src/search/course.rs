@@ -1,6 +1,6 @@
-//! A way of several motions that a plan begins where it finds nothing better, and that the next plans go on with.
+//! A way of several motions that a plan begins when it finds nothing better. The next plans follow it to its end.
 //!
-//! Without it, each plan would begin another: what is best depends on where the robot is.
+//! Otherwise each plan would begin another way, as the best way depends on where the robot is.
 
 use crate::geometry::lattice::Site;
 use crate::motion::action::Action;
@@ -15,9 +15,9 @@ pub(crate) const REST: usize = 5;
 pub(crate) struct Course {
     /// Its motions, the next of them last. The first is for a label.
     rest: [Action; REST],
-    /// So many of them are left.
+    /// The number of motions left.
     left: u8,
-    /// So many motions to try from elsewhere were made.
+    /// The number of motions made so far to try from elsewhere.
     pub(crate) tries: u8,
     pub(crate) far: Far,
 }

@@ -1,6 +1,6 @@
-//! A line as it looks from the agent, and where a circle around the agent crosses it.
+//! A line as seen from the agent, and where a circle around the agent crosses it.
 //!
-//! Conservative: a claim about a side is always true, silence proves nothing.
+//! Conservative: if this returns a side, it is the true one. It may return nothing.
 
 use crate::belief::sample::Label;
 use crate::geometry::angle::Angle;
@@ -26,8 +26,8 @@ pub(crate) struct SeenLine {
     crossing: Crossing,
 }
 
-/// Where a circle around the agent crosses a line: up to one angle to either side of uphill it is on the
-/// +1 side, from another on it is not; between the two is the margin.
+/// Where a circle around the agent crosses a line. Within the angle `above` of uphill, on either side, the circle is on
+/// the +1 side. Beyond the angle `below` it is on the other side. Between the two is the margin.
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct Crossing {
     above: Angle,
@@ -90,8 +90,8 @@ impl SeenLine {
         };
     }
 
-    /// The side of the line on which the circle is at a heading, where that is certain, and how far a
-    /// turn stays there.
+    /// The side of the line on which the circle is at a heading, if that is certain. Also returns the turn within which
+    /// it stays there.
     pub(crate) fn certain_until(&self, heading: Heading, side: Side) -> Option<(Label, Angle)> {
         let Crossing { above, below } = self.crossing;
         let turned = Angle::between(self.uphill, heading);

@@ -1,4 +1,4 @@
-//! Why a search for a way on has found none.
+//! Why a search found no further motion.
 
 use crate::belief::consistent_lines::ConsistentLines;
 use crate::geometry::lattice::{Site, Vector};

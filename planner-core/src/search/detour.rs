@@ -1,10 +1,11 @@
 //! The way to uncertain ground, round keep-outs.
 //!
-//! Around each keep-out there are eight waypoints, the corners of an octagon that holds it with some space to spare.
-//! Of the shortest way from the agent, by waypoints that see each other, to where a straight way leads to uncertain
-//! ground (Dijkstra, 1959), the first leg is the one to make. A motion may end a step short of a waypoint: the space
-//! is two steps, and waypoints see each other past keep-outs that are a step away, so that from there the next one
-//! is in sight.
+//! Each keep-out has eight waypoints: the corners of an octagon around it, with some space to spare. The search finds
+//! the shortest way from the agent along waypoints that see each other (Dijkstra, 1959). Such a way ends at a point
+//! from which a straight way leads to uncertain ground. The agent drives the first leg of that way.
+//!
+//! A motion may end a step short of a waypoint. So the octagon leaves a space of two steps, and waypoints see each
+//! other only past keep-outs that are at least a step away. Then the next waypoint is in sight from there.
 
 use heapless::Vec;
 
@@ -30,15 +31,15 @@ struct Waypoint {
     site: Site,
     /// The length of the shortest way there that is known.
     length: f32,
-    /// With what that begins.
+    /// The first leg of that way.
     first: Vector,
     is_settled: bool,
 }
 
-/// With what the shortest way from a position to uncertain ground begins; `straight` is the nearest, be it in sight or
-/// not. `None` if no way leads there.
+/// The first leg of the shortest way from a position to uncertain ground. `straight` is the way to the nearest such
+/// ground, whether it is in sight or not. `None` if no way leads there.
 ///
-/// Cost: the looks of the sweeps between waypoints. When they are used up it is the best way so far.
+/// Cost: the looks of the sweeps between waypoints. When the looks are used up, the result is the best way so far.
 pub(crate) fn begin<G: Region>(
     view: &View<'_, G>,
     from: Site,

@@ -13,8 +13,7 @@ pub trait DirectionRule {
     /// Whether travel in this direction is allowed. Exact.
     fn admits(&self, direction: Vector) -> bool;
 
-    /// How far a heading that is not allowed can turn to a side and still is not, at least, in a heading's
-    /// units.
+    /// How far a forbidden heading can turn to a side and stay forbidden, in a heading's units; a lower bound.
     fn forbidden_until(&self, heading: Heading, direction: Vector, side: Side) -> u32;
 }
 

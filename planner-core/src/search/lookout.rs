@@ -1,9 +1,9 @@
 //! The search for the places where a label is expected to tell the most.
 //!
-//! A label tells most where it is as likely to be +1 as -1, and these places form a curve. So on each of
-//! some circles the share of the lines above is asked at a few rays of the fan; between two rays on
-//! different sides of one half the one that comes nearest to it is found by false position. Every place that
-//! is asked on the way is a prospect.
+//! A label tells most where it is as likely to be +1 as -1. These places form a curve. On each of some circles the
+//! search evaluates the share of the lines above at a few rays of the fan. If two neighbouring rays lie on different
+//! sides of one half, false position finds the ray between them that is nearest to one half. Every evaluated place is a
+//! prospect.
 
 use core::num::NonZeroU32;
 
@@ -39,7 +39,8 @@ pub(crate) struct Prospect {
     pub(crate) target: Pose,
     /// The share of the lines above its end.
     pub(crate) share: f32,
-    /// What the label there is expected to tell, over what one can tell, less the weighed cost.
+    /// The expected information of the label there, as a share of the most that a label can carry, less the weighted
+    /// cost.
     pub(crate) worth: f32,
 }
 
@@ -50,7 +51,7 @@ pub(crate) const ENOUGH: f32 = 0.98;
 pub(crate) enum Sought<'a> {
     /// The best prospects whose ends these lines disagree on.
     Prospects(&'a mut Prospects, ConsistentLines<'a>),
-    /// What the best of them is worth, of those whose ends these lines disagree on if there are such lines.
+    /// The worth of the best prospect. If lines are given, only prospects count on whose ends these lines disagree.
     Worth(&'a mut f32, Option<ConsistentLines<'a>>),
 }
 
@@ -73,7 +74,7 @@ impl Sought<'_> {
     }
 }
 
-/// What motions there are, where they may lead, what they cost, and how many ends may still be asked.
+/// The possible motions, where they may lead, their cost, and how many ends may still be evaluated.
 pub(crate) struct Lookout<'a, D, G> {
     pub(crate) dynamics: &'a D,
     pub(crate) area: G,
@@ -82,7 +83,7 @@ pub(crate) struct Lookout<'a, D, G> {
     pub(crate) usual: u16,
     /// Metres of the paper's action set in a metre of this one.
     pub(crate) scale: f32,
-    /// What a label is expected to tell at least.
+    /// The least information that a label must be expected to carry.
     pub(crate) least: f32,
     pub(crate) evaluations: u32,
 }
@@ -127,7 +128,7 @@ impl<D: Dynamics, G: Region> Lookout<'_, D, G> {
         self.dynamics.ray(pose, side, number.unsigned_abs() as u32)
     }
 
-    /// Asks the end of a ray. `None` when that is the last to be asked, or off the lattice.
+    /// Evaluates the end of a ray. `None` if that is the last evaluation allowed, or if the end is off the lattice.
     fn ask<P: Prediction>(
         &mut self,
         prediction: &P,
@@ -273,8 +274,8 @@ mod tests {
         Site::new(x, z).unwrap()
     }
 
-    /// Of many in no order those that are kept are uncertain, the best of all first and no two near each other; where
-    /// there is space enough the list is full.
+    /// The prospects that are kept are uncertain, the best of all is first, and no two are near each other. If there is
+    /// space enough the list is full.
     #[test]
     fn prospects_are_the_best_some_way_apart() {
         let metre = UNITS_PER_METRE;

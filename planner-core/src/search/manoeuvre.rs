@@ -1,21 +1,24 @@
-//! The way to where a label can be asked, for a vehicle that cannot turn on the spot.
+//! The way to a pose where a label can be asked, for a vehicle that cannot turn on the spot.
 //!
-//! A *short* way holds the vehicle's circle to one side for some motions, a whole turn at most, and goes straight on from
-//! there: `L..L S..S` or `R..R S..S`. A *long* way goes round to either side once more after up to eight straight motions,
-//! as the shortest paths of a car do (Dubins, 1957): `L..L S..S R..R` and the like. The search returns the first motion of
-//! the shortest way to a pose from where the problem is feasible: a short one if there is one, else a long one.
+//! A *short* way follows the vehicle's circle to one side for some motions, a whole turn at most, and then goes
+//! straight on: `L..L S..S` or `R..R S..S`. A *long* way goes round once more, to either side, after up to eight
+//! straight motions: `L..L S..S R..R` and the like. The shortest paths of a car have this form (Dubins, 1957). The
+//! search returns the first motion of the shortest way to a pose where the problem is feasible: a short way if there is
+//! one, else a long one.
 //!
-//! Each motion of a way ends [safe](Dynamics::keeps_inside), so the vehicle is never cornered for want of caution. Where it
-//! is not safe to begin with, an error has brought it there. Then motions may use the margin that the area keeps for
-//! errors, and shorter motions that bulge less; and if no way leads to a label, the shortest one leads to where it is safe.
-//! Where keep-outs are in the way, the search returns the way that comes nearest to the first waypoint round them (`detour`).
+//! Each motion of a way ends [safe](Dynamics::keeps_inside), so the vehicle does not drive itself into a corner. If the
+//! vehicle is not safe to begin with, an error has brought it there. Then motions may use the margin that the area
+//! keeps for errors, and shorter motions that bulge less. If no way leads to a label, the shortest one leads to a safe
+//! pose. Where keep-outs are in the way, the search returns the way that comes nearest to the first waypoint round them
+//! (`detour`).
 //!
-//! The search is anytime: it draws on the plan's looks, tries likely ways first, and returns the best way so far when they
-//! are used up.
+//! The search is anytime: it uses the plan's looks, tries likely ways first, and returns the best way so far when the
+//! looks are used up.
 //!
-//! **It ends**, though it has no state. What is left of a way is a way too, of one motion less: so each motion lowers
-//! the number of motions to where a label can be asked, by a short way, or as long as there is none, by a long one, or
-//! as long as there is none either, of those to where it is safe; and what is safe never becomes unsafe again.
+//! **It ends**, though it has no state. The rest of a way is also a way, with one motion less. So each motion lowers a
+//! count of motions to a pose where a label can be asked: along a short way, or, as long as there is none, along a long
+//! way. As long as there is neither, it lowers the count of motions to a safe pose. A safe vehicle never becomes unsafe
+//! again.
 
 use crate::belief::consistent_lines::Certainty;
 use crate::geometry::approximate::{single, sqrt};
@@ -210,8 +213,9 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Manoeuvre<'_, '_, '_, D, R, G> {
         }
     }
 
-    /// The motion that holds its circle to a side. Where that would leave the area, and it is not safe either way, the
-    /// longest of the sharpest shorter ones that stays: they bulge less.
+    /// The motion along the vehicle's circle to a side. If that would leave the area, and the vehicle is not safe
+    /// either way, a shorter motion is used, as it bulges less. It is the longest of the sharpest ones that stays
+    /// inside.
     fn sharpest(&mut self, pose: Pose, side: Side) -> Option<Leg> {
         let (dynamics, area, grid) = (self.dynamics, self.problem.area, self.dynamics.grid());
         let action = dynamics.orbit(pose, side)?.action;
@@ -246,8 +250,8 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Manoeuvre<'_, '_, '_, D, R, G> {
             && self.dynamics.stays_inside(pose, after, ground)
     }
 
-    /// Whether one more motion round to a side leaves it safe, if it is: on the circle that it goes round, whatever
-    /// rounding has moved that by, or with a margin.
+    /// Whether a safe vehicle stays safe after one more motion round to a side. It does on the circle that it follows,
+    /// wherever rounding has moved that, or with a margin.
     fn may_hold(&self, pose: Pose, after: Pose, side: Side) -> bool {
         let (dynamics, area) = (self.dynamics, &self.problem.area);
         let fits = |orbit: Orbit| orbit.is_inside(after.site, area, orbit.radius);
@@ -356,8 +360,8 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Manoeuvre<'_, '_, '_, D, R, G> {
         stays.then_some(after)
     }
 
-    /// Sees whether the problem is feasible at the end of a way: then it is the shortest, and there is no reason to go
-    /// on. Else updates how far one can go from there with no uncertain ground in reach.
+    /// Whether the problem is feasible at the end of a way. Then the way is the shortest, and there is no reason to go
+    /// on. Otherwise updates how far the vehicle can go from there with no uncertain ground in reach.
     fn look(&mut self, place: &mut Place) -> bool {
         self.note(place);
         self.effort.take(OPENING);
@@ -383,7 +387,7 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Manoeuvre<'_, '_, '_, D, R, G> {
         true
     }
 
-    /// Notes what else the end of a way is good for: it is safe there, or nearer to the waypoint.
+    /// Records a way that ends safe, or nearer to the waypoint.
     fn note(&mut self, place: &Place) {
         let Some(first) = place.first else { return };
         let (pose, begun) = (place.pose, (first, place.motions));

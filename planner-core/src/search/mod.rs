@@ -1,12 +1,13 @@
-//! The best action for what is known: the paper's one-step problems, solved exactly by looking at a few
-//! of the actions.
+//! The best action for what is known. The paper's one-step problems are solved exactly by looking at only a few
+//! actions.
 //!
 //! A [`problem`] asks for the longest cheap motion that ends on uncertain ground in an allowed direction
-//! ([`direction_rule`]). The positions of one speed lie on a circle around the agent; where a line that
-//! bounds the uncertain ground crosses that circle says which rays can be passed over. Where no action
-//! is feasible a ladder of recoveries leads on, round keep-outs if need be (`detour`), or for a vehicle that
-//! cannot turn on the spot a `manoeuvre`. Look-ahead searches the same circles for the places where labels tell the
-//! most (`lookout`).
+//! ([`direction_rule`]). The positions of one speed lie on a circle around the agent. Lines bound the uncertain ground,
+//! and their crossings with the circle show which rays can be skipped.
+//!
+//! If no action is feasible, a ladder of recoveries takes over. It leads round keep-outs if necessary (`detour`). A
+//! vehicle that cannot turn on the spot makes a `manoeuvre`. Look-ahead searches the same circles for the places where
+//! labels tell the most (`lookout`).
 
 pub(crate) mod circles;
 pub(crate) mod course;

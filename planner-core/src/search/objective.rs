@@ -1,14 +1,15 @@
-//! What a motion is worth, what was chosen by that, and what it may cost to find it.
+//! The worth of a motion, the choice that follows from it, and the limit on the effort of finding it.
 
 use crate::geometry::lattice::Site;
 use crate::geometry::region::Region;
 use crate::motion::action::Action;
 use crate::motion::dynamics::Pose;
 
-/// The most looks that a plan takes. A look at a ray is one; what else takes long counts as so many as take as long.
+/// The most looks that a plan takes. A look at a ray counts as one. Any other long calculation counts as the number of
+/// looks that take as long.
 ///
 /// One look takes up to some 1,900 instructions of a Cortex-M4, so that a plan stays below 20 million. With the paper's
-/// grid 520 rays are the most that a plan of 3,000 standard missions of 60 steps needed.
+/// grid, no plan in 3,000 standard missions of 60 steps needed more than 520 rays.
 pub const LOOKS: u32 = 9_216;
 
 /// The looks that it costs to open a view, where many are opened.
@@ -78,7 +79,7 @@ impl Effort {
         Self { looks, examined: 0 }
     }
 
-    /// Keeps back all but so many looks, which [`give_back`](Self::give_back) adds again.
+    /// Keeps back all looks but `all_but`. [`give_back`](Self::give_back) adds them again.
     pub(crate) const fn keep_back(&mut self, all_but: u32) -> u32 {
         let kept = self.looks.saturating_sub(all_but);
         self.looks -= kept;

@@ -1,18 +1,20 @@
 //! The one-step problems P1 to P4 (Section III) and their exact search.
 //!
-//! Maximise `|zeta' - zeta|^2 - varrho |u|^2` over the action set, subject to `zeta'` inside the
-//! area and outside both regions of certainty, and to a rule on the direction of travel. A vehicle that cannot turn on
-//! the spot must also be able to stay inside after it. Ties go to
-//! the smaller turn, then to the left. The agent moves: standing still would sample a place again,
-//! which the regions of certainty exclude but for P3 and P4, whose regions are those of the start.
+//! A problem maximises `|zeta' - zeta|^2 - varrho |u|^2` over the action set. The new position `zeta'` must lie inside
+//! the area and outside both regions of certainty. A rule restricts the direction of travel. A vehicle that cannot turn
+//! on the spot must also be able to stay inside afterwards. Among equal actions the smaller turn wins, then the left
+//! one.
 //!
-//! The search returns the action that trying every action would return, and looks at few of them:
+//! The agent always moves: standing still would sample the same place again. The regions of certainty exclude that,
+//! except in P3 and P4, whose regions are those of the start.
 //!
-//! - **By the objective.** Faster is better and turning less is: so the outermost circle of positions
-//!   comes first, on it the smallest turns, and the search ends where no circle can do better.
-//! - **By the ground.** Ground that is certain ends on a circle where a line that bounds the uncertain
-//!   ground crosses it: what lies before is passed over at once, not ray by ray.
-//! - **By the rule.** Directions that it forbids are passed over in the same way
+//! The search returns the action that trying every action would return, but looks at few of them:
+//!
+//! - **By the objective.** A faster motion is better, and so is a smaller turn. So the search begins with the outermost
+//!   circle of positions and the smallest turns on it. It ends where no circle can do better.
+//! - **By the ground.** On a circle, certain ground ends where a line that bounds the uncertain ground crosses it. All
+//!   rays before that crossing are skipped at once, not one by one.
+//! - **By the rule.** Directions that the rule forbids are skipped in the same way
 //!   ([`direction_rule`](crate::search::direction_rule)).
 
 use crate::belief::consistent_lines::ConsistentLines;
@@ -27,7 +29,7 @@ use crate::search::view::View;
 /// A one-step problem at some stage of a mission.
 #[derive(Clone, Copy, Debug)]
 pub struct Problem<'a, R, G = Area> {
-    /// The lines that are left: the ground of which they agree is the one to stay out of.
+    /// The lines that are left. The motion must not end on ground where they agree.
     pub lines: ConsistentLines<'a>,
     /// Where positions must stay.
     pub area: G,
@@ -58,15 +60,14 @@ impl<'a, R: DirectionRule, G: Region> Problem<'a, R, G> {
 
     /// Solves the problem from a pose inside the area.
     ///
-    /// Cost: for each circle of positions that may beat the best, to either side as many looks as
-    /// certain ground has pieces there; a look is two multiplications and an arc cosine for each line that
-    /// bounds the uncertain ground.
+    /// Cost: on each circle of positions that may beat the best, one look for each piece of certain ground on either
+    /// side. A look takes two multiplications and an arc cosine for each line that bounds the uncertain ground.
     pub fn solve<D: Dynamics>(&self, dynamics: &D, pose: Pose) -> Solution {
         self.solve_within(u32::MAX, dynamics, pose)
     }
 
-    /// As [`solve`](Self::solve), with so many looks: each is a ray of a circle. When they are used up
-    /// it is the best so far.
+    /// As [`solve`](Self::solve), with a limit on looks, each at a ray of a circle. When they are used up, the result
+    /// is the best so far.
     pub fn solve_within<D: Dynamics>(&self, looks: u32, dynamics: &D, pose: Pose) -> Solution {
         let mut effort = Effort::of(looks);
         let best = self.find(&mut effort, dynamics, pose);

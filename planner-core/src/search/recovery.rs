@@ -1,37 +1,42 @@
 //! The recovery ladder, for when a one-step problem has no feasible action.
 //!
-//! The paper is silent here, and P1 comes to it once in some fourteen steps. In this order:
+//! The paper does not cover this case, and P1 meets it once in some fourteen steps. The rungs are tried in this order:
 //!
 //! 1. *Undirected*: the same problem without its rule on directions.
-//! 2. *Transit, far*: where no uncertain ground of the area is within reach, the way to the nearest. Each drive brings it
-//!    nearer by an eighth of its length at least; else there are the fewest turns in place after which a drive does.
-//!    No sample is taken.
-//! 3. *Reorient*: turn in place, the fewest sharpest turns after which (1) is feasible beyond them; of
-//!    left and right, the one with the better action there. No sample is taken.
-//! 4. *Transit, near*: some is within reach and yet no action hits it: to the nearest pose (counted in
-//!    motions, 16 at most) from which (1) is feasible, and that leaves the reach of uncertain ground
-//!    nowhere. Eight bearings are considered, along the bisector of the slope arc both ways, across
-//!    it both ways, and between.
-//! 5. *Courses*, where there is open ground: a drive to the nearest beyond reach, once; then a way drawn at random (`wander`).
-//!    For a vehicle that has to go round to turn also a drive drawn at random, to try again from elsewhere. The next plans go
-//!    on with what was begun (`course`).
-//! 6. Nothing: there is a reason why, which the planner stops with.
+//! 2. *Transit, far*: if no uncertain ground of the area is within reach, drive towards the nearest. Each drive brings
+//!    it nearer by at least an eighth of the drive's length. If no drive does, make the fewest turns in place after
+//!    which one does. No sample is taken.
+//! 3. *Reorient*: turn in place, with the fewest sharpest turns after which (1) is feasible beyond them. Of left and
+//!    right, choose the side with the better action there. No sample is taken.
+//! 4. *Transit, near*: uncertain ground is within reach, and yet no action hits it. Drive to the nearest pose from
+//!    which (1) is feasible, counted in motions, 16 at most. The way never leaves the reach of uncertain ground. Eight
+//!    bearings are considered: along the bisector of the slope arc both ways, across it both ways, and between.
+//! 5. *Courses*, where there is open ground: a drive to the nearest beyond reach, once; then a way drawn at random
+//!    (`wander`). A vehicle that has to go round to turn may also make a drive drawn at random, to try again from
+//!    elsewhere. The next plans continue the course (`course`).
+//! 6. Nothing: the ladder returns the reason, and the planner stops with it.
 //!
-//! Where keep-outs are in the way of (2) it goes round them (`detour`).
+//! If keep-outs are in the way, (2) goes round them (`detour`).
 //!
-//! From outside the area, where an error has brought it, (1) and (3) may lead back inside. Else it drives
-//! towards the middle of the area, or away from the keep-out that it is too near to, or turns until it can.
-//! A vehicle that cannot turn on the spot has, in the place of 2 to 4, a way of several motions (`manoeuvre`). Before
-//! (1), and before Algorithm 1 gives P2 up, it takes such a way to where the problem is feasible with its rule: its fan
-//! may lie where the rule allows no direction, and straight on it would learn next to nothing.
+//! If an error has brought the agent outside the area, (1) and (3) may lead back inside. Otherwise the agent drives
+//! towards the middle of the area, or away from the keep-out that is too near. If it cannot, it turns until it can.
 //!
-//! **Rungs 1 to 4 end**, though they have no state, as long as looks suffice. What is known does not change before the next
-//! sample, and each motion lowers a measure. Far, that is the distance to uncertain ground, then the turns to the next drive.
-//! Near, it is the turns of (3), or where it has none the motions of (4), which stay near. What is near never becomes far
-//! again. Outside, it is the distance to the middle, and then the turns. Inside, no motion leads out.
+//! A vehicle that cannot turn on the spot makes a way of several motions (`manoeuvre`) in place of 2 to 4. It also
+//! tries such a way before (1), and before Algorithm 1 gives up P2. That way leads to a pose where the problem is
+//! feasible with its rule. Without it, the fan may contain no allowed direction, and straight on the vehicle would
+//! learn next to nothing.
 //!
-//! **Courses end**: there is one drive far, sixteen to elsewhere, and a way that is drawn has at most six motions and a label.
-//! Where errors or want of looks spoil all that, the planner counts turns, see [`Silence`](crate::planner::silence::Silence).
+//! **Rungs 1 to 4 end**, though they have no state, as long as the looks suffice. The knowledge does not change before
+//! the next sample, and each motion lowers a measure:
+//!
+//! - Far from uncertain ground, the measure is the distance to it, then the turns to the next drive.
+//! - Near it, the measure is the turns of (3), or, if there are none, the motions of (4), which stay near. A near agent
+//!   never becomes far again.
+//! - Outside the area, the measure is the distance to the middle, and then the turns. From inside, no motion leads out.
+//!
+//! **Courses end**: there is one drive far and sixteen to elsewhere. A way that is drawn has at most six motions and a
+//! label. If errors or a lack of looks break these rules, the planner still counts turns, see
+//! [`Silence`](crate::planner::silence::Silence).
 
 use crate::geometry::approximate::{heading_of, single, sqrt};
 use crate::geometry::heading::Heading;
@@ -65,7 +70,7 @@ const TURNS: u32 = 8;
 /// Motions to try from elsewhere, without a label.
 const TRIES: u8 = 16;
 
-/// What was done as the problem itself had no feasible action.
+/// The kind of motion made when the problem itself had no feasible action.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -91,9 +96,9 @@ impl Found {
     }
 }
 
-/// The problem's best action from where a search is, or the ladder's. `before` is what that search found
-/// by another rule, see [`Search::best`], and `course` what was begun since the last label: it becomes what is to come
-/// after that action. Where there is none it is of no use.
+/// The best action of the problem from the search's pose, or the ladder's. `before` is the result of that search by
+/// another rule, see [`Search::best`]. `course` is the course begun since the last label, and becomes what is left of it
+/// after that action. An error leaves it undefined.
 ///
 /// # Errors
 /// Why there is neither.
@@ -128,8 +133,9 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule, G: Region>(
     climbed.or_else(|why| ladder.begin(open).ok_or(why.of_open_ground()))
 }
 
-/// The way to where a problem is feasible in a direction that its rule allows. It is for a vehicle that has to go round in
-/// order to turn, and is safe: its fan may lie where the rule allows none. Straight on it would learn next to nothing.
+/// The way to a pose where a problem is feasible in a direction that its rule allows. It is for a safe vehicle that has
+/// to go round in order to turn. Its fan may contain no allowed direction, and straight on it would learn next to
+/// nothing.
 pub(crate) fn turn_round<D: Dynamics, R: DirectionRule, G: Region>(
     problem: &Problem<'_, R, G>,
     search: &mut Search<'_, D, G>,
@@ -151,7 +157,7 @@ fn goes_round<D: Dynamics>(dynamics: &D, pose: Pose) -> bool {
 /// An action and where it leads.
 type Leg = (Action, Pose);
 
-/// What comes of following a bearing.
+/// The result of following a bearing.
 enum Approach {
     /// Its first leg, and the number of motions to where the undirected problem is feasible.
     Feasible(Leg, u32),
@@ -298,7 +304,7 @@ impl<D: Dynamics, G: Region> Ladder<'_, '_, '_, D, G> {
     fn go_elsewhere(&mut self) -> Option<Found> {
         let tries = self.course.tries.checked_add(1).filter(|tries| *tries <= TRIES)?;
         let Search { dynamics, pose, .. } = *self.search;
-        // Who is not safe is so near the border that driving on makes it worse.
+        // A vehicle that is not safe is so near the border that driving on makes it worse.
         let is_free = goes_round(dynamics, pose) && dynamics.is_safe(pose, &self.problem.area);
         let leg = if is_free { drift(&self.problem, self.search, tries)? } else { return None };
         self.course.tries = tries;
@@ -445,7 +451,7 @@ impl<D: Dynamics, G: Region> Ladder<'_, '_, '_, D, G> {
     }
 }
 
-/// What comes of one drive on a bearing.
+/// The result of one drive on a bearing.
 enum Drive {
     /// It brings its goal nearer.
     Leg(Leg),

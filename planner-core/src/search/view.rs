@@ -1,8 +1,8 @@
 //! What a search sees from a position: where certain ground and the area end.
 //!
-//! The positions of one speed lie on a circle around the agent. Where all lines that bound the uncertain
-//! ground have the circle on one side, the ground there is certain; so one can turn at once to where the
-//! circle crosses the first of them.
+//! The positions of one speed lie on a circle around the agent. If all lines that bound the uncertain ground have a
+//! point of the circle on one side, the ground at that point is certain. So the search can turn at once to the first
+//! place where such a line crosses the circle.
 
 use heapless::Vec;
 
@@ -35,7 +35,7 @@ pub(crate) struct View<'a, G> {
     /// Safety margin as a share of the radius. It covers lattice rounding and approximation errors on the
     /// smallest circle, where they matter most: what is certain there all along a ray is so on all of it.
     margin: f32,
-    /// What all lines say of where the agent stands.
+    /// The label that all lines give to the agent's position.
     pub(crate) own_label: Certainty,
     /// Within this distance all ground is certain, lattice units, the margin taken off.
     certain_within: f32,
@@ -169,8 +169,8 @@ impl<'a, G: Region> View<'a, G> {
         self.lines.can_cut(site)
     }
 
-    /// From a position where no label is worth it, how far a turn leads to none on the same circle; and where positions
-    /// err, half of what they err by, at least.
+    /// From a position where no label is worth it, the turn within which none is on the same circle either. Where
+    /// positions err, the turn covers at least a quarter of the larger component of the shift.
     pub(crate) fn passed_over(&self, site: Site) -> u32 {
         let Vector { x, z } = self.lines.shift;
         let shift = (x as f32).abs().max((z as f32).abs());

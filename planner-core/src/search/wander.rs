@@ -1,11 +1,11 @@
 //! The last rung of the recovery ladder: motions drawn at random, after which a label can be asked.
 //!
-//! Uncertain ground may be within reach where no action hits it that the other rungs look at: neither from here nor along
-//! the ways that they follow. So this draws motions, one at a time, then up to six in a row. It goes on as long as the plan has
-//! looks, and takes the first way that ends where a label can tell something.
+//! Uncertain ground may be within reach although the other rungs find no action that hits it. They look only from here
+//! and along the ways that they follow. So this rung draws motions: first one at a time, then up to six in a row. It
+//! continues as long as the plan has looks. It takes the first way that ends where a label can tell something.
 //!
-//! The numbers drawn are the same in each plan, so a plan is the same on every machine. The next plans go on with a way that was
-//! drawn, see `course`.
+//! The numbers drawn are the same in each plan, so a plan is the same on every machine. The next plans follow the way
+//! that was drawn, see `course`.
 
 use heapless::Vec;
 
@@ -18,7 +18,7 @@ use crate::search::direction_rule::DirectionRule;
 use crate::search::objective::Effort;
 use crate::search::problem::Problem;
 
-/// What a drive costs that is drawn, with all that is asked of it.
+/// The looks that a drawn drive costs, with all its checks.
 const LOOKS_A_DRIVE: u32 = 2;
 
 /// Sequences that are drawn, and the most motions of each.
@@ -72,8 +72,8 @@ pub(crate) fn drift<D: Dynamics, R: DirectionRule, G: Region>(
 }
 
 impl<D: Dynamics, R: DirectionRule, G: Region> Wander<'_, '_, '_, D, R, G> {
-    /// So many motions drawn at random, up to the first that ends where a label tells something. What leads back to where it
-    /// has been is left out.
+    /// A number of motions drawn at random, up to the first that ends where a label tells something. Motions that lead
+    /// back to an earlier position are left out.
     fn draw_way(&mut self, from: Pose, motions: u32) -> Option<Drawn> {
         if !self.effort.is_enough() {
             return None;

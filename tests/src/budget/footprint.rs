@@ -1,15 +1,15 @@
-//! What a program takes of a chip, read from its ELF.
+//! The flash and stack that a program needs, read from its ELF.
 //!
-//! **The planner's flash** is that of all functions that the planner's entries reach, and of the
-//! constants in `.rodata` that these point to. The entries are `station::seam` (plan, observe, estimates)
-//! and `Setup::cfc` and `Setup::prepare`, which are kept as functions of their own. So what the planner
-//! shares with the link (`memcpy`) counts as the planner's, and what it gets from libm, nalgebra,
-//! heapless and compiler-builtins does; a mission's loop, messages, frames and start-up do not.
+//! **The planner's flash** is the size of all functions that the planner's entries reach, and of the constants in
+//! `.rodata` that these point to. The entries are `station::seam` (plan, observe, estimates) and `Setup::cfc` and
+//! `Setup::prepare`, which are kept as functions of their own. So code that the planner shares with the link (`memcpy`)
+//! counts as the planner's, and so does its code from libm, nalgebra, heapless and compiler-builtins. A mission's loop,
+//! messages, frames and start-up do not count.
 //!
-//! **The stack** is a bound: the deepest chain of calls from the reset, and on top of it every handler
-//! in the vectors once, each with the frame that the core stacks. A panic ends the program; it may itself
-//! panic once while it tells of the first (`firmware`'s `stop`), so its own chain counts twice, and is
-//! not followed where another calls it.
+//! **The stack** is an upper bound: the deepest chain of calls from the reset, plus every handler in the vectors once,
+//! each with the frame that the core stacks. A panic ends the program. The panic handler may itself panic once while it
+//! reports the first panic (`firmware`'s `stop`). So the handler's own chain counts twice, and is not followed where
+//! another function calls it.
 
 use std::collections::BTreeSet;
 

@@ -1,6 +1,6 @@
-//! `hardest.toml`: of each workload the missions that were the worst of a long run, one for each figure.
+//! `hardest.toml`: for each workload, the worst missions of a long run, one for each figure.
 //!
-//! A long run finds them among thousands; all others fly these alone, and so come to the same worst.
+//! A long run finds them among thousands. All other runs fly only these, and so reach the same worst case.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};

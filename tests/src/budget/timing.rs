@@ -1,8 +1,8 @@
-//! Time: what the planner takes for the steps of missions that a program flies in the emulator.
+//! Time: the instructions that the planner needs for the steps of missions that a program flies in the emulator.
 //!
-//! Counted is what the functions of `station::seam` execute, from their first instruction to their return.
-//! That leaves out what it costs to read a counter; the ticks that the program itself tells of are the
-//! same and a constant more, which is checked.
+//! The count covers the functions of `station::seam`, from their first instruction to their return. It leaves out the
+//! cost of reading a counter. The ticks that the program itself reports are the same plus a constant, and a test checks
+//! that.
 
 use host_sim::hil::player::Played;
 use host_sim::mission::results::{Ending, Results};

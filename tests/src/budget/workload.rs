@@ -1,9 +1,14 @@
-//! The missions by whose steps time is measured.
+//! The missions whose steps are timed.
 //!
-//! In a long run standard fields drawn at random give the median. For the worst case there are besides, of
-//! many more such fields that are flown on the host, those whose plans look at the most actions, those that
-//! most often find none and recover, those that end as there is none left, and those with the most hypotheses.
-//! Every other of these starts in a corner of the area, facing out of it. Any other run flies the hardest that
+//! In a long run, standard fields drawn at random give the median. For the worst case, many more such fields are flown
+//! on the host, and four kinds of mission are chosen from them:
+//!
+//! - those whose plans look at the most actions;
+//! - those that most often find no action and recover;
+//! - those that end because no action is left;
+//! - those with the most hypotheses.
+//!
+//! Every other of these starts in a corner of the area, facing out of it. Any other run flies the hardest missions that
 //! are known.
 
 use std::cmp::Reverse;

@@ -1,5 +1,5 @@
-//! Instructions that armagnac 0.3 has but leaves open in cases that programs come to: shifts by 32
-//! and more, divisions by zero, loads to the program counter, special registers.
+//! Instructions that armagnac 0.3 has but leaves undefined in cases that programs reach: shifts by 32 and more,
+//! divisions by zero, loads to the program counter, special registers.
 
 use armagnac::core::{Effect, ItState, Processor, RunError};
 use armagnac::instructions::DecodeHelper;

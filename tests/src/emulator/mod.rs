@@ -1,17 +1,17 @@
-//! An Arm core in this process: runs a program linked for `memory.x` and answers its semihosting.
+//! An Arm core in this process: it runs a program linked for `memory.x` and answers its semihosting.
 //!
-//! The interpreter is the crate `armagnac`; what it lacks of a Cortex-M4F stands in the modules
-//! below. There are no peripherals and no exceptions. Whatever is not known, an instruction, an
-//! address, a call of the host, ends the test with the program counter and the opcode.
+//! The interpreter is the crate `armagnac`; the modules below add the parts of a Cortex-M4F that it lacks. There are no
+//! peripherals and no exceptions. An unknown instruction, address or host call ends the test with the program counter
+//! and the opcode.
 //!
 //! | module | adds |
 //! | --- | --- |
-//! | `decoder` | joins the instructions, and keeps what was decoded |
+//! | `decoder` | joins the instructions, and caches decoded ones |
 //! | `dsp` | extends, packing and multiplies |
-//! | `missing_instructions` | cases that the interpreter has but leaves open |
+//! | `missing_instructions` | cases that the interpreter has but leaves undefined |
 //! | `vfp`, `single` | the floating-point unit: its registers, its arithmetic |
 //! | `semihosting` | calls of the host |
-//! | `cycles`, `profile` | what it takes: cycles by a table; calls of functions that are watched |
+//! | `cycles`, `profile` | the cost: cycles by a table; calls of functions that are watched |
 
 use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, catch_unwind};

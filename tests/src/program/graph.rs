@@ -1,8 +1,8 @@
-//! Who calls whom in a linked program, read from its machine code.
+//! The call graph of a linked program, read from its machine code.
 //!
-//! Where a call through a register leads is not guessed: if the program can come to it, the caller must
-//! be among those of whom that is known, or there is no graph. What nothing points to cannot be such a
-//! target, so that what is known is checked as well.
+//! The target of a call through a register is not guessed. If the program can reach such a call, the caller must be
+//! among those whose targets are known; otherwise there is no graph. A function that nothing points to cannot be such a
+//! target, so the known targets are checked as well.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -34,8 +34,8 @@ impl<'a> Graph<'a> {
     /// Reads all of a program.
     ///
     /// # Errors
-    /// When a function moves the stack pointer in a way that cannot be followed, calls what is no function,
-    /// or can run, calls through a register, and is not among the known.
+    /// When a function moves the stack pointer in a way that cannot be followed, or calls an address that is no
+    /// function. Also when a function that can run calls through a register and is not among the known.
     pub fn of(image: &'a Image, known: Known<'_>) -> Result<Self, String> {
         let mut bodies = BTreeMap::new();
         for function in image.functions() {

@@ -1,4 +1,4 @@
-//! What a viewer draws of a mission: the area and the true line once, then what each step adds or replaces.
+//! The drawing of a mission for a viewer: the area and the true line once, then what each step adds or replaces.
 
 use planner_core::belief::sample::Label;
 

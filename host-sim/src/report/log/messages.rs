@@ -1,5 +1,5 @@
-//! What a log is made of: Foxglove's messages as far as they are used here, and one of our own. Tags and kinds are
-//! those of the schemas, which go into the log beside them.
+//! The messages of a log: Foxglove's, as far as they are used here, and one of our own. Tags and kinds are those of the
+//! schemas, which go into the log beside them.
 
 use prost::Message;
 
@@ -15,7 +15,7 @@ pub(super) const TRANSFORM: (&str, &[u8]) =
 pub(super) const STEP: (&str, &[u8]) =
     ("host_sim.Step", include_bytes!("../../../schemas/host_sim.Step.bin"));
 
-/// What all places are told in.
+/// The frame of all places.
 pub(super) const FRAME: &str = "field";
 
 /// The frame that moves with the robot.
@@ -198,7 +198,7 @@ pub(super) struct Solid {
     pub(super) color: Option<Color>,
 }
 
-/// What is drawn under one name: it replaces what was drawn under it before.
+/// A drawing under one name. It replaces the drawing under that name before.
 #[derive(Clone, PartialEq, Message)]
 pub(super) struct Entity {
     #[prost(message, optional, tag = "1")]

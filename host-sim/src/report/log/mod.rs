@@ -1,7 +1,7 @@
 //! A mission as an MCAP log for Foxglove, Rerun and `PlotJuggler`. A step takes a second; the start is at 0.
 //!
-//! `/pose` and `/tf` say where the robot reported to be, `/scene` draws the mission, `/step` has numbers to plot. Rerun reads no
-//! scenes, so `/robot` and `/map/...` have the same drawing as clouds of points.
+//! `/pose` and `/tf` contain the poses that the robot reported, `/scene` draws the mission, and `/step` has numbers to
+//! plot. Rerun reads no scenes, so `/robot` and `/map/...` contain the same drawing as clouds of points.
 
 mod cloud;
 mod drawing;

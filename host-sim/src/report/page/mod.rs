@@ -1,7 +1,7 @@
-//! A report in one file: a page that shows missions step by step, side by side where there are several.
+//! A report in one file: a page that shows missions step by step, side by side if there are several.
 //!
-//! All of it is in the file, and it may load nothing. A script draws what the scenes hold; without scripts
-//! there are the last pictures and the tables of steps.
+//! The file contains everything, and the page may load nothing. A script draws the scenes. Without scripts the page
+//! shows the last pictures and the tables of steps.
 
 mod contents;
 mod markup;

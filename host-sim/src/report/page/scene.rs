@@ -1,8 +1,7 @@
-//! What a report shows of a mission: where it takes place, and a scene for the start and for each step. Plain data,
-//! which the page draws.
+//! The data of a mission that a page draws: where the mission takes place, and a scene for the start and for each step.
 //!
-//! What was known after each step comes of the steps themselves: a planner that plans nothing takes them in once more.
-//! So it is the same for a mission that a chip has planned.
+//! The knowledge after each step is computed from the steps: a planner that plans nothing takes them in again. So it is
+//! the same for a mission that a chip has planned.
 
 use nalgebra::Point2;
 use planner_core::belief::sample::Sample;
@@ -76,7 +75,7 @@ pub(crate) struct SeenLine {
     pub(crate) misclassified: Option<f64>,
 }
 
-/// What was known at some stage, and the motion that led there.
+/// The state of knowledge at some stage, and the motion that led there.
 #[derive(Debug, Serialize)]
 pub(crate) struct Scene {
     /// The motion; `None` at the start.
@@ -166,7 +165,7 @@ impl Rounding {
     }
 
     fn place(self, at: Point2<f64>) -> Place {
-        // By a division where the unit is a fraction: so decimals stay short.
+        // A division, if the unit is a fraction, keeps decimals short.
         let rounded = |m: f64| {
             let per_metre = (1.0 / self.unit).round();
             if per_metre > 1.0 { (m * per_metre).round() / per_metre } else { m.round() }
@@ -242,7 +241,7 @@ impl Flight {
     }
 }
 
-/// What adds up from step to step.
+/// The sums that grow from step to step.
 #[derive(Clone, Copy, Default)]
 struct Sums {
     bits: f64,

@@ -29,11 +29,11 @@ impl Told {
 /// A step that was taken.
 #[derive(Clone, Copy)]
 pub(crate) struct Taken<'a> {
-    /// What came of it.
+    /// The result of the motion.
     pub(crate) result: &'a StepResult,
-    /// What was expected of its label.
+    /// The expectation of its label.
     pub(crate) expectation: Option<Expectation>,
-    /// By how much the bits told rose.
+    /// The increase of the information, bits.
     pub(crate) rise: f64,
 }
 
@@ -99,7 +99,7 @@ fn given(results: &Results) -> String {
     format!("{}.", each.collect::<Vec<_>>().join(", "))
 }
 
-/// What the planner chose, and why it may have.
+/// The planner's choice, and the likely reason for it.
 fn planned(mission: &Mission, step: &StepResult) -> String {
     let why = match (step.problem, step.recovery) {
         (_, Some("reorient")) => "Nothing uncertain ahead, so it turns in place",
