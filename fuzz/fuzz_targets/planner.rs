@@ -1,8 +1,8 @@
 #![no_main]
 //! The planner's calls in any order, on any grid that the constructors take, with labels of a line or of
-//! none: nothing overflows, positions stay in the area, true labels are never refused, what is certain
-//! is true, what the search finds is what trying every action finds, and look-ahead repeats itself, asks on
-//! uncertain ground alone and promises no more than is known.
+//! none. Nothing overflows, positions stay in the area, true labels are never refused, and certain labels are true.
+//! The search finds what trying every action finds. Look-ahead repeats itself, asks on uncertain ground alone and
+//! promises no more than is known.
 
 use arbitrary::{Arbitrary, Unstructured};
 use libfuzzer_sys::fuzz_target;

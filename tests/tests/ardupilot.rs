@@ -36,8 +36,8 @@ mod long {
     /// What is said of a simulation that is not there in time.
     const UNOPENED: &str = "the simulation does not open its second port";
 
-    /// A machine is too busy to judge a flight that failed if it is late by so many seconds, or if a simulation makes less
-    /// than this part of its speed-up.
+    /// A machine may be too busy to judge a flight that failed. It is if it is late by so many seconds, or if a simulation
+    /// makes less than this part of its speed-up.
     const LATE: f64 = 0.3;
     const PACE: f64 = 0.8;
 

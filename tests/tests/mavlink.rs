@@ -43,8 +43,8 @@ mod long {
     /// So many at a time: they mostly wait, and need a fiftieth of a core each.
     const AT_ONCE: usize = 14;
 
-    /// From so many seconds on that a vehicle's tick or a heartbeat of ours came late, the machine was too busy to judge a
-    /// mission that failed.
+    /// The machine was too busy to judge a mission that failed if a vehicle's tick or a heartbeat of ours came so many
+    /// seconds late.
     const LATE: f64 = 0.05;
 
     /// What happens to a vehicle, and what the flight then ends with. A vehicle that was taken over or disarmed does not

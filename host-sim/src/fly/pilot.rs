@@ -10,9 +10,9 @@
 //!                          +--a second later-- Listening <-------+------someone else drives it----+
 //! ```
 //!
-//! A failure is for good: after it nothing is sent but stops and heartbeats, and not even those once someone else drives
-//! the vehicle: it is listened to, as an autopilot says why a moment after it has acted. Stops are repeated until the vehicle says that it is at rest, and for long enough that a setpoint
-//! which is late cannot come after the last of them.
+//! A failure is for good: after it only stops and heartbeats are sent. Once someone else drives the vehicle, not even
+//! those are. The vehicle is still listened to, as an autopilot says why a moment after it has acted. Stops are repeated
+//! until the vehicle says that it is at rest. They last long enough that no late setpoint comes after the last of them.
 
 use std::time::Duration;
 

@@ -78,7 +78,7 @@ typedef enum {
    */
   PLANNER_STATUS_READING,
   /*
-   Refused: no line separates the given samples, or they are collinear, too many or of one label, or one says
+   Refused: no line separates the given samples, or they are collinear, too many or of one label. Or one says
    something else than 0 or 1 for whether it is positive.
    */
   PLANNER_STATUS_GIVEN,

@@ -38,7 +38,7 @@ pub enum Status {
     Position,
     /// Refused: there is no such reading.
     Reading,
-    /// Refused: no line separates the given samples, or they are collinear, too many or of one label, or one says
+    /// Refused: no line separates the given samples, or they are collinear, too many or of one label. Or one says
     /// something else than 0 or 1 for whether it is positive.
     Given,
     /// Stopped: there is uncertain ground, but none of the ways that a plan tries leads there. From another pose one may.

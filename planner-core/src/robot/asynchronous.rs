@@ -291,8 +291,8 @@ mod tests {
         })
     }
 
-    /// The same motions and readings whether drivers are called or awaited, and whether each step but every third was
-    /// dropped before, as it drove or as it sensed.
+    /// Called and awaited drivers make the same motions and readings. So they do if two of three steps were dropped
+    /// before, on the way or while they sensed.
     fn missions_are_the_same(planner: impl Planner + Clone) {
         let [here, there] = [Cell::new(start()), Cell::new(start())];
         let (stuck, free) = (Cell::new(None), Cell::new(None));

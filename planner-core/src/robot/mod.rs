@@ -1,6 +1,10 @@
-//! The robot itself: the traits that its drive and its sensor implement ([`hal`]), the body that the two
-//! are together ([`body`]), and the loop that joins a body to a planner ([`agent`]). [`asynchronous`] is the same for
-//! drivers that are awaited; [`threshold`] is a sensor on a quantity that is measured.
+//! The robot itself.
+//!
+//! - [`hal`]: the traits that its drive and its sensor implement.
+//! - [`body`]: the two together.
+//! - [`agent`]: the loop that joins a body to a planner.
+//! - [`asynchronous`]: the same for drivers that are awaited.
+//! - [`threshold`]: a sensor on a measured quantity.
 
 pub mod agent;
 pub mod asynchronous;
