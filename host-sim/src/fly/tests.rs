@@ -144,6 +144,15 @@ fn of_run() -> String {
     trace::lines(&Recording::of(&mission()).expect("labels are true").results)
 }
 
+/// A vehicle that goes round and round where it says that it is, at 2 rad/s.
+fn circling(now: Duration, message: MavMessage, radius: f32) -> MavMessage {
+    let MavMessage::LOCAL_POSITION_NED(mut it) = message else { return message };
+    let (sine, cosine) = (2.0 * now.as_secs_f32()).sin_cos();
+    (it.x, it.y) = (it.x + radius * cosine, it.y + radius * sine);
+    (it.vx, it.vy) = (it.vx - 2.0 * radius * sine, it.vy + 2.0 * radius * cosine);
+    MavMessage::LOCAL_POSITION_NED(it)
+}
+
 /// Whether a message moves a vehicle.
 fn moves(message: &MavMessage) -> bool {
     let MavMessage::SET_POSITION_TARGET_LOCAL_NED(it) = message else { return false };
@@ -241,7 +250,7 @@ fn a_label_from_before_does_not_count() {
 /// It does not take a vehicle for arrived that goes round its target, or for stopped that does not say so.
 #[test]
 fn a_vehicle_that_never_rests_does_not_arrive_and_is_told_to_stop_for_long() {
-    let flown = fly(as_it_is, |now, _, message| vec![habits::circling(now, message, 1.0)]);
+    let flown = fly(as_it_is, |now, _, message| vec![circling(now, message, 1.0)]);
     assert!(matches!(flown.failure(), Some(Failure::Late(..))), "{:?}", flown.failure());
     let stops = flown.sent.iter().filter(|(_, it)| is_stop(it));
     let times: Vec<_> = stops.map(|(at, _)| at.as_secs_f64()).collect();

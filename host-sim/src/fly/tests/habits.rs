@@ -17,15 +17,6 @@ fn nearer_the_middle(message: MavMessage, by: f32) -> MavMessage {
     MavMessage::SET_POSITION_TARGET_LOCAL_NED(it)
 }
 
-/// A vehicle that goes round and round where it says that it is, at 2 rad/s.
-pub(super) fn circling(now: Duration, message: MavMessage, radius: f32) -> MavMessage {
-    let MavMessage::LOCAL_POSITION_NED(mut it) = message else { return message };
-    let (sine, cosine) = (2.0 * now.as_secs_f32()).sin_cos();
-    (it.x, it.y) = (it.x + radius * cosine, it.y + radius * sine);
-    (it.vx, it.vy) = (it.vx - 2.0 * radius * sine, it.vy + 2.0 * radius * cosine);
-    MavMessage::LOCAL_POSITION_NED(it)
-}
-
 /// A rover that steers like a car rests beside where it was sent.
 #[test]
 fn a_vehicle_that_rests_near_its_target_has_arrived_where_it_is() {
