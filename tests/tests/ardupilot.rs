@@ -8,11 +8,11 @@
 #[cfg(not(feature = "long"))]
 #[test]
 fn flights_against_ardupilot_are_for_the_long_run() {
-    // CI has the long run beside this one.
-    if std::env::var_os("CI").is_none() {
-        let why = "it builds host-sim anew: --features long --test ardupilot";
-        tests::program::build::skip(env!("CARGO_TARGET_TMPDIR"), "flights of ArduPilot", why);
-    }
+    tests::program::build::is_long(
+        env!("CARGO_TARGET_TMPDIR"),
+        "flights of ArduPilot",
+        "ardupilot",
+    );
 }
 
 #[cfg(feature = "long")]

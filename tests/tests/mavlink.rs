@@ -7,11 +7,7 @@
 #[cfg(not(feature = "long"))]
 #[test]
 fn missions_over_mavlink_are_for_the_long_run() {
-    // CI has the long run beside this one.
-    if std::env::var_os("CI").is_none() {
-        let why = "it builds host-sim anew: --features long --test mavlink";
-        tests::program::build::skip(env!("CARGO_TARGET_TMPDIR"), "missions over MAVLink", why);
-    }
+    tests::program::build::is_long(env!("CARGO_TARGET_TMPDIR"), "missions over MAVLink", "mavlink");
 }
 
 #[cfg(feature = "long")]

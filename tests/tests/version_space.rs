@@ -130,9 +130,9 @@ proptest! {
         match Space::new(&samples) {
             Ok(_) => prop_assert!(separable(&samples)),
             Err(NoVersionSpace::NotSeparable(i)) => {
-                // Brute force decides this simply. The samples up to this one, but not those before it, contain one of
-                // these: a site with both labels, a site between two of the other label or in a triangle of them, or
-                // two segments that cross.
+                // Brute force decides this simply. The samples up to this one have no line, those before it have one.
+                // There is none if a site has both labels, or lies between two sites of the other label or in a
+                // triangle of them. Nor is there one if two segments cross.
                 prop_assert!(mixed(&samples[..=i]), "{i} is not too many");
                 prop_assert!(!mixed(&samples[..i]), "{i} is not the first");
             }

@@ -63,7 +63,7 @@ impl fmt::Display for Failure {
                  (MAV_TYPE_SURFACE_BOAT) or a submarine (MAV_TYPE_SUBMARINE)"
             ),
             Self::NotReady(time, missing) => {
-                write!(f, "not ready within {} s: expected {missing}", s(time))
+                write!(f, "not ready within {} s (--wait): expected {missing}", s(time))
             }
             Self::Declined(message, how) => {
                 write!(f, "the vehicle does not send {message}: {how}")
@@ -87,8 +87,10 @@ impl fmt::Display for Failure {
                 "its position slid by {metres:.1} m that its speed does not explain: its estimator or its origin \
                  was corrected, and what it sensed before lies elsewhere"
             ),
-            Self::Late(time, off) => write!(f, "not there within {} s: {off}", s(time)),
-            Self::NoLabel(time, source) => write!(f, "no label within {} s: {source}", s(time)),
+            Self::Late(time, off) => write!(f, "not there within {} s (--motion-time): {off}", s(time)),
+            Self::NoLabel(time, source) => {
+                write!(f, "no label within {} s (--label-time): {source}", s(time))
+            }
             Self::OffLattice => f.write_str("the position is beyond 8192 m, or no number"),
             Self::Refused(why) => f.write_str(why),
             Self::Interrupted(signal) => write!(f, "interrupted by signal {signal}"),

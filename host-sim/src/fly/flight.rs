@@ -16,8 +16,9 @@ use crate::fly::orders::Order;
 use crate::fly::pilot::Pilot;
 use crate::mission::definition::Mission;
 use crate::mission::flight::Flown;
+use crate::mission::legs::{Leg, Legs};
 use crate::mission::recording::{Recorder, Recording};
-use crate::mission::results::{Ending, Leg, Legs};
+use crate::mission::results::Ending;
 use crate::mission::terrain::check_inside;
 use crate::output::notes::{announce, count, warn};
 

@@ -4,6 +4,7 @@
 pub mod algorithm;
 pub mod definition;
 pub mod flight;
+pub mod legs;
 pub mod margin;
 pub mod names;
 pub mod planners;

@@ -15,10 +15,11 @@ use planner_core::robot::agent::Step;
 
 use crate::mission::definition::{Mission, Table};
 use crate::mission::flight::Flown;
+use crate::mission::legs::{Leg, Legs};
 use crate::mission::read_out::{Knowledge, LEVEL, ReadOut};
 use crate::mission::results::{
-    BestRecord, CredibleRecord, End, EstimateRecords, KeepOutRecord, Leg, Legs, LineError,
-    NoisyEnd, NoisyStep, Results, Start, StepResult, VERSION, recovery_name, stage_name,
+    BestRecord, CredibleRecord, End, EstimateRecords, KeepOutRecord, LineError, NoisyEnd,
+    NoisyStep, Results, Start, StepResult, VERSION, recovery_name, stage_name,
 };
 use crate::mission::stop::GoalRecord;
 use crate::mission::vehicle::VehicleTable;

@@ -1,8 +1,8 @@
 //! Branch and bound over sequences of motions, on all cores.
 //!
 //! A partial sequence is dropped if its lower bound is above the best complete one known. At equal cost it is dropped
-//! if its actions have the higher index. So the result does not depend on how the work is divided: it is the cheapest
-//! sequence, and among those of equal (rounded) cost, the first in the order of its actions.
+//! if its actions have the higher index. So the result does not depend on how the work is divided. It is the cheapest
+//! sequence. Among those of equal (rounded) cost it is the first in the order of its actions.
 
 use std::cmp::Ordering;
 use std::sync::Mutex;

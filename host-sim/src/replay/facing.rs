@@ -92,8 +92,8 @@ impl Facing {
         (are_apart && self.separates(right, 1) && self.separates(left, -1)).then_some([right, left])
     }
 
-    /// Whether no sample is on the wrong side of the line through two; `side` says where the positive samples must be,
-    /// seen from the negative one of the two: 1 is the left, -1 the right.
+    /// Whether no sample is on the wrong side of the line through two. `side` is the side of positive samples, seen from
+    /// the negative one of the two: 1 is the left, -1 the right.
     fn separates(&self, pair: Pair, side: i64) -> bool {
         let height = |row: Row| side * pair.apart().cross(row.site() - pair.negative.site());
         self.positive.corners().all(|row| height(row) >= 0)

@@ -121,7 +121,10 @@ mod built_in {
         let output = crate::host_sim(folder.path(), &[&args[..], &more].concat());
         let message = crate::text(&output.stderr);
         assert_eq!(output.status.code(), Some(1), "{message}");
-        assert!(message.contains("not ready within 0.2 s: expected a heartbeat"), "{message}");
+        assert!(
+            message.contains("not ready within 0.2 s (--wait): expected a heartbeat"),
+            "{message}"
+        );
         assert!(!folder.path().join("t.jsonl").exists());
     }
 }

@@ -6,18 +6,14 @@
 use core::ffi::c_void;
 use core::mem::{MaybeUninit, align_of, size_of};
 
-use planner_core::belief::outlook::Foresight;
-use planner_core::belief::told::Replay;
 use planner_core::belief::tolerance::Tolerance;
-use planner_core::belief::version_space::NoVersionSpace;
 use planner_core::{
-    Belief as _, Config, Forecast, Goal, Hypotheses, Lookahead, Noise, Persist, Plan, Planner as _,
-    Prior, Refused, Reliability, Site, Unicycle, VersionSpace,
+    Forecast, Lookahead, Plan, Planner as _, Prior, Reliability, Unicycle, VersionSpace,
 };
-use serde::Serialize;
-use serde::de::DeserializeOwned;
 
 use crate::area::Ground;
+use crate::asked::Asked;
+use crate::possible::{MOST_GIVEN, Possible};
 use crate::snapshot::Snapshot;
 use crate::types::{Line, Mission, Motion, Point, Pose, Reading, Sample, Status};
 use crate::verdict::{Refusal, Verdict};
@@ -27,8 +23,6 @@ const TRUE_SAMPLES: usize = 68;
 /// The same with labels that may be wrong, and all hypotheses that 32 of them can come to.
 const DOUBTFUL_SAMPLES: usize = 36;
 const HYPOTHESES: usize = 529;
-/// Given samples at most.
-const MOST_GIVEN: usize = 16;
 
 type True = Lookahead<Unicycle, VersionSpace<TRUE_SAMPLES>, Ground>;
 type Doubtful = Lookahead<Unicycle, Forecast<DOUBTFUL_SAMPLES, HYPOTHESES>, Ground>;
@@ -51,133 +45,6 @@ enum Kind {
 struct Held<P> {
     finder: Finder,
     planner: P,
-}
-
-/// How reliable labels are, and whether one may have a reliability of its own.
-trait Believe: Foresight {
-    /// That of all labels of the mission; the other ones too, or why there are none.
-    fn usual(known: &Self::Belief) -> (Reliability, Result<(), Status>);
-
-    /// Takes in a label of another reliability.
-    fn take(&mut self, sample: planner_core::Sample, believed: Reliability) -> Result<(), Refused>;
-}
-
-/// Labels are always right.
-impl<const N: usize> Believe for VersionSpace<N> {
-    fn usual(_: &Self) -> (Reliability, Result<(), Status>) {
-        (Reliability::CERTAIN, Err(Status::Reliability))
-    }
-
-    fn take(&mut self, sample: planner_core::Sample, _: Reliability) -> Result<(), Refused> {
-        self.insert(sample).map(drop)
-    }
-}
-
-/// Where positions err, the table takes every label to be as reliable as the noise says.
-impl<const N: usize, const H: usize> Believe for Forecast<N, H> {
-    fn usual(known: &Hypotheses<N, H>) -> (Reliability, Result<(), Status>) {
-        let Noise { reliability, tolerance, .. } = known.noise();
-        let is_exact = tolerance == Tolerance::NONE;
-        (reliability, is_exact.then_some(()).ok_or(Status::Reliability))
-    }
-
-    fn take(&mut self, sample: planner_core::Sample, believed: Reliability) -> Result<(), Refused> {
-        Self::take(self, sample, believed)
-    }
-}
-
-/// What is asked of either planner.
-trait Asked {
-    fn observe(
-        &mut self,
-        pose: planner_core::Pose,
-        reading: Option<planner_core::Reading>,
-    ) -> Result<(), Status>;
-
-    fn observe_within(
-        &mut self,
-        pose: planner_core::Pose,
-        reading: Option<planner_core::Reading>,
-        tolerance: Tolerance,
-    ) -> Result<(), Status>;
-
-    fn observe_believed(
-        &mut self,
-        pose: planner_core::Pose,
-        reading: Option<planner_core::Reading>,
-        believed: Reliability,
-    ) -> Result<(), Status>;
-
-    fn centre(&self) -> Option<Line>;
-    fn bits(&self) -> f64;
-    fn chance(&self, site: Site) -> f64;
-    fn save(&self) -> Option<Snapshot>;
-    fn restore(&mut self, snapshot: &Snapshot) -> Result<(), Status>;
-}
-
-impl<B> Asked for Lookahead<Unicycle, B, Ground>
-where
-    B: Believe + Replay<Told: Serialize + DeserializeOwned>,
-{
-    fn observe(
-        &mut self,
-        pose: planner_core::Pose,
-        reading: Option<planner_core::Reading>,
-    ) -> Result<(), Status> {
-        planner_core::Planner::observe(self, pose, reading).map_err(Status::from)
-    }
-
-    fn observe_within(
-        &mut self,
-        pose: planner_core::Pose,
-        reading: Option<planner_core::Reading>,
-        tolerance: Tolerance,
-    ) -> Result<(), Status> {
-        planner_core::Planner::observe_within(self, pose, reading, tolerance).map_err(Status::from)
-    }
-
-    fn observe_believed(
-        &mut self,
-        pose: planner_core::Pose,
-        reading: Option<planner_core::Reading>,
-        believed: Reliability,
-    ) -> Result<(), Status> {
-        let (usual, others) = B::usual(self.belief());
-        if believed == usual {
-            return Asked::observe(self, pose, reading);
-        }
-        others?;
-        let Some(planner_core::Reading::Side(label)) = reading else {
-            return Asked::observe(self, pose, reading);
-        };
-        let before = self.snapshot();
-        let sample = planner_core::Sample { site: pose.site, label };
-        self.foresight().take(sample, believed).map_err(|refused| {
-            // It forgot its last turns. The snapshot is its own.
-            let _ = Persist::restore(self, &before);
-            refused.into()
-        })
-    }
-
-    fn centre(&self) -> Option<Line> {
-        self.estimates().centre.map(|it| planner_core::Line::from(it).into())
-    }
-
-    fn bits(&self) -> f64 {
-        self.belief().information()
-    }
-
-    fn chance(&self, site: Site) -> f64 {
-        self.belief().chance(site)
-    }
-
-    fn save(&self) -> Option<Snapshot> {
-        Snapshot::of(self)
-    }
-
-    fn restore(&mut self, snapshot: &Snapshot) -> Result<(), Status> {
-        snapshot.wake(self)
-    }
 }
 
 /// What a pointer leads to.
@@ -220,51 +87,6 @@ pub extern "C" fn bytes(mission: Option<&Mission<'_>>) -> usize {
         Some(Ok(None)) => size_of::<Held<True>>(),
         Some(Ok(Some(_))) => size_of::<Held<Doubtful>>(),
         _ => 0,
-    }
-}
-
-/// A mission that is possible, and its given samples.
-struct Possible {
-    config: Config<Ground>,
-    unicycle: Unicycle,
-    goal: Option<Goal>,
-    noise: Option<Noise>,
-    samples: [planner_core::Sample; MOST_GIVEN],
-    count: usize,
-}
-
-impl Possible {
-    fn new(mission: &Mission<'_>, given: &[Sample]) -> Result<Self, Refusal> {
-        let refusal = |status| Refusal::of(status, c"given");
-        let label = planner_core::Label::Negative;
-        let mut samples = [planner_core::Sample { site: Site::ORIGIN, label }; MOST_GIVEN];
-        let places = samples.get_mut(..given.len()).ok_or(refusal(Status::Given))?;
-        for (number, (place, sample)) in places.iter_mut().zip(given).enumerate() {
-            *place = sample.read().map_err(|status| refusal(status).about(number))?;
-        }
-        let (config, unicycle, noise) = (mission.config()?, mission.unicycle()?, mission.noise()?);
-        let goal = mission.goal()?;
-        let count = given.len();
-        let possible = Self { config, unicycle, goal, noise, samples, count };
-        // With room for these samples alone.
-        let is_found = if let Some(noise) = noise {
-            Hypotheses::<MOST_GIVEN, 1>::new(possible.given(), Prior::Area, noise).map(drop)
-        } else {
-            VersionSpace::<MOST_GIVEN>::new(possible.given())
-                .and_then(|it| it.within(config.tolerance))
-                .map(drop)
-        };
-        is_found.map_err(|why| match why {
-            NoVersionSpace::NotSeparable(number) => refusal(Status::Given).about(number),
-            _ => refusal(Status::Given),
-        })?;
-        let too_large = Refusal::of(Status::ToleranceTooLarge, c"tolerance");
-        config.admits(&unicycle).map_err(|_| too_large)?;
-        Ok(possible)
-    }
-
-    fn given(&self) -> &[planner_core::Sample] {
-        self.samples.get(..self.count).unwrap_or_default()
     }
 }
 

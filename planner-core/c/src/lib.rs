@@ -12,7 +12,9 @@
 //! ```
 
 mod area;
+mod asked;
 mod finder;
+mod possible;
 mod snapshot;
 mod types;
 mod verdict;

@@ -78,7 +78,7 @@ impl Motion {
         dynamics: &D,
         effort: Effort,
     ) -> Self {
-        let &Found { recovery, action, target, .. } = found;
+        let &Found { recovery, action, target } = found;
         Self {
             stage,
             recovery,

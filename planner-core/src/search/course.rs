@@ -1,6 +1,6 @@
 //! A way of several motions that a plan begins when it finds nothing better. The next plans follow it to its end.
 //!
-//! Otherwise each plan would begin another way, as the best way depends on where the robot is.
+//! If they did not follow it, each would begin another way, as the best way depends on where the robot is.
 
 use crate::geometry::lattice::Site;
 use crate::motion::action::Action;

@@ -11,9 +11,9 @@
 //! 4. *Transit, near*: uncertain ground is within reach, and yet no action hits it. Drive to the nearest pose from
 //!    which (1) is feasible, counted in motions, 16 at most. The way never leaves the reach of uncertain ground. Eight
 //!    bearings are considered: along the bisector of the slope arc both ways, across it both ways, and between.
-//! 5. *Courses*, where there is open ground: a drive to the nearest beyond reach, once; then a way drawn at random
-//!    (`wander`). A vehicle that has to go round to turn may also make a drive drawn at random, to try again from
-//!    elsewhere. The next plans continue the course (`course`).
+//! 5. *Courses*, where there is uncertain ground: once a drive to the nearest that is beyond reach, then a way drawn at
+//!    random (`wander`). A vehicle that cannot turn on the spot may also make a drive drawn at random, to try again
+//!    from elsewhere. The next plans continue the course (`course`).
 //! 6. Nothing: the ladder returns the reason, and the planner stops with it.
 //!
 //! If keep-outs are in the way, (2) goes round them (`detour`).
@@ -34,8 +34,8 @@
 //!   never becomes far again.
 //! - Outside the area, the measure is the distance to the middle, and then the turns. From inside, no motion leads out.
 //!
-//! **Courses end**: there is one drive far and sixteen to elsewhere. A way that is drawn has at most six motions and a
-//! label. If errors or a lack of looks break these rules, the planner still counts turns, see
+//! **Courses end**: of rung 5 there is at most one drive to ground beyond reach, and sixteen drives to try again from
+//! elsewhere. A way drawn at random has at most six motions, and a label at its end. If errors or a lack of looks break these rules, the planner still counts turns, see
 //! [`Silence`](crate::planner::silence::Silence).
 
 use crate::geometry::approximate::{heading_of, single, sqrt};

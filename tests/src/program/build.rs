@@ -94,6 +94,14 @@ pub fn skip(scratch: &str, what: &str, why: &str) {
     leave_out(scratch, what, why);
 }
 
+/// Says that only the long run has a test, as it builds host-sim anew. CI has the long run beside this one.
+pub fn is_long(scratch: &str, what: &str, test: &str) {
+    if env::var_os("CI").is_none() {
+        let why = format!("it builds host-sim anew: --features long --test {test}");
+        leave_out(scratch, what, &why);
+    }
+}
+
 /// Says that a test is left out, in CI too: it needs what nobody has to have.
 pub fn leave_out(scratch: &str, what: &str, why: &str) {
     let line = format!("SKIPPED {what}: {why}\n");

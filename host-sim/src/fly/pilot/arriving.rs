@@ -1,8 +1,8 @@
 //! When a motion has come to its end: the vehicle rests where it was sent, or rests for long near that.
 //!
 //! `ArduPilot` ends a leg where it likes: within its own radius, or where a rover that steers like a car has passed its
-//! target. The planner takes the place where the vehicle is, so any place is good that the vehicle has come to. One that
-//! does not move at all is stuck. A turn that does not turn is none.
+//! target. The planner goes on from where the vehicle is, so a place near the target will do. A vehicle that does not move
+//! at all has not arrived: it is stuck. A turn that leaves the heading as it was is not made either.
 //!
 //! In a current or in waves a vehicle holds its place and never rests. It has arrived when it has stayed for long: within the
 //! acceptance of its target, or about a place near that.

@@ -1,0 +1,142 @@
+//! What is asked of a planner, whether its labels are true or doubtful.
+
+use planner_core::belief::outlook::Foresight;
+use planner_core::belief::told::Replay;
+use planner_core::belief::tolerance::Tolerance;
+use planner_core::{
+    Belief as _, Forecast, Hypotheses, Lookahead, Noise, Persist, Planner as _, Refused,
+    Reliability, Site, Unicycle, VersionSpace,
+};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use crate::area::Ground;
+use crate::snapshot::Snapshot;
+use crate::types::{Line, Status};
+
+/// How reliable labels are, and whether one may have a reliability of its own.
+trait Believe: Foresight {
+    /// That of all labels of the mission; the other ones too, or why there are none.
+    fn usual(known: &Self::Belief) -> (Reliability, Result<(), Status>);
+
+    /// Takes in a label of another reliability.
+    fn take(&mut self, sample: planner_core::Sample, believed: Reliability) -> Result<(), Refused>;
+}
+
+/// Labels are always right.
+impl<const N: usize> Believe for VersionSpace<N> {
+    fn usual(_: &Self) -> (Reliability, Result<(), Status>) {
+        (Reliability::CERTAIN, Err(Status::Reliability))
+    }
+
+    fn take(&mut self, sample: planner_core::Sample, _: Reliability) -> Result<(), Refused> {
+        self.insert(sample).map(drop)
+    }
+}
+
+/// Where positions err, the table takes every label to be as reliable as the noise says.
+impl<const N: usize, const H: usize> Believe for Forecast<N, H> {
+    fn usual(known: &Hypotheses<N, H>) -> (Reliability, Result<(), Status>) {
+        let Noise { reliability, tolerance, .. } = known.noise();
+        let is_exact = tolerance == Tolerance::NONE;
+        (reliability, is_exact.then_some(()).ok_or(Status::Reliability))
+    }
+
+    fn take(&mut self, sample: planner_core::Sample, believed: Reliability) -> Result<(), Refused> {
+        Self::take(self, sample, believed)
+    }
+}
+
+/// What is asked of either planner.
+pub(crate) trait Asked {
+    fn observe(
+        &mut self,
+        pose: planner_core::Pose,
+        reading: Option<planner_core::Reading>,
+    ) -> Result<(), Status>;
+
+    fn observe_within(
+        &mut self,
+        pose: planner_core::Pose,
+        reading: Option<planner_core::Reading>,
+        tolerance: Tolerance,
+    ) -> Result<(), Status>;
+
+    fn observe_believed(
+        &mut self,
+        pose: planner_core::Pose,
+        reading: Option<planner_core::Reading>,
+        believed: Reliability,
+    ) -> Result<(), Status>;
+
+    fn centre(&self) -> Option<Line>;
+    fn bits(&self) -> f64;
+    fn chance(&self, site: Site) -> f64;
+    fn save(&self) -> Option<Snapshot>;
+    fn restore(&mut self, snapshot: &Snapshot) -> Result<(), Status>;
+}
+
+impl<B> Asked for Lookahead<Unicycle, B, Ground>
+where
+    B: Believe + Replay<Told: Serialize + DeserializeOwned>,
+{
+    fn observe(
+        &mut self,
+        pose: planner_core::Pose,
+        reading: Option<planner_core::Reading>,
+    ) -> Result<(), Status> {
+        planner_core::Planner::observe(self, pose, reading).map_err(Status::from)
+    }
+
+    fn observe_within(
+        &mut self,
+        pose: planner_core::Pose,
+        reading: Option<planner_core::Reading>,
+        tolerance: Tolerance,
+    ) -> Result<(), Status> {
+        planner_core::Planner::observe_within(self, pose, reading, tolerance).map_err(Status::from)
+    }
+
+    fn observe_believed(
+        &mut self,
+        pose: planner_core::Pose,
+        reading: Option<planner_core::Reading>,
+        believed: Reliability,
+    ) -> Result<(), Status> {
+        let (usual, others) = B::usual(self.belief());
+        if believed == usual {
+            return Asked::observe(self, pose, reading);
+        }
+        others?;
+        let Some(planner_core::Reading::Side(label)) = reading else {
+            return Asked::observe(self, pose, reading);
+        };
+        let before = self.snapshot();
+        let sample = planner_core::Sample { site: pose.site, label };
+        self.foresight().take(sample, believed).map_err(|refused| {
+            // It forgot its last turns. The snapshot is its own.
+            let _ = Persist::restore(self, &before);
+            refused.into()
+        })
+    }
+
+    fn centre(&self) -> Option<Line> {
+        self.estimates().centre.map(|it| planner_core::Line::from(it).into())
+    }
+
+    fn bits(&self) -> f64 {
+        self.belief().information()
+    }
+
+    fn chance(&self, site: Site) -> f64 {
+        self.belief().chance(site)
+    }
+
+    fn save(&self) -> Option<Snapshot> {
+        Snapshot::of(self)
+    }
+
+    fn restore(&mut self, snapshot: &Snapshot) -> Result<(), Status> {
+        snapshot.wake(self)
+    }
+}
