@@ -44,11 +44,10 @@ mod watchdog;
 #[cfg(target_os = "none")]
 #[rtic::app(device = stm32f4xx_hal::pac)]
 mod app {
-    use planner_core::belief::sample::Label;
     use planner_core::link::delivery::Link;
     use planner_core::link::message::ClockRate;
     use planner_core::link::station::Station;
-    use planner_core::robot::hal::PinSensor;
+    use planner_core::{Label, PinSensor};
     use stm32f4xx_hal::gpio::GpioExt;
 
     use crate::clock::Clock;

@@ -1,14 +1,11 @@
 //! What `idle` runs: asks for a mission, flies it, logs it, and asks for the next.
 
-use planner_core::belief::sample::Reading;
-use planner_core::geometry::local_line::LocalLine;
-use planner_core::link::delivery::LinkLost;
-use planner_core::link::message::{Algorithm, Declined, MissionArea, MissionEnd, Setup};
-use planner_core::link::station::{Flown, Prepared, Station, Terms};
-use planner_core::planner::Planner;
-use planner_core::robot::agent::Step;
-use planner_core::robot::hal::PinSensor;
-use planner_core::{AnyVehicle, Goal, Noise, Policy, Prior};
+use planner_core::link::delivery::LinkError;
+use planner_core::link::message::{Algorithm, DeclinedError, MissionArea, MissionEnd, Setup};
+use planner_core::link::station::{Flown, PlannerSetup, Prepared, Station};
+use planner_core::{
+    AnyVehicle, Goal, LocalLine, Noise, PinSensor, Planner, Policy, Prior, Reading, Step,
+};
 use stm32f4xx_hal::gpio::{Input, PB1};
 
 use crate::serial::Serial;
@@ -24,7 +21,7 @@ const DOUBTFUL_SAMPLES: usize = 36;
 const HYPOTHESES: usize = 529;
 
 /// What it plans with and where: all there is.
-type Known = Terms<AnyVehicle, MissionArea>;
+type Known = PlannerSetup<AnyVehicle, MissionArea>;
 
 /// What a mission has to do with.
 pub(crate) struct Board {
@@ -89,7 +86,7 @@ impl Board {
     }
 
     /// The drive is enabled for as long as this takes.
-    fn fly<L: Planner>(&mut self, setup: &Setup, planner: &mut Result<Prepared<L>, Declined>) {
+    fn fly<L: Planner>(&mut self, setup: &Setup, planner: &mut Result<Prepared<L>, DeclinedError>) {
         if planner.is_ok() {
             self.enable.on();
         }
@@ -103,7 +100,7 @@ impl Board {
     }
 }
 
-fn log_end(steps: u16, flown: &Result<Flown, LinkLost>) {
+fn log_end(steps: u16, flown: &Result<Flown, LinkError>) {
     match flown {
         Ok(Flown::Ended(MissionEnd { reason, estimates, .. })) => {
             defmt::info!("ended after {=u16} steps: {}", steps, reason);

@@ -7,15 +7,11 @@ use std::fmt::Debug;
 
 use crc::{CRC_32_ISO_HDLC, Crc};
 use libfuzzer_sys::fuzz_target;
-use planner_core::belief::sample::{Label, Reading};
-use planner_core::geometry::region::Region as _;
+use planner_core::{Label, Reading, Workspace as _, AnyVehicle, Pose, Plan, Planner};
 use planner_core::link::delivery::{Heard, Responder};
 use planner_core::link::frame::{Decoder, Envelope, FRAME, Frame, Message};
 use planner_core::link::message::{Algorithm, MissionArea, Reply, Request, Setup};
-use planner_core::motion::any_vehicle::AnyVehicle;
 use planner_core::motion::contract;
-use planner_core::motion::dynamics::Pose;
-use planner_core::planner::{Plan, Planner};
 
 /// Steps that a mission is flown for.
 const STEPS: usize = 6;

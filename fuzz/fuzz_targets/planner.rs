@@ -6,31 +6,14 @@
 
 use arbitrary::{Arbitrary, Unstructured};
 use libfuzzer_sys::fuzz_target;
-use planner_core::belief::consistent_lines::Certainty;
-use planner_core::belief::forecast::Forecast;
-use planner_core::belief::goal::{Accuracy, Goal};
-use planner_core::belief::hypotheses::Hypotheses;
-use planner_core::belief::noise::{Noise, Reliability};
-use planner_core::belief::outlook::Foresight;
-use planner_core::belief::posterior::Posterior;
-use planner_core::belief::sample::{Label, Reading, Sample};
-use planner_core::belief::tolerance::Tolerance;
-use planner_core::belief::version_space::VersionSpace;
-use planner_core::belief::weight::Prior;
-use planner_core::belief::{Belief, Refused};
-use planner_core::geometry::area::Area;
-use planner_core::geometry::heading::Heading;
-use planner_core::geometry::lattice::{Site, orient};
+use planner_core::{Certainty, NoisyBelief, Accuracy, Goal, CellPosterior, Noise, Reliability, PredictiveBelief, PosteriorView, Label, Reading, Sample, Tolerance, VersionSpace, Prior, Belief, Area, Heading, Site, Pose, Holonomic, Unicycle, Cfc, Crossing, Following, Lookahead, Policy, Scc, Motion, Plan, Planner, StopReason};
+use planner_core::error::ObservationError;
+use planner_core::geometry::lattice::orient;
 use planner_core::motion::contract;
-use planner_core::motion::dynamics::{Dynamics, Pose};
-use planner_core::motion::holonomic::Holonomic;
-use planner_core::motion::unicycle::Unicycle;
-use planner_core::planner::cfc::Cfc;
-use planner_core::planner::config::{Config, Crossing, Following};
-use planner_core::planner::lookahead::{EVALUATIONS, Lookahead};
-use planner_core::planner::scc::{Policy, Scc};
-use planner_core::planner::{Motion, Plan, Planner, StopReason};
-use planner_core::search::objective::{LOOKS, Varrho};
+use planner_core::dynamics::Dynamics;
+use planner_core::planner::Config;
+use planner_core::planner::lookahead::EVALUATIONS;
+use planner_core::search::objective::{LOOKS, EffortWeight};
 
 /// Actions that are tried one by one, at most.
 const FEW: u64 = 3_000;
@@ -101,7 +84,7 @@ fn run<D: Dynamics + Copy>(case: &Case, dynamics: D, world: &World) -> Option<()
     let corner = |v: i32| world.site(v, v).unwrap_or(Site::ORIGIN);
     let config = Config {
         area: Area::new(corner(-half), corner(half))?,
-        varrho: Varrho::new(f64::from(case.varrho % 1_000_000) / 1e6)?,
+        varrho: EffortWeight::new(f64::from(case.varrho % 1_000_000) / 1e6)?,
         crossing: [Crossing::Unrestricted, Crossing::AlongOracle, Crossing::AcrossBisector]
             [usize::from(case.crossing % 3)],
         following: if case.follows_bisector {
@@ -131,7 +114,7 @@ fn run<D: Dynamics + Copy>(case: &Case, dynamics: D, world: &World) -> Option<()
     };
     let goal = Goal { accuracy, level: 500_000 + case.start.2 % 500_000 };
     for goal in [None, Some(goal)] {
-        let planner = Lookahead::new(config, dynamics, space.clone()).expect("settings that agree").until(goal);
+        let planner = Lookahead::new(config.area, dynamics, space.clone()).expect("settings that agree").until(goal);
         fly_true(case, planner, world, start, &config, |planner, pose| {
             let plan = look_ahead(planner, pose);
             let known = plan == Plan::Stop(StopReason::Known);
@@ -151,22 +134,22 @@ fn run<D: Dynamics + Copy>(case: &Case, dynamics: D, world: &World) -> Option<()
     ] {
         let noise =
             Noise { reliability, trusted_radius: case.trusted_radius, tolerance: Tolerance::NONE };
-        let table = Hypotheses::<16, 24>::new(&oracle, prior, noise).ok()?;
+        let table = CellPosterior::<16, 24>::new(&oracle, prior, noise).ok()?;
         let scc = Scc::new(config, policy, dynamics, table).expect("settings that agree");
         fly_any(case, scc, world, start, &config, |planner, pose| planner.plan(pose));
-        let forecast = Forecast::<16, 24>::new(&oracle, prior, noise).ok()?;
-        let planner = Lookahead::new(config, dynamics, forecast).expect("settings that agree").until(Some(goal));
+        let forecast = NoisyBelief::<16, 24>::new(&oracle, prior, noise).ok()?;
+        let planner = Lookahead::new(config.area, dynamics, forecast).expect("settings that agree").until(Some(goal));
         fly_any(case, planner, world, start, &config, look_ahead);
     }
     Some(())
 }
 
 /// A plan of look-ahead: the same each time, and if a label is wanted, on uncertain ground.
-fn look_ahead<D: Dynamics, B: Foresight>(planner: &mut Lookahead<D, B>, pose: Pose) -> Plan {
+fn look_ahead<D: Dynamics, B: PredictiveBelief>(planner: &mut Lookahead<D, B>, pose: Pose) -> Plan {
     let plan = planner.plan(pose);
     assert_eq!(plan, planner.plan(pose), "from {pose:?}");
     if let Plan::Move(Motion { target, wants_label, examined, .. }) = plan {
-        let certainty = planner.foresight().ground().certainty(target.site);
+        let certainty = planner.belief_mut().ground().certainty(target.site);
         assert!(!wants_label || certainty == Certainty::Uncertain, "to {target:?}");
         assert!(examined <= EVALUATIONS);
     }
@@ -204,7 +187,7 @@ fn fly_true<P: Planner<Belief = VersionSpace<16>>>(
         }
         match planner.observe(pose, reading) {
             Ok(()) => {}
-            Err(Refused::Full(_)) => return,
+            Err(ObservationError::Full(_)) => return,
             Err(refused) => panic!("a true reading was refused: {refused:?}"),
         }
     }
@@ -212,7 +195,7 @@ fn fly_true<P: Planner<Belief = VersionSpace<16>>>(
 }
 
 /// A planner whose labels are of any kind.
-fn fly_any<P: Planner<Belief = Hypotheses<16, 24>>>(
+fn fly_any<P: Planner<Belief = CellPosterior<16, 24>>>(
     case: &Case,
     mut planner: P,
     world: &World,
@@ -242,7 +225,7 @@ fn fly_any<P: Planner<Belief = Hypotheses<16, 24>>>(
         if planner.observe(pose, reading).is_err() {
             return;
         }
-        let posterior = Posterior::new(planner.belief());
+        let posterior = PosteriorView::new(planner.belief());
         let all: f64 = planner.belief().iter().map(|it| posterior.probability(it)).sum();
         assert!((all - 1.0).abs() < 1e-6, "probabilities sum to {all}");
         assert!((0.0..=1.0).contains(&posterior.pruned_mass()));

@@ -7,7 +7,7 @@ use host_sim::mission::recording::Recording;
 use host_sim::mission::scenario::{self, Overrides};
 use host_sim::report::trace;
 use libfuzzer_sys::fuzz_target;
-use planner_core::Region as _;
+use planner_core::Workspace as _;
 
 fuzz_target!(|text: &str| {
     let overrides = Overrides { algorithm: None, steps: None, seed: None };

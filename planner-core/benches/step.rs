@@ -4,24 +4,10 @@ use std::hint::black_box;
 
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use nalgebra::Point2;
-use planner_core::belief::Belief as _;
-use planner_core::belief::hypotheses::Hypotheses;
-use planner_core::belief::noise::Noise;
-use planner_core::belief::noise::Reliability;
-use planner_core::belief::sample::{Label, Sample};
-use planner_core::belief::tolerance::Tolerance;
-use planner_core::belief::version_space::VersionSpace;
-use planner_core::belief::weight::Prior;
-use planner_core::geometry::area::Area;
-use planner_core::geometry::heading::Heading;
-use planner_core::geometry::lattice::Site;
-use planner_core::motion::dynamics::Pose;
-use planner_core::motion::unicycle::Unicycle;
-use planner_core::planner::cfc::{self, Cfc};
-use planner_core::planner::config::{Config, Crossing};
-use planner_core::planner::scc::{self, Policy, Scc};
-use planner_core::planner::{Plan, Planner};
-use planner_core::search::objective::Varrho;
+use planner_core::{
+    Area, Belief as _, CellPosterior, Cfc, Heading, Label, Noise, Plan, Planner, Pose, Prior,
+    Reliability, Sample, Scc, Site, Tolerance, Unicycle, VersionSpace,
+};
 
 type Cfc32 = Cfc<Unicycle, 32>;
 
@@ -34,14 +20,8 @@ fn label(site: Site) -> Label {
     if at.y > 0.41 * at.x + 3.5 { Label::Positive } else { Label::Negative }
 }
 
-fn config() -> Config {
-    Config {
-        area: Area::new(at(0.0, 0.0), at(20.0, 20.0)).expect("an area"),
-        varrho: Varrho::PAPER,
-        crossing: Crossing::default(),
-        following: cfc::FOLLOWING,
-        tolerance: Tolerance::NONE,
-    }
+fn area() -> Area {
+    Area::metres([0.0, 0.0], [20.0, 20.0]).expect("an area")
 }
 
 /// The planner and the pose before each of the first steps of the paper's noiseless example.
@@ -49,7 +29,7 @@ fn states() -> Vec<(Cfc32, Pose)> {
     let corners = [(2.0, 1.0), (2.0, 8.0), (18.0, 16.0), (18.0, 5.0)].map(|(x, z)| at(x, z));
     let oracle = corners.map(|site| Sample { site, label: label(site) });
     let space = VersionSpace::new(&oracle).expect("separable");
-    let mut planner = Cfc::new(config(), Unicycle::paper(), space).expect("settings that agree");
+    let mut planner = Cfc::new(area(), Unicycle::paper(), space).expect("settings that agree");
     let mut pose = Pose { site: corners[0], heading: Heading(0) };
     let mut states = Vec::new();
     for _ in 0..24 {
@@ -108,10 +88,8 @@ fn noisy(labels: usize) -> (Scc<Unicycle, 36, 529>, Pose) {
     let reliability = Reliability::new(0.7).expect("a probability");
     let noise = Noise { reliability, trusted_radius: 0, tolerance: Tolerance::NONE };
     let hypotheses =
-        Hypotheses::new(planner.belief().samples(), Prior::Area, noise).expect("an oracle");
-    let config = Config { following: scc::FOLLOWING, ..config() };
-    let mut planner = Scc::new(config, Policy::default(), Unicycle::paper(), hypotheses)
-        .expect("settings that agree");
+        CellPosterior::new(planner.belief().samples(), Prior::Area, noise).expect("an oracle");
+    let mut planner = Scc::new(area(), Unicycle::paper(), hypotheses).expect("settings that agree");
     let mut pose = start;
     let mut taken = 0;
     while taken < labels {

@@ -7,22 +7,10 @@ mod field;
 use std::convert::Infallible;
 
 use field::{Result, World};
-use planner_core::belief::tolerance::Tolerance;
+use planner_core::robot::DriveFn;
 use planner_core::{
-    Agent, Config, Drive, Event, Label, Lookahead, Motion, Planner as _, Pose, ThresholdSensor,
-    Unicycle, Vehicle, VersionSpace,
+    Agent, Event, Label, Lookahead, Motion, ThresholdSensor, Unicycle, Vehicle, VersionSpace,
 };
-
-struct Tracks<'a>(&'a World);
-
-impl Drive for Tracks<'_> {
-    type Error = Infallible;
-
-    fn drive(&mut self, motion: &Motion) -> std::result::Result<Pose, Infallible> {
-        self.0.go(motion.target);
-        Ok(self.0.pose())
-    }
-}
 
 /// Counts of a 12-bit converter behind a photodiode: 800 a metre across the edge, and a ripple.
 fn counts(world: &World, conversions: &mut u32) -> i32 {
@@ -38,14 +26,16 @@ pub(crate) fn main() -> Result {
     // A band wider than the ripple. It hides 40 counts of 800 a metre to either side at most: 5 cm, and that the
     // planner is told.
     let sensor = ThresholdSensor::new(measure, 2_028..=2_068, Label::Positive);
-    let tolerance = Tolerance::new(0.06).ok_or("no length")?;
-    let config = Config { tolerance, ..field::config()? };
-    let space = VersionSpace::<32>::new(&field::given()?)?.within(tolerance)?;
-    let planner = Lookahead::new(config, Unicycle::paper(), space)?;
-    let vehicle = Vehicle { drive: Tracks(&world), sensor };
+    let space = VersionSpace::<32>::new(&field::given()?)?.with_tolerance(0.06)?;
+    let planner = Lookahead::new(field::area()?, Unicycle::paper(), space)?;
+    let drive = DriveFn(|motion: &Motion| {
+        world.go(motion.target);
+        Ok::<_, Infallible>(world.pose())
+    });
+    let vehicle = Vehicle { drive, sensor };
     let mut agent = Agent::new(planner, vehicle, field::start()?);
     while let Event::Step(step) = agent.step()? {
         println!("{:?} at {:?}", step.reading, step.pose.site);
     }
-    field::report(agent.planner.estimates().centre, 0.3)
+    field::report(agent.estimate(), 0.3)
 }

@@ -12,8 +12,7 @@ use embedded_hal_async::i2c::{ErrorType, I2c, Operation};
 use field::{Result, World};
 use planner_core::robot::asynchronous::Drive;
 use planner_core::{
-    Agent, Event, Label, Lookahead, Motion, Planner as _, Pose, ThresholdSensor, Unicycle, Vehicle,
-    VersionSpace,
+    Agent, Event, Label, Lookahead, Motion, Pose, ThresholdSensor, Unicycle, Vehicle, VersionSpace,
 };
 
 /// Your drive: generic over the delay, as drivers are over their peripherals.
@@ -24,7 +23,7 @@ impl<D: DelayNs> Drive for Tracks<'_, D> {
 
     async fn drive(&mut self, motion: &Motion) -> std::result::Result<Pose, Infallible> {
         self.0.go(motion.target); // starts the motors,
-        self.1.delay_ms((motion.control.v * 2_000.0) as u32).await; // which come half a metre a second
+        self.1.delay_ms((motion.control.distance_m * 2_000.0) as u32).await; // which come half a metre a second
         Ok(self.0.pose())
     }
 }
@@ -39,7 +38,7 @@ async fn measure(bus: &mut impl I2c<Error = Infallible>) -> std::result::Result<
 pub(crate) fn main() -> Result {
     let world = World::new()?;
     let space = VersionSpace::<24>::new(&field::given()?)?;
-    let planner = Lookahead::new(field::config()?, Unicycle::paper(), space)?;
+    let planner = Lookahead::new(field::area()?, Unicycle::paper(), space)?;
     let mut bus = Bus(&world);
     let sensor = ThresholdSensor::new(async || measure(&mut bus).await, 500..=500, Label::Positive);
     let vehicle = Vehicle { drive: Tracks(&world, NoTime), sensor };
@@ -48,7 +47,7 @@ pub(crate) fn main() -> Result {
         while let Event::Step(step) = agent.step_async().await? {
             println!("{:?}", step.reading);
         }
-        field::report(agent.planner.estimates().centre, 0.05)
+        field::report(agent.estimate(), 0.05)
     })
 }
 

@@ -7,31 +7,22 @@ mod field;
 
 use std::convert::Infallible;
 
-use field::{Result, at};
-use planner_core::belief::goal::Accuracy;
-use planner_core::belief::tolerance::Tolerance;
-use planner_core::geometry::lattice::UNITS_PER_METRE;
+use field::Result;
 use planner_core::nalgebra::{Point2, Vector2};
+use planner_core::robot::Body;
 use planner_core::{
-    Agent, Body, Config, Crossing, Event, Forecast, Goal, Heading, Hull, Label, Lookahead, Motion,
-    Noise, Planner as _, Pose, Prior, Reading, Region as _, Reliability, RoundedHull, Sample, Site,
-    Terrain, Unicycle, cfc, lookahead,
+    Agent, Event, Goal, KeepOut, Label, Lookahead, Motion, Noise, NoisyBelief, PolygonArea, Pose,
+    Reading, Sample, Site, Unicycle, Workspace as _, sequences_of,
 };
 
 /// Hulls of four corners at most, and three keep-outs.
-type Lawn = Terrain<4, 3>;
+type Lawn = PolygonArea<4, 3>;
 
 fn lawn() -> Result<Lawn> {
-    let square = |from: f64, to: f64| -> Result<_> {
-        Ok(Hull::new(&[at(from, from)?, at(to, from)?, at(to, to)?, at(from, to)?])?)
-    };
-    let tree = |x, z, metres: f64| -> Result<_> {
-        let radius = (metres * f64::from(UNITS_PER_METRE)).ceil() as u32;
-        Ok(RoundedHull { hull: Hull::new(&[at(x, z)?])?, radius })
-    };
-    let corner = RoundedHull { hull: square(12.0, 20.0)?, radius: 0 };
-    let keep_outs = [corner, tree(5.0, 5.8, 0.4)?, tree(14.0, 9.0, 0.5)?];
-    Ok(Terrain::new(square(0.0, 20.0)?, &keep_outs)?)
+    let corner = KeepOut::polygon(&[[12.0, 12.0], [20.0, 12.0], [20.0, 20.0], [12.0, 20.0]])?;
+    let trees = [KeepOut::disc([5.0, 5.8], 0.4)?, KeepOut::disc([14.0, 9.0], 0.5)?];
+    let square = [[0.0, 0.0], [20.0, 0.0], [20.0, 20.0], [0.0, 20.0]];
+    Ok(Lawn::metres(&square, &[corner, trees[0], trees[1]])?)
 }
 
 /// A rover that pivots, then drives. Its wheels err by 1 % of the way, its compass by up to a degree. At the first stop
@@ -92,27 +83,16 @@ impl Rover {
 
 pub(crate) fn main() -> Result {
     let given = [
-        Sample { site: at(2.0, 1.0)?, label: Label::Negative },
-        Sample { site: at(2.0, 8.0)?, label: Label::Positive },
-        Sample { site: at(10.0, 16.0)?, label: Label::Positive },
-        Sample { site: at(18.0, 5.0)?, label: Label::Negative },
+        Sample::at([2.0, 1.0], Label::Negative)?,
+        Sample::at([2.0, 8.0], Label::Positive)?,
+        Sample::at([10.0, 16.0], Label::Positive)?,
+        Sample::at([18.0, 5.0], Label::Negative)?,
     ];
-    let tolerance = Tolerance::new(MOST_OFF).ok_or("no length")?;
-    let reliability = Reliability::new(0.9).ok_or("no probability")?;
-    let noise = Noise { reliability, tolerance, ..Noise::NONE };
-    // Room for 40 samples and all 667 sequences of labels that 36 of them can have.
-    let forecast = Forecast::<40, 667>::new(&given, Prior::Area, noise)?;
-    let config = Config {
-        area: lawn()?,
-        varrho: lookahead::VARRHO,
-        crossing: Crossing::default(),
-        following: cfc::FOLLOWING,
-        tolerance,
-    };
-    // Until all lines of the 90 % credible set differ by 6 degrees at most.
-    let slopes = Heading::from_radians(6_f64.to_radians()).ok_or("no angle")?;
-    let goal = Goal { accuracy: Accuracy::SlopeArc(slopes), level: 900_000 };
-    let planner = Lookahead::new(config, Unicycle::paper(), forecast)?.until(Some(goal));
+    let noise = Noise::new(0.9)?.with_tolerance(MOST_OFF)?;
+    let belief = NoisyBelief::<40, { sequences_of(36) }>::new(&given, noise)?;
+    // With probability 0.9, any two of the lines left differ by 6 degrees at most.
+    let goal = Goal::slope_within_degrees(6.0)?.with_confidence(0.9)?;
+    let planner = Lookahead::new(lawn()?, Unicycle::paper(), belief)?.until(goal);
     let start = field::start()?;
     let [truth, believed] = [start.site.into(); 2];
     let rover = Rover { lawn: lawn()?, truth, believed, since_fix: 0.0, motions: 0, labels: 0 };
@@ -125,5 +105,5 @@ pub(crate) fn main() -> Result {
     let Rover { motions, labels, .. } = agent.body();
     println!("{reason:?} after {motions} motions and {labels} labels");
     println!("z = 0.4100 x + 3.5000 is the truth");
-    field::report(agent.planner.estimates().centre, 0.5)
+    field::report(agent.estimate(), 0.5)
 }

@@ -19,7 +19,7 @@ type Backup = [u8; 512];
 /// As it is made at every start, from what the program has.
 fn planner() -> Result<Finder> {
     let space = VersionSpace::new(&field::given()?)?;
-    Ok(Lookahead::new(field::config()?, Unicycle::paper(), space)?)
+    Ok(Lookahead::new(field::area()?, Unicycle::paper(), space)?)
 }
 
 /// From power on to power off: one motion, or none if the mission is over.
@@ -47,7 +47,7 @@ pub(crate) fn main() -> Result {
     let mut backup = [0; 512];
     loop {
         if let Some(planner) = wake(&mut backup, &world)? {
-            return field::report(planner.estimates().centre, 0.05);
+            return field::report(planner.estimate(), 0.05);
         }
     }
 }

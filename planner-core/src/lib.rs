@@ -2,24 +2,98 @@
 #![forbid(unsafe_code)]
 #![deny(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing)]
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::panic, clippy::indexing_slicing))]
+// Some of it serves the simulator and the tests of this repository alone.
+#![cfg_attr(
+    not(feature = "internals"),
+    allow(dead_code, unreachable_pub, rustdoc::private_intra_doc_links)
+)]
 
 //! A planner that finds a straight boundary from few samples.
 //!
 //! A robot moves in a plane that an unknown straight line divides: the edge of a spill, a front in
 //! the sea, a shoreline, the border of a field. At each stop it senses on which side it is. Four
-//! labelled points are known at the start. Where should it go next, so that few samples and little
-//! effort identify the line? This is the problem of Raghavan and Johansson, *Motion Planning for
-//! Identification of Linear Classifiers*; section, equation and algorithm numbers in these pages
-//! are that paper's.
+//! labelled points are known at the start. The planner says where to go next, so that few samples and little effort
+//! identify the line.
+//!
+//! ```
+//! use planner_core::{
+//!     Agent, Area, Event, Goal, Heading, Label, Lookahead, Pose, Sample, Unicycle, Vehicle, VersionSpace,
+//! };
+//! # use core::cell::Cell;
+//! # use core::convert::Infallible;
+//! # use planner_core::nalgebra::Point2;
+//! # use planner_core::robot::{Drive, LabelSensor};
+//! # use planner_core::{Motion, Reading};
+//! # // A world in which z = 0.41 x + 3.5 divides the plane, and a vehicle that goes where it is told.
+//! # struct World(Cell<Pose>);
+//! # impl Drive for &World {
+//! #     type Error = Infallible;
+//! #     fn drive(&mut self, motion: &Motion) -> Result<Pose, Infallible> {
+//! #         self.0.set(motion.target);
+//! #         Ok(motion.target)
+//! #     }
+//! # }
+//! # impl LabelSensor for &World {
+//! #     type Error = Infallible;
+//! #     fn read(&mut self) -> Result<Reading, Infallible> {
+//! #         let at = Point2::<f64>::from(self.0.get().site);
+//! #         let above = at.y > 0.41 * at.x + 3.5;
+//! #         Ok(if above { Label::Positive } else { Label::Negative }.into())
+//! #     }
+//! # }
+//!
+//! let area = Area::metres([0.0, 0.0], [20.0, 20.0])?;
+//! let given = [
+//!     Sample::at([2.0, 1.0], Label::Negative)?,
+//!     Sample::at([2.0, 8.0], Label::Positive)?,
+//!     Sample::at([18.0, 16.0], Label::Positive)?,
+//!     Sample::at([18.0, 5.0], Label::Negative)?,
+//! ];
+//! // Room for 32 samples, these four included; positions err by 1 cm at most.
+//! let belief = VersionSpace::<32>::new(&given)?.with_tolerance(0.01)?;
+//! let planner = Lookahead::new(area, Unicycle::default(), belief)?
+//!     .until(Goal::slope_within_degrees(0.5)?);
+//! let start = Pose::at([2.0, 1.0], Heading::from_degrees(0.0)?)?;
+//! # let world = World(Cell::new(start));
+//! # let (drive, sensor) = (&world, &world);
+//! let mut agent = Agent::new(planner, Vehicle { drive, sensor }, start); // yours: see `robot`
+//! while let Event::Step(step) = agent.step()? {
+//!     println!("{:?}", step.reading);
+//! }
+//! println!("{}", agent.estimate().ok_or("no estimate")?); // z = 0.4100 x + 3.5000
+//! # let line = agent.estimate().ok_or("no estimate")?;
+//! # assert!((line.slope().ok_or("vertical")? - 0.41).abs() < 0.01);
+//! # assert!((line.intercept().ok_or("vertical")? - 3.5).abs() < 0.1);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # What to use
+//!
+//! | you want | use |
+//! | --- | --- |
+//! | a planner | [`Lookahead`]. [`Cfc`] and [`Scc`] are the paper's Algorithms 1 and 2 |
+//! | labels that are true | [`VersionSpace`], with a tolerance if positions err |
+//! | labels that are sometimes wrong | [`NoisyBelief`], which is told how often they are right by a [`Noise`] |
+//! | to stop when the line is known well enough | [`Goal`] |
+//! | a field that is no rectangle, places to keep out of | [`PolygonArea`] and [`KeepOut`] |
+//! | a vehicle | [`Unicycle`], [`Boat`], [`Car`], [`Holonomic`], or [`dynamics`] of your own |
+//! | your drive and sensor | [`robot`]: [`Drive`](robot::Drive), [`LabelSensor`](robot::LabelSensor), or both awaited |
+//! | to switch the chip off between motions | [`Persist`], with the feature `serde` |
+//! | planner and vehicle apart | `link`, with the feature `link` |
+//! | to see what went wrong | [`error`] |
+//!
+//! [`plan`](Planner::plan) returns the next motion, [`observe`](Planner::observe) takes in its result, and
+//! [`belief`](Planner::belief) is what the planner knows. An [`Agent`] does all three. The feature `defmt` derives
+//! `Format` for the public types.
 //!
 //! # The idea
 //!
 //! All lines that agree with the samples so far are the **version space**. In the space of homogeneous lines
 //! `(A, B, C)` each sample is a half-space, so the version space is a convex cone. Seen as a polygon, its edges belong
 //! to the samples that still matter, and its vertices are lines through two of them. A cyclic list of sample indices
-//! describes it completely ([`belief::cell`]).
+//! describes it completely ([`belief::dual_cell`]).
 //!
-//! On an integer lattice of 15 micrometres ([`geometry::lattice`]) one predicate decides every question about that
+//! On an integer lattice of 15 micrometres one predicate decides every question about that
 //! list. It is exact in 64-bit integers:
 //!
 //! ```text
@@ -27,148 +101,98 @@
 //! ```
 //!
 //! The best next place is where a label would tell the most: where half of the lines left say +1. Look-ahead
-//! ([`planner::lookahead`]) finds such places among the ends of the robot's motions, two labels deep. It learns nearly
+//! finds such places among the ends of the robot's motions, two labels deep. It learns nearly
 //! a bit a step. The paper's two algorithms follow the boundary by rules of direction.
 //!
 //! # What follows
 //!
 //! - **Certainty is exact.** A position that all lines left label alike lies in a *region of certainty*. A sample there
 //!   would tell nothing, or reveal a fault. There is no tolerance and no misjudged cut, even for a vertical boundary or
-//!   kilometres from the origin ([`belief::version_space`]).
-//! - **Motions come from an integer-indexed grid** ([`motion::action`], [`motion::dynamics`]), and the one-step
-//!   problems are solved exactly by looking at a few of its actions ([`search::problem`]).
+//!   kilometres from the origin.
+//! - **Motions come from an integer-indexed grid**, and the one-step
+//!   problems are solved exactly by looking at a few of its actions.
 //! - **Noisy labels in fixed memory.** The sequences of true labels that some line realises are cells too, at most 529
-//!   for 32 labels. A table of weighted cells is the whole posterior ([`belief::hypotheses`], [`belief::posterior`]).
+//!   for 32 labels. A table of weighted cells is the whole posterior.
 //! - **The same on every machine.** Integers decide. Floating point only proposes directions and reads results out,
 //!   with IEEE arithmetic and libm. So a mission has the same trace on a PC and on a chip.
 //! - **Fixed memory.** No allocation, no `unsafe`, no recursion; capacities are const generics. A
-//!   planner for 32 samples is some 500 bytes ([`planner::cfc::Cfc`]).
+//!   planner for 32 samples is some 500 bytes.
 //!
-//! # Modules, from the bottom up
+//! # The paper
 //!
-//! Each module uses only those above it in this table.
-//!
-//! | module | holds |
-//! | --- | --- |
-//! | [`geometry`] | points, directions and lines, in integers |
-//! | [`belief`] | what is known of the line; behind the trait [`Belief`] |
-//! | [`motion`] | how the robot moves; behind the trait [`Dynamics`] |
-//! | [`search`] | the best action for what is known |
-//! | [`planner`] | look-ahead ([`Lookahead`]), for labels that are true or sometimes wrong, and the paper's Algorithm 1 ([`Cfc`]) and Algorithm 2 ([`Scc`]); behind the trait [`Planner`] |
-//! | [`robot`] | what you implement, [`Drive`] and [`LabelSensor`], and the loop that joins it to a planner, [`Agent`] |
-//! | `link` | with the feature `wire`: a mission whose planner and vehicle are apart |
-//!
-//! [`plan`](Planner::plan) returns the next motion, [`observe`](Planner::observe) takes in its result, and
-//! [`belief`](Planner::belief) is what the planner knows. The feature `defmt` derives `Format` for the public types.
-//!
-//! ```
-//! use core::cell::Cell;
-//! use core::convert::Infallible;
-//! use planner_core::nalgebra::Point2;
-//! use planner_core::belief::tolerance::Tolerance;
-//! use planner_core::{
-//!     Agent, Area, Belief, Cfc, Config, Crossing, Drive, Event, Heading, Label, LabelSensor, Line,
-//!     Motion, Planner, Pose, Reading, Sample, Site, Unicycle, Varrho, Vehicle, VersionSpace, cfc,
-//! };
-//!
-//! // A world in which z = 0.41 x + 3.5 divides the plane, and a vehicle that goes where it is told.
-//! struct World(Cell<Pose>);
-//! impl Drive for &World {
-//!     type Error = Infallible;
-//!     fn drive(&mut self, motion: &Motion) -> Result<Pose, Infallible> {
-//!         self.0.set(motion.target);
-//!         Ok(motion.target)
-//!     }
-//! }
-//! impl LabelSensor for &World {
-//!     type Error = Infallible;
-//!     fn read(&mut self) -> Result<Reading, Infallible> {
-//!         let at = Point2::<f64>::from(self.0.get().site);
-//!         let above = at.y > 0.41 * at.x + 3.5;
-//!         Ok(if above { Label::Positive } else { Label::Negative }.into())
-//!     }
-//! }
-//!
-//! let at = |x, z| Site::try_from(Point2::<f32>::new(x, z));
-//! let oracle = [
-//!     Sample { site: at(2.0, 1.0)?, label: Label::Negative },
-//!     Sample { site: at(2.0, 8.0)?, label: Label::Positive },
-//!     Sample { site: at(18.0, 16.0)?, label: Label::Positive },
-//!     Sample { site: at(18.0, 5.0)?, label: Label::Negative },
-//! ];
-//! let config = Config {
-//!     area: Area::new(at(0.0, 0.0)?, at(20.0, 20.0)?).ok_or("no area")?,
-//!     varrho: Varrho::PAPER,
-//!     crossing: Crossing::default(),
-//!     following: cfc::FOLLOWING,
-//!     tolerance: Tolerance::NONE, // positions are where they are reported to be
-//! };
-//! let start = Pose { site: oracle[0].site, heading: Heading(0) };
-//! let world = World(Cell::new(start));
-//! // Room for 32 samples, these four included.
-//! let planner = Cfc::new(config, Unicycle::paper(), VersionSpace::<32>::new(&oracle)?)?;
-//! let vehicle = Vehicle { drive: &world, sensor: &world };
-//! let mut agent = Agent::new(planner, vehicle, start);
-//! for _ in 0..10 {
-//!     if let Event::Stopped(_) = agent.step()? {
-//!         break;
-//!     }
-//! }
-//! let centre = agent.planner.belief().estimates().centre.ok_or("no estimate")?;
-//! let line = Line::from(centre);
-//! assert!((line.slope().ok_or("vertical")? - 0.41).abs() < 0.01);
-//! assert!((line.intercept().ok_or("vertical")? - 3.5).abs() < 0.1);
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
+//! The problem is that of Raghavan and Johansson, *Motion Planning for Identification of Linear Classifiers*. Section,
+//! equation and algorithm numbers in these pages are that paper's.
 //!
 //! # Limits
 //!
-//! - Algorithm 1 takes labels to be true. A sample that contradicts a region of certainty is a typed
-//!   error ([`belief::Refused`]) and leaves the planner as it was.
+//! - True labels are taken at their word. A sample that contradicts a region of certainty is an
+//!   [`ObservationError`](error::ObservationError), and the planner stays as it was.
 //! - Positions lie within 8,192 m of the origin, one motion is shorter than 3,000 m, and a buffer holds
 //!   3 to 128 samples.
 //! - The boundary is one straight line. P1 and P2 look one step ahead, look-ahead two.
 
+#[cfg(not(feature = "internals"))]
+mod belief;
+#[cfg(feature = "internals")]
 pub mod belief;
+pub mod dynamics;
+pub mod error;
+#[cfg(not(feature = "internals"))]
+mod geometry;
+#[cfg(feature = "internals")]
 pub mod geometry;
-#[cfg(feature = "wire")]
+#[cfg(feature = "link")]
 pub mod link;
+#[cfg(not(feature = "internals"))]
+mod motion;
+#[cfg(feature = "internals")]
 pub mod motion;
+#[cfg(not(feature = "internals"))]
+mod planner;
+#[cfg(feature = "internals")]
 pub mod planner;
 pub mod robot;
+#[cfg(not(feature = "internals"))]
+mod search;
+#[cfg(feature = "internals")]
 pub mod search;
 
 pub use nalgebra;
 
-pub use crate::belief::forecast::Forecast;
-pub use crate::belief::goal::Goal;
-pub use crate::belief::hypotheses::Hypotheses;
+pub use crate::belief::Belief;
+pub use crate::belief::cell_posterior::CellPosterior;
+pub use crate::belief::cell_view::Certainty;
+pub use crate::belief::estimate::Estimates;
+pub use crate::belief::goal::{Accuracy, Goal};
 pub use crate::belief::noise::{Noise, Reliability};
-pub use crate::belief::posterior::Posterior;
+pub use crate::belief::noisy_belief::{NoisyBelief, sequences_of};
+pub use crate::belief::observation_log::{FromLog, ObservationLog};
+pub use crate::belief::posterior_view::PosteriorView;
+pub use crate::belief::predictor::PredictiveBelief;
 pub use crate::belief::sample::{Label, Reading, Sample};
+pub use crate::belief::tolerance::Tolerance;
 pub use crate::belief::version_space::VersionSpace;
 pub use crate::belief::weight::Prior;
-pub use crate::belief::{Belief, Refused};
 pub use crate::geometry::area::Area;
-pub use crate::geometry::heading::Heading;
+pub use crate::geometry::heading::{Angle, Heading};
 pub use crate::geometry::hull::Hull;
 pub use crate::geometry::lattice::Site;
 pub use crate::geometry::line::Line;
 pub use crate::geometry::local_line::LocalLine;
-pub use crate::geometry::region::Region;
-pub use crate::geometry::terrain::{RoundedHull, Terrain};
+pub use crate::geometry::polygon_area::{KeepOut, PolygonArea};
+pub use crate::geometry::workspace::Workspace;
 pub use crate::motion::any_vehicle::AnyVehicle;
-pub use crate::motion::dynamics::{Dynamics, Pose};
+pub use crate::motion::boat::Boat;
+pub use crate::motion::car::Car;
+pub use crate::motion::dynamics::Pose;
 pub use crate::motion::holonomic::Holonomic;
 pub use crate::motion::unicycle::Unicycle;
-pub use crate::planner::cfc::{self, Cfc};
-pub use crate::planner::config::{Config, Crossing, Following};
-pub use crate::planner::lookahead::{self, Lookahead};
-pub use crate::planner::scc::{self, Policy, Scc};
-pub use crate::planner::snapshot::{NotRestored, Persist, Snapshot};
+pub use crate::planner::cfc::Cfc;
+pub use crate::planner::lookahead::{DrivingPrice, Lookahead};
+pub use crate::planner::options::{Crossing, Following, Options};
+pub use crate::planner::scc::{Policy, Scc};
+pub use crate::planner::setup::aimed_for;
+pub use crate::planner::snapshot::{Persist, SNAPSHOT_VERSION, Snapshot};
 pub use crate::planner::{Motion, Plan, Planner, StopReason};
-pub use crate::robot::agent::{Agent, Event, Step};
-pub use crate::robot::body::{Body, Vehicle};
-pub use crate::robot::hal::{Drive, LabelSensor, PinSensor};
-pub use crate::robot::threshold::ThresholdSensor;
-pub use crate::search::objective::Varrho;
+pub use crate::robot::{Agent, Event, PinSensor, Step, ThresholdSensor, Vehicle};
+pub use crate::search::objective::EffortWeight;

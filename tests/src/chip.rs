@@ -3,11 +3,11 @@
 use std::cell::RefCell;
 use std::panic::{self, AssertUnwindSafe};
 
-use planner_core::link::delivery::{Link, LinkLost, Port};
+use planner_core::link::delivery::{Link, LinkError, Port};
 use planner_core::link::message::{self, ClockRate, MissionArea};
-use planner_core::link::station::{Flown, Station, Terms};
+use planner_core::link::station::{Flown, PlannerSetup, Station};
 use planner_core::motion::any_vehicle::AnyVehicle;
-use planner_core::robot::hal::LabelSensor;
+use planner_core::robot::LabelSensor;
 
 /// A chip's power failed.
 #[derive(Clone, Copy, Debug)]
@@ -78,8 +78,8 @@ pub fn power_up<F: FarEnd, S: LabelSensor>(end: &RefCell<F>, sensor: Option<S>) 
 pub fn fly<P: Port, S: LabelSensor>(
     chip: &mut Station<P, S>,
     setup: &message::Setup,
-) -> Result<Flown, LinkLost> {
-    let terms: Terms<AnyVehicle, MissionArea> = match chip.terms(setup) {
+) -> Result<Flown, LinkError> {
+    let terms: PlannerSetup<AnyVehicle, MissionArea> = match chip.terms(setup) {
         Ok(terms) => terms,
         Err(none) => return chip.give_up(none),
     };

@@ -5,8 +5,8 @@ use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::Lines;
 use host_sim::world::World;
 use nalgebra::Point2;
-use planner_core::belief::consistent_lines::Certainty;
-use planner_core::belief::hypotheses::Hypotheses;
+use planner_core::belief::cell_posterior::CellPosterior;
+use planner_core::belief::cell_view::Certainty;
 use planner_core::belief::noise::{Noise, Reliability};
 use planner_core::belief::sample::{Label, Sample};
 use planner_core::belief::weight::Prior;
@@ -54,8 +54,11 @@ pub fn labelled(number: u64, t: usize, mixed: bool) -> (Vec<Sample>, Vec<Seen>, 
 ///
 /// # Panics
 /// When it has no room, or a certain label is impossible.
-pub fn table<const N: usize, const H: usize>(given: &[Sample], seen: &[Seen]) -> Hypotheses<N, H> {
-    let mut table = Hypotheses::new(given, Prior::Area, Noise::NONE).expect("an oracle");
+pub fn table<const N: usize, const H: usize>(
+    given: &[Sample],
+    seen: &[Seen],
+) -> CellPosterior<N, H> {
+    let mut table = CellPosterior::new(given, Prior::Area, Noise::NONE).expect("an oracle");
     for &(sample, p) in seen {
         let reliability = Reliability::new(p).expect("a probability");
         table.take(sample, reliability).expect("room, and a possible label");

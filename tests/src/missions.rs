@@ -5,13 +5,9 @@ use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::Mission;
 use host_sim::world::errors::Errors;
 use host_sim::world::noise::{Extent, NoiseModel};
-use planner_core::belief::goal::{Accuracy, Goal};
-use planner_core::belief::tolerance::Tolerance;
-use planner_core::geometry::heading::Heading;
-use planner_core::motion::any_vehicle::AnyVehicle;
-use planner_core::motion::boat::Boat;
-use planner_core::motion::car::{self, Car};
-use planner_core::motion::unicycle::{Grid, Unicycle};
+use planner_core::motion::car::{self};
+use planner_core::motion::unicycle::Grid;
+use planner_core::{Accuracy, Angle, AnyVehicle, Boat, Car, Goal, Tolerance, Unicycle};
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 
@@ -53,7 +49,7 @@ pub fn stopping(number: u64) -> Mission {
     mission.noise = is_noisy.then_some(NoiseModel { p: 0.9, extent: Extent::OutsideBalls(0.5) });
     let (degrees, share) = if is_noisy { (10.0, 100_000) } else { (1.0, 5_000) };
     let accuracy = if number.is_multiple_of(2) {
-        Accuracy::SlopeArc(Heading::from_radians(f64::to_radians(degrees)).expect("an angle"))
+        Accuracy::SlopeArc(Angle::from_degrees(degrees).expect("an angle"))
     } else {
         Accuracy::Misclassified(share)
     };

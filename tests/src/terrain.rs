@@ -6,8 +6,8 @@ use host_sim::mission::definition::Mission;
 use nalgebra::Point2;
 use planner_core::geometry::hull::Hull;
 use planner_core::geometry::lattice::{Site, UNITS_PER_METRE};
-use planner_core::geometry::region::Region as _;
-use planner_core::geometry::terrain::RoundedHull;
+use planner_core::geometry::polygon_area::KeepOut;
+use planner_core::geometry::workspace::Workspace as _;
 use planner_core::link::message::{MOST_CORNERS, MissionArea};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -46,7 +46,7 @@ pub fn around(mission: &Mission, rng: &mut ChaCha8Rng) -> MissionArea {
             break hull;
         }
     };
-    let mut keep_outs: Vec<RoundedHull<MOST_CORNERS>> = Vec::new();
+    let mut keep_outs: Vec<KeepOut<MOST_CORNERS>> = Vec::new();
     for _ in 0..rng.random_range(1..=4) {
         let middle = [rng.random_range(1.0..19.0), rng.random_range(1.0..19.0)];
         let size = rng.random_range(0.2..2.5);
@@ -57,7 +57,7 @@ pub fn around(mission: &Mission, rng: &mut ChaCha8Rng) -> MissionArea {
             let count = rng.random_range(2..=6);
             (Hull::new(&on_circle(rng, middle, size, count)), 0)
         };
-        let keep_out = RoundedHull { hull: hull.expect("convex"), radius };
+        let keep_out = KeepOut { hull: hull.expect("convex"), radius };
         let area = MissionArea::new(border, &[keep_out]).expect("an area");
         if places.iter().all(|place| area.contains(*place)) {
             keep_outs.push(keep_out);

@@ -11,9 +11,8 @@ use std::io::{self, Write as _};
 use std::{fs, path::Path};
 
 use host_sim::mission::algorithm::Algorithm;
-use planner_core::motion::any_vehicle::AnyVehicle;
-use planner_core::motion::unicycle::{Grid, Unicycle};
-use planner_core::planner::scc::Policy;
+use planner_core::motion::unicycle::Grid;
+use planner_core::{AnyVehicle, Policy, Unicycle};
 use tests::LONG;
 use tests::anything;
 use tests::budget::footprint::{self, Footprint};

@@ -5,15 +5,12 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use planner_core::belief::goal::Accuracy;
-use planner_core::belief::outlook::Foresight;
-use planner_core::belief::tolerance::Tolerance;
 use planner_core::geometry::lattice::UNITS_PER_METRE;
 use planner_core::nalgebra::Point2;
 use planner_core::{
-    Area, Belief as _, Config, Crossing, Forecast, Goal, Heading, Hull, Label, Line, Lookahead,
-    Noise, Plan, Planner, Pose, Prior, Reliability, RoundedHull, Sample, Site, StopReason, Terrain,
-    Unicycle, VersionSpace, cfc, lookahead,
+    Angle, Area, Belief as _, Goal, Heading, Hull, KeepOut, Label, Line, Lookahead, Noise,
+    NoisyBelief, Plan, Planner, PolygonArea, Pose, PredictiveBelief, Reliability, Sample, Site,
+    StopReason, Tolerance, Unicycle, VersionSpace,
 };
 use tests::program::build::{build, has_tool, skip};
 
@@ -79,19 +76,9 @@ fn start() -> Pose {
     Pose { site: at(2.0, 1.0), heading: Heading(0) }
 }
 
-fn config<G>(area: G, tolerance: Tolerance) -> Config<G> {
-    Config {
-        area,
-        varrho: lookahead::VARRHO,
-        crossing: Crossing::default(),
-        following: cfc::FOLLOWING,
-        tolerance,
-    }
-}
-
 fn slopes(radians: f64, level: u32) -> Goal {
-    let most = Heading::from_radians(radians).expect("an angle");
-    Goal { accuracy: Accuracy::SlopeArc(most), level }
+    let goal = Angle::from_radians(radians).and_then(Goal::slope_within).expect("acute");
+    Goal { level, ..goal }
 }
 
 fn reliability(p: f64) -> Reliability {
@@ -99,22 +86,22 @@ fn reliability(p: f64) -> Reliability {
 }
 
 fn flown_here(is_doubtful: bool) -> String {
-    let config = config(Area::new(at(0.0, 0.0), at(20.0, 20.0)).expect("an area"), Tolerance::NONE);
+    let area = Area::metres([0.0, 0.0], [20.0, 20.0]).expect("an area");
     let unicycle = Unicycle::new(10_000, 1.57, 21, 50).expect("a grid");
     let goal = slopes(if is_doubtful { 0.21 } else { 0.0035 }, 900_000);
     if is_doubtful {
-        let noise = Noise { reliability: reliability(0.85), ..Noise::NONE };
-        let forecast = Forecast::<36, 529>::new(&given(), Prior::Area, noise).expect("four points");
-        let planner = Lookahead::new(config, unicycle, forecast).expect("settings that agree");
+        let noise = Noise::new(0.85).expect("a probability");
+        let forecast = NoisyBelief::<36, 529>::new(&given(), noise).expect("four points");
+        let planner = Lookahead::new(area, unicycle, forecast).expect("settings that agree");
         flown(planner.until(Some(goal)), start(), true)
     } else {
         let space = VersionSpace::<68>::new(&given()).expect("four points");
-        let planner = Lookahead::new(config, unicycle, space).expect("settings that agree");
+        let planner = Lookahead::new(area, unicycle, space).expect("settings that agree");
         flown(planner.until(Some(goal)), start(), false)
     }
 }
 
-type Ground = Terrain<8, 8>;
+type Ground = PolygonArea<8, 8>;
 
 /// The area of `asleep.c`.
 fn ground() -> Ground {
@@ -128,15 +115,15 @@ fn ground() -> Ground {
         (hull(&[(9.0, 7.0), (11.0, 7.0), (10.0, 9.0)]), 0),
         (hull(&[(13.0, 9.0), (16.0, 9.5)]), UNITS_PER_METRE / 4),
     ];
-    let rounded = |(hull, radius): (_, i32)| RoundedHull { hull, radius: radius.unsigned_abs() };
-    Terrain::new(border, &keep_outs.map(rounded)).expect("an area")
+    let rounded = |(hull, radius): (_, i32)| KeepOut { hull, radius: radius.unsigned_abs() };
+    PolygonArea::new(border, &keep_outs.map(rounded)).expect("an area")
 }
 
 /// An observation as `asleep.c` makes it: the planner, where it is, what was read, which label it is, and whether that is
 /// wrong.
 type Observe<B> = fn(&mut Lookahead<Unicycle, B, Ground>, Pose, Option<Label>, u32, bool);
 
-fn observe_within<B: Foresight>(
+fn observe_within<B: PredictiveBelief>(
     planner: &mut Lookahead<Unicycle, B, Ground>,
     pose: Pose,
     label: Option<Label>,
@@ -149,7 +136,7 @@ fn observe_within<B: Foresight>(
 }
 
 fn observe_believed(
-    planner: &mut Lookahead<Unicycle, Forecast<36, 529>, Ground>,
+    planner: &mut Lookahead<Unicycle, NoisyBelief<36, 529>, Ground>,
     pose: Pose,
     label: Option<Label>,
     _: u32,
@@ -158,17 +145,13 @@ fn observe_believed(
     let Some(label) = label else { return planner.observe(pose, None).expect("no label") };
     let reliability = reliability(if is_wrong { 0.6 } else { 0.95 });
     let sample = Sample { site: pose.site, label };
-    planner.foresight().take(sample, reliability).expect("room");
+    planner.belief_mut().take(sample, reliability).expect("room");
 }
 
 /// What `asleep.c` prints, by a planner that stays awake.
-fn awake<B: Foresight<Belief: Sized>>(
-    (belief, tolerance): (B, Tolerance),
-    goal: Goal,
-    observe: Observe<B>,
-) -> String {
+fn awake<B: PredictiveBelief<Belief: Sized>>(belief: B, goal: Goal, observe: Observe<B>) -> String {
     let unicycle = Unicycle::new(10_000, 1.57, 41, 50).expect("a grid");
-    let planner = Lookahead::new(config(ground(), tolerance), unicycle, belief);
+    let planner = Lookahead::new(ground(), unicycle, belief);
     let mut planner = planner.expect("settings that agree").until(Some(goal));
     let is_doubtful = goal.level < 900_000;
     let (mut pose, mut labels, mut said, mut status) = (start(), 0, String::new(), 0);
@@ -215,21 +198,18 @@ fn awake<B: Foresight<Belief: Sized>>(
 /// What `asleep.c` prints in one of its modes.
 fn awake_in(mode: &str) -> String {
     let noise = |tolerance| Noise { reliability: reliability(0.85), tolerance, ..Noise::NONE };
-    let forecast = |tolerance| {
-        Forecast::<36, 529>::new(&given(), Prior::Area, noise(tolerance)).expect("four points")
-    };
+    let forecast =
+        |tolerance| NoisyBelief::<36, 529>::new(&given(), noise(tolerance)).expect("four points");
     let tolerance = Tolerance::new(0.1).expect("a tolerance");
     match mode {
         "true" => {
-            let space = VersionSpace::<68>::new(&given()).and_then(|it| it.within(tolerance));
+            let space =
+                VersionSpace::<68>::new(&given()).and_then(|it| it.with_tolerance(tolerance));
             let space = space.expect("four points");
-            awake((space, tolerance), slopes(0.02, 900_000), observe_within)
+            awake(space, slopes(0.02, 900_000), observe_within)
         }
-        "doubtful" => {
-            let belief = (forecast(Tolerance::NONE), Tolerance::NONE);
-            awake(belief, slopes(0.15, 600_000), observe_believed)
-        }
-        _ => awake((forecast(tolerance), tolerance), slopes(0.15, 600_000), observe_within),
+        "doubtful" => awake(forecast(Tolerance::NONE), slopes(0.15, 600_000), observe_believed),
+        _ => awake(forecast(tolerance), slopes(0.15, 600_000), observe_within),
     }
 }
 

@@ -5,12 +5,8 @@ use host_sim::campaign::ensemble::Campaign;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::report::campaign as tables;
 use host_sim::world::errors::Errors;
-use planner_core::belief::tolerance::Tolerance;
-use planner_core::belief::weight::Prior;
 use planner_core::motion::unicycle::Grid;
-use planner_core::planner::cfc;
-use planner_core::planner::config::{Crossing, Following};
-use planner_core::planner::scc::Policy;
+use planner_core::{Crossing, Following, Options, Policy, Prior, Tolerance};
 
 fn campaign(algorithm: Algorithm, following: Following, steps: u32) -> Summary {
     let campaign = Campaign {
@@ -36,7 +32,7 @@ fn campaign(algorithm: Algorithm, following: Following, steps: u32) -> Summary {
 
 #[test]
 fn algorithm_1_learns_what_it_should() {
-    let summary = campaign(Algorithm::Cfc, cfc::FOLLOWING, 20);
+    let summary = campaign(Algorithm::Cfc, Options::CFC.following, 20);
     let at = |step| summary.rows.iter().find(|row| row.step == step).expect("a mark");
     assert!(at(10).bits_per_step >= 0.65);
     assert!(at(10).centre_deg.median <= 1.5);
@@ -44,7 +40,7 @@ fn algorithm_1_learns_what_it_should() {
     assert!(summary.mean_examined <= 0.05 * summary.actions as f64);
     // A noiseless label tells one bit at most, on average.
     assert!(summary.rows.iter().all(|row| row.bits_per_step <= 1.0));
-    let random = campaign(Algorithm::Random, cfc::FOLLOWING, 20);
+    let random = campaign(Algorithm::Random, Options::CFC.following, 20);
     let last = |summary: &Summary| summary.rows.last().expect("a mark").bits_per_step;
     assert!(last(&summary) > 4.0 * last(&random));
 }
@@ -58,7 +54,7 @@ fn p2_as_printed_learns_less() {
 
 #[test]
 fn the_misclassified_area_falls_until_the_grid_can_hit_nothing_more() {
-    let summary = campaign(Algorithm::Cfc, cfc::FOLLOWING, 40);
+    let summary = campaign(Algorithm::Cfc, Options::CFC.following, 40);
     for estimate in [
         |row: &Row| row.centre_misclassified.median,
         |row: &Row| row.maximum_margin_misclassified.median,

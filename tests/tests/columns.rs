@@ -6,10 +6,7 @@ use host_sim::mission::definition::{Mission, Table};
 use host_sim::world::noise::{Extent, NoiseModel};
 use nalgebra::Point2;
 use planner_core::belief::columns::Columns;
-use planner_core::belief::noise::Reliability;
-use planner_core::belief::posterior::Posterior;
-use planner_core::belief::sample::{Label, Sample};
-use planner_core::geometry::lattice::Site;
+use planner_core::{Label, PosteriorView, Reliability, Sample, Site};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -71,7 +68,7 @@ fn undecided(
     of: Site,
     range: [f64; 2],
 ) -> Option<(Site, f64)> {
-    let posterior = Posterior::new(table);
+    let posterior = PosteriorView::new(table);
     let (mut low, mut high) = (None, None);
     for attempt in 0..70 {
         let site = match (low, high) {
@@ -142,7 +139,7 @@ impl Told {
         let mut next = self.table.clone();
         let reliability = Reliability::new(0.8).expect("a probability");
         next.take(Sample { site: first, label }, reliability).expect("room");
-        let next = Posterior::new(&next);
+        let next = PosteriorView::new(&next);
         let compare = |&(site, exact): &(Site, f64)| {
             let off = |share: f32| (f64::from(share) - exact).abs();
             let (a, b, c) = &self.columns;

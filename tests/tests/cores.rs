@@ -7,9 +7,8 @@ use std::{env, fs};
 
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::world::noise::NoiseModel;
-use planner_core::motion::any_vehicle::AnyVehicle;
 use planner_core::motion::unicycle::Grid;
-use planner_core::planner::scc::Policy;
+use planner_core::{AnyVehicle, Policy};
 use tests::LONG;
 use tests::budget::hardest::Hardest;
 use tests::budget::readme::{self, grouped};

@@ -1,16 +1,14 @@
 //! Dynamics: accepted parameters keep the contract, refused ones are named, and a broken promise is found.
 
 use nalgebra::Point2;
-use planner_core::geometry::area::Area;
-use planner_core::geometry::heading::Heading;
-use planner_core::geometry::lattice::{OffLattice, Site, Vector};
-use planner_core::motion::action::{Action, ActionGrid, BadGrid, Control};
-use planner_core::motion::boat::Boat;
-use planner_core::motion::car::{Car, Shape};
-use planner_core::motion::contract::{self, Broken};
-use planner_core::motion::dynamics::{Dynamics, Fan, Orbit, Pose, Ray, Side};
-use planner_core::motion::holonomic::Holonomic;
-use planner_core::motion::unicycle::Unicycle;
+use planner_core::dynamics::{
+    Action, ActionGrid, Control, Dynamics, Ray, RayFan, Side, TurningCircle,
+};
+use planner_core::error::{ContractError, GridError, LatticeError};
+use planner_core::geometry::lattice::Vector;
+use planner_core::motion::car::Shape;
+use planner_core::motion::contract::{self};
+use planner_core::{Angle, Area, Boat, Car, Heading, Holonomic, Pose, Site, Unicycle};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tests::cases;
@@ -47,20 +45,28 @@ fn what_is_no_grid_is_refused_by_what_is_wrong_with_it() {
     for (step, sharpest) in
         [(10, 1e-10), (7_000_000, 3.0), (3_141_593, PI), (0, 1.0), (10, 0.0), (10, -1.0), (10, 3.2)]
     {
-        assert_eq!(Unicycle::new(step, sharpest, 21, 100), Err(BadGrid::Turn), "{step} {sharpest}");
+        assert_eq!(
+            Unicycle::new(step, sharpest, 21, 100),
+            Err(GridError::Turn),
+            "{step} {sharpest}"
+        );
     }
     for sharpest in [f64::NAN, f64::INFINITY] {
-        assert_eq!(Unicycle::new(10, sharpest, 21, 100), Err(BadGrid::Turn), "{sharpest}");
+        assert_eq!(Unicycle::new(10, sharpest, 21, 100), Err(GridError::Turn), "{sharpest}");
     }
     // 6,283,187 rays.
-    assert_eq!(Unicycle::new(1, PI, 684, 100), Err(BadGrid::Actions));
+    assert_eq!(Unicycle::new(1, PI, 684, 100), Err(GridError::Actions));
     assert!(Unicycle::new(1, PI, 683, 100).is_ok());
-    assert_eq!(Unicycle::new(u32::MAX, 1.0, u16::MAX, u32::MAX), Err(BadGrid::Turn));
+    assert_eq!(Unicycle::new(u32::MAX, 1.0, u16::MAX, u32::MAX), Err(GridError::Turn));
     for (rays, speeds) in [(0, 21), (5, 0), (u32::MAX, 2), (65_538, u16::MAX)] {
-        assert_eq!(ActionGrid::new(rays, speeds, 100), Err(BadGrid::Actions), "{rays} {speeds}");
+        assert_eq!(ActionGrid::new(rays, speeds, 100), Err(GridError::Actions), "{rays} {speeds}");
     }
     for (speeds, step_mm) in [(21, 0), (61, 50_000), (1, 100_000), (2, u32::MAX), (1, u32::MAX)] {
-        assert_eq!(ActionGrid::new(5, speeds, step_mm), Err(BadGrid::Reach), "{speeds} {step_mm}");
+        assert_eq!(
+            ActionGrid::new(5, speeds, step_mm),
+            Err(GridError::Reach),
+            "{speeds} {step_mm}"
+        );
     }
     let longest = ActionGrid::new(1, 2, 99_999).expect("a grid");
     assert_eq!(longest.reach_mm(1), 99_999);
@@ -143,12 +149,12 @@ impl Dynamics for Faulty {
         self.0.grid()
     }
 
-    fn fan(&self) -> Fan {
+    fn fan(&self) -> RayFan {
         let fan = self.0.fan();
         match self.1 {
-            Breaks::Count => Fan { left: fan.left + 1, ..fan },
-            Breaks::NoLeft => Fan { left: 0, right: fan.left + fan.right, ..fan },
-            Breaks::Spacing => Fan { spacing: Heading(fan.spacing.0 - 4), ..fan },
+            Breaks::Count => RayFan { left: fan.left + 1, ..fan },
+            Breaks::NoLeft => RayFan { left: 0, right: fan.left + fan.right, ..fan },
+            Breaks::Spacing => RayFan { spacing: Angle(fan.spacing.0 - 4), ..fan },
             _ => fan,
         }
     }
@@ -158,7 +164,7 @@ impl Dynamics for Faulty {
         match self.1 {
             Breaks::TurnsBack if n == 3 => self.0.heading(pose, side, 1),
             Breaks::Overlap if n == 5 && side == Side::Right => {
-                self.0.heading(pose, Side::Left, 5).turned(Heading(77).mirrored())
+                self.0.heading(pose, Side::Left, 5).turned(Angle(77).mirrored())
             }
             _ => heading,
         }
@@ -168,7 +174,7 @@ impl Dynamics for Faulty {
         let ray = self.0.ray(pose, side, n);
         let heading = self.heading(pose, side, n);
         match self.1 {
-            Breaks::Effort if n == 4 => Ray { effort: 1, ..ray },
+            Breaks::Effort if n == 4 => Ray { turn_cost: 1, ..ray },
             Breaks::StepLength if n == 2 => {
                 let step = Vector::new(ray.step.x() / 2, ray.step.z() / 2).expect("small");
                 Ray { step, ..ray }
@@ -191,15 +197,15 @@ impl Dynamics for Faulty {
             Breaks::MovesInPlace => self.target(pose, Action(action.0 + 1)).map(|it| (action, it)),
             Breaks::TurnsTheOtherWay => self.0.turn_in_place(pose, opposite),
             Breaks::TurnsBeyond => {
-                let heading = after.heading.turned(after.heading);
+                let heading = after.heading.turned(Angle(after.heading.0));
                 Some((action, Pose { heading, ..after }))
             }
             _ => Some((action, after)),
         }
     }
 
-    fn control(&self, action: Action) -> Control {
-        self.0.control(action)
+    fn control(&self, pose: Pose, action: Action) -> Control {
+        self.0.control(pose, action)
     }
 
     fn ray_of(&self, pose: Pose, action: Action) -> Option<Ray> {
@@ -215,31 +221,31 @@ impl Dynamics for Faulty {
 fn each_broken_promise_is_named() {
     // Eleven rays, 700 mrad apart and at last 200: right 5 to 1, ahead, left 1 to 5.
     let unicycle = Unicycle::new(700_000, 3.0, 5, 1_000).expect("a grid");
-    assert_eq!(unicycle.fan(), Fan { left: 6, right: 5, ..unicycle.fan() });
+    assert_eq!(unicycle.fan(), RayFan { left: 6, right: 5, ..unicycle.fan() });
     let check = |breaks| contract::check(&Faulty(unicycle, breaks));
     assert_eq!(check(Breaks::Nothing), Ok(()));
     for (breaks, broken) in [
-        (Breaks::Count, Broken::Count),
-        (Breaks::NoLeft, Broken::Count),
-        (Breaks::Spacing, Broken::Spacing(Side::Left, 1)),
-        (Breaks::TurnsBack, Broken::Spacing(Side::Left, 3)),
-        (Breaks::Effort, Broken::Effort(Side::Left, 4)),
-        (Breaks::StepLength, Broken::Step(Side::Left, 2)),
-        (Breaks::StepHeading, Broken::Step(Side::Left, 2)),
-        (Breaks::Index, Broken::Index(Side::Left, 1)),
-        (Breaks::Twice, Broken::Index(Side::Left, 1)),
-        (Breaks::MovesInPlace, Broken::TurnInPlace(Side::Left)),
-        (Breaks::TurnsTheOtherWay, Broken::TurnInPlace(Side::Left)),
-        (Breaks::TurnsBeyond, Broken::TurnInPlace(Side::Left)),
+        (Breaks::Count, ContractError::Count),
+        (Breaks::NoLeft, ContractError::Count),
+        (Breaks::Spacing, ContractError::Spacing(Side::Left, 1)),
+        (Breaks::TurnsBack, ContractError::Spacing(Side::Left, 3)),
+        (Breaks::Effort, ContractError::Effort(Side::Left, 4)),
+        (Breaks::StepLength, ContractError::Step(Side::Left, 2)),
+        (Breaks::StepHeading, ContractError::Step(Side::Left, 2)),
+        (Breaks::Index, ContractError::Index(Side::Left, 1)),
+        (Breaks::Twice, ContractError::Index(Side::Left, 1)),
+        (Breaks::MovesInPlace, ContractError::TurnInPlace(Side::Left)),
+        (Breaks::TurnsTheOtherWay, ContractError::TurnInPlace(Side::Left)),
+        (Breaks::TurnsBeyond, ContractError::TurnInPlace(Side::Left)),
     ] {
         assert_eq!(check(breaks), Err(broken));
     }
-    assert!(matches!(check(Breaks::Overlap), Err(Broken::Spacing(Side::Right, 5))));
+    assert!(matches!(check(Breaks::Overlap), Err(ContractError::Spacing(Side::Right, 5))));
     // Also of rays that are too many to look at them all.
     let check = |breaks| contract::check(&Faulty(Unicycle::fine(), breaks));
     assert_eq!(check(Breaks::Nothing), Ok(()));
-    assert_eq!(check(Breaks::Spacing), Err(Broken::Spacing(Side::Left, 1)));
-    assert_eq!(check(Breaks::Twice), Err(Broken::Index(Side::Left, 1)));
+    assert_eq!(check(Breaks::Spacing), Err(ContractError::Spacing(Side::Left, 1)));
+    assert_eq!(check(Breaks::Twice), Err(ContractError::Index(Side::Left, 1)));
 }
 
 /// A car that breaks one promise of those that the unicycle does not make.
@@ -267,7 +273,7 @@ impl Dynamics for FaultyCar {
         self.0.grid()
     }
 
-    fn fan(&self) -> Fan {
+    fn fan(&self) -> RayFan {
         self.0.fan()
     }
 
@@ -289,7 +295,7 @@ impl Dynamics for FaultyCar {
         }
     }
 
-    fn arrive(&self, pose: Pose, ray: &Ray, speed: u16) -> Result<Pose, OffLattice> {
+    fn arrive(&self, pose: Pose, ray: &Ray, speed: u16) -> Result<Pose, LatticeError> {
         let end = self.0.arrive(pose, ray, speed)?;
         Ok(match self.1 {
             CarBreaks::EndsElsewhere => self.0.arrive(pose, ray, speed - 1)?,
@@ -298,28 +304,28 @@ impl Dynamics for FaultyCar {
         })
     }
 
-    fn corner(&self, from: Pose, to: Pose) -> Option<Vector> {
-        let corner = self.0.corner(from, to)?;
+    fn tangent_intersection(&self, from: Pose, to: Pose) -> Option<Vector> {
+        let corner = self.0.tangent_intersection(from, to)?;
         let twice = || Vector::new(2 * corner.x(), 2 * corner.z()).expect("near");
         Some(if matches!(self.1, CarBreaks::CornerTooFar) { twice() } else { corner })
     }
 
-    fn orbit(&self, pose: Pose, side: Side) -> Option<Orbit> {
-        let orbit = self.0.orbit(pose, side)?;
+    fn turning_circle(&self, pose: Pose, side: Side) -> Option<TurningCircle> {
+        let orbit = self.0.turning_circle(pose, side)?;
         let other = if side == Side::Left { Side::Right } else { Side::Left };
         match self.1 {
             CarBreaks::OneOrbit if side == Side::Right => None,
             CarBreaks::TurnsTheOtherWay => {
-                let Orbit { action, .. } = self.0.orbit(pose, other)?;
-                Some(Orbit { action, ..orbit })
+                let TurningCircle { action, .. } = self.0.turning_circle(pose, other)?;
+                Some(TurningCircle { action, ..orbit })
             }
             CarBreaks::DoesNotTurn => {
                 let action = self.0.grid().action(self.0.fan().right, 10);
-                Some(Orbit { action, ..orbit })
+                Some(TurningCircle { action, ..orbit })
             }
-            CarBreaks::LeavesItsRadius => Some(Orbit { radius: orbit.radius / 2, ..orbit }),
+            CarBreaks::LeavesItsRadius => Some(TurningCircle { radius: orbit.radius / 2, ..orbit }),
             CarBreaks::LeavesItsCentre => {
-                Some(Orbit { centre: self.0.orbit(pose, other)?.centre, ..orbit })
+                Some(TurningCircle { centre: self.0.turning_circle(pose, other)?.centre, ..orbit })
             }
             _ => Some(orbit),
         }
@@ -329,8 +335,8 @@ impl Dynamics for FaultyCar {
         self.0.turn_in_place(pose, side)
     }
 
-    fn control(&self, action: Action) -> Control {
-        self.0.control(action)
+    fn control(&self, pose: Pose, action: Action) -> Control {
+        self.0.control(pose, action)
     }
 
     fn ray_of(&self, pose: Pose, action: Action) -> Option<Ray> {
@@ -354,18 +360,18 @@ fn each_broken_promise_of_a_car_is_named() {
     let check = |breaks| contract::check(&FaultyCar(car, breaks));
     assert_eq!(check(CarBreaks::Nothing), Ok(()));
     for (breaks, broken) in [
-        (CarBreaks::MoreWhenSlower, Broken::Speeds(9)),
-        (CarBreaks::NotAllWhenFastest, Broken::Speeds(20)),
-        (CarBreaks::KnowsTooMany, Broken::Speeds(9)),
-        (CarBreaks::KnowsTooFew, Broken::Speeds(9)),
-        (CarBreaks::EndsElsewhere, Broken::Arrival(Side::Left, 0)),
-        (CarBreaks::EndsStraight, Broken::Arrival(Side::Left, 1)),
-        (CarBreaks::CornerTooFar, Broken::Arrival(Side::Left, 1)),
-        (CarBreaks::OneOrbit, Broken::Orbit(Side::Right)),
-        (CarBreaks::TurnsTheOtherWay, Broken::Orbit(Side::Left)),
-        (CarBreaks::DoesNotTurn, Broken::Orbit(Side::Left)),
-        (CarBreaks::LeavesItsRadius, Broken::Orbit(Side::Left)),
-        (CarBreaks::LeavesItsCentre, Broken::Orbit(Side::Left)),
+        (CarBreaks::MoreWhenSlower, ContractError::Speeds(9)),
+        (CarBreaks::NotAllWhenFastest, ContractError::Speeds(20)),
+        (CarBreaks::KnowsTooMany, ContractError::Speeds(9)),
+        (CarBreaks::KnowsTooFew, ContractError::Speeds(9)),
+        (CarBreaks::EndsElsewhere, ContractError::Arrival(Side::Left, 0)),
+        (CarBreaks::EndsStraight, ContractError::Arrival(Side::Left, 1)),
+        (CarBreaks::CornerTooFar, ContractError::Arrival(Side::Left, 1)),
+        (CarBreaks::OneOrbit, ContractError::TurningCircle(Side::Right)),
+        (CarBreaks::TurnsTheOtherWay, ContractError::TurningCircle(Side::Left)),
+        (CarBreaks::DoesNotTurn, ContractError::TurningCircle(Side::Left)),
+        (CarBreaks::LeavesItsRadius, ContractError::TurningCircle(Side::Left)),
+        (CarBreaks::LeavesItsCentre, ContractError::TurningCircle(Side::Left)),
     ] {
         assert_eq!(check(breaks), Err(broken), "{breaks:?}");
     }
@@ -401,7 +407,7 @@ fn the_fine_fan_keeps_the_contract_and_its_rays_differ() {
             let apart = apart(ray.heading, next.heading);
             assert!(apart.abs_diff(684) <= 1 || n + 1 == turns && apart > 0, "{n}: {apart}");
             let mrad = f64::from(n) / 1_000.0;
-            assert!((f64::from(ray.effort) - mrad * mrad).abs() < 0.61, "{n}: {ray:?}");
+            assert!((f64::from(ray.turn_cost) - mrad * mrad).abs() < 0.61, "{n}: {ray:?}");
         }
     }
 }
@@ -415,13 +421,13 @@ fn the_index_of_an_action_leads_back_to_its_ray_and_speed() {
         assert_eq!(fine.grid().action(ray, speed), Action(index));
         assert_eq!(fine.ray_of(pose, Action(index)).map(|it| it.index), Some(ray));
     }
-    let Control { v, w } = fine.control(Action(last));
+    let Control { distance_m: v, turn_rad: w } = fine.control(pose, Action(last));
     assert_eq!((v.to_bits(), w.to_bits()), (2.0_f32.to_bits(), (FRAC_PI_2 as f32).to_bits()));
     for beyond in [last + 1, u32::MAX] {
         assert_eq!(fine.ray_of(pose, Action(beyond)), None);
         assert_eq!(fine.target(pose, Action(beyond)), None);
     }
-    let _ = Unicycle::paper().control(Action(u32::MAX)); // it does not overflow
+    let _ = Unicycle::paper().control(pose, Action(u32::MAX)); // it does not overflow
 }
 
 /// The paper's turns and their squares as they always were.
@@ -431,14 +437,14 @@ fn the_papers_turns_are_multiples_of_10_mrad() {
     for n in 0..158 {
         let exact = f64::from(n) / 100.0;
         let ray = paper.ray(pose(0), Side::Left, n);
-        assert_eq!(Some(ray.heading), Heading::from_radians(exact), "{n}");
-        assert_eq!((ray.index, ray.effort), (158 + n, 100 * n * n));
-        let Control { w, .. } = paper.control(paper.grid().action(ray.index, 3));
+        assert_eq!(Ok(ray.heading), Heading::from_radians(exact), "{n}");
+        assert_eq!((ray.index, ray.turn_cost), (158 + n, 100 * n * n));
+        let Control { turn_rad: w, .. } = paper.control(pose(0), paper.grid().action(ray.index, 3));
         assert_eq!(w.to_bits(), (exact as f32).to_bits());
     }
     assert_eq!(paper.ray(pose(0), Side::Right, 158).heading, Heading(3 << 30));
-    assert_eq!(paper.ray(pose(0), Side::Right, 158).effort, 2_467_401);
-    assert_eq!(paper.fan().spacing, Heading(6_835_653));
+    assert_eq!(paper.ray(pose(0), Side::Right, 158).turn_cost, 2_467_401);
+    assert_eq!(paper.fan().spacing, Angle(6_835_653));
 }
 
 /// Turns whose last multiple lies next to the sharpest turn, or on it but for rounding.
@@ -457,7 +463,7 @@ fn a_sharpest_turn_next_to_a_multiple_keeps_the_contract() {
 }
 
 /// Any car that the constructor takes, from a model's to a ship's.
-fn any_car(rng: &mut ChaCha8Rng) -> Result<Car, BadGrid> {
+fn any_car(rng: &mut ChaCha8Rng) -> Result<Car, GridError> {
     Car::new(Shape {
         radius_mm: [50, 1_000, 3_000, 5_000, 40_000, 2_000_000, rng.random_range(1..20_000)]
             [rng.random_range(0..7)],
@@ -502,24 +508,24 @@ fn what_cannot_go_round_is_no_car() {
     };
     assert!(Car::new(good).is_ok());
     for (bad, why) in [
-        (Shape { radius_mm: 0, ..good }, BadGrid::Circle),
-        (Shape { radius_mm: Car::WIDEST_MM, ..good }, BadGrid::Circle),
-        (Shape { shortest_mm: 2_001, ..good }, BadGrid::Circle),
-        (Shape { speeds: 1, ..good }, BadGrid::Circle),
+        (Shape { radius_mm: 0, ..good }, GridError::Circle),
+        (Shape { radius_mm: Car::WIDEST_MM, ..good }, GridError::Circle),
+        (Shape { shortest_mm: 2_001, ..good }, GridError::Circle),
+        (Shape { speeds: 1, ..good }, GridError::Circle),
         // 0.34 rad is the sharpest chord of 2 m.
-        (Shape { turn_step_urad: 350_000, ..good }, BadGrid::Circle),
-        (Shape { turn_step_urad: 0, ..good }, BadGrid::Turn),
-        (Shape { turn_step_urad: 785_399, ..good }, BadGrid::Turn),
-        (Shape { speed_step_mm: 0, ..good }, BadGrid::Reach),
-        (Shape { speeds: 601, speed_step_mm: 5_000, ..good }, BadGrid::Reach),
-        (Shape { speeds: 0, ..good }, BadGrid::Actions),
+        (Shape { turn_step_urad: 350_000, ..good }, GridError::Circle),
+        (Shape { turn_step_urad: 0, ..good }, GridError::Turn),
+        (Shape { turn_step_urad: 785_399, ..good }, GridError::Turn),
+        (Shape { speed_step_mm: 0, ..good }, GridError::Reach),
+        (Shape { speeds: 601, speed_step_mm: 5_000, ..good }, GridError::Reach),
+        (Shape { speeds: 0, ..good }, GridError::Actions),
     ] {
         assert_eq!(Car::new(bad).map(|_| ()), Err(why), "{bad:?}");
     }
     let still = Unicycle::new(10_000, 0.35, 1, 100).expect("a grid");
-    assert_eq!(Boat::new(still), Err(BadGrid::Circle));
+    assert_eq!(Boat::new(still), Err(GridError::Circle));
     let ship = Unicycle::new(1_000, 0.001, 2, 90_000).expect("a grid");
-    assert_eq!(Boat::new(ship), Err(BadGrid::Circle));
+    assert_eq!(Boat::new(ship), Err(GridError::Circle));
 }
 
 /// Points of an arc in metres: integrated by the midpoint rule from the control that is asked of the vehicle.
@@ -527,7 +533,7 @@ fn drive(from: Pose, control: Control) -> (Vec<Point2<f64>>, f64) {
     const PARTS: u32 = 400;
     let (mut at, mut heading) = (Point2::<f64>::from(from.site), from.heading.radians());
     let part = f64::from(PARTS);
-    let (v, w) = (f64::from(control.v) / part, f64::from(control.w) / part);
+    let (v, w) = (f64::from(control.distance_m) / part, f64::from(control.turn_rad) / part);
     let mut points = vec![at];
     for _ in 0..PARTS {
         let (sin, cos) = (heading + w / 2.0).sin_cos();
@@ -569,20 +575,20 @@ fn a_cars_motions_are_arcs_that_it_can_drive() {
         };
         assert!(can, "{car:?} {n} {speed}: {curvature}");
         tight += u32::from(curvature * radius > 0.9);
-        let control = car.control(action);
+        let control = car.control(pose, action);
         let (points, heading) = drive(pose, control);
         let end = Point2::<f64>::from(target.site);
         let off = (points[points.len() - 1] - end).norm();
         let rounding = 3e-5 * (1.0 + f64::from(speed) / 256.0) + 1e-6 * chord;
         assert!(off < rounding + 2e-6 * chord, "{car:?}, {control:?}: off by {off} m");
         assert!((heading - target.heading.radians()).sin().abs() < 1e-6);
-        assert_eq!(control.w < 0.0, side == Side::Right);
+        assert_eq!(control.turn_rad < 0.0, side == Side::Right);
         let length: f64 = points.windows(2).map(|ends| (ends[1] - ends[0]).norm()).sum();
-        if control.w != 0.0 {
-            assert!(f64::from(control.w).abs() / length * radius <= 1.0 + 1e-6);
+        if control.turn_rad != 0.0 {
+            assert!(f64::from(control.turn_rad).abs() / length * radius <= 1.0 + 1e-6);
         }
         // Of a triangle with both ends and the corner each point lies on the inner side of each edge.
-        let corner = car.corner(pose, target);
+        let corner = car.tangent_intersection(pose, target);
         assert_eq!(corner.is_some(), n > 0);
         let corner = corner.unwrap_or(Vector::new(0, 0).expect("small"));
         let metres =
@@ -616,11 +622,13 @@ fn compare<D: Dynamics>(it: &D, area: Area, rng: &mut ChaCha8Rng) -> [u32; 2] {
         let goes_round = |side| {
             let (mut pose, mut turned, mut inside) = (from, 0.0, true);
             while turned < 2.0 * std::f64::consts::TAU {
-                let Orbit { action, .. } = it.orbit(pose, side).expect("it has one");
+                let TurningCircle { action, .. } =
+                    it.turning_circle(pose, side).expect("it has one");
                 let after = it.target(pose, action).expect("an action");
-                let (points, _) = drive(pose, it.control(action));
+                let (points, _) = drive(pose, it.control(pose, action));
                 // A boat turns before it drives.
-                let points = if it.corner(pose, after).is_some() { points } else { vec![] };
+                let points =
+                    if it.tangent_intersection(pose, after).is_some() { points } else { vec![] };
                 let mut within = |p: Point2<f64>| {
                     inside &= (0.0..=20.0).contains(&p.x) && (0.0..=20.0).contains(&p.y);
                 };

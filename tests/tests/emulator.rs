@@ -15,10 +15,8 @@ use host_sim::mission::recording::Recording;
 use host_sim::mission::scenario::{self, Overrides};
 use host_sim::report::trace;
 use host_sim::world::noise::{Extent, NoiseModel};
-use planner_core::belief::goal::{Accuracy, Goal};
-use planner_core::geometry::heading::Heading;
 use planner_core::motion::unicycle::Grid;
-use planner_core::planner::scc::Policy;
+use planner_core::{Accuracy, Angle, Goal, Policy};
 use rayon::prelude::*;
 use tests::budget::timing;
 use tests::budget::workload::Workload;
@@ -57,8 +55,8 @@ fn missions() -> Vec<Mission> {
         let accuracy = match number % 16 {
             2 => Some(Accuracy::Misclassified(3_000)),
             3 => Some(Accuracy::Misclassified(400_000)),
-            6 => Heading::from_radians(0.5_f64.to_radians()).map(Accuracy::SlopeArc),
-            7 => Heading::from_radians(45_f64.to_radians()).map(Accuracy::SlopeArc),
+            6 => Angle::from_degrees(0.5).ok().map(Accuracy::SlopeArc),
+            7 => Angle::from_degrees(45.0).ok().map(Accuracy::SlopeArc),
             _ => None,
         };
         mission.goal = accuracy.map(|accuracy| Goal { accuracy, level: 500_000 });

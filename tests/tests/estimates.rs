@@ -5,14 +5,11 @@ use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::CAPACITY;
 use host_sim::world::noise::{Extent, NoiseModel};
 use nalgebra::{Point2, Rotation2, Vector2};
-use planner_core::belief::Belief as _;
 use planner_core::belief::estimate::{area, bisector, centre, maximum_margin};
-use planner_core::belief::posterior::Posterior;
-use planner_core::belief::sample::{Label, Sample};
-use planner_core::belief::version_space::VersionSpace;
-use planner_core::geometry::lattice::{Site, orient};
-use planner_core::geometry::line::Line;
-use planner_core::geometry::local_line::LocalLine;
+use planner_core::geometry::lattice::orient;
+use planner_core::{
+    Belief as _, Label, Line, LocalLine, PosteriorView, Sample, Site, VersionSpace,
+};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -168,7 +165,7 @@ fn the_posterior_mean_is_that_of_the_hypotheses_exact_means() {
         mission.noise = Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.5) });
         let flown = mission.fly(|_, _| {}).expect("no trusted label");
         let table = flown.belief.hypotheses().expect("labels may err");
-        let posterior = Posterior::new(table);
+        let posterior = PosteriorView::new(table);
         let about = table.samples()[0].site;
         let (mut normal, mut offset) = (Vector2::zeros(), 0.0);
         for h in table.iter() {
@@ -298,7 +295,7 @@ fn chances_of_labels_that_may_err_are_those_of_the_next_posterior() {
             let site = Site::try_from(Point2::new(metres(), metres())).expect("near");
             let chance = table.chance(site);
             // By Bayes's rule: what a certain label of either kind would leave of each hypothesis.
-            let posterior = Posterior::new(table);
+            let posterior = PosteriorView::new(table);
             let above: f64 = table
                 .iter()
                 .map(|h| {

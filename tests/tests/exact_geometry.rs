@@ -1,10 +1,10 @@
 //! Orientation and cuts against arbitrary-precision integers.
 
 use num_bigint::{BigInt, Sign};
-use planner_core::belief::cell::{Cut, CutError, LineCell};
-use planner_core::belief::edge::Edge;
-use planner_core::belief::sample::{Label, Sample};
-use planner_core::geometry::lattice::{Site, orient};
+use planner_core::belief::constraint::Constraint;
+use planner_core::belief::dual_cell::{Cut, CutError, DualCell};
+use planner_core::geometry::lattice::orient;
+use planner_core::{Label, Sample, Site};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -43,12 +43,12 @@ fn orientation_agrees_with_big_integers_on_two_million_adversarial_cases() {
 /// The polygon as vertices in big integers: the twin of a cell, cut by Sutherland and Hodgman.
 struct BigCell {
     /// Each vertex with the edge that follows it.
-    corners: Vec<([BigInt; 3], Edge)>,
+    corners: Vec<([BigInt; 3], Constraint)>,
 }
 
 type Vector = [BigInt; 3];
 
-fn half_plane(samples: &[Sample], edge: Edge) -> Vector {
+fn half_plane(samples: &[Sample], edge: Constraint) -> Vector {
     let y = BigInt::from(edge.label().sign());
     let [x, z] = coordinates(samples[edge.index()].site);
     [&y * x, &y * z, y]
@@ -63,7 +63,7 @@ fn dot(a: &Vector, b: &Vector) -> BigInt {
 }
 
 impl BigCell {
-    fn triangle(samples: &[Sample], edges: [Edge; 3]) -> Option<Self> {
+    fn triangle(samples: &[Sample], edges: [Constraint; 3]) -> Option<Self> {
         let normal = edges.map(|edge| half_plane(samples, edge));
         let turn = dot(&normal[0], &cross(&normal[1], &normal[2]));
         let order = match turn.sign() {
@@ -78,11 +78,11 @@ impl BigCell {
         Some(Self { corners: (0..3).map(corner).collect() })
     }
 
-    fn edges(&self) -> Vec<Edge> {
+    fn edges(&self) -> Vec<Constraint> {
         self.corners.iter().map(|(_, edge)| *edge).collect()
     }
 
-    fn cut(&mut self, samples: &[Sample], edge: Edge) -> Result<Cut, CutError> {
+    fn cut(&mut self, samples: &[Sample], edge: Constraint) -> Result<Cut, CutError> {
         let normal = half_plane(samples, edge);
         let signs: Vec<_> = self.corners.iter().map(|(v, _)| dot(v, &normal).sign()).collect();
         if !signs.contains(&Sign::Minus) {
@@ -117,10 +117,10 @@ impl BigCell {
 }
 
 /// The list from its smallest edge on, as a cyclic list has no beginning.
-fn from_smallest(mut edges: Vec<Edge>) -> Vec<usize> {
+fn from_smallest(mut edges: Vec<Constraint>) -> Vec<usize> {
     let smallest = (0..edges.len()).min_by_key(|&k| edges[k].index()).unwrap_or(0);
     edges.rotate_left(smallest);
-    edges.into_iter().map(Edge::index).collect()
+    edges.into_iter().map(Constraint::index).collect()
 }
 
 #[test]
@@ -141,14 +141,14 @@ fn cuts_agree_with_big_integers_on_a_million_adversarial_samples() {
                 Sample { site, label: if above { Label::Positive } else { Label::Negative } }
             })
             .collect();
-        let edges: Vec<_> = (0..).zip(&samples).map(|(i, s)| Edge::new(i, s.label)).collect();
+        let edges: Vec<_> = (0..).zip(&samples).map(|(i, s)| Constraint::new(i, s.label)).collect();
         let Some(k) = (2..32).find(|&k| {
-            LineCell::<32>::triangle(&samples, [edges[0], edges[1], edges[k]]).is_some()
+            DualCell::<32>::triangle(&samples, [edges[0], edges[1], edges[k]]).is_some()
         }) else {
             return;
         };
         let first = [edges[0], edges[1], edges[k]];
-        let mut cell = LineCell::<32>::triangle(&samples, first).expect("found above");
+        let mut cell = DualCell::<32>::triangle(&samples, first).expect("found above");
         let mut big = BigCell::triangle(&samples, first).expect("as the other");
         for edge in edges {
             let before = cell.edges().to_vec();

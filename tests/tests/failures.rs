@@ -6,19 +6,14 @@ use std::convert::Infallible;
 use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::world::World;
-use planner_core::belief::Belief as _;
-use planner_core::belief::sample::Reading;
 use planner_core::geometry::lattice::Vector;
-use planner_core::geometry::line::Line;
-use planner_core::geometry::region::Region as _;
-use planner_core::motion::dynamics::Pose;
-use planner_core::motion::unicycle::Unicycle;
-use planner_core::planner::cfc::Cfc;
-use planner_core::planner::lookahead::Lookahead;
-use planner_core::planner::{Motion, Planner};
-use planner_core::robot::agent::{Agent, AgentError, Event};
-use planner_core::robot::body::{Vehicle, VehicleError};
-use planner_core::robot::hal::{Drive, LabelSensor};
+use planner_core::robot::AgentError;
+use planner_core::robot::VehicleError;
+use planner_core::robot::{Drive, LabelSensor};
+use planner_core::{
+    Agent, Belief as _, Event, Line, Motion, Planner, Pose, Reading, Unicycle, Vehicle,
+    Workspace as _,
+};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -93,15 +88,9 @@ fn missions_go_on_from_where_a_drive_has_failed() {
     let (mut failed, mut outside) = (0, 0);
     for number in 0..150 {
         let mission = standard_field::standard(8, number, Algorithm::Cfc, 20);
-        let (config, space) = (mission.config, mission.given);
-        let cfc = fly(
-            number,
-            Cfc::new(config, Unicycle::paper(), space.clone()).expect("settings that agree"),
-        );
-        let lookahead = fly(
-            number,
-            Lookahead::new(config, Unicycle::paper(), space).expect("settings that agree"),
-        );
+        let (area, unicycle) = (mission.config.area, Unicycle::paper());
+        let cfc = fly(number, mission.cfc(area, unicycle));
+        let lookahead = fly(number, mission.lookahead(area, unicycle));
         failed += cfc.0 + lookahead.0;
         outside += cfc.1 + lookahead.1;
     }

@@ -10,7 +10,6 @@
 use std::collections::BTreeMap;
 use std::env;
 
-use planner_core::planner::lookahead;
 use rayon::prelude::*;
 use tests::anything::asked_for;
 use tests::garden::chords;
@@ -127,7 +126,7 @@ fn every_mission_ends_without_a_bump_and_knows_more_than_by_hand() {
     heading();
     let garden = Setting::GARDEN;
     let lookahead = Row::fly("look-ahead", garden, Finder::Lookahead);
-    let default = Setting { varrho: lookahead::VARRHO.value(), ..garden };
+    let default = Setting { varrho: planner_core::DrivingPrice::USUAL.value(), ..garden };
     let default = Row::fly("look-ahead, its default varrho", default, Finder::Lookahead);
     let scc = Row::fly("Algorithm 2", garden, Finder::Scc);
     let chords = Row::fly("bisected chords", garden, Finder::Chords);

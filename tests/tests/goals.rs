@@ -7,16 +7,11 @@ use host_sim::campaign::standard_field;
 use host_sim::mission::definition::Lines;
 use host_sim::world::polygon::Polygon;
 use nalgebra::Point2;
-use planner_core::belief::Belief as _;
-use planner_core::belief::goal::{Accuracy, Goal};
-use planner_core::belief::hypotheses::Hypotheses;
-use planner_core::belief::posterior::Posterior;
-use planner_core::belief::sample::{Label, Sample};
-use planner_core::belief::weight::Prior;
-use planner_core::geometry::area::Area;
-use planner_core::geometry::heading::Heading;
-use planner_core::geometry::lattice::Site;
-use planner_core::geometry::line::{Bound, Line};
+use planner_core::geometry::line::Bound;
+use planner_core::{
+    Accuracy, Angle, Area, Belief as _, CellPosterior, Goal, Heading, Label, Line, PosteriorView,
+    Prior, Sample, Site,
+};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -98,7 +93,7 @@ fn slopes_are_promised_to_the_last_digit() {
         let width = f64::from(z).atan2(f64::from(x));
         let units = width * 4_294_967_296.0 / (2.0 * PI);
         let is_met = |units: f64| {
-            Accuracy::SlopeArc(Heading(units as u32)).is_met(bounds.iter().copied(), area)
+            Accuracy::SlopeArc(Angle(units as u32)).is_met(bounds.iter().copied(), area)
         };
         for less in 1..4 {
             let units = units.ceil() - f64::from(less);
@@ -129,7 +124,7 @@ fn goals_are_met_when_they_are_and_not_before() {
             }
             let width = space.slope_arc().width_deg().to_radians();
             for (factor, is_right) in [(0.9, false), (0.9999, false), (1.001, true), (2.0, true)] {
-                let Some(most) = Heading::from_radians(width * factor) else { continue };
+                let Ok(most) = Angle::from_radians(width * factor) else { continue };
                 if width * factor > 1.5 || most.0 < 10_000 {
                     continue;
                 }
@@ -144,9 +139,12 @@ fn goals_are_met_when_they_are_and_not_before() {
 
 /// The narrowest slope arc that a table promises with a level in millionths, radians; `None` if it promises none
 /// below a quarter turn.
-fn promised<const N: usize, const H: usize>(table: &Hypotheses<N, H>, level: u32) -> Option<f64> {
+fn promised<const N: usize, const H: usize>(
+    table: &CellPosterior<N, H>,
+    level: u32,
+) -> Option<f64> {
     let is_met = |units: &u32| {
-        let accuracy = Accuracy::SlopeArc(Heading(*units));
+        let accuracy = Accuracy::SlopeArc(Angle(*units));
         table.meets(Goal { accuracy, level }, standard_field::area())
     };
     let (mut no, mut yes) = (0, (1 << 30) - 1);
@@ -161,7 +159,7 @@ fn promised<const N: usize, const H: usize>(table: &Hypotheses<N, H>, level: u32
 }
 
 /// The arc that spans the slopes of all hypotheses of a logarithmic weight at least, radians.
-fn spanned<const N: usize, const H: usize>(table: &Hypotheses<N, H>, least: f64) -> f64 {
+fn spanned<const N: usize, const H: usize>(table: &CellPosterior<N, H>, least: f64) -> f64 {
     let within = table.iter().filter(|h| h.weight().value() >= least);
     let along: Vec<_> = within.flat_map(|h| table.lines(h).bounds()).map(|it| it.along).collect();
     let angles = along.iter().map(|v| {
@@ -177,12 +175,12 @@ fn spanned<const N: usize, const H: usize>(table: &Hypotheses<N, H>, least: f64)
 #[test]
 fn a_goal_is_met_by_the_heaviest_that_hold_its_level() {
     /// Of a table; how many promises there were, sharp ones, and levels that nothing holds.
-    fn check<const H: usize>(number: u64, table: &Hypotheses<20, H>) -> [u32; 3] {
+    fn check<const H: usize>(number: u64, table: &CellPosterior<20, H>) -> [u32; 3] {
         let mut counts = [0; 3];
         let mut weights: Vec<_> = table.iter().map(|h| h.weight().value()).collect();
         weights.sort_by(|a, b| b.total_cmp(a));
         let held: f64 = weights.iter().map(|log| log.exp()).sum();
-        let all = held / (1.0 - Posterior::new(table).pruned_mass());
+        let all = held / (1.0 - PosteriorView::new(table).pruned_mass());
         // The lightest of the fewest, by falling weight, that hold a share of all there was.
         let lightest = |share: f64| {
             let mut sum = 0.0;

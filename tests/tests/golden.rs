@@ -21,8 +21,7 @@ use host_sim::report::picture::Picture;
 use host_sim::report::text;
 use host_sim::report::trace;
 use host_sim::world::noise::{Extent, NoiseModel};
-use planner_core::belief::weight::Prior;
-use planner_core::planner::scc::Policy;
+use planner_core::{Policy, Prior};
 
 #[test]
 fn standard_scenarios() {

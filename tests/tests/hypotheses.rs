@@ -5,16 +5,13 @@ use std::f64::consts::TAU;
 
 use host_sim::world::World;
 use nalgebra::Point2;
-use planner_core::belief::Refused;
+use planner_core::belief::cell_posterior::Hypothesis;
 use planner_core::belief::estimate;
-use planner_core::belief::hypotheses::{Hypotheses, Hypothesis};
-use planner_core::belief::noise::{Noise, Reliability};
-use planner_core::belief::posterior::Posterior;
-use planner_core::belief::sample::{Label, Sample};
-use planner_core::belief::version_space::VersionSpace;
-use planner_core::belief::weight::Prior;
-use planner_core::geometry::lattice::Site;
-use planner_core::geometry::line::Line;
+use planner_core::error::ObservationError;
+use planner_core::{
+    CellPosterior, Label, Line, Noise, PosteriorView, Prior, Reliability, Sample, Site,
+    VersionSpace,
+};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -24,7 +21,10 @@ use tests::twins::brute;
 use tests::twins::exact_mean::Separating;
 
 /// The labels of the samples that a hypothesis stands for: those of any of its lines.
-fn sequence<const N: usize, const H: usize>(table: &Hypotheses<N, H>, h: &Hypothesis<15>) -> u64 {
+fn sequence<const N: usize, const H: usize>(
+    table: &CellPosterior<N, H>,
+    h: &Hypothesis<15>,
+) -> u64 {
     let centre = Line::from(estimate::centre(table.lines(h)).expect("a line"));
     let taken = &table.samples()[table.given().len()..];
     taken.iter().rev().fold(0, |bits, sample| {
@@ -73,7 +73,7 @@ fn equals_brute_force_over_all_sequences() {
             let table = table::<16, 79>(&given, &seen);
             let exact = brute_force(&given, &seen);
             let tables = [Prior::Area, Prior::Sequences].map(|prior| table.weighed_by(prior));
-            let posteriors = [0, 1].map(|prior| Posterior::new(&tables[prior]));
+            let posteriors = [0, 1].map(|prior| PosteriorView::new(&tables[prior]));
             let mut found = BTreeMap::new();
             for (h, other) in table.iter().zip(tables[1].iter()) {
                 let probabilities =
@@ -108,15 +108,15 @@ fn the_count_stays_within_that_of_an_arrangement() {
         .into_par_iter()
         .map(|number| {
             let (given, seen, _) = labelled(number, 64, false);
-            let mut table =
-                Hypotheses::<68, 2081>::new(&given, Prior::Area, Noise::NONE).expect("an oracle");
+            let mut table = CellPosterior::<68, 2081>::new(&given, Prior::Area, Noise::NONE)
+                .expect("an oracle");
             let mut edges = 0;
             for (t, &(sample, p)) in (1..).zip(&seen) {
                 table.take(sample, Reliability::new(p).expect("p")).expect("room");
                 assert!(table.iter().len() <= 1 + t + t * (t - 1) / 2);
                 edges = edges.max(table.iter().map(|h| h.cell().edges().len()).max().unwrap_or(0));
             }
-            assert!(Posterior::new(&table).pruned_mass() <= 0.0, "nothing was given up");
+            assert!(PosteriorView::new(&table).pruned_mass() <= 0.0, "nothing was given up");
             assert_eq!(table.outer_cells(), 0);
             // The cells tile the starting polygon.
             let area = |h| f64::from(estimate::area(table.lines(h)));
@@ -166,14 +166,14 @@ fn a_table_begins_again_in_place() {
 #[test]
 fn tables_are_as_small_as_they_should_be() {
     const { assert!(size_of::<Hypothesis<15>>() == 24) };
-    const { assert!(size_of::<Hypotheses<20, 137>>() <= 4 << 10) };
-    const { assert!(size_of::<Hypotheses<36, 529>>() <= 13 << 10) };
-    const { assert!(size_of::<Hypotheses<68, 2081>>() <= 56 << 10) };
+    const { assert!(size_of::<CellPosterior<20, 137>>() <= 4 << 10) };
+    const { assert!(size_of::<CellPosterior<36, 529>>() <= 13 << 10) };
+    const { assert!(size_of::<CellPosterior<68, 2081>>() <= 56 << 10) };
     println!(
         "16, 32, 64 labels: {}, {}, {} bytes",
-        size_of::<Hypotheses<20, 137>>(),
-        size_of::<Hypotheses<36, 529>>(),
-        size_of::<Hypotheses<68, 2081>>()
+        size_of::<CellPosterior<20, 137>>(),
+        size_of::<CellPosterior<36, 529>>(),
+        size_of::<CellPosterior<68, 2081>>()
     );
 }
 
@@ -183,7 +183,7 @@ fn contradictions_cancel_however_certain_each_label_is() {
     let (given, seen, _) = labelled(3, 1, false);
     for p in [0.6, 0.999, 1.0 - 1e-16, 1e-9, 1e-300] {
         for n in [1, 20, 60] {
-            let mut table = Hypotheses::<128, 2>::new(&given, Prior::Sequences, Noise::NONE)
+            let mut table = CellPosterior::<128, 2>::new(&given, Prior::Sequences, Noise::NONE)
                 .expect("an oracle");
             let reliability = Reliability::new(p).expect("a probability");
             let mut see = |label| {
@@ -192,7 +192,7 @@ fn contradictions_cancel_however_certain_each_label_is() {
             };
             (0..n).for_each(|_| see(Label::Positive));
             (0..n).for_each(|_| see(Label::Negative));
-            let posterior = Posterior::new(&table);
+            let posterior = PosteriorView::new(&table);
             assert_eq!((table.iter().len(), posterior.pruned_mass()), (2, 0.0));
             for h in table.iter() {
                 let probability = posterior.probability(h);
@@ -208,13 +208,14 @@ fn certain_labels_leave_the_version_space() {
         let (given, seen, _) = labelled(number, 30, false);
         let mut space = VersionSpace::<64>::new(&given).expect("an oracle");
         let mut table =
-            Hypotheses::<64, 1>::new(&given, Prior::Area, Noise::NONE).expect("an oracle");
+            CellPosterior::<64, 1>::new(&given, Prior::Area, Noise::NONE).expect("an oracle");
         for (sample, _) in seen {
             let (alone, among) = (space.insert(sample), table.take(sample, Reliability::CERTAIN));
             assert_eq!(alone.is_ok(), among.is_ok());
             let one = table.iter().next().expect("one hypothesis");
             assert_eq!(table.iter().len(), 1);
-            let corners = |edges: &[planner_core::belief::edge::Edge], samples: &[Sample]| {
+            let corners = |edges: &[planner_core::belief::constraint::Constraint],
+                           samples: &[Sample]| {
                 let mut sites: Vec<_> = edges
                     .iter()
                     .map(|e| {
@@ -237,7 +238,7 @@ fn labels_that_say_nothing_leave_the_prior() {
     let (given, seen, _) = labelled(3, 20, false);
     let seen: Vec<_> = seen.into_iter().map(|(sample, _)| (sample, 0.5)).collect();
     let table = table::<24, 211>(&given, &seen);
-    let posterior = Posterior::new(&table);
+    let posterior = PosteriorView::new(&table);
     for h in table.iter() {
         let share = f64::from(estimate::area(table.lines(h)) / estimate::area(table.start()));
         assert!((posterior.probability(h) - share).abs() < 1e-7);
@@ -253,9 +254,9 @@ fn the_bound_on_what_was_given_up_holds() {
             let (given, seen, _) = labelled(number, 24, false);
             let prior = if number % 2 == 0 { Prior::Area } else { Prior::Sequences };
             let mut small =
-                Hypotheses::<28, 24>::new(&given, prior, Noise::NONE).expect("an oracle");
+                CellPosterior::<28, 24>::new(&given, prior, Noise::NONE).expect("an oracle");
             let mut full =
-                Hypotheses::<28, 301>::new(&given, prior, Noise::NONE).expect("an oracle");
+                CellPosterior::<28, 301>::new(&given, prior, Noise::NONE).expect("an oracle");
             let mut most = 0.0f64;
             for &(sample, p) in &seen {
                 let reliability = Reliability::new(p).expect("p");
@@ -264,11 +265,11 @@ fn the_bound_on_what_was_given_up_holds() {
                 assert!(small.iter().len() <= 24);
                 for prior in [Prior::Area, Prior::Sequences] {
                     let (full, small) = (full.weighed_by(prior), small.weighed_by(prior));
-                    let whole = Posterior::new(&full);
+                    let whole = PosteriorView::new(&full);
                     let cells: BTreeMap<_, _> =
                         full.iter().map(|h| (sequence(&full, h), whole.probability(h))).collect();
                     let kept: f64 = small.iter().map(|h| cells[&sequence(&small, h)]).sum();
-                    let bound = Posterior::new(&small).pruned_mass();
+                    let bound = PosteriorView::new(&small).pruned_mass();
                     assert!(
                         bound >= 1.0 - kept - 1e-6,
                         "mission {number}: {bound} for {}",
@@ -293,13 +294,13 @@ fn a_certain_label_that_leaves_no_hypothesis_is_refused() {
     let before = format!("{table:?}");
     let impossible = Sample { label: -given[0].label, ..given[0] };
     let refused = table.take(impossible, Reliability::CERTAIN);
-    assert_eq!(refused, Err(Refused::Contradiction(impossible)));
+    assert_eq!(refused, Err(ObservationError::Contradiction(impossible)));
     assert_eq!(format!("{table:?}"), before);
     // The very same label with room for doubt is taken.
     table.take(impossible, Reliability::new(0.9).expect("p")).expect("possible");
-    assert_eq!(Reliability::new(1.1), None);
-    assert_eq!(Reliability::new(-0.1), None);
-    assert_eq!(Reliability::new(f64::NAN), None);
+    assert!(Reliability::new(1.1).is_err());
+    assert!(Reliability::new(-0.1).is_err());
+    assert!(Reliability::new(f64::NAN).is_err());
 }
 
 #[test]
@@ -309,7 +310,7 @@ fn a_credible_set_is_the_smallest() {
         let table = table::<16, 79>(&given, &seen);
         for prior in [Prior::Area, Prior::Sequences] {
             let table = table.weighed_by(prior);
-            let posterior = Posterior::new(&table);
+            let posterior = PosteriorView::new(&table);
             let mut all: Vec<_> = table.iter().map(|h| posterior.probability(h)).collect();
             all.sort_by(|a, b| b.total_cmp(a));
             let best = posterior.best().expect("a hypothesis").probability;
@@ -377,9 +378,9 @@ fn a_cell_that_cannot_hold_its_edges_holds_more_lines_and_says_so() {
         let (given, seen, world) = labelled(number, 16, false);
         let mut rng = ChaCha8Rng::seed_from_u64(number);
         let mut table =
-            Hypotheses::<20, 137, 4>::new(&given, Prior::Area, Noise::NONE).expect("an oracle");
+            CellPosterior::<20, 137, 4>::new(&given, Prior::Area, Noise::NONE).expect("an oracle");
         let mut exact =
-            Hypotheses::<20, 137>::new(&given, Prior::Area, Noise::NONE).expect("an oracle");
+            CellPosterior::<20, 137>::new(&given, Prior::Area, Noise::NONE).expect("an oracle");
         for &(sample, p) in &seen {
             let reliability = Reliability::new(p).expect("p");
             if table.take(sample, reliability).is_err() {
@@ -388,11 +389,11 @@ fn a_cell_that_cannot_hold_its_edges_holds_more_lines_and_says_so() {
             exact.take(sample, reliability).expect("room");
             // The true line is still among the lines of some hypothesis, unless that was given up.
             let held = table.iter().any(|h| world.is_among(table.lines(h)) == Some(true));
-            let lost = Posterior::new(&table).pruned_mass();
+            let lost = PosteriorView::new(&table).pruned_mass();
             assert!(held || lost > 0.0, "mission {number}");
         }
         // So is every line of every exact hypothesis.
-        if Posterior::new(&table).pruned_mass() <= 0.0 {
+        if PosteriorView::new(&table).pruned_mass() <= 0.0 {
             for h in exact.iter().filter(|_| rng.random_range(0..4) == 0) {
                 let line = Line::from(estimate::centre(exact.lines(h)).expect("a line"));
                 let world = World::divided_by(line);
@@ -420,14 +421,14 @@ fn labels_never_tell_less_than_nothing() {
         let noise = Noise { reliability, ..Noise::NONE };
         let (mut least, mut outer) = (f64::INFINITY, 0);
         for _ in 0..20 {
-            let table = Hypotheses::<68, 600, E>::new(&given, Prior::Area, noise);
+            let table = CellPosterior::<68, 600, E>::new(&given, Prior::Area, noise);
             let mut table = table.expect("they are apart");
             for _ in 0..40 {
                 let angle = rng.random_range(0.0..TAU);
                 let site = at(10.0 + 3.0 * angle.cos(), 8.0 + 3.0 * angle.sin());
                 let label = if rng.random() { Label::Positive } else { Label::Negative };
                 table.take(Sample { site, label }, reliability).expect("there is room");
-                least = least.min(Posterior::new(&table).information());
+                least = least.min(PosteriorView::new(&table).information());
             }
             outer += table.outer_cells();
         }

@@ -15,24 +15,17 @@ use host_sim::hil::setup;
 use host_sim::mission::definition::Mission;
 use host_sim::mission::recording::Recording;
 use host_sim::report::trace;
-use planner_core::belief::version_space::NoVersionSpace;
-use planner_core::geometry::area::Area;
-use planner_core::geometry::lattice::Site;
-use planner_core::geometry::terrain::RoundedHull;
-use planner_core::link::delivery::{Link, LinkLost, Port};
+use planner_core::error::{GivenError, GridError, RoomError, ShapeError};
+use planner_core::link::delivery::{Link, LinkError, Port};
 use planner_core::link::frame::{Decoder, Envelope, FRAME, Frame, Message};
 use planner_core::link::message::{
-    Capacity, ClockRate, Declined, EndReason, LabelSource, MissionArea, Outline, PROTOCOL, Reply,
-    Request, Setup,
+    Capacity, ClockRate, DeclinedError, EndReason, LabelSource, MissionArea, Outline, PROTOCOL,
+    Reply, Request, Settings, Setup,
 };
 use planner_core::link::station::{Flown, NoTerms, Station};
-use planner_core::motion::action::BadGrid;
-use planner_core::motion::any_vehicle::{AnyVehicle, NoVehicle, Shape};
+use planner_core::motion::any_vehicle::Shape;
 use planner_core::motion::car;
-use planner_core::motion::dynamics::NoRoom;
-use planner_core::motion::unicycle::Unicycle;
-use planner_core::planner::StopReason;
-use planner_core::planner::config::Config;
+use planner_core::{AnyVehicle, Area, KeepOut, Site, StopReason, Unicycle};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -158,10 +151,10 @@ fn a_chip_declines_what_is_no_vehicle_of_its_own() {
     };
     assert_eq!(by_any(&good), Ok(good.vehicle));
     let by_unicycle = |setup: &Setup| setup.terms::<Unicycle, _>(setup.config.area).map(drop);
-    assert_eq!(by_unicycle(&good), Err(Declined::Vehicle(NoVehicle::Kind)));
-    assert_eq!(by_any(&no_car), Err(Declined::Vehicle(NoVehicle::Grid(BadGrid::Circle))));
-    assert!(matches!(by_any(&wide), Err(Declined::Vehicle(NoVehicle::Room(_)))));
-    assert_eq!(by_any(&later), Err(Declined::Protocol(PROTOCOL)));
+    assert_eq!(by_unicycle(&good), Err(DeclinedError::Vehicle(ShapeError::Kind)));
+    assert_eq!(by_any(&no_car), Err(DeclinedError::Vehicle(ShapeError::Grid(GridError::Circle))));
+    assert!(matches!(by_any(&wide), Err(DeclinedError::Vehicle(ShapeError::Room(_)))));
+    assert_eq!(by_any(&later), Err(DeclinedError::Protocol(PROTOCOL)));
 
     let network = RefCell::new(Network::new(&mission, Faults::default()));
     let mut chip = chip(&network);
@@ -183,21 +176,21 @@ fn a_chip_plans_in_the_area_that_it_was_told_or_declines_it() {
     let mut chip = chip(&network);
     let setup = chip.await_setup();
     let terms = chip.terms::<AnyVehicle, MissionArea>(&setup).expect("it has room");
-    assert_eq!(terms.config.area, mission.config.area);
+    assert_eq!(terms.area, mission.config.area);
     let more = Setup { keep_outs: setup.keep_outs.map(|count| count - 1), ..setup.clone() };
     let fewer = chip.terms::<AnyVehicle, MissionArea>(&more).expect("an area too");
-    assert_ne!(fewer.config.area, mission.config.area);
+    assert_ne!(fewer.area, mission.config.area);
     let elsewhere = standard_field::area().inset(1).expect("nearly all of it");
-    let config = Config { area: elsewhere, ..setup.config };
+    let config = Settings { area: elsewhere, ..setup.config };
     let wrong = chip.terms::<AnyVehicle, MissionArea>(&Setup { config, ..setup.clone() });
     assert_eq!(
         wrong.err(),
-        Some(NoTerms::Declined(Declined::Area)),
+        Some(NoTerms::Declined(DeclinedError::Area)),
         "not that polygon's rectangle"
     );
     let none = chip.terms::<AnyVehicle, Area>(&setup).expect_err("it is more than a rectangle");
-    assert_eq!(none, NoTerms::Declined(Declined::Area));
-    assert!(matches!(chip.give_up(none), Ok(Flown::Declined(Declined::Area))));
+    assert_eq!(none, NoTerms::Declined(DeclinedError::Area));
+    assert!(matches!(chip.give_up(none), Ok(Flown::Declined(DeclinedError::Area))));
     drop(chip);
     let error = network.into_inner().player.finish().expect_err("it was declined").to_string();
     assert!(error.contains("area") && error.contains("declined"), "{error}");
@@ -209,10 +202,10 @@ fn outlines_of_no_polygon_are_refused() {
     let outline =
         |corners: &[Site]| Outline { corners: corners.iter().copied().collect(), radius: 3 };
     let triangle = outline(&[site(0, 0), site(9, 0), site(0, 9)]);
-    let hull = RoundedHull::try_from(triangle.clone()).expect("a triangle");
+    let hull = KeepOut::try_from(triangle.clone()).expect("a triangle");
     assert_eq!(Outline::from(&hull), triangle);
     for bad in [&[][..], &[site(0, 0), site(9, 0), site(2, 2), site(0, 9)]] {
-        assert!(RoundedHull::try_from(outline(bad)).is_err(), "{bad:?}");
+        assert!(KeepOut::try_from(outline(bad)).is_err(), "{bad:?}");
     }
 }
 
@@ -230,7 +223,7 @@ fn a_cut_link_ends_every_mission_within_the_bound_and_with_no_motion_after_it() 
         network.borrow_mut().wire.cut = Some((after, ways[(number % 3) as usize]));
         let flown = fly(&mut chip, &setup);
         assert!(
-            matches!(flown, Err(LinkLost::Silent)),
+            matches!(flown, Err(LinkError::Silent)),
             "mission {number}, cut after {after}: {flown:?}"
         );
         let Network { wire: Wire { now, .. }, player, .. } = &*network.borrow();
@@ -287,7 +280,7 @@ fn a_chip_declines_what_it_has_no_room_for_and_says_how_much_it_has() {
     let mut chip = chip(&network);
     let setup = chip.await_setup();
     let flown = fly(&mut chip, &setup);
-    assert!(matches!(flown, Ok(Flown::Declined(Declined::Capacity(_)))), "{flown:?}");
+    assert!(matches!(flown, Ok(Flown::Declined(DeclinedError::Capacity(_)))), "{flown:?}");
     drop(chip);
     let error = network.into_inner().player.finish().expect_err("it was declined").to_string();
     assert!(error.contains("at most 32") && error.contains("529 hypotheses"), "{error}");
@@ -327,12 +320,12 @@ fn corpus() -> Vec<Vec<u8>> {
     // What no good mission says.
     let capacity = Capacity { samples: 36, hypotheses: 529 };
     for declined in [
-        Declined::Protocol(PROTOCOL),
-        Declined::Algorithm,
-        Declined::Capacity(capacity),
-        Declined::Given(NoVersionSpace::NotSeparable(3)),
-        Declined::Labels,
-        Declined::Vehicle(NoVehicle::Room(NoRoom { across_mm: u32::MAX })),
+        DeclinedError::Protocol(PROTOCOL),
+        DeclinedError::Algorithm,
+        DeclinedError::Capacity(capacity),
+        DeclinedError::Given(GivenError::NotSeparable(3)),
+        DeclinedError::Labels,
+        DeclinedError::Vehicle(ShapeError::Room(RoomError { across_mm: u32::MAX })),
     ] {
         frames.push(Frame::of(&Envelope::new(5, 6, Request::Declined(declined))).bytes().to_vec());
     }

@@ -11,19 +11,11 @@ use host_sim::report::campaign as tables;
 use host_sim::world::errors::Errors;
 use host_sim::world::noise::{Extent, NoiseModel, limit};
 use host_sim::world::polygon::misclassified;
-use planner_core::belief::goal::{Accuracy, Goal};
-use planner_core::belief::noise::Reliability;
-use planner_core::belief::posterior::Posterior;
-use planner_core::belief::sample::{Label, Sample};
-use planner_core::belief::tolerance::Tolerance;
-use planner_core::belief::weight::Prior;
-use planner_core::geometry::heading::Heading;
-use planner_core::geometry::line::Line;
-use planner_core::motion::unicycle::{Grid, Unicycle};
-use planner_core::planner::config::Crossing;
-use planner_core::planner::lookahead::Lookahead;
-use planner_core::planner::scc::Policy;
-use planner_core::planner::{Plan, Planner as _};
+use planner_core::motion::unicycle::Grid;
+use planner_core::{
+    Accuracy, Angle, Crossing, Goal, Label, Line, Plan, Planner as _, Policy, PosteriorView, Prior,
+    Reliability, Sample, Tolerance, Unicycle,
+};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -37,7 +29,7 @@ const MISCLASSIFIED: f64 = 1e-3;
 const LEVEL: u32 = 900_000;
 
 fn slope_arc() -> Accuracy {
-    Accuracy::SlopeArc(Heading::from_radians(SLOPE_ARC_DEG.to_radians()).expect("an angle"))
+    Accuracy::SlopeArc(Angle::from_degrees(SLOPE_ARC_DEG).expect("an angle"))
 }
 
 /// Labels that may be wrong everywhere: near the oracle's points they would tell more.
@@ -112,7 +104,7 @@ fn labels_that_may_be_wrong_keep_promises_as_often_as_stated() {
                 }
                 let table = belief.hypotheses().expect("labels may be wrong");
                 let truth = mission.world.line().expect("a line");
-                let posterior = Posterior::new(table);
+                let posterior = PosteriorView::new(table);
                 let set = posterior.credible(f64::from(LEVEL) / 1e6);
                 let lines = || posterior.members(&set).flat_map(|it| table.lines(it).bounds());
                 assert!(set.slope_arc.width_deg() <= SLOPE_ARC_DEG, "field {number}");
@@ -141,8 +133,7 @@ fn mixed(number: u64) -> [[f64; 2]; 3] {
     mission.noise = Some(noise(0.8));
     let mut known: Table = mission.table();
     let dynamics = Unicycle::from(Grid::Paper);
-    let mut planner =
-        Lookahead::new(mission.config, dynamics, mission.forecast()).expect("settings that agree");
+    let mut planner = mission.doubtful(mission.config.area, dynamics);
     let (mut pose, mut told, mut marks) = (mission.start, [0.0; 2], Vec::new());
     let mut labels = 0;
     while labels < 30 {
@@ -156,11 +147,11 @@ fn mixed(number: u64) -> [[f64; 2]; 3] {
         let is_above = (mission.world.distance(pose.site) > 0.0) == rng.random_bool(p);
         let label = if is_above { Label::Positive } else { Label::Negative };
         let sample = Sample { site: pose.site, label };
-        let share = Posterior::new(&known).share_above(pose.site);
+        let share = PosteriorView::new(&known).share_above(pose.site);
         told[0] += limit(p) - limit(share * p + (1.0 - share) * (1.0 - p));
         told[1] += limit(p);
         known.take(sample, reliability).expect("room");
-        planner.foresight().take(sample, reliability).expect("room");
+        planner.belief_mut().take(sample, reliability).expect("room");
         labels += 1;
         if MARKS.contains(&labels) {
             marks.push(told);

@@ -8,16 +8,11 @@ use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::Mission;
 use host_sim::world::noise::{Extent, NoiseModel};
 use nalgebra::{Point2, Vector2};
-use planner_core::belief::Belief as _;
-use planner_core::belief::sample::{Label, Reading, Sample};
-use planner_core::geometry::lattice::Site;
-use planner_core::geometry::line::Line;
-use planner_core::geometry::region::Region as _;
-use planner_core::motion::action::Action;
-use planner_core::motion::dynamics::{Dynamics as _, Pose};
-use planner_core::motion::unicycle::Unicycle;
-use planner_core::robot::agent::Step;
+use planner_core::dynamics::{Action, Dynamics as _};
 use planner_core::search::recovery::Recovery;
+use planner_core::{
+    Belief as _, Label, Line, Pose, Reading, Sample, Site, Step, Unicycle, Workspace as _,
+};
 
 /// A line in lattice units: where `normal . q` is `offset`, with the normal of length 1.
 #[derive(Clone, Copy)]
@@ -85,15 +80,15 @@ fn nearest(
         .map(|index| Action(index as _))
         .filter_map(|action| {
             let target = unicycle.target(pose, action)?.site;
-            let control = unicycle.control(action);
-            let moves = control.v > 0.0 && mission.config.area.contains(target);
+            let control = unicycle.control(pose, action);
+            let moves = control.distance_m > 0.0 && mission.config.area.contains(target);
             moves.then(|| (distance(target), control, action, target))
         })
         .collect();
     drives.sort_by(|(near, a, ..), (far, b, ..)| {
-        let smaller_turn = a.w.abs().total_cmp(&b.w.abs());
-        let shorter = a.v.total_cmp(&b.v);
-        near.total_cmp(far).then(smaller_turn).then(shorter).then(b.w.total_cmp(&a.w))
+        let smaller_turn = a.turn_rad.abs().total_cmp(&b.turn_rad.abs());
+        let shorter = a.distance_m.total_cmp(&b.distance_m);
+        near.total_cmp(far).then(smaller_turn).then(shorter).then(b.turn_rad.total_cmp(&a.turn_rad))
     });
     let chosen = drives
         .into_iter()

@@ -29,7 +29,7 @@ mod long {
     use host_sim::mission::scenario::{self, Overrides};
     use host_sim::report::trace;
     use nalgebra::Point2;
-    use planner_core::belief::sample::Label;
+    use planner_core::Label;
     use serde_json::{Value, json};
     use tests::program::build;
 

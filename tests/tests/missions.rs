@@ -12,16 +12,10 @@ use host_sim::mission::scenario::{self, Overrides};
 use host_sim::report::trace;
 use host_sim::world::robot::Ideal;
 use nalgebra::Point2;
-use planner_core::belief::consistent_lines::Certainty;
-use planner_core::geometry::lattice::Site;
-use planner_core::geometry::region::Region as _;
 use planner_core::link::message::MissionArea;
-use planner_core::motion::dynamics::Pose;
-use planner_core::motion::unicycle::Unicycle;
-use planner_core::planner::cfc::Cfc;
-use planner_core::planner::{Plan, Planner as _};
-use planner_core::robot::body::Body as _;
+use planner_core::robot::Body as _;
 use planner_core::search::recovery::Recovery;
+use planner_core::{Certainty, Plan, Planner as _, Pose, Site, Unicycle, Workspace as _};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -83,8 +77,7 @@ fn every_plan_is_what_trying_all_actions_would_make_it() {
     (0..cases(100, 2_000)).into_par_iter().for_each(|number| {
         let mission = standard_field::standard(12, number, Algorithm::Cfc, 60);
         let mut robot = Ideal { world: mission.world };
-        let mut planner =
-            Cfc::new(mission.config, unicycle, mission.given.clone()).expect("settings that agree");
+        let mut planner = mission.cfc(mission.config.area, unicycle);
         let mut pose = mission.start;
         for step in 1..=mission.steps {
             let slow = planner.problem().solve_exhaustively(&unicycle, pose).best;
@@ -130,7 +123,7 @@ fn climb(ladder: &Ladder<Unicycle, MissionArea>, pose: Pose, plan: Plan, place: 
         (Plan::Move(motion), Rung::Far(distance)) => {
             assert_eq!(motion.recovery, Some(Recovery::Transit), "{place}");
             let nearer = distance - ladder.distance(motion.target.site).expect("it is inside");
-            let eighth = f64::from(motion.control.v) / 8.0;
+            let eighth = f64::from(motion.control.distance_m) / 8.0;
             assert!(nearer > eighth - 1e-3, "{place}: {nearer} nearer by {motion:?}");
         }
         _ => panic!("{place}: {plan:?}, expected {rung:?}"),

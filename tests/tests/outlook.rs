@@ -8,15 +8,11 @@ use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::{Lines, Mission};
 use host_sim::world::noise::{Extent, NoiseModel};
 use nalgebra::Point2;
-use planner_core::belief::Belief as _;
-use planner_core::belief::consistent_lines::Certainty;
-use planner_core::belief::forecast::Forecast;
-use planner_core::belief::noise::Reliability;
-use planner_core::belief::outlook::{Foresight as _, Outlook as _, Prediction as _};
-use planner_core::belief::posterior::Posterior;
-use planner_core::belief::sample::{Label, Reading, Sample};
-use planner_core::geometry::lattice::Site;
-use planner_core::geometry::line::Line;
+use planner_core::belief::predictor::{Prediction as _, Predictor as _};
+use planner_core::{
+    Belief as _, Certainty, Label, Line, NoisyBelief, PosteriorView, PredictiveBelief as _,
+    Reading, Reliability, Sample, Site,
+};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tests::cases;
@@ -119,7 +115,7 @@ fn any_site(rng: &mut ChaCha8Rng, mission: &Mission) -> Site {
 
 /// So many labels, true or false, that are possible.
 fn labelled<const N: usize, const H: usize>(
-    forecast: &mut Forecast<N, H>,
+    forecast: &mut NoisyBelief<N, H>,
     mission: &Mission,
     rng: &mut ChaCha8Rng,
     labels: usize,
@@ -152,7 +148,7 @@ fn forecasts_are_those_of_the_table_and_of_how_far_labels_can_be_believed() {
         for &Sample { site, label } in &forecast.belief().samples()[table.given().len()..] {
             table.take(Sample { site, label }, table.reliability(site)).expect("as the forecast");
         }
-        let posterior = Posterior::new(&table);
+        let posterior = PosteriorView::new(&table);
         for _ in 0..12 {
             let [site, next] = [(); 2].map(|()| any_site(&mut rng, &mission));
             assert_eq!(forecast.ground().certainty(site), mission.given.certainty(site));
@@ -178,7 +174,7 @@ fn forecasts_are_those_of_the_table_and_of_how_far_labels_can_be_believed() {
             }
             let mut known = table.clone();
             if known.take(Sample { site, label }, table.reliability(site)).is_ok() {
-                let exact = Posterior::new(&known).share_above(next);
+                let exact = PosteriorView::new(&known).share_above(next);
                 let off = (f64::from(after.share_above(next)) - exact).abs();
                 sums[1] += off;
                 most[2] = most[2].max(off);

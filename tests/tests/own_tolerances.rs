@@ -6,16 +6,11 @@ use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::Mission;
 use host_sim::world::noise::{Extent, NoiseModel};
 use nalgebra::{Point2, Vector2};
-use planner_core::belief::Refused;
 use planner_core::belief::estimate::area;
-use planner_core::belief::sample::{Label, Reading, Sample};
-use planner_core::belief::tolerance::Tolerance;
-use planner_core::belief::version_space::NoVersionSpace;
-use planner_core::geometry::lattice::Site;
-use planner_core::geometry::line::Line;
-use planner_core::motion::dynamics::Pose;
-use planner_core::planner::Plan;
-use planner_core::{Belief as _, Cfc, Lookahead, Planner, Scc, VersionSpace};
+use planner_core::error::{GivenError, ObservationError};
+use planner_core::{
+    Belief as _, Label, Line, Plan, Planner, Pose, Reading, Sample, Site, Tolerance, VersionSpace,
+};
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -128,9 +123,9 @@ fn no_line_is_cut_off_that_the_reports_leave() {
             assert_eq!(twin.lost(space), 0, "mission {number}: {report:?} cut lines off");
             (labels, left) = (labels + 1, left + twin.0.len());
         };
-        let (config, vehicle) = (mission.config, mission.vehicle);
+        let (area, vehicle) = (mission.config.area, mission.vehicle);
         if algorithm == Algorithm::Lookahead {
-            let mut planner = Lookahead::new(config, vehicle, mission.lines()).expect("room");
+            let mut planner = mission.lookahead(area, vehicle);
             fly(
                 &mission,
                 &mut planner,
@@ -140,7 +135,7 @@ fn no_line_is_cut_off_that_the_reports_leave() {
                 |it, report| check(it.belief(), report),
             );
         } else {
-            let mut planner = Cfc::new(config, vehicle, mission.lines()).expect("room");
+            let mut planner = mission.cfc(area, vehicle);
             fly(
                 &mission,
                 &mut planner,
@@ -197,7 +192,7 @@ fn given_samples_may_err() {
                     own_bits += (area(&all) / area(&space)).log2();
                 }
             }
-            Err(NoVersionSpace::TooVague) => vague += 1,
+            Err(GivenError::TooVague) => vague += 1,
             Err(other) => panic!("field {number}: {other}"),
         }
     }
@@ -228,25 +223,24 @@ fn bits(kind: &str, tells: impl Fn(f64) -> f64 + Sync) -> Vec<f64> {
         };
         let mut mission = mission(52, number, algorithm);
         let mut rng = ChaCha8Rng::seed_from_u64(number);
-        let (config, vehicle) = (mission.config, mission.vehicle);
+        let (area, vehicle) = (mission.config.area, mission.vehicle);
         if kind == "cfc" || kind == "look-ahead" {
             if kind == "cfc" {
-                let mut planner = Cfc::new(config, vehicle, mission.lines()).expect("room");
+                let mut planner = mission.cfc(area, vehicle);
                 fly(&mission, &mut planner, &mut rng, errs, &tells, |_, _| {});
                 return planner.belief().information();
             }
-            let mut planner = Lookahead::new(config, vehicle, mission.lines()).expect("room");
+            let mut planner = mission.lookahead(area, vehicle);
             fly(&mission, &mut planner, &mut rng, errs, &tells, |_, _| {});
             return planner.belief().information();
         }
         mission.noise = Some(NoiseModel { p: 0.95, extent: Extent::OutsideBalls(0.0) });
         if kind == "scc" {
-            let mut planner =
-                Scc::new(config, mission.policy, vehicle, mission.table()).expect("room");
+            let mut planner = mission.scc(area, vehicle);
             fly(&mission, &mut planner, &mut rng, errs, &tells, |_, _| {});
             return planner.belief().information();
         }
-        let mut planner = Lookahead::new(config, vehicle, mission.forecast()).expect("room");
+        let mut planner = mission.doubtful(area, vehicle);
         fly(&mission, &mut planner, &mut rng, errs, &tells, |_, _| {});
         planner.belief().information()
     };
@@ -275,7 +269,7 @@ fn refuses<P: Planner<Belief: planner_core::Belief>>(
     let reading = Some(Reading::Side(Label::Positive));
     let before = planner.belief().chance(motion.target.site).to_bits();
     let refused = planner.observe_within(motion.target, reading, more);
-    assert_eq!(refused, Err(Refused::Tolerance(more)));
+    assert_eq!(refused, Err(ObservationError::Tolerance(more)));
     assert_eq!(planner.belief().chance(motion.target.site).to_bits(), before);
     assert_eq!(planner.plan(start), Plan::Move(motion));
     planner.observe_within(motion.target, reading, metres(MOST)).expect("as configured");
@@ -285,12 +279,11 @@ fn refuses<P: Planner<Belief: planner_core::Belief>>(
 #[test]
 fn more_than_was_configured_is_refused_and_changes_nothing() {
     let mut mission = mission(53, 3, Algorithm::Cfc);
-    let (config, vehicle, start) = (mission.config, mission.vehicle, mission.start);
+    let (area, vehicle, start) = (mission.config.area, mission.vehicle, mission.start);
     let more = metres(MOST + 0.01);
-    refuses(&mut Cfc::new(config, vehicle, mission.lines()).expect("room"), start, more);
-    refuses(&mut Lookahead::new(config, vehicle, mission.lines()).expect("room"), start, more);
+    refuses(&mut mission.cfc(area, vehicle), start, more);
+    refuses(&mut mission.lookahead(area, vehicle), start, more);
     mission.noise = Some(NoiseModel { p: 0.9, extent: Extent::OutsideBalls(0.0) });
-    refuses(&mut Lookahead::new(config, vehicle, mission.forecast()).expect("room"), start, more);
-    let scc = Scc::new(config, mission.policy, vehicle, mission.table());
-    refuses(&mut scc.expect("room"), start, more);
+    refuses(&mut mission.doubtful(area, vehicle), start, more);
+    refuses(&mut mission.scc(area, vehicle), start, more);
 }

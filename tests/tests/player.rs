@@ -3,16 +3,11 @@
 use host_sim::hil::player::Player;
 use host_sim::mission::definition::Mission;
 use host_sim::mission::recording::Recording;
-use planner_core::belief::Belief as _;
-use planner_core::belief::estimate::Estimates;
-use planner_core::belief::sample::Reading;
-use planner_core::geometry::local_line::LocalLine;
 use planner_core::link::frame::{Decoder, Envelope, Frame};
 use planner_core::link::message::{
     self, Capacity, ClockRate, LabelSource, PROTOCOL, Reply, Request,
 };
-use planner_core::motion::dynamics::Pose;
-use planner_core::planner::Motion;
+use planner_core::{Belief as _, Estimates, LocalLine, Motion, Pose, Reading};
 use tests::missions::mission;
 
 /// A player and what a chip of our own says to it.

@@ -13,11 +13,10 @@ use host_sim::hil::player::Player;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::recording::Recording;
 use host_sim::report::trace;
-use planner_core::Area;
 use planner_core::link::delivery::{Link, Port};
 use planner_core::link::message::{ClockRate, EndReason, LabelSource, MissionEnd};
 use planner_core::link::station::{Flown, Station};
-use planner_core::motion::unicycle::Unicycle;
+use planner_core::{Area, Unicycle};
 use serialport::{SerialPort as _, TTYPort};
 
 const WAIT: Duration = Duration::from_millis(100);

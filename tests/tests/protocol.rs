@@ -12,22 +12,16 @@ use host_sim::mission::algorithm::Algorithm as Planner;
 use host_sim::mission::definition::Mission;
 use host_sim::mission::recording::Recording;
 use host_sim::mission::scenario::{self, Overrides};
-use planner_core::Prior;
-use planner_core::belief::Refused;
-use planner_core::belief::goal::Accuracy;
-use planner_core::belief::sample::{Label, Reading};
-use planner_core::belief::version_space::NoVersionSpace;
+use planner_core::error::{GivenError, GridError, ObservationError, ShapeError};
 use planner_core::link::frame::{Decoder, Envelope, FRAME, Frame, Message};
 use planner_core::link::message::{
-    Accepted, Algorithm, Capacity, ClockRate, Declined, EndReason, LabelSource, MOST_CORNERS,
+    Accepted, Algorithm, Capacity, ClockRate, DeclinedError, EndReason, LabelSource, MOST_CORNERS,
     MOST_GIVEN, MOST_KEEP_OUTS, MissionEnd, Move, PROTOCOL, Reply, Request, Setup, Took,
 };
-use planner_core::motion::action::BadGrid;
-use planner_core::motion::any_vehicle::{NoVehicle, Shape};
-use planner_core::planner::config::{Crossing, Following};
-use planner_core::planner::scc::Policy;
-use planner_core::planner::{Stage, StopReason};
+use planner_core::motion::any_vehicle::Shape;
+use planner_core::planner::Stage;
 use planner_core::search::recovery::Recovery;
+use planner_core::{Accuracy, Crossing, Following, Label, Policy, Prior, Reading, StopReason};
 use serde::de::DeserializeOwned;
 use tests::program::build;
 
@@ -192,7 +186,7 @@ fn the_examples_are_what_is_sent() {
     said.is("Stale", 7, 12, Reply::Stale);
 
     said.is("Setup of Algorithm 2", 9, 1, Reply::Setup(setup(&noisy, LabelSource::Vehicle)));
-    let least = Declined::Capacity(Capacity { samples: 36, hypotheses: 529 });
+    let least = DeclinedError::Capacity(Capacity { samples: 36, hypotheses: 529 });
     said.is("Declined", 9, 2, Request::Declined(least));
     let by_true = setup(&by_lookahead, LabelSource::Vehicle);
     said.is("Setup of look-ahead, true labels", 10, 1, Reply::Setup(by_true));
@@ -273,11 +267,11 @@ fn the_tables_have_every_variant() {
     check("Recovery", variants::<Recovery>(&[zeros]));
     check("EndReason", variants::<EndReason>(&[zeros]));
     check("StopReason", variants::<StopReason>(&[zeros]));
-    check("Refused", variants::<Refused>(&[zeros]));
-    check("Declined", variants::<Declined>(&[zeros]));
-    check("NoVersionSpace", variants::<NoVersionSpace>(&[zeros]));
-    check("NoVehicle", variants::<NoVehicle>(&[zeros]));
-    check("BadGrid", variants::<BadGrid>(&[zeros]));
+    check("Refused", variants::<ObservationError>(&[zeros]));
+    check("Declined", variants::<DeclinedError>(&[zeros]));
+    check("GivenError", variants::<GivenError>(&[zeros]));
+    check("ShapeError", variants::<ShapeError>(&[zeros]));
+    check("GridError", variants::<GridError>(&[zeros]));
     assert!(wrong.is_empty(), "docs/protocol.md:\n{}", wrong.join("\n"));
 }
 

@@ -7,21 +7,12 @@ use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::CAPACITY;
 use nalgebra::Point2;
-use planner_core::belief::sample::{Label, Reading, Sample};
-use planner_core::belief::tolerance::Tolerance;
-use planner_core::belief::version_space::VersionSpace;
-use planner_core::geometry::area::Area;
-use planner_core::geometry::heading::Heading;
-use planner_core::geometry::lattice::Site;
-use planner_core::geometry::region::Region;
+use planner_core::dynamics::Dynamics;
 use planner_core::motion::contract;
-use planner_core::motion::dynamics::{Dynamics, Pose};
-use planner_core::motion::holonomic::Holonomic;
-use planner_core::motion::unicycle::Unicycle;
-use planner_core::planner::cfc::{self, Cfc};
-use planner_core::planner::config::{Config, Crossing};
-use planner_core::planner::{Plan, Planner as _, StopReason};
-use planner_core::search::objective::Varrho;
+use planner_core::{
+    Area, Cfc, Heading, Holonomic, Label, Plan, Planner as _, Pose, Reading, Sample, Site,
+    StopReason, Unicycle, VersionSpace, Workspace,
+};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -38,7 +29,7 @@ struct Endless;
 
 /// Follows the plans from a pose, learning nothing, up to the first that takes a sample: where that
 /// is, or why there is none. And the motions made.
-fn chase<D: Dynamics, G: Region>(
+fn chase<D: Dynamics, G: Workspace>(
     planner: &mut Cfc<D, CAPACITY, G>,
     mut pose: Pose,
 ) -> Result<(Result<Pose, StopReason>, usize), Endless> {
@@ -71,13 +62,7 @@ fn a_coarse_fan_does_not_turn_on_the_spot_for_ever() {
         sample(18.0, 12.0, Label::Positive),
         sample(18.0, 10.0, Label::Negative),
     ];
-    let config = Config {
-        area: Area::new(at(0.0, 0.0), at(20.0, 20.0)).expect("an area"),
-        varrho: Varrho::PAPER,
-        crossing: Crossing::default(),
-        following: cfc::FOLLOWING,
-        tolerance: Tolerance::NONE,
-    };
+    let area = Area::metres([0.0, 0.0], [20.0, 20.0]).expect("an area");
     let space = VersionSpace::new(&oracle).expect("they are apart");
     let coarse = Unicycle::new(785_000, core::f64::consts::FRAC_PI_2, 11, 200).expect("a grid");
     let starts = (0..20).flat_map(|i| (0..20).flat_map(move |j| (0..16).map(move |k| (i, j, k))));
@@ -85,7 +70,7 @@ fn a_coarse_fan_does_not_turn_on_the_spot_for_ever() {
     starts.par_iter().for_each(|&(i, j, k)| {
         let site = at(0.5 + f64::from(i), 0.5 + f64::from(j));
         let pose = Pose { site, heading: Heading(k << 28) };
-        let mut planner = Cfc::new(config, coarse, space.clone()).expect("settings that agree");
+        let mut planner = Cfc::new(area, coarse, space.clone()).expect("settings that agree");
         let (end, motions) = chase(&mut planner, pose).expect("it comes to an end");
         assert!(end.is_ok() && motions < 24, "from {pose:?}: {end:?} after {motions} motions");
     });
@@ -124,8 +109,7 @@ fn any(rng: &mut ChaCha8Rng) -> Any {
 fn fly<D: Dynamics>(dynamics: D, number: u64, rng: &mut ChaCha8Rng) -> StopReason {
     contract::check(&dynamics).expect("a grid of ours");
     let mission = standard_field::standard(21, number, Algorithm::Cfc, 1);
-    let mut planner =
-        Cfc::new(mission.config, dynamics, mission.given.clone()).expect("settings that agree");
+    let mut planner = mission.cfc(mission.config.area, dynamics);
     let mut pose = Pose { heading: Heading(rng.random_range(0..=u32::MAX)), ..mission.start };
     loop {
         let (end, _) = chase(&mut planner, pose).unwrap_or_else(|Endless| {

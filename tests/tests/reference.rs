@@ -21,13 +21,10 @@ use host_sim::reference::optimum::solve;
 use host_sim::reference::search::Sequence;
 use host_sim::reference::solution::Solution;
 use host_sim::world::noise::{Extent, NoiseModel};
-use planner_core::geometry::region::Region as _;
-use planner_core::motion::action::Action;
-use planner_core::motion::any_vehicle::AnyVehicle;
-use planner_core::motion::boat::Boat;
-use planner_core::motion::car::{self, Car};
-use planner_core::motion::dynamics::{Dynamics as _, Pose, room_for_errors};
-use planner_core::motion::unicycle::Unicycle;
+use planner_core::dynamics::{Action, Dynamics as _};
+use planner_core::motion::car::{self};
+use planner_core::motion::dynamics::room_for_errors;
+use planner_core::{AnyVehicle, Boat, Car, Pose, Unicycle, Workspace as _};
 use tests::cases;
 
 /// Standard fields that planners fly beside the optimum.
@@ -249,8 +246,8 @@ fn first_of_all(
 
 fn control(mission: &Mission, actions: &[Action]) -> f64 {
     let squares = actions.iter().map(|action| {
-        let control = mission.vehicle.control(*action);
-        f64::from(control.v).powi(2) + f64::from(control.w).powi(2)
+        let control = mission.vehicle.control(mission.start, *action);
+        f64::from(control.distance_m).powi(2) + f64::from(control.turn_rad).powi(2)
     });
     squares.sum()
 }

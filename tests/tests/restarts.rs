@@ -14,10 +14,10 @@ use host_sim::hil::setup;
 use host_sim::mission::definition::Mission;
 use host_sim::mission::recording::Recording;
 use host_sim::world::robot::Robot;
+use planner_core::Pose;
 use planner_core::link::delivery::{Heard, Link, Port, Responder};
 use planner_core::link::frame::{Decoder, Frame};
-use planner_core::link::message::{self, Declined, LabelSource, PROTOCOL, Reply, Request};
-use planner_core::motion::dynamics::Pose;
+use planner_core::link::message::{self, DeclinedError, LabelSource, PROTOCOL, Reply, Request};
 use rayon::prelude::*;
 use tests::chip::{FarEnd, Off, power_up};
 use tests::missions::mission;
@@ -239,7 +239,7 @@ fn a_vehicle_that_takes_its_time_is_waited_for() {
     let mut link = Link::new(&mut slow);
     let hello = link.ask(Request::Hello { protocol: PROTOCOL });
     assert!(matches!(hello, Ok(Reply::Setup(_))));
-    let declined = Request::Declined(Declined::Algorithm);
+    let declined = Request::Declined(DeclinedError::Algorithm);
     assert_eq!(link.ask(declined), Ok(Reply::Noted));
     assert_eq!((slow.begun, slow.busy), (1, 0));
 }

@@ -9,17 +9,11 @@ use host_sim::mission::definition::Mission;
 use host_sim::mission::read_out::ReadOut;
 use host_sim::world::World;
 use nalgebra::{Point2, Vector2};
-use planner_core::belief::sample::Sample;
-use planner_core::belief::version_space::VersionSpace;
-use planner_core::geometry::area::Area;
-use planner_core::geometry::lattice::Site;
-use planner_core::geometry::line::Line;
-use planner_core::motion::action::ActionGrid;
-use planner_core::motion::any_vehicle::AnyVehicle;
-use planner_core::motion::boat::Boat;
-use planner_core::motion::car::{self, Car};
-use planner_core::motion::dynamics::Pose;
-use planner_core::motion::unicycle::Unicycle;
+use planner_core::dynamics::ActionGrid;
+use planner_core::motion::car::{self};
+use planner_core::{
+    AnyVehicle, Area, Boat, Car, Line, Pose, Sample, Site, Unicycle, VersionSpace, aimed_for,
+};
 use rayon::prelude::*;
 use tests::cases;
 
@@ -85,7 +79,7 @@ fn teach(kind: &str, side: f64, reach_mm: f64, fields: u64) -> Option<Taught> {
     let fly = |number| {
         let mut mission = scaled(number, side / standard_field::SIDE_M);
         mission.vehicle = vehicle(kind, reach_mm);
-        mission.config.admits(&mission.vehicle).ok()?;
+        aimed_for(mission.config.area, &mission.vehicle, mission.config.tolerance).ok()?;
         let truth = *mission.world.line().expect("a line");
         let read_out = |belief: &dyn ReadOut| {
             let centre = belief.estimates().centre.expect("a line");

@@ -14,20 +14,16 @@ use host_sim::world::errors::Errors;
 use host_sim::world::noise::{Extent, Flipped, NoiseModel, limit};
 use host_sim::world::robot::Ideal;
 use nalgebra::Point2;
-use planner_core::belief::noise::{Noise, Reliability};
-use planner_core::belief::sample::{Label, Reading, Sample};
-use planner_core::belief::tolerance::Tolerance;
-use planner_core::belief::weight::Prior;
-use planner_core::geometry::heading::Heading;
-use planner_core::geometry::lattice::{LIMIT, Site};
+use planner_core::dynamics::{Action, Control};
+use planner_core::geometry::lattice::LIMIT;
 use planner_core::link::message::MissionArea;
-use planner_core::motion::action::{Action, Control};
-use planner_core::motion::dynamics::Pose;
-use planner_core::motion::unicycle::{Grid, Unicycle};
-use planner_core::planner::config::Crossing;
-use planner_core::planner::scc::{Policy, Scc};
-use planner_core::planner::{Motion, Plan, Planner, Stage};
-use planner_core::robot::body::Body as _;
+use planner_core::motion::unicycle::Grid;
+use planner_core::planner::Stage;
+use planner_core::robot::Body as _;
+use planner_core::{
+    Crossing, Heading, Label, Motion, Noise, Plan, Planner, Policy, Pose, Prior, Reading,
+    Reliability, Sample, Scc, Site, Tolerance, Unicycle,
+};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -64,8 +60,9 @@ fn a_vote_is_the_sum_over_hypotheses_computed_the_slow_way() {
             let mut elections = 0;
             let flown = mission.fly(|step, belief| {
                 let planner = |table: Table| -> Planner64 {
-                    Scc::new(mission.config, policy, Unicycle::paper(), table)
-                        .expect("settings that agree")
+                    let planner = Scc::new(mission.config.area, Unicycle::paper(), table);
+                    let planner = planner.expect("settings that agree");
+                    planner.with(mission.config.options()).voting(policy)
                 };
                 // From where it was and, facing elsewhere, where it was not.
                 let elsewhere = Pose { heading: Heading(from.heading.0.wrapping_mul(77)), ..from };
@@ -111,7 +108,7 @@ fn problems_alternate_by_labels_and_the_agent_moves_on() {
             let flown = mission.fly(|step, _| {
                 assert_eq!(step.motion.stage, Some(names[labels % 2]));
                 // A place is left before the next sample.
-                assert!(step.reading.is_none() || step.motion.control.v > 0.0);
+                assert!(step.reading.is_none() || step.motion.control.distance_m > 0.0);
                 labels += usize::from(step.reading.is_some());
             });
             assert!(flown.is_ok() && labels > 20);
@@ -124,7 +121,7 @@ const SOME_MOTION: Motion = Motion {
     stage: None,
     recovery: None,
     action: Action(0),
-    control: Control { v: 0.0, w: 0.0 },
+    control: Control { distance_m: 0.0, turn_rad: 0.0 },
     target: Pose { site: Site::ORIGIN, heading: Heading(0) },
     wants_label: true,
     examined: 0,

@@ -5,27 +5,18 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::CAPACITY;
-use planner_core::belief::consistent_lines::Certainty;
-use planner_core::belief::sample::{Label, Sample};
-use planner_core::belief::tolerance::Tolerance;
-use planner_core::belief::version_space::VersionSpace;
+use planner_core::dynamics::Dynamics;
 use planner_core::geometry::arc::SlopeArc;
-use planner_core::geometry::area::Area;
-use planner_core::geometry::heading::Heading;
-use planner_core::geometry::lattice::{Site, Vector};
-use planner_core::geometry::region::Region;
-use planner_core::motion::boat::Boat;
-use planner_core::motion::car::{self, Car};
-use planner_core::motion::dynamics::{Dynamics, Pose};
-use planner_core::motion::holonomic::Holonomic;
-use planner_core::motion::unicycle::Unicycle;
-use planner_core::planner::cfc::{self, Cfc};
-use planner_core::planner::config::{Config, Crossing};
-use planner_core::planner::{Plan, Planner as _};
+use planner_core::geometry::lattice::Vector;
+use planner_core::motion::car::{self};
 use planner_core::search::direction_rule::ArcRule;
-use planner_core::search::objective::{LOOKS, Varrho};
+use planner_core::search::objective::{EffortWeight, LOOKS};
 use planner_core::search::problem::{Problem, Solution};
 use planner_core::search::recovery::Recovery;
+use planner_core::{
+    Area, Boat, Car, Certainty, Cfc, Heading, Holonomic, Label, Plan, Planner as _, Pose, Sample,
+    Site, Unicycle, VersionSpace, Workspace,
+};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -35,8 +26,8 @@ use tests::clamped;
 fn check<D: Dynamics, const N: usize>(
     dynamics: &D,
     space: &VersionSpace<N>,
-    area: impl Region,
-    varrho: Varrho,
+    area: impl Workspace,
+    weight: EffortWeight,
     pose: Pose,
     context: &str,
 ) -> (u64, u64) {
@@ -53,7 +44,7 @@ fn check<D: Dynamics, const N: usize>(
     ];
     let (mut states, mut examined) = (0, 0);
     for rule in rules {
-        let problem = Problem { lines: space.lines(), area, varrho, rule };
+        let problem = Problem { lines: space.lines(), area, weight, rule };
         let quick = problem.solve(dynamics, pose);
         let slow = problem.solve_exhaustively(dynamics, pose);
         assert_eq!(quick.best, slow.best, "{context}: {rule:?} from {pose:?} in {space:?}");
@@ -81,7 +72,7 @@ fn equals_exhaustive_search_along_missions() {
                 &unicycle,
                 &space_before,
                 area,
-                Varrho::PAPER,
+                EffortWeight::PAPER,
                 from,
                 &format!("field {number}, step {step}"),
             );
@@ -126,7 +117,7 @@ fn anywhere(rng: &mut ChaCha8Rng) -> Option<(VersionSpace<CAPACITY>, Area, Pose)
     let space = VersionSpace::new(&samples).ok()?;
     let reach = 2 * extent.max(40_000);
     let corner = |v: i64| clamped(far + v, v);
-    let area = Area::new(corner(-reach), corner(reach))?;
+    let area = Area::new(corner(-reach), corner(reach)).ok()?;
     let near = samples[rng.random_range(0..samples.len())].site;
     let nudge =
         |rng: &mut ChaCha8Rng, v: i32| i64::from(v) + rng.random_range(-2..=2) * extent / 64;
@@ -158,8 +149,8 @@ fn equals_exhaustive_search_anywhere_for_any_grid() {
     (0..4_000u64).into_par_iter().for_each(|seed| {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let Some((space, area, pose)) = anywhere(&mut rng) else { return };
-        let varrho = [0.0, 0.1, 0.5, 0.9, 0.999_999][rng.random_range(0..5)];
-        let varrho = Varrho::new(varrho).expect("in [0, 1)");
+        let weight = [0.0, 0.1, 0.5, 0.9, 0.999_999][rng.random_range(0..5)];
+        let weight = EffortWeight::new(weight).expect("in [0, 1)");
         let context = format!("seed {seed}");
         // Coarse grids have more ties, and one whose last turn falls on a multiple of its step.
         let coarse = Unicycle::new(100_000, 0.5, 11, 200).expect("a grid");
@@ -168,26 +159,26 @@ fn equals_exhaustive_search_anywhere_for_any_grid() {
         let tiny = Unicycle::new(100_000, 1.0, 5, 1).expect("a grid");
         // On this one they are rounded by much, and headings are dense.
         let fine = Unicycle::new(1_000, 0.5, 9, 4).expect("a grid");
-        let mut count = check(&coarse, &space, area, varrho, pose, &context).0;
-        count += check(&round, &space, area, varrho, pose, &context).0;
-        count += check(&tiny, &space, area, varrho, pose, &context).0;
-        count += check(&fine, &space, area, varrho, pose, &context).0;
+        let mut count = check(&coarse, &space, area, weight, pose, &context).0;
+        count += check(&round, &space, area, weight, pose, &context).0;
+        count += check(&tiny, &space, area, weight, pose, &context).0;
+        count += check(&fine, &space, area, weight, pose, &context).0;
         // Fewer rays the shorter the motion, of which the shortest are none, and ends that may leave no way on.
         for car in cars() {
-            count += check(&car, &space, area, varrho, pose, &context).0;
+            count += check(&car, &space, area, weight, pose, &context).0;
         }
         let boat = Boat::new(coarse).expect("a boat");
-        count += check(&boat, &space, area, varrho, pose, &context).0;
+        count += check(&boat, &space, area, weight, pose, &context).0;
         // Where positions err, motions leave room.
         let inset = area.inset(1 << rng.random_range(0..18));
         if let Some(inset) = inset.filter(|inset| inset.contains(pose.site)) {
             for car in cars() {
-                count += check(&car, &space, inset, varrho, pose, &context).0;
+                count += check(&car, &space, inset, weight, pose, &context).0;
             }
-            count += check(&boat, &space, inset, varrho, pose, &context).0;
+            count += check(&boat, &space, inset, weight, pose, &context).0;
         }
         if seed % 8 == 0 {
-            count += check(&Unicycle::paper(), &space, area, varrho, pose, &context).0;
+            count += check(&Unicycle::paper(), &space, area, weight, pose, &context).0;
         }
         states.fetch_add(count, Relaxed);
     });
@@ -209,9 +200,10 @@ fn equals_exhaustive_search_on_rays_1_urad_apart() {
             let space = known.version_space().expect("noiseless");
             if rng.random_range(0..40) == 0 {
                 let context = format!("mission {number}");
-                check(&fine, space, area, Varrho::PAPER, taken.pose, &context);
+                check(&fine, space, area, EffortWeight::PAPER, taken.pose, &context);
                 let rule = ArcRule::default();
-                let problem = Problem { lines: space.lines(), area, varrho: Varrho::PAPER, rule };
+                let problem =
+                    Problem { lines: space.lines(), area, weight: EffortWeight::PAPER, rule };
                 found
                     .fetch_add(u64::from(problem.solve(&fine, taken.pose).best.is_some()), Relaxed);
             }
@@ -230,7 +222,8 @@ fn a_search_among_2_to_the_31_rays_comes_to_an_end() {
     for number in 0..40 {
         let mission = standard_field::standard(14, number, Algorithm::Cfc, 1);
         let (lines, area) = (mission.given.lines(), mission.config.area);
-        let problem = Problem { lines, area, varrho: Varrho::PAPER, rule: ArcRule::default() };
+        let problem =
+            Problem { lines, area, weight: EffortWeight::PAPER, rule: ArcRule::default() };
         let solution = problem.solve_within(LOOKS, &most, mission.start);
         let found = solution.best.map(|best| lines.certainty(best.target.site));
         assert!(found.is_none_or(|it| it == Certainty::Uncertain), "{number}: {solution:?}");
@@ -269,9 +262,10 @@ fn equals_exhaustive_search_among_more_bounds_than_are_kept() {
             let pose = Pose { site, heading: Heading(n.unsigned_abs() << 28) };
             let context = "between parabolas";
             let area = square(400_000);
-            let (states, examined) = check(&coarse, &space, area, Varrho::PAPER, pose, context);
+            let (states, examined) =
+                check(&coarse, &space, area, EffortWeight::PAPER, pose, context);
             let (more, also) =
-                check(&Unicycle::paper(), &space, area, Varrho::PAPER, pose, context);
+                check(&Unicycle::paper(), &space, area, EffortWeight::PAPER, pose, context);
             slow += states * coarse.grid().actions() + more * 6657;
             quick += examined + also;
         }
@@ -291,15 +285,8 @@ fn a_plan_has_so_many_looks_and_says_when_they_do_not_do() {
         sample(-60_000, 100, Label::Positive),
         sample(60_000, 100, Label::Positive),
     ]);
-    let config = Config {
-        area: square(400_000),
-        varrho: Varrho::PAPER,
-        crossing: Crossing::default(),
-        following: cfc::FOLLOWING,
-        tolerance: Tolerance::NONE,
-    };
     let planner = |dynamics| {
-        Cfc::new(config, dynamics, space.clone().expect("they are apart"))
+        Cfc::new(square(400_000), dynamics, space.clone().expect("they are apart"))
             .expect("settings that agree")
     };
     let pose = |z, quarters: u32| Pose {
@@ -349,25 +336,27 @@ fn motions_are_those_of_the_unicycle() {
         let mut before = 0;
         for ray in unicycle.rays(pose) {
             seen += 1;
-            assert!(ray.effort >= before, "rays come cheapest first");
-            before = ray.effort;
+            assert!(ray.turn_cost >= before, "rays come cheapest first");
+            before = ray.turn_cost;
             for speed in [0, 1, 7, 20] {
-                let control = unicycle.control(grid.action(ray.index, speed));
-                let angle = heading.radians() + f64::from(control.w);
-                let reach = f64::from(control.v) * 65_536.0;
+                let control = unicycle.control(pose, grid.action(ray.index, speed));
+                let angle = heading.radians() + f64::from(control.turn_rad);
+                let reach = f64::from(control.distance_m) * 65_536.0;
                 let target = unicycle.arrive(pose, &ray, speed).expect("near");
                 let off = |got: i32, start: i32, exact: f64| (f64::from(got - start) - exact).abs();
                 assert!(off(target.site.x(), from.x(), reach * angle.cos()) < 0.6, "{control:?}");
                 assert!(off(target.site.z(), from.z(), reach * angle.sin()) < 0.6, "{control:?}");
                 let turned = (target.heading.radians() - angle).sin().abs();
                 assert!(turned < 1e-6, "{control:?}");
-                let w = f64::from(control.w) * 1000.0;
-                assert!((f64::from(ray.effort) - w * w).abs() < 2.0);
+                let w = f64::from(control.turn_rad) * 1000.0;
+                assert!((f64::from(ray.turn_cost) - w * w).abs() < 2.0);
             }
         }
         assert_eq!(seen, 317);
     }
-    let turns = [316, 315, 158, 1, 0].map(|ray| unicycle.control(grid.action(ray, 20)).w);
+    let start = Pose { site: Site::ORIGIN, heading: Heading(0) };
+    let turn = |ray| unicycle.control(start, grid.action(ray, 20)).turn_rad;
+    let turns = [316, 315, 158, 1, 0].map(turn);
     let quarter = core::f32::consts::FRAC_PI_2;
     assert_eq!(turns.map(f32::to_bits), [quarter, 1.57, 0.0, -1.57, -quarter].map(f32::to_bits));
 }

@@ -11,17 +11,12 @@ use host_sim::mission::recording::{Recorder, Recording};
 use host_sim::mission::results::Ending;
 use host_sim::report::trace;
 use host_sim::world::noise::{Extent, NoiseModel};
-use planner_core::belief::noise::Noise;
-use planner_core::belief::told::NotReplayed;
-use planner_core::belief::tolerance::Tolerance;
-use planner_core::motion::dynamics::Pose;
-use planner_core::planner::Plan;
-use planner_core::planner::scc::Policy;
-use planner_core::planner::snapshot::{NotRestored, Persist, VERSION};
-use planner_core::robot::agent::Step;
+use planner_core::SNAPSHOT_VERSION;
+use planner_core::error::{ReplayError, RestoreError};
 use planner_core::{
-    Belief as _, Cfc, Config, Forecast, Hypotheses, Label, Lookahead, Planner as _, Prior,
-    Reliability, Sample, Scc, Unicycle, VersionSpace,
+    Belief as _, CellPosterior, Cfc, Label, Lookahead, Noise, NoisyBelief, Persist, Plan,
+    Planner as _, Policy, Pose, Prior, Reliability, Sample, Scc, Step, Tolerance, Unicycle,
+    VersionSpace,
 };
 use rayon::prelude::*;
 use serde::Serialize;
@@ -86,24 +81,14 @@ where
 
 /// The same with the planner of the mission.
 fn asleep_as_asked(mission: &Mission) -> Result<String, String> {
-    let (config, vehicle, goal) = (mission.config, mission.vehicle, mission.goal);
+    let (area, vehicle) = (mission.config.area, mission.vehicle);
     match mission.algorithm {
-        Algorithm::Cfc => asleep(mission, || {
-            Cfc::new(config, vehicle, mission.lines()).expect("settings that agree")
-        }),
-        Algorithm::Scc => asleep(mission, || {
-            Scc::new(config, mission.policy, vehicle, mission.table()).expect("settings that agree")
-        }),
-        Algorithm::Lookahead if mission.is_noisy() => asleep(mission, || {
-            Lookahead::new(config, vehicle, mission.forecast())
-                .expect("settings that agree")
-                .until(goal)
-        }),
-        Algorithm::Lookahead => asleep(mission, || {
-            Lookahead::new(config, vehicle, mission.lines())
-                .expect("settings that agree")
-                .until(goal)
-        }),
+        Algorithm::Cfc => asleep(mission, || mission.cfc(area, vehicle)),
+        Algorithm::Scc => asleep(mission, || mission.scc(area, vehicle)),
+        Algorithm::Lookahead if mission.is_noisy() => {
+            asleep(mission, || mission.doubtful(area, vehicle))
+        }
+        Algorithm::Lookahead => asleep(mission, || mission.lookahead(area, vehicle)),
         Algorithm::Margin | Algorithm::Random => panic!("no planner of planner-core"),
     }
 }
@@ -164,9 +149,10 @@ fn labels_keep_the_reliability_that_they_came_with() {
         let noise =
             Noise { tolerance: Tolerance::new(tolerance).expect("metres"), ..mission.noise_told() };
         let make = || {
-            let forecast = Forecast::<36, 529>::new(mission.given.samples(), Prior::Area, noise)
-                .expect("four");
-            Lookahead::new(mission.config, mission.vehicle, forecast).expect("settings that agree")
+            let forecast =
+                NoisyBelief::<36, 529>::new(mission.given.samples(), noise).expect("four");
+            Lookahead::new(mission.config.area, mission.vehicle, forecast)
+                .expect("settings that agree")
         };
         let told = |first: f64| {
             let mut planner = make();
@@ -175,11 +161,11 @@ fn labels_keep_the_reliability_that_they_came_with() {
                 let label = if number % 2 == 0 { Label::Positive } else { Label::Negative };
                 let sample = Sample { site: motion.target.site, label };
                 let reliability = Reliability::new(p).expect("a probability");
-                planner.foresight().take(sample, reliability).expect("a possible label");
+                planner.belief_mut().take(sample, reliability).expect("a possible label");
             }
             planner
         };
-        let chance = |planner: &Lookahead<_, Forecast<36, 529>, _>| {
+        let chance = |planner: &Lookahead<_, NoisyBelief<36, 529>, _>| {
             planner.belief().chance(middle).to_bits()
         };
         let awake = told(0.9);
@@ -235,20 +221,14 @@ fn own_tolerances_outlive_a_sleep() {
     for number in 0..cases(8, 200) {
         let mut mission = standard_field::standard(47, number, Algorithm::Cfc, 24);
         mission.config.tolerance = Tolerance::new(0.5).expect("a distance");
-        let (config, vehicle) = (mission.config, mission.vehicle);
-        let agree = "settings that agree";
-        check("Cfc", &mission, || Cfc::new(config, vehicle, mission.lines()).expect(agree));
-        check("Lookahead", &mission, || {
-            Lookahead::new(config, vehicle, mission.lines()).expect(agree)
-        });
-        let mission = Mission { steps: 14, ..noisy(mission, 0.9) };
-        check("Lookahead in noise", &mission, || {
-            Lookahead::new(config, vehicle, mission.forecast()).expect(agree)
-        });
+        let (area, vehicle) = (mission.config.area, mission.vehicle);
+        check("Cfc", &mission, || mission.cfc(area, vehicle));
+        check("Lookahead", &mission, || mission.lookahead(area, vehicle));
+        let mut mission = Mission { steps: 14, ..noisy(mission, 0.9) };
+        check("Lookahead in noise", &mission, || mission.doubtful(area, vehicle));
         for policy in [Policy::Joint, Policy::MixtureOfOwn] {
-            check("Scc", &mission, || {
-                Scc::new(config, policy, vehicle, mission.table()).expect(agree)
-            });
+            mission.policy = policy;
+            check("Scc", &mission, || mission.scc(area, vehicle));
         }
     }
 }
@@ -266,15 +246,16 @@ fn encoded(value: &impl Serialize) -> Vec<u8> {
 fn planners<const N: usize>()
 -> (Cfc<Unicycle, N>, Lookahead<Unicycle, VersionSpace<N>>, Scc<Unicycle, N, 30>) {
     let mission = standard_field::standard(46, 2, Algorithm::Cfc, 0);
-    let Config { varrho, crossing, following, tolerance, .. } = mission.config;
-    let config = Config { area: standard_field::area(), varrho, crossing, following, tolerance };
+    let (area, options) = (standard_field::area(), mission.config.options());
     let (given, unicycle) = (mission.given.samples(), Unicycle::paper());
     let space = VersionSpace::new(given).expect("four points");
-    let noise = Noise { reliability: Reliability::new(0.8).expect("a probability"), ..Noise::NONE };
-    let table = Hypotheses::new(given, Prior::Area, noise).expect("four points");
-    let mut cfc = Cfc::new(config, unicycle, space.clone()).expect("settings that agree");
-    let mut lookahead = Lookahead::new(config, unicycle, space).expect("settings that agree");
-    let mut scc = Scc::new(config, Policy::Joint, unicycle, table).expect("settings that agree");
+    let noise = Noise::new(0.8).expect("a probability");
+    let table = CellPosterior::new(given, Prior::Area, noise).expect("four points");
+    let agree = "settings that agree";
+    let mut cfc = Cfc::new(area, unicycle, space.clone()).expect(agree).with(options);
+    let mut lookahead = Lookahead::new(area, unicycle, space).expect(agree);
+    let scc = Scc::new(area, unicycle, table).expect(agree);
+    let mut scc = scc.with(options).voting(Policy::Joint);
     for label in [Label::Positive, Label::Negative, Label::Positive] {
         let Plan::Move(motion) = lookahead.plan(mission.start) else { panic!("no motion") };
         let reading = Some(label.into());
@@ -299,13 +280,13 @@ fn what_is_no_snapshot_of_such_a_planner_is_refused() {
 
     // Another version, which is the first that is written.
     let mut later = of_lookahead.clone();
-    assert_eq!(u16::from(later[0]), VERSION);
+    assert_eq!(u16::from(later[0]), SNAPSHOT_VERSION);
     later[0] = 9;
     let later = postcard::from_bytes(&later).expect("the same layout");
-    assert_eq!(lookahead.restore(&later), Err(NotRestored::Version(9)));
+    assert_eq!(lookahead.restore(&later), Err(RestoreError::Version(9)));
 
     // The other kind of labels.
-    let kind = Err(NotRestored::Told(NotReplayed::Kind));
+    let kind = Err(RestoreError::Log(ReplayError::Kind));
     assert_eq!(lookahead.restore(&postcard::from_bytes(&of_scc).expect("as it is told")), kind);
     assert_eq!(scc.restore(&postcard::from_bytes(&of_lookahead).expect("as it is told")), kind);
 

@@ -10,8 +10,14 @@ use std::path::Path;
 /// above all of them.
 type Storeys<'a> = &'a [&'a [&'a str]];
 
-const PLANNER_CORE: Storeys =
-    &[&["geometry"], &["belief", "motion"], &["search"], &["planner"], &["robot"], &["link"]];
+const PLANNER_CORE: Storeys = &[
+    &["geometry"],
+    &["belief", "motion"],
+    &["search"],
+    &["planner"],
+    &["robot"],
+    &["dynamics", "error", "link"],
+];
 
 const HOST_SIM: Storeys = &[
     &["output", "world"],

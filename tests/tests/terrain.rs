@@ -10,20 +10,15 @@ use host_sim::mission::results::Ending;
 use host_sim::world::World;
 use host_sim::world::noise::{Extent, NoiseModel};
 use nalgebra::Point2;
-use planner_core::belief::sample::{Label, Sample};
-use planner_core::belief::tolerance::Tolerance;
-use planner_core::geometry::heading::Heading;
-use planner_core::geometry::hull::{Hull, NoHull, are_apart};
-use planner_core::geometry::lattice::{LIMIT, Site, UNITS_PER_METRE};
-use planner_core::geometry::line::Line;
-use planner_core::geometry::region::Region as _;
-use planner_core::geometry::terrain::RoundedHull;
+use planner_core::error::HullError;
+use planner_core::geometry::hull::are_apart;
+use planner_core::geometry::lattice::{LIMIT, UNITS_PER_METRE};
 use planner_core::link::message::MissionArea;
-use planner_core::motion::any_vehicle::AnyVehicle;
-use planner_core::motion::boat::Boat;
-use planner_core::motion::car::{Car, Shape};
-use planner_core::motion::dynamics::Pose;
-use planner_core::motion::unicycle::Unicycle;
+use planner_core::motion::car::Shape;
+use planner_core::{
+    AnyVehicle, Boat, Car, Heading, Hull, KeepOut, Label, Line, Pose, Sample, Site, Tolerance,
+    Unicycle, Workspace as _,
+};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -97,20 +92,23 @@ fn corners_of_no_convex_polygon_are_refused() {
     let hull = |corners: &[(i32, i32)]| {
         Hull::<5>::new(&corners.iter().copied().map(site).collect::<Vec<_>>()).map(drop)
     };
-    assert_eq!(hull(&[]), Err(NoHull::Empty));
+    assert_eq!(hull(&[]), Err(HullError::Empty));
     assert_eq!(hull(&[(0, 0)]), Ok(()));
-    assert_eq!(hull(&[(0, 0), (0, 0)]), Err(NoHull::NotConvex));
-    assert_eq!(hull(&[(0, 0), (5, 0), (9, 0)]), Err(NoHull::NotConvex), "in line");
-    assert_eq!(hull(&[(0, 0), (9, 0), (2, 2), (0, 9)]), Err(NoHull::NotConvex), "a dent");
-    assert_eq!(hull(&[(0, 0), (9, 9), (9, 0), (0, 9)]), Err(NoHull::NotConvex), "a bow");
+    assert_eq!(hull(&[(0, 0), (0, 0)]), Err(HullError::NotConvex));
+    assert_eq!(hull(&[(0, 0), (5, 0), (9, 0)]), Err(HullError::NotConvex), "in line");
+    assert_eq!(hull(&[(0, 0), (9, 0), (2, 2), (0, 9)]), Err(HullError::NotConvex), "a dent");
+    assert_eq!(hull(&[(0, 0), (9, 9), (9, 0), (0, 9)]), Err(HullError::NotConvex), "a bow");
     let star = [(0, 10), (6, -8), (-10, 3), (10, 3), (-6, -8)];
-    assert_eq!(hull(&star), Err(NoHull::NotConvex), "a star");
-    assert_eq!(hull(&[(0, 0), (9, 0), (9, 0), (0, 9)]), Err(NoHull::NotConvex), "one twice");
+    assert_eq!(hull(&star), Err(HullError::NotConvex), "a star");
+    assert_eq!(hull(&[(0, 0), (9, 0), (9, 0), (0, 9)]), Err(HullError::NotConvex), "one twice");
     let square = [(0, 0), (9, 0), (9, 9), (0, 9)];
     assert_eq!(hull(&square), Ok(()));
     let back: Vec<_> = square.into_iter().rev().collect();
     assert_eq!(hull(&back), Ok(()));
-    assert_eq!(hull(&[(0, 0), (9, 0), (12, 5), (9, 9), (0, 9), (-3, 5)]), Err(NoHull::TooMany(5)));
+    assert_eq!(
+        hull(&[(0, 0), (9, 0), (12, 5), (9, 9), (0, 9), (-3, 5)]),
+        Err(HullError::TooMany(5))
+    );
 }
 
 /// Where a motion goes along.
@@ -158,7 +156,7 @@ fn fly(mission: &Mission) -> (Ending, usize, Option<String>) {
     let (mut from, mut motions, mut wrong) = (mission.start, 0, None);
     let flown = mission.fly(|step, _| {
         motions += 1;
-        let control = [step.motion.control.v, step.motion.control.w].map(f64::from);
+        let control = [step.motion.control.distance_m, step.motion.control.turn_rad].map(f64::from);
         let way = swept(from, step.pose, control, is_car);
         for keep_out in area.hulls() {
             let radius = f64::from(keep_out.radius) / f64::from(UNITS_PER_METRE);
@@ -240,7 +238,7 @@ fn it_goes_round_what_is_in_the_way() {
             let wall = Hull::new(&[at(2.5, 5.0), at(17.0, 5.2)]).expect("a wall");
             let pillar = Hull::new(&[at(18.3, 4.0)]).expect("a point");
             let keep_outs =
-                [(wall, 0), (pillar, 80_000)].map(|(hull, radius)| RoundedHull { hull, radius });
+                [(wall, 0), (pillar, 80_000)].map(|(hull, radius)| KeepOut { hull, radius });
             let border = Hull::of(standard_field::area());
             mission.config.area = MissionArea::new(border, &keep_outs).expect("an area");
             mission.start = Pose { site: at(12.0, 2.5), heading: Heading(0) };

@@ -9,18 +9,12 @@ use host_sim::mission::scenario::{self, Overrides};
 use host_sim::world::errors::{CUT, Errors};
 use host_sim::world::noise::{Extent, NoiseModel};
 use nalgebra::Point2;
-use planner_core::Region as _;
-use planner_core::belief::Belief as _;
-use planner_core::belief::hypotheses::Hypothesis;
-use planner_core::belief::noise::{Noise, Reliability};
-use planner_core::belief::posterior::Posterior;
-use planner_core::belief::sample::{Label, Reading, Sample};
-use planner_core::belief::tolerance::Tolerance;
-use planner_core::belief::weight::Prior;
-use planner_core::geometry::lattice::Site;
-use planner_core::geometry::line::Line;
+use planner_core::belief::cell_posterior::Hypothesis;
 use planner_core::planner::Stage;
-use planner_core::planner::StopReason;
+use planner_core::{
+    Belief as _, Label, Line, Noise, PosteriorView, Prior, Reading, Reliability, Sample, Site,
+    StopReason, Tolerance, Workspace as _,
+};
 use rayon::prelude::*;
 use tests::cases;
 use tests::twins::probit::{Probit, Told};
@@ -145,7 +139,7 @@ fn doubtful(number: u64, algorithm: Algorithm, errors: Errors) -> Mission {
 /// What the credible set of some hypotheses states, and whether it holds the truth.
 fn stated(mission: &Mission, belief: &dyn ReadOut) -> (f64, bool) {
     let table = belief.hypotheses().expect("doubtful labels");
-    let posterior = Posterior::new(table);
+    let posterior = PosteriorView::new(table);
     let set = posterior.credible(LEVEL);
     let holds = |h: &Hypothesis<15>| mission.world.is_among(table.lines(h)) == Some(true);
     (set.probability, posterior.members(&set).any(holds))
@@ -195,7 +189,7 @@ fn weights_are_those_of_the_likelihood() {
         let twin = Probit::new([10.0, 10.0], 15.0, &given, &labels, P, position);
         for place in (0..400).map(|k| [f64::from(k % 20), f64::from(k / 20)].map(|at| at + 0.5)) {
             let site = Site::try_from(Point2::from(place)).expect("on the lattice");
-            let off = (Posterior::new(table).share_above(site) - twin.share_above(place)).abs();
+            let off = (PosteriorView::new(table).share_above(site) - twin.share_above(place)).abs();
             (sum, most, count) = (sum + off, most.max(off), count + 1);
         }
     }

@@ -11,26 +11,13 @@ use host_sim::mission::results::Ending;
 use host_sim::world::noise::{Extent, NoiseModel};
 use host_sim::world::reading;
 use nalgebra::{Point2, Vector2};
-use planner_core::belief::consistent_lines::Certainty;
-use planner_core::belief::sample::{Label, Reading, Sample};
-use planner_core::belief::tolerance::Tolerance;
-use planner_core::belief::version_space::VersionSpace;
-use planner_core::geometry::area::Area;
-use planner_core::geometry::heading::Heading;
-use planner_core::geometry::lattice::Site;
-use planner_core::geometry::line::Line;
-use planner_core::geometry::region::Region as _;
-use planner_core::motion::any_vehicle::AnyVehicle;
-use planner_core::motion::boat::Boat;
-use planner_core::motion::car::{Car, Shape};
+use planner_core::dynamics::Dynamics;
+use planner_core::motion::car::Shape;
 use planner_core::motion::contract;
-use planner_core::motion::dynamics::{Dynamics, Pose};
-use planner_core::motion::unicycle::Unicycle;
-use planner_core::planner::cfc::{self, Cfc};
-use planner_core::planner::config::{Config, Crossing};
-use planner_core::planner::lookahead::{self, Lookahead};
-use planner_core::planner::{Plan, Planner, StopReason};
-use planner_core::search::objective::Varrho;
+use planner_core::{
+    AnyVehicle, Area, Boat, Car, Certainty, Cfc, Heading, Label, Line, Lookahead, Plan, Planner,
+    Pose, Reading, Sample, Site, StopReason, Unicycle, VersionSpace, Workspace as _,
+};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -126,25 +113,13 @@ fn fly<D: Dynamics + Copy + Debug>(
     radius_m: f64,
     algorithm: Algorithm,
 ) -> Flown {
-    let varrho = if algorithm == Algorithm::Cfc { Varrho::PAPER } else { lookahead::VARRHO };
-    let (crossing, following) = (Crossing::default(), cfc::FOLLOWING);
-    let config =
-        Config { area: field.area, varrho, crossing, following, tolerance: Tolerance::NONE };
-    let given = field.given.clone();
+    let (area, given) = (field.area, field.given.clone());
     if algorithm == Algorithm::Cfc {
-        fly_by(
-            field,
-            dynamics,
-            radius_m,
-            Cfc::new(config, dynamics, given).expect("settings that agree"),
-        )
+        let planner = Cfc::new(area, dynamics, given);
+        fly_by(field, dynamics, radius_m, planner.expect("settings that agree"))
     } else {
-        fly_by(
-            field,
-            dynamics,
-            radius_m,
-            Lookahead::new(config, dynamics, given).expect("settings that agree"),
-        )
+        let planner = Lookahead::new(area, dynamics, given);
+        fly_by(field, dynamics, radius_m, planner.expect("settings that agree"))
     }
 }
 
@@ -191,7 +166,7 @@ fn stays_inside<D: Dynamics>(dynamics: &D, size: [f64; 2], from: Pose, to: Pose)
         [p.x, p.y].into_iter().zip(size).all(|(at, most)| (-1e-4..=most + 1e-4).contains(&at))
     };
     let turn = f64::from(to.heading.0.wrapping_sub(from.heading.0) as i32) / 2f64.powi(32) * TAU;
-    if turn == 0.0 || dynamics.corner(from, to).is_none() {
+    if turn == 0.0 || dynamics.tangent_intersection(from, to).is_none() {
         return inside(b);
     }
     let radius = (b - a).norm() / (2.0 * (turn / 2.0).sin());

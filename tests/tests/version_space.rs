@@ -1,10 +1,7 @@
 //! The version space against its slow twin: every line through two samples that agrees with all.
 
-use planner_core::belief::Refused;
-use planner_core::belief::consistent_lines::Certainty;
-use planner_core::belief::sample::{Label, Reading, Sample};
-use planner_core::belief::version_space::{NoVersionSpace, VersionSpace};
-use planner_core::geometry::lattice::Site;
+use planner_core::error::{GivenError, ObservationError};
+use planner_core::{Certainty, Label, Reading, Sample, Site, VersionSpace};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use tests::{clamped, cross, sign, twin, wide};
@@ -129,17 +126,17 @@ proptest! {
         }
         match Space::new(&samples) {
             Ok(_) => prop_assert!(separable(&samples)),
-            Err(NoVersionSpace::NotSeparable(i)) => {
+            Err(GivenError::NotSeparable(i)) => {
                 // Brute force decides this simply. The samples up to this one have no line, those before it have one.
                 // There is none if a site has both labels, or lies between two sites of the other label or in a
                 // triangle of them. Nor is there one if two segments cross.
                 prop_assert!(mixed(&samples[..=i]), "{i} is not too many");
                 prop_assert!(!mixed(&samples[..i]), "{i} is not the first");
             }
-            Err(NoVersionSpace::OneLabel) => {
+            Err(GivenError::OneLabel) => {
                 prop_assert!(samples.iter().all(|s| s.label == samples[0].label));
             }
-            Err(NoVersionSpace::Collinear) => {
+            Err(GivenError::Collinear) => {
                 prop_assert!(!mixed(&samples));
                 let collinear = |s: &Sample| samples.iter().all(|t| {
                     planner_core::geometry::lattice::orient(samples[0].site, s.site, t.site) == 0
@@ -158,7 +155,7 @@ proptest! {
             return Err(TestCaseError::reject("no version space"));
         };
         for sample in &samples[n..] {
-            if let Err(Refused::Contradiction(refused)) = space.insert(*sample) {
+            if let Err(ObservationError::Contradiction(refused)) = space.insert(*sample) {
                 prop_assert_eq!(refused, *sample);
             }
         }
@@ -213,7 +210,7 @@ proptest! {
                 let wrong = Sample { site: q, label: -label };
                 // On the border of a region of certainty both labels leave the same closed cell.
                 let refused = space.insert(wrong);
-                prop_assert_eq!(refused, Err(Refused::Contradiction(wrong)));
+                prop_assert_eq!(refused, Err(ObservationError::Contradiction(wrong)));
                 prop_assert_eq!(format!("{space:?}"), before.clone());
             }
         }

@@ -30,10 +30,9 @@ mod time;
 use cortex_m_rt::entry;
 use embassy_nrf::config::{Config, HfclkSource};
 use embassy_nrf::gpio::{Input, Level, Output, OutputDrive, Pull};
-use planner_core::belief::sample::Label;
 use planner_core::link::delivery::Link;
 use planner_core::link::station::Station;
-use planner_core::robot::hal::PinSensor;
+use planner_core::{Label, PinSensor};
 
 use crate::mission::Board;
 use crate::serial::Serial;

@@ -1,12 +1,10 @@
 //! Asks for a mission, flies it, and asks for the next.
 
 use embassy_nrf::gpio::Input;
-use planner_core::link::delivery::LinkLost;
-use planner_core::link::message::{Algorithm, Declined, Setup};
-use planner_core::link::station::{Prepared, Station, Terms};
-use planner_core::planner::Planner;
-use planner_core::robot::hal::PinSensor;
-use planner_core::{AnyVehicle, Area};
+use planner_core::link::delivery::LinkError;
+use planner_core::link::message::{Algorithm, DeclinedError, Setup};
+use planner_core::link::station::{PlannerSetup, Prepared, Station};
+use planner_core::{AnyVehicle, Area, PinSensor, Planner};
 
 use crate::serial::Serial;
 use crate::stop;
@@ -16,7 +14,7 @@ const SAMPLES: usize = 68;
 
 /// What it plans with and where: any vehicle in a rectangle. Polygons with keep-outs, and tables of hypotheses, would not
 /// fit into 16 KB.
-type Known = Terms<AnyVehicle, Area>;
+type Known = PlannerSetup<AnyVehicle, Area>;
 
 /// What a mission has to do with.
 pub(crate) struct Board {
@@ -35,13 +33,13 @@ impl Board {
         }
     }
 
-    fn fly_with(&mut self, setup: &Setup, terms: Known) -> Result<(), LinkLost> {
+    fn fly_with(&mut self, setup: &Setup, terms: Known) -> Result<(), LinkError> {
         match setup.algorithm {
             Algorithm::Cfc => self.fly(setup, &mut setup.cfc::<_, _, SAMPLES>(terms)),
             Algorithm::Lookahead { evaluations, goal, noise: None } => {
                 self.fly(setup, &mut setup.lookahead::<_, _, SAMPLES>(terms, evaluations, goal))
             }
-            _ => self.station.decline(Declined::Algorithm).map(drop),
+            _ => self.station.decline(DeclinedError::Algorithm).map(drop),
         }
     }
 
@@ -49,8 +47,8 @@ impl Board {
     fn fly<L: Planner>(
         &mut self,
         setup: &Setup,
-        planner: &mut Result<Prepared<L>, Declined>,
-    ) -> Result<(), LinkLost> {
+        planner: &mut Result<Prepared<L>, DeclinedError>,
+    ) -> Result<(), LinkError> {
         if planner.is_ok() {
             stop::begin();
         }

@@ -3,9 +3,8 @@
 use std::collections::BTreeMap;
 
 use anyhow::Result;
-use planner_core::geometry::line::Line;
-use planner_core::geometry::local_line::LocalLine;
-use planner_core::motion::dynamics::Dynamics as _;
+use planner_core::dynamics::Dynamics as _;
+use planner_core::{Line, LocalLine};
 use serde::{Deserialize, Serialize};
 
 use crate::campaign::course::Tally;

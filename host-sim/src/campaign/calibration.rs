@@ -4,11 +4,8 @@
 use std::collections::BTreeMap;
 
 use anyhow::Result;
-use planner_core::belief::hypotheses::Hypothesis;
-use planner_core::belief::posterior::Posterior;
-use planner_core::belief::sample::Sample;
-use planner_core::belief::weight::Prior;
-use planner_core::geometry::line::Line;
+use planner_core::belief::cell_posterior::Hypothesis;
+use planner_core::{Line, PosteriorView, Prior, Sample};
 use serde::{Deserialize, Serialize};
 
 use crate::campaign::ensemble::{self, Campaign, Measure, Measured, Progress};
@@ -174,10 +171,10 @@ impl Measure for Calibrated {
     ) -> Option<Checkpoint> {
         let table = belief.hypotheses()?;
         let by_area = table.weighed_by(Prior::Area);
-        let by_area = Posterior::new(&by_area);
+        let by_area = PosteriorView::new(&by_area);
         let statement = |prior| {
             let table = &table.weighed_by(prior);
-            let posterior = Posterior::new(table);
+            let posterior = PosteriorView::new(table);
             let set = posterior.credible(LEVEL);
             let holds = |h: &Hypothesis<15>| mission.world.is_among(table.lines(h)) == Some(true);
             let best = posterior.best().expect("a hypothesis");

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use planner_core::robot::agent::Step;
+use planner_core::Step;
 use planner_core::search::recovery::Recovery;
 use serde::{Deserialize, Serialize};
 

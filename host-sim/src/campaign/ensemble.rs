@@ -6,12 +6,7 @@ use std::vec;
 
 use anyhow::{Context as _, Result};
 use indicatif::ProgressBar;
-use planner_core::belief::sample::Reading;
-use planner_core::belief::tolerance::Tolerance;
-use planner_core::belief::weight::Prior;
-use planner_core::motion::any_vehicle::AnyVehicle;
-use planner_core::planner::config::{Crossing, Following};
-use planner_core::planner::scc::Policy;
+use planner_core::{AnyVehicle, Crossing, Following, Policy, Prior, Reading, Tolerance};
 use rayon::prelude::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -196,7 +191,7 @@ impl Campaign {
             now.steps += 1;
             now.labels += u32::from(matches!(step.reading, Some(Reading::Side(_))));
             now.control_cost += cost(step.motion.control);
-            now.metres += f64::from(step.motion.control.v);
+            now.metres += f64::from(step.motion.control.distance_m);
             course.count(step);
             if stages.next_if_eq(&measure.stage(&now)).is_some() {
                 let checkpoint = measure.checkpoint(&mission, belief, &now);

@@ -8,17 +8,11 @@
 //!    by rejection, over lines that meet the area's circumscribed disc.
 
 use nalgebra::{Point2, Vector2};
-use planner_core::belief::sample::{Label, Reading, Sample};
-use planner_core::belief::tolerance::Tolerance;
-use planner_core::belief::version_space::VersionSpace;
-use planner_core::belief::weight::Prior;
-use planner_core::geometry::area::Area;
-use planner_core::geometry::heading::Heading;
-use planner_core::geometry::lattice::Site;
-use planner_core::geometry::line::Line;
-use planner_core::motion::dynamics::Pose;
-use planner_core::planner::config::{Config, Crossing};
-use planner_core::planner::scc::Policy;
+use planner_core::link::message::Settings;
+use planner_core::{
+    Area, Crossing, Heading, Label, Line, Policy, Pose, Prior, Reading, Sample, Site, Tolerance,
+    VersionSpace,
+};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -88,9 +82,9 @@ pub fn standard(seed: u64, number: u64, algorithm: Algorithm, steps: u32) -> Mis
         algorithm,
         steps,
         seed: seed ^ number.rotate_left(32),
-        config: Config {
+        config: Settings {
             area: area.into(),
-            varrho: algorithm.varrho(),
+            weight: algorithm.weight(),
             crossing: Crossing::default(),
             following: algorithm.following(),
             tolerance: Tolerance::NONE,

@@ -4,7 +4,7 @@ use std::slice;
 
 use anyhow::{Result, bail};
 use clap::Args;
-use planner_core::motion::any_vehicle::AnyVehicle;
+use planner_core::AnyVehicle;
 use planner_core::motion::unicycle::Grid;
 use serde::{Deserialize, Serialize};
 

@@ -4,9 +4,8 @@ use std::time::Duration;
 
 use anyhow::{Context as _, Result, anyhow, bail};
 use clap::Args;
-use planner_core::geometry::line::Line;
-use planner_core::motion::any_vehicle::AnyVehicle;
-use planner_core::motion::dynamics::Dynamics as _;
+use planner_core::dynamics::Dynamics as _;
+use planner_core::{AnyVehicle, Line};
 
 use crate::cli::done::Done;
 use crate::cli::help;

@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use anyhow::{Context as _, Result, bail};
 use clap::Args;
-use planner_core::belief::tolerance::Tolerance;
+use planner_core::Tolerance;
 
 use crate::cli::format::Format;
 use crate::cli::help;
@@ -78,7 +78,7 @@ fn probability(text: &str) -> Result<f64> {
 }
 
 fn tolerance(text: &str) -> Result<f64> {
-    let metres = text.parse::<f64>().ok().filter(|metres| Tolerance::new(*metres).is_some());
+    let metres = text.parse::<f64>().ok().filter(|metres| Tolerance::new(*metres).is_ok());
     metres.context("expected metres, 0 to 1024")
 }
 

@@ -37,7 +37,7 @@ pub enum Failure {
     /// No label came within so long.
     NoLabel(Duration, String),
     /// It is where no lattice reaches.
-    OffLattice,
+    LatticeError,
     /// A label contradicts what is known.
     Refused(String),
     /// A signal to this program.
@@ -91,7 +91,7 @@ impl fmt::Display for Failure {
             Self::NoLabel(time, source) => {
                 write!(f, "no label within {} s (--label-time): {source}", s(time))
             }
-            Self::OffLattice => f.write_str("the position is beyond 8192 m, or no number"),
+            Self::LatticeError => f.write_str("the position is beyond 8192 m, or no number"),
             Self::Refused(why) => f.write_str(why),
             Self::Interrupted(signal) => write!(f, "interrupted by signal {signal}"),
             Self::Broken(why) => write!(f, "the link broke: {why}"),

@@ -2,12 +2,10 @@
 
 use std::time::Duration;
 
-use planner_core::belief::sample::Reading;
 use planner_core::link::message::MissionArea;
-use planner_core::motion::dynamics::Pose;
-use planner_core::planner::{Motion, Planner as _};
-use planner_core::robot::agent::{Agent, AgentError, Event};
-use planner_core::robot::body::Body;
+use planner_core::robot::AgentError;
+use planner_core::robot::Body;
+use planner_core::{Agent, Event, Motion, Planner as _, Pose, Reading};
 
 use crate::fly::failure::Failure;
 use crate::fly::frame::{self, Ned};
@@ -108,8 +106,8 @@ impl<L: Link> Control<L> {
 
     /// Where the mission begins: where the vehicle is.
     fn start(&mut self, mission: &Mission) -> Result<Pose, Failure> {
-        let (fix, yaw) = self.pilot.whereabouts().ok_or(Failure::OffLattice)?;
-        let pose = frame::pose(mission.start, fix.at, yaw).ok_or(Failure::OffLattice)?;
+        let (fix, yaw) = self.pilot.whereabouts().ok_or(Failure::LatticeError)?;
+        let pose = frame::pose(mission.start, fix.at, yaw).ok_or(Failure::LatticeError)?;
         self.area = Some(mission.config.area);
         self.began = self.link.now();
         self.check(pose)?;
@@ -152,7 +150,7 @@ impl<L: Link> Body for Control<L> {
         loop {
             if let Some(arrival) = self.pilot.take_arrival() {
                 let reached = frame::pose(target, arrival.fix.at, arrival.yaw);
-                *pose = reached.ok_or(Failure::OffLattice)?;
+                *pose = reached.ok_or(Failure::LatticeError)?;
                 // What is there is as near as motions leave room for.
                 if arrival.is_short {
                     self.check(*pose)?;
@@ -209,7 +207,7 @@ pub fn fly<L: Link>(mut mission: Mission, control: &mut Control<L>) -> Result<Fl
                 break;
             }
             Err(AgentError::Body(error)) => failure = Some(error),
-            Err(AgentError::Refused(refused)) => {
+            Err(AgentError::Observation(refused)) => {
                 failure = Some(Failure::Refused(recorder.refusal(&refused).to_string()));
             }
         }

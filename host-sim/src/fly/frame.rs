@@ -7,9 +7,7 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use nalgebra::Point2;
-use planner_core::geometry::heading::Heading;
-use planner_core::geometry::lattice::Site;
-use planner_core::motion::dynamics::Pose;
+use planner_core::{Heading, Pose, Site};
 
 /// Yaws that differ by less, in radians, are taken for the same: a compass knows no better.
 pub const ALIKE: f64 = 0.1;
@@ -59,7 +57,7 @@ pub fn pose(sent: Pose, at: Ned, facing: f32) -> Option<Pose> {
     let heading = if apart(facing, yaw(sent.heading)) < ALIKE {
         sent.heading
     } else {
-        Heading::from_radians(FRAC_PI_2 - f64::from(facing))?
+        Heading::from_radians(FRAC_PI_2 - f64::from(facing)).ok()?
     };
     Some(Pose { site, heading })
 }

@@ -14,8 +14,7 @@ use mavlink::dialects::common::{
     PositionTargetTypemask as Ignored, RC_CHANNELS_DATA,
 };
 use nalgebra::Point2;
-use planner_core::belief::sample::{Label, Reading};
-use planner_core::geometry::lattice::Site;
+use planner_core::{Label, Reading, Site};
 
 use crate::fly::frame::{Ned, yaw};
 use crate::fly::label::{LabelSource, Source, channels};

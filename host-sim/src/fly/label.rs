@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use anyhow::{Result, bail};
 use mavlink::dialects::common::{MavMessage, RC_CHANNELS_DATA};
-use planner_core::belief::sample::Label;
+use planner_core::Label;
 
 /// Characters that a named value's name has at most.
 const LONGEST_NAME: usize = 10;

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use planner_core::belief::sample::Label;
+use planner_core::Label;
 
 use crate::fly::frame::Ned;
 use crate::fly::label::Told;

@@ -7,7 +7,7 @@ use std::io::{Read as _, Write as _};
 use std::path::Path;
 
 use anyhow::{Context as _, Result, anyhow, bail};
-use planner_core::belief::sample::{Label, Reading};
+use planner_core::{Label, Reading};
 use serde_json::Value;
 
 use crate::mission::results::{End, Start, StepResult};

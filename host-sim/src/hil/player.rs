@@ -10,16 +10,12 @@
 use std::path::Path;
 
 use anyhow::{Context as _, Result, anyhow, bail};
-use planner_core::belief::estimate::Estimates;
-use planner_core::belief::sample::Reading;
 use planner_core::link::delivery::{Heard, Hello, Responder};
 use planner_core::link::frame::Frame;
 use planner_core::link::message::{
     self, ClockRate, EndReason, LabelSource, MissionArea, PROTOCOL, Reply, Request, Setup, Took,
 };
-use planner_core::motion::dynamics::Pose;
-use planner_core::planner::{Motion, Plan};
-use planner_core::robot::agent::Step;
+use planner_core::{Estimates, Motion, Plan, Pose, Reading, Step};
 
 use crate::hil::logbook::Logbook;
 use crate::hil::setup;

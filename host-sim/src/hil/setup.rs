@@ -2,11 +2,11 @@
 
 use anyhow::{Result, anyhow, bail};
 use heapless::Vec as BoundedVec;
-use planner_core::geometry::region::Region as _;
+use planner_core::Workspace as _;
+use planner_core::link::message::Settings;
 use planner_core::link::message::{
-    self, Capacity, Declined, LabelSource, MissionArea, Outline, PROTOCOL, Setup,
+    self, Capacity, DeclinedError, LabelSource, MissionArea, Outline, PROTOCOL, Setup,
 };
-use planner_core::planner::config::Config;
 use planner_core::planner::lookahead;
 
 use crate::mission::algorithm::Algorithm;
@@ -44,9 +44,10 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
     };
     let capacity =
         Capacity { samples: (samples.len() as u32 + taken) as u16, hypotheses: hypotheses as u16 };
-    let &Mission { config: Config { area, varrho, crossing, following, tolerance }, start, .. } =
-        mission;
-    let config = Config { area: area.bounds(), varrho, crossing, following, tolerance };
+    let &Mission {
+        config: Settings { area, weight, crossing, following, tolerance }, start, ..
+    } = mission;
+    let config = Settings { area: area.bounds(), weight, crossing, following, tolerance };
     let is_plain = area.sides().next().is_none() && area.hulls().next().is_none();
     let keep_outs = (!is_plain).then(|| area.hulls().count() as u8);
     let (protocol, vehicle, steps) = (PROTOCOL, mission.vehicle.into(), taken as u16);
@@ -71,12 +72,12 @@ pub fn outlines(area: &MissionArea) -> impl Iterator<Item = Outline> {
 }
 
 /// Why a chip does not fly it, by the key of the scenario that asks too much.
-pub(crate) fn declined(declined: Declined, setup: &Setup) -> anyhow::Error {
+pub(crate) fn declined(declined: DeclinedError, setup: &Setup) -> anyhow::Error {
     match declined {
-        Declined::Protocol(theirs) => {
+        DeclinedError::Protocol(theirs) => {
             anyhow!("the board speaks protocol {theirs}, expected {PROTOCOL}")
         }
-        Declined::Capacity(Capacity { samples, hypotheses }) => {
+        DeclinedError::Capacity(Capacity { samples, hypotheses }) => {
             let most = usize::from(samples).saturating_sub(setup.given.len());
             anyhow!(
                 "steps: found {}, expected at most {most}: the board has room for {samples} samples \
@@ -85,11 +86,14 @@ pub(crate) fn declined(declined: Declined, setup: &Setup) -> anyhow::Error {
                 setup.given.len(),
             )
         }
-        Declined::Algorithm => anyhow!("algorithm: declined by the board, which has another"),
-        Declined::Given(error) => anyhow!("oracle: declined by the board: {error}"),
-        Declined::Vehicle(why) => anyhow!("vehicle: declined by the board: expected {why}"),
-        Declined::Area => anyhow!("area: declined by the board: {declined}"),
-        Declined::Tolerance => anyhow!("tolerance: declined by the board: {declined}"),
-        Declined::Labels => anyhow!("--labels: found chip, but this board has no label sensor"),
+        DeclinedError::Algorithm => anyhow!("algorithm: declined by the board, which has another"),
+        DeclinedError::Given(error) => anyhow!("oracle: declined by the board: {error}"),
+        DeclinedError::Vehicle(why) => anyhow!("vehicle: declined by the board: expected {why}"),
+        DeclinedError::Area => anyhow!("area: declined by the board: {declined}"),
+        DeclinedError::Tolerance => anyhow!("tolerance: declined by the board: {declined}"),
+        DeclinedError::Labels => {
+            anyhow!("--labels: found chip, but this board has no label sensor")
+        }
+        other => anyhow!("declined by the board: {other}"),
     }
 }

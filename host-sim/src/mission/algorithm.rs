@@ -2,9 +2,7 @@
 
 use clap::ValueEnum as _;
 use planner_core::motion::unicycle::Grid;
-use planner_core::planner::config::Following;
-use planner_core::planner::{cfc, lookahead, scc};
-use planner_core::search::objective::Varrho;
+use planner_core::{DrivingPrice, EffortWeight, Following, Options};
 use serde::{Deserialize, Serialize};
 
 /// Who plans.
@@ -38,16 +36,16 @@ impl Algorithm {
     /// How P2 follows the boundary unless one says: in the way that learns the most.
     pub fn following(self) -> Following {
         match self {
-            Self::Cfc | Self::Lookahead | Self::Margin | Self::Random => cfc::FOLLOWING,
-            Self::Scc => scc::FOLLOWING,
+            Self::Cfc | Self::Lookahead | Self::Margin | Self::Random => Options::CFC.following,
+            Self::Scc => Options::SCC.following,
         }
     }
 
-    /// The weight of the control unless one says.
-    pub fn varrho(self) -> Varrho {
+    /// The weight of the control, or the price of driving, unless one says.
+    pub fn weight(self) -> EffortWeight {
         match self {
-            Self::Lookahead => lookahead::VARRHO,
-            Self::Cfc | Self::Scc | Self::Margin | Self::Random => Varrho::PAPER,
+            Self::Lookahead => DrivingPrice::USUAL.into(),
+            Self::Cfc | Self::Scc | Self::Margin | Self::Random => EffortWeight::PAPER,
         }
     }
 

@@ -1,16 +1,11 @@
 //! What a mission is, and how it is flown in the simulated world.
 
-use planner_core::belief::forecast::Forecast;
-use planner_core::belief::goal::Goal;
-use planner_core::belief::hypotheses::Hypotheses;
-use planner_core::belief::noise::Noise;
-use planner_core::belief::version_space::VersionSpace;
-use planner_core::belief::weight::Prior;
 use planner_core::link::message::MissionArea;
-use planner_core::motion::any_vehicle::AnyVehicle;
-use planner_core::motion::dynamics::Pose;
-use planner_core::planner::config::{Config, Crossing, Following};
-use planner_core::planner::scc::Policy;
+use planner_core::link::message::Settings;
+use planner_core::{
+    AnyVehicle, CellPosterior, Crossing, Following, Goal, Noise, NoisyBelief, Policy, Pose, Prior,
+    VersionSpace,
+};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
@@ -30,7 +25,7 @@ pub const HYPOTHESES: usize = 2081;
 pub type Lines = VersionSpace<CAPACITY>;
 
 /// The hypothesis table of simulated planners.
-pub type Table = Hypotheses<CAPACITY, HYPOTHESES>;
+pub type Table = CellPosterior<CAPACITY, HYPOTHESES>;
 
 /// Everything that determines a mission.
 #[derive(Clone, Debug)]
@@ -42,7 +37,7 @@ pub struct Mission {
     /// Seed of whatever is random.
     pub seed: u64,
     /// Area, weight of the control, way of crossing.
-    pub config: Config<MissionArea>,
+    pub config: Settings<MissionArea>,
     /// What moves.
     pub vehicle: AnyVehicle,
     /// Where the agent starts.
@@ -79,8 +74,8 @@ impl Mission {
     #[must_use]
     pub fn by_lookahead(mut self) -> Self {
         self.algorithm = Algorithm::Lookahead;
-        (self.config.varrho, self.vehicle) =
-            (self.algorithm.varrho(), self.algorithm.grid().into());
+        (self.config.weight, self.vehicle) =
+            (self.algorithm.weight(), self.algorithm.grid().into());
         self
     }
 
@@ -109,9 +104,11 @@ impl Mission {
     ///
     /// # Panics
     /// As [`table`](Self::table).
-    pub fn forecast(&self) -> Forecast<CAPACITY, HYPOTHESES> {
-        Forecast::new(self.given.samples(), self.prior, self.noise_told())
-            .expect("15 points bound the line at most")
+    pub fn forecast(&self) -> NoisyBelief<CAPACITY, HYPOTHESES> {
+        let mut belief = NoisyBelief::NONE;
+        let made = belief.restart(self.given.samples(), self.prior, self.noise_told());
+        made.expect("15 points bound the line at most");
+        belief
     }
 
     /// What its planner risks, if that is not told how far positions err.
@@ -131,7 +128,7 @@ impl Mission {
     /// # Panics
     /// When the tolerance is too much for them, which scenario files are refused for.
     pub fn lines(&self) -> Lines {
-        let lines = self.given.clone().within(self.config.tolerance);
+        let lines = self.given.clone().with_tolerance(self.config.tolerance);
         lines.expect("the tolerance leaves something to find")
     }
 

@@ -1,9 +1,8 @@
 //! A mission as it is flown in the simulated world.
 
-use planner_core::belief::Refused;
-use planner_core::motion::dynamics::Pose;
-use planner_core::planner::Planner as _;
-use planner_core::robot::agent::{Agent, AgentError, Event, Step};
+use planner_core::error::ObservationError;
+use planner_core::robot::AgentError;
+use planner_core::{Agent, Event, Planner as _, Pose, Step};
 
 use crate::mission::definition::Mission;
 use crate::mission::read_out::ReadOut;
@@ -21,8 +20,11 @@ impl Mission {
     /// Flies it; `watch` sees every step and what is known after it.
     ///
     /// # Errors
-    /// [`Refused`] when a sample contradicts what is known.
-    pub fn fly(&self, mut watch: impl FnMut(&Step, &dyn ReadOut)) -> Result<Flown, Refused> {
+    /// [`ObservationError`] when a sample contradicts what is known.
+    pub fn fly(
+        &self,
+        mut watch: impl FnMut(&Step, &dyn ReadOut),
+    ) -> Result<Flown, ObservationError> {
         let (flown, refused) = self.fly_in_sight(|step, _, belief| watch(step, belief));
         refused.map_or(Ok(flown), Err)
     }
@@ -32,7 +34,7 @@ impl Mission {
     pub fn fly_in_sight(
         &self,
         mut watch: impl FnMut(&Step, Option<Pose>, &dyn ReadOut),
-    ) -> (Flown, Option<Refused>) {
+    ) -> (Flown, Option<ObservationError>) {
         let mut planner = self.planner();
         let mut robot = self.robot();
         let mut agent = Agent::new(&mut *planner, &mut *robot, self.start);
@@ -46,7 +48,7 @@ impl Mission {
                     ending = Ending::Stopped(reason);
                     break;
                 }
-                Err(AgentError::Refused(why)) => {
+                Err(AgentError::Observation(why)) => {
                     (ending, refused) = (Ending::BrokenOff, Some(why));
                     break;
                 }

@@ -14,18 +14,14 @@
 //! 3. In a corner that no drive leads out of: a turn to the left, until one does.
 
 use nalgebra::Point2;
-use planner_core::belief::Refused;
-use planner_core::belief::consistent_lines::Certainty;
-use planner_core::belief::sample::Reading;
-use planner_core::belief::tolerance::Tolerance;
-use planner_core::geometry::lattice::Site;
-use planner_core::geometry::line::Line;
-use planner_core::geometry::region::Region as _;
+use planner_core::dynamics::{Action, Dynamics, Side};
+use planner_core::error::ObservationError;
 use planner_core::link::message::MissionArea;
-use planner_core::motion::action::Action;
-use planner_core::motion::dynamics::{Dynamics, Pose, Side};
-use planner_core::planner::{Motion, Plan, Planner, StopReason};
 use planner_core::search::recovery::Recovery;
+use planner_core::{
+    Certainty, Line, Motion, Plan, Planner, Pose, Reading, Site, StopReason, Tolerance,
+    Workspace as _,
+};
 
 use crate::mission::definition::{Lines, Table};
 use crate::mission::read_out::ReadOut;
@@ -68,7 +64,7 @@ impl<D: Dynamics, B: ReadOut> Margin<D, B> {
                 (is_inside || comes_back).then(|| Drive {
                     action,
                     target,
-                    effort: ray.effort,
+                    effort: ray.turn_cost,
                     reach_mm: grid.reach_mm(speed),
                     distance: line.distance(Point2::from(target.site)).abs(),
                 })
@@ -141,7 +137,7 @@ impl<D: Dynamics, B: ReadOut> Planner for Margin<D, B> {
             stage: None,
             recovery,
             action,
-            control: self.dynamics.control(action),
+            control: self.dynamics.control(pose, action),
             target,
             wants_label: recovery.is_none(),
             examined: u32::try_from(self.dynamics.grid().actions()).unwrap_or(u32::MAX),
@@ -154,7 +150,7 @@ impl<D: Dynamics, B: ReadOut> Planner for Margin<D, B> {
         pose: Pose,
         reading: Option<Reading>,
         tolerance: Tolerance,
-    ) -> Result<(), Refused> {
+    ) -> Result<(), ObservationError> {
         let observe = |reading| self.belief.observe_within(pose.site, reading, tolerance);
         reading.map_or(Ok(()), observe)
     }

@@ -1,9 +1,7 @@
 //! The names of choices in scenario files and flags.
 
-use planner_core::belief::weight::Prior;
 use planner_core::motion::unicycle::Grid;
-use planner_core::planner::config::{Crossing, Following};
-use planner_core::planner::scc::Policy;
+use planner_core::{Crossing, Following, Policy, Prior};
 use serde::{Deserialize, Serialize};
 
 /// How finely the unicycle turns, by name.

@@ -1,19 +1,16 @@
 //! The planner of a mission, whichever belief it has.
 
-use planner_core::belief::Refused;
-use planner_core::belief::sample::Reading;
-use planner_core::belief::tolerance::Tolerance;
-use planner_core::motion::any_vehicle::AnyVehicle;
-use planner_core::motion::dynamics::{Dynamics, Pose};
-use planner_core::planner::cfc::Cfc;
-use planner_core::planner::lookahead::Lookahead;
-use planner_core::planner::scc::Scc;
-use planner_core::planner::{Plan, Planner};
+use planner_core::dynamics::Dynamics;
+use planner_core::error::ObservationError;
+use planner_core::{
+    AnyVehicle, Cfc, Lookahead, NoisyBelief, Plan, Planner, Pose, PredictiveBelief, Reading, Scc,
+    Tolerance, Workspace,
+};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use crate::mission::algorithm::Algorithm;
-use crate::mission::definition::Mission;
+use crate::mission::definition::{CAPACITY, HYPOTHESES, Lines, Mission};
 use crate::mission::margin::Margin;
 use crate::mission::random_walk::RandomWalk;
 use crate::mission::read_out::ReadOut;
@@ -39,7 +36,7 @@ impl<P: Planner<Belief: ReadOut + Sized + 'static>> Planner for Erased<P> {
         pose: Pose,
         reading: Option<Reading>,
         tolerance: Tolerance,
-    ) -> Result<(), Refused> {
+    ) -> Result<(), ObservationError> {
         self.0.observe_within(pose, reading, tolerance)
     }
 
@@ -66,19 +63,12 @@ impl Mission {
     }
 
     fn planner_of(&self, dynamics: impl Dynamics + 'static) -> AnyPlanner {
-        let config = self.config;
-        let (area, rng) = (config.area, ChaCha8Rng::seed_from_u64(self.seed));
+        let (area, rng) = (self.config.area, ChaCha8Rng::seed_from_u64(self.seed));
         match self.algorithm {
-            Algorithm::Cfc => erased(Cfc::new(config, dynamics, self.lines()).expect(FITS)),
-            Algorithm::Scc => {
-                erased(Scc::new(config, self.policy, dynamics, self.table()).expect(FITS))
-            }
-            Algorithm::Lookahead if self.is_noisy() => erased(
-                Lookahead::new(config, dynamics, self.forecast()).expect(FITS).until(self.goal),
-            ),
-            Algorithm::Lookahead => {
-                erased(Lookahead::new(config, dynamics, self.lines()).expect(FITS).until(self.goal))
-            }
+            Algorithm::Cfc => erased(self.cfc(area, dynamics)),
+            Algorithm::Scc => erased(self.scc(area, dynamics)),
+            Algorithm::Lookahead if self.is_noisy() => erased(self.doubtful(area, dynamics)),
+            Algorithm::Lookahead => erased(self.lookahead(area, dynamics)),
             Algorithm::Margin if self.is_noisy() => {
                 erased(Margin { dynamics, area, belief: self.table() })
             }
@@ -88,5 +78,60 @@ impl Mission {
             }
             Algorithm::Random => erased(RandomWalk { dynamics, area, belief: self.lines(), rng }),
         }
+    }
+
+    /// Algorithm 1 with the mission's settings, in an area and with a vehicle that may be others than its own.
+    ///
+    /// # Panics
+    /// When settings contradict each other.
+    pub fn cfc<D: Dynamics, G: Workspace>(&self, area: G, dynamics: D) -> Cfc<D, CAPACITY, G> {
+        Cfc::new(area, dynamics, self.lines()).expect(FITS).with(self.config.options())
+    }
+
+    /// The same by Algorithm 2.
+    ///
+    /// # Panics
+    /// As [`cfc`](Self::cfc).
+    pub fn scc<D: Dynamics, G: Workspace>(
+        &self,
+        area: G,
+        dynamics: D,
+    ) -> Scc<D, CAPACITY, HYPOTHESES, G> {
+        let planner = Scc::new(area, dynamics, self.table()).expect(FITS);
+        planner.with(self.config.options()).voting(self.policy)
+    }
+
+    /// The same by look-ahead, with labels that are true.
+    ///
+    /// # Panics
+    /// As [`cfc`](Self::cfc).
+    pub fn lookahead<D: Dynamics, G: Workspace>(
+        &self,
+        area: G,
+        dynamics: D,
+    ) -> Lookahead<D, Lines, G> {
+        self.looking_ahead(area, dynamics, self.lines())
+    }
+
+    /// The same by look-ahead, with labels that may be wrong.
+    ///
+    /// # Panics
+    /// As [`cfc`](Self::cfc).
+    pub fn doubtful<D: Dynamics, G: Workspace>(
+        &self,
+        area: G,
+        dynamics: D,
+    ) -> Lookahead<D, NoisyBelief<CAPACITY, HYPOTHESES>, G> {
+        self.looking_ahead(area, dynamics, self.forecast())
+    }
+
+    fn looking_ahead<D: Dynamics, B: PredictiveBelief, G: Workspace>(
+        &self,
+        area: G,
+        dynamics: D,
+        belief: B,
+    ) -> Lookahead<D, B, G> {
+        let planner = Lookahead::new(area, dynamics, belief).expect(FITS);
+        planner.pricing(self.config.price()).until(self.goal)
     }
 }

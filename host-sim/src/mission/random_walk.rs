@@ -1,13 +1,11 @@
 //! A planner that moves at random: a baseline that any planner has to beat.
 
-use planner_core::belief::sample::Reading;
-use planner_core::belief::tolerance::Tolerance;
-use planner_core::belief::{Belief, Refused};
-use planner_core::geometry::region::Region as _;
+use planner_core::dynamics::{Action, Dynamics};
+use planner_core::error::ObservationError;
 use planner_core::link::message::MissionArea;
-use planner_core::motion::action::Action;
-use planner_core::motion::dynamics::{Dynamics, Pose};
-use planner_core::planner::{Motion, Plan, Planner, StopReason};
+use planner_core::{
+    Belief, Motion, Plan, Planner, Pose, Reading, StopReason, Tolerance, Workspace as _,
+};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
@@ -50,7 +48,7 @@ impl<D: Dynamics, B: Belief> Planner for RandomWalk<D, B> {
                     stage: None,
                     recovery: None,
                     action,
-                    control: self.dynamics.control(action),
+                    control: self.dynamics.control(pose, action),
                     target,
                     wants_label: self.area.contains(target.site),
                     examined: 1,
@@ -65,7 +63,7 @@ impl<D: Dynamics, B: Belief> Planner for RandomWalk<D, B> {
         pose: Pose,
         reading: Option<Reading>,
         tolerance: Tolerance,
-    ) -> Result<(), Refused> {
+    ) -> Result<(), ObservationError> {
         let observe = |reading| self.belief.observe_within(pose.site, reading, tolerance);
         reading.map_or(Ok(()), observe)
     }

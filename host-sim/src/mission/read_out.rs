@@ -2,11 +2,7 @@
 
 use std::fmt::Debug;
 
-use planner_core::belief::Belief;
-use planner_core::belief::posterior::Posterior;
-use planner_core::belief::sample::{Label, Sample};
-use planner_core::belief::tolerance::Tolerance;
-use planner_core::geometry::lattice::Site;
+use planner_core::{Belief, Label, PosteriorView, Sample, Site, Tolerance};
 
 use crate::mission::definition::{Lines, Table};
 use crate::world::noise::limit;
@@ -106,7 +102,7 @@ impl ReadOut for Lines {
 
 impl ReadOut for Table {
     fn knowledge(&self) -> Knowledge {
-        let posterior = Posterior::new(self);
+        let posterior = PosteriorView::new(self);
         let credible = posterior.credible(LEVEL);
         Knowledge {
             slope_arcs: credible.slope_arc.intervals_deg().to_vec(),

@@ -2,16 +2,9 @@
 
 use anyhow::{Result, anyhow};
 use nalgebra::Point2;
-use planner_core::belief::Refused;
-use planner_core::belief::estimate::Estimates;
-use planner_core::belief::hypotheses::Hypothesis;
-use planner_core::belief::noise::Reliability;
-use planner_core::belief::posterior::Posterior;
-use planner_core::belief::sample::Reading;
-use planner_core::belief::weight::Prior;
-use planner_core::geometry::line::Line;
-use planner_core::motion::dynamics::Pose;
-use planner_core::robot::agent::Step;
+use planner_core::belief::cell_posterior::Hypothesis;
+use planner_core::error::ObservationError;
+use planner_core::{Estimates, Line, Pose, PosteriorView, Prior, Reading, Reliability, Step};
 
 use crate::mission::definition::{Mission, Table};
 use crate::mission::flight::Flown;
@@ -110,10 +103,10 @@ impl Recorder {
     }
 
     /// What is said of a sample that the planner does not take in the step after these.
-    pub fn refusal(&self, refused: &Refused) -> anyhow::Error {
+    pub fn refusal(&self, refused: &ObservationError) -> anyhow::Error {
         let step = self.steps.len() + 1;
         match refused {
-            Refused::Contradiction(sample) => {
+            ObservationError::Contradiction(sample) => {
                 let (at, label) = (Point2::<f64>::from(sample.site), sample.label.sign());
                 anyhow!(
                     "step {step}: label {label} at ({}, {}) contradicts the region of certainty it lies in: \
@@ -178,7 +171,7 @@ fn start(mission: &Mission) -> Start {
         version: VERSION,
         algorithm: mission.algorithm,
         seed: mission.seed,
-        varrho: mission.config.varrho.value(),
+        varrho: mission.config.weight.value(),
         area: mission.config.area.into(),
         keep_out: mission.config.area.hulls().map(KeepOutRecord::from).collect(),
         oracle: mission.given.samples().iter().map(Into::into).collect(),
@@ -195,8 +188,8 @@ fn start(mission: &Mission) -> Start {
 fn noisy_end(table: &Table, world: &World) -> Option<NoisyEnd> {
     let holds = |hypothesis: &Hypothesis<15>| world.is_among(table.lines(hypothesis));
     let by_sequences = table.weighed_by(Prior::Sequences);
-    let best = Posterior::new(&by_sequences).best()?;
-    let posterior = Posterior::new(table);
+    let best = PosteriorView::new(&by_sequences).best()?;
+    let posterior = PosteriorView::new(table);
     let credible = posterior.credible(LEVEL);
     let members: Option<Vec<bool>> = posterior.members(&credible).map(holds).collect();
     Some(NoisyEnd {

@@ -2,18 +2,14 @@
 //! ARCHITECTURE.md. Fields that only reports use are not serialised.
 
 use nalgebra::Point2;
-use planner_core::belief::estimate::Estimates;
-use planner_core::belief::sample::Sample;
-use planner_core::geometry::lattice::{Site, UNITS_PER_METRE};
-use planner_core::geometry::line::Line;
-use planner_core::geometry::local_line::LocalLine;
-use planner_core::geometry::region::Region as _;
-use planner_core::geometry::terrain::RoundedHull;
+use planner_core::dynamics::Control;
+use planner_core::geometry::lattice::UNITS_PER_METRE;
 use planner_core::link::message::MissionArea;
-use planner_core::motion::action::Control;
-use planner_core::motion::dynamics::Pose;
-use planner_core::planner::{Motion, Stage, StopReason};
+use planner_core::planner::Stage;
 use planner_core::search::recovery::Recovery;
+use planner_core::{
+    Estimates, KeepOut, Line, LocalLine, Motion, Pose, Sample, Site, StopReason, Workspace as _,
+};
 use serde::Serialize;
 
 use crate::mission::algorithm::Algorithm;
@@ -288,13 +284,13 @@ impl StepResult {
 
     /// Its control cost.
     pub fn cost(&self) -> f64 {
-        cost(Control { v: self.action.v, w: self.action.w })
+        cost(Control { distance_m: self.action.v, turn_rad: self.action.w })
     }
 }
 
 /// The control cost of a motion, the paper's `|u|^2 = v^2 + w^2`.
 pub fn cost(control: Control) -> f64 {
-    let (v, w) = (f64::from(control.v), f64::from(control.w));
+    let (v, w) = (f64::from(control.distance_m), f64::from(control.turn_rad));
     v * v + w * w
 }
 
@@ -324,8 +320,8 @@ impl From<MissionArea> for AreaRecord {
     }
 }
 
-impl<const C: usize> From<&RoundedHull<C>> for KeepOutRecord {
-    fn from(RoundedHull { hull, radius }: &RoundedHull<C>) -> Self {
+impl<const C: usize> From<&KeepOut<C>> for KeepOutRecord {
+    fn from(KeepOut { hull, radius }: &KeepOut<C>) -> Self {
         let radius = f64::from(*radius) / f64::from(UNITS_PER_METRE);
         Self { polygon: corners(hull.corners()), radius }
     }
@@ -351,7 +347,7 @@ impl From<Pose> for PoseRecord {
 
 impl From<&Motion> for ActionRecord {
     fn from(motion: &Motion) -> Self {
-        Self { index: motion.action.0, v: motion.control.v, w: motion.control.w }
+        Self { index: motion.action.0, v: motion.control.distance_m, w: motion.control.turn_rad }
     }
 }
 

@@ -4,18 +4,15 @@ use std::path::Path;
 
 use anyhow::{Context as _, Result, anyhow};
 use nalgebra::Point2;
-use planner_core::belief::noise::Reliability;
 use planner_core::belief::noise::trusted_radius;
-use planner_core::belief::sample::{Label, Sample};
-use planner_core::belief::tolerance::Tolerance;
-use planner_core::belief::version_space::{NoVersionSpace, VersionSpace};
-use planner_core::geometry::heading::Heading;
-use planner_core::geometry::line::Line;
+use planner_core::error::GivenError;
 use planner_core::link::message::MissionArea;
-use planner_core::motion::dynamics::Pose;
+use planner_core::link::message::Settings;
 use planner_core::motion::unicycle::Grid;
-use planner_core::planner::config::{Config, Following};
-use planner_core::search::objective::Varrho;
+use planner_core::{
+    EffortWeight, Following, Heading, Label, Line, Pose, Reliability, Sample, Tolerance,
+    VersionSpace,
+};
 use serde::Deserialize;
 
 use crate::mission::algorithm::Algorithm;
@@ -213,7 +210,7 @@ fn mission(file: &File, overrides: Overrides) -> Result<Mission> {
     let steps = overrides.steps.unwrap_or(file.steps);
     check_steps("steps", steps, file.oracle.len())?;
     let algorithm = overrides.algorithm.unwrap_or(file.algorithm);
-    let varrho = file.varrho.map_or_else(|| Ok(algorithm.varrho()), varrho)?;
+    let weight = file.varrho.map_or_else(|| Ok(algorithm.weight()), weight)?;
     let grid = file.fan.map_or(algorithm.grid(), Grid::from);
     if !algorithm.copes_with(grid) {
         let found = format!("\"fine\" with algorithm {}", algorithm.name());
@@ -240,7 +237,7 @@ fn mission(file: &File, overrides: Overrides) -> Result<Mission> {
     let noise = file.noise.as_ref().map(|table| noise(&table.0)).transpose()?;
     let following = file.following.map_or(algorithm.following(), Following::from);
     let crossing = file.crossing.into();
-    let config = Config { area, varrho, crossing, following, tolerance };
+    let config = Settings { area, weight, crossing, following, tolerance };
     vehicle::check_room(Source::File, &vehicle, &config)?;
     let goal = file.stop.as_ref().map(|table| table.0.goal(algorithm, noise.is_some()));
     Ok(Mission {
@@ -260,9 +257,9 @@ fn mission(file: &File, overrides: Overrides) -> Result<Mission> {
     })
 }
 
-fn varrho(weight: f64) -> Result<Varrho> {
+fn weight(weight: f64) -> Result<EffortWeight> {
     let expected = "a weight in [0, 1), to six decimal places";
-    Varrho::new(weight).map_or_else(|| wrong("varrho", weight, expected), Ok)
+    EffortWeight::new(weight).or_else(|_| wrong("varrho", weight, expected))
 }
 
 fn errors(table: &ErrorsTable) -> Result<Errors> {
@@ -296,8 +293,7 @@ pub fn deviation(field: &str, metres: f64) -> Result<f64> {
 /// Names `field` and the number.
 pub fn tolerance(field: &str, metres: Option<f64>, errors: Errors) -> Result<Tolerance> {
     let metres = metres.unwrap_or(CUT * errors.position);
-    Tolerance::new(metres)
-        .map_or_else(|| wrong(field, metres, "a distance in metres, 0 to 1024"), Ok)
+    Tolerance::new(metres).or_else(|_| wrong(field, metres, "a distance in metres, 0 to 1024"))
 }
 
 /// Whether something is left to find out under a tolerance.
@@ -324,7 +320,7 @@ pub fn check_tolerance(
     let apart = of(Label::Negative)
         .flat_map(|n| of(Label::Positive).map(move |p| (p - n).norm()))
         .fold(0.0, f64::max);
-    if tolerance.metres() >= apart || given.clone().within(tolerance).is_err() {
+    if tolerance.metres() >= apart || given.clone().with_tolerance(tolerance).is_err() {
         let expected = format!(
             "less than the oracle's points of different labels are apart, {apart:.3} m, and directions of the line \
              to within 88 degrees of their middle"
@@ -354,7 +350,7 @@ fn noise(table: &NoiseTable) -> Result<NoiseModel> {
 /// # Errors
 /// Names `field` and the number.
 pub fn probability(field: &str, p: f64) -> Result<f64> {
-    if Reliability::new(p).is_none() {
+    if Reliability::new(p).is_err() {
         return wrong(field, p, "a probability in [0, 1]");
     }
     Ok(p)
@@ -407,18 +403,18 @@ fn oracle(tables: &[Table<SampleTable>], area: &MissionArea, world: &World) -> R
         samples.push(Sample { site, label });
     }
     VersionSpace::new(&samples).or_else(|error| match error {
-        NoVersionSpace::Collinear => {
+        GivenError::Collinear => {
             wrong("oracle", "points on one line", "three or more points that are not collinear")
         }
-        NoVersionSpace::OneLabel => {
+        GivenError::OneLabel => {
             let label = samples.first().map_or(0, |s| s.label.sign());
             wrong("oracle", format!("only the label {label}"), "points of both labels")
         }
-        NoVersionSpace::NotSeparable(i) => {
+        GivenError::NotSeparable(i) => {
             let expected = "points that a line separates by their labels";
             wrong(&format!("oracle[{i}]"), "a label that no line allows", expected)
         }
-        NoVersionSpace::TooMany => {
+        GivenError::TooMany => {
             wrong("oracle", format!("{} points", samples.len()), format!("at most {CAPACITY}"))
         }
         other => wrong("oracle", other, "points that leave lines to find"),
@@ -426,7 +422,7 @@ fn oracle(tables: &[Table<SampleTable>], area: &MissionArea, world: &World) -> R
 }
 
 fn start(table: &StartTable, given: &Lines, area: &MissionArea) -> Result<Pose> {
-    let Some(heading) = Heading::from_radians(table.heading) else {
+    let Ok(heading) = Heading::from_radians(table.heading) else {
         return wrong("start.heading", table.heading, "a finite angle in radians");
     };
     let first = Point2::<f64>::from(given.samples()[0].site);

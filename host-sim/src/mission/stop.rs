@@ -4,9 +4,7 @@
 //! precision, so a promise that passes is kept.
 
 use anyhow::Result;
-use planner_core::belief::goal::{Accuracy, Goal};
-use planner_core::geometry::heading::Heading;
-use planner_core::geometry::region::Region as _;
+use planner_core::{Accuracy, Angle, Goal, Workspace as _};
 use serde::{Deserialize, Serialize};
 
 use crate::mission::algorithm::Algorithm;
@@ -49,7 +47,7 @@ impl StopTable {
         let accuracy = match (self.slope_arc_deg, self.misclassified) {
             (Some(degrees), None) if (1e-5..90.0).contains(&degrees) => {
                 let units = (degrees * UNITS_PER_DEGREE) as u32;
-                Accuracy::SlopeArc(Heading(units - TURN_OFF))
+                Accuracy::SlopeArc(Angle(units - TURN_OFF))
             }
             (Some(degrees), None) => {
                 return wrong(

@@ -2,13 +2,9 @@
 
 use anyhow::Result;
 use nalgebra::{Point2, Vector2};
-use planner_core::geometry::area::Area;
-use planner_core::geometry::hull::Hull;
-use planner_core::geometry::lattice::{Site, UNITS_PER_METRE};
-use planner_core::geometry::line::Line;
-use planner_core::geometry::region::Region as _;
-use planner_core::geometry::terrain::RoundedHull;
+use planner_core::geometry::lattice::UNITS_PER_METRE;
 use planner_core::link::message::{MOST_CORNERS, MOST_KEEP_OUTS, MissionArea};
+use planner_core::{Area, Hull, KeepOut, Line, Site, Workspace as _};
 use serde::Deserialize;
 
 use crate::mission::strict::{Numbers, Table, wrong};
@@ -48,7 +44,7 @@ pub(crate) fn area(area: &AreaTable, keep_outs: &[Table<KeepOutTable>]) -> Resul
     let plain = match (&area.x, &area.z, &area.polygon) {
         (Some(Numbers([x0, x1])), Some(Numbers([z0, z1])), None) => {
             let corners = (site("area", *x0, *z0)?, site("area", *x1, *z1)?);
-            let Some(area) = Area::new(corners.0, corners.1) else {
+            let Ok(area) = Area::new(corners.0, corners.1) else {
                 let found = format!("x = [{x0}, {x1}], z = [{z0}, {z1}]");
                 return wrong("area", found, "each range from smaller to larger");
             };
@@ -71,7 +67,7 @@ pub(crate) fn area(area: &AreaTable, keep_outs: &[Table<KeepOutTable>]) -> Resul
     MissionArea::new(polygon, &keep_outs).or_else(|why| wrong("keep_out", why, "smaller ones"))
 }
 
-fn keep_out(number: usize, table: &KeepOutTable) -> Result<RoundedHull<MOST_CORNERS>> {
+fn keep_out(number: usize, table: &KeepOutTable) -> Result<KeepOut<MOST_CORNERS>> {
     let field = format!("keep_out[{number}]");
     match (table.x, table.z, table.radius, &table.polygon) {
         (Some(x), Some(z), Some(radius), None) => {
@@ -81,10 +77,10 @@ fn keep_out(number: usize, table: &KeepOutTable) -> Result<RoundedHull<MOST_CORN
                 return wrong(&format!("{field}.radius"), radius, expected);
             }
             let hull = Hull::new(&[site(&field, x, z)?])?;
-            Ok(RoundedHull { hull, radius: units as u32 })
+            Ok(KeepOut { hull, radius: units as u32 })
         }
         (None, None, None, Some(corners)) => {
-            Ok(RoundedHull { hull: hull(&format!("{field}.polygon"), corners, 2)?, radius: 0 })
+            Ok(KeepOut { hull: hull(&format!("{field}.polygon"), corners, 2)?, radius: 0 })
         }
         _ => wrong(&field, "other keys", "either { x, z, radius } or { polygon }"),
     }

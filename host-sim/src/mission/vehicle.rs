@@ -2,16 +2,15 @@
 
 use anyhow::Result;
 use nalgebra::Point2;
-use planner_core::geometry::area::Area;
-use planner_core::geometry::region::Region as _;
+use planner_core::aimed_for;
+use planner_core::dynamics::{ActionGrid, Dynamics as _};
+use planner_core::error::{GridError, SetupError};
 use planner_core::link::message::MissionArea;
-use planner_core::motion::action::{ActionGrid, BadGrid};
-use planner_core::motion::any_vehicle::{AnyVehicle, Shape};
-use planner_core::motion::boat::Boat;
-use planner_core::motion::car::{self, Car};
-use planner_core::motion::dynamics::Dynamics as _;
-use planner_core::motion::unicycle::{self, Grid, Unicycle};
-use planner_core::planner::config::{Config, ConfigError};
+use planner_core::link::message::Settings;
+use planner_core::motion::any_vehicle::Shape;
+use planner_core::motion::car::{self};
+use planner_core::motion::unicycle::{self, Grid};
+use planner_core::{AnyVehicle, Area, Boat, Car, Unicycle, Workspace as _};
 use serde::{Deserialize, Serialize};
 
 use crate::mission::algorithm::Algorithm;
@@ -139,7 +138,7 @@ impl VehicleTable {
                 Car::new(shape).map(AnyVehicle::Car)
             }
         };
-        let made = made.or_else(|bad: BadGrid| wrong(&name("kind"), "no such vehicle", bad))?;
+        let made = made.or_else(|bad: GridError| wrong(&name("kind"), "no such vehicle", bad))?;
         check_suits(&name("kind"), &made, algorithm)?;
         Ok(made)
     }
@@ -247,11 +246,11 @@ fn check_suits(name: &str, vehicle: &AnyVehicle, algorithm: Algorithm) -> Result
 pub fn check_room(
     source: Source,
     vehicle: &AnyVehicle,
-    config: &Config<MissionArea>,
+    config: &Settings<MissionArea>,
 ) -> Result<()> {
     let tolerance = config.tolerance.metres();
-    config.admits(vehicle).or_else(|error| {
-        if let ConfigError::Room(none) = error {
+    aimed_for(config.area, vehicle, config.tolerance).map(drop).or_else(|error| {
+        if let SetupError::Room(none) = error {
             return wrong(&source.name("kind"), of_area(config.area.bounds(), tolerance), none);
         }
         let found = format!("{tolerance} m");

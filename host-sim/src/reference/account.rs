@@ -1,7 +1,7 @@
 //! The cost of a mission in a full-horizon problem, whoever planned it. If the problem does not allow the mission, the
 //! constraints that it broke.
 
-use planner_core::belief::sample::{Reading, Sample};
+use planner_core::{Reading, Sample};
 use serde::Serialize;
 
 use crate::mission::recording::Recording;

@@ -1,10 +1,8 @@
 //! Motions that are known beforehand, flown and recorded as a planner's are.
 
 use anyhow::Result;
-use planner_core::motion::action::Action;
-use planner_core::motion::dynamics::{Dynamics as _, Pose};
-use planner_core::planner::Motion;
-use planner_core::robot::agent::Step;
+use planner_core::dynamics::{Action, Dynamics as _};
+use planner_core::{Motion, Pose, Step};
 
 use crate::mission::definition::Mission;
 use crate::mission::flight::Flown;
@@ -36,7 +34,7 @@ fn motion(mission: &Mission, pose: Pose, action: Action) -> Option<Motion> {
         stage: None,
         recovery: None,
         action,
-        control: mission.vehicle.control(action),
+        control: mission.vehicle.control(pose, action),
         target: mission.vehicle.target(pose, action)?,
         wants_label: true,
         examined: 0,

@@ -1,11 +1,9 @@
 //! An instance of a full-horizon problem: a scenario's mission, a number of motions, and which cost.
 
 use anyhow::{Result, anyhow, bail};
-use planner_core::belief::sample::{Label, Sample};
-use planner_core::belief::tolerance::Tolerance;
-use planner_core::geometry::region::Region as _;
-use planner_core::motion::action::{Action, Control};
-use planner_core::motion::dynamics::{Dynamics as _, Pose, room_for_errors};
+use planner_core::dynamics::{Action, Control, Dynamics as _};
+use planner_core::motion::dynamics::room_for_errors;
+use planner_core::{Label, Pose, Sample, Tolerance, Workspace as _};
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::Mission;
@@ -159,8 +157,9 @@ fn choices(mission: &Mission) -> Result<Vec<Choice>> {
         );
     }
     let all = (0..count as u32).map(Action).filter(|it| vehicle.ray_of(start, *it).is_some());
-    let mut choices: Vec<_> =
-        all.map(|action| Choice { action, effort: effort(vehicle.control(action)) }).collect();
+    let mut choices: Vec<_> = all
+        .map(|action| Choice { action, effort: effort(vehicle.control(start, action)) })
+        .collect();
     choices.sort_by_key(|it| (it.effort, it.action));
     Ok(choices)
 }

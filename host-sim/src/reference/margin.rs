@@ -6,7 +6,7 @@
 //! computed before remains in the minimum.
 
 use nalgebra::Point2;
-use planner_core::belief::sample::Sample;
+use planner_core::Sample;
 
 /// The square of the least distance of samples of different labels, metres^2.
 #[derive(Clone, Copy, Debug)]

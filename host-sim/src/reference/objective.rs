@@ -1,7 +1,6 @@
 //! What a full-horizon problem asks beside the control: what the line costs, and which samples it allows.
 
-use planner_core::belief::sample::{Label, Reading, Sample};
-use planner_core::geometry::lattice::Site;
+use planner_core::{Label, Reading, Sample, Site};
 use serde::Serialize;
 
 use crate::reference::margin::Gap;

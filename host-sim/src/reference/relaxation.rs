@@ -12,10 +12,8 @@
 
 use std::f64::consts::TAU;
 
-use planner_core::geometry::lattice::Site;
-use planner_core::geometry::line::Line;
-use planner_core::geometry::region::Region as _;
-use planner_core::motion::dynamics::{Dynamics as _, Pose};
+use planner_core::dynamics::Dynamics as _;
+use planner_core::{Line, Pose, Site, Workspace as _};
 use rayon::prelude::*;
 
 use crate::reference::instance::{Instance, Partial};
@@ -228,7 +226,7 @@ impl Moves {
             let Some(ray) = vehicle.ray_of(pose, choice.action) else { continue };
             let Ok(end) = vehicle.arrive(pose, &ray, speed) else { continue };
             let square = u64::from(grid.reach_mm(speed)).pow(2);
-            let turn = ray.heading.turned(pose.heading.mirrored()).radians();
+            let turn = ray.heading.since(pose.heading).radians();
             let first = ((turn - SLACK_RAD) / BIN_RAD).floor() as i64;
             let last = ((turn + SLACK_RAD) / BIN_RAD).floor() as i64 + 1;
             for bin in first..=last {
@@ -236,7 +234,7 @@ impl Moves {
                 *cost = choice.effort.saturating_sub(square).min(*cost);
             }
             reaches.push((f64::from(grid.reach_mm(speed)) / 1e3, square));
-            swing = swing.max(end.heading.turned(ray.heading.mirrored()).radians().abs());
+            swing = swing.max(end.heading.since(ray.heading).radians().abs());
         }
         reaches.sort_by_key(|reach| reach.1);
         reaches.dedup();

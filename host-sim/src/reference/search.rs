@@ -10,8 +10,8 @@ use std::sync::atomic::{self, AtomicI64, AtomicU64};
 
 use anyhow::{Result, bail};
 use indicatif::ParallelProgressIterator as _;
-use planner_core::belief::sample::{Reading, Sample};
-use planner_core::motion::action::Action;
+use planner_core::dynamics::Action;
+use planner_core::{Reading, Sample};
 use rayon::prelude::*;
 
 use crate::output::notes::progress;

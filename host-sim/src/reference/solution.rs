@@ -83,7 +83,7 @@ fn flown_by(mission: &Mission, algorithm: Algorithm) -> Mission {
     let mut mission = mission.clone();
     if mission.algorithm != algorithm {
         mission.algorithm = algorithm;
-        mission.config.varrho = algorithm.varrho();
+        mission.config.weight = algorithm.weight();
         mission.config.following = algorithm.following();
     }
     mission

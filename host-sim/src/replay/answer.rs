@@ -2,10 +2,8 @@
 
 use anyhow::{Context as _, Result, anyhow, bail};
 use nalgebra::Point2;
-use planner_core::belief::sample::{Label, Sample};
-use planner_core::belief::version_space::NoVersionSpace;
-use planner_core::geometry::area::Area;
-use planner_core::geometry::line::Line;
+use planner_core::error::GivenError;
+use planner_core::{Area, Label, Line, Sample};
 
 use crate::mission::read_out::LEVEL;
 use crate::replay::doubt::{Doubt, Votes};
@@ -91,7 +89,7 @@ impl Answer {
 fn exact(file: &SampleFile) -> Result<Answer> {
     let rows = in_order(&file.samples);
     let lines = Separation::of(&file.samples, &rows).map_err(|why| match why {
-        NoVersionSpace::NotSeparable(index) => {
+        GivenError::NotSeparable(index) => {
             let outliers = outliers(&file.samples, &rows, separation::are_separable);
             contradiction(file, index, &outliers, "")
         }

@@ -6,7 +6,7 @@
 //! surely lies on the likelier side.
 
 use nalgebra::Point2;
-use planner_core::belief::sample::{Label, Sample};
+use planner_core::{Label, Sample};
 
 /// How far labels and positions can be believed.
 #[derive(Debug)]

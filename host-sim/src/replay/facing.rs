@@ -10,8 +10,8 @@
 //!
 //! Everything is decided in integers, in a time that grows with the number of corners.
 
-use planner_core::belief::sample::{Label, Sample};
 use planner_core::geometry::lattice::Vector;
+use planner_core::{Label, Sample};
 
 use crate::replay::hull::{Hull, Row};
 

@@ -1,7 +1,7 @@
 //! Recorded samples and what they determine, drawn.
 
 use anyhow::{Context as _, Result};
-use planner_core::belief::sample::Sample;
+use planner_core::Sample;
 
 use crate::replay::answer::Answer;
 use crate::replay::record::Replay;

@@ -9,8 +9,8 @@
 use anyhow::{Result, anyhow, bail};
 use geographiclib_rs::{DirectGeodesic as _, Geodesic, InverseGeodesic as _};
 use nalgebra::Point2;
-use planner_core::geometry::lattice::{LIMIT, Site, UNITS_PER_METRE};
-use planner_core::geometry::line::Line;
+use planner_core::geometry::lattice::{LIMIT, UNITS_PER_METRE};
+use planner_core::{Line, Site};
 
 use crate::replay::crs::Crs;
 use crate::replay::rows::Layout;

@@ -2,7 +2,7 @@
 
 use anyhow::{Context as _, Result, bail};
 use nalgebra::Point2;
-use planner_core::geometry::area::Area;
+use planner_core::Area;
 use serde_json::{Value, json};
 
 use crate::replay::record::Replay;

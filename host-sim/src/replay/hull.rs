@@ -1,7 +1,7 @@
 //! Convex hulls of recorded positions, exact.
 
-use planner_core::belief::sample::{Label, Sample};
-use planner_core::geometry::lattice::{Site, orient};
+use planner_core::geometry::lattice::orient;
+use planner_core::{Label, Sample, Site};
 
 /// A sample and its row in the record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,7 +5,7 @@
 //! 1 as well.
 
 use anyhow::{Context as _, Result, anyhow, bail};
-use planner_core::belief::sample::Label;
+use planner_core::Label;
 
 use crate::replay::numbers::Numbers;
 

@@ -12,7 +12,7 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use nalgebra::{Point2, Vector2};
-use planner_core::belief::sample::Label;
+use planner_core::Label;
 
 use crate::replay::doubt::{Doubt, Votes};
 use crate::replay::patch::{Mass, Patch, Quarter};

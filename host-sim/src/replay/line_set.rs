@@ -3,8 +3,7 @@
 use std::f64::consts::PI;
 
 use nalgebra::Vector2;
-use planner_core::belief::sample::Label;
-use planner_core::geometry::line::Line;
+use planner_core::{Label, Line};
 
 use crate::world::polygon::Polygon;
 

@@ -5,7 +5,7 @@
 //! of rows that no line separates. A smallest such set has four rows at most where positions are true (Kirchberger's
 //! theorem). So the search finds one such set, and leaves each of its rows out of the record once.
 
-use planner_core::belief::sample::{Label, Sample};
+use planner_core::{Label, Sample};
 
 use crate::replay::hull::{Hull, Row};
 

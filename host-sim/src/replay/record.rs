@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::Result;
 use nalgebra::Point2;
-use planner_core::geometry::line::Line;
+use planner_core::Line;
 use serde::Serialize;
 
 use crate::mission::read_out::LEVEL;

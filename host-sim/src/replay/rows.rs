@@ -1,7 +1,7 @@
 //! Rows as they were recorded, and how a file of them is to be read.
 
 use anyhow::{Result, bail};
-use planner_core::belief::sample::Label;
+use planner_core::Label;
 
 use crate::replay::columns::Columns;
 use crate::replay::crs::Crs;

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use anyhow::{Result, anyhow, bail};
-use planner_core::belief::sample::{Label, Sample};
+use planner_core::{Label, Sample};
 
 use crate::output::plain;
 use crate::replay::frame::{Frame, check_degrees};

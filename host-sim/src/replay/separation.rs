@@ -2,14 +2,13 @@
 //!
 //! They depend on the convex hulls of the two labels alone, so all is found in `O(n log n)` for `n` rows.
 
-use planner_core::belief::consistent_lines;
+use planner_core::belief::cell_view;
 use planner_core::belief::estimate;
-use planner_core::belief::sample::Sample;
-use planner_core::belief::version_space::NoVersionSpace;
+use planner_core::error::GivenError;
 use planner_core::geometry::arc::SlopeArc;
 use planner_core::geometry::lattice::orient;
 use planner_core::geometry::line::Bound;
-use planner_core::geometry::local_line::LocalLine;
+use planner_core::{LocalLine, Sample};
 
 use crate::replay::facing::Facing;
 use crate::replay::hull::Row;
@@ -26,20 +25,20 @@ impl Separation {
     ///
     /// # Errors
     /// As `VersionSpace::new`, for any number of samples.
-    pub(crate) fn of(samples: &[Sample], rows: &[Row]) -> Result<Self, NoVersionSpace> {
+    pub(crate) fn of(samples: &[Sample], rows: &[Row]) -> Result<Self, GivenError> {
         let hulls = Facing::of(rows, samples.len());
         if hulls.are_of_one_label() {
             return Err(if hulls.are_flat() {
-                NoVersionSpace::Collinear
+                GivenError::Collinear
             } else {
-                NoVersionSpace::OneLabel
+                GivenError::OneLabel
             });
         }
         let Some([right, left]) = hulls.ends() else {
-            return Err(NoVersionSpace::NotSeparable(first_inseparable(samples, rows)));
+            return Err(GivenError::NotSeparable(first_inseparable(samples, rows)));
         };
         if right.apart().cross(left.apart()) == 0 {
-            return Err(NoVersionSpace::Collinear);
+            return Err(GivenError::Collinear);
         }
         Ok(Self { support: in_sequence(samples, hulls.between(right, left)) })
     }
@@ -51,7 +50,7 @@ impl Separation {
 
     /// The lines through two samples that bound the others, in cyclic order.
     pub(crate) fn bounds(&self) -> impl Iterator<Item = Bound> + Clone + '_ {
-        consistent_lines::bounds(self.support())
+        cell_view::bounds(self.support())
     }
 
     /// The directions of the lines.
@@ -61,7 +60,7 @@ impl Separation {
 
     /// The range of the lines' intercepts in metres; `None` when it is unbounded.
     pub(crate) fn intercepts(&self) -> Option<[f64; 2]> {
-        consistent_lines::intercepts(self.bounds())
+        cell_view::intercepts(self.bounds())
     }
 
     /// The mean of the lines.
@@ -119,9 +118,7 @@ fn in_sequence(samples: &[Sample], mut cycle: Vec<Row>) -> Vec<Sample> {
 
 #[cfg(test)]
 mod tests {
-    use planner_core::belief::sample::Label;
-    use planner_core::belief::version_space::VersionSpace;
-    use planner_core::geometry::lattice::Site;
+    use planner_core::{Label, Site, VersionSpace};
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 
@@ -181,8 +178,8 @@ mod tests {
                     let expected = expected.map(|_| ()).expect_err("one is none");
                     assert_eq!(found.map(|_| ()), Err(expected), "{samples:?}");
                     seen[match expected {
-                        NoVersionSpace::Collinear => 0,
-                        NoVersionSpace::OneLabel => 1,
+                        GivenError::Collinear => 0,
+                        GivenError::OneLabel => 1,
                         _ => 2,
                     }] += 1;
                     continue;

@@ -2,8 +2,7 @@
 //! that share no position.
 
 use planner_core::belief::estimate;
-use planner_core::belief::sample::{Label, Sample};
-use planner_core::geometry::local_line::LocalLine;
+use planner_core::{Label, LocalLine, Sample};
 use rand::SeedableRng;
 use rand::seq::SliceRandom as _;
 use rand_chacha::ChaCha8Rng;

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use anyhow::{Context as _, Result, anyhow};
 use csv::ByteRecord;
-use planner_core::belief::sample::Label;
+use planner_core::Label;
 
 use crate::replay::columns::{Columns, Places};
 use crate::replay::delimiter::Delimiter;

@@ -15,7 +15,7 @@
 use std::f64::consts::{PI, TAU};
 
 use nalgebra::{Point2, Vector2};
-use planner_core::belief::sample::Sample;
+use planner_core::Sample;
 use planner_core::geometry::lattice::{UNITS_PER_METRE, Vector};
 
 use crate::replay::facing::{Facing, Pair};

@@ -1,7 +1,7 @@
 //! The samples of a trace that `run --trace` wrote: the oracle's, and those of the steps.
 
 use anyhow::{Result, anyhow, bail};
-use planner_core::belief::sample::Label;
+use planner_core::Label;
 use serde::Deserialize;
 
 use crate::replay::rows::{Layout, Rows};

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use planner_core::geometry::line::Line;
+use planner_core::Line;
 
 use crate::replay::answer::{Answer, Doubted};
 use crate::replay::record::{LineInFile, Replay};

@@ -7,7 +7,7 @@
 //! turn, and closely between.
 
 use nalgebra::{Point2, Vector2};
-use planner_core::belief::posterior::Posterior;
+use planner_core::PosteriorView;
 use planner_core::geometry::lattice::Vector;
 use planner_core::geometry::line::Bound;
 use planner_core::link::message::MissionArea;
@@ -63,7 +63,7 @@ struct Growing {
 
 /// The bands of a table's credible set in an area, each within the one before it.
 pub(crate) fn of(table: &Table, area: &MissionArea) -> Vec<Band> {
-    let posterior = Posterior::new(table);
+    let posterior = PosteriorView::new(table);
     let set = posterior.credible(LEVEL);
     let frame = Frame::between(set.slope_arc.from(), set.slope_arc.to());
     let hypotheses: Vec<_> = posterior
@@ -262,8 +262,7 @@ fn straightened(line: &[Point2<f64>], detail: f64) -> Vec<Point2<f64>> {
 
 #[cfg(test)]
 mod tests {
-    use planner_core::belief::consistent_lines::Certainty;
-    use planner_core::geometry::lattice::Site;
+    use planner_core::{Certainty, Site};
     use rand::{RngExt as _, SeedableRng as _};
     use rand_chacha::ChaCha8Rng;
 
@@ -296,7 +295,7 @@ mod tests {
             let recording = Recording::of(&mission).unwrap();
             let table = recording.belief.hypotheses().unwrap();
             let bands = of(table, &mission.config.area);
-            let posterior = Posterior::new(table);
+            let posterior = PosteriorView::new(table);
             let set = posterior.credible(LEVEL);
             let mass = |at: Point2<f64>| -> f64 {
                 let at = Site::try_from(at).unwrap();

@@ -1,7 +1,6 @@
 //! The flights of the paper's examples side by side: a row for each, and for a printed one another.
 
-use planner_core::belief::posterior::Posterior;
-use planner_core::belief::weight::Prior;
+use planner_core::{PosteriorView, Prior};
 
 use crate::mission::read_out::ReadOut;
 use crate::mission::recording::Recording;
@@ -64,7 +63,7 @@ pub fn side_by_side<'a>(flights: impl Iterator<Item = Flown<'a>>) -> String {
 /// Bits told, by the area prior whichever chose the motions.
 pub(crate) fn bits(belief: &dyn ReadOut) -> f64 {
     let by_area = belief.hypotheses().map(|table| table.weighed_by(Prior::Area));
-    by_area.map_or_else(|| belief.information(), |table| Posterior::new(&table).information())
+    by_area.map_or_else(|| belief.information(), |table| PosteriorView::new(&table).information())
 }
 
 /// How far an estimate is off: slope, intercept, area.

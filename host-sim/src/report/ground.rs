@@ -1,7 +1,7 @@
 //! The knowledge of the ground, as shapes: certain ground, and how likely the line is to pass elsewhere.
 
-use planner_core::belief::sample::{Label, Sample};
 use planner_core::link::message::MissionArea;
+use planner_core::{Label, Sample};
 
 use crate::mission::definition::Lines;
 use crate::mission::read_out::ReadOut;

@@ -1,7 +1,7 @@
 //! What marks look like: each has one look, on the figure as in its legend.
 
 use nalgebra::Vector2;
-use planner_core::belief::sample::Label;
+use planner_core::Label;
 use svg::node::element::{Group, Path};
 
 use crate::report::shapes::{Anchor, NUMBER, Spot, circle, outline, rectangle, square, text};

@@ -1,10 +1,8 @@
 //! A map of an area: ground, lines, paths and samples on it, each named in the legend as it is drawn.
 
 use nalgebra::{Point2, Vector2};
-use planner_core::belief::sample::Label;
-use planner_core::geometry::line::Line;
-use planner_core::geometry::region::Region as _;
 use planner_core::link::message::MissionArea;
+use planner_core::{Label, Line, Workspace as _};
 
 use crate::report::axes::{Axes, Axis, Scale};
 use crate::report::bands::Band;

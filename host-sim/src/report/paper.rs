@@ -3,8 +3,7 @@
 
 use anyhow::{Context as _, Result, bail};
 use nalgebra::{Point2, Vector2};
-use planner_core::belief::sample::{Label, Sample};
-use planner_core::geometry::line::Line;
+use planner_core::{Label, Line, Sample};
 
 use crate::mission::definition::{Lines, Mission};
 use crate::mission::recording::Recording;

@@ -2,14 +2,11 @@
 
 use nalgebra::{Point2, Rotation2, Vector2};
 use planner_core::belief::estimate;
-use planner_core::belief::posterior::Posterior;
-use planner_core::belief::sample::{Label, Reading, Sample};
-use planner_core::geometry::area::Area;
-use planner_core::geometry::lattice::{LIMIT, Site, UNITS_PER_METRE, Vector};
-use planner_core::geometry::line::Line;
-use planner_core::geometry::local_line::LocalLine;
+use planner_core::geometry::lattice::{LIMIT, UNITS_PER_METRE, Vector};
 use planner_core::link::message::MissionArea;
-use planner_core::motion::any_vehicle::AnyVehicle;
+use planner_core::{
+    AnyVehicle, Area, Label, Line, LocalLine, PosteriorView, Reading, Sample, Site,
+};
 
 use crate::mission::definition::Table;
 use crate::mission::read_out::LEVEL;
@@ -227,7 +224,7 @@ fn arc(from: Point2<f64>, to: Point2<f64>, turn: f64) -> Vec<Point2<f64>> {
 
 /// The lines at the two ends of a credible set's slopes: the paper's `l1` and `l2`.
 fn bounding(table: &Table) -> Vec<Named> {
-    let posterior = Posterior::new(table);
+    let posterior = PosteriorView::new(table);
     let set = posterior.credible(LEVEL);
     let bounds = || posterior.members(&set).flat_map(|h| table.lines(h).bounds());
     let ends = [("l1", set.slope_arc.from()), ("l2", set.slope_arc.to())];
@@ -251,7 +248,7 @@ pub fn area_around(samples: &[Sample]) -> Option<Area> {
     let (min, max) = (places().reduce(|a, b| a.inf(&b))?, places().reduce(|a, b| a.sup(&b))?);
     let margin = Vector2::repeat(0.1 * (max - min).amax());
     let corner = |at: Point2<f64>| Site::try_from(at.map(|m| m.clamp(-END, END))).ok();
-    Area::new(corner(min - margin)?, corner(max + margin)?)
+    Area::new(corner(min - margin)?, corner(max + margin)?).ok()
 }
 
 #[cfg(test)]

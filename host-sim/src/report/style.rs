@@ -1,7 +1,7 @@
 //! Colours, strokes and fills that figures share. Whatever differs in colour differs in dashes, hatching or lightness
 //! too, so that a figure can be read in black and white.
 
-use planner_core::belief::sample::Label;
+use planner_core::Label;
 
 use crate::report::bands::LEAST;
 use crate::report::picture::Kind;

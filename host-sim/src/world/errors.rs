@@ -4,12 +4,8 @@
 use std::convert::Infallible;
 
 use nalgebra::{Point2, Vector2};
-use planner_core::belief::sample::Reading;
-use planner_core::geometry::heading::Heading;
-use planner_core::geometry::lattice::Site;
-use planner_core::motion::dynamics::Pose;
-use planner_core::planner::Motion;
-use planner_core::robot::body::Body;
+use planner_core::robot::Body;
+use planner_core::{Heading, Motion, Pose, Reading, Site};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
@@ -87,7 +83,7 @@ fn rotated(v: Vector2<f64>, angle: f64) -> Vector2<f64> {
 /// A pose some way off; where that is off the lattice, at the same site.
 fn displaced(pose: Pose, by: Vector2<f64>, turn: f64) -> Pose {
     let site = Site::try_from(metres(pose.site) + by).unwrap_or(pose.site);
-    let turn = Heading::from_radians(turn).unwrap_or(Heading(0));
+    let turn = Heading::from_radians(turn).unwrap_or_default().since(Heading::default());
     Pose { site, heading: pose.heading.turned(turn) }
 }
 

@@ -7,10 +7,8 @@ pub mod polygon;
 pub mod robot;
 
 use nalgebra::Point2;
-use planner_core::belief::consistent_lines::ConsistentLines;
-use planner_core::belief::sample::{Label, Reading};
-use planner_core::geometry::lattice::Site;
-use planner_core::geometry::line::Line;
+use planner_core::belief::cell_view::CellView;
+use planner_core::{Label, Line, Reading, Site};
 
 /// The real world: a straight boundary, if it is known. A real vehicle's is not.
 #[derive(Clone, Copy, Debug)]
@@ -48,7 +46,7 @@ impl World {
     }
 
     /// Whether its line is among the lines of a cell; `None` without a line.
-    pub fn is_among(&self, lines: ConsistentLines<'_>) -> Option<bool> {
+    pub fn is_among(&self, lines: CellView<'_>) -> Option<bool> {
         self.line().map(|_| lines.support().all(|s| self.agrees(s.site, s.label)))
     }
 }

@@ -2,12 +2,9 @@
 
 use std::convert::Infallible;
 
-use planner_core::belief::noise::{Noise, Reliability, trusted_radius};
-use planner_core::belief::sample::{Reading, Sample};
-use planner_core::belief::tolerance::Tolerance;
-use planner_core::motion::dynamics::Pose;
-use planner_core::planner::Motion;
-use planner_core::robot::body::Body;
+use planner_core::belief::noise::trusted_radius;
+use planner_core::robot::Body;
+use planner_core::{Motion, Noise, Pose, Reading, Reliability, Sample, Tolerance};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 

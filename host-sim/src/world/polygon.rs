@@ -1,13 +1,10 @@
 //! Convex polygons in metres: clipping, area, and certain ground.
 
 use nalgebra::{Point2, Vector2};
-use planner_core::belief::consistent_lines::bound;
-use planner_core::belief::sample::{Label, Sample};
-use planner_core::geometry::area::Area;
+use planner_core::belief::cell_view::bound;
 use planner_core::geometry::lattice::UNITS_PER_METRE;
-use planner_core::geometry::line::Line;
-use planner_core::geometry::terrain::RoundedHull;
 use planner_core::link::message::MissionArea;
+use planner_core::{Area, KeepOut, Label, Line, Sample};
 
 /// A convex polygon as its corners in order; empty when there are none.
 #[derive(Clone, Debug)]
@@ -27,8 +24,8 @@ impl From<MissionArea> for Polygon {
 }
 
 /// Its border, with arcs as 16 chords of a quarter turn.
-impl<const C: usize> From<&RoundedHull<C>> for Polygon {
-    fn from(RoundedHull { hull, radius }: &RoundedHull<C>) -> Self {
+impl<const C: usize> From<&KeepOut<C>> for Polygon {
+    fn from(KeepOut { hull, radius }: &KeepOut<C>) -> Self {
         const CHORDS: u32 = 64;
         let radius = f64::from(*radius) / f64::from(UNITS_PER_METRE);
         let corners: Vec<Point2<f64>> = hull.corners().iter().map(|at| Point2::from(*at)).collect();
@@ -154,7 +151,7 @@ pub fn misclassified(area: impl Into<Polygon>, truth: &Line, estimate: &Line) ->
 
 #[cfg(test)]
 mod tests {
-    use planner_core::geometry::lattice::Site;
+    use planner_core::Site;
 
     use super::*;
 

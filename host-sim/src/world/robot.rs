@@ -2,10 +2,8 @@
 
 use std::convert::Infallible;
 
-use planner_core::belief::sample::Reading;
-use planner_core::motion::dynamics::Pose;
-use planner_core::planner::Motion;
-use planner_core::robot::body::Body;
+use planner_core::robot::Body;
+use planner_core::{Motion, Pose, Reading};
 
 use crate::world::World;
 

@@ -1,8 +1,7 @@
 //! Where motions may go: a convex polygon or a rectangle, but for keep-outs.
 
-use planner_core::geometry::lattice::UNITS_PER_METRE;
-use planner_core::geometry::terrain::NoTerrain;
-use planner_core::{Hull, RoundedHull, Site, Terrain};
+use planner_core::error::PolygonAreaError;
+use planner_core::{Hull, PolygonArea, Site};
 
 use crate::types::{Point, Status};
 use crate::verdict::Refusal;
@@ -14,7 +13,7 @@ pub const CORNERS: usize = 8;
 pub const KEEP_OUTS: usize = 8;
 
 /// An area as planners have it.
-pub(crate) type Ground = Terrain<CORNERS, KEEP_OUTS>;
+pub(crate) type Ground = PolygonArea<CORNERS, KEEP_OUTS>;
 
 /// What no motion touches: all places within a radius of a point, of a straight wall or of a convex polygon.
 #[repr(C)]
@@ -56,25 +55,21 @@ impl Area {
     pub(crate) fn with_keep_outs(&self, polygon: Hull<CORNERS>) -> Result<Ground, Refusal> {
         let refusal = Refusal::of(Status::KeepOut, c"keep_outs");
         let keep_outs = self.keep_outs.get(..usize::from(self.keep_out_count)).ok_or(refusal)?;
-        let mut read = [RoundedHull { hull: polygon, radius: 0 }; KEEP_OUTS];
+        let mut read = [planner_core::KeepOut { hull: polygon, radius: 0 }; KEEP_OUTS];
         for (number, (place, keep_out)) in read.iter_mut().zip(keep_outs).enumerate() {
             *place = keep_out.read().ok_or(refusal.about(number))?;
         }
         let read = read.get(..keep_outs.len()).unwrap_or(&read);
         Ground::new(polygon, read).map_err(|why| match why {
-            NoTerrain::KeepOut(number) => refusal.about(number),
+            PolygonAreaError::KeepOut(number) => refusal.about(number),
             _ => refusal,
         })
     }
 }
 
 impl KeepOut {
-    fn read(&self) -> Option<RoundedHull<CORNERS>> {
-        // Rounded up: what is kept out of is no smaller.
-        let most = Point { x: self.radius, z: 0.0 }.read().ok().filter(|_| self.radius >= 0.0)?;
-        let is_short = f64::from(most.x()) < self.radius * f64::from(UNITS_PER_METRE);
-        let radius = most.x().unsigned_abs() + u32::from(is_short);
-        Some(RoundedHull { hull: hull(&self.corners, self.corner_count)?, radius })
+    fn read(&self) -> Option<planner_core::KeepOut<CORNERS>> {
+        planner_core::KeepOut::new(hull(&self.corners, self.corner_count)?, self.radius).ok()
     }
 }
 

@@ -1,11 +1,9 @@
 //! What is asked of a planner, whether its labels are true or doubtful.
 
-use planner_core::belief::outlook::Foresight;
-use planner_core::belief::told::Replay;
-use planner_core::belief::tolerance::Tolerance;
+use planner_core::error::ObservationError;
 use planner_core::{
-    Belief as _, Forecast, Hypotheses, Lookahead, Noise, Persist, Planner as _, Refused,
-    Reliability, Site, Unicycle, VersionSpace,
+    Belief as _, CellPosterior, FromLog, Lookahead, Noise, NoisyBelief, Persist, Planner as _,
+    PredictiveBelief, Reliability, Site, Tolerance, Unicycle, VersionSpace,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -15,12 +13,16 @@ use crate::snapshot::Snapshot;
 use crate::types::{Line, Status};
 
 /// How reliable labels are, and whether one may have a reliability of its own.
-trait Believe: Foresight {
+trait Believe: PredictiveBelief {
     /// That of all labels of the mission; the other ones too, or why there are none.
     fn usual(known: &Self::Belief) -> (Reliability, Result<(), Status>);
 
     /// Takes in a label of another reliability.
-    fn take(&mut self, sample: planner_core::Sample, believed: Reliability) -> Result<(), Refused>;
+    fn take(
+        &mut self,
+        sample: planner_core::Sample,
+        believed: Reliability,
+    ) -> Result<(), ObservationError>;
 }
 
 /// Labels are always right.
@@ -29,20 +31,28 @@ impl<const N: usize> Believe for VersionSpace<N> {
         (Reliability::CERTAIN, Err(Status::Reliability))
     }
 
-    fn take(&mut self, sample: planner_core::Sample, _: Reliability) -> Result<(), Refused> {
+    fn take(
+        &mut self,
+        sample: planner_core::Sample,
+        _: Reliability,
+    ) -> Result<(), ObservationError> {
         self.insert(sample).map(drop)
     }
 }
 
 /// Where positions err, the table takes every label to be as reliable as the noise says.
-impl<const N: usize, const H: usize> Believe for Forecast<N, H> {
-    fn usual(known: &Hypotheses<N, H>) -> (Reliability, Result<(), Status>) {
+impl<const N: usize, const H: usize> Believe for NoisyBelief<N, H> {
+    fn usual(known: &CellPosterior<N, H>) -> (Reliability, Result<(), Status>) {
         let Noise { reliability, tolerance, .. } = known.noise();
         let is_exact = tolerance == Tolerance::NONE;
         (reliability, is_exact.then_some(()).ok_or(Status::Reliability))
     }
 
-    fn take(&mut self, sample: planner_core::Sample, believed: Reliability) -> Result<(), Refused> {
+    fn take(
+        &mut self,
+        sample: planner_core::Sample,
+        believed: Reliability,
+    ) -> Result<(), ObservationError> {
         Self::take(self, sample, believed)
     }
 }
@@ -78,7 +88,7 @@ pub(crate) trait Asked {
 
 impl<B> Asked for Lookahead<Unicycle, B, Ground>
 where
-    B: Believe + Replay<Told: Serialize + DeserializeOwned>,
+    B: Believe + FromLog<ObservationLog: Serialize + DeserializeOwned>,
 {
     fn observe(
         &mut self,
@@ -113,7 +123,7 @@ where
         };
         let before = self.snapshot();
         let sample = planner_core::Sample { site: pose.site, label };
-        self.foresight().take(sample, believed).map_err(|refused| {
+        self.belief_mut().take(sample, believed).map_err(|refused| {
             // It forgot its last turns. The snapshot is its own.
             let _ = Persist::restore(self, &before);
             refused.into()

@@ -6,9 +6,9 @@
 use core::ffi::c_void;
 use core::mem::{MaybeUninit, align_of, size_of};
 
-use planner_core::belief::tolerance::Tolerance;
 use planner_core::{
-    Forecast, Lookahead, Plan, Planner as _, Prior, Reliability, Unicycle, VersionSpace,
+    Lookahead, NoisyBelief, Plan, Planner as _, Prior, Reliability, Tolerance, Unicycle,
+    VersionSpace,
 };
 
 use crate::area::Ground;
@@ -25,7 +25,7 @@ const DOUBTFUL_SAMPLES: usize = 36;
 const HYPOTHESES: usize = 529;
 
 type True = Lookahead<Unicycle, VersionSpace<TRUE_SAMPLES>, Ground>;
-type Doubtful = Lookahead<Unicycle, Forecast<DOUBTFUL_SAMPLES, HYPOTHESES>, Ground>;
+type Doubtful = Lookahead<Unicycle, NoisyBelief<DOUBTFUL_SAMPLES, HYPOTHESES>, Ground>;
 
 /// A planner, in memory of the caller.
 #[repr(align(8))]
@@ -162,7 +162,7 @@ unsafe fn begin_in(
     bytes: usize,
     possible: &Possible,
 ) -> Result<*mut Finder, Status> {
-    let &Possible { config, unicycle, goal, noise, .. } = possible;
+    let &Possible { area, tolerance, unicycle, goal, noise, .. } = possible;
     let needed =
         if noise.is_none() { size_of::<Held<True>>() } else { size_of::<Held<Doubtful>>() };
     let is_room = !memory.is_null() && bytes >= needed && memory.addr().is_multiple_of(8);
@@ -172,18 +172,19 @@ unsafe fn begin_in(
     const { assert!(align_of::<Held<True>>() <= 8 && align_of::<Held<Doubtful>>() <= 8) };
     // SAFETY (of both writes): there is room, and it is aligned.
     if let Some(noise) = noise {
-        let planner = Lookahead::new(config, unicycle, Forecast::NONE);
+        let planner = Lookahead::new(area, unicycle, NoisyBelief::NONE);
         let planner = planner.map_err(|_| Status::ToleranceTooLarge)?.until(goal);
         let held = Held { finder: Finder { kind: Kind::Doubtful }, planner };
         let place = memory.cast::<Held<Doubtful>>();
         unsafe { place.write(held) };
         // In place: it is large. SAFETY: it has just been written.
-        let forecast = unsafe { &mut *place }.planner.foresight();
-        forecast.restart(possible.given(), Prior::Area, noise).map_err(|_| Status::Given)?;
+        let planner = unsafe { &mut (*place).planner };
+        planner.restart(possible.given(), Prior::Area, noise).map_err(|_| Status::Given)?;
     } else {
-        let space = VersionSpace::new(possible.given()).and_then(|it| it.within(config.tolerance));
+        let space = VersionSpace::new(possible.given());
+        let space = space.and_then(|it| it.with_tolerance(tolerance));
         let space = space.map_err(|_| Status::Given)?;
-        let planner = Lookahead::new(config, unicycle, space);
+        let planner = Lookahead::new(area, unicycle, space);
         let planner = planner.map_err(|_| Status::ToleranceTooLarge)?.until(goal);
         let held = Held { finder: Finder { kind: Kind::True }, planner };
         unsafe { memory.cast::<Held<True>>().write(held) };
@@ -250,7 +251,7 @@ pub unsafe extern "C" fn observe_within(
     // SAFETY: the caller promises it.
     unsafe {
         take_in(finder, pose, reading, |finder, pose, reading| {
-            let tolerance = Tolerance::new(tolerance).ok_or(Status::Tolerance)?;
+            let tolerance = Tolerance::new(tolerance).map_err(|_| Status::Tolerance)?;
             ask!(finder, it => Asked::observe_within(it, pose, reading, tolerance))
         })
     }
@@ -274,7 +275,7 @@ pub unsafe extern "C" fn observe_believed(
     // SAFETY: the caller promises it.
     unsafe {
         take_in(finder, pose, reading, |finder, pose, reading| {
-            let believed = Reliability::new(p).ok_or(Status::Reliability)?;
+            let believed = Reliability::new(p).map_err(|_| Status::Reliability)?;
             ask!(finder, it => it.observe_believed(pose, reading, believed))
         })
     }

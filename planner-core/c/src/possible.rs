@@ -1,7 +1,9 @@
 //! A mission that C tells, checked before any memory is written.
 
-use planner_core::belief::version_space::NoVersionSpace;
-use planner_core::{Config, Goal, Hypotheses, Noise, Prior, Site, Unicycle, VersionSpace};
+use planner_core::error::GivenError;
+use planner_core::{
+    CellPosterior, Goal, Noise, Prior, Site, Tolerance, Unicycle, VersionSpace, aimed_for,
+};
 
 use crate::area::Ground;
 use crate::types::{Mission, Sample, Status};
@@ -12,7 +14,8 @@ pub(crate) const MOST_GIVEN: usize = 16;
 
 /// A mission that is possible, and its given samples.
 pub(crate) struct Possible {
-    pub(crate) config: Config<Ground>,
+    pub(crate) area: Ground,
+    pub(crate) tolerance: Tolerance,
     pub(crate) unicycle: Unicycle,
     pub(crate) goal: Option<Goal>,
     pub(crate) noise: Option<Noise>,
@@ -33,24 +36,25 @@ impl Possible {
         for (number, (place, sample)) in places.iter_mut().zip(given).enumerate() {
             *place = sample.read().map_err(|status| refusal(status).about(number))?;
         }
-        let (config, unicycle, noise) = (mission.config()?, mission.unicycle()?, mission.noise()?);
+        let (area, tolerance) = (mission.ground()?, mission.tolerance()?);
+        let (unicycle, noise) = (mission.unicycle()?, mission.noise()?);
         let goal = mission.goal()?;
         let count = given.len();
-        let possible = Self { config, unicycle, goal, noise, samples, count };
+        let possible = Self { area, tolerance, unicycle, goal, noise, samples, count };
         // With room for these samples alone.
         let is_found = if let Some(noise) = noise {
-            Hypotheses::<MOST_GIVEN, 1>::new(possible.given(), Prior::Area, noise).map(drop)
+            CellPosterior::<MOST_GIVEN, 1>::new(possible.given(), Prior::Area, noise).map(drop)
         } else {
             VersionSpace::<MOST_GIVEN>::new(possible.given())
-                .and_then(|it| it.within(config.tolerance))
+                .and_then(|it| it.with_tolerance(tolerance))
                 .map(drop)
         };
         is_found.map_err(|why| match why {
-            NoVersionSpace::NotSeparable(number) => refusal(Status::Given).about(number),
+            GivenError::NotSeparable(number) => refusal(Status::Given).about(number),
             _ => refusal(Status::Given),
         })?;
         let too_large = Refusal::of(Status::ToleranceTooLarge, c"tolerance");
-        config.admits(&unicycle).map_err(|_| too_large)?;
+        aimed_for(area, &unicycle, tolerance).map_err(|_| too_large)?;
         Ok(possible)
     }
 

@@ -1,7 +1,8 @@
 //! What outlives a planner's sleep, as bytes: the planner's snapshot in postcard's form, then a check sum of it.
 
 use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
-use planner_core::planner::snapshot::{NotRestored, Persist, VERSION};
+use planner_core::error::RestoreError;
+use planner_core::{Persist, SNAPSHOT_VERSION};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -44,7 +45,7 @@ impl Snapshot {
         let bytes = self.checked().ok_or(Status::SnapshotSpoilt)?;
         let (version, _) =
             postcard::take_from_bytes::<u16>(bytes).map_err(|_| Status::SnapshotSpoilt)?;
-        if version != VERSION {
+        if version != SNAPSHOT_VERSION {
             return Err(Status::SnapshotVersion);
         }
         let read: P::Snapshot = postcard::from_bytes(bytes).map_err(|_| Status::SnapshotMission)?;
@@ -53,8 +54,8 @@ impl Snapshot {
             // It made this one itself.
             let _ = planner.restore(&before);
             match refused {
-                NotRestored::Version(_) => Status::SnapshotVersion,
-                NotRestored::Told(_) => Status::SnapshotMission,
+                RestoreError::Version(_) => Status::SnapshotVersion,
+                _ => Status::SnapshotMission,
             }
         })
     }

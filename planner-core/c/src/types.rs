@@ -2,13 +2,10 @@
 
 use core::ffi::CStr;
 
-use planner_core::belief::goal::Accuracy;
-use planner_core::belief::tolerance::Tolerance;
-use planner_core::motion::action::BadGrid;
+use planner_core::error::{GridError, ObservationError};
 use planner_core::nalgebra::Point2;
 use planner_core::{
-    Config, Crossing, Goal, Heading, Hull, Label, Noise, Refused, Reliability, Site, StopReason,
-    Unicycle, lookahead,
+    Angle, Goal, Heading, Hull, Label, Noise, Site, StopReason, Tolerance, Unicycle,
 };
 
 use crate::area::{Area, Ground};
@@ -63,11 +60,11 @@ pub enum Status {
     SnapshotMission,
 }
 
-impl From<Refused> for Status {
-    fn from(refused: Refused) -> Self {
+impl From<ObservationError> for Status {
+    fn from(refused: ObservationError) -> Self {
         match refused {
-            Refused::Full(_) => Self::Full,
-            Refused::Tolerance(_) => Self::Tolerance,
+            ObservationError::Full(_) => Self::Full,
+            ObservationError::Tolerance(_) => Self::Tolerance,
             _ => Self::Contradiction,
         }
     }
@@ -134,7 +131,7 @@ impl Pose {
     /// On the lattice.
     pub(crate) fn read(self) -> Result<planner_core::Pose, Status> {
         let site = Point { x: self.x, z: self.z }.read()?;
-        let heading = Heading::from_radians(self.heading).ok_or(Status::Position)?;
+        let heading = Heading::from_radians(self.heading).map_err(|_| Status::Position)?;
         Ok(planner_core::Pose { site, heading })
     }
 }
@@ -207,27 +204,20 @@ const USUAL_LEVEL: u32 = 900_000;
 const HIGHEST_LEVEL: f64 = 0.9999;
 
 impl Mission<'_> {
-    pub(crate) fn config(&self) -> Result<Config<Ground>, Refusal> {
-        let area = match self.area {
-            None => Ground::from(self.rectangle()?),
+    pub(crate) fn ground(&self) -> Result<Ground, Refusal> {
+        match self.area {
+            None => Ok(Ground::from(self.rectangle()?)),
             Some(area) if area.corner_count == 0 => {
-                area.with_keep_outs(Hull::of(self.rectangle()?))?
+                area.with_keep_outs(Hull::of(self.rectangle()?))
             }
             Some(area) => {
                 let sides = [self.min_x, self.min_z, self.max_x, self.max_z];
                 if sides.into_iter().any(|side| side != 0.0) {
                     return Err(Refusal::of(Status::Area, c"area"));
                 }
-                area.with_keep_outs(area.polygon()?)?
+                area.with_keep_outs(area.polygon()?)
             }
-        };
-        Ok(Config {
-            area,
-            varrho: lookahead::VARRHO,
-            crossing: Crossing::default(),
-            following: planner_core::cfc::FOLLOWING,
-            tolerance: self.tolerance()?,
-        })
+        }
     }
 
     fn rectangle(&self) -> Result<planner_core::Area, Refusal> {
@@ -239,11 +229,11 @@ impl Mission<'_> {
         let min = corner((self.min_x, c"min_x"), (self.min_z, c"min_z"))?;
         let max = corner((self.max_x, c"max_x"), (self.max_z, c"max_z"))?;
         let what = if min.x() < max.x() { c"max_z" } else { c"max_x" };
-        planner_core::Area::new(min, max).ok_or(Refusal::of(Status::Mission, what))
+        planner_core::Area::new(min, max).map_err(|_| Refusal::of(Status::Mission, what))
     }
 
-    fn tolerance(&self) -> Result<Tolerance, Refusal> {
-        Tolerance::new(self.tolerance).ok_or(Refusal::of(Status::Mission, c"tolerance"))
+    pub(crate) fn tolerance(&self) -> Result<Tolerance, Refusal> {
+        Tolerance::new(self.tolerance).map_err(|_| Refusal::of(Status::Mission, c"tolerance"))
     }
 
     pub(crate) fn unicycle(&self) -> Result<Unicycle, Refusal> {
@@ -255,8 +245,8 @@ impl Mission<'_> {
             let is_turn = Unicycle::new(self.turn_step_urad, 1.0, 2, 1).is_err();
             let is_step = Unicycle::new(1_000_000, 1.0, 2, self.step_mm).is_err();
             refused(match bad {
-                BadGrid::Turn if is_turn => c"turn_step_urad",
-                BadGrid::Turn => c"sharpest",
+                GridError::Turn if is_turn => c"turn_step_urad",
+                GridError::Turn => c"sharpest",
                 _ if is_step => c"step_mm",
                 _ => c"steps",
             })
@@ -268,10 +258,9 @@ impl Mission<'_> {
         if self.slopes == 0.0 {
             return Ok(None);
         }
-        let inside = self.slopes > 0.0 && self.slopes < core::f64::consts::FRAC_PI_2;
-        let arc = inside.then(|| Heading::from_radians(self.slopes)).flatten();
-        let arc = arc.ok_or(Refusal::of(Status::Mission, c"slopes"))?;
-        Ok(Some(Goal { accuracy: Accuracy::SlopeArc(arc), level }))
+        let goal = Angle::from_radians(self.slopes).and_then(Goal::slope_within);
+        let goal = goal.map_err(|_| Refusal::of(Status::Mission, c"slopes"))?;
+        Ok(Some(Goal { level, ..goal }))
     }
 
     /// In millionths. Promises about true labels have none.
@@ -287,10 +276,10 @@ impl Mission<'_> {
     /// What is known of the noise, if there is any.
     pub(crate) fn noise(&self) -> Result<Option<Noise>, Refusal> {
         let is_useful = self.p > 0.5 && self.p <= 1.0;
-        let reliability = is_useful.then(|| Reliability::new(self.p)).flatten();
-        let reliability = reliability.ok_or(Refusal::of(Status::Mission, c"p"))?;
+        let noise = is_useful.then(|| Noise::new(self.p).ok()).flatten();
+        let noise = noise.ok_or(Refusal::of(Status::Mission, c"p"))?;
         let tolerance = self.tolerance()?;
-        Ok((self.p < 1.0).then_some(Noise { reliability, trusted_radius: 0, tolerance }))
+        Ok((self.p < 1.0).then_some(Noise { tolerance, ..noise }))
     }
 }
 
@@ -311,8 +300,8 @@ pub struct Motion {
 impl From<planner_core::Motion> for Motion {
     fn from(motion: planner_core::Motion) -> Self {
         Self {
-            turn: motion.control.w.into(),
-            drive: motion.control.v.into(),
+            turn: motion.control.turn_rad.into(),
+            drive: motion.control.distance_m.into(),
             target: motion.target.into(),
             wants_label: motion.wants_label,
         }

@@ -6,44 +6,30 @@
 use std::cell::Cell;
 use std::error::Error;
 
-use planner_core::belief::tolerance::Tolerance;
 use planner_core::nalgebra::Point2;
-use planner_core::{
-    Area, Config, Crossing, Heading, Label, Line, LocalLine, Pose, Sample, Site, lookahead,
-};
+use planner_core::{Area, Heading, Label, Line, Pose, Sample};
 
 /// Whatever goes wrong ends an example.
 pub(crate) type Result<T = ()> = std::result::Result<T, Box<dyn Error>>;
 
-/// A place by metres.
-pub(crate) fn at(x: f64, z: f64) -> Result<Site> {
-    Ok(Site::try_from(Point2::new(x, z))?)
-}
-
 /// What is known before.
 pub(crate) fn given() -> Result<[Sample; 4]> {
     Ok([
-        Sample { site: at(2.0, 1.0)?, label: Label::Negative },
-        Sample { site: at(2.0, 8.0)?, label: Label::Positive },
-        Sample { site: at(18.0, 16.0)?, label: Label::Positive },
-        Sample { site: at(18.0, 5.0)?, label: Label::Negative },
+        Sample::at([2.0, 1.0], Label::Negative)?,
+        Sample::at([2.0, 8.0], Label::Positive)?,
+        Sample::at([18.0, 16.0], Label::Positive)?,
+        Sample::at([18.0, 5.0], Label::Negative)?,
     ])
 }
 
 /// Where the robot is in the beginning, facing along x.
 pub(crate) fn start() -> Result<Pose> {
-    Ok(Pose { site: at(2.0, 1.0)?, heading: Heading(0) })
+    Ok(Pose::at([2.0, 1.0], Heading::default())?)
 }
 
-/// What the mission fixes beforehand.
-pub(crate) fn config() -> Result<Config> {
-    Ok(Config {
-        area: Area::new(at(0.0, 0.0)?, at(20.0, 20.0)?).ok_or("no area")?,
-        varrho: lookahead::VARRHO,
-        crossing: Crossing::default(),
-        following: planner_core::cfc::FOLLOWING,
-        tolerance: Tolerance::NONE,
-    })
+/// Where it may go.
+pub(crate) fn area() -> Result<Area> {
+    Ok(Area::metres([0.0, 0.0], [20.0, 20.0])?)
 }
 
 /// The world, and the robot in it.
@@ -78,10 +64,10 @@ impl World {
 }
 
 /// Prints an estimate of the line and fails unless it is within some metres of the truth across the field.
-pub(crate) fn report(estimate: Option<LocalLine>, within: f64) -> Result {
-    let line = Line::from(estimate.ok_or("no estimate")?);
+pub(crate) fn report(estimate: Option<Line>, within: f64) -> Result {
+    let line = estimate.ok_or("no estimate")?;
+    println!("{line}");
     let (slope, intercept) = line.slope().zip(line.intercept()).ok_or("vertical")?;
-    println!("z = {slope:.4} x + {intercept:.4}");
     let off = |x: f64| (slope - 0.41) * x + intercept - 3.5;
     let most = off(0.0).abs().max(off(20.0).abs());
     if most > within { Err(format!("{most} m off").into()) } else { Ok(()) }

@@ -18,7 +18,7 @@
 
 use heapless::Vec;
 
-use crate::belief::consistent_lines::ConsistentLines;
+use crate::belief::cell_view::CellView;
 use crate::belief::noise::Reliability;
 use crate::belief::sample::{Label, Sample};
 use crate::belief::tolerance::Tolerance;
@@ -238,7 +238,7 @@ pub(crate) struct Blur<const E: usize> {
 }
 
 impl<const E: usize> Blur<E> {
-    pub(crate) fn of(lines: ConsistentLines<'_>) -> Self {
+    pub(crate) fn of(lines: CellView<'_>) -> Self {
         let mut rulers = Vec::new();
         for bound in lines.bounds() {
             // There are no more vertices than edges, and `E` of these at most.

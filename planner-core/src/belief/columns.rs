@@ -20,9 +20,9 @@
 //!
 //! The columns use the area prior, uniform over lines, whatever the table's prior is.
 
+use crate::belief::cell_posterior::CellPosterior;
 use crate::belief::column::{Column, Step, Threshold, exp};
 use crate::belief::directions::{Direction, directions};
-use crate::belief::hypotheses::Hypotheses;
 use crate::belief::list::List;
 use crate::belief::noise::Reliability;
 use crate::belief::sample::{Label, Sample};
@@ -53,7 +53,7 @@ impl<const K: usize> Columns<K> {
     /// `O(H + K S)`: some 150,000 instructions for 30 labels and 16 directions.
     pub fn lay<const N: usize, const H: usize, const E: usize>(
         &mut self,
-        table: &Hypotheses<N, H, E>,
+        table: &CellPosterior<N, H, E>,
         believed: &[Reliability],
     ) {
         let support = table.start().support().map(|sample| (sample, Reliability::CERTAIN));
@@ -81,7 +81,7 @@ impl<const K: usize> Columns<K> {
     }
 
     /// The share of the lines that have a site on their +1 side, as
-    /// [`Posterior::share_above`](crate::belief::posterior::Posterior::share_above). Some 850 instructions for 16
+    /// [`PosteriorView::share_above`](crate::belief::posterior_view::PosteriorView::share_above). Some 850 instructions for 16
     /// directions, however many labels there are.
     pub fn share_above(&self, site: Site) -> f32 {
         let place = self.view.vector(site);
@@ -214,7 +214,7 @@ mod tests {
         use Label::{Negative, Positive};
         let given = [(0, 0, Negative), (0, 4, Positive), (9, 5, Positive), (10, 0, Negative)]
             .map(|(x, z, label)| sample(x, z, label));
-        let mut table = Hypotheses::<12, 40>::new(&given, Prior::Area, Noise::NONE).unwrap();
+        let mut table = CellPosterior::<12, 40>::new(&given, Prior::Area, Noise::NONE).unwrap();
         let mut columns = Columns::NONE;
         let believed: Vec<Reliability, 12> =
             labels.iter().map(|(_, p)| Reliability::new(*p).unwrap()).collect();

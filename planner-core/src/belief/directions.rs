@@ -8,11 +8,11 @@
 
 use heapless::binary_heap::{BinaryHeap, Min};
 
-use crate::belief::hypotheses::Hypotheses;
+use crate::belief::cell_posterior::CellPosterior;
 use crate::belief::weight::LogWeight;
 use crate::geometry::approximate::precise_heading_of;
 use crate::geometry::arc::SlopeArc;
-use crate::geometry::heading::Heading;
+use crate::geometry::heading::{Angle, Heading};
 
 /// A direction, and the density that it was drawn from.
 #[derive(Clone, Copy, Debug)]
@@ -28,7 +28,7 @@ const HEAVY: usize = 32;
 
 /// Where the lines of a table lie.
 pub(crate) fn directions<const N: usize, const H: usize, const E: usize, const K: usize>(
-    table: &Hypotheses<N, H, E>,
+    table: &CellPosterior<N, H, E>,
 ) -> [Direction; K] {
     let (mut heaviest, mut rest) = (BinaryHeap::<(u32, u16), Min, HEAVY>::new(), 0.0);
     for (k, hypothesis) in (0..).zip(table.iter()) {
@@ -83,7 +83,7 @@ impl Density {
 
     /// None as yet, over the directions of an arc.
     fn over(arc: SlopeArc) -> Self {
-        const MARGIN: Heading = Heading(64); // for what headings are rounded by
+        const MARGIN: Angle = Angle(64); // for what headings are rounded by
         let first = precise_heading_of(arc.from()).turned(MARGIN.mirrored());
         Self { first, mass: 0, changes: BinaryHeap::new() }
     }
@@ -114,7 +114,7 @@ impl Density {
                 ahead -= to_next;
                 to_next = 2 * half;
                 let beyond = (ahead as f32 / density as f32) as u32;
-                let heading = self.first.turned(Heading(change.at.saturating_sub(beyond)));
+                let heading = self.first.turned(Angle(change.at.saturating_sub(beyond)));
                 *place = Direction { heading, density: density as f32 };
             }
             to_next = to_next.saturating_sub(ahead);
@@ -160,7 +160,7 @@ mod tests {
             };
             assert!((at - exact).abs() < off, "{k}: {at} for {exact}");
             let width = if (2..=5).contains(&k) { 1e-6 } else { 4.0 * eighth };
-            let units = f64::from(Heading::turn_of(1.0)) * width;
+            let units = f64::from(Angle::of_radians(1.0).0) * width;
             let exact = f64::from(Density::ONE) / units;
             assert!((f64::from(density) / exact - 1.0).abs() < 0.01, "{k}: {density}");
         }

@@ -9,7 +9,7 @@
 //! All are in single precision, in axes about a sample ([`LocalLine`]), so a mission kilometres from the origin loses
 //! no accuracy. The planning loop does not use them.
 
-use crate::belief::consistent_lines::{ConsistentLines, Kept, run_length};
+use crate::belief::cell_view::{CellView, Kept, run_length};
 use crate::belief::moments::Moments;
 use crate::belief::sample::{Label, Sample};
 use crate::belief::trapezoids::{Trapezoid, Trapezoids, measure};
@@ -33,12 +33,12 @@ pub struct Estimates {
 /// The measure of the version space, radian metres, to 10^-6 of it: d(angle) d(offset), the measure of
 /// lines that no motion of the plane changes. Its logarithm to the base 2 falls by the bits that samples tell.
 #[inline(never)] // called from many places
-pub fn area(lines: ConsistentLines<'_>) -> f32 {
+pub fn area(lines: CellView<'_>) -> f32 {
     lines.trapezoids().map_or(0.0, measure)
 }
 
 /// The share of the lines, by their measure, that label a site +1.
-pub fn share_above(lines: ConsistentLines<'_>, site: Site) -> f32 {
+pub fn share_above(lines: CellView<'_>, site: Site) -> f32 {
     let (first, last) = match lines.kept(site, Label::Positive) {
         Kept::All => return 1.0,
         Kept::None => return 0.0,
@@ -61,7 +61,7 @@ pub fn share_above(lines: ConsistentLines<'_>, site: Site) -> f32 {
 /// Closed form, and the same wherever the origin lies and however the axes turn. The version space is convex, so its
 /// mean agrees with every sample. `None` if the version space is too thin for single precision; none that the lattice
 /// can represent is.
-pub fn centre(lines: ConsistentLines<'_>) -> Option<LocalLine> {
+pub fn centre(lines: CellView<'_>) -> Option<LocalLine> {
     Moments::of(lines)?.mean()
 }
 
@@ -74,7 +74,7 @@ pub fn centre_of(support: &[Sample]) -> Option<LocalLine> {
 ///
 /// These are chosen by exact integer conditions, and its direction is exact. Only samples that still matter
 /// to the version space can support it. `O(m)` for `m` of them.
-pub fn maximum_margin(lines: ConsistentLines<'_>) -> Option<LocalLine> {
+pub fn maximum_margin(lines: CellView<'_>) -> Option<LocalLine> {
     widest(lines.trapezoids()?)
 }
 

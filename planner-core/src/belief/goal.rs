@@ -7,10 +7,11 @@
 use crate::geometry::approximate::{METRE, cross, single, sqrt};
 use crate::geometry::arc::SlopeArc;
 use crate::geometry::area::Area;
-use crate::geometry::heading::Heading;
+use crate::geometry::heading::Angle;
 use crate::geometry::lattice::Vector;
 use crate::geometry::line::Bound;
-use crate::geometry::region::Region;
+use crate::geometry::value::ValueError;
+use crate::geometry::workspace::Workspace;
 
 /// The goal of a mission: how well the line must be known, and with which probability.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,10 +24,52 @@ pub struct Goal {
     pub level: u32,
 }
 
+/// The probability with which a promise holds unless another is asked for, in millionths.
+const USUAL_LEVEL: u32 = 900_000;
+
 impl Goal {
+    /// Any two of the lines left make an angle of so many degrees at most.
+    ///
+    /// # Errors
+    /// [`ValueError`] unless it is above 0 and below 90.
+    pub fn slope_within_degrees(degrees: f64) -> Result<Self, ValueError> {
+        Self::slope_within(Angle::from_degrees(degrees).map_err(|_| ACUTE)?)
+    }
+
+    /// Any two of the lines left make an angle of this at most.
+    ///
+    /// # Errors
+    /// [`ValueError`] unless it is above 0 and below a quarter turn.
+    pub fn slope_within(angle: Angle) -> Result<Self, ValueError> {
+        let is_acute = 0 < angle.0 && angle.0 < 1 << 30;
+        let accuracy = Accuracy::SlopeArc(angle);
+        is_acute.then_some(Self { accuracy, level: USUAL_LEVEL }).ok_or(ACUTE)
+    }
+
+    /// The ground on which not all of the lines agree is at most this share of the area.
+    ///
+    /// # Errors
+    /// [`ValueError`] unless it is at least 0.000001 and at most 1.
+    pub fn misclassified_share(share: f64) -> Result<Self, ValueError> {
+        let is_share = (1e-6..=1.0).contains(&share);
+        let accuracy = Accuracy::Misclassified(libm::round(share * 1e6) as u32);
+        is_share.then_some(Self { accuracy, level: USUAL_LEVEL }).ok_or(SHARE)
+    }
+
+    /// The same goal, to be met with this probability at least. It is 0.9 unless you say otherwise, and 1 where labels
+    /// are true.
+    ///
+    /// # Errors
+    /// [`ValueError`] unless it is above 0 and at most 0.9999.
+    pub fn with_confidence(self, probability: f64) -> Result<Self, ValueError> {
+        let is_one = 0.0 < probability && probability <= 0.9999;
+        let level = libm::round(probability * 1e6) as u32;
+        is_one.then_some(Self { level, ..self }).ok_or(CONFIDENCE)
+    }
+
     /// The same for the rectangle around an area: shares of it are less.
     #[must_use]
-    pub fn in_bounds_of<G: Region>(self, area: &G) -> Self {
+    pub fn in_bounds_of<G: Workspace>(self, area: &G) -> Self {
         let accuracy = match self.accuracy {
             Accuracy::Misclassified(millionths) => {
                 Accuracy::Misclassified((millionths as f32 * area.share_of_bounds()) as u32)
@@ -37,13 +80,17 @@ impl Goal {
     }
 }
 
+const ACUTE: ValueError = ValueError("a goal's angle is above 0 and below 90 degrees");
+const SHARE: ValueError = ValueError("a goal's share of the area is from 0.000001 to 1");
+const CONFIDENCE: ValueError = ValueError("a confidence is above 0 and at most 0.9999");
+
 /// How well a line is to be known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Accuracy {
     /// Any two of the lines make an angle of this at most, below a quarter turn.
-    SlopeArc(Heading),
+    SlopeArc(Angle),
     /// The ground on which not all of the lines agree is at most this share of the area, in millionths.
     Misclassified(u32),
 }
@@ -65,14 +112,14 @@ impl Accuracy {
             Self::SlopeArc(most) => is_narrower(arc, most),
             Self::Misclassified(millionths) => {
                 let most = millionths as f32 * 1e-6 * (1.0 - ROUNDING);
-                is_narrower(arc, Heading(1 << 29)) && uncertain_share(arc, bounds, area) <= most
+                is_narrower(arc, Angle(1 << 29)) && uncertain_share(arc, bounds, area) <= most
             }
         }
     }
 }
 
 /// Whether an arc of slopes is narrower than a turn that is below a quarter.
-fn is_narrower(arc: SlopeArc, turn: Heading) -> bool {
+fn is_narrower(arc: SlopeArc, turn: Angle) -> bool {
     let Vector { x: cos, z: sin } = turn.unit().scaled(1 << 29);
     let sin = sin.saturating_sub(2); // by as much as it may be rounded up
     let (cross, dot) = (cross(arc.from(), arc.to()), single(arc.from().dot(arc.to())));

@@ -3,38 +3,38 @@
 //!
 //! | module | contains |
 //! | --- | --- |
-//! | [`cell`] | the lines that agree with some labels: a convex *cell*, stored as a cyclic list of sample indices |
+//! | [`dual_cell`] | the lines that agree with some labels: a convex *cell*, stored as a cyclic list of sample indices |
 //! | [`version_space`] | for labels that are true: the one cell that they leave |
-//! | [`hypotheses`], [`posterior`] | for labels that may be wrong: a table of weighted cells, and its distribution |
-//! | [`outlook`] | what the next labels are expected to tell |
-//! | [`picture`] | the outlook of the one cell |
-//! | [`forecast`], [`columns`] | the outlook of a table: columns beside it |
+//! | [`cell_posterior`], [`posterior_view`] | for labels that may be wrong: a table of weighted cells, and its distribution |
+//! | [`predictor`] | what the next labels are expected to tell |
+//! | [`dual_polygon`] | the outlook of the one cell |
+//! | [`noisy_belief`], [`columns`] | the outlook of a table: columns beside it |
 //! | [`goal`] | decides when the line is known well enough |
 //! | [`tolerance`] | handles positions that err |
-//! | [`told`] | what must be kept of a belief over a sleep |
+//! | [`observation_log`] | what must be kept of a belief over a sleep |
 //!
 //! Nothing here knows how the robot moves.
 
 pub(crate) mod blur;
-pub mod cell;
+pub mod cell_posterior;
+pub mod cell_view;
 pub(crate) mod column;
 pub mod columns;
-pub mod consistent_lines;
+pub mod constraint;
 pub(crate) mod directions;
-pub mod edge;
+pub mod dual_cell;
+pub mod dual_polygon;
 pub mod estimate;
-pub mod forecast;
 pub mod goal;
-pub mod hypotheses;
 pub(crate) mod list;
 pub(crate) mod moments;
 pub mod noise;
-pub mod outlook;
-pub mod picture;
-pub mod posterior;
+pub mod noisy_belief;
+pub mod observation_log;
+pub mod posterior_view;
+pub mod predictor;
 pub(crate) mod pruned;
 pub mod sample;
-pub mod told;
 pub mod tolerance;
 pub(crate) mod trapezoids;
 pub mod version_space;
@@ -60,8 +60,8 @@ pub trait Belief {
     /// Takes in what was read at a site, which may be off by the [tolerance](Self::tolerance).
     ///
     /// # Errors
-    /// [`Refused`] when the reading contradicts what is known or cannot be stored.
-    fn observe(&mut self, site: Site, reading: Reading) -> Result<(), Refused> {
+    /// [`ObservationError`] when the reading contradicts what is known or cannot be stored.
+    fn observe(&mut self, site: Site, reading: Reading) -> Result<(), ObservationError> {
         self.observe_within(site, reading, self.tolerance())
     }
 
@@ -69,13 +69,13 @@ pub trait Belief {
     /// tolerance, the more the reading tells.
     ///
     /// # Errors
-    /// As [`observe`](Self::observe), and [`Refused::Tolerance`].
+    /// As [`observe`](Self::observe), and [`ObservationError::Tolerance`].
     fn observe_within(
         &mut self,
         site: Site,
         reading: Reading,
         tolerance: Tolerance,
-    ) -> Result<(), Refused>;
+    ) -> Result<(), ObservationError>;
 
     /// The line as far as it is known.
     fn estimates(&self) -> Estimates;
@@ -96,7 +96,7 @@ pub trait Belief {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
-pub enum Refused {
+pub enum ObservationError {
     /// The sample lies in the region of certainty of the other label: a label was wrong, or the
     /// boundary is not straight.
     Contradiction(Sample),
@@ -106,7 +106,7 @@ pub enum Refused {
     Tolerance(Tolerance),
 }
 
-impl core::fmt::Display for Refused {
+impl core::fmt::Display for ObservationError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::Contradiction(s) => write!(
@@ -126,4 +126,4 @@ impl core::fmt::Display for Refused {
     }
 }
 
-impl core::error::Error for Refused {}
+impl core::error::Error for ObservationError {}

@@ -6,7 +6,7 @@
 
 use core::f32::consts::FRAC_PI_2;
 
-use crate::belief::consistent_lines::ConsistentLines;
+use crate::belief::cell_view::CellView;
 use crate::belief::sample::Sample;
 use crate::belief::trapezoids::{Trapezoid, Trapezoids};
 use crate::geometry::approximate::{METRE, UnitVector, cross, inverse_sqrt};
@@ -43,7 +43,7 @@ struct End {
 
 impl Moments {
     /// Over a cell.
-    pub(crate) fn of(lines: ConsistentLines<'_>) -> Option<Self> {
+    pub(crate) fn of(lines: CellView<'_>) -> Option<Self> {
         Self::over(lines.trapezoids()?)
     }
 

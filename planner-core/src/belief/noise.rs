@@ -4,6 +4,7 @@ use crate::belief::sample::Sample;
 use crate::belief::tolerance::Tolerance;
 use crate::belief::weight::LogWeight;
 use crate::geometry::lattice::Site;
+use crate::geometry::value::ValueError;
 
 /// How far a label can be believed: it is true with probability `p`.
 ///
@@ -17,6 +18,8 @@ pub struct Reliability {
     log_odds: LogWeight,
 }
 
+const RANGE: ValueError = ValueError("a reliability is a probability from 0 to 1");
+
 impl Reliability {
     /// No odds of a number are as large: a double is no smaller than `e^-745`.
     const BEYOND: LogWeight = LogWeight(1_000 * LogWeight::ONE);
@@ -27,15 +30,18 @@ impl Reliability {
     /// The label says nothing: `p` = 1/2. All zeros in memory.
     pub const NONE: Self = Self { log_odds: LogWeight::ZERO };
 
-    /// A label that is true with probability `p`: 1 is certain, 0 certainly wrong, and 1/2 says
-    /// nothing. `None` outside [0, 1].
-    pub fn new(p: f64) -> Option<Self> {
+    /// A label that is true with probability `p`: 1 is certain, 0 certainly wrong, and 1/2 says nothing.
+    ///
+    /// # Errors
+    /// [`ValueError`] outside [0, 1].
+    pub fn new(p: f64) -> Result<Self, ValueError> {
         let beyond = Self::BEYOND.value();
         let inside = (0.0..=1.0).contains(&p);
-        inside.then(|| {
+        let reliability = inside.then(|| {
             let log_odds = libm::log(p) - libm::log1p(-p); // infinite for 0 and 1
             Self { log_odds: LogWeight::from_log(log_odds.clamp(-beyond, beyond)) }
-        })
+        });
+        reliability.ok_or(RANGE)
     }
 
     /// The reliability with these odds as a logarithm in units of 2^-32; `None` if there is no such
@@ -99,6 +105,25 @@ impl Noise {
     pub const NONE: Self =
         Self { reliability: Reliability::CERTAIN, trusted_radius: 0, tolerance: Tolerance::NONE };
 
+    /// Labels that are true with probability `p` wherever they are read.
+    ///
+    /// # Errors
+    /// [`ValueError`] outside [0, 1].
+    pub fn new(p: f64) -> Result<Self, ValueError> {
+        Ok(Self { reliability: Reliability::new(p)?, ..Self::NONE })
+    }
+
+    /// The same for positions that err by a tolerance at most, metres or a [`Tolerance`].
+    ///
+    /// # Errors
+    /// [`ValueError`] unless it is at least 0 and at most 1,024 m.
+    pub fn with_tolerance(
+        self,
+        tolerance: impl TryInto<Tolerance, Error: Into<ValueError>>,
+    ) -> Result<Self, ValueError> {
+        Ok(Self { tolerance: tolerance.try_into().map_err(Into::into)?, ..self })
+    }
+
     /// The reliability of a label at a site. It is certain in a trusted ball (the paper's `B_r(p_j)`), whose radius is
     /// reduced by the tolerance.
     pub fn at(&self, site: Site, given: &[Sample]) -> Reliability {
@@ -142,7 +167,7 @@ mod tests {
             assert_eq!(Reliability::from_log_odds(units), None);
         }
         for p in [-0.1, 1.1, f64::NAN] {
-            assert_eq!(Reliability::new(p), None);
+            assert_eq!(Reliability::new(p), Err(RANGE));
         }
     }
 }

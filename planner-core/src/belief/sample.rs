@@ -3,8 +3,9 @@
 use core::ops::{Deref, Neg};
 
 use heapless::Vec;
+use nalgebra::Point2;
 
-use crate::geometry::lattice::Site;
+use crate::geometry::lattice::{LatticeError, Site};
 
 /// The side of the boundary on which a position lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -76,23 +77,33 @@ pub struct Sample {
     pub label: Label,
 }
 
+impl Sample {
+    /// A label at a place in metres, `[x, z]` or a point of `nalgebra`.
+    ///
+    /// # Errors
+    /// [`LatticeError`] unless both coordinates are smaller than 8,192 m in size.
+    pub fn at(place: impl Into<Point2<f64>>, label: Label) -> Result<Self, LatticeError> {
+        Ok(Self { site: Site::metres(place)?, label })
+    }
+}
+
 /// The buffer is full; the sample that did not fit is handed back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct BufferFull(pub Sample);
+pub struct BufferFullError(pub Sample);
 
-impl core::fmt::Display for BufferFull {
+impl core::fmt::Display for BufferFullError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str("the sample buffer is full")
     }
 }
 
-impl core::error::Error for BufferFull {}
+impl core::error::Error for BufferFullError {}
 
 /// Up to `N` samples, at most 128, in the order in which they came. 12 bytes each.
 ///
 /// Reads as a slice of [`Sample`].
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct SampleBuffer<const N: usize> {
     samples: Vec<Sample, N, u8>,
 }
@@ -110,10 +121,10 @@ impl<const N: usize> SampleBuffer<N> {
     /// Appends a sample and returns its index.
     ///
     /// # Errors
-    /// [`BufferFull`] with the sample when `N` are held already.
-    pub fn push(&mut self, sample: Sample) -> Result<u8, BufferFull> {
+    /// [`BufferFullError`] with the sample when `N` are held already.
+    pub fn push(&mut self, sample: Sample) -> Result<u8, BufferFullError> {
         let index = self.samples.len() as u8;
-        self.samples.push(sample).map_err(BufferFull)?;
+        self.samples.push(sample).map_err(BufferFullError)?;
         Ok(index)
     }
 
@@ -124,6 +135,12 @@ impl<const N: usize> SampleBuffer<N> {
     /// Whether another sample would be refused.
     pub fn is_full(&self) -> bool {
         self.samples.is_full()
+    }
+}
+
+impl<const N: usize> Default for SampleBuffer<N> {
+    fn default() -> Self {
+        Self::new()
     }
 }
 

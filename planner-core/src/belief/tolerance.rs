@@ -15,14 +15,15 @@
 //!
 //! **Labels that may be wrong** are not shifted but doubted: the nearer a line passes, the more. The true position is
 //! spread about the reported one. Let a line have the reported position `s` on its +1 side. Then a label +1 has the
-//! probability `p Phi(s / sigma) + (1 - p) Phi(-s / sigma)` for that line, see [`Hypotheses`] and, for the calculation,
+//! probability `p Phi(s / sigma) + (1 - p) Phi(-s / sigma)` for that line, see [`CellPosterior`] and, for the calculation,
 //! `belief/blur.rs`.
 //!
-//! [`Hypotheses`]: crate::belief::hypotheses::Hypotheses
+//! [`CellPosterior`]: crate::belief::cell_posterior::CellPosterior
 
 use crate::geometry::approximate::UnitVector;
 use crate::geometry::arc::SlopeArc;
 use crate::geometry::lattice::{UNITS_PER_METRE, Vector};
+use crate::geometry::value::ValueError;
 
 /// How far a position may be from where it is reported to be.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -37,6 +38,8 @@ pub struct Tolerance {
 /// The largest tolerance, lattice units: 1,024 m.
 const MOST: u32 = 1 << 26;
 
+const RANGE: ValueError = ValueError("a tolerance is from 0 to 1024 m");
+
 /// The longest shift, lattice units: 4,096 m.
 const FARTHEST: f32 = (1 << 28) as f32;
 
@@ -48,10 +51,14 @@ impl Tolerance {
     /// Positions are where they are reported to be.
     pub const NONE: Self = Self { units: 0 };
 
-    /// A tolerance in metres, rounded up to lattice units; `None` unless it is at least 0 and at most 1,024.
-    pub fn new(metres: f64) -> Option<Self> {
+    /// A tolerance in metres, rounded up to lattice units.
+    ///
+    /// # Errors
+    /// [`ValueError`] unless it is at least 0 and at most 1,024.
+    pub fn new(metres: f64) -> Result<Self, ValueError> {
         let units = libm::ceil(metres * f64::from(UNITS_PER_METRE));
-        (0.0..=f64::from(MOST)).contains(&units).then_some(Self { units: units as u32 })
+        let is_one = (0.0..=f64::from(MOST)).contains(&units);
+        is_one.then_some(Self { units: units as u32 }).ok_or(RANGE)
     }
 
     /// The tolerance in metres.
@@ -109,10 +116,19 @@ impl Short {
 }
 
 impl TryFrom<u32> for Tolerance {
-    type Error = TooMuch;
+    type Error = ValueError;
 
-    fn try_from(units: u32) -> Result<Self, TooMuch> {
-        if units <= MOST { Ok(Self { units }) } else { Err(TooMuch) }
+    fn try_from(units: u32) -> Result<Self, ValueError> {
+        (units <= MOST).then_some(Self { units }).ok_or(RANGE)
+    }
+}
+
+/// Metres, as [`Tolerance::new`].
+impl TryFrom<f64> for Tolerance {
+    type Error = ValueError;
+
+    fn try_from(metres: f64) -> Result<Self, ValueError> {
+        Self::new(metres)
     }
 }
 
@@ -121,19 +137,6 @@ impl From<Tolerance> for u32 {
         tolerance.units
     }
 }
-
-/// A tolerance of more than 1,024 m.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct TooMuch;
-
-impl core::fmt::Display for TooMuch {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str("a tolerance is 1,024 m at most")
-    }
-}
-
-impl core::error::Error for TooMuch {}
 
 #[cfg(test)]
 mod tests {
@@ -192,10 +195,10 @@ mod tests {
         assert_eq!(Tolerance { units: 100 }.shift(wide), None);
         let narrow = SlopeArc::new(v(1 << 20, 0), v(1 << 20, 1));
         assert!(Tolerance { units: MOST }.shift(narrow).is_some());
-        assert_eq!(Tolerance::new(-0.1), None);
-        assert_eq!(Tolerance::new(f64::NAN), None);
-        assert_eq!(Tolerance::new(1024.1), None);
-        assert_eq!(Tolerance::new(0.15).map(|it| it.units), Some(9_831));
-        assert_eq!(Tolerance::try_from(MOST + 1), Err(TooMuch));
+        assert_eq!(Tolerance::new(-0.1), Err(RANGE));
+        assert_eq!(Tolerance::new(f64::NAN), Err(RANGE));
+        assert_eq!(Tolerance::new(1024.1), Err(RANGE));
+        assert_eq!(Tolerance::new(0.15).map(|it| it.units), Ok(9_831));
+        assert_eq!(Tolerance::try_from(MOST + 1), Err(RANGE));
     }
 }

@@ -1,13 +1,13 @@
 //! The version space: all lines that agree with every sample, and what can be read off it.
 
-use crate::belief::cell::{Cut, CutError, LineCell};
-use crate::belief::consistent_lines::{Certainty, ConsistentLines};
-use crate::belief::edge::Edge;
+use crate::belief::cell_view::{CellView, Certainty};
+use crate::belief::constraint::Constraint;
+use crate::belief::dual_cell::{Cut, CutError, DualCell};
 use crate::belief::estimate::{Estimates, area, bisector, centre, maximum_margin, share_above};
 use crate::belief::goal::Goal;
 use crate::belief::sample::{Label, Reading, Sample, SampleBuffer};
 use crate::belief::tolerance::Tolerance;
-use crate::belief::{Belief, Refused};
+use crate::belief::{Belief, ObservationError};
 use crate::geometry::arc::SlopeArc;
 use crate::geometry::area::Area;
 use crate::geometry::lattice::{Site, Vector};
@@ -18,7 +18,7 @@ use crate::geometry::line::Bound;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
-pub enum NoVersionSpace {
+pub enum GivenError {
     /// All samples lie on one line (or there are fewer than three): any line may pass.
     Collinear,
     /// All samples have the same label: the boundary may be anywhere beyond them.
@@ -31,31 +31,34 @@ pub enum NoVersionSpace {
     /// The samples leave lines of so many directions that further ones, whose positions err, would tell
     /// nothing.
     TooVague,
+    /// The tolerance is negative, above 1,024 m, or no number.
+    Tolerance,
 }
 
-impl core::fmt::Display for NoVersionSpace {
+impl core::fmt::Display for GivenError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::Collinear => f.write_str("the samples are collinear"),
             Self::OneLabel => f.write_str("the samples share one label"),
             Self::NotSeparable(i) => write!(f, "no line separates the samples 0 to {i}"),
             Self::TooMany => f.write_str("there are more samples than the buffer holds"),
+            Self::Tolerance => f.write_str("a tolerance is from 0 to 1024 m"),
             Self::TooVague => f.write_str("positions err too much for what the samples leave open"),
         }
     }
 }
 
-impl core::error::Error for NoVersionSpace {}
+impl core::error::Error for GivenError {}
 
 /// All lines that agree with up to `N` samples (the field's name for the paper's "bounds").
 ///
-/// Each sample is kept; the [`LineCell`] names those that still matter.
+/// Each sample is kept; the [`DualCell`] names those that still matter.
 #[derive(Clone, Debug)]
 pub struct VersionSpace<const N: usize> {
     samples: SampleBuffer<N>,
     /// How many of them it was made of. A whole word, so that the cell begins at one.
     given: usize,
-    cell: LineCell<N>,
+    cell: DualCell<N>,
     /// How far off a position may be at most.
     tolerance: Tolerance,
     /// How far off the next position is expected to be, which is as far as the last; and the shift that follows from
@@ -69,29 +72,29 @@ impl<const N: usize> VersionSpace<N> {
     /// a record. `O(n^2)` orientations.
     ///
     /// # Errors
-    /// [`NoVersionSpace`].
-    pub fn new(samples: &[Sample]) -> Result<Self, NoVersionSpace> {
+    /// [`GivenError`].
+    pub fn new(samples: &[Sample]) -> Result<Self, GivenError> {
         let mut buffer = SampleBuffer::new();
         for &sample in samples {
-            buffer.push(sample).map_err(|_| NoVersionSpace::TooMany)?;
+            buffer.push(sample).map_err(|_| GivenError::TooMany)?;
         }
-        let first = samples.first().ok_or(NoVersionSpace::Collinear)?;
-        let edges = || (0u8..).zip(samples).map(|(i, sample)| Edge::new(i, sample.label));
+        let first = samples.first().ok_or(GivenError::Collinear)?;
+        let edges = || (0u8..).zip(samples).map(|(i, sample)| Constraint::new(i, sample.label));
         // Three samples that are not collinear make the first cell: the first of all, the first at another
         // site, and the first beside the line through these.
-        let a = Edge::new(0, first.label);
+        let a = Constraint::new(0, first.label);
         let elsewhere = edges().zip(samples).find(|(_, sample)| sample.site != first.site);
         let triangle = elsewhere
-            .and_then(|(b, _)| edges().find_map(|c| LineCell::triangle(&buffer, [a, b, c])));
+            .and_then(|(b, _)| edges().find_map(|c| DualCell::triangle(&buffer, [a, b, c])));
         let Some(mut cell) = triangle else {
             let inseparable = first_inseparable_collinear(samples);
-            return Err(inseparable.map_or(NoVersionSpace::Collinear, NoVersionSpace::NotSeparable));
+            return Err(inseparable.map_or(GivenError::Collinear, GivenError::NotSeparable));
         };
         for (i, edge) in edges().enumerate() {
-            cell.cut(&buffer, edge).map_err(|_| NoVersionSpace::NotSeparable(i))?;
+            cell.cut(&buffer, edge).map_err(|_| GivenError::NotSeparable(i))?;
         }
         if samples.iter().all(|s| s.label == first.label) {
-            return Err(NoVersionSpace::OneLabel);
+            return Err(GivenError::OneLabel);
         }
         let (tolerance, shift) = (Tolerance::NONE, Vector::default());
         let (expected, given) = (tolerance, samples.len());
@@ -109,9 +112,9 @@ impl<const N: usize> VersionSpace<N> {
     /// the same on every machine.
     ///
     /// # Errors
-    /// As [`new`](Self::new) of the shifted samples, and [`NoVersionSpace::TooVague`].
-    pub fn of_uncertain(samples: &[(Sample, Tolerance)]) -> Result<Self, NoVersionSpace> {
-        let mut slopes = directions_left(samples).ok_or(NoVersionSpace::TooVague)?;
+    /// As [`new`](Self::new) of the shifted samples, and [`GivenError::TooVague`].
+    pub fn of_uncertain(samples: &[(Sample, Tolerance)]) -> Result<Self, GivenError> {
+        let mut slopes = directions_left(samples).ok_or(GivenError::TooVague)?;
         for _ in 1..3 {
             slopes = Self::shifted(samples, slopes)?.slope_arc();
         }
@@ -119,24 +122,25 @@ impl<const N: usize> VersionSpace<N> {
     }
 
     /// The version space of samples, each shifted by what it takes when the lines' slopes are these.
-    fn shifted(samples: &[(Sample, Tolerance)], slopes: SlopeArc) -> Result<Self, NoVersionSpace> {
+    fn shifted(samples: &[(Sample, Tolerance)], slopes: SlopeArc) -> Result<Self, GivenError> {
         let mut shifted: heapless::Vec<Sample, N> = heapless::Vec::new();
         for &(Sample { site, label }, tolerance) in samples {
-            let shift = tolerance.shift(slopes).ok_or(NoVersionSpace::TooVague)?;
+            let shift = tolerance.shift(slopes).ok_or(GivenError::TooVague)?;
             let shift = if label == Label::Positive { shift } else { shift.reversed() };
-            let site = site.step(shift).map_err(|_| NoVersionSpace::TooVague)?;
-            shifted.push(Sample { site, label }).map_err(|_| NoVersionSpace::TooMany)?;
+            let site = site.step(shift).map_err(|_| GivenError::TooVague)?;
+            shifted.push(Sample { site, label }).map_err(|_| GivenError::TooMany)?;
         }
         Self::new(&shifted)
     }
 
-    /// The same, for further samples whose positions may be off by so much. Those it was made of are where
-    /// they are.
+    /// The same, for further samples whose positions may be off by so much, metres or a [`Tolerance`]. The given samples
+    /// are where they are said to be.
     ///
     /// # Errors
-    /// [`NoVersionSpace::TooVague`].
-    pub fn within(self, tolerance: Tolerance) -> Result<Self, NoVersionSpace> {
-        let shift = self.shift_by(tolerance).ok_or(NoVersionSpace::TooVague)?;
+    /// [`GivenError::TooVague`], and [`GivenError::Tolerance`] unless the tolerance is from 0 to 1,024 m.
+    pub fn with_tolerance(self, tolerance: impl TryInto<Tolerance>) -> Result<Self, GivenError> {
+        let tolerance = tolerance.try_into().map_err(|_| GivenError::Tolerance)?;
+        let shift = self.shift_by(tolerance).ok_or(GivenError::TooVague)?;
         Ok(Self { tolerance, expected: tolerance, shift, ..self })
     }
 
@@ -151,21 +155,21 @@ impl<const N: usize> VersionSpace<N> {
     }
 
     /// Expects the next position to be off by so much, when samples were taken in as they are.
-    pub(crate) fn expect(&mut self, expected: Tolerance) -> Result<(), Refused> {
+    pub(crate) fn expect(&mut self, expected: Tolerance) -> Result<(), ObservationError> {
         let shift = if expected <= self.tolerance { self.shift_by(expected) } else { None };
-        self.shift = shift.ok_or(Refused::Tolerance(expected))?;
+        self.shift = shift.ok_or(ObservationError::Tolerance(expected))?;
         self.expected = expected;
         Ok(())
     }
 
     /// By how much a sample is shifted whose position may be off by so much.
-    fn shift_within(&self, tolerance: Tolerance) -> Result<Vector, Refused> {
+    fn shift_within(&self, tolerance: Tolerance) -> Result<Vector, ObservationError> {
         if tolerance == self.expected {
             return Ok(self.shift);
         }
         // A smaller one shifts by less, and there is a shift for the largest.
         let shift = if tolerance <= self.tolerance { self.shift_by(tolerance) } else { None };
-        shift.ok_or(Refused::Tolerance(tolerance))
+        shift.ok_or(ObservationError::Tolerance(tolerance))
     }
 
     /// The samples, in the order in which they came.
@@ -183,21 +187,21 @@ impl<const N: usize> VersionSpace<N> {
     }
 
     /// The cell of the lines left.
-    pub fn cell(&self) -> &LineCell<N> {
+    pub fn cell(&self) -> &DualCell<N> {
         &self.cell
     }
 
     /// Takes a sample as it is. One orientation an edge.
     ///
     /// # Errors
-    /// [`Refused`], with the version space as it was.
-    pub fn insert(&mut self, sample: Sample) -> Result<Cut, Refused> {
-        let index = self.samples.push(sample).map_err(|full| Refused::Full(full.0))?;
-        self.cell.cut(&self.samples, Edge::new(index, sample.label)).map_err(|error| {
+    /// [`ObservationError`], with the version space as it was.
+    pub fn insert(&mut self, sample: Sample) -> Result<Cut, ObservationError> {
+        let index = self.samples.push(sample).map_err(|full| ObservationError::Full(full.0))?;
+        self.cell.cut(&self.samples, Constraint::new(index, sample.label)).map_err(|error| {
             self.samples.pop();
             match error {
-                CutError::Contradiction => Refused::Contradiction(sample),
-                CutError::Full => Refused::Full(sample),
+                CutError::Contradiction => ObservationError::Contradiction(sample),
+                CutError::Full => ObservationError::Full(sample),
             }
         })
     }
@@ -208,12 +212,17 @@ impl<const N: usize> VersionSpace<N> {
     /// uncertain ground the sample gets the label `either`, which the caller chooses. Where all lines agree the reading
     /// tells nothing and is skipped. It is true as long as one of the lines passes here.
     ///
-    /// Under a [tolerance](Self::within) the sample is taken in at a place where it is true for any position within the
+    /// Under a [tolerance](Self::with_tolerance) the sample is taken in at a place where it is true for any position within the
     /// tolerance.
     ///
     /// # Errors
     /// As [`insert`](Self::insert), never for a true reading.
-    pub fn take(&mut self, site: Site, reading: Reading, either: Label) -> Result<Label, Refused> {
+    pub fn take(
+        &mut self,
+        site: Site,
+        reading: Reading,
+        either: Label,
+    ) -> Result<Label, ObservationError> {
         self.take_within(site, reading, either, self.tolerance)
     }
 
@@ -221,14 +230,14 @@ impl<const N: usize> VersionSpace<N> {
     /// smaller the tolerance, the smaller the shift, and the more the sample tells.
     ///
     /// # Errors
-    /// As `take`, and [`Refused::Tolerance`].
+    /// As `take`, and [`ObservationError::Tolerance`].
     pub fn take_within(
         &mut self,
         site: Site,
         reading: Reading,
         either: Label,
         tolerance: Tolerance,
-    ) -> Result<Label, Refused> {
+    ) -> Result<Label, ObservationError> {
         let shift = self.shift_within(tolerance)?;
         let label = match reading {
             Reading::Side(label) => label,
@@ -241,7 +250,7 @@ impl<const N: usize> VersionSpace<N> {
                 Certainty::Certain(label) => -label,
             },
         };
-        let place = ConsistentLines { shift, ..self.lines() }.place(site, label);
+        let place = CellView { shift, ..self.lines() }.place(site, label);
         let cut = place.map(|site| self.insert(Sample { site, label })).transpose()?;
         (self.expected, self.shift) = (tolerance, shift);
         if cut == Some(Cut::Smaller) && tolerance != Tolerance::NONE {
@@ -258,8 +267,8 @@ impl<const N: usize> VersionSpace<N> {
     }
 
     /// The lines left, to be read off.
-    pub fn lines(&self) -> ConsistentLines<'_> {
-        ConsistentLines { shift: self.shift, ..self.cell.lines(&self.samples) }
+    pub fn lines(&self) -> CellView<'_> {
+        CellView { shift: self.shift, ..self.cell.lines(&self.samples) }
     }
 
     /// The vertices of the version space, in cyclic order.
@@ -309,7 +318,7 @@ impl<const N: usize> Belief for VersionSpace<N> {
         site: Site,
         reading: Reading,
         tolerance: Tolerance,
-    ) -> Result<(), Refused> {
+    ) -> Result<(), ObservationError> {
         self.take_within(site, reading, Label::Positive, tolerance).map(|_| ())
     }
 

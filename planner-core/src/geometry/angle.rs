@@ -6,9 +6,9 @@ use crate::geometry::heading::Heading;
 
 /// An angle whose unit is four times a [`Heading`]'s, so that sums of three half turns still fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Angle(i32);
+pub(crate) struct CoarseAngle(i32);
 
-impl Angle {
+impl CoarseAngle {
     /// Less than any angle between two headings.
     pub(crate) const NEVER: Self = Self(-1);
     pub(crate) const ZERO: Self = Self(0);
@@ -53,7 +53,7 @@ impl Angle {
     }
 }
 
-impl Add for Angle {
+impl Add for CoarseAngle {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
@@ -61,7 +61,7 @@ impl Add for Angle {
     }
 }
 
-impl Sub for Angle {
+impl Sub for CoarseAngle {
     type Output = Self;
 
     fn sub(self, other: Self) -> Self {
@@ -69,7 +69,7 @@ impl Sub for Angle {
     }
 }
 
-impl Neg for Angle {
+impl Neg for CoarseAngle {
     type Output = Self;
 
     fn neg(self) -> Self {

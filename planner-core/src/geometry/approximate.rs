@@ -1,8 +1,8 @@
 //! Quick approximations in single precision, the same on every machine. They propose and never decide: the caller
 //! leaves a margin for the error of each.
 
-use crate::geometry::angle::Angle;
-use crate::geometry::heading::Heading;
+use crate::geometry::angle::CoarseAngle;
+use crate::geometry::heading::{Angle, Heading};
 use crate::geometry::lattice::{UNITS_PER_METRE, Vector};
 
 /// Metres in a lattice unit.
@@ -76,16 +76,16 @@ pub(crate) fn sqrt(x: f32) -> f32 {
 /// The arc cosine of a number in [-1, 1], to 10^-4 rad. In the middle by the arc sine, without a root;
 /// beyond by Abramowitz and Stegun, 4.4.45.
 #[inline(never)] // it is called in three places of one small function
-pub(crate) fn acos(x: f32) -> Angle {
+pub(crate) fn acos(x: f32) -> CoarseAngle {
     let size = x.abs();
     if size < 0.6 {
         let s = x * x;
         let asin = x * (1.0 + s * (0.167_385_2 + s * (0.065_445_93 + s * 0.080_477_12)));
-        return Angle::QUARTER_TURN - Angle::radians(asin);
+        return CoarseAngle::QUARTER_TURN - CoarseAngle::radians(asin);
     }
     let cubic = 1.570_728_8 + size * (-0.212_114_4 + size * (0.074_261 - size * 0.018_729_3));
-    let angle = Angle::radians(sqrt(1.0 - size) * cubic);
-    if x < 0.0 { Angle::HALF_TURN - angle } else { angle }
+    let angle = CoarseAngle::radians(sqrt(1.0 - size) * cubic);
+    if x < 0.0 { CoarseAngle::HALF_TURN - angle } else { angle }
 }
 
 /// The heading of a direction, to 10^-5 rad.
@@ -102,7 +102,7 @@ pub(crate) fn precise_heading_of(direction: Vector) -> Heading {
     let (x, z) = (long.x as f32, long.z as f32);
     let rough = heading(x, z);
     let left = 4.0 * rough.unit().left().along(long) as f32 / sqrt(x * x + z * z);
-    rough.turned(Heading((left * UNITS_PER_RADIAN) as i32 as u32))
+    rough.turned(Angle((left * UNITS_PER_RADIAN) as i32 as u32))
 }
 
 /// The heading of a vector, to 10^-5 rad.
@@ -112,9 +112,9 @@ pub(crate) fn heading(x: f32, z: f32) -> Heading {
     let s = t * t;
     let tail = -0.116_432_87 + s * (0.052_653_32 - s * 0.011_721_2);
     let octant = t * (0.999_977_26 + s * (-0.332_623_47 + s * (0.193_543_46 + s * tail)));
-    let octant = Angle::radians(octant);
-    let quadrant = if up > along { Angle::QUARTER_TURN - octant } else { octant };
-    let half = if x < 0.0 { Angle::HALF_TURN - quadrant } else { quadrant };
+    let octant = CoarseAngle::radians(octant);
+    let quadrant = if up > along { CoarseAngle::QUARTER_TURN - octant } else { octant };
+    let half = if x < 0.0 { CoarseAngle::HALF_TURN - quadrant } else { quadrant };
     (if z < 0.0 { -half } else { half }).heading()
 }
 

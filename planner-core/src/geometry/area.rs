@@ -1,6 +1,12 @@
 //! The mission area: the rectangle in which all positions stay.
 
+use nalgebra::Point2;
+
 use crate::geometry::lattice::Site;
+use crate::geometry::value::ValueError;
+
+const INSIDE_OUT: ValueError =
+    ValueError("an area's second corner lies beyond its first in x and in z");
 
 /// The rectangle in which all positions stay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,9 +27,24 @@ pub struct Area {
 }
 
 impl Area {
-    /// The rectangle with these corners; `None` unless it has an inside.
-    pub fn new(min: Site, max: Site) -> Option<Self> {
-        (min.x() < max.x() && min.z() < max.z()).then_some(Self { min, max, margin: 0 })
+    /// The rectangle with these corners.
+    ///
+    /// # Errors
+    /// [`ValueError`] unless it has an inside.
+    pub fn new(min: Site, max: Site) -> Result<Self, ValueError> {
+        let has_inside = min.x() < max.x() && min.z() < max.z();
+        has_inside.then_some(Self { min, max, margin: 0 }).ok_or(INSIDE_OUT)
+    }
+
+    /// The rectangle with these corners, metres.
+    ///
+    /// # Errors
+    /// [`ValueError`] unless it has an inside and lies within 8,192 m of the origin.
+    pub fn metres(
+        min: impl Into<Point2<f64>>,
+        max: impl Into<Point2<f64>>,
+    ) -> Result<Self, ValueError> {
+        Self::new(Site::metres(min)?, Site::metres(max)?)
     }
 
     /// The part that is at least so many lattice units away from the border: where to aim if motions end that
@@ -34,7 +55,7 @@ impl Area {
             let (x, z) = (site.x().checked_add(by)?, site.z().checked_add(by)?);
             Site::new(x, z).ok()
         };
-        let inset = Self::new(inwards(self.min, margin)?, inwards(self.max, -margin)?)?;
+        let inset = Self::new(inwards(self.min, margin)?, inwards(self.max, -margin)?).ok()?;
         Some(Self { margin: self.margin.saturating_add(by), ..inset })
     }
 

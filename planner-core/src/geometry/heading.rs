@@ -1,6 +1,7 @@
-//! Headings as binary angles, and their unit vectors.
+//! Headings and the angles between them as binary angles, and unit vectors.
 
 use crate::geometry::lattice::Vector;
+use crate::geometry::value::ValueError;
 
 /// A heading as a binary angle: a whole turn is 2^32, so it wraps by itself and sums of turns are
 /// exact. Counter-clockwise from the x axis; a unit is 1.5 nanoradians.
@@ -12,19 +13,25 @@ pub struct Heading(pub u32);
 /// Binary-angle units in a radian.
 const UNITS_PER_RADIAN: f64 = 4_294_967_296.0 / core::f64::consts::TAU;
 
-impl Heading {
-    /// Half a turn.
-    pub const HALF_TURN: Self = Self(1 << 31);
+const FINITE: ValueError = ValueError("a heading is a finite angle");
 
-    /// The nearest heading to an angle in radians; `None` unless it is finite.
-    pub fn from_radians(angle: f64) -> Option<Self> {
+impl Heading {
+    /// The nearest heading to an angle in radians.
+    ///
+    /// # Errors
+    /// [`ValueError`] unless the angle is finite.
+    pub fn from_radians(angle: f64) -> Result<Self, ValueError> {
         let turns = libm::fmod(angle, core::f64::consts::TAU) * UNITS_PER_RADIAN;
-        turns.is_finite().then(|| Self(libm::round(turns) as i64 as u32))
+        let is_heading = turns.is_finite();
+        is_heading.then(|| Self(libm::round(turns) as i64 as u32)).ok_or(FINITE)
     }
 
-    /// A turn of so many radians, below 2 pi, in a heading's units; rounded down.
-    pub(crate) const fn turn_of(radians: f64) -> u32 {
-        (radians * UNITS_PER_RADIAN) as u32
+    /// The nearest heading to an angle in degrees.
+    ///
+    /// # Errors
+    /// [`ValueError`] unless the angle is finite.
+    pub fn from_degrees(angle: f64) -> Result<Self, ValueError> {
+        Self::from_radians(angle.to_radians())
     }
 
     /// The angle in radians, in [-pi, pi).
@@ -34,14 +41,13 @@ impl Heading {
 
     /// The heading after a turn (to the left when below half a turn).
     #[must_use]
-    pub const fn turned(self, by: Self) -> Self {
+    pub const fn turned(self, by: Angle) -> Self {
         Self(self.0.wrapping_add(by.0))
     }
 
-    /// The same turn to the other side.
-    #[must_use]
-    pub const fn mirrored(self) -> Self {
-        Self(self.0.wrapping_neg())
+    /// The turn from another heading to this one.
+    pub const fn since(self, other: Self) -> Angle {
+        Angle(self.0.wrapping_sub(other.0))
     }
 
     /// The unit vector of this heading, to 2^-29. Integers alone: some 60 instructions.
@@ -60,6 +66,60 @@ impl Heading {
             _ => (sin, -cos),
         };
         SinCos { cos, sin }
+    }
+}
+
+/// An angle between two headings, a turn to the left, in a [`Heading`]'s units: a whole turn is 2^32.
+///
+/// A turn to the right is the turn to the left that leads to the same heading, so sums wrap here too.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Angle(pub u32);
+
+impl Angle {
+    /// Half a turn.
+    pub const HALF_TURN: Self = Self(1 << 31);
+
+    /// An angle of so many radians, from 0 to below 2 pi, rounded down.
+    pub(crate) const fn of_radians(radians: f64) -> Self {
+        Self((radians * UNITS_PER_RADIAN) as u32)
+    }
+
+    /// The nearest angle to so many radians.
+    ///
+    /// # Errors
+    /// [`ValueError`] unless they are at least 0 and below 2 pi.
+    pub fn from_radians(radians: f64) -> Result<Self, ValueError> {
+        const RANGE: ValueError = ValueError("an angle is from 0 to below a whole turn");
+        let is_angle = (0.0..core::f64::consts::TAU).contains(&radians);
+        let Heading(units) =
+            is_angle.then_some(radians).ok_or(RANGE).and_then(Heading::from_radians)?;
+        Ok(Self(units))
+    }
+
+    /// The nearest angle to so many degrees.
+    ///
+    /// # Errors
+    /// [`ValueError`] unless they are at least 0 and below 360.
+    pub fn from_degrees(degrees: f64) -> Result<Self, ValueError> {
+        Self::from_radians(degrees.to_radians())
+    }
+
+    /// Its cosine and sine.
+    pub(crate) const fn unit(self) -> SinCos {
+        Heading(self.0).unit()
+    }
+
+    /// The angle in radians, in [-pi, pi); negative to the right.
+    pub fn radians(self) -> f64 {
+        Heading(self.0).radians()
+    }
+
+    /// The same turn to the other side.
+    #[must_use]
+    pub const fn mirrored(self) -> Self {
+        Self(self.0.wrapping_neg())
     }
 }
 
@@ -132,9 +192,10 @@ mod tests {
             Heading::from_radians(-1e-9),
             Heading::from_radians(core::f64::consts::TAU - 1e-9)
         );
-        assert_eq!(quarter.turned(quarter).turned(quarter), quarter.mirrored());
-        assert_eq!(Heading::from_radians(f64::NAN), None);
-        assert_eq!(Heading::from_radians(f64::INFINITY), None);
+        let turn = Angle(1 << 30);
+        assert_eq!(quarter.turned(turn).turned(turn), Heading(0).turned(turn.mirrored()));
+        assert_eq!(Heading::from_radians(f64::NAN), Err(FINITE));
+        assert_eq!(Heading::from_radians(f64::INFINITY), Err(FINITE));
     }
 
     #[test]

@@ -17,20 +17,27 @@ pub struct Hull<const C: usize> {
 /// These corners are not those of a convex polygon, or too many.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum NoHull {
+#[non_exhaustive]
+pub enum HullError {
     /// There are none.
     Empty,
     /// There is room for so many.
     TooMany(usize),
     /// Polygons have their corners in order around them, each of them turning to the same side.
     NotConvex,
+    /// A corner lies 8,192 m from the origin or more, or is no number.
+    Beyond,
+    /// The radius is negative, 8,192 m or more, or no number.
+    Radius,
 }
 
-impl core::fmt::Display for NoHull {
+impl core::fmt::Display for HullError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::Empty => f.write_str("no corners"),
             Self::TooMany(most) => write!(f, "more than {most} corners"),
+            Self::Beyond => f.write_str("coordinates must be finite and smaller than 8192 m in size"),
+            Self::Radius => f.write_str("a radius is from 0 to below 8192 m"),
             Self::NotConvex => f.write_str(
                 "not convex: corners go round in order, all turn the same way, no three are in line",
             ),
@@ -38,20 +45,20 @@ impl core::fmt::Display for NoHull {
     }
 }
 
-impl core::error::Error for NoHull {}
+impl core::error::Error for HullError {}
 
 impl<const C: usize> Hull<C> {
     /// The hull with these corners, in either order around it.
     ///
     /// # Errors
-    /// [`NoHull`] says what is wrong with them.
-    pub fn new(corners: &[Site]) -> Result<Self, NoHull> {
+    /// [`HullError`] says what is wrong with them.
+    pub fn new(corners: &[Site]) -> Result<Self, HullError> {
         let mut all = [Site::ORIGIN; C];
-        let room = all.get_mut(..corners.len()).ok_or(NoHull::TooMany(C))?;
+        let room = all.get_mut(..corners.len()).ok_or(HullError::TooMany(C))?;
         room.copy_from_slice(corners);
-        let count = u8::try_from(corners.len()).map_err(|_| NoHull::TooMany(u8::MAX.into()))?;
+        let count = u8::try_from(corners.len()).map_err(|_| HullError::TooMany(u8::MAX.into()))?;
         match *corners {
-            [] => return Err(NoHull::Empty),
+            [] => return Err(HullError::Empty),
             [_] => {}
             [a, b] if a != b => {}
             [a, b, c, ..] if goes_round(corners, orient(a, b, c).signum()) => {
@@ -59,9 +66,22 @@ impl<const C: usize> Hull<C> {
                     room.reverse();
                 }
             }
-            _ => return Err(NoHull::NotConvex),
+            _ => return Err(HullError::NotConvex),
         }
         Ok(Self { corners: all, count })
+    }
+
+    /// The hull with these corners, `[x, z]` in metres, in either order around it.
+    ///
+    /// # Errors
+    /// [`HullError`] says what is wrong with them.
+    pub fn metres(corners: &[[f64; 2]]) -> Result<Self, HullError> {
+        let mut sites = [Site::ORIGIN; C];
+        let room = sites.get_mut(..corners.len()).ok_or(HullError::TooMany(C))?;
+        for (site, &corner) in room.iter_mut().zip(corners) {
+            *site = Site::metres(corner).map_err(|_| HullError::Beyond)?;
+        }
+        Self::new(room)
     }
 
     /// The hull of a rectangle.

@@ -8,6 +8,8 @@ use core::ops::Sub;
 
 use nalgebra::Point2;
 
+use crate::geometry::value::ValueError;
+
 /// Lattice units in a metre: a power of two, so metres and units convert without rounding error.
 pub const UNITS_PER_METRE: i32 = 1 << 16;
 
@@ -27,15 +29,21 @@ pub struct Site {
 /// The position is beyond the lattice (8,192 m from the origin or more), or is not a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct OffLattice;
+pub struct LatticeError;
 
-impl core::fmt::Display for OffLattice {
+impl core::fmt::Display for LatticeError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str("coordinates must be finite and smaller than 8192 m in size")
     }
 }
 
-impl core::error::Error for OffLattice {}
+impl core::error::Error for LatticeError {}
+
+impl From<LatticeError> for ValueError {
+    fn from(_: LatticeError) -> Self {
+        Self("coordinates must be finite and smaller than 8192 m in size")
+    }
+}
 
 impl Site {
     /// Where both coordinates are 0.
@@ -44,13 +52,21 @@ impl Site {
     /// The site at `x`, `z` in lattice units.
     ///
     /// # Errors
-    /// [`OffLattice`] unless both are smaller than [`LIMIT`] in size.
-    pub const fn new(x: i32, z: i32) -> Result<Self, OffLattice> {
+    /// [`LatticeError`] unless both are smaller than [`LIMIT`] in size.
+    pub const fn new(x: i32, z: i32) -> Result<Self, LatticeError> {
         if -LIMIT < x && x < LIMIT && -LIMIT < z && z < LIMIT {
             Ok(Self { x, z })
         } else {
-            Err(OffLattice)
+            Err(LatticeError)
         }
+    }
+
+    /// The nearest site to a place in metres: `[x, z]`, or a point of `nalgebra`.
+    ///
+    /// # Errors
+    /// [`LatticeError`] unless both coordinates are smaller than 8,192 m in size.
+    pub fn metres(place: impl Into<Point2<f64>>) -> Result<Self, LatticeError> {
+        Self::try_from(place.into())
     }
 
     /// First coordinate, in lattice units.
@@ -71,33 +87,33 @@ impl Site {
     /// The site a displacement away.
     ///
     /// # Errors
-    /// [`OffLattice`] when it leaves the lattice.
-    pub const fn step(self, by: Vector) -> Result<Self, OffLattice> {
+    /// [`LatticeError`] when it leaves the lattice.
+    pub const fn step(self, by: Vector) -> Result<Self, LatticeError> {
         Self::new(self.x.saturating_add(by.x), self.z.saturating_add(by.z))
     }
 }
 
 /// Metres to the nearest site.
 impl TryFrom<Point2<f64>> for Site {
-    type Error = OffLattice;
+    type Error = LatticeError;
 
-    fn try_from(metres: Point2<f64>) -> Result<Self, OffLattice> {
+    fn try_from(metres: Point2<f64>) -> Result<Self, LatticeError> {
         let x = libm::round(metres.x * f64::from(UNITS_PER_METRE));
         let z = libm::round(metres.y * f64::from(UNITS_PER_METRE));
         let limit = f64::from(LIMIT);
         if x.abs() < limit && z.abs() < limit {
             Self::new(x as i32, z as i32)
         } else {
-            Err(OffLattice) // NaN compares false and ends here too
+            Err(LatticeError) // NaN compares false and ends here too
         }
     }
 }
 
 /// Metres to the nearest site.
 impl TryFrom<Point2<f32>> for Site {
-    type Error = OffLattice;
+    type Error = LatticeError;
 
-    fn try_from(metres: Point2<f32>) -> Result<Self, OffLattice> {
+    fn try_from(metres: Point2<f32>) -> Result<Self, LatticeError> {
         Self::try_from(Point2::new(f64::from(metres.x), f64::from(metres.y)))
     }
 }
@@ -202,8 +218,8 @@ mod tests {
     #[test]
     fn what_is_no_position_is_refused() {
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 8192.0, -8192.0, 1e300] {
-            assert_eq!(Site::try_from(Point2::new(0.0, bad)), Err(OffLattice), "{bad}");
-            assert_eq!(Site::try_from(Point2::new(bad, 0.0)), Err(OffLattice), "{bad}");
+            assert_eq!(Site::try_from(Point2::new(0.0, bad)), Err(LatticeError), "{bad}");
+            assert_eq!(Site::try_from(Point2::new(bad, 0.0)), Err(LatticeError), "{bad}");
         }
         assert!(Site::new(LIMIT, 0).is_err());
         let edge = Site::new(LIMIT - 1, 0).unwrap();

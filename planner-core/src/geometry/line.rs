@@ -18,6 +18,19 @@ pub struct Line {
     pub(crate) c: f64,
 }
 
+/// As `z = 0.4100 x + 3.5000`, or `x = 7.2500` for a vertical line; metres.
+impl core::fmt::Display for Line {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match (self.slope(), self.intercept()) {
+            (Some(slope), Some(intercept)) => {
+                let sign = if intercept < 0.0 { '-' } else { '+' };
+                write!(f, "z = {slope:.4} x {sign} {:.4}", intercept.abs())
+            }
+            _ => write!(f, "x = {:.4}", -self.c / self.a),
+        }
+    }
+}
+
 impl Line {
     /// The line with these coefficients.
     ///

@@ -13,5 +13,6 @@ pub mod hull;
 pub mod lattice;
 pub mod line;
 pub mod local_line;
-pub mod region;
-pub mod terrain;
+pub mod polygon_area;
+pub mod value;
+pub mod workspace;

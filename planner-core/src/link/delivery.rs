@@ -39,14 +39,14 @@ pub trait Port {
 /// Why a request has no reply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum LinkLost {
+pub enum LinkError {
     /// It was sent [`Link::ATTEMPTS`] times, and none came.
     Silent,
     /// The vehicle knows nothing of the session: it has restarted, or this end has, unnoticed.
     Stale,
 }
 
-impl core::fmt::Display for LinkLost {
+impl core::fmt::Display for LinkError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str(match self {
             Self::Silent => "the link is lost: no reply to a request and its repetitions",
@@ -55,7 +55,7 @@ impl core::fmt::Display for LinkLost {
     }
 }
 
-impl core::error::Error for LinkLost {}
+impl core::error::Error for LinkError {}
 
 /// The session of a hello: none.
 const NO_SESSION: u32 = 0;
@@ -83,9 +83,9 @@ impl<P: Port> Link<P> {
     /// one that is offered with the setup.
     ///
     /// # Errors
-    /// [`LinkLost::Silent`] after the wait for the last of [`ATTEMPTS`](Self::ATTEMPTS), which are
-    /// counted anew whenever the vehicle says that it is busy; [`LinkLost::Stale`] at once.
-    pub fn ask(&mut self, request: Request) -> Result<Reply, LinkLost> {
+    /// [`LinkError::Silent`] after the wait for the last of [`ATTEMPTS`](Self::ATTEMPTS), which are
+    /// counted anew whenever the vehicle says that it is busy; [`LinkError::Stale`] at once.
+    pub fn ask(&mut self, request: Request) -> Result<Reply, LinkError> {
         let hello = matches!(request, Request::Hello { .. });
         if hello {
             self.session = NO_SESSION;
@@ -102,7 +102,7 @@ impl<P: Port> Link<P> {
                 }
                 match message {
                     Reply::Busy => left = Self::ATTEMPTS,
-                    Reply::Stale => return Err(LinkLost::Stale),
+                    Reply::Stale => return Err(LinkError::Stale),
                     reply if hello && !matches!(reply, Reply::Setup(_)) => {}
                     reply => {
                         self.session = session;
@@ -111,7 +111,7 @@ impl<P: Port> Link<P> {
                 }
             }
         }
-        Err(LinkLost::Silent)
+        Err(LinkError::Silent)
     }
 
     /// The next message that arrives before the wait is over.

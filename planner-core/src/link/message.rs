@@ -25,22 +25,26 @@
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
-use crate::belief::Refused;
+use crate::belief::ObservationError;
 use crate::belief::estimate::Estimates;
 use crate::belief::goal::Goal;
 use crate::belief::noise::Noise;
 use crate::belief::sample::{Reading, Sample};
-use crate::belief::version_space::NoVersionSpace;
+use crate::belief::tolerance::Tolerance;
+use crate::belief::version_space::GivenError;
 use crate::belief::weight::Prior;
-use crate::geometry::hull::{Hull, NoHull};
+use crate::geometry::area::Area;
+use crate::geometry::hull::{Hull, HullError};
 use crate::geometry::lattice::Site;
-use crate::geometry::terrain::{RoundedHull, Terrain};
+use crate::geometry::polygon_area::{KeepOut, PolygonArea};
 use crate::link::frame::Message;
-use crate::motion::any_vehicle::{NoVehicle, Shape};
+use crate::motion::any_vehicle::{Shape, ShapeError};
 use crate::motion::dynamics::Pose;
-use crate::planner::config::Config;
+use crate::planner::lookahead::DrivingPrice;
+use crate::planner::options::{Crossing, Following, Options};
 use crate::planner::scc::Policy;
 use crate::planner::{Motion, StopReason};
+use crate::search::objective::EffortWeight;
 
 /// The version of this protocol. The layout of [`Request::Hello`] and of its frame is that of every
 /// version from 2 on.
@@ -56,7 +60,7 @@ pub const MOST_CORNERS: usize = 8;
 pub const MOST_KEEP_OUTS: usize = 8;
 
 /// Where the motions of a mission may go.
-pub type MissionArea = Terrain<MOST_CORNERS, MOST_KEEP_OUTS>;
+pub type MissionArea = PolygonArea<MOST_CORNERS, MOST_KEEP_OUTS>;
 
 /// The border of an area, or a keep-out, by its coordinates. A chip that has room for polygons checks whether they form
 /// a convex one.
@@ -69,16 +73,16 @@ pub struct Outline {
     pub radius: u32,
 }
 
-impl From<&RoundedHull<MOST_CORNERS>> for Outline {
-    fn from(RoundedHull { hull, radius }: &RoundedHull<MOST_CORNERS>) -> Self {
+impl From<&KeepOut<MOST_CORNERS>> for Outline {
+    fn from(KeepOut { hull, radius }: &KeepOut<MOST_CORNERS>) -> Self {
         Self { corners: hull.corners().iter().copied().collect(), radius: *radius }
     }
 }
 
-impl TryFrom<Outline> for RoundedHull<MOST_CORNERS> {
-    type Error = NoHull;
+impl TryFrom<Outline> for KeepOut<MOST_CORNERS> {
+    type Error = HullError;
 
-    fn try_from(Outline { corners, radius }: Outline) -> Result<Self, NoHull> {
+    fn try_from(Outline { corners, radius }: Outline) -> Result<Self, HullError> {
         Ok(Self { hull: Hull::new(&corners)?, radius })
     }
 }
@@ -97,7 +101,7 @@ pub enum Request {
     /// To begin: the setup is accepted.
     Ready(Accepted),
     /// For another setup: this one is not accepted.
-    Declined(Declined),
+    Declined(DeclinedError),
     /// To make a motion and say what came of it.
     Move(Move),
     /// To take note that the mission is over.
@@ -132,6 +136,34 @@ pub enum Reply {
     Stale,
 }
 
+/// What a mission fixes beforehand, whichever algorithm flies it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Settings<G = Area> {
+    /// Where positions must stay.
+    pub area: G,
+    /// The weight of the control in the objective of Algorithms 1 and 2, or look-ahead's price of driving.
+    pub weight: EffortWeight,
+    /// How P1 looks for the opposite label.
+    pub crossing: Crossing,
+    /// How P2 follows the boundary.
+    pub following: Following,
+    /// The largest distance of a position from where it is reported.
+    pub tolerance: Tolerance,
+}
+
+impl<G> Settings<G> {
+    /// What Algorithms 1 and 2 leave open.
+    pub const fn options(&self) -> Options {
+        Options { weight: self.weight, crossing: self.crossing, following: self.following }
+    }
+
+    /// The price of look-ahead.
+    pub fn price(&self) -> DrivingPrice {
+        self.weight.into()
+    }
+}
+
 /// A mission.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -141,7 +173,7 @@ pub struct Setup {
     /// Who plans.
     pub algorithm: Algorithm,
     /// What the mission fixes beforehand.
-    pub config: Config,
+    pub config: Settings,
     /// If the area is more than that rectangle: how many keep-outs there are. Then the chip asks for
     /// [outlines](Request::Outline).
     pub keep_outs: Option<u8>,
@@ -229,7 +261,8 @@ pub struct ClockRate {
 /// Why a setup is not accepted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Declined {
+#[non_exhaustive]
+pub enum DeclinedError {
     /// The chip speaks this version of the protocol.
     Protocol(u16),
     /// The chip does not have this algorithm.
@@ -237,18 +270,18 @@ pub enum Declined {
     /// The chip has this much, which is too little.
     Capacity(Capacity),
     /// The given samples leave nothing to find.
-    Given(NoVersionSpace),
+    Given(GivenError),
     /// The chip has no sensor of its own.
     Labels,
     /// The chip cannot plan for this vehicle.
-    Vehicle(NoVehicle),
+    Vehicle(ShapeError),
     /// The chip cannot plan in this area: if it is more than a rectangle, the chip may have no more.
     Area,
     /// The tolerance leaves nothing of the area.
     Tolerance,
 }
 
-impl core::fmt::Display for Declined {
+impl core::fmt::Display for DeclinedError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::Protocol(version) => write!(f, "the chip speaks protocol {version}"),
@@ -265,7 +298,7 @@ impl core::fmt::Display for Declined {
     }
 }
 
-impl core::error::Error for Declined {}
+impl core::error::Error for DeclinedError {}
 
 /// A motion to make, with what came of the one before.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -314,7 +347,7 @@ pub enum EndReason {
     /// The planner had no further motion.
     Stopped(StopReason),
     /// The planner did not take a sample.
-    Refused(Refused),
+    Refused(ObservationError),
     /// The chip's sensor failed.
     Sensor,
     /// The vehicle could not make a motion.
@@ -343,8 +376,7 @@ mod tests {
     use crate::motion::action::{Action, Control};
     use crate::motion::car;
     use crate::planner::Stage;
-    use crate::planner::config::{Crossing, Following};
-    use crate::search::objective::Varrho;
+    use crate::search::objective::EffortWeight;
     use crate::search::recovery::Recovery;
 
     /// What a decoder makes of a frame and of what came before it.
@@ -376,7 +408,7 @@ mod tests {
             (FAR, -NEAR),
         ];
         let hull = Hull::new(&corners.map(|(x, z)| Site::new(x, z).unwrap())).unwrap();
-        Outline::from(&RoundedHull { hull, radius: u32::MAX })
+        Outline::from(&KeepOut { hull, radius: u32::MAX })
     }
 
     fn longest_setup() -> Setup {
@@ -389,9 +421,9 @@ mod tests {
                 policy: Policy::MixtureOfOwn,
                 prior: Prior::Sequences,
             },
-            config: Config {
+            config: Settings {
                 area: Area::new(far(-1, -1), far(1, 1)).unwrap(),
-                varrho: Varrho::new(0.999_999).unwrap(),
+                weight: EffortWeight::new(0.999_999).unwrap(),
                 crossing: Crossing::AcrossBisector,
                 following: Following::AlongBisector,
                 tolerance: Tolerance::NONE,
@@ -425,7 +457,7 @@ mod tests {
             stage: Some(Stage::P4),
             recovery: Some(Recovery::Transit),
             action: Action(u32::MAX),
-            control: Control { v: -1.0, w: f32::MIN_POSITIVE },
+            control: Control { distance_m: -1.0, turn_rad: f32::MIN_POSITIVE },
             target: pose,
             wants_label: false,
             examined: u32::MAX,
@@ -438,7 +470,7 @@ mod tests {
         assert!(line.is_some());
         let estimates = Estimates { bisector: line, centre: line, maximum_margin: line };
         let sample = Sample { site: far(-1, -1), label: Label::Positive };
-        let reason = EndReason::Refused(Refused::Contradiction(sample));
+        let reason = EndReason::Refused(ObservationError::Contradiction(sample));
         for request in [
             Request::Move(Move { motion, last, took }),
             Request::End(MissionEnd { reason, last, took, estimates }),
@@ -458,7 +490,7 @@ mod tests {
         postcard::to_slice(&(LIMIT, 0), &mut bytes).unwrap();
         assert!(postcard::from_bytes::<Site>(&bytes).is_err());
         postcard::to_slice(&1_000_000_u32, &mut bytes).unwrap();
-        assert!(postcard::from_bytes::<Varrho>(&bytes).is_err());
+        assert!(postcard::from_bytes::<EffortWeight>(&bytes).is_err());
         postcard::to_slice(&i64::MAX, &mut bytes).unwrap();
         assert!(postcard::from_bytes::<Reliability>(&bytes).is_err());
         for (along, slope, intercept) in [

@@ -2,33 +2,34 @@
 
 use heapless::Vec;
 
-use crate::belief::Refused;
+use crate::belief::ObservationError;
+use crate::belief::cell_posterior::CellPosterior;
 use crate::belief::estimate::Estimates;
-use crate::belief::forecast::Forecast;
 use crate::belief::goal::Goal;
-use crate::belief::hypotheses::Hypotheses;
 use crate::belief::noise::Noise;
+use crate::belief::noisy_belief::NoisyBelief;
 use crate::belief::sample::{Reading, Sample};
-use crate::belief::version_space::{NoVersionSpace, VersionSpace};
+use crate::belief::version_space::{GivenError, VersionSpace};
 use crate::belief::weight::Prior;
 use crate::geometry::area::Area;
-use crate::geometry::region::Region;
-use crate::geometry::terrain::RoundedHull;
-use crate::link::delivery::{Link, LinkLost, Port};
+use crate::geometry::polygon_area::KeepOut;
+use crate::geometry::workspace::Workspace;
+use crate::link::delivery::{Link, LinkError, Port};
 use crate::link::message::{
-    Accepted, Capacity, ClockRate, Declined, EndReason, LabelSource, MOST_CORNERS, MOST_KEEP_OUTS,
-    MissionArea, MissionEnd, Move, PROTOCOL, Reply, Request, Setup, Took,
+    Accepted, Capacity, ClockRate, DeclinedError, EndReason, LabelSource, MOST_CORNERS,
+    MOST_KEEP_OUTS, MissionArea, MissionEnd, Move, PROTOCOL, Reply, Request, Setup, Took,
 };
-use crate::motion::any_vehicle::{NoVehicle, Shape};
+use crate::motion::any_vehicle::{Shape, ShapeError};
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::cfc::Cfc;
-use crate::planner::config::{Config, ConfigError};
 use crate::planner::lookahead::Lookahead;
+use crate::planner::options::Options;
 use crate::planner::scc::{Policy, Scc};
+use crate::planner::setup::{SetupError, aimed_for};
 use crate::planner::{Motion, Plan, Planner};
-use crate::robot::agent::Step;
-use crate::robot::body::Body;
-use crate::robot::hal::LabelSensor;
+use crate::robot::Body;
+use crate::robot::LabelSensor;
+use crate::robot::Step;
 
 /// A planner that was made for a setup.
 #[derive(Clone, Debug)]
@@ -39,7 +40,7 @@ pub struct Prepared<L> {
 
 impl<L> Prepared<L> {
     /// The planner.
-    pub const fn planner(&mut self) -> &mut L {
+    pub const fn planner_mut(&mut self) -> &mut L {
         &mut self.planner
     }
 }
@@ -48,115 +49,129 @@ impl Setup {
     /// What to plan with, of the vehicles that the chip has, in an area: see [`Station::terms`].
     ///
     /// # Errors
-    /// [`Declined`].
-    pub fn terms<D: Known, G: Region>(&self, area: G) -> Result<Terms<D, G>, Declined> {
+    /// [`DeclinedError`].
+    pub fn terms<D: Known, G: Workspace>(
+        &self,
+        area: G,
+    ) -> Result<PlannerSetup<D, G>, DeclinedError> {
         if self.protocol != PROTOCOL {
-            return Err(Declined::Protocol(PROTOCOL));
+            return Err(DeclinedError::Protocol(PROTOCOL));
         }
-        let dynamics = D::try_from(self.vehicle).map_err(Declined::Vehicle)?;
-        let Config { varrho, crossing, following, tolerance, .. } = self.config;
-        let config = Config { area, varrho, crossing, following, tolerance };
-        let config = config.inset_for(&dynamics).map_err(|error| match error {
-            ConfigError::Tolerance(_) => Declined::Tolerance,
-            ConfigError::Room(none) => Declined::Vehicle(NoVehicle::Room(none)),
-        })?;
-        Ok(Terms { dynamics, config })
+        let dynamics = D::try_from(self.vehicle).map_err(DeclinedError::Vehicle)?;
+        let area = aimed_for(area, &dynamics, self.config.tolerance).map_err(declined)?;
+        Ok(PlannerSetup { dynamics, area, options: self.config.options() })
     }
 
     /// Whether this much will do for the mission.
-    fn check(&self, capacity: Capacity) -> Result<(), Declined> {
+    fn check(&self, capacity: Capacity) -> Result<(), DeclinedError> {
         if capacity.samples < self.capacity.samples
             || capacity.hypotheses < self.capacity.hypotheses
         {
-            return Err(Declined::Capacity(capacity));
+            return Err(DeclinedError::Capacity(capacity));
         }
         Ok(())
     }
 
     /// What its given samples leave.
-    fn space<const N: usize>(&self) -> Result<VersionSpace<N>, Declined> {
+    fn space<const N: usize>(&self) -> Result<VersionSpace<N>, DeclinedError> {
         let space = VersionSpace::new(&self.given);
-        space.and_then(|space| space.within(self.config.tolerance)).map_err(Declined::Given)
+        let tolerance = self.config.tolerance;
+        space.and_then(|space| space.with_tolerance(tolerance)).map_err(DeclinedError::Given)
     }
 
     /// Algorithm 1 for this mission.
     ///
     /// # Errors
-    /// [`Declined`].
+    /// [`DeclinedError`].
     #[inline(never)] // it is the planner's, see `seam`
-    pub fn cfc<D: Dynamics, G: Region, const N: usize>(
+    pub fn cfc<D: Dynamics, G: Workspace, const N: usize>(
         &self,
-        Terms { dynamics, config }: Terms<D, G>,
-    ) -> Result<Prepared<Cfc<D, N, G>>, Declined> {
+        PlannerSetup { dynamics, area, options }: PlannerSetup<D, G>,
+    ) -> Result<Prepared<Cfc<D, N, G>>, DeclinedError> {
         let capacity = Capacity { samples: N as u16, hypotheses: 1 };
         self.check(capacity)?;
         let space = self.space()?;
-        Ok(Prepared { planner: Cfc::of((config, dynamics), space), capacity })
+        Ok(Prepared { planner: Cfc::of((area, dynamics), space).with(options), capacity })
     }
 
     /// Look-ahead for this mission, with labels that are true.
     ///
     /// # Errors
-    /// [`Declined`].
+    /// [`DeclinedError`].
     #[inline(never)] // it is the planner's, see `seam`
-    pub fn lookahead<D: Dynamics, G: Region, const N: usize>(
+    pub fn lookahead<D: Dynamics, G: Workspace, const N: usize>(
         &self,
-        Terms { dynamics, config }: Terms<D, G>,
+        PlannerSetup { dynamics, area, options }: PlannerSetup<D, G>,
         evaluations: u32,
         goal: Option<Goal>,
-    ) -> Result<Prepared<Lookahead<D, VersionSpace<N>, G>>, Declined> {
+    ) -> Result<Prepared<Lookahead<D, VersionSpace<N>, G>>, DeclinedError> {
         let capacity = Capacity { samples: N as u16, hypotheses: 1 };
         self.check(capacity)?;
         let space = self.space()?;
-        let planner = Lookahead::of((config, dynamics), space, evaluations, goal);
+        let planner = Lookahead::of((area, dynamics), space).pricing(options.weight.into());
+        let planner = planner.with_budget(evaluations).until(goal);
         Ok(Prepared { planner, capacity })
     }
 
     /// Algorithm 2 for this mission, with none of its samples yet: the memory for [`prepare`](Self::prepare).
-    pub fn scc<D: Dynamics, G: Region, const N: usize, const H: usize>(
+    pub fn scc<D: Dynamics, G: Workspace, const N: usize, const H: usize>(
         &self,
-        Terms { dynamics, config }: Terms<D, G>,
+        PlannerSetup { dynamics, area, options }: PlannerSetup<D, G>,
         policy: Policy,
     ) -> Scc<D, N, H, G> {
-        Scc::of((config, dynamics), policy, Hypotheses::NONE)
+        Scc::of((area, dynamics), CellPosterior::NONE).with(options).voting(policy)
     }
 
     /// Look-ahead with labels that may be wrong, with none of its samples yet: the memory for
     /// [`prepare`](Self::prepare).
-    pub fn forecast<D: Dynamics, G: Region, const N: usize, const H: usize>(
+    pub fn forecast<D: Dynamics, G: Workspace, const N: usize, const H: usize>(
         &self,
-        Terms { dynamics, config }: Terms<D, G>,
+        PlannerSetup { dynamics, area, options }: PlannerSetup<D, G>,
         evaluations: u32,
         goal: Option<Goal>,
-    ) -> Lookahead<D, Forecast<N, H>, G> {
-        Lookahead::of((config, dynamics), Forecast::NONE, evaluations, goal)
+    ) -> Lookahead<D, NoisyBelief<N, H>, G> {
+        let planner =
+            Lookahead::of((area, dynamics), NoisyBelief::NONE).pricing(options.weight.into());
+        planner.with_budget(evaluations).until(goal)
     }
 
     /// Begins the mission in this memory, so that there is never a second planner beside it.
     ///
     /// # Errors
-    /// [`Declined`].
+    /// [`DeclinedError`].
     #[inline(never)] // it is the planner's, see `seam`
     pub fn prepare<'a, R: Restart>(
         &self,
         planner: &'a mut R,
         prior: Prior,
         noise: Noise,
-    ) -> Result<Prepared<&'a mut R>, Declined> {
+    ) -> Result<Prepared<&'a mut R>, DeclinedError> {
         let capacity = R::CAPACITY;
         self.check(capacity)?;
-        planner.restart(&self.given, prior, noise).map_err(Declined::Given)?;
+        planner.restart(&self.given, prior, noise).map_err(declined)?;
         Ok(Prepared { planner, capacity })
     }
 }
 
 /// What to plan with, and where.
 #[derive(Clone, Copy, Debug)]
-pub struct Terms<D, G> {
+pub struct PlannerSetup<D, G> {
     /// How the vehicle moves.
     pub dynamics: D,
-    /// What the mission fixes beforehand, its area less the margin of the tolerance.
-    pub config: Config<G>,
+    /// The part of the area that motions aim for: all but the margin of the tolerance.
+    pub area: G,
+    /// What Algorithms 1 and 2 leave open. Its weight is look-ahead's price.
+    pub options: Options,
+}
+
+/// Why a setup is declined of which no planner is made.
+fn declined(error: SetupError) -> DeclinedError {
+    match error {
+        SetupError::Tolerance(_) => DeclinedError::Tolerance,
+        SetupError::Room(none) => DeclinedError::Vehicle(ShapeError::Room(none)),
+        SetupError::Given(why) => DeclinedError::Given(why),
+        SetupError::Full => DeclinedError::Given(GivenError::TooMany),
+    }
 }
 
 /// Why a mission has no terms.
@@ -164,25 +179,25 @@ pub struct Terms<D, G> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum NoTerms {
     /// The setup is not accepted.
-    Declined(Declined),
+    Declined(DeclinedError),
     /// There was no reply.
-    Lost(LinkLost),
+    Lost(LinkError),
 }
 
-impl From<LinkLost> for NoTerms {
-    fn from(lost: LinkLost) -> Self {
+impl From<LinkError> for NoTerms {
+    fn from(lost: LinkError) -> Self {
         Self::Lost(lost)
     }
 }
 
-impl From<Declined> for NoTerms {
-    fn from(declined: Declined) -> Self {
+impl From<DeclinedError> for NoTerms {
+    fn from(declined: DeclinedError) -> Self {
         Self::Declined(declined)
     }
 }
 
 /// Areas that a chip can plan in, of all that a setup can ask for.
-pub trait Charted: Region {
+pub trait FromOutlines: Workspace {
     /// The area of a setup, whose outlines can be asked for.
     ///
     /// # Errors
@@ -190,37 +205,37 @@ pub trait Charted: Region {
     fn of<P: Port>(setup: &Setup, link: &mut Link<P>) -> Result<Self, NoTerms>;
 }
 
-impl Charted for Area {
+impl FromOutlines for Area {
     fn of<P: Port>(setup: &Setup, _: &mut Link<P>) -> Result<Self, NoTerms> {
         let is_plain = setup.keep_outs.is_none();
-        if is_plain { Ok(setup.config.area) } else { Err(Declined::Area.into()) }
+        if is_plain { Ok(setup.config.area) } else { Err(DeclinedError::Area.into()) }
     }
 }
 
-impl Charted for MissionArea {
+impl FromOutlines for MissionArea {
     fn of<P: Port>(setup: &Setup, link: &mut Link<P>) -> Result<Self, NoTerms> {
         let Some(count) = setup.keep_outs else { return Ok(setup.config.area.into()) };
         let mut ask = |number| match link.ask(Request::Outline(number))? {
             Reply::Outline(outline) => {
-                RoundedHull::try_from(outline).map_err(|_| Declined::Area.into())
+                KeepOut::try_from(outline).map_err(|_| DeclinedError::Area.into())
             }
-            _ => Err(NoTerms::from(Declined::Area)),
+            _ => Err(NoTerms::from(DeclinedError::Area)),
         };
         let border = ask(0)?;
-        let mut keep_outs: Vec<RoundedHull<MOST_CORNERS>, MOST_KEEP_OUTS, u8> = Vec::new();
+        let mut keep_outs: Vec<KeepOut<MOST_CORNERS>, MOST_KEEP_OUTS, u8> = Vec::new();
         for number in 1..=count {
-            keep_outs.push(ask(number)?).map_err(|_| Declined::Area)?;
+            keep_outs.push(ask(number)?).map_err(|_| DeclinedError::Area)?;
         }
-        let area = Self::new(border.hull, &keep_outs).map_err(|_| Declined::Area)?;
+        let area = Self::new(border.hull, &keep_outs).map_err(|_| DeclinedError::Area)?;
         let is_it = area.bounds() == setup.config.area && border.radius == 0;
-        if is_it { Ok(area) } else { Err(Declined::Area.into()) }
+        if is_it { Ok(area) } else { Err(DeclinedError::Area.into()) }
     }
 }
 
 /// Dynamics that a chip has, of all that a setup can ask for.
-pub trait Known: Dynamics + TryFrom<Shape, Error = NoVehicle> {}
+pub trait Known: Dynamics + TryFrom<Shape, Error = ShapeError> {}
 
-impl<D: Dynamics + TryFrom<Shape, Error = NoVehicle>> Known for D {}
+impl<D: Dynamics + TryFrom<Shape, Error = ShapeError>> Known for D {}
 
 /// A planner that is too large to be made elsewhere and moved: it begins where it is.
 pub trait Restart: Planner {
@@ -230,40 +245,25 @@ pub trait Restart: Planner {
     /// Begins again with what given samples leave.
     ///
     /// # Errors
-    /// [`NoVersionSpace`], with the planner as it was.
-    fn restart(
-        &mut self,
-        given: &[Sample],
-        prior: Prior,
-        noise: Noise,
-    ) -> Result<(), NoVersionSpace>;
+    /// [`SetupError`], with the planner as it was.
+    fn restart(&mut self, given: &[Sample], prior: Prior, noise: Noise) -> Result<(), SetupError>;
 }
 
-impl<D: Dynamics, G: Region, const N: usize, const H: usize> Restart for Scc<D, N, H, G> {
+impl<D: Dynamics, G: Workspace, const N: usize, const H: usize> Restart for Scc<D, N, H, G> {
     const CAPACITY: Capacity = Capacity { samples: N as u16, hypotheses: H as u16 };
 
-    fn restart(
-        &mut self,
-        given: &[Sample],
-        prior: Prior,
-        noise: Noise,
-    ) -> Result<(), NoVersionSpace> {
+    fn restart(&mut self, given: &[Sample], prior: Prior, noise: Noise) -> Result<(), SetupError> {
         self.restart(given, prior, noise)
     }
 }
 
-impl<D: Dynamics, G: Region, const N: usize, const H: usize> Restart
-    for Lookahead<D, Forecast<N, H>, G>
+impl<D: Dynamics, G: Workspace, const N: usize, const H: usize> Restart
+    for Lookahead<D, NoisyBelief<N, H>, G>
 {
     const CAPACITY: Capacity = Capacity { samples: N as u16, hypotheses: H as u16 };
 
-    fn restart(
-        &mut self,
-        given: &[Sample],
-        prior: Prior,
-        noise: Noise,
-    ) -> Result<(), NoVersionSpace> {
-        self.foresight().restart(given, prior, noise)
+    fn restart(&mut self, given: &[Sample], prior: Prior, noise: Noise) -> Result<(), SetupError> {
+        self.restart(given, prior, noise)
     }
 }
 
@@ -285,7 +285,7 @@ pub struct Station<P, S> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Flown {
     /// It was declined.
-    Declined(Declined),
+    Declined(DeclinedError),
     /// A mission was flown.
     Ended(MissionEnd),
 }
@@ -307,7 +307,10 @@ impl<P: Port, S: LabelSensor> Station<P, S> {
     ///
     /// # Errors
     /// [`NoTerms`].
-    pub fn terms<D: Known, G: Charted>(&mut self, setup: &Setup) -> Result<Terms<D, G>, NoTerms> {
+    pub fn terms<D: Known, G: FromOutlines>(
+        &mut self,
+        setup: &Setup,
+    ) -> Result<PlannerSetup<D, G>, NoTerms> {
         let area = G::of(setup, &mut self.link)?;
         Ok(setup.terms(area)?)
     }
@@ -315,8 +318,8 @@ impl<P: Port, S: LabelSensor> Station<P, S> {
     /// Asks for another setup, unless the link is lost.
     ///
     /// # Errors
-    /// [`LinkLost`].
-    pub fn give_up(&mut self, none: NoTerms) -> Result<Flown, LinkLost> {
+    /// [`LinkError`].
+    pub fn give_up(&mut self, none: NoTerms) -> Result<Flown, LinkError> {
         match none {
             NoTerms::Declined(declined) => self.decline(declined),
             NoTerms::Lost(lost) => Err(lost),
@@ -326,8 +329,8 @@ impl<P: Port, S: LabelSensor> Station<P, S> {
     /// Asks for another setup.
     ///
     /// # Errors
-    /// [`LinkLost`].
-    pub fn decline(&mut self, declined: Declined) -> Result<Flown, LinkLost> {
+    /// [`LinkError`].
+    pub fn decline(&mut self, declined: DeclinedError) -> Result<Flown, LinkError> {
         self.link.ask(Request::Declined(declined))?;
         Ok(Flown::Declined(declined))
     }
@@ -336,18 +339,19 @@ impl<P: Port, S: LabelSensor> Station<P, S> {
     /// `watch` sees every step.
     ///
     /// # Errors
-    /// [`LinkLost`]: the vehicle has been asked for nothing since, and is asked for nothing more.
+    /// [`LinkError`]: the vehicle has been asked for nothing since, and is asked for nothing more.
     pub fn fly<L: Planner>(
         &mut self,
         setup: &Setup,
-        prepared: &mut Result<Prepared<L>, Declined>,
+        prepared: &mut Result<Prepared<L>, DeclinedError>,
         watch: impl FnMut(&Step),
-    ) -> Result<Flown, LinkLost> {
+    ) -> Result<Flown, LinkError> {
         let blind = setup.labels == LabelSource::Chip && self.sensor.is_none();
         let Prepared { planner, capacity } = match prepared {
             Ok(prepared) if !blind => prepared,
             declined => {
-                return self.decline(declined.as_ref().err().copied().unwrap_or(Declined::Labels));
+                return self
+                    .decline(declined.as_ref().err().copied().unwrap_or(DeclinedError::Labels));
             }
         };
         self.link.ask(Request::Ready(Accepted { capacity: *capacity, clock: self.clock }))?;
@@ -363,14 +367,14 @@ impl<P: Port, S: LabelSensor> Station<P, S> {
     }
 }
 
-/// As [`Agent`](crate::robot::agent::Agent), against the clock: the vehicle is told what each call took.
+/// As [`Agent`](crate::robot::Agent), against the clock: the vehicle is told what each call took.
 fn mission<L: Planner, P: Port, S: LabelSensor>(
     planner: &mut L,
     vehicle: &mut RemoteVehicle<'_, P, S>,
     setup: &Setup,
     ticks: fn() -> u32,
     mut watch: impl FnMut(&Step),
-) -> Result<EndReason, LinkLost> {
+) -> Result<EndReason, LinkError> {
     let mut pose = setup.start;
     for _ in 0..setup.steps {
         let motion = match timed(ticks, &mut vehicle.took.plan, || seam::plan(planner, pose)) {
@@ -403,7 +407,7 @@ fn timed<T>(ticks: fn() -> u32, took: &mut u32, does: impl FnOnce() -> T) -> T {
 /// The entries of the planner. They stay separate functions in an optimised program. So its size, stack and
 /// instructions can be measured apart from those of the link.
 mod seam {
-    use super::{Estimates, Plan, Planner, Pose, Reading, Refused};
+    use super::{Estimates, ObservationError, Plan, Planner, Pose, Reading};
 
     #[inline(never)]
     pub(super) fn plan<L: Planner>(planner: &mut L, pose: Pose) -> Plan {
@@ -415,7 +419,7 @@ mod seam {
         planner: &mut L,
         pose: Pose,
         reading: Option<Reading>,
-    ) -> Result<(), Refused> {
+    ) -> Result<(), ObservationError> {
         planner.observe(pose, reading)
     }
 
@@ -438,7 +442,7 @@ struct RemoteVehicle<'a, P, S> {
 
 /// Why a motion has no end that is known.
 enum NoArrival {
-    Lost(LinkLost),
+    Lost(LinkError),
     /// The vehicle says so, or answers something that is no answer.
     Failed,
     /// It was made, and nothing was sensed.

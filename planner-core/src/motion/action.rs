@@ -16,10 +16,11 @@ pub struct Action(pub u32);
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Control {
-    /// Speed, metres per unit time.
-    pub v: f32,
-    /// Turn before the drive, or all along it for a [car](crate::motion::car), radians; positive to the left.
-    pub w: f32,
+    /// How far to drive, metres: the paper's `v` in one unit of time.
+    pub distance_m: f32,
+    /// How far to turn before the drive, or all along it for a [car](crate::motion::car), radians; positive to the left.
+    /// The paper's `w`.
+    pub turn_rad: f32,
 }
 
 /// The shape of an action set.
@@ -38,7 +39,7 @@ pub struct ActionGrid {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
-pub enum BadGrid {
+pub enum GridError {
     /// It has no action, or more than 2^32.
     Actions,
     /// Its steps of speed are zero, or 100 m or more. Or one of its motions is 3,000 m long or longer.
@@ -51,7 +52,7 @@ pub enum BadGrid {
     Circle,
 }
 
-impl core::fmt::Display for BadGrid {
+impl core::fmt::Display for GridError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str(match self {
             Self::Actions => "an action grid has 1 to 2^32 actions",
@@ -66,7 +67,7 @@ impl core::fmt::Display for BadGrid {
     }
 }
 
-impl core::error::Error for BadGrid {}
+impl core::error::Error for GridError {}
 
 impl ActionGrid {
     /// Fractional bits of a ray's step.
@@ -81,16 +82,16 @@ impl ActionGrid {
     /// A grid of `rays` directions with the speeds `0, step, ..., (speeds - 1) step`.
     ///
     /// # Errors
-    /// [`BadGrid::Actions`], [`BadGrid::Reach`].
-    pub const fn new(rays: u32, speeds: u16, speed_step_mm: u32) -> Result<Self, BadGrid> {
+    /// [`GridError::Actions`], [`GridError::Reach`].
+    pub const fn new(rays: u32, speeds: u16, speed_step_mm: u32) -> Result<Self, GridError> {
         let actions = rays as u64 * speeds as u64;
         if actions == 0 || actions > 1 << 32 {
-            return Err(BadGrid::Actions);
+            return Err(GridError::Actions);
         }
         let reach = (speeds as u64 - 1) * speed_step_mm as u64;
         let is_step = speed_step_mm > 0 && speed_step_mm < Self::LONGEST_STEP_MM;
         if !is_step || reach >= Self::LONGEST_MM as u64 {
-            return Err(BadGrid::Reach);
+            return Err(GridError::Reach);
         }
         // To the nearest, in 32 bits: whole metres, and of the rest an eighth of numerator and denominator.
         let per_metre = (UNITS_PER_METRE as u32) << Self::STEP_BITS;

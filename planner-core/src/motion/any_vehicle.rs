@@ -1,11 +1,11 @@
 //! Any of the vehicles that turn and drive, chosen while the program runs: by a scenario, or over a wire.
 
 use crate::geometry::heading::Heading;
-use crate::geometry::lattice::{OffLattice, Vector};
-use crate::motion::action::{Action, ActionGrid, BadGrid, Control};
+use crate::geometry::lattice::{LatticeError, Vector};
+use crate::motion::action::{Action, ActionGrid, Control, GridError};
 use crate::motion::boat::Boat;
 use crate::motion::car::{self, Car};
-use crate::motion::dynamics::{Dynamics, Fan, NoRoom, Orbit, Pose, Ray, Side};
+use crate::motion::dynamics::{Dynamics, Pose, Ray, RayFan, RoomError, Side, TurningCircle};
 use crate::motion::unicycle::{self, Grid, Unicycle};
 
 /// A vehicle of one of three kinds. A program that knows its vehicle is smaller and faster with that type.
@@ -38,16 +38,16 @@ pub enum Shape {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
-pub enum NoVehicle {
+pub enum ShapeError {
     /// There is none of this kind here.
     Kind,
     /// Its numbers make none.
-    Grid(BadGrid),
+    Grid(GridError),
     /// It cannot move in its area.
-    Room(NoRoom),
+    Room(RoomError),
 }
 
-impl core::fmt::Display for NoVehicle {
+impl core::fmt::Display for ShapeError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::Kind => f.write_str("no vehicle of this kind"),
@@ -57,29 +57,29 @@ impl core::fmt::Display for NoVehicle {
     }
 }
 
-impl core::error::Error for NoVehicle {}
+impl core::error::Error for ShapeError {}
 
 impl TryFrom<Shape> for AnyVehicle {
-    type Error = NoVehicle;
+    type Error = ShapeError;
 
-    fn try_from(shape: Shape) -> Result<Self, NoVehicle> {
+    fn try_from(shape: Shape) -> Result<Self, ShapeError> {
         match shape {
             Shape::Unicycle(shape) => Unicycle::of(shape).map(Self::Unicycle),
             Shape::Boat(steps) => Unicycle::of(steps).and_then(Boat::new).map(Self::Boat),
             Shape::Car(shape) => Car::new(shape).map(Self::Car),
         }
-        .map_err(NoVehicle::Grid)
+        .map_err(ShapeError::Grid)
     }
 }
 
 /// For a program that has no other.
 impl TryFrom<Shape> for Unicycle {
-    type Error = NoVehicle;
+    type Error = ShapeError;
 
-    fn try_from(shape: Shape) -> Result<Self, NoVehicle> {
+    fn try_from(shape: Shape) -> Result<Self, ShapeError> {
         match shape {
-            Shape::Unicycle(shape) => Self::of(shape).map_err(NoVehicle::Grid),
-            Shape::Boat(_) | Shape::Car(_) => Err(NoVehicle::Kind),
+            Shape::Unicycle(shape) => Self::of(shape).map_err(ShapeError::Grid),
+            Shape::Boat(_) | Shape::Car(_) => Err(ShapeError::Kind),
         }
     }
 }
@@ -116,7 +116,7 @@ impl Dynamics for AnyVehicle {
         of!(self, it => it.grid())
     }
 
-    fn fan(&self) -> Fan {
+    fn fan(&self) -> RayFan {
         of!(self, it => it.fan())
     }
 
@@ -132,16 +132,16 @@ impl Dynamics for AnyVehicle {
         of!(self, it => it.rays_at(speed))
     }
 
-    fn arrive(&self, pose: Pose, ray: &Ray, speed: u16) -> Result<Pose, OffLattice> {
+    fn arrive(&self, pose: Pose, ray: &Ray, speed: u16) -> Result<Pose, LatticeError> {
         of!(self, it => it.arrive(pose, ray, speed))
     }
 
-    fn corner(&self, from: Pose, to: Pose) -> Option<Vector> {
-        of!(self, it => it.corner(from, to))
+    fn tangent_intersection(&self, from: Pose, to: Pose) -> Option<Vector> {
+        of!(self, it => it.tangent_intersection(from, to))
     }
 
-    fn orbit(&self, pose: Pose, side: Side) -> Option<Orbit> {
-        of!(self, it => it.orbit(pose, side))
+    fn turning_circle(&self, pose: Pose, side: Side) -> Option<TurningCircle> {
+        of!(self, it => it.turning_circle(pose, side))
     }
 
     fn turn_in_place(&self, pose: Pose, side: Side) -> Option<(Action, Pose)> {
@@ -152,7 +152,7 @@ impl Dynamics for AnyVehicle {
         of!(self, it => it.ray_of(pose, action))
     }
 
-    fn control(&self, action: Action) -> Control {
-        of!(self, it => it.control(action))
+    fn control(&self, pose: Pose, action: Action) -> Control {
+        of!(self, it => it.control(pose, action))
     }
 }

@@ -1,9 +1,9 @@
 //! A boat: turns a little and drives, a step at a time, and never on the spot.
 
-use crate::geometry::heading::Heading;
+use crate::geometry::heading::{Angle, Heading};
 use crate::geometry::lattice::{UNITS_PER_METRE, Vector};
-use crate::motion::action::{Action, ActionGrid, BadGrid, Control};
-use crate::motion::dynamics::{Dynamics, Fan, Orbit, Pose, Ray, Side};
+use crate::motion::action::{Action, ActionGrid, Control, GridError};
+use crate::motion::dynamics::{Dynamics, Pose, Ray, RayFan, Side, TurningCircle};
 use crate::motion::unicycle::Unicycle;
 
 /// A [`Unicycle`] that cannot turn on the spot. Each step turns by at most its sharpest turn, then drives at least one
@@ -15,7 +15,7 @@ use crate::motion::unicycle::Unicycle;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Boat {
     steps: Unicycle,
-    half_turn: Heading,
+    half_turn: Angle,
     /// Lattice units.
     radius: i32,
     margin: i32,
@@ -31,17 +31,17 @@ impl Boat {
     /// A boat with a unicycle's steps.
     ///
     /// # Errors
-    /// [`BadGrid::Circle`].
-    pub fn new(steps: Unicycle) -> Result<Self, BadGrid> {
+    /// [`GridError::Circle`].
+    pub fn new(steps: Unicycle) -> Result<Self, GridError> {
         let (grid, sharpest) = (steps.grid(), steps.sharpest());
-        let half_turn = Heading(sharpest.0 / 2);
+        let half_turn = Angle(sharpest.0 / 2);
         let Vector { z: sin, .. } = half_turn.unit().scaled(ONE);
         let step = i64::from(grid.step_length()) * i64::from(ONE);
-        let radius = step.checked_div(sin.into()).ok_or(BadGrid::Circle)? >> (Ray::STEP_BITS + 1);
+        let radius = step.checked_div(sin.into()).ok_or(GridError::Circle)? >> (Ray::STEP_BITS + 1);
         // A position is rounded by less than a unit, a step by much less.
         let margin = 2 * (i64::from(u32::MAX / sharpest.0.max(1)) + 2);
         if grid.speeds() < 2 || radius + margin >= MOST {
-            return Err(BadGrid::Circle);
+            return Err(GridError::Circle);
         }
         Ok(Self { steps, half_turn, radius: radius as i32 + 2, margin: margin as i32 })
     }
@@ -57,7 +57,7 @@ impl Dynamics for Boat {
         self.steps.grid()
     }
 
-    fn fan(&self) -> Fan {
+    fn fan(&self) -> RayFan {
         self.steps.fan()
     }
 
@@ -74,7 +74,7 @@ impl Dynamics for Boat {
         (speed == 0).then_some([0; 2])
     }
 
-    fn orbit(&self, pose: Pose, side: Side) -> Option<Orbit> {
+    fn turning_circle(&self, pose: Pose, side: Side) -> Option<TurningCircle> {
         let last = self.steps.fan().right;
         let half_turn = match side {
             Side::Left => self.half_turn,
@@ -86,7 +86,7 @@ impl Dynamics for Boat {
             Side::Right => (0, left.reversed()),
         };
         let action = self.grid().action(ray, 1);
-        Some(Orbit { action, centre, radius: self.radius, margin: self.margin })
+        Some(TurningCircle { action, centre, radius: self.radius, margin: self.margin })
     }
 
     fn turn_in_place(&self, _: Pose, _: Side) -> Option<(Action, Pose)> {
@@ -98,7 +98,7 @@ impl Dynamics for Boat {
         self.steps.ray_of(pose, action).filter(|_| speed > 0)
     }
 
-    fn control(&self, action: Action) -> Control {
-        self.steps.control(action)
+    fn control(&self, pose: Pose, action: Action) -> Control {
+        self.steps.control(pose, action)
     }
 }

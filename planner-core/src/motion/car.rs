@@ -1,12 +1,13 @@
 //! A car: arcs of at most some curvature, forward only.
 
-use crate::geometry::angle::Angle;
+use crate::geometry::angle::CoarseAngle;
 use crate::geometry::approximate::acos;
-use crate::geometry::heading::Heading;
-use crate::geometry::lattice::{OffLattice, UNITS_PER_METRE, Vector};
-use crate::motion::action::{Action, ActionGrid, BadGrid, Control};
-use crate::motion::dynamics::{Dynamics, Fan, Orbit, Pose, Ray, Side};
-use crate::motion::unicycle::{HALF, STEP_PER_URAD, UNITS_PER_URAD, square_mrad2};
+use crate::geometry::heading::{Angle, Heading};
+use crate::geometry::lattice::{LatticeError, UNITS_PER_METRE, Vector};
+use crate::motion::action::{Action, ActionGrid, Control, GridError};
+use crate::motion::dynamics::{Dynamics, Pose, Ray, RayFan, Side, TurningCircle};
+use crate::motion::pivots::HALF;
+use crate::motion::unicycle::{STEP_PER_URAD, UNITS_PER_URAD, square_mrad2};
 
 /// A vehicle that drives along circular arcs, forward only, and does not turn on the spot: a car, a ship, an
 /// aeroplane.
@@ -63,28 +64,28 @@ const GUARD: u32 = 16;
 
 impl Car {
     /// The greatest angle between heading and chord: an eighth of a turn, whose arc is a quarter turn.
-    pub const SHARPEST: Heading = Heading(1 << 29);
+    pub const SHARPEST: Angle = Angle(1 << 29);
 
     /// Turning circles are smaller than this, millimetres.
     pub const WIDEST_MM: u32 = 2_048_000;
 
     /// A vehicle goes round its circle by motions that turn by twice this angle, or by the shortest motions. Few are
     /// needed, and the polygon of their tangents is not much wider than the circle.
-    pub const ORBIT: Heading = Heading(Heading::turn_of(0.26));
+    pub const CIRCLING: Angle = Angle::of_radians(0.26);
 
     /// A car of this shape.
     ///
     /// # Errors
-    /// [`BadGrid`].
-    pub fn new(shape: Shape) -> Result<Self, BadGrid> {
+    /// [`GridError`].
+    pub fn new(shape: Shape) -> Result<Self, GridError> {
         let Shape { radius_mm, shortest_mm, turn_step_urad, speeds, speed_step_mm } = shape;
         let grid = ActionGrid::new(1, speeds, speed_step_mm)?;
         if turn_step_urad == 0 || turn_step_urad > 785_398 {
-            return Err(BadGrid::Turn);
+            return Err(GridError::Turn);
         }
         let slowest = shortest_mm.div_ceil(speed_step_mm).max(1);
         if radius_mm == 0 || radius_mm >= Self::WIDEST_MM || slowest >= u32::from(speeds) {
-            return Err(BadGrid::Circle);
+            return Err(GridError::Circle);
         }
         let step = u64::from(turn_step_urad) * STEP_PER_URAD;
         let mut car = Self {
@@ -109,9 +110,9 @@ impl Car {
         self.shape
     }
 
-    fn find_orbit(mut self) -> Result<Self, BadGrid> {
+    fn find_orbit(mut self) -> Result<Self, GridError> {
         let Shape { radius_mm, speed_step_mm, speeds, .. } = self.shape;
-        let (sin, _) = sin_cos(Self::ORBIT);
+        let (sin, _) = sin_cos(Self::CIRCLING);
         let chord_mm = (2 * u64::from(radius_mm) * sin as u64) >> 29;
         let speed = (chord_mm / u64::from(speed_step_mm)) as u32;
         let speed = speed.max(u32::from(self.slowest)).min(u32::from(speeds) - 1) as u16;
@@ -122,12 +123,12 @@ impl Car {
         let chord = (i64::from(speed) * i64::from(self.grid.step_length())) >> (Ray::STEP_BITS - 4);
         let per = |a: i64, b: i32| (a * i64::from(ONE)).checked_div(i64::from(b));
         // No turn, no circle: nothing divides by it.
-        let radius = per(chord, sin).ok_or(BadGrid::Circle)? >> (4 + 1);
-        let tangents = per(radius, cos).ok_or(BadGrid::Circle)? + 2;
+        let radius = per(chord, sin).ok_or(GridError::Circle)? >> (4 + 1);
+        let tangents = per(radius, cos).ok_or(GridError::Circle)? + 2;
         let rounds = i64::from(u32::MAX / turn.0.max(1) / 2) + 2;
         let margin = rounds * (2 + (i64::from(speed) >> Ray::STEP_BITS));
         if tangents + margin >= MOST {
-            return Err(BadGrid::Circle);
+            return Err(GridError::Circle);
         }
         (self.orbit_radius, self.tangents_radius) = (radius as i32, tangents as i32);
         self.margin = margin as i32;
@@ -135,8 +136,8 @@ impl Car {
     }
 
     /// The `n`-th chord's angle to the heading.
-    const fn turn(&self, n: u32) -> Heading {
-        Heading(((n as u64 * self.step + HALF) >> 32) as u32)
+    const fn turn(&self, n: u32) -> Angle {
+        Angle(((n as u64 * self.step + HALF) >> 32) as u32)
     }
 
     /// Rays to one side of the one ahead, at a speed.
@@ -147,7 +148,7 @@ impl Car {
     }
 
     /// The greatest angle of a chord of this length: the arc sine of `c / 2R`, less its error.
-    fn limit(&self, speed: u16) -> Heading {
+    fn limit(&self, speed: u16) -> Angle {
         let sine = (u64::from(self.grid.reach_mm(speed)) * ONE as u64)
             .checked_div(2 * u64::from(self.shape.radius_mm))
             .unwrap_or(0);
@@ -157,18 +158,18 @@ impl Car {
         }
         // A guess that is off by 10^-4 rad, and one step of Newton's.
         let sine = sine as i32;
-        let guess = Angle::QUARTER_TURN - acos(sine as f32 / ONE as f32);
+        let guess = CoarseAngle::QUARTER_TURN - acos(sine as f32 / ONE as f32);
         let guess = guess.turn();
-        let (sin, cos) = sin_cos(Heading(guess));
+        let (sin, cos) = sin_cos(Angle(guess));
         let off = (i64::from(sine - sin) * i64::from(ONE)).checked_div(cos.into()).unwrap_or(0);
         let off = (off * UNITS_PER_RADIAN) >> 29;
-        Heading((i64::from(guess) + off - i64::from(GUARD)).max(0) as u32)
+        Angle((i64::from(guess) + off - i64::from(GUARD)).max(0) as u32)
     }
 }
 
 /// Sine and cosine, in parts of [`ONE`].
-const fn sin_cos(heading: Heading) -> (i32, i32) {
-    let Vector { x, z } = heading.unit().scaled(ONE);
+const fn sin_cos(angle: Angle) -> (i32, i32) {
+    let Vector { x, z } = angle.unit().scaled(ONE);
     (z, x)
 }
 
@@ -189,9 +190,9 @@ impl Dynamics for Car {
         self.grid
     }
 
-    fn fan(&self) -> Fan {
-        let spacing = Heading((self.step >> 32) as u32 + 1);
-        Fan { left: self.turns + 1, right: self.turns, spacing }
+    fn fan(&self) -> RayFan {
+        let spacing = Angle((self.step >> 32) as u32 + 1);
+        RayFan { left: self.turns + 1, right: self.turns, spacing }
     }
 
     fn heading(&self, pose: Pose, side: Side, n: u32) -> Heading {
@@ -203,8 +204,8 @@ impl Dynamics for Car {
         let n = n.min(self.turns);
         let heading = self.heading(pose, side, n);
         let index = if side == Side::Left { self.turns + n } else { self.turns - n };
-        let effort = square_mrad2(2 * n * self.shape.turn_step_urad);
-        Ray { index, heading, step: heading.unit().scaled(self.grid.step_length()), effort }
+        let turn_cost = square_mrad2(2 * n * self.shape.turn_step_urad);
+        Ray { index, heading, step: heading.unit().scaled(self.grid.step_length()), turn_cost }
     }
 
     fn rays_at(&self, speed: u16) -> Option<[u32; 2]> {
@@ -216,20 +217,20 @@ impl Dynamics for Car {
         })
     }
 
-    fn arrive(&self, pose: Pose, ray: &Ray, speed: u16) -> Result<Pose, OffLattice> {
+    fn arrive(&self, pose: Pose, ray: &Ray, speed: u16) -> Result<Pose, LatticeError> {
         let site = pose.site.step(ray.displacement(speed))?;
         // The arc turns as far beyond its chord as the chord does from the heading.
-        let turn = ray.heading.turned(pose.heading.mirrored());
+        let turn = ray.heading.since(pose.heading);
         Ok(Pose { site, heading: ray.heading.turned(turn) })
     }
 
-    fn corner(&self, from: Pose, to: Pose) -> Option<Vector> {
-        let turn = to.heading.0.wrapping_sub(from.heading.0) as i32;
+    fn tangent_intersection(&self, from: Pose, to: Pose) -> Option<Vector> {
+        let turn = to.heading.since(from.heading).0 as i32;
         if turn == 0 {
             return None;
         }
         let chord = to.site - from.site;
-        let (sin, cos) = sin_cos(Heading((turn / 2) as u32));
+        let (sin, cos) = sin_cos(Angle((turn / 2) as u32));
         // An eighth of a turn at most, so the tangent is 1 at most.
         let tangent = (i64::from(sin) * i64::from(ONE)).checked_div(cos.into()).unwrap_or(0);
         let tangent = tangent.clamp(-i64::from(ONE), ONE.into());
@@ -240,14 +241,14 @@ impl Dynamics for Car {
         Some(Vector { x: half(chord.x, chord.z), z: half(chord.z, -chord.x) })
     }
 
-    fn orbit(&self, pose: Pose, side: Side) -> Option<Orbit> {
+    fn turning_circle(&self, pose: Pose, side: Side) -> Option<TurningCircle> {
         let left = pose.heading.unit().left().scaled(self.orbit_radius);
         let (ray, centre) = match side {
             Side::Left => (self.turns + self.orbit_turn, left),
             Side::Right => (self.turns - self.orbit_turn, left.reversed()),
         };
         let action = self.grid.action(ray, self.orbit_speed);
-        Some(Orbit { action, centre, radius: self.tangents_radius, margin: self.margin })
+        Some(TurningCircle { action, centre, radius: self.tangents_radius, margin: self.margin })
     }
 
     fn turn_in_place(&self, _: Pose, _: Side) -> Option<(Action, Pose)> {
@@ -263,12 +264,12 @@ impl Dynamics for Car {
     }
 
     /// The arc's length, and the whole turn along it.
-    fn control(&self, action: Action) -> Control {
+    fn control(&self, _: Pose, action: Action) -> Control {
         let (ray, speed) = self.grid.split(action);
         let n = ray.abs_diff(self.turns).min(self.turns);
         let phi = (n * self.shape.turn_step_urad) as f32 / 1e6;
         let longer = per_sine(phi * phi);
-        let w = if ray < self.turns { -2.0 * phi } else { 2.0 * phi };
-        Control { v: longer * self.grid.reach_m(speed), w }
+        let turn_rad = if ray < self.turns { -2.0 * phi } else { 2.0 * phi };
+        Control { distance_m: longer * self.grid.reach_m(speed), turn_rad }
     }
 }

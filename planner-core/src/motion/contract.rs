@@ -8,19 +8,19 @@
 //! use planner_core::motion::unicycle::Unicycle;
 //!
 //! contract::check(&Unicycle::paper())?;
-//! # Ok::<(), contract::Broken>(())
+//! # Ok::<(), contract::ContractError>(())
 //! ```
 
-use crate::geometry::heading::Heading;
+use crate::geometry::heading::{Angle, Heading};
 use crate::geometry::lattice::{Site, Vector};
 use crate::motion::action::Action;
-use crate::motion::dynamics::{Dynamics, Fan, Pose, Ray, Side};
+use crate::motion::dynamics::{Dynamics, Pose, Ray, RayFan, Side};
 
 /// A promise of [`Dynamics`] that is not kept, by its number in the contract.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub enum Broken {
+pub enum ContractError {
     /// 1: the fan has not as many rays as the grid, or none on the left.
     Count,
     /// 2: this ray turns back from the ray before, or not at all, or further than the fan's spacing. Or the fan's sides
@@ -40,12 +40,12 @@ pub enum Broken {
     Speeds(u16),
     /// 8: this ray does not lead a displacement away, or its tangents do not meet in its corner.
     Arrival(Side, u32),
-    /// 9: the orbit to this side is missing although there is one to the other side. Or it turns the other way or not
+    /// 9: the turning circle to this side is missing although there is one to the other side. Or it turns the other way or not
     /// at all, or leaves its radius within a round.
-    Orbit(Side),
+    TurningCircle(Side),
 }
 
-impl core::fmt::Display for Broken {
+impl core::fmt::Display for ContractError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::Count => f.write_str("the fan has not as many rays as the grid"),
@@ -73,14 +73,17 @@ impl core::fmt::Display for Broken {
             Self::Arrival(side, n) => {
                 write!(f, "ray {n} to the {side:?} does not arrive where its chord and corner say")
             }
-            Self::Orbit(side) => {
-                write!(f, "the orbit to the {side:?} is none, or leaves its radius within a round")
+            Self::TurningCircle(side) => {
+                write!(
+                    f,
+                    "the turning circle to the {side:?} is none, or leaves its radius within a round"
+                )
             }
         }
     }
 }
 
-impl core::error::Error for Broken {}
+impl core::error::Error for ContractError {}
 
 /// Headings from which an implementation is looked at: the axes, and between.
 const HEADINGS: u32 = 16;
@@ -90,11 +93,11 @@ const HEADINGS: u32 = 16;
 /// at, neighbours among them.
 ///
 /// # Errors
-/// The first promise that was found [`Broken`].
-pub fn check<D: Dynamics>(dynamics: &D) -> Result<(), Broken> {
-    let Fan { left, right, .. } = dynamics.fan();
+/// [`ContractError`]: the first promise that was found broken.
+pub fn check<D: Dynamics>(dynamics: &D) -> Result<(), ContractError> {
+    let RayFan { left, right, .. } = dynamics.fan();
     if left == 0 || left.checked_add(right) != Some(dynamics.grid().rays()) {
-        return Err(Broken::Count);
+        return Err(ContractError::Count);
     }
     let site = Site::new(12_345, -6_789).unwrap_or(Site::ORIGIN);
     for n in 0..HEADINGS {
@@ -104,11 +107,11 @@ pub fn check<D: Dynamics>(dynamics: &D) -> Result<(), Broken> {
             [arm(dynamics, pose, Side::Left, left - 1)?, arm(dynamics, pose, Side::Right, right)?];
         let [left, right] = reached;
         if u64::from(left) + u64::from(right) > 1 << 32 {
-            return Err(Broken::Spacing(Side::Right, dynamics.fan().right));
+            return Err(ContractError::Spacing(Side::Right, dynamics.fan().right));
         }
         for (side, most) in [(Side::Left, left), (Side::Right, right)] {
             turn_in_place(dynamics, pose, side, most)?;
-            orbit(dynamics, pose, side)?;
+            goes_round(dynamics, pose, side)?;
         }
         speeds(dynamics, pose)?;
     }
@@ -116,31 +119,31 @@ pub fn check<D: Dynamics>(dynamics: &D) -> Result<(), Broken> {
 }
 
 /// Checks the rays of one side up to the last; how far they reach.
-fn arm<D: Dynamics>(dynamics: &D, pose: Pose, side: Side, last: u32) -> Result<u32, Broken> {
+fn arm<D: Dynamics>(dynamics: &D, pose: Pose, side: Side, last: u32) -> Result<u32, ContractError> {
     let ahead = dynamics.ray(pose, Side::Left, 0);
     let spacing = u64::from(dynamics.fan().spacing.0);
-    let (mut before, mut turned_before, mut effort) = (0, 0, ahead.effort);
+    let (mut before, mut turned_before, mut effort) = (0, 0, ahead.turn_cost);
     for n in looked_at(last) {
         let ray = dynamics.ray(pose, side, n);
         let turned = turn(ahead.heading, ray.heading, side);
         let (rays, more) = (n - before, turned.wrapping_sub(turned_before));
         let is_between = more >= rays && u64::from(more) <= u64::from(rays) * spacing;
         if n == 0 && ray != ahead || turned < turned_before || !is_between {
-            return Err(Broken::Spacing(side, n));
+            return Err(ContractError::Spacing(side, n));
         }
-        if ray.effort < effort {
-            return Err(Broken::Effort(side, n));
+        if ray.turn_cost < effort {
+            return Err(ContractError::Effort(side, n));
         }
         if ray.heading != dynamics.heading(pose, side, n) || !leads_ahead(dynamics, &ray) {
-            return Err(Broken::Step(side, n));
+            return Err(ContractError::Step(side, n));
         }
         if !is_named(dynamics, pose, &ray) {
-            return Err(Broken::Index(side, n));
+            return Err(ContractError::Index(side, n));
         }
         if !arrives(dynamics, pose, &ray) {
-            return Err(Broken::Arrival(side, n));
+            return Err(ContractError::Arrival(side, n));
         }
-        (before, turned_before, effort) = (n, turned, ray.effort);
+        (before, turned_before, effort) = (n, turned, ray.turn_cost);
     }
     Ok(turned_before)
 }
@@ -203,12 +206,12 @@ fn arrives<D: Dynamics>(dynamics: &D, pose: Pose, ray: &Ray) -> bool {
         let rest = Vector { x: by.x.wrapping_sub(corner.x), z: by.z.wrapping_sub(corner.z) };
         leads(pose.heading, corner) && leads(end.heading, rest)
     };
-    by == ray.displacement(speed) && dynamics.corner(pose, end).is_none_or(meets)
+    by == ray.displacement(speed) && dynamics.tangent_intersection(pose, end).is_none_or(meets)
 }
 
 /// Checks which rays speeds have.
-fn speeds<D: Dynamics>(dynamics: &D, pose: Pose) -> Result<(), Broken> {
-    let (grid, Fan { left, right, .. }) = (dynamics.grid(), dynamics.fan());
+fn speeds<D: Dynamics>(dynamics: &D, pose: Pose) -> Result<(), ContractError> {
+    let (grid, RayFan { left, right, .. }) = (dynamics.grid(), dynamics.fan());
     let fastest = u32::from(grid.speeds() - 1);
     let [mut most_left, mut most_right] = [left, right];
     for slower in looked_at(fastest) {
@@ -216,7 +219,7 @@ fn speeds<D: Dynamics>(dynamics: &D, pose: Pose) -> Result<(), Broken> {
         let Some([on_left, on_right]) = dynamics.rays_at(speed) else { continue };
         let all = slower > 0 || fastest == 0 || [on_left, on_right] == [left, right];
         if !all || on_left > most_left || on_right > most_right {
-            return Err(Broken::Speeds(speed));
+            return Err(ContractError::Speeds(speed));
         }
         for (side, last, count) in
             [(Side::Left, left - 1, on_left), (Side::Right, right, on_right.saturating_add(1))]
@@ -227,7 +230,7 @@ fn speeds<D: Dynamics>(dynamics: &D, pose: Pose) -> Result<(), Broken> {
                 let is_known =
                     |ray: Ray| dynamics.ray_of(pose, grid.action(ray.index, speed)).is_some();
                 if ray.is_some_and(|ray| is_known(ray) != exists) {
-                    return Err(Broken::Speeds(speed));
+                    return Err(ContractError::Speeds(speed));
                 }
             }
         }
@@ -236,43 +239,43 @@ fn speeds<D: Dynamics>(dynamics: &D, pose: Pose) -> Result<(), Broken> {
     Ok(())
 }
 
-/// Goes round an orbit.
-fn orbit<D: Dynamics>(dynamics: &D, from: Pose, side: Side) -> Result<(), Broken> {
+/// Goes round a turning circle.
+fn goes_round<D: Dynamics>(dynamics: &D, from: Pose, side: Side) -> Result<(), ContractError> {
     /// Motions of a round at most.
     const MOST: u32 = 1 << 16;
     let other = if side == Side::Left { Side::Right } else { Side::Left };
-    let Some(orbit) = dynamics.orbit(from, side) else {
-        let none = dynamics.orbit(from, other).is_none();
-        return if none { Ok(()) } else { Err(Broken::Orbit(side)) };
+    let Some(circle) = dynamics.turning_circle(from, side) else {
+        let none = dynamics.turning_circle(from, other).is_none();
+        return if none { Ok(()) } else { Err(ContractError::TurningCircle(side)) };
     };
     let is_within = |v: Vector, radius: i32| {
         let off =
-            Vector { x: v.x.wrapping_sub(orbit.centre.x), z: v.z.wrapping_sub(orbit.centre.z) };
+            Vector { x: v.x.wrapping_sub(circle.centre.x), z: v.z.wrapping_sub(circle.centre.z) };
         off.dot(off) <= (i64::from(radius) + FEW).pow(2)
     };
-    let (mut pose, mut turned, mut radius) = (from, 0_u32, orbit.radius);
+    let (mut pose, mut turned, mut radius) = (from, 0_u32, circle.radius);
     for _ in 0..MOST {
-        let action = dynamics.orbit(pose, side).map(|orbit| orbit.action);
+        let action = dynamics.turning_circle(pose, side).map(|circle| circle.action);
         let after = action.and_then(|action| dynamics.target(pose, action));
         let Some(after) = after else { break };
         let more = turn(pose.heading, after.heading, side);
         let by = pose.site - from.site;
-        let corner = dynamics.corner(pose, after);
+        let corner = dynamics.tangent_intersection(pose, after);
         let corner = corner.map_or(by, |it| Vector { x: by.x + it.x, z: by.z + it.z });
-        if more == 0 || more > Heading::HALF_TURN.0 || after.site == pose.site {
+        if more == 0 || more > Angle::HALF_TURN.0 || after.site == pose.site {
             break;
         }
         if !is_within(after.site - from.site, radius) || !is_within(corner, radius) {
             break;
         }
-        radius = orbit.radius.saturating_add(orbit.margin);
+        radius = circle.radius.saturating_add(circle.margin);
         let (all, is_round) = turned.overflowing_add(more);
         if is_round {
             return Ok(());
         }
         (pose, turned) = (after, all);
     }
-    Err(Broken::Orbit(side))
+    Err(ContractError::TurningCircle(side))
 }
 
 fn turn_in_place<D: Dynamics>(
@@ -280,13 +283,13 @@ fn turn_in_place<D: Dynamics>(
     pose: Pose,
     side: Side,
     most: u32,
-) -> Result<(), Broken> {
+) -> Result<(), ContractError> {
     let Some((Action(action), after)) = dynamics.turn_in_place(pose, side) else { return Ok(()) };
     let turned = turn(pose.heading, after.heading, side);
     let there = dynamics.target(pose, Action(action));
     if after.site == pose.site && turned > 0 && turned <= most && there == Some(after) {
         Ok(())
     } else {
-        Err(Broken::TurnInPlace(side))
+        Err(ContractError::TurnInPlace(side))
     }
 }

@@ -1,17 +1,19 @@
 //! Dynamics: how an action moves the agent.
 //!
 //! The paper's one-step problem allows any `phi` and any finite action set. This module defines what the search needs
-//! of them: the actions, grouped into [`Ray`]s that form a [`Fan`]. [`Unicycle`](crate::motion::unicycle) is the
+//! of them: the actions, grouped into [`Ray`]s that form a [`RayFan`]. [`Unicycle`](crate::motion::unicycle) is the
 //! paper's dynamics, and [`Holonomic`](crate::motion::holonomic) is another.
 //!
-//! A vehicle that cannot turn on the spot has an [`Orbit`] to either side, the circle that it follows by repeating one
+//! A vehicle that cannot turn on the spot has a [`TurningCircle`] to either side, the circle that it follows by repeating one
 //! action. As long as that circle lies inside the area, the vehicle is never cornered. [`Car`](crate::motion::car)
 //! drives along arcs, and [`Boat`](crate::motion::boat) turns a little in each step.
 
+use nalgebra::Point2;
+
 use crate::geometry::area::Area;
-use crate::geometry::heading::Heading;
-use crate::geometry::lattice::{OffLattice, Site, UNITS_PER_METRE, Vector};
-use crate::geometry::region::Region;
+use crate::geometry::heading::{Angle, Heading};
+use crate::geometry::lattice::{LatticeError, Site, UNITS_PER_METRE, Vector};
+use crate::geometry::workspace::Workspace;
 use crate::motion::action::{Action, ActionGrid, Control};
 
 /// Where the agent is and where it faces: the state.
@@ -23,6 +25,16 @@ pub struct Pose {
     pub site: Site,
     /// Heading.
     pub heading: Heading,
+}
+
+impl Pose {
+    /// At a place in metres, `[x, z]` or a point of `nalgebra`.
+    ///
+    /// # Errors
+    /// [`LatticeError`] unless both coordinates are smaller than 8,192 m in size.
+    pub fn at(place: impl Into<Point2<f64>>, heading: Heading) -> Result<Self, LatticeError> {
+        Ok(Self { site: Site::metres(place)?, heading })
+    }
 }
 
 /// The actions that share a direction of travel from a pose. For a vehicle that drives along arcs, it is the direction
@@ -37,7 +49,7 @@ pub struct Ray {
     /// Displacement for one step of speed, in 2^-[`STEP_BITS`](Self::STEP_BITS) lattice units.
     pub step: Vector,
     /// The share of `|u|^2` that does not depend on the speed, 10^-6: a turn's square in mrad^2.
-    pub effort: u32,
+    pub turn_cost: u32,
 }
 
 impl Ray {
@@ -72,33 +84,33 @@ pub enum Side {
 /// the contract.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Fan {
+pub struct RayFan {
     /// Rays to the left, the 0th included.
     pub left: u32,
     /// Rays to the right, from the 1st.
     pub right: u32,
     /// The turn from one to the next, at most.
-    pub spacing: Heading,
+    pub spacing: Angle,
 }
 
 /// The circle that a vehicle goes round by repeating one action, as seen from a pose on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Orbit {
+pub struct TurningCircle {
     /// The action that is repeated.
     pub action: Action,
     /// Its centre from the pose's position, lattice units.
     pub centre: Vector,
-    /// The whole way lies within this distance of the centre, its [corners](Dynamics::corner) too; lattice units.
+    /// The whole way lies within this distance of the centre, its [corners](Dynamics::tangent_intersection) too; lattice units.
     pub radius: i32,
     /// How far rounding to the lattice may move the centre in one round; lattice units.
     pub margin: i32,
 }
 
-impl Orbit {
+impl TurningCircle {
     /// Whether a disc about its centre lies inside the area, seen from a position on it; the disc's radius is in
     /// lattice units.
-    pub fn is_inside<G: Region>(&self, site: Site, area: &G, radius: i32) -> bool {
+    pub fn is_inside<G: Workspace>(&self, site: Site, area: &G, radius: i32) -> bool {
         site.step(self.centre).is_ok_and(|centre| area.contains_disc(centre, radius))
     }
 
@@ -112,23 +124,23 @@ impl Orbit {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct NoRoom {
+pub struct RoomError {
     /// The width that the circle needs, millimetres.
     pub across_mm: u32,
 }
 
-impl core::fmt::Display for NoRoom {
+impl core::fmt::Display for RoomError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         write!(f, "an area with room for a turning circle {} mm across", self.across_mm)
     }
 }
 
-impl core::error::Error for NoRoom {}
+impl core::error::Error for RoomError {}
 
 /// The agent's known dynamics over its finite action set (Section II-A's `phi` and `U`).
 ///
-/// An action's squared control is its squared reach plus its ray's effort,
-/// `|u|^2 = |zeta' - zeta|^2 + effort`: for the unicycle `v^2 + w^2`, for an integrator `v^2`.
+/// An action's squared control is its squared reach plus its ray's turn cost,
+/// `|u|^2 = |zeta' - zeta|^2 + turn_cost`: for the unicycle `v^2 + w^2`, for an integrator `v^2`.
 ///
 /// # Contract
 ///
@@ -136,9 +148,9 @@ impl core::error::Error for NoRoom {}
 /// [`contract::check`](crate::motion::contract::check) tells which one an implementation breaks.
 ///
 /// 1. The fan has the grid's number of rays, one at least on the left.
-/// 2. On either side each ray turns further away from the 0th than the one before, by [`Fan::spacing`] at most. The two
+/// 2. On either side each ray turns further away from the 0th than the one before, by [`RayFan::spacing`] at most. The two
 ///    sides together turn by a whole turn at most.
-/// 3. The effort never decreases from one ray of a side to the next, and the 0th's is the least of all.
+/// 3. The turn cost never decreases from one ray of a side to the next, and the 0th's is the least of all.
 /// 4. [`Ray::heading`] is [`heading`](Self::heading)'s, and [`Ray::step`] points there, as long as one
 ///    step of the grid's speed.
 /// 5. Indices are those of the grid, each once, and [`ray_of`](Self::ray_of) gives the ray back.
@@ -147,10 +159,10 @@ impl core::error::Error for NoRoom {}
 /// 7. [`rays_at`](Self::rays_at) is the whole fan at the fastest speed, never grows as the speed falls, and
 ///    [`ray_of`](Self::ray_of) knows just the actions that it has.
 /// 8. [`arrive`](Self::arrive) leads one [`displacement`](Ray::displacement) from the pose. The way there lies in the
-///    triangle of its two ends and its [`corner`](Self::corner), where its tangents meet. If it has no corner, the way
-///    is the straight line.
-/// 9. There is an [`orbit`](Self::orbit) to both sides or to none. Repeating its action turns to its side and stays
-///    within its radius, and within its radius and margin for a round.
+///    triangle of its two ends and its [`tangent_intersection`](Self::tangent_intersection). Without one, the way is the
+///    straight line.
+/// 9. There is a [`turning_circle`](Self::turning_circle) to both sides or to none. Repeating its action turns to its
+///    side and stays within its radius, and within its radius and margin for a round.
 ///
 /// The search for the best action needs 1 to 5, 7 and 8, in each algorithm. If no action ends on uncertain ground, the
 /// recovery ladder needs 6 or 9, unless the fan reaches all around. A vehicle that has neither ends its mission there.
@@ -159,7 +171,7 @@ pub trait Dynamics {
     fn grid(&self) -> ActionGrid;
 
     /// How the rays lie.
-    fn fan(&self) -> Fan;
+    fn fan(&self) -> RayFan;
 
     /// The heading of the `n`-th ray to a side of the fan; the 0th is the same on both.
     fn heading(&self, pose: Pose, side: Side, n: u32) -> Heading;
@@ -169,7 +181,7 @@ pub trait Dynamics {
 
     /// The rays from a pose in the order in which ties are settled: by number, left before right.
     fn rays(&self, pose: Pose) -> impl Iterator<Item = Ray> {
-        let Fan { left, right, .. } = self.fan();
+        let RayFan { left, right, .. } = self.fan();
         (0..left.max(right.saturating_add(1))).flat_map(move |n| {
             let on_left = (n < left).then(|| self.ray(pose, Side::Left, n));
             let on_right = (1..=right).contains(&n).then(|| self.ray(pose, Side::Right, n));
@@ -186,52 +198,52 @@ pub trait Dynamics {
     /// The pose to which a ray leads at a speed. By default the agent then faces in the direction of travel.
     ///
     /// # Errors
-    /// [`OffLattice`] when that is beyond the lattice.
-    fn arrive(&self, pose: Pose, ray: &Ray, speed: u16) -> Result<Pose, OffLattice> {
+    /// [`LatticeError`] when that is beyond the lattice.
+    fn arrive(&self, pose: Pose, ray: &Ray, speed: u16) -> Result<Pose, LatticeError> {
         let site = pose.site.step(ray.displacement(speed))?;
         Ok(Pose { site, heading: ray.heading })
     }
 
     /// Where the tangents at the two ends of a motion meet, seen from its beginning: a convex area that has both
     /// ends and this place in it has all of the way. `None` when the way is straight.
-    fn corner(&self, _from: Pose, _to: Pose) -> Option<Vector> {
+    fn tangent_intersection(&self, _from: Pose, _to: Pose) -> Option<Vector> {
         None
     }
 
     /// The smallest circle, or nearly, that the agent can go round to a side. `None` if it needs none, as it turns in
     /// place or leaves in any direction.
-    fn orbit(&self, _pose: Pose, _side: Side) -> Option<Orbit> {
+    fn turning_circle(&self, _pose: Pose, _side: Side) -> Option<TurningCircle> {
         None
     }
 
     /// Whether the vehicle's circle fits somewhere in an area. If not, the vehicle is cornered after any motion there.
     ///
     /// # Errors
-    /// [`NoRoom`].
-    fn fits(&self, area: Area) -> Result<(), NoRoom> {
+    /// [`RoomError`].
+    fn fits(&self, area: Area) -> Result<(), RoomError> {
         let pose = Pose { site: area.middle(), heading: Heading(0) };
-        let Some(orbit) = self.orbit(pose, Side::Left) else { return Ok(()) };
-        let radius = orbit.with_room(room_for_errors(&area)).unsigned_abs();
+        let Some(circle) = self.turning_circle(pose, Side::Left) else { return Ok(()) };
+        let radius = circle.with_room(room_for_errors(&area)).unsigned_abs();
         let across_mm = (u64::from(radius) * 2_000).div_ceil(UNITS_PER_METRE as u64) as u32;
-        area.inset(radius).map(drop).ok_or(NoRoom { across_mm })
+        area.inset(radius).map(drop).ok_or(RoomError { across_mm })
     }
 
-    /// Whether one of the orbits from a pose lies inside the area, so that the agent can stay there for ever.
-    fn is_safe<G: Region>(&self, pose: Pose, area: &G) -> bool {
-        has_orbit_inside(self, pose, area, |orbit| orbit.radius)
+    /// Whether one of the circles from a pose lies inside the area, so that the agent can stay there for ever.
+    fn is_safe<G: Workspace>(&self, pose: Pose, area: &G) -> bool {
+        has_circle_inside(self, pose, area, |circle| circle.radius)
     }
 
     /// Whether a motion to a place inside the area stays inside and ends safe. The circle must have `room` around it,
     /// in lattice units, and a margin for the rounding of a round.
-    fn keeps_inside<G: Region>(&self, from: Pose, to: Pose, area: &G, room: i32) -> bool {
+    fn keeps_inside<G: Workspace>(&self, from: Pose, to: Pose, area: &G, room: i32) -> bool {
         self.stays_inside(from, to, area)
-            && has_orbit_inside(self, to, area, |orbit| orbit.with_room(room))
+            && has_circle_inside(self, to, area, |circle| circle.with_room(room))
     }
 
-    /// Whether all of a motion to a place that the border [allows](Region::confines) stays there, and touches no
+    /// Whether all of a motion to a place that the border [allows](Workspace::confines) stays there, and touches no
     /// keep-out.
-    fn stays_inside<G: Region>(&self, from: Pose, to: Pose, area: &G) -> bool {
-        let Some(corner) = self.corner(from, to) else {
+    fn stays_inside<G: Workspace>(&self, from: Pose, to: Pose, area: &G) -> bool {
+        let Some(corner) = self.tangent_intersection(from, to) else {
             return area.lets_pass(&[from.site, to.site]);
         };
         from.site.step(corner).is_ok_and(|corner| {
@@ -242,7 +254,7 @@ pub trait Dynamics {
     /// The ray nearest to a heading, and the nearest within half a turn on the other side of it. If there is none, the
     /// second is the first again. Computes some 70 headings at most.
     fn around(&self, pose: Pose, heading: Heading) -> [Ray; 2] {
-        let Fan { left, right, .. } = self.fan();
+        let RayFan { left, right, .. } = self.fan();
         let to_left = heading.0.wrapping_sub(self.heading(pose, Side::Left, 0).0);
         // To the right of the heading and to the left: how far off, and which ray.
         let mut nearest = [(u32::MAX, Side::Left, 0); 2];
@@ -273,7 +285,7 @@ pub trait Dynamics {
     fn turn_in_place(&self, pose: Pose, side: Side) -> Option<(Action, Pose)>;
 
     /// The control that an action asks of the vehicle.
-    fn control(&self, action: Action) -> Control;
+    fn control(&self, pose: Pose, action: Action) -> Control;
 
     /// The ray to which an action belongs.
     fn ray_of(&self, pose: Pose, action: Action) -> Option<Ray>;
@@ -288,20 +300,20 @@ pub trait Dynamics {
 
 /// Room for two errors of the position, so that they do not push a circle out; lattice units. The area's own margin is
 /// the size of one error.
-pub fn room_for_errors<G: Region>(area: &G) -> i32 {
+pub fn room_for_errors<G: Workspace>(area: &G) -> i32 {
     (area.bounds().margin() as i32).saturating_mul(2)
 }
 
-/// Whether the agent needs no orbit, or the disc of one of so large a radius lies inside the area.
-fn has_orbit_inside<D: Dynamics + ?Sized, G: Region>(
+/// Whether the agent needs no circle, or the disc of one of so large a radius lies inside the area.
+fn has_circle_inside<D: Dynamics + ?Sized, G: Workspace>(
     dynamics: &D,
     pose: Pose,
     area: &G,
-    radius: impl Fn(&Orbit) -> i32,
+    radius: impl Fn(&TurningCircle) -> i32,
 ) -> bool {
-    let fits = |orbit: Orbit| orbit.is_inside(pose.site, area, radius(&orbit));
-    dynamics.orbit(pose, Side::Left).is_none_or(fits)
-        || dynamics.orbit(pose, Side::Right).is_none_or(fits)
+    let fits = |circle: TurningCircle| circle.is_inside(pose.site, area, radius(&circle));
+    dynamics.turning_circle(pose, Side::Left).is_none_or(fits)
+        || dynamics.turning_circle(pose, Side::Right).is_none_or(fits)
 }
 
 /// The turn from straight ahead to the `n`-th ray of a side.

@@ -1,8 +1,8 @@
 //! A holonomic integrator: any bearing, whichever way the agent faces.
 
-use crate::geometry::heading::Heading;
-use crate::motion::action::{Action, ActionGrid, BadGrid, Control};
-use crate::motion::dynamics::{Dynamics, Fan, Pose, Ray, Side};
+use crate::geometry::heading::{Angle, Heading};
+use crate::motion::action::{Action, ActionGrid, Control, GridError};
+use crate::motion::dynamics::{Dynamics, Pose, Ray, RayFan, Side};
 
 /// A holonomic integrator, `zeta' = zeta + u`, with `u` on a polar grid: any of `bearings` equally
 /// spaced directions at any speed of the grid, whichever way the agent faces.
@@ -17,8 +17,8 @@ impl Holonomic {
     /// `0, step, ..., (speeds - 1) step`, millimetres per unit time.
     ///
     /// # Errors
-    /// [`BadGrid::Actions`], [`BadGrid::Reach`].
-    pub fn new(bearings: u32, speeds: u16, speed_step_mm: u32) -> Result<Self, BadGrid> {
+    /// [`GridError::Actions`], [`GridError::Reach`].
+    pub fn new(bearings: u32, speeds: u16, speed_step_mm: u32) -> Result<Self, GridError> {
         Ok(Self { grid: ActionGrid::new(bearings, speeds, speed_step_mm)? })
     }
 
@@ -33,9 +33,9 @@ impl Dynamics for Holonomic {
     }
 
     /// Counter-clockwise from the x axis; all cost the same.
-    fn fan(&self) -> Fan {
+    fn fan(&self) -> RayFan {
         let spacing = (u32::MAX / self.grid.rays().max(1)).saturating_add(1);
-        Fan { left: self.grid.rays(), right: 0, spacing: Heading(spacing) }
+        RayFan { left: self.grid.rays(), right: 0, spacing: Angle(spacing) }
     }
 
     fn heading(&self, _: Pose, _: Side, n: u32) -> Heading {
@@ -45,7 +45,7 @@ impl Dynamics for Holonomic {
     fn ray(&self, _: Pose, _: Side, n: u32) -> Ray {
         let heading = self.bearing(n);
         let step = heading.unit().scaled(self.grid.step_length());
-        Ray { index: n, heading, step, effort: 0 }
+        Ray { index: n, heading, step, turn_cost: 0 }
     }
 
     fn turn_in_place(&self, _: Pose, _: Side) -> Option<(Action, Pose)> {
@@ -57,8 +57,9 @@ impl Dynamics for Holonomic {
         (index < self.grid.rays()).then(|| self.ray(pose, Side::Left, index))
     }
 
-    fn control(&self, action: Action) -> Control {
+    fn control(&self, pose: Pose, action: Action) -> Control {
         let (ray, speed) = self.grid.split(action);
-        Control { v: self.grid.reach_m(speed), w: self.bearing(ray).radians() as f32 }
+        let turn = self.bearing(ray).since(pose.heading);
+        Control { distance_m: self.grid.reach_m(speed), turn_rad: turn.radians() as f32 }
     }
 }

@@ -1,7 +1,7 @@
 //! How the robot moves: a finite set of actions, named by integers, and where each of them leads.
 //!
 //! Actions that share a direction of travel form a *ray*, and the rays from a pose form a *fan* ([`dynamics`]). The
-//! crate has four vehicles: the paper's [`unicycle`], a [`holonomic`] one, and two that cannot turn on the spot, a
+//! crate has four vehicles: the paper's [`unicycle`], which [`pivots`], a [`holonomic`] one, and two that cannot turn on the spot, a
 //! [`car`] and a [`boat`]. [`any_vehicle`] is a vehicle that is chosen while the program runs. [`contract`] checks a
 //! vehicle of your own. Nothing here knows of the line.
 
@@ -12,4 +12,5 @@ pub mod car;
 pub mod contract;
 pub mod dynamics;
 pub mod holonomic;
+pub mod pivots;
 pub mod unicycle;

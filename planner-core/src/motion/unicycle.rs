@@ -1,8 +1,8 @@
 //! The paper's unicycle: turn, then drive.
 
-use crate::geometry::heading::Heading;
-use crate::motion::action::{Action, ActionGrid, BadGrid, Control};
-use crate::motion::dynamics::{Dynamics, Fan, Pose, Ray, Side};
+use crate::geometry::heading::Angle;
+use crate::motion::action::{ActionGrid, GridError};
+use crate::motion::pivots::{HALF, Pivots, RADIANS_PER_UNIT, square_mrad2_of};
 
 /// The paper's unicycle (Section V): `theta' = theta + w`, then `x' = x + v cos theta'`,
 /// `z' = z + v sin theta'`.
@@ -20,7 +20,7 @@ pub struct Unicycle {
     step: u64,
     sharpest_rad: f32,
     sharpest_mrad2: u32,
-    sharpest: Heading,
+    sharpest: Angle,
 }
 
 /// What a [`Unicycle`] can do.
@@ -31,7 +31,7 @@ pub struct Shape {
     /// The angle from one turn to the next, microradians.
     pub turn_step_urad: u32,
     /// The sharpest turn to one side.
-    pub sharpest: Heading,
+    pub sharpest: Angle,
     /// Speeds, standing still included.
     pub speeds: u16,
     /// From one speed to the next, millimetres per unit time.
@@ -63,32 +63,32 @@ impl Unicycle {
     /// microradians, and whose speeds are `0, step, ..., (speeds - 1) step`, millimetres per unit time.
     ///
     /// # Errors
-    /// [`BadGrid`].
+    /// [`GridError`].
     pub const fn new(
         turn_step_urad: u32,
         sharpest_rad: f64,
         speeds: u16,
         speed_step_mm: u32,
-    ) -> Result<Self, BadGrid> {
+    ) -> Result<Self, GridError> {
         // No angle is a turn of nothing, which is none.
         let is_angle = sharpest_rad >= 0.0 && sharpest_rad <= core::f64::consts::PI;
         let turn = if is_angle { sharpest_rad } else { 0.0 };
-        let sharpest = Heading((turn * 1e6 * UNITS_PER_URAD + 0.5) as u32);
+        let sharpest = Angle((turn * 1e6 * UNITS_PER_URAD + 0.5) as u32);
         Self::of(Shape { turn_step_urad, sharpest, speeds, speed_step_mm })
     }
 
     /// A unicycle of this shape: as [`new`](Self::new), in integers alone.
     ///
     /// # Errors
-    /// [`BadGrid`].
-    pub const fn of(shape: Shape) -> Result<Self, BadGrid> {
+    /// [`GridError`].
+    pub const fn of(shape: Shape) -> Result<Self, GridError> {
         let Shape { turn_step_urad, sharpest, speeds, speed_step_mm } = shape;
         let makes_sense = turn_step_urad > 0
             && turn_step_urad <= MOST_URAD
-            && sharpest.0 >= Heading::turn_of(1e-3)
-            && sharpest.0 <= Heading::HALF_TURN.0;
+            && sharpest.0 >= Angle::of_radians(1e-3).0
+            && sharpest.0 <= Angle::HALF_TURN.0;
         if !makes_sense {
-            return Err(BadGrid::Turn);
+            return Err(GridError::Turn);
         }
         // Turns are half a turn at most, 2^31 units of a heading: all of this is below 2^64.
         let step = turn_step_urad as u64 * STEP_PER_URAD;
@@ -99,15 +99,13 @@ impl Unicycle {
             Ok(grid) => grid,
             Err(bad) => return Err(bad),
         };
-        // With 16 fractional bits, as in `square_mrad2`.
-        let sharpest_mrad = (sharpest.0 as u64 * MRAD_PER_UNIT) >> 32;
         Ok(Self {
             grid,
             turns,
             step_urad: turn_step_urad,
             step,
             sharpest_rad: sharpest.0 as f32 * RADIANS_PER_UNIT,
-            sharpest_mrad2: ((sharpest_mrad * sharpest_mrad + HALF) >> 32) as u32,
+            sharpest_mrad2: square_mrad2_of(sharpest),
             sharpest,
         })
     }
@@ -133,7 +131,7 @@ impl Unicycle {
     }
 
     /// The paper's speeds and sharpest turn with other turns between.
-    const fn every(turn_step_urad: u32) -> Result<Self, BadGrid> {
+    const fn every(turn_step_urad: u32) -> Result<Self, GridError> {
         Self::new(turn_step_urad, core::f64::consts::FRAC_PI_2, 21, 100)
     }
 
@@ -148,17 +146,8 @@ impl Unicycle {
     }
 
     /// The sharpest turn to one side.
-    pub const fn sharpest(&self) -> Heading {
+    pub const fn sharpest(&self) -> Angle {
         self.sharpest
-    }
-
-    /// The `j`-th turn to the left and its square, mrad^2.
-    const fn turn(&self, j: u32) -> (Heading, u32) {
-        if j >= self.turns {
-            return (self.sharpest, self.sharpest_mrad2);
-        }
-        let turned = (j as u64 * self.step + HALF) >> 32;
-        (Heading(turned as u32), square_mrad2(j * self.step_urad))
     }
 }
 
@@ -197,57 +186,34 @@ pub(super) const STEP_PER_URAD: u64 = (UNITS_PER_URAD * 4_294_967_296.0 + 0.5) a
 /// Half a turn, microradians.
 const MOST_URAD: u32 = (core::f64::consts::PI * 1e6) as u32;
 
-/// A unit of a heading in milliradians, with 48 fractional bits.
-const MRAD_PER_UNIT: u64 = (core::f64::consts::TAU * 1e3 * 65_536.0 + 0.5) as u64;
-
-/// A unit of a heading in radians.
-const RADIANS_PER_UNIT: f32 = (core::f64::consts::TAU / 4_294_967_296.0) as f32;
-
-/// One half with 32 fractional bits.
-pub(super) const HALF: u64 = 1 << 31;
-
-impl Dynamics for Unicycle {
+impl Pivots for Unicycle {
     fn grid(&self) -> ActionGrid {
         self.grid
     }
 
-    fn fan(&self) -> Fan {
-        let spacing = Heading(((self.step >> 32) as u32 + 1).min(self.sharpest.0));
-        Fan { left: self.turns + 1, right: self.turns, spacing }
+    fn turn(&self, n: u32) -> Angle {
+        if n >= self.turns {
+            return self.sharpest;
+        }
+        Angle(((u64::from(n) * self.step + HALF) >> 32) as u32)
     }
 
-    fn heading(&self, pose: Pose, side: Side, n: u32) -> Heading {
-        let (turn, _) = self.turn(n);
-        pose.heading.turned(if side == Side::Left { turn } else { turn.mirrored() })
+    fn spacing(&self) -> Angle {
+        Angle(((self.step >> 32) as u32 + 1).min(self.sharpest.0))
     }
 
-    fn ray(&self, pose: Pose, side: Side, n: u32) -> Ray {
-        let n = n.min(self.turns);
-        let (heading, (_, effort)) = (self.heading(pose, side, n), self.turn(n));
-        let index = if side == Side::Left { self.turns + n } else { self.turns - n };
-        Ray { index, heading, step: heading.unit().scaled(self.grid.step_length()), effort }
+    fn turn_cost(&self, n: u32) -> u32 {
+        if n >= self.turns { self.sharpest_mrad2 } else { square_mrad2(n * self.step_urad) }
     }
 
-    fn turn_in_place(&self, pose: Pose, side: Side) -> Option<(Action, Pose)> {
-        let ray = self.ray(pose, side, self.turns);
-        Some((self.grid.action(ray.index, 0), Pose { heading: ray.heading, ..pose }))
+    fn turn_rad(&self, n: u32) -> f32 {
+        if n >= self.turns { self.sharpest_rad } else { (n * self.step_urad) as f32 / 1e6 }
     }
+}
 
-    fn ray_of(&self, pose: Pose, action: Action) -> Option<Ray> {
-        let (index, _) = self.grid.split(action);
-        let side = if index >= self.turns { Side::Left } else { Side::Right };
-        (index < self.grid.rays()).then(|| self.ray(pose, side, index.abs_diff(self.turns)))
-    }
-
-    fn control(&self, action: Action) -> Control {
-        let (ray, speed) = self.grid.split(action);
-        let turn = ray.abs_diff(self.turns);
-        let w = if turn >= self.turns {
-            self.sharpest_rad
-        } else {
-            (turn * self.step_urad) as f32 / 1e6
-        };
-        let w = if ray < self.turns { -w } else { w };
-        Control { v: self.grid.reach_m(speed), w }
+/// The paper's: [`Unicycle::paper`].
+impl Default for Unicycle {
+    fn default() -> Self {
+        Self::paper()
     }
 }

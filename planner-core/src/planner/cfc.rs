@@ -10,19 +10,20 @@
 //!   this learns 0.65 bits a step in 10 steps, and P2 as printed learns 0.56.
 
 use crate::belief::Belief as _;
-use crate::belief::Refused;
-use crate::belief::consistent_lines::{Certainty, ConsistentLines};
+use crate::belief::ObservationError;
+use crate::belief::cell_view::{CellView, Certainty};
+use crate::belief::observation_log::{FromLog as _, ObservationLog};
 use crate::belief::sample::{Label, Reading};
-use crate::belief::told::{Replay as _, Told};
 use crate::belief::tolerance::Tolerance;
 use crate::belief::version_space::VersionSpace;
 use crate::geometry::arc::SlopeArc;
 use crate::geometry::area::Area;
-use crate::geometry::region::Region;
+use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose};
-use crate::planner::config::{Config, ConfigError, Following, first_to_second};
+use crate::planner::options::{Options, first_to_second};
+use crate::planner::setup::{SetupError, aimed_for_by};
 use crate::planner::silence::Silence;
-use crate::planner::snapshot::{NotRestored, Persist, Snapshot};
+use crate::planner::snapshot::{Persist, RestoreError, Snapshot};
 use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
 use crate::search::course::Course;
 use crate::search::dead_end::DeadEnd;
@@ -30,9 +31,6 @@ use crate::search::direction_rule::ArcRule;
 use crate::search::objective::{Choice, Effort, LOOKS};
 use crate::search::problem::Problem;
 use crate::search::recovery::{Found, solve_or_recover, turn_round};
-
-/// With this P2 Algorithm 1 learns the most.
-pub const FOLLOWING: Following = Following::AlongBisector;
 
 /// Where Algorithm 1 stands.
 ///
@@ -61,7 +59,9 @@ pub enum Phase {
 /// Algorithm 1 for `D`'s dynamics with room for `N` samples, the oracle's included.
 #[derive(Clone, Debug)]
 pub struct Cfc<D, const N: usize, G = Area> {
-    config: Config<G>,
+    /// Where motions aim for.
+    area: G,
+    options: Options,
     dynamics: D,
     space: VersionSpace<N>,
     phase: Phase,
@@ -72,25 +72,27 @@ pub struct Cfc<D, const N: usize, G = Area> {
     silence: Silence,
 }
 
-impl<D: Dynamics, const N: usize, G: Region> Cfc<D, N, G> {
-    /// A planner that knows the oracle's samples; its past label is that of the first of them.
+impl<D: Dynamics, const N: usize, G: Workspace> Cfc<D, N, G> {
+    /// A planner that knows the given samples; its past label is that of the first of them. It has [`Options::CFC`].
     ///
     /// # Errors
-    /// [`ConfigError`].
-    pub fn new(
-        config: Config<G>,
-        dynamics: D,
-        space: VersionSpace<N>,
-    ) -> Result<Self, ConfigError> {
-        let config = config.inset_for(&dynamics)?;
-        Ok(Self::of((config, dynamics), space))
+    /// [`SetupError`].
+    pub fn new(area: G, dynamics: D, space: VersionSpace<N>) -> Result<Self, SetupError> {
+        let area = aimed_for_by(area, &dynamics, &space)?;
+        Ok(Self::of((area, dynamics), space))
     }
 
-    /// The same of settings that are inset.
-    pub(crate) fn of((config, dynamics): (Config<G>, D), space: VersionSpace<N>) -> Self {
+    /// The same in the part of an area that motions aim for.
+    pub(crate) fn of((area, dynamics): (G, D), space: VersionSpace<N>) -> Self {
         let past = space.first_label();
         let (phase, due, silence) = (Phase::Crossing, Phase::Crossing, Silence::NONE);
-        Self { config, dynamics, space, phase, due, past, silence }
+        Self { area, options: Options::CFC, dynamics, space, phase, due, past, silence }
+    }
+
+    /// The same with other options.
+    #[must_use]
+    pub fn with(self, options: Options) -> Self {
+        Self { options, ..self }
     }
 
     /// Where the algorithm stands.
@@ -107,16 +109,16 @@ impl<D: Dynamics, const N: usize, G: Region> Cfc<D, N, G> {
         &self,
         phase: Phase,
         slopes: SlopeArc,
-        lines: ConsistentLines<'a>,
+        lines: CellView<'a>,
     ) -> Problem<'a, ArcRule, G> {
-        let (area, varrho) = (self.config.area, self.config.varrho);
+        let (area, weight) = (self.area, self.options.weight);
         let rule = match phase {
             Phase::Crossing => {
-                self.config.crossing_rule(slopes, first_to_second(self.space.samples()))
+                self.options.crossing_rule(slopes, first_to_second(self.space.samples()))
             }
-            Phase::Following => self.config.following_rule(slopes),
+            Phase::Following => self.options.following_rule(slopes),
         };
-        Problem { lines, area, varrho, rule }
+        Problem { lines, area, weight, rule }
     }
 
     /// The motion to make, its phase, and the effort of finding it. Where positions err, there may be no place left at
@@ -136,7 +138,7 @@ impl<D: Dynamics, const N: usize, G: Region> Cfc<D, N, G> {
 
     fn find_among(
         &self,
-        lines: ConsistentLines<'_>,
+        lines: CellView<'_>,
         pose: Pose,
         looks: u32,
         course: &mut Course,
@@ -164,7 +166,7 @@ impl<D: Dynamics, const N: usize, G: Region> Cfc<D, N, G> {
     }
 }
 
-impl<D: Dynamics, const N: usize, G: Region> Planner for Cfc<D, N, G> {
+impl<D: Dynamics, const N: usize, G: Workspace> Planner for Cfc<D, N, G> {
     type Belief = VersionSpace<N>;
 
     fn plan(&mut self, pose: Pose) -> Plan {
@@ -180,7 +182,7 @@ impl<D: Dynamics, const N: usize, G: Region> Planner for Cfc<D, N, G> {
         };
         match found {
             Ok(found) => {
-                let motion = Motion::of(stage, &found, &self.dynamics, effort);
+                let motion = Motion::of(stage, pose, &found, &self.dynamics, effort);
                 self.silence.keep(pose, motion, course, &self.dynamics)
             }
             Err(dead_end) => Plan::Stop(dead_end.into()),
@@ -192,7 +194,7 @@ impl<D: Dynamics, const N: usize, G: Region> Planner for Cfc<D, N, G> {
         pose: Pose,
         reading: Option<Reading>,
         tolerance: Tolerance,
-    ) -> Result<(), Refused> {
+    ) -> Result<(), ObservationError> {
         let Some(reading) = reading else {
             // Ground that was merely crossed: its label is known where it is certain.
             if let Certainty::Certain(label) = self.space.certainty(pose.site) {
@@ -221,14 +223,14 @@ impl<D: Dynamics, const N: usize, G: Region> Planner for Cfc<D, N, G> {
 }
 
 /// It remembers its phase, the label of the past position, how it turned since, and the way that is under way.
-impl<D: Dynamics, const N: usize, G: Region> Persist for Cfc<D, N, G> {
-    type Snapshot = Snapshot<Told<N>, ([Phase; 2], Label, Silence)>;
+impl<D: Dynamics, const N: usize, G: Workspace> Persist for Cfc<D, N, G> {
+    type Snapshot = Snapshot<ObservationLog<N>, ([Phase; 2], Label, Silence)>;
 
     fn snapshot(&self) -> Self::Snapshot {
         Snapshot::new(self.space.told(), ([self.phase, self.due], self.past, self.silence))
     }
 
-    fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), NotRestored> {
+    fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), RestoreError> {
         let (told, &([phase, due], past, silence)) = snapshot.open()?;
         self.space.replay(told)?;
         (self.phase, self.due, self.past, self.silence) = (phase, due, past, silence);
@@ -244,8 +246,6 @@ mod tests {
     use crate::belief::sample::Sample;
     use crate::geometry::lattice::Site;
     use crate::motion::unicycle::Unicycle;
-    use crate::planner::config::Crossing;
-    use crate::search::objective::Varrho;
     use crate::search::recovery::Recovery;
 
     fn at(x: f64, z: f64) -> Site {
@@ -263,15 +263,9 @@ mod tests {
             let label = if z > 5.0 { Label::Positive } else { Label::Negative };
             Sample { site: at(x, z), label }
         };
-        let config = Config {
-            area: Area::new(at(0.0, 0.0), at(10.0, 10.0)).unwrap(),
-            varrho: Varrho::PAPER,
-            crossing: Crossing::default(),
-            following: FOLLOWING,
-            tolerance: Tolerance::NONE,
-        };
+        let area = Area::metres([0.0, 0.0], [10.0, 10.0]).unwrap();
         let space = VersionSpace::new(&corners.map(sample)).unwrap();
-        Cfc::new(config, Unicycle::paper(), space).unwrap()
+        Cfc::new(area, Unicycle::paper(), space).unwrap()
     }
 
     fn see<const N: usize>(planner: &mut Cfc<Unicycle, N>, x: f64, z: f64, label: Label) -> Phase {
@@ -316,7 +310,7 @@ mod tests {
         // And refused when it is false.
         let refused = planner.observe(pose(5.0, 9.0), Some(Reading::Boundary));
         let contrary = Sample { site: at(5.0, 9.0), label: Label::Negative };
-        assert_eq!(refused, Err(Refused::Contradiction(contrary)));
+        assert_eq!(refused, Err(ObservationError::Contradiction(contrary)));
     }
 
     #[test]
@@ -326,7 +320,7 @@ mod tests {
         let before = (planner.phase(), planner.past, planner.space.samples().len());
         let wrong = Sample { site: at(4.0, 1.0), label: Label::Positive };
         let refused = planner.observe(pose(4.0, 1.0), Some(Label::Positive.into()));
-        assert_eq!(refused, Err(Refused::Contradiction(wrong)));
+        assert_eq!(refused, Err(ObservationError::Contradiction(wrong)));
         assert_eq!((planner.phase(), planner.past, planner.space.samples().len()), before);
         assert_eq!(see(&mut planner, 4.0, 4.0, Label::Negative), Phase::Crossing);
     }
@@ -353,13 +347,13 @@ mod tests {
         see(&mut planner, 4.0, 3.0, Label::Negative);
         assert_eq!(planner.plan(pose(4.0, 3.0)), Plan::Stop(StopReason::SamplesFull));
         let refused = planner.observe(pose(4.0, 4.0), Some(Label::Negative.into()));
-        assert!(matches!(refused, Err(Refused::Full(_))));
+        assert!(matches!(refused, Err(ObservationError::Full(_))));
     }
 
     #[test]
     fn from_outside_it_comes_back() {
         let mut planner = planner::<16>();
-        let area = planner.config.area;
+        let area = planner.area;
         for n in 0..400_u32 {
             let (sin, cos) = libm::sincos(f64::from(n));
             let heading = crate::geometry::heading::Heading(n.wrapping_mul(2_654_435_761));
@@ -409,7 +403,7 @@ mod tests {
         let Plan::Move(motion) = planner.plan(away) else { panic!("there is a turn") };
         assert_eq!((motion.recovery, motion.wants_label), (Some(Recovery::Reorient), false));
         assert_eq!(motion.target.site, away.site);
-        assert!(motion.control.w > 0.0, "left and right are alike: left");
+        assert!(motion.control.turn_rad > 0.0, "left and right are alike: left");
         // Facing it from five metres below.
         let facing = Pose { heading: quarter, ..pose(5.0, 0.1) };
         let Plan::Move(motion) = planner.plan(facing) else { panic!("there is a transit") };

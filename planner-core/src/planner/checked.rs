@@ -2,9 +2,10 @@
 
 use crate::belief::noise::Reliability;
 use crate::geometry::area::Area;
-use crate::geometry::lattice::{OffLattice, Site, Vector};
+use crate::geometry::lattice::{LatticeError, Site, Vector};
 use crate::geometry::local_line::LocalLine;
-use crate::search::objective::Varrho;
+use crate::geometry::value::ValueError;
+use crate::search::objective::{EffortWeight, RANGE};
 
 impl From<Site> for (i32, i32) {
     fn from(site: Site) -> Self {
@@ -13,24 +14,12 @@ impl From<Site> for (i32, i32) {
 }
 
 impl TryFrom<(i32, i32)> for Site {
-    type Error = OffLattice;
+    type Error = LatticeError;
 
-    fn try_from((x, z): (i32, i32)) -> Result<Self, OffLattice> {
+    fn try_from((x, z): (i32, i32)) -> Result<Self, LatticeError> {
         Self::new(x, z)
     }
 }
-
-/// A number that is none of the type it should be of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct OutOfRange;
-
-impl core::fmt::Display for OutOfRange {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str("out of range")
-    }
-}
-
-impl core::error::Error for OutOfRange {}
 
 /// Its corners.
 impl From<Area> for [Site; 2] {
@@ -40,25 +29,25 @@ impl From<Area> for [Site; 2] {
 }
 
 impl TryFrom<[Site; 2]> for Area {
-    type Error = OutOfRange;
+    type Error = ValueError;
 
-    fn try_from([min, max]: [Site; 2]) -> Result<Self, OutOfRange> {
-        Self::new(min, max).ok_or(OutOfRange)
+    fn try_from([min, max]: [Site; 2]) -> Result<Self, ValueError> {
+        Self::new(min, max)
     }
 }
 
 /// Millionths.
-impl From<Varrho> for u32 {
-    fn from(varrho: Varrho) -> Self {
-        varrho.millionths
+impl From<EffortWeight> for u32 {
+    fn from(weight: EffortWeight) -> Self {
+        weight.millionths
     }
 }
 
-impl TryFrom<u32> for Varrho {
-    type Error = OutOfRange;
+impl TryFrom<u32> for EffortWeight {
+    type Error = ValueError;
 
-    fn try_from(millionths: u32) -> Result<Self, OutOfRange> {
-        (millionths < Self::ONE).then_some(Self { millionths }).ok_or(OutOfRange)
+    fn try_from(millionths: u32) -> Result<Self, ValueError> {
+        (millionths < Self::ONE).then_some(Self { millionths }).ok_or(RANGE)
     }
 }
 
@@ -70,10 +59,10 @@ impl From<Reliability> for i64 {
 }
 
 impl TryFrom<i64> for Reliability {
-    type Error = OutOfRange;
+    type Error = ValueError;
 
-    fn try_from(units: i64) -> Result<Self, OutOfRange> {
-        Self::from_log_odds(units).ok_or(OutOfRange)
+    fn try_from(units: i64) -> Result<Self, ValueError> {
+        Self::from_log_odds(units).ok_or(ValueError("odds are those of a probability"))
     }
 }
 
@@ -86,12 +75,13 @@ impl From<LocalLine> for (Site, [i32; 2], [f32; 2]) {
 }
 
 impl TryFrom<(Site, [i32; 2], [f32; 2])> for LocalLine {
-    type Error = OutOfRange;
+    type Error = ValueError;
 
     fn try_from(
         (about, [x, z], [slope, intercept]): (Site, [i32; 2], [f32; 2]),
-    ) -> Result<Self, OutOfRange> {
-        let along = Vector::new(x, z).ok_or(OutOfRange)?;
-        Self::new(about, along, slope, intercept).ok_or(OutOfRange)
+    ) -> Result<Self, ValueError> {
+        const NONE: ValueError = ValueError("a line has a direction, a slope and an intercept");
+        let along = Vector::new(x, z).ok_or(NONE)?;
+        Self::new(about, along, slope, intercept).ok_or(NONE)
     }
 }

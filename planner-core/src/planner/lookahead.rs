@@ -14,36 +14,83 @@
 //! The search is anytime: a plan evaluates at most [`EVALUATIONS`] ends and keeps the best found so far. The order of
 //! the ends does not depend on the limit. So a higher limit never gives a worse motion by the plan's own measure.
 //!
-//! Look-ahead learns from a [`Foresight`]: the version space where labels are true, a
-//! [`Forecast`](crate::belief::forecast::Forecast) where they may be wrong.
+//! Look-ahead learns from a [`PredictiveBelief`]: the version space where labels are true, a [`NoisyBelief`] where they may be wrong.
 
 use crate::belief::Belief as _;
-use crate::belief::Refused;
-use crate::belief::consistent_lines::ConsistentLines;
+use crate::belief::ObservationError;
+use crate::belief::cell_view::CellView;
 use crate::belief::goal::Goal;
-use crate::belief::outlook::{Foresight, Outlook, Prediction};
-use crate::belief::sample::{Label, Reading};
-use crate::belief::told::Replay;
+use crate::belief::noise::Noise;
+use crate::belief::noisy_belief::NoisyBelief;
+use crate::belief::observation_log::FromLog;
+use crate::belief::predictor::{Prediction, PredictiveBelief, Predictor};
+use crate::belief::sample::{Label, Reading, Sample};
 use crate::belief::tolerance::Tolerance;
+use crate::belief::weight::Prior;
 use crate::geometry::area::Area;
 use crate::geometry::lattice::Vector;
-use crate::geometry::region::Region;
+use crate::geometry::value::ValueError;
+use crate::geometry::workspace::Workspace;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Pose, Side};
-use crate::planner::config::{Config, ConfigError};
+use crate::planner::setup::{SetupError, aimed_for, aimed_for_by};
 use crate::planner::silence::Silence;
-use crate::planner::snapshot::{NotRestored, Persist, Snapshot};
+use crate::planner::snapshot::{Persist, RestoreError, Snapshot};
 use crate::planner::{Motion, Plan, Planner, StopReason};
 use crate::search::course::Course;
 use crate::search::dead_end::{DeadEnd, is_broad};
 use crate::search::direction_rule::ArcRule;
 use crate::search::lookout::{ENOUGH, Lookout, Prospect, Prospects, Sought};
-use crate::search::objective::{Effort, LOOKS, Varrho};
+use crate::search::objective::{Effort, EffortWeight, LOOKS};
 use crate::search::problem::Problem;
 use crate::search::recovery::{Found, solve_or_recover};
 
-/// The weight of the control with which look-ahead works best: in shares of a label for a unit of `|u|^2`.
-pub const VARRHO: Varrho = Varrho { millionths: 2_000 };
+/// What look-ahead pays for driving: in shares of a label for a unit of `|u|^2`, in [0, 1), to six decimal places.
+///
+/// A unit is a drive of a metre, or a turn of a radian. Lengths count as if the longest usual motion were of 2 m, the
+/// paper's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct DrivingPrice(EffortWeight);
+
+impl DrivingPrice {
+    /// With this price look-ahead works best. A drive of 2 m costs 0.008 labels.
+    pub const USUAL: Self = Self(EffortWeight { millionths: 2_000 });
+
+    /// The nearest price.
+    ///
+    /// # Errors
+    /// [`ValueError`] outside [0, 1).
+    pub fn new(value: f64) -> Result<Self, ValueError> {
+        EffortWeight::new(value)
+            .map(Self)
+            .map_err(|_| ValueError("a price of driving is from 0 to below 1"))
+    }
+
+    /// The price as a number.
+    pub fn value(self) -> f64 {
+        self.0.value()
+    }
+}
+
+/// The same number: on the wire one serves for either.
+impl From<EffortWeight> for DrivingPrice {
+    fn from(weight: EffortWeight) -> Self {
+        Self(weight)
+    }
+}
+
+impl From<DrivingPrice> for EffortWeight {
+    fn from(DrivingPrice(weight): DrivingPrice) -> Self {
+        weight
+    }
+}
+
+impl Default for DrivingPrice {
+    fn default() -> Self {
+        Self::USUAL
+    }
+}
 
 /// The most ends of motions that a plan evaluates. A plan needs some 100. Of 1,000 standard fields none needs more than
 /// this limit in its first 30 steps. After that, 2 in 100 end because the limit is reached, as the strip is thinner
@@ -68,15 +115,15 @@ const LEAST: f32 = 0.15;
 const POOR: f32 = 0.9;
 
 /// Looks two labels ahead, with `D`'s dynamics and what `B` knows and expects.
-///
-/// Of its [`Config`] it takes the area and `varrho`, for which [`VARRHO`] is a good choice.
 #[derive(Clone, Debug)]
 pub struct Lookahead<D, B, G = Area> {
-    config: Config<G>,
+    /// Where motions aim for.
+    area: G,
+    price: DrivingPrice,
     /// The rectangle around all of the area.
     bounds: Area,
     dynamics: D,
-    foresight: B,
+    belief: B,
     evaluations: u32,
     goal: Option<Goal>,
     silence: Silence,
@@ -90,57 +137,64 @@ struct Decision {
     wants_label: bool,
 }
 
-impl<D: Dynamics, B: Foresight, G: Region> Lookahead<D, B, G> {
+impl<D: Dynamics, B: PredictiveBelief, G: Workspace> Lookahead<D, B, G> {
     /// A planner with what is known so far.
     ///
+    /// Motions end where the belief's tolerance cannot bring the robot out of the area.
+    ///
     /// # Errors
-    /// [`ConfigError`].
+    /// [`SetupError`].
     #[inline] // it is made where it stays, as it may be large
-    pub fn new(config: Config<G>, dynamics: D, foresight: B) -> Result<Self, ConfigError> {
-        let config = config.inset_for(&dynamics)?;
-        Ok(Self::of((config, dynamics), foresight, EVALUATIONS, None))
+    pub fn new(area: G, dynamics: D, belief: B) -> Result<Self, SetupError> {
+        let area = aimed_for_by(area, &dynamics, belief.belief())?;
+        Ok(Self::of((area, dynamics), belief))
     }
 
-    /// The same of settings that are inset, with all that it can be told.
+    /// The same in the part of an area that motions aim for.
     #[inline]
-    pub(crate) fn of(
-        (config, dynamics): (Config<G>, D),
-        foresight: B,
-        evaluations: u32,
-        goal: Option<Goal>,
-    ) -> Self {
-        let goal = goal.map(|goal| goal.in_bounds_of(&config.area));
-        let bounds = config.area.bounds().whole();
+    pub(crate) fn of((area, dynamics): (G, D), belief: B) -> Self {
+        let bounds = area.bounds().whole();
+        let (price, evaluations, goal) = (DrivingPrice::USUAL, EVALUATIONS, None);
         let silence = Silence::NONE;
-        Self { config, bounds, dynamics, foresight, evaluations, goal, silence }
+        Self { area, price, bounds, dynamics, belief, evaluations, goal, silence }
+    }
+
+    /// The same, with another price of driving than [`DrivingPrice::USUAL`].
+    #[must_use]
+    #[inline]
+    pub fn pricing(self, price: DrivingPrice) -> Self {
+        Self { price, ..self }
     }
 
     /// The same, with a limit of `evaluations` ends of motions for each plan instead of [`EVALUATIONS`].
     #[must_use]
-    pub fn within(self, evaluations: u32) -> Self {
+    #[inline]
+    pub fn with_budget(self, evaluations: u32) -> Self {
         Self { evaluations, ..self }
     }
 
     /// The same, to stop when the line is known so well.
     #[must_use]
-    pub fn until(self, goal: Option<Goal>) -> Self {
-        Self { goal: goal.map(|goal| goal.in_bounds_of(&self.config.area)), ..self }
+    #[inline]
+    pub fn until(self, goal: impl Into<Option<Goal>>) -> Self {
+        let goal = goal.into().map(|goal| goal.in_bounds_of(&self.area));
+        Self { goal, ..self }
     }
 
-    /// What is known and expected: to begin again with, or to take in a label of a reliability of its own.
-    pub const fn foresight(&mut self) -> &mut B {
+    /// What is known and expected: to take in a label of a reliability of its own.
+    pub const fn belief_mut(&mut self) -> &mut B {
         self.silence = Silence::NONE;
-        &mut self.foresight
+        &mut self.belief
     }
 
     /// The motion that is worth the most; `None` if no label is in reach.
     fn decide(&self, lookout: &mut Lookout<'_, D, G>, pose: Pose) -> Option<Decision> {
-        let outlook = self.foresight.outlook(pose.site);
+        let outlook = self.belief.outlook(pose.site);
         let mut prospects = Prospects::new();
         let fastest = self.dynamics.grid().speeds().saturating_sub(1);
         for circles in [(FIRST_CIRCLES, lookout.usual), (MOST_CIRCLES, fastest)] {
             if prospects.as_slice().is_empty() {
-                let mut sought = Sought::Prospects(&mut prospects, self.foresight.ground());
+                let mut sought = Sought::Prospects(&mut prospects, self.belief.ground());
                 lookout.look(&outlook, pose, circles, &mut sought);
             }
         }
@@ -168,9 +222,9 @@ impl<D: Dynamics, B: Foresight, G: Region> Lookahead<D, B, G> {
                 let Some((action, target)) = self.dynamics.turn_in_place(pose, side) else {
                     continue;
                 };
-                let effort = self.dynamics.ray_of(pose, action).map_or(0, |ray| ray.effort);
+                let effort = self.dynamics.ray_of(pose, action).map_or(0, |ray| ray.turn_cost);
                 // Nothing is learnt by a turn: what the next plan would refuse is worth nothing.
-                let next = second(lookout, &outlook, target, Some(self.foresight.ground()));
+                let next = second(lookout, &outlook, target, Some(self.belief.ground()));
                 let total = next - lookout.cost(0, effort);
                 if next > 0.0 && is_better(total, &best) {
                     best = Some(Decision { action, target, worth: total, wants_label: false });
@@ -183,16 +237,16 @@ impl<D: Dynamics, B: Foresight, G: Region> Lookahead<D, B, G> {
     /// The least information that a label must be expected to carry. Where positions err, there is always one more
     /// label that tells next to nothing.
     fn least(&self) -> f32 {
-        let errs = self.foresight.ground().shift != Vector::default();
+        let errs = self.belief.ground().shift != Vector::default();
         if errs { LEAST } else { 0.0 }
     }
 
     /// What the ladder finds where no label is in reach that is worth it.
     fn recover(&self, pose: Pose, course: &mut Course) -> (Result<Found, DeadEnd>, Effort) {
-        let lines = self.foresight.ground();
-        let (area, varrho) = (self.config.area, self.config.varrho);
+        let lines = self.belief.ground();
+        let (area, weight) = (self.area, self.price.0);
         let rule = ArcRule::default();
-        let problem = Problem { lines, area, varrho, rule };
+        let problem = Problem { lines, area, weight, rule };
         let mut search = problem.search(&self.dynamics, pose, Effort::of(LOOKS));
         let search = search.open();
         let found = solve_or_recover(&problem, search, None, course);
@@ -201,7 +255,7 @@ impl<D: Dynamics, B: Foresight, G: Region> Lookahead<D, B, G> {
 }
 
 /// The fastest of the speeds that are usual, at least one; and the weight of lengths: as if its reach were the paper's 2 m.
-fn usual<D: Dynamics, G: Region>(dynamics: &D, area: &G) -> (u16, f32) {
+fn usual<D: Dynamics, G: Workspace>(dynamics: &D, area: &G) -> (u16, f32) {
     let grid = dynamics.grid();
     let side = area.bounds().half_sides().into_iter().map(|half| half as f32).sum::<f32>();
     let most = (USUAL * side / grid.step_units()) as u16;
@@ -211,11 +265,11 @@ fn usual<D: Dynamics, G: Region>(dynamics: &D, area: &G) -> (u16, f32) {
 
 /// The worth of the best label after one more motion; 0 if there is none. If `ground` is given, only ends count on
 /// which these lines disagree.
-fn second<D: Dynamics, P: Prediction, G: Region>(
+fn second<D: Dynamics, P: Prediction, G: Workspace>(
     lookout: &mut Lookout<'_, D, G>,
     prediction: &P,
     pose: Pose,
-    ground: Option<ConsistentLines<'_>>,
+    ground: Option<CellView<'_>>,
 ) -> f32 {
     let mut most = 0.0;
     lookout.look(
@@ -227,22 +281,40 @@ fn second<D: Dynamics, P: Prediction, G: Region>(
     most
 }
 
-impl<D: Dynamics, B: Foresight, G: Region> Planner for Lookahead<D, B, G> {
+impl<D: Dynamics, G: Workspace, const N: usize, const H: usize> Lookahead<D, NoisyBelief<N, H>, G> {
+    /// Begins again, in place, with what other given samples leave: see [`NoisyBelief::restart`].
+    ///
+    /// # Errors
+    /// [`SetupError`], with the planner as it was.
+    pub fn restart(
+        &mut self,
+        given: &[Sample],
+        prior: Prior,
+        noise: Noise,
+    ) -> Result<(), SetupError> {
+        let area = aimed_for(self.area, &self.dynamics, noise.tolerance)?;
+        self.belief.restart(given, prior, noise)?;
+        (self.area, self.silence) = (area, Silence::NONE);
+        Ok(())
+    }
+}
+
+impl<D: Dynamics, B: PredictiveBelief, G: Workspace> Planner for Lookahead<D, B, G> {
     type Belief = B::Belief;
 
     fn plan(&mut self, pose: Pose) -> Plan {
-        let (area, varrho) = (self.config.area, self.config.varrho);
+        let (area, weight) = (self.area, self.price.0);
         if self.goal.is_some_and(|goal| self.belief().meets(goal, self.bounds)) {
             return Plan::Stop(StopReason::Known);
         }
         if self.belief().is_full() {
             return Plan::Stop(StopReason::SamplesFull);
         }
-        self.foresight.prepare();
+        self.belief.prepare();
         let (dynamics, evaluations) = (&self.dynamics, self.evaluations);
         let (usual, scale) = usual(dynamics, &area);
         let least = self.least();
-        let mut lookout = Lookout { dynamics, area, varrho, usual, scale, least, evaluations };
+        let mut lookout = Lookout { dynamics, area, weight, usual, scale, least, evaluations };
         if let Some(decision) = self.decide(&mut lookout, pose) {
             let Decision { action, target, wants_label, .. } = decision;
             self.silence.bears(false);
@@ -251,16 +323,16 @@ impl<D: Dynamics, B: Foresight, G: Region> Planner for Lookahead<D, B, G> {
             let found = Found::of(None, (action, target));
             let mut course = self.silence.course();
             course.give_up_way();
-            let motion = Motion { wants_label, ..Motion::of(None, &found, dynamics, effort) };
+            let motion = Motion { wants_label, ..Motion::of(None, pose, &found, dynamics, effort) };
             return self.silence.keep(pose, motion, course, dynamics);
         }
         let mut course = self.silence.course();
         match self.recover(pose, &mut course) {
             (Ok(found), effort) => {
-                let motion = Motion::of(None, &found, dynamics, effort);
+                let motion = Motion::of(None, pose, &found, dynamics, effort);
                 // No label in reach is worth its way: this one is on the way to others.
                 let is_dull = least > 0.0 && motion.wants_label;
-                if !self.silence.bears(is_dull) && !is_broad(self.foresight.ground()) {
+                if !self.silence.bears(is_dull) && !is_broad(self.belief.ground()) {
                     return Plan::Stop(StopReason::Tolerance);
                 }
                 self.silence.keep(pose, motion, course, dynamics)
@@ -274,29 +346,29 @@ impl<D: Dynamics, B: Foresight, G: Region> Planner for Lookahead<D, B, G> {
         pose: Pose,
         reading: Option<Reading>,
         tolerance: Tolerance,
-    ) -> Result<(), Refused> {
+    ) -> Result<(), ObservationError> {
         if let Some(reading) = reading {
-            self.foresight.observe_within(pose.site, reading, tolerance)?;
+            self.belief.observe_within(pose.site, reading, tolerance)?;
         }
         self.silence.observe(reading.is_some());
         Ok(())
     }
 
     fn belief(&self) -> &B::Belief {
-        self.foresight.belief()
+        self.belief.belief()
     }
 }
 
-impl<D: Dynamics, B: Foresight + Replay, G: Region> Persist for Lookahead<D, B, G> {
-    type Snapshot = Snapshot<B::Told, Silence>;
+impl<D: Dynamics, B: PredictiveBelief + FromLog, G: Workspace> Persist for Lookahead<D, B, G> {
+    type Snapshot = Snapshot<B::ObservationLog, Silence>;
 
     fn snapshot(&self) -> Self::Snapshot {
-        Snapshot::new(self.foresight.told(), self.silence)
+        Snapshot::new(self.belief.told(), self.silence)
     }
 
-    fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), NotRestored> {
+    fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), RestoreError> {
         let (told, &silence) = snapshot.open()?;
-        self.foresight.replay(told)?;
+        self.belief.replay(told)?;
         self.silence = silence;
         Ok(())
     }
@@ -307,31 +379,21 @@ mod tests {
     use nalgebra::Point2;
 
     use super::*;
-    use crate::belief::consistent_lines::Certainty;
-    use crate::belief::forecast::Forecast;
-    use crate::belief::goal::Accuracy;
+    use crate::belief::cell_view::Certainty;
     use crate::belief::noise::{Noise, Reliability};
+    use crate::belief::noisy_belief::NoisyBelief;
     use crate::belief::sample::Sample;
     use crate::belief::version_space::VersionSpace;
-    use crate::belief::weight::Prior;
     use crate::geometry::heading::Heading;
     use crate::geometry::lattice::Site;
     use crate::motion::unicycle::Unicycle;
-    use crate::planner::cfc;
-    use crate::planner::config::Crossing;
 
     fn at(x: f64, z: f64) -> Site {
         Site::try_from(Point2::new(x, z)).unwrap()
     }
 
-    fn config() -> Config {
-        Config {
-            area: Area::new(at(0.0, 0.0), at(20.0, 20.0)).unwrap(),
-            varrho: VARRHO,
-            crossing: Crossing::default(),
-            following: cfc::FOLLOWING,
-            tolerance: Tolerance::NONE,
-        }
+    fn area() -> Area {
+        Area::metres([0.0, 0.0], [20.0, 20.0]).unwrap()
     }
 
     /// A line through the middle of the area, and the oracle's points about it.
@@ -367,21 +429,21 @@ mod tests {
 
         fn true_labels<const N: usize>(self) -> Lookahead<Unicycle, VersionSpace<N>> {
             let space = VersionSpace::new(&self.given()).unwrap();
-            Lookahead::new(config(), Unicycle::paper(), space).unwrap()
+            Lookahead::new(area(), Unicycle::paper(), space).unwrap()
         }
 
-        fn doubtful(self) -> Lookahead<Unicycle, Forecast<36, 529>> {
+        fn doubtful(self) -> Lookahead<Unicycle, NoisyBelief<36, 529>> {
             let noise = Noise {
                 reliability: Reliability::new(0.8).unwrap(),
                 trusted_radius: 0,
                 tolerance: Tolerance::NONE,
             };
-            let forecast = Forecast::new(&self.given(), Prior::Area, noise).unwrap();
-            Lookahead::new(config(), Unicycle::paper(), forecast).unwrap()
+            let forecast = NoisyBelief::new(&self.given(), noise).unwrap();
+            Lookahead::new(area(), Unicycle::paper(), forecast).unwrap()
         }
 
         /// Makes so many steps with true labels, and has each looked at before.
-        fn fly<B: Foresight>(
+        fn fly<B: PredictiveBelief>(
             self,
             mut planner: Lookahead<Unicycle, B>,
             steps: u32,
@@ -403,22 +465,22 @@ mod tests {
     }
 
     /// The budget is kept, and the worth of what is decided never falls as it grows.
-    fn is_anytime<B: Foresight + Clone>(planner: &Lookahead<Unicycle, B>, pose: Pose) {
+    fn is_anytime<B: PredictiveBelief + Clone>(planner: &Lookahead<Unicycle, B>, pose: Pose) {
         let mut planner = planner.clone();
-        planner.foresight.prepare();
+        planner.belief.prepare();
         let mut before = f32::NEG_INFINITY;
         for evaluations in [0, 1, 2, 5, 10, 20, 50, 100, 150, 200, 300, 400, 512, 1_000, 5_000] {
             let dynamics = &planner.dynamics;
-            let Config { area, varrho, .. } = planner.config;
+            let (area, weight) = (planner.area, planner.price.0);
             let (usual, scale) = usual(dynamics, &area);
             let least = planner.least();
-            let mut lookout = Lookout { dynamics, area, varrho, usual, scale, least, evaluations };
+            let mut lookout = Lookout { dynamics, area, weight, usual, scale, least, evaluations };
             let decision = planner.decide(&mut lookout, pose);
             assert!(lookout.evaluations <= evaluations);
             let worth = decision.map_or(f32::NEG_INFINITY, |decision| decision.worth);
             assert!(worth >= before, "{worth} with {evaluations}, {before} with fewer, {pose:?}");
             before = worth;
-            if let Plan::Move(motion) = planner.clone().within(evaluations).plan(pose) {
+            if let Plan::Move(motion) = planner.clone().with_budget(evaluations).plan(pose) {
                 let ladder = if worth > f32::NEG_INFINITY { evaluations } else { u32::MAX };
                 assert!(motion.examined <= ladder);
             }
@@ -437,14 +499,14 @@ mod tests {
 
     #[test]
     fn a_plan_is_the_same_each_time_and_asks_on_uncertain_ground_alone() {
-        fn look<B: Foresight + Clone>(planner: &mut Lookahead<Unicycle, B>, pose: Pose) {
+        fn look<B: PredictiveBelief + Clone>(planner: &mut Lookahead<Unicycle, B>, pose: Pose) {
             let plan = planner.plan(pose);
             assert_eq!(plan, planner.plan(pose));
             assert_eq!(plan, planner.clone().plan(pose));
             let Plan::Move(motion) = plan else { panic!("no motion") };
             let target = motion.target.site;
-            assert!(config().area.contains(target));
-            let certainty = planner.foresight.ground().certainty(target);
+            assert!(area().contains(target));
+            let certainty = planner.belief.ground().certainty(target);
             assert!(!motion.wants_label || certainty == Certainty::Uncertain);
         }
         for field in fields() {
@@ -458,14 +520,15 @@ mod tests {
         for field in fields() {
             let start = field.start();
             let outside = Pose { site: at(-1.0, 10.0), ..start };
-            let arc = |deg: f64| {
-                let most = Heading::from_radians(deg.to_radians()).unwrap();
-                Some(Goal { accuracy: Accuracy::SlopeArc(most), level: 900_000 })
-            };
+            let arc = |deg: f64| Goal::slope_within_degrees(deg).unwrap();
             let stops = |plan, reason| assert_eq!(plan, Plan::Stop(reason));
-            stops(field.true_labels::<4>().plan(start), StopReason::SamplesFull);
+            let mut full = field.true_labels::<5>();
+            let Plan::Move(motion) = full.plan(start) else { panic!("no motion") };
+            let label = field.label(motion.target.site);
+            full.observe(motion.target, Some(label.into())).unwrap();
+            stops(full.plan(start), StopReason::SamplesFull);
             // What is known is known also where there is no more room, and outside.
-            stops(field.true_labels::<4>().until(arc(89.0)).plan(outside), StopReason::Known);
+            stops(full.until(arc(89.0)).plan(outside), StopReason::Known);
             stops(field.doubtful().until(arc(89.0)).plan(start), StopReason::Known);
             let few = |it: Plan| assert!(matches!(it, Plan::Move(_)));
             few(field.true_labels::<64>().until(arc(5.0)).plan(start));

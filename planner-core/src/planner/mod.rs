@@ -6,25 +6,24 @@
 //! | [`cfc`] | the paper's Algorithm 1, for labels that are true |
 //! | [`scc`] | the paper's Algorithm 2, for labels that are sometimes wrong |
 //!
-//! [`config`] is what a mission fixes beforehand. A [`snapshot`] is what a planner has to remember over a sleep.
+//! [`options`] are what Algorithms 1 and 2 leave open, and [`setup`] is what every planner is made of. A [`snapshot`] is what a planner has to remember over a sleep.
 
 pub mod cfc;
 #[cfg(feature = "serde")]
 mod checked;
-pub mod config;
 pub mod lookahead;
+pub mod options;
 pub mod scc;
+pub mod setup;
 pub mod silence;
 pub mod snapshot;
 mod vote;
 
-#[cfg(feature = "serde")]
-pub use checked::OutOfRange;
-
 use crate::belief::estimate::Estimates;
 use crate::belief::sample::Reading;
 use crate::belief::tolerance::Tolerance;
-use crate::belief::{Belief, Refused};
+use crate::belief::{Belief, ObservationError};
+use crate::geometry::line::Line;
 use crate::motion::action::{Action, Control};
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::search::dead_end::DeadEnd;
@@ -71,9 +70,10 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// The motion of an action that a search has found.
+    /// The motion of an action that a search has found from a pose.
     pub(crate) fn of<D: Dynamics>(
         stage: Option<Stage>,
+        pose: Pose,
         found: &Found,
         dynamics: &D,
         effort: Effort,
@@ -83,7 +83,7 @@ impl Motion {
             stage,
             recovery,
             action,
-            control: dynamics.control(action),
+            control: dynamics.control(pose, action),
             target,
             wants_label: !matches!(recovery, Some(Recovery::Reorient | Recovery::Transit)),
             examined: effort.examined,
@@ -153,9 +153,9 @@ pub trait Planner {
     /// tolerance that was configured.
     ///
     /// # Errors
-    /// [`Refused`] when the reading contradicts what is known or cannot be stored; the planner is
+    /// [`ObservationError`] when the reading contradicts what is known or cannot be stored; the planner is
     /// then as it was.
-    fn observe(&mut self, pose: Pose, reading: Option<Reading>) -> Result<(), Refused> {
+    fn observe(&mut self, pose: Pose, reading: Option<Reading>) -> Result<(), ObservationError> {
         self.observe_within(pose, reading, self.belief().tolerance())
     }
 
@@ -166,13 +166,13 @@ pub trait Planner {
     /// from keep-outs, whatever the tolerance of single observations. Without a reading, `tolerance` has no effect.
     ///
     /// # Errors
-    /// As `observe`, and [`Refused::Tolerance`] where it is more than was configured.
+    /// As `observe`, and [`ObservationError::Tolerance`] where it is more than was configured.
     fn observe_within(
         &mut self,
         pose: Pose,
         reading: Option<Reading>,
         tolerance: Tolerance,
-    ) -> Result<(), Refused>;
+    ) -> Result<(), ObservationError>;
 
     /// What is known.
     fn belief(&self) -> &Self::Belief;
@@ -180,6 +180,11 @@ pub trait Planner {
     /// The line as far as it is known.
     fn estimates(&self) -> Estimates {
         self.belief().estimates()
+    }
+
+    /// The best estimate: the mean of the lines left, or of their distribution. `None` where there is none.
+    fn estimate(&self) -> Option<Line> {
+        self.estimates().centre.map(Line::from)
     }
 }
 
@@ -195,7 +200,7 @@ impl<T: Planner + ?Sized> Planner for &mut T {
         pose: Pose,
         reading: Option<Reading>,
         tolerance: Tolerance,
-    ) -> Result<(), Refused> {
+    ) -> Result<(), ObservationError> {
         T::observe_within(self, pose, reading, tolerance)
     }
 

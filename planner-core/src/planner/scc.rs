@@ -14,7 +14,7 @@
 //!
 //! | policy | bits learnt |
 //! | --- | --- |
-//! | `MixtureOfOwn`, P2 as printed ([`FOLLOWING`]) | 2.18 |
+//! | `MixtureOfOwn`, P2 as printed ([`Options::SCC`]) | 2.18 |
 //! | `MixtureOfOwn`, P2 along the bisector | 2.08 |
 //! | `Joint` | 1.53 |
 //! | `MixtureOfStart` | 1.43 |
@@ -25,22 +25,22 @@
 use heapless::Vec;
 
 use crate::belief::Belief as _;
-use crate::belief::Refused;
-use crate::belief::consistent_lines::ConsistentLines;
-use crate::belief::hypotheses::{Hypotheses, Hypothesis};
+use crate::belief::ObservationError;
+use crate::belief::cell_posterior::{CellPosterior, Hypothesis};
+use crate::belief::cell_view::CellView;
 use crate::belief::noise::Noise;
+use crate::belief::observation_log::{FromLog as _, ObservationLog};
 use crate::belief::sample::{Reading, Sample};
-use crate::belief::told::{Replay as _, Told};
 use crate::belief::tolerance::Tolerance;
-use crate::belief::version_space::NoVersionSpace;
 use crate::belief::weight::Prior;
 use crate::geometry::area::Area;
-use crate::geometry::region::Region;
+use crate::geometry::workspace::Workspace;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Pose};
-use crate::planner::config::{Config, ConfigError, Following, first_to_second};
+use crate::planner::options::{Options, first_to_second};
+use crate::planner::setup::{SetupError, aimed_for, aimed_for_by};
 use crate::planner::silence::Silence;
-use crate::planner::snapshot::{NotRestored, Persist, Snapshot};
+use crate::planner::snapshot::{Persist, RestoreError, Snapshot};
 use crate::planner::vote::Ballot;
 use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
 use crate::search::course::Course;
@@ -49,9 +49,6 @@ use crate::search::direction_rule::{ArcRule, ArcUnion, DirectionRule, UnionRule}
 use crate::search::objective::{Effort, LOOKS, OPENING};
 use crate::search::problem::Problem;
 use crate::search::recovery::{Found, Recovery, solve_or_recover};
-
-/// With this P2 Algorithm 2 learns the most.
-pub const FOLLOWING: Following = Following::Unrestricted;
 
 /// The most looks of a plan with a vote: half of them are for the vote, the rest for the ladder. When the half is used
 /// up, the hypotheses that have voted decide. These are the heaviest. The paper's example would take 26,000 at 60
@@ -76,50 +73,61 @@ pub enum Policy {
 /// hypotheses.
 #[derive(Clone, Debug)]
 pub struct Scc<D, const N: usize, const H: usize, G = Area> {
-    config: Config<G>,
+    /// Where motions aim for.
+    area: G,
+    options: Options,
     policy: Policy,
     dynamics: D,
-    hypotheses: Hypotheses<N, H>,
+    hypotheses: CellPosterior<N, H>,
     silence: Silence,
 }
 
-impl<D: Dynamics, const N: usize, const H: usize, G: Region> Scc<D, N, H, G> {
-    /// A planner over a table of hypotheses, whose prior weighs their votes.
+impl<D: Dynamics, const N: usize, const H: usize, G: Workspace> Scc<D, N, H, G> {
+    /// A planner over a table of hypotheses, whose prior weighs their votes. It has [`Options::SCC`] and
+    /// [`Policy::MixtureOfOwn`].
     ///
     /// # Errors
-    /// [`ConfigError`].
+    /// [`SetupError`].
     #[inline] // it is made where it stays, as it may be large
-    pub fn new(
-        config: Config<G>,
-        policy: Policy,
-        dynamics: D,
-        hypotheses: Hypotheses<N, H>,
-    ) -> Result<Self, ConfigError> {
-        let config = config.inset_for(&dynamics)?;
-        Ok(Self::of((config, dynamics), policy, hypotheses))
+    pub fn new(area: G, dynamics: D, hypotheses: CellPosterior<N, H>) -> Result<Self, SetupError> {
+        let area = aimed_for_by(area, &dynamics, &hypotheses)?;
+        Ok(Self::of((area, dynamics), hypotheses))
     }
 
-    /// The same of settings that are inset.
+    /// The same in the part of an area that motions aim for.
     #[inline]
-    pub(crate) fn of(
-        (config, dynamics): (Config<G>, D),
-        policy: Policy,
-        hypotheses: Hypotheses<N, H>,
-    ) -> Self {
-        Self { config, policy, dynamics, hypotheses, silence: Silence::NONE }
+    pub(crate) fn of((area, dynamics): (G, D), hypotheses: CellPosterior<N, H>) -> Self {
+        let (options, policy, silence) = (Options::SCC, Policy::default(), Silence::NONE);
+        Self { area, options, policy, dynamics, hypotheses, silence }
     }
 
-    /// Begins again, in place, with what other given samples leave: see [`Hypotheses::restart`].
+    /// The same with other options.
+    #[must_use]
+    #[inline]
+    pub fn with(self, options: Options) -> Self {
+        Self { options, ..self }
+    }
+
+    /// The same with another way to choose an action.
+    #[must_use]
+    #[inline]
+    pub fn voting(self, policy: Policy) -> Self {
+        Self { policy, ..self }
+    }
+
+    /// Begins again, in place, with what other given samples leave: see [`CellPosterior::restart`].
     ///
     /// # Errors
-    /// [`NoVersionSpace`], with the planner as it was.
+    /// [`SetupError`], with the planner as it was.
     pub fn restart(
         &mut self,
         given: &[Sample],
         prior: Prior,
         noise: Noise,
-    ) -> Result<(), NoVersionSpace> {
+    ) -> Result<(), SetupError> {
+        let area = aimed_for(self.area, &self.dynamics, noise.tolerance)?;
         self.hypotheses.restart(given, prior, noise)?;
+        self.area = area;
         self.silence = Silence::NONE;
         Ok(())
     }
@@ -137,15 +145,15 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Region> Scc<D, N, H, G> {
         };
         let arc = own.slope_arc();
         let rule = if self.is_even() {
-            self.config.crossing_rule(arc, first_to_second(self.hypotheses.given()))
+            self.options.crossing_rule(arc, first_to_second(self.hypotheses.given()))
         } else {
-            self.config.following_rule(arc)
+            self.options.following_rule(arc)
         };
         self.on(ground, rule)
     }
 
-    fn on<'a, R>(&self, lines: ConsistentLines<'a>, rule: R) -> Problem<'a, R, G> {
-        Problem { lines, area: self.config.area, varrho: self.config.varrho, rule }
+    fn on<'a, R>(&self, lines: CellView<'a>, rule: R) -> Problem<'a, R, G> {
+        Problem { lines, area: self.area, weight: self.options.weight, rule }
     }
 
     /// Equation 9: the action with the most votes, and of equals the one of smallest index.
@@ -223,8 +231,8 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Region> Scc<D, N, H, G> {
     }
 }
 
-impl<D: Dynamics, const N: usize, const H: usize, G: Region> Planner for Scc<D, N, H, G> {
-    type Belief = Hypotheses<N, H>;
+impl<D: Dynamics, const N: usize, const H: usize, G: Workspace> Planner for Scc<D, N, H, G> {
+    type Belief = CellPosterior<N, H>;
 
     fn plan(&mut self, pose: Pose) -> Plan {
         if self.hypotheses.is_full() {
@@ -240,7 +248,7 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Region> Planner for Scc<D, 
         let mut course = self.silence.course();
         match self.find(pose, &mut effort, &mut course) {
             Ok(found) => {
-                let motion = Motion::of(Some(stage), &found, &self.dynamics, effort);
+                let motion = Motion::of(Some(stage), pose, &found, &self.dynamics, effort);
                 self.silence.keep(pose, motion, course, &self.dynamics)
             }
             Err(dead_end) => Plan::Stop(dead_end.into()),
@@ -252,7 +260,7 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Region> Planner for Scc<D, 
         pose: Pose,
         reading: Option<Reading>,
         tolerance: Tolerance,
-    ) -> Result<(), Refused> {
+    ) -> Result<(), ObservationError> {
         if let Some(reading) = reading {
             self.hypotheses.observe_within(pose.site, reading, tolerance)?;
         }
@@ -260,19 +268,19 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Region> Planner for Scc<D, 
         Ok(())
     }
 
-    fn belief(&self) -> &Hypotheses<N, H> {
+    fn belief(&self) -> &CellPosterior<N, H> {
         &self.hypotheses
     }
 }
 
-impl<D: Dynamics, const N: usize, const H: usize, G: Region> Persist for Scc<D, N, H, G> {
-    type Snapshot = Snapshot<Told<N>, Silence>;
+impl<D: Dynamics, const N: usize, const H: usize, G: Workspace> Persist for Scc<D, N, H, G> {
+    type Snapshot = Snapshot<ObservationLog<N>, Silence>;
 
     fn snapshot(&self) -> Self::Snapshot {
         Snapshot::new(self.hypotheses.told(), self.silence)
     }
 
-    fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), NotRestored> {
+    fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), RestoreError> {
         let (told, &silence) = snapshot.open()?;
         self.hypotheses.replay(told)?;
         self.silence = silence;

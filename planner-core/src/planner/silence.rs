@@ -12,7 +12,7 @@
 //! Without these rules, five of 20,000 random missions went round or undid a turn. In 17 a label came after more than
 //! four full turns; they now end there.
 
-use crate::geometry::heading::Heading;
+use crate::geometry::heading::Angle;
 use crate::geometry::lattice::Site;
 use crate::motion::dynamics::{Dynamics, Pose, Side};
 use crate::planner::{Motion, Plan, StopReason};
@@ -34,7 +34,7 @@ const LEAST: u32 = FULL_TURN / 32;
 const MOST_DULL: u8 = 16;
 
 /// A heading so near to another is the same.
-const NEAR: u32 = Heading::turn_of(0.001);
+const NEAR: u32 = Angle::of_radians(0.001).0;
 
 /// A change of heading, counter-clockwise, in 2^-32 turns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -114,7 +114,7 @@ impl Silence {
         if motion.action != found.action {
             self.next_course.give_up_way();
         }
-        let by = motion.target.heading.0.wrapping_sub(pose.heading.0) as i32;
+        let by = motion.target.heading.since(pose.heading).0 as i32;
         let is_drive = motion.target.site != pose.site;
         if self.spot.replace(pose.site) != Some(pose.site) {
             // Its position errs: from here there may be more.
@@ -131,7 +131,7 @@ impl Silence {
 
     /// The same motion, or the turn to the other side if it would undo the turn before.
     fn steady<D: Dynamics>(&self, pose: Pose, found: Motion, dynamics: &D) -> Motion {
-        let by = found.target.heading.0.wrapping_sub(pose.heading.0) as i32;
+        let by = found.target.heading.since(pose.heading).0 as i32;
         let side = match self.last {
             Turn::InPlace(last) if last > 0 && by < 0 => Side::Left,
             Turn::InPlace(last) if last < 0 && by > 0 => Side::Right,
@@ -142,7 +142,7 @@ impl Silence {
         onwards.map_or(found, |(action, target)| Motion {
             action,
             target,
-            control: dynamics.control(action),
+            control: dynamics.control(pose, action),
             ..found
         })
     }
@@ -170,6 +170,7 @@ impl Silence {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::heading::Heading;
     use crate::motion::unicycle::Unicycle;
 
     fn start() -> Pose {
@@ -184,7 +185,7 @@ mod tests {
             stage: None,
             recovery: None,
             action,
-            control: dynamics.control(action),
+            control: dynamics.control(pose, action),
             target,
             wants_label: false,
             examined: 0,

@@ -17,13 +17,13 @@
 //! Store a checksum with bytes that may be spoilt. `restore` refuses bytes that contradict themselves, but cannot
 //! detect bytes that are merely wrong.
 
-use crate::belief::told::NotReplayed;
+use crate::belief::observation_log::ReplayError;
 use crate::planner::Planner;
 
 /// The version of snapshots. It is written first, and changes whenever the data that follow change. From 2 on they hold
 /// the tolerances that observations brought, and how a planner turned since the last label; from 3 on the way that is
 /// under way.
-pub const VERSION: u16 = 3;
+pub const SNAPSHOT_VERSION: u16 = 3;
 
 /// What a planner has to remember over a sleep: what its belief was told (`T`), and what else it plans by (`M`).
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -36,14 +36,14 @@ pub struct Snapshot<T, M> {
 
 impl<T, M> Snapshot<T, M> {
     pub(crate) const fn new(told: T, memory: M) -> Self {
-        Self { version: VERSION, told, memory }
+        Self { version: SNAPSHOT_VERSION, told, memory }
     }
 
     /// What it holds, if it is of this version.
-    pub(crate) fn open(&self) -> Result<(&T, &M), NotRestored> {
+    pub(crate) fn open(&self) -> Result<(&T, &M), RestoreError> {
         let Self { version, told, memory } = self;
-        let is_known = *version == VERSION;
-        is_known.then_some((told, memory)).ok_or(NotRestored::Version(*version))
+        let is_known = *version == SNAPSHOT_VERSION;
+        is_known.then_some((told, memory)).ok_or(RestoreError::Version(*version))
     }
 
     /// What the belief was told.
@@ -64,33 +64,36 @@ pub trait Persist: Planner {
     /// samples are forgotten. It costs as much as the labels did when they came.
     ///
     /// # Errors
-    /// [`NotRestored`]. The planner is then not to be flown with, but may be restored again.
-    fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), NotRestored>;
+    /// [`RestoreError`]. The planner is then not to be flown with, but may be restored again.
+    fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), RestoreError>;
 }
 
 /// Why a planner does not go on from a snapshot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum NotRestored {
-    /// It is of this version, not of [`VERSION`].
+#[non_exhaustive]
+pub enum RestoreError {
+    /// It is of this version, not of [`SNAPSHOT_VERSION`].
     Version(u16),
     /// What was told is not taken in again.
-    Told(NotReplayed),
+    Log(ReplayError),
 }
 
-impl core::fmt::Display for NotRestored {
+impl core::fmt::Display for RestoreError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
-            Self::Version(version) => write!(f, "a snapshot of version {version}, not {VERSION}"),
-            Self::Told(why) => why.fmt(f),
+            Self::Version(version) => {
+                write!(f, "a snapshot of version {version}, not {SNAPSHOT_VERSION}")
+            }
+            Self::Log(why) => why.fmt(f),
         }
     }
 }
 
-impl core::error::Error for NotRestored {}
+impl core::error::Error for RestoreError {}
 
-impl From<NotReplayed> for NotRestored {
-    fn from(why: NotReplayed) -> Self {
-        Self::Told(why)
+impl From<ReplayError> for RestoreError {
+    fn from(why: ReplayError) -> Self {
+        Self::Log(why)
     }
 }

@@ -1,7 +1,8 @@
 //! The loop that joins a planner to a body.
 
-use crate::belief::Refused;
+use crate::belief::ObservationError;
 use crate::belief::sample::Reading;
+use crate::geometry::line::Line;
 use crate::motion::dynamics::Pose;
 use crate::planner::{Motion, Plan, Planner, StopReason};
 use crate::robot::body::Body;
@@ -35,14 +36,14 @@ pub enum AgentError<B> {
     /// The body failed.
     Body(B),
     /// The planner did not take the sample.
-    Refused(Refused),
+    Observation(ObservationError),
 }
 
 impl<B: core::fmt::Display> core::fmt::Display for AgentError<B> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::Body(error) => error.fmt(f),
-            Self::Refused(refused) => refused.fmt(f),
+            Self::Observation(refused) => refused.fmt(f),
         }
     }
 }
@@ -90,6 +91,13 @@ impl<P, B> Agent<P, B> {
     }
 }
 
+impl<P: Planner, B> Agent<P, B> {
+    /// The best estimate of the line so far, see [`Planner::estimate`].
+    pub fn estimate(&self) -> Option<Line> {
+        self.planner.estimate()
+    }
+}
+
 impl<P: Planner, B: Body> Agent<P, B> {
     /// Plans one motion, makes it, and takes in what was sensed at its end.
     ///
@@ -124,7 +132,7 @@ impl<P: Planner, B> Agent<P, B> {
         motion: Motion,
         reading: Option<Reading>,
     ) -> Result<Event, AgentError<E>> {
-        self.planner.observe(self.pose, reading).map_err(AgentError::Refused)?;
+        self.planner.observe(self.pose, reading).map_err(AgentError::Observation)?;
         Ok(Event::Step(Step { motion, pose: self.pose, reading }))
     }
 }

@@ -175,15 +175,13 @@ mod tests {
 
     use super::*;
     use crate::belief::sample::{Label, Sample};
-    use crate::belief::tolerance::Tolerance;
     use crate::belief::version_space::VersionSpace;
     use crate::geometry::area::Area;
     use crate::geometry::heading::Heading;
     use crate::geometry::lattice::Site;
     use crate::motion::unicycle::Unicycle;
-    use crate::planner::cfc::{self, Cfc};
-    use crate::planner::config::{Config, Crossing};
-    use crate::planner::lookahead::{self, Lookahead};
+    use crate::planner::cfc::Cfc;
+    use crate::planner::lookahead::Lookahead;
 
     const STEPS: usize = 24;
 
@@ -200,14 +198,8 @@ mod tests {
         Pose { site: at(2.0, 1.0), heading: Heading(0) }
     }
 
-    fn config() -> Config {
-        Config {
-            area: Area::new(at(0.0, 0.0), at(20.0, 20.0)).unwrap(),
-            varrho: lookahead::VARRHO,
-            crossing: Crossing::default(),
-            following: cfc::FOLLOWING,
-            tolerance: Tolerance::NONE,
-        }
+    fn area() -> Area {
+        Area::metres([0.0, 0.0], [20.0, 20.0]).unwrap()
     }
 
     fn known() -> VersionSpace<32> {
@@ -392,7 +384,7 @@ mod tests {
 
     #[test]
     fn a_mission_is_the_same_with_drivers_that_are_awaited() {
-        missions_are_the_same(Lookahead::new(config(), Unicycle::paper(), known()).unwrap());
-        missions_are_the_same(Cfc::new(config(), Unicycle::paper(), known()).unwrap());
+        missions_are_the_same(Lookahead::new(area(), Unicycle::paper(), known()).unwrap());
+        missions_are_the_same(Cfc::new(area(), Unicycle::paper(), known()).unwrap());
     }
 }

@@ -59,6 +59,32 @@ impl<T: Drive + ?Sized> Drive for &mut T {
     }
 }
 
+/// A drive that is a function: it makes a motion and returns where it ended.
+#[derive(Clone, Copy, Debug)]
+pub struct DriveFn<F>(pub F);
+
+impl<F: FnMut(&Motion) -> Result<Pose, E>, E: core::fmt::Debug> Drive for DriveFn<F> {
+    type Error = E;
+
+    fn drive(&mut self, motion: &Motion) -> Result<Pose, E> {
+        (self.0)(motion)
+    }
+}
+
+/// A label sensor that is a function.
+#[derive(Clone, Copy, Debug)]
+pub struct SensorFn<F>(pub F);
+
+impl<F: FnMut() -> Result<R, E>, R: Into<Reading>, E: core::fmt::Debug> LabelSensor
+    for SensorFn<F>
+{
+    type Error = E;
+
+    fn read(&mut self) -> Result<Reading, E> {
+        (self.0)().map(Into::into)
+    }
+}
+
 /// A label sensor on a digital pin, such as a comparator behind a photodiode or a float switch. It serves [drivers that
 /// are awaited](crate::robot::asynchronous) as well.
 #[derive(Clone, Debug)]

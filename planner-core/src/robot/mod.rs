@@ -1,13 +1,16 @@
-//! The robot itself.
+//! The robot itself: what you implement, and the loop that joins it to a planner.
 //!
-//! - [`hal`]: the traits that its drive and its sensor implement.
-//! - [`body`]: the two together.
-//! - [`agent`]: the loop that joins a body to a planner.
-//! - [`asynchronous`]: the same for drivers that are awaited.
-//! - [`threshold`]: a sensor on a measured quantity.
+//! Implement [`Drive`] and [`LabelSensor`] and put them into a [`Vehicle`], or let functions be them ([`DriveFn`],
+//! [`SensorFn`]), or implement [`Body`] as a whole. An
+//! [`Agent`] joins it to a planner. [`asynchronous`] is the same for drivers that are awaited.
 
-pub mod agent;
+mod agent;
 pub mod asynchronous;
-pub mod body;
-pub mod hal;
-pub mod threshold;
+mod body;
+mod hal;
+mod threshold;
+
+pub use agent::{Agent, AgentError, Event, Step};
+pub use body::{Body, Vehicle, VehicleError};
+pub use hal::{Drive, DriveFn, LabelSensor, PinSensor, SensorFn};
+pub use threshold::ThresholdSensor;

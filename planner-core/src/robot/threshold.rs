@@ -14,8 +14,9 @@ use crate::robot::hal::LabelSensor;
 /// line by up to `b / 2g`, which belongs into the [tolerance](crate::belief::tolerance::Tolerance).
 ///
 /// ```
-/// use planner_core::robot::threshold::ThresholdSensor;
-/// use planner_core::{Label, LabelSensor, Reading};
+/// use planner_core::robot::ThresholdSensor;
+/// use planner_core::robot::LabelSensor;
+/// use planner_core::{Label, Reading};
 ///
 /// let mut counts = [470, 530, 490, 520, 440].into_iter();
 /// let measure = || counts.next().ok_or("no conversion");

@@ -11,19 +11,19 @@
 
 use core::num::NonZeroU32;
 
-use crate::belief::consistent_lines::Certainty;
-use crate::geometry::heading::Heading;
-use crate::geometry::region::Region;
+use crate::belief::cell_view::Certainty;
+use crate::geometry::heading::{Angle, Heading};
+use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose, Ray, Side, room_for_errors};
 use crate::search::direction_rule::DirectionRule;
-use crate::search::objective::{Choice, Effort, Varrho};
+use crate::search::objective::{Choice, Effort, EffortWeight};
 use crate::search::view::View;
 
 /// The search of one plan: what it moves by, from where, what it sees there, and what it has cost.
 pub(crate) struct Search<'a, D, G> {
     pub(crate) dynamics: &'a D,
     pub(crate) pose: Pose,
-    pub(crate) varrho: Varrho,
+    pub(crate) weight: EffortWeight,
     pub(crate) view: View<'a, G>,
     pub(crate) effort: Effort,
     /// Whether some motion ended on uncertain ground but could not stay inside the area.
@@ -52,10 +52,10 @@ const LEAST: NonZeroU32 = NonZeroU32::MIN.saturating_add(1);
 /// Rays this near to one that leads to the border are assumed to lead there too. The angle is less than the 10 mrad of
 /// the paper's fan, so only finer fans lose an action to it, near the border. Without it they would use up a plan's
 /// looks there.
-const HEMMED_IN: u32 = Heading::turn_of(0.004);
+const HEMMED_IN: u32 = Angle::of_radians(0.004).0;
 
 /// From a ray whose end is certain, rays at this distance are looked at one by one.
-const COARSE: u32 = Heading::turn_of(0.001);
+const COARSE: u32 = Angle::of_radians(0.001).0;
 
 /// The rays to one side of a heading that may still lead anywhere.
 struct Arm {
@@ -106,7 +106,7 @@ fn is_better(value: i64, rank: Rank, than: Option<&Ranked>) -> bool {
     than.is_none_or(|(best, at)| value > best.objective || (value == best.objective && rank < *at))
 }
 
-impl<D: Dynamics, G: Region> Search<'_, D, G> {
+impl<D: Dynamics, G: Workspace> Search<'_, D, G> {
     /// Computes the view. This is a separate step, so that the search is built where it stays.
     #[must_use]
     pub(crate) fn open(&mut self) -> &mut Self {
@@ -158,7 +158,7 @@ impl<D: Dynamics, G: Region> Search<'_, D, G> {
         let mut arms =
             [arm(left, Side::Left, 0, fan.left), arm(right, Side::Right, 1, fan.right + 1)];
         for speed in (1..grid.speeds()).rev() {
-            let straight_ahead = || self.varrho.objective(grid.reach_mm(speed), 0);
+            let straight_ahead = || self.weight.objective(grid.reach_mm(speed), 0);
             let best = hunt.found.best.as_ref();
             if arms.iter().all(Arm::is_empty)
                 || best.is_some_and(|(best, _)| straight_ahead() < best.objective)
@@ -222,7 +222,7 @@ impl<D: Dynamics, G: Region> Search<'_, D, G> {
         self.effort.looks = looks;
         let grid = self.dynamics.grid();
         let ray = self.dynamics.ray(pose, side, n);
-        let value = self.varrho.objective(grid.reach_mm(speed), ray.effort);
+        let value = self.weight.objective(grid.reach_mm(speed), ray.turn_cost);
         if !is_better(value, rank, hunt.found.best.as_ref()) {
             return Verdict::NoneBetter;
         }

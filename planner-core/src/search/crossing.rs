@@ -3,14 +3,14 @@
 //! Conservative: if this returns a side, it is the true one. It may return nothing.
 
 use crate::belief::sample::Label;
-use crate::geometry::angle::Angle;
+use crate::geometry::angle::CoarseAngle;
 use crate::geometry::approximate::{acos, heading_of, single, sqrt};
 use crate::geometry::heading::Heading;
 use crate::geometry::line::Bound;
 use crate::motion::dynamics::Side;
 
 /// Covers the errors of an arc cosine and of a heading, some 10^-4 rad, twice.
-const MARGIN: Angle = Angle::radians(2.048_1e-4);
+const MARGIN: CoarseAngle = CoarseAngle::radians(2.048_1e-4);
 
 /// Within this, and some margin beside, the arc cosine of `x` falls by less than `1 + 1.75 x^2`.
 const STEEP: f32 = 0.9;
@@ -30,17 +30,17 @@ pub(crate) struct SeenLine {
 /// the +1 side. Beyond the angle `below` it is on the other side. Between the two is the margin.
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct Crossing {
-    above: Angle,
-    below: Angle,
+    above: CoarseAngle,
+    below: CoarseAngle,
 }
 
 impl Crossing {
     /// No circle has been looked at: nothing is certain.
-    const UNKNOWN: Self = Self { above: Angle::NEVER, below: Angle::WHOLE_TURN };
+    const UNKNOWN: Self = Self { above: CoarseAngle::NEVER, below: CoarseAngle::WHOLE_TURN };
     /// The circle is on the +1 side all around.
-    const ALL_ABOVE: Self = Self { above: Angle::WHOLE_TURN, below: Angle::WHOLE_TURN };
+    const ALL_ABOVE: Self = Self { above: CoarseAngle::WHOLE_TURN, below: CoarseAngle::WHOLE_TURN };
     /// It is on the other.
-    const ALL_BELOW: Self = Self { above: Angle::NEVER, below: Angle::ZERO };
+    const ALL_BELOW: Self = Self { above: CoarseAngle::NEVER, below: CoarseAngle::ZERO };
 }
 
 impl SeenLine {
@@ -56,7 +56,7 @@ impl SeenLine {
 
     /// How far another line is from this one within a distance of the agent, at most.
     pub(crate) fn aside(&self, other: &Self, reach: f32) -> f32 {
-        let turn = Angle::between(self.uphill, other.uphill).abs().in_radians();
+        let turn = CoarseAngle::between(self.uphill, other.uphill).abs().in_radians();
         (other.height - self.height).abs() + reach * turn
     }
 
@@ -68,7 +68,7 @@ impl SeenLine {
         }
         if depth.abs() < STEEP {
             let angle = acos(depth);
-            let margin = Angle::radians_times(margin, 1.0 + 1.75 * (depth * depth)) + MARGIN;
+            let margin = CoarseAngle::radians_times(margin, 1.0 + 1.75 * (depth * depth)) + MARGIN;
             self.crossing = Crossing { above: angle - margin, below: angle + margin };
         } else {
             self.cross_wide(inverse_radius, margin);
@@ -92,16 +92,21 @@ impl SeenLine {
 
     /// The side of the line on which the circle is at a heading, if that is certain. Also returns the turn within which
     /// it stays there.
-    pub(crate) fn certain_until(&self, heading: Heading, side: Side) -> Option<(Label, Angle)> {
+    pub(crate) fn certain_until(
+        &self,
+        heading: Heading,
+        side: Side,
+    ) -> Option<(Label, CoarseAngle)> {
         let Crossing { above, below } = self.crossing;
-        let turned = Angle::between(self.uphill, heading);
+        let turned = CoarseAngle::between(self.uphill, heading);
         let turned = if side == Side::Left { turned } else { -turned };
         let away = turned.abs();
         if away <= above {
             return Some((Label::Positive, above - turned));
         }
         // The other way around to uphill.
-        let around = if turned > Angle::ZERO { Angle::WHOLE_TURN - turned } else { away };
+        let around =
+            if turned > CoarseAngle::ZERO { CoarseAngle::WHOLE_TURN - turned } else { away };
         (away >= below).then(|| (Label::Negative, around - below))
     }
 }

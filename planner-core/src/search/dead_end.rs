@@ -1,8 +1,8 @@
 //! Why a search found no further motion.
 
-use crate::belief::consistent_lines::ConsistentLines;
+use crate::belief::cell_view::CellView;
 use crate::geometry::lattice::{Site, Vector};
-use crate::geometry::region::Region;
+use crate::geometry::workspace::Workspace;
 
 /// Why there is no way on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,7 +28,7 @@ const FEW: usize = 2;
 
 impl DeadEnd {
     /// The reason that is true where the ground is not open.
-    pub(crate) fn of_thin_ground(self, lines: ConsistentLines<'_>) -> Self {
+    pub(crate) fn of_thin_ground(self, lines: CellView<'_>) -> Self {
         let errs = lines.shift != Vector::default();
         match self {
             Self::Outside => self,
@@ -46,8 +46,8 @@ impl DeadEnd {
 /// The way to the nearest place where labels can tell something, if there are such in more than next to none of an area.
 ///
 /// Cost: one orientation for each edge and place, some 100,000 instructions.
-pub(crate) fn way_to_open_ground<G: Region>(
-    lines: ConsistentLines<'_>,
+pub(crate) fn way_to_open_ground<G: Workspace>(
+    lines: CellView<'_>,
     area: &G,
     from: Site,
 ) -> Option<Vector> {
@@ -57,7 +57,7 @@ pub(crate) fn way_to_open_ground<G: Region>(
 }
 
 /// One of the places that are spread evenly over an area's rectangle, if it lies inside. No line passes many of them.
-fn place<G: Region>(area: &G, k: u32) -> Option<Site> {
+fn place<G: Workspace>(area: &G, k: u32) -> Option<Site> {
     // The additive recurrence of the plastic number (Roberts, 2018).
     const STEPS: [u32; 2] = [3_242_174_889, 2_447_445_414];
     let (min, max) = (area.bounds().min(), area.bounds().max());
@@ -71,10 +71,10 @@ fn place<G: Region>(area: &G, k: u32) -> Option<Site> {
 
 /// Whether lines lie so far apart, somewhere between samples of both labels, that a label could tell something if
 /// positions erred twice as much. Then it is not their error that leaves no place to ask.
-pub(crate) fn is_broad(lines: ConsistentLines<'_>) -> bool {
+pub(crate) fn is_broad(lines: CellView<'_>) -> bool {
     let Vector { x, z } = lines.shift;
     let twice = |v: i32| v.saturating_mul(2);
-    let lines = ConsistentLines { shift: Vector { x: twice(x), z: twice(z) }, ..lines };
+    let lines = CellView { shift: Vector { x: twice(x), z: twice(z) }, ..lines };
     lines.support().any(|a| {
         lines.support().filter(|b| a.label != b.label).any(|b| {
             let way = b.site - a.site;

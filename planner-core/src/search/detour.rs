@@ -12,7 +12,7 @@ use heapless::Vec;
 use crate::geometry::approximate::{single, sqrt};
 use crate::geometry::heading::Heading;
 use crate::geometry::lattice::{Site, Vector};
-use crate::geometry::region::{KeepOut, Region};
+use crate::geometry::workspace::{Obstacle, Workspace};
 use crate::search::objective::Effort;
 use crate::search::view::View;
 
@@ -40,7 +40,7 @@ struct Waypoint {
 /// ground, whether it is in sight or not. `None` if no way leads there.
 ///
 /// Cost: the looks of the sweeps between waypoints. When the looks are used up, the result is the best way so far.
-pub(crate) fn begin<G: Region>(
+pub(crate) fn begin<G: Workspace>(
     view: &View<'_, G>,
     from: Site,
     straight: Vector,
@@ -103,7 +103,7 @@ fn distance(way: Vector) -> f32 {
 }
 
 /// The corners of the octagon that holds a keep-out with so much space to spare; those beyond the lattice are left out.
-fn octagon(keep_out: &KeepOut<'_>, space: f32) -> [Option<Site>; 8] {
+fn octagon(keep_out: &Obstacle<'_>, space: f32) -> [Option<Site>; 8] {
     const ONE: i32 = 1 << 29;
     const EIGHTH: f32 = core::f32::consts::FRAC_1_SQRT_2;
     let Some(&about) = keep_out.corners.first() else { return [None; 8] };

@@ -4,7 +4,7 @@ use heapless::Vec;
 
 use crate::geometry::approximate::heading_of;
 use crate::geometry::arc::SlopeArc;
-use crate::geometry::heading::Heading;
+use crate::geometry::heading::{Angle, Heading};
 use crate::geometry::lattice::Vector;
 use crate::motion::dynamics::Side;
 
@@ -115,7 +115,7 @@ impl DirectionRule for UnionRule<'_> {
 }
 
 /// Covers the error of a heading.
-const MARGIN: u32 = Heading::turn_of(1e-4);
+const MARGIN: u32 = Angle::of_radians(1e-4).0;
 
 /// Where a heading that turns to a side, or its opposite, enters an arc, and where it leaves it.
 fn ends(arc: SlopeArc, side: Side) -> (Vector, Vector) {
@@ -131,7 +131,7 @@ fn turn_to(heading: Heading, direction: Vector, side: Side) -> u32 {
     let turn = match side {
         Side::Left => ahead,
         Side::Right => ahead.wrapping_neg(),
-    } % Heading::HALF_TURN.0;
+    } % Angle::HALF_TURN.0;
     // A turn of all but half a turn may be one of none.
-    if turn > Heading::HALF_TURN.0 - MARGIN { 0 } else { turn.saturating_sub(MARGIN) }
+    if turn > Angle::HALF_TURN.0 - MARGIN { 0 } else { turn.saturating_sub(MARGIN) }
 }

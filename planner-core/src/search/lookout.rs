@@ -9,13 +9,13 @@ use core::num::NonZeroU32;
 
 use heapless::Vec;
 
-use crate::belief::consistent_lines::ConsistentLines;
-use crate::belief::outlook::Prediction;
+use crate::belief::cell_view::CellView;
+use crate::belief::predictor::Prediction;
 use crate::geometry::lattice::UNITS_PER_METRE;
-use crate::geometry::region::Region;
+use crate::geometry::workspace::Workspace;
 use crate::motion::action::Action;
-use crate::motion::dynamics::{Dynamics, Fan, Pose, Ray, Side, room_for_errors};
-use crate::search::objective::Varrho;
+use crate::motion::dynamics::{Dynamics, Pose, Ray, RayFan, Side, room_for_errors};
+use crate::search::objective::EffortWeight;
 
 /// Rays of a circle that are asked first are a twelfth of a turn apart, about.
 const PROBES_PER_TURN: u32 = 12;
@@ -50,9 +50,9 @@ pub(crate) const ENOUGH: f32 = 0.98;
 /// What a look is for.
 pub(crate) enum Sought<'a> {
     /// The best prospects whose ends these lines disagree on.
-    Prospects(&'a mut Prospects, ConsistentLines<'a>),
+    Prospects(&'a mut Prospects, CellView<'a>),
     /// The worth of the best prospect. If lines are given, only prospects count on whose ends these lines disagree.
-    Worth(&'a mut f32, Option<ConsistentLines<'a>>),
+    Worth(&'a mut f32, Option<CellView<'a>>),
 }
 
 impl Sought<'_> {
@@ -78,7 +78,7 @@ impl Sought<'_> {
 pub(crate) struct Lookout<'a, D, G> {
     pub(crate) dynamics: &'a D,
     pub(crate) area: G,
-    pub(crate) varrho: Varrho,
+    pub(crate) weight: EffortWeight,
     /// The fastest of the speeds that are usual.
     pub(crate) usual: u16,
     /// Metres of the paper's action set in a metre of this one.
@@ -95,11 +95,11 @@ struct Probe {
     share: f32,
 }
 
-impl<D: Dynamics, G: Region> Lookout<'_, D, G> {
+impl<D: Dynamics, G: Workspace> Lookout<'_, D, G> {
     /// What a motion costs: its squared control, weighed.
     pub(crate) fn cost(&self, reach_mm: u32, effort: u32) -> f32 {
         let reach = reach_mm as f32 * self.scale;
-        let weight = self.varrho.millionths as f32 * 1e-12;
+        let weight = self.weight.millionths as f32 * 1e-12;
         weight * (reach * reach + effort as f32)
     }
 
@@ -146,7 +146,7 @@ impl<D: Dynamics, G: Region> Lookout<'_, D, G> {
             && self.dynamics.keeps_inside(pose, target, &self.area, room_for_errors(&self.area))
         {
             let grid = self.dynamics.grid();
-            let cost = self.cost(grid.reach_mm(speed), ray.effort);
+            let cost = self.cost(grid.reach_mm(speed), ray.turn_cost);
             let information = prediction.information(target.site, share);
             let worth = information - cost;
             let action = grid.action(ray.index, speed);
@@ -166,7 +166,7 @@ impl<D: Dynamics, G: Region> Lookout<'_, D, G> {
         speed: u16,
         sought: &mut Sought<'_>,
     ) -> Option<()> {
-        let Fan { left, right, spacing } = self.dynamics.fan();
+        let RayFan { left, right, spacing } = self.dynamics.fan();
         let [left, right] = self.dynamics.rays_at(speed).unwrap_or([left, right]);
         if left == 0 {
             return Some(());
@@ -240,7 +240,7 @@ impl Prospects {
     }
 
     /// Takes in a prospect if it is among the best, and lines disagree on its end.
-    fn add(&mut self, new: Prospect, lines: ConsistentLines<'_>) {
+    fn add(&mut self, new: Prospect, lines: CellView<'_>) {
         let is_near = |old: &Prospect| {
             let apart = old.target.site - new.target.site;
             apart.dot(apart) < APART * APART
@@ -264,7 +264,7 @@ impl Prospects {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::belief::consistent_lines::Certainty;
+    use crate::belief::cell_view::Certainty;
     use crate::belief::sample::{Label, Sample};
     use crate::belief::version_space::VersionSpace;
     use crate::geometry::heading::Heading;

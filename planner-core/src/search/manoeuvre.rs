@@ -20,12 +20,12 @@
 //! way. As long as there is neither, it lowers the count of motions to a safe pose. A safe vehicle never becomes unsafe
 //! again.
 
-use crate::belief::consistent_lines::Certainty;
+use crate::belief::cell_view::Certainty;
 use crate::geometry::approximate::{single, sqrt};
 use crate::geometry::lattice::{Site, Vector};
-use crate::geometry::region::Region;
+use crate::geometry::workspace::Workspace;
 use crate::motion::action::Action;
-use crate::motion::dynamics::{Dynamics, Orbit, Pose, Side, room_for_errors};
+use crate::motion::dynamics::{Dynamics, Pose, Side, TurningCircle, room_for_errors};
 use crate::search::circles::Search;
 use crate::search::dead_end::DeadEnd;
 use crate::search::detour::{self, Way};
@@ -108,7 +108,7 @@ struct Manoeuvre<'d, 'p, 'a, D, R, G> {
 ///
 /// # Errors
 /// Why there is none.
-pub(crate) fn manoeuvre<D: Dynamics, R: DirectionRule, G: Region>(
+pub(crate) fn manoeuvre<D: Dynamics, R: DirectionRule, G: Workspace>(
     problem: &Problem<'_, R, G>,
     search: &mut Search<'_, D, G>,
     waypoint: Option<Site>,
@@ -161,7 +161,7 @@ pub(crate) fn manoeuvre<D: Dynamics, R: DirectionRule, G: Region>(
 }
 
 /// Where the way round keep-outs to uncertain ground begins, if there are any.
-pub(crate) fn waypoint<D: Dynamics, G: Region>(search: &mut Search<'_, D, G>) -> Option<Site> {
+pub(crate) fn waypoint<D: Dynamics, G: Workspace>(search: &mut Search<'_, D, G>) -> Option<Site> {
     let (view, from) = (&search.view, search.pose.site);
     view.area().keep_outs().next()?;
     let way = view.way_out()?;
@@ -174,7 +174,7 @@ fn distance(way: Vector) -> f32 {
     sqrt(single(way.dot(way)))
 }
 
-impl<D: Dynamics, R: DirectionRule, G: Region> Manoeuvre<'_, '_, '_, D, R, G> {
+impl<D: Dynamics, R: DirectionRule, G: Workspace> Manoeuvre<'_, '_, '_, D, R, G> {
     /// Tries all ways of a kind: straight on, then from places on a round to either side.
     fn try_ways(&mut self, from: Place) {
         self.drive_on(from);
@@ -193,7 +193,7 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Manoeuvre<'_, '_, '_, D, R, G> {
         let (mut place, mut turned) = (from, 0_u32);
         while self.is_short(place.motions + 1) {
             let Some((action, after)) = self.sharpest(place.pose, side) else { return };
-            let left = after.heading.0.wrapping_sub(from.pose.heading.0);
+            let left = after.heading.since(from.pose.heading).0;
             let turn = if side == Side::Left { left } else { left.wrapping_neg() };
             if turn <= turned {
                 return; // beyond a whole turn there is nothing new
@@ -218,7 +218,7 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Manoeuvre<'_, '_, '_, D, R, G> {
     /// inside.
     fn sharpest(&mut self, pose: Pose, side: Side) -> Option<Leg> {
         let (dynamics, area, grid) = (self.dynamics, self.problem.area, self.dynamics.grid());
-        let action = dynamics.orbit(pose, side)?.action;
+        let action = dynamics.turning_circle(pose, side)?.action;
         let after = dynamics.target(pose, action)?;
         if self.stays(pose, after)
             && (self.start == Start::Outside || self.may_hold(pose, after, side))
@@ -254,10 +254,10 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Manoeuvre<'_, '_, '_, D, R, G> {
     /// wherever rounding has moved that, or with a margin.
     fn may_hold(&self, pose: Pose, after: Pose, side: Side) -> bool {
         let (dynamics, area) = (self.dynamics, &self.problem.area);
-        let fits = |orbit: Orbit| orbit.is_inside(after.site, area, orbit.radius);
+        let fits = |orbit: TurningCircle| orbit.is_inside(after.site, area, orbit.radius);
         !dynamics.is_safe(pose, area)
             || dynamics.keeps_inside(pose, after, area, self.room(pose))
-            || dynamics.orbit(after, side).is_some_and(fits)
+            || dynamics.turning_circle(after, side).is_some_and(fits)
     }
 
     /// The room that a motion leaves. Where there is none to begin with, one motion need not win it.
@@ -345,7 +345,7 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Manoeuvre<'_, '_, '_, D, R, G> {
         let after = Pose { site: pose.site.step(by).ok()?, ..pose };
         self.effort.take(2);
         self.effort.take_sweep(area, &[pose.site, after.site]);
-        let is_clear = |orbit: Orbit| {
+        let is_clear = |orbit: TurningCircle| {
             let radius = orbit.with_room(room);
             let centres = [pose, after].map(|it| it.site.step(orbit.centre));
             let [Ok(from), Ok(to)] = centres else { return false };
@@ -356,7 +356,7 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Manoeuvre<'_, '_, '_, D, R, G> {
         let mut orbits = [Side::Left, Side::Right].into_iter();
         let stays = area.contains(after.site)
             && area.lets_pass(&[pose.site, after.site])
-            && orbits.any(|side| self.dynamics.orbit(pose, side).is_some_and(is_clear));
+            && orbits.any(|side| self.dynamics.turning_circle(pose, side).is_some_and(is_clear));
         stays.then_some(after)
     }
 

@@ -1,7 +1,8 @@
 //! The worth of a motion, the choice that follows from it, and the limit on the effort of finding it.
 
 use crate::geometry::lattice::Site;
-use crate::geometry::region::Region;
+use crate::geometry::value::ValueError;
+use crate::geometry::workspace::Workspace;
 use crate::motion::action::Action;
 use crate::motion::dynamics::Pose;
 
@@ -15,29 +16,31 @@ pub const LOOKS: u32 = 9_216;
 /// The looks that it costs to open a view, where many are opened.
 pub(crate) const OPENING: u32 = 2;
 
-/// The weight of the control in the objective, in [0, 1), to six decimal places.
+/// The weight of the control in the paper's objective, its `weight`: in [0, 1), to six decimal places.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "u32", into = "u32"))]
-pub struct Varrho {
+pub struct EffortWeight {
     pub(crate) millionths: u32,
 }
 
-impl Varrho {
+pub(crate) const RANGE: ValueError = ValueError("a weight of the control is from 0 to below 1");
+
+impl EffortWeight {
     pub(crate) const ONE: u32 = 1_000_000;
 
     /// The paper's 0.1.
     pub const PAPER: Self = Self { millionths: 100_000 };
 
-    /// The nearest weight; `None` outside [0, 1). From 1 on, the objective would reward standing
-    /// still.
-    pub fn new(value: f64) -> Option<Self> {
-        if !(0.0..1.0).contains(&value) {
-            return None;
-        }
-        let millionths = libm::round(value * f64::from(Self::ONE)) as u32;
-        (millionths < Self::ONE).then_some(Self { millionths })
+    /// The nearest weight. From 1 on, the objective would reward standing still.
+    ///
+    /// # Errors
+    /// [`ValueError`] outside [0, 1).
+    pub fn new(value: f64) -> Result<Self, ValueError> {
+        let millionths = libm::round(value * f64::from(Self::ONE));
+        let is_weight = value >= 0.0 && millionths < f64::from(Self::ONE);
+        is_weight.then_some(Self { millionths: millionths as u32 }).ok_or(RANGE)
     }
 
     /// The weight as a number.
@@ -48,8 +51,8 @@ impl Varrho {
     /// The objective, in 10^-12 m^2: an integer, so that ties are ties.
     pub(crate) const fn objective(self, reach_mm: u32, effort: u32) -> i64 {
         let reach = reach_mm as i64 * reach_mm as i64;
-        let (varrho, one) = (self.millionths as i64, Self::ONE as i64);
-        (one - varrho) * reach - varrho * effort as i64
+        let (weight, one) = (self.millionths as i64, Self::ONE as i64);
+        (one - weight) * reach - weight * effort as i64
     }
 }
 
@@ -99,7 +102,7 @@ impl Effort {
     }
 
     /// Takes the looks that it costs to see whether a hull touches a keep-out: one for each two corners of those nearby.
-    pub(crate) fn take_sweep<G: Region>(&mut self, area: &G, hull: &[Site]) -> bool {
+    pub(crate) fn take_sweep<G: Workspace>(&mut self, area: &G, hull: &[Site]) -> bool {
         let near = area.keep_outs().filter(|it| it.is_near(hull));
         let looks = near.map(|it| 1 + it.corners.len() as u32 / 2).sum();
         looks == 0 || self.take(looks)

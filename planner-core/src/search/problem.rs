@@ -17,24 +17,24 @@
 //! - **By the rule.** Directions that the rule forbids are skipped in the same way
 //!   ([`direction_rule`](crate::search::direction_rule)).
 
-use crate::belief::consistent_lines::ConsistentLines;
+use crate::belief::cell_view::CellView;
 use crate::geometry::area::Area;
-use crate::geometry::region::Region;
+use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose, room_for_errors};
 use crate::search::circles::Search;
 use crate::search::direction_rule::{ArcRule, DirectionRule};
-use crate::search::objective::{Choice, Effort, Varrho};
+use crate::search::objective::{Choice, Effort, EffortWeight};
 use crate::search::view::View;
 
 /// A one-step problem at some stage of a mission.
 #[derive(Clone, Copy, Debug)]
 pub struct Problem<'a, R, G = Area> {
     /// The lines that are left. The motion must not end on ground where they agree.
-    pub lines: ConsistentLines<'a>,
+    pub lines: CellView<'a>,
     /// Where positions must stay.
     pub area: G,
     /// The weight of the control.
-    pub varrho: Varrho,
+    pub weight: EffortWeight,
     /// Where travel may go.
     pub rule: R,
 }
@@ -51,11 +51,11 @@ pub struct Solution {
     pub proven: bool,
 }
 
-impl<'a, R: DirectionRule, G: Region> Problem<'a, R, G> {
+impl<'a, R: DirectionRule, G: Workspace> Problem<'a, R, G> {
     /// The same problem without its rule.
     pub fn undirected(&self) -> Problem<'a, ArcRule, G> {
         let rule = ArcRule::default();
-        Problem { lines: self.lines, area: self.area, varrho: self.varrho, rule }
+        Problem { lines: self.lines, area: self.area, weight: self.weight, rule }
     }
 
     /// Solves the problem from a pose inside the area.
@@ -99,7 +99,7 @@ impl<'a, R: DirectionRule, G: Region> Problem<'a, R, G> {
         'a: 'd,
     {
         let view = View::new(self.lines, self.area, pose.site, dynamics.grid());
-        Search { dynamics, pose, varrho: self.varrho, view, effort, is_hemmed_in: false }
+        Search { dynamics, pose, weight: self.weight, view, effort, is_hemmed_in: false }
     }
 
     /// Solves the problem by trying every action: the slow twin of [`solve`](Self::solve).
@@ -109,7 +109,7 @@ impl<'a, R: DirectionRule, G: Region> Problem<'a, R, G> {
         for ray in dynamics.rays(pose) {
             for speed in 0..grid.speeds() {
                 solution.examined += 1;
-                let objective = self.varrho.objective(grid.reach_mm(speed), ray.effort);
+                let objective = self.weight.objective(grid.reach_mm(speed), ray.turn_cost);
                 let action = grid.action(ray.index, speed);
                 let feasible = |target: &Pose| {
                     speed > 0

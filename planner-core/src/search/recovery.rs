@@ -39,9 +39,9 @@
 //! [`Silence`](crate::planner::silence::Silence).
 
 use crate::geometry::approximate::{heading_of, single, sqrt};
-use crate::geometry::heading::Heading;
+use crate::geometry::heading::{Angle, Heading};
 use crate::geometry::lattice::Vector;
-use crate::geometry::region::Region;
+use crate::geometry::workspace::Workspace;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Pose, Ray, Side};
 use crate::search::circles::{Findings, Search};
@@ -61,7 +61,7 @@ const HORIZON: u32 = 16;
 const FIRST_LOOKS: u32 = 2_048;
 
 /// A heading this far from a bearing drives along it.
-const ALONG: u32 = Heading::turn_of(0.125);
+const ALONG: u32 = Angle::of_radians(0.125).0;
 
 /// Turns in place that a leg considers one after the other, if rays are so few that each turn brings others. Fewer may be
 /// half a turn.
@@ -102,7 +102,7 @@ impl Found {
 ///
 /// # Errors
 /// Why there is neither.
-pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule, G: Region>(
+pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule, G: Workspace>(
     problem: &Problem<'_, R, G>,
     search: &mut Search<'_, D, G>,
     before: Option<Findings>,
@@ -136,7 +136,7 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule, G: Region>(
 /// The way to a pose where a problem is feasible in a direction that its rule allows. It is for a safe vehicle that has
 /// to go round in order to turn. Its fan may contain no allowed direction, and straight on it would learn next to
 /// nothing.
-pub(crate) fn turn_round<D: Dynamics, R: DirectionRule, G: Region>(
+pub(crate) fn turn_round<D: Dynamics, R: DirectionRule, G: Workspace>(
     problem: &Problem<'_, R, G>,
     search: &mut Search<'_, D, G>,
 ) -> Option<Found> {
@@ -151,7 +151,7 @@ pub(crate) fn turn_round<D: Dynamics, R: DirectionRule, G: Region>(
 
 /// Whether a vehicle has to go round in order to turn.
 fn goes_round<D: Dynamics>(dynamics: &D, pose: Pose) -> bool {
-    dynamics.orbit(pose, Side::Left).is_some()
+    dynamics.turning_circle(pose, Side::Left).is_some()
 }
 
 /// An action and where it leads.
@@ -176,7 +176,7 @@ struct Ladder<'s, 'p, 'a, D, G> {
     course: &'s mut Course,
 }
 
-impl<D: Dynamics, G: Region> Ladder<'_, '_, '_, D, G> {
+impl<D: Dynamics, G: Workspace> Ladder<'_, '_, '_, D, G> {
     /// The problem itself, with half of the looks, or the first rung: the rest is for what comes after it.
     fn solve<R: DirectionRule>(
         &mut self,
@@ -316,10 +316,10 @@ impl<D: Dynamics, G: Region> Ladder<'_, '_, '_, D, G> {
         let (dynamics, pose) = (self.search.dynamics, self.search.pose);
         let left = dynamics.turn_in_place(pose, Side::Left)?;
         let right = dynamics.turn_in_place(pose, Side::Right)?;
-        let sharpest = left.1.heading.0.wrapping_sub(pose.heading.0);
+        let sharpest = left.1.heading.since(pose.heading).0;
         // What lies ahead is known by now: after each turn, what lies beyond it.
         let (mut to_left, mut to_right, mut turned) = (left.1, right.1, sharpest);
-        while turned < Heading::HALF_TURN.0 && self.search.effort.is_enough() {
+        while turned < Angle::HALF_TURN.0 && self.search.effort.is_enough() {
             self.search.effort.take(1);
             let headings = [to_left.heading, to_right.heading];
             match self.search.best_between(headings, &self.problem.rule) {
@@ -397,12 +397,12 @@ impl<D: Dynamics, G: Region> Ladder<'_, '_, '_, D, G> {
             Drive::Blocked if !coarse => return None,
             _ => {}
         }
-        let off = bearing.0.wrapping_sub(pose.heading.0) as i32;
+        let off = bearing.since(pose.heading).0 as i32;
         let sides = if off > 0 { [Side::Left, Side::Right] } else { [Side::Right, Side::Left] };
         let first = dynamics.turn_in_place(pose, sides[0])?;
-        let sharpest = (first.1.heading.0.wrapping_sub(pose.heading.0) as i32).unsigned_abs();
+        let sharpest = (first.1.heading.since(pose.heading).0 as i32).unsigned_abs();
         let (mut after, mut turned, mut turns) = ([pose; 2], 0_u32, 0);
-        while (turned < Heading::HALF_TURN.0 || coarse && turns < TURNS)
+        while (turned < Angle::HALF_TURN.0 || coarse && turns < TURNS)
             && self.search.effort.is_enough()
         {
             self.search.effort.take(1);
@@ -424,7 +424,7 @@ impl<D: Dynamics, G: Region> Ladder<'_, '_, '_, D, G> {
     fn drive(&mut self, pose: Pose, bearing: Heading, goal: Vector) -> Drive {
         let dynamics = self.search.dynamics;
         let (grid, rays) = (dynamics.grid(), dynamics.around(pose, bearing));
-        let aside = bearing.0.wrapping_sub(rays[0].heading.0) as i32;
+        let aside = bearing.since(rays[0].heading).0 as i32;
         if aside.unsigned_abs() > ALONG.max(dynamics.fan().spacing.0 / 2) {
             return Drive::Beyond;
         }

@@ -6,14 +6,14 @@
 
 use heapless::Vec;
 
-use crate::belief::consistent_lines::{Certainty, ConsistentLines};
+use crate::belief::cell_view::{CellView, Certainty};
 use crate::belief::sample::Label;
-use crate::geometry::angle::Angle;
+use crate::geometry::angle::CoarseAngle;
 use crate::geometry::approximate::{single, sqrt};
 use crate::geometry::heading::Heading;
 use crate::geometry::lattice::{Site, Vector};
 use crate::geometry::line::Bound;
-use crate::geometry::region::Region;
+use crate::geometry::workspace::Workspace;
 use crate::motion::action::ActionGrid;
 use crate::motion::dynamics::Side;
 use crate::search::crossing::SeenLine;
@@ -26,7 +26,7 @@ const NOTHING_IS_CERTAIN: f32 = core::f32::consts::PI;
 
 /// All that a search sees from one position.
 pub(crate) struct View<'a, G> {
-    lines: ConsistentLines<'a>,
+    lines: CellView<'a>,
     area: G,
     site: Site,
     speeds: u16,
@@ -55,10 +55,10 @@ pub(crate) struct View<'a, G> {
     near_sides: Vec<SeenLine, 4, u8>,
 }
 
-impl<'a, G: Region> View<'a, G> {
+impl<'a, G: Workspace> View<'a, G> {
     /// From a position, for motions on some grid; nothing is seen before
     /// [`open`](Self::open).
-    pub(crate) fn new(lines: ConsistentLines<'a>, area: G, site: Site, grid: ActionGrid) -> Self {
+    pub(crate) fn new(lines: CellView<'a>, area: G, site: Site, grid: ActionGrid) -> Self {
         // A position is rounded by 0.71 units at most.
         let margin = 3e-5 + 1.0 / grid.step_units();
         let margin = if margin < 0.01 { margin } else { NOTHING_IS_CERTAIN };
@@ -176,7 +176,7 @@ impl<'a, G: Region> View<'a, G> {
         let shift = (x as f32).abs().max((z as f32).abs());
         let (dull, skipped) = (self.lines.dull_within(site), 0.25 * shift);
         let turn = if dull > skipped { dull } else { skipped } * self.inverse_radius;
-        Angle::radians(if turn < 1.0 { turn } else { 1.0 }).turn()
+        CoarseAngle::radians(if turn < 1.0 { turn } else { 1.0 }).turn()
     }
 
     /// Whether what lies this way is further than one motion reaches.
@@ -214,8 +214,8 @@ impl<'a, G: Region> View<'a, G> {
         let mut bounds = self.bounds.iter();
         let (label, mut turn) = match (bounds.next(), self.beyond) {
             (Some(first), _) => first.certain_until(heading, side)?,
-            (None, [true, _]) => (Label::Negative, Angle::WHOLE_TURN),
-            (None, [false, _]) => (Label::Positive, Angle::WHOLE_TURN),
+            (None, [true, _]) => (Label::Negative, CoarseAngle::WHOLE_TURN),
+            (None, [false, _]) => (Label::Positive, CoarseAngle::WHOLE_TURN),
         };
         for line in bounds {
             let (other, least) = line.certain_until(heading, side)?;

@@ -9,7 +9,7 @@
 
 use heapless::Vec;
 
-use crate::geometry::region::Region;
+use crate::geometry::workspace::Workspace;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Pose, Side};
 use crate::search::circles::Search;
@@ -45,7 +45,7 @@ struct Wander<'d, 'p, 'a, D, R, G> {
 }
 
 /// A few motions after which a label can be asked. It draws on the looks that the search has left.
-pub(crate) fn wander<D: Dynamics, R: DirectionRule, G: Region>(
+pub(crate) fn wander<D: Dynamics, R: DirectionRule, G: Workspace>(
     problem: &Problem<'_, R, G>,
     search: &mut Search<'_, D, G>,
 ) -> Option<Drawn> {
@@ -59,7 +59,7 @@ pub(crate) fn wander<D: Dynamics, R: DirectionRule, G: Region>(
 }
 
 /// The first of a few drives, drawn at random, that stays inside.
-pub(crate) fn drift<D: Dynamics, R: DirectionRule, G: Region>(
+pub(crate) fn drift<D: Dynamics, R: DirectionRule, G: Workspace>(
     problem: &Problem<'_, R, G>,
     search: &Search<'_, D, G>,
     number: u8,
@@ -71,7 +71,7 @@ pub(crate) fn drift<D: Dynamics, R: DirectionRule, G: Region>(
     (0..DRIFTS).find_map(|_| it.draw(from).filter(|leg| leg.1.site != from.site))
 }
 
-impl<D: Dynamics, R: DirectionRule, G: Region> Wander<'_, '_, '_, D, R, G> {
+impl<D: Dynamics, R: DirectionRule, G: Workspace> Wander<'_, '_, '_, D, R, G> {
     /// A number of motions drawn at random, up to the first that ends where a label tells something. Motions that lead
     /// back to an earlier position are left out.
     fn draw_way(&mut self, from: Pose, motions: u32) -> Option<Drawn> {
@@ -143,7 +143,7 @@ impl<D: Dynamics, R: DirectionRule, G: Region> Wander<'_, '_, '_, D, R, G> {
 }
 
 /// Whether a motion ends where a label tells something and the vehicle is safe.
-pub(crate) fn is_open<D: Dynamics, R, G: Region>(
+pub(crate) fn is_open<D: Dynamics, R, G: Workspace>(
     problem: &Problem<'_, R, G>,
     dynamics: &D,
     [from, to]: [Pose; 2],
@@ -154,7 +154,7 @@ pub(crate) fn is_open<D: Dynamics, R, G: Region>(
 
 /// Whether a drive stays inside, and ends where the vehicle is safe, unless it is not where it begins.
 #[inline(never)]
-pub(crate) fn stays<D: Dynamics, G: Region>(
+pub(crate) fn stays<D: Dynamics, G: Workspace>(
     dynamics: &D,
     area: &G,
     effort: &mut Effort,

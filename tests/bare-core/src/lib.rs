@@ -30,11 +30,10 @@ pub use riscv_rt::entry;
 mod on_target {
     use core::convert::Infallible;
 
-    use planner_core::Area;
     use planner_core::link::delivery::Link;
-    use planner_core::link::message::{Algorithm, ClockRate, Declined};
-    use planner_core::link::station::{Charted, Known, Station};
-    use planner_core::motion::unicycle::Unicycle;
+    use planner_core::link::message::{Algorithm, ClockRate, DeclinedError};
+    use planner_core::link::station::{FromOutlines, Known, Station};
+    use planner_core::{Area, Unicycle};
 
     use crate::port::{Semihosting, Streams, ticks};
 
@@ -60,7 +59,7 @@ mod on_target {
                 (Ok(terms), Algorithm::Cfc) => {
                     station.fly(&setup, &mut setup.cfc::<_, _, N>(terms), |_| {})
                 }
-                _ => station.decline(Declined::Algorithm),
+                _ => station.decline(DeclinedError::Algorithm),
             };
         }
     }
@@ -80,13 +79,13 @@ mod on_target {
                 (Ok(terms), Algorithm::Cfc) => {
                     station.fly(&setup, &mut setup.cfc::<_, _, N>(terms), |_| {})
                 }
-                _ => station.decline(Declined::Algorithm),
+                _ => station.decline(DeclinedError::Algorithm),
             };
         }
     }
 
     /// Flies missions of all algorithms with vehicles of one type in areas of one type, and room for `N` samples and `H` hypotheses.
-    pub fn any<D: Known, G: Charted, const N: usize, const H: usize>() -> ! {
+    pub fn any<D: Known, G: FromOutlines, const N: usize, const H: usize>() -> ! {
         let streams = open();
         let mut station = station(&streams);
         loop {

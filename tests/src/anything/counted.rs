@@ -2,9 +2,9 @@
 
 use std::cell::Cell;
 
-use planner_core::geometry::area::Area;
-use planner_core::geometry::lattice::{Site, Vector};
-use planner_core::geometry::region::{HalfPlane, KeepOut, Region};
+use planner_core::geometry::lattice::Vector;
+use planner_core::geometry::workspace::{HalfPlane, Obstacle};
+use planner_core::{Area, Site, Workspace};
 
 thread_local! {
     static ASKED: Cell<u64> = const { Cell::new(0) };
@@ -23,13 +23,13 @@ fn count(asked: usize) {
     ASKED.set(ASKED.get() + asked as u64);
 }
 
-impl<G: Region> Counted<G> {
+impl<G: Workspace> Counted<G> {
     fn corners(&self) -> usize {
         self.0.keep_outs().map(|it| it.corners.len()).sum()
     }
 }
 
-impl<G: Region> Region for Counted<G> {
+impl<G: Workspace> Workspace for Counted<G> {
     fn bounds(&self) -> Area {
         self.0.bounds()
     }
@@ -54,7 +54,7 @@ impl<G: Region> Region for Counted<G> {
         self.0.sides()
     }
 
-    fn keep_outs(&self) -> impl Iterator<Item = KeepOut<'_>> {
+    fn keep_outs(&self) -> impl Iterator<Item = Obstacle<'_>> {
         self.0.keep_outs()
     }
 

@@ -9,23 +9,14 @@ use host_sim::world::World;
 use host_sim::world::errors::Errors;
 use host_sim::world::noise::{Extent, NoiseModel};
 use nalgebra::{Point2, Vector2};
-use planner_core::belief::goal::{Accuracy, Goal};
-use planner_core::belief::sample::{Label, Sample};
-use planner_core::belief::tolerance::Tolerance;
-use planner_core::belief::version_space::VersionSpace;
-use planner_core::geometry::heading::Heading;
-use planner_core::geometry::hull::Hull;
-use planner_core::geometry::lattice::{Site, UNITS_PER_METRE};
-use planner_core::geometry::line::Line;
-use planner_core::geometry::region::Region as _;
-use planner_core::geometry::terrain::RoundedHull;
+use planner_core::dynamics::ActionGrid;
+use planner_core::geometry::lattice::UNITS_PER_METRE;
 use planner_core::link::message::{MOST_CORNERS, MissionArea};
-use planner_core::motion::action::ActionGrid;
-use planner_core::motion::any_vehicle::AnyVehicle;
-use planner_core::motion::boat::Boat;
-use planner_core::motion::car::{self, Car};
-use planner_core::motion::dynamics::Pose;
-use planner_core::motion::unicycle::Unicycle;
+use planner_core::motion::car::{self};
+use planner_core::{
+    Accuracy, Angle, AnyVehicle, Boat, Car, Goal, Heading, Hull, KeepOut, Label, Line, Pose,
+    Sample, Site, Tolerance, Unicycle, VersionSpace, Workspace as _, aimed_for,
+};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -73,7 +64,8 @@ fn attempt(rng: &mut ChaCha8Rng, seed: u64) -> Option<Mission> {
     let tolerance = if rng.random() { 0.0 } else { side * scale(rng, 1e-5, 0.03) };
     let area = area(rng, side)?;
     let ground = Ground::of(&area);
-    let inset = area.inset(Tolerance::new(tolerance)?.units())?;
+    let tolerance_told = Tolerance::new(tolerance).ok()?;
+    let inset = area.inset(tolerance_told.units())?;
     let anywhere = |rng: &mut ChaCha8Rng| {
         (0..200).find_map(|_| {
             let p = Point2::new(rng.random_range(0.0..side), rng.random_range(0.0..side));
@@ -82,7 +74,7 @@ fn attempt(rng: &mut ChaCha8Rng, seed: u64) -> Option<Mission> {
     };
     let (truth, given) = field(rng, side, &area)?;
     let lines = VersionSpace::<CAPACITY>::new(&given).ok()?;
-    lines.clone().within(Tolerance::new(tolerance)?).ok()?;
+    lines.clone().with_tolerance(tolerance_told).ok()?;
     let vehicle = vehicle(rng, side)?;
     // A quarter of the starts are as near to the border or a keep-out as is allowed.
     let start = if rng.random_range(0..4) == 0 {
@@ -94,9 +86,9 @@ fn attempt(rng: &mut ChaCha8Rng, seed: u64) -> Option<Mission> {
     let mut mission = standard_field::standard(seed, 0, algorithm, MOTIONS);
     mission.seed = seed;
     mission.config.area = area;
-    mission.config.tolerance = Tolerance::new(tolerance)?;
+    mission.config.tolerance = tolerance_told;
     mission.vehicle = vehicle;
-    mission.config.admits(&vehicle).ok()?;
+    aimed_for(area, &vehicle, tolerance_told).ok()?;
     mission.start = Pose { site: start, heading: Heading(rng.random()) };
     (mission.world, mission.given) = (World::divided_by(truth), lines);
     if is_noisy {
@@ -112,7 +104,7 @@ fn attempt(rng: &mut ChaCha8Rng, seed: u64) -> Option<Mission> {
     }
     if algorithm == Algorithm::Lookahead && rng.random_range(0..3) == 0 {
         let accuracy = if rng.random() {
-            Accuracy::SlopeArc(Heading::from_radians(scale(rng, 1e-5, 0.3))?)
+            Accuracy::SlopeArc(Angle::from_radians(scale(rng, 1e-5, 0.3)).ok()?)
         } else {
             Accuracy::Misclassified(scale(rng, 20.0, 100_000.0) as u32)
         };
@@ -133,20 +125,17 @@ fn area(rng: &mut ChaCha8Rng, side: f64) -> Option<MissionArea> {
         let middle = [0.5 * side; 2];
         Hull::new(&on_circle(rng, middle, 0.5 * side, MOST_CORNERS.min(5))).ok()?
     };
-    let mut keep_outs: Vec<RoundedHull<MOST_CORNERS>> = Vec::new();
+    let mut keep_outs: Vec<KeepOut<MOST_CORNERS>> = Vec::new();
     if rng.random() {
         for _ in 0..rng.random_range(1..=4) {
             let middle = [rng.random_range(0.0..side), rng.random_range(0.0..side)];
             let size = side * scale(rng, 0.005, 0.12);
             keep_outs.push(if rng.random() {
                 let radius = (size * f64::from(UNITS_PER_METRE)) as u32;
-                RoundedHull { hull: Hull::new(&[site(Point2::from(middle))?]).ok()?, radius }
+                KeepOut { hull: Hull::new(&[site(Point2::from(middle))?]).ok()?, radius }
             } else {
                 let count = rng.random_range(2..=6);
-                RoundedHull {
-                    hull: Hull::new(&on_circle(rng, middle, size, count)).ok()?,
-                    radius: 0,
-                }
+                KeepOut { hull: Hull::new(&on_circle(rng, middle, size, count)).ok()?, radius: 0 }
             });
         }
     }

@@ -7,14 +7,8 @@ use host_sim::mission::definition::Mission;
 use host_sim::mission::read_out::ReadOut;
 use host_sim::mission::results::Ending;
 use host_sim::world::errors::{CUT, Errors};
-use planner_core::belief::Refused;
-use planner_core::motion::any_vehicle::AnyVehicle;
-use planner_core::motion::dynamics::Pose;
-use planner_core::planner::cfc::Cfc;
-use planner_core::planner::config::Config;
-use planner_core::planner::lookahead::Lookahead;
-use planner_core::planner::scc::Scc;
-use planner_core::planner::{Motion, Plan, Planner};
+use planner_core::error::ObservationError;
+use planner_core::{AnyVehicle, Motion, Plan, Planner, Pose};
 
 use super::counted::{self, Counted};
 use super::plain::{Ground, metres, path};
@@ -62,28 +56,13 @@ pub struct Flight {
 /// # Panics
 /// When a planner panics.
 pub fn fly(mission: &Mission, most_asked: u64) -> Flight {
-    let Config { area, varrho, crossing, following, tolerance } = mission.config;
-    let config = Config { area: Counted(area), varrho, crossing, following, tolerance };
-    let vehicle = mission.vehicle;
-    let fly = Fly { mission, ground: Ground::of(&area), most_asked };
+    let (area, vehicle) = (Counted(mission.config.area), mission.vehicle);
+    let fly = Fly { mission, ground: Ground::of(&mission.config.area), most_asked };
     match (mission.algorithm, mission.is_noisy()) {
-        (Algorithm::Cfc, _) => {
-            fly.with(Cfc::new(config, vehicle, mission.lines()).expect("settings that agree"))
-        }
-        (Algorithm::Scc, _) => fly.with(
-            Scc::new(config, mission.policy, vehicle, mission.table())
-                .expect("settings that agree"),
-        ),
-        (_, true) => fly.with(
-            Lookahead::new(config, vehicle, mission.forecast())
-                .expect("settings that agree")
-                .until(mission.goal),
-        ),
-        (_, false) => fly.with(
-            Lookahead::new(config, vehicle, mission.lines())
-                .expect("settings that agree")
-                .until(mission.goal),
-        ),
+        (Algorithm::Cfc, _) => fly.with(mission.cfc(area, vehicle)),
+        (Algorithm::Scc, _) => fly.with(mission.scc(area, vehicle)),
+        (_, true) => fly.with(mission.doubtful(area, vehicle)),
+        (_, false) => fly.with(mission.lookahead(area, vehicle)),
     }
 }
 
@@ -147,7 +126,9 @@ impl Fly<'_> {
                 break;
             }
             if let Err(refused) = planner.observe(pose, reading) {
-                if self.errs_within_tolerance() || !matches!(refused, Refused::Contradiction(_)) {
+                if self.errs_within_tolerance()
+                    || !matches!(refused, ObservationError::Contradiction(_))
+                {
                     flight.note(Finding::TruthLost, format!("{refused}"));
                 }
                 break;
@@ -175,12 +156,12 @@ impl Fly<'_> {
     fn leaves(&self, from: Pose, motion: &Motion) -> Option<String> {
         let is_car = matches!(self.mission.vehicle, AnyVehicle::Car(_));
         // An arc's end is rounded to the lattice, and its control to single precision.
-        let reach = f64::from(motion.control.v.abs());
+        let reach = f64::from(motion.control.distance_m.abs());
         let slack = 1e-4 + if is_car { 3e-6 * reach } else { 0.0 };
         if self.ground.margin(metres(from.site)) < -1e-9 {
             return None;
         }
-        let control = [motion.control.v, motion.control.w].map(f64::from);
+        let control = [motion.control.distance_m, motion.control.turn_rad].map(f64::from);
         let way = path(from, motion.target, control, is_car, 200);
         let worst = way.into_iter().map(|p| self.ground.margin(p)).fold(f64::INFINITY, f64::min);
         (worst < -slack).then(|| format!("{worst} m inside: {from:?}, {motion:?}"))

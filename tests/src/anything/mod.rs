@@ -12,7 +12,7 @@ pub mod reason;
 use std::env;
 use std::ops::Range;
 
-use planner_core::motion::any_vehicle::AnyVehicle;
+use planner_core::AnyVehicle;
 
 /// The section of `budgets.toml` with the worst plans of such missions.
 pub const SECTION: &str = "random_missions";

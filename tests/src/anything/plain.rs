@@ -1,9 +1,9 @@
 //! The harness's own geometry: paths as points in metres, and how far they leave an area. It shares no code with the
 //! planner.
 
-use planner_core::geometry::lattice::{Site, UNITS_PER_METRE};
+use planner_core::geometry::lattice::UNITS_PER_METRE;
 use planner_core::link::message::MissionArea;
-use planner_core::motion::dynamics::Pose;
+use planner_core::{Pose, Site};
 
 /// A point in metres.
 pub type Point = [f64; 2];
@@ -26,7 +26,7 @@ impl Ground {
     /// The ground of a mission.
     pub fn of(area: &MissionArea) -> Self {
         let points = |sites: &[Site]| sites.iter().map(|site| metres(*site)).collect::<Vec<_>>();
-        let keep_out = |it: &planner_core::geometry::terrain::RoundedHull<_>| {
+        let keep_out = |it: &planner_core::geometry::polygon_area::KeepOut<_>| {
             (points(it.hull.corners()), f64::from(it.radius) / f64::from(UNITS_PER_METRE))
         };
         Self { border: points(area.corners()), keep_outs: area.hulls().map(keep_out).collect() }

@@ -3,13 +3,11 @@
 use host_sim::mission::definition::Mission;
 use host_sim::mission::read_out::ReadOut;
 use host_sim::mission::results::Ending;
-use planner_core::belief::consistent_lines::{Certainty, ConsistentLines};
-use planner_core::geometry::lattice::{Site, Vector};
-use planner_core::geometry::region::Region as _;
+use planner_core::belief::cell_view::CellView;
+use planner_core::dynamics::{Dynamics as _, Side};
+use planner_core::geometry::lattice::Vector;
 use planner_core::link::message::MissionArea;
-use planner_core::motion::any_vehicle::AnyVehicle;
-use planner_core::motion::dynamics::{Dynamics as _, Pose, Side};
-use planner_core::planner::StopReason;
+use planner_core::{AnyVehicle, Certainty, Pose, Site, StopReason, Workspace as _};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -126,7 +124,7 @@ impl Judge<'_> {
     }
 }
 
-fn can_cut_either_way(lines: ConsistentLines<'_>, site: Site) -> bool {
+fn can_cut_either_way(lines: CellView<'_>, site: Site) -> bool {
     let is_open = |by: Vector| {
         site.step(by).is_ok_and(|place| lines.certainty(place) == Certainty::Uncertain)
     };

@@ -6,7 +6,7 @@
 
 use host_sim::hil::player::Played;
 use host_sim::mission::results::{Ending, Results};
-use planner_core::planner::StopReason;
+use planner_core::StopReason;
 use rayon::prelude::*;
 use std::cmp::Reverse;
 

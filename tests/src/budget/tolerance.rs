@@ -1,9 +1,7 @@
 //! What a tolerance costs: to observe a label, and to take all labels in again when a planner wakes.
 
 use host_sim::mission::algorithm::Algorithm;
-use planner_core::motion::any_vehicle::AnyVehicle;
-use planner_core::motion::unicycle::Unicycle;
-use planner_core::planner::scc::Policy;
+use planner_core::{AnyVehicle, Policy, Unicycle};
 
 use crate::budget::timing::{self, Flight};
 use crate::budget::workload::{DOUBT, Workload};

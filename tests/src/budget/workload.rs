@@ -21,12 +21,7 @@ use host_sim::mission::results::Ending;
 use host_sim::world::errors::CUT;
 use host_sim::world::noise::{Extent, NoiseModel};
 use nalgebra::Point2;
-use planner_core::belief::tolerance::Tolerance;
-use planner_core::geometry::heading::Heading;
-use planner_core::geometry::lattice::Site;
-use planner_core::motion::any_vehicle::AnyVehicle;
-use planner_core::motion::dynamics::Pose;
-use planner_core::planner::scc::Policy;
+use planner_core::{AnyVehicle, Heading, Policy, Pose, Site, Tolerance};
 use rayon::prelude::*;
 
 const SEED: u64 = 9;

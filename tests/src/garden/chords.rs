@@ -4,8 +4,7 @@
 //! corner: nothing keeps it out, which favours the method.
 
 use nalgebra::Point2;
-use planner_core::belief::sample::Label;
-use planner_core::geometry::line::Line;
+use planner_core::{Label, Line};
 
 use super::flight::{COMPARED, Ended, Finder, Outcome};
 use super::lawn::{Garden, SIDE};

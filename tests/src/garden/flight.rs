@@ -1,20 +1,10 @@
 //! Flies a planner through a garden by its public interface, and records what a porter would look at.
 
-use planner_core::belief::forecast::Forecast;
-use planner_core::belief::goal::{Accuracy, Goal};
-use planner_core::belief::hypotheses::Hypotheses;
-use planner_core::belief::noise::{Noise, Reliability};
-use planner_core::belief::tolerance::Tolerance;
-use planner_core::belief::weight::Prior;
-use planner_core::geometry::heading::Heading;
-use planner_core::geometry::line::Line;
-use planner_core::motion::dynamics::Pose;
-use planner_core::planner::config::{Config, Crossing};
-use planner_core::planner::lookahead::Lookahead;
-use planner_core::planner::scc::{self, Policy, Scc};
-use planner_core::planner::{Motion, Planner, StopReason};
-use planner_core::robot::agent::{Agent, AgentError, Event};
-use planner_core::search::objective::Varrho;
+use planner_core::robot::AgentError;
+use planner_core::{
+    Agent, CellPosterior, DrivingPrice, Event, Goal, Line, Lookahead, Motion, Noise, NoisyBelief,
+    Planner, Pose, Prior, Reliability, Scc, StopReason, Tolerance, Workspace as _,
+};
 
 use super::lawn::Garden;
 use super::rover::Rover;
@@ -137,30 +127,22 @@ pub fn fly(garden: &Garden, finder: Finder) -> Outcome {
         trusted_radius: 0,
         tolerance: Tolerance::new(garden.setting.blur).expect("a tolerance"),
     };
-    let config = |varrho| Config {
-        area: garden.lawn,
-        varrho,
-        crossing: Crossing::default(),
-        following: scc::FOLLOWING,
-        tolerance: garden.tolerance(),
-    };
+    let area = garden.lawn.with_clearance(garden.setting.largest_error()).expect("a narrow margin");
     if finder == Finder::Scc {
-        let table = Hypotheses::<SAMPLES, HYPOTHESES>::new(&garden.given, Prior::Area, noise);
-        let (config, dynamics) = (config(Varrho::PAPER), garden.setting.dynamics(10_000));
-        let planner = Scc::new(config, Policy::default(), dynamics, table.expect("four places"));
+        let table = CellPosterior::<SAMPLES, HYPOTHESES>::new(&garden.given, Prior::Area, noise);
+        let dynamics = garden.setting.dynamics(10_000);
+        let planner = Scc::new(area, dynamics, table.expect("four places"));
         return with(garden, planner.expect("settings that agree"));
     }
-    let forecast = Forecast::<SAMPLES, HYPOTHESES>::new(&garden.given, Prior::Area, noise);
-    let (config, dynamics) =
-        (config(Varrho::new(garden.setting.varrho).expect("a weight")), garden.setting.dynamics(1));
-    let planner = Lookahead::new(config, dynamics, forecast.expect("four places"));
-    with(garden, planner.expect("settings that agree").until(Some(goal())))
+    let belief = NoisyBelief::<SAMPLES, HYPOTHESES>::new(&garden.given, noise);
+    let planner = Lookahead::new(area, garden.setting.dynamics(1), belief.expect("four places"));
+    let price = DrivingPrice::new(garden.setting.varrho).expect("a price");
+    with(garden, planner.expect("settings that agree").pricing(price).until(goal()))
 }
 
 /// One degree in nine of ten cases.
 fn goal() -> Goal {
-    let degree = Heading::from_radians(1_f64.to_radians()).expect("finite");
-    Goal { accuracy: Accuracy::SlopeArc(degree), level: 900_000 }
+    Goal::slope_within_degrees(1.0).expect("acute")
 }
 
 fn with<P: Planner>(garden: &Garden, planner: P) -> Outcome {
@@ -176,7 +158,7 @@ fn with<P: Planner>(garden: &Garden, planner: P) -> Outcome {
                 outcome.last_word = format!("{reason:?} at {from:?}");
                 break;
             }
-            Err(AgentError::Refused(refused)) => {
+            Err(AgentError::Observation(refused)) => {
                 outcome.ended = Ended::Refused;
                 outcome.last_word = format!("{refused} at {from:?}");
                 break;

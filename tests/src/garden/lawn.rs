@@ -3,18 +3,12 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use nalgebra::{Point2, Vector2};
-use planner_core::belief::sample::{Label, Sample};
-use planner_core::belief::tolerance::Tolerance;
-use planner_core::belief::version_space::VersionSpace;
-use planner_core::geometry::heading::Heading;
-use planner_core::geometry::hull::Hull;
-use planner_core::geometry::lattice::{Site, UNITS_PER_METRE};
-use planner_core::geometry::line::Line;
-use planner_core::geometry::terrain::{RoundedHull, Terrain};
-use planner_core::motion::any_vehicle::AnyVehicle;
-use planner_core::motion::car::{self, Car};
-use planner_core::motion::dynamics::Pose;
-use planner_core::motion::unicycle::Unicycle;
+use planner_core::geometry::lattice::UNITS_PER_METRE;
+use planner_core::motion::car::{self};
+use planner_core::{
+    AnyVehicle, Car, Heading, Hull, KeepOut, Label, Line, PolygonArea, Pose, Sample, Site,
+    Tolerance, Unicycle, VersionSpace,
+};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -22,7 +16,7 @@ use super::rover::{Drift, Fixes};
 use crate::anything::plain::{Ground, Point};
 
 /// The lawn as the planner has it: a square with three keep-outs.
-pub type Lawn = Terrain<4, 3>;
+pub type Lawn = PolygonArea<4, 3>;
 
 /// The side of the square, metres.
 pub const SIDE: f64 = 20.0;
@@ -232,8 +226,8 @@ fn lawn(ground: &Ground, padding: f64) -> Option<Lawn> {
     let border: Vec<Point> = ground.border.iter().copied().map(moved).collect();
     let keep_out = |(corners, radius): &(Vec<Point>, f64)| {
         let radius = ((radius + padding) * f64::from(UNITS_PER_METRE)).ceil() as u32;
-        Some(RoundedHull { hull: hull(corners)?, radius })
+        Some(KeepOut { hull: hull(corners)?, radius })
     };
     let keep_outs: Option<Vec<_>> = ground.keep_outs.iter().map(keep_out).collect();
-    Terrain::new(hull(&border)?, &keep_outs?).ok()
+    PolygonArea::new(hull(&border)?, &keep_outs?).ok()
 }

@@ -4,12 +4,8 @@ use std::convert::Infallible;
 use std::f64::consts::TAU;
 
 use nalgebra::Point2;
-use planner_core::belief::sample::{Label, Reading};
-use planner_core::geometry::heading::Heading;
-use planner_core::geometry::lattice::Site;
-use planner_core::motion::dynamics::Pose;
-use planner_core::planner::Motion;
-use planner_core::robot::body::Body;
+use planner_core::robot::Body;
+use planner_core::{Heading, Label, Motion, Pose, Reading, Site};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -205,7 +201,9 @@ impl Body for Rover<'_> {
                 self.steer_to(metres(motion.target.site));
                 self.heading = motion.target.heading.radians();
             }
-            Vehicle::Car => self.drive_arc(motion.control.v.into(), motion.control.w.into()),
+            Vehicle::Car => {
+                self.drive_arc(motion.control.distance_m.into(), motion.control.turn_rad.into());
+            }
         }
         self.stop();
         let site = Site::try_from(Point2::from(self.believed)).expect("near");

@@ -2,7 +2,7 @@
 //! planner's cells, measures or version spaces.
 
 use nalgebra::{Point2, Vector2};
-use planner_core::belief::sample::{Label, Sample};
+use planner_core::{Label, Sample};
 
 /// The measure d(angle) d(offset) of all lines that agree with the samples, in radian metres; 0 where
 /// none does, or only single ones.
@@ -48,7 +48,7 @@ pub fn measure(samples: &[Sample]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use planner_core::geometry::lattice::Site;
+    use planner_core::Site;
 
     #[test]
     fn a_strip_between_two_walls() {

@@ -4,9 +4,7 @@
 use std::ops::{Add, Mul, Sub};
 
 use num_bigint::BigInt;
-use planner_core::belief::sample::{Label, Sample};
-use planner_core::geometry::lattice::Site;
-use planner_core::geometry::local_line::LocalLine;
+use planner_core::{Label, LocalLine, Sample, Site};
 
 use crate::{TwinLine, cross, sign, twin};
 

@@ -3,16 +3,12 @@
 
 use host_sim::world::polygon::Polygon;
 use nalgebra::Point2;
-use planner_core::belief::consistent_lines::Certainty;
-use planner_core::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
-use planner_core::geometry::line::Line;
-use planner_core::geometry::region::Region;
-use planner_core::motion::action::Action;
-use planner_core::motion::dynamics::{Dynamics, Pose, Ray, Side};
-use planner_core::planner::StopReason;
+use planner_core::dynamics::{Action, Dynamics, Ray, Side};
+use planner_core::geometry::lattice::{UNITS_PER_METRE, Vector};
 use planner_core::search::direction_rule::ArcRule;
 use planner_core::search::problem::Problem;
 use planner_core::search::recovery::Recovery;
+use planner_core::{Certainty, Line, Pose, Site, StopReason, Workspace};
 
 /// Motions that a transit among uncertain ground looks ahead.
 const HORIZON: u32 = 16;
@@ -36,7 +32,7 @@ pub struct Ladder<'a, D, G> {
     pub dynamics: &'a D,
 }
 
-impl<D: Dynamics, G: Region> Ladder<'_, D, G> {
+impl<D: Dynamics, G: Workspace> Ladder<'_, D, G> {
     /// The distance in metres from a site to the nearest uncertain ground inside the area.
     pub fn distance(&self, site: Site) -> Option<f64> {
         let from = Point2::<f64>::from(site);
@@ -80,7 +76,7 @@ impl<D: Dynamics, G: Region> Ladder<'_, D, G> {
 
     /// The best action beyond a turn: its objective, and the less the further it turns.
     fn beyond(&self, pose: Pose, side: Side) -> Option<(i64, i64)> {
-        let Problem { lines, area, varrho, .. } = self.problem;
+        let Problem { lines, area, weight, .. } = self.problem;
         let grid = self.dynamics.grid();
         let turn = |ray: &Ray| {
             let left = ray.heading.0.wrapping_sub(pose.heading.0) as i32;
@@ -94,8 +90,8 @@ impl<D: Dynamics, G: Region> Ladder<'_, D, G> {
             })
         });
         let values = feasible.map(|(ray, speed)| {
-            let (reach, w) = (f64::from(grid.reach_mm(speed)), f64::from(ray.effort));
-            let value = (1.0 - varrho.value()) * reach * reach - varrho.value() * w;
+            let (reach, w) = (f64::from(grid.reach_mm(speed)), f64::from(ray.turn_cost));
+            let value = (1.0 - weight.value()) * reach * reach - weight.value() * w;
             ((1e6 * value).round() as i64, -turn(&ray))
         });
         values.max()

@@ -9,7 +9,7 @@
 
 use std::time::Duration;
 
-use planner_core::belief::sample::Label;
+use planner_core::Label;
 
 use crate::fly::frame::{ALIKE, apart};
 use crate::fly::limits::{LEAST_WAY, NEAR, RESIGNED_MS, SETTLED_MS, SLOW, STIRS, WOBBLES};

@@ -1,6 +1,6 @@
 //! The drawing of a mission for a viewer: the area and the true line once, then what each step adds or replaces.
 
-use planner_core::belief::sample::Label;
+use planner_core::Label;
 
 use crate::report::log::messages::{
     Color, Entity, FRAME, Line, Point, Pose, ROBOT, SceneUpdate, Solid, Timestamp, Triangles,

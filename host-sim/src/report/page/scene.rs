@@ -4,9 +4,7 @@
 //! the same for a mission that a chip has planned.
 
 use nalgebra::Point2;
-use planner_core::belief::sample::Sample;
-use planner_core::geometry::line::Line;
-use planner_core::robot::agent::Step;
+use planner_core::{Line, Sample, Step};
 use serde::Serialize;
 
 use crate::mission::read_out::{Expectation, ReadOut};

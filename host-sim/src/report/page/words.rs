@@ -1,6 +1,6 @@
 //! A stage of a mission in words: what was planned, what was expected of it, what was read, what is known.
 
-use planner_core::motion::any_vehicle::AnyVehicle;
+use planner_core::AnyVehicle;
 use serde::Serialize;
 
 use crate::mission::algorithm::Algorithm;

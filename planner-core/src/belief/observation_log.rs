@@ -5,11 +5,11 @@
 
 use heapless::Vec;
 
-use crate::belief::Refused;
+use crate::belief::ObservationError;
 use crate::belief::noise::Reliability;
 use crate::belief::sample::Sample;
 use crate::belief::tolerance::Tolerance;
-use crate::belief::version_space::{NoVersionSpace, VersionSpace};
+use crate::belief::version_space::{GivenError, VersionSpace};
 
 /// Up to `N` samples, the given ones first. `24 N` bytes and some 16.
 ///
@@ -17,7 +17,7 @@ use crate::belief::version_space::{NoVersionSpace, VersionSpace};
 /// to 4.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Told<const N: usize> {
+pub struct ObservationLog<const N: usize> {
     given: u8,
     samples: Vec<Sample, N, u8>,
     /// The reliabilities of the labels taken in since. Empty if all labels are true.
@@ -27,7 +27,7 @@ pub struct Told<const N: usize> {
     tolerances: Vec<Tolerance, N, u8>,
 }
 
-impl<const N: usize> Told<N> {
+impl<const N: usize> ObservationLog<N> {
     /// The given samples, all samples, and the reliabilities of the labels among them, if these may be wrong.
     pub(crate) fn new(
         given: &[Sample],
@@ -70,20 +70,20 @@ impl<const N: usize> Told<N> {
     }
 
     /// The labels where all are true.
-    pub(crate) fn true_labels(&self) -> Result<&[Sample], NotReplayed> {
+    pub(crate) fn true_labels(&self) -> Result<&[Sample], ReplayError> {
         let are_true = self.reliabilities.is_empty();
-        are_true.then_some(self.labels()).ok_or(NotReplayed::Kind)
+        are_true.then_some(self.labels()).ok_or(ReplayError::Kind)
     }
 
     /// The labels where they may be wrong.
     pub(crate) fn doubtful_labels(
         &self,
         configured: Tolerance,
-    ) -> Result<impl Iterator<Item = (Sample, Reliability, Tolerance)>, NotReplayed> {
+    ) -> Result<impl Iterator<Item = (Sample, Reliability, Tolerance)>, ReplayError> {
         let labels = self.labels();
         let are_alike = self.tolerances.is_empty() || self.tolerances.len() == labels.len();
         if self.reliabilities.len() != labels.len() || !are_alike {
-            return Err(NotReplayed::Kind);
+            return Err(ReplayError::Kind);
         }
         let within = self.tolerances.iter().copied().chain(core::iter::repeat(configured));
         let labels = labels.iter().copied().zip(self.reliabilities.iter().copied()).zip(within);
@@ -92,34 +92,35 @@ impl<const N: usize> Told<N> {
 }
 
 /// A belief that can export what it has taken in, and take it in again.
-pub trait Replay {
+pub trait FromLog {
     /// All that it can be told.
-    type Told;
+    type ObservationLog;
 
     /// What it was told.
-    fn told(&self) -> Self::Told;
+    fn told(&self) -> Self::ObservationLog;
 
     /// Begins again and takes in what was exported, with this belief's own noise and tolerance. It costs as much as the
     /// labels did when they came.
     ///
     /// # Errors
-    /// [`NotReplayed`]. The belief knows then no more than what came before.
-    fn replay(&mut self, told: &Self::Told) -> Result<(), NotReplayed>;
+    /// [`ReplayError`]. The belief knows then no more than what came before.
+    fn replay(&mut self, told: &Self::ObservationLog) -> Result<(), ReplayError>;
 }
 
 /// Why a belief did not take in an export: another belief made it, or it was spoilt.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum NotReplayed {
+#[non_exhaustive]
+pub enum ReplayError {
     /// It comes from a belief of the other kind: one for true labels, the other for labels that may be wrong.
     Kind,
     /// The given samples.
-    Given(NoVersionSpace),
+    Given(GivenError),
     /// A label.
-    Label(Refused),
+    Label(ObservationError),
 }
 
-impl core::fmt::Display for NotReplayed {
+impl core::fmt::Display for ReplayError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::Kind => f.write_str("what was told is for labels of the other kind"),
@@ -129,16 +130,16 @@ impl core::fmt::Display for NotReplayed {
     }
 }
 
-impl core::error::Error for NotReplayed {}
+impl core::error::Error for ReplayError {}
 
-impl From<NoVersionSpace> for NotReplayed {
-    fn from(why: NoVersionSpace) -> Self {
+impl From<GivenError> for ReplayError {
+    fn from(why: GivenError) -> Self {
         Self::Given(why)
     }
 }
 
-impl From<Refused> for NotReplayed {
-    fn from(why: Refused) -> Self {
+impl From<ObservationError> for ReplayError {
+    fn from(why: ObservationError) -> Self {
         Self::Label(why)
     }
 }
@@ -146,16 +147,16 @@ impl From<Refused> for NotReplayed {
 /// Samples are stored at the places where they were taken in. Under a tolerance these are not the places where they
 /// were read. So replaying inserts them as they are, without their tolerances. Only the last tolerance is stored: the
 /// next label is expected to be shifted by it.
-impl<const N: usize> Replay for VersionSpace<N> {
-    type Told = Told<N>;
+impl<const N: usize> FromLog for VersionSpace<N> {
+    type ObservationLog = ObservationLog<N>;
 
-    fn told(&self) -> Told<N> {
-        let told = Told::new(self.given(), self.samples(), core::iter::empty());
+    fn told(&self) -> ObservationLog<N> {
+        let told = ObservationLog::new(self.given(), self.samples(), core::iter::empty());
         told.within(core::iter::once(self.expected()), self.tolerance())
     }
 
-    fn replay(&mut self, told: &Told<N>) -> Result<(), NotReplayed> {
-        *self = Self::new(told.given())?.within(self.tolerance())?;
+    fn replay(&mut self, told: &ObservationLog<N>) -> Result<(), ReplayError> {
+        *self = Self::new(told.given())?.with_tolerance(self.tolerance())?;
         for &sample in told.true_labels()? {
             self.insert(sample)?;
         }

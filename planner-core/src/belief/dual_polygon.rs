@@ -10,13 +10,13 @@
 
 use heapless::Vec;
 
-use crate::belief::consistent_lines::ConsistentLines;
-use crate::belief::outlook::{Foresight, Outlook, Prediction, entropy};
+use crate::belief::cell_view::CellView;
+use crate::belief::predictor::{Prediction, PredictiveBelief, Predictor, entropy};
 use crate::belief::sample::{Label, Reading};
 use crate::belief::tolerance::Tolerance;
 use crate::belief::version_space::VersionSpace;
 use crate::belief::weight::LogWeight;
-use crate::belief::{Belief, Refused};
+use crate::belief::{Belief, ObservationError};
 use crate::geometry::approximate::{METRE, UnitVector, cross, inverse_sqrt};
 use crate::geometry::lattice::{Site, Vector};
 
@@ -92,19 +92,19 @@ struct Part {
 
 /// A cell of lines as seen from a place.
 #[derive(Clone, Debug)]
-pub struct Picture {
+pub struct DualPolygon {
     origin: Site,
     axis: Axis,
-    /// Where a label +1 is taken in, from where it is read: see [`ConsistentLines::shift`].
+    /// Where a label +1 is taken in, from where it is read: see [`CellView::shift`].
     shift: Vector,
     vertices: Vec<Vertex, VERTICES, u8>,
     /// The cell's measure, radian metres; its sign is that of the way round.
     measure: f32,
 }
 
-impl Picture {
+impl DualPolygon {
     /// The picture of some lines from a site.
-    pub fn of(lines: ConsistentLines<'_>, origin: Site) -> Self {
+    pub fn of(lines: CellView<'_>, origin: Site) -> Self {
         let along = lines.slope_arc().bisector();
         let axis = Axis { along, unit: UnitVector::of(along) };
         let mut vertices = Vec::new();
@@ -209,9 +209,9 @@ fn measure<'a>(apex: Vertex, rest: impl Iterator<Item = &'a Vertex>) -> f32 {
     sum
 }
 
-impl<const N: usize> Foresight for VersionSpace<N> {
+impl<const N: usize> PredictiveBelief for VersionSpace<N> {
     type Belief = Self;
-    type Outlook<'a> = Picture;
+    type Predictor<'a> = DualPolygon;
 
     fn belief(&self) -> &Self {
         self
@@ -222,22 +222,22 @@ impl<const N: usize> Foresight for VersionSpace<N> {
         site: Site,
         reading: Reading,
         tolerance: Tolerance,
-    ) -> Result<(), Refused> {
+    ) -> Result<(), ObservationError> {
         Belief::observe_within(self, site, reading, tolerance)
     }
 
     fn prepare(&mut self) {}
 
-    fn outlook(&self, from: Site) -> Picture {
-        Picture::of(self.lines(), from)
+    fn outlook(&self, from: Site) -> DualPolygon {
+        DualPolygon::of(self.lines(), from)
     }
 
-    fn ground(&self) -> ConsistentLines<'_> {
+    fn ground(&self) -> CellView<'_> {
         self.lines()
     }
 }
 
-impl Prediction for Picture {
+impl Prediction for DualPolygon {
     fn share_above(&self, site: Site) -> f32 {
         self.share(self.axis.see(site - self.origin))
     }
@@ -253,7 +253,7 @@ impl Prediction for Picture {
     }
 }
 
-impl Outlook for Picture {
+impl Predictor for DualPolygon {
     type After<'a> = Self;
 
     fn chance(&self, _: Site, share: f32) -> f32 {
@@ -297,7 +297,7 @@ mod tests {
                 }
             });
         let space = VersionSpace::<16>::new(&samples).unwrap();
-        let picture = Picture::of(space.lines(), at(2.0, 1.0));
+        let picture = DualPolygon::of(space.lines(), at(2.0, 1.0));
         let (mut sum, mut most, mut count) = (0.0, 0.0_f64, 0);
         for place in (0..1_600).map(|k| at(f64::from(k / 40) / 2.0, f64::from(k % 40) / 2.0)) {
             let (got, is) = (picture.share_above(place).clamp(0.0, 1.0), space.chance(place));

@@ -2,7 +2,7 @@
 //!
 //! A set of lines is the edges of a cell together with the samples that the edges name.
 
-use crate::belief::edge::Edge;
+use crate::belief::constraint::Constraint;
 use crate::belief::sample::{Label, Sample};
 use crate::geometry::approximate::{single, sqrt};
 use crate::geometry::arc::SlopeArc;
@@ -63,9 +63,9 @@ pub(crate) enum Kept {
 /// The lines that agree with some samples, each with the label that its edge gives it. The version
 /// space is such a set; so is each hypothesis.
 #[derive(Clone, Copy, Debug)]
-pub struct ConsistentLines<'a> {
+pub struct CellView<'a> {
     /// The samples that matter, in cyclic order.
-    pub edges: &'a [Edge],
+    pub edges: &'a [Constraint],
     /// The buffer whose indices the edges are.
     pub samples: &'a [Sample],
     /// The displacement by which a further sample of label +1 is shifted when it is taken in. A sample of label -1 is
@@ -75,7 +75,7 @@ pub struct ConsistentLines<'a> {
     pub is_loose: bool,
 }
 
-impl<'a> ConsistentLines<'a> {
+impl<'a> CellView<'a> {
     /// The vertex after the `k`-th edge.
     fn bound(self, k: usize) -> Option<Bound> {
         let i = *self.edges.get(k)?;
@@ -172,7 +172,7 @@ impl<'a> ConsistentLines<'a> {
     /// On which side of the vertex before each edge a position lies: [`Bound::at`], by the turn from
     /// one sample to the next as they are seen from there.
     pub(crate) fn turns(self, q: Site) -> impl Iterator<Item = i64> + 'a {
-        let seen = move |edge: &Edge| edge.seen(self.samples, q);
+        let seen = move |edge: &Constraint| edge.seen(self.samples, q);
         let mut before = self.edges.last().map(seen).unwrap_or_default();
         self.edges.iter().map(move |edge| {
             let after = seen(edge);
@@ -242,7 +242,7 @@ pub fn bound(p: Sample, q: Sample) -> Bound {
 }
 
 /// The vertices of a set of lines whose samples that matter, in cyclic order, are these: what
-/// [`ConsistentLines::bounds`] are for a cell, for a list of any length.
+/// [`CellView::bounds`] are for a cell, for a list of any length.
 pub fn bounds(
     support: impl Iterator<Item = Sample> + Clone,
 ) -> impl Iterator<Item = Bound> + Clone {
@@ -250,10 +250,10 @@ pub fn bounds(
     support.zip(next).map(|(p, q)| bound(p, q))
 }
 
-/// [`ConsistentLines::certainty`], in one place and with its arguments in registers.
+/// [`CellView::certainty`], in one place and with its arguments in registers.
 #[inline(never)]
-fn certainty(edges: &[Edge], samples: &[Sample], q: Site) -> Certainty {
-    let lines = ConsistentLines { edges, samples, shift: Vector::default(), is_loose: false };
+fn certainty(edges: &[Constraint], samples: &[Sample], q: Site) -> Certainty {
+    let lines = CellView { edges, samples, shift: Vector::default(), is_loose: false };
     Certainty::of_values(lines.turns(q))
 }
 

@@ -3,44 +3,74 @@
 use heapless::Vec;
 
 use crate::geometry::area::Area;
-use crate::geometry::hull::{Hull, NoHull, edges};
-use crate::geometry::lattice::{LIMIT, Site, Vector};
-use crate::geometry::region::{HalfPlane, KeepOut, Region};
+use crate::geometry::hull::{Hull, HullError, edges};
+use crate::geometry::lattice::{LIMIT, Site, UNITS_PER_METRE, Vector};
+use crate::geometry::workspace::{HalfPlane, Obstacle, Workspace};
 
 /// A convex polygon, but for keep-outs; `C` corners each and `K` keep-outs at most.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Terrain<const C: usize, const K: usize> {
+pub struct PolygonArea<const C: usize, const K: usize> {
     polygon: Hull<C>,
     bounds: Area,
     /// Those of the polygon's edges, rounded up.
     lengths: [u32; C],
-    keep_outs: [Option<RoundedHull<C>>; K],
+    keep_outs: [Option<KeepOut<C>>; K],
 }
 
 /// All within a distance of a hull, in lattice units below 2^30: a disc, if that is a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct RoundedHull<const C: usize> {
+pub struct KeepOut<const C: usize> {
     /// The hull.
     pub hull: Hull<C>,
     /// The distance.
     pub radius: u32,
 }
 
-/// There is no such terrain.
+impl<const C: usize> KeepOut<C> {
+    /// All within so many metres of a hull.
+    ///
+    /// # Errors
+    /// [`HullError::Radius`].
+    pub fn new(hull: Hull<C>, metres: f64) -> Result<Self, HullError> {
+        let units = libm::ceil(metres * f64::from(UNITS_PER_METRE));
+        let is_radius = (0.0..f64::from(LIMIT)).contains(&units);
+        let radius = is_radius.then_some(units as u32).ok_or(HullError::Radius)?;
+        Ok(Self { hull, radius })
+    }
+
+    /// A disc: all within so many metres of a place.
+    ///
+    /// # Errors
+    /// [`HullError::Beyond`], [`HullError::Radius`].
+    pub fn disc(centre: [f64; 2], metres: f64) -> Result<Self, HullError> {
+        Self::new(Hull::metres(&[centre])?, metres)
+    }
+
+    /// A convex polygon with these corners, `[x, z]` in metres. Two make a wall.
+    ///
+    /// # Errors
+    /// [`HullError`].
+    pub fn polygon(corners: &[[f64; 2]]) -> Result<Self, HullError> {
+        Ok(Self { hull: Hull::metres(corners)?, radius: 0 })
+    }
+}
+
+/// There is no such area.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum NoTerrain {
+#[non_exhaustive]
+pub enum PolygonAreaError {
     /// The area is no polygon.
-    Area(NoHull),
+    Area(HullError),
     /// There is room for so many keep-outs.
     TooManyKeepOuts(usize),
     /// A keep-out is too large for the lattice; the first is number 0.
     KeepOut(usize),
 }
 
-impl core::fmt::Display for NoTerrain {
+impl core::fmt::Display for PolygonAreaError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::Area(why) => why.fmt(f),
@@ -50,25 +80,43 @@ impl core::fmt::Display for NoTerrain {
     }
 }
 
-impl core::error::Error for NoTerrain {}
+impl core::error::Error for PolygonAreaError {}
 
-impl<const C: usize, const K: usize> Terrain<C, K> {
+impl From<HullError> for PolygonAreaError {
+    fn from(why: HullError) -> Self {
+        Self::Area(why)
+    }
+}
+
+impl<const C: usize, const K: usize> PolygonArea<C, K> {
     /// A polygon, and what is kept out of.
     ///
     /// # Errors
-    /// [`NoTerrain`] says what is wrong with them.
-    pub fn new(polygon: Hull<C>, keep_outs: &[RoundedHull<C>]) -> Result<Self, NoTerrain> {
-        let bounds = bounds_of(polygon.corners()).ok_or(NoTerrain::Area(NoHull::NotConvex))?;
+    /// [`PolygonAreaError`] says what is wrong with them.
+    pub fn new(polygon: Hull<C>, keep_outs: &[KeepOut<C>]) -> Result<Self, PolygonAreaError> {
+        let bounds =
+            bounds_of(polygon.corners()).ok_or(PolygonAreaError::Area(HullError::NotConvex))?;
         let mut kept = [None; K];
-        let too_many = NoTerrain::TooManyKeepOuts(K);
+        let too_many = PolygonAreaError::TooManyKeepOuts(K);
         let places = kept.get_mut(..keep_outs.len()).ok_or(too_many)?;
         for (number, (place, keep_out)) in places.iter_mut().zip(keep_outs).enumerate() {
             if keep_out.radius >= LIMIT.unsigned_abs() {
-                return Err(NoTerrain::KeepOut(number));
+                return Err(PolygonAreaError::KeepOut(number));
             }
             *place = Some(*keep_out);
         }
         Ok(Self { polygon, bounds, lengths: lengths(&polygon), keep_outs: kept })
+    }
+
+    /// A polygon with these corners, `[x, z]` in metres, and what is kept out of.
+    ///
+    /// # Errors
+    /// [`PolygonAreaError`] says what is wrong with them.
+    pub fn metres(
+        corners: &[[f64; 2]],
+        keep_outs: &[KeepOut<C>],
+    ) -> Result<Self, PolygonAreaError> {
+        Self::new(Hull::metres(corners)?, keep_outs)
     }
 
     /// Its corners, counter-clockwise.
@@ -77,7 +125,7 @@ impl<const C: usize, const K: usize> Terrain<C, K> {
     }
 
     /// What is kept out of.
-    pub fn hulls(&self) -> impl Iterator<Item = &RoundedHull<C>> {
+    pub fn hulls(&self) -> impl Iterator<Item = &KeepOut<C>> {
         self.keep_outs.iter().flatten()
     }
 
@@ -123,7 +171,7 @@ impl<const C: usize, const K: usize> Terrain<C, K> {
 }
 
 /// A rectangle with nothing in it.
-impl<const C: usize, const K: usize> From<Area> for Terrain<C, K> {
+impl<const C: usize, const K: usize> From<Area> for PolygonArea<C, K> {
     fn from(bounds: Area) -> Self {
         let polygon = Hull::of(bounds);
         Self { polygon, bounds, lengths: lengths(&polygon), keep_outs: [None; K] }
@@ -146,7 +194,7 @@ fn bounds_of(corners: &[Site]) -> Option<Area> {
     let min = Site::new(xs().min()?, zs().min()?).ok()?;
     let max = Site::new(xs().max()?, zs().max()?).ok()?;
     let has_inside = corners.len() > 2;
-    Area::new(min, max).filter(|_| has_inside)
+    Area::new(min, max).ok().filter(|_| has_inside)
 }
 
 fn middle_of(corners: &[Site]) -> Site {
@@ -164,7 +212,7 @@ fn length_of(v: Vector) -> u32 {
     (root + u64::from(root * root < square)) as u32
 }
 
-impl<const C: usize, const K: usize> Region for Terrain<C, K> {
+impl<const C: usize, const K: usize> Workspace for PolygonArea<C, K> {
     fn bounds(&self) -> Area {
         self.bounds
     }
@@ -177,7 +225,7 @@ impl<const C: usize, const K: usize> Region for Terrain<C, K> {
     }
 
     fn way_home(&self, from: Site) -> Vector {
-        let is_in = |it: &KeepOut<'_>| !it.is_clear_of(&[from], 0);
+        let is_in = |it: &Obstacle<'_>| !it.is_clear_of(&[from], 0);
         self.keep_outs().find(is_in).map_or_else(
             || self.middle() - from,
             |it| match from - middle_of(it.corners) {
@@ -204,8 +252,8 @@ impl<const C: usize, const K: usize> Region for Terrain<C, K> {
         })
     }
 
-    fn keep_outs(&self) -> impl Iterator<Item = KeepOut<'_>> {
-        self.hulls().map(|RoundedHull { hull, radius }| KeepOut {
+    fn keep_outs(&self) -> impl Iterator<Item = Obstacle<'_>> {
+        self.hulls().map(|KeepOut { hull, radius }| Obstacle {
             corners: hull.corners(),
             radius: *radius,
             margin: self.bounds.margin(),

@@ -8,8 +8,8 @@
 //!
 //! A cell does not contain the samples, so several cells can share one buffer of them.
 
-use crate::belief::consistent_lines::{ConsistentLines, Kept, run_length};
-use crate::belief::edge::Edge;
+use crate::belief::cell_view::{CellView, Kept, run_length};
+use crate::belief::constraint::Constraint;
 use crate::belief::sample::Sample;
 use crate::geometry::lattice::{Vector, orient};
 
@@ -48,20 +48,20 @@ impl core::error::Error for CutError {}
 ///
 /// `samples` in every method is the one buffer whose indices the edges are.
 #[derive(Clone, Copy)]
-pub struct LineCell<const E: usize> {
+pub struct DualCell<const E: usize> {
     /// In cyclic order, from the first on.
-    edges: [Edge; E],
+    edges: [Constraint; E],
     len: u8,
 }
 
-impl<const E: usize> LineCell<E> {
+impl<const E: usize> DualCell<E> {
     /// No line at all: a cell without edges.
-    pub(crate) const NONE: Self = Self { edges: [Edge::NONE; E], len: 0 };
+    pub(crate) const NONE: Self = Self { edges: [Constraint::NONE; E], len: 0 };
 
     /// The lines that agree with three samples; `None` when these are collinear.
-    pub fn triangle(samples: &[Sample], [i, j, k]: [Edge; 3]) -> Option<Self> {
+    pub fn triangle(samples: &[Sample], [i, j, k]: [Constraint; 3]) -> Option<Self> {
         const { assert!(E >= 3, "a cell has at least three edges") };
-        let site = |edge: Edge| samples.get(edge.index()).map(|s| s.site);
+        let site = |edge: Constraint| samples.get(edge.index()).map(|s| s.site);
         let turn = orient(site(i)?, site(j)?, site(k)?);
         let labels = i.label().sign() * j.label().sign() * k.label().sign();
         let ordered = match turn.signum() * i64::from(labels) {
@@ -73,32 +73,32 @@ impl<const E: usize> LineCell<E> {
     }
 
     /// The cell with these edges; `None` when they do not fit.
-    fn of(edges: &[Edge]) -> Option<Self> {
+    fn of(edges: &[Constraint]) -> Option<Self> {
         let mut cell = Self { len: u8::try_from(edges.len()).ok()?, ..Self::NONE };
         cell.edges.get_mut(..edges.len())?.copy_from_slice(edges);
         Some(cell)
     }
 
     /// The same cell with another capacity; `None` when its edges do not fit.
-    pub(crate) fn resized<const F: usize>(&self) -> Option<LineCell<F>> {
-        LineCell::of(self.edges())
+    pub(crate) fn resized<const F: usize>(&self) -> Option<DualCell<F>> {
+        DualCell::of(self.edges())
     }
 
     /// The samples that still matter, in cyclic order.
-    pub fn edges(&self) -> &[Edge] {
+    pub fn edges(&self) -> &[Constraint] {
         self.edges.get(..usize::from(self.len)).unwrap_or(&[])
     }
 
     /// The lines, beside the samples that the edges name.
-    pub fn lines<'a>(&'a self, samples: &'a [Sample]) -> ConsistentLines<'a> {
-        ConsistentLines { edges: self.edges(), samples, shift: Vector::default(), is_loose: false }
+    pub fn lines<'a>(&'a self, samples: &'a [Sample]) -> CellView<'a> {
+        CellView { edges: self.edges(), samples, shift: Vector::default(), is_loose: false }
     }
 
     /// Keeps the lines that agree with the edge's sample. One orientation an edge, exact.
     ///
     /// # Errors
     /// [`CutError`], with the cell as it was.
-    pub fn cut(&mut self, samples: &[Sample], edge: Edge) -> Result<Cut, CutError> {
+    pub fn cut(&mut self, samples: &[Sample], edge: Constraint) -> Result<Cut, CutError> {
         let site = samples.get(edge.index()).ok_or(CutError::Full)?.site;
         let (first, last) = match self.lines(samples).kept(site, edge.label()) {
             Kept::All => return Ok(Cut::Unchanged),
@@ -119,15 +119,15 @@ impl<const E: usize> LineCell<E> {
     }
 }
 
-impl<const E: usize> PartialEq for LineCell<E> {
+impl<const E: usize> PartialEq for DualCell<E> {
     fn eq(&self, other: &Self) -> bool {
         self.edges() == other.edges()
     }
 }
 
-impl<const E: usize> Eq for LineCell<E> {}
+impl<const E: usize> Eq for DualCell<E> {}
 
-impl<const E: usize> core::fmt::Debug for LineCell<E> {
+impl<const E: usize> core::fmt::Debug for DualCell<E> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.debug_list().entries(self.edges()).finish()
     }

@@ -1,18 +1,18 @@
 //! The traits that look-ahead needs: what a label at a place is expected to tell, and the prediction after it.
 
-use crate::belief::consistent_lines::ConsistentLines;
+use crate::belief::cell_view::CellView;
 use crate::belief::sample::{Label, Reading};
 use crate::belief::tolerance::Tolerance;
-use crate::belief::{Belief, Refused};
+use crate::belief::{Belief, ObservationError};
 use crate::geometry::lattice::Site;
 
 /// A belief, and what it expects of labels.
-pub trait Foresight {
+pub trait PredictiveBelief {
     /// What is known.
     type Belief: Belief;
 
     /// What is expected.
-    type Outlook<'a>: Outlook
+    type Predictor<'a>: Predictor
     where
         Self: 'a;
 
@@ -28,16 +28,16 @@ pub trait Foresight {
         site: Site,
         reading: Reading,
         tolerance: Tolerance,
-    ) -> Result<(), Refused>;
+    ) -> Result<(), ObservationError>;
 
     /// Prepares the outlook. It stays valid until something is observed.
     fn prepare(&mut self);
 
     /// The outlook for questions asked from a site.
-    fn outlook(&self, from: Site) -> Self::Outlook<'_>;
+    fn outlook(&self, from: Site) -> Self::Predictor<'_>;
 
     /// The lines on whose uncertain ground a label may tell something.
-    fn ground(&self) -> ConsistentLines<'_>;
+    fn ground(&self) -> CellView<'_>;
 }
 
 /// A prediction of the label at a place, and of the information that it carries.
@@ -55,7 +55,7 @@ pub trait Prediction {
 }
 
 /// A prediction that can also predict its own state after one more label.
-pub trait Outlook: Prediction {
+pub trait Predictor: Prediction {
     /// The prediction when one more label is known.
     type After<'a>: Prediction
     where

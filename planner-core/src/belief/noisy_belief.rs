@@ -1,51 +1,63 @@
 //! Predicts labels that may be wrong: an exact table of hypotheses describes what is known, and columns beside it serve
 //! to look ahead.
 
-use crate::belief::Refused;
+use crate::belief::ObservationError;
+use crate::belief::cell_posterior::CellPosterior;
+use crate::belief::cell_view::CellView;
 use crate::belief::columns::{After, Columns};
-use crate::belief::consistent_lines::ConsistentLines;
-use crate::belief::hypotheses::Hypotheses;
 use crate::belief::list::List;
 use crate::belief::noise::{Noise, Reliability};
-use crate::belief::outlook::{Foresight, Outlook, Prediction, entropy};
+use crate::belief::observation_log::{FromLog, ObservationLog, ReplayError};
+use crate::belief::predictor::{Prediction, PredictiveBelief, Predictor, entropy};
 use crate::belief::sample::{Label, Reading, Sample};
-use crate::belief::told::{NotReplayed, Replay, Told};
 use crate::belief::tolerance::Tolerance;
-use crate::belief::version_space::NoVersionSpace;
+use crate::belief::version_space::GivenError;
 use crate::belief::weight::Prior;
 use crate::geometry::lattice::Site;
 
 /// The number of directions that represent all lines.
 const DIRECTIONS: usize = 16;
 
+/// The sequences that so many labels can have where one line separates them: the hypotheses that a [`NoisyBelief`] has
+/// to hold so that none is left out.
+///
+/// ```
+/// # use planner_core::{NoisyBelief, sequences_of};
+/// type Belief = NoisyBelief<40, { sequences_of(36) }>; // room for 4 given samples and 36 labels
+/// # assert_eq!(sequences_of(36), 667);
+/// ```
+pub const fn sequences_of(labels: usize) -> usize {
+    1 + labels + labels * labels.saturating_sub(1) / 2
+}
+
 /// Up to `H` hypotheses over up to `N` samples, and what they expect of the next labels.
 #[derive(Clone, Debug)]
-pub struct Forecast<const N: usize, const H: usize> {
-    table: Hypotheses<N, H>,
+pub struct NoisyBelief<const N: usize, const H: usize> {
+    table: CellPosterior<N, H>,
     /// The reliability of each label of the table.
     believed: List<Reliability, N>,
     columns: Columns<DIRECTIONS>,
 }
 
-impl<const N: usize, const H: usize> Forecast<N, H> {
+impl<const N: usize, const H: usize> NoisyBelief<N, H> {
     /// No sample and no hypothesis: memory to [`restart`](Self::restart) in.
     pub const NONE: Self = Self {
-        table: Hypotheses::NONE,
+        table: CellPosterior::NONE,
         believed: List::filled(Reliability::NONE),
         columns: Columns::NONE,
     };
 
-    /// What the given samples leave, see [`Hypotheses::new`].
+    /// What the given samples leave, lines weighed by [`Prior::Area`]. [`restart`](Self::restart) takes another prior.
     ///
     /// # Errors
-    /// As there.
-    pub fn new(given: &[Sample], prior: Prior, noise: Noise) -> Result<Self, NoVersionSpace> {
-        let mut forecast = Self::NONE;
-        forecast.restart(given, prior, noise)?;
-        Ok(forecast)
+    /// As [`CellPosterior::new`].
+    pub fn new(given: &[Sample], noise: Noise) -> Result<Self, GivenError> {
+        let mut belief = Self::NONE;
+        belief.restart(given, Prior::Area, noise)?;
+        Ok(belief)
     }
 
-    /// As [`new`](Self::new), in place.
+    /// As [`new`](Self::new), in place, with lines weighed by a prior.
     ///
     /// # Errors
     /// As there, with the forecast as it was.
@@ -54,21 +66,25 @@ impl<const N: usize, const H: usize> Forecast<N, H> {
         given: &[Sample],
         prior: Prior,
         noise: Noise,
-    ) -> Result<(), NoVersionSpace> {
+    ) -> Result<(), GivenError> {
         self.table.restart(given, prior, noise)?;
         self.believed.clear();
         Ok(())
     }
 
-    /// Takes in a label of some reliability, see [`Hypotheses::take`].
+    /// Takes in a label of some reliability, see [`CellPosterior::take`].
     ///
     /// # Errors
     /// As there, with the forecast as it was.
-    pub fn take(&mut self, sample: Sample, reliability: Reliability) -> Result<(), Refused> {
+    pub fn take(
+        &mut self,
+        sample: Sample,
+        reliability: Reliability,
+    ) -> Result<(), ObservationError> {
         self.take_within(sample, reliability, self.table.noise().tolerance)
     }
 
-    /// As [`take`](Self::take), of a position that may be off by so much, see [`Hypotheses::take_within`].
+    /// As [`take`](Self::take), of a position that may be off by so much, see [`CellPosterior::take_within`].
     ///
     /// # Errors
     /// As there, with the forecast as it was.
@@ -77,23 +93,23 @@ impl<const N: usize, const H: usize> Forecast<N, H> {
         sample: Sample,
         reliability: Reliability,
         tolerance: Tolerance,
-    ) -> Result<(), Refused> {
+    ) -> Result<(), ObservationError> {
         self.table.take_within(sample, reliability, tolerance)?;
         let _ = self.believed.push(reliability); // there is as much room
         Ok(())
     }
 }
 
-impl<const N: usize, const H: usize> Replay for Forecast<N, H> {
-    type Told = Told<N>;
+impl<const N: usize, const H: usize> FromLog for NoisyBelief<N, H> {
+    type ObservationLog = ObservationLog<N>;
 
-    fn told(&self) -> Told<N> {
+    fn told(&self) -> ObservationLog<N> {
         let believed = self.believed.iter().copied();
-        let told = Told::new(self.table.given(), self.table.samples(), believed);
+        let told = ObservationLog::new(self.table.given(), self.table.samples(), believed);
         told.within(self.table.tolerances(), self.table.noise().tolerance)
     }
 
-    fn replay(&mut self, told: &Told<N>) -> Result<(), NotReplayed> {
+    fn replay(&mut self, told: &ObservationLog<N>) -> Result<(), ReplayError> {
         self.restart(told.given(), self.table.prior(), self.table.noise())?;
         let most = self.table.noise().tolerance;
         for (sample, reliability, tolerance) in told.doubtful_labels(most)? {
@@ -103,11 +119,11 @@ impl<const N: usize, const H: usize> Replay for Forecast<N, H> {
     }
 }
 
-impl<const N: usize, const H: usize> Foresight for Forecast<N, H> {
-    type Belief = Hypotheses<N, H>;
-    type Outlook<'a> = Expected<'a, N, H>;
+impl<const N: usize, const H: usize> PredictiveBelief for NoisyBelief<N, H> {
+    type Belief = CellPosterior<N, H>;
+    type Predictor<'a> = TablePredictor<'a, N, H>;
 
-    fn belief(&self) -> &Hypotheses<N, H> {
+    fn belief(&self) -> &CellPosterior<N, H> {
         &self.table
     }
 
@@ -116,7 +132,7 @@ impl<const N: usize, const H: usize> Foresight for Forecast<N, H> {
         site: Site,
         reading: Reading,
         tolerance: Tolerance,
-    ) -> Result<(), Refused> {
+    ) -> Result<(), ObservationError> {
         let Reading::Side(label) = reading else { return self.table.admits(tolerance) };
         let reliability = self.table.reliability_within(site, tolerance);
         self.take_within(Sample { site, label }, reliability, tolerance)
@@ -126,11 +142,11 @@ impl<const N: usize, const H: usize> Foresight for Forecast<N, H> {
         self.columns.lay(&self.table, &self.believed);
     }
 
-    fn outlook(&self, _: Site) -> Expected<'_, N, H> {
-        Expected { labels: Labels::of(&self.table), columns: &self.columns }
+    fn outlook(&self, _: Site) -> TablePredictor<'_, N, H> {
+        TablePredictor { labels: Labels::of(&self.table), columns: &self.columns }
     }
 
-    fn ground(&self) -> ConsistentLines<'_> {
+    fn ground(&self) -> CellView<'_> {
         self.table.start()
     }
 }
@@ -138,13 +154,13 @@ impl<const N: usize, const H: usize> Foresight for Forecast<N, H> {
 /// How far labels can be believed.
 #[derive(Clone, Copy, Debug)]
 struct Labels<'a, const N: usize, const H: usize> {
-    table: &'a Hypotheses<N, H>,
+    table: &'a CellPosterior<N, H>,
     /// What one can tell outside the trusted balls, bits.
     capacity: f32,
 }
 
 impl<'a, const N: usize, const H: usize> Labels<'a, N, H> {
-    fn of(table: &'a Hypotheses<N, H>) -> Self {
+    fn of(table: &'a CellPosterior<N, H>) -> Self {
         let capacity = 1.0 - entropy(table.noise().reliability.single());
         Self { table, capacity }
     }
@@ -183,19 +199,19 @@ fn chance(share: f32, p: f32) -> f32 {
 
 /// What the hypotheses expect.
 #[derive(Clone, Copy, Debug)]
-pub struct Expected<'a, const N: usize, const H: usize> {
+pub struct TablePredictor<'a, const N: usize, const H: usize> {
     labels: Labels<'a, N, H>,
     columns: &'a Columns<DIRECTIONS>,
 }
 
 /// What they will expect when one more label is known.
 #[derive(Clone, Copy, Debug)]
-pub struct ExpectedAfter<'a, const N: usize, const H: usize> {
+pub struct TablePredictorAfter<'a, const N: usize, const H: usize> {
     labels: Labels<'a, N, H>,
     columns: After<'a, DIRECTIONS>,
 }
 
-impl<const N: usize, const H: usize> Prediction for Expected<'_, N, H> {
+impl<const N: usize, const H: usize> Prediction for TablePredictor<'_, N, H> {
     fn share_above(&self, site: Site) -> f32 {
         self.columns.share_above(site)
     }
@@ -205,7 +221,7 @@ impl<const N: usize, const H: usize> Prediction for Expected<'_, N, H> {
     }
 }
 
-impl<const N: usize, const H: usize> Prediction for ExpectedAfter<'_, N, H> {
+impl<const N: usize, const H: usize> Prediction for TablePredictorAfter<'_, N, H> {
     fn share_above(&self, site: Site) -> f32 {
         self.columns.share_above(site)
     }
@@ -215,9 +231,9 @@ impl<const N: usize, const H: usize> Prediction for ExpectedAfter<'_, N, H> {
     }
 }
 
-impl<const N: usize, const H: usize> Outlook for Expected<'_, N, H> {
+impl<const N: usize, const H: usize> Predictor for TablePredictor<'_, N, H> {
     type After<'a>
-        = ExpectedAfter<'a, N, H>
+        = TablePredictorAfter<'a, N, H>
     where
         Self: 'a;
 
@@ -225,10 +241,10 @@ impl<const N: usize, const H: usize> Outlook for Expected<'_, N, H> {
         chance(share, self.labels.p(site))
     }
 
-    fn after(&self, site: Site, label: Label) -> ExpectedAfter<'_, N, H> {
+    fn after(&self, site: Site, label: Label) -> TablePredictorAfter<'_, N, H> {
         let heights = self.columns.heights(site);
         let columns = self.columns.after(heights, label, self.labels.p(site));
-        ExpectedAfter { labels: self.labels, columns }
+        TablePredictorAfter { labels: self.labels, columns }
     }
 }
 

@@ -2,17 +2,17 @@
 //!
 //! The policy depends on the information alone, so Equation 8 reduces to a simple weight: `p^agree (1 - p)^disagree`
 //! over the samples outside the trusted balls. A probability is this weight divided by the sum over all separable
-//! sequences. A bound on the effect of pruning is [`Posterior::pruned_mass`].
+//! sequences. A bound on the effect of pruning is [`PosteriorView::pruned_mass`].
 
-use crate::belief::consistent_lines::{ConsistentLines, intercepts};
+use crate::belief::cell_posterior::{CellPosterior, Hypothesis};
+use crate::belief::cell_view::{CellView, intercepts};
 use crate::belief::estimate::{Estimates, area, bisector, maximum_margin, share_above};
 use crate::belief::goal::Goal;
-use crate::belief::hypotheses::{Hypotheses, Hypothesis};
 use crate::belief::moments::Moments;
 use crate::belief::sample::Reading;
 use crate::belief::tolerance::Tolerance;
 use crate::belief::weight::LogWeight;
-use crate::belief::{Belief, Refused};
+use crate::belief::{Belief, ObservationError};
 use crate::geometry::arc::SlopeArc;
 use crate::geometry::area::Area;
 use crate::geometry::lattice::Site;
@@ -22,8 +22,8 @@ use crate::geometry::local_line::LocalLine;
 ///
 /// Building it and each read-out cost one exponential for each hypothesis.
 #[derive(Clone, Copy, Debug)]
-pub struct Posterior<'a, const N: usize, const H: usize, const E: usize> {
-    hypotheses: &'a Hypotheses<N, H, E>,
+pub struct PosteriorView<'a, const N: usize, const H: usize, const E: usize> {
+    hypotheses: &'a CellPosterior<N, H, E>,
     total: f64,
 }
 
@@ -57,7 +57,7 @@ pub struct Credible {
     cut: Option<(LogWeight, usize)>,
 }
 
-impl<const N: usize, const H: usize, const E: usize> Belief for Hypotheses<N, H, E> {
+impl<const N: usize, const H: usize, const E: usize> Belief for CellPosterior<N, H, E> {
     fn is_full(&self) -> bool {
         self.is_full()
     }
@@ -72,12 +72,12 @@ impl<const N: usize, const H: usize, const E: usize> Belief for Hypotheses<N, H,
         site: Site,
         reading: Reading,
         tolerance: Tolerance,
-    ) -> Result<(), Refused> {
+    ) -> Result<(), ObservationError> {
         let Reading::Side(label) = reading else { return self.admits(tolerance) };
         self.read_within(site, label, tolerance)
     }
 
-    /// Returns the bisector of the labels as they were seen, the posterior [mean](Posterior::mean), and the maximum
+    /// Returns the bisector of the labels as they were seen, the posterior [mean](PosteriorView::mean), and the maximum
     /// margin of the most likely hypothesis.
     fn estimates(&self) -> Estimates {
         let best = most_likely(self).map(|best| self.lines(best));
@@ -89,7 +89,7 @@ impl<const N: usize, const H: usize, const E: usize> Belief for Hypotheses<N, H,
     }
 
     fn information(&self) -> f64 {
-        Posterior::new(self).information()
+        PosteriorView::new(self).information()
     }
 
     /// Of the heaviest hypotheses that hold the level together.
@@ -101,13 +101,13 @@ impl<const N: usize, const H: usize, const E: usize> Belief for Hypotheses<N, H,
     }
 
     fn chance(&self, site: Site) -> f64 {
-        Posterior::new(self).chance(site)
+        PosteriorView::new(self).chance(site)
     }
 }
 
-impl<'a, const N: usize, const H: usize, const E: usize> Posterior<'a, N, H, E> {
+impl<'a, const N: usize, const H: usize, const E: usize> PosteriorView<'a, N, H, E> {
     /// The posterior of a table.
-    pub fn new(hypotheses: &'a Hypotheses<N, H, E>) -> Self {
+    pub fn new(hypotheses: &'a CellPosterior<N, H, E>) -> Self {
         let total = hypotheses.iter().map(|h| h.weight().exp()).sum();
         Self { hypotheses, total }
     }
@@ -157,7 +157,7 @@ impl<'a, const N: usize, const H: usize, const E: usize> Posterior<'a, N, H, E> 
         let lines = || self.down_to(cut).map(|h| self.hypotheses.lines(h));
         let directions = lines().flat_map(|c| c.bounds().map(|bound| bound.along));
         let slope_arc = SlopeArc::spanning(directions).unwrap_or_default();
-        let intercept = intercepts(lines().flat_map(ConsistentLines::bounds));
+        let intercept = intercepts(lines().flat_map(CellView::bounds));
         Credible { level, probability, cells, slope_arc, intercept, cut }
     }
 
@@ -234,15 +234,15 @@ impl<'a, const N: usize, const H: usize, const E: usize> Posterior<'a, N, H, E> 
 }
 
 fn most_likely<const N: usize, const H: usize, const E: usize>(
-    hypotheses: &Hypotheses<N, H, E>,
+    hypotheses: &CellPosterior<N, H, E>,
 ) -> Option<&Hypothesis<E>> {
     hypotheses.iter().reduce(|best, next| if next.weight() > best.weight() { next } else { best })
 }
 
-/// [`Posterior::mean`], in the frame of the most likely hypothesis: in single precision, and without the sum
+/// [`PosteriorView::mean`], in the frame of the most likely hypothesis: in single precision, and without the sum
 /// of all weights.
 fn mean<const N: usize, const H: usize, const E: usize>(
-    hypotheses: &Hypotheses<N, H, E>,
+    hypotheses: &CellPosterior<N, H, E>,
 ) -> Option<LocalLine> {
     let frame = Moments::of(hypotheses.lines(most_likely(hypotheses)?))?.frame();
     let mut all = Moments::none(frame);

@@ -5,9 +5,9 @@ use crate::geometry::lattice::{Site, Vector};
 
 /// A sample's part in a cell: its index in the buffer and the label the cell gives it.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub struct Edge(u8);
+pub struct Constraint(u8);
 
-impl Edge {
+impl Constraint {
     const NEGATIVE: u8 = 0x80;
 
     /// The edge of the sample at `index` (below 128) when its label is `label`.
@@ -38,7 +38,7 @@ impl Edge {
     }
 }
 
-impl core::fmt::Debug for Edge {
+impl core::fmt::Debug for Constraint {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let sign = if self.label() == Label::Positive { '+' } else { '-' };
         write!(f, "{sign}{}", self.index())

@@ -2,13 +2,14 @@
 
 use crate::geometry::area::Area;
 use crate::geometry::hull::{are_apart, have_boxes_apart};
-use crate::geometry::lattice::{Site, Vector};
+use crate::geometry::lattice::{LIMIT, Site, UNITS_PER_METRE, Vector};
+use crate::geometry::value::ValueError;
 
 /// Where motions may go: a convex area without convex keep-outs, which no motion touches.
 ///
 /// [`Area`], a rectangle with nothing in it, pays nothing for polygons and keep-outs.
-/// [`Terrain`](crate::geometry::terrain::Terrain) is a convex polygon with keep-outs.
-pub trait Region: Copy {
+/// [`PolygonArea`](crate::geometry::polygon_area::PolygonArea) is a convex polygon with keep-outs.
+pub trait Workspace: Copy {
     /// The smallest rectangle around it.
     fn bounds(&self) -> Area;
 
@@ -21,6 +22,20 @@ pub trait Region: Copy {
     /// The displacement by which an agent outside the region returns to its inside sooner or later.
     fn way_home(&self, from: Site) -> Vector {
         self.bounds().middle() - from
+    }
+
+    /// The same area, of whose border and keep-outs motions stay clear by so many metres. By default it is the tolerance
+    /// of the planner's belief; a smaller clearance than that has no effect.
+    ///
+    /// # Errors
+    /// [`ValueError`] if the clearance is negative or no number, or nothing of the area is left.
+    fn with_clearance(&self, metres: f64) -> Result<Self, ValueError> {
+        const NONE: ValueError =
+            ValueError("a clearance is 0 or more, and leaves some of the area");
+        let units = libm::ceil(metres * f64::from(UNITS_PER_METRE));
+        let is_length = (0.0..f64::from(LIMIT)).contains(&units);
+        let part = if is_length { self.whole().inset(units as u32) } else { None };
+        part.ok_or(NONE)
     }
 
     /// The part that is further than so many lattice units from the border and from all keep-outs: where to aim if
@@ -38,7 +53,7 @@ pub trait Region: Copy {
     }
 
     /// What no motion touches.
-    fn keep_outs(&self) -> impl Iterator<Item = KeepOut<'_>> {
+    fn keep_outs(&self) -> impl Iterator<Item = Obstacle<'_>> {
         core::iter::empty()
     }
 
@@ -100,7 +115,7 @@ const fn may_go(from: i64, to: i64, margin: i64) -> bool {
     to >= 0 || from < 0 && (to >= -margin || from < -margin)
 }
 
-impl Region for Area {
+impl Workspace for Area {
     fn bounds(&self) -> Area {
         *self
     }
@@ -142,7 +157,7 @@ impl HalfPlane {
 
 /// Ground that no motion touches: all within a distance of a convex hull. A disc is all within its radius of a point.
 #[derive(Clone, Copy, Debug)]
-pub struct KeepOut<'a> {
+pub struct Obstacle<'a> {
     /// The hull's corners.
     pub corners: &'a [Site],
     /// The distance, lattice units.
@@ -151,7 +166,7 @@ pub struct KeepOut<'a> {
     pub margin: u32,
 }
 
-impl KeepOut<'_> {
+impl Obstacle<'_> {
     /// Whether the box around a hull comes as near as the margin to the box around it. Cheap.
     pub(crate) fn is_near(&self, hull: &[Site]) -> bool {
         !have_boxes_apart(self.corners, hull, self.radius.saturating_add(self.margin))

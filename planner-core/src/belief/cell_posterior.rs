@@ -7,9 +7,9 @@
 //! exactly, until it is full.
 //!
 //! - *Full table.* Before a sample is taken in, the least likely hypotheses are dropped whole. A bound on the mass that
-//!   they may have reached since is [`Posterior::pruned_mass`].
+//!   they may have reached since is [`PosteriorView::pruned_mass`].
 //! - *A cell with more edges than it can hold* keeps the lines that the sample would have cut off. That is an outer
-//!   approximation, counted in [`outer_cells`](Hypotheses::outer_cells). With 15 edges it has not been seen to happen:
+//!   approximation, counted in [`outer_cells`](CellPosterior::outer_cells). With 15 edges it has not been seen to happen:
 //!   over the tests' missions of 64 labels a cell has 9 at most.
 //!
 //! Where positions err, the weight of a label does not change in a step from one side of its site to the other. Steps,
@@ -18,21 +18,21 @@
 //! the cells, the more closely the weights follow the likelihood. Each label is still one sample. The pruned mass keeps
 //! the value that it had when it was lost.
 //!
-//! [`Posterior::pruned_mass`]: crate::belief::posterior::Posterior::pruned_mass
+//! [`PosteriorView::pruned_mass`]: crate::belief::posterior_view::PosteriorView::pruned_mass
 
-use crate::belief::Refused;
+use crate::belief::ObservationError;
 use crate::belief::blur::{Blur, Doubt, Scale};
-use crate::belief::cell::LineCell;
-use crate::belief::consistent_lines::{Certainty, ConsistentLines};
-use crate::belief::edge::Edge;
+use crate::belief::cell_view::{CellView, Certainty};
+use crate::belief::constraint::Constraint;
+use crate::belief::dual_cell::DualCell;
 use crate::belief::estimate::area;
 use crate::belief::list::List;
 use crate::belief::noise::{Noise, Reliability};
+use crate::belief::observation_log::{FromLog, ObservationLog, ReplayError};
 use crate::belief::pruned::PrunedMass;
 use crate::belief::sample::{Label, Sample, SampleBuffer};
-use crate::belief::told::{NotReplayed, Replay, Told};
 use crate::belief::tolerance::{Short, Tolerance};
-use crate::belief::version_space::{NoVersionSpace, VersionSpace};
+use crate::belief::version_space::{GivenError, VersionSpace};
 use crate::belief::weight::{Coarse, LogWeight, Prior};
 use crate::geometry::lattice::Site;
 
@@ -40,7 +40,7 @@ use crate::geometry::lattice::Site;
 /// labels seen. 24 bytes for `E = 15`.
 #[derive(Clone, Copy, Debug)]
 pub struct Hypothesis<const E: usize> {
-    cell: LineCell<E>,
+    cell: DualCell<E>,
     /// The weight in two halves, or a hypothesis would be padded to a multiple of 8 bytes.
     high: i32,
     low: u32,
@@ -48,14 +48,14 @@ pub struct Hypothesis<const E: usize> {
 
 impl<const E: usize> Hypothesis<E> {
     /// A placeholder that no line realises. All its bytes are zero, so memory filled with it costs no flash.
-    const NONE: Self = Self { cell: LineCell::NONE, high: 0, low: 0 };
+    const NONE: Self = Self { cell: DualCell::NONE, high: 0, low: 0 };
 
-    fn new(cell: LineCell<E>, LogWeight(units): LogWeight) -> Self {
+    fn new(cell: DualCell<E>, LogWeight(units): LogWeight) -> Self {
         Self { cell, high: (units >> 32) as i32, low: units as u32 }
     }
 
     /// The lines that realise it.
-    pub fn cell(&self) -> &LineCell<E> {
+    pub fn cell(&self) -> &DualCell<E> {
         &self.cell
     }
 
@@ -80,16 +80,16 @@ impl<const E: usize> Hypothesis<E> {
 /// A table without room for one hypothesis does not compile:
 ///
 /// ```compile_fail,E0080
-/// use planner_core::belief::hypotheses::Hypotheses;
-/// let table = Hypotheses::<16, 0>::NONE;
+/// use planner_core::belief::cell_posterior::CellPosterior;
+/// let table = CellPosterior::<16, 0>::NONE;
 /// ```
 #[derive(Clone, Debug)]
-pub struct Hypotheses<const N: usize, const H: usize, const E: usize = 15> {
+pub struct CellPosterior<const N: usize, const H: usize, const E: usize = 15> {
     samples: SampleBuffer<N>,
     /// How far the position of each label taken in may be off.
     tolerances: List<Short, N>,
     given: u8,
-    start: LineCell<E>,
+    start: DualCell<E>,
     table: List<Hypothesis<E>, H>,
     prior: Prior,
     noise: Noise,
@@ -97,7 +97,7 @@ pub struct Hypotheses<const N: usize, const H: usize, const E: usize = 15> {
     outer_cells: u16,
 }
 
-impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
+impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
     /// No sample and no hypothesis: memory to [`restart`](Self::restart) in.
     pub const NONE: Self = {
         assert!(H >= 1, "a table holds at least one hypothesis");
@@ -105,7 +105,7 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
             samples: SampleBuffer::new(),
             tolerances: List::filled(Short::NONE),
             given: 0,
-            start: LineCell::NONE,
+            start: DualCell::NONE,
             table: List::filled(Hypothesis::NONE),
             prior: Prior::Area,
             noise: Noise {
@@ -122,8 +122,8 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
     /// labels will make of it, `noise` says how far these can be believed.
     ///
     /// # Errors
-    /// [`NoVersionSpace`], and `TooMany` also when more than `E` of them bound the line.
-    pub fn new(given: &[Sample], prior: Prior, noise: Noise) -> Result<Self, NoVersionSpace> {
+    /// [`GivenError`], and `TooMany` also when more than `E` of them bound the line.
+    pub fn new(given: &[Sample], prior: Prior, noise: Noise) -> Result<Self, GivenError> {
         let mut hypotheses = Self::NONE;
         hypotheses.restart(given, prior, noise)?;
         Ok(hypotheses)
@@ -138,9 +138,9 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
         given: &[Sample],
         prior: Prior,
         noise: Noise,
-    ) -> Result<(), NoVersionSpace> {
+    ) -> Result<(), GivenError> {
         let space = VersionSpace::<N>::new(given)?;
-        let start: LineCell<E> = space.cell().resized().ok_or(NoVersionSpace::TooMany)?;
+        let start: DualCell<E> = space.cell().resized().ok_or(GivenError::TooMany)?;
         self.samples = space.into_samples();
         self.tolerances.clear();
         self.given = given.len() as u8;
@@ -224,7 +224,7 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
     }
 
     /// What the given samples leave: the ground of P3 and P4.
-    pub fn start(&self) -> ConsistentLines<'_> {
+    pub fn start(&self) -> CellView<'_> {
         self.start.lines(&self.samples)
     }
 
@@ -234,7 +234,7 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
     }
 
     /// The lines of a hypothesis of this table.
-    pub fn lines<'a>(&'a self, hypothesis: &'a Hypothesis<E>) -> ConsistentLines<'a> {
+    pub fn lines<'a>(&'a self, hypothesis: &'a Hypothesis<E>) -> CellView<'a> {
         hypothesis.cell.lines(&self.samples)
     }
 
@@ -330,16 +330,16 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
     }
 
     /// Whether a position may be off by so much.
-    pub(crate) fn admits(&self, tolerance: Tolerance) -> Result<(), Refused> {
+    pub(crate) fn admits(&self, tolerance: Tolerance) -> Result<(), ObservationError> {
         let is_within = tolerance <= self.noise.tolerance;
-        is_within.then_some(()).ok_or(Refused::Tolerance(tolerance))
+        is_within.then_some(()).ok_or(ObservationError::Tolerance(tolerance))
     }
 
     /// Takes in a label that is read at a site, as far as it can be believed there.
     ///
     /// # Errors
     /// As [`take`](Self::take).
-    pub fn read(&mut self, site: Site, label: Label) -> Result<(), Refused> {
+    pub fn read(&mut self, site: Site, label: Label) -> Result<(), ObservationError> {
         self.read_within(site, label, self.noise.tolerance)
     }
 
@@ -352,7 +352,7 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
         site: Site,
         label: Label,
         tolerance: Tolerance,
-    ) -> Result<(), Refused> {
+    ) -> Result<(), ObservationError> {
         let reliability = self.reliability_within(site, tolerance);
         self.take_within(Sample { site, label }, reliability, tolerance)
     }
@@ -365,9 +365,13 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
     /// is then as reliable as the noise says.
     ///
     /// # Errors
-    /// [`Refused::Contradiction`] when a label that is certain leaves no hypothesis, and
-    /// [`Refused::Full`]; the table is then as it was.
-    pub fn take(&mut self, sample: Sample, reliability: Reliability) -> Result<(), Refused> {
+    /// [`ObservationError::Contradiction`] when a label that is certain leaves no hypothesis, and
+    /// [`ObservationError::Full`]; the table is then as it was.
+    pub fn take(
+        &mut self,
+        sample: Sample,
+        reliability: Reliability,
+    ) -> Result<(), ObservationError> {
         self.take_within(sample, reliability, self.noise.tolerance)
     }
 
@@ -375,13 +379,13 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
     /// [noise](Self::noise)'s tolerance. The less it may be off, the more the label tells.
     ///
     /// # Errors
-    /// As `take`, and [`Refused::Tolerance`]; the table is then as it was.
+    /// As `take`, and [`ObservationError::Tolerance`]; the table is then as it was.
     pub fn take_within(
         &mut self,
         sample: Sample,
         reliability: Reliability,
         tolerance: Tolerance,
-    ) -> Result<(), Refused> {
+    ) -> Result<(), ObservationError> {
         self.admits(tolerance)?;
         let (agree, disagree) = self.weights(reliability);
         let weight = |label: Label| if label == sample.label { agree } else { disagree };
@@ -391,20 +395,22 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
         };
         let doubtful = agree.is_some() && disagree.is_some();
         if self.samples.is_full() {
-            return Err(Refused::Full(sample));
+            return Err(ObservationError::Full(sample));
         }
         if !doubtful && !self.table.iter().any(survives) {
-            return Err(Refused::Contradiction(sample));
+            return Err(ObservationError::Contradiction(sample));
         }
         if doubtful {
             self.make_room(sample.site);
         }
-        let Ok(index) = self.samples.push(sample) else { return Err(Refused::Full(sample)) };
+        let Ok(index) = self.samples.push(sample) else {
+            return Err(ObservationError::Full(sample));
+        };
         let _ = self.tolerances.push(Short::of(tolerance)); // there is as much room
         let mut doubts = List::filled(Doubt::NONE);
         self.doubts(&mut doubts);
         for k in 0..self.table.len() {
-            self.update(k, Edge::new(index, sample.label), reliability, &doubts);
+            self.update(k, Constraint::new(index, sample.label), reliability, &doubts);
         }
         if !doubtful {
             self.table.retain(|hypothesis| !hypothesis.cell.edges().is_empty());
@@ -442,7 +448,7 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
 
     /// Weighs the `k`-th hypothesis by the newest sample, splitting it first if the sample cuts it.
     /// One that becomes impossible is left without edges.
-    fn update(&mut self, k: usize, edge: Edge, reliability: Reliability, doubts: &[Doubt]) {
+    fn update(&mut self, k: usize, edge: Constraint, reliability: Reliability, doubts: &[Doubt]) {
         let (agree, disagree) = self.weights(reliability);
         let Some(newest) = self.samples.get(edge.index()) else { return };
         let (before, newest_doubt) = doubts.split_at(doubts.len().saturating_sub(1));
@@ -454,11 +460,11 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
                 let Some(place) = self.table.get_mut(k) else { return };
                 match weight {
                     Some(weight) => place.weigh(weight + told),
-                    None => place.cell = LineCell::NONE,
+                    None => place.cell = DualCell::NONE,
                 }
             }
             Certainty::Uncertain => {
-                let opposite = Edge::new(edge.index() as u8, -edge.label());
+                let opposite = Constraint::new(edge.index() as u8, -edge.label());
                 // A cell's measure is the same each time it is computed, and so is the weight of its labels. So the
                 // quotients lose nothing.
                 let weight = match self.prior {
@@ -498,7 +504,7 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
     fn part(
         &mut self,
         whole: &Hypothesis<E>,
-        edge: Edge,
+        edge: Constraint,
         weight: LogWeight,
         doubts: &[Doubt],
     ) -> Hypothesis<E> {
@@ -524,20 +530,20 @@ impl<const N: usize, const H: usize, const E: usize> Hypotheses<N, H, E> {
     }
 }
 
-/// All labels count as reliable as the table's noise says. A [`Forecast`] restores labels of other reliabilities.
+/// All labels count as reliable as the table's noise says. A [`NoisyBelief`] restores labels of other reliabilities.
 ///
-/// [`Forecast`]: crate::belief::forecast::Forecast
-impl<const N: usize, const H: usize, const E: usize> Replay for Hypotheses<N, H, E> {
-    type Told = Told<N>;
+/// [`NoisyBelief`]: crate::belief::noisy_belief::NoisyBelief
+impl<const N: usize, const H: usize, const E: usize> FromLog for CellPosterior<N, H, E> {
+    type ObservationLog = ObservationLog<N>;
 
-    fn told(&self) -> Told<N> {
+    fn told(&self) -> ObservationLog<N> {
         let labels = self.labels().iter().zip(self.tolerances());
         let believed = labels.map(|(label, it)| self.reliability_within(label.site, it));
-        Told::new(self.given(), self.samples(), believed)
+        ObservationLog::new(self.given(), self.samples(), believed)
             .within(self.tolerances(), self.noise.tolerance)
     }
 
-    fn replay(&mut self, told: &Told<N>) -> Result<(), NotReplayed> {
+    fn replay(&mut self, told: &ObservationLog<N>) -> Result<(), ReplayError> {
         self.restart(told.given(), self.prior, self.noise)?;
         for (sample, reliability, tolerance) in told.doubtful_labels(self.noise.tolerance)? {
             self.take_within(sample, reliability, tolerance)?;
