@@ -19,12 +19,9 @@ pub(crate) fn main() -> Result {
     let mut labels = 0;
     while let Plan::Move(motion) = planner.plan(world.pose()) {
         world.go(motion.target);
-        let reading = motion.wants_label.then(|| {
-            labels += 1;
-            let is_wrong = labels % 7 == 3; // one in seven
-            if is_wrong { -world.label() } else { world.label() }
-        });
-        planner.observe(world.pose(), reading.map(Into::into))?;
+        labels += u32::from(motion.wants_label);
+        let label = if labels % 7 == 3 { -world.label() } else { world.label() }; // one in seven is wrong
+        planner.observe(world.pose(), motion.wants_label.then(|| label.into()))?;
     }
     println!("{labels} labels told {:.1} bits", planner.belief().information());
     field::report(planner.estimate(), 2.0)

@@ -16,32 +16,26 @@
 //! identify the line.
 //!
 //! ```
-//! use planner_core::{
-//!     Agent, Area, Event, Goal, Heading, Label, Lookahead, Pose, Sample, Unicycle, Vehicle, VersionSpace,
-//! };
 //! # use core::cell::Cell;
 //! # use core::convert::Infallible;
 //! # use planner_core::nalgebra::Point2;
-//! # use planner_core::robot::{Drive, LabelSensor};
-//! # use planner_core::{Motion, Reading};
+//! # use planner_core::robot::{DriveFn, SensorFn};
+//! # use planner_core::{
+//! #     Agent, Area, Event, Goal, Heading, Label, Lookahead, Motion, Pose, Sample, Unicycle, Vehicle,
+//! #     VersionSpace,
+//! # };
 //! # // A world in which z = 0.41 x + 3.5 divides the plane, and a vehicle that goes where it is told.
-//! # struct World(Cell<Pose>);
-//! # impl Drive for &World {
-//! #     type Error = Infallible;
-//! #     fn drive(&mut self, motion: &Motion) -> Result<Pose, Infallible> {
-//! #         self.0.set(motion.target);
-//! #         Ok(motion.target)
-//! #     }
-//! # }
-//! # impl LabelSensor for &World {
-//! #     type Error = Infallible;
-//! #     fn read(&mut self) -> Result<Reading, Infallible> {
-//! #         let at = Point2::<f64>::from(self.0.get().site);
-//! #         let above = at.y > 0.41 * at.x + 3.5;
-//! #         Ok(if above { Label::Positive } else { Label::Negative }.into())
-//! #     }
-//! # }
-//!
+//! # let start = Pose::at([2.0, 1.0], Heading::default())?;
+//! # let at = Cell::new(start);
+//! # let drive = DriveFn(|motion: &Motion| {
+//! #     at.set(motion.target);
+//! #     Ok::<_, Infallible>(motion.target)
+//! # });
+//! # let sensor = SensorFn(|| {
+//! #     let place = Point2::<f64>::from(at.get().site);
+//! #     let is_above = place.y > 0.41 * place.x + 3.5;
+//! #     Ok::<_, Infallible>(if is_above { Label::Positive } else { Label::Negative })
+//! # });
 //! let area = Area::metres([0.0, 0.0], [20.0, 20.0])?;
 //! let given = [
 //!     Sample::at([2.0, 1.0], Label::Negative)?,
@@ -49,23 +43,22 @@
 //!     Sample::at([18.0, 16.0], Label::Positive)?,
 //!     Sample::at([18.0, 5.0], Label::Negative)?,
 //! ];
-//! // Room for 32 samples, these four included; positions err by 1 cm at most.
-//! let belief = VersionSpace::<32>::new(&given)?.with_tolerance(0.01)?;
-//! let planner = Lookahead::new(area, Unicycle::default(), belief)?
-//!     .until(Goal::slope_within_degrees(0.5)?);
-//! let start = Pose::at([2.0, 1.0], Heading::from_degrees(0.0)?)?;
-//! # let world = World(Cell::new(start));
-//! # let (drive, sensor) = (&world, &world);
-//! let mut agent = Agent::new(planner, Vehicle { drive, sensor }, start); // yours: see `robot`
+//! let belief = VersionSpace::<32>::new(&given)?.with_tolerance(0.01)?; // positions err by 1 cm at most
+//! let goal = Goal::slope_within_degrees(0.5)?;
+//! let planner = Lookahead::new(area, Unicycle::default(), belief)?.until(goal);
+//! let mut agent = Agent::new(planner, Vehicle { drive, sensor }, start); // your motors, your sensor
 //! while let Event::Step(step) = agent.step()? {
 //!     println!("{:?}", step.reading);
 //! }
-//! println!("{}", agent.estimate().ok_or("no estimate")?); // z = 0.4100 x + 3.5000
+//! println!("{}", agent.estimate().ok_or("no estimate")?); // about z = 0.41 x + 3.5
 //! # let line = agent.estimate().ok_or("no estimate")?;
 //! # assert!((line.slope().ok_or("vertical")? - 0.41).abs() < 0.01);
 //! # assert!((line.intercept().ok_or("vertical")? - 3.5).abs() < 0.1);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! `VersionSpace::<32>` has room for 32 samples, the given ones included. The program ends when any two lines that agree
+//! with all labels differ by half a degree at most.
 //!
 //! # What to use
 //!

@@ -48,3 +48,18 @@ fn these_are_all() {
         .collect();
     assert!(missing.is_empty(), "not run: {missing:?}");
 }
+
+/// The program that the READMEs show is the front page's, which is run as a doctest.
+#[test]
+fn the_readmes_show_the_program_of_the_front_page() {
+    let page = include_str!("../../planner-core/src/lib.rs");
+    let block = page.split("//! ```\n").nth(1).expect("a program");
+    let shown = block.lines().filter(|line| !line.starts_with("//! #"));
+    let shown: Vec<_> = shown.map(|line| line.strip_prefix("//! ").unwrap_or("")).collect();
+    assert!(shown.len() <= 15, "{} lines", shown.len());
+    for readme in [include_str!("../../README.md"), include_str!("../../planner-core/README.md")] {
+        let block = readme.split("```rust\n").nth(1).and_then(|rest| rest.split("\n```").next());
+        let block: Vec<_> = block.expect("a program").lines().collect();
+        assert_eq!(block, shown);
+    }
+}

@@ -45,7 +45,7 @@ fn pictures_are_those_of_the_version_space() {
     let (mut asked, mut most) = (0, [0.0_f64; 2]);
     for steps in [1, 3, 6, 10, 15, 20, 25, 30] {
         for (number, space, from) in spaces(steps) {
-            let picture = space.outlook(from);
+            let picture = space.predictor(from);
             for _ in 0..4 {
                 let Some(site) = uncertain_site(&space, from, &mut rng) else { continue };
                 let (share, exact) = (picture.share_above(site), space.chance(site));
@@ -77,7 +77,7 @@ fn where_all_agree_shares_are_beyond() {
     let mut rng = ChaCha8Rng::seed_from_u64(12);
     for steps in [0, 4, 12, 24] {
         for (number, space, from) in spaces(steps) {
-            let picture = space.outlook(from);
+            let picture = space.predictor(from);
             for _ in 0..50 {
                 let angle = rng.random_range(0.0..2.0 * PI);
                 let radius = rng.random_range(0.0..3.0);
@@ -143,7 +143,7 @@ fn forecasts_are_those_of_the_table_and_of_how_far_labels_can_be_believed() {
         let mut forecast = mission.forecast();
         labelled(&mut forecast, &mission, &mut rng, number as usize % 12);
         forecast.prepare();
-        let outlook = forecast.outlook(mission.start.site);
+        let predictor = forecast.predictor(mission.start.site);
         let mut table = mission.table();
         for &Sample { site, label } in &forecast.belief().samples()[table.given().len()..] {
             table.take(Sample { site, label }, table.reliability(site)).expect("as the forecast");
@@ -154,18 +154,18 @@ fn forecasts_are_those_of_the_table_and_of_how_far_labels_can_be_believed() {
             assert_eq!(forecast.ground().certainty(site), mission.given.certainty(site));
             let is_trusted = table.reliability(site) == Reliability::CERTAIN;
             let p_here = if is_trusted { 1.0 } else { p };
-            let share = outlook.share_above(site);
+            let share = predictor.share_above(site);
             let chance = p_here * f64::from(share) + (1.0 - p_here) * (1.0 - f64::from(share));
             let told = (coin(chance) - coin(p_here)) / (1.0 - coin(p));
             let context = format!("field {number}, p {p}, trusted {is_trusted}, share {share}");
-            assert!((f64::from(outlook.chance(site, share)) - chance).abs() < 1e-6, "{context}");
+            assert!((f64::from(predictor.chance(site, share)) - chance).abs() < 1e-6, "{context}");
             let (off, exact) = (f64::from(share), posterior.share_above(site));
             sums[0] += (off - exact).abs();
             most[0] = most[0].max((off - exact).abs());
             // A label that is next to impossible tells nothing, for want of digits.
             let label = if chance > 0.5 { Label::Positive } else { Label::Negative };
-            let after = outlook.after(site, label);
-            for got in [outlook.information(site, share), after.information(site, share)] {
+            let after = predictor.after(site, label);
+            for got in [predictor.information(site, share), after.information(site, share)] {
                 let off = (f64::from(got) - told).abs();
                 // Two entropies to 10^-3 bits, near one half to as much of what they lack of a bit.
                 let bound = if p_here < 0.75 { 0.01 } else { 2e-3 / (1.0 - coin(p)) };
@@ -204,7 +204,7 @@ fn a_forecast_begins_again_in_place() {
         labelled(&mut anew, &mission, &mut same, 3);
         again.prepare();
         anew.prepare();
-        let [again, anew] = [&again, &anew].map(|it| it.outlook(mission.start.site));
+        let [again, anew] = [&again, &anew].map(|it| it.predictor(mission.start.site));
         for _ in 0..20 {
             let site = any_site(&mut rng, &mission);
             let bits = [again.share_above(site), anew.share_above(site)].map(f32::to_bits);

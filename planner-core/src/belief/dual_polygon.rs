@@ -228,7 +228,7 @@ impl<const N: usize> PredictiveBelief for VersionSpace<N> {
 
     fn prepare(&mut self) {}
 
-    fn outlook(&self, from: Site) -> DualPolygon {
+    fn predictor(&self, from: Site) -> DualPolygon {
         DualPolygon::of(self.lines(), from)
     }
 

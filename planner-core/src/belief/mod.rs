@@ -7,8 +7,8 @@
 //! | [`version_space`] | for labels that are true: the one cell that they leave |
 //! | [`cell_posterior`], [`posterior_view`] | for labels that may be wrong: a table of weighted cells, and its distribution |
 //! | [`predictor`] | what the next labels are expected to tell |
-//! | [`dual_polygon`] | the outlook of the one cell |
-//! | [`noisy_belief`], [`columns`] | the outlook of a table: columns beside it |
+//! | [`dual_polygon`] | the predictor of the one cell |
+//! | [`noisy_belief`], [`columns`] | the predictor of a table: columns beside it |
 //! | [`goal`] | decides when the line is known well enough |
 //! | [`tolerance`] | handles positions that err |
 //! | [`observation_log`] | what must be kept of a belief over a sleep |

@@ -60,7 +60,7 @@ impl<const N: usize, const H: usize> NoisyBelief<N, H> {
     /// As [`new`](Self::new), in place, with lines weighed by a prior.
     ///
     /// # Errors
-    /// As there, with the forecast as it was.
+    /// As there, with the belief as it was.
     pub fn restart(
         &mut self,
         given: &[Sample],
@@ -75,7 +75,7 @@ impl<const N: usize, const H: usize> NoisyBelief<N, H> {
     /// Takes in a label of some reliability, see [`CellPosterior::take`].
     ///
     /// # Errors
-    /// As there, with the forecast as it was.
+    /// As there, with the belief as it was.
     pub fn take(
         &mut self,
         sample: Sample,
@@ -87,7 +87,7 @@ impl<const N: usize, const H: usize> NoisyBelief<N, H> {
     /// As [`take`](Self::take), of a position that may be off by so much, see [`CellPosterior::take_within`].
     ///
     /// # Errors
-    /// As there, with the forecast as it was.
+    /// As there, with the belief as it was.
     pub fn take_within(
         &mut self,
         sample: Sample,
@@ -142,7 +142,7 @@ impl<const N: usize, const H: usize> PredictiveBelief for NoisyBelief<N, H> {
         self.columns.lay(&self.table, &self.believed);
     }
 
-    fn outlook(&self, _: Site) -> TablePredictor<'_, N, H> {
+    fn predictor(&self, _: Site) -> TablePredictor<'_, N, H> {
         TablePredictor { labels: Labels::of(&self.table), columns: &self.columns }
     }
 

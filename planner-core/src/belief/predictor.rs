@@ -30,11 +30,11 @@ pub trait PredictiveBelief {
         tolerance: Tolerance,
     ) -> Result<(), ObservationError>;
 
-    /// Prepares the outlook. It stays valid until something is observed.
+    /// Prepares the predictor. It stays valid until something is observed.
     fn prepare(&mut self);
 
-    /// The outlook for questions asked from a site.
-    fn outlook(&self, from: Site) -> Self::Predictor<'_>;
+    /// The predictor for questions asked from a site.
+    fn predictor(&self, from: Site) -> Self::Predictor<'_>;
 
     /// The lines on whose uncertain ground a label may tell something.
     fn ground(&self) -> CellView<'_>;

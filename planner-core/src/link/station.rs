@@ -91,7 +91,7 @@ impl Setup {
         let capacity = Capacity { samples: N as u16, hypotheses: 1 };
         self.check(capacity)?;
         let space = self.space()?;
-        Ok(Prepared { planner: Cfc::of((area, dynamics), space).with(options), capacity })
+        Ok(Prepared { planner: Cfc::of((area, dynamics), space, options), capacity })
     }
 
     /// Look-ahead for this mission, with labels that are true.
@@ -108,8 +108,8 @@ impl Setup {
         let capacity = Capacity { samples: N as u16, hypotheses: 1 };
         self.check(capacity)?;
         let space = self.space()?;
-        let planner = Lookahead::of((area, dynamics), space).pricing(options.weight.into());
-        let planner = planner.with_budget(evaluations).until(goal);
+        let price = options.weight.into();
+        let planner = Lookahead::of((area, dynamics), space, price, evaluations, goal);
         Ok(Prepared { planner, capacity })
     }
 
@@ -119,7 +119,7 @@ impl Setup {
         PlannerSetup { dynamics, area, options }: PlannerSetup<D, G>,
         policy: Policy,
     ) -> Scc<D, N, H, G> {
-        Scc::of((area, dynamics), CellPosterior::NONE).with(options).voting(policy)
+        Scc::of((area, dynamics), CellPosterior::NONE, options, policy)
     }
 
     /// Look-ahead with labels that may be wrong, with none of its samples yet: the memory for
@@ -130,9 +130,7 @@ impl Setup {
         evaluations: u32,
         goal: Option<Goal>,
     ) -> Lookahead<D, NoisyBelief<N, H>, G> {
-        let planner =
-            Lookahead::of((area, dynamics), NoisyBelief::NONE).pricing(options.weight.into());
-        planner.with_budget(evaluations).until(goal)
+        Lookahead::of((area, dynamics), NoisyBelief::NONE, options.weight.into(), evaluations, goal)
     }
 
     /// Begins the mission in this memory, so that there is never a second planner beside it.

@@ -79,14 +79,14 @@ impl<D: Dynamics, const N: usize, G: Workspace> Cfc<D, N, G> {
     /// [`SetupError`].
     pub fn new(area: G, dynamics: D, space: VersionSpace<N>) -> Result<Self, SetupError> {
         let area = aimed_for_by(area, &dynamics, &space)?;
-        Ok(Self::of((area, dynamics), space))
+        Ok(Self::of((area, dynamics), space, Options::CFC))
     }
 
     /// The same in the part of an area that motions aim for.
-    pub(crate) fn of((area, dynamics): (G, D), space: VersionSpace<N>) -> Self {
+    pub(crate) fn of((area, dynamics): (G, D), space: VersionSpace<N>, options: Options) -> Self {
         let past = space.first_label();
         let (phase, due, silence) = (Phase::Crossing, Phase::Crossing, Silence::NONE);
-        Self { area, options: Options::CFC, dynamics, space, phase, due, past, silence }
+        Self { area, options, dynamics, space, phase, due, past, silence }
     }
 
     /// The same with other options.

@@ -5,7 +5,7 @@
 //! nearly as much as an agent that jumps anywhere. So a plan
 //!
 //! 1. looks for the motions whose ends are worth the most: the expected information of the label there, as a share of
-//!    the most that a label can carry, less `varrho |u|^2`;
+//!    the most that a label can carry, less the [price](DrivingPrice) of `|u|^2`;
 //! 2. looks one step further from the best of them, after either label, and makes the motion with the greatest worth of
 //!    both steps together;
 //! 3. considers turns in place as well, if no end is worth much;
@@ -147,14 +147,21 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace> Lookahead<D, B, G> {
     #[inline] // it is made where it stays, as it may be large
     pub fn new(area: G, dynamics: D, belief: B) -> Result<Self, SetupError> {
         let area = aimed_for_by(area, &dynamics, belief.belief())?;
-        Ok(Self::of((area, dynamics), belief))
+        Ok(Self::of((area, dynamics), belief, DrivingPrice::USUAL, EVALUATIONS, None))
     }
 
-    /// The same in the part of an area that motions aim for.
+    /// The same in the part of an area that motions aim for, with all that can be chosen. A planner may be large, and a
+    /// chip has no room for a copy of it.
     #[inline]
-    pub(crate) fn of((area, dynamics): (G, D), belief: B) -> Self {
+    pub(crate) fn of(
+        (area, dynamics): (G, D),
+        belief: B,
+        price: DrivingPrice,
+        evaluations: u32,
+        goal: Option<Goal>,
+    ) -> Self {
         let bounds = area.bounds().whole();
-        let (price, evaluations, goal) = (DrivingPrice::USUAL, EVALUATIONS, None);
+        let goal = goal.map(|goal| goal.in_bounds_of(&area));
         let silence = Silence::NONE;
         Self { area, price, bounds, dynamics, belief, evaluations, goal, silence }
     }
@@ -189,25 +196,25 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace> Lookahead<D, B, G> {
 
     /// The motion that is worth the most; `None` if no label is in reach.
     fn decide(&self, lookout: &mut Lookout<'_, D, G>, pose: Pose) -> Option<Decision> {
-        let outlook = self.belief.outlook(pose.site);
+        let predictor = self.belief.predictor(pose.site);
         let mut prospects = Prospects::new();
         let fastest = self.dynamics.grid().speeds().saturating_sub(1);
         for circles in [(FIRST_CIRCLES, lookout.usual), (MOST_CIRCLES, fastest)] {
             if prospects.as_slice().is_empty() {
                 let mut sought = Sought::Prospects(&mut prospects, self.belief.ground());
-                lookout.look(&outlook, pose, circles, &mut sought);
+                lookout.look(&predictor, pose, circles, &mut sought);
             }
         }
         let mut best = None;
         let is_better =
             |worth: f32, best: &Option<Decision>| best.as_ref().is_none_or(|it| worth > it.worth);
         for &Prospect { action, target, share, worth } in prospects.as_slice() {
-            let above = outlook.chance(target.site, share);
+            let above = predictor.chance(target.site, share);
             // Starts as an upper bound on the worth. It is exact once both labels have been evaluated.
             let mut total = worth + ENOUGH;
             for (label, chance) in [(Label::Positive, above), (Label::Negative, 1.0 - above)] {
                 if is_better(total, &best) {
-                    let after = outlook.after(target.site, label);
+                    let after = predictor.after(target.site, label);
                     let next = second(lookout, &after, target, None);
                     total -= chance * (ENOUGH - next);
                 }
@@ -224,7 +231,7 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace> Lookahead<D, B, G> {
                 };
                 let effort = self.dynamics.ray_of(pose, action).map_or(0, |ray| ray.turn_cost);
                 // Nothing is learnt by a turn: what the next plan would refuse is worth nothing.
-                let next = second(lookout, &outlook, target, Some(self.belief.ground()));
+                let next = second(lookout, &predictor, target, Some(self.belief.ground()));
                 let total = next - lookout.cost(0, effort);
                 if next > 0.0 && is_better(total, &best) {
                     best = Some(Decision { action, target, worth: total, wants_label: false });

@@ -91,14 +91,19 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Workspace> Scc<D, N, H, G> 
     #[inline] // it is made where it stays, as it may be large
     pub fn new(area: G, dynamics: D, hypotheses: CellPosterior<N, H>) -> Result<Self, SetupError> {
         let area = aimed_for_by(area, &dynamics, &hypotheses)?;
-        Ok(Self::of((area, dynamics), hypotheses))
+        Ok(Self::of((area, dynamics), hypotheses, Options::SCC, Policy::default()))
     }
 
-    /// The same in the part of an area that motions aim for.
+    /// The same in the part of an area that motions aim for, with all that can be chosen. A planner may be large, and a
+    /// chip has no room for a copy of it.
     #[inline]
-    pub(crate) fn of((area, dynamics): (G, D), hypotheses: CellPosterior<N, H>) -> Self {
-        let (options, policy, silence) = (Options::SCC, Policy::default(), Silence::NONE);
-        Self { area, options, policy, dynamics, hypotheses, silence }
+    pub(crate) fn of(
+        (area, dynamics): (G, D),
+        hypotheses: CellPosterior<N, H>,
+        options: Options,
+        policy: Policy,
+    ) -> Self {
+        Self { area, options, policy, dynamics, hypotheses, silence: Silence::NONE }
     }
 
     /// The same with other options.
