@@ -146,14 +146,16 @@ MOTION = {
     "proven": "bool",
 }
 LINE = {"about": SITE, "along": SITE, "slope": "f32", "intercept": "f32"}
-NO_SPACE = Choice(Collinear=None, OneLabel=None, NotSeparable="u32", TooMany=None, TooVague=None)
+NO_SPACE = Choice(
+    Collinear=None, OneLabel=None, NotSeparable="u32", TooMany=None, TooVague=None, Tolerance=None,
+)
 BAD_GRID = Choice(Actions=None, Reach=None, Turn=None, Circle=None)
 NO_VEHICLE = Choice(Kind=None, Grid=BAD_GRID, Room={"across_mm": "u32"})
 STOP = Choice(
     Resolution=None, SamplesFull=None, OutsideArea=None, Cornered=None, Known=None, Undecided=None,
     Tolerance=None,
 )
-REFUSED = Choice(Contradiction=SAMPLE, Full=SAMPLE, Tolerance="u32")
+REFUSED = Choice(Contradiction=SAMPLE, Full=SAMPLE, Tolerance="u32", Reliability=None)
 REQUEST = Choice(
     Hello={"protocol": "u16"},
     Outline={"number": "u8"},

@@ -298,6 +298,15 @@ fn a_certain_label_that_leaves_no_hypothesis_is_refused() {
     assert_eq!(format!("{table:?}"), before);
     // The very same label with room for doubt is taken.
     table.take(impossible, Reliability::new(0.9).expect("p")).expect("possible");
+    // Where positions err, it has the reliability of the noise or none.
+    let noise = Noise::new(0.8).and_then(|it| it.with_tolerance(0.1)).expect("a noise");
+    let mut blurred =
+        CellPosterior::<8, 30>::new(table.given(), Prior::Area, noise).expect("given");
+    let before = format!("{blurred:?}");
+    let own = blurred.take(impossible, Reliability::new(0.9).expect("p"));
+    assert_eq!(own, Err(ObservationError::Reliability));
+    assert_eq!(format!("{blurred:?}"), before);
+    assert_eq!(blurred.take(impossible, noise.reliability), Ok(()));
     assert!(Reliability::new(1.1).is_err());
     assert!(Reliability::new(-0.1).is_err());
     assert!(Reliability::new(f64::NAN).is_err());

@@ -267,8 +267,8 @@ fn the_tables_have_every_variant() {
     check("Recovery", variants::<Recovery>(&[zeros]));
     check("EndReason", variants::<EndReason>(&[zeros]));
     check("StopReason", variants::<StopReason>(&[zeros]));
-    check("Refused", variants::<ObservationError>(&[zeros]));
-    check("Declined", variants::<DeclinedError>(&[zeros]));
+    check("ObservationError", variants::<ObservationError>(&[zeros]));
+    check("DeclinedError", variants::<DeclinedError>(&[zeros]));
     check("GivenError", variants::<GivenError>(&[zeros]));
     check("ShapeError", variants::<ShapeError>(&[zeros]));
     check("GridError", variants::<GridError>(&[zeros]));

@@ -145,9 +145,8 @@ fn every_vehicle_and_robots_that_err_sleep_as_well() {
 fn labels_keep_the_reliability_that_they_came_with() {
     let mission = noisy(standard_field::standard(45, 7, Algorithm::Lookahead, 0), 0.8);
     let middle = standard_field::area().middle();
-    for tolerance in [0.0, 0.2] {
-        let noise =
-            Noise { tolerance: Tolerance::new(tolerance).expect("metres"), ..mission.noise_told() };
+    for noise in [mission.noise_told(), Noise::NONE] {
+        let noise = Noise { reliability: Reliability::new(0.8).expect("a probability"), ..noise };
         let make = || {
             let forecast =
                 NoisyBelief::<36, 529>::new(mission.given.samples(), noise).expect("four");

@@ -2,7 +2,7 @@
 
 use planner_core::error::ObservationError;
 use planner_core::{
-    Belief as _, CellPosterior, FromLog, Lookahead, Noise, NoisyBelief, Persist, Planner as _,
+    Belief as _, CellPosterior, FromLog, Lookahead, NoisyBelief, Persist, Planner as _,
     PredictiveBelief, Reliability, Site, Tolerance, Unicycle, VersionSpace,
 };
 use serde::Serialize;
@@ -12,10 +12,10 @@ use crate::area::Ground;
 use crate::snapshot::Snapshot;
 use crate::types::{Line, Status};
 
-/// How reliable labels are, and whether one may have a reliability of its own.
+/// A belief that a label of another reliability than the mission's may be told.
 trait Believe: PredictiveBelief {
-    /// That of all labels of the mission; the other ones too, or why there are none.
-    fn usual(known: &Self::Belief) -> (Reliability, Result<(), Status>);
+    /// How reliable the labels of the mission are.
+    fn usual(known: &Self::Belief) -> Reliability;
 
     /// Takes in a label of another reliability.
     fn take(
@@ -27,25 +27,18 @@ trait Believe: PredictiveBelief {
 
 /// Labels are always right.
 impl<const N: usize> Believe for VersionSpace<N> {
-    fn usual(_: &Self) -> (Reliability, Result<(), Status>) {
-        (Reliability::CERTAIN, Err(Status::Reliability))
+    fn usual(_: &Self) -> Reliability {
+        Reliability::CERTAIN
     }
 
-    fn take(
-        &mut self,
-        sample: planner_core::Sample,
-        _: Reliability,
-    ) -> Result<(), ObservationError> {
-        self.insert(sample).map(drop)
+    fn take(&mut self, _: planner_core::Sample, _: Reliability) -> Result<(), ObservationError> {
+        Err(ObservationError::Reliability)
     }
 }
 
-/// Where positions err, the table takes every label to be as reliable as the noise says.
 impl<const N: usize, const H: usize> Believe for NoisyBelief<N, H> {
-    fn usual(known: &CellPosterior<N, H>) -> (Reliability, Result<(), Status>) {
-        let Noise { reliability, tolerance, .. } = known.noise();
-        let is_exact = tolerance == Tolerance::NONE;
-        (reliability, is_exact.then_some(()).ok_or(Status::Reliability))
+    fn usual(known: &CellPosterior<N, H>) -> Reliability {
+        known.noise().reliability
     }
 
     fn take(
@@ -113,11 +106,9 @@ where
         reading: Option<planner_core::Reading>,
         believed: Reliability,
     ) -> Result<(), Status> {
-        let (usual, others) = B::usual(self.belief());
-        if believed == usual {
+        if believed == B::usual(self.belief()) {
             return Asked::observe(self, pose, reading);
         }
-        others?;
         let Some(planner_core::Reading::Side(label)) = reading else {
             return Asked::observe(self, pose, reading);
         };

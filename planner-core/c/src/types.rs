@@ -65,6 +65,7 @@ impl From<ObservationError> for Status {
         match refused {
             ObservationError::Full(_) => Self::Full,
             ObservationError::Tolerance(_) => Self::Tolerance,
+            ObservationError::Reliability => Self::Reliability,
             _ => Self::Contradiction,
         }
     }

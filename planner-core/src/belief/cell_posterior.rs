@@ -361,12 +361,12 @@ impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
     ///
     /// Cost: one orientation for each edge, in integers. At most `t + 1` hypotheses split, each at the cost of two cuts
     /// and two measures, in integers and single precision. Where positions err, each hypothesis is weighed by the
-    /// distances of its vertices, and those that split by all labels anew. That costs some eight times as much. A label
-    /// is then as reliable as the noise says.
+    /// distances of its vertices, and those that split by all labels anew. That costs some eight times as much.
     ///
     /// # Errors
-    /// [`ObservationError::Contradiction`] when a label that is certain leaves no hypothesis, and
-    /// [`ObservationError::Full`]; the table is then as it was.
+    /// [`ObservationError::Contradiction`] when a label that is certain leaves no hypothesis,
+    /// [`ObservationError::Full`], and where positions err [`ObservationError::Reliability`] unless the label is as
+    /// reliable as the noise says. The table is then as it was.
     pub fn take(
         &mut self,
         sample: Sample,
@@ -387,6 +387,9 @@ impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
         tolerance: Tolerance,
     ) -> Result<(), ObservationError> {
         self.admits(tolerance)?;
+        if self.is_blurred() && reliability != self.reliability_within(sample.site, tolerance) {
+            return Err(ObservationError::Reliability);
+        }
         let (agree, disagree) = self.weights(reliability);
         let weight = |label: Label| if label == sample.label { agree } else { disagree };
         let survives = |hypothesis: &Hypothesis<E>| match self.certainty(hypothesis, sample.site) {

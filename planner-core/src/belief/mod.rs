@@ -104,6 +104,9 @@ pub enum ObservationError {
     Full(Sample),
     /// The position may be off by so much, which is more than the tolerance that was configured.
     Tolerance(Tolerance),
+    /// A label that may be wrong came with a reliability of its own, and positions err. Then every label is as reliable as
+    /// the noise says.
+    Reliability,
 }
 
 impl core::fmt::Display for ObservationError {
@@ -121,6 +124,9 @@ impl core::fmt::Display for ObservationError {
                 f,
                 "a position that may be off by {} m is beyond the tolerance that was configured",
                 tolerance.metres()
+            ),
+            Self::Reliability => f.write_str(
+                "where positions err, a label is as reliable as the noise says, and has no reliability of its own",
             ),
         }
     }
