@@ -1,8 +1,8 @@
 //! The same seam for drivers that are asynchronous: a robot that awaits its motors and its sensor, so that whatever
 //! else runs on the chip runs meanwhile.
 //!
-//! Planning does no input or output, so there is one planner for both. The traits are those of [`hal`]
-//! and [`body`](super::body) with `async` before each method, as those of embedded-hal-async are to those of
+//! Planning does no input or output, so there is one planner for both. The traits are those of [`robot`](super)
+//! with `async` before each method, as those of embedded-hal-async are to those of
 //! embedded-hal. No executor is asked for; futures are not required to be `Send`, so it takes one that stays on
 //! its thread, such as embassy's.
 //!
