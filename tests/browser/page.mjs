@@ -49,7 +49,10 @@ async function check_step(page, step, what) {
 
 /** Every part that steps: each control goes where it should, and words, maps and charts change with it. */
 async function check_stepping(page) {
-  const start = await check_step(page, 0, 'at first');
+  const most = Number(await page.getAttribute('#slider', 'max'));
+  await check_step(page, most, 'at first');
+  await page.click('#first');
+  const start = await check_step(page, 0, 'first');
   await page.click('#next');
   const one = await check_step(page, 1, 'next');
   for (const part of ['words', 'maps', 'charts']) {
@@ -93,6 +96,17 @@ async function check_playing(page) {
   check(!count.startsWith('0'), 'play: it did not go on');
 }
 
+/** What one sees before one scrolls: each map as a whole. */
+async function check_first_view(page, what) {
+  const bottoms = await page.evaluate(() => {
+    scrollTo(0, 0);
+    const section = document.querySelector('.chapter:not([hidden])');
+    return [...section.querySelectorAll('.map > svg')].map((it) => it.getBoundingClientRect().bottom);
+  });
+  const lowest = Math.ceil(Math.max(...bottoms));
+  check(lowest <= 800, `${what}: a map ends at ${lowest} px`);
+}
+
 /** Nothing wider than the window, and no finding. */
 async function check_looks(page, what) {
   const [content, window] = await page.evaluate(() => [document.documentElement.scrollWidth, innerWidth]);
@@ -111,8 +125,8 @@ const browser = await chromium.launch({
 });
 mkdirSync(folder, { recursive: true });
 const address = pathToFileURL(resolve(file)).href;
-const looks = [[1280, 900, 'light'], [360, 740, 'dark']];
-if (extent === 'all') looks.push([1280, 900, 'dark'], [360, 740, 'light']);
+const looks = [[1280, 800, 'light'], [360, 740, 'dark']];
+if (extent === 'all') looks.push([1280, 800, 'dark'], [360, 740, 'light']);
 for (const [width, height, colorScheme] of looks) {
   const what = `${name}, ${width} px, ${colorScheme}`;
   const context = await browser.newContext({ viewport: { width, height }, colorScheme, reducedMotion: colorScheme === 'dark' ? 'reduce' : 'no-preference' });
@@ -124,6 +138,7 @@ for (const [width, height, colorScheme] of looks) {
   const chapters = await page.locator('#chapters option').count();
   for (let chapter = 0; chapter < chapters; chapter += 1) {
     if (chapters > 1) await page.selectOption('#chapters', String(chapter));
+    if (width > 1000) await check_first_view(page, `${what}, chapter ${chapter}`);
     if (colorScheme === 'light') await check_stepping(page);
     await page.fill('#slider', '5');
     await page.waitForTimeout(500); // the robot has come to rest

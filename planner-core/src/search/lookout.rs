@@ -250,14 +250,17 @@ impl Prospects {
         if rank >= PROSPECTS || better.iter().any(is_near) || !lines.may_tell(new.target.site) {
             return;
         }
-        // What does not find room is the worst.
-        let mut list = Vec::new();
-        let (better, worse) = self.list.split_at_checked(rank).unwrap_or_default();
-        let worse = worse.iter().filter(|old| !is_near(old));
-        for prospect in better.iter().chain([&new]).chain(worse) {
-            let _ = list.push(*prospect);
+        let mut number = 0;
+        self.list.retain(|old| {
+            number += 1;
+            number <= rank || !is_near(old)
+        });
+        // Each worse one moves on by a place. What does not find room is the worst.
+        let mut next = new;
+        for place in self.list.get_mut(rank..).unwrap_or_default() {
+            core::mem::swap(place, &mut next);
         }
-        self.list = list;
+        let _ = self.list.push(next);
     }
 }
 

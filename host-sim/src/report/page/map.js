@@ -6,7 +6,8 @@ function layout(area, width) {
   const zs = area.map(([, z]) => z);
   const [left, right, bottom, top] = [Math.min(...xs), Math.max(...xs), Math.min(...zs), Math.max(...zs)];
   const margin = { left: 38, right: 12, top: 22, bottom: 34 };
-  const most = Math.max(240, Math.min(620, width));
+  // What is above the map leaves so much of the window.
+  const most = Math.max(240, Math.min(620, width, PAPER.matches ? 620 : innerHeight - 330));
   const room = width - margin.left - margin.right;
   const scale = Math.min(room / (right - left), most / (top - bottom));
   const shift = margin.left + (room - scale * (right - left)) / 2;

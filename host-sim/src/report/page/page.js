@@ -5,7 +5,7 @@ const BEAT_MS = 900;
 const PAPER = matchMedia('print');
 
 const controls = Object.fromEntries(
-  ['controls', 'choice', 'chapters', 'first', 'back', 'play', 'next', 'last', 'count', 'slider'].map((id) => [id, document.getElementById(id)]),
+  ['controls', 'choice', 'chapters', 'first', 'back', 'play', 'next', 'last', 'count', 'slider', 'keys'].map((id) => [id, document.getElementById(id)]),
 );
 const chapters = PAGE.chapters.map((chapter, number) => stage(chapter, document.getElementById(`chapter-${number}`)));
 const state = { chapter: 0, step: 0, timer: null };
@@ -187,7 +187,7 @@ function open(number) {
   state.chapter = number;
   for (const [k, { section }] of chapters.entries()) section.hidden = k !== number;
   controls.slider.max = chapters[number].steps;
-  go(0);
+  go(chapters[number].steps); // where it led; `Play` begins at the start
 }
 
 /** Goes on by itself, without a word to screen readers until it pauses. */
@@ -240,4 +240,5 @@ controls.chapters.addEventListener('change', () => open(Number(controls.chapters
 for (const [k, { title }] of PAGE.chapters.entries()) add(controls.chapters, 'option', { value: k }, title);
 controls.choice.hidden = PAGE.chapters.length < 2;
 controls.controls.hidden = false;
+controls.keys.hidden = false;
 open(0);
