@@ -10,10 +10,10 @@
 
 //! A planner that finds a straight boundary from few samples.
 //!
-//! A robot moves in a plane that an unknown straight line divides: the edge of a spill, a front in
-//! the sea, a shoreline, the border of a field. At each stop it senses on which side it is. Four
-//! labelled points are known at the start. The planner says where to go next, so that few samples and little effort
-//! identify the line.
+//! A robot moves in a plane that an unknown straight line divides: the edge of a spill, a front in the sea, a
+//! shoreline, the border of a field. At each stop it senses on which side it is: a label, +1 or -1. A position with
+//! its label is a sample. A few samples are given at the start: at least three, not on one line, of both labels. The
+//! planner returns the next motion, so that few samples and little effort identify the line.
 //!
 //! ```
 //! # use core::cell::Cell;
@@ -57,8 +57,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! `VersionSpace::<32>` has room for 32 samples, the given ones included. The program ends when any two lines that agree
-//! with all labels differ by half a degree at most.
+//! `drive` and `sensor` are your implementations of [`Drive`](robot::Drive) and [`LabelSensor`](robot::LabelSensor),
+//! and `start` is the robot's pose. `VersionSpace::<32>` has room for 32 samples, the given ones included. The
+//! program ends when the slopes of any two lines that agree with all labels differ by half a degree at most.
 //!
 //! # What to use
 //!
@@ -66,50 +67,50 @@
 //! | --- | --- |
 //! | a planner | [`Lookahead`]. [`Cfc`] and [`Scc`] are the paper's Algorithms 1 and 2 |
 //! | labels that are true | [`VersionSpace`], with a tolerance if positions err |
-//! | labels that are sometimes wrong | [`NoisyBelief`], which is told how often they are right by a [`Noise`] |
+//! | labels that are sometimes wrong | [`NoisyBelief`], made with a [`Noise`]: how often labels are right |
 //! | to stop when the line is known well enough | [`Goal`] |
 //! | a field that is no rectangle, places to keep out of | [`PolygonArea`] and [`KeepOut`] |
 //! | a vehicle | [`Unicycle`], [`Boat`], [`Car`], [`Holonomic`], or [`dynamics`] of your own |
-//! | your drive and sensor | [`robot`]: [`Drive`](robot::Drive), [`LabelSensor`](robot::LabelSensor), or both awaited |
+//! | your drive and sensor | [`robot`]: `Drive` and `LabelSensor`; [`robot::asynchronous`] has the same for `async` |
 //! | to switch the chip off between motions | [`Persist`], with the feature `serde` |
-//! | planner and vehicle apart | `link`, with the feature `link` |
+//! | planner and vehicle on two machines | `link`, with the feature `link` |
 //! | to see what went wrong | [`error`] |
 //!
 //! [`plan`](Planner::plan) returns the next motion, [`observe`](Planner::observe) takes in its result, and
-//! [`belief`](Planner::belief) is what the planner knows. An [`Agent`] does all three. The feature `defmt` derives
-//! `Format` for the public types.
+//! [`belief`](Planner::belief) returns what the planner knows. An [`Agent`] calls the first two for you. The feature
+//! `defmt` derives `Format` for the public types.
 //!
 //! # The idea
 //!
-//! All lines that agree with the samples so far are the **version space**. In the space of homogeneous lines
-//! `(A, B, C)` each sample is a half-space, so the version space is a convex cone. Seen as a polygon, its edges belong
-//! to the samples that still matter, and its vertices are lines through two of them. A cyclic list of sample indices
-//! describes it completely ([`belief::dual_cell`]).
+//! The set of all lines that agree with the samples so far is the **version space**. In the space of homogeneous
+//! lines `(A, B, C)` each sample is a half-space, so the version space is a convex cone. Seen as a polygon, its edges
+//! belong to the samples that still matter, and its vertices are lines through two of them. A cyclic list of sample
+//! indices describes it completely.
 //!
-//! On an integer lattice of 15 micrometres one predicate decides every question about that
-//! list. It is exact in 64-bit integers:
+//! Positions are on an integer lattice of 15 micrometres. One predicate decides every question about that list,
+//! exactly, in 64-bit integers. Its sign is the side of the line through `a` and `b` on which a place `q` lies:
 //!
 //! ```text
 //! orient(a, b, q) = (b.x - a.x)(q.z - a.z) - (b.z - a.z)(q.x - a.x)
 //! ```
 //!
-//! The best next place is where a label would tell the most: where half of the lines left say +1. Look-ahead
-//! finds such places among the ends of the robot's motions, two labels deep. It learns nearly
-//! a bit a step. The paper's two algorithms follow the boundary by rules of direction.
+//! The best next place is where a label carries the most information: where half of the remaining lines give +1.
+//! Look-ahead finds such places among the ends of the robot's motions, two labels deep. It learns nearly a bit a
+//! step. The two algorithms of the paper (see below) follow the boundary by rules of direction.
 //!
 //! # What follows
 //!
-//! - **Certainty is exact.** A position that all lines left label alike lies in a *region of certainty*. A sample there
-//!   would tell nothing, or reveal a fault. There is no tolerance and no misjudged cut, even for a vertical boundary or
-//!   kilometres from the origin.
-//! - **Motions come from an integer-indexed grid**, and the one-step
-//!   problems are solved exactly by looking at a few of its actions.
+//! - **Certainty is exact.** A position to which all remaining lines give the same label lies in a *region of
+//!   certainty*. A sample there brings no information, or reveals a fault. Rounding never misjudges a cut, even for a
+//!   vertical boundary or kilometres from the origin.
+//! - **Motions come from an integer-indexed grid.** The paper's one-step problems are solved exactly, by looking at a
+//!   few of the grid's actions.
 //! - **Noisy labels in fixed memory.** The sequences of true labels that some line realises are cells too, at most 529
 //!   for 32 labels. A table of weighted cells is the whole posterior.
 //! - **The same on every machine.** Integers decide. Floating point only proposes directions and reads results out,
-//!   with IEEE arithmetic and libm. So a mission has the same trace on a PC and on a chip.
-//! - **Fixed memory.** No allocation, no `unsafe`, no recursion; capacities are const generics. A
-//!   planner for 32 samples is some 500 bytes.
+//!   with IEEE arithmetic and libm. So a mission has the same trace (record of its steps) on a PC and on a chip.
+//! - **Fixed memory.** No allocation, no `unsafe`, no recursion; capacities are const generics. A planner for 32
+//!   samples takes some 500 bytes of RAM.
 //!
 //! # The paper
 //!
@@ -118,11 +119,11 @@
 //!
 //! # Limits
 //!
-//! - True labels are taken at their word. A sample that contradicts a region of certainty is an
+//! - A [`VersionSpace`] believes every label. A sample that contradicts a region of certainty is an
 //!   [`ObservationError`](error::ObservationError), and the planner stays as it was.
 //! - Positions lie within 8,192 m of the origin, one motion is shorter than 3,000 m, and a buffer holds
 //!   3 to 128 samples.
-//! - The boundary is one straight line. P1 and P2 look one step ahead, look-ahead two.
+//! - The boundary is one straight line. [`Cfc`] and [`Scc`] look one step ahead, [`Lookahead`] two.
 
 #[cfg(not(feature = "internals"))]
 mod belief;

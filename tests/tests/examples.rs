@@ -63,3 +63,17 @@ fn the_readmes_show_the_program_of_the_front_page() {
         assert_eq!(block, shown);
     }
 }
+
+/// The page tells how long each is.
+#[test]
+fn the_page_tells_their_lines() {
+    let docs = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
+    let rows = include_str!("../../docs/your-robot.md").lines().filter_map(|line| {
+        let (path, rest) = line.split_once("](../planner-core/")?.1.split_once(") | ")?;
+        let told = rest.strip_suffix(" |")?.rsplit(" | ").next()?.parse::<usize>().ok()?;
+        let text = std::fs::read_to_string(docs.join("../planner-core").join(path)).expect(path);
+        assert_eq!(told, text.lines().count(), "{path}");
+        Some(())
+    });
+    assert!(rows.count() > 8);
+}

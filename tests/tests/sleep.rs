@@ -284,6 +284,15 @@ fn what_is_no_snapshot_of_such_a_planner_is_refused() {
     let later = postcard::from_bytes(&later).expect("the same layout");
     assert_eq!(lookahead.restore(&later), Err(RestoreError::Version(9)));
 
+    // More given samples than there are: the number comes after the version.
+    let mut more_given = of_lookahead.clone();
+    more_given[1] = 99;
+    let spoilt = Err(RestoreError::Log(ReplayError::Spoilt));
+    assert_eq!(lookahead.restore(&postcard::from_bytes(&more_given).expect("as told")), spoilt);
+    let mut more_given = of_scc.clone();
+    more_given[1] = 99;
+    assert_eq!(scc.restore(&postcard::from_bytes(&more_given).expect("as told")), spoilt);
+
     // The other kind of labels.
     let kind = Err(RestoreError::Log(ReplayError::Kind));
     assert_eq!(lookahead.restore(&postcard::from_bytes(&of_scc).expect("as it is told")), kind);

@@ -547,8 +547,9 @@ impl<const N: usize, const H: usize, const E: usize> FromLog for CellPosterior<N
     }
 
     fn replay(&mut self, told: &ObservationLog<N>) -> Result<(), ReplayError> {
+        let labels = told.doubtful_labels(self.noise.tolerance)?;
         self.restart(told.given(), self.prior, self.noise)?;
-        for (sample, reliability, tolerance) in told.doubtful_labels(self.noise.tolerance)? {
+        for (sample, reliability, tolerance) in labels {
             self.take_within(sample, reliability, tolerance)?;
         }
         Ok(())

@@ -110,9 +110,9 @@ impl<const N: usize, const H: usize> FromLog for NoisyBelief<N, H> {
     }
 
     fn replay(&mut self, told: &ObservationLog<N>) -> Result<(), ReplayError> {
+        let labels = told.doubtful_labels(self.table.noise().tolerance)?;
         self.restart(told.given(), self.table.prior(), self.table.noise())?;
-        let most = self.table.noise().tolerance;
-        for (sample, reliability, tolerance) in told.doubtful_labels(most)? {
+        for (sample, reliability, tolerance) in labels {
             self.take_within(sample, reliability, tolerance)?;
         }
         Ok(())

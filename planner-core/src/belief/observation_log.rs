@@ -59,6 +59,12 @@ impl<const N: usize> ObservationLog<N> {
         self.tolerances.last().copied()
     }
 
+    /// Whether it has as many samples as it says were given.
+    fn check(&self) -> Result<(), ReplayError> {
+        let is_whole = usize::from(self.given) <= self.samples.len();
+        is_whole.then_some(()).ok_or(ReplayError::Spoilt)
+    }
+
     /// The samples that were given.
     pub fn given(&self) -> &[Sample] {
         self.samples.get(..usize::from(self.given)).unwrap_or(&self.samples)
@@ -71,6 +77,7 @@ impl<const N: usize> ObservationLog<N> {
 
     /// The labels where all are true.
     pub(crate) fn true_labels(&self) -> Result<&[Sample], ReplayError> {
+        self.check()?;
         let are_true = self.reliabilities.is_empty();
         are_true.then_some(self.labels()).ok_or(ReplayError::Kind)
     }
@@ -80,6 +87,7 @@ impl<const N: usize> ObservationLog<N> {
         &self,
         configured: Tolerance,
     ) -> Result<impl Iterator<Item = (Sample, Reliability, Tolerance)>, ReplayError> {
+        self.check()?;
         let labels = self.labels();
         let are_alike = self.tolerances.is_empty() || self.tolerances.len() == labels.len();
         if self.reliabilities.len() != labels.len() || !are_alike {
@@ -114,6 +122,8 @@ pub trait FromLog {
 pub enum ReplayError {
     /// It comes from a belief of the other kind: one for true labels, the other for labels that may be wrong.
     Kind,
+    /// It says that more samples were given than it has.
+    Spoilt,
     /// The given samples.
     Given(GivenError),
     /// A label.
@@ -124,6 +134,7 @@ impl core::fmt::Display for ReplayError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::Kind => f.write_str("what was told is for labels of the other kind"),
+            Self::Spoilt => f.write_str("it says that more samples were given than it has"),
             Self::Given(why) => why.fmt(f),
             Self::Label(why) => why.fmt(f),
         }
@@ -156,8 +167,9 @@ impl<const N: usize> FromLog for VersionSpace<N> {
     }
 
     fn replay(&mut self, told: &ObservationLog<N>) -> Result<(), ReplayError> {
+        let labels = told.true_labels()?;
         *self = Self::new(told.given())?.with_tolerance(self.tolerance())?;
-        for &sample in told.true_labels()? {
+        for &sample in labels {
             self.insert(sample)?;
         }
         self.expect(told.expected().unwrap_or(self.tolerance()))?;

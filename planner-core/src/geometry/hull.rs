@@ -3,6 +3,8 @@
 //! A hull is given by its corners in order. One corner is a point, such as the middle of a disc. Two corners are a
 //! segment, such as a wall or the path of a straight motion.
 
+use nalgebra::Point2;
+
 use crate::geometry::area::Area;
 use crate::geometry::lattice::{Site, orient};
 
@@ -71,11 +73,11 @@ impl<const C: usize> Hull<C> {
         Ok(Self { corners: all, count })
     }
 
-    /// The hull with these corners, `[x, z]` in metres, in either order around it.
+    /// The hull with these corners, `[x, z]` in metres or points of `nalgebra`, in either order around it.
     ///
     /// # Errors
     /// [`HullError`] says what is wrong with them.
-    pub fn metres(corners: &[[f64; 2]]) -> Result<Self, HullError> {
+    pub fn metres<P: Copy + Into<Point2<f64>>>(corners: &[P]) -> Result<Self, HullError> {
         let mut sites = [Site::ORIGIN; C];
         let room = sites.get_mut(..corners.len()).ok_or(HullError::TooMany(C))?;
         for (site, &corner) in room.iter_mut().zip(corners) {

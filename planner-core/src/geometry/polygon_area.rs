@@ -1,6 +1,7 @@
 //! A convex polygon with keep-outs.
 
 use heapless::Vec;
+use nalgebra::Point2;
 
 use crate::geometry::area::Area;
 use crate::geometry::hull::{Hull, HullError, edges};
@@ -44,15 +45,15 @@ impl<const C: usize> KeepOut<C> {
     ///
     /// # Errors
     /// [`HullError::Beyond`], [`HullError::Radius`].
-    pub fn disc(centre: [f64; 2], metres: f64) -> Result<Self, HullError> {
-        Self::new(Hull::metres(&[centre])?, metres)
+    pub fn disc(centre: impl Into<Point2<f64>>, metres: f64) -> Result<Self, HullError> {
+        Self::new(Hull::metres(&[centre.into()])?, metres)
     }
 
-    /// A convex polygon with these corners, `[x, z]` in metres. Two make a wall.
+    /// A convex polygon with these corners, `[x, z]` in metres or points of `nalgebra`. Two make a wall.
     ///
     /// # Errors
     /// [`HullError`].
-    pub fn polygon(corners: &[[f64; 2]]) -> Result<Self, HullError> {
+    pub fn polygon<P: Copy + Into<Point2<f64>>>(corners: &[P]) -> Result<Self, HullError> {
         Ok(Self { hull: Hull::metres(corners)?, radius: 0 })
     }
 }
@@ -108,12 +109,12 @@ impl<const C: usize, const K: usize> PolygonArea<C, K> {
         Ok(Self { polygon, bounds, lengths: lengths(&polygon), keep_outs: kept })
     }
 
-    /// A polygon with these corners, `[x, z]` in metres, and what is kept out of.
+    /// A polygon with these corners, `[x, z]` in metres or points of `nalgebra`, and what is kept out of.
     ///
     /// # Errors
     /// [`PolygonAreaError`] says what is wrong with them.
-    pub fn metres(
-        corners: &[[f64; 2]],
+    pub fn metres<P: Copy + Into<Point2<f64>>>(
+        corners: &[P],
         keep_outs: &[KeepOut<C>],
     ) -> Result<Self, PolygonAreaError> {
         Self::new(Hull::metres(corners)?, keep_outs)
