@@ -105,12 +105,13 @@
 //!   vertical boundary or kilometres from the origin.
 //! - **Motions come from an integer-indexed grid.** The paper's one-step problems are solved exactly, by looking at a
 //!   few of the grid's actions.
-//! - **Noisy labels in fixed memory.** The sequences of true labels that some line realises are cells too, at most 529
-//!   for 32 labels. A table of weighted cells is the whole posterior.
+//! - **Noisy labels in fixed memory.** The true labels are then unknown, but one line must produce them all. Few label
+//!   sequences can come from one line: at most 529 for 32 labels. The lines of one sequence form a *cell*, a version
+//!   space of its own. A table of weighted cells is the whole posterior.
 //! - **The same on every machine.** Integers decide. Floating point only proposes directions and reads results out,
 //!   with IEEE arithmetic and libm. So a mission has the same trace (record of its steps) on a PC and on a chip.
 //! - **Fixed memory.** No allocation, no `unsafe`, no recursion; capacities are const generics. A planner for 32
-//!   samples takes some 500 bytes of RAM.
+//!   samples takes some 650 bytes of RAM.
 //!
 //! # The paper
 //!

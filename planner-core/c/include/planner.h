@@ -267,7 +267,8 @@ typedef struct {
    */
   uint16_t steps;
   /*
-   With p below 1: the probability that `slopes` holds when the planner stops, at most 0.9999; 0 for 0.9.
+   With p below 1: the probability that `slopes` holds when the planner stops, at most 0.9999; 0 for 0.9. With p of
+   1 it must be 0.
    */
   double level;
   /*
@@ -389,7 +390,7 @@ extern "C" {
 #endif // __cplusplus
 
 /*
- How much memory the planner of a mission takes, bytes; 0 if there is no such mission.
+ How much memory the planner of a mission takes, bytes; 0 if `p` or `tolerance` is refused. Nothing else is checked.
  */
 size_t planner_bytes(const planner_mission *mission);
 
@@ -465,6 +466,7 @@ planner_status planner_observe_believed(planner_t *finder,
 
 /*
  The line as far as it is known: the mean of all lines that are left, or in noise of their distribution.
+ `PLANNER_STATUS_RESOLUTION` if they lie too close together for single precision.
 
  # Safety
  `finder` must be null or from `planner_begin`.

@@ -12,7 +12,7 @@ use crate::area::Ground;
 use crate::snapshot::Snapshot;
 use crate::types::{Line, Status};
 
-/// A belief that a label of another reliability than the mission's may be told.
+/// A belief that can take in a label whose reliability differs from the mission's.
 trait Believe: PredictiveBelief {
     /// How reliable the labels of the mission are.
     fn usual(known: &Self::Belief) -> Reliability;
@@ -115,7 +115,7 @@ where
         let before = self.snapshot();
         let sample = planner_core::Sample { site: pose.site, label };
         self.belief_mut().take(sample, believed).map_err(|refused| {
-            // It forgot its last turns. The snapshot is its own.
+            // `belief_mut` has reset the turns. The snapshot is this planner's own, so it is restored.
             let _ = Persist::restore(self, &before);
             refused.into()
         })

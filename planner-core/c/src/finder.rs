@@ -1,7 +1,7 @@
 //! The planner in the caller's memory, and the functions that are called.
 //!
-//! The only unsafe code is here: what is read and written behind pointers that C hands over. A null pointer is
-//! refused; that others are as the header asks for is the caller's promise.
+//! The only unsafe code is here: it reads and writes behind the pointers that C passes. A null pointer is refused. The
+//! caller promises that all others are as the header requires.
 
 use core::ffi::c_void;
 use core::mem::{MaybeUninit, align_of, size_of};
@@ -80,7 +80,7 @@ macro_rules! ask {
     };
 }
 
-/// How much memory the planner of a mission takes, bytes; 0 if there is no such mission.
+/// How much memory the planner of a mission takes, bytes; 0 if `p` or `tolerance` is refused. Nothing else is checked.
 #[unsafe(export_name = "planner_bytes")]
 pub extern "C" fn bytes(mission: Option<&Mission<'_>>) -> usize {
     match mission.map(Mission::noise) {
@@ -304,6 +304,7 @@ unsafe fn take_in(
 }
 
 /// The line as far as it is known: the mean of all lines that are left, or in noise of their distribution.
+/// `PLANNER_STATUS_RESOLUTION` if they lie too close together for single precision.
 ///
 /// # Safety
 /// `finder` must be null or from `planner_begin`.

@@ -28,7 +28,7 @@ pub use snapshot::{SNAPSHOT_BYTES, Snapshot};
 pub use types::{Line, Mission, Motion, Point, Pose, Reading, Sample, Status};
 pub use verdict::Verdict;
 
-/// The C program's own end: the planner has no panics, and yet Rust asks.
+/// Ends the C program. The planner does not panic, but Rust requires a handler.
 #[cfg(target_os = "none")]
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo<'_>) -> ! {

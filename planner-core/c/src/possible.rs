@@ -1,4 +1,4 @@
-//! A mission that C tells, checked before any memory is written.
+//! A mission as the C program gives it, checked before any memory is written.
 
 use planner_core::error::GivenError;
 use planner_core::{

@@ -27,7 +27,7 @@ static CHECK: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
 const SUM: usize = 4;
 
 impl Snapshot {
-    /// What a planner has to remember; `None` if it does not fit, which it does.
+    /// What a planner has to remember. `None` if it does not fit; [`SNAPSHOT_BYTES`] is large enough.
     pub(crate) fn of<P: Persist<Snapshot: Serialize>>(planner: &P) -> Option<Self> {
         let mut bytes = [0; SNAPSHOT_BYTES];
         let room = bytes.get_mut(..SNAPSHOT_BYTES - SUM)?;

@@ -194,7 +194,8 @@ pub struct Mission<'a> {
     pub step_mm: u32,
     /// How many such steps the longest motion has.
     pub steps: u16,
-    /// With p below 1: the probability that `slopes` holds when the planner stops, at most 0.9999; 0 for 0.9.
+    /// With p below 1: the probability that `slopes` holds when the planner stops, at most 0.9999; 0 for 0.9. With p of
+    /// 1 it must be 0.
     pub level: f64,
     /// A polygon and keep-outs; null for the rectangle with nothing in it. It is read while a call runs, and not after.
     pub area: Option<&'a Area>,

@@ -203,7 +203,7 @@ fn mean_beyond(near: i32, half: u32) -> f32 {
     rise.saturating_sub(soft(to)) as f32 / width
 }
 
-/// A vertex of some lines: a site on it, and its unit normal in units of 2^-29.
+/// A vertex of a cell, which is a line: a site on it, and its unit normal in units of 2^-29.
 #[derive(Clone, Copy)]
 struct Ruler {
     through: Site,

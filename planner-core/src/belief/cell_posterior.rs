@@ -1,4 +1,4 @@
-//! The hypothesis table: every separable sequence of true labels, with its weight, in fixed memory.
+//! The hypothesis table, [`CellPosterior`]: every separable sequence of true labels, with its weight, in fixed memory.
 //!
 //! Of the `2^t` sequences that `t` labels could have, only those matter that some line realises (Section III-B). Each
 //! is a cell of the arrangement that the samples' lines draw on the starting polygon. So there are at most
@@ -71,7 +71,7 @@ impl<const E: usize> Hypothesis<E> {
 
 /// Up to `H` hypotheses over up to `N` samples, the given ones included; a cell has up to `E` edges.
 ///
-/// `24 H + 14 N` bytes and some 40 for `E = 15`: with the four oracle points, 3,624 bytes for all
+/// `24 H + 14 N` bytes and 56 for `E = 15`: with the four given samples, 3,624 bytes for all
 /// hypotheses of 16 labels (`H` = 137), 13,256 for 32 (529), 50,952 for 64 (2,081).
 ///
 /// Weights are exact but for the logarithms of a label's odds (to 10^-10 each) and of a cell's measure
@@ -80,7 +80,7 @@ impl<const E: usize> Hypothesis<E> {
 /// A table without room for one hypothesis does not compile:
 ///
 /// ```compile_fail,E0080
-/// use planner_core::belief::cell_posterior::CellPosterior;
+/// use planner_core::CellPosterior;
 /// let table = CellPosterior::<16, 0>::NONE;
 /// ```
 #[derive(Clone, Debug)]
@@ -309,7 +309,7 @@ impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
         Blur::<E>::of(self.lines(hypothesis)).sides(site, Scale::by(self.noise.tolerance))
     }
 
-    /// The labels as hypotheses are weighed by them where positions err; none where they do not.
+    /// Fills a list with the labels, ready to weigh hypotheses by. Leaves it empty where positions do not err.
     #[inline(never)] // its list is not for all of the stack's time
     fn doubts(&self, doubts: &mut List<Doubt, N>) {
         if !self.is_blurred() {

@@ -1,6 +1,6 @@
 //! The lines that agree with some samples, and what can be read off them.
 //!
-//! A set of lines is the edges of a cell together with the samples that the edges name.
+//! A cell stores its edges only. A [`CellView`] is a cell together with the samples that its edges name.
 
 use crate::belief::constraint::Constraint;
 use crate::belief::sample::{Label, Sample};
@@ -20,7 +20,7 @@ pub enum Certainty {
 }
 
 impl Certainty {
-    /// What lines say together of a position where their values are these.
+    /// The certainty at a position, from the value of each line there ([`Bound::at`]).
     pub(crate) fn of_values(values: impl Iterator<Item = i64>) -> Self {
         // Their sign bits, and those of their opposites: to compare 64-bit numbers costs more.
         let (mut below, mut above) = (0, 0);
@@ -71,7 +71,7 @@ pub struct CellView<'a> {
     /// The displacement by which a further sample of label +1 is shifted when it is taken in. A sample of label -1 is
     /// shifted the opposite way: see [`Tolerance`](crate::belief::tolerance::Tolerance).
     pub shift: Vector,
-    /// Whether a place is worth asking where one label alone could cut.
+    /// Whether a place is worth a label as soon as one of the two labels could cut there. If not set, both must.
     pub is_loose: bool,
 }
 
@@ -96,7 +96,7 @@ impl<'a> CellView<'a> {
         certainty(self.edges, self.samples, q)
     }
 
-    /// The same lines, for which a place is worth asking too where one label alone could cut.
+    /// The same lines with [`is_loose`](Self::is_loose) set.
     pub(crate) const fn loosely(self) -> Self {
         Self { is_loose: true, ..self }
     }
@@ -132,8 +132,8 @@ impl<'a> CellView<'a> {
         })
     }
 
-    /// Within this distance of a position where [no label is worth it](Self::can_cut) there is no other, lattice units.
-    /// In single precision, on the safe side.
+    /// From a position where [no label is worth it](Self::can_cut), a distance within which this holds everywhere;
+    /// lattice units. It is computed in single precision and never too large.
     pub(crate) fn dull_within(self, q: Site) -> f32 {
         let certain_within = |by: Vector| {
             let place = q.step(by).ok();
@@ -215,8 +215,8 @@ impl<'a> CellView<'a> {
         SlopeArc::spanning(self.bounds().map(|bound| bound.along)).unwrap_or_default()
     }
 
-    /// The range of the lines left' intercepts in metres, the paper's `I_c,t`; `None` when it
-    /// is unbounded, as a vertical line is among them.
+    /// The range of the intercepts of the lines left, metres: the paper's `I_c,t`. `None` when a vertical line is among
+    /// them, so that the range is unbounded.
     pub fn intercepts(self) -> Option<[f64; 2]> {
         intercepts(self.bounds())
     }

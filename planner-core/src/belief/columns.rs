@@ -108,17 +108,17 @@ impl<const K: usize> Columns<K> {
 #[derive(Clone, Copy, Debug)]
 pub struct After<'a, const K: usize> {
     columns: &'a Columns<K>,
-    /// Of its site.
+    /// The [`heights`](Columns::heights) of the label's site.
     heights: [f32; K],
-    /// The weight of the lines that have its site on their +1 side.
+    /// The weight of the lines that have the label's site on their +1 side.
     plus: f32,
     /// The weight of the others.
     minus: f32,
 }
 
 impl<const K: usize> After<'_, K> {
-    /// The share of the lines that will have another site on their +1 side. Of the lines of one direction, those that
-    /// have both sites there are those that have the lower one there.
+    /// The share of the lines that will have another site on their +1 side. In each direction, the lines with both
+    /// sites on their +1 side are those with the lower site there.
     pub fn share_above(&self, site: Site) -> f32 {
         let place = self.columns.view.vector(site);
         let (mut above, mut above_both) = (0.0, 0.0);

@@ -1,9 +1,9 @@
-//! A sample's part in a cell, in one byte.
+//! An edge of a cell, in one byte: the constraint that one sample puts on the lines.
 
 use crate::belief::sample::{Label, Sample};
 use crate::geometry::lattice::{Site, Vector};
 
-/// A sample's part in a cell: its index in the buffer and the label the cell gives it.
+/// An edge of a cell: the index of its sample in the buffer, and the label that the cell gives the sample.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Constraint(u8);
 

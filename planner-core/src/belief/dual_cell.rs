@@ -1,10 +1,11 @@
 //! A cell of lines, stored as a cyclic list of signed sample indices of one byte each.
 //!
-//! In the space of homogeneous lines `(A, B, C)` a sample `(x, z)` with label `y` admits the half-space
-//! `y (A x + B z + C) >= 0`. So the lines that agree with a set of samples form a convex cone. Seen as a polygon, each
-//! *edge* of the cone belongs to a sample that still matters. Each *vertex*, between two edges, is the line through
-//! their two samples: a [`Bound`](crate::geometry::line::Bound). The list of samples therefore describes the whole
-//! cell, and one predicate, [`Bound::at`](crate::geometry::line::Bound::at), decides every question about it.
+//! The *dual* space is that of homogeneous lines `(A, B, C)`. There a sample `(x, z)` with label `y` admits the
+//! half-space `y (A x + B z + C) >= 0`. So the lines that agree with a set of samples form a convex cone. Seen as a
+//! polygon, each *edge* of the cone belongs to a sample that still matters; [`Constraint`] is the type of an edge. Each
+//! *vertex*, between two edges, is the line through their two samples: a [`Bound`](crate::geometry::line::Bound). The
+//! list of samples therefore describes the whole cell, and one predicate,
+//! [`Bound::at`](crate::geometry::line::Bound::at), decides every question about it.
 //!
 //! A cell does not contain the samples, so several cells can share one buffer of them.
 
@@ -46,7 +47,7 @@ impl core::error::Error for CutError {}
 
 /// A convex cell of lines with up to `E` edges. `E + 1` bytes.
 ///
-/// `samples` in every method is the one buffer whose indices the edges are.
+/// `samples` in every method is the buffer of samples to which the indices of the edges refer.
 #[derive(Clone, Copy)]
 pub struct DualCell<const E: usize> {
     /// In cyclic order, from the first on.
@@ -94,7 +95,7 @@ impl<const E: usize> DualCell<E> {
         CellView { edges: self.edges(), samples, shift: Vector::default(), is_loose: false }
     }
 
-    /// Keeps the lines that agree with the edge's sample. One orientation an edge, exact.
+    /// Keeps the lines that agree with the edge's sample. Exact; it costs one orientation for each edge of the cell.
     ///
     /// # Errors
     /// [`CutError`], with the cell as it was.

@@ -5,8 +5,8 @@
 //! lines that have the place on their +1 side are one part, and a label +1 there leaves that part. Its measure is their
 //! share.
 //!
-//! Cross products are exact in integers, and everything else is in single precision. A picture predicts; it decides
-//! nothing about certainty.
+//! Cross products are exact in integers, and everything else is in single precision. The polygon only predicts; it
+//! decides nothing about certainty.
 
 use heapless::Vec;
 
@@ -20,10 +20,10 @@ use crate::belief::{Belief, ObservationError};
 use crate::geometry::approximate::{METRE, UnitVector, cross, inverse_sqrt};
 use crate::geometry::lattice::{Site, Vector};
 
-/// The number of vertices that a picture keeps. From a cell with more, it takes this many, spread evenly.
+/// The number of vertices that a polygon keeps. From a cell with more, it takes this many, spread evenly.
 const VERTICES: usize = 16;
 
-/// The directions of a picture: its first axis.
+/// The first axis of a polygon's frame. The second axis is to its left.
 #[derive(Clone, Copy, Debug)]
 struct Axis {
     along: Vector,
@@ -82,7 +82,8 @@ impl Vertex {
     }
 }
 
-/// The lines of a picture below a place: those between two through it, and the vertices from one on.
+/// The lines of a polygon below a place, or above it. `start` and `end` are lines through the place. Between them lie
+/// `count` vertices of the polygon, from number `first` on.
 struct Part {
     start: Vertex,
     first: usize,
@@ -103,7 +104,7 @@ pub struct DualPolygon {
 }
 
 impl DualPolygon {
-    /// The picture of some lines from a site.
+    /// The polygon of some lines, in a frame at a site.
     pub fn of(lines: CellView<'_>, origin: Site) -> Self {
         let along = lines.slope_arc().bisector();
         let axis = Axis { along, unit: UnitVector::of(along) };
@@ -176,14 +177,14 @@ impl DualPolygon {
         self.axis.see(Vector { x: by.x.saturating_add(shift.x), z: by.z.saturating_add(shift.z) })
     }
 
-    /// The share above a place.
+    /// The share of the lines that have a place on their +1 side.
     fn share(&self, place: [f32; 2]) -> f32 {
         let Some(part) = self.part(place, Label::Positive) else { return self.beyond(place) };
         (measure(part.start, self.rest(&part)) / self.measure).clamp(0.0, 1.0)
     }
 
-    /// The share above a place at which all lines agree. It lies beyond 0 or 1 by the distance to the nearest line over
-    /// the breadth of the lines there.
+    /// [`share`](Self::share) at a place where all lines agree. It is below 0 or above 1 by the distance to the nearest
+    /// line, divided by the breadth of the lines there.
     fn beyond(&self, place: [f32; 2]) -> f32 {
         let (mut least, mut most) = (f32::INFINITY, f32::NEG_INFINITY);
         for vertex in &self.vertices {
@@ -267,7 +268,7 @@ impl Predictor for DualPolygon {
         if let Some(part) = &part {
             for vertex in core::iter::once(&part.start).chain(self.rest(part)).take(VERTICES) {
                 let offset = vertex.offset + vertex.slope * x - z;
-                // A part has a vertex more than the whole at most: a full picture loses its last.
+                // A part has at most one vertex more than the whole. A full polygon loses its last.
                 let _ = after.vertices.push(Vertex { offset, ..*vertex });
             }
         }

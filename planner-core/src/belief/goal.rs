@@ -1,8 +1,8 @@
 //! When the line is known well enough.
 //!
-//! A goal is a promise about the lines that are left, checked by exact or outer bounds. If labels are true, the line is
-//! one of these lines, so the promise holds. If labels may be wrong, the promise is about a credible set. It then holds
-//! with at least the probability of that set.
+//! A goal is a promise about the lines that are left. The check is exact or conservative. If labels are true, the line
+//! is one of these lines, so the promise holds. If labels may be wrong, the promise is about a credible set. It then
+//! holds with at least the probability of that set.
 
 use crate::geometry::approximate::{METRE, cross, single, sqrt};
 use crate::geometry::arc::SlopeArc;
@@ -20,7 +20,7 @@ use crate::geometry::workspace::Workspace;
 pub struct Goal {
     /// The accuracy with which the line must be known.
     pub accuracy: Accuracy,
-    /// The probability that the promise holds, in millionths, at least; certain where labels are true.
+    /// The least probability that the promise holds, in millionths. Unused if labels are true: then it is certain.
     pub level: u32,
 }
 
@@ -67,7 +67,8 @@ impl Goal {
         is_one.then_some(Self { level, ..self }).ok_or(CONFIDENCE)
     }
 
-    /// The same for the rectangle around an area: shares of it are less.
+    /// The same goal, as a share of the rectangle around an area. [`Belief::meets`](crate::belief::Belief::meets) takes
+    /// that rectangle, of which the same ground is a smaller share.
     #[must_use]
     pub fn in_bounds_of<G: Workspace>(self, area: &G) -> Self {
         let accuracy = match self.accuracy {

@@ -6,9 +6,11 @@
 //! | [`dual_cell`] | the lines that agree with some labels: a convex *cell*, stored as a cyclic list of sample indices |
 //! | [`version_space`] | for labels that are true: the one cell that they leave |
 //! | [`cell_posterior`], [`posterior_view`] | for labels that may be wrong: a table of weighted cells, and its distribution |
-//! | [`predictor`] | what the next labels are expected to tell |
-//! | [`dual_polygon`] | the predictor of the one cell |
-//! | [`noisy_belief`], [`columns`] | the predictor of a table: columns beside it |
+//! | [`cell_view`], [`estimate`] | what can be read off a set of lines; three estimates of the line |
+//! | [`sample`], [`noise`] | labels, readings and samples; how reliable labels are |
+//! | [`predictor`] | the traits of predictors: how much the next labels are expected to tell |
+//! | [`dual_polygon`] | the predictor of a version space |
+//! | [`noisy_belief`], [`columns`] | a table of cells with its predictor, an approximate copy of its distribution |
 //! | [`goal`] | decides when the line is known well enough |
 //! | [`tolerance`] | handles positions that err |
 //! | [`observation_log`] | what must be kept of a belief over a sleep |

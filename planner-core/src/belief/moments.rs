@@ -37,7 +37,7 @@ struct End {
     unit: [f32; 2],
     /// The lowest of their offsets, metres.
     lowest: f32,
-    /// How many there are, metres.
+    /// The width of the interval of their offsets, metres.
     width: f32,
 }
 

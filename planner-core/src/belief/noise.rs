@@ -21,7 +21,7 @@ pub struct Reliability {
 const RANGE: ValueError = ValueError("a reliability is a probability from 0 to 1");
 
 impl Reliability {
-    /// No odds of a number are as large: a double is no smaller than `e^-745`.
+    /// The log odds of a certain label. Those of any double between 0 and 1 are below 746 in size.
     const BEYOND: LogWeight = LogWeight(1_000 * LogWeight::ONE);
 
     /// The label is true for certain, as within a trusted ball.

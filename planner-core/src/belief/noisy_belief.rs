@@ -1,5 +1,5 @@
-//! Predicts labels that may be wrong: an exact table of hypotheses describes what is known, and columns beside it serve
-//! to look ahead.
+//! The belief for labels that may be wrong. A [`CellPosterior`], an exact table of hypotheses, contains what is known.
+//! [`Columns`] are an approximate copy of its distribution, from which look-ahead predicts the next labels.
 
 use crate::belief::ObservationError;
 use crate::belief::cell_posterior::CellPosterior;
@@ -18,8 +18,8 @@ use crate::geometry::lattice::Site;
 /// The number of directions that represent all lines.
 const DIRECTIONS: usize = 16;
 
-/// The sequences that so many labels can have where one line separates them: the hypotheses that a [`NoisyBelief`] has
-/// to hold so that none is left out.
+/// The most label sequences that one line can produce at so many positions. A [`NoisyBelief`] with room for as many
+/// hypotheses never drops one.
 ///
 /// ```
 /// # use planner_core::{NoisyBelief, sequences_of};
@@ -30,7 +30,10 @@ pub const fn sequences_of(labels: usize) -> usize {
     1 + labels + labels * labels.saturating_sub(1) / 2
 }
 
-/// Up to `H` hypotheses over up to `N` samples, and what they expect of the next labels.
+/// The belief for labels that may be wrong: up to `H` hypotheses over up to `N` samples. It also predicts the next
+/// labels, for look-ahead.
+///
+/// The given samples count among the `N`. [`sequences_of`] computes `H`.
 #[derive(Clone, Debug)]
 pub struct NoisyBelief<const N: usize, const H: usize> {
     table: CellPosterior<N, H>,
@@ -151,7 +154,7 @@ impl<const N: usize, const H: usize> PredictiveBelief for NoisyBelief<N, H> {
     }
 }
 
-/// How far labels can be believed.
+/// How reliable labels are, and how much one can tell at most.
 #[derive(Clone, Copy, Debug)]
 struct Labels<'a, const N: usize, const H: usize> {
     table: &'a CellPosterior<N, H>,
@@ -197,14 +200,14 @@ fn chance(share: f32, p: f32) -> f32 {
     p * share + (1.0 - p) * (1.0 - share)
 }
 
-/// What the hypotheses expect.
+/// The predictor of a table of hypotheses.
 #[derive(Clone, Copy, Debug)]
 pub struct TablePredictor<'a, const N: usize, const H: usize> {
     labels: Labels<'a, N, H>,
     columns: &'a Columns<DIRECTIONS>,
 }
 
-/// What they will expect when one more label is known.
+/// The prediction of that table when one more label is known.
 #[derive(Clone, Copy, Debug)]
 pub struct TablePredictorAfter<'a, const N: usize, const H: usize> {
     labels: Labels<'a, N, H>,

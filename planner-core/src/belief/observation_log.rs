@@ -101,17 +101,17 @@ impl<const N: usize> ObservationLog<N> {
 
 /// A belief that can export what it has taken in, and take it in again.
 pub trait FromLog {
-    /// All that it can be told.
+    /// The log of what it takes in.
     type ObservationLog;
 
-    /// What it was told.
+    /// The log of all that it has taken in so far.
     fn told(&self) -> Self::ObservationLog;
 
     /// Begins again and takes in what was exported, with this belief's own noise and tolerance. It costs as much as the
     /// labels did when they came.
     ///
     /// # Errors
-    /// [`ReplayError`]. The belief knows then no more than what came before.
+    /// [`ReplayError`]. The belief may then contain only a part of the log.
     fn replay(&mut self, told: &Self::ObservationLog) -> Result<(), ReplayError>;
 }
 
@@ -124,9 +124,9 @@ pub enum ReplayError {
     Kind,
     /// It says that more samples were given than it has.
     Spoilt,
-    /// The given samples.
+    /// The given samples make no belief.
     Given(GivenError),
-    /// A label.
+    /// A label was refused.
     Label(ObservationError),
 }
 

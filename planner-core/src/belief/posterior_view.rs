@@ -1,8 +1,9 @@
 //! The posterior over hypotheses: the probabilities that the labels seen give to the lines.
 //!
-//! The policy depends on the information alone, so Equation 8 reduces to a simple weight: `p^agree (1 - p)^disagree`
-//! over the samples outside the trusted balls. A probability is this weight divided by the sum over all separable
-//! sequences. A bound on the effect of pruning is [`PosteriorView::pruned_mass`].
+//! The motions depend only on the labels seen, so they cancel in the paper's Equation 8. What is left is the weight
+//! `p^agree (1 - p)^disagree`. `p` is the probability that a label is true. `agree` and `disagree` count the labels
+//! outside the trusted balls that a hypothesis agrees with, and the others. A probability is this weight divided by the
+//! sum over all separable sequences. A bound on the effect of pruning is [`PosteriorView::pruned_mass`].
 
 use crate::belief::cell_posterior::{CellPosterior, Hypothesis};
 use crate::belief::cell_view::{CellView, intercepts};
@@ -92,7 +93,7 @@ impl<const N: usize, const H: usize, const E: usize> Belief for CellPosterior<N,
         PosteriorView::new(self).information()
     }
 
-    /// Of the heaviest hypotheses that hold the level together.
+    /// Whether the lines of the heaviest hypotheses, which together have the goal's level as probability, meet it.
     fn meets(&self, goal: Goal, area: Area) -> bool {
         let Some(least) = self.lightest_within(goal.level) else { return false };
         let within = self.iter().filter(|hypothesis| hypothesis.weight() >= least);
@@ -187,7 +188,7 @@ impl<'a, const N: usize, const H: usize, const E: usize> PosteriorView<'a, N, H,
     }
 
     /// The information of the labels about the line, bits: the divergence of this posterior from the uniform
-    /// distribution over the starting lines. For noiseless labels it is `log2` of the share of the starting lines that
+    /// distribution over the starting lines. For noiseless labels it is `-log2` of the share of the starting lines that
     /// are left. Never below 0.
     pub fn information(&self) -> f64 {
         let area_of = |h| self.hypotheses.log_area(h).exp();

@@ -1,4 +1,9 @@
 //! The traits that look-ahead needs: what a label at a place is expected to tell, and the prediction after it.
+//!
+//! A [`PredictiveBelief`] is a belief that makes predictors. A [`Prediction`] says what the next label may tell. A
+//! [`Predictor`] is the prediction of the present belief: it can also predict what follows that label.
+//!
+//! In the last two, `share` is the [`share_above`](Prediction::share_above) of a site.
 
 use crate::belief::cell_view::CellView;
 use crate::belief::sample::{Label, Reading};
@@ -6,12 +11,12 @@ use crate::belief::tolerance::Tolerance;
 use crate::belief::{Belief, ObservationError};
 use crate::geometry::lattice::Site;
 
-/// A belief, and what it expects of labels.
+/// A belief that can predict labels: what look-ahead plans with.
 pub trait PredictiveBelief {
     /// What is known.
     type Belief: Belief;
 
-    /// What is expected.
+    /// What predicts the next labels.
     type Predictor<'a>: Predictor
     where
         Self: 'a;
@@ -49,8 +54,8 @@ pub trait Prediction {
     /// below 0 or above 1, and further so the farther the site is from uncertain ground.
     fn share_above(&self, site: Site) -> f32;
 
-    /// The expected information of a label at a site with this share above it, as a share of the most that a label can
-    /// carry.
+    /// The expected information of a label at a site, as a share of the most that a label can carry. `share` is the
+    /// site's [`share_above`](Self::share_above).
     fn information(&self, site: Site, share: f32) -> f32;
 }
 
@@ -61,7 +66,7 @@ pub trait Predictor: Prediction {
     where
         Self: 'a;
 
-    /// The chance that a label read at a site with this share above it is +1.
+    /// The chance that a label read at a site is +1. `share` is the site's [`share_above`](Prediction::share_above).
     fn chance(&self, site: Site, share: f32) -> f32;
 
     /// The prediction after a label is read at a site.

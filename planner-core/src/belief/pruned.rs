@@ -34,7 +34,7 @@ impl PrunedMass {
         }
     }
 
-    /// With what was `unit` as the new unit of weights.
+    /// Divides the bound by `unit`, the new unit of all weights.
     pub(crate) fn rescale(&mut self, unit: LogWeight) {
         if self.area > 0.0 {
             let scale = (LogWeight::ZERO - unit).exp_bound();

@@ -46,7 +46,7 @@ impl Neg for Label {
 pub enum Reading {
     /// A side of the boundary.
     Side(Label),
-    /// Exactly on the boundary: no flip, by Section IV.
+    /// Exactly on the boundary. Algorithm 1 does not count it as a change of label (Section IV).
     Boundary,
 }
 

@@ -1,9 +1,9 @@
 //! Positions that err: where to insert a sample whose true place is only known to be near the reported one.
 //!
-//! **Labels that are true** are shifted. Let the true position be within `e` of the reported `q`. Let `n` be the unit
-//! normals of all lines that are left, pointing to their +1 sides. Let them lie within `d` of the middle one `b`. If a
-//! line has the true position on its +1 side, `q` lies no further than `e` on its other side. The place
-//! `q + (e / cos d) b` then satisfies
+//! **Labels that are true** are shifted. Let the true position be within `e` of the reported `q`. A line is
+//! `n . q + c = 0`, where `n` is its unit normal and points to its +1 side. Let the normals of all lines that are left
+//! lie within the angle `d` of the middle one, `b`. If a line has the true position on its +1 side, `q` lies no further
+//! than `e` on its other side. The place `q + (e / cos d) b` then satisfies
 //!
 //! ```text
 //!   n . (q + (e / cos d) b) + c  >=  -e + (e / cos d) (n . b)  >=  -e + e  =  0
@@ -14,9 +14,10 @@
 //! cells stay what they are. As the lines' arc narrows, `d` falls and the shift decreases towards the tolerance.
 //!
 //! **Labels that may be wrong** are not shifted but doubted: the nearer a line passes, the more. The true position is
-//! spread about the reported one. Let a line have the reported position `s` on its +1 side. Then a label +1 has the
-//! probability `p Phi(s / sigma) + (1 - p) Phi(-s / sigma)` for that line, see [`CellPosterior`] and, for the calculation,
-//! `belief/blur.rs`.
+//! spread about the reported one with the standard deviation `sigma`, a third of the tolerance. Let the reported
+//! position be at the distance `s` from a line, positive on its +1 side. Let labels be true with probability `p`. For
+//! that line a label +1 then has the probability `p Phi(s / sigma) + (1 - p) Phi(-s / sigma)`. See [`CellPosterior`],
+//! and `belief/blur.rs` for the calculation.
 //!
 //! [`CellPosterior`]: crate::belief::cell_posterior::CellPosterior
 

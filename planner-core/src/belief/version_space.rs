@@ -56,7 +56,7 @@ impl core::error::Error for GivenError {}
 #[derive(Clone, Debug)]
 pub struct VersionSpace<const N: usize> {
     samples: SampleBuffer<N>,
-    /// How many of them it was made of. A whole word, so that the cell begins at one.
+    /// How many of them were given at the start. It is a whole word, so that the cell begins at a word.
     given: usize,
     cell: DualCell<N>,
     /// How far off a position may be at most.
@@ -68,8 +68,8 @@ pub struct VersionSpace<const N: usize> {
 }
 
 impl<const N: usize> VersionSpace<N> {
-    /// The version space of samples of both labels that are not collinear: the oracle's points, or
-    /// a record. `O(n^2)` orientations.
+    /// The version space of samples of both labels that are not collinear: the given samples of a mission (the paper's
+    /// oracle points), or all of its samples. `O(n^2)` orientations.
     ///
     /// # Errors
     /// [`GivenError`].
@@ -104,11 +104,12 @@ impl<const N: usize> VersionSpace<N> {
     /// The version space of samples whose positions may be off, each by a tolerance of its own. It keeps every line
     /// that agrees with some place within the tolerance of each sample.
     ///
-    /// [`given`](Self::given) returns the samples where they were taken in, as those of a table of hypotheses may be.
+    /// [`given`](Self::given) then returns the shifted samples. They can be given to a
+    /// [`CellPosterior`](crate::belief::cell_posterior::CellPosterior) as well.
     ///
     /// Every two samples of opposite labels exclude directions, however their positions err. The remaining directions
     /// determine by how much samples are [shifted](crate::belief::tolerance). The remaining lines then have fewer
-    /// directions, so the samples are shifted anew, three times in all. `O(n^2)` for `n` samples, in double precision,
+    /// directions, so the shift is computed again, three times in all. `O(n^2)` for `n` samples, in double precision,
     /// the same on every machine.
     ///
     /// # Errors
@@ -133,8 +134,8 @@ impl<const N: usize> VersionSpace<N> {
         Self::new(&shifted)
     }
 
-    /// The same, for further samples whose positions may be off by so much, metres or a [`Tolerance`]. The given samples
-    /// are where they are said to be.
+    /// The same, for further samples whose positions may be off by so much, metres or a [`Tolerance`]. The positions of
+    /// the given samples count as exact.
     ///
     /// # Errors
     /// [`GivenError::TooVague`], and [`GivenError::Tolerance`] unless the tolerance is from 0 to 1,024 m.
@@ -181,7 +182,7 @@ impl<const N: usize> VersionSpace<N> {
         self.samples
     }
 
-    /// Those that it was made of.
+    /// The samples that were given at the start.
     pub fn given(&self) -> &[Sample] {
         self.samples.get(..self.given).unwrap_or(&[])
     }
@@ -212,8 +213,8 @@ impl<const N: usize> VersionSpace<N> {
     /// uncertain ground the sample gets the label `either`, which the caller chooses. Where all lines agree the reading
     /// tells nothing and is skipped. It is true as long as one of the lines passes here.
     ///
-    /// Under a [tolerance](Self::with_tolerance) the sample is taken in at a place where it is true for any position within the
-    /// tolerance.
+    /// Under a [tolerance](Self::with_tolerance) the sample is taken in at a place where it is true for any position
+    /// within the tolerance.
     ///
     /// # Errors
     /// As [`insert`](Self::insert), never for a true reading.
@@ -286,8 +287,8 @@ impl<const N: usize> VersionSpace<N> {
         self.lines().slope_arc()
     }
 
-    /// The range of the lines left' intercepts in metres, the paper's `I_c,t`; `None` when it
-    /// is unbounded, as a vertical line is among them.
+    /// The range of the intercepts of the lines left, metres: the paper's `I_c,t`. `None` when a vertical line is among
+    /// them, so that the range is unbounded.
     pub fn intercepts(&self) -> Option<[f64; 2]> {
         self.lines().intercepts()
     }
@@ -337,7 +338,7 @@ impl<const N: usize> Belief for VersionSpace<N> {
         libm::log2(f64::from(start) / f64::from(area(self.lines())))
     }
 
-    /// Of all lines that are left, whatever the level.
+    /// Whether all lines that are left meet the goal. The goal's level has no effect, as labels are true.
     fn meets(&self, goal: Goal, area: Area) -> bool {
         goal.accuracy.is_met(self.bounds(), area)
     }

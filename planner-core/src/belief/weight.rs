@@ -89,7 +89,7 @@ impl Coarse {
         Self(units.clamp(Self::LEAST.into(), Self::MOST.into()) as i32)
     }
 
-    /// The logarithm of a positive number; the least there is below 2^-126. Off by less than 3 units.
+    /// The logarithm of a positive number, off by less than 3 units. Below 2^-126 it is the least value, -96.
     pub(crate) fn of(value: f32) -> Self {
         const SQRT_HALF: u32 = core::f32::consts::FRAC_1_SQRT_2.to_bits();
         if value < f32::MIN_POSITIVE {
@@ -106,7 +106,7 @@ impl Coarse {
         Self(units.clamp(Self::LEAST, Self::MOST))
     }
 
-    /// The number whose logarithm this is; what is less than 2^-125 is held to be about that.
+    /// The number whose logarithm this is, but not less than about 2^-125.
     fn exp(self) -> f32 {
         const LOG2_E_IN_2_30: i64 = 1_549_082_005;
         const SERIES: [f32; 7] =

@@ -1,4 +1,4 @@
-//! Angles, for what is approximate.
+//! Coarse angles for approximate geometry: a quarter of a heading's resolution, and sums do not wrap.
 
 use core::ops::{Add, Neg, Sub};
 
@@ -9,7 +9,7 @@ use crate::geometry::heading::Heading;
 pub(crate) struct CoarseAngle(i32);
 
 impl CoarseAngle {
-    /// Less than any angle between two headings.
+    /// Less than the size of any angle between two headings, so that no angle is within it.
     pub(crate) const NEVER: Self = Self(-1);
     pub(crate) const ZERO: Self = Self(0);
     pub(crate) const QUARTER_TURN: Self = Self(1 << 28);
@@ -42,7 +42,7 @@ impl CoarseAngle {
         Self(self.0.abs())
     }
 
-    /// As a turn in units of a heading's: none if it is negative, and without its whole turns.
+    /// The turn in a heading's units. A negative angle becomes 0, and whole turns are dropped.
     pub(crate) const fn turn(self) -> u32 {
         (if self.0 < 0 { 0 } else { self.0 as u32 }) << 2
     }

@@ -44,8 +44,8 @@ impl SlopeArc {
         }
     }
 
-    /// The arc of directions that track one: within 1/64 of it in tangent (0.9 degrees), so that
-    /// some ray of the paper's grid, which are 0.57 degrees apart, always does.
+    /// The arc of directions that track one: those within 0.9 degrees of it (a tangent of 1/64). The rays of the
+    /// paper's grid are 0.57 degrees apart, so some ray always lies in the arc.
     pub const fn tracking(direction: Vector) -> Self {
         let (d, aside) = (direction, direction.left());
         Self {

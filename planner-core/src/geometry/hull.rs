@@ -23,7 +23,7 @@ pub struct Hull<const C: usize> {
 pub enum HullError {
     /// There are none.
     Empty,
-    /// There is room for so many.
+    /// There are more corners than this, for which the hull has room.
     TooMany(usize),
     /// Polygons have their corners in order around them, each of them turning to the same side.
     NotConvex,

@@ -34,7 +34,8 @@ impl core::fmt::Display for Line {
 impl Line {
     /// The line with these coefficients.
     ///
-    /// `None` when one of them is not finite, or `a` and `b` are both zero: no line then.
+    /// `None` when one of them is not finite, when `a` and `b` are both zero, or when the distance from the origin is
+    /// not finite.
     pub fn from_coefficients(a: f64, b: f64, c: f64) -> Option<Self> {
         // Scaled by a power of two no ratio changes, and no product with a coordinate overflows.
         let (_, exponent) = libm::frexp(a.abs().max(b.abs()));
@@ -96,9 +97,10 @@ impl Line {
     }
 }
 
-/// The exact line through two samples, one of the paper's bounds `l_ij`: a vertex of a cell.
+/// The exact line through two samples, one of the paper's bounds `l_ij`.
 ///
-/// Oriented so that its +1 side is to the left of its direction.
+/// In the space of lines it is a vertex of a cell, see [`DualCell`](crate::belief::dual_cell::DualCell). It is oriented
+/// so that its +1 side is to the left of its direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Bound {

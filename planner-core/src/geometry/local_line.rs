@@ -84,7 +84,7 @@ impl Frame {
         [self.unit.dot(unit), sin]
     }
 
-    /// How far a site lies to the left of the line through the middle of the frame with a direction, metres.
+    /// How far a site lies to the left of the line through the frame's site along a direction, metres.
     pub(crate) fn distance(&self, site: Site, unit: UnitVector, direction: Vector) -> f32 {
         cross(direction, site - self.about) * (unit.per_length * METRE)
     }

@@ -8,24 +8,25 @@ use crate::geometry::hull::{Hull, HullError, edges};
 use crate::geometry::lattice::{LIMIT, Site, UNITS_PER_METRE, Vector};
 use crate::geometry::workspace::{HalfPlane, Obstacle, Workspace};
 
-/// A convex polygon, but for keep-outs; `C` corners each and `K` keep-outs at most.
+/// A convex polygon without its keep-outs. There are at most `K` keep-outs. The polygon and each keep-out have at most
+/// `C` corners.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PolygonArea<const C: usize, const K: usize> {
     polygon: Hull<C>,
     bounds: Area,
-    /// Those of the polygon's edges, rounded up.
+    /// The lengths of the polygon's edges, lattice units, rounded up.
     lengths: [u32; C],
     keep_outs: [Option<KeepOut<C>>; K],
 }
 
-/// All within a distance of a hull, in lattice units below 2^30: a disc, if that is a point.
+/// Ground that no motion touches: all places within a distance of a convex hull. A hull of one point makes a disc.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct KeepOut<const C: usize> {
     /// The hull.
     pub hull: Hull<C>,
-    /// The distance.
+    /// The distance, lattice units; below 2^29 (8,192 m).
     pub radius: u32,
 }
 
@@ -58,16 +59,16 @@ impl<const C: usize> KeepOut<C> {
     }
 }
 
-/// There is no such area.
+/// Why a polygon and its keep-outs make no area.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum PolygonAreaError {
     /// The area is no polygon.
     Area(HullError),
-    /// There is room for so many keep-outs.
+    /// There are more keep-outs than this, for which the area has room.
     TooManyKeepOuts(usize),
-    /// A keep-out is too large for the lattice; the first is number 0.
+    /// The radius of this keep-out is 8,192 m or more. The first keep-out is number 0.
     KeepOut(usize),
 }
 
@@ -90,7 +91,7 @@ impl From<HullError> for PolygonAreaError {
 }
 
 impl<const C: usize, const K: usize> PolygonArea<C, K> {
-    /// A polygon, and what is kept out of.
+    /// The area of a polygon without its keep-outs.
     ///
     /// # Errors
     /// [`PolygonAreaError`] says what is wrong with them.
@@ -109,7 +110,7 @@ impl<const C: usize, const K: usize> PolygonArea<C, K> {
         Ok(Self { polygon, bounds, lengths: lengths(&polygon), keep_outs: kept })
     }
 
-    /// A polygon with these corners, `[x, z]` in metres or points of `nalgebra`, and what is kept out of.
+    /// The area of a polygon with these corners, `[x, z]` in metres or points of `nalgebra`, without its keep-outs.
     ///
     /// # Errors
     /// [`PolygonAreaError`] says what is wrong with them.
@@ -125,7 +126,7 @@ impl<const C: usize, const K: usize> PolygonArea<C, K> {
         self.polygon.corners()
     }
 
-    /// What is kept out of.
+    /// The keep-outs.
     pub fn hulls(&self) -> impl Iterator<Item = &KeepOut<C>> {
         self.keep_outs.iter().flatten()
     }
@@ -171,7 +172,7 @@ impl<const C: usize, const K: usize> PolygonArea<C, K> {
     }
 }
 
-/// A rectangle with nothing in it.
+/// A rectangle without keep-outs.
 impl<const C: usize, const K: usize> From<Area> for PolygonArea<C, K> {
     fn from(bounds: Area) -> Self {
         let polygon = Hull::of(bounds);

@@ -7,25 +7,26 @@ use crate::geometry::value::ValueError;
 
 /// Where motions may go: a convex area without convex keep-outs, which no motion touches.
 ///
-/// [`Area`], a rectangle with nothing in it, pays nothing for polygons and keep-outs.
+/// [`Area`], a rectangle without keep-outs, has no cost for polygons and keep-outs.
 /// [`PolygonArea`](crate::geometry::polygon_area::PolygonArea) is a convex polygon with keep-outs.
 pub trait Workspace: Copy {
     /// The smallest rectangle around it.
     fn bounds(&self) -> Area;
 
-    /// Fraction of the bounding rectangle that belongs to the region, whether it is [inset](Self::inset) or not; at
-    /// most 1.
+    /// Fraction of the bounding rectangle that the area covers, at most 1. Keep-outs count as part of the area. An
+    /// [inset](Self::inset) part returns the same value as the whole.
     fn share_of_bounds(&self) -> f32 {
         1.0
     }
 
-    /// The displacement by which an agent outside the region returns to its inside sooner or later.
+    /// The displacement from a position outside the area, or in a keep-out, towards the inside. It may be longer than
+    /// one motion, and the next keep-out may be on the way.
     fn way_home(&self, from: Site) -> Vector {
         self.bounds().middle() - from
     }
 
-    /// The same area, of whose border and keep-outs motions stay clear by so many metres. By default it is the tolerance
-    /// of the planner's belief; a smaller clearance than that has no effect.
+    /// The same area with a clearance: motions stay at least so many metres away from its border and its keep-outs. By
+    /// default the clearance is the tolerance of the planner's belief. A smaller clearance has no effect.
     ///
     /// # Errors
     /// [`ValueError`] if the clearance is negative or no number, or nothing of the area is left.
@@ -39,15 +40,15 @@ pub trait Workspace: Copy {
     }
 
     /// The part that is further than so many lattice units from the border and from all keep-outs: where to aim if
-    /// motions end that far off. `None` if its rectangle has no such part.
+    /// motions end that far off. `None` if the border leaves no such part; keep-outs are not considered.
     #[must_use]
     fn inset(&self, margin: u32) -> Option<Self>;
 
-    /// All of it again, of which this is an [inset](Self::inset) part.
+    /// The whole area of which this is an [inset](Self::inset) part.
     #[must_use]
     fn whole(&self) -> Self;
 
-    /// The sides that cut its rectangle.
+    /// The sides of the border that are not sides of the [bounding rectangle](Self::bounds).
     fn sides(&self) -> impl Iterator<Item = HalfPlane> {
         core::iter::empty()
     }
@@ -129,7 +130,7 @@ impl Workspace for Area {
     }
 }
 
-/// Positions to the left of a line, some way from it at least.
+/// Positions to the left of a line, at least `margin` away from it.
 #[derive(Clone, Copy, Debug)]
 pub struct HalfPlane {
     /// On the line.
@@ -143,7 +144,8 @@ pub struct HalfPlane {
 }
 
 impl HalfPlane {
-    /// Not negative inside and on the border.
+    /// How far inside a position lies, lattice units squared: `length` times its distance from the line less `margin`.
+    /// Negative outside.
     pub fn at(&self, q: Site) -> i64 {
         self.along.cross(q - self.from) - i64::from(self.margin) * i64::from(self.length)
     }
@@ -172,7 +174,7 @@ impl Obstacle<'_> {
         !have_boxes_apart(self.corners, hull, self.radius.saturating_add(self.margin))
     }
 
-    /// Whether a hull stays clear of it, by this and the margin at least.
+    /// Whether a hull is further from it than its margin and `by` together, lattice units.
     pub fn is_clear_of(&self, hull: &[Site], by: u32) -> bool {
         let by = self.radius.saturating_add(self.margin).saturating_add(by);
         are_apart(self.corners, hull, by)

@@ -20,7 +20,8 @@
 //! beginning. The vehicle answers the motions that it has already made from memory, without moving. `docs/protocol.md`
 //! describes the protocol byte by byte.
 //!
-//! A message goes as a [`Frame`](crate::link::frame::Frame); delivery (loss, repetition, lateness) is [`link`](crate::link::delivery)'s.
+//! A message goes as a [`Frame`](crate::link::frame::Frame). [`delivery`](crate::link::delivery) handles loss,
+//! repetition and lateness.
 
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
@@ -130,7 +131,8 @@ pub enum Reply {
     Failed,
     /// To all else.
     Noted,
-    /// To any: heard, and still at it. A motion may take longer than the link is patient.
+    /// To any: the request has arrived, and the vehicle is still working on it. A motion may take longer than the link
+    /// waits.
     Busy,
     /// To any: it belongs to no session that runs here, or is older than the last.
     Stale,
@@ -174,11 +176,11 @@ pub struct Setup {
     pub algorithm: Algorithm,
     /// What the mission fixes beforehand.
     pub config: Settings,
-    /// If the area is more than that rectangle: how many keep-outs there are. Then the chip asks for
+    /// The number of keep-outs, if the area is more than the rectangle of [`Settings::area`]. Then the chip asks for
     /// [outlines](Request::Outline).
     pub keep_outs: Option<u8>,
-    /// The parameters of the vehicle. The [chip](Setup::terms) decides whether it supports such a vehicle: it need know
-    /// no kind but its own.
+    /// The parameters of the vehicle. The [chip](Setup::terms) decides whether it supports such a vehicle. It may
+    /// support a single kind.
     pub vehicle: Shape,
     /// The capacity asked for.
     pub capacity: Capacity,
@@ -188,7 +190,7 @@ pub struct Setup {
     pub start: Pose,
     /// Who reads labels.
     pub labels: LabelSource,
-    /// The oracle's samples.
+    /// The given samples, the paper's oracle points.
     pub given: Vec<Sample, MOST_GIVEN, u8>,
 }
 
@@ -209,9 +211,9 @@ pub enum Algorithm {
     },
     /// Look-ahead.
     Lookahead {
-        /// Ends of motions that a plan asks, at most.
+        /// Ends of motions that a plan evaluates, at most.
         evaluations: u32,
-        /// What is enough to know, if the mission is to end there.
+        /// The goal at which the mission ends, if it has one.
         goal: Option<Goal>,
         /// What is known of the noise, and how hypotheses are weighed, if labels may be wrong.
         noise: Option<(Noise, Prior)>,
@@ -269,13 +271,13 @@ pub enum DeclinedError {
     Algorithm,
     /// The chip has this much, which is too little.
     Capacity(Capacity),
-    /// The given samples leave nothing to find.
+    /// The given samples make no belief, or leave no room for a label.
     Given(GivenError),
     /// The chip has no sensor of its own.
     Labels,
     /// The chip cannot plan for this vehicle.
     Vehicle(ShapeError),
-    /// The chip cannot plan in this area: if it is more than a rectangle, the chip may have no more.
+    /// The chip cannot plan in this area. A chip may support rectangles only.
     Area,
     /// The tolerance leaves nothing of the area.
     Tolerance,

@@ -162,7 +162,7 @@ pub struct PlannerSetup<D, G> {
     pub options: Options,
 }
 
-/// Why a setup is declined of which no planner is made.
+/// Why a setup is declined if no planner can be made of it.
 fn declined(error: SetupError) -> DeclinedError {
     match error {
         SetupError::Tolerance(_) => DeclinedError::Tolerance,
@@ -172,7 +172,7 @@ fn declined(error: SetupError) -> DeclinedError {
     }
 }
 
-/// Why a mission has no terms.
+/// Why there is no [`PlannerSetup`] for a mission.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum NoTerms {
@@ -235,7 +235,7 @@ pub trait Known: Dynamics + TryFrom<Shape, Error = ShapeError> {}
 
 impl<D: Dynamics + TryFrom<Shape, Error = ShapeError>> Known for D {}
 
-/// A planner that is too large to be made elsewhere and moved: it begins where it is.
+/// A planner that is too large to be made elsewhere and moved. It begins a mission in the memory where it is.
 pub trait Restart: Planner {
     /// What it has room for.
     const CAPACITY: Capacity;
@@ -337,7 +337,7 @@ impl<P: Port, S: LabelSensor> Station<P, S> {
     /// `watch` sees every step.
     ///
     /// # Errors
-    /// [`LinkError`]: the vehicle has been asked for nothing since, and is asked for nothing more.
+    /// [`LinkError`]. The chip has sent no request since, and sends no more.
     pub fn fly<L: Planner>(
         &mut self,
         setup: &Setup,

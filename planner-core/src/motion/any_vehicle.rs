@@ -39,9 +39,9 @@ pub enum Shape {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum ShapeError {
-    /// There is none of this kind here.
+    /// This program has no vehicle of this kind.
     Kind,
-    /// Its numbers make none.
+    /// Its numbers describe no vehicle.
     Grid(GridError),
     /// It cannot move in its area.
     Room(RoomError),
@@ -72,7 +72,7 @@ impl TryFrom<Shape> for AnyVehicle {
     }
 }
 
-/// For a program that has no other.
+/// For a program that has no other vehicle.
 impl TryFrom<Shape> for Unicycle {
     type Error = ShapeError;
 
@@ -100,7 +100,7 @@ impl From<Grid> for AnyVehicle {
     }
 }
 
-/// What the vehicle, whichever it is, says.
+/// Calls the same method on whichever vehicle it is.
 macro_rules! of {
     ($vehicle:expr, $it:ident => $says:expr) => {
         match $vehicle {

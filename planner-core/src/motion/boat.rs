@@ -21,7 +21,7 @@ pub struct Boat {
     margin: i32,
 }
 
-/// Half of the fixed point in which sines are here.
+/// One, in the fixed point of the sines here: 29 fractional bits.
 const ONE: i32 = 1 << 29;
 
 /// The circle is smaller than this, lattice units.

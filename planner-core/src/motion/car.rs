@@ -50,16 +50,16 @@ pub struct Shape {
     pub shortest_mm: u32,
     /// The angle from one chord to the next, microradians.
     pub turn_step_urad: u32,
-    /// Speeds, standing still included though it does not.
+    /// Number of speeds. It includes the speed 0, although a car never stands still.
     pub speeds: u16,
     /// From one speed to the next, millimetres per unit time.
     pub speed_step_mm: u32,
 }
 
-/// Fractional bits of sines here, as a factor.
+/// One, in the fixed point of the sines here: 29 fractional bits.
 const ONE: i32 = 1 << 29;
 
-/// What the arc sine's error and that of the sines come to at most, units of a heading.
+/// Upper bound on the errors of the arc sine and of the sines together, units of a heading.
 const GUARD: u32 = 16;
 
 impl Car {

@@ -4,11 +4,11 @@
 //! to errors. Call [`check`] in a test.
 //!
 //! ```
-//! use planner_core::motion::contract;
-//! use planner_core::motion::unicycle::Unicycle;
+//! use planner_core::Unicycle;
+//! use planner_core::dynamics::check;
 //!
-//! contract::check(&Unicycle::paper())?;
-//! # Ok::<(), contract::ContractError>(())
+//! check(&Unicycle::paper())?;
+//! # Ok::<(), planner_core::error::ContractError>(())
 //! ```
 
 use crate::geometry::heading::{Angle, Heading};

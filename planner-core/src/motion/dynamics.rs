@@ -87,7 +87,7 @@ pub enum Side {
 pub struct RayFan {
     /// Rays to the left, the 0th included.
     pub left: u32,
-    /// Rays to the right, from the 1st.
+    /// Rays to the right, without the 0th.
     pub right: u32,
     /// The turn from one to the next, at most.
     pub spacing: Angle,
@@ -101,26 +101,27 @@ pub struct TurningCircle {
     pub action: Action,
     /// Its centre from the pose's position, lattice units.
     pub centre: Vector,
-    /// The whole way lies within this distance of the centre, its [corners](Dynamics::tangent_intersection) too; lattice units.
+    /// The whole way lies within this distance of the centre, its [corners](Dynamics::tangent_intersection) too;
+    /// lattice units.
     pub radius: i32,
     /// How far rounding to the lattice may move the centre in one round; lattice units.
     pub margin: i32,
 }
 
 impl TurningCircle {
-    /// Whether a disc about its centre lies inside the area, seen from a position on it; the disc's radius is in
-    /// lattice units.
+    /// Whether a disc about the circle's centre lies inside the area. `site` is the position from which the circle is
+    /// seen, and `radius` that of the disc in lattice units.
     pub fn is_inside<G: Workspace>(&self, site: Site, area: &G, radius: i32) -> bool {
         site.step(self.centre).is_ok_and(|centre| area.contains_disc(centre, radius))
     }
 
-    /// The radius, the margin, and so much room.
+    /// The sum of the radius, the margin and `room`, lattice units.
     pub(crate) fn with_room(&self, room: i32) -> i32 {
         self.radius.saturating_add(self.margin).saturating_add(room)
     }
 }
 
-/// An area is too small for a vehicle's circle.
+/// The area is too small for the vehicle's [turning circle](TurningCircle).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -4,7 +4,8 @@ use crate::geometry::heading::{Angle, Heading};
 use crate::motion::action::{Action, ActionGrid, Control};
 use crate::motion::dynamics::{Dynamics, Pose, Ray, RayFan, Side};
 
-/// A vehicle that turns on the spot, as far to either side, then drives straight on. All that [`Dynamics`] asks follows.
+/// A vehicle that turns on the spot, equally far to either side, then drives straight on. It implements [`Dynamics`] by
+/// this trait alone.
 ///
 /// The grid has a ray for each turn to the right, one straight ahead, and one for each turn to the left: an odd number.
 /// They are counted from the sharpest turn to the right to the sharpest to the left.
@@ -26,7 +27,7 @@ pub trait Pivots {
         square_mrad2_of(self.turn(n))
     }
 
-    /// The `n`-th turn as the vehicle is told it, radians.
+    /// The `n`-th turn in the vehicle's [`Control`], radians.
     fn turn_rad(&self, n: u32) -> f32 {
         self.turn(n).0 as f32 * RADIANS_PER_UNIT
     }

@@ -59,8 +59,9 @@ impl From<Grid> for Unicycle {
 }
 
 impl Unicycle {
-    /// A unicycle whose turns are `0, step, 2 step, ...` up to `sharpest`, to both sides, the step in
-    /// microradians, and whose speeds are `0, step, ..., (speeds - 1) step`, millimetres per unit time.
+    /// A unicycle with the turns `0, step, 2 step, ...` up to the sharpest, to both sides. `turn_step_urad` is in
+    /// microradians, `sharpest_rad` in radians. The speeds are `0, step, ..., (speeds - 1) step` with a step of
+    /// `speed_step_mm`, millimetres per unit time.
     ///
     /// # Errors
     /// [`GridError`].
@@ -70,7 +71,7 @@ impl Unicycle {
         speeds: u16,
         speed_step_mm: u32,
     ) -> Result<Self, GridError> {
-        // No angle is a turn of nothing, which is none.
+        // Anything else becomes a turn of 0, which `of` refuses.
         let is_angle = sharpest_rad >= 0.0 && sharpest_rad <= core::f64::consts::PI;
         let turn = if is_angle { sharpest_rad } else { 0.0 };
         let sharpest = Angle((turn * 1e6 * UNITS_PER_URAD + 0.5) as u32);

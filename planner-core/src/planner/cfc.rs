@@ -6,8 +6,9 @@
 //!   does not change `Label` after P2. Over the standard fields the two hardly differ.
 //! - *P2 with no feasible action* is skipped: the listing runs it once and advances its counter "even if the objective
 //!   is not met". P1 with no feasible action climbs the recovery ladder.
-//! - *P2's direction* is restricted to the bisector of the slope arc, see [`Following`](crate::planner::options::Following). Over 4,000 standard fields
-//!   this learns 0.65 bits a step in 10 steps, and P2 as printed learns 0.56.
+//! - *P2's direction* is restricted to the bisector of the slope arc, see
+//!   [`Following`](crate::planner::options::Following). Over 4,000 standard fields this learns 0.65 bits a step in 10
+//!   steps, and P2 as printed learns 0.56.
 
 use crate::belief::Belief as _;
 use crate::belief::ObservationError;
@@ -56,7 +57,7 @@ pub enum Phase {
     Following,
 }
 
-/// Algorithm 1 for `D`'s dynamics with room for `N` samples, the oracle's included.
+/// Algorithm 1 for `D`'s dynamics with room for `N` samples, the given ones included.
 #[derive(Clone, Debug)]
 pub struct Cfc<D, const N: usize, G = Area> {
     /// Where motions aim for.
@@ -65,7 +66,7 @@ pub struct Cfc<D, const N: usize, G = Area> {
     dynamics: D,
     space: VersionSpace<N>,
     phase: Phase,
-    /// What the next plan begins with. It is not what the last plan ended with, so that a plan asked for twice is the same.
+    /// The phase with which the next plan begins. A plan does not change it, so a plan asked for twice is the same.
     due: Phase,
     /// The label of the past position.
     past: Label,

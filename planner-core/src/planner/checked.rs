@@ -21,7 +21,7 @@ impl TryFrom<(i32, i32)> for Site {
     }
 }
 
-/// Its corners.
+/// Its corners. The margin of an [inset](Area::inset) part is not written.
 impl From<Area> for [Site; 2] {
     fn from(area: Area) -> Self {
         [area.min(), area.max()]

@@ -14,7 +14,8 @@
 //! The search is anytime: a plan evaluates at most [`EVALUATIONS`] ends and keeps the best found so far. The order of
 //! the ends does not depend on the limit. So a higher limit never gives a worse motion by the plan's own measure.
 //!
-//! Look-ahead learns from a [`PredictiveBelief`]: the version space where labels are true, a [`NoisyBelief`] where they may be wrong.
+//! Look-ahead learns from a [`PredictiveBelief`]: the version space where labels are true, a [`NoisyBelief`] where they
+//! may be wrong.
 
 use crate::belief::Belief as _;
 use crate::belief::ObservationError;
@@ -47,8 +48,8 @@ use crate::search::recovery::{Found, solve_or_recover};
 
 /// What look-ahead pays for driving: in shares of a label for a unit of `|u|^2`, in [0, 1), to six decimal places.
 ///
-/// A unit is a drive of a metre, or a turn of a radian. Lengths count as if the longest usual motion were of 2 m, the
-/// paper's.
+/// A unit is a drive of a metre, or a turn of a radian. Lengths are scaled: the longest motion that plans usually
+/// consider counts as 2 m, the paper's longest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct DrivingPrice(EffortWeight);
@@ -93,8 +94,8 @@ impl Default for DrivingPrice {
 }
 
 /// The most ends of motions that a plan evaluates. A plan needs some 100. Of 1,000 standard fields none needs more than
-/// this limit in its first 30 steps. After that, 2 in 100 end because the limit is reached, as the strip is thinner
-/// than the lattice.
+/// this limit in its first 30 steps. After that, 2 in 100 end because the limit is reached, as the strip of uncertain
+/// ground is thinner than the lattice.
 pub const EVALUATIONS: u32 = 512;
 
 /// Circles on which the first step may end, and the second.
@@ -104,8 +105,8 @@ const SECOND_CIRCLES: u16 = 3;
 /// Circles on which the first step may end if none of the usual ones has an open place.
 const MOST_CIRCLES: u16 = 24;
 
-/// Motions are usually no longer than this part of the area's side. Longer ones tell nothing more. They also end near
-/// the border, where less is in reach.
+/// Motions are usually no longer than this part of the mean of the area's sides. Longer ones tell nothing more. They
+/// also end near the border, where less is in reach.
 const USUAL: f32 = 0.125;
 
 /// The least expected information of a label that is worth its way, as a share of the most that a label can carry.
@@ -114,7 +115,9 @@ const LEAST: f32 = 0.15;
 /// Where no label is worth as much, turns in place are considered.
 const POOR: f32 = 0.9;
 
-/// Looks two labels ahead, with `D`'s dynamics and what `B` knows and expects.
+/// The look-ahead planner: `D` is the vehicle, `B` the belief that it learns from, `G` the area.
+///
+/// A plan looks two labels ahead.
 #[derive(Clone, Debug)]
 pub struct Lookahead<D, B, G = Area> {
     /// Where motions aim for.
@@ -180,7 +183,7 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace> Lookahead<D, B, G> {
         Self { evaluations, ..self }
     }
 
-    /// The same, to stop when the line is known so well.
+    /// The same, but it stops when the belief meets the goal. `None` means no goal.
     #[must_use]
     #[inline]
     pub fn until(self, goal: impl Into<Option<Goal>>) -> Self {
@@ -188,7 +191,8 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace> Lookahead<D, B, G> {
         Self { goal, ..self }
     }
 
-    /// What is known and expected: to take in a label of a reliability of its own.
+    /// The belief, for example to take in a label that has its own reliability. The planner then forgets its turns
+    /// since the last label, as after a label.
     pub const fn belief_mut(&mut self) -> &mut B {
         self.silence = Silence::NONE;
         &mut self.belief
@@ -261,7 +265,8 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace> Lookahead<D, B, G> {
     }
 }
 
-/// The fastest of the speeds that are usual, at least one; and the weight of lengths: as if its reach were the paper's 2 m.
+/// The fastest speed that is usually considered, at least 1, and the factor for lengths in the cost. The factor makes
+/// the reach of that speed count as the paper's 2 m.
 fn usual<D: Dynamics, G: Workspace>(dynamics: &D, area: &G) -> (u16, f32) {
     let grid = dynamics.grid();
     let side = area.bounds().half_sides().into_iter().map(|half| half as f32).sum::<f32>();

@@ -6,7 +6,8 @@
 //! | [`cfc`] | the paper's Algorithm 1, for labels that are true |
 //! | [`scc`] | the paper's Algorithm 2, for labels that are sometimes wrong |
 //!
-//! [`options`] are what Algorithms 1 and 2 leave open, and [`setup`] is what every planner is made of. A [`snapshot`] is what a planner has to remember over a sleep.
+//! [`options`] are what Algorithms 1 and 2 leave open. [`setup`] checks the parts that every planner is made of. A
+//! [`snapshot`] is what a planner has to remember over a sleep.
 
 pub mod cfc;
 #[cfg(feature = "serde")]
@@ -98,7 +99,8 @@ impl Motion {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum StopReason {
-    /// What is uncertain is thinner than the action grid can hit, or lies outside the area. Finer turns and speeds may hit it.
+    /// What is uncertain is thinner than the action grid can hit, or lies outside the area. Finer turns and speeds may
+    /// hit it.
     Resolution,
     /// The sample buffer is full.
     SamplesFull,

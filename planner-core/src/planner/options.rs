@@ -14,7 +14,7 @@ pub enum Crossing {
     /// In any direction in which the boundary cannot run: P1 as printed.
     #[default]
     Unrestricted,
-    /// Of these, only along the direction from the first oracle point to the second.
+    /// Of these, only along the direction from the first given sample (the paper's oracle point) to the second.
     AlongOracle,
     /// Of these, only at right angles to the bisector of the slope arc.
     AcrossBisector,
@@ -28,8 +28,8 @@ pub enum Crossing {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Following {
-    /// In any direction in which the boundary can run: P2 as printed. It takes the smallest turn
-    /// into the slope arc, so it skims ground that is all but certain and learns next to nothing.
+    /// In any direction in which the boundary can run: P2 as printed. It takes the smallest turn into the slope arc, so
+    /// it skims ground that is all but certain. In Algorithm 1 such a label tells next to nothing.
     Unrestricted,
     /// Of these, only along the bisector of the slope arc, as Section III-A proposes for P1.
     AlongBisector,

@@ -17,7 +17,7 @@ pub enum SetupError {
     Room(RoomError),
     /// The belief is full: there is no room for a first label.
     Full,
-    /// The given samples leave no line, or any.
+    /// No line agrees with the given samples, or they do not bound the lines.
     Given(GivenError),
 }
 

@@ -9,7 +9,7 @@
 //! awake:   let bytes = to_slice(&(agent.pose(), agent.planner.snapshot()), &mut backup)?;
 //! asleep:  power may go; `backup` must not
 //! woken:   let (pose, snapshot) = from_bytes(backup)?;
-//!          let mut planner = Cfc::new(config, dynamics, space)?;    // as it was made at the start
+//!          let mut planner = Cfc::new(area, dynamics, space)?;      // as it was made at the start
 //!          planner.restore(&snapshot)?;
 //!          let agent = Agent::new(planner, vehicle, pose);
 //! ```
@@ -25,7 +25,7 @@ use crate::planner::Planner;
 /// under way.
 pub const SNAPSHOT_VERSION: u16 = 3;
 
-/// What a planner has to remember over a sleep: what its belief was told (`T`), and what else it plans by (`M`).
+/// What a planner has to remember over a sleep: the log of its belief (`T`), and what else it plans by (`M`).
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Snapshot<T, M> {
@@ -39,14 +39,14 @@ impl<T, M> Snapshot<T, M> {
         Self { version: SNAPSHOT_VERSION, told, memory }
     }
 
-    /// What it holds, if it is of this version.
+    /// The log and the memory, if the snapshot is of this version.
     pub(crate) fn open(&self) -> Result<(&T, &M), RestoreError> {
         let Self { version, told, memory } = self;
         let is_known = *version == SNAPSHOT_VERSION;
         is_known.then_some((told, memory)).ok_or(RestoreError::Version(*version))
     }
 
-    /// What the belief was told.
+    /// The log of what the belief took in.
     pub const fn told(&self) -> &T {
         &self.told
     }
@@ -64,7 +64,7 @@ pub trait Persist: Planner {
     /// samples are forgotten. It costs as much as the labels did when they came.
     ///
     /// # Errors
-    /// [`RestoreError`]. The planner is then not to be flown with, but may be restored again.
+    /// [`RestoreError`]. Do not plan with the planner then. It may be restored again.
     fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), RestoreError>;
 }
 
@@ -75,7 +75,7 @@ pub trait Persist: Planner {
 pub enum RestoreError {
     /// It is of this version, not of [`SNAPSHOT_VERSION`].
     Version(u16),
-    /// What was told is not taken in again.
+    /// The belief does not take in the log.
     Log(ReplayError),
 }
 

@@ -70,12 +70,12 @@ impl<P, B> Agent<P, B> {
         self.pose
     }
 
-    /// What it moves.
+    /// Its body.
     pub const fn body(&self) -> &B {
         &self.body
     }
 
-    /// What it moves, to be seen to between two steps.
+    /// Its body, for work on it between two steps.
     pub const fn body_mut(&mut self) -> &mut B {
         &mut self.body
     }

@@ -1,12 +1,12 @@
-//! The same seam for drivers that are asynchronous: a robot that awaits its motors and its sensor, so that whatever
-//! else runs on the chip runs meanwhile.
+//! Traits for asynchronous drivers. The robot awaits its motors and its sensor, so other tasks can run on the chip
+//! meanwhile.
 //!
-//! Planning does no input or output, so there is one planner for both. The traits are those of [`robot`](super)
-//! with `async` before each method, as those of embedded-hal-async are to those of
-//! embedded-hal. No executor is asked for; futures are not required to be `Send`, so it takes one that stays on
-//! its thread, such as embassy's.
+//! Planning does no input or output, so there is one planner for both kinds of drivers. The traits are those of
+//! [`robot`](super) with `async` before each method, as embedded-hal-async has the traits of embedded-hal. The crate
+//! needs no particular executor. The futures need not be `Send`, so use an executor that stays on its thread, such as
+//! embassy's.
 //!
-//! [`ThresholdSensor`] and [`PinSensor`] are sensors here as well. What a threshold measures is then an `async` closure:
+//! [`ThresholdSensor`] and [`PinSensor`] are sensors here as well. A threshold then measures by an `async` closure:
 //!
 //! ```
 //! use planner_core::robot::asynchronous::LabelSensor as _;

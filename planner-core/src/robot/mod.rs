@@ -1,8 +1,8 @@
 //! The robot itself: what you implement, and the loop that joins it to a planner.
 //!
-//! Implement [`Drive`] and [`LabelSensor`] and put them into a [`Vehicle`], or let functions be them ([`DriveFn`],
-//! [`SensorFn`]), or implement [`Body`] as a whole. An
-//! [`Agent`] joins it to a planner. [`asynchronous`] is the same for drivers that are awaited.
+//! Implement [`Drive`] and [`LabelSensor`] and put them into a [`Vehicle`]. Functions can serve as both ([`DriveFn`],
+//! [`SensorFn`]). Or implement [`Body`] as a whole. An [`Agent`] joins the body to a planner. [`asynchronous`] is the
+//! same for drivers that are awaited.
 
 mod agent;
 pub mod asynchronous;

@@ -6,12 +6,12 @@ use crate::belief::sample::{Label, Reading};
 use crate::robot::hal::LabelSensor;
 
 /// Reads a label off a quantity such as the counts of a converter, a concentration or a depth: one label above a
-/// band, the other below it. Inside the band it is the label that was read last (a Schmitt trigger), and by the
-/// middle of the band if none was.
+/// band, the other below it. Inside the band the label is the one that was read last (a Schmitt trigger). If none was
+/// read yet, the middle of the band decides.
 ///
-/// The band keeps readings from changing with every noise of the quantity where several are taken near the line. It
-/// also keeps the old label for as much further: a band of `b` where the quantity changes by `g` a metre moves the
-/// line by up to `b / 2g`, which belongs into the [tolerance](crate::belief::tolerance::Tolerance).
+/// The band keeps noise of the quantity from changing the label again and again near the line. But inside the band the
+/// old label may be wrong. A band of width `b`, where the quantity changes by `g` a metre, moves the line by up to
+/// `b / 2g` metres. Add this to the [tolerance](crate::belief::tolerance::Tolerance).
 ///
 /// ```
 /// use planner_core::robot::ThresholdSensor;

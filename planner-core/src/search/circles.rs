@@ -54,7 +54,8 @@ const LEAST: NonZeroU32 = NonZeroU32::MIN.saturating_add(1);
 /// looks there.
 const HEMMED_IN: u32 = Angle::of_radians(0.004).0;
 
-/// From a ray whose end is certain, rays at this distance are looked at one by one.
+/// If the rays of a fan are further apart than this, the search looks at each of them. Else it skips rays next to one
+/// whose end is certain.
 const COARSE: u32 = Angle::of_radians(0.001).0;
 
 /// The rays to one side of a heading that may still lead anywhere.

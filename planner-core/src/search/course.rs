@@ -13,7 +13,7 @@ pub(crate) const REST: usize = 5;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Course {
-    /// Its motions, the next of them last. The first is for a label.
+    /// Its motions in reverse order: the next one is at index `left - 1`. A label is read after the one at index 0.
     rest: [Action; REST],
     /// The number of motions left.
     left: u8,
@@ -22,7 +22,8 @@ pub(crate) struct Course {
     pub(crate) far: Far,
 }
 
-/// A drive to open ground beyond reach. Without a label there is only one, so that there is no way back and forth.
+/// A drive to open ground beyond reach. At most one is made between two labels, so that the robot does not drive back
+/// and forth.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

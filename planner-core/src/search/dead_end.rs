@@ -20,7 +20,7 @@ pub(crate) enum DeadEnd {
     Outside,
 }
 
-/// Places of the area that are asked.
+/// Number of places of the area that are tested.
 const PLACES: u32 = 256;
 
 /// The ground is open if labels can tell something at more than so many of them.
@@ -37,13 +37,14 @@ impl DeadEnd {
         }
     }
 
-    /// The reason that is true where it is.
+    /// The reason that is true where the ground is open.
     pub(crate) fn of_open_ground(self) -> Self {
         if self == Self::Resolution { Self::Undecided } else { self }
     }
 }
 
-/// The way to the nearest place where labels can tell something, if there are such in more than next to none of an area.
+/// The way to the nearest place where labels can tell something. `None` unless the ground is open: more than [`FEW`] of
+/// the [`PLACES`] must be such.
 ///
 /// Cost: one orientation for each edge and place, some 100,000 instructions.
 pub(crate) fn way_to_open_ground<G: Workspace>(

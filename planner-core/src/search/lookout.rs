@@ -1,9 +1,9 @@
 //! The search for the places where a label is expected to tell the most.
 //!
 //! A label tells most where it is as likely to be +1 as -1. These places form a curve. On each of some circles the
-//! search evaluates the share of the lines above at a few rays of the fan. If two neighbouring rays lie on different
-//! sides of one half, false position finds the ray between them that is nearest to one half. Every evaluated place is a
-//! prospect.
+//! search evaluates a few rays of the fan: the share of the lines that have the ray's end on their +1 side. If two
+//! neighbouring rays lie on different sides of one half, false position finds the ray between them that is nearest to
+//! one half. Every evaluated place is a prospect.
 
 use core::num::NonZeroU32;
 
@@ -29,7 +29,7 @@ const LEAST_STEP: f32 = 1.0 / 64.0;
 /// Prospects that are kept to be looked at more closely.
 const PROSPECTS: usize = 4;
 
-/// How far apart they are, lattice units.
+/// Prospects are at least so far apart, lattice units: 25 cm.
 const APART: i64 = UNITS_PER_METRE as i64 / 4;
 
 /// A motion that may be made, and what the label at its end is worth.
@@ -37,7 +37,7 @@ const APART: i64 = UNITS_PER_METRE as i64 / 4;
 pub(crate) struct Prospect {
     pub(crate) action: Action,
     pub(crate) target: Pose,
-    /// The share of the lines above its end.
+    /// The share of the lines that have its end on their +1 side.
     pub(crate) share: f32,
     /// The expected information of the label there, as a share of the most that a label can carry, less the weighted
     /// cost.
@@ -79,16 +79,16 @@ pub(crate) struct Lookout<'a, D, G> {
     pub(crate) dynamics: &'a D,
     pub(crate) area: G,
     pub(crate) weight: EffortWeight,
-    /// The fastest of the speeds that are usual.
+    /// The fastest speed that is usually considered.
     pub(crate) usual: u16,
-    /// Metres of the paper's action set in a metre of this one.
+    /// The factor for lengths in the cost: it makes the usual reach count as the paper's 2 m.
     pub(crate) scale: f32,
     /// The least information that a label must be expected to carry.
     pub(crate) least: f32,
     pub(crate) evaluations: u32,
 }
 
-/// A ray, numbered from the right to the left with 0 straight ahead, and the share above its end.
+/// A ray, numbered from the right to the left with 0 straight ahead, and the share of lines at its end.
 #[derive(Clone, Copy)]
 struct Probe {
     ray: i64,
@@ -103,8 +103,8 @@ impl<D: Dynamics, G: Workspace> Lookout<'_, D, G> {
         weight * (reach * reach + effort as f32)
     }
 
-    /// Looks at so many circles, evenly spaced up to the one of a speed, the innermost first. Ends before when a prospect
-    /// is enough, or no more ends may be asked.
+    /// Looks at so many circles, evenly spaced up to the one of a speed, the innermost first. It stops early when a
+    /// prospect is good enough, or when no more ends may be evaluated.
     pub(crate) fn look<P: Prediction>(
         &mut self,
         prediction: &P,

@@ -45,7 +45,7 @@ const LOOKS_A_SEARCH: u32 = 1_024;
 /// A straight drive searches so many poses with uncertain ground in reach at most.
 const SEARCHES: u32 = 6;
 
-/// A way round keep-outs comes nearer to its waypoint at least by the rest of this share.
+/// A way round keep-outs counts only if its distance to the waypoint is less than this share of the first distance.
 const LEAST: f32 = 0.95;
 
 /// Straight motions of a long way at most.
@@ -87,7 +87,7 @@ struct Manoeuvre<'d, 'p, 'a, D, R, G> {
     effort: Effort,
     /// The shortest way to where the problem is feasible.
     shortest: Option<Begun>,
-    /// From where it is not safe: the shortest way to where it is.
+    /// If the vehicle is not safe at the beginning: the shortest way to a safe pose.
     escape: Option<Begun>,
     /// Where the way round keep-outs begins, how near a way has come to that, and the way.
     waypoint: Option<Site>,
@@ -188,7 +188,7 @@ impl<D: Dynamics, R: DirectionRule, G: Workspace> Manoeuvre<'_, '_, '_, D, R, G>
         motions < self.shortest.map_or(MOST, |(_, least)| least) && self.effort.is_enough()
     }
 
-    /// Holds the circle to a side, looks at each place, and from some of them does what else a way does.
+    /// Follows the circle to a side and looks at each place on it. At some of the places it calls `branch`.
     fn go_round(&mut self, from: Place, side: Side, mut branch: impl FnMut(&mut Self, Place)) {
         let (mut place, mut turned) = (from, 0_u32);
         while self.is_short(place.motions + 1) {
@@ -260,7 +260,8 @@ impl<D: Dynamics, R: DirectionRule, G: Workspace> Manoeuvre<'_, '_, '_, D, R, G>
             || dynamics.turning_circle(after, side).is_some_and(fits)
     }
 
-    /// The room that a motion leaves. Where there is none to begin with, one motion need not win it.
+    /// The room that a motion must leave around its circle, lattice units. It is 0 if the circle at the beginning has
+    /// no such room either.
     fn room(&self, from: Pose) -> i32 {
         let (area, room) = (&self.problem.area, room_for_errors(&self.problem.area));
         let has_room = room > 0 && self.dynamics.keeps_inside(from, from, area, room);

@@ -1,5 +1,5 @@
-//! The best action for what is known. The paper's one-step problems are solved exactly by looking at only a few
-//! actions.
+//! The search for the best action, given what is known. It solves the paper's one-step problems exactly by looking at
+//! only a few actions.
 //!
 //! A [`problem`] asks for the longest cheap motion that ends on uncertain ground in an allowed direction
 //! ([`direction_rule`]). The positions of one speed lie on a circle around the agent. Lines bound the uncertain ground,

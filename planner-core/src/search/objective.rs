@@ -16,7 +16,7 @@ pub const LOOKS: u32 = 9_216;
 /// The looks that it costs to open a view, where many are opened.
 pub(crate) const OPENING: u32 = 2;
 
-/// The weight of the control in the paper's objective, its `weight`: in [0, 1), to six decimal places.
+/// The weight of the control in the paper's objective, its `varrho`: in [0, 1), to six decimal places.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -101,7 +101,8 @@ impl Effort {
         is_enough
     }
 
-    /// Takes the looks that it costs to see whether a hull touches a keep-out: one for each two corners of those nearby.
+    /// Takes the looks that it costs to see whether a hull touches a keep-out: one for each keep-out nearby, and one
+    /// for each two of its corners.
     pub(crate) fn take_sweep<G: Workspace>(&mut self, area: &G, hull: &[Site]) -> bool {
         let near = area.keep_outs().filter(|it| it.is_near(hull));
         let looks = near.map(|it| 1 + it.corners.len() as u32 / 2).sum();

@@ -1,9 +1,10 @@
 //! The one-step problems P1 to P4 (Section III) and their exact search.
 //!
-//! A problem maximises `|zeta' - zeta|^2 - varrho |u|^2` over the action set. The new position `zeta'` must lie inside
-//! the area and outside both regions of certainty. A rule restricts the direction of travel. A vehicle that cannot turn
-//! on the spot must also be able to stay inside afterwards. Among equal actions the smaller turn wins, then the left
-//! one.
+//! A problem maximises `|zeta' - zeta|^2 - varrho |u|^2` over the action set. Here `zeta` and `zeta'` are the positions
+//! before and after the motion, `varrho` is the [`EffortWeight`] and `u` the control. The new position `zeta'` must lie
+//! inside the area and outside both regions of certainty. A rule restricts the direction of travel. A vehicle that
+//! cannot turn on the spot must also be able to stay inside afterwards. Among equal actions the smaller turn wins, then
+//! the left one.
 //!
 //! The agent always moves: standing still would sample the same place again. The regions of certainty exclude that,
 //! except in P3 and P4, whose regions are those of the start.

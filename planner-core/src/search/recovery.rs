@@ -35,8 +35,8 @@
 //! - Outside the area, the measure is the distance to the middle, and then the turns. From inside, no motion leads out.
 //!
 //! **Courses end**: of rung 5 there is at most one drive to ground beyond reach, and sixteen drives to try again from
-//! elsewhere. A way drawn at random has at most six motions, and a label at its end. If errors or a lack of looks break these rules, the planner still counts turns, see
-//! [`Silence`](crate::planner::silence::Silence).
+//! elsewhere. A way drawn at random has at most six motions, and a label at its end. If errors or a lack of looks break
+//! these rules, the planner still counts turns, see [`Silence`](crate::planner::silence::Silence).
 
 use crate::geometry::approximate::{heading_of, single, sqrt};
 use crate::geometry::heading::{Angle, Heading};
@@ -161,7 +161,7 @@ type Leg = (Action, Pose);
 enum Approach {
     /// Its first leg, and the number of motions to where the undirected problem is feasible.
     Feasible(Leg, u32),
-    /// It is feasible nowhere on it.
+    /// The problem is feasible nowhere on the way.
     Fruitless,
     /// There is no such drive.
     Blocked,

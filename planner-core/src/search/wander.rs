@@ -27,7 +27,7 @@ const DRAWN: [(u32, u32); 2] = [(256, 1), (4_096, MOTIONS as u32)];
 /// Motions of a way.
 const MOTIONS: usize = 1 + REST;
 
-/// Drives of which one is looked for that stays inside.
+/// Drives that are drawn, at most, to find one that stays inside.
 const DRIFTS: u32 = 64;
 
 /// An action and where it leads.
@@ -152,7 +152,8 @@ pub(crate) fn is_open<D: Dynamics, R, G: Workspace>(
     to.site != from.site && lines.can_cut(to.site) && dynamics.is_safe(to, area)
 }
 
-/// Whether a drive stays inside, and ends where the vehicle is safe, unless it is not where it begins.
+/// Whether a drive stays inside and ends where the vehicle is safe. If the vehicle is not safe at the beginning, the
+/// drive need only stay inside.
 #[inline(never)]
 pub(crate) fn stays<D: Dynamics, G: Workspace>(
     dynamics: &D,
