@@ -68,8 +68,11 @@ impl Board {
         (evaluations, goal): (u32, Option<Goal>),
         (noise, prior): (Noise, Prior),
     ) {
-        let mut planner =
-            setup.forecast::<_, _, DOUBTFUL_SAMPLES, HYPOTHESES>(*terms, evaluations, goal);
+        let mut planner = setup.lookahead_in_noise::<_, _, DOUBTFUL_SAMPLES, HYPOTHESES>(
+            *terms,
+            evaluations,
+            goal,
+        );
         self.fly(setup, &mut setup.prepare(&mut planner, prior, noise));
     }
 

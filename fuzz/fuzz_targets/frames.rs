@@ -99,7 +99,7 @@ fuzz_target!(|bytes: &[u8]| {
                     }
                 }
                 Algorithm::Lookahead { evaluations, goal, noise: Some((noise, prior)) } => {
-                    let mut planner = setup.forecast::<_, _, 24, 40>(terms, evaluations, goal);
+                    let mut planner = setup.lookahead_in_noise::<_, _, 24, 40>(terms, evaluations, goal);
                     if let Ok(mut prepared) = setup.prepare(&mut planner, prior, noise) {
                         fly(prepared.planner(), &setup);
                     }

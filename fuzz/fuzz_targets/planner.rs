@@ -137,8 +137,8 @@ fn run<D: Dynamics + Copy>(case: &Case, dynamics: D, world: &World) -> Option<()
         let table = CellPosterior::<16, 24>::new(&oracle, prior, noise).ok()?;
         let scc = Scc::new(config, policy, dynamics, table).expect("settings that agree");
         fly_any(case, scc, world, start, &config, |planner, pose| planner.plan(pose));
-        let forecast = NoisyBelief::<16, 24>::new(&oracle, prior, noise).ok()?;
-        let planner = Lookahead::new(config.area, dynamics, forecast).expect("settings that agree").until(Some(goal));
+        let noisy = NoisyBelief::<16, 24>::new(&oracle, prior, noise).ok()?;
+        let planner = Lookahead::new(config.area, dynamics, noisy).expect("settings that agree").until(Some(goal));
         fly_any(case, planner, world, start, &config, look_ahead);
     }
     Some(())

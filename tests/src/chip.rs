@@ -89,7 +89,7 @@ pub fn fly<P: Port, S: LabelSensor>(
             chip.fly(setup, &mut setup.lookahead::<_, _, 68>(terms, evaluations, goal), |_| {})
         }
         message::Algorithm::Lookahead { evaluations, goal, noise: Some((noise, prior)) } => {
-            let mut planner = setup.forecast::<_, _, 36, 529>(terms, evaluations, goal);
+            let mut planner = setup.lookahead_in_noise::<_, _, 36, 529>(terms, evaluations, goal);
             chip.fly(setup, &mut setup.prepare(&mut planner, prior, noise), |_| {})
         }
         message::Algorithm::Scc { noise, policy, prior } => {

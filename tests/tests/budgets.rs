@@ -238,7 +238,7 @@ fn time_standard(books: &mut Books, elf: &[u8]) -> u32 {
     for (figure, name, grid, noise) in [
         ("lookahead_plan", "standard, look-ahead, paper's fan", Grid::Paper, None),
         ("lookahead_fine_plan", "standard, look-ahead, fine fan", Grid::Fine, None),
-        ("forecast_plan", "standard, look-ahead, noise", Grid::Fine, DOUBT),
+        ("noisy_plan", "standard, look-ahead, noise", Grid::Fine, DOUBT),
     ] {
         let workload = Workload {
             steps: 32,

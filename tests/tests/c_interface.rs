@@ -91,8 +91,8 @@ fn flown_here(is_doubtful: bool) -> String {
     let goal = slopes(if is_doubtful { 0.21 } else { 0.0035 }, 900_000);
     if is_doubtful {
         let noise = Noise::new(0.85).expect("a probability");
-        let forecast = NoisyBelief::<36, 529>::new(&given(), noise).expect("four points");
-        let planner = Lookahead::new(area, unicycle, forecast).expect("settings that agree");
+        let noisy = NoisyBelief::<36, 529>::new(&given(), noise).expect("four points");
+        let planner = Lookahead::new(area, unicycle, noisy).expect("settings that agree");
         flown(planner.until(Some(goal)), start(), true)
     } else {
         let space = VersionSpace::<68>::new(&given()).expect("four points");
@@ -198,7 +198,7 @@ fn awake<B: PredictiveBelief<Belief: Sized>>(belief: B, goal: Goal, observe: Obs
 /// What `asleep.c` prints in one of its modes.
 fn awake_in(mode: &str) -> String {
     let noise = |tolerance| Noise { reliability: reliability(0.85), tolerance, ..Noise::NONE };
-    let forecast =
+    let noisy =
         |tolerance| NoisyBelief::<36, 529>::new(&given(), noise(tolerance)).expect("four points");
     let tolerance = Tolerance::new(0.1).expect("a tolerance");
     match mode {
@@ -208,8 +208,8 @@ fn awake_in(mode: &str) -> String {
             let space = space.expect("four points");
             awake(space, slopes(0.02, 900_000), observe_within)
         }
-        "doubtful" => awake(forecast(Tolerance::NONE), slopes(0.15, 600_000), observe_believed),
-        _ => awake(forecast(tolerance), slopes(0.15, 600_000), observe_within),
+        "doubtful" => awake(noisy(Tolerance::NONE), slopes(0.15, 600_000), observe_believed),
+        _ => awake(noisy(tolerance), slopes(0.15, 600_000), observe_within),
     }
 }
 

@@ -87,12 +87,7 @@ fn flown(program: &str) -> Vec<Flown> {
             "standard, look-ahead, fine fan",
             of(lookahead, Grid::Fine, 32, None),
         ),
-        flown(
-            "forecast_",
-            false,
-            "standard, look-ahead, noise",
-            of(lookahead, Grid::Fine, 32, DOUBT),
-        ),
+        flown("noisy_", false, "standard, look-ahead, noise", of(lookahead, Grid::Fine, 32, DOUBT)),
     ]
 }
 
@@ -229,7 +224,7 @@ fn table(document: &DocumentMut) -> String {
         ("RISC-V, *standard*", "riscv32imac", "standard"),
     ];
     let sizes = ["flash", "static_ram", "stack"].map(str::to_owned);
-    let calls = ["plan", "observe", "estimate", "lookahead_plan", "forecast_plan"];
+    let calls = ["plan", "observe", "estimate", "lookahead_plan", "noisy_plan"];
     let times = calls.map(|call| ["median", "worst"].map(|of| format!("{call}_{of}")));
     let tolerance = ["observe", "wake"]
         .map(|of| ["", "scc_"].map(|kind| format!("{kind}tolerance_{of}_worst")));

@@ -251,7 +251,7 @@ fn bits(kind: &str, tells: impl Fn(f64) -> f64 + Sync) -> Vec<f64> {
 
 #[test]
 fn own_tolerances_tell_more_than_the_most() {
-    for (kind, least) in [("cfc", 0.5), ("look-ahead", 0.5), ("scc", 0.1), ("forecast", 0.3)] {
+    for (kind, least) in [("cfc", 0.5), ("look-ahead", 0.5), ("scc", 0.1), ("noisy", 0.3)] {
         let [own, most] = [bits(kind, |err| err), bits(kind, |_| MOST)];
         let [own, most] = [own, most].map(|bits| bits[bits.len() / 2]);
         println!("{kind}: {own:.2} bits with own tolerances, {most:.2} with the most");

@@ -148,9 +148,8 @@ fn labels_keep_the_reliability_that_they_came_with() {
     for noise in [mission.noise_told(), Noise::NONE] {
         let noise = Noise { reliability: Reliability::new(0.8).expect("a probability"), ..noise };
         let make = || {
-            let forecast =
-                NoisyBelief::<36, 529>::new(mission.given.samples(), noise).expect("four");
-            Lookahead::new(mission.config.area, mission.vehicle, forecast)
+            let noisy = NoisyBelief::<36, 529>::new(mission.given.samples(), noise).expect("four");
+            Lookahead::new(mission.config.area, mission.vehicle, noisy)
                 .expect("settings that agree")
         };
         let told = |first: f64| {

@@ -104,7 +104,7 @@ impl Mission {
     ///
     /// # Panics
     /// As [`table`](Self::table).
-    pub fn forecast(&self) -> NoisyBelief<CAPACITY, HYPOTHESES> {
+    pub fn noisy_belief(&self) -> NoisyBelief<CAPACITY, HYPOTHESES> {
         let mut belief = NoisyBelief::NONE;
         let made = belief.restart(self.given.samples(), self.prior, self.noise_told());
         made.expect("15 points bound the line at most");

@@ -122,7 +122,7 @@ impl Mission {
         area: G,
         dynamics: D,
     ) -> Lookahead<D, NoisyBelief<CAPACITY, HYPOTHESES>, G> {
-        self.looking_ahead(area, dynamics, self.forecast())
+        self.looking_ahead(area, dynamics, self.noisy_belief())
     }
 
     fn looking_ahead<D: Dynamics, B: PredictiveBelief, G: Workspace>(

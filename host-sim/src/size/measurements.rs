@@ -137,7 +137,7 @@ fn others(asked: Configuration) -> Result<Vec<Other>> {
     let cores: Table = CORES.parse().context("tests/cores.toml")?;
     let asked = Configuration { roams: false, ..asked };
     let plan = match asked.planner {
-        Planner::Lookahead if asked.is_noisy() => "forecast_plan",
+        Planner::Lookahead if asked.is_noisy() => "noisy_plan",
         Planner::Lookahead => "lookahead_plan",
         Planner::Cfc | Planner::Scc => "plan",
     };
@@ -188,7 +188,7 @@ const fn plan(asked: Configuration) -> &'static [&'static str] {
     match asked.planner {
         Planner::Cfc => &["plan", "cfc_plan"],
         Planner::Scc => &["mixture_plan_at_10"],
-        Planner::Lookahead if asked.is_noisy() => &["forecast_plan"],
+        Planner::Lookahead if asked.is_noisy() => &["noisy_plan"],
         Planner::Lookahead => &["lookahead_fine_plan"],
     }
 }

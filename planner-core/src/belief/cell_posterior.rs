@@ -539,16 +539,16 @@ impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
 impl<const N: usize, const H: usize, const E: usize> FromLog for CellPosterior<N, H, E> {
     type ObservationLog = ObservationLog<N>;
 
-    fn told(&self) -> ObservationLog<N> {
+    fn log(&self) -> ObservationLog<N> {
         let labels = self.labels().iter().zip(self.tolerances());
         let believed = labels.map(|(label, it)| self.reliability_within(label.site, it));
         ObservationLog::new(self.given(), self.samples(), believed)
             .within(self.tolerances(), self.noise.tolerance)
     }
 
-    fn replay(&mut self, told: &ObservationLog<N>) -> Result<(), ReplayError> {
-        let labels = told.doubtful_labels(self.noise.tolerance)?;
-        self.restart(told.given(), self.prior, self.noise)?;
+    fn replay(&mut self, log: &ObservationLog<N>) -> Result<(), ReplayError> {
+        let labels = log.doubtful_labels(self.noise.tolerance)?;
+        self.restart(log.given(), self.prior, self.noise)?;
         for (sample, reliability, tolerance) in labels {
             self.take_within(sample, reliability, tolerance)?;
         }

@@ -106,15 +106,15 @@ impl<const N: usize, const H: usize> NoisyBelief<N, H> {
 impl<const N: usize, const H: usize> FromLog for NoisyBelief<N, H> {
     type ObservationLog = ObservationLog<N>;
 
-    fn told(&self) -> ObservationLog<N> {
+    fn log(&self) -> ObservationLog<N> {
         let believed = self.believed.iter().copied();
-        let told = ObservationLog::new(self.table.given(), self.table.samples(), believed);
-        told.within(self.table.tolerances(), self.table.noise().tolerance)
+        let log = ObservationLog::new(self.table.given(), self.table.samples(), believed);
+        log.within(self.table.tolerances(), self.table.noise().tolerance)
     }
 
-    fn replay(&mut self, told: &ObservationLog<N>) -> Result<(), ReplayError> {
-        let labels = told.doubtful_labels(self.table.noise().tolerance)?;
-        self.restart(told.given(), self.table.prior(), self.table.noise())?;
+    fn replay(&mut self, log: &ObservationLog<N>) -> Result<(), ReplayError> {
+        let labels = log.doubtful_labels(self.table.noise().tolerance)?;
+        self.restart(log.given(), self.table.prior(), self.table.noise())?;
         for (sample, reliability, tolerance) in labels {
             self.take_within(sample, reliability, tolerance)?;
         }

@@ -105,14 +105,14 @@ pub trait FromLog {
     type ObservationLog;
 
     /// The log of all that it has taken in so far.
-    fn told(&self) -> Self::ObservationLog;
+    fn log(&self) -> Self::ObservationLog;
 
     /// Begins again and takes in what was exported, with this belief's own noise and tolerance. It costs as much as the
     /// labels did when they came.
     ///
     /// # Errors
     /// [`ReplayError`]. The belief may then contain only a part of the log.
-    fn replay(&mut self, told: &Self::ObservationLog) -> Result<(), ReplayError>;
+    fn replay(&mut self, log: &Self::ObservationLog) -> Result<(), ReplayError>;
 }
 
 /// Why a belief did not take in an export: another belief made it, or it was spoilt.
@@ -133,7 +133,7 @@ pub enum ReplayError {
 impl core::fmt::Display for ReplayError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
-            Self::Kind => f.write_str("what was told is for labels of the other kind"),
+            Self::Kind => f.write_str("the log is of labels of the other kind"),
             Self::Spoilt => f.write_str("it says that more samples were given than it has"),
             Self::Given(why) => why.fmt(f),
             Self::Label(why) => why.fmt(f),
@@ -161,18 +161,18 @@ impl From<ObservationError> for ReplayError {
 impl<const N: usize> FromLog for VersionSpace<N> {
     type ObservationLog = ObservationLog<N>;
 
-    fn told(&self) -> ObservationLog<N> {
-        let told = ObservationLog::new(self.given(), self.samples(), core::iter::empty());
-        told.within(core::iter::once(self.expected()), self.tolerance())
+    fn log(&self) -> ObservationLog<N> {
+        let log = ObservationLog::new(self.given(), self.samples(), core::iter::empty());
+        log.within(core::iter::once(self.expected()), self.tolerance())
     }
 
-    fn replay(&mut self, told: &ObservationLog<N>) -> Result<(), ReplayError> {
-        let labels = told.true_labels()?;
-        *self = Self::new(told.given())?.with_tolerance(self.tolerance())?;
+    fn replay(&mut self, log: &ObservationLog<N>) -> Result<(), ReplayError> {
+        let labels = log.true_labels()?;
+        *self = Self::new(log.given())?.with_tolerance(self.tolerance())?;
         for &sample in labels {
             self.insert(sample)?;
         }
-        self.expect(told.expected().unwrap_or(self.tolerance()))?;
+        self.expect(log.expected().unwrap_or(self.tolerance()))?;
         Ok(())
     }
 }

@@ -124,7 +124,7 @@ impl Setup {
 
     /// Look-ahead with labels that may be wrong, with none of its samples yet: the memory for
     /// [`prepare`](Self::prepare).
-    pub fn forecast<D: Dynamics, G: Workspace, const N: usize, const H: usize>(
+    pub fn lookahead_in_noise<D: Dynamics, G: Workspace, const N: usize, const H: usize>(
         &self,
         PlannerSetup { dynamics, area, options }: PlannerSetup<D, G>,
         evaluations: u32,

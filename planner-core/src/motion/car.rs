@@ -32,9 +32,9 @@ pub struct Car {
     step: u64,
     /// The circle that it can go round: its speed and its ray. Then come, in lattice units, its radius and the radius
     /// of the polygon of tangents about it. The last is how far rounding may move it in one round.
-    orbit_speed: u16,
-    orbit_turn: u32,
-    orbit_radius: i32,
+    circle_speed: u16,
+    circle_turn: u32,
+    circle_radius: i32,
     tangents_radius: i32,
     margin: i32,
 }
@@ -94,15 +94,15 @@ impl Car {
             slowest: slowest as u16,
             turns: u32::MAX,
             step,
-            orbit_speed: 0,
-            orbit_turn: 0,
-            orbit_radius: 0,
+            circle_speed: 0,
+            circle_turn: 0,
+            circle_radius: 0,
             tangents_radius: 0,
             margin: 0,
         };
         car.turns = car.turns_at(speeds - 1);
         car.grid = ActionGrid::new(2 * car.turns + 1, speeds, speed_step_mm)?;
-        car.find_orbit()
+        car.find_circle()
     }
 
     /// What it can do.
@@ -110,14 +110,14 @@ impl Car {
         self.shape
     }
 
-    fn find_orbit(mut self) -> Result<Self, GridError> {
+    fn find_circle(mut self) -> Result<Self, GridError> {
         let Shape { radius_mm, speed_step_mm, speeds, .. } = self.shape;
         let (sin, _) = sin_cos(Self::CIRCLING);
         let chord_mm = (2 * u64::from(radius_mm) * sin as u64) >> 29;
         let speed = (chord_mm / u64::from(speed_step_mm)) as u32;
         let speed = speed.max(u32::from(self.slowest)).min(u32::from(speeds) - 1) as u16;
-        (self.orbit_speed, self.orbit_turn) = (speed, self.turns_at(speed));
-        let turn = self.turn(self.orbit_turn);
+        (self.circle_speed, self.circle_turn) = (speed, self.turns_at(speed));
+        let turn = self.turn(self.circle_turn);
         let (sin, cos) = sin_cos(turn);
         // With 4 fractional bits.
         let chord = (i64::from(speed) * i64::from(self.grid.step_length())) >> (Ray::STEP_BITS - 4);
@@ -130,7 +130,7 @@ impl Car {
         if tangents + margin >= MOST {
             return Err(GridError::Circle);
         }
-        (self.orbit_radius, self.tangents_radius) = (radius as i32, tangents as i32);
+        (self.circle_radius, self.tangents_radius) = (radius as i32, tangents as i32);
         self.margin = margin as i32;
         Ok(self)
     }
@@ -242,12 +242,12 @@ impl Dynamics for Car {
     }
 
     fn turning_circle(&self, pose: Pose, side: Side) -> Option<TurningCircle> {
-        let left = pose.heading.unit().left().scaled(self.orbit_radius);
+        let left = pose.heading.unit().left().scaled(self.circle_radius);
         let (ray, centre) = match side {
-            Side::Left => (self.turns + self.orbit_turn, left),
-            Side::Right => (self.turns - self.orbit_turn, left.reversed()),
+            Side::Left => (self.turns + self.circle_turn, left),
+            Side::Right => (self.turns - self.circle_turn, left.reversed()),
         };
-        let action = self.grid.action(ray, self.orbit_speed);
+        let action = self.grid.action(ray, self.circle_speed);
         Some(TurningCircle { action, centre, radius: self.tangents_radius, margin: self.margin })
     }
 

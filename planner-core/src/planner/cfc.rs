@@ -228,12 +228,12 @@ impl<D: Dynamics, const N: usize, G: Workspace> Persist for Cfc<D, N, G> {
     type Snapshot = Snapshot<ObservationLog<N>, ([Phase; 2], Label, Silence)>;
 
     fn snapshot(&self) -> Self::Snapshot {
-        Snapshot::new(self.space.told(), ([self.phase, self.due], self.past, self.silence))
+        Snapshot::new(self.space.log(), ([self.phase, self.due], self.past, self.silence))
     }
 
     fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), RestoreError> {
-        let (told, &([phase, due], past, silence)) = snapshot.open()?;
-        self.space.replay(told)?;
+        let (log, &([phase, due], past, silence)) = snapshot.open()?;
+        self.space.replay(log)?;
         (self.phase, self.due, self.past, self.silence) = (phase, due, past, silence);
         Ok(())
     }

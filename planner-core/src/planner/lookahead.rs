@@ -375,12 +375,12 @@ impl<D: Dynamics, B: PredictiveBelief + FromLog, G: Workspace> Persist for Looka
     type Snapshot = Snapshot<B::ObservationLog, Silence>;
 
     fn snapshot(&self) -> Self::Snapshot {
-        Snapshot::new(self.belief.told(), self.silence)
+        Snapshot::new(self.belief.log(), self.silence)
     }
 
     fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), RestoreError> {
-        let (told, &silence) = snapshot.open()?;
-        self.belief.replay(told)?;
+        let (log, &silence) = snapshot.open()?;
+        self.belief.replay(log)?;
         self.silence = silence;
         Ok(())
     }
@@ -450,8 +450,8 @@ mod tests {
                 trusted_radius: 0,
                 tolerance: Tolerance::NONE,
             };
-            let forecast = NoisyBelief::new(&self.given(), noise).unwrap();
-            Lookahead::new(area(), Unicycle::paper(), forecast).unwrap()
+            let noisy = NoisyBelief::new(&self.given(), noise).unwrap();
+            Lookahead::new(area(), Unicycle::paper(), noisy).unwrap()
         }
 
         /// Makes so many steps with true labels, and has each looked at before.

@@ -282,12 +282,12 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Workspace> Persist for Scc<
     type Snapshot = Snapshot<ObservationLog<N>, Silence>;
 
     fn snapshot(&self) -> Self::Snapshot {
-        Snapshot::new(self.hypotheses.told(), self.silence)
+        Snapshot::new(self.hypotheses.log(), self.silence)
     }
 
     fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), RestoreError> {
-        let (told, &silence) = snapshot.open()?;
-        self.hypotheses.replay(told)?;
+        let (log, &silence) = snapshot.open()?;
+        self.hypotheses.replay(log)?;
         self.silence = silence;
         Ok(())
     }

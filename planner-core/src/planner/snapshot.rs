@@ -30,25 +30,25 @@ pub const SNAPSHOT_VERSION: u16 = 3;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Snapshot<T, M> {
     version: u16,
-    told: T,
+    log: T,
     memory: M,
 }
 
 impl<T, M> Snapshot<T, M> {
-    pub(crate) const fn new(told: T, memory: M) -> Self {
-        Self { version: SNAPSHOT_VERSION, told, memory }
+    pub(crate) const fn new(log: T, memory: M) -> Self {
+        Self { version: SNAPSHOT_VERSION, log, memory }
     }
 
     /// The log and the memory, if the snapshot is of this version.
     pub(crate) fn open(&self) -> Result<(&T, &M), RestoreError> {
-        let Self { version, told, memory } = self;
+        let Self { version, log, memory } = self;
         let is_known = *version == SNAPSHOT_VERSION;
-        is_known.then_some((told, memory)).ok_or(RestoreError::Version(*version))
+        is_known.then_some((log, memory)).ok_or(RestoreError::Version(*version))
     }
 
     /// The log of what the belief took in.
-    pub const fn told(&self) -> &T {
-        &self.told
+    pub const fn log(&self) -> &T {
+        &self.log
     }
 }
 

@@ -254,7 +254,7 @@ impl<D: Dynamics, R: DirectionRule, G: Workspace> Manoeuvre<'_, '_, '_, D, R, G>
     /// wherever rounding has moved that, or with a margin.
     fn may_hold(&self, pose: Pose, after: Pose, side: Side) -> bool {
         let (dynamics, area) = (self.dynamics, &self.problem.area);
-        let fits = |orbit: TurningCircle| orbit.is_inside(after.site, area, orbit.radius);
+        let fits = |circle: TurningCircle| circle.is_inside(after.site, area, circle.radius);
         !dynamics.is_safe(pose, area)
             || dynamics.keeps_inside(pose, after, area, self.room(pose))
             || dynamics.turning_circle(after, side).is_some_and(fits)
@@ -346,18 +346,18 @@ impl<D: Dynamics, R: DirectionRule, G: Workspace> Manoeuvre<'_, '_, '_, D, R, G>
         let after = Pose { site: pose.site.step(by).ok()?, ..pose };
         self.effort.take(2);
         self.effort.take_sweep(area, &[pose.site, after.site]);
-        let is_clear = |orbit: TurningCircle| {
-            let radius = orbit.with_room(room);
-            let centres = [pose, after].map(|it| it.site.step(orbit.centre));
+        let is_clear = |circle: TurningCircle| {
+            let radius = circle.with_room(room);
+            let centres = [pose, after].map(|it| it.site.step(circle.centre));
             let [Ok(from), Ok(to)] = centres else { return false };
             area.contains_disc(from, radius)
                 && area.contains_disc(to, radius)
                 && area.keep_outs().all(|it| it.is_clear_of(&[from, to], radius.unsigned_abs()))
         };
-        let mut orbits = [Side::Left, Side::Right].into_iter();
+        let mut circles = [Side::Left, Side::Right].into_iter();
         let stays = area.contains(after.site)
             && area.lets_pass(&[pose.site, after.site])
-            && orbits.any(|side| self.dynamics.turning_circle(pose, side).is_some_and(is_clear));
+            && circles.any(|side| self.dynamics.turning_circle(pose, side).is_some_and(is_clear));
         stays.then_some(after)
     }
 

@@ -104,7 +104,8 @@ mod on_target {
                     station.fly(&setup, &mut planner, |_| {})
                 }
                 Algorithm::Lookahead { evaluations, goal, noise: Some((noise, prior)) } => {
-                    let mut planner = setup.forecast::<_, _, N, H>(terms, evaluations, goal);
+                    let mut planner =
+                        setup.lookahead_in_noise::<_, _, N, H>(terms, evaluations, goal);
                     station.fly(&setup, &mut setup.prepare(&mut planner, prior, noise), |_| {})
                 }
                 Algorithm::Scc { noise, policy, prior } => {

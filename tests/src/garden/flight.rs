@@ -25,7 +25,7 @@ pub const COMPARED: u32 = 30;
 /// Who finds the line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Finder {
-    /// Look-ahead with a forecast.
+    /// Look-ahead with a noisy belief.
     Lookahead,
     /// Algorithm 2.
     Scc,

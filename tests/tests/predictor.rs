@@ -1,4 +1,4 @@
-//! The predictions of look-ahead against slow twins: pictures against the exact shares of version spaces, forecasts
+//! The predictions of look-ahead against slow twins: pictures against the exact shares of version spaces, noisy beliefs
 //! against tables and entropies in double precision.
 
 use std::f64::consts::PI;
@@ -115,24 +115,24 @@ fn any_site(rng: &mut ChaCha8Rng, mission: &Mission) -> Site {
 
 /// So many labels, true or false, that are possible.
 fn labelled<const N: usize, const H: usize>(
-    forecast: &mut NoisyBelief<N, H>,
+    noisy: &mut NoisyBelief<N, H>,
     mission: &Mission,
     rng: &mut ChaCha8Rng,
     labels: usize,
 ) {
-    let most = forecast.belief().taken() + labels;
-    while forecast.belief().taken() < most {
+    let most = noisy.belief().taken() + labels;
+    while noisy.belief().taken() < most {
         let site = any_site(rng, mission);
         let label = if rng.random_bool(0.5) { Label::Positive } else { Label::Negative };
-        let tolerance = forecast.belief().tolerance();
+        let tolerance = noisy.belief().tolerance();
         // A trusted ball may refuse it.
-        let _ = forecast.observe_within(site, Reading::Side(label), tolerance);
-        forecast.observe_within(site, Reading::Boundary, tolerance).expect("it tells nothing");
+        let _ = noisy.observe_within(site, Reading::Side(label), tolerance);
+        noisy.observe_within(site, Reading::Boundary, tolerance).expect("it tells nothing");
     }
 }
 
 #[test]
-fn forecasts_are_those_of_the_table_and_of_how_far_labels_can_be_believed() {
+fn noisy_beliefs_are_those_of_the_table_and_of_how_far_labels_can_be_believed() {
     let term = |p: f64| if p > 0.0 { -p * p.log2() } else { 0.0 };
     let coin = |p: f64| term(p) + term(1.0 - p);
     let mut rng = ChaCha8Rng::seed_from_u64(13);
@@ -140,18 +140,20 @@ fn forecasts_are_those_of_the_table_and_of_how_far_labels_can_be_believed() {
     for number in 0..cases(60, 600) {
         let p = [0.6, 0.7, 0.9, 0.99][number as usize % 4];
         let mission = doubtful(number, p);
-        let mut forecast = mission.forecast();
-        labelled(&mut forecast, &mission, &mut rng, number as usize % 12);
-        forecast.prepare();
-        let predictor = forecast.predictor(mission.start.site);
+        let mut noisy = mission.noisy_belief();
+        labelled(&mut noisy, &mission, &mut rng, number as usize % 12);
+        noisy.prepare();
+        let predictor = noisy.predictor(mission.start.site);
         let mut table = mission.table();
-        for &Sample { site, label } in &forecast.belief().samples()[table.given().len()..] {
-            table.take(Sample { site, label }, table.reliability(site)).expect("as the forecast");
+        for &Sample { site, label } in &noisy.belief().samples()[table.given().len()..] {
+            table
+                .take(Sample { site, label }, table.reliability(site))
+                .expect("as the noisy belief");
         }
         let posterior = PosteriorView::new(&table);
         for _ in 0..12 {
             let [site, next] = [(); 2].map(|()| any_site(&mut rng, &mission));
-            assert_eq!(forecast.ground().certainty(site), mission.given.certainty(site));
+            assert_eq!(noisy.ground().certainty(site), mission.given.certainty(site));
             let is_trusted = table.reliability(site) == Reliability::CERTAIN;
             let p_here = if is_trusted { 1.0 } else { p };
             let share = predictor.share_above(site);
@@ -189,16 +191,16 @@ fn forecasts_are_those_of_the_table_and_of_how_far_labels_can_be_believed() {
 }
 
 #[test]
-fn a_forecast_begins_again_in_place() {
+fn a_noisy_belief_begins_again_in_place() {
     let mut rng = ChaCha8Rng::seed_from_u64(14);
-    let mut again = doubtful(0, 0.7).forecast();
+    let mut again = doubtful(0, 0.7).noisy_belief();
     for number in 0..20 {
         let mission = doubtful(number, 0.8);
         labelled(&mut again, &mission, &mut rng, 5);
         let given = mission.given.samples();
         again.restart(given, mission.prior, mission.noise_told()).expect("an oracle");
         again.restart(&given[..2], mission.prior, mission.noise_told()).expect_err("two points");
-        let mut anew = mission.forecast();
+        let mut anew = mission.noisy_belief();
         let mut same = rng.clone();
         labelled(&mut again, &mission, &mut rng, 3);
         labelled(&mut anew, &mission, &mut same, 3);
