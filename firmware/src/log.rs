@@ -92,7 +92,7 @@ impl Log {
         }
     }
 
-    /// Whether more is waiting, and if not, how many frames were dropped meanwhile.
+    /// Sends a portion. Returns whether more is waiting, and if not, how many frames were dropped meanwhile.
     fn send(&mut self) -> (bool, u32) {
         let Some(wire) = &mut self.wire else { return (false, 0) };
         for _ in 0..PORTION {

@@ -17,13 +17,13 @@ const TRUE_SAMPLES: usize = 68;
 /// Samples that a mission with doubtful labels can hold: 32 labels beside four given ones.
 const DOUBTFUL_SAMPLES: usize = 36;
 
-/// All hypotheses that 32 labels can come to.
+/// All hypotheses that 32 labels can leave.
 const HYPOTHESES: usize = 529;
 
-/// What it plans with and where: all there is.
+/// What it plans with: any vehicle in any area.
 type Known = PlannerSetup<AnyVehicle, MissionArea>;
 
-/// What a mission has to do with.
+/// The parts of the board that a mission uses.
 pub(crate) struct Board {
     pub(crate) station: Station<Serial, PinSensor<PB1<Input>>>,
     pub(crate) enable: Enable,
@@ -59,7 +59,7 @@ impl Board {
         }
     }
 
-    // Tables of hypotheses are large: there is one on the stack, as each is in a function of its own.
+    // Tables of hypotheses are large. Each is in a function of its own, so that only one is on the stack.
     #[inline(never)]
     fn fly_forecast(
         &mut self,
@@ -88,7 +88,7 @@ impl Board {
         self.fly(setup, &mut setup.prepare(&mut planner, prior, noise));
     }
 
-    /// The drive is enabled for as long as this takes.
+    /// Flies a mission. The drive is enabled meanwhile.
     fn fly<L: Planner>(&mut self, setup: &Setup, planner: &mut Result<Prepared<L>, DeclinedError>) {
         if planner.is_ok() {
             self.enable.on();

@@ -2,7 +2,7 @@
 
 use stm32f4xx_hal::pac::RCC;
 
-/// What the flags in RCC's CSR tell.
+/// The reason that the flags in RCC's CSR show.
 #[derive(Clone, Copy, PartialEq, Eq, defmt::Format)]
 pub(crate) enum Reset {
     /// The independent watchdog: the firmware hung.

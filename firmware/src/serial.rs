@@ -1,5 +1,5 @@
-//! The link: USART1 at 115,200 baud, 8N1. An interrupt queues what comes in; sending is polled. No
-//! wait is without a bound.
+//! The link: USART1 at 115,200 baud, 8N1. An interrupt queues arriving bytes; sending is polled. Every wait has a
+//! bound.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
@@ -34,7 +34,7 @@ static OVERFLOWED: AtomicU32 = AtomicU32::new(0);
 /// Bytes lost to overrun, framing or noise since the last report.
 static GARBLED: AtomicU32 = AtomicU32::new(0);
 
-/// Opens USART1 and has its interrupt tell of every byte that comes in.
+/// Opens USART1 and enables its interrupt for every byte that arrives.
 pub(crate) fn open(usart: USART1, pins: (PA9, PA10), rcc: &mut Rcc) -> (Tx1, Rx1) {
     let Ok(serial) = Usart::new(usart, pins, BAUD, rcc) else {
         unreachable!("16 MHz carry more than 115,200 baud");
@@ -121,7 +121,7 @@ impl Port for Serial {
     fn receive(&mut self) -> Option<u8> {
         loop {
             self.watchdog.feed();
-            // First, so that a peer that never pauses does not go on for ever.
+            // This comes first, or a peer that never pauses would keep it going for ever.
             if Mono::now() >= self.deadline {
                 report("the link's queue was full", &OVERFLOWED);
                 report("the link's line was garbled", &GARBLED);

@@ -4,8 +4,8 @@
 )]
 //! The safe stop: the drive's enable pin, and what a panic or a fault does.
 //!
-//! These pull the pin low at once, log one line, and restart the chip. The restart is a system reset
-//! and not the watchdog's, so that the next start can tell a stop from a hang.
+//! Either pulls the pin low at once, logs one line, and restarts the chip. The restart is a system reset and not the
+//! watchdog's, so that the next start can tell a stop from a hang.
 
 use core::panic::PanicInfo;
 use core::sync::atomic::{AtomicBool, Ordering};
@@ -36,7 +36,7 @@ impl Enable {
     }
 }
 
-/// Set by the first panic or fault: one on its way out is neither logged nor waited for.
+/// Set by the first panic or fault. One that happens while the chip stops is neither logged nor waited for.
 static STOPPING: AtomicBool = AtomicBool::new(false);
 
 fn stop(tell: impl FnOnce()) -> ! {
@@ -50,7 +50,7 @@ fn stop(tell: impl FnOnce()) -> ! {
     SCB::sys_reset()
 }
 
-/// The text where it is a constant: to format it would cost flash for every panic there is.
+/// Logs the text if it is a constant. Formatting any other would cost flash for every panic in the program.
 #[panic_handler]
 fn panic(info: &PanicInfo) -> ! {
     stop(|| {
@@ -65,8 +65,8 @@ unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
     stop(|| defmt::error!("fault at {=u32:#010x}", frame.pc()))
 }
 
-/// The clock security system's, and nobody else's. The core runs on, from the internal oscillator,
-/// so the wire's line comes at a wrong speed.
+/// Only the clock security system raises this. The core runs on from the internal oscillator, so the log goes out at a
+/// wrong speed.
 #[exception]
 unsafe fn NonMaskableInt() -> ! {
     stop(|| defmt::error!("the crystal failed"))

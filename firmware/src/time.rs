@@ -1,9 +1,9 @@
-//! Time: RTIC's monotonic on `SysTick`, and the ticks between its beats.
+//! Time: RTIC's monotonic on `SysTick`, and the ticks within its beats. A beat is one period of `SysTick`, 10 ms.
 
 use rtic_monotonics::systick::SYST;
 use rtic_monotonics::{Timebase, systick_monotonic};
 
-/// As in the next line, which takes a literal alone.
+/// The same number as in the next line, whose macro takes a literal alone.
 const BEATS_PER_SECOND: u32 = 100;
 systick_monotonic!(Mono, 100);
 
@@ -23,7 +23,7 @@ pub(crate) fn ticks() -> u32 {
         let beats = Mono::now().as_ticks();
         // Down to 0, where the beat falls, then from the reload value again.
         let left = SYST::get_current();
-        // 0 may be read before the beat is told of, and a beat may fall between the readings.
+        // 0 may be read before the beat is counted, and a beat may fall between the readings.
         if left != 0 && Mono::now().as_ticks() == beats {
             return beats.wrapping_add(1).wrapping_mul(ticks_per_beat()).wrapping_sub(left);
         }

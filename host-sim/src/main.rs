@@ -41,13 +41,13 @@ fn tell_answer(answer: &clap::Error) -> ExitCode {
         print(|_| write!(io::stderr(), "{words}"))
     };
     if answer.use_stderr() {
-        // Where nobody hears it the status has to do.
+        // If standard error is closed, the exit status alone must report the failure.
         return ExitCode::from(REFUSED);
     }
     told.map_or_else(|error| fail(&error), |()| ExitCode::SUCCESS)
 }
 
-/// Prints to standard output. Whoever reads may stop early.
+/// Prints to standard output. A reader of a pipe may stop early.
 fn print(write: impl FnOnce(&mut io::Stdout) -> io::Result<()>) -> Result<()> {
     let mut stdout = io::stdout();
     match write(&mut stdout).and_then(|()| stdout.flush()) {

@@ -18,7 +18,7 @@ pub trait FarEnd {
     /// The chip sends a frame.
     ///
     /// # Errors
-    /// When its power fails as it does.
+    /// When its power fails meanwhile.
     fn send(&mut self, frame: &[u8]) -> Result<(), Off>;
 
     /// The next byte that the chip hears; `None` once it has waited in vain.

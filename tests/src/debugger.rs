@@ -5,7 +5,7 @@ use std::net::{TcpListener, TcpStream};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// For anything that QEMU does at once.
+/// How long to wait for anything that QEMU does at once.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 /// Bytes of memory that an answer has room for.
@@ -22,9 +22,9 @@ impl Debugger {
     /// Connecting halts the chip.
     ///
     /// # Panics
-    /// When nobody listens, as all that follow do when QEMU does not answer.
+    /// When nobody listens. All functions below panic when QEMU does not answer.
     pub fn connect(port: u16) -> Self {
-        // It does not from its first moment on.
+        // QEMU does not listen from its first moment on.
         let since = Instant::now();
         let out = loop {
             match TcpStream::connect(("127.0.0.1", port)) {
@@ -49,7 +49,7 @@ impl Debugger {
         write!(self.out, "${command}#{sum:02x}").expect("QEMU listens");
     }
 
-    /// Sends a command; its answer.
+    /// Sends a command and returns its answer.
     ///
     /// # Panics
     /// As [`connect`](Self::connect).
@@ -96,7 +96,7 @@ impl Debugger {
     }
 }
 
-/// A port that nobody listens at, for QEMU to.
+/// A free port for QEMU to listen at.
 ///
 /// # Panics
 /// When there is none.

@@ -19,8 +19,8 @@ use crate::cases;
 /// A label at a place, seen with some reliability.
 pub type Seen = (Sample, f64);
 
-/// A standard field's oracle and labels seen at random places of the disagreement region and
-/// elsewhere, true with probability `p`: one `p` for all, or one for each, certain ones included. Also the world that they are of.
+/// A standard field's oracle, and labels seen at random places of the disagreement region and elsewhere. They are true
+/// with probability `p`: one `p` for all, or one for each, certain ones included. Also the world that they are of.
 ///
 /// # Panics
 /// Never: its sites are within metres of the area.
@@ -66,7 +66,7 @@ pub fn table<const N: usize, const H: usize>(
     table
 }
 
-/// What is known on standard fields after so many steps of look-ahead, and where the agent then is.
+/// What is known on standard fields after some steps of look-ahead, and where the agent then is.
 ///
 /// # Panics
 /// Never: labels are true.

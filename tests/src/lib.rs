@@ -1,8 +1,11 @@
 //! What the cross-crate tests share.
 //!
-//! - Adversarial sites, and the slow twin of the version space.
+//! - Adversarial sites, and slow twins: the version space's here, others in [`twins`].
 //! - Programs for a chip ([`program`]), a core to run them on ([`emulator`]), and their limits ([`budget`]).
-//! - Missions in which everything is drawn at random ([`anything`]).
+//! - Missions as a chip may be asked to fly them ([`missions`]), and such in which everything is drawn at random
+//!   ([`anything`]).
+//! - A chip in the test's own thread ([`chip`]), and a wire that spoils frames ([`wire`]).
+//! - A rover in a garden, as a porter would simulate it ([`garden`]).
 //! - QEMU's machines ([`machines`]) and a debugger for them ([`debugger`]).
 //! - Beliefs to ask ([`known`]), and areas with keep-outs ([`terrain`]).
 
@@ -28,7 +31,7 @@ pub mod wire;
 /// Whether the long runs are asked for, with the feature `long`.
 pub const LONG: bool = cfg!(feature = "long");
 
-/// So many cases: few by default, more in the long runs.
+/// The number of cases: few by default, more in the long runs.
 pub const fn cases(few: u64, many: u64) -> u64 {
     if LONG { many } else { few }
 }

@@ -148,7 +148,7 @@ impl Machine {
         }
     }
 
-    /// Has it fly a mission.
+    /// Lets it fly a mission.
     ///
     /// # Errors
     /// When it does not fly as this machine does.

@@ -13,16 +13,16 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::terrain;
 
-/// Of missions, faults and noise.
+/// The seed of missions, faults and noise.
 pub const SEED: u64 = 4;
 
-/// Missions of all that a chip flies by turns: every third by look-ahead, of these every other with labels that
-/// may be wrong, the others by both algorithms; every fourth pair with the fine fan.
+/// Missions of every kind that a chip flies, by turns. Every third is flown by look-ahead, and every other of these has
+/// labels that may be wrong. The rest are flown by Algorithms 1 and 2. In every fourth pair the fan is fine.
 pub fn mission(number: u64) -> Mission {
     by_turns(SEED, number, 10)
 }
 
-/// As [`mission`], of another seed and with so many steps.
+/// As [`mission`], of another seed and with other steps.
 pub fn by_turns(seed: u64, number: u64, steps: u32) -> Mission {
     let is_even = number.is_multiple_of(2);
     let algorithm = match (number % 3, is_even) {
@@ -38,8 +38,8 @@ pub fn by_turns(seed: u64, number: u64, steps: u32) -> Mission {
     mission
 }
 
-/// Missions by look-ahead that are to end when enough is known, as most of them do within their steps: the slopes or
-/// the uncertain ground of true labels and of labels that may be wrong, by turns.
+/// Missions by look-ahead with a goal, which most of them reach within their steps. By turns it is about the slopes or
+/// the uncertain ground, with true labels or with labels that may be wrong.
 ///
 /// # Panics
 /// Never: its angles are finite.
@@ -57,8 +57,8 @@ pub fn stopping(number: u64) -> Mission {
     mission
 }
 
-/// Missions of every vehicle by every algorithm: 12 are all pairs of these; every second four of them with a robot
-/// that errs, and a tolerance for that; two of five in a polygon with keep-outs.
+/// Missions of every vehicle by every algorithm: any 12 in a row have all pairs of these. In every second group of four
+/// the robot errs, and has a tolerance for that. Two of five are in a polygon with keep-outs.
 ///
 /// # Panics
 /// Never: these are vehicles.

@@ -27,7 +27,7 @@ pub struct Wire {
     until: Duration,
     under_way: BTreeMap<(Duration, u64), (Way, Vec<u8>)>,
     launched: u64,
-    /// Cut for good after so many frames, in one way or both.
+    /// After this many frames it is cut for good, in one way or both.
     pub cut: Option<(u64, Option<Way>)>,
     spoilers: [Spoiler; 2],
     arrived: VecDeque<u8>,
@@ -89,7 +89,7 @@ impl Wire {
         }
     }
 
-    /// What has come to the chip it has lost: its power failed.
+    /// Drops what has arrived at the chip: its power failed.
     pub fn forget(&mut self) {
         self.arrived.clear();
     }

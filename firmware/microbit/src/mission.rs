@@ -12,11 +12,11 @@ use crate::stop;
 /// Samples that a mission can hold: 64 labels beside four given ones.
 const SAMPLES: usize = 68;
 
-/// What it plans with and where: any vehicle in a rectangle. Polygons with keep-outs, and tables of hypotheses, would not
-/// fit into 16 KB.
+/// What it plans with: any vehicle in a rectangle. Polygons with keep-outs, and tables of hypotheses, would not fit
+/// into 16 KB.
 type Known = PlannerSetup<AnyVehicle, Area>;
 
-/// What a mission has to do with.
+/// The parts of the board that a mission uses.
 pub(crate) struct Board {
     pub(crate) station: Station<Serial, PinSensor<Input<'static>>>,
 }
@@ -25,7 +25,7 @@ impl Board {
     pub(crate) fn run(&mut self) -> ! {
         loop {
             let setup = self.station.await_setup();
-            // How it went is the vehicle's to tell: the board has no log.
+            // The vehicle reports how it went: the board has no log.
             let _ = match self.station.terms(&setup) {
                 Ok(terms) => self.fly_with(&setup, terms),
                 Err(none) => self.station.give_up(none).map(drop),
@@ -43,7 +43,7 @@ impl Board {
         }
     }
 
-    /// The drive is enabled for as long as this takes.
+    /// Flies a mission. The drive is enabled meanwhile.
     fn fly<L: Planner>(
         &mut self,
         setup: &Setup,

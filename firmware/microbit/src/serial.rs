@@ -1,6 +1,6 @@
 #![expect(unsafe_code, reason = "to enable an interrupt is unsafe")]
-//! The link: UART0 at 115,200 baud, 8N1. An interrupt takes in what comes and tells of what has left; the planner
-//! waits for either asleep. No wait is without a bound.
+//! The link: UART0 at 115,200 baud, 8N1. An interrupt takes in arriving bytes and signals when one has left. The
+//! planner sleeps while it waits for either. Every wait has a bound.
 
 use core::future::Future;
 use core::pin::pin;
@@ -29,7 +29,8 @@ const WAIT: Duration = Duration::from_millis(100);
 /// The longest frame takes 28 ms. A transmitter that takes longer is stuck.
 const STUCK: Duration = Duration::from_millis(50);
 
-/// What came in and is not yet read: 22 ms of the line. What finds it full spoils its frame, which is sent again.
+/// Bytes that arrived and are not read yet: 22 ms of the line. One that finds it full spoils its frame, which is sent
+/// again.
 static ARRIVED: Pipe<CriticalSectionRawMutex, 256> = Pipe::new();
 
 /// The last byte has left.
@@ -85,13 +86,13 @@ async fn transmit(frame: &[u8]) {
 impl Port for Serial {
     fn send(&mut self, frame: &[u8]) {
         stop::alive();
-        // What is not sent is asked again, like what is lost.
+        // A frame that is not sent counts as lost: the request is sent again.
         let _ = block_on(with_timeout(STUCK, transmit(frame)));
         self.deadline = Instant::now() + WAIT;
     }
 
     fn receive(&mut self) -> Option<u8> {
-        // First, so that a peer that never pauses does not go on for ever.
+        // This comes first, or a peer that never pauses would keep it going for ever.
         if Instant::now() >= self.deadline {
             return None;
         }

@@ -1,8 +1,8 @@
 #![expect(unsafe_code, reason = "exceptions and an executor's interrupt are unsafe to name")]
 //! The safe stop: the drive's enable pin, and what pulls it low.
 //!
-//! A task above the planner has the pin. It wants a sign of life from the planner's side while the drive is
-//! enabled; a planner that hangs, like a panic or a fault, pulls the pin low and restarts the chip.
+//! A task above the planner owns the pin. While the drive is enabled it expects signs of life from the planner's side.
+//! A planner that hangs, a panic and a fault all pull the pin low and restart the chip.
 
 use core::panic::PanicInfo;
 use core::sync::atomic::{AtomicBool, Ordering};
@@ -19,7 +19,7 @@ use embassy_time::{Duration, TimeoutError, with_timeout};
 /// The pin, P0.02: drive enable.
 const ENABLE: usize = 2;
 
-/// The longest that a planner is silent is one plan.
+/// How long the planner's side may be silent. Its longest silence is one plan.
 const PATIENCE: Duration = Duration::from_secs(4);
 
 /// What the planner's side says.
@@ -72,7 +72,7 @@ async fn guard(mut enable: Output<'static>) {
     }
 }
 
-/// What runs above the planner, in an interrupt that no peripheral has.
+/// The executor of what runs above the planner, in an interrupt that no peripheral uses.
 static ABOVE: InterruptExecutor = InterruptExecutor::new();
 
 #[interrupt]
@@ -92,7 +92,7 @@ pub(crate) fn guard_drive(enable: Output<'static>) {
 
 fn stop() -> ! {
     cortex_m::interrupt::disable();
-    // By its register, as who stops owns no pin.
+    // By its register, as the code that stops the chip does not own the pin.
     GPIO.outclr().write(|w| w.set_pin(ENABLE, true));
     SCB::sys_reset()
 }

@@ -16,14 +16,14 @@ use planner_core::link::message::ClockRate;
 const ALARM: usize = 0;
 const NOW: usize = 1;
 
-/// The furthest alarm, half of what the timer counts: before it comes round the time has been read.
+/// The furthest alarm, half of the timer's range. So the time is read before the timer wraps.
 const FURTHEST: u64 = 1 << 31;
 
 /// An alarm nearer than this might pass while it is set.
 const NEAREST: u64 = 64;
 
 struct Time {
-    /// When it was last read: the timer has 32 bits of it.
+    /// The time when it was last read. The timer counts its lowest 32 bits.
     read: Mutex<Cell<u64>>,
     waiting: Mutex<RefCell<Queue>>,
 }
@@ -54,7 +54,7 @@ impl Driver for Time {
 }
 
 impl Time {
-    /// Wakes whom it is time for, and sets the alarm for the next.
+    /// Wakes the tasks that are due, and sets the alarm for the next.
     fn wake(&self, cs: CriticalSection<'_>) {
         let now = self.now();
         let next = self.waiting.borrow_ref_mut(cs).next_expiration(now);
@@ -85,7 +85,7 @@ pub(crate) fn ticks() -> u32 {
     TIME.now() as u32
 }
 
-/// What that is. QEMU's clock has started and does not run: all that its registers read is 1.
+/// The rate of these ticks. Under QEMU the clock's status register reads 1, without the bit that says that it runs.
 pub(crate) fn clock() -> ClockRate {
     ClockRate { per_second: TICK_HZ as u32, emulated: !CLOCK.hfclkstat().read().state() }
 }

@@ -176,7 +176,7 @@ impl Summary {
     /// The results of a campaign, from its rows in the order of the fields. Memory holds few rows at a time.
     ///
     /// # Errors
-    /// The first of the rows', or when a temporary file cannot be written.
+    /// The first error of a row, or a temporary file that cannot be written.
     pub fn of(
         campaign: &Campaign,
         rows: impl IntoIterator<Item = Result<Measured<Checkpoint>>>,

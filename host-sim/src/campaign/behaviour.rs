@@ -10,7 +10,7 @@ use crate::output::checksum::Checksum;
 /// Fields that are flown for it: few, as it is done at each start.
 const FIELDS: u64 = 4;
 
-/// The checksum of what this build comes to in the first of so many fields, by these planners.
+/// The checksum of the rows that this build computes for the first of `fields`, by these planners.
 ///
 /// # Errors
 /// Names the field in which a sample contradicts what is known.

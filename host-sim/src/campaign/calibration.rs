@@ -17,7 +17,7 @@ use crate::mission::read_out::{LEVEL, ReadOut};
 use crate::mission::vehicle::VehicleTable;
 use crate::world::noise::limit;
 
-/// Bits told, and how often what is stated is so. A mission that ended earlier does not count.
+/// The bits learnt, and how often the stated probabilities are right. A mission that ended earlier does not count.
 pub struct Calibrated;
 
 /// Labels after which missions are compared.
@@ -78,12 +78,12 @@ pub struct Row {
     pub missions: u64,
     /// Mean bits learnt.
     pub bits: f64,
-    /// The share of what so many labels can tell at most; `None` where they can tell nothing.
+    /// `bits` as a share of the most that these labels can carry; `None` if they can carry nothing.
     pub share: Option<f64>,
-    /// What these labels were expected to tell, each where it was read and by what was known then: the mean of
-    /// `bits` without the chance in single labels.
+    /// The bits that these labels were expected to carry, each by the belief before it. It estimates the same mean as
+    /// `bits`, without the chance in single labels.
     pub expected_bits: f64,
-    /// The same as a share.
+    /// `expected_bits` as such a share.
     pub expected_share: Option<f64>,
     /// Mean number of hypotheses.
     pub hypotheses: f64,
@@ -239,7 +239,7 @@ impl Summary {
     /// The results of a campaign, from its rows in the order of the fields. Memory holds few rows at a time.
     ///
     /// # Errors
-    /// The first of the rows', or when a temporary file cannot be written.
+    /// The first error of a row, or a temporary file that cannot be written.
     pub fn of(
         campaign: &Campaign,
         rows: impl IntoIterator<Item = Result<Measured<Checkpoint>>>,
@@ -325,7 +325,7 @@ impl Sums {
     }
 }
 
-/// From the sums and the next so many sorted probabilities.
+/// The calibration by one prior, from its sums and the next `missions` sorted probabilities.
 fn calibration(sums: StatementSums, missions: u64, sorted: &mut Sorted) -> Result<Calibration> {
     let size = missions.div_ceil(BINS);
     let mut best = Vec::new();

@@ -24,8 +24,7 @@ use crate::output::notes::progress;
 use crate::world::errors::Errors;
 use crate::world::noise::NoiseModel;
 
-/// Missions that a core flies between two hand-overs of rows: so many that cores hardly wait for each other, and so
-/// few that little is held.
+/// Missions of a core in a block. With fewer, cores would wait for each other; with more, memory would hold more rows.
 const BLOCK: u64 = 256;
 
 /// What to run.
@@ -37,7 +36,7 @@ pub struct Campaign {
     pub fields: u64,
     /// Steps in each.
     pub steps: u32,
-    /// Whether missions are measured at every stage, and not only at those that tables have.
+    /// Whether missions are measured after every step or label, and not only at the stages of the tables.
     pub every: bool,
     /// Seed of the ensemble.
     pub seed: u64,
@@ -51,11 +50,11 @@ pub struct Campaign {
     pub noise: Option<NoiseModel>,
     /// How robots err.
     pub errors: Errors,
-    /// What planners are told of that.
+    /// The tolerance of the planners.
     pub tolerance: Tolerance,
     /// How hypotheses choose an action together.
     pub policy: Policy,
-    /// How they are weighed in that.
+    /// How hypotheses are weighed.
     pub prior: Prior,
 }
 
@@ -74,7 +73,7 @@ pub struct Progress {
     pub metres: f64,
 }
 
-/// The measurements of every mission of a campaign.
+/// What a campaign measures. A *stage* is a number of steps or labels after which missions are compared.
 pub trait Measure: Sync {
     /// What is taken down at some stage of a mission.
     type Checkpoint: Checkpoint;
@@ -96,8 +95,8 @@ pub trait Measure: Sync {
         progress: &Progress,
     ) -> Option<Self::Checkpoint>;
 
-    /// How far a mission that ended is to be taken to have come at a stage that it did not reach;
-    /// `None` if it does not count there.
+    /// The progress that counts for a mission at a stage that it did not reach, as it ended before; `None` if it does
+    /// not count there.
     fn held(&self, end: &Progress, stage: u32) -> Option<Progress>;
 }
 
@@ -128,7 +127,7 @@ impl Campaign {
         self.fly(measure, 0..self.fields, 0)
     }
 
-    /// Flies those of a block of fields that are left: all from one of them on.
+    /// Flies the fields of a block from the field `from` on.
     ///
     /// # Errors
     /// When the vehicle cannot move in the standard area.
@@ -211,8 +210,9 @@ impl Campaign {
     }
 }
 
-/// A campaign that is being flown: its rows in the order of the fields, each an error that names the field in which
-/// a sample contradicted what was known. That never happens, as labels are true where they are trusted.
+/// A campaign that is being flown. It returns the rows in the order of the fields, or an error that names the field in
+/// which a sample contradicted what was known. That happens only where robots err by more than the tolerance, as labels
+/// are true where they are trusted.
 #[derive(Debug)]
 pub struct Flight<'a, M: Measure> {
     campaign: &'a Campaign,

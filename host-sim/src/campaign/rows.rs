@@ -16,7 +16,7 @@ use crate::campaign::order::Order;
 pub struct Planners {
     /// Their names in the rows.
     pub names: Vec<String>,
-    /// Whether rows do.
+    /// Whether the first column of a row names its planner.
     pub are_named: bool,
 }
 
@@ -47,7 +47,7 @@ pub struct RowWriter<W: Write> {
 }
 
 impl<W: Write> RowWriter<W> {
-    /// Writes them to what has their header already.
+    /// Writes rows to `to`, which has their header already.
     pub fn new(to: W, planners: &Planners) -> Self {
         let csv = WriterBuilder::new().has_headers(false).from_writer(to);
         Self { csv, planners: planners.clone() }
@@ -67,7 +67,7 @@ impl<W: Write> RowWriter<W> {
         Ok(())
     }
 
-    /// Where they went.
+    /// Ends the writing, and returns what the rows were written to.
     ///
     /// # Errors
     /// When the last of them cannot be written.
@@ -100,7 +100,7 @@ pub struct RowReader<R, C> {
 }
 
 impl<R: Read, C: Checkpoint> RowReader<R, C> {
-    /// Reads those that a file of this name has under its header. They are to come in this order.
+    /// Reads the rows under the header of a file called `name`. They must come in this order.
     ///
     /// # Errors
     /// Names the file if it has another header.
@@ -157,7 +157,7 @@ impl<R: Read, C: Checkpoint> RowReader<R, C> {
         Ok(Some(RowRead { planner, begins: at.byte(), row: Measured { checkpoint, course } }))
     }
 
-    /// The next row of this planner; `None` when a later one's follow.
+    /// The next row of this planner; `None` if the next row is a later planner's, or there is none.
     ///
     /// # Errors
     /// As [`read`](Self::read).

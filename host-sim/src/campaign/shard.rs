@@ -6,15 +6,15 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-/// One of several blocks of neighbouring fields, as equal as can be. Blocks, and not every so-many-th field: then the
-/// rows of the whole are those of its shards one after the other. Fields are drawn independently, so no block is
-/// harder than another but by chance.
+/// One of several blocks of neighbouring fields, as equal as can be. As shards are blocks, the rows of the whole are
+/// those of its shards one after the other. Fields are drawn independently, so no block is harder than another but by
+/// chance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub struct Shard {
-    /// Which, from 1.
+    /// Its number, from 1.
     pub number: u64,
-    /// Of how many.
+    /// How many shards there are.
     pub of: u64,
 }
 
@@ -22,7 +22,7 @@ impl Shard {
     /// All in one.
     pub const WHOLE: Self = Self { number: 1, of: 1 };
 
-    /// Its fields, of so many.
+    /// Its fields, if there are `of_all`.
     ///
     /// # Panics
     /// Never: no shard ends after the last field.

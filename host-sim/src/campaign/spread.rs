@@ -17,7 +17,7 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Of the next so many values, at least one.
+    /// The spread of the next `n` values, at least one.
     pub(crate) fn of(values: &mut Sorted, n: u64) -> Result<Self> {
         // Nearest rank: the smallest value that at least this share do not exceed.
         let ranks = [5, 9, 10].map(|tenths| (n * tenths).div_ceil(10).max(1));

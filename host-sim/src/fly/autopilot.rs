@@ -53,7 +53,7 @@ const SUB: [(u32, &str); 12] = [
 ];
 
 impl Craft {
-    /// Who sends this heartbeat.
+    /// The kind of vehicle that sends this heartbeat.
     ///
     /// # Errors
     /// Names another autopilot, or another kind of vehicle.
@@ -78,7 +78,7 @@ impl Craft {
         }
     }
 
-    /// Whether it has not yet begun.
+    /// Whether this mode says that its autopilot is still starting.
     pub const fn is_initialising(self, mode: u32) -> bool {
         !matches!(self, Self::Submarine) && mode == 16
     }

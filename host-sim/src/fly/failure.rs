@@ -8,7 +8,7 @@ use std::time::Duration;
 pub enum Failure {
     /// The vehicle is none that is known here.
     NotOurs(String),
-    /// So long it was not ready: what was missing.
+    /// It was not ready within this time, and what was missing.
     NotReady(Duration, String),
     /// It does not send what is needed.
     Declined(&'static str, String),
@@ -26,17 +26,17 @@ pub enum Failure {
     Fence,
     /// Its geofence holds it back.
     HeldBack,
-    /// Nothing was heard of it for so long.
+    /// It sent no heartbeat for this long.
     Silent(Duration),
-    /// It did not say for so long where it is.
+    /// It sent no position for this long.
     Lost(Duration),
-    /// It was moved by so many metres without moving.
+    /// Its position moved by this many metres, which its speed does not explain.
     Slid(f64),
-    /// It was to be somewhere within so long and was so far off.
+    /// It did not reach its target within this time, and how far off it was.
     Late(Duration, String),
-    /// No label came within so long.
+    /// No label arrived within this time, and its source.
     NoLabel(Duration, String),
-    /// It is where no lattice reaches.
+    /// Its position is beyond the lattice.
     LatticeError,
     /// A label contradicts what is known.
     Refused(String),

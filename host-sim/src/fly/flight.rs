@@ -20,13 +20,13 @@ use crate::mission::results::Ending;
 use crate::mission::terrain::check_inside;
 use crate::output::notes::{announce, count, warn};
 
-/// How long is waited for a message before it is looked for what is due.
+/// How long a round waits for a message before it sends what is due.
 const ROUND: Duration = Duration::from_millis(20);
 
-/// Messages that are heard at once at most, before it is looked for what is due.
+/// The most messages that a round takes in before it sends what is due.
 const MOST_WAITING: usize = 1000;
 
-/// How long something is waited for before it is said.
+/// How long something must be missing before the user is told so.
 const PATIENCE: Duration = Duration::from_secs(1);
 
 /// A vehicle at the other end of a link: a body like any other.
@@ -36,7 +36,7 @@ pub struct Control<L> {
     interrupted: fn() -> Option<i32>,
     /// Where it may be.
     area: Option<MissionArea>,
-    /// The motions so far, and since when their times count.
+    /// The motions so far, and the time from which theirs are counted.
     legs: Vec<Leg>,
     began: Duration,
 }
@@ -50,7 +50,7 @@ pub struct Flight {
 }
 
 impl<L: Link> Control<L> {
-    /// A pilot at a link; `interrupted` tells when the program is to end.
+    /// A pilot at a link; `interrupted` returns the signal that is to end the program, if one arrived.
     pub const fn new(link: L, pilot: Pilot, interrupted: fn() -> Option<i32>) -> Self {
         Self { link, pilot, interrupted, area: None, legs: Vec::new(), began: Duration::ZERO }
     }
@@ -60,7 +60,7 @@ impl<L: Link> Control<L> {
         &self.link
     }
 
-    /// Hears what has come, and sends what is due then: while the planner thinks, or the computer sleeps, messages wait.
+    /// Takes in the messages that have arrived, then sends what is due. Messages wait while the planner computes.
     fn round(&mut self) {
         if let Some(signal) = (self.interrupted)() {
             self.pilot.end(self.link.now(), Some(Failure::Interrupted(signal)));
@@ -82,7 +82,7 @@ impl<L: Link> Control<L> {
         }
     }
 
-    /// Waits until the vehicle is ready to be flown, and says what for.
+    /// Waits until the vehicle is ready to be flown, and prints what is missing.
     fn prepare(&mut self) -> Result<(), Failure> {
         let (mut awaited, mut since, mut is_said) = (None, self.link.now(), false);
         while !self.pilot.is_ready() {
@@ -151,7 +151,7 @@ impl<L: Link> Body for Control<L> {
             if let Some(arrival) = self.pilot.take_arrival() {
                 let reached = frame::pose(target, arrival.fix.at, arrival.yaw);
                 *pose = reached.ok_or(Failure::LatticeError)?;
-                // What is there is as near as motions leave room for.
+                // Within the acceptance it is not checked: motions keep a margin for that, or the user was warned.
                 if arrival.is_short {
                     self.check(*pose)?;
                 }
@@ -172,12 +172,12 @@ impl<L: Link> Body for Control<L> {
     }
 }
 
-/// Thousandths are enough.
+/// Rounds to thousandths.
 fn millis(number: f64) -> f64 {
     (number * 1e3).round() / 1e3
 }
 
-/// Says how well the vehicle went where it was sent. Of an ideal vehicle there is nothing to say.
+/// Prints how near to its targets the vehicle came, unless it reached each of them exactly.
 fn tell(Legs { motions, seconds, off, off_most, tolerance }: &Legs) {
     if *off_most > 0.0 {
         announce(format_args!(
@@ -190,7 +190,7 @@ fn tell(Legs { motions, seconds, off, off_most, tolerance }: &Legs) {
 /// Flies a mission.
 ///
 /// # Errors
-/// When it did not begin: nothing that moves was sent.
+/// Why the flight did not begin. No setpoint was sent then.
 pub fn fly<L: Link>(mut mission: Mission, control: &mut Control<L>) -> Result<Flight, Failure> {
     control.prepare()?;
     mission.start = control.start(&mission)?;

@@ -1,8 +1,8 @@
 //! Where the scenario lies in the vehicle's local frame: its x points east, its z north, and its origin is the
 //! vehicle's own, from which `LOCAL_POSITION_NED` counts.
 //!
-//! Local positions are single precision. Sites are 2^-16 m apart, so that within 128 m of the origin each has a number
-//! of its own; further out the nearest that there is, half a millimetre off at most.
+//! Local positions are single precision. Sites are 2^-16 m apart, so within 128 m of the origin each has a float of its
+//! own. Further out the nearest float is taken, at most half a millimetre off.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -46,8 +46,8 @@ pub fn apart(a: f32, b: f32) -> f64 {
     libm::remainder(f64::from(a) - f64::from(b), TAU).abs()
 }
 
-/// The pose of a vehicle that was sent to another. What cannot be told apart from that is that: a place with the same
-/// number in single precision, a yaw that is [`ALIKE`]. `None` off the lattice.
+/// The pose of a vehicle that was sent to the pose `sent`. A place that equals the target's in single precision counts
+/// as the target's. So does a yaw that is [`ALIKE`]. `None` if it is off the lattice.
 pub fn pose(sent: Pose, at: Ned, facing: f32) -> Option<Pose> {
     let site = if Ned::from(sent.site) == at {
         sent.site

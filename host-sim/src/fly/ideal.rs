@@ -1,7 +1,7 @@
-//! The vehicle of a dry run: an ideal rover in time of its own, which notes what it is sent.
+//! The vehicle of a dry run: an ideal rover in simulated time, which records what it is sent.
 //!
-//! It is at the mission's start, armed and in guided mode; it drives a metre a second straight to where it is sent, faces
-//! that way at once, and senses what is true there.
+//! It is at the mission's start, armed and in guided mode. It drives straight to where it is sent, at a metre a second.
+//! It takes on the yaw that it is sent at once, and senses true labels.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -24,7 +24,7 @@ use crate::fly::sent::Sent;
 use crate::mission::definition::Mission;
 use crate::world::World;
 
-/// From one of its messages to the next of that kind.
+/// The time between two of its positions, attitudes and labels. Each tenth comes with a heartbeat.
 const TICK: Duration = Duration::from_millis(100);
 
 /// Metres that it drives in a tick.
@@ -41,7 +41,7 @@ pub struct Ideal {
     yaw: f32,
     /// Where it drives.
     to: Option<Ned>,
-    /// What it has said and nobody has heard.
+    /// Messages that it has sent and nobody has received.
     said: VecDeque<MavMessage>,
     sent: Vec<Sent>,
 }
@@ -110,7 +110,7 @@ impl Ideal {
         self.said.extend(self.label(time_boot_ms));
     }
 
-    /// The message that tells the label of where it is.
+    /// The message with the label at its place.
     fn label(&self, time_boot_ms: u32) -> Option<MavMessage> {
         let at = Point2::new(f64::from(self.at.east), f64::from(self.at.north));
         let reading = self.world.reading(Site::try_from(at).ok()?);

@@ -13,7 +13,7 @@ const LONGEST_NAME: usize = 10;
 /// Channels that `RC_CHANNELS` has.
 const CHANNELS: u8 = 18;
 
-/// What tells labels.
+/// The source of labels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Source {
     /// `NAMED_VALUE_FLOAT` or `NAMED_VALUE_INT` of this name.
@@ -52,7 +52,7 @@ impl fmt::Display for Source {
     }
 }
 
-/// What tells labels, and how.
+/// The source of labels, and the threshold that makes labels of its values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LabelSource {
     /// Where values come from.
@@ -77,7 +77,7 @@ impl LabelSource {
         Self { threshold: threshold.unwrap_or(usual), source }
     }
 
-    /// The label that a message tells, if it tells one.
+    /// The label in a message, if it has one.
     pub fn read(&self, message: &MavMessage) -> Option<Told> {
         let (at_ms, value) = match (&self.source, message) {
             (Source::Named(name), MavMessage::NAMED_VALUE_FLOAT(it)) => {
@@ -96,7 +96,7 @@ impl LabelSource {
     }
 }
 
-/// What a channel says; `None` where there is none, as the message marks it.
+/// The value of a channel; `None` if the message marks it as absent.
 fn channel(rc: &RC_CHANNELS_DATA, number: u8) -> Option<u16> {
     let value = *channels(&mut rc.clone())[usize::from(number) - 1];
     // ArduPilot says 0 of a channel without a signal.

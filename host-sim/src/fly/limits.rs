@@ -1,4 +1,4 @@
-//! How far and how long: what may be told, and what is the same for all vehicles.
+//! Distances and times: those that flags set, and those that are the same for all vehicles.
 
 use std::time::Duration;
 
@@ -29,16 +29,16 @@ pub(crate) const MOST_STOP: Duration = Duration::from_secs(5);
 /// How long a vehicle may be silent: `ArduPilot`'s heart beats once a second.
 pub(crate) const SILENCE: Duration = Duration::from_secs(5);
 
-/// How long it may not say where it is.
+/// How long it may send no position.
 pub(crate) const LOST: Duration = Duration::from_secs(2);
 
-/// How long a vehicle that someone else drives is listened to: why comes after its mode.
+/// How long a vehicle is listened to after someone else has taken it over. The reason arrives after the mode.
 pub(crate) const LISTEN: Duration = Duration::from_secs(1);
 
-/// How long before a failure a text may tell of it.
+/// How long before a failure a warning may still belong to it.
 pub(crate) const TOLD_BEFORE: Duration = Duration::from_secs(2);
 
-/// How long all must be there before a flight begins: a heartbeat that is late may say that it was otherwise before.
+/// How long all must be ready before a flight begins. A late heartbeat may show that it was not.
 pub(crate) const STEADY: Duration = Duration::from_secs(1);
 
 /// Metres a second below which it is at rest.
@@ -47,27 +47,27 @@ pub(crate) const SLOW: f64 = 0.15;
 /// How long it must have been at rest, by its own clock.
 pub(crate) const SETTLED_MS: u32 = 500;
 
-/// How long it must have been at rest near where it was sent to have ended its motion there, by its own clock. So long it
-/// must have stayed, too, where it never rests: in a current or in waves.
+/// How long it must have been at rest near its target to have ended its motion there, by its own clock. In a current or
+/// in waves it never rests; then it must have stayed for as long.
 pub(crate) const RESIGNED_MS: u32 = 5000;
 
-/// How far from a place near its target a vehicle may be that stays there though it never rests, metres.
+/// How far a vehicle that never rests may move and still count as staying at a place, metres.
 pub(crate) const WOBBLES: f64 = 0.5;
 
-/// How far from where it was sent that is at most, metres.
+/// How far from its target such a place may be, metres.
 pub(crate) const NEAR: f64 = 3.0;
 
-/// How far it must have come then, metres, or half its way: one that never moved is stuck.
+/// How far it must have moved by then, metres, or half its way. A vehicle that never moved is stuck.
 pub(crate) const LEAST_WAY: f64 = 0.5;
 
-/// How far and how long.
+/// The distances and times of a flight, from its flags and its scenario.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
-    /// How far from where it was sent it may come to rest, metres.
+    /// How far from its target the vehicle may come to rest, metres.
     pub acceptance: f64,
     /// How far its local position may be off, metres.
     pub tolerance: f64,
-    /// How long it may not be ready.
+    /// How long to wait until it is ready.
     pub ready: Duration,
     /// How long a motion may take.
     pub motion: Duration,

@@ -11,10 +11,10 @@ pub trait Link {
     /// The time since the link was opened.
     fn now(&self) -> Duration;
 
-    /// Sends a message. One that cannot be sent is lost, as one that is lost on its way: that nothing comes back tells.
+    /// Sends a message. One that cannot be sent counts as lost on its way: only a missing answer shows it.
     fn send(&mut self, message: &MavMessage);
 
-    /// The next message that arrives until a time, and who sent it; `None` when none does.
+    /// The next message that arrives before a time, with its sender; `None` if none does.
     ///
     /// # Errors
     /// When the link is broken.

@@ -1,8 +1,9 @@
 //! A vehicle that speaks `MAVLink` is the robot: the planner runs here, and the vehicle drives and senses.
 //!
-//! `pilot` holds what is decided, as messages and the time in and messages out: it knows no socket and no clock. A
+//! `pilot` decides: it takes messages and the time, and returns messages. It knows no socket and no clock. A
 //! [`Link`](link::Link) carries the messages: a `socket` to a real vehicle, the `ideal` vehicle of a dry run, or a
-//! test's own. What autopilots take in guided mode is in `orders`, which of them are known in `autopilot`.
+//! test's own. `orders` has the messages that autopilots accept in guided mode, and `autopilot` the autopilots that are
+//! known.
 
 pub mod autopilot;
 pub mod failure;

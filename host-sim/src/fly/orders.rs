@@ -1,15 +1,15 @@
 //! What a vehicle is sent. No message arms it or changes its mode.
 //!
-//! Setpoints are `SET_POSITION_TARGET_LOCAL_NED` in `MAV_FRAME_LOCAL_NED`, as `ArduPilot`'s pages on guided mode describe
-//! them (<https://ardupilot.org/dev/docs/mavlink-rover-commands.html>) and its sources take them
-//! (`Rover/GCS_MAVLink_Rover.cpp`, `ArduSub/GCS_MAVLink_Sub.cpp`). Three forms do for rovers, boats and submarines:
+//! Setpoints are `SET_POSITION_TARGET_LOCAL_NED` in `MAV_FRAME_LOCAL_NED`. `ArduPilot`'s pages on guided mode describe
+//! them (<https://ardupilot.org/dev/docs/mavlink-rover-commands.html>). Its sources show what is accepted
+//! (`Rover/GCS_MAVLink_Rover.cpp`, `ArduSub/GCS_MAVLink_Sub.cpp`). Rovers, boats and submarines need three forms:
 //!
-//! - *Go*: position and yaw. Rover ignores the yaw beside a position; Sub faces it, and takes the depth.
-//! - *Turn*: yaw alone, which Rover takes as "stay and face this way"; only a vehicle that steers by its two sides can.
-//!   Sub wants a position with it, so it is told to go where it is.
-//! - *Stop*: velocity and yaw rate, both zero. Velocity alone will not do: Rover derives a heading from it, and that of
-//!   no velocity is north. Neither takes `MAV_CMD_DO_PAUSE_CONTINUE`, so a setpoint it is. Without another it lets go of a
-//!   velocity after three seconds, and holds or loiters.
+//! - *Go*: position and yaw. Rover ignores the yaw beside a position. Sub faces the yaw, and takes the depth.
+//! - *Turn*: yaw alone. Rover then stays and faces this way, which only a vehicle that steers by its two sides can do.
+//!   Sub needs a position too, so it is sent to where it is.
+//! - *Stop*: velocity and yaw rate, both zero. Velocity alone is not enough: Rover derives a heading from it, and that
+//!   of no velocity is north. Neither accepts `MAV_CMD_DO_PAUSE_CONTINUE`, so a stop is a setpoint too. Three seconds
+//!   after the last one the vehicle drops the velocity, and holds or loiters.
 
 use std::time::Duration;
 
@@ -24,8 +24,8 @@ use crate::fly::frame::Ned;
 /// The component of a vehicle that is its autopilot.
 pub const AUTOPILOT: u8 = 1;
 
-/// Who we are: a ground station (`ArduPilot`'s default `MAV_GCS_SYSID`), so that its failsafe for one that falls silent
-/// knows us.
+/// Our system id: that of a ground station (`ArduPilot`'s default `MAV_GCS_SYSID`). So the vehicle's failsafe acts if
+/// we fall silent.
 pub const OWN_SYSTEM: u32 = 255;
 
 /// Our component: `MAV_COMP_ID_MISSIONPLANNER`, as ground stations have it.
@@ -61,12 +61,12 @@ pub struct Order {
     pub is_turn: bool,
 }
 
-/// Whom messages are for, and when they are sent.
+/// The receiver of messages, and the time of sending.
 #[derive(Clone, Copy, Debug)]
 pub struct Envelope {
     /// The vehicle's system id.
     pub system: u8,
-    /// Since we began.
+    /// The time since we began.
     pub now: Duration,
 }
 
@@ -118,7 +118,7 @@ impl Envelope {
     }
 }
 
-/// That we are there: once a second, so that the vehicle's own failsafe acts when we are not.
+/// Our heartbeat. It goes out once a second, so that the vehicle's own failsafe acts when it stops.
 pub fn heartbeat() -> MavMessage {
     MavMessage::HEARTBEAT(HEARTBEAT_DATA {
         mavtype: MavType::MAV_TYPE_GCS,

@@ -1,4 +1,4 @@
-//! What is decided while a vehicle is flown: messages and the time in, messages out.
+//! Decides what a vehicle is sent: takes messages and the time, and returns messages.
 //!
 //! ```text
 //!   Preparing --all is there--> Ready --order--> Moving --at rest there--> Sensing --label--> There
@@ -10,9 +10,10 @@
 //!                          +--a second later-- Listening <-------+------someone else drives it----+
 //! ```
 //!
-//! A failure is for good: after it only stops and heartbeats are sent. Once someone else drives the vehicle, not even
-//! those are. The vehicle is still listened to, as an autopilot says why a moment after it has acted. Stops are repeated
-//! until the vehicle says that it is at rest. They last long enough that no late setpoint comes after the last of them.
+//! A failure is for good: after it only stops and heartbeats are sent, and not even those once someone else drives the
+//! vehicle. The vehicle is still listened to, as an autopilot says why a moment after it has acted. Stops are repeated
+//! until the vehicle says that it is at rest. They last long enough that no late setpoint arrives after the last of
+//! them.
 
 use std::time::Duration;
 
@@ -35,7 +36,7 @@ mod driving;
 mod farewell;
 mod waiting;
 
-/// Who flies a vehicle.
+/// Flies a vehicle.
 #[derive(Debug)]
 pub struct Pilot {
     system: u8,
@@ -89,7 +90,7 @@ impl Pilot {
         matches!(self.stage, Stage::Over)
     }
 
-    /// Why it came to nothing, if it has.
+    /// Why the flight failed, if it did.
     pub const fn failure(&self) -> Option<&Failure> {
         self.failure.as_ref()
     }
@@ -105,14 +106,14 @@ impl Pilot {
         Some((fix.1, facing.yaw))
     }
 
-    /// What a motion came to, once.
+    /// The end of the last motion. It is returned once.
     pub const fn take_arrival(&mut self) -> Option<Arrival> {
         let Stage::There(arrival) = self.stage else { return None };
         self.stage = Stage::Ready;
         Some(arrival)
     }
 
-    /// Sends the vehicle somewhere; nowhere unless it is ready.
+    /// Orders a motion. Does nothing unless the pilot is ready.
     pub fn order(&mut self, now: Duration, order: Order, wants_label: bool) {
         if let (Stage::Ready, Some((_, fix))) = (self.stage, self.vehicle.fix) {
             let motion = Motion { order, wants_label, from: fix.at, began: now, sent: None };
@@ -164,7 +165,7 @@ impl Pilot {
 
     fn heed(&mut self, now: Duration, news: News) {
         match (self.stage, news) {
-            // What is wrong before the flight is what it waits for.
+            // Before the flight a fault is no failure: its end is waited for.
             (Stage::Preparing { .. } | Stage::Listening { .. } | Stage::Over, _) => {}
             (Stage::Stopping { .. }, News::Status(status))
                 if status.fault().is_some_and(|it| it.is_out_of_our_hands()) =>
@@ -187,7 +188,7 @@ impl Pilot {
                 Some(metres) => self.end(now, Some(Failure::Slid(metres))),
                 None => self.locate(now, fix),
             },
-            // What was sensed on the way may come late.
+            // A label that was sensed on the way may arrive late.
             (Stage::Sensing { motion, arrived, is_calm, since, told: None }, News::Label(told))
                 if told.at_ms >= arrived.at_ms =>
             {
@@ -198,7 +199,7 @@ impl Pilot {
         }
     }
 
-    /// What is to be sent now. Who calls this calls it often: it looks for what did not come in time, too.
+    /// The messages to send now. It must be called often, because it also notices what did not arrive in time.
     pub fn due(&mut self, now: Duration) -> Vec<MavMessage> {
         self.look(now);
         let mut due = Vec::new();
@@ -217,7 +218,7 @@ impl Pilot {
         due
     }
 
-    /// Looks for what is there now, and for what did not come in time.
+    /// Goes on to the next stage when its time has come, and notices what did not arrive in time.
     fn look(&mut self, now: Duration) {
         let limits = self.limits;
         match self.stage {
@@ -282,12 +283,12 @@ impl Pilot {
         }
     }
 
-    /// How the vehicle is, if it has said so of late.
+    /// The vehicle's status, if its last heartbeat is recent.
     fn status(&self, now: Duration) -> Option<Status> {
         self.vehicle.status.filter(|it| now < it.0 + SILENCE).map(|it| it.1)
     }
 
-    /// Where it is, if it has said so of late.
+    /// The vehicle's position, if the last one is recent.
     fn fix(&self, now: Duration) -> Option<Fix> {
         self.vehicle.fix.filter(|it| now < it.0 + LOST).map(|it| it.1)
     }

@@ -1,7 +1,8 @@
 //! The messages that a vehicle is asked to send: one after the other, each again until it is acknowledged.
 //!
-//! An acknowledgement names the command and not the message. So that one which comes late or twice is not taken for that
-//! of the next message, that is asked for only after a pause. What is not heard after all is asked for anew.
+//! An acknowledgement names the command and not the message. A late or doubled one could be taken for that of the next
+//! message, so a pause comes before the next request. A message that does not arrive although it was acknowledged is
+//! requested anew.
 
 use std::time::Duration;
 
@@ -15,10 +16,10 @@ use crate::fly::failure::Failure;
 use crate::fly::label::Source;
 use crate::fly::orders::Envelope;
 
-/// How often the vehicle is to say where it is.
+/// The interval of the messages that are requested.
 const INTERVAL: Duration = Duration::from_millis(100);
 
-/// How long an answer may take before the vehicle is asked again, and how long it is waited for others of the kind.
+/// How long an answer may take before the vehicle is asked again. Also the pause before the next request.
 const REPEAT: Duration = Duration::from_millis(500);
 
 /// A message that is asked for.
@@ -58,7 +59,7 @@ impl Requests {
         Self { all, answered: 0, sent: None, completed: Duration::ZERO }
     }
 
-    /// What waits for an answer.
+    /// The message whose request is not answered yet.
     pub fn missing(&self) -> Option<&'static str> {
         self.all.get(self.answered).map(|it| it.name)
     }

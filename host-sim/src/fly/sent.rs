@@ -10,7 +10,7 @@ use crate::report::table::{Column, Table};
 /// A message, and when it was sent.
 pub type Sent = (Duration, MavMessage);
 
-/// The table of messages, each with the fields that it uses: those that come again in one row, with their first time.
+/// The table of messages, each with the fields that it uses. Repeated ones share a row, with the time of the first.
 pub fn table(sent: &[Sent]) -> String {
     let columns = [
         Column::right("s", 8),
@@ -21,7 +21,7 @@ pub fn table(sent: &[Sent]) -> String {
     let mut rows: Vec<(Duration, usize, &'static str, String)> = Vec::new();
     for (at, message) in sent {
         let (name, fields) = (message.message_name(), fields(message));
-        // Heartbeats go on all the time, and what is the same comes in a row.
+        // Heartbeats come all the time, between others. Other equal messages follow each other.
         let is_same = |row: &&mut (Duration, usize, &str, String)| row.2 == name && row.3 == fields;
         let heartbeat = matches!(message, MavMessage::HEARTBEAT(_));
         let last = rows.len().saturating_sub(1);

@@ -1,25 +1,26 @@
-//! Whether a vehicle's positions move as its speed says.
+//! Checks that a vehicle's positions move as its velocity says.
 //!
-//! A glitch of the receiver, a correction of the estimator or a new origin moves them without the vehicle, at once or over
-//! seconds. What was sensed before then lies elsewhere by its numbers, and no label tells.
+//! A glitch of the receiver, a correction of the estimator or a new origin moves the positions without the vehicle, at
+//! once or over seconds. The samples taken before then have wrong positions, and no label shows that.
 //!
-//! From one position to the next the vehicle moves by the mean of both velocities, give or take their difference over that
-//! time. Where positions were lost it may have gone and stopped between. What is left over is summed; within a window of ten seconds it may come to the tolerance.
+//! From one position to the next the vehicle moves by the mean of both velocities, give or take their difference over
+//! that time. Where positions were lost it may have moved and stopped between. What is left over is summed. Within a
+//! window of ten seconds it may be as much as the tolerance.
 
 use std::collections::VecDeque;
 
 use crate::fly::vehicle::Fix;
 
-/// Positions of so long are compared, milliseconds of the vehicle's clock.
+/// Positions within this time are compared, milliseconds of the vehicle's clock.
 const WINDOW_MS: u32 = 10_000;
 
-/// What estimators do all the time, metres.
+/// The least limit, metres: estimators shift positions by as much all the time.
 const LEAST: f64 = 0.25;
 
-/// From so many seconds between two positions on one was lost.
+/// If two positions are this many seconds apart, one between them was lost.
 const GAP: f64 = 0.25;
 
-/// What a vehicle speeds up by at most where nobody sees it, metres a second each second, twice over.
+/// Twice the largest acceleration of a vehicle between positions of which one was lost, m/s^2.
 const UNSEEN: f64 = 5.0;
 
 /// Sums up to a position, in metres.
@@ -39,7 +40,7 @@ pub struct Slide {
 }
 
 impl Slide {
-    /// Takes in a position; how far the vehicle was moved without moving, if that is beyond a tolerance, both in metres.
+    /// Takes in a position. Returns how far positions moved without the vehicle, if beyond `tolerance`; both in metres.
     pub fn take(&mut self, fix: Fix, tolerance: f64) -> Option<f64> {
         let next = self.sums.back().map_or(Sum { fix, left: [0.0; 2], slack: 0.0 }, |last| {
             let seconds = f64::from(fix.at_ms.saturating_sub(last.fix.at_ms)) / 1e3;

@@ -26,7 +26,7 @@ const FORMS: [(&str, &str); 6] = [
     ("serial", "serial"),
 ];
 
-/// How long a serial line is waited for at a time. The library asks it a thousand times a second otherwise.
+/// How long a read of a serial line waits. By default the library asks a thousand times a second.
 const SERIAL_PAUSE: Duration = Duration::from_millis(100);
 
 /// What carries messages.
@@ -47,7 +47,7 @@ impl Socket {
     /// Opens an address, to speak to the vehicle of a system id.
     ///
     /// # Errors
-    /// When it is none, or cannot be opened.
+    /// When it is no address, or cannot be opened.
     pub fn open(address: &str, system: u8) -> Result<Self> {
         let form = address
             .split_once(':')
@@ -76,7 +76,7 @@ impl Socket {
             listen(to, move || match reader.recv() {
                 Ok(arrived) => Ok(vec![arrived]),
                 Err(MessageReadError::Io(error)) => Err(error.kind()),
-                // What is no message that is known is passed over.
+                // Messages that are not known are skipped.
                 Err(MessageReadError::Parse(_)) => Ok(Vec::new()),
             });
             Way::Stream(connection)
@@ -108,7 +108,7 @@ fn listen(
     });
 }
 
-/// Whether nothing came, rather than never will.
+/// Whether nothing arrived yet. Other errors are for good.
 const fn is_pause(error: ErrorKind) -> bool {
     matches!(error, ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted)
 }
@@ -122,7 +122,7 @@ impl Link for Socket {
         let header = MavHeader { system_id: OWN_SYSTEM, component_id: OWN_COMPONENT, sequence: 0 };
         match &mut self.way {
             Way::Udp(sender) => sender.send(header, message),
-            // The connection counts; what it does not take is lost.
+            // The connection numbers messages. One that it does not take is lost.
             Way::Stream(connection) => drop(connection.send(&header, message)),
         }
     }

@@ -1,4 +1,4 @@
-//! Where a flight stands. What leads from one stage to the next is drawn in [`pilot`](crate::fly::pilot).
+//! The stages of a flight. [`pilot`](crate::fly::pilot) draws what leads from one to the next.
 
 use std::time::Duration;
 
@@ -27,7 +27,7 @@ pub struct Arrival {
 pub(crate) struct Motion {
     pub order: Order,
     pub wants_label: bool,
-    /// Where it was.
+    /// Where the vehicle was when it was ordered.
     pub from: Ned,
     pub began: Duration,
     pub sent: Option<Sent>,
@@ -42,7 +42,7 @@ pub(crate) struct Sent {
     pub yaw: f32,
 }
 
-/// Where a vehicle is to stay that velocities of zero do not stop.
+/// The place for a vehicle to stay at, if velocities of zero do not stop it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hold {
     pub at: Ned,

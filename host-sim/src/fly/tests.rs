@@ -58,7 +58,7 @@ fn each_message_may_be_lost_or_doubled_either_way() {
             let spoil = |_, number, message| vec![message; if number == lost { copies } else { 1 }];
             assert_eq!(fly(spoil, as_it_is).trace(), expected, "to it, number {lost}, {copies}");
         }
-        // Every seventh does: of all kinds of messages each is hit.
+        // Every seventh is enough to hit messages of each kind.
         for lost in (0..back).step_by(7) {
             let spoil = |_, number, message| vec![message; if number == lost { copies } else { 1 }];
             assert_eq!(fly(as_it_is, spoil).trace(), expected, "from it, number {lost}, {copies}");
@@ -88,8 +88,8 @@ fn a_vehicle_may_be_started_anew_before_the_flight() {
     assert_eq!(flown.trace(), of_run());
 }
 
-/// Labels that come late tell of a place before: they are passed over by the vehicle's own time. Those from the way are
-/// wrong here, so that one that counts is found out.
+/// A late label belongs to an earlier place, so the vehicle's own time rules it out. Labels from the way are wrong
+/// here, so the trace would show one that counts.
 #[test]
 fn a_label_from_before_does_not_count() {
     let (mut under_way, mut is_moving) = (Vec::new(), false);
@@ -110,7 +110,7 @@ fn a_label_from_before_does_not_count() {
     assert_eq!(flown.trace(), of_run());
 }
 
-/// It does not take a vehicle for arrived that goes round its target, or for stopped that does not say so.
+/// A vehicle that circles its target has not arrived. One that does not say that it rests has not stopped.
 #[test]
 fn a_vehicle_that_never_rests_does_not_arrive_and_is_told_to_stop_for_long() {
     let flown = fly(as_it_is, |now, _, message| vec![circling(now, message, 1.0)]);
@@ -145,7 +145,7 @@ fn a_heartbeat_from_before_it_was_armed_is_no_failure() {
 /// Into the flight, while the vehicle drives.
 const THEN: Duration = Duration::from_secs(4);
 
-/// What a vehicle says from then on, for each failure, what that is, and whether it hears stops.
+/// For each failure: the text that names it, and what the vehicle sends from `THEN` on.
 #[test]
 fn each_failure_ends_with_stops_alone() {
     type Change = fn(MavMessage) -> Vec<MavMessage>;
@@ -199,14 +199,14 @@ fn each_failure_ends_with_stops_alone() {
     }
 }
 
-/// After the first stop there are stops alone; of a vehicle that someone else drives there is none.
+/// After the first stop only stops are sent. A vehicle that someone else drives is sent none.
 fn ends_at_rest(flown: &Flown) {
     let failure = flown.failure().expect("it failed");
     let (trace, first) = (flown.trace(), flown.sent.iter().position(|it| is_stop(&it.1)));
     assert!(trace.contains("\"reason\":\"broken off\""), "{failure}: {trace}");
     if failure.is_out_of_our_hands() {
         assert_eq!(first, None, "{failure}");
-        // A heartbeat a second tells it.
+        // Its heartbeat shows that within a second.
         let late =
             flown.sent.iter().filter(|(at, it)| moves(it) && *at > THEN + Duration::from_secs(1));
         assert_eq!(late.count(), 0, "{failure}");

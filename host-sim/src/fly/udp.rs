@@ -1,8 +1,8 @@
 //! A link by UDP that answers the vehicle, and nobody else.
 //!
-//! Anybody can send to a port. Who is answered, and listened to, is the address from which the vehicle's first heartbeat
-//! came: one byte of a stranger, or a second vehicle, changes nothing. After long silence, longer than any flight outlives,
-//! the vehicle may speak from another address, as one that was started anew does.
+//! Anybody can send to a port. Only the address from which the vehicle's first heartbeat came is listened to and
+//! answered. So a stranger's bytes, or a second vehicle, change nothing. A vehicle that was started anew may speak from
+//! another address. That is accepted after a silence that no flight outlives.
 
 use std::collections::VecDeque;
 use std::net::{SocketAddr, ToSocketAddrs as _, UdpSocket};
@@ -16,7 +16,7 @@ use mavlink::{MavHeader, MavlinkReader, MavlinkVersion, write_versioned_msg};
 
 use crate::fly::orders::AUTOPILOT;
 
-/// After so long without a word the vehicle may speak from elsewhere: a flight ends after 5 s, and stops 5 s later.
+/// After this silence the vehicle may speak from another address. A flight fails after 5 s of it, and stops 5 s later.
 const FORGOTTEN: Duration = Duration::from_secs(15);
 
 /// Addresses that are listened to until the vehicle has spoken.
@@ -28,7 +28,7 @@ const LONGEST: usize = 65_536;
 /// The bytes of an address, in which messages may be cut anywhere.
 type Bytes = MavlinkReader<VecDeque<u8>>;
 
-/// Whom we speak to.
+/// The address that we speak to.
 #[derive(Clone, Debug, Default)]
 struct Peer(Arc<Mutex<Option<SocketAddr>>>);
 
@@ -53,7 +53,7 @@ pub(crate) struct Sender {
 pub(crate) struct Receiver {
     socket: UdpSocket,
     peer: Peer,
-    /// Whether the address is told and stays.
+    /// Whether the address was given, and so never changes.
     is_fixed: bool,
     system: u8,
     heard: Instant,
@@ -140,7 +140,7 @@ fn messages(stream: &mut Bytes, bytes: &[u8]) -> Vec<(MavHeader, MavMessage)> {
     loop {
         match stream.read_any_message() {
             Ok(message) => messages.push(message),
-            // What is no message that is known is passed over.
+            // Messages that are not known are skipped.
             Err(MessageReadError::Parse(_)) => {}
             Err(_) => return messages,
         }

@@ -1,5 +1,5 @@
-//! What is known of the vehicle, by what it says. Messages may come late, twice or not at all: of those that have the
-//! vehicle's time only newer ones count.
+//! What is known of the vehicle from its messages. They may come late, twice or not at all. Of those with the vehicle's
+//! time only newer ones count.
 
 use std::time::Duration;
 
@@ -10,7 +10,7 @@ use crate::fly::failure::Failure;
 use crate::fly::frame::Ned;
 use crate::fly::label::{LabelSource, Told};
 
-/// By how much its clock goes back when it was started anew; messages are never so late.
+/// A clock that goes back by more than this was started anew, milliseconds. No message is as late.
 const RESTART_MS: u32 = 10_000;
 
 /// Warnings that are kept.
@@ -59,7 +59,7 @@ pub struct Status {
 }
 
 impl Status {
-    /// Whether its autopilot is not yet there.
+    /// Whether its autopilot is still starting.
     const fn is_starting(&self) -> bool {
         matches!(self.state, MavState::MAV_STATE_BOOT | MavState::MAV_STATE_UNINIT)
             || self.craft.is_initialising(self.mode)

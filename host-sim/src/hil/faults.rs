@@ -18,7 +18,7 @@ pub struct Faults {
     pub corrupt: f64,
     /// The frame comes twice.
     pub duplicate: f64,
-    /// Frames come late by up to this, each by its own: they may overtake each other.
+    /// Frames come late by up to this, each by a time of its own, so they may overtake each other.
     pub delay: Duration,
 }
 

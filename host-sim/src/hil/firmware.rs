@@ -22,7 +22,7 @@ pub struct Firmware {
     target: &'static str,
 }
 
-/// The board that is meant where none is named: an STM32F405.
+/// The default board: an STM32F405.
 pub const STM32F405: Firmware = Firmware {
     machine: "netduinoplus2",
     elf: "target/thumbv7em-none-eabihf/release/firmware",
@@ -39,12 +39,12 @@ pub const MICROBIT: Firmware = Firmware {
 };
 
 impl Firmware {
-    /// That of a machine, if there is one.
+    /// The firmware of a machine, if there is one.
     pub fn of(machine: &str) -> Option<&'static Self> {
         [&STM32F405, &MICROBIT].into_iter().find(|it| it.machine == machine)
     }
 
-    /// The firmware that belongs to this repository, as new as its sources. Elsewhere what lies at its place.
+    /// The path of the firmware. It is built if its sources are here; else the ELF that is there is taken.
     ///
     /// # Errors
     /// When it is not there and cannot be built: what is missing, or what failed to build.
@@ -76,7 +76,7 @@ impl Firmware {
     }
 }
 
-/// Has rustup add the chip's libraries. Without rustup they are whoever installed Rust's to add, and cargo says so.
+/// Lets rustup add the chip's libraries. Without rustup nothing is added, and cargo says what is missing.
 fn add_target(target: &str) -> Result<()> {
     let mut rustup = Command::new("rustup");
     rustup.args(["--quiet", "target", "add", target]);

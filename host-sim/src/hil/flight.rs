@@ -41,7 +41,7 @@ pub enum Chip {
 /// How long a chip may be silent before it counts as gone: longer than it waits itself.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// How long a chip is listened to that may not have heard that its mission is over.
+/// How long to listen to a chip after its mission, as it may not have heard that the mission is over.
 const FAREWELL: Duration = Duration::from_secs(2);
 
 /// What a step took.
@@ -59,10 +59,10 @@ struct Timing {
     turnaround_ms: f64,
 }
 
-/// Has a chip fly a player's mission; the time from each answer to the next request, as seen from here.
+/// Lets a chip fly a player's mission. Returns the time from each answer to the next request, as measured here.
 ///
 /// # Errors
-/// When there is no chip, or it falls silent, gives up, or says what cannot be.
+/// When there is no chip, or it falls silent, gives up, or sends a request that makes no sense.
 pub fn fly(player: &mut Player, chip: &Chip, faults: Faults, seed: u64) -> Result<Vec<Duration>> {
     match chip {
         Chip::Board { device, baud } => {
@@ -123,7 +123,7 @@ pub fn play(player: &mut Player, mut cable: Cable) -> Result<Vec<Duration>> {
     }
     bar.finish_and_clear();
     if player.unreadable() > 0 {
-        // Nobody may listen.
+        // Standard error may be closed.
         let _ = writeln!(
             std::io::stderr(),
             "warning: {} frames came whole from the board and held no message",
@@ -133,7 +133,7 @@ pub fn play(player: &mut Player, mut cable: Cable) -> Result<Vec<Duration>> {
     Ok(turnarounds)
 }
 
-/// A number that is another at each start of this program: it tells no more than that.
+/// A random number, so that each start of this program has another.
 pub fn start_number() -> u32 {
     RandomState::new().build_hasher().finish() as u32
 }

@@ -22,8 +22,8 @@ pub struct Logbook {
 }
 
 impl Logbook {
-    /// Begins one, or goes on with the one that is there: `make` makes the mission's next step again, given what a
-    /// chip's own sensor may have read at its end.
+    /// Begins a logbook, or continues an existing one. `make` computes the mission's next step again. It gets the label
+    /// in the file, which the chip's own sensor may have read.
     ///
     /// # Errors
     /// Names the file and the line that is not of this mission, or the file that cannot be read or written.
@@ -97,7 +97,7 @@ fn begins(line: &[u8], header: &str) -> Result<()> {
     same(whole, header)
 }
 
-/// Makes the step of a line again; `false` if the line is the mission's end, which is written once more.
+/// Computes the step of a line again. Returns `false` if the line is the mission's end, which is written anew.
 fn follow(line: &[u8], make: impl FnOnce(Option<Reading>) -> Result<String>) -> Result<bool> {
     let line = str::from_utf8(line).context("expected a step")?;
     let found: Value = serde_json::from_str(line).context("expected a step")?;
@@ -115,7 +115,7 @@ fn follow(line: &[u8], make: impl FnOnce(Option<Reading>) -> Result<String>) -> 
     same(line, &make(read)?).map(|()| true)
 }
 
-/// Whether a line is the one that it should be.
+/// Checks that a line is the expected one.
 ///
 /// # Errors
 /// Names the first key that has another value.

@@ -27,29 +27,29 @@ use crate::mission::results::{Ending, StepResult};
 use crate::report::trace;
 use crate::world::robot::Robot;
 
-/// A chip that has asked so often for a mission hears nothing: five times as often as it sends a request.
+/// The most hellos before another request. A chip that sends more hears nothing: it sends a request 16 times at most.
 const MOST_HELLOS: u32 = 5 * 16;
 
-/// A chip that has begun so often and come no further will not.
+/// The most beginnings of a chip without a new motion.
 const MOST_RESTARTS: u32 = 16;
 
 /// Plays the world for one mission.
 pub struct Player {
     setup: Setup,
-    /// What the setup's area is in full.
+    /// The whole area. The setup has only its bounds.
     area: MissionArea,
     responder: Responder,
     robot: Box<dyn Robot>,
     /// Where it is.
     pose: Pose,
-    /// Takes in what the chip takes in.
+    /// Takes in the same readings as the chip.
     planner: AnyPlanner,
     recorder: Recorder,
     /// How often the chip has asked for a mission since it took up the last.
     hellos: u32,
     /// The last motion, and what the vehicle sensed at its end: the chip has not said yet what it took in there.
     pending: Option<(Motion, Option<Reading>)>,
-    /// Of the motions that the chip has asked for since it began.
+    /// Ticks of the motions that the chip has asked for since it began.
     took: Vec<Took>,
     /// Whether a chip that restarts may begin again, and how often it has since the last motion that was new.
     resumes: bool,
@@ -73,7 +73,7 @@ pub struct Played {
     pub took: Vec<Took>,
     /// Ticks of the mission's end: a plan that found no motion, if one did not, and the estimates.
     pub ending: Took,
-    /// What they are.
+    /// The rate of these ticks.
     pub clock: ClockRate,
     /// The mission on disc, if it was to be kept there: all but its end.
     pub logbook: Option<Logbook>,
@@ -83,7 +83,7 @@ impl Player {
     /// A world that waits for a chip. `seed` tells the world's starts apart: see [`Responder::new`].
     ///
     /// # Errors
-    /// When the mission is none that a chip can be asked to fly.
+    /// When no chip can fly such a mission.
     pub fn new(mission: &Mission, labels: LabelSource, seed: u32) -> Result<Self> {
         let setup = setup::setup(mission, labels)?;
         Ok(Self {
@@ -113,8 +113,8 @@ impl Player {
         Self { resumes: true, ..self }
     }
 
-    /// The same, whose steps outlive this program too: they are kept on disc as they are taken, and those that are there
-    /// are made again first.
+    /// The same, with its steps kept on disc, so that they outlive this program too. Steps that are there already are
+    /// made again first.
     ///
     /// # Errors
     /// As [`Logbook::open`].
@@ -154,15 +154,15 @@ impl Player {
         self.responder.unreadable()
     }
 
-    /// Whether the chip knows that it is.
+    /// Whether the chip knows that the mission is over.
     pub fn is_dismissed(&self) -> bool {
         self.dismissed
     }
 
-    /// Takes in a byte from the chip; what is to be sent in turn.
+    /// Takes in a byte from the chip. Returns the frame to send in turn, if there is one.
     ///
     /// # Errors
-    /// When the chip gives the mission up, or says what cannot be.
+    /// When the chip gives the mission up, or sends a request that cannot be.
     pub fn hear(&mut self, byte: u8) -> Result<Option<Frame>> {
         match self.responder.hear(byte) {
             None => Ok(None),
@@ -194,7 +194,7 @@ impl Player {
         self.hellos = 0;
         match request {
             Request::Hello { .. } => unreachable!("a hello is welcomed"),
-            // Of a session that the chip begins: it knows nothing of the last.
+            // These begin a session: the chip has forgotten the last one.
             Request::Outline(_) | Request::Ready(_) | Request::Declined(_)
                 if self.clock.is_some() && !self.resumes =>
             {
@@ -247,7 +247,7 @@ impl Player {
         }
     }
 
-    /// Whether the mission ended as it can end here.
+    /// The mission's ending. Fails if a mission cannot end so here.
     fn judge(&self, end: &message::MissionEnd) -> Result<Ending> {
         let reason = match end.reason {
             EndReason::Steps => Ending::Steps,
@@ -260,7 +260,7 @@ impl Player {
         Ok(reason)
     }
 
-    /// The motion that the chip comes to next, where it ended and what was told of it, if it was made before.
+    /// The chip's next motion, where it ended and the reading there, if it was made before.
     fn made(&self) -> Option<(Motion, Pose, Option<Reading>)> {
         let known = self.recorder.steps().get(self.motions());
         let known = known.map(|step| (step.motion, step.pose, step.reading));
@@ -276,7 +276,7 @@ impl Player {
         (self.pose, sensed)
     }
 
-    /// Takes down the last step, now that the chip says what it took in at its end.
+    /// Records the last step, when the chip reports what it took in at its end.
     fn settle(&mut self, last: Option<Reading>, took: Took) -> Result<()> {
         let Some(current) = self.took.last_mut() else { return Ok(()) };
         current.observe = took.observe;
@@ -306,8 +306,8 @@ impl Player {
         }
     }
 
-    /// Makes the next step before a chip asks for it: one of before this program restarted. `read` is what the chip's
-    /// own sensor read.
+    /// Makes the next step before a chip asks for it. It is a step from before this program restarted. `read` is what
+    /// the chip's own sensor read.
     ///
     /// # Errors
     /// When the mission has no such step.
@@ -326,7 +326,7 @@ impl Player {
         self.recorder.last().context("a step")
     }
 
-    /// Whether the chip's estimates are those of this machine, to the last bit.
+    /// Checks that the chip's estimates are those of this machine, to the last bit.
     fn compare(&self, chip: &Estimates) -> Result<()> {
         let here = self.planner.estimates();
         for (name, chip, here) in [
@@ -341,8 +341,8 @@ impl Player {
         Ok(())
     }
 
-    /// The mission as it went so far, when the chip has been halted: what the vehicle sensed last it has
-    /// taken in, but has not said so.
+    /// The mission so far, when the chip has been halted. The chip has taken in the last reading, but has not reported
+    /// it.
     ///
     /// # Errors
     /// When that is refused here, or the chip had not begun.

@@ -26,14 +26,14 @@ const DYING: Duration = Duration::from_millis(200);
 /// A running emulator; it ends with this value, and if the program is interrupted.
 #[derive(Debug)]
 pub struct Emulator {
-    /// The id of its process, which is among what is unfinished.
+    /// The id of its process, which the registry of [`interruption`](crate::output::interruption) lists.
     id: u32,
     complaints: Option<ChildStderr>,
 }
 
 impl Emulator {
-    /// Starts a firmware on a machine of QEMU's, with further arguments for QEMU; the other end of its link. What it
-    /// says at its second UART, the log as defmt encodes it, goes to `log`.
+    /// Starts a firmware on a machine of QEMU's, with further arguments for QEMU. Returns it with the other end of its
+    /// link. Its second UART, the log as defmt encodes it, goes to `log`.
     ///
     /// # Errors
     /// When there is no such ELF, machine or QEMU, or it does not come up.
@@ -96,13 +96,13 @@ impl Emulator {
         let status = unfinished().children.get_mut(&self.id)?.try_wait().ok()??;
         let mut message = String::new();
         if let Some(mut complaints) = self.complaints.take() {
-            // Without its words, its status has to do.
+            // If that cannot be read, the status is reported alone.
             let _ = complaints.read_to_string(&mut message);
         }
         Some(anyhow!("{QEMU} ended with {status}: {}", message.trim()))
     }
 
-    /// What broke a mission off: the emulator, if that has ended.
+    /// The error that broke a mission off: the emulator's, if the emulator has ended.
     pub fn blame(&mut self, error: anyhow::Error) -> anyhow::Error {
         thread::sleep(DYING);
         self.failure().unwrap_or(error)

@@ -12,10 +12,10 @@ use planner_core::planner::lookahead;
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::Mission;
 
-/// The mission as a chip is told it.
+/// The setup of a mission, as it is sent to a chip.
 ///
 /// # Errors
-/// When it is none that a chip can be asked to fly.
+/// When no chip can fly such a mission.
 pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
     let algorithm = match mission.algorithm {
         Algorithm::Cfc => message::Algorithm::Cfc,
@@ -36,7 +36,7 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
         let most = message::MOST_GIVEN;
         anyhow!("oracle: found {} points, expected at most {most} on a board", samples.len())
     })?;
-    // Labels that are all certain make no second hypothesis; of t others there are at most so many.
+    // True labels leave one hypothesis. `t` labels that may be wrong leave at most `1 + t + t (t - 1) / 2`.
     let taken = mission.steps;
     let hypotheses = match mission.algorithm {
         _ if mission.is_noisy() => 1 + taken + taken * taken.saturating_sub(1) / 2,
@@ -71,7 +71,7 @@ pub fn outlines(area: &MissionArea) -> impl Iterator<Item = Outline> {
     [border].into_iter().chain(area.hulls().map(Outline::from))
 }
 
-/// Why a chip does not fly it, by the key of the scenario that asks too much.
+/// The error for a setup that a chip declined. It names the key of the scenario that asks too much.
 pub(crate) fn declined(declined: DeclinedError, setup: &Setup) -> anyhow::Error {
     match declined {
         DeclinedError::Protocol(theirs) => {

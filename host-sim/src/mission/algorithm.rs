@@ -33,7 +33,7 @@ impl Algorithm {
         }
     }
 
-    /// How P2 follows the boundary unless one says: in the way that learns the most.
+    /// The default direction of P2: the one from which the algorithm learns the most.
     pub fn following(self) -> Following {
         match self {
             Self::Cfc | Self::Lookahead | Self::Margin | Self::Random => Options::CFC.following,
@@ -41,7 +41,7 @@ impl Algorithm {
         }
     }
 
-    /// The weight of the control, or the price of driving, unless one says.
+    /// The default weight of the control, for look-ahead its price of driving.
     pub fn weight(self) -> EffortWeight {
         match self {
             Self::Lookahead => DrivingPrice::USUAL.into(),
@@ -49,7 +49,7 @@ impl Algorithm {
         }
     }
 
-    /// How finely the unicycle turns unless one says: look-ahead needs no more looks for more rays.
+    /// The default fan of the unicycle. Look-ahead takes the fine one, as more rays cost it no more looks.
     pub fn grid(self) -> Grid {
         match self {
             Self::Lookahead => Grid::Fine,
@@ -57,12 +57,12 @@ impl Algorithm {
         }
     }
 
-    /// Whether it can fly with an action set: margin sampling tries every action.
+    /// Whether it can fly with a fan. Margin sampling cannot fly with the fine one, because it tries every action.
     pub fn copes_with(self, grid: Grid) -> bool {
         self != Self::Margin || grid == Grid::Paper
     }
 
-    /// Whether what it knows of labels is a distribution over hypotheses.
+    /// Whether its belief is a distribution over hypotheses. If not, it is a version space.
     pub fn weighs(self, labels_err: bool) -> bool {
         match self {
             Self::Cfc => false,
@@ -71,7 +71,7 @@ impl Algorithm {
         }
     }
 
-    /// Whether it poses the paper's one-step problems, whose directions P1 and P2 hold.
+    /// Whether it poses the paper's one-step problems. If not, options for P1 and P2 have no effect.
     pub fn poses_problems(self) -> bool {
         match self {
             Self::Cfc | Self::Scc => true,

@@ -36,7 +36,7 @@ pub struct Mission {
     pub steps: u32,
     /// Seed of whatever is random.
     pub seed: u64,
-    /// Area, weight of the control, way of crossing.
+    /// Area, weight of the control, directions of P1 and P2, tolerance.
     pub config: Settings<MissionArea>,
     /// What moves.
     pub vehicle: AnyVehicle,
@@ -44,7 +44,7 @@ pub struct Mission {
     pub start: Pose,
     /// What is really there.
     pub world: World,
-    /// What the oracle's points leave open.
+    /// The lines that the oracle's points leave.
     pub given: Lines,
     /// How labels are flipped; `None` when they are true.
     pub noise: Option<NoiseModel>,
@@ -94,13 +94,13 @@ impl Mission {
     /// The table before the first label.
     ///
     /// # Panics
-    /// When more than 15 of the oracle's points bound the line, which scenario files are refused for.
+    /// When more than 15 of the oracle's points bound the line. Reading a scenario file refuses that.
     pub fn table(&self) -> Table {
         Table::new(self.given.samples(), self.prior, self.noise_told())
             .expect("15 points bound the line at most")
     }
 
-    /// The table with what it expects of labels.
+    /// The belief of look-ahead in noise, before the first label: the table and the columns that predict labels.
     ///
     /// # Panics
     /// As [`table`](Self::table).
@@ -111,7 +111,7 @@ impl Mission {
         belief
     }
 
-    /// What its planner risks, if that is not told how far positions err.
+    /// A warning, if the tolerance is smaller than the robot's errors of position and labels are taken to be true.
     pub fn warning(&self) -> Option<String> {
         let needs = CUT * self.errors.position;
         let told = self.config.tolerance.metres();
@@ -126,7 +126,7 @@ impl Mission {
     /// What the oracle's points leave open, for samples whose positions err by the tolerance at most.
     ///
     /// # Panics
-    /// When the tolerance is too much for them, which scenario files are refused for.
+    /// When the tolerance is too much for them. Reading a scenario file refuses that.
     pub fn lines(&self) -> Lines {
         let lines = self.given.clone().with_tolerance(self.config.tolerance);
         lines.expect("the tolerance leaves something to find")

@@ -1,4 +1,4 @@
-//! How a real vehicle made its motions: when, and how far from where it was sent it came to rest.
+//! The motions of a real vehicle: when each began and ended, and how far from its target the vehicle came to rest.
 
 use serde::Serialize;
 
@@ -7,9 +7,9 @@ use serde::Serialize;
 pub struct Leg {
     /// When it was asked for, seconds since the flight began.
     pub began: f64,
-    /// When it had ended, and its label was there.
+    /// When it had ended and its label had arrived, seconds.
     pub ended: f64,
-    /// How far from where it was sent the vehicle came to rest, metres.
+    /// How far from the motion's target the vehicle came to rest, metres.
     pub off: f64,
 }
 
@@ -18,18 +18,18 @@ pub struct Leg {
 pub struct Legs {
     /// How many there were.
     pub motions: usize,
-    /// What one took, its median, seconds.
+    /// Median duration of a motion, seconds.
     pub seconds: f64,
-    /// How far from where it was sent the vehicle came to rest, the median, metres.
+    /// Median of [`Leg::off`], metres.
     pub off: f64,
-    /// The furthest.
+    /// The largest `off`, metres.
     pub off_most: f64,
-    /// The least tolerance, in tenths of a metre, that covers that.
+    /// The least tolerance that covers `off_most`, in whole tenths of a metre.
     pub tolerance: f64,
 }
 
 impl Legs {
-    /// What motions come to; `None` of none.
+    /// The summary of some motions; `None` if there are none.
     pub fn of(legs: &[Leg]) -> Option<Self> {
         let sorted = |of: fn(&Leg) -> f64| {
             let mut all: Vec<_> = legs.iter().map(of).collect();

@@ -94,7 +94,8 @@ impl<D: Dynamics, B: ReadOut> Margin<D, B> {
         sides.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(turn, _)| turn)
     }
 
-    /// Whether lines disagree about a site of the area: those left, or where labels may err those at the start.
+    /// Whether lines disagree about a site of the area. Where labels may err, these are the starting lines, else the
+    /// lines left.
     fn is_uncertain(&self, site: Site) -> bool {
         let left = self.belief.version_space().map(Lines::lines);
         let lines = left.or_else(|| self.belief.hypotheses().map(Table::start));
@@ -103,7 +104,7 @@ impl<D: Dynamics, B: ReadOut> Margin<D, B> {
     }
 }
 
-/// The drive that ends nearest to the line; of equals the one of the smaller turn, then the shorter, then the left.
+/// The drive that ends nearest to the line. Ties go to the smaller turn, then the shorter drive, then the left.
 fn nearest(drives: impl Iterator<Item = Drive>) -> Option<Drive> {
     drives.min_by(|a, b| {
         let by_turn = || a.effort.cmp(&b.effort);

@@ -15,7 +15,7 @@ use crate::mission::margin::Margin;
 use crate::mission::random_walk::RandomWalk;
 use crate::mission::read_out::ReadOut;
 
-/// Why a planner can be made of a mission's settings.
+/// Why a constructor cannot refuse a mission's settings.
 const FITS: &str = "settings that contradict each other were refused";
 
 /// A planner whose belief can be read out.
@@ -53,7 +53,7 @@ impl Mission {
     /// The planner, as yet without a label.
     ///
     /// # Panics
-    /// When settings contradict each other, which scenario files and flags are refused for.
+    /// When settings contradict each other. Reading scenario files and flags refuses such settings.
     pub fn planner(&self) -> AnyPlanner {
         match self.vehicle {
             AnyVehicle::Unicycle(unicycle) => self.planner_of(unicycle),

@@ -18,7 +18,7 @@ pub struct RandomWalk<D, B> {
     pub area: MissionArea,
     /// What has been learnt on the way.
     pub belief: B,
-    /// The source of chance.
+    /// The random number generator.
     pub rng: ChaCha8Rng,
 }
 

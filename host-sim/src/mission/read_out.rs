@@ -7,10 +7,10 @@ use planner_core::{Belief, Label, PosteriorView, Sample, Site, Tolerance};
 use crate::mission::definition::{Lines, Table};
 use crate::world::noise::limit;
 
-/// The level of the credible sets that are told.
+/// The level of the credible sets that are reported.
 pub const LEVEL: f64 = 0.9;
 
-/// What is known at some stage, in figures.
+/// What is known after some step, in figures.
 #[derive(Clone, Debug)]
 pub struct Knowledge {
     /// The slopes left, as intervals of degrees: of all lines that agree with the labels, or of the
@@ -35,7 +35,7 @@ pub struct Doubt {
     pub entropy: f64,
 }
 
-/// What a label is expected to be, and to tell, before it is read.
+/// What is expected of a label before it is read.
 #[derive(Clone, Copy, Debug)]
 pub struct Expectation {
     /// The chance that it is +1.
@@ -77,7 +77,7 @@ impl ReadOut for Lines {
 
     fn expects(&self, site: Site) -> Expectation {
         let chance = self.chance(site);
-        // A true label tells which part of the lines is left, so as much as the parts are open.
+        // A true label says which of two parts of the lines is left, and carries the entropy of that division.
         let is_exact = self.tolerance() == Tolerance::NONE;
         let bits = if is_exact { 1.0 - limit(chance) } else { mean_told(self, site, chance) };
         Expectation { chance, bits }
@@ -144,8 +144,8 @@ impl ReadOut for Table {
     }
 }
 
-/// Where positions err: the mean of what the two labels there are would tell, each taken in. One that is not taken
-/// in tells nothing.
+/// The mean information of the two possible labels where positions err. A copy of the belief takes each in; one that it
+/// refuses carries none.
 fn mean_told(known: &(impl Belief + Clone), site: Site, chance: f64) -> f64 {
     let now = known.information();
     let after = |label: Label| {

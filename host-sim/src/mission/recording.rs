@@ -22,7 +22,7 @@ use crate::world::{World, reading};
 /// A mission that is over: its results, and what is known in the end.
 #[derive(Debug)]
 pub struct Recording {
-    /// What was asked.
+    /// The mission.
     pub mission: Mission,
     /// The steps as the agent made them.
     pub steps: Vec<Step>,
@@ -102,7 +102,7 @@ impl Recorder {
         self.results.last()
     }
 
-    /// What is said of a sample that the planner does not take in the step after these.
+    /// The error message for a sample that the planner refuses in the next step.
     pub fn refusal(&self, refused: &ObservationError) -> anyhow::Error {
         let step = self.steps.len() + 1;
         match refused {

@@ -17,14 +17,14 @@ use crate::mission::legs::{Leg, Legs};
 use crate::mission::stop::GoalRecord;
 use crate::mission::vehicle::VehicleTable;
 
-/// A mission, from what it began with to what it came to.
+/// The results of a mission: its start, its steps and its end.
 #[derive(Clone, Debug)]
 pub struct Results {
     /// What it began with.
     pub start: Start,
     /// What happened.
     pub steps: Vec<StepResult>,
-    /// What it came to.
+    /// How it ended.
     pub end: End,
 }
 
@@ -122,7 +122,7 @@ pub struct NoisyStep {
     pub entropy: f64,
 }
 
-/// What a mission came to.
+/// How a mission ended, and what was known then.
 #[derive(Clone, Debug, Serialize)]
 pub struct End {
     /// Why it ended.
@@ -132,10 +132,10 @@ pub struct End {
     /// What noisy labels come to.
     #[serde(flatten)]
     pub noisy: Option<NoisyEnd>,
-    /// What it was to find out, if it was to end there.
+    /// Its goal, if it had one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub goal: Option<GoalRecord>,
-    /// How well a real vehicle went where it was sent.
+    /// How near to its targets a real vehicle came.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flown: Option<Legs>,
 }
@@ -167,17 +167,17 @@ pub struct BestRecord {
 /// A credible set.
 #[derive(Clone, Debug, Serialize)]
 pub struct CredibleRecord {
-    /// What was asked.
+    /// The probability that was asked for.
     pub level: f64,
     /// The slopes of its lines, as intervals of degrees.
     pub slope_arcs: Vec<[f64; 2]>,
     /// The intercepts of its lines, metres; `None` when unbounded.
     pub intercept: Option<[f64; 2]>,
-    /// What it holds.
+    /// Its probability, which is at least the level.
     pub probability: f64,
     /// Number of its hypotheses.
     pub cells: usize,
-    /// Of so many.
+    /// Number of all hypotheses.
     #[serde(skip)]
     pub hypotheses: usize,
     /// Whether the true line is among its lines, if there is one.
@@ -233,7 +233,7 @@ pub struct PoseRecord {
 pub struct ActionRecord {
     /// Its name in the grid.
     pub index: u32,
-    /// Speed, metres per unit time.
+    /// Length of the motion, metres. In the paper it is the speed over a unit of time.
     pub v: f32,
     /// Turn, radians.
     pub w: f32,

@@ -32,7 +32,7 @@ pub const PAPER_NOISELESS: &str = include_str!("../../scenarios/paper-noiseless.
 /// The paper's noisy example (Section V).
 pub const PAPER_NOISY: &str = include_str!("../../scenarios/paper-noisy.toml");
 
-/// Oracle points that can bound the line: the edges that a hypothesis holds.
+/// The most oracle points that may bound the line. A hypothesis stores this many constraints.
 const MOST_BOUNDING: usize = 15;
 
 #[derive(Deserialize)]
@@ -145,7 +145,7 @@ pub fn read(path: &Path, overrides: Overrides) -> Result<Mission> {
     parse(&path.display().to_string(), &content(path)?, overrides)
 }
 
-/// As [`read`], for a vehicle that is real: the file need not say what is true.
+/// As [`read`], for a real vehicle: the file need not have a `truth`.
 ///
 /// # Errors
 /// As [`read`].
@@ -177,7 +177,7 @@ fn any(name: &str, text: &str, overrides: Overrides) -> Result<Mission> {
         let line = error.span().map_or(1, |span| 1 + text[..span.start].matches('\n').count());
         anyhow!("{name}:{line}: {}", error.message().replace('\n', "; "))
     })?;
-    // A steps flag is a culprit of its own.
+    // A wrong number of steps in a flag is reported as the flag's.
     if let Some(steps) = overrides.steps {
         check_steps("--steps", steps, file.oracle.len())?;
     }
@@ -287,7 +287,7 @@ pub fn deviation(field: &str, metres: f64) -> Result<f64> {
     Ok(metres)
 }
 
-/// The tolerance that a planner is told: as given, else what covers a robot's errors.
+/// The tolerance of the planner: as given, otherwise as much as covers the robot's errors of position.
 ///
 /// # Errors
 /// Names `field` and the number.

@@ -1,7 +1,7 @@
 //! The goal of a mission, as scenario files ask for it and results promise it.
 //!
-//! A promise is checked a little more strictly than it was made. The difference is larger than the rounding of single
-//! precision, so a promise that passes is kept.
+//! The planner gets a goal that is a little stricter than the one in the file. The difference is larger than the
+//! rounding of single precision. So when the planner's goal is met, the file's is met too.
 
 use anyhow::Result;
 use planner_core::{Accuracy, Angle, Goal, Workspace as _};
@@ -15,13 +15,13 @@ use crate::mission::strict::wrong;
 /// A heading's units in a degree.
 const UNITS_PER_DEGREE: f64 = 4_294_967_296.0 / 360.0;
 
-/// What a turn is asked more strictly by, in a heading's units: unit vectors are good to 2^-29.
+/// How much stricter an angle is asked for, in units of a heading. Unit vectors are accurate to 2^-29.
 const TURN_OFF: u32 = 4;
 
-/// What a share of the area is asked more strictly by, in millionths.
+/// How much stricter a share of the area is asked for, in millionths.
 const SHARE_OFF: u32 = 1;
 
-/// The largest level, and what one is told in.
+/// The largest level; then the unit of levels and shares, which are stored in millionths.
 const MOST_LEVEL: f64 = 0.9999;
 const MILLION: f64 = 1e6;
 
@@ -57,7 +57,7 @@ impl StopTable {
                 );
             }
             (None, Some(share)) if (1e-5..1.0).contains(&share) => {
-                // What is written with six decimal places is so many millionths.
+                // A share with six decimal places becomes exactly that many millionths.
                 let millionths = (share * MILLION + 1e-6) as u32;
                 Accuracy::Misclassified(millionths - SHARE_OFF)
             }
@@ -99,7 +99,7 @@ pub struct GoalRecord {
     /// With this probability at least; `None` where labels are true.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub level: Option<f64>,
-    /// Whether that is known in the end.
+    /// Whether the goal is met in the end.
     pub is_met: bool,
 }
 

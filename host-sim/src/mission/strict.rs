@@ -1,5 +1,5 @@
-//! Values in scenario files, read strictly. On its own, serde accepts an array for a table, with its fields in order.
-//! Of an array with too many elements it takes the first ones.
+//! Values in scenario files, read strictly. By default, serde accepts an array in the place of a table, and reads only
+//! the first elements of an array that is too long.
 
 use std::fmt::{self, Display};
 use std::marker::PhantomData;
@@ -18,7 +18,7 @@ pub(crate) fn wrong<T>(
     bail!("{field}: found {found}, expected {expected}")
 }
 
-/// A table.
+/// A value that must be a table.
 #[derive(Default)]
 pub(crate) struct Table<T>(pub(crate) T);
 

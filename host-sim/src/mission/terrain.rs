@@ -1,4 +1,4 @@
-//! The area of a mission and what is kept out of, as scenario files describe them.
+//! The area of a mission and its keep-outs, as scenario files describe them.
 
 use anyhow::Result;
 use nalgebra::{Point2, Vector2};
@@ -36,7 +36,7 @@ pub(crate) struct KeepOutTable {
     polygon: Option<Vec<Numbers<2>>>,
 }
 
-/// Where motions may go.
+/// The area of a mission, with its keep-outs.
 ///
 /// # Errors
 /// Names the field, what was found and what was expected.

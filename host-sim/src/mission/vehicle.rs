@@ -39,7 +39,7 @@ pub struct VehicleTable {
     /// What moves
     #[arg(long = "vehicle", value_enum, value_name = "KIND", default_value_t)]
     pub(crate) kind: Kind,
-    /// The longest motion, metres, below 100 [default: 2]
+    /// The longest motion, metres, below 3000 [default: 2]
     #[arg(long, value_name = "METRES")]
     #[serde(skip_serializing_if = "Option::is_none")]
     reach: Option<f64>,
@@ -65,7 +65,7 @@ pub struct VehicleTable {
     shortest: Option<f64>,
 }
 
-/// Where a vehicle's numbers stand, which gives them their names.
+/// Where a vehicle's numbers come from. Messages name a number as it is called there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
     /// A scenario file.
@@ -221,7 +221,8 @@ pub fn with_steps(
     table.vehicle(Source::Flags, algorithm, false, Grid::Paper)
 }
 
-/// Whether a planner sees to it that a vehicle can go on.
+/// Refuses a vehicle that the algorithm cannot drive: margin sampling and the random walk drive no boat and no car, and
+/// margin sampling tries no more than [`MOST_TRIED`] actions.
 fn check_suits(name: &str, vehicle: &AnyVehicle, algorithm: Algorithm) -> Result<()> {
     let tries = matches!(algorithm, Algorithm::Margin | Algorithm::Random);
     match vehicle {
@@ -264,7 +265,7 @@ fn of_area(area: Area, margin: f64) -> String {
     format!("an area of {} m x {} m{less}", max.x - min.x, max.y - min.y)
 }
 
-/// A length or an angle in its thousandths or millionths.
+/// A length in whole millimetres, or an angle in whole microradians.
 fn whole(field: &str, value: f64, per_unit: f64) -> Result<u32> {
     let parts = (value * per_unit).round();
     let is_whole = (value * per_unit - parts).abs() < 1e-6 * parts.max(1.0);

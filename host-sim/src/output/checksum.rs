@@ -21,7 +21,7 @@ impl Checksum {
     }
 }
 
-/// Of nothing.
+/// The checksum of no bytes.
 impl Default for Checksum {
     fn default() -> Self {
         Self(0xcbf2_9ce4_8422_2325)

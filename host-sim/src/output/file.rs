@@ -33,8 +33,8 @@ pub fn csv(records: &[impl Serialize]) -> Result<String> {
     Ok(String::from_utf8(writer.into_inner()?)?)
 }
 
-/// A temporary file, which goes with this value, and if the program is interrupted. Whoever the user's umask
-/// lets may read it.
+/// A temporary file. It is removed when this value is dropped or the program is interrupted. Its permissions follow the
+/// user's umask.
 ///
 /// # Errors
 /// When the folder cannot be written to.
@@ -66,8 +66,8 @@ enum Destination {
     Stream(File),
 }
 
-/// Prepares all that a command is to write, so that a place that cannot be written to is found before any
-/// work is done; `None` for what was not asked for. Inputs and outputs come with what they are called.
+/// Prepares everything that a command writes. A place that cannot be written to is found before any work is done. The
+/// result is `None` for an output that was not asked for. Inputs and outputs come with their names for messages.
 ///
 /// # Errors
 /// Names the place that cannot be written to, or that is an input or another output as well.
@@ -91,7 +91,7 @@ pub fn prepare<const N: usize>(
         taken.push((format!("the place of {what}"), found.clone()));
         *place = Some(found);
     }
-    // To open a pipe is to wait for its reader, so all else is settled before.
+    // Opening a pipe waits for its reader, so everything else is checked first.
     let mut outputs = [const { None }; N];
     for (((_, path), place), output) in asked.iter().zip(places).zip(&mut outputs) {
         if let (Some(path), Some(place)) = (path, place) {
@@ -124,7 +124,7 @@ impl Output {
         Ok(Self { name: path.display().to_string(), to })
     }
 
-    /// Writes it, in place of a file that may be there.
+    /// Writes all of it, and replaces a file that exists.
     ///
     /// # Errors
     /// Names the file that could not be written.
@@ -137,7 +137,7 @@ impl Output {
         Ok(())
     }
 
-    /// What was written is all: it takes its place.
+    /// Everything is written: moves the file to its place.
     ///
     /// # Errors
     /// Names the file that could not be moved there.
@@ -149,7 +149,7 @@ impl Output {
     }
 }
 
-/// Piece by piece; then it is to be completed.
+/// Writes piece by piece. [`complete`](Output::complete) must follow.
 impl Write for Output {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match &mut self.to {
@@ -176,7 +176,7 @@ fn replace(place: &Path, begun: NamedTempFile) -> io::Result<()> {
     Ok(())
 }
 
-/// A file that is to be replaced hands on its permissions.
+/// Gives a file the permissions of the one that it replaces.
 pub(crate) fn hand_on_permissions(to: &Path, replaced: &Path) -> io::Result<()> {
     fs::metadata(replaced).map_or(Ok(()), |it| fs::set_permissions(to, it.permissions()))
 }

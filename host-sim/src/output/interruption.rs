@@ -11,16 +11,16 @@ use std::process::Child;
 use std::sync::atomic::{AtomicI32, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// What is undone: an entry that has gone by itself does no harm.
+/// What the signal handler cleans up. An entry whose file or process has gone already does no harm.
 #[derive(Debug)]
 pub(crate) struct Unfinished {
     /// Temporary files, to be removed.
     pub(crate) files: BTreeSet<PathBuf>,
     /// Child processes by their ids, to be ended.
     pub(crate) children: BTreeMap<u32, Child>,
-    /// What is said to the user: where to find what is not undone.
+    /// A last message to the user: where to find what is kept.
     pub(crate) farewell: Option<String>,
-    /// Whether whoever runs sees to it that the program ends: a vehicle must be stopped first.
+    /// Whether the command ends the program itself, because it must stop a vehicle first.
     pub(crate) is_deferred: bool,
 }
 
@@ -34,18 +34,18 @@ static UNFINISHED: Mutex<Unfinished> = Mutex::new(Unfinished {
 /// The signal that was deferred; 0 if there was none.
 static DEFERRED: AtomicI32 = AtomicI32::new(0);
 
-/// From here on a signal does not end the program: [`deferred`] tells it.
+/// From now on a signal does not end the program. [`deferred`] returns it.
 pub fn defer() {
     unfinished().is_deferred = true;
 }
 
-/// The signal that has come since signals were deferred.
+/// The signal that arrived since then, if one did.
 pub fn deferred() -> Option<i32> {
     let signal = DEFERRED.load(Ordering::Relaxed);
     (signal != 0).then_some(signal)
 }
 
-/// What is undone if a signal comes, under its lock.
+/// The registry, locked.
 pub(crate) fn unfinished() -> MutexGuard<'static, Unfinished> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -95,7 +95,7 @@ mod by_signal {
     }
 
     fn undo(unfinished: &mut Unfinished) {
-        // What has gone by itself need not go again.
+        // Errors are ignored: a file or process may have gone already.
         for file in &unfinished.files {
             let _ = fs::remove_file(file);
         }
@@ -110,8 +110,8 @@ mod by_signal {
         }
     }
 
-    /// Whether whoever started the program had the signal ignored, as `nohup` does: then it stays so. Linux
-    /// tells; elsewhere it is not known.
+    /// Whether the signal was ignored when the program started, as under `nohup`. Then it stays ignored. Only Linux
+    /// reports this.
     fn is_ignored(signal: i32) -> bool {
         let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
         let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));

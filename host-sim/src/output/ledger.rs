@@ -30,18 +30,18 @@ pub(crate) struct Ledger {
     now: Checkpoint,
 }
 
-/// How far a file is as it was written.
+/// How much of a file is as it was written.
 struct Verified {
     /// The last checkpoint that holds.
     last: Checkpoint,
     /// Bytes of the ledger up to it.
     ledger: u64,
-    /// The lines of the file in which it is something else, if it is.
+    /// The lines that were changed, first and last, if any were.
     changed: Option<(u64, u64)>,
 }
 
 impl Ledger {
-    /// Begins one, of a file that has nothing in it yet.
+    /// Begins a ledger for an empty file.
     ///
     /// # Errors
     /// When it cannot be written.
@@ -50,7 +50,7 @@ impl Ledger {
         Self::open(path)
     }
 
-    /// Opens the one that is there.
+    /// Opens an existing ledger.
     ///
     /// # Errors
     /// When it cannot be read or written.
@@ -70,7 +70,7 @@ impl Ledger {
         Ok(String::from_utf8(line).ok().filter(|_| is_whole))
     }
 
-    /// How many bytes of a file can be counted on.
+    /// How many bytes of a file are as they were written.
     ///
     /// # Errors
     /// Names the lines that are not as they were written.
@@ -82,7 +82,7 @@ impl Ledger {
         Ok(last.bytes)
     }
 
-    /// The file was cut to so many bytes.
+    /// Notes that the file was cut to this many bytes.
     ///
     /// # Errors
     /// When either cannot be read, or this cannot be noted.
@@ -96,7 +96,7 @@ impl Ledger {
         if rest.is_empty() { Ok(()) } else { self.grown(&rest) }
     }
 
-    /// The file has grown by this.
+    /// Notes that the file has grown by these bytes.
     ///
     /// # Errors
     /// When it cannot be noted.
@@ -110,7 +110,8 @@ impl Ledger {
         self.now.checksum
     }
 
-    /// Compares a file with the checkpoints, as far as they are whole and not beyond its length or so many bytes.
+    /// Compares a file with the checkpoints. Stops at one that is cut off, or is beyond the file's end or beyond `most`
+    /// bytes.
     fn walk(&self, file: File, most: u64) -> io::Result<Verified> {
         let mut file = BufReader::new(file);
         let mut lines = BufReader::new(File::open(&self.path)?);

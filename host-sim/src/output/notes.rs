@@ -10,11 +10,11 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::output::plain::message;
 
-/// How much is told.
+/// How much is printed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Loudness {
-    /// Errors alone.
+    /// Only errors.
     Quiet,
     /// Warnings, and progress on a terminal.
     Usual,
@@ -22,10 +22,10 @@ pub enum Loudness {
     Verbose,
 }
 
-/// Set once, before anything is told.
+/// Set once, before anything is printed.
 static LOUDNESS: AtomicU8 = AtomicU8::new(Loudness::Usual as u8);
 
-/// From here on so much is told.
+/// Sets how much is printed from now on.
 pub fn set(loudness: Loudness) {
     LOUDNESS.store(loudness as u8, Ordering::Relaxed);
 }
@@ -34,7 +34,7 @@ fn is_told(from: Loudness) -> bool {
     LOUDNESS.load(Ordering::Relaxed) >= from as u8
 }
 
-/// Says what may surprise.
+/// Prints a warning.
 pub fn warn(subject: impl Display, warning: impl Display) {
     if is_told(Loudness::Usual) {
         let style = Style::new().bold().fg_color(Some(AnsiColor::Yellow.into()));
@@ -43,31 +43,31 @@ pub fn warn(subject: impl Display, warning: impl Display) {
     }
 }
 
-/// Says what takes a while.
+/// Announces work that takes a while.
 pub fn announce(what: impl Display) {
     if is_told(Loudness::Usual) {
         anstream::eprintln!("{}", message(&what.to_string()));
     }
 }
 
-/// Says what only some want to know.
+/// Prints a detail for users who asked for details.
 pub fn mention(what: impl Display) {
     if is_told(Loudness::Verbose) {
         anstream::eprintln!("{}", message(&what.to_string()));
     }
 }
 
-/// Says what the program ends with.
+/// Prints the error with which the program ends.
 pub fn error(error: &anyhow::Error) {
     let style = Style::new().bold().fg_color(Some(AnsiColor::Red.into()));
-    // Where nobody hears it the status has to do.
+    // If standard error is closed, the exit status alone must report the failure.
     let _ = std::io::Write::write_fmt(
         &mut anstream::stderr(),
         format_args!("{style}error{style:#}: {}\n", message(&format!("{error:#}"))),
     );
 }
 
-/// A bar for so many of something, with rate and time left; it shows on a terminal alone.
+/// A progress bar for `count` items, called `of`, with rate and time left. It shows on a terminal alone.
 ///
 /// # Errors
 /// Never: the template is sound.
@@ -76,7 +76,7 @@ pub fn progress(count: u64, of: &str) -> Result<ProgressBar> {
     styled(ProgressBar::new(count), &style)
 }
 
-/// A count of something of which nobody knows how many there will be.
+/// A counter of items whose total is not known.
 ///
 /// # Errors
 /// Never: the template is sound.

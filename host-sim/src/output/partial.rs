@@ -18,7 +18,8 @@ use crate::output::interruption::unfinished;
 use crate::output::ledger::Ledger;
 use crate::output::place::Place;
 
-/// A file that is not complete. Dropped, it stays if it has more than a header.
+/// A file that is not complete. When this is dropped the file stays, unless this run created it and wrote only a
+/// header.
 #[derive(Debug)]
 pub struct Partial {
     place: PathBuf,
@@ -26,7 +27,7 @@ pub struct Partial {
     record: Option<PathBuf>,
     ledger: Option<Ledger>,
     file: File,
-    /// Bytes of what is there that can be counted on.
+    /// How many of its bytes are as they were written.
     counted: u64,
     /// As the file's user names it.
     name: String,
@@ -42,22 +43,22 @@ pub(crate) struct Begin<'a> {
     pub(crate) holds: &'static str,
     /// What it begins with.
     pub(crate) header: &'a str,
-    /// What is being done, if it does not tell that by itself.
+    /// The record of the work, if the file does not show by itself which work it belongs to.
     pub(crate) record: Option<Record<'a>>,
-    /// Whether to go on with what is there.
+    /// Whether to continue an existing file.
     pub(crate) resume: bool,
 }
 
-/// What is being done, as it is told beside the file.
+/// The record of the work, which stands beside the file.
 #[derive(Clone, Copy)]
 pub(crate) struct Record<'a> {
     /// The record.
     pub(crate) text: &'a str,
-    /// Judges the one that is there.
+    /// Checks an existing record.
     pub(crate) check: &'a dyn Fn(&str) -> Result<()>,
 }
 
-/// Judges what is there by its record and its checksums: how many bytes can be counted on.
+/// Checks an existing file by its record and checksums, and returns how many of its bytes are as they were written.
 fn judge(
     ledger: &Ledger,
     check: &dyn Fn(&str) -> Result<()>,
@@ -81,7 +82,7 @@ pub(crate) fn with_suffix(path: &Path, suffix: &str) -> PathBuf {
 }
 
 impl Partial {
-    /// Begins a file, or opens the one that is to be gone on with, if it is there.
+    /// Begins a file, or opens an existing one to continue it.
     ///
     /// # Errors
     /// Names the file if it exists although none is to be continued. Also if another program is writing it, or if it
@@ -152,7 +153,7 @@ impl Partial {
         &self.name
     }
 
-    /// So much of what is there, from its start, and no more than can be counted on.
+    /// Reads the file from its start: this many bytes, but none that may have changed.
     ///
     /// # Errors
     /// When it cannot be opened.
@@ -160,7 +161,7 @@ impl Partial {
         Ok(File::open(&self.path)?.take(bytes.min(self.counted)))
     }
 
-    /// Keeps so many bytes of what is there.
+    /// Cuts the file to this many bytes.
     ///
     /// # Errors
     /// When it cannot be cut.
@@ -174,7 +175,7 @@ impl Partial {
         self.ledger.as_mut().map_or(Ok(()), |it| it.grown(bytes))
     }
 
-    /// From here on an interruption says that it is there.
+    /// From now on the message at an interruption names this file.
     pub(crate) fn announce(&self) {
         unfinished().farewell = Some(format!("stopped: {}", self.farewell()));
     }
@@ -185,7 +186,7 @@ impl Partial {
         format!("finished {holds} are in {name}; the same command with --resume goes on with them")
     }
 
-    /// Moves it to its place. What is to stand beside it for good is made from its length and its checksum.
+    /// Moves it to its place. `beside` makes the record that stays beside it from its length and checksum.
     ///
     /// # Errors
     /// Names the file that could not be written or moved.
@@ -224,7 +225,7 @@ impl Write for Partial {
 impl Drop for Partial {
     fn drop(&mut self) {
         if !self.is_worth_keeping {
-            // Whoever comes to this tells of another error already.
+            // Errors are ignored: the caller already reports another one.
             let _ = fs::remove_file(&self.path);
             let _ = self.record.as_ref().map_or(Ok(()), fs::remove_file);
         }

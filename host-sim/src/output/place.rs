@@ -17,7 +17,7 @@ pub(crate) struct Place {
     path: PathBuf,
     /// A pipe or a device: to be written through, as it cannot be replaced.
     is_stream: bool,
-    /// What the file system calls it by, which all its names share; `None` if nothing is there.
+    /// The file system's number for it, the same under all its names; `None` if nothing is there.
     node: Option<Node>,
 }
 
@@ -25,7 +25,7 @@ pub(crate) struct Place {
 type Node = (u64, u64);
 
 impl Place {
-    /// Follows a path, through symbolic links also to where nothing is yet.
+    /// Follows a path through symbolic links. The file at its end need not exist.
     pub(crate) fn of(path: &Path) -> io::Result<Self> {
         let mut path = path.to_owned();
         for _ in 0..MOST_LINKS {
@@ -62,7 +62,7 @@ impl Place {
         self.is_stream
     }
 
-    /// Whether both are one, by whatever names.
+    /// Whether both are the same place, under whatever names.
     pub(crate) fn is(&self, other: &Self) -> bool {
         self.path == other.path || (self.node.is_some() && self.node == other.node)
     }

@@ -1,4 +1,5 @@
-//! Text from outside, made safe for a terminal: control characters are escaped, and very long words and lines are shortened.
+//! Text from outside, made safe for a terminal. Control characters are escaped, and very long words and lines are
+//! shortened.
 
 use std::fmt::Write as _;
 

@@ -20,7 +20,7 @@ pub const LONGEST: u32 = 12;
 /// What is to be solved.
 #[derive(Clone, Debug)]
 pub struct Instance {
-    /// The scenario's mission, for so many steps.
+    /// The scenario's mission, with the horizon as its number of steps.
     pub mission: Mission,
     /// The problem.
     pub problem: Problem,
@@ -94,7 +94,7 @@ impl Instance {
         self.mission.given.samples()
     }
 
-    /// The sequence of no motion yet; `None` if no line divides the oracle's points as the problem wants.
+    /// The empty sequence; `None` if no line divides the oracle's points as the problem wants.
     pub fn begin(&self) -> Option<Partial> {
         let pose = self.mission.start;
         let label = self.mission.world.reading(pose.site);
@@ -110,8 +110,8 @@ impl Instance {
             .then_some(to)
     }
 
-    /// What a sequence costs that goes on like this from here, at least, if its motions cost so much at least yet; of
-    /// a sequence that is over, what it costs.
+    /// A lower bound on the cost of all sequences that continue `at` with motions that cost at least `further`. For a
+    /// complete sequence it is the cost.
     pub fn cost(&self, at: &Partial, further: u64) -> f64 {
         (at.effort + further) as f64 / 1e6 + at.lines.cost(at.left)
     }

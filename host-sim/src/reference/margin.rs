@@ -16,7 +16,7 @@ impl Gap {
     /// Samples of one label only.
     pub const OPEN: Self = Self(f64::INFINITY);
 
-    /// What another sample beside earlier ones leaves of it.
+    /// The gap after another sample.
     #[must_use]
     pub fn with(self, earlier: &[Sample], sample: Sample) -> Self {
         let of = |own: bool| {
@@ -38,7 +38,8 @@ impl Gap {
         Self(least)
     }
 
-    /// The square of half of it: of the greatest distance of a line to the samples that it divides, metres^2.
+    /// The square of half the gap, metres^2. Half the gap is the greatest distance that a dividing line keeps from its
+    /// samples.
     pub fn margin_squared(self) -> f64 {
         self.0 / 4.0
     }

@@ -48,10 +48,10 @@
 //! # How it is solved
 //!
 //! By branch and bound over sequences of actions ([`search`]). The lower bound for a partial sequence is the sum of
-//! three terms. The first is the cost so far. The second is the cost of the line, which only grows with more samples. The
-//! third is for the motions that the balance of labels still requires. It comes from a relaxed problem of two numbers, distance from the true
-//! line and heading ([`relaxation`]). Among equal costs the sequence with the lower action indices wins. Instances that
-//! are too large are refused beforehand ([`size`]).
+//! three terms. The first is the cost so far. The second is the cost of the line, which only grows with more samples.
+//! The third is for the motions that the balance of labels still requires. It comes from a relaxed problem of two
+//! numbers, distance from the true line and heading ([`relaxation`]). Among equal costs the sequence with the lower
+//! action indices wins. Instances that are too large are refused beforehand ([`size`]).
 
 pub mod account;
 pub mod flight;

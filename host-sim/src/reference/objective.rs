@@ -44,7 +44,7 @@ impl Problem {
         }
     }
 
-    /// Whether samples of these labels, -1 and 1 summed up, may be all.
+    /// Whether a complete sequence may have this sum of labels.
     pub fn allows_sum(self, sum: i32) -> bool {
         self == Self::Labelled || sum.abs() <= 1
     }
@@ -74,7 +74,7 @@ pub enum Lines {
 }
 
 impl Lines {
-    /// What another sample beside earlier ones leaves of them; `None` if the problem does not allow it there.
+    /// The lines that another sample leaves; `None` if the problem does not allow that sample.
     #[must_use]
     pub fn with(self, earlier: &[Sample], site: Site, reading: Reading) -> Option<Self> {
         let side = match reading {
@@ -89,7 +89,7 @@ impl Lines {
         }
     }
 
-    /// What the best of them costs when so many samples more have been taken, at least; after the last, what it costs.
+    /// A lower bound on the cost of the best line after `left` further samples. With none left it is the cost.
     pub fn cost(self, left: u32) -> f64 {
         match self {
             Self::Sloped(slopes) => slopes.least().powi(2) / 2.0,

@@ -1,4 +1,4 @@
-//! The optimum of an instance, if its size allows to look for it.
+//! The optimum of an instance, if the instance is small enough.
 
 use anyhow::Result;
 

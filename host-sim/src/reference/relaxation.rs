@@ -34,7 +34,7 @@ const SLACK_RAD: f64 = 1e-6;
 /// More than the rounding of positions to the lattice, metres.
 const SLACK_M: f64 = 1e-4;
 
-/// What cannot be.
+/// The cost of what is impossible.
 const NEVER: u64 = u64::MAX;
 
 /// Least control costs, in millionths.
@@ -47,8 +47,8 @@ pub struct Relaxation<'a> {
     tables: Vec<Tables>,
 }
 
-/// Tables for one number of motions left, by the sum of labels from `-most` to `most`: a cost for each bin. Sums that do
-/// not come up have none.
+/// Tables for one number of motions left. For each sum of labels from `-most` to `most` there is a cost for each bin.
+/// Sums that cannot occur have no costs.
 struct Tables {
     most: i32,
     by_sum: Vec<Vec<u64>>,
@@ -91,7 +91,7 @@ impl<'a> Relaxation<'a> {
         relaxation
     }
 
-    /// What the motions left of a sequence cost at least; `None` if none of them balances its labels.
+    /// The least cost of the motions that a sequence has left; `None` if none of them balances its labels.
     pub fn least(&self, at: &Partial) -> Option<u64> {
         let Some(tables) = self.tables.get(at.left as usize) else {
             return Some(u64::from(at.left) * self.idlest);
@@ -103,7 +103,7 @@ impl<'a> Relaxation<'a> {
     }
 
     fn tables_for(&self, left: u32, moves: &Moves) -> Tables {
-        // With so many labels left no larger sum comes back to what is allowed, and each label so far has changed it by 1.
+        // A larger sum cannot return to what is allowed within the labels left. Each label so far has changed it by 1.
         let most = left as i32 + 1;
         let mission = &self.instance.mission;
         let made = (self.instance.horizon() - left) as i32;
@@ -139,7 +139,7 @@ impl<'a> Relaxation<'a> {
         costs
     }
 
-    /// What a drive in a direction and all that follows cost at least.
+    /// The least cost of a drive in a direction and of all that follows.
     fn driven(
         &self,
         distance: usize,

@@ -18,7 +18,7 @@ use crate::output::notes::progress;
 use crate::reference::instance::{Choice, Instance, Partial};
 use crate::reference::relaxation::Relaxation;
 
-/// Parts of sequences that are shared out to the cores, at least if there are so many.
+/// The least number of beginnings that are shared out to the cores, if there are as many.
 const TASKS: usize = 1000;
 
 /// Parts of sequences of each length that are followed to find a good sequence to begin with.
@@ -36,11 +36,11 @@ pub struct Sequence {
     pub actions: Vec<Action>,
 }
 
-/// A part of a sequence with the way there.
+/// A beginning of a sequence.
 #[derive(Clone, Debug)]
 pub(super) struct Branch {
     at: Partial,
-    /// What all sequences cost that begin like this, at least.
+    /// A lower bound on the cost of all sequences that begin like this.
     bound: f64,
     actions: Vec<Action>,
     /// The given samples, and those on the way.
@@ -57,19 +57,19 @@ pub(super) struct Twig {
     reading: Reading,
 }
 
-/// What a search knows and has done.
+/// The state of a search.
 pub(super) struct Search<'a> {
     instance: &'a Instance,
     relaxation: Relaxation<'a>,
     best: Mutex<Option<Sequence>>,
-    /// The best one's cost, in the order of integers.
+    /// The cost of the best sequence, as an integer of the same order.
     cost: AtomicI64,
     /// Motions that were looked at.
     looks: AtomicU64,
 }
 
 impl<'a> Search<'a> {
-    /// The search with a good sequence known, and the beginning of all; `None` if none can keep the constraints.
+    /// A search that knows a good sequence, with the empty beginning; `None` if no sequence can keep the constraints.
     pub(super) fn begin(instance: &'a Instance) -> (Self, Option<Branch>) {
         let search = Self {
             instance,
@@ -88,7 +88,7 @@ impl<'a> Search<'a> {
     /// Goes through all sequences that begin like this, on all cores, with a progress bar on a terminal.
     ///
     /// # Errors
-    /// Names the horizon if there was no end to them.
+    /// Names the horizon if there are too many of them.
     pub(super) fn run(self, root: Branch) -> Result<Option<Sequence>> {
         let mut tasks = vec![root];
         while tasks.len() < TASKS && tasks.first().is_some_and(|task| task.at.left > 1) {
@@ -115,7 +115,7 @@ impl<'a> Search<'a> {
         Some(Branch { at, bound, actions: Vec::new(), samples: self.instance.given().to_vec() })
     }
 
-    /// Whether more was looked at than is to be.
+    /// Whether the search has used up its looks.
     fn is_too_long(&self) -> bool {
         self.looks.load(atomic::Ordering::Relaxed) > MOST_LOOKS
     }
@@ -139,7 +139,7 @@ impl<'a> Search<'a> {
         self.twigs(from).0.iter().map(|twig| from.followed_by(twig)).collect()
     }
 
-    /// Calls with each motion from here that may lead to the best sequence. How many it has looked at.
+    /// Calls `each` with every motion from here that may lead to the best sequence. Returns how many it has looked at.
     fn look(&self, from: &Branch, mut each: impl FnMut(Twig)) -> u64 {
         let (instance, at) = (self.instance, &from.at);
         let left = at.left - 1;
@@ -172,7 +172,7 @@ impl<'a> Search<'a> {
         looks
     }
 
-    /// Whether no sequence that begins with this action after others, and costs so much at least, can be the best.
+    /// Whether no sequence that goes on with this action can be the best, if it costs at least `bound`.
     fn is_beaten(&self, bound: f64, from: &Branch, action: Action) -> bool {
         match in_order(bound).cmp(&self.cost.load(atomic::Ordering::Relaxed)) {
             Ordering::Less => false,

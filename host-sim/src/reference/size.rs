@@ -50,7 +50,7 @@ fn estimate(search: &Search<'_>, root: &Branch) -> f64 {
     (0..WAYS).map(|_| on_a_way(search, root, &mut rng)).sum::<f64>() / WAYS as f64
 }
 
-/// What a way down from here makes of it.
+/// The estimate from one random way down.
 fn on_a_way(search: &Search<'_>, from: &Branch, rng: &mut ChaCha8Rng) -> f64 {
     let (twigs, looks) = search.twigs(from);
     let looks = looks as f64;

@@ -54,7 +54,7 @@ impl Slopes {
         Some(self)
     }
 
-    /// Those that have these two on either side.
+    /// The slopes that have these two samples on either side.
     fn between(mut self, above: Sample, below: Sample) -> Option<Self> {
         let way = above.site - below.site;
         let (run, rise) = (i64::from(way.x()), i64::from(way.z()) - 2 * i64::from(UNITS_PER_METRE));

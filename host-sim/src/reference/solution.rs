@@ -78,7 +78,7 @@ fn planners(problem: Problem) -> [Algorithm; 2] {
     [of_the_paper, Algorithm::Lookahead]
 }
 
-/// The mission flown by one of them, with the same actions. Another than the scenario's has its own settings.
+/// The mission flown by an algorithm, with the same actions. If the scenario names another, it gets its own defaults.
 fn flown_by(mission: &Mission, algorithm: Algorithm) -> Mission {
     let mut mission = mission.clone();
     if mission.algorithm != algorithm {

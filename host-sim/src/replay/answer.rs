@@ -1,4 +1,4 @@
-//! The answer that samples give, by how far they are trusted: one type, whichever way it was found.
+//! The answer that samples give: one type, however far they are trusted.
 
 use anyhow::{Context as _, Result, anyhow, bail};
 use nalgebra::Point2;
@@ -22,7 +22,7 @@ use crate::world::polygon::Polygon;
 /// How far samples are to be trusted.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Trust {
-    /// The probability that a label is true, above 1/2, where one says it; 1 is certain.
+    /// The probability that a label is true, above 1/2, if it is given; 1 is certain.
     pub p: Option<f64>,
     /// How far a position may be off at most, metres.
     pub tolerance: f64,
@@ -45,16 +45,16 @@ pub(crate) struct Answer {
     pub(crate) tolerance: Option<f64>,
     /// Where labels may be wrong.
     pub(crate) doubt: Option<Doubted>,
-    /// Lines between which all lie.
+    /// Lines that bound the set.
     bounds: Vec<ByNormal>,
 }
 
-/// What labels that may be wrong come to.
+/// What labels that may be wrong determine.
 pub(crate) struct Doubted {
     pub(crate) p: f64,
     /// The share of all lines that was left out, at most.
     pub(crate) pruned_mass: f64,
-    /// What the credible set holds.
+    /// The probability of the credible set.
     pub(crate) probability: f64,
     pub(crate) most_likely: Line,
     /// The samples that disagree with it, wherever within the tolerance they are.
@@ -62,7 +62,7 @@ pub(crate) struct Doubted {
 }
 
 impl Answer {
-    /// Of the samples of a file.
+    /// The answer that the samples of a file give.
     ///
     /// # Errors
     /// Names the file, and the line where a row is the reason.
@@ -140,7 +140,8 @@ fn tolerant(file: &SampleFile, tolerance: f64) -> Result<Answer> {
     })
 }
 
-/// No line agrees with the samples up to one; without some of them, each alone, one would.
+/// The error for samples of which the one at `index` is the first to leave no line. Without any one of `outliers` a
+/// line separates the rest.
 fn contradiction(
     file: &SampleFile,
     index: usize,
@@ -239,7 +240,7 @@ fn doubted(file: &SampleFile, p: f64, tolerance: Option<f64>) -> Result<Answer> 
     let most_likely = most_likely(&posterior.cells, &all).and_then(|cell| mean_of(&cell.mass));
     let most_likely =
         most_likely.with_context(|| format!("{name}: expected labels that prefer some line"))?;
-    // The labels that it gives are true of all lines about it between the same samples.
+    // All lines between the same samples give the labels that the most likely line gives.
     let relabelled =
         samples.iter().map(|sample| Sample { label: side(&most_likely, sample), ..*sample });
     let relabelled: Vec<_> = relabelled.collect();

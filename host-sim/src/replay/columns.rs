@@ -76,7 +76,7 @@ impl FromStr for Columns {
     }
 }
 
-/// Where a file has what is wanted.
+/// Where a file has positions and labels.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Places {
     /// Of `x` and `z`, or of latitude and longitude.
@@ -100,7 +100,7 @@ const fn roles(is_geographic: bool) -> [Role; 2] {
 }
 
 impl Columns {
-    /// The name of the label's column, where one says it.
+    /// The name of the label's column, if it is given.
     pub(crate) fn label(&self) -> Option<&str> {
         self.title(Role::Label)
     }
@@ -114,7 +114,8 @@ impl Columns {
         self.named.iter().find(|(named, _)| *named == role).map(|(_, title)| title.as_str())
     }
 
-    /// Where the first row of a file says that they are, at some place; `is_value` says whether a field is no title.
+    /// The columns by the first row of a file. `at` is the place of that row, for errors. `is_value` says whether a
+    /// field is a value, and so no title.
     ///
     /// # Errors
     /// Names the place, or the flag, what was found and what was expected.

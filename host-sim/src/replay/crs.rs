@@ -25,7 +25,7 @@ struct Systems {
 /// How far a metre of the system may be from a metre on the ground.
 const DISTORTION: f64 = 0.01;
 
-/// Between the places where that is looked at, metres.
+/// Distance between the places at which a metre is measured, metres.
 const APART: f64 = 100.0;
 
 impl FromStr for Crs {

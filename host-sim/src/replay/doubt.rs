@@ -21,20 +21,20 @@ pub(crate) struct Doubt {
 struct Blur {
     /// Standard deviation, metres.
     sigma: f64,
-    /// What a label +1 tells, by the distance in deviations: from -[`FAR`] on, [`NODES`] a deviation.
+    /// The weight of a label +1 by the distance in deviations: from -[`FAR`] on, [`NODES`] entries a deviation.
     told: Vec<Told>,
-    /// By bins of the distance in deviations, about 0: what the first and the second derivative of the logarithm by the
-    /// distance in metres are at most there, whichever the label.
+    /// Upper bounds on the first and the second derivative of the logarithm by the distance in metres, for either
+    /// label. They are in bins of the distance in deviations, about 0.
     bounds: [[f64; 2]; BINS],
 }
 
-/// Bins of half a deviation, as far as a position is on no side for certain.
+/// Bins of half a deviation, over all distances at which the side of a position is uncertain.
 const BINS: usize = 28;
 
 /// Places in each at which the bounds are found.
 const STEPS: usize = 100;
 
-/// Places a deviation at which what a label tells is tabulated: between them it is a cubic polynomial, to some 1e-9.
+/// Entries of the table of weights a deviation. Between them the weight is a cubic polynomial, to some 1e-9.
 const NODES: f64 = 128.0;
 
 /// The labels recorded at one position.
@@ -57,7 +57,7 @@ pub(crate) struct Told {
     pub(crate) slope: f64,
 }
 
-/// Beyond so many deviations a position is on its side for certain.
+/// Beyond this many deviations a position is certainly on its side.
 const FAR: f64 = BINS as f64 / 4.0;
 
 fn normal_integral(t: f64) -> f64 {
@@ -99,13 +99,13 @@ impl Doubt {
         libm::log(self.p) - libm::log1p(-self.p)
     }
 
-    /// How far from a line positions tell no side for certain; 0 where they are true.
+    /// How far from a line the side of a position is uncertain, metres; 0 where positions are exact.
     pub(crate) fn blurred_within(&self) -> f64 {
         self.blur.as_ref().map_or(0.0, |blur| FAR * blur.sigma)
     }
 
     /// Upper bounds on the first and the second derivative by the distance, for any label. They hold for lines at this
-    /// distance from it, `spread` nearer or further, metres.
+    /// distance from the position, give or take `spread`, metres.
     pub(crate) fn bounds(&self, distance: f64, spread: f64) -> [f64; 2] {
         let Some(Blur { sigma, bounds, .. }) = &self.blur else { return [0.0; 2] };
         let bin = |at: f64| ((at / sigma + FAR) * 2.0).clamp(0.0, BINS as f64 - 1.0) as usize;
@@ -113,7 +113,7 @@ impl Doubt {
         within.iter().fold([0.0; 2], |[a, b]: [f64; 2], it| [a.max(it[0]), b.max(it[1])])
     }
 
-    /// A label +1 of a line that has its position so many metres on its +1 side.
+    /// The weight of a label +1 whose position is `distance` metres on the +1 side of a line.
     fn label(&self, distance: f64) -> Told {
         match &self.blur {
             None => {
@@ -124,7 +124,7 @@ impl Doubt {
         }
     }
 
-    /// All labels of a position near a line, so many metres on its +1 side.
+    /// The weight of all labels of a position that is `distance` metres on the +1 side of a line nearby.
     pub(crate) fn near(&self, votes: &Votes, distance: f64) -> Told {
         let mut told = Told::default();
         for (count, side) in [(votes.positive, 1.0), (votes.negative, -1.0)] {
@@ -138,7 +138,7 @@ impl Doubt {
         told
     }
 
-    /// All labels of a position that is on a side of a line for certain.
+    /// The weight of all labels of a position that is certainly on a side of a line.
     pub(crate) fn on(&self, votes: &Votes, side: Label) -> f64 {
         if votes.certain.is_some_and(|certain| certain != side) {
             return f64::NEG_INFINITY;
@@ -148,7 +148,7 @@ impl Doubt {
     }
 }
 
-/// A label +1 that is true with a probability, of a position so many deviations on the +1 side of a line.
+/// The weight of a label +1 whose position is `t` deviations on the +1 side of a line.
 fn blurred_label(p: f64, sigma: f64, t: f64) -> Told {
     let gain = 2.0 * p - 1.0;
     let chance = 1.0 - p + gain * normal_integral(t);
@@ -178,8 +178,8 @@ impl Votes {
         f64::from(self.positive) + f64::from(self.negative)
     }
 
-    /// Of samples, some of which are certain by their indices; about a middle. A position whose certain labels differ is
-    /// an error that names the second by its index.
+    /// The labels by position, relative to `middle`. `certain` has the indices of the samples whose labels are certain.
+    /// If certain labels of a position differ, the error is the index of the second.
     pub(crate) fn of(
         samples: &[Sample],
         certain: &[usize],

@@ -23,7 +23,7 @@ pub(crate) struct Pair {
 }
 
 impl Pair {
-    /// The difference of their positions: what points from the negative one to the positive one.
+    /// The difference of their positions: the vector from the negative one to the positive one.
     pub(crate) fn apart(self) -> Vector {
         self.positive.site() - self.negative.site()
     }
@@ -48,7 +48,7 @@ pub(crate) struct Facing {
 }
 
 impl Facing {
-    /// Of the first so many samples of a record.
+    /// The hulls of the first `count` samples of a record.
     pub(crate) fn of(rows: &[Row], count: usize) -> Self {
         let rows = rows.iter().filter(|row| row.index < count);
         let positive = Hull::of(rows.clone(), Label::Positive);
@@ -67,7 +67,7 @@ impl Facing {
         &self.differences
     }
 
-    /// Whether each is on a line.
+    /// Whether each hull is on a line.
     pub(crate) fn are_flat(&self) -> bool {
         self.positive.is_flat() && self.negative.is_flat()
     }
@@ -112,8 +112,8 @@ impl Facing {
     }
 }
 
-/// The corners of half of the polygon of differences: on along a chain of each hull, the negative one's read
-/// backwards, always by the edge that turns less.
+/// The corners of half of the polygon of differences. The walk goes along a chain of each hull, the negative one's
+/// backwards, and always takes the edge that turns less.
 fn merged(positive: &[Row], negative: &[Row]) -> Vec<Pair> {
     let (Some((&p, mut ps)), Some((&n, mut ns))) = (positive.split_first(), negative.split_first())
     else {

@@ -21,7 +21,7 @@ const REACH: f64 = LIMIT as f64 / UNITS_PER_METRE as f64;
 /// Rows that have a middle: fewer bound no line.
 const FEWEST: usize = 3;
 
-/// What recorded positions are on the lattice.
+/// How recorded positions become positions on the lattice.
 #[derive(Clone, Debug)]
 pub(crate) enum Frame {
     /// Metres, as they are.
@@ -35,7 +35,7 @@ pub(crate) enum Frame {
 }
 
 impl Frame {
-    /// The frame of some positions, with an origin of one's own or not.
+    /// The frame of some positions, about the layout's origin if it has one.
     pub(crate) fn of(
         positions: &[[f64; 2]],
         is_geographic: bool,
@@ -111,7 +111,7 @@ impl Frame {
         }
     }
 
-    /// The system that metres are of, where it is known.
+    /// The coordinate system of the metres, if it is known.
     pub(crate) fn crs(&self) -> Option<&Crs> {
         match self {
             Self::Projected { crs, .. } => Some(crs),
@@ -177,7 +177,7 @@ fn geographic_middle(positions: &[[f64; 2]]) -> [f64; 2] {
 /// Checks a latitude and a longitude.
 ///
 /// # Errors
-/// Which of them is none, and what was expected.
+/// Which of the two is wrong, and what was expected.
 pub(crate) fn check_degrees([lat, lon]: [f64; 2]) -> Result<()> {
     if !(-90.0..=90.0).contains(&lat) {
         bail!("lat: found {lat}, expected a latitude from -90 to 90 degrees");

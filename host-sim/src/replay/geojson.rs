@@ -9,7 +9,8 @@ use crate::replay::record::Replay;
 use crate::report::picture::area_around;
 
 impl Replay {
-    /// Samples, lines, and the ground that has either label by all lines left, or by all of the credible set.
+    /// Samples, lines, and the ground to which all lines left give one label. Where labels may be wrong, these are the
+    /// lines of the credible set.
     ///
     /// # Errors
     /// For a file whose positions are in metres, as these have no place on a map by themselves. Also for positions on

@@ -12,7 +12,7 @@ use crate::replay::missing::is_missing;
 use crate::replay::numbers::{self, Decimal, Numbers};
 use crate::replay::rows::{Layout, Rows, Unit};
 
-/// What tells `GeoJSON` from a trace.
+/// The keys that tell `GeoJSON` from a trace.
 #[derive(Deserialize)]
 struct Kind {
     #[serde(rename = "type")]
@@ -20,7 +20,7 @@ struct Kind {
     record: Option<IgnoredAny>,
 }
 
-/// Whether a text that begins with `{` is one, as far as it can be read.
+/// Whether a text that begins with `{` is `GeoJSON`, as far as it can be read.
 pub(crate) fn is_one(text: &[u8]) -> bool {
     const WORD: &[u8] = b"\"FeatureCollection\"";
     match Deserializer::from_slice(text).into_iter::<Kind>().next() {
@@ -58,7 +58,7 @@ fn pass(
     let mut words = LabelWords::of(layout.threshold);
     let is_geographic = layout.crs.is_none();
     let mut rows = Rows { is_geographic, unit: Unit::Feature, ..Rows::default() };
-    // What the first point has, and whether one has what is wanted.
+    // The properties of the first point, and whether any point has the wanted one.
     let (mut others, mut has_label) = (None::<(usize, Vec<String>)>, false);
     for (number, feature) in (1..).zip(features) {
         let at = |error: anyhow::Error| anyhow!("{}: {error}", Unit::Feature.place(name, number));
@@ -108,7 +108,7 @@ fn pass(
     Ok((rows, settled))
 }
 
-/// Coordinates are degrees, unless the file says otherwise, as `GeoJSON` of before RFC 7946 may.
+/// Coordinates are degrees, unless the file says otherwise. `GeoJSON` from before RFC 7946 may do so.
 fn check_system(name: &str, file: &Value, layout: &Layout) -> Result<()> {
     let system = file["crs"]["properties"]["name"].as_str().unwrap_or_default();
     let code = system.rsplit(':').next().filter(|_| system.contains("EPSG"));

@@ -42,7 +42,7 @@ fn pass(
     let mut words = LabelWords::of(layout.threshold);
     let mut rows = Rows { is_geographic: true, ..Rows::default() };
     let (mut line, mut seen) = (1, 0);
-    // What the first point has, and whether one has what is wanted.
+    // The elements of the first point, and whether any point has the wanted one.
     let (mut others, mut has_label) = (None, false);
     for point in root.descendants().filter(is_point) {
         let begins = point.range().start;
@@ -92,7 +92,7 @@ fn pass(
     Ok((rows, settled))
 }
 
-/// The text of the element that is called so: a child, or else one further below, as extensions have.
+/// The text of the element called `wanted`: a child, or else one further below, as in extensions.
 fn label<'a>(point: Node<'a, '_>, wanted: &str) -> Option<&'a str> {
     // Which prefix stands for a namespace is up to the file.
     let wanted = wanted.rsplit(':').next().unwrap_or(wanted);
@@ -101,7 +101,7 @@ fn label<'a>(point: Node<'a, '_>, wanted: &str) -> Option<&'a str> {
     found.map(|node| node.text().unwrap_or_default().trim())
 }
 
-/// What the elements below a point are called that have a text.
+/// The names of the elements below a point that have a text.
 fn elements(point: Node) -> Vec<String> {
     let below = point.descendants().skip(1).filter(Node::is_element);
     let texts = below.filter(|node| node.text().is_some_and(|text| !text.trim().is_empty()));

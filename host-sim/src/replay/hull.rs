@@ -37,7 +37,7 @@ pub(crate) struct Hull {
 }
 
 impl Hull {
-    /// The hull of the rows with a label, of some in order (Andrew's monotone chain).
+    /// The hull of those of some rows in order that have a label (Andrew's monotone chain).
     pub(crate) fn of<'a>(
         rows: impl DoubleEndedIterator<Item = &'a Row> + Clone,
         label: Label,

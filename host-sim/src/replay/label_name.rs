@@ -1,14 +1,14 @@
-//! What holds the label in a file whose positions have a place of their own: a property of `GeoJSON`, an element of GPX.
+//! The name of the property of `GeoJSON`, or of the element of GPX, that contains the label.
 
 use anyhow::{Result, anyhow, bail};
 
 use crate::replay::columns::Columns;
 use crate::replay::rows::Layout;
 
-/// The name of what holds the label, in a file that has its positions in a place of their own.
+/// The name of what contains the label, in a file that has its positions in a place of their own.
 ///
 /// # Errors
-/// Names the flag that says something else.
+/// Names a flag that does not fit such a file.
 pub(crate) fn label_name<'a>(name: &str, kind: &str, layout: &'a Layout) -> Result<&'a str> {
     if layout.delimiter.is_some() {
         bail!("--delimiter: found {kind} in {name}, expected a table with it");
@@ -22,7 +22,7 @@ pub(crate) fn label_name<'a>(name: &str, kind: &str, layout: &'a Layout) -> Resu
     Ok(columns.and_then(Columns::label).unwrap_or("label"))
 }
 
-/// No point has the label that is wanted, but these others.
+/// The error for a file in which no point has the wanted label: it has these others instead.
 pub(crate) fn no_label(
     place: &str,
     wanted: &str,

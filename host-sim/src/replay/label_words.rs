@@ -21,7 +21,7 @@ enum Kind {
 /// The labels read so far.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct LabelWords {
-    /// Their kind, and the line that told it.
+    /// Their kind, and the line that showed it.
     kind: Option<(Kind, usize)>,
     /// The line of the first 1, which is of two kinds.
     one: Option<usize>,
@@ -32,12 +32,12 @@ pub(crate) struct LabelWords {
 const EXPECTED: &str = "-1 or 1, 0 or 1, true or false, yes or no, ja or nein";
 
 impl LabelWords {
-    /// Of words, or of values beside a threshold.
+    /// Reads words, or values if there is a threshold.
     pub(crate) fn of(threshold: Option<f64>) -> Self {
         Self { threshold, ..Self::default() }
     }
 
-    /// The label that a field on some line is.
+    /// The label in a field on some line.
     ///
     /// # Errors
     /// What was found and what was expected.

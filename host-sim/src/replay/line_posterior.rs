@@ -36,7 +36,7 @@ pub(crate) struct LinePosterior {
     pub(crate) pruned_mass: f64,
 }
 
-/// The labels leave more open than can be gone through.
+/// Why there is no distribution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum TooOpen {
     /// More cells than this.
@@ -63,22 +63,22 @@ impl std::fmt::Display for TooOpen {
     }
 }
 
-/// As many cells are held.
+/// The most cells that are kept.
 const MOST_CELLS: usize = 1_000_000;
 
-/// As many positions are looked at, over all boxes.
+/// The most positions that are looked at, over all boxes.
 const MOST_WORK: u64 = 3_000_000_000;
 
-/// What one position near a line costs where it is blurred, in others.
+/// The work of a blurred position, in positions that are not.
 const BLURRED_WORK: u64 = 5;
 
-/// Positions that may cut a box that is done.
+/// The most positions that may cut a box that is done.
 const FEW: usize = 8;
 
-/// Half the slopes of a box that is done, at most.
+/// The most that a box that is done may reach in slope, to either side of its middle.
 const NARROW: f64 = 1.0 / 16.0;
 
-/// What may be left out of account over a box that is done, of the logarithm.
+/// The most that may be neglected over a box that is done, of the logarithm.
 const LITTLE: f64 = 0.1;
 
 /// Boxes narrower than this are done, whatever cuts them: positions are no finer.
@@ -93,11 +93,12 @@ struct LineBox {
     quarter: Quarter,
     middle: [f64; 2],
     half: [f64; 2],
-    /// What the positions say that lie on one side of all its lines.
+    /// The weight of the positions that lie on one side of all its lines.
     settled: f64,
-    /// The others.
+    /// The other positions, which may cut it.
     open: Vec<u32>,
-    /// Where positions err: what the open ones say at the middle, how that changes, and how far it may be from that.
+    /// Where positions err: the weight of the open ones at the middle, how it changes, and a bound on what that
+    /// neglects.
     blurred: Option<Blurred>,
     /// The logarithm of what it weighs at most.
     upper: f64,
@@ -130,7 +131,7 @@ impl Ord for LineBox {
     }
 }
 
-/// The logarithm of the sum of two numbers that are given by theirs.
+/// The logarithm of the sum of two numbers that are given by their logarithms.
 fn log_sum(a: f64, b: f64) -> f64 {
     let (most, least) = (a.max(b), a.min(b));
     if least == f64::NEG_INFINITY { most } else { most + libm::log1p(libm::exp(least - most)) }
@@ -148,7 +149,8 @@ struct Problem<'a> {
 }
 
 impl LinePosterior {
-    /// The distribution over the lines that cross a rectangle about the origin, which reaches so far along the axes.
+    /// The distribution over the lines that cross a rectangle about the origin. `reach` is half its size along each
+    /// axis.
     pub(crate) fn of(votes: &[Votes], doubt: &Doubt, reach: Vector2<f64>) -> Result<Self, TooOpen> {
         let corner = |x: f64, z: f64| Point2::new(x * reach.x, z * reach.y);
         let ground = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
@@ -269,7 +271,7 @@ impl Problem<'_> {
         Some(line_box)
     }
 
-    /// What the open positions say over a box where they err.
+    /// The weight of the open positions over a box, where positions err.
     fn blurred(&mut self, line_box: &LineBox) -> Blurred {
         self.work += BLURRED_WORK * line_box.open.len() as u64;
         let ([slope, offset], half) = (line_box.middle, line_box.half);
@@ -356,7 +358,7 @@ impl Problem<'_> {
                 let told = |side| {
                     let blurred = line_box.blurred.is_some() && votes.count() > 0.0;
                     let on = self.doubt.on(votes, side);
-                    // What is not certain of it has been told with the blurred ones.
+                    // Its uncertain labels are in the blurred weight already.
                     if blurred && on.is_finite() { 0.0 } else { on }
                 };
                 split(quarter.seen(votes.at), &told);

@@ -15,8 +15,8 @@ pub(crate) fn line((normal, distance): ByNormal) -> Option<Line> {
     Line::from_coefficients(normal.x, normal.y, -distance)
 }
 
-/// The smallest arc of slopes that spans some, each from a direction to another, radians: as intervals of degrees
-/// within [-90, 90], two where it crosses the vertical.
+/// The smallest arc of slopes that spans some ranges of directions, radians. It is given as intervals of degrees within
+/// [-90, 90], two where it crosses the vertical.
 pub(crate) fn slope_arcs(directions: impl IntoIterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
     const ALL: [f64; 2] = [-90.0, 90.0];
     let turned = |[from, to]: [f64; 2]| {

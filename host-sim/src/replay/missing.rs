@@ -1,9 +1,9 @@
 //! The text that stands in a file where nothing was measured.
 
-/// Words for it, in any case.
+/// Words for a missing value, in upper or lower case.
 const WORDS: [&str; 9] = ["", "nan", "na", "n/a", "null", "none", "nil", "nodata", "no data"];
 
-/// Numbers for it, as loggers and GIS write them.
+/// Numbers for a missing value, as loggers and GIS write them.
 const NUMBERS: [f64; 2] = [-9999.0, -99999.0];
 
 /// Whether a field says that there is no value.

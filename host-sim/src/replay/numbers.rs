@@ -1,8 +1,8 @@
 //! Numbers as recorders write them: with a decimal point or a decimal comma, and with separators between thousands.
 //!
-//! 1,234.5 and 1 234,5 are clear by themselves. 1,234 and 1.234 are not: the separator is decimal in some files, and stands
-//! between thousands in others. They are read as decimal, unless the file has a number that settles it. If the
-//! file has a number that speaks for the other reading without settling it, the file is refused.
+//! 1,234.5 and 1 234,5 are clear by themselves. 1,234 and 1.234 are not: the separator is decimal in some files, and is
+//! between thousands in others. They are read as decimal, unless the file has a number that settles it. If the file has
+//! a number that speaks for the other reading without settling it, the file is refused.
 
 use anyhow::{Result, anyhow};
 
@@ -31,8 +31,8 @@ impl Decimal {
     }
 }
 
-/// Reads a file by a pass over it, which returns the decimal separator if it is to be made once more with that: what the
-/// separators of a file are may be known at its end alone.
+/// Reads a file in one pass or two. Its separators may be known only at its end. Then the first pass returns the
+/// decimal separator, and the second reads with it.
 ///
 /// # Errors
 /// Those of a pass.
@@ -55,7 +55,8 @@ pub(crate) struct Numbers {
     commas_delimit: bool,
     /// The decimal separator of the whole file, where an earlier pass has settled it.
     settled: Option<Decimal>,
-    /// The first number that is clear only with a decimal point, and only with a decimal comma, because it has thousands.
+    /// The first number that its thousands make clear only with a decimal point; then the first only with a decimal
+    /// comma.
     settles: [Seen; 2],
     /// The first number that has a decimal point, or a decimal comma, and no thousands.
     speaks: [Seen; 2],
@@ -67,13 +68,13 @@ pub(crate) struct Numbers {
 const GROUPING: [char; 6] = [' ', '\u{a0}', '\u{2009}', '\u{202f}', '\'', '\u{2019}'];
 
 impl Numbers {
-    /// Of a file whose fields a delimiter ends, if any does.
+    /// Reads the numbers of a file with this delimiter, if it has one.
     pub(crate) fn of(delimiter: Option<Delimiter>, settled: Option<Decimal>) -> Self {
         let commas_delimit = delimiter == Some(Delimiter::Comma);
         Self { commas_delimit, settled, ..Self::default() }
     }
 
-    /// The finite number that a field on some line is.
+    /// The finite number in a field on some line.
     pub(crate) fn read(&mut self, field: &str, line: usize) -> Option<f64> {
         let value =
             if field.contains([',', '\'', '\u{2019}']) || field.contains(char::is_whitespace) {
@@ -137,13 +138,13 @@ impl Numbers {
         field.replacen(char, ".", 1).parse().ok()
     }
 
-    /// Notes a number that is clear by a decimal separator alone; whether the file may have it.
+    /// Notes a number that is clear only with this decimal separator. Returns whether the file may have it.
     fn settles(&mut self, decimal: Decimal, field: &str, line: usize) -> bool {
         note(&mut self.settles[decimal as usize], field, line);
         self.settled.is_none_or(|settled| settled == decimal)
     }
 
-    /// All numbers are read: the decimal separator with which they are to be read once more, if they are.
+    /// Ends the reading. Returns the decimal separator if the file is to be read once more with it.
     ///
     /// # Errors
     /// The line of a number that may be two, or that does not go with another.

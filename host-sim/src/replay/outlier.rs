@@ -14,8 +14,8 @@ pub(crate) type Repeats = Vec<usize>;
 
 /// The samples each of which, left out alone, leaves both labels and a line that separates them.
 ///
-/// `rows` are the rows [in order](crate::replay::hull::in_order) of the samples, and no line separates them. `are_separable`
-/// says whether a line separates some rows in order. It is asked for all rows a few times.
+/// `rows` are the rows [in order](crate::replay::hull::in_order) of the samples, and no line separates them.
+/// `are_separable` says whether a line separates some rows in order. It is asked for all rows a few times.
 pub(crate) fn outliers(
     samples: &[Sample],
     rows: &[Row],
@@ -48,7 +48,7 @@ fn smallest_contradiction(rows: &[Row], are_separable: impl Fn(&[Row]) -> bool) 
         are_separable(&some)
     };
     while agree(&needed, &[]) && !others.is_empty() {
-        // The first so many of the others do not contradict what is needed, and with one more they do.
+        // The first `good` of the others agree with those that are needed, and the first `bad` do not.
         let (mut good, mut bad) = (0, others.len());
         while bad - good > 1 {
             let middle = good.midpoint(bad);

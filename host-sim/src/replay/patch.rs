@@ -7,7 +7,7 @@
 
 use nalgebra::{Point2, Vector2};
 
-/// Which of the four ways along the axes lines run.
+/// The direction along an axis that lines are nearest to: one of four.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Quarter(pub(crate) u8);
 
@@ -55,7 +55,7 @@ pub(crate) struct Mass {
 }
 
 impl Mass {
-    /// Adds another, of which each line counts so much.
+    /// Adds another, whose lines count with this weight.
     pub(crate) fn add(&mut self, other: &Self, weight: f64) {
         self.measure += weight * other.measure;
         self.normal += other.normal * weight;

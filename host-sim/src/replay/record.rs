@@ -52,7 +52,7 @@ struct SkippedRecord {
     first: Option<usize>,
 }
 
-/// The estimates where the file has them.
+/// The estimates in the file's own coordinates.
 #[derive(Serialize)]
 struct EstimatesInFile {
     bisector: Option<LineInFile>,
@@ -72,7 +72,7 @@ pub(crate) struct LineInFile {
     pub ends: Option<[[f64; 2]; 2]>,
 }
 
-/// What labels that may be wrong come to.
+/// What labels that may be wrong determine.
 #[derive(Serialize)]
 struct DoubtRecord {
     p: f64,
@@ -87,7 +87,7 @@ struct CredibleRecord {
     level: f64,
     slope_arcs: Vec<[f64; 2]>,
     intercept: Option<[f64; 2]>,
-    /// What it holds.
+    /// Its probability.
     probability: f64,
 }
 
@@ -123,7 +123,7 @@ impl Replay {
         Ok(Self { file, answer })
     }
 
-    /// A line in the file's coordinates, where these are others.
+    /// A line in the file's coordinates, if these are not the planner's.
     pub(crate) fn in_file(&self, line: &Line) -> Option<LineInFile> {
         let frame = &self.file.frame;
         frame.origin()?;

@@ -7,7 +7,7 @@ use crate::replay::columns::Columns;
 use crate::replay::crs::Crs;
 use crate::replay::delimiter::Delimiter;
 
-/// How a file is to be read, as far as one says so.
+/// How a file is to be read, as far as flags say.
 #[derive(Clone, Debug, Default)]
 pub struct Layout {
     /// Its columns.
@@ -80,7 +80,7 @@ pub(crate) struct Rows {
     pub(crate) skipped: Skipped,
     /// The rows whose labels are certain, whatever `p` is.
     pub(crate) certain: Vec<usize>,
-    /// How often the others are true, where the file tells it.
+    /// How often the others are true, if the file says.
     pub(crate) p: Option<f64>,
     pub(crate) is_geographic: bool,
     /// The titles of the columns of positions, of a table that has titles.

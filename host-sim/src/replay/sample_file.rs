@@ -17,11 +17,11 @@ pub(crate) struct SampleFile {
     pub(crate) name: String,
     /// The samples.
     pub(crate) samples: Vec<Sample>,
-    /// What their positions are in the file.
+    /// How the file's positions became sites.
     pub(crate) frame: Frame,
     /// The samples whose labels are certain, whatever `p` is.
     pub(crate) certain: Vec<usize>,
-    /// How often the others are true, where the file tells it.
+    /// How often the others are true, if the file says.
     pub(crate) p: Option<f64>,
     /// Rows that are no samples.
     pub(crate) skipped: Skipped,

@@ -79,7 +79,7 @@ pub(crate) fn are_separable(rows: &[Row]) -> bool {
     first_are_separable(rows, usize::MAX)
 }
 
-/// The same of the first so many samples of their record.
+/// The same of the rows of the first `count` samples.
 fn first_are_separable(rows: &[Row], count: usize) -> bool {
     let hulls = Facing::of(rows, count);
     hulls.are_of_one_label() || hulls.ends().is_some()

@@ -2,11 +2,11 @@
 
 use crate::replay::rows::{Layout, Rows, Unit};
 
-/// The first row that says so, and what to do; nothing where latitudes may be what they are called.
+/// The first row that shows swapped degrees, with the message; `None` if the latitudes may be latitudes.
 pub(crate) fn first(rows: &Rows, layout: &Layout) -> Option<(usize, String)> {
     let is_beyond = |at: &[f64; 2]| at[0].abs() > 90.0;
     let beyond = rows.positions.iter().filter(|at| is_beyond(at)).count();
-    // A few are mistakes in rows, which are told one by one.
+    // A few are mistakes in rows, which are reported one by one.
     let all_would_do =
         rows.positions.iter().all(|[lat, lon]| lat.abs() <= 360.0 && lon.abs() <= 90.0);
     if 2 * beyond <= rows.positions.len() || !all_would_do {

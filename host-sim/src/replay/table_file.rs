@@ -23,12 +23,12 @@ fn reader(text: &[u8], delimiter: Delimiter) -> csv::Reader<&[u8]> {
         .from_reader(text)
 }
 
-/// The fields of a row: of several spaces between two, each but the last ends an empty one.
+/// The fields of a row. Several spaces between two fields make empty ones, which are left out.
 fn fields(row: &ByteRecord, delimiter: Delimiter) -> impl Iterator<Item = &[u8]> {
     row.iter().filter(move |field| delimiter != Delimiter::Space || !field.is_empty())
 }
 
-/// One of them.
+/// One field of a row.
 fn field(row: &ByteRecord, delimiter: Delimiter, column: usize) -> Cow<'_, str> {
     let field = match delimiter {
         Delimiter::Space => fields(row, delimiter).nth(column),
@@ -37,7 +37,7 @@ fn field(row: &ByteRecord, delimiter: Delimiter, column: usize) -> Cow<'_, str> 
     String::from_utf8_lossy(field.unwrap_or_default())
 }
 
-/// What the first row says, read with a delimiter; `at` is its place, for errors.
+/// The columns by the first row, read with a delimiter; `at` is the place of that row, for errors.
 fn places(at: &str, first: &ByteRecord, columns: &Columns, delimiter: Delimiter) -> Result<Places> {
     let titles: Vec<_> = fields(first, delimiter).map(String::from_utf8_lossy).collect();
     let titles: Vec<_> = titles.iter().map(AsRef::as_ref).collect();
@@ -67,7 +67,7 @@ pub(crate) fn parse(name: &str, text: &[u8], layout: &Layout) -> Result<Rows> {
     numbers::settled(|decimal| pass(name, text, layout, decimal))
 }
 
-/// The rows, read with what is known of the decimal separator; and what it is, if they are to be read once more.
+/// A pass over the rows, with the decimal separator if it is known. It returns the separator if another pass is needed.
 fn pass(
     name: &str,
     text: &[u8],
@@ -165,8 +165,8 @@ impl<'a> Lines<'a> {
         Self { text, at: 0, line: 1 }
     }
 
-    /// The line on which a row begins. What its position counts as its beginning may be the end of the row
-    /// before, and blank lines and comments between the two.
+    /// The line on which a row begins. The reader counts a row from the end of the row before. Blank lines and comments
+    /// between the two are skipped here.
     fn row(&mut self, row: &ByteRecord) -> usize {
         let begins = row.position().map_or(0, |position| position.byte() as usize);
         while self.at < begins {

@@ -33,23 +33,23 @@ struct Stretch {
 /// All lines that agree with a record within a tolerance.
 #[derive(Debug)]
 pub(crate) struct TolerantSeparation {
-    /// Metres, with what positions are rounded by.
+    /// The tolerance and the rounding of positions, metres.
     tolerance: f64,
     stretches: Vec<Stretch>,
 }
 
-/// Why there is none.
+/// Why there is no such set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum NoSeparation {
     /// All samples have the same label.
     OneLabel,
     /// No line agrees with the samples up to and including the one at this index, the first such.
     Contradiction(usize),
-    /// Lines of every direction do.
+    /// Lines of every direction agree.
     AnyDirection,
 }
 
-/// Between two places where read-outs are taken, radians at most.
+/// The largest angle between two directions at which read-outs are computed, radians.
 const STEP: f64 = 0.02;
 
 fn unit(angle: f64) -> Vector2<f64> {
@@ -73,7 +73,7 @@ impl Stretch {
         self.distances(angle, tolerance).map(|distance| (unit(angle), distance))
     }
 
-    /// Places from its beginning to its end.
+    /// Directions from its beginning to its end, at most [`STEP`] apart.
     fn places(&self) -> impl Iterator<Item = f64> + use<> {
         let Self { from, to, .. } = *self;
         let parts = ((to - from) / STEP).ceil().max(1.0);
@@ -132,7 +132,7 @@ impl TolerantSeparation {
     /// The range of the lines' intercepts, metres; `None` when it is unbounded.
     pub(crate) fn intercepts(&self) -> Option<[f64; 2]> {
         let bounds = self.stretches.iter().flat_map(|it| {
-            // Where a line along a rim about a sample has its intercept at an end: the sample's own normal.
+            // The directions in which a line that touches the disc about a sample has its least and greatest intercept.
             let rims = [it.pair.positive(), it.pair.negative()].into_iter().flat_map(|sample| {
                 let x = Point2::<f64>::from(sample.site).x / self.tolerance;
                 let angle = if x.abs() < 1.0 { libm::asin(x) } else { 0.0 };
@@ -200,7 +200,7 @@ impl TolerantSeparation {
     }
 }
 
-/// Metres, with what positions are rounded by to the lattice.
+/// A tolerance and the rounding of positions to the lattice, metres.
 fn with_rounding(tolerance: f64) -> f64 {
     tolerance + 1.0 / f64::from(UNITS_PER_METRE)
 }
@@ -210,7 +210,7 @@ pub(crate) fn are_separable(rows: &[Row], tolerance: f64) -> bool {
     first_are_separable(rows, usize::MAX, with_rounding(tolerance))
 }
 
-/// The same of the first so many samples of their record, within a tolerance that has the rounding.
+/// The same of the rows of the first `count` samples. `tolerance` includes the rounding.
 fn first_are_separable(rows: &[Row], count: usize, tolerance: f64) -> bool {
     let some = Facing::of(rows, count);
     some.are_of_one_label() || !stretches(&some, tolerance).is_empty()

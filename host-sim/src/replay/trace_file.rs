@@ -6,8 +6,8 @@ use serde::Deserialize;
 
 use crate::replay::rows::{Layout, Rows};
 
-/// As much of a record as is read here; see the contract of the trace in ARCHITECTURE.md. One structure for all kinds:
-/// of a tagged enumeration numbers are not understood where another crate has serde keep their digits.
+/// The fields of a record that are read here; the contract of the trace is in ARCHITECTURE.md. All kinds share one
+/// structure. With a tagged enumeration serde would not understand numbers if another crate makes it keep their digits.
 #[derive(Deserialize)]
 struct Record {
     #[serde(rename = "record")]
@@ -41,7 +41,7 @@ struct Pose {
     z: f64,
 }
 
-/// The rows of a trace. What was sensed on the boundary itself tells no side, and is left out.
+/// The rows of a trace. A reading on the boundary itself has no side, and is left out.
 ///
 /// # Errors
 /// Names the file and the line, what was found and what was expected.

@@ -64,7 +64,7 @@ impl Replay {
         format!("Skipped {count} {row}{s} without a value, the first on {name} {line} ({lacks}).\n")
     }
 
-    /// What positions are about.
+    /// The origin of positions, in words.
     fn about(&self) -> String {
         match self.file.frame.origin() {
             None => String::new(),
@@ -78,7 +78,7 @@ impl Replay {
         }
     }
 
-    /// The lines to tell, the recommended one first.
+    /// The lines to report, the recommended one first.
     pub(crate) fn named(&self) -> Vec<(&'static str, Option<Line>)> {
         let Answer { centre, maximum_margin, bisector, tolerance, doubt, .. } = &self.answer;
         let [mean, margin, printed] = text::NAMES;

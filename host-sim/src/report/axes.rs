@@ -1,4 +1,4 @@
-//! Axes: from figures to pixels, and the ticks between.
+//! Axes: from numbers to pixels, with ticks.
 
 use nalgebra::{Point2, Vector2};
 
@@ -7,7 +7,7 @@ use crate::report::shapes::{Anchor, Spot, width};
 use crate::report::sheet::Sheet;
 use crate::report::style::BORDER;
 
-/// How figures lie along an axis.
+/// The scale of an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Scale {
     Linear,
@@ -15,7 +15,7 @@ pub(crate) enum Scale {
     Logarithmic,
 }
 
-/// An axis from its least figure to its largest, over some pixels. They may run backwards.
+/// An axis from its least number to its largest, over some pixels, which may run backwards.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Axis {
     pub(crate) scale: Scale,
@@ -30,7 +30,7 @@ pub(crate) struct Axes {
 }
 
 impl Axis {
-    /// The pixel of a figure.
+    /// The pixel of a number.
     pub(crate) fn at(&self, figure: f64) -> f64 {
         let along = |figure: f64| match self.scale {
             Scale::Linear => figure,
@@ -41,7 +41,7 @@ impl Axis {
         start + (along(figure) - from) / (to - from) * (end - start)
     }
 
-    /// Figures to mark, with their names.
+    /// Numbers to mark, with their texts.
     pub(crate) fn ticks(&self) -> Vec<(f64, String)> {
         let [from, to] = self.figures;
         match self.scale {

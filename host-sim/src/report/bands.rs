@@ -19,13 +19,13 @@ use crate::world::polygon::Polygon;
 /// The thresholds of the bands: the least probability that lines pass a place of each. Ground below the first is blank.
 pub const LEAST: [f64; 5] = [0.01, 0.2, 0.4, 0.6, 0.8];
 
-/// The share of the area from which on a band is worth its shade.
+/// The least share of the area for which a band is drawn.
 const LEAST_SEEN: f64 = 1e-4;
 
 /// Columns between those at the samples.
 const COLUMNS: u32 = 240;
 
-/// Ground that lines of so much probability pass at least.
+/// Ground where the line passes with at least some probability.
 #[derive(Clone, Debug)]
 pub struct Band {
     /// The least probability of the hypotheses of the credible set that have lines through a place of it.
@@ -148,7 +148,7 @@ impl Ends {
         Self(ends)
     }
 
-    /// Where lines of so much probability pass.
+    /// The intervals through which lines of at least this probability pass.
     fn from(&self, least: f64) -> Vec<Interval> {
         const ROUNDING: f64 = 1e-12;
         let (mut mass, mut begun, mut intervals) = (0.0, None, Vec::new());
@@ -201,7 +201,7 @@ fn join(columns: impl Iterator<Item = (f64, Vec<Interval>)>) -> Vec<Growing> {
     done
 }
 
-/// What lies between two columns whose intervals are not as many: pairs that overlap. Of one interval that overlaps
+/// What lies between two columns with different numbers of intervals: pairs that overlap. If one interval overlaps
 /// several, each has its share, up to the middle of the gap to the next.
 fn parts(left: &[(Interval, Growing)], right: &[Interval]) -> Vec<[Interval; 2]> {
     let left: Vec<_> = left.iter().map(|(interval, _)| *interval).collect();
@@ -227,7 +227,7 @@ impl Growing {
         }
     }
 
-    /// Around it, without corners that are straight to some detail.
+    /// Its corners in order, without those that are straight to some detail.
     fn corners(self, detail: f64) -> Vec<Point2<f64>> {
         let [lower, upper] = self.sides.map(|side| straightened(&side, detail));
         lower.into_iter().chain(upper.into_iter().rev()).collect()

@@ -19,7 +19,7 @@ fn spread(Spread { median, p90, worst }: Spread, decimals: usize) -> String {
     format!("{median:>8.decimals$} {p90:>8.decimals$} {worst:>8.decimals$}")
 }
 
-/// How accurate the line is after so many steps.
+/// The accuracy of the line after some steps, in tables.
 pub fn accuracy(summary: &accuracy::Summary) -> String {
     let accuracy::Summary { algorithm, fields, seed, rows, .. } = summary;
     let (degrees, areas) = (degrees(rows), areas(rows));
@@ -116,7 +116,7 @@ pub fn calibration(summary: &calibration::Summary) -> String {
     )
 }
 
-/// By one of the two priors.
+/// How often statements hold, by one of the two priors.
 fn coverage(rows: &[calibration::Row], prior: usize) -> Table {
     let mut table = Table::new([
         Column::right("labels", 6),

@@ -5,7 +5,7 @@ use crate::campaign::{accuracy, calibration};
 use crate::mission::algorithm::Algorithm;
 use crate::report::table::{Column, Table};
 
-/// Steps, or labels, after which planners are compared; those that were flown. Else the last.
+/// Steps, or labels, after which planners are compared, if they were flown. Otherwise the last one is taken.
 const STAGES: [u32; 4] = [10, 20, 30, 40];
 
 /// Steps over which motion is compared.
@@ -89,8 +89,7 @@ fn table(stage: &'static str, planners: impl Iterator<Item = Algorithm>) -> Tabl
     Table::new(first.into_iter().chain(planners).collect::<Vec<_>>())
 }
 
-/// A row for each stage, the first with the name of what is compared. Of a planner that did not come so far
-/// there is nothing to tell.
+/// A row for each stage, the first with the name of what is compared. A planner that ended earlier has a dash.
 fn add(
     table: &mut Table,
     name: &str,

@@ -13,7 +13,7 @@ use crate::report::style::{CURVES, Stroke};
 /// Below this an error is drawn as if it were this.
 const LEAST: f64 = 1e-9;
 
-/// What labels can tell at most.
+/// The line of the most that labels can carry.
 const LIMIT: Stroke = Stroke { class: "limit", colour: "#000000", width: 1.2, dashes: "2 3" };
 
 /// Curves of several planners.
@@ -31,9 +31,9 @@ pub struct Curves {
 struct Panel {
     name: &'static str,
     is_error: bool,
-    /// Of each planner: after how many steps or labels, and what.
+    /// For each planner, the numbers of steps or labels with the spread after each.
     of: Vec<Vec<(u32, Spread)>>,
-    /// A bound: so much for each step or label.
+    /// A bound, for each step or label.
     limit: Option<f64>,
 }
 

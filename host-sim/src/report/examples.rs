@@ -1,4 +1,4 @@
-//! The flights of the paper's examples side by side: a row for each, and for a printed one another.
+//! The flights of the paper's examples side by side: a row for each, and a second row for a printed one.
 
 use planner_core::{PosteriorView, Prior};
 
@@ -14,7 +14,7 @@ pub struct Flown<'a> {
     pub example: &'a str,
     /// Who flew it.
     pub planner: &'a str,
-    /// Whether as the paper prints it: then its estimate is told before the recommended one.
+    /// Whether it was flown as printed. Then the paper's estimate comes before the recommended one.
     pub is_printed: bool,
     /// How it went.
     pub recording: &'a Recording,
@@ -60,7 +60,7 @@ pub fn side_by_side<'a>(flights: impl Iterator<Item = Flown<'a>>) -> String {
     table.to_string()
 }
 
-/// Bits told, by the area prior whichever chose the motions.
+/// The bits learnt, by the area prior, whichever prior chose the motions.
 pub(crate) fn bits(belief: &dyn ReadOut) -> f64 {
     let by_area = belief.hypotheses().map(|table| table.weighed_by(Prior::Area));
     by_area.map_or_else(|| belief.information(), |table| PosteriorView::new(&table).information())

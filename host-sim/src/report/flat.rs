@@ -6,8 +6,8 @@ use crate::mission::algorithm::Algorithm;
 use crate::mission::results::{PoseRecord, Results, Start, StepResult};
 use crate::output::file::json;
 
-/// A step with what the trace tells once for all steps. Keys are those of the trace; what is a list or an object
-/// there has a key for each part.
+/// A step, with what the trace has once for all steps. Keys are those of the trace. Each part of a list or an object
+/// there has a key of its own here.
 #[derive(Serialize)]
 pub(crate) struct Row {
     pub(crate) algorithm: Algorithm,

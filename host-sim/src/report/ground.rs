@@ -29,7 +29,7 @@ impl Ground {
         belief.version_space().map_or(Self::Plain, |lines| Self::certain(area, &support(lines)))
     }
 
-    /// The ground that samples leave certain, which bound the lines in cyclic order.
+    /// The ground that some samples leave certain. They bound the lines, in cyclic order.
     pub fn certain(area: MissionArea, support: &[Sample]) -> Self {
         let certain = |label| Polygon::certain(area, support, label);
         Self::Certain([Label::Positive, Label::Negative].map(certain))

@@ -26,11 +26,11 @@ pub(crate) enum Look {
     Number,
     /// A line.
     Line(Stroke),
-    /// A marker of a curve: which of those that there are.
+    /// The marker of a curve, by the curve's number.
     Marker(usize),
     /// Ground.
     Ground(Fill),
-    /// So many shades of ground, side by side.
+    /// This many shades of ground, side by side.
     Shades(usize),
 }
 

@@ -22,11 +22,11 @@ pub(crate) struct Map {
     axes: Axes,
     sheet: Sheet,
     placing: Placing,
-    /// Words that wait for all marks to be there: what, beside which spot, how large.
+    /// Words that are placed after all marks: the text, its spot and its size.
     words: Vec<(String, Spot, f64)>,
 }
 
-/// A name beside a spot stands at most so far away, pixels.
+/// The greatest distance of a name from its spot, pixels.
 const REACH: f64 = 90.0;
 
 impl Map {
@@ -128,7 +128,7 @@ impl Map {
         }
     }
 
-    /// What is kept out of.
+    /// Draws the keep-outs.
     pub(crate) fn limits(&mut self) {
         let outlines: Vec<Polygon> = self.area.hulls().map(Polygon::from).collect();
         for Polygon(outline) in &outlines {
@@ -238,7 +238,7 @@ impl Map {
         }
     }
 
-    /// Samples, the first so many of them given.
+    /// Draws the samples, the first `given` of which were given.
     pub(crate) fn samples(&mut self, samples: &[Dot], given: usize) {
         for (k, dot) in samples.iter().enumerate() {
             let at = self.axes.at(dot.at);

@@ -9,10 +9,10 @@ use crate::report::shapes::{NUMBER, Spot, width};
 use crate::report::sheet::Sheet;
 use crate::report::style::{INK, Stroke};
 
-/// From a step to its number, where that is far.
+/// The line from a step to its number, if the number is far away.
 const LEADER: Stroke = Stroke { class: "number", colour: INK, width: 0.6, dashes: "1.5 1.5" };
 
-/// How far from its step a number stands, pixels: at least, without a leader, and at most.
+/// The distance of a number from its step, pixels: the least, the greatest without a leader, the greatest.
 const AWAY: [f64; 3] = [5.0, 13.0, 120.0];
 
 const EVERY: usize = 5;

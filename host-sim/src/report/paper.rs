@@ -86,7 +86,7 @@ fn task() -> Result<String> {
     Ok(finish(map, &picture, &truth))
 }
 
-/// A walk that heeds no label, which is wrong at times near the line.
+/// A walk that ignores its labels, which are sometimes wrong near the line.
 fn walk() -> Result<Recording> {
     let seed = format!("seed = {WALK_SEED}");
     let band = format!("noise = {{ p = 0.7, band = {BAND:?} }}");

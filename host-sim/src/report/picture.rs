@@ -87,9 +87,9 @@ pub enum Kind {
     Bound,
     /// The plain maximum margin.
     MaximumMargin,
-    /// What would come next.
+    /// The second-best candidate.
     SecondBest,
-    /// And then.
+    /// The third-best candidate.
     ThirdBest,
 }
 
@@ -208,7 +208,7 @@ fn note(Recording { mission, results, .. }: &Recording) -> String {
     )
 }
 
-/// Places along the arc from one place to another on which one turns so far; of a straight way the end.
+/// Places along the arc from one place to another, with this turn. A straight way has its end alone.
 fn arc(from: Point2<f64>, to: Point2<f64>, turn: f64) -> Vec<Point2<f64>> {
     const PARTS: u32 = 12;
     if turn == 0.0 {

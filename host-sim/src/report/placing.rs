@@ -59,8 +59,8 @@ impl Placing {
         self.ways.extend(places.windows(2).map(|it| [it[0], it[1]]));
     }
 
-    /// The nearest place for words of some size beside a spot, from a distance on and up to another; it is taken then.
-    /// `None` where it is too tight.
+    /// The nearest free place for words of some size, between two distances from a spot. It is taken then. `None` if
+    /// there is none.
     pub(crate) fn place(
         &mut self,
         at: Spot,

@@ -49,7 +49,7 @@ impl Sheet {
         self.add(ways.into_iter().fold(Look::Line(stroke).group(), draw));
     }
 
-    /// Ground within polygons, one and all filled by the even-odd rule.
+    /// Ground within polygons, all filled together by the even-odd rule.
     pub(crate) fn ground(&mut self, fill: Fill, rings: &[Vec<Spot>]) {
         let mut rings = rings.iter().filter(|ring| ring.len() > 2).peekable();
         if rings.peek().is_some() {

@@ -10,13 +10,13 @@ use crate::report::picture::Kind;
 const POSITIVE: &str = "#d55e00";
 const NEGATIVE: &str = "#0072b2";
 
-/// Of text, axes and outlines.
+/// The colour of text, axes and outlines.
 pub(crate) const INK: &str = "#1a1a1a";
 
 /// How many shades there are.
 pub(crate) const SHADES_COUNT: usize = LEAST.len();
 
-/// Of bands, the least likely first.
+/// The shades of bands, the least likely first.
 const SHADES: [&str; SHADES_COUNT] = ["#f0e8f6", "#dccbe9", "#c3a5d7", "#a67cc2", "#8653a6"];
 
 /// How a line is drawn.
@@ -51,7 +51,7 @@ pub(crate) enum Fill {
     KeepOut,
     /// Not of the area.
     Outside,
-    /// A band of those that there are.
+    /// A band, by its number.
     Shade(usize),
 }
 

@@ -23,17 +23,17 @@ impl Column {
         Self { title, align, width, gap: 1 }
     }
 
-    /// Words.
+    /// A column of words.
     pub const fn left(title: &'static str, width: usize) -> Self {
         Self::new(title, Align::Left, width)
     }
 
-    /// Several figures.
+    /// A column of cells with several numbers.
     pub const fn centre(title: &'static str, width: usize) -> Self {
         Self::new(title, Align::Centre, width)
     }
 
-    /// Figures.
+    /// A column of numbers.
     pub const fn right(title: &'static str, width: usize) -> Self {
         Self::new(title, Align::Right, width)
     }

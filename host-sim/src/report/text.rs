@@ -21,7 +21,7 @@ pub fn range(intercept: Option<[f64; 2]>) -> String {
     })
 }
 
-/// A number with so many decimal places. What is rounded to nothing has no sign.
+/// A number with this many decimal places. Zero has no sign.
 fn fixed(value: f64, places: usize) -> String {
     let text = format!("{value:.places$}");
     let is_nothing = text.bytes().all(|it| b"-0.".contains(&it));
@@ -68,8 +68,8 @@ pub fn estimates(results: &Results) -> [(&'static str, Option<LineRecord>); 3] {
     named(names, &results.end.estimates)
 }
 
-/// The same, first the one that the paper prints: of labels that are true the bisector; of labels that may err it
-/// prints the most likely hypothesis, which its margin stands for.
+/// The same, with the one that the paper prints first. For true labels it is the bisector. For labels that may err it
+/// is the most likely hypothesis, which its maximum margin stands for.
 pub fn printed_estimates(results: &Results) -> [(&'static str, Option<LineRecord>); 3] {
     let [centre, margin, bisector] = estimates(results);
     if results.end.noisy.is_some() {
@@ -171,7 +171,7 @@ fn remedy(results: &Results) -> Option<&'static str> {
     })
 }
 
-/// The knowledge that is certain, or as certain as was asked.
+/// Whether the goal is met, in words.
 pub(crate) fn promise(goal: &GoalRecord) -> String {
     let &GoalRecord { slope_arc_deg, misclassified, level, is_met } = goal;
     let sure = level.map_or(String::new(), |level| format!(" with probability {level} at least"));
@@ -247,7 +247,7 @@ pub(crate) fn signed(label: Option<i8>) -> String {
     label.map_or("-".into(), |label| format!("{label:+}"))
 }
 
-/// Of labels that are true: what they leave.
+/// The steps of a mission with true labels, and what these leave.
 fn steps(steps: &[StepResult], start: &Start) -> Table {
     let left = [
         Column::right("label", 5),
@@ -287,7 +287,7 @@ fn note(step: &StepResult, flipped: bool) -> &'static str {
     }
 }
 
-/// Of labels that may err: what was seen, what it says, how much.
+/// The steps of a mission whose labels may err: what was seen, what was true, and what is known.
 fn noisy_steps(steps: &[StepResult]) -> Table {
     let said = [
         Column::right("label", 5),

@@ -20,7 +20,7 @@ const CORES: &str = include_str!("../../../tests/cores.toml");
 pub struct Core {
     /// What people call it.
     pub name: &'static str,
-    /// What compiles for it.
+    /// Its Rust target.
     pub target: &'static str,
     /// What it is called in `tests/cores.toml`.
     key: &'static str,

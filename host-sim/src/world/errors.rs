@@ -12,7 +12,7 @@ use rand_chacha::ChaCha8Rng;
 use crate::world::World;
 use crate::world::robot::Robot;
 
-/// Gaussian errors are cut at so many standard deviations.
+/// Gaussian errors are cut off at this many standard deviations.
 pub const CUT: f64 = 3.0;
 
 /// How a robot errs: standard deviations, metres an axis and radians.
@@ -37,7 +37,8 @@ pub struct Erring {
 }
 
 impl Erring {
-    /// A robot that reports a pose at the start: it is as far from there as from any other it reports.
+    /// A robot that reports `start` as its pose. Its true position differs by a random error, as with each pose it
+    /// reports.
     pub fn new(world: World, errors: Errors, start: Pose, mut rng: ChaCha8Rng) -> Self {
         let truth = displaced(start, spread(&mut rng, errors.position), 0.0);
         Self { world, errors, rng, truth }
@@ -80,14 +81,14 @@ fn rotated(v: Vector2<f64>, angle: f64) -> Vector2<f64> {
     Vector2::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y)
 }
 
-/// A pose some way off; where that is off the lattice, at the same site.
+/// A pose after an offset and a turn. If the new place is off the lattice, the site stays the same.
 fn displaced(pose: Pose, by: Vector2<f64>, turn: f64) -> Pose {
     let site = Site::try_from(metres(pose.site) + by).unwrap_or(pose.site);
     let turn = Heading::from_radians(turn).unwrap_or_default().since(Heading::default());
     Pose { site, heading: pose.heading.turned(turn) }
 }
 
-/// Two independent errors: no further than the cut off.
+/// Two independent errors. As a vector they are no longer than [`CUT`] standard deviations.
 fn spread(rng: &mut ChaCha8Rng, deviation: f64) -> Vector2<f64> {
     loop {
         // Box and Muller, by libm: the same on every machine.

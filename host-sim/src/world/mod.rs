@@ -1,5 +1,5 @@
-//! The real world of a simulation: what a place reads, and the line that divides the plane, if one does; robots that
-//! move and sense in it; shapes in metres.
+//! The simulated world: the line that divides the plane, the label at each place, and robots that move and sense there.
+//! Also shapes in metres.
 
 pub mod errors;
 pub mod noise;
@@ -10,7 +10,7 @@ use nalgebra::Point2;
 use planner_core::belief::cell_view::CellView;
 use planner_core::{Label, Line, Reading, Site};
 
-/// The real world: a straight boundary, if it is known. A real vehicle's is not.
+/// The world: its straight boundary, if that is known. Around a real vehicle it is not.
 #[derive(Clone, Copy, Debug)]
 pub struct World {
     boundary: Option<Line>,
@@ -40,7 +40,7 @@ impl World {
         side(self.distance(site))
     }
 
-    /// Whether a label is the true one of a site, for all that is known.
+    /// Whether a label can be the true one of a site. Where the boundary is not known, any label can.
     pub fn agrees(&self, site: Site, label: Label) -> bool {
         self.boundary.is_none() || self.reading(site) == Reading::Side(label)
     }

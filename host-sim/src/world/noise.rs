@@ -16,7 +16,7 @@ use crate::world::robot::Robot;
 pub struct NoiseModel {
     /// Where labels can be wrong, they are true with this probability.
     pub p: f64,
-    /// Where that is.
+    /// Where labels can be wrong.
     pub extent: Extent,
 }
 
@@ -25,13 +25,12 @@ pub struct NoiseModel {
 pub enum Extent {
     /// Outside balls of this radius around the oracle's points, metres.
     OutsideBalls(f64),
-    /// Within this distance of the boundary, metres (Section II-B's `c_bar`): what a planner cannot
-    /// know.
+    /// Within this distance of the boundary, metres (Section II-B's `c_bar`). A planner cannot know this extent.
     Band(f64),
 }
 
 impl NoiseModel {
-    /// The noise as a planner is told of it: for a band, the planner can know only `p`.
+    /// The noise as the planner is configured with it. Of a band it knows only `p`.
     ///
     /// # Panics
     /// Never: a model holds a probability and a radius within the lattice.
@@ -58,7 +57,7 @@ pub struct Flipped {
     pub world: World,
     /// The oracle's samples.
     pub given: Vec<Sample>,
-    /// The source of chance.
+    /// The random number generator.
     pub rng: ChaCha8Rng,
 }
 
@@ -89,7 +88,7 @@ impl Robot for Flipped {
     }
 }
 
-/// Bits that a label which is true with probability `p` can tell at most: `1 - H(p)`.
+/// The most bits that a label can carry if it is true with probability `p`: `1 - H(p)`.
 pub fn limit(p: f64) -> f64 {
     let term = |p: f64| if p > 0.0 { p * libm::log2(p) } else { 0.0 };
     1.0 + term(p) + term(1.0 - p)

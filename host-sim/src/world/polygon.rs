@@ -23,7 +23,7 @@ impl From<MissionArea> for Polygon {
     }
 }
 
-/// Its border, with arcs as 16 chords of a quarter turn.
+/// The border of a keep-out. Each quarter turn of an arc becomes 16 chords.
 impl<const C: usize> From<&KeepOut<C>> for Polygon {
     fn from(KeepOut { hull, radius }: &KeepOut<C>) -> Self {
         const CHORDS: u32 = 64;

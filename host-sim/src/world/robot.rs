@@ -9,7 +9,7 @@ use crate::world::World;
 
 /// A robot that cannot fail.
 pub trait Robot: Body<Error = Infallible> {
-    /// Where it truly is; `None` if that is where it says.
+    /// Its true pose; `None` if the pose that it reports is the true one.
     fn true_pose(&self) -> Option<Pose>;
 }
 

@@ -14,7 +14,7 @@ thread_local! {
 #[derive(Clone, Copy, Debug)]
 pub struct Counted<G>(pub G);
 
-/// What all counted areas of this thread were asked since the last call.
+/// How much all counted areas of this thread were asked since the last call.
 pub fn asked() -> u64 {
     ASKED.replace(0)
 }

@@ -32,7 +32,7 @@ pub enum Finding {
     FalseReason,
     /// A plan took more than its stated work.
     TooLong,
-    /// A planner that was asked twice said two things.
+    /// A planner that was asked twice gave two plans.
     Fickle,
 }
 
@@ -51,7 +51,7 @@ pub struct Flight {
     pub findings: Vec<(Finding, String)>,
 }
 
-/// Flies a mission whose plans may ask so much of the area.
+/// Flies a mission. `most_asked` is the most that a plan may ask of the area.
 ///
 /// # Panics
 /// When a planner panics.

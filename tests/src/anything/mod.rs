@@ -26,7 +26,7 @@ pub const fn kind(vehicle: &AnyVehicle) -> &'static str {
     }
 }
 
-/// The numbers of missions to fly: so many, or those that `FROM` and `COUNT` in the environment ask for.
+/// The numbers of missions to fly: `count` of them, or those that `FROM` and `COUNT` in the environment ask for.
 ///
 /// # Panics
 /// When these are no numbers.

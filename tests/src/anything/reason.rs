@@ -28,7 +28,7 @@ const THIN: f64 = 0.02;
 pub fn refute(mission: &Mission, belief: &dyn ReadOut, pose: Pose, end: Ending) -> Option<String> {
     let Ending::Stopped(reason) = end else { return None };
     let area = mission.config.area.inset(mission.config.tolerance.units()).expect("an area");
-    // Who is not safe may use the margin in order to become so.
+    // A vehicle that is not safe may use the margin to become safe.
     let is_safe = area.contains(pose.site) && mission.vehicle.is_safe(pose, &area);
     let ground = if is_safe { area } else { mission.config.area };
     let judge = Judge { mission, belief, area, ground };
@@ -96,7 +96,8 @@ impl Judge<'_> {
         (share > THIN).then(|| format!("{:.2} % of the area is open, at {pose:?}", 100.0 * share))
     }
 
-    /// Random sequences of motions that stay inside: whether one ends on open ground where the vehicle is safe.
+    /// A random sequence of motions that stays inside and ends on open ground where the vehicle is safe, if one is
+    /// found.
     fn way_on(&self, pose: Pose) -> Option<String> {
         let mut rng = self.rng();
         let vehicle = &self.mission.vehicle;

@@ -24,14 +24,14 @@ pub const KNOWN: Known<'static> = &[
     ("firmware::mission::Board::run", &["firmware::time::ticks"]),
     ("firmware::mission::Board::fly_forecast", &["firmware::time::ticks"]),
     ("firmware::mission::Board::fly_scc", &["firmware::time::ticks"]),
-    // It would wake who waits on the monotonic. No task does: the queue is empty.
+    // It would wake tasks that wait on the monotonic. There are none.
     ("SysTick", &[]),
 ];
 
 /// What the core stacks for an exception with floating point: 26 words, and one to align them.
 const FRAME: u32 = 4 * 27;
 
-/// Where every panic comes through.
+/// The function through which every panic goes.
 const PANIC: &str = "core::panicking::panic_fmt";
 
 /// What a program takes of a chip.
@@ -49,11 +49,11 @@ pub struct Footprint {
     pub chain: Vec<String>,
     /// Functions that can panic, each with how.
     pub panics: Vec<String>,
-    /// Functions that compute in `f64`, which these cores have no instructions for: of `plan`.
+    /// The functions that `plan` reaches and that compute in `f64`, for which these cores have no instructions.
     pub doubles_of_plan: Vec<String>,
-    /// The same of `observe`.
+    /// Those that `observe` reaches.
     pub doubles_of_observe: Vec<String>,
-    /// The same of `estimates`.
+    /// Those that `estimates` reaches.
     pub doubles_of_estimates: Vec<String>,
 }
 
@@ -108,7 +108,7 @@ fn is_panic(name: &str) -> bool {
             && ["_failed", "_fail", "slice_error", "_overflow"].iter().any(|it| name.contains(it))
 }
 
-/// Who can panic, in the whole program and not only where it is known to come: `caller -> how`.
+/// The functions that can panic, in the whole program and not only where it is known to reach: `caller -> how`.
 fn panics(graph: &Graph<'_>) -> Vec<String> {
     let how: BTreeSet<u32> = graph.named(is_panic).into_iter().collect();
     let mut panics = BTreeSet::new();
@@ -130,7 +130,7 @@ fn is_double(name: &str) -> bool {
     run_time && (routine.contains("df") || routine.contains("aeabi_d") || routine.ends_with("2d"))
 }
 
-/// Who calls such routines on behalf of an entry.
+/// The functions that call such routines on behalf of an entry.
 fn doubles(graph: &Graph<'_>, entry: &str) -> Vec<String> {
     let entries = graph.named(|it| it.strip_prefix(SEAM) == Some(entry));
     let mut doubles = BTreeSet::new();

@@ -35,7 +35,7 @@ impl Hardest {
         numbers.filter_map(Value::as_integer).map(|number| number as u64).collect()
     }
 
-    /// Puts down missions that were the worst of a long run.
+    /// Adds missions that were the worst of a long run.
     pub fn add(&mut self, workload: &str, missions: impl IntoIterator<Item = u64>) {
         self.found.entry(workload.to_owned()).or_default().extend(missions);
     }

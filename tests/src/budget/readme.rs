@@ -35,7 +35,8 @@ pub fn grouped(value: i64) -> String {
     grouped
 }
 
-/// Writes the table of a name if figures are committed anew (`UPDATE_EXPECT`); else whether it is the one that is there.
+/// Writes the table of a name if figures are committed anew (`UPDATE_EXPECT`). Otherwise returns whether the readme has
+/// this table.
 ///
 /// # Panics
 /// If the readme has no place for it, or cannot be written.

@@ -12,7 +12,7 @@ use crate::budget::readme::{self, grouped};
 /// The file, from the workspace's root.
 const FILE: &str = "tests/budgets.toml";
 
-/// A clock to give cycles as time: the chip's, cycles in a microsecond.
+/// The chip's clock, cycles in a microsecond: it turns cycles into time.
 const CYCLES_PER_US: f64 = 168.0;
 
 /// How far above its figure the budget of a missed goal may be, per cent.
@@ -68,7 +68,7 @@ impl Budgets {
         self.enter(section, name, measured as i64, true);
     }
 
-    /// A figure that holds paths of the machine: it only has to keep its budget.
+    /// A figure that depends on paths of this machine. It only has to keep its budget.
     pub fn figure_here(&mut self, section: &str, name: &str, measured: u64) {
         self.enter(section, name, measured as i64, false);
     }
@@ -150,8 +150,8 @@ impl Budgets {
         names.filter(|name| name != section).collect()
     }
 
-    /// Compares the readme's table, or writes both files; what to tell, and what failed. Sections that
-    /// could not be measured are left as they are.
+    /// Compares the readme's table, or writes both files. Returns the report and the failures. Sections in `skipped`
+    /// could not be measured, and are left as they are.
     ///
     /// # Panics
     /// If the readme has no place for the table, or a file cannot be written.
@@ -184,7 +184,7 @@ fn verdict(measured: i64, goal: i64) -> String {
     }
 }
 
-/// Puts a value in another's place, with the space around that.
+/// Replaces a value, and keeps the space around it.
 fn replace(value: &mut Value, mut by: Value) {
     *by.decor_mut() = value.decor().clone();
     *value = by;

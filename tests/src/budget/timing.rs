@@ -16,7 +16,7 @@ use crate::emulator::missions;
 use crate::emulator::{Call, Core, Emulator};
 use crate::program::image::Image;
 
-/// Instructions that two readings of the counter come to, at most.
+/// Instructions that two readings of the counter take, at most.
 const COUNTER: u64 = 64;
 
 /// A mission that was flown, with what every call took.
@@ -36,7 +36,7 @@ pub struct Flight {
     pub lowest_stack: u32,
 }
 
-/// Flies missions of a workload on a Cortex-M4F, each from a reset, to their end or up to so many calls.
+/// Flies missions of a workload on a Cortex-M4F, each from a reset, to its end or for the workload's calls.
 ///
 /// # Panics
 /// When one does not fly as on the host, or the program's own count is not that of its calls.
@@ -83,8 +83,8 @@ pub fn fly_on(core: Core, elf: &[u8], workload: &Workload, missions: &[u64]) -> 
     missions.par_iter().with_min_len(share.max(1)).map_init(start, fly).collect()
 }
 
-/// Whether the program's own count is that of its calls, but for the readings of the counter. Of a
-/// mission that may not be whole it has not told of the last observation, nor of a plan beyond.
+/// Checks that the program's own count is that of its calls, but for the readings of the counter. A mission that may
+/// not be whole has not reported its last observation, nor a plan after it.
 fn check(played: &Played, plans: &[Call], observations: &[Call], whole: bool) {
     let steps = played.took.len();
     let stopped = played.recording.results.end.reason != Ending::Steps.name();
@@ -104,12 +104,12 @@ fn check(played: &Played, plans: &[Call], observations: &[Call], whole: bool) {
 }
 
 impl Flight {
-    /// The plan that was made when so many labels had been taken in.
+    /// The plan that was made after `labels` labels.
     pub fn plan_at_label(&self, labels: usize) -> Option<&Call> {
         self.plans.get(self.step_of_label(labels)? + 1)
     }
 
-    /// The observation of the so-many-th label.
+    /// The observation of label number `labels`.
     pub fn observation_of_label(&self, labels: usize) -> Option<&Call> {
         self.observations.get(self.step_of_label(labels)?)
     }
@@ -143,7 +143,7 @@ pub struct Took {
 }
 
 impl Took {
-    /// Of calls drawn at random, and of others.
+    /// The figures of calls in missions drawn at random, and in others.
     pub fn of(random: &[(Call, u64)], others: &[(Call, u64)]) -> Self {
         let mut sorted: Vec<u64> = random.iter().map(|(it, _)| it.instructions).collect();
         sorted.sort_unstable();

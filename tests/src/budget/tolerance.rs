@@ -20,14 +20,14 @@ pub struct Costs {
     pub last: u64,
     /// The most that an observation takes.
     pub observe_worst: u64,
-    /// The most that waking takes after a whole mission. It takes in the labels of the mission in their order, so it is the sum
-    /// of its observations, at most.
+    /// The most that waking takes after a whole mission. It takes in the labels of the mission in their order, so it is
+    /// the sum of its observations, at most.
     pub wake_worst: u64,
 }
 
 impl Costs {
-    /// Of so many missions that the program `standard` flies, with labels that are true or doubtful and positions with a
-    /// deviation.
+    /// The costs in some missions that the program `standard` flies, with labels that are true or doubtful and
+    /// positions with a deviation.
     ///
     /// # Panics
     /// As [`timing::fly_on`].

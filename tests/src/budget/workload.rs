@@ -39,7 +39,7 @@ pub struct Workload {
     pub random: u64,
     /// Fields that are searched for a worse case.
     pub searched: u64,
-    /// What is taken of these, for each of the reasons.
+    /// How many of these are taken, for each of the four kinds.
     pub sought: usize,
     /// Calls of the planner after which a mission is broken off, if it is: estimates take long.
     pub calls: Option<usize>,
@@ -112,11 +112,11 @@ fn facing_out(corner: u64) -> Pose {
 /// What makes a mission hard.
 #[derive(Clone, Copy, Debug, Default)]
 struct Rank {
-    /// The most that a plan looked at; of a vote, that the last did, when hypotheses are the most.
+    /// The most that a plan looked at. For a vote it is the last plan, when hypotheses are the most.
     last: u32,
     recoveries: u32,
     stopped: u32,
-    /// Those of Algorithm 2 in the end.
+    /// Hypotheses of Algorithm 2 in the end.
     hypotheses: u32,
 }
 

@@ -48,7 +48,7 @@ fn cycles(first: u32, second: u32) -> u32 {
     }
 }
 
-/// Of the floating-point unit.
+/// The cycles of an instruction of the floating-point unit.
 fn float(first: u32, second: u32) -> u32 {
     let words = second & 0xff;
     match first {

@@ -6,8 +6,9 @@ use armagnac::registers::RegisterIndex;
 
 use super::decoder::{Decoded, added};
 
-/// The parallel additions and subtractions: in armagnac 0.3 those that set GE clear N, Z, C and V.
-/// Compilers do not choose them by themselves, but for the unsigned saturating ones, which set none.
+/// Whether a code is one of the parallel additions and subtractions that lose flags: in armagnac 0.3 those that set GE
+/// clear N, Z, C and V. Compilers choose none of them by themselves but the unsigned saturating ones, which set no
+/// flags.
 pub(super) fn loses_flags(code: u32) -> bool {
     code & 0xff80_f080 == 0xfa80_f000 && code & 0xf0 != 0x50
 }

@@ -7,7 +7,7 @@ use armagnac::registers::RegisterIndex;
 
 use super::decoder::{Decoded, added};
 
-/// The special register that masks interrupts; 0 to 3 are the flags in various company.
+/// The special register that masks interrupts. 0 to 3 are the flags, alone or with other registers.
 const PRIMASK: u32 = 16;
 
 /// A shift: the result and the carry of a value, an amount and the carry so far.

@@ -33,7 +33,7 @@ pub fn build(scratch: &str, target: &str) -> Option<impl Fn(&str) -> Vec<u8> + u
     Some(move |name: &str| fs::read(Path::new(&folder).join(name)).expect("cargo left an ELF"))
 }
 
-/// Has a program fly a mission, from where it asks for one.
+/// Lets a program fly a mission, from where it asks for one.
 ///
 /// # Errors
 /// As [`Player::hear`] and [`Player::finish`].
@@ -44,7 +44,7 @@ pub fn fly(emulator: &mut Emulator, mission: &Mission) -> Result<Played> {
     fly_and_record(emulator, mission).map(|(played, _)| played)
 }
 
-/// As [`fly`], and all that the program was told.
+/// As [`fly`], with all bytes that the program was sent.
 ///
 /// # Errors
 /// As [`fly`].

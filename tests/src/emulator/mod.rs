@@ -51,7 +51,7 @@ const VTOR: u32 = 0xe000_ed08;
 const CCR: u32 = 0xe000_ed14;
 const UNALIGN_TRP: u32 = 1 << 3;
 
-/// A program that says nothing for so long hangs: more than a minute of this emulator.
+/// A program without output for this many instructions hangs: they take this emulator more than a minute.
 const PATIENCE: u64 = 1_000_000_000;
 
 /// A core to run a program on.
@@ -86,7 +86,7 @@ pub struct Emulator {
     calls: Option<usize>,
 }
 
-/// The program did what is not known here.
+/// The program did something that is not known here.
 struct Failure {
     pc: u32,
     reason: String,
@@ -209,13 +209,12 @@ impl Emulator {
         self.profile.cycles
     }
 
-    /// Takes down every call of the function at an address, but for those on behalf of another that is
-    /// watched.
+    /// Records every call of the function at an address, except within a call of another watched function.
     pub fn watch(&mut self, function: u32) {
         self.profile.watch(function);
     }
 
-    /// Has it halt when so many calls of watched functions have returned since a restart.
+    /// Makes it halt when this many calls of watched functions have returned since a restart.
     pub fn halt_after(&mut self, calls: usize) {
         self.calls = Some(calls);
     }

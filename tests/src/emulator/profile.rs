@@ -59,13 +59,13 @@ impl Profile {
         }
     }
 
-    /// Watches a function from now on, while no other is.
+    /// Watches a function from now on. Calls within a watched call are not recorded.
     pub(super) fn watch(&mut self, function: u32) {
         self.watched.push(function & !1);
     }
 
-    /// Takes down an instruction: where it was, and where the core stands after it. Says whether with it a
-    /// watched call has returned.
+    /// Records an instruction: its address, and where the core is after it. Returns whether a watched call has returned
+    /// with it.
     pub(super) fn executed(&mut self, pc: u32, to: Place) -> bool {
         let at = pc.wrapping_sub(FLASH) as usize / 2;
         let Cost { size, cycles, single } = self.costs[at];

@@ -23,7 +23,7 @@ const CONSOLE: &[u8] = b":tt";
 const INPUT: u32 = 1;
 const OUTPUT: u32 = 2;
 
-/// The reason for an exit that is none for alarm.
+/// The reason of a normal exit.
 const APPLICATION_EXIT: u32 = 0x2_0026;
 
 /// The world as the program sees it.
@@ -31,7 +31,7 @@ const APPLICATION_EXIT: u32 = 0x2_0026;
 pub(super) struct Host {
     /// What the program has not read yet.
     pub(super) input: VecDeque<u8>,
-    /// Where to, and how much, a read wants that found no input.
+    /// The address and the length of a read that found no input.
     wanted: Option<(u32, u32)>,
 }
 
@@ -79,7 +79,7 @@ impl Host {
         Ok(event)
     }
 
-    /// Completes a read that found no input, with what there is now; nothing is the end of it.
+    /// Completes a read that found no input. If there is still none, the input is at an end.
     pub(super) fn resume(&mut self, processor: &mut Processor) -> Result<(), String> {
         if let Some((to, length)) = self.wanted.take() {
             processor.registers.r0 = self.deliver(processor, to, length).map_err(debug)?;

@@ -87,7 +87,7 @@ impl Hand<'_> {
         Some(if lead > 0 { Label::Positive } else { Label::Negative })
     }
 
-    /// The two sides of the square on which the label changes, if there are as many: its corners are asked first.
+    /// The two sides of the square on which the label changes, if it changes on two. The corners are asked first.
     ///
     /// The far corner of the square is asked as if nothing kept the rover out.
     fn edge(&mut self, garden: &Garden) -> Option<[Chord; 2]> {

@@ -60,11 +60,11 @@ pub struct Setting {
     pub p: f64,
     /// Where a mission starts.
     pub start: Start,
-    /// By how much more the planner keeps out than the trees, the corner and the border are wide, metres.
+    /// How much the planner's keep-outs and border exceed the trees, the corner and the border, metres.
     pub padding: f64,
-    /// What the belief is told of position errors: three standard deviations an axis, metres.
+    /// The belief's tolerance: three standard deviations of position errors an axis, metres.
     pub blur: f64,
-    /// The weight of the control in look-ahead.
+    /// The price of driving in look-ahead.
     pub varrho: f64,
 }
 
@@ -82,7 +82,7 @@ impl Setting {
         varrho: 0.000_5,
     };
 
-    /// The largest error of a position, metres: what the planner is told.
+    /// The largest error of a position, metres. It is the planner's clearance.
     pub fn largest_error(&self) -> f64 {
         let overrun = match self.fixes {
             Fixes::UnderWay => 0.0,
@@ -99,7 +99,7 @@ impl Setting {
         }
     }
 
-    /// The vehicle, with rays so far apart.
+    /// The vehicle, with this angle between its rays.
     ///
     /// # Panics
     /// When there is no such vehicle.
@@ -131,7 +131,7 @@ pub struct Garden {
     pub number: u64,
     /// What it has in common with others.
     pub setting: Setting,
-    /// What the planner is told.
+    /// The area as the planner has it.
     pub lawn: Lawn,
     /// Where the rover truly may be.
     pub ground: Ground,
@@ -218,7 +218,7 @@ fn attempt(setting: Setting, number: u64, rng: &mut ChaCha8Rng) -> Option<Garden
     })
 }
 
-/// The ground in the planner's words, with all keep-outs wider by some metres and the border as much inside.
+/// The ground as an area for the planner. All keep-outs are wider by some metres, and the border is as much inside.
 fn lawn(ground: &Ground, padding: f64) -> Option<Lawn> {
     let hull =
         |corners: &[Point]| Hull::new(&corners.iter().copied().map(site).collect::<Vec<_>>()).ok();

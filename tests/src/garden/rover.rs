@@ -12,10 +12,10 @@ use rand_chacha::ChaCha8Rng;
 use super::lawn::{Garden, Vehicle};
 use crate::anything::plain::{Point, metres};
 
-/// The true path is checked at points so far apart, metres.
+/// The distance between points at which the true path is checked, metres.
 const STEP: f64 = 0.02;
 
-/// The rover stops when it believes to be so near to its target, metres.
+/// The rover stops when it believes to be this near to its target, metres.
 const ARRIVED: f64 = 0.01;
 
 /// How odometry drifts. All errors have a largest one, so that the largest error of a position is known.
@@ -27,7 +27,7 @@ pub struct Drift {
     pub compass: f64,
     /// How far a fix may be off, metres.
     pub fix: f64,
-    /// A fix is taken after so many metres.
+    /// A fix is taken after this many metres.
     pub every: f64,
 }
 
@@ -35,10 +35,10 @@ impl Drift {
     /// 1 % of the way, a compass that is off by one degree at most, and a fix to 3 cm each 8 m.
     pub const ROVER: Self = Self { scale: 0.01, compass: 0.01745, fix: 0.03, every: 8.0 };
 
-    /// The largest error of a position so many metres after a fix.
+    /// The largest error of a position, `way` metres after a fix.
     ///
-    /// A metre that is believed is truly `(1 + s)` metres, turned by `c`. The difference of the two is `s + 2 sin(c / 2)`
-    /// at most. The last term is for steps that overrun the place of the fix.
+    /// A metre that is believed is truly `(1 + s)` metres, turned by `c`. The difference of the two is `s + 2 sin(c /
+    /// 2)` at most. The last term is for steps that overrun the place of the fix.
     pub fn most_after(&self, way: f64) -> f64 {
         self.fix + (self.scale + 2.0 * (0.5 * self.compass).sin()) * (way + STEP) + 1e-3
     }
@@ -47,9 +47,9 @@ impl Drift {
 /// When a fix is taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fixes {
-    /// As soon as the metres are up. The rover then steers from where it is to the motion's target.
+    /// As soon as [`Drift::every`] metres are driven. The rover then steers from where it is to the motion's target.
     UnderWay,
-    /// At the end of the motion in which the metres are up. The pose that the planner gets is then not the target.
+    /// At the end of the motion in which they are driven. The pose that the planner gets is then not the target.
     AtStops,
 }
 
@@ -101,7 +101,8 @@ impl<'a> Rover<'a> {
             squares: 0.0,
             reads: 0.0,
         };
-        // What a fix is off is the same either way round; the start is where it was said to be.
+        // The error of a fix is as likely either way. Here it moves the truth, so that the start is where it was said
+        // to be.
         rover.take_fix();
         let off = [0, 1].map(|i| rover.believed[i] - rover.truth[i]);
         (rover.truth, rover.believed) = ([0, 1].map(|i| believed[i] + off[i]), believed);
@@ -165,7 +166,7 @@ impl<'a> Rover<'a> {
         }
     }
 
-    /// A fix at a stop, if the metres are up.
+    /// A fix at a stop, if enough metres are driven.
     pub fn stop(&mut self) {
         let setting = self.garden.setting;
         if self.since_fix >= setting.drift.every {

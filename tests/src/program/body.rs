@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::image::{Image, Symbol};
 use super::thumb::{self, Constant, Flow, Instruction, Stack};
 
-/// No stack of ours is so deep: it grows in a loop.
+/// A stack deeper than this grows in a loop. None of ours is as deep.
 const BOTTOMLESS: u32 = 1 << 20;
 
 const NOP: u16 = 0xbf00;
@@ -19,7 +19,7 @@ pub(super) struct Site {
     pub(super) depth: u32,
 }
 
-/// What a function's code comes to.
+/// What is read from a function's code.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Body {
     pub(super) sites: Vec<Site>,
@@ -103,7 +103,7 @@ impl Body {
     }
 }
 
-/// The stack after an instruction, and the deepest it was by then; `None` if none can say.
+/// The stack after an instruction, and the deepest it was by then; `None` if that is not known.
 fn moved(depth: u32, stack: Stack) -> Option<(u32, u32)> {
     match stack {
         Stack::Still => Some((depth, depth)),

@@ -53,7 +53,7 @@ pub fn flying(scratch: &str) -> Result<PathBuf, String> {
         .args(["build", "--quiet", "--package", "host-sim", "--features", "mavlink"])
         .arg("--target-dir")
         .arg(&target)
-        // It waits for vehicles most of the time: built fast, not fast when built.
+        // It waits for vehicles most of the time, so it need not be fast.
         .env("CARGO_PROFILE_DEV_OPT_LEVEL", "0");
     let built = cargo.output().map_err(|error| format!("cargo does not start: {error}"))?;
     if !built.status.success() {

@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::body::Body;
 use super::image::{Image, Symbol};
 
-/// Functions that call through a register, by name, and what they call so.
+/// Functions that call through a register, by name, and what each calls in this way.
 pub type Known<'a> = &'a [(&'a str, &'a [&'a str])];
 
 /// Everything a program's functions call and point to. Functions are named by their addresses.
@@ -113,7 +113,7 @@ impl<'a> Graph<'a> {
         calls
     }
 
-    /// What a function calls itself.
+    /// The functions that a function calls directly.
     pub fn callees(&self, function: u32) -> BTreeSet<u32> {
         self.calls(function).into_iter().map(|(to, _)| to).collect()
     }

@@ -14,7 +14,7 @@ pub(super) enum Flow {
     /// To what a register holds.
     JumpRegister,
     Return,
-    /// By the table that follows, of entries of so many bytes.
+    /// By the table that follows, with entries of this many bytes.
     Table(u32),
     Trap,
     /// Not known here.
@@ -27,7 +27,7 @@ pub(super) enum Stack {
     Still,
     Grows(u32),
     Shrinks(u32),
-    /// By what is in a register: not for us.
+    /// By a register's value, which is not known.
     Moves,
 }
 
@@ -49,7 +49,7 @@ pub(super) struct Instruction {
     pub(super) flow: Flow,
     pub(super) stack: Stack,
     pub(super) constant: Option<Constant>,
-    /// So many of the instructions that follow are conditional.
+    /// How many of the instructions that follow are conditional.
     pub(super) conditions: u32,
 }
 
@@ -109,7 +109,7 @@ fn narrow(pc: u32, code: u32) -> Instruction {
         0xde00..=0xdeff => it.flow = Flow::Trap,
         0xd000..=0xddff => it.flow = Flow::Either(ahead(signed(code & 0xff, 8) << 1)),
         0xe000..=0xe7ff => it.flow = Flow::Branch(ahead(signed(code & 0x7ff, 11) << 1)),
-        // Of the miscellaneous ones these are none, nor are those between reversals.
+        // These are no miscellaneous instructions, nor are those between reversals.
         0xb600..=0xb65f | 0xb680..=0xb8ff | 0xba40..=0xbabf => it.flow = Flow::Unknown,
         _ if code & 0xf500 == 0xb100 => {
             it.flow = Flow::Either(ahead((code >> 3 & 0x40) | (code >> 2 & 0x3e)));
@@ -136,14 +136,14 @@ fn wide(pc: u32, first: u32, second: u32) -> Instruction {
     }
 }
 
-/// Of instructions whose target register is where data processing has it.
+/// Instructions whose target register is where data processing has it.
 fn guarded(first: u32, second: u32) -> Instruction {
     let multiplies = first & 0xff00 == 0xfb00;
     let stack = if !multiplies && second >> 8 & 0xf == SP { Stack::Moves } else { Stack::Still };
     Instruction { stack, ..Instruction::plain(4) }
 }
 
-/// By so many bytes, up or down.
+/// The stack after a move by some bytes, up or down.
 fn moved(up: bool, bytes: u32) -> Stack {
     if up { Stack::Shrinks(bytes) } else { Stack::Grows(bytes) }
 }

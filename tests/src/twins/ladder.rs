@@ -13,7 +13,7 @@ use planner_core::{Certainty, Line, Pose, Site, StopReason, Workspace};
 /// Motions that a transit among uncertain ground looks ahead.
 const HORIZON: u32 = 16;
 
-/// What the ladder comes to where even the undirected problem has no feasible action.
+/// The result of the ladder if even the undirected problem has no feasible action.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Rung {
     /// Uncertain ground is out of reach, at this distance in metres: some motion that leads towards it.
@@ -74,7 +74,7 @@ impl<D: Dynamics, G: Workspace> Ladder<'_, D, G> {
         self.problem.solve_exhaustively(self.dynamics, pose).best.is_some()
     }
 
-    /// The best action beyond a turn: its objective, and the less the further it turns.
+    /// The best action beyond a turn: its objective, then a number that is smaller the further the action turns.
     fn beyond(&self, pose: Pose, side: Side) -> Option<(i64, i64)> {
         let Problem { lines, area, weight, .. } = self.problem;
         let grid = self.dynamics.grid();
@@ -163,7 +163,7 @@ impl<D: Dynamics, G: Workspace> Ladder<'_, D, G> {
         (first, None)
     }
 
-    /// Of fans whose rays are dense.
+    /// The first action towards a direction, for fans whose rays are dense.
     fn leg(&self, pose: Pose, direction: Vector) -> Option<Action> {
         if self.is_within_fan(pose, direction) {
             return self.drive(pose, direction);

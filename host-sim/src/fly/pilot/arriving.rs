@@ -1,11 +1,11 @@
-//! When a motion has come to its end: the vehicle rests where it was sent, or rests for long near that.
+//! The end of a motion: the vehicle rests at its target, or rests for longer near it.
 //!
-//! `ArduPilot` ends a leg where it likes: within its own radius, or where a rover that steers like a car has passed its
-//! target. The planner goes on from where the vehicle is, so a place near the target will do. A vehicle that does not move
-//! at all has not arrived: it is stuck. A turn that leaves the heading as it was is not made either.
+//! `ArduPilot` ends a leg within its own radius, or where a rover that steers like a car has passed its target. The
+//! planner goes on from where the vehicle is, so a place near the target is good enough. A vehicle that does not move
+//! at all has not arrived: it is stuck. Nor has a turn been made that leaves the heading as it was.
 //!
-//! In a current or in waves a vehicle holds its place and never rests. It has arrived when it has stayed for long: within the
-//! acceptance of its target, or about a place near that.
+//! In a current or in waves a vehicle holds its place and never rests. It has arrived when it has stayed for long,
+//! either within the acceptance of its target or about a place near the target.
 
 use std::time::Duration;
 
@@ -17,7 +17,7 @@ use crate::fly::pilot::Pilot;
 use crate::fly::stage::{Arrival, Motion, Rest, Sent, Stage};
 use crate::fly::vehicle::Fix;
 
-/// Where a vehicle is, as to where it was sent.
+/// Where a vehicle is relative to its target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Standing {
     /// It is there.
@@ -29,7 +29,7 @@ pub(super) enum Standing {
 }
 
 impl Pilot {
-    /// The vehicle says where it is.
+    /// Takes in a position.
     pub(super) fn locate(&mut self, now: Duration, fix: Fix) {
         match self.stage {
             Stage::Moving { motion, rest } => self.approach(now, motion, rest, fix),
@@ -106,7 +106,7 @@ impl Pilot {
         if !order.is_turn && has_come && off <= NEAR { Standing::Near } else { Standing::Away }
     }
 
-    /// Notes when the vehicle stirs, wherever it is by then: a setpoint that came late may have led it away and back.
+    /// Notes when the vehicle stirs, also at its target: a late setpoint may have led it away and back.
     fn note_stirring(&self, now: Duration, motion: &mut Motion, fix: Fix) {
         let Some((sent, facing)) = motion.sent.as_mut().zip(self.vehicle.facing) else { return };
         if fix.at.distance(sent.place) > STIRS || apart(facing.yaw, sent.yaw) > ALIKE {

@@ -1,7 +1,7 @@
-//! Setpoints: where to go, again only when that does no harm, and stops.
+//! Sends setpoints and stops. A setpoint is repeated only where that does no harm.
 //!
-//! `ArduPilot` begins a leg anew with each setpoint, and its S-curve with it: Sub that is sent one a second crawls. So a
-//! setpoint is sent again soon only to a vehicle that does not stir, which may not have heard it.
+//! With each setpoint `ArduPilot` begins the leg and its S-curve anew: Sub crawls if it is sent one a second. So a
+//! setpoint is soon repeated only to a vehicle that does not stir, which may not have heard it.
 
 use std::time::Duration;
 
@@ -52,12 +52,12 @@ impl Pilot {
             Standing::There => false,
             // A rover that steers like a car and has passed its target would drive a circle to it.
             Standing::Near if fix.speed() <= SLOW => false,
-            // What came a second later says that it has not stirred since.
+            // A position from a second later shows that it has not stirred since.
             _ => now >= sent.at + AGAIN || heard >= sent.stirred + SETPOINT,
         }
     }
 
-    /// Where a vehicle stays that is to stop, if a place has to be told: Sub does not stop by velocities of zero.
+    /// The place at which a vehicle is to stop, if it needs one: velocities of zero do not stop Sub.
     pub(super) fn hold(&self, now: Duration) -> Option<Hold> {
         let (_, status) = self.vehicle.status?;
         let (fix, (_, yaw)) = self.fix(now).zip(self.whereabouts())?;

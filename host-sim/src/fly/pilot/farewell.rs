@@ -21,7 +21,7 @@ impl Pilot {
         text
     }
 
-    /// The mode that it is in, where that is not known yet.
+    /// Its mode, unless that is guided or the failure names it.
     fn final_mode(&self) -> Option<String> {
         let (_, status) = self.vehicle.status?;
         let mode = status.craft.mode(status.mode);
@@ -44,7 +44,7 @@ impl Pilot {
         Some(format!("it said {}", about.join(", ")))
     }
 
-    /// How far it is from where it was to be.
+    /// How far the vehicle is from its target, in words.
     pub(super) fn off(&self, order: &Order) -> String {
         let Some((fix, yaw)) = self.whereabouts() else {
             return "it is nobody knows where".to_owned();

@@ -6,7 +6,7 @@ use crate::fly::failure::Failure;
 use crate::fly::pilot::Pilot;
 
 impl Pilot {
-    /// What it does not say that it is to say.
+    /// The first needed message that was not heard, in words.
     pub(super) fn unheard(&self, now: Duration) -> Option<String> {
         if self.fix(now).is_none() {
             Some("its local position (LOCAL_POSITION_NED)".to_owned())

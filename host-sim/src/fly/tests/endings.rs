@@ -1,4 +1,4 @@
-//! Why a flight ended, as it is told: what the vehicle says a moment after, who drives it then, and its last mode.
+//! The message at the end of a flight: what the vehicle said a moment after, who drives it then, and its last mode.
 
 use mavlink::dialects::common::{
     FenceMitigate, HEARTBEAT_DATA, MavMessage, MavSeverity, STATUSTEXT_DATA,

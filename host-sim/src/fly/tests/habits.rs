@@ -1,4 +1,4 @@
-//! What autopilots do that the ideal vehicle does not: seen of `ArduPilot`'s own simulation.
+//! Habits of autopilots that the ideal vehicle does not have, as seen in `ArduPilot`'s own simulation.
 
 use std::collections::VecDeque;
 
@@ -6,7 +6,7 @@ use mavlink::dialects::common::MavMessage;
 
 use super::*;
 
-/// A setpoint's place, moved so far towards the area's middle (10, 10).
+/// A setpoint whose place is moved by `by` metres towards the area's middle (10, 10).
 fn nearer_the_middle(message: MavMessage, by: f32) -> MavMessage {
     let MavMessage::SET_POSITION_TARGET_LOCAL_NED(mut it) = message else { return message };
     if !it.type_mask.contains(Ignored::POSITION_TARGET_TYPEMASK_X_IGNORE) {

@@ -21,7 +21,7 @@ use crate::report::trace;
 
 pub(super) const SYSTEM: u8 = 3;
 
-/// What becomes of a message: by the time, by its number among those that go its way.
+/// What becomes of a message, by the time and by its number in its direction.
 pub(super) type Spoil<'a> = Box<dyn FnMut(Duration, usize, MavMessage) -> Vec<MavMessage> + 'a>;
 
 /// An ideal vehicle on a spoiled link.

@@ -16,7 +16,8 @@ const THICK: f64 = 3.0;
 /// A sample's size as a share of the area's.
 const SAMPLE: f64 = 0.012;
 
-/// The start: all that stands still, and every name under which a step draws. Rerun shows an error for a name that comes later.
+/// The start: all that stands still, and every name under which a step draws. Rerun shows an error for a name that
+/// first appears later.
 pub(super) fn begin(flight: &Flight) -> SceneUpdate {
     let size = SAMPLE * flight.size();
     let border = line(&flight.area, true, THIN, opaque(style::PATH.colour));

@@ -85,7 +85,7 @@ pub(super) struct Timestamp {
 }
 
 impl Timestamp {
-    /// So many seconds after the start.
+    /// This many seconds after the start.
     pub(super) fn of(second: u32) -> Self {
         Self { seconds: second.into(), nanos: 0 }
     }
@@ -157,7 +157,7 @@ pub(super) struct Color {
     pub(super) a: f64,
 }
 
-/// A line strip; closed, a loop.
+/// A strip of lines, or a closed loop.
 #[derive(Clone, PartialEq, Message)]
 pub(super) struct Line {
     /// 0 a strip, 1 a loop.

@@ -34,7 +34,7 @@ struct Log {
     clouds: BTreeMap<String, Channel>,
 }
 
-/// Where messages of a kind go.
+/// A channel of the log, for one kind of message.
 #[derive(Clone, Copy)]
 struct Channel(u16);
 
@@ -61,7 +61,7 @@ impl Log {
         Ok(())
     }
 
-    /// Takes down what holds from a second on.
+    /// Writes a message that holds from a second on.
     fn write(
         &mut self,
         Channel(channel_id): Channel,

@@ -1,4 +1,4 @@
-//! A page as HTML: what is there without a script, and the scenes as a block of data for the one that is.
+//! A page as HTML: what it shows without a script, and the data from which the script draws the scenes.
 
 use std::fmt::Write as _;
 
@@ -64,7 +64,7 @@ fn escaped(text: &str) -> String {
     safe
 }
 
-/// The scenes as JSON that ends no script: within its strings alone there is a `<`, and there it may be written so.
+/// The scenes as JSON that cannot end the script element. A `<` occurs only within strings, where it may be escaped.
 fn data(page: &Page) -> String {
     let json = serde_json::to_string(page).expect("a plain structure");
     json.replace('<', "\\u003c")

@@ -18,7 +18,7 @@ use crate::report::picture::{Picture, Stop};
 use crate::report::text;
 use crate::world::polygon::Polygon;
 
-/// Places are told to this share of the area's size: a twentieth of a pixel.
+/// Places are rounded to the area's size divided by this: a twentieth of a pixel.
 const GRAIN: f64 = 20_000.0;
 
 /// A mission that is shown.
@@ -73,7 +73,7 @@ pub(crate) struct SeenLine {
     pub(crate) misclassified: Option<f64>,
 }
 
-/// The state of knowledge at some stage, and the motion that led there.
+/// The state of knowledge after some step, and the motion that led there.
 #[derive(Debug, Serialize)]
 pub(crate) struct Scene {
     /// The motion; `None` at the start.
@@ -90,9 +90,9 @@ pub(crate) struct Scene {
     pub(crate) slopes: Vec<[f64; 2]>,
     /// The intercepts left, metres; `None` when unbounded.
     pub(crate) intercepts: Option<[f64; 2]>,
-    /// Bits told so far, by the area prior, so that planners compare.
+    /// Bits learnt so far, by the area prior, so that planners compare.
     pub(crate) bits: f64,
-    /// Bits that the labels so far were expected to tell, each when it was asked for.
+    /// Bits that the labels so far were expected to carry, each when it was asked for.
     expected_bits: f64,
     /// Control cost so far.
     pub(crate) cost: f64,
@@ -123,7 +123,7 @@ pub(crate) struct Moved {
     pub(crate) is_wrong: bool,
     /// The chance of +1 there, if a label was asked for.
     pub(crate) chance: Option<f64>,
-    /// Bits that it was expected to tell.
+    /// Bits that it was expected to carry.
     pub(crate) expected: Option<f64>,
 }
 
@@ -139,7 +139,7 @@ pub(crate) enum GroundRecord {
     Plain,
 }
 
-/// Ground that lines of so much probability pass at least.
+/// Ground where the line passes with at least some probability.
 #[derive(Debug, Serialize)]
 pub(crate) struct BandRecord {
     pub(crate) from: f64,
@@ -262,7 +262,7 @@ impl Sums {
     }
 }
 
-/// A stage of a mission that is about to be shown.
+/// The start or a step of a mission, from which a scene is made.
 struct Stage<'a> {
     recording: &'a Recording,
     rounding: Rounding,

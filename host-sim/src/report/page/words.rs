@@ -1,4 +1,4 @@
-//! A stage of a mission in words: what was planned, what was expected of it, what was read, what is known.
+//! A step of a mission in words: what was planned, what was expected of it, what was read, what is known.
 
 use planner_core::AnyVehicle;
 use serde::Serialize;
@@ -37,8 +37,8 @@ pub(crate) struct Taken<'a> {
     pub(crate) rise: f64,
 }
 
-/// A stage: the step that led there, or the start; what is known and the bits told so far; the recommended estimate
-/// with its name.
+/// The sentences for a step, or for the start without one. They get what is known with the bits learnt, and the
+/// recommended estimate with its name.
 pub(crate) fn stage(
     recording: &Recording,
     step: Option<Taken<'_>>,
