@@ -4,7 +4,7 @@ use planner_core::link::delivery::LinkError;
 use planner_core::link::message::{Algorithm, DeclinedError, MissionArea, MissionEnd, Setup};
 use planner_core::link::station::{Flown, PlannerSetup, Prepared, Station};
 use planner_core::{
-    AnyVehicle, Goal, LocalLine, Noise, PinSensor, Planner, Policy, Prior, Reading, Step,
+    Accuracy, AnyVehicle, Goal, LocalLine, Noise, PinSensor, Planner, Policy, Prior, Reading, Step,
 };
 use stm32f4xx_hal::gpio::{Input, PB1};
 
@@ -47,7 +47,7 @@ impl Board {
             Algorithm::Lookahead { evaluations, goal, noise: None } => {
                 self.fly(
                     setup,
-                    &mut setup.lookahead::<_, _, TRUE_SAMPLES>(*terms, evaluations, goal),
+                    &mut setup.lookahead::<_, _, Accuracy, TRUE_SAMPLES>(*terms, evaluations, goal),
                 );
             }
             Algorithm::Lookahead { evaluations, goal, noise: Some((noise, prior)) } => {

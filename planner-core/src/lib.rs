@@ -158,7 +158,7 @@ pub use crate::belief::Belief;
 pub use crate::belief::cell_posterior::CellPosterior;
 pub use crate::belief::cell_view::Certainty;
 pub use crate::belief::estimate::Estimates;
-pub use crate::belief::goal::{Accuracy, Goal};
+pub use crate::belief::goal::{Accuracy, Criterion, Goal, NoGoal, ShareWithin, SlopeWithin};
 pub use crate::belief::noise::{Noise, Reliability};
 pub use crate::belief::noisy_belief::{NoisyBelief, sequences_of};
 pub use crate::belief::observation_log::{FromLog, ObservationLog};

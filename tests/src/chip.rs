@@ -3,6 +3,7 @@
 use std::cell::RefCell;
 use std::panic::{self, AssertUnwindSafe};
 
+use planner_core::Accuracy;
 use planner_core::link::delivery::{Link, LinkError, Port};
 use planner_core::link::message::{self, ClockRate, MissionArea};
 use planner_core::link::station::{Flown, PlannerSetup, Station};
@@ -85,9 +86,11 @@ pub fn fly<P: Port, S: LabelSensor>(
     };
     match setup.algorithm {
         message::Algorithm::Cfc => chip.fly(setup, &mut setup.cfc::<_, _, 68>(terms), |_| {}),
-        message::Algorithm::Lookahead { evaluations, goal, noise: None } => {
-            chip.fly(setup, &mut setup.lookahead::<_, _, 68>(terms, evaluations, goal), |_| {})
-        }
+        message::Algorithm::Lookahead { evaluations, goal, noise: None } => chip.fly(
+            setup,
+            &mut setup.lookahead::<_, _, Accuracy, 68>(terms, evaluations, goal),
+            |_| {},
+        ),
         message::Algorithm::Lookahead { evaluations, goal, noise: Some((noise, prior)) } => {
             let mut planner = setup.lookahead_in_noise::<_, _, 36, 529>(terms, evaluations, goal);
             chip.fly(setup, &mut setup.prepare(&mut planner, prior, noise), |_| {})

@@ -10,7 +10,7 @@ use planner_core::nalgebra::Point2;
 use planner_core::{
     Angle, Area, Belief as _, Goal, Heading, Hull, KeepOut, Label, Line, Lookahead, Noise,
     NoisyBelief, Plan, Planner, PolygonArea, Pose, PredictiveBelief, Reliability, Sample, Site,
-    StopReason, Tolerance, Unicycle, VersionSpace,
+    SlopeWithin, StopReason, Tolerance, Unicycle, VersionSpace,
 };
 use tests::program::build::{build, has_tool, skip};
 
@@ -76,7 +76,7 @@ fn start() -> Pose {
     Pose { site: at(2.0, 1.0), heading: Heading(0) }
 }
 
-fn slopes(radians: f64, level: u32) -> Goal {
+fn slopes(radians: f64, level: u32) -> Goal<SlopeWithin> {
     let goal = Angle::from_radians(radians).and_then(Goal::slope_within).expect("acute");
     Goal { level, ..goal }
 }
@@ -119,12 +119,14 @@ fn ground() -> Ground {
     PolygonArea::new(border, &keep_outs.map(rounded)).expect("an area")
 }
 
+type Finder<B> = Lookahead<Unicycle, B, Ground, SlopeWithin>;
+
 /// An observation as `asleep.c` makes it: the planner, where it is, what was read, which label it is, and whether that is
 /// wrong.
-type Observe<B> = fn(&mut Lookahead<Unicycle, B, Ground>, Pose, Option<Label>, u32, bool);
+type Observe<B> = fn(&mut Finder<B>, Pose, Option<Label>, u32, bool);
 
 fn observe_within<B: PredictiveBelief>(
-    planner: &mut Lookahead<Unicycle, B, Ground>,
+    planner: &mut Finder<B>,
     pose: Pose,
     label: Option<Label>,
     number: u32,
@@ -136,7 +138,7 @@ fn observe_within<B: PredictiveBelief>(
 }
 
 fn observe_believed(
-    planner: &mut Lookahead<Unicycle, NoisyBelief<36, 529>, Ground>,
+    planner: &mut Finder<NoisyBelief<36, 529>>,
     pose: Pose,
     label: Option<Label>,
     _: u32,
@@ -149,7 +151,11 @@ fn observe_believed(
 }
 
 /// What `asleep.c` prints, by a planner that stays awake.
-fn awake<B: PredictiveBelief<Belief: Sized>>(belief: B, goal: Goal, observe: Observe<B>) -> String {
+fn awake<B: PredictiveBelief<Belief: Sized>>(
+    belief: B,
+    goal: Goal<SlopeWithin>,
+    observe: Observe<B>,
+) -> String {
     let unicycle = Unicycle::new(10_000, 1.57, 41, 50).expect("a grid");
     let planner = Lookahead::new(ground(), unicycle, belief);
     let mut planner = planner.expect("settings that agree").until(Some(goal));

@@ -9,8 +9,8 @@ use host_sim::world::polygon::Polygon;
 use nalgebra::Point2;
 use planner_core::geometry::line::Bound;
 use planner_core::{
-    Accuracy, Angle, Area, Belief as _, CellPosterior, Goal, Heading, Label, Line, PosteriorView,
-    Prior, Sample, Site,
+    Accuracy, Angle, Area, Belief as _, CellPosterior, Criterion as _, Goal, Heading, Label, Line,
+    PosteriorView, Prior, Sample, ShareWithin, Site, SlopeWithin,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -55,9 +55,7 @@ fn the_share_of_a_strip_is_not_promised_too_small() {
             });
         let space = Lines::new(&samples).expect("lines are left");
         let share = disagreed(&space, area);
-        let is_met = |millionths: f64| {
-            Accuracy::Misclassified(millionths as u32).is_met(space.bounds(), area)
-        };
+        let is_met = |millionths: f64| ShareWithin(millionths as u32).is_met(&space.bounds(), area);
         let is_narrow = space.slope_arc().width_deg() < 44.0;
         let context = format!("strip {number} of {half} m: {share} of the area");
         if share > 1e-6 {
@@ -92,9 +90,8 @@ fn slopes_are_promised_to_the_last_digit() {
         let bounds = along.map(|along| Bound { through, along });
         let width = f64::from(z).atan2(f64::from(x));
         let units = width * 4_294_967_296.0 / (2.0 * PI);
-        let is_met = |units: f64| {
-            Accuracy::SlopeArc(Angle(units as u32)).is_met(bounds.iter().copied(), area)
-        };
+        let is_met =
+            |units: f64| SlopeWithin(Angle(units as u32)).is_met(&bounds.iter().copied(), area);
         for less in 1..4 {
             let units = units.ceil() - f64::from(less);
             assert!(units < 1.0 || !is_met(units), "case {number}: {width} rad");
@@ -112,8 +109,7 @@ fn goals_are_met_when_they_are_and_not_before() {
             let share = disagreed(&space, area);
             for factor in [0.5, 0.9, 0.999, 1.01, 1.1, 1.5] {
                 let millionths = (share * factor * 1e6).floor();
-                let is_met =
-                    Accuracy::Misclassified(millionths as u32).is_met(space.bounds(), area);
+                let is_met = ShareWithin(millionths as u32).is_met(&space.bounds(), area);
                 // Below some ten millionths the twin itself has lost its digits; what much ground is cut off by at
                 // the border may be half of it again.
                 let is_narrow = space.slope_arc().width_deg() < 40.0 && share < 0.1;
@@ -128,7 +124,7 @@ fn goals_are_met_when_they_are_and_not_before() {
                 if width * factor > 1.5 || most.0 < 10_000 {
                     continue;
                 }
-                let is_met = Accuracy::SlopeArc(most).is_met(space.bounds(), area);
+                let is_met = SlopeWithin(most).is_met(&space.bounds(), area);
                 assert_eq!(is_met, is_right, "field {number}, {steps} steps, {factor}");
                 beyond += u32::from(!is_met);
             }

@@ -4,7 +4,7 @@ use embassy_nrf::gpio::Input;
 use planner_core::link::delivery::LinkError;
 use planner_core::link::message::{Algorithm, DeclinedError, Setup};
 use planner_core::link::station::{PlannerSetup, Prepared, Station};
-use planner_core::{AnyVehicle, Area, PinSensor, Planner};
+use planner_core::{Accuracy, AnyVehicle, Area, PinSensor, Planner};
 
 use crate::serial::Serial;
 use crate::stop;
@@ -37,7 +37,7 @@ impl Board {
         match setup.algorithm {
             Algorithm::Cfc => self.fly(setup, &mut setup.cfc::<_, _, SAMPLES>(terms)),
             Algorithm::Lookahead { evaluations, goal, noise: None } => {
-                self.fly(setup, &mut setup.lookahead::<_, _, SAMPLES>(terms, evaluations, goal))
+                self.fly(setup, &mut setup.lookahead::<_, _, Accuracy, SAMPLES>(terms, evaluations, goal))
             }
             _ => self.station.decline(DeclinedError::Algorithm).map(drop),
         }

@@ -19,14 +19,16 @@ pub struct Firmware {
     pub elf: &'static str,
     /// The package that it is built from.
     package: &'static str,
+    profile: &'static str,
     target: &'static str,
 }
 
 /// The default board: an STM32F405.
 pub const STM32F405: Firmware = Firmware {
     machine: "netduinoplus2",
-    elf: "target/thumbv7em-none-eabihf/release/firmware",
+    elf: "target/thumbv7em-none-eabihf/chip/firmware",
     package: "firmware/Cargo.toml",
+    profile: "chip",
     target: "thumbv7em-none-eabihf",
 };
 
@@ -35,6 +37,7 @@ pub const MICROBIT: Firmware = Firmware {
     machine: "microbit",
     elf: "target/thumbv6m-none-eabi/release/microbit",
     package: "firmware/microbit/Cargo.toml",
+    profile: "release",
     target: "thumbv6m-none-eabi",
 };
 
@@ -49,7 +52,7 @@ impl Firmware {
     /// # Errors
     /// When it is not there and cannot be built: what is missing, or what failed to build.
     pub fn built(&self) -> Result<PathBuf> {
-        let Self { elf, package, target, .. } = *self;
+        let Self { elf, package, profile, target, .. } = *self;
         if !Path::new(package).exists() {
             if Path::new(elf).exists() {
                 return Ok(elf.into());
@@ -64,7 +67,7 @@ impl Firmware {
             add_target(target)?;
         }
         let mut cargo = Command::new("cargo");
-        cargo.args(["build", "--release", "--quiet", "--locked"]);
+        cargo.args(["build", "--profile", profile, "--quiet", "--locked"]);
         cargo.args(["--manifest-path", package, "--target", target]);
         // Where people look for it, whatever folder the caller has for targets.
         cargo.args(["--target-dir", "target"]);

@@ -91,6 +91,7 @@ pub(crate) fn declined(declined: DeclinedError, setup: &Setup) -> anyhow::Error 
         DeclinedError::Vehicle(why) => anyhow!("vehicle: declined by the board: expected {why}"),
         DeclinedError::Area => anyhow!("area: declined by the board: {declined}"),
         DeclinedError::Tolerance => anyhow!("tolerance: declined by the board: {declined}"),
+        DeclinedError::Goal => anyhow!("stop: declined by the board: {declined}"),
         DeclinedError::Labels => {
             anyhow!("--labels: found chip, but this board has no label sensor")
         }

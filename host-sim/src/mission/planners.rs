@@ -3,8 +3,8 @@
 use planner_core::dynamics::Dynamics;
 use planner_core::error::ObservationError;
 use planner_core::{
-    AnyVehicle, Cfc, Lookahead, NoisyBelief, Plan, Planner, Pose, PredictiveBelief, Reading, Scc,
-    Tolerance, Workspace,
+    Accuracy, AnyVehicle, Cfc, Lookahead, NoisyBelief, Plan, Planner, Pose, PredictiveBelief,
+    Reading, Scc, Tolerance, Workspace,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -109,7 +109,7 @@ impl Mission {
         &self,
         area: G,
         dynamics: D,
-    ) -> Lookahead<D, Lines, G> {
+    ) -> Lookahead<D, Lines, G, Accuracy> {
         self.looking_ahead(area, dynamics, self.lines())
     }
 
@@ -121,7 +121,7 @@ impl Mission {
         &self,
         area: G,
         dynamics: D,
-    ) -> Lookahead<D, NoisyBelief<CAPACITY, HYPOTHESES>, G> {
+    ) -> Lookahead<D, NoisyBelief<CAPACITY, HYPOTHESES>, G, Accuracy> {
         self.looking_ahead(area, dynamics, self.noisy_belief())
     }
 
@@ -130,7 +130,7 @@ impl Mission {
         area: G,
         dynamics: D,
         belief: B,
-    ) -> Lookahead<D, B, G> {
+    ) -> Lookahead<D, B, G, Accuracy> {
         let planner = Lookahead::new(area, dynamics, belief).expect(FITS);
         planner.pricing(self.config.price()).until(self.goal)
     }

@@ -2,7 +2,7 @@
 
 use std::fmt::Debug;
 
-use planner_core::{Belief, Label, PosteriorView, Sample, Site, Tolerance};
+use planner_core::{Area, Belief, Goal, Label, PosteriorView, Sample, Site, Tolerance};
 
 use crate::mission::definition::{Lines, Table};
 use crate::world::noise::limit;
@@ -52,6 +52,9 @@ pub trait ReadOut: Belief + Debug + Send {
     /// What is expected of a label at a site, by the exact distribution.
     fn expects(&self, site: Site) -> Expectation;
 
+    /// Whether it [meets](Belief::meets) a goal.
+    fn reaches(&self, goal: Goal, area: Area) -> bool;
+
     /// All samples with the labels that were taken in, the given ones first.
     fn samples(&self) -> &[Sample];
 
@@ -81,6 +84,10 @@ impl ReadOut for Lines {
         let is_exact = self.tolerance() == Tolerance::NONE;
         let bits = if is_exact { 1.0 - limit(chance) } else { mean_told(self, site, chance) };
         Expectation { chance, bits }
+    }
+
+    fn reaches(&self, goal: Goal, area: Area) -> bool {
+        self.meets(goal, area)
     }
 
     fn samples(&self) -> &[Sample] {
@@ -125,6 +132,10 @@ impl ReadOut for Table {
             mean_told(self, site, chance)
         };
         Expectation { chance, bits }
+    }
+
+    fn reaches(&self, goal: Goal, area: Area) -> bool {
+        self.meets(goal, area)
     }
 
     fn samples(&self) -> &[Sample] {

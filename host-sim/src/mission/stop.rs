@@ -116,7 +116,7 @@ impl GoalRecord {
         };
         let level = mission.is_noisy().then(|| f64::from(goal.level) / MILLION);
         let is_met =
-            belief.meets(goal.in_bounds_of(&mission.config.area), mission.config.area.bounds());
+            belief.reaches(goal.in_bounds_of(&mission.config.area), mission.config.area.bounds());
         Some(Self { slope_arc_deg, misclassified, level, is_met })
     }
 }

@@ -3,7 +3,7 @@
 use planner_core::error::ObservationError;
 use planner_core::{
     Belief as _, CellPosterior, FromLog, Lookahead, NoisyBelief, Persist, Planner as _,
-    PredictiveBelief, Reliability, Site, Tolerance, Unicycle, VersionSpace,
+    PredictiveBelief, Reliability, Site, SlopeWithin, Tolerance, Unicycle, VersionSpace,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -79,7 +79,7 @@ pub(crate) trait Asked {
     fn restore(&mut self, snapshot: &Snapshot) -> Result<(), Status>;
 }
 
-impl<B> Asked for Lookahead<Unicycle, B, Ground>
+impl<B> Asked for Lookahead<Unicycle, B, Ground, SlopeWithin>
 where
     B: Believe + FromLog<ObservationLog: Serialize + DeserializeOwned>,
 {
@@ -122,7 +122,7 @@ where
     }
 
     fn centre(&self) -> Option<Line> {
-        self.estimates().centre.map(|it| planner_core::Line::from(it).into())
+        self.estimate().map(Line::from)
     }
 
     fn bits(&self) -> f64 {

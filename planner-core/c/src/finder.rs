@@ -7,8 +7,8 @@ use core::ffi::c_void;
 use core::mem::{MaybeUninit, align_of, size_of};
 
 use planner_core::{
-    Lookahead, NoisyBelief, Plan, Planner as _, Prior, Reliability, Tolerance, Unicycle,
-    VersionSpace,
+    Lookahead, NoisyBelief, Plan, Planner as _, Prior, Reliability, SlopeWithin, Tolerance,
+    Unicycle, VersionSpace,
 };
 
 use crate::area::Ground;
@@ -24,8 +24,8 @@ const TRUE_SAMPLES: usize = 68;
 const DOUBTFUL_SAMPLES: usize = 36;
 const HYPOTHESES: usize = 529;
 
-type True = Lookahead<Unicycle, VersionSpace<TRUE_SAMPLES>, Ground>;
-type Doubtful = Lookahead<Unicycle, NoisyBelief<DOUBTFUL_SAMPLES, HYPOTHESES>, Ground>;
+type True = Lookahead<Unicycle, VersionSpace<TRUE_SAMPLES>, Ground, SlopeWithin>;
+type Doubtful = Lookahead<Unicycle, NoisyBelief<DOUBTFUL_SAMPLES, HYPOTHESES>, Ground, SlopeWithin>;
 
 /// A planner, in memory of the caller.
 #[repr(align(8))]

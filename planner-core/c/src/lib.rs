@@ -7,8 +7,8 @@
 //! planner lives in memory of the caller, which may be moved. Nothing is global, so there may be many.
 //!
 //! ```sh
-//! cargo build -p planner-c --release --target thumbv7em-none-eabihf
-//! # target/thumbv7em-none-eabihf/release/libplanner_c.a
+//! cargo build -p planner-c --profile chip --target thumbv7em-none-eabihf
+//! # target/thumbv7em-none-eabihf/chip/libplanner_c.a
 //! ```
 
 mod area;

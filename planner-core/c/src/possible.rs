@@ -2,7 +2,8 @@
 
 use planner_core::error::GivenError;
 use planner_core::{
-    CellPosterior, Goal, Noise, Prior, Site, Tolerance, Unicycle, VersionSpace, aimed_for,
+    CellPosterior, Goal, Noise, Prior, Site, SlopeWithin, Tolerance, Unicycle, VersionSpace,
+    aimed_for,
 };
 
 use crate::area::Ground;
@@ -17,7 +18,7 @@ pub(crate) struct Possible {
     pub(crate) area: Ground,
     pub(crate) tolerance: Tolerance,
     pub(crate) unicycle: Unicycle,
-    pub(crate) goal: Option<Goal>,
+    pub(crate) goal: Option<Goal<SlopeWithin>>,
     pub(crate) noise: Option<Noise>,
     samples: [planner_core::Sample; MOST_GIVEN],
     count: usize,

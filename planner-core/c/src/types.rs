@@ -5,7 +5,7 @@ use core::ffi::CStr;
 use planner_core::error::{GridError, ObservationError};
 use planner_core::nalgebra::Point2;
 use planner_core::{
-    Angle, Goal, Heading, Hull, Label, Noise, Site, StopReason, Tolerance, Unicycle,
+    Angle, Goal, Heading, Hull, Label, Noise, Site, SlopeWithin, StopReason, Tolerance, Unicycle,
 };
 
 use crate::area::{Area, Ground};
@@ -255,7 +255,7 @@ impl Mission<'_> {
         })
     }
 
-    pub(crate) fn goal(&self) -> Result<Option<Goal>, Refusal> {
+    pub(crate) fn goal(&self) -> Result<Option<Goal<SlopeWithin>>, Refusal> {
         let level = self.level()?;
         if self.slopes == 0.0 {
             return Ok(None);

@@ -10,16 +10,19 @@ use crate::geometry::area::Area;
 use crate::geometry::heading::Angle;
 use crate::geometry::lattice::Vector;
 use crate::geometry::line::Bound;
+use crate::geometry::span::Span;
 use crate::geometry::value::ValueError;
 use crate::geometry::workspace::Workspace;
 
 /// The goal of a mission: how well the line must be known, and with which probability.
+///
+/// `C` is what is asked of the lines. A program has the code of the criteria alone that its types name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Goal {
+pub struct Goal<C = Accuracy> {
     /// The accuracy with which the line must be known.
-    pub accuracy: Accuracy,
+    pub accuracy: C,
     /// The least probability that the promise holds, in millionths. Unused if labels are true: then it is certain.
     pub level: u32,
 }
@@ -27,7 +30,7 @@ pub struct Goal {
 /// The probability with which a promise holds unless another is asked for, in millionths.
 const USUAL_LEVEL: u32 = 900_000;
 
-impl Goal {
+impl Goal<SlopeWithin> {
     /// Any two of the lines left make an angle of so many degrees at most.
     ///
     /// # Errors
@@ -42,18 +45,27 @@ impl Goal {
     /// [`ValueError`] unless it is above 0 and below a quarter turn.
     pub fn slope_within(angle: Angle) -> Result<Self, ValueError> {
         let is_acute = 0 < angle.0 && angle.0 < 1 << 30;
-        let accuracy = Accuracy::SlopeArc(angle);
+        let accuracy = SlopeWithin(angle);
         is_acute.then_some(Self { accuracy, level: USUAL_LEVEL }).ok_or(ACUTE)
     }
+}
 
+impl Goal<ShareWithin> {
     /// The ground on which not all of the lines agree is at most this share of the area.
     ///
     /// # Errors
     /// [`ValueError`] unless it is at least 0.000001 and at most 1.
     pub fn misclassified_share(share: f64) -> Result<Self, ValueError> {
         let is_share = (1e-6..=1.0).contains(&share);
-        let accuracy = Accuracy::Misclassified(libm::round(share * 1e6) as u32);
+        let accuracy = ShareWithin(libm::round(share * 1e6) as u32);
         is_share.then_some(Self { accuracy, level: USUAL_LEVEL }).ok_or(SHARE)
+    }
+}
+
+impl<C: Criterion> Goal<C> {
+    /// A goal of either criterion, if it asks for this one.
+    pub fn of(Goal { accuracy, level }: Goal) -> Option<Self> {
+        C::of(accuracy).map(|accuracy| Self { accuracy, level })
     }
 
     /// The same goal, to be met with this probability at least. It is 0.9 unless you say otherwise, and 1 where labels
@@ -71,13 +83,19 @@ impl Goal {
     /// that rectangle, of which the same ground is a smaller share.
     #[must_use]
     pub fn in_bounds_of<G: Workspace>(self, area: &G) -> Self {
-        let accuracy = match self.accuracy {
-            Accuracy::Misclassified(millionths) => {
-                Accuracy::Misclassified((millionths as f32 * area.share_of_bounds()) as u32)
-            }
-            accuracy @ Accuracy::SlopeArc(_) => accuracy,
-        };
-        Self { accuracy, ..self }
+        Self { accuracy: self.accuracy.in_bounds_of(area), ..self }
+    }
+}
+
+impl From<Goal<SlopeWithin>> for Goal {
+    fn from(Goal { accuracy: SlopeWithin(most), level }: Goal<SlopeWithin>) -> Self {
+        Self { accuracy: Accuracy::SlopeArc(most), level }
+    }
+}
+
+impl From<Goal<ShareWithin>> for Goal {
+    fn from(Goal { accuracy: ShareWithin(most), level }: Goal<ShareWithin>) -> Self {
+        Self { accuracy: Accuracy::Misclassified(most), level }
     }
 }
 
@@ -85,7 +103,75 @@ const ACUTE: ValueError = ValueError("a goal's angle is above 0 and below 90 deg
 const SHARE: ValueError = ValueError("a goal's share of the area is from 0.000001 to 1");
 const CONFIDENCE: ValueError = ValueError("a confidence is above 0 and at most 0.9999");
 
-/// How well a line is to be known.
+/// What can be asked of lines. A type of its own for each, so that a program carries the code of no other.
+pub trait Criterion: Copy {
+    /// The one of both that is this.
+    fn of(accuracy: Accuracy) -> Option<Self>;
+
+    /// Whether the lines between these vertices, of one cell or of several, are as close to each other as it asks.
+    /// Conservative: `true` is always correct.
+    fn is_met<B: Bounds>(self, bounds: &B, area: Area) -> bool;
+
+    /// The same criterion for the rectangle around an area.
+    #[must_use]
+    fn in_bounds_of<G: Workspace>(self, _area: &G) -> Self {
+        self
+    }
+}
+
+/// No criterion: that of a planner without a goal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum NoGoal {}
+
+impl Criterion for NoGoal {
+    fn of(_: Accuracy) -> Option<Self> {
+        None
+    }
+
+    fn is_met<B: Bounds>(self, _: &B, _: Area) -> bool {
+        match self {}
+    }
+}
+
+/// Any two of the lines make an angle of this at most, below a quarter turn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct SlopeWithin(pub Angle);
+
+impl Criterion for SlopeWithin {
+    fn of(accuracy: Accuracy) -> Option<Self> {
+        if let Accuracy::SlopeArc(most) = accuracy { Some(Self(most)) } else { None }
+    }
+
+    fn is_met<B: Bounds>(self, bounds: &B, _: Area) -> bool {
+        arc_of(bounds).is_some_and(|arc| is_narrower(arc, self.0))
+    }
+}
+
+/// The ground on which not all of the lines agree is at most this share of the area, in millionths.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct ShareWithin(pub u32);
+
+impl Criterion for ShareWithin {
+    fn of(accuracy: Accuracy) -> Option<Self> {
+        if let Accuracy::Misclassified(most) = accuracy { Some(Self(most)) } else { None }
+    }
+
+    fn is_met<B: Bounds>(self, bounds: &B, area: Area) -> bool {
+        let most = self.0 as f32 * 1e-6 * (1.0 - ROUNDING);
+        arc_of(bounds).is_some_and(|arc| {
+            is_narrower(arc, Angle(1 << 29)) && uncertain_share(arc, bounds, area) <= most
+        })
+    }
+
+    fn in_bounds_of<G: Workspace>(self, area: &G) -> Self {
+        Self((self.0 as f32 * area.share_of_bounds()) as u32)
+    }
+}
+
+/// Either of the two criteria: how well a line is to be known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -96,27 +182,54 @@ pub enum Accuracy {
     Misclassified(u32),
 }
 
-/// Points along the area at which the breadth of the uncertain ground is taken.
-const STATIONS: u16 = 16;
+impl Criterion for Accuracy {
+    fn of(accuracy: Accuracy) -> Option<Self> {
+        Some(accuracy)
+    }
+
+    fn is_met<B: Bounds>(self, bounds: &B, area: Area) -> bool {
+        match self {
+            Self::SlopeArc(most) => SlopeWithin(most).is_met(bounds, area),
+            Self::Misclassified(most) => ShareWithin(most).is_met(bounds, area),
+        }
+    }
+
+    fn in_bounds_of<G: Workspace>(self, area: &G) -> Self {
+        match self {
+            Self::SlopeArc(_) => self,
+            Self::Misclassified(most) => {
+                Self::Misclassified(ShareWithin(most).in_bounds_of(area).0)
+            }
+        }
+    }
+}
+
+/// The vertices of one cell, or of several. They are called one by one in a loop, and a program has its body once.
+pub trait Bounds {
+    /// Calls a function for each.
+    fn each(&self, f: impl FnMut(Bound));
+}
+
+impl<I: Iterator<Item = Bound> + Clone> Bounds for I {
+    fn each(&self, f: impl FnMut(Bound)) {
+        self.clone().for_each(f);
+    }
+}
+
+/// Points along the area at which the breadth of the uncertain ground is taken, but for the first.
+const STATIONS: usize = 16;
 
 /// The most that rounding takes from a promise, as a share of it.
 const ROUNDING: f32 = 1e-4;
 
-impl Accuracy {
-    /// Whether the lines between these vertices, of one cell or of several, are as close to each other as the goal
-    /// asks. Conservative: `true` is always correct.
-    pub fn is_met(self, bounds: impl Iterator<Item = Bound> + Clone, area: Area) -> bool {
-        let Some(arc) = SlopeArc::spanning(bounds.clone().map(|bound| bound.along)) else {
-            return false;
-        };
-        match self {
-            Self::SlopeArc(most) => is_narrower(arc, most),
-            Self::Misclassified(millionths) => {
-                let most = millionths as f32 * 1e-6 * (1.0 - ROUNDING);
-                is_narrower(arc, Angle(1 << 29)) && uncertain_share(arc, bounds, area) <= most
-            }
-        }
-    }
+/// The arc of the lines' slopes.
+fn arc_of<B: Bounds>(bounds: &B) -> Option<SlopeArc> {
+    let mut arc = None;
+    bounds.each(|Bound { along, .. }| {
+        let point = SlopeArc::new(along, along);
+        arc = Some(arc.map_or(point, |arc: SlopeArc| arc.hull(point)));
+    });
+    arc
 }
 
 /// Whether an arc of slopes is narrower than a turn that is below a quarter.
@@ -132,58 +245,58 @@ fn is_narrower(arc: SlopeArc, turn: Angle) -> bool {
 /// The frame is at the middle of the area, and its first axis runs along the arc's bisector. There the ground lies
 /// between the highest of the lines and the lowest. Its breadth is a convex function, so trapezoids between some points
 /// of the function are an upper bound. They reach as far as there is such ground inside the area.
-fn uncertain_share(arc: SlopeArc, bounds: impl Iterator<Item = Bound> + Clone, area: Area) -> f32 {
+fn uncertain_share<B: Bounds>(arc: SlopeArc, bounds: &B, area: Area) -> f32 {
     let along = arc.bisector();
     let (x, z) = (along.x as f32, along.z as f32);
     let length = sqrt(x * x + z * z);
     let (cos, sin) = (x / length, z / length);
     let (middle, half) = (area.middle(), area.half_sides().map(|side| side as f32 * METRE));
-    let lines = bounds.map(|bound| {
+    // The slope of a line, and its height at the middle.
+    let seen = |bound: Bound| {
         let run = single(along.dot(bound.along));
         let slope = cross(along, bound.along) / run;
         (slope, -single(bound.at(middle)) * (length * METRE) / run)
-    });
-    let between = |x: f32| {
-        let heights = lines.clone().map(|(slope, offset)| slope * x + offset);
-        heights.fold((f32::INFINITY, f32::NEG_INFINITY), |(a, b), it| (a.min(it), b.max(it)))
     };
-    let (mut from, mut to) = (f32::INFINITY, f32::NEG_INFINITY);
-    let mut reaches = |x: f32| (from, to) = (from.min(x), to.max(x));
-    // The corners on which the lines disagree, and where each of these enters the area and leaves it.
-    for (right, up) in [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)] {
+    // The area's corners, with the heights of the lines there; and where lines enter the area and leave it.
+    let mut corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)].map(|(right, up)| {
         let (x, z) = (right * half[0], up * half[1]);
-        let (x, z) = (x * cos + z * sin, z * cos - x * sin);
-        let (low, high) = between(x);
-        if low <= z && z <= high {
-            reaches(x);
+        (x * cos + z * sin, z * cos - x * sin, Span::NONE)
+    });
+    let mut ground = Span::NONE;
+    bounds.each(|bound| {
+        let (slope, offset) = seen(bound);
+        for (x, _, heights) in &mut corners {
+            heights.add(slope * *x + offset);
         }
-    }
-    for (slope, offset) in lines.clone() {
         // A point of the line is base + x way.
         let base = [-sin * offset, cos * offset];
         let way = [cos - sin * slope, sin + cos * slope];
-        let (mut low, mut high) = (f32::NEG_INFINITY, f32::INFINITY);
-        for ((base, way), half) in base.into_iter().zip(way).zip(half) {
-            let (a, b) = ((-half - base) / way, (half - base) / way);
-            low = low.max(a.min(b));
-            high = high.min(a.max(b));
+        let inside = Span::inside(base, way, half.map(|side| -side), half);
+        if !inside.is_empty() {
+            ground.add(inside.low);
+            ground.add(inside.high);
         }
-        if low <= high {
-            reaches(low);
-            reaches(high);
+    });
+    // Uncertain ground goes as far as the corners on which the lines disagree.
+    for (x, z, heights) in corners {
+        if heights.contains(z) {
+            ground.add(x);
         }
     }
-    if from > to {
+    if ground.is_empty() {
         return 0.0;
     }
-    let step = (to - from) / f32::from(STATIONS);
+    let step = ground.width() / STATIONS as f32;
+    let mut stations = [Span::NONE; STATIONS + 1];
+    bounds.each(|bound| {
+        let (slope, offset) = seen(bound);
+        for (station, heights) in stations.iter_mut().enumerate() {
+            heights.add(slope * (ground.low + station as f32 * step) + offset);
+        }
+    });
     // What heights anywhere in the area are rounded by, at most.
     let rounding = 8.0 * f32::EPSILON * (half[0] + half[1]);
-    let breadth = |station: u16| {
-        let (low, high) = between(from + f32::from(station) * step);
-        high - low + rounding
-    };
-    let inner: f32 = (1..STATIONS).map(breadth).sum();
-    let ground = (inner + 0.5 * (breadth(0) + breadth(STATIONS))) * step;
+    let [first, inner @ .., last] = stations.map(|heights| heights.width() + rounding);
+    let ground = (inner.iter().sum::<f32>() + 0.5 * (first + last)) * step;
     ground / (4.0 * half[0] * half[1])
 }

@@ -43,11 +43,12 @@ pub mod version_space;
 pub mod weight;
 
 use crate::belief::estimate::Estimates;
-use crate::belief::goal::Goal;
+use crate::belief::goal::{Criterion, Goal};
 use crate::belief::sample::{Reading, Sample};
 use crate::belief::tolerance::Tolerance;
 use crate::geometry::area::Area;
 use crate::geometry::lattice::Site;
+use crate::geometry::local_line::LocalLine;
 
 /// What is known of the line: the questions that planners ask, and the results that are read out.
 ///
@@ -79,15 +80,21 @@ pub trait Belief {
         tolerance: Tolerance,
     ) -> Result<(), ObservationError>;
 
-    /// The line as far as it is known.
+    /// The line as far as it is known: all three estimates.
     fn estimates(&self) -> Estimates;
+
+    /// The first of the estimates, without the code and the time of the others: the mean of the lines left, or of their
+    /// distribution.
+    fn centre(&self) -> Option<LocalLine>;
 
     /// The information of the samples beyond those given at the start, bits. It is the divergence of the present
     /// distribution from the uniform one over the lines that the given samples leave.
     fn information(&self) -> f64;
 
     /// Whether the line is known well enough.
-    fn meets(&self, goal: Goal, area: Area) -> bool;
+    fn meets<C: Criterion>(&self, goal: Goal<C>, area: Area) -> bool
+    where
+        Self: Sized;
 
     /// The chance that a label read at a site is +1, errors of the sensor included.
     fn chance(&self, site: Site) -> f64;

@@ -8,7 +8,7 @@
 use crate::belief::cell_posterior::{CellPosterior, Hypothesis};
 use crate::belief::cell_view::{CellView, intercepts};
 use crate::belief::estimate::{Estimates, area, bisector, maximum_margin, share_above};
-use crate::belief::goal::Goal;
+use crate::belief::goal::{Bounds, Criterion, Goal};
 use crate::belief::moments::Moments;
 use crate::belief::sample::Reading;
 use crate::belief::tolerance::Tolerance;
@@ -17,6 +17,7 @@ use crate::belief::{Belief, ObservationError};
 use crate::geometry::arc::SlopeArc;
 use crate::geometry::area::Area;
 use crate::geometry::lattice::Site;
+use crate::geometry::line::Bound;
 use crate::geometry::local_line::LocalLine;
 
 /// The distribution over the hypotheses of a table, by its prior.
@@ -84,9 +85,13 @@ impl<const N: usize, const H: usize, const E: usize> Belief for CellPosterior<N,
         let best = most_likely(self).map(|best| self.lines(best));
         Estimates {
             bisector: bisector(self.samples()),
-            centre: mean(self),
+            centre: self.centre(),
             maximum_margin: best.and_then(maximum_margin),
         }
+    }
+
+    fn centre(&self) -> Option<LocalLine> {
+        mean(self)
     }
 
     fn information(&self) -> f64 {
@@ -94,15 +99,28 @@ impl<const N: usize, const H: usize, const E: usize> Belief for CellPosterior<N,
     }
 
     /// Whether the lines of the heaviest hypotheses, which together have the goal's level as probability, meet it.
-    fn meets(&self, goal: Goal, area: Area) -> bool {
-        let Some(least) = self.lightest_within(goal.level) else { return false };
-        let within = self.iter().filter(|hypothesis| hypothesis.weight() >= least);
-        let bounds = within.flat_map(|hypothesis| self.lines(hypothesis).bounds());
-        goal.accuracy.is_met(bounds, area)
+    fn meets<C: Criterion>(&self, goal: Goal<C>, area: Area) -> bool {
+        let heaviest =
+            self.lightest_within(goal.level).map(|least| Heaviest { table: self, least });
+        heaviest.is_some_and(|heaviest| goal.accuracy.is_met(&heaviest, area))
     }
 
     fn chance(&self, site: Site) -> f64 {
         PosteriorView::new(self).chance(site)
+    }
+}
+
+/// The hypotheses of a table that weigh this much at least.
+struct Heaviest<'a, const N: usize, const H: usize, const E: usize> {
+    table: &'a CellPosterior<N, H, E>,
+    least: LogWeight,
+}
+
+impl<const N: usize, const H: usize, const E: usize> Bounds for Heaviest<'_, N, H, E> {
+    fn each(&self, mut f: impl FnMut(Bound)) {
+        for hypothesis in self.table.iter().filter(|it| it.weight() >= self.least) {
+            self.table.lines(hypothesis).bounds().for_each(&mut f);
+        }
     }
 }
 

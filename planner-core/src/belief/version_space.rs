@@ -4,7 +4,7 @@ use crate::belief::cell_view::{CellView, Certainty};
 use crate::belief::constraint::Constraint;
 use crate::belief::dual_cell::{Cut, CutError, DualCell};
 use crate::belief::estimate::{Estimates, area, bisector, centre, maximum_margin, share_above};
-use crate::belief::goal::Goal;
+use crate::belief::goal::{Criterion, Goal};
 use crate::belief::sample::{Label, Reading, Sample, SampleBuffer};
 use crate::belief::tolerance::Tolerance;
 use crate::belief::{Belief, ObservationError};
@@ -12,6 +12,7 @@ use crate::geometry::arc::SlopeArc;
 use crate::geometry::area::Area;
 use crate::geometry::lattice::{Site, Vector};
 use crate::geometry::line::Bound;
+use crate::geometry::local_line::LocalLine;
 
 /// Why samples do not make a version space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -326,9 +327,13 @@ impl<const N: usize> Belief for VersionSpace<N> {
     fn estimates(&self) -> Estimates {
         Estimates {
             bisector: bisector(self.samples()),
-            centre: centre(self.lines()),
+            centre: self.centre(),
             maximum_margin: maximum_margin(self.lines()),
         }
+    }
+
+    fn centre(&self) -> Option<LocalLine> {
+        centre(self.lines())
     }
 
     /// Each bit halves the measure of the lines that are left.
@@ -339,8 +344,8 @@ impl<const N: usize> Belief for VersionSpace<N> {
     }
 
     /// Whether all lines that are left meet the goal. The goal's level has no effect, as labels are true.
-    fn meets(&self, goal: Goal, area: Area) -> bool {
-        goal.accuracy.is_met(self.bounds(), area)
+    fn meets<C: Criterion>(&self, goal: Goal<C>, area: Area) -> bool {
+        goal.accuracy.is_met(&self.bounds(), area)
     }
 
     fn chance(&self, site: Site) -> f64 {

@@ -64,8 +64,16 @@ impl UnitVector {
     }
 }
 
-/// The square root of a number that is not negative, to 10^-5 of it. Newton's method on `1 / sqrt(x)`.
+/// The square root of a number that is not negative, to 10^-5 of it.
+#[inline(never)] // as above
 pub(crate) fn sqrt(x: f32) -> f32 {
+    root(x)
+}
+
+/// The same in line. Newton's method on `1 / sqrt(x)`.
+#[expect(clippy::inline_always, reason = "the arc cosine is called for each line of each circle")]
+#[inline(always)]
+fn root(x: f32) -> f32 {
     let mut inverse = f32::from_bits(0x5f37_59df - (x.to_bits() >> 1));
     for _ in 0..2 {
         inverse *= 1.5 - 0.5 * x * inverse * inverse;
@@ -84,7 +92,7 @@ pub(crate) fn acos(x: f32) -> CoarseAngle {
         return CoarseAngle::QUARTER_TURN - CoarseAngle::radians(asin);
     }
     let cubic = 1.570_728_8 + size * (-0.212_114_4 + size * (0.074_261 - size * 0.018_729_3));
-    let angle = CoarseAngle::radians(sqrt(1.0 - size) * cubic);
+    let angle = CoarseAngle::radians(root(1.0 - size) * cubic);
     if x < 0.0 { CoarseAngle::HALF_TURN - angle } else { angle }
 }
 

@@ -14,5 +14,6 @@ pub mod lattice;
 pub mod line;
 pub mod local_line;
 pub mod polygon_area;
+pub(crate) mod span;
 pub mod value;
 pub mod workspace;

@@ -281,6 +281,8 @@ pub enum DeclinedError {
     Area,
     /// The tolerance leaves nothing of the area.
     Tolerance,
+    /// The chip cannot check this goal.
+    Goal,
 }
 
 impl core::fmt::Display for DeclinedError {
@@ -296,6 +298,7 @@ impl core::fmt::Display for DeclinedError {
             Self::Labels => f.write_str("the chip has no label sensor"),
             Self::Vehicle(why) => why.fmt(f),
             Self::Area => f.write_str("the chip cannot plan in this area"),
+            Self::Goal => f.write_str("the chip cannot check this goal"),
         }
     }
 }

@@ -5,7 +5,7 @@ use heapless::Vec;
 use crate::belief::ObservationError;
 use crate::belief::cell_posterior::CellPosterior;
 use crate::belief::estimate::Estimates;
-use crate::belief::goal::Goal;
+use crate::belief::goal::{Accuracy, Criterion, Goal};
 use crate::belief::noise::Noise;
 use crate::belief::noisy_belief::NoisyBelief;
 use crate::belief::sample::{Reading, Sample};
@@ -42,6 +42,11 @@ impl<L> Prepared<L> {
     /// The planner.
     pub const fn planner_mut(&mut self) -> &mut L {
         &mut self.planner
+    }
+
+    /// The planner, as another planner that is made of it.
+    pub fn wrapped<'a, M>(&'a mut self, wrap: impl FnOnce(&'a mut L) -> M) -> Prepared<M> {
+        Prepared { planner: wrap(&mut self.planner), capacity: self.capacity }
     }
 }
 
@@ -94,17 +99,19 @@ impl Setup {
         Ok(Prepared { planner: Cfc::of((area, dynamics), space, options), capacity })
     }
 
-    /// Look-ahead for this mission, with labels that are true.
+    /// Look-ahead for this mission, with labels that are true, and for goals of a criterion: those that the chip has
+    /// the code of.
     ///
     /// # Errors
     /// [`DeclinedError`].
     #[inline(never)] // it is the planner's, see `seam`
-    pub fn lookahead<D: Dynamics, G: Workspace, const N: usize>(
+    pub fn lookahead<D: Dynamics, G: Workspace, C: Criterion, const N: usize>(
         &self,
         PlannerSetup { dynamics, area, options }: PlannerSetup<D, G>,
         evaluations: u32,
         goal: Option<Goal>,
-    ) -> Result<Prepared<Lookahead<D, VersionSpace<N>, G>>, DeclinedError> {
+    ) -> Result<Prepared<Lookahead<D, VersionSpace<N>, G, C>>, DeclinedError> {
+        let goal = goal.map(|goal| Goal::of(goal).ok_or(DeclinedError::Goal)).transpose()?;
         let capacity = Capacity { samples: N as u16, hypotheses: 1 };
         self.check(capacity)?;
         let space = self.space()?;
@@ -129,7 +136,7 @@ impl Setup {
         PlannerSetup { dynamics, area, options }: PlannerSetup<D, G>,
         evaluations: u32,
         goal: Option<Goal>,
-    ) -> Lookahead<D, NoisyBelief<N, H>, G> {
+    ) -> Lookahead<D, NoisyBelief<N, H>, G, Accuracy> {
         Lookahead::of((area, dynamics), NoisyBelief::NONE, options.weight.into(), evaluations, goal)
     }
 
@@ -255,8 +262,8 @@ impl<D: Dynamics, G: Workspace, const N: usize, const H: usize> Restart for Scc<
     }
 }
 
-impl<D: Dynamics, G: Workspace, const N: usize, const H: usize> Restart
-    for Lookahead<D, NoisyBelief<N, H>, G>
+impl<D: Dynamics, G: Workspace, C: Criterion, const N: usize, const H: usize> Restart
+    for Lookahead<D, NoisyBelief<N, H>, G, C>
 {
     const CAPACITY: Capacity = Capacity { samples: N as u16, hypotheses: H as u16 };
 

@@ -8,6 +8,8 @@
 //! action. As long as that circle lies inside the area, the vehicle is never cornered. [`Car`](crate::motion::car)
 //! drives along arcs, and [`Boat`](crate::motion::boat) turns a little in each step.
 
+use core::num::NonZeroU32;
+
 use nalgebra::Point2;
 
 use crate::geometry::area::Area;
@@ -255,7 +257,7 @@ pub trait Dynamics {
     /// The ray nearest to a heading, and the nearest within half a turn on the other side of it. If there is none, the
     /// second is the first again. Computes some 70 headings at most.
     fn around(&self, pose: Pose, heading: Heading) -> [Ray; 2] {
-        let RayFan { left, right, .. } = self.fan();
+        let RayFan { left, right, spacing } = self.fan();
         let to_left = heading.0.wrapping_sub(self.heading(pose, Side::Left, 0).0);
         // To the right of the heading and to the left: how far off, and which ray.
         let mut nearest = [(u32::MAX, Side::Left, 0); 2];
@@ -263,7 +265,7 @@ pub trait Dynamics {
             (Side::Left, left.saturating_sub(1), to_left),
             (Side::Right, right, to_left.wrapping_neg()),
         ] {
-            let before = last_within(last, to, |n| turn(self, pose, side, n));
+            let before = last_within(last, to, spacing, |n| turn(self, pose, side, n));
             for n in [before, before.saturating_add(1).min(last)] {
                 // Positive if the ray turns less than the heading.
                 let off = to.wrapping_sub(turn(self, pose, side, n)) as i32;
@@ -324,16 +326,20 @@ fn turn<D: Dynamics + ?Sized>(dynamics: &D, pose: Pose, side: Side, n: u32) -> u
     if side == Side::Left { turned } else { turned.wrapping_neg() }
 }
 
-/// The last of the numbers from 0 whose turn is at most this one; the turns grow from 0.
-fn last_within(last: u32, most: u32, turn: impl Fn(u32) -> u32) -> u32 {
-    let (mut low, mut high) = (0, last);
+/// The last of the numbers from 0 whose turn is at most this one. The turns grow from 0, by the spacing at most from one
+/// to the next. Where they are as far apart as that, it takes two looks. Else a binary search ends it.
+fn last_within(last: u32, most: u32, spacing: Angle, turn: impl Fn(u32) -> u32) -> u32 {
+    let spacings = |turn: u32| NonZeroU32::new(spacing.0).map_or(0, |spacing| turn / spacing);
+    let mut low = spacings(most).min(last);
+    low = low.saturating_add(spacings(most.saturating_sub(turn(low)))).min(last);
+    let (mut high, mut next) = (last, low.saturating_add(1));
     while low < high {
-        let middle = high - (high - low) / 2;
-        if turn(middle) <= most {
-            low = middle;
+        if turn(next) <= most {
+            low = next;
         } else {
-            high = middle - 1;
+            high = next - 1;
         }
+        next = high - (high - low) / 2;
     }
     low
 }

@@ -20,7 +20,7 @@
 use crate::belief::Belief as _;
 use crate::belief::ObservationError;
 use crate::belief::cell_view::CellView;
-use crate::belief::goal::Goal;
+use crate::belief::goal::{Criterion, Goal, NoGoal};
 use crate::belief::noise::Noise;
 use crate::belief::noisy_belief::NoisyBelief;
 use crate::belief::observation_log::FromLog;
@@ -115,11 +115,12 @@ const LEAST: f32 = 0.15;
 /// Where no label is worth as much, turns in place are considered.
 const POOR: f32 = 0.9;
 
-/// The look-ahead planner: `D` is the vehicle, `B` the belief that it learns from, `G` the area.
+/// The look-ahead planner: `D` is the vehicle, `B` the belief that it learns from, `G` the area, and `C` what its
+/// [`Goal`] asks of the line.
 ///
 /// A plan looks two labels ahead.
 #[derive(Clone, Debug)]
-pub struct Lookahead<D, B, G = Area> {
+pub struct Lookahead<D, B, G = Area, C = NoGoal> {
     /// Where motions aim for.
     area: G,
     price: DrivingPrice,
@@ -128,7 +129,7 @@ pub struct Lookahead<D, B, G = Area> {
     dynamics: D,
     belief: B,
     evaluations: u32,
-    goal: Option<Goal>,
+    goal: Option<Goal<C>>,
     silence: Silence,
 }
 
@@ -152,7 +153,9 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace> Lookahead<D, B, G> {
         let area = aimed_for_by(area, &dynamics, belief.belief())?;
         Ok(Self::of((area, dynamics), belief, DrivingPrice::USUAL, EVALUATIONS, None))
     }
+}
 
+impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion> Lookahead<D, B, G, C> {
     /// The same in the part of an area that motions aim for, with all that can be chosen. A planner may be large, and a
     /// chip has no room for a copy of it.
     #[inline]
@@ -161,7 +164,7 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace> Lookahead<D, B, G> {
         belief: B,
         price: DrivingPrice,
         evaluations: u32,
-        goal: Option<Goal>,
+        goal: Option<Goal<C>>,
     ) -> Self {
         let bounds = area.bounds().whole();
         let goal = goal.map(|goal| goal.in_bounds_of(&area));
@@ -186,9 +189,10 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace> Lookahead<D, B, G> {
     /// The same, but it stops when the belief meets the goal. `None` means no goal.
     #[must_use]
     #[inline]
-    pub fn until(self, goal: impl Into<Option<Goal>>) -> Self {
-        let goal = goal.into().map(|goal| goal.in_bounds_of(&self.area));
-        Self { goal, ..self }
+    pub fn until<W: Criterion>(self, goal: impl Into<Option<Goal<W>>>) -> Lookahead<D, B, G, W> {
+        let Self { area, price, bounds, dynamics, belief, evaluations, silence, .. } = self;
+        let goal = goal.into().map(|goal| goal.in_bounds_of(&area));
+        Lookahead { area, price, bounds, dynamics, belief, evaluations, goal, silence }
     }
 
     /// The belief, for example to take in a label that has its own reliability. The planner then forgets its turns
@@ -293,7 +297,9 @@ fn second<D: Dynamics, P: Prediction, G: Workspace>(
     most
 }
 
-impl<D: Dynamics, G: Workspace, const N: usize, const H: usize> Lookahead<D, NoisyBelief<N, H>, G> {
+impl<D: Dynamics, G: Workspace, C, const N: usize, const H: usize>
+    Lookahead<D, NoisyBelief<N, H>, G, C>
+{
     /// Begins again, in place, with what other given samples leave: see [`NoisyBelief::restart`].
     ///
     /// # Errors
@@ -311,7 +317,9 @@ impl<D: Dynamics, G: Workspace, const N: usize, const H: usize> Lookahead<D, Noi
     }
 }
 
-impl<D: Dynamics, B: PredictiveBelief, G: Workspace> Planner for Lookahead<D, B, G> {
+impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion> Planner
+    for Lookahead<D, B, G, C>
+{
     type Belief = B::Belief;
 
     fn plan(&mut self, pose: Pose) -> Plan {
@@ -371,7 +379,9 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace> Planner for Lookahead<D, B,
     }
 }
 
-impl<D: Dynamics, B: PredictiveBelief + FromLog, G: Workspace> Persist for Lookahead<D, B, G> {
+impl<D: Dynamics, B: PredictiveBelief + FromLog, G: Workspace, C: Criterion> Persist
+    for Lookahead<D, B, G, C>
+{
     type Snapshot = Snapshot<B::ObservationLog, Silence>;
 
     fn snapshot(&self) -> Self::Snapshot {

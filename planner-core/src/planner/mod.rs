@@ -179,14 +179,15 @@ pub trait Planner {
     /// What is known.
     fn belief(&self) -> &Self::Belief;
 
-    /// The line as far as it is known.
+    /// The line as far as it is known: all three estimates.
     fn estimates(&self) -> Estimates {
         self.belief().estimates()
     }
 
-    /// The best estimate: the mean of the lines left, or of their distribution. `None` where there is none.
+    /// The best estimate: the mean of the lines left, or of their distribution. `None` where there is none. A program
+    /// that asks for this one alone does not carry the others.
     fn estimate(&self) -> Option<Line> {
-        self.estimates().centre.map(Line::from)
+        self.belief().centre().map(Line::from)
     }
 }
 
@@ -208,5 +209,9 @@ impl<T: Planner + ?Sized> Planner for &mut T {
 
     fn belief(&self) -> &T::Belief {
         T::belief(self)
+    }
+
+    fn estimates(&self) -> Estimates {
+        T::estimates(self)
     }
 }

@@ -6,6 +6,7 @@ use crate::belief::sample::Label;
 use crate::geometry::angle::CoarseAngle;
 use crate::geometry::approximate::{acos, heading_of, single, sqrt};
 use crate::geometry::heading::Heading;
+use crate::geometry::lattice::Vector;
 use crate::geometry::line::Bound;
 use crate::motion::dynamics::Side;
 
@@ -54,6 +55,14 @@ impl SeenLine {
         Self::new(single(value) / sqrt(x * x + z * z), heading_of(along.left()))
     }
 
+    /// The place of the line that is nearest to the agent, as seen from there, and a unit vector along the line.
+    pub(crate) fn foot_and_way(&self) -> ([f32; 2], [f32; 2]) {
+        const ONE: i32 = 1 << 30;
+        let Vector { x, z } = self.uphill.unit().scaled(ONE);
+        let [x, z] = [x, z].map(|v| v as f32 / ONE as f32);
+        ([-x * self.height, -z * self.height], [-z, x])
+    }
+
     /// How far another line is from this one within a distance of the agent, at most.
     pub(crate) fn aside(&self, other: &Self, reach: f32) -> f32 {
         let turn = CoarseAngle::between(self.uphill, other.uphill).abs().in_radians();
@@ -61,6 +70,11 @@ impl SeenLine {
     }
 
     /// Looks at a circle; `margin`, in radii, is for the rounding of positions to the lattice.
+    #[expect(
+        clippy::inline_always,
+        reason = "a build for size does it for each line of each circle"
+    )]
+    #[inline(always)]
     pub(crate) fn cross(&mut self, inverse_radius: f32, margin: f32) {
         let depth = -self.height * inverse_radius;
         if self.height == 0.0 && self.crossing != Crossing::UNKNOWN {
@@ -92,6 +106,8 @@ impl SeenLine {
 
     /// The side of the line on which the circle is at a heading, if that is certain. Also returns the turn within which
     /// it stays there.
+    #[expect(clippy::inline_always, reason = "a build for size does it for each line of each look")]
+    #[inline(always)]
     pub(crate) fn certain_until(
         &self,
         heading: Heading,

@@ -12,6 +12,7 @@ use heapless::Vec;
 use crate::geometry::approximate::{single, sqrt};
 use crate::geometry::heading::Heading;
 use crate::geometry::lattice::{Site, Vector};
+use crate::geometry::span::Span;
 use crate::geometry::workspace::{Obstacle, Workspace};
 use crate::search::objective::Effort;
 use crate::search::view::View;
@@ -115,7 +116,7 @@ fn octagon(keep_out: &Obstacle<'_>, space: f32) -> [Option<Site>; 8] {
     let height = |k: u32| {
         let [x, z] = normal(k % 8);
         let reach = |corner: &Site| x * (*corner - about).x as f32 + z * (*corner - about).z as f32;
-        keep_out.corners.iter().map(reach).fold(f32::NEG_INFINITY, f32::max) + away
+        Span::of(keep_out.corners.iter().map(reach)).high + away
     };
     core::array::from_fn(|k| {
         let k = k as u32;

@@ -90,6 +90,8 @@ impl<'a, R: DirectionRule, G: Workspace> Problem<'a, R, G> {
     }
 
     /// The search for it from a pose; nothing is seen before it is opened.
+    #[expect(clippy::inline_always, reason = "its buffers are made where they stay")]
+    #[inline(always)]
     pub(crate) fn search<'d, D: Dynamics>(
         &self,
         dynamics: &'d D,

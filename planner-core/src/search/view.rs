@@ -13,6 +13,7 @@ use crate::geometry::approximate::{single, sqrt};
 use crate::geometry::heading::Heading;
 use crate::geometry::lattice::{Site, Vector};
 use crate::geometry::line::Bound;
+use crate::geometry::span::Span;
 use crate::geometry::workspace::Workspace;
 use crate::motion::action::ActionGrid;
 use crate::motion::dynamics::Side;
@@ -58,6 +59,8 @@ pub(crate) struct View<'a, G> {
 impl<'a, G: Workspace> View<'a, G> {
     /// From a position, for motions on some grid; nothing is seen before
     /// [`open`](Self::open).
+    #[expect(clippy::inline_always, reason = "its buffers are made where they stay")]
+    #[inline(always)]
     pub(crate) fn new(lines: CellView<'a>, area: G, site: Site, grid: ActionGrid) -> Self {
         // A position is rounded by 0.71 units at most.
         let margin = 3e-5 + 1.0 / grid.step_units();
@@ -173,7 +176,7 @@ impl<'a, G: Workspace> View<'a, G> {
     /// positions err, the turn covers at least a quarter of the larger component of the shift.
     pub(crate) fn passed_over(&self, site: Site) -> u32 {
         let Vector { x, z } = self.lines.shift;
-        let shift = (x as f32).abs().max((z as f32).abs());
+        let shift = x.unsigned_abs().max(z.unsigned_abs()) as f32;
         let (dull, skipped) = (self.lines.dull_within(site), 0.25 * shift);
         let turn = if dull > skipped { dull } else { skipped } * self.inverse_radius;
         CoarseAngle::radians(if turn < 1.0 { turn } else { 1.0 }).turn()
@@ -256,7 +259,6 @@ impl<'a, G: Workspace> View<'a, G> {
         here: Site,
         is_open: impl Fn(Vector) -> bool,
     ) -> Option<(Vector, f32)> {
-        const ONE: i32 = 1 << 30;
         let bounds = self.area.bounds();
         let apart = |a: i32, b: i32| (a - b) as f32;
         let from = [apart(bounds.min().x(), here.x()), apart(bounds.min().z(), here.z())];
@@ -266,32 +268,23 @@ impl<'a, G: Workspace> View<'a, G> {
         for (k, bound) in self.lines.bounds().enumerate() {
             let kept = self.bounds.get(k).filter(|_| all_are_kept);
             let line = kept.copied().unwrap_or_else(|| SeenLine::of(bound, bound.at(here)));
-            let normal = line.uphill.unit().scaled(ONE);
-            let normal = [normal.x, normal.z].map(|v| v as f32 / ONE as f32);
-            let along = [-normal[1], normal[0]];
-            // The line's foot, and the part of the line that is inside: foot + t along.
-            let foot = normal.map(|v| -v * line.height);
-            let (mut low, mut high) = (f32::NEG_INFINITY, f32::INFINITY);
-            for (((foot, along), from), to) in foot.iter().zip(along).zip(from).zip(to) {
-                let (a, b) = ((from - foot) / along, (to - foot) / along);
-                low = low.max(a.min(b));
-                high = high.min(a.max(b));
-            }
+            let (foot, along) = line.foot_and_way();
+            let mut inside = Span::inside(foot, along, from, to);
             for side in self.area.sides() {
                 let way = [side.along.x as f32, side.along.z as f32];
                 let cross = |v: [f32; 2]| way[0] * v[1] - way[1] * v[0];
                 let t = -(single(side.at(here)) + cross(foot)) / cross(along);
-                (low, high) =
-                    if cross(along) > 0.0 { (low.max(t), high) } else { (low, high.min(t)) };
+                if cross(along) > 0.0 { inside.keep_above(t) } else { inside.keep_below(t) }
             }
-            if low <= high {
-                let t = 0.0_f32.clamp(low, high);
-                let distance = line.height * line.height + t * t;
-                let way = [foot[0] + t * along[0], foot[1] + t * along[1]];
-                let way = Vector { x: way[0] as i32, z: way[1] as i32 };
-                if nearest.is_none_or(|(_, least)| distance < least) && is_open(way) {
-                    nearest = Some((way, distance));
-                }
+            if inside.is_empty() {
+                continue;
+            }
+            let t = inside.nearest(0.0);
+            let distance = line.height * line.height + t * t;
+            let way = [foot[0] + t * along[0], foot[1] + t * along[1]];
+            let way = Vector { x: way[0] as i32, z: way[1] as i32 };
+            if nearest.is_none_or(|(_, least)| distance < least) && is_open(way) {
+                nearest = Some((way, distance));
             }
         }
         nearest.map(|(way, square)| (way, sqrt(square)))

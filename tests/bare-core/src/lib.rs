@@ -4,8 +4,8 @@
 //!
 //! | binary | flies | holds |
 //! | --- | --- | --- |
-//! | `alone` | Algorithm 1 | 16 samples |
-//! | `small` | Algorithm 1, look-ahead for true labels | 16 samples |
+//! | `alone` | Algorithm 1, the centre alone as estimate | 16 samples |
+//! | `small` | Algorithm 1, look-ahead for true labels, goals by slope | 16 samples |
 //! | `medium` | as `small` | 64 labels beside 4 given |
 //! | `standard` | all algorithms | 32 labels beside 4 given, all 529 hypotheses |
 //! | `large` | all algorithms | 64 labels beside 4 given, all 2,081 hypotheses |
@@ -30,10 +30,14 @@ pub use riscv_rt::entry;
 mod on_target {
     use core::convert::Infallible;
 
+    use planner_core::error::ObservationError;
     use planner_core::link::delivery::Link;
     use planner_core::link::message::{Algorithm, ClockRate, DeclinedError};
     use planner_core::link::station::{FromOutlines, Known, Station};
-    use planner_core::{Area, Unicycle};
+    use planner_core::{
+        Accuracy, Area, Belief as _, Estimates, Plan, Planner, Pose, Reading, SlopeWithin,
+        Tolerance, Unicycle,
+    };
 
     use crate::port::{Semihosting, Streams, ticks};
 
@@ -57,10 +61,41 @@ mod on_target {
             let _ = match (station.terms::<Unicycle, Area>(&setup), setup.algorithm) {
                 (Err(none), _) => station.give_up(none),
                 (Ok(terms), Algorithm::Cfc) => {
-                    station.fly(&setup, &mut setup.cfc::<_, _, N>(terms), |_| {})
+                    let mut planner = setup.cfc::<_, _, N>(terms);
+                    let centre_alone = planner.as_mut().map(|it| it.wrapped(CentreAlone));
+                    station.fly(&setup, &mut centre_alone.map_err(|why| *why), |_| {})
                 }
                 _ => station.decline(DeclinedError::Algorithm),
             };
+        }
+    }
+
+    /// A planner that estimates the centre alone, as [`Planner::estimate`] does.
+    struct CentreAlone<'a, L>(&'a mut L);
+
+    impl<L: Planner<Belief: Sized>> Planner for CentreAlone<'_, L> {
+        type Belief = L::Belief;
+
+        fn plan(&mut self, pose: Pose) -> Plan {
+            self.0.plan(pose)
+        }
+
+        fn observe_within(
+            &mut self,
+            pose: Pose,
+            reading: Option<Reading>,
+            tolerance: Tolerance,
+        ) -> Result<(), ObservationError> {
+            self.0.observe_within(pose, reading, tolerance)
+        }
+
+        fn belief(&self) -> &L::Belief {
+            self.0.belief()
+        }
+
+        fn estimates(&self) -> Estimates {
+            let centre = self.belief().centre();
+            Estimates { bisector: None, centre, maximum_margin: None }
         }
     }
 
@@ -73,7 +108,8 @@ mod on_target {
             let _ = match (station.terms::<Unicycle, Area>(&setup), setup.algorithm) {
                 (Err(none), _) => station.give_up(none),
                 (Ok(terms), Algorithm::Lookahead { evaluations, goal, noise: None }) => {
-                    let mut planner = setup.lookahead::<_, _, N>(terms, evaluations, goal);
+                    let mut planner =
+                        setup.lookahead::<_, _, SlopeWithin, N>(terms, evaluations, goal);
                     station.fly(&setup, &mut planner, |_| {})
                 }
                 (Ok(terms), Algorithm::Cfc) => {
@@ -100,7 +136,8 @@ mod on_target {
             let _ = match setup.algorithm {
                 Algorithm::Cfc => station.fly(&setup, &mut setup.cfc::<_, _, N>(terms), |_| {}),
                 Algorithm::Lookahead { evaluations, goal, noise: None } => {
-                    let mut planner = setup.lookahead::<_, _, N>(terms, evaluations, goal);
+                    let mut planner =
+                        setup.lookahead::<_, _, Accuracy, N>(terms, evaluations, goal);
                     station.fly(&setup, &mut planner, |_| {})
                 }
                 Algorithm::Lookahead { evaluations, goal, noise: Some((noise, prior)) } => {

@@ -36,7 +36,7 @@ pub fn refute(mission: &Mission, belief: &dyn ReadOut, pose: Pose, end: Ending) 
         StopReason::SamplesFull => (!belief.is_full()).then(|| "there is room".to_owned()),
         StopReason::Known => {
             let goal = mission.goal.map(|goal| goal.in_bounds_of(&mission.config.area));
-            let met = goal.is_some_and(|it| belief.meets(it, mission.config.area.bounds()));
+            let met = goal.is_some_and(|it| belief.reaches(it, mission.config.area.bounds()));
             (!met).then(|| "the goal is not met".to_owned())
         }
         StopReason::OutsideArea => {

@@ -3,7 +3,7 @@
 use planner_core::robot::AgentError;
 use planner_core::{
     Agent, CellPosterior, DrivingPrice, Event, Goal, Line, Lookahead, Motion, Noise, NoisyBelief,
-    Planner, Pose, Prior, Reliability, Scc, StopReason, Tolerance, Workspace as _,
+    Planner, Pose, Prior, Reliability, Scc, SlopeWithin, StopReason, Tolerance, Workspace as _,
 };
 
 use super::lawn::Garden;
@@ -141,7 +141,7 @@ pub fn fly(garden: &Garden, finder: Finder) -> Outcome {
 }
 
 /// One degree in nine of ten cases.
-fn goal() -> Goal {
+fn goal() -> Goal<SlopeWithin> {
     Goal::slope_within_degrees(1.0).expect("acute")
 }
 

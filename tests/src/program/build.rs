@@ -8,10 +8,10 @@ use std::process::Command;
 use std::sync::{Mutex, PoisonError};
 use std::{env, fs, io};
 
-/// A package that is a workspace of its own, and its folder.
+/// A package that is a workspace of its own, and its folder. Its release profile is for chips.
 const ALONE: (&str, &str) = ("microbit", "firmware/microbit");
 
-/// Builds the programs of a package in the release profile and returns the folder they are in.
+/// Builds the programs of a package in their profile for chips and returns the folder they are in.
 ///
 /// `scratch` is the test's `CARGO_TARGET_TMPDIR`; beside it is the target directory of all such
 /// builds. Cargo's lock on that keeps tests apart that build at the same time.
@@ -21,10 +21,11 @@ const ALONE: (&str, &str) = ("microbit", "firmware/microbit");
 pub fn build(scratch: &str, package: &str, target: &str) -> Result<PathBuf, String> {
     let directory = Path::new(scratch).with_file_name("elf");
     let mut cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    let workspace = if package == ALONE.0 { ALONE.1 } else { "" };
+    let (workspace, profile) = if package == ALONE.0 { (ALONE.1, "release") } else { ("", "chip") };
     cargo
         .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(workspace))
-        .args(["build", "--quiet", "--release", "--package", package, "--target", target])
+        .args(["build", "--quiet", "--profile", profile])
+        .args(["--package", package, "--target", target])
         .arg("--target-dir")
         .arg(&directory)
         .env("DEFMT_LOG", "info");
@@ -38,7 +39,7 @@ pub fn build(scratch: &str, package: &str, target: &str) -> Result<PathBuf, Stri
         let errors = String::from_utf8_lossy(&built.stderr);
         return Err(format!("{package} fails to build for {target}:\n{errors}"));
     }
-    Ok(directory.join(target).join("release"))
+    Ok(directory.join(target).join(profile))
 }
 
 /// Builds host-sim with `MAVLink`, in a target directory of its own.
