@@ -9,6 +9,9 @@
 //! - QEMU's machines ([`machines`]) and a debugger for them ([`debugger`]).
 //! - Beliefs to ask ([`known`]), and areas with keep-outs ([`terrain`]).
 
+use std::env;
+use std::sync::LazyLock;
+
 use planner_core::belief::sample::{Label, Sample};
 use planner_core::geometry::lattice::{LIMIT, Site, Vector};
 use rand::RngExt;
@@ -28,12 +31,16 @@ pub mod terrain;
 pub mod twins;
 pub mod wire;
 
-/// Whether the long runs are asked for, with the feature `long`.
-pub const LONG: bool = cfg!(feature = "long");
+/// Whether this is a long run: thousands of random missions, searches for hard ones, all cores. `LONG=1` in the
+/// environment asks for it.
+pub fn is_long() -> bool {
+    static IS_LONG: LazyLock<bool> = LazyLock::new(|| env::var("LONG").is_ok_and(|it| it == "1"));
+    *IS_LONG
+}
 
-/// The number of cases: few by default, more in the long runs.
-pub const fn cases(few: u64, many: u64) -> u64 {
-    if LONG { many } else { few }
+/// The number of cases: few by default, more in a long run.
+pub fn cases(few: u64, many: u64) -> u64 {
+    if is_long() { many } else { few }
 }
 
 /// A site whose coordinates are clamped into the lattice.

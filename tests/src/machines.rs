@@ -70,16 +70,16 @@ impl Kind {
     ///
     /// # Panics
     /// When it fails to build, or with `CI` set where it cannot be built or run.
-    pub fn elf(&self, scratch: &str) -> Option<PathBuf> {
+    pub fn elf(&self) -> Option<PathBuf> {
         let missing = if !build::can_build(self.target) {
             format!("the target {} is not installed", self.target)
         } else if !build::has_tool(self.qemu) {
             format!("{} is not on PATH", self.qemu)
         } else {
-            let folder = build::build(scratch, self.package, self.target);
+            let folder = build::build(self.package, self.target);
             return Some(folder.unwrap_or_else(|errors| panic!("{errors}")).join(self.program));
         };
-        build::skip(scratch, &format!("{} under QEMU", self.name), &missing);
+        build::skip(&format!("{} under QEMU", self.name), &missing);
         None
     }
 }
@@ -111,8 +111,8 @@ impl Machine {
     ///
     /// # Panics
     /// As [`Kind::elf`], or when QEMU does not come up.
-    pub fn start(kind: Kind, scratch: &str, more: &[&str]) -> Option<Self> {
-        let elf = kind.elf(scratch)?;
+    pub fn start(kind: Kind, more: &[&str]) -> Option<Self> {
+        let elf = kind.elf()?;
         if kind.package != "bare-core" {
             let started = Emulator::start(&elf, kind.machine, None, more);
             let (emulator, link) = started.expect("QEMU runs it");

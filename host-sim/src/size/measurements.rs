@@ -9,10 +9,10 @@ use toml::Table;
 
 use crate::size::configuration::{Configuration, PROGRAMS, Planner, Program};
 
-/// The figures to which `cargo test -p tests --test budgets` holds the code.
+/// The figures to which `cargo test -p tests budgets::` holds the code.
 const BUDGETS: &str = include_str!("../../../tests/budgets.toml");
 
-/// The figures to which `--test cores` holds it on the other cores.
+/// The figures to which `cores::` holds it on the other cores.
 const CORES: &str = include_str!("../../../tests/cores.toml");
 
 /// A core that was measured.

@@ -11,7 +11,7 @@
 //! The lines of a hypothesis lie between its vertices. The distances of the vertices from the position are exact before
 //! they are rounded. The distances of all lines are assumed to spread evenly about the mean of the vertices' distances.
 //! They spread as far as the nearer of the two extremes. The shares that follow differ from the likelihood itself by
-//! 0.0024 on average (`cargo test -p tests --test tolerance`).
+//! 0.0024 on average (`cargo test -p tests tolerance::`).
 //!
 //! The results are the same on every machine. Whatever is not an integer is a sum, product or quotient in single
 //! precision.

@@ -10,7 +10,7 @@
 //! slow; the columns are for predictions.
 //!
 //! The errors of the share were measured over missions of up to 30 labels, true with a probability from 0.6 to 0.9999.
-//! The places are those where the share is from 0.1 to 0.9 (`cargo test -p tests --test columns --features long`):
+//! The places are those where the share is from 0.1 to 0.9 (`LONG=1 cargo test -p tests columns::`):
 //!
 //! | directions | mean error | worst error seen |
 //! | --- | --- | --- |

@@ -3,12 +3,13 @@
 //! A long run finds them among thousands. All other runs fly only these, and so reach the same worst case.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
 use std::path::{Path, PathBuf};
-use std::{env, fs};
 
 use toml_edit::{Array, DocumentMut, Item, Value, value};
 
-use crate::LONG;
+use crate::budget::readme;
+use crate::is_long;
 
 const FILE: &str = "hardest.toml";
 
@@ -45,7 +46,7 @@ impl Hardest {
     /// # Panics
     /// If the file cannot be written.
     pub fn close(mut self) {
-        if env::var_os("UPDATE_EXPECT").is_none() || !LONG {
+        if !readme::is_updating() || !is_long() {
             return;
         }
         for (workload, missions) in &self.found {

@@ -2,7 +2,19 @@
 
 use std::fmt::Write as _;
 use std::path::Path;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::{env, fs};
+
+/// Whether what is measured is committed (`UPDATE_EXPECT`).
+pub fn is_updating() -> bool {
+    env::var_os("UPDATE_EXPECT").is_some()
+}
+
+/// Where figures are committed, tests wait here for each other: they write the same files.
+pub fn one_at_a_time() -> Option<MutexGuard<'static, ()>> {
+    static BOOKS: Mutex<()> = Mutex::new(());
+    is_updating().then(|| BOOKS.lock().unwrap_or_else(PoisonError::into_inner))
+}
 
 /// A row for each figure, a column for each program; `cell` is what a program has of a figure, or nothing.
 pub fn table(
@@ -47,7 +59,7 @@ pub fn write_or_compare(name: &str, table: &str) -> bool {
     let (before, rest) = readme.split_once(&begin).expect("a place for the table");
     let (_, after) = rest.split_once(&end).expect("its end");
     let wanted = format!("{before}{begin}{table}{end}{after}");
-    if env::var_os("UPDATE_EXPECT").is_some() {
+    if is_updating() {
         fs::write(path, wanted).expect("writes the readme");
         return true;
     }

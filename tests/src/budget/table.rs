@@ -1,13 +1,14 @@
 //! `budgets.toml`: what every figure may be, what it was, and what the project wants it to be.
 
 use std::fmt::Write as _;
+use std::fs;
 use std::path::Path;
-use std::{env, fs};
+use std::sync::MutexGuard;
 
 use toml_edit::{Array, DocumentMut, Item, Value};
 
-use crate::LONG;
 use crate::budget::readme::{self, grouped};
+use crate::is_long;
 
 /// The file, from the workspace's root.
 const FILE: &str = "tests/budgets.toml";
@@ -23,6 +24,7 @@ const SLACK: i64 = 5;
 pub struct Budgets {
     document: DocumentMut,
     updating: bool,
+    _alone: Option<MutexGuard<'static, ()>>,
     report: String,
     failures: Vec<String>,
     /// What was measured: section and name.
@@ -35,6 +37,7 @@ impl Budgets {
     /// # Panics
     /// If it is not as it should be.
     pub fn open() -> Self {
+        let alone = readme::one_at_a_time();
         let text = fs::read_to_string(root(FILE)).expect("tests/budgets.toml");
         let mut report = String::new();
         let titles = ["measured", "budget", "margin", "committed", "goal"];
@@ -46,7 +49,8 @@ impl Budgets {
         );
         Self {
             document: text.parse().expect("TOML"),
-            updating: env::var_os("UPDATE_EXPECT").is_some(),
+            updating: readme::is_updating(),
+            _alone: alone,
             report,
             failures: Vec::new(),
             seen: Vec::new(),
@@ -159,7 +163,7 @@ impl Budgets {
         for (section, rows) in self.document.iter() {
             for (name, _) in rows.as_table_like().into_iter().flat_map(|it| it.iter()) {
                 let measured = self.seen.iter().any(|it| (&*it.0, &*it.1) == (section, name));
-                if LONG && !measured && !skipped.contains(&section) {
+                if is_long() && !measured && !skipped.contains(&section) {
                     self.failures.push(format!("{section}.{name} is not measured"));
                 }
             }

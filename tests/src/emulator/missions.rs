@@ -19,17 +19,12 @@ pub const CORES: [(Core, &str); 2] =
 ///
 /// # Panics
 /// When they fail to build, or with `CI` set where they cannot be built.
-pub fn build(scratch: &str, target: &str) -> Option<impl Fn(&str) -> Vec<u8> + use<>> {
+pub fn build(target: &str) -> Option<impl Fn(&str) -> Vec<u8> + use<>> {
     if !build::can_build(target) {
-        build::skip(
-            scratch,
-            "the planner on a bare core",
-            &format!("the target {target} is not installed"),
-        );
+        build::skip("the planner on a bare core", &format!("the target {target} is not installed"));
         return None;
     }
-    let folder =
-        build::build(scratch, "bare-core", target).unwrap_or_else(|errors| panic!("{errors}"));
+    let folder = build::build("bare-core", target).unwrap_or_else(|errors| panic!("{errors}"));
     Some(move |name: &str| fs::read(Path::new(&folder).join(name)).expect("cargo left an ELF"))
 }
 

@@ -13,13 +13,13 @@ const ALONE: (&str, &str) = ("microbit", "firmware/microbit");
 
 /// Builds the programs of a package in their profile for chips and returns the folder they are in.
 ///
-/// `scratch` is the test's `CARGO_TARGET_TMPDIR`; beside it is the target directory of all such
-/// builds. Cargo's lock on that keeps tests apart that build at the same time.
+/// All such builds have a target directory of their own. Cargo's lock on that keeps tests apart that build at the same
+/// time.
 ///
 /// # Errors
 /// What cargo said.
-pub fn build(scratch: &str, package: &str, target: &str) -> Result<PathBuf, String> {
-    let directory = Path::new(scratch).with_file_name("elf");
+pub fn build(package: &str, target: &str) -> Result<PathBuf, String> {
+    let directory = scratch().with_file_name("elf");
     let mut cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     let (workspace, profile) = if package == ALONE.0 { (ALONE.1, "release") } else { ("", "chip") };
     cargo
@@ -46,8 +46,8 @@ pub fn build(scratch: &str, package: &str, target: &str) -> Result<PathBuf, Stri
 ///
 /// # Errors
 /// What cargo said.
-pub fn flying(scratch: &str) -> Result<PathBuf, String> {
-    let target = Path::new(scratch).with_file_name("mavlink");
+pub fn flying() -> Result<PathBuf, String> {
+    let target = scratch().with_file_name("mavlink");
     let mut cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo
         .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(".."))
@@ -90,36 +90,46 @@ pub fn has_tool(name: &str) -> bool {
 ///
 /// # Panics
 /// With `CI` set: there nothing may be left out.
-pub fn skip(scratch: &str, what: &str, why: &str) {
+pub fn skip(what: &str, why: &str) {
     assert!(env::var_os("CI").is_none(), "cannot run {what}: {why}");
-    leave_out(scratch, what, why);
+    leave_out(what, why);
 }
 
-/// Says that only the long run has a test, as it builds host-sim anew. CI has the long run beside this one.
-pub fn is_long(scratch: &str, what: &str, test: &str) {
-    if env::var_os("CI").is_none() {
-        let why = format!("it builds host-sim anew: --features long --test {test}");
-        leave_out(scratch, what, &why);
+/// Whether this is a long run. If it is not, says that only a long run has a test, as it builds host-sim anew.
+pub fn is_long(what: &str, module: &str) -> bool {
+    if !crate::is_long() {
+        leave_out(what, &format!("it builds host-sim anew: LONG=1 cargo test -p tests {module}::"));
     }
+    crate::is_long()
 }
 
 /// Says that a test is left out, in CI too: it needs what nobody has to have.
-pub fn leave_out(scratch: &str, what: &str, why: &str) {
+pub fn leave_out(what: &str, why: &str) {
     let line = format!("SKIPPED {what}: {why}\n");
     // Straight to the handle: what the print macros write, libtest swallows when a test passes.
     let _ = io::stderr().write_all(line.as_bytes());
-    let list = OpenOptions::new().create(true).append(true).open(list(scratch));
+    let list = OpenOptions::new().create(true).append(true).open(list());
     let _ = list.and_then(|mut list| list.write_all(line.as_bytes()));
 }
 
 /// What the tests of this run left out so far, and an empty list for the next.
-pub fn skipped(scratch: &str) -> Vec<String> {
-    let lines = fs::read_to_string(list(scratch)).unwrap_or_default();
-    let _ = fs::remove_file(list(scratch));
+pub fn skipped() -> Vec<String> {
+    let lines = fs::read_to_string(list()).unwrap_or_default();
+    let _ = fs::remove_file(list());
     let lines: BTreeSet<_> = lines.lines().map(str::to_owned).collect();
     lines.into_iter().collect()
 }
 
-fn list(scratch: &str) -> PathBuf {
-    Path::new(scratch).join("skipped")
+fn list() -> PathBuf {
+    scratch().join("skipped")
+}
+
+/// Where tests may write: `tmp` in the target folder that they run from.
+///
+/// # Panics
+/// When this program is in no such folder.
+pub fn scratch() -> PathBuf {
+    let program = env::current_exe().expect("a path");
+    let target = program.ancestors().nth(3).expect("it is in target/debug/deps");
+    target.join("tmp")
 }

@@ -1,0 +1,298 @@
+//! The planner behind its C interface. The header matches the sources, and a C program flies the same missions as this
+//! crate.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use planner_core::geometry::lattice::UNITS_PER_METRE;
+use planner_core::nalgebra::Point2;
+use planner_core::{
+    Angle, Area, Belief as _, Goal, Heading, Hull, KeepOut, Label, Line, Lookahead, Noise,
+    NoisyBelief, Plan, Planner, PolygonArea, Pose, PredictiveBelief, Reliability, Sample, Site,
+    SlopeWithin, StopReason, Tolerance, Unicycle, VersionSpace,
+};
+use tests::program::build::{build, has_tool, scratch, skip};
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../planner-core/c")
+}
+
+#[test]
+fn the_header_is_that_of_the_sources() {
+    let config = cbindgen::Config::from_file(folder().join("cbindgen.toml")).expect("a config");
+    let sources = folder().join("src/lib.rs");
+    let made = cbindgen::Builder::new().with_config(config).with_src(sources);
+    let mut header = Vec::new();
+    made.generate().expect("bindings").write(&mut header);
+    let header = String::from_utf8(header).expect("text");
+    expect_test::expect_file![folder().join("include/planner.h")].assert_eq(&header);
+}
+
+/// What `example.c` prints, by a planner.
+fn flown<P: Planner<Belief: Sized>>(mut planner: P, start: Pose, is_doubtful: bool) -> String {
+    let (mut pose, mut labels, mut lines) = (start, 0, String::new());
+    loop {
+        let motion = match planner.plan(pose) {
+            Plan::Move(motion) => motion,
+            Plan::Stop(reason) => break assert_eq!(reason, StopReason::Known),
+        };
+        pose = motion.target;
+        let at = Point2::<f64>::from(pose.site);
+        let label = motion.wants_label.then(|| {
+            labels += 1;
+            let is_above = at.y > 0.41 * at.x + 3.5;
+            if is_above == (is_doubtful && labels % 7 == 3) {
+                Label::Negative
+            } else {
+                Label::Positive
+            }
+        });
+        let number = label.map_or(2, Label::sign);
+        let heading = pose.heading.radians();
+        let _ = writeln!(lines, "{:.9} {:.9} {heading:.9} {number}", at.x, at.y);
+        planner.observe(pose, label.map(Into::into)).expect("a possible label");
+    }
+    let [a, b, c] = Line::from(planner.estimates().centre.expect("a line")).coefficients();
+    let bits = planner.belief().information();
+    lines + &format!("line {a:.9} {b:.9} {c:.9}, {bits:.6} bits")
+}
+
+fn at(x: f64, z: f64) -> Site {
+    Site::try_from(Point2::new(x, z)).expect("near")
+}
+
+fn given() -> [Sample; 4] {
+    let given = [(2.0, 1.0, -1), (2.0, 8.0, 1), (18.0, 16.0, 1), (18.0, 5.0, -1)];
+    given.map(|(x, z, sign)| {
+        let label = if sign > 0 { Label::Positive } else { Label::Negative };
+        Sample { site: at(x, z), label }
+    })
+}
+
+fn start() -> Pose {
+    Pose { site: at(2.0, 1.0), heading: Heading(0) }
+}
+
+fn slopes(radians: f64, level: u32) -> Goal<SlopeWithin> {
+    let goal = Angle::from_radians(radians).and_then(Goal::slope_within).expect("acute");
+    Goal { level, ..goal }
+}
+
+fn reliability(p: f64) -> Reliability {
+    Reliability::new(p).expect("a probability")
+}
+
+fn flown_here(is_doubtful: bool) -> String {
+    let area = Area::metres([0.0, 0.0], [20.0, 20.0]).expect("an area");
+    let unicycle = Unicycle::new(10_000, 1.57, 21, 50).expect("a grid");
+    let goal = slopes(if is_doubtful { 0.21 } else { 0.0035 }, 900_000);
+    if is_doubtful {
+        let noise = Noise::new(0.85).expect("a probability");
+        let noisy = NoisyBelief::<36, 529>::new(&given(), noise).expect("four points");
+        let planner = Lookahead::new(area, unicycle, noisy).expect("settings that agree");
+        flown(planner.until(Some(goal)), start(), true)
+    } else {
+        let space = VersionSpace::<68>::new(&given()).expect("four points");
+        let planner = Lookahead::new(area, unicycle, space).expect("settings that agree");
+        flown(planner.until(Some(goal)), start(), false)
+    }
+}
+
+type Ground = PolygonArea<8, 8>;
+
+/// The area of `asleep.c`.
+fn ground() -> Ground {
+    let hull = |corners: &[(f64, f64)]| {
+        let corners: Vec<Site> = corners.iter().map(|&(x, z)| at(x, z)).collect();
+        Hull::new(&corners).expect("a convex polygon")
+    };
+    let border = hull(&[(0.0, 0.0), (20.0, 0.0), (20.0, 17.0), (8.0, 20.0), (0.0, 20.0)]);
+    let keep_outs = [
+        (hull(&[(5.0, 6.0)]), UNITS_PER_METRE),
+        (hull(&[(9.0, 7.0), (11.0, 7.0), (10.0, 9.0)]), 0),
+        (hull(&[(13.0, 9.0), (16.0, 9.5)]), UNITS_PER_METRE / 4),
+    ];
+    let rounded = |(hull, radius): (_, i32)| KeepOut { hull, radius: radius.unsigned_abs() };
+    PolygonArea::new(border, &keep_outs.map(rounded)).expect("an area")
+}
+
+type Finder<B> = Lookahead<Unicycle, B, Ground, SlopeWithin>;
+
+/// An observation as `asleep.c` makes it: the planner, where it is, what was read, which label it is, and whether that is
+/// wrong.
+type Observe<B> = fn(&mut Finder<B>, Pose, Option<Label>, u32, bool);
+
+fn observe_within<B: PredictiveBelief>(
+    planner: &mut Finder<B>,
+    pose: Pose,
+    label: Option<Label>,
+    number: u32,
+    _: bool,
+) {
+    let tolerance = Tolerance::new(0.02 * f64::from(number % 5 + 1)).expect("a tolerance");
+    let observed = planner.observe_within(pose, label.map(Into::into), tolerance);
+    observed.expect("a possible label");
+}
+
+fn observe_believed(
+    planner: &mut Finder<NoisyBelief<36, 529>>,
+    pose: Pose,
+    label: Option<Label>,
+    _: u32,
+    is_wrong: bool,
+) {
+    let Some(label) = label else { return planner.observe(pose, None).expect("no label") };
+    let reliability = reliability(if is_wrong { 0.6 } else { 0.95 });
+    let sample = Sample { site: pose.site, label };
+    planner.belief_mut().take(sample, reliability).expect("room");
+}
+
+/// What `asleep.c` prints, by a planner that stays awake.
+fn awake<B: PredictiveBelief<Belief: Sized>>(
+    belief: B,
+    goal: Goal<SlopeWithin>,
+    observe: Observe<B>,
+) -> String {
+    let unicycle = Unicycle::new(10_000, 1.57, 41, 50).expect("a grid");
+    let planner = Lookahead::new(ground(), unicycle, belief);
+    let mut planner = planner.expect("settings that agree").until(Some(goal));
+    let is_doubtful = goal.level < 900_000;
+    let (mut pose, mut labels, mut said, mut status) = (start(), 0, String::new(), 0);
+    let print = |said: &mut String, number: f64| {
+        let _ = write!(said, "{:016x} ", number.to_bits());
+    };
+    for _ in 0..80 {
+        let motion = match planner.plan(pose) {
+            Plan::Move(motion) => motion,
+            Plan::Stop(reason) => {
+                status = match reason {
+                    StopReason::Known => 1,
+                    StopReason::SamplesFull => 3,
+                    StopReason::Undecided => 11,
+                    StopReason::Tolerance => 13,
+                    other => panic!("{other:?}"),
+                };
+                break;
+            }
+        };
+        pose = motion.target;
+        let here = Point2::<f64>::from(pose.site);
+        let label = motion.wants_label.then(|| {
+            labels += 1;
+            let is_wrong = is_doubtful && labels % 7 == 3;
+            let is_above = here.y > 0.41 * here.x + 3.5;
+            (if is_above == is_wrong { Label::Negative } else { Label::Positive }, is_wrong)
+        });
+        let chance = planner.belief().chance(pose.site);
+        for number in [here.x, here.y, pose.heading.radians(), chance] {
+            print(&mut said, number);
+        }
+        let _ = writeln!(said, "{}", label.map_or(2, |(label, _)| label.sign()));
+        let is_wrong = label.is_some_and(|(_, is_wrong)| is_wrong);
+        observe(&mut planner, pose, label.map(|(label, _)| label), labels, is_wrong);
+    }
+    let line = Line::from(planner.estimates().centre.expect("a line")).coefficients();
+    for number in line.into_iter().chain([planner.belief().information()]) {
+        print(&mut said, number);
+    }
+    said + &status.to_string()
+}
+
+/// What `asleep.c` prints in one of its modes.
+fn awake_in(mode: &str) -> String {
+    let noise = |tolerance| Noise { reliability: reliability(0.85), tolerance, ..Noise::NONE };
+    let noisy =
+        |tolerance| NoisyBelief::<36, 529>::new(&given(), noise(tolerance)).expect("four points");
+    let tolerance = Tolerance::new(0.1).expect("a tolerance");
+    match mode {
+        "true" => {
+            let space =
+                VersionSpace::<68>::new(&given()).and_then(|it| it.with_tolerance(tolerance));
+            let space = space.expect("four points");
+            awake(space, slopes(0.02, 900_000), observe_within)
+        }
+        "doubtful" => awake(noisy(Tolerance::NONE), slopes(0.15, 600_000), observe_believed),
+        _ => awake(noisy(tolerance), slopes(0.15, 600_000), observe_within),
+    }
+}
+
+/// A C program, built against the library; `None` without a compiler.
+fn program(library: &Path, source: &Path) -> PathBuf {
+    let name = source.file_name().expect("a name");
+    let program = scratch().join(name).with_extension("program");
+    let built = Command::new("cc")
+        .args(["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-I"])
+        .arg(folder().join("include"))
+        .arg(source)
+        .arg(library.join("libplanner_c.a"))
+        .args(["-lm", "-lpthread", "-ldl", "-o"])
+        .arg(&program)
+        .output()
+        .expect("cc starts");
+    assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
+    program
+}
+
+/// What a program prints, which ends well.
+fn said(program: &Path, argument: &str) -> String {
+    let run = Command::new(program).arg(argument).output().expect("it starts");
+    let (said, errors) = (run.stdout, String::from_utf8_lossy(&run.stderr).into_owned());
+    assert!(run.status.success(), "{} {argument}: {errors}", program.display());
+    String::from_utf8(said).expect("text")
+}
+
+#[test]
+fn a_c_program_flies_the_same_missions() {
+    if !has_tool("cc") {
+        skip("the C programs", "there is no C compiler `cc`");
+        return;
+    }
+    let library = build("planner-c", host()).unwrap_or_else(|errors| panic!("{errors}"));
+    let example = program(&library, &folder().join("example.c"));
+    for (argument, is_doubtful) in [("", false), ("doubtful", true)] {
+        let said = said(&example, argument);
+        let (flight, bytes) = said.trim_end().rsplit_once(", ").expect("bytes at the end");
+        assert_eq!(flight, flown_here(is_doubtful), "{argument}");
+        println!("{argument}: {} lines, {bytes}", flight.lines().count());
+    }
+    print!("{}", said(&program(&library, &here("misuse.c")), ""));
+    let asleep = program(&library, &here("asleep.c"));
+    for mode in ["true", "doubtful", "blurred"] {
+        let said = said(&asleep, mode);
+        assert_eq!(said, awake_in(mode), "{mode}");
+        println!("asleep, {mode}: {} motions", said.lines().count() - 1);
+    }
+}
+
+/// The header alone, in the oldest dialects that it is for.
+#[test]
+fn the_header_compiles_as_c99_and_as_cpp11() {
+    for (compiler, standard, language) in [("cc", "c99", "c"), ("c++", "c++11", "c++")] {
+        if !has_tool(compiler) {
+            skip("the C header", &format!("there is no compiler `{compiler}`"));
+            continue;
+        }
+        let built = Command::new(compiler)
+            .arg(format!("-std={standard}"))
+            .args(["-pedantic", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "-x", language])
+            .arg(folder().join("include/planner.h"))
+            .output()
+            .expect("it starts");
+        let errors = String::from_utf8_lossy(&built.stderr).into_owned();
+        assert!(built.status.success(), "{standard}: {errors}");
+    }
+}
+
+/// A program of the tests' own: one that calls wrongly and checks what it is told, and one that sleeps.
+fn here(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
+}
+
+/// The target that these tests run on.
+fn host() -> &'static str {
+    let version = Command::new("rustc").arg("-vV").output().expect("rustc starts");
+    let version = String::from_utf8(version.stdout).expect("text");
+    let host = version.lines().find_map(|line| line.strip_prefix("host: ")).expect("a host");
+    Box::leak(host.to_owned().into_boxed_str())
+}

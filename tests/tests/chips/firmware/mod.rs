@@ -1,0 +1,320 @@
+//! The firmware under emulation, closed loop: the ELF that a board would run, in QEMU's STM32F405, with
+//! its world at the other end of its serial link.
+//!
+//! Without QEMU or the target's standard library the tests say so and pass; with `CI` set they fail.
+
+mod chip;
+mod resume;
+mod vehicle;
+
+use std::convert::Infallible;
+use std::fs;
+use std::io::{Read as _, Write as _};
+use std::path::Path;
+
+use host_sim::hil::faults::Faults;
+use host_sim::hil::flight;
+use host_sim::hil::player::Player;
+use host_sim::mission::algorithm::Algorithm;
+use host_sim::mission::definition::Mission;
+use host_sim::mission::recording::Recording;
+use host_sim::mission::results::Results;
+use host_sim::mission::scenario::{self, Overrides};
+use host_sim::report::trace;
+use planner_core::link::delivery::{Link, Port};
+use planner_core::link::message::LabelSource;
+use planner_core::robot::Body;
+use planner_core::{Agent, Event, Label, Motion, Pose, Reading, Step};
+use rand::{Rng as _, SeedableRng as _};
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+use tempfile::NamedTempFile;
+use tests::budget::footprint::{self, Footprint};
+use tests::cases;
+use tests::debugger::{self, Debugger};
+use tests::missions::{by_turns, of_any_vehicle};
+use tests::program::image::Image;
+
+use crate::firmware::chip::{Chip, firmware};
+
+/// The first message. Under emulation the chip has no record of why it started, and no clock tree.
+const STARTED: &str = "started: Other, clock: Emulated";
+
+fn example(text: &str) -> Mission {
+    scenario::parse("", text, Overrides::default()).expect("a good scenario")
+}
+
+/// Random missions of all that the firmware flies, by turns.
+fn random(number: u64) -> Mission {
+    by_turns(6, number, 10 + (number % 11) as u32)
+}
+
+fn here(mission: &Mission) -> String {
+    trace::lines(&Recording::of(mission).expect("labels that are certain are true").results)
+}
+
+#[test]
+fn the_closed_loop_makes_the_trace_of_this_machine_byte_for_byte() {
+    let examples = [scenario::PAPER_NOISELESS, scenario::PAPER_NOISY].map(example);
+    let vehicles = (0..cases(12, 48)).map(|number| of_any_vehicle(number, 12));
+    let missions = examples.into_iter().chain((0..cases(100, 200)).map(random)).chain(vehicles);
+    let missions: Vec<_> = missions.collect();
+    // Twenty missions in a row on a chip: one leaves nothing behind for the next.
+    let flown: usize = missions
+        .par_chunks(20)
+        .map(|missions| {
+            let Some(chip) = Chip::start(&[]) else { return 0 };
+            for mission in missions {
+                let played = chip.fly(mission, Faults::default()).expect("it flies as here");
+                assert_eq!(trace::lines(&played.recording.results), here(mission), "{mission:?}");
+            }
+            missions.len()
+        })
+        .sum();
+    println!("{flown} closed loops under QEMU made the traces of this machine");
+}
+
+/// Scenarios with a table `[stop]`: the chip says why it ends, and logs it.
+#[test]
+fn the_chip_stops_when_enough_is_known() {
+    let Some(chip) = Chip::start(&[]) else { return };
+    let overrides =
+        Overrides { algorithm: Some(Algorithm::Lookahead), steps: Some(32), seed: None };
+    for (number, (text, stop)) in (1..).zip([
+        (scenario::PAPER_NOISELESS, "slope_arc_deg = 0.5"),
+        (scenario::PAPER_NOISELESS, "misclassified = 0.001"),
+        (scenario::PAPER_NOISY, "slope_arc_deg = 5.0"),
+        (scenario::PAPER_NOISY, "misclassified = 0.05\nlevel = 0.8"),
+    ]) {
+        let text = format!("{}\n[stop]\n{stop}\n", text.replace("p = 0.7", "p = 0.9"));
+        let mission = scenario::parse("", &text, overrides).expect("a good scenario");
+        let played = chip.fly(&mission, Faults::default()).expect("it flies as here");
+        let Results { steps, end, .. } = &played.recording.results;
+        assert_eq!((end.reason, end.goal.map(|goal| goal.is_met)), ("known", Some(true)), "{stop}");
+        assert!((5..32).contains(&steps.len()), "{stop}: {} steps", steps.len());
+        assert_eq!(trace::lines(&played.recording.results), here(&mission), "{stop}");
+        let log = chip.messages_until(number, "bisector");
+        let ended = format!("ended after {} steps: Stopped(Known)", steps.len());
+        assert_eq!(log[log.len() - 4], ended, "{stop}");
+    }
+}
+
+#[test]
+fn a_bad_link_changes_nothing() {
+    let faults = "drop=0.1,cut=0.02,corrupt=0.05,duplicate=0.1,delay=20ms";
+    let faults: Faults = faults.parse().expect("faults");
+    (0..16).into_par_iter().for_each(|number| {
+        let Some(chip) = Chip::start(&[]) else { return };
+        let mission = random(number);
+        let played = chip.fly(&mission, faults).expect("it flies as here");
+        assert_eq!(trace::lines(&played.recording.results), here(&mission), "mission {number}");
+    });
+}
+
+#[test]
+fn garbage_is_passed_over() {
+    let Some(mut chip) = Chip::start(&[]) else { return };
+    let mut garbage = [0; 5_000];
+    ChaCha8Rng::seed_from_u64(1).fill_bytes(&mut garbage);
+    for mission in [random(0), random(1)] {
+        chip.link.write_all(&garbage).expect("the link is open");
+        let played = chip.fly(&mission, Faults::default()).expect("it flies as here");
+        assert_eq!(trace::lines(&played.recording.results), here(&mission));
+    }
+}
+
+/// What the chip logs of a step.
+fn step_message(number: usize, Step { motion, pose, reading }: &Step) -> String {
+    let (stage, recovery, action) = (motion.stage, motion.recovery, motion.action.0);
+    let (x, z, heading) = (pose.site.x(), pose.site.z(), pose.heading.0);
+    let label = reading.map(Reading::sign);
+    format!(
+        "step {number}: {stage:?} {recovery:?}, action {action}, to x {x}, z {z}, \
+         heading {heading:#010x}, label {label:?}"
+    )
+}
+
+#[test]
+fn the_log_tells_the_mission() {
+    let Some(chip) = Chip::start(&[]) else { return };
+    let mission = example(scenario::PAPER_NOISELESS);
+    let played = chip.fly(&mission, Faults::default()).expect("it flies");
+    let log = chip.messages_until(1, "bisector");
+    let steps = played.recording.steps.iter().zip(1..);
+    let mut expected = vec![STARTED.to_owned(), "mission: Cfc, 10 steps at most".to_owned()];
+    expected.extend(steps.map(|(step, number)| step_message(number, step)));
+    expected.push("ended after 10 steps: Steps".to_owned());
+    let estimates = played.recording.belief.estimates();
+    for (name, line) in [
+        ("centre", estimates.centre),
+        ("maximum margin", estimates.maximum_margin),
+        ("bisector", estimates.bisector),
+    ] {
+        let line = line.expect("a line");
+        let (about, along) = (line.about(), line.along());
+        expected.push(format!(
+            "{name}: about x {}, z {}, along x {}, z {}: slope {:?}, intercept {:?}",
+            about.x(),
+            about.z(),
+            along.x(),
+            along.z(),
+            line.slope(),
+            line.intercept(),
+        ));
+    }
+    assert_eq!(log, expected);
+}
+
+/// What was written to a port's set and reset register, by QEMU's log: it has no GPIO but says so.
+fn drive_enable(writes: &Path) -> Vec<&'static str> {
+    let log = fs::read_to_string(writes).expect("QEMU left a log");
+    log.lines()
+        .filter_map(|line| line.strip_prefix("GPIOB: unimplemented device write (size 4, offset "))
+        .filter_map(|write| match write.strip_prefix("0x018, value ")?.strip_suffix(")")? {
+            "0x00000001" => Some("on"),
+            "0x00010000" => Some("off"),
+            other => panic!("an unexpected write to GPIOB: {other}"),
+        })
+        .collect()
+}
+
+/// Arguments that have QEMU log writes to what it does not emulate.
+fn writes_to(file: &Path) -> [&str; 4] {
+    ["-d", "unimp", "-D", file.to_str().expect("the path is UTF-8")]
+}
+
+#[test]
+fn a_cut_link_stops_the_mission_safely_within_the_bound_and_the_next_can_begin() {
+    let writes = NamedTempFile::new().expect("a temporary file").into_temp_path();
+    let Some(mut chip) = Chip::start(&writes_to(&writes)) else { return };
+    let mission = random(0);
+    let mut player = Player::new(&mission, LabelSource::Vehicle, flight::start_number())
+        .expect("a mission for a chip");
+    // Answers up to the third motion, and then no more.
+    while player.motions() < 3 {
+        let mut byte = [0];
+        chip.link.read_exact(&mut byte).expect("the chip asks");
+        if let Some(frame) = player.hear(byte[0]).expect("it makes sense") {
+            chip.link.write_all(frame.bytes()).expect("the link is open");
+        }
+    }
+    chip.messages_until(1, "stopped");
+    let [.., (cut, _), (stopped, last)] = &chip.log()[..] else { panic!("a step before it stops") };
+    assert_eq!(last, "stopped after 3 steps: Silent");
+    // By the chip's clock. The plan takes less than a beat of 10 ms; each wait ends on one, after 100 ms.
+    let (took, bound) = (stopped - cut, 10 + 110 * u32::from(Link::<Never>::ATTEMPTS));
+    assert!((bound / 2..=bound).contains(&took), "{took} ms");
+    println!("a cut link: stopped after {took} ms by the chip's clock, within {bound} ms");
+    assert_eq!(drive_enable(&writes), ["off", "on", "off"]);
+    // What it asked meanwhile, nobody reads: a new cable finds it asking for a mission.
+    let played = chip.fly(&mission, Faults::default()).expect("it flies as here");
+    assert_eq!(trace::lines(&played.recording.results), here(&mission));
+    assert_eq!(drive_enable(&writes), ["off", "on", "off", "on", "off"]);
+}
+
+struct Never;
+
+impl Port for Never {
+    fn send(&mut self, _: &[u8]) {}
+
+    fn receive(&mut self) -> Option<u8> {
+        None
+    }
+}
+
+/// A robot whose label sensor is on a pin that nothing pulls up.
+struct AlwaysLow;
+
+impl Body for AlwaysLow {
+    type Error = Infallible;
+
+    fn perform(&mut self, motion: &Motion, pose: &mut Pose) -> Result<Option<Reading>, Infallible> {
+        *pose = motion.target;
+        Ok(motion.wants_label.then_some(Label::Negative.into()))
+    }
+}
+
+#[test]
+fn the_chip_can_read_labels_from_its_own_pin() {
+    let Some(chip) = Chip::start(&[]) else { return };
+    let mission = random(1);
+    let mut player = Player::new(&mission, LabelSource::Chip, flight::start_number())
+        .expect("a mission for a chip");
+    chip.play(&mut player, Faults::default(), 1).expect("it flies");
+    let played = player.finish().expect("it ends");
+    let mut planner = mission.planner();
+    let mut agent = Agent::new(&mut *planner, AlwaysLow, mission.start);
+    let mut steps = Vec::new();
+    while steps.len() < mission.steps as usize {
+        match agent.step() {
+            Ok(Event::Step(step)) => steps.push(step),
+            other => panic!("{other:?}"),
+        }
+    }
+    assert_eq!(played.recording.steps, steps);
+}
+
+/// The program counter among all registers, as hexadecimal digits.
+const PC: std::ops::Range<usize> = 15 * 8..16 * 8;
+
+/// USART2's data register: the firmware's log goes through it.
+const LOG_DATA: u32 = 0x4000_4404;
+
+#[test]
+fn a_fault_disables_the_drive_first_then_tells_and_starts_anew() {
+    let writes = NamedTempFile::new().expect("a temporary file").into_temp_path();
+    let port = debugger::free_port();
+    let gdb = format!("tcp:127.0.0.1:{port}");
+    let arguments = [&writes_to(&writes)[..], &["-gdb", &gdb]].concat();
+    let Some(chip) = Chip::start(&arguments) else { return };
+    chip.messages_until(1, STARTED);
+    let mut debugger = Debugger::connect(port);
+    assert_eq!(debugger.ask(&format!("Z2,{LOG_DATA:x},4")), "OK");
+    debugger.say("c");
+    // Taking the mission, it enables the drive, and logs; while it waits it has the log in hand.
+    let mission = random(0);
+    let mut player = Player::new(&mission, LabelSource::Vehicle, flight::start_number())
+        .expect("a mission for a chip");
+    let mut link = chip.link.try_clone().expect("a socket");
+    let setup = loop {
+        let mut byte = [0];
+        link.read_exact(&mut byte).expect("the chip asks");
+        if let Some(frame) = player.hear(byte[0]).expect("it makes sense") {
+            break frame;
+        }
+    };
+    link.write_all(setup.bytes()).expect("the link is open");
+    let halted = debugger.answer();
+    assert!(halted.contains("watch"), "{halted}");
+    // The debugger sends it to where no memory is.
+    let mut registers = debugger.ask("g");
+    registers.replace_range(PC, "000000f0");
+    assert_eq!(debugger.ask(&format!("G{registers}")), "OK");
+    assert_eq!(debugger.ask(&format!("z2,{LOG_DATA:x},4")), "OK");
+    assert_eq!(debugger.ask("D"), "OK");
+    let log = chip.messages_until(2, STARTED);
+    assert!(log[log.len() - 2].starts_with("fault at 0x"), "{log:#?}");
+    assert_eq!(drive_enable(&writes), ["off", "on", "off", "off"]);
+    // And it flies again.
+    let played = chip.fly(&mission, Faults::default()).expect("it flies as here");
+    assert_eq!(trace::lines(&played.recording.results), here(&mission));
+}
+
+#[test]
+fn the_stack_stays_within_its_bound() {
+    let port = debugger::free_port();
+    let Some(chip) = Chip::start(&["-gdb", &format!("tcp:127.0.0.1:{port}")]) else { return };
+    for number in 0..6 {
+        chip.fly(&random(number), Faults::default()).expect("it flies");
+    }
+    let image = Image::read(&fs::read(firmware().expect("it runs")).expect("cargo left an ELF"));
+    let bound = Footprint::of(&image).expect("a graph").stack as usize;
+    // QEMU's RAM begins as zeros: what lies between statics and stack still is.
+    let size =
+        footprint::ram(include_str!("../../../../memory.x")).expect("memory.x says how much");
+    let mut debugger = Debugger::connect(port);
+    let between = debugger.memory(0x2000_0000 + image.statics(), size - image.statics());
+    let used = between.iter().skip_while(|byte| **byte == 0).count();
+    println!("firmware: {used} of at most {bound} bytes of stack in QEMU");
+    assert!(bound / 2 < used && used <= bound, "{used} of {bound}");
+}

@@ -1,0 +1,271 @@
+//! `docs/vehicle.py`, a vehicle that was written from `docs/protocol.md` alone, flies missions with the firmware.
+
+use std::collections::BTreeMap;
+use std::convert::Infallible;
+use std::env;
+use std::io::{ErrorKind, Read as _, Write as _};
+use std::net::{TcpListener, TcpStream};
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+use std::time::Duration;
+
+use host_sim::hil::faults::{Faults, Spoiler};
+use host_sim::mission::algorithm::Algorithm;
+use host_sim::mission::definition::Mission;
+use host_sim::mission::scenario::{self, Overrides};
+use host_sim::world::robot::Ideal;
+use planner_core::robot::Body;
+use planner_core::{Agent, Estimates, Event, Motion, Pose, Reading};
+use rayon::prelude::*;
+use tests::is_long;
+use tests::program::build;
+
+use crate::firmware::chip::Chip;
+
+/// A mission that the vehicle is told by its flags.
+#[derive(Clone, Copy, Debug)]
+struct Flight {
+    algorithm: Algorithm,
+    steps: u32,
+    p: f64,
+    /// Which labels are read wrong.
+    wrong: &'static [usize],
+}
+
+const FLIGHTS: [Flight; 4] = [
+    Flight { algorithm: Algorithm::Cfc, steps: 12, p: 1.0, wrong: &[] },
+    Flight { algorithm: Algorithm::Lookahead, steps: 12, p: 1.0, wrong: &[] },
+    Flight { algorithm: Algorithm::Lookahead, steps: 9, p: 0.9, wrong: &[3, 7] },
+    Flight { algorithm: Algorithm::Scc, steps: 9, p: 0.7, wrong: &[2, 5, 6] },
+];
+
+impl Flight {
+    fn flags(self) -> Vec<String> {
+        let Self { algorithm, steps, p, wrong } = self;
+        let mut flags =
+            vec![format!("--algorithm={}", algorithm.name()), format!("--steps={steps}")];
+        flags.push(format!("--p={p}"));
+        if !wrong.is_empty() {
+            flags.push("--wrong".to_owned());
+            flags.extend(wrong.iter().map(ToString::to_string));
+        }
+        flags
+    }
+
+    /// The same mission here.
+    fn mission(self) -> Mission {
+        let Self { algorithm, steps, p, .. } = self;
+        let text = if p < 1.0 {
+            scenario::PAPER_NOISY.replace("p = 0.7", &format!("p = {p}"))
+        } else {
+            scenario::PAPER_NOISELESS.to_owned()
+        };
+        // What planners differ in beside their name is theirs by default.
+        let text = text.replace("varrho = 0.1\n", "");
+        let overrides = Overrides { algorithm: Some(algorithm), steps: Some(steps), seed: None };
+        scenario::parse("", &text, overrides).expect("a good scenario")
+    }
+}
+
+/// An ideal robot that reads some labels wrong.
+struct Misread {
+    ideal: Ideal,
+    wrong: &'static [usize],
+    labels: usize,
+}
+
+impl Body for Misread {
+    type Error = Infallible;
+
+    fn perform(&mut self, motion: &Motion, pose: &mut Pose) -> Result<Option<Reading>, Infallible> {
+        let reading = self.ideal.perform(motion, pose)?;
+        self.labels += usize::from(reading.is_some());
+        let is_wrong = self.wrong.contains(&self.labels);
+        Ok(reading.map(|reading| match reading {
+            Reading::Side(label) if is_wrong => Reading::Side(-label),
+            reading => reading,
+        }))
+    }
+}
+
+/// A step: action, target, label.
+type Step = (u32, [i64; 3], i8);
+
+/// Lines by their names: site, direction, slope and intercept.
+type Lines = BTreeMap<String, ([i64; 4], [f32; 2])>;
+
+/// What the planner makes of a flight here.
+fn here(flight: Flight) -> (Vec<Step>, Lines) {
+    let mission = flight.mission();
+    let mut planner = mission.planner();
+    let body = Misread { ideal: Ideal { world: mission.world }, wrong: flight.wrong, labels: 0 };
+    let mut agent = Agent::new(&mut *planner, body, mission.start);
+    let mut steps = Vec::new();
+    for _ in 0..flight.steps {
+        let Ok(Event::Step(step)) = agent.step() else { panic!("{flight:?} ends early") };
+        let Pose { site, heading } = step.motion.target;
+        let target = [site.x().into(), site.z().into(), heading.0.into()];
+        let label = step.reading.map_or(0, Reading::sign);
+        steps.push((step.motion.action.0, target, label));
+    }
+    let Estimates { bisector, centre, maximum_margin } = planner.belief().estimates();
+    let named = [("bisector", bisector), ("centre", centre), ("maximum_margin", maximum_margin)];
+    let lines = named.into_iter().filter_map(|(name, line)| {
+        let line = line?;
+        let (about, along) = (line.about(), line.along());
+        let exact = [about.x(), about.z(), along.x(), along.z()].map(i64::from);
+        Some((name.to_owned(), (exact, [line.slope(), line.intercept()])))
+    });
+    (steps, lines.collect())
+}
+
+/// What the vehicle printed.
+fn told(output: &str) -> (Vec<Step>, Lines) {
+    let numbers = |text: &str| -> Vec<f64> {
+        let words = text.split([' ', ',']).filter(|word| !word.is_empty());
+        words.map(|word| word.parse().expect("a number")).collect()
+    };
+    let step = |line: &str| {
+        let (_, rest) = line.strip_prefix("step ")?.split_once(": action ")?;
+        let (action, rest) = rest.split_once(" to ")?;
+        let (target, label) = rest.split_once(" (")?.1.split_once("), label ")?;
+        let target = numbers(target).into_iter().map(|it| it as i64).collect::<Vec<_>>();
+        let label = if label == "none" { 0 } else { label.parse().ok()? };
+        Some((action.parse().ok()?, target.try_into().ok()?, label))
+    };
+    let estimate = |line: &str| {
+        let (name, exact) = line.split_once(": z = ")?;
+        let exact = numbers(exact.split_once("exactly ")?.1);
+        let whole = exact[..4].iter().map(|it| *it as i64).collect::<Vec<_>>();
+        Some((name.to_owned(), (whole.try_into().ok()?, [exact[4], exact[5]].map(|it| it as f32))))
+    };
+    (output.lines().filter_map(step).collect(), output.lines().filter_map(estimate).collect())
+}
+
+/// Hands on frames, spoiled as asked, until the link ends or so many have passed.
+fn hand_on(
+    mut from: &TcpStream,
+    mut to: &TcpStream,
+    spoiler: &mut Spoiler,
+    most: usize,
+    is_over: &AtomicBool,
+) {
+    let (mut frame, mut passed) = (Vec::new(), 0);
+    let mut buffer = [0; 512];
+    while !is_over.load(Ordering::Relaxed) {
+        let read = match from.read(&mut buffer) {
+            Ok(0) => break,
+            Ok(read) => read,
+            Err(e) if matches!(e.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => continue,
+            Err(_) => break,
+        };
+        for &byte in &buffer[..read] {
+            frame.push(byte);
+            if byte != 0 || frame.iter().all(|byte| *byte == 0) {
+                continue;
+            }
+            for (_, bytes) in spoiler.spoil(&std::mem::take(&mut frame)) {
+                if to.write_all(&bytes).is_err() {
+                    is_over.store(true, Ordering::Relaxed);
+                }
+            }
+            passed += 1;
+            if passed >= most {
+                is_over.store(true, Ordering::Relaxed);
+            }
+        }
+    }
+    is_over.store(true, Ordering::Relaxed);
+}
+
+/// Has the vehicle fly with chips, each of which loses its power after so many frames, then with one that does not;
+/// what it printed. `None` where that cannot be.
+fn fly(flight: Flight, faults: Faults, powers: &[usize]) -> Option<String> {
+    if !build::has_tool("python3") {
+        build::skip("docs/vehicle.py", "python3 is not on PATH");
+        return None;
+    }
+    let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
+    let program = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/vehicle.py");
+    let mut chip = Chip::start(&[])?;
+    let vehicle = Command::new("python3")
+        .arg(program)
+        .arg(listener.local_addr().expect("its address").to_string())
+        .args(flight.flags())
+        .env("PYTHONDONTWRITEBYTECODE", "1")
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("python3 starts");
+    let (wheels, _) = listener.accept().expect("the vehicle connects");
+    wheels.set_read_timeout(Some(Duration::from_millis(20))).expect("a socket");
+    let mut spoilers = [0, 1].map(|way| Spoiler::new(faults, 5, way));
+    let mut powers = powers.iter().copied();
+    loop {
+        let power = powers.next();
+        let is_over = AtomicBool::new(false);
+        let [from_chip, to_chip] = &mut spoilers;
+        let link = &chip.link;
+        link.set_read_timeout(Some(Duration::from_millis(20))).expect("a socket");
+        thread::scope(|scope| {
+            scope.spawn(|| hand_on(&wheels, link, to_chip, usize::MAX, &is_over));
+            hand_on(link, &wheels, from_chip, power.unwrap_or(usize::MAX), &is_over);
+        });
+        if power.is_none() {
+            break;
+        }
+        // One after the other, as one chip's power would come again.
+        drop(chip);
+        chip = Chip::start(&[]).expect("it started before");
+    }
+    let output = vehicle.wait_with_output().expect("it ends");
+    let [said, complaint] =
+        [output.stdout, output.stderr].map(|it| String::from_utf8(it).expect("text"));
+    assert!(output.status.success(), "{flight:?}: {said}{complaint}");
+    Some(said)
+}
+
+/// Whether the vehicle flew what the planner plans here, to the last bit.
+fn agrees(flight: Flight, said: &str) {
+    let (steps, lines) = here(flight);
+    let (flown, estimates) = told(said);
+    assert_eq!(flown, steps, "{flight:?}: {said}");
+    assert_eq!(estimates, lines, "{flight:?}: {said}");
+    assert!(said.contains("\nended: Steps\n") && !lines.is_empty(), "{flight:?}: {said}");
+}
+
+#[test]
+fn a_vehicle_written_from_the_page_flies_as_planned() {
+    FLIGHTS.into_par_iter().for_each(|flight| {
+        if let Some(said) = fly(flight, Faults::default(), &[]) {
+            agrees(flight, &said);
+            assert!(!said.contains("restarted"), "{said}");
+        }
+    });
+}
+
+#[test]
+fn over_a_bad_link_too() {
+    let faults = "drop=0.1,cut=0.03,corrupt=0.05,duplicate=0.1".parse().expect("faults");
+    let flights = if is_long() { &FLIGHTS[..] } else { &FLIGHTS[3..] };
+    flights.into_par_iter().for_each(|&flight| {
+        if let Some(said) = fly(flight, faults, &[]) {
+            agrees(flight, &said);
+        }
+    });
+}
+
+#[test]
+fn where_the_chip_restarts_it_goes_on() {
+    let ends: [(Flight, &[usize]); 2] = [(FLIGHTS[2], &[5, 9]), (FLIGHTS[1], &[7])];
+    let ends = &ends[..if is_long() { 2 } else { 1 }];
+    ends.into_par_iter().for_each(|&(flight, powers)| {
+        if let Some(said) = fly(flight, Faults::default(), powers) {
+            agrees(flight, &said);
+            let restarts = said.matches("the chip has restarted").count();
+            assert_eq!(restarts, powers.len(), "{said}");
+        }
+    });
+}

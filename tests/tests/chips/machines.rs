@@ -1,0 +1,63 @@
+//! One trace on every machine: the same missions here, on the firmwares of two boards and on a RISC-V core, byte for
+//! byte. All but the first run under QEMU.
+//!
+//! The smallest machine, the micro:bit, must be able to fly them. So labels are true and areas are rectangles.
+
+use host_sim::campaign::standard_field;
+use host_sim::mission::algorithm::Algorithm;
+use host_sim::mission::definition::Mission;
+use host_sim::mission::recording::Recording;
+use host_sim::mission::scenario::{self, Overrides};
+use host_sim::report::trace;
+use planner_core::motion::unicycle::Grid;
+use planner_core::{Accuracy, Goal};
+use rayon::prelude::*;
+use tests::cases;
+use tests::machines::{Kind, Machine, NRF51, STM32, riscv};
+use tests::missions::of_any_vehicle;
+
+const SEED: u64 = 8;
+
+const MACHINES: [Kind; 3] = [STM32, NRF51, riscv("vehicles")];
+
+/// The paper's example; standard fields by both planners with both fans, some of them until enough is known; and every
+/// vehicle, half of them with robots that err.
+fn missions() -> Vec<Mission> {
+    let overrides = Overrides::default();
+    let example = scenario::parse("", scenario::PAPER_NOISELESS, overrides).expect("a scenario");
+    let fields = (0..cases(8, 80)).map(|number| {
+        let algorithm = if number % 2 == 0 { Algorithm::Cfc } else { Algorithm::Lookahead };
+        let mut mission = standard_field::standard(SEED, number, algorithm, 24);
+        mission.vehicle = if number % 4 < 2 { Grid::Paper } else { Grid::Fine }.into();
+        let accuracy = Accuracy::Misclassified(5_000);
+        mission.goal = (number % 8 == 7).then_some(Goal { accuracy, level: 900_000 });
+        mission
+    });
+    // Of these the even ones have true labels, and two of five a polygon.
+    let vehicles = (0..cases(20, 120)).step_by(2).filter(|number| number % 5 >= 2);
+    let vehicles = vehicles.map(|number| of_any_vehicle(number, 16));
+    [example].into_iter().chain(fields).chain(vehicles).collect()
+}
+
+#[test]
+fn four_machines_make_the_same_traces_byte_for_byte() {
+    let missions = missions();
+    let here: Vec<String> = missions
+        .par_iter()
+        .map(|it| trace::lines(&Recording::of(it).expect("labels are true").results))
+        .collect();
+    let mut machines = vec!["this machine"];
+    for kind in MACHINES {
+        let Some(mut machine) = Machine::start(kind, &[]) else {
+            continue;
+        };
+        for (number, (mission, here)) in missions.iter().zip(&here).enumerate() {
+            let flown = machine.fly(mission);
+            let flown = flown.unwrap_or_else(|e| panic!("{}, mission {number}: {e}", kind.name));
+            let there = trace::lines(&flown.recording.results);
+            assert_eq!(&there, here, "{}, mission {number}: {mission:?}", kind.name);
+        }
+        machines.push(kind.name);
+    }
+    println!("{} missions, the same bytes: {}", missions.len(), machines.join(", "));
+}

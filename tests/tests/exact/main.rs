@@ -1,0 +1,16 @@
+//! What the planner computes, beside slow twins and exact arithmetic.
+
+mod columns;
+mod construction;
+mod dynamics;
+mod estimates;
+mod exact_geometry;
+mod goals;
+mod hypotheses;
+mod own_tolerances;
+mod predictor;
+mod reference;
+mod scc;
+mod search;
+mod tolerance;
+mod version_space;

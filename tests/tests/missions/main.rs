@@ -1,0 +1,15 @@
+//! Whole missions in simulated worlds: how they end, what they find, and what they never do.
+
+mod anything;
+mod campaign;
+mod failures;
+mod fields;
+mod garden;
+mod lookahead;
+mod margin;
+mod recovery;
+mod scale;
+mod sleep;
+mod symmetry;
+mod terrain;
+mod vehicles;

@@ -1,0 +1,8 @@
+//! What people and their programs read: examples, golden outputs, logs, pages, the package, the sources.
+
+mod examples;
+mod golden;
+mod logs;
+mod package;
+mod page;
+mod storeys;

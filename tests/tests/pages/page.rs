@@ -1,0 +1,74 @@
+//! The report's page in a browser (`browser/page.mjs`): what steps, what loads, what fits, what axe finds.
+//!
+//! It needs node, Debian's chromium, and `npm ci` in `tests/browser`.
+
+use std::path::Path;
+use std::process::Command;
+use std::{env, fs};
+
+use host_sim::cli::paper::{self, FLIGHTS, Flight};
+use host_sim::mission::recording::Recording;
+use host_sim::mission::scenario::{self, Overrides};
+use host_sim::report::page::{Chapter, Page};
+use tests::program::build;
+
+const CAR: &str = include_str!("../../../host-sim/scenarios/car-among-keep-outs.toml");
+
+/// Where Debian's package puts it, unless `CHROMIUM` says another place.
+const CHROMIUM: &str = "/usr/bin/chromium";
+
+#[test]
+fn examples_in_a_browser() {
+    look_at("examples", examples);
+}
+
+#[test]
+fn a_car_in_a_browser() {
+    look_at("car", car);
+}
+
+fn look_at(name: &str, page: fn() -> String) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("browser");
+    if let Some(missing) = missing(&folder) {
+        build::skip("pages in a browser", &missing);
+        return;
+    }
+    let place = build::scratch().join("pages");
+    fs::create_dir_all(&place).expect("a folder");
+    let file = place.join(format!("{name}.html"));
+    fs::write(&file, page()).expect("a page");
+    let mut node = Command::new("node");
+    node.current_dir(&folder).arg("page.mjs").args([&file, &place]);
+    // Each width in each scheme: a long run's.
+    node.args(tests::is_long().then_some("all"));
+    let run = node.output().expect("node starts");
+    let said = [run.stdout, run.stderr].concat();
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&said));
+}
+
+/// What is not there that the browser needs.
+fn missing(folder: &Path) -> Option<String> {
+    let chromium = env::var_os("CHROMIUM").unwrap_or(CHROMIUM.into());
+    if !build::has_tool("node") {
+        return Some("node is not on the path".into());
+    }
+    if !Path::new(&chromium).exists() {
+        return Some(format!("no {}", chromium.display()));
+    }
+    let is_there = |package| folder.join("node_modules").join(package).is_dir();
+    let has_packages = ["axe-core", "playwright-core"].into_iter().all(is_there);
+    (!has_packages).then(|| "expected npm ci in tests/browser".into())
+}
+
+/// Two chapters, of true labels and of labels that may be wrong, each of three planners.
+fn examples() -> String {
+    let recordings: Vec<_> = FLIGHTS.iter().map(|it: &Flight| it.fly().expect("sound")).collect();
+    paper::page(&recordings)
+}
+
+/// One mission: a polygon, keep-outs, arcs, positions that err, steps without a label.
+fn car() -> String {
+    let mission = scenario::parse("car", CAR, Overrides::default()).expect("a good file");
+    let recording = Recording::of(&mission).expect("no contradiction");
+    Page::new("car", vec![Chapter::new("A car", [("look-ahead", &recording)])]).html()
+}

@@ -1,0 +1,8 @@
+//! What goes over the link to a chip: messages, frames, delivery, restarts.
+
+mod link;
+mod player;
+mod port;
+mod protocol;
+mod restarts;
+mod resuming;
