@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use anyhow::Result;
-use planner_core::belief::cell_posterior::Hypothesis;
+use planner_core::belief::doubtful_labels::Hypothesis;
 use planner_core::{Line, PosteriorView, Prior, Sample};
 use serde::{Deserialize, Serialize};
 

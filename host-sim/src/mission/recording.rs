@@ -2,7 +2,7 @@
 
 use anyhow::{Result, anyhow};
 use nalgebra::Point2;
-use planner_core::belief::cell_posterior::Hypothesis;
+use planner_core::belief::doubtful_labels::Hypothesis;
 use planner_core::error::ObservationError;
 use planner_core::{Estimates, Line, Pose, PosteriorView, Prior, Reading, Reliability, Step};
 

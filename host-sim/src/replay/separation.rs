@@ -2,7 +2,7 @@
 //!
 //! They depend on the convex hulls of the two labels alone, so all is found in `O(n log n)` for `n` rows.
 
-use planner_core::belief::cell_view;
+use planner_core::belief::cells;
 use planner_core::belief::estimate;
 use planner_core::error::GivenError;
 use planner_core::geometry::arc::SlopeArc;
@@ -50,7 +50,7 @@ impl Separation {
 
     /// The lines through two samples that bound the others, in cyclic order.
     pub(crate) fn bounds(&self) -> impl Iterator<Item = Bound> + Clone + '_ {
-        cell_view::bounds(self.support())
+        cells::bounds(self.support())
     }
 
     /// The directions of the lines.
@@ -60,7 +60,7 @@ impl Separation {
 
     /// The range of the lines' intercepts in metres; `None` when it is unbounded.
     pub(crate) fn intercepts(&self) -> Option<[f64; 2]> {
-        cell_view::intercepts(self.bounds())
+        cells::intercepts(self.bounds())
     }
 
     /// The mean of the lines.

@@ -7,7 +7,7 @@ pub mod polygon;
 pub mod robot;
 
 use nalgebra::Point2;
-use planner_core::belief::cell_view::CellView;
+use planner_core::belief::cells::CellView;
 use planner_core::{Label, Line, Reading, Site};
 
 /// The world: its straight boundary, if that is known. Around a real vehicle it is not.

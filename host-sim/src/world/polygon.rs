@@ -1,7 +1,7 @@
 //! Convex polygons in metres: clipping, area, and certain ground.
 
 use nalgebra::{Point2, Vector2};
-use planner_core::belief::cell_view::bound;
+use planner_core::belief::cells::bound;
 use planner_core::geometry::lattice::UNITS_PER_METRE;
 use planner_core::link::message::MissionArea;
 use planner_core::{Area, KeepOut, Label, Line, Sample};

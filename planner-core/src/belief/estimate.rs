@@ -9,10 +9,8 @@
 //! All are in single precision, in axes about a sample ([`LocalLine`]), so a mission kilometres from the origin loses
 //! no accuracy. The planning loop does not use them.
 
-use crate::belief::cell_view::{CellView, Kept, run_length};
-use crate::belief::moments::Moments;
+use crate::belief::cells::{CellView, Kept, Moments, Trapezoid, Trapezoids, measure, run_length};
 use crate::belief::sample::{Label, Sample};
-use crate::belief::trapezoids::{Trapezoid, Trapezoids, measure};
 use crate::geometry::approximate::{METRE, UnitVector, cross};
 use crate::geometry::lattice::{Site, Vector};
 use crate::geometry::local_line::{Frame, LocalLine};

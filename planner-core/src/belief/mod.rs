@@ -3,43 +3,29 @@
 //!
 //! | module | contains |
 //! | --- | --- |
-//! | [`dual_cell`] | the lines that agree with some labels: a convex *cell*, stored as a cyclic list of sample indices |
-//! | [`version_space`] | for labels that are true: the one cell that they leave |
-//! | [`cell_posterior`], [`posterior_view`] | for labels that may be wrong: a table of weighted cells, and its distribution |
-//! | [`cell_view`], [`estimate`] | what can be read off a set of lines; three estimates of the line |
-//! | [`sample`], [`noise`] | labels, readings and samples; how reliable labels are |
-//! | [`predictor`] | the traits of predictors: how much the next labels are expected to tell |
-//! | [`dual_polygon`] | the predictor of a version space |
-//! | [`noisy_belief`], [`columns`] | a table of cells with its predictor, an approximate copy of its distribution |
-//! | [`goal`] | decides when the line is known well enough |
+//! | [`sample`], [`noise`], [`weight`] | labels, readings and samples; how reliable labels are; weights as logarithms |
 //! | [`tolerance`] | handles positions that err |
+//! | [`cells`] | the lines that agree with some labels, and what can be read off them |
+//! | [`estimate`] | three estimates of the line |
+//! | [`goal`] | decides when the line is known well enough |
+//! | [`true_labels`] | for labels that are true: the version space |
+//! | [`doubtful_labels`] | for labels that may be wrong: a table of weighted cells, and its distribution |
+//! | [`predictions`] | how much the next labels are expected to tell |
 //! | [`observation_log`] | what must be kept of a belief over a sleep |
 //!
 //! Nothing here knows how the robot moves.
 
-pub(crate) mod blur;
-pub mod cell_posterior;
-pub mod cell_view;
-pub(crate) mod column;
-pub mod columns;
-pub mod constraint;
-pub(crate) mod directions;
-pub mod dual_cell;
-pub mod dual_polygon;
+pub mod cells;
+pub mod doubtful_labels;
 pub mod estimate;
 pub mod goal;
 pub(crate) mod list;
-pub(crate) mod moments;
 pub mod noise;
-pub mod noisy_belief;
 pub mod observation_log;
-pub mod posterior_view;
-pub mod predictor;
-pub(crate) mod pruned;
+pub mod predictions;
 pub mod sample;
 pub mod tolerance;
-pub(crate) mod trapezoids;
-pub mod version_space;
+pub mod true_labels;
 pub mod weight;
 
 use crate::belief::estimate::Estimates;

@@ -20,6 +20,8 @@ pub struct Reliability {
 
 const RANGE: ValueError = ValueError("a reliability is a probability from 0 to 1");
 
+const ODDS: ValueError = ValueError("odds are those of a probability");
+
 impl Reliability {
     /// The log odds of a certain label. Those of any double between 0 and 1 are below 746 in size.
     const BEYOND: LogWeight = LogWeight(1_000 * LogWeight::ONE);
@@ -44,14 +46,6 @@ impl Reliability {
         reliability.ok_or(RANGE)
     }
 
-    /// The reliability with these odds as a logarithm in units of 2^-32; `None` if there is no such
-    /// probability.
-    #[cfg(any(feature = "serde", test))]
-    pub(crate) fn from_log_odds(units: i64) -> Option<Self> {
-        let inside = units.unsigned_abs() <= Self::BEYOND.0.unsigned_abs();
-        inside.then_some(Self { log_odds: LogWeight(units) })
-    }
-
     /// The probability that the label is true.
     pub fn probability(self) -> f64 {
         1.0 / (1.0 + libm::exp(-self.log_odds.value()))
@@ -69,12 +63,6 @@ impl Reliability {
         [weight(self.agree()), weight(self.disagree())]
     }
 
-    /// The logarithm of the odds, in units of 2^-32.
-    #[cfg(any(feature = "serde", test))]
-    pub(crate) const fn log_odds(self) -> i64 {
-        self.log_odds.0
-    }
-
     /// The weight of lines that agree with the label, relative to the likelier side; `None` when no line can agree.
     pub(crate) fn agree(self) -> Option<LogWeight> {
         (self.log_odds.0 > -Self::BEYOND.0).then_some(LogWeight(self.log_odds.0.min(0)))
@@ -83,6 +71,22 @@ impl Reliability {
     /// The weight of lines that do not agree; `None` when all must agree.
     pub(crate) fn disagree(self) -> Option<LogWeight> {
         (self.log_odds < Self::BEYOND).then_some(LogWeight(self.log_odds.0.saturating_neg().min(0)))
+    }
+}
+
+/// The logarithm of the odds, in units of 2^-32.
+impl From<Reliability> for i64 {
+    fn from(reliability: Reliability) -> Self {
+        reliability.log_odds.0
+    }
+}
+
+impl TryFrom<i64> for Reliability {
+    type Error = ValueError;
+
+    fn try_from(units: i64) -> Result<Self, ValueError> {
+        let inside = units.unsigned_abs() <= Self::BEYOND.0.unsigned_abs();
+        inside.then_some(Self { log_odds: LogWeight(units) }).ok_or(ODDS)
     }
 }
 
@@ -154,7 +158,7 @@ mod tests {
             assert!((it.log_odds.value() - exact).abs() < 2e-10, "{p}");
             let [agree, disagree] = [it.agree(), it.disagree()].map(Option::unwrap);
             assert_eq!((agree - disagree, agree.max(disagree)), (it.log_odds, LogWeight::ZERO));
-            assert_eq!(Reliability::from_log_odds(it.log_odds()), Some(it));
+            assert_eq!(Reliability::try_from(i64::from(it)), Ok(it));
         }
         let sure = Reliability::new(1.0).unwrap();
         assert_eq!(
@@ -164,7 +168,7 @@ mod tests {
         let wrong = Reliability::new(0.0).unwrap();
         assert_eq!((wrong.agree(), wrong.disagree()), (None, Some(LogWeight::ZERO)));
         for units in [i64::MIN, i64::MAX, Reliability::BEYOND.0 + 1] {
-            assert_eq!(Reliability::from_log_odds(units), None);
+            assert_eq!(Reliability::try_from(units), Err(ODDS));
         }
         for p in [-0.1, 1.1, f64::NAN] {
             assert_eq!(Reliability::new(p), Err(RANGE));

@@ -9,7 +9,7 @@ use crate::belief::ObservationError;
 use crate::belief::noise::Reliability;
 use crate::belief::sample::Sample;
 use crate::belief::tolerance::Tolerance;
-use crate::belief::version_space::{GivenError, VersionSpace};
+use crate::belief::true_labels::{GivenError, VersionSpace};
 
 /// Up to `N` samples, the given ones first. `24 N` bytes and some 16.
 ///

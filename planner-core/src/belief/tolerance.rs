@@ -17,9 +17,9 @@
 //! spread about the reported one with the standard deviation `sigma`, a third of the tolerance. Let the reported
 //! position be at the distance `s` from a line, positive on its +1 side. Let labels be true with probability `p`. For
 //! that line a label +1 then has the probability `p Phi(s / sigma) + (1 - p) Phi(-s / sigma)`. See [`CellPosterior`],
-//! and `belief/blur.rs` for the calculation.
+//! and `belief/doubtful_labels/blur.rs` for the calculation.
 //!
-//! [`CellPosterior`]: crate::belief::cell_posterior::CellPosterior
+//! [`CellPosterior`]: crate::belief::doubtful_labels::CellPosterior
 
 use crate::geometry::approximate::UnitVector;
 use crate::geometry::arc::SlopeArc;

@@ -12,13 +12,7 @@ const INSIDE_OUT: ValueError =
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(
-    feature = "serde",
-    serde(
-        try_from = "[crate::geometry::lattice::Site; 2]",
-        into = "[crate::geometry::lattice::Site; 2]"
-    )
-)]
+#[cfg_attr(feature = "serde", serde(try_from = "[Site; 2]", into = "[Site; 2]"))]
 pub struct Area {
     min: Site,
     max: Site,
@@ -105,5 +99,20 @@ impl Area {
     pub fn contains(&self, q: Site) -> bool {
         (self.min.x()..=self.max.x()).contains(&q.x())
             && (self.min.z()..=self.max.z()).contains(&q.z())
+    }
+}
+
+/// Its corners. The margin of an [inset](Area::inset) part is not written.
+impl From<Area> for [Site; 2] {
+    fn from(Area { min, max, .. }: Area) -> Self {
+        [min, max]
+    }
+}
+
+impl TryFrom<[Site; 2]> for Area {
+    type Error = ValueError;
+
+    fn try_from([min, max]: [Site; 2]) -> Result<Self, ValueError> {
+        Self::new(min, max)
     }
 }

@@ -134,6 +134,20 @@ impl From<Site> for Point2<f32> {
     }
 }
 
+impl From<Site> for (i32, i32) {
+    fn from(site: Site) -> Self {
+        (site.x, site.z)
+    }
+}
+
+impl TryFrom<(i32, i32)> for Site {
+    type Error = LatticeError;
+
+    fn try_from((x, z): (i32, i32)) -> Result<Self, LatticeError> {
+        Self::new(x, z)
+    }
+}
+
 /// A displacement or a direction in the plane, in integer units.
 ///
 /// Components are smaller than 2^30 in size, as differences of sites and steps of rays are, which

@@ -99,7 +99,7 @@ impl Line {
 
 /// The exact line through two samples, one of the paper's bounds `l_ij`.
 ///
-/// In the space of lines it is a vertex of a cell, see [`DualCell`](crate::belief::dual_cell::DualCell). It is oriented
+/// In the space of lines it is a vertex of a cell, see [`DualCell`](crate::belief::cells::DualCell). It is oriented
 /// so that its +1 side is to the left of its direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

@@ -2,6 +2,7 @@
 
 use crate::geometry::approximate::{METRE, UnitVector, cross};
 use crate::geometry::lattice::{Site, Vector};
+use crate::geometry::value::ValueError;
 
 /// Axes about a site: along a direction, and to its left.
 #[derive(Clone, Copy)]
@@ -58,6 +59,24 @@ impl LocalLine {
     /// How far to the left it passes the site, against the first axis, metres.
     pub const fn intercept(&self) -> f32 {
         self.intercept
+    }
+}
+
+/// Its site, its direction, and slope and intercept.
+impl From<LocalLine> for (Site, [i32; 2], [f32; 2]) {
+    fn from(LocalLine { about, along, slope, intercept }: LocalLine) -> Self {
+        (about, [along.x, along.z], [slope, intercept])
+    }
+}
+
+impl TryFrom<(Site, [i32; 2], [f32; 2])> for LocalLine {
+    type Error = ValueError;
+
+    fn try_from(
+        (about, [x, z], [slope, intercept]): (Site, [i32; 2], [f32; 2]),
+    ) -> Result<Self, ValueError> {
+        let line = Vector::new(x, z).and_then(|along| Self::new(about, along, slope, intercept));
+        line.ok_or(ValueError("a line has a direction, a slope and an intercept"))
     }
 }
 

@@ -32,7 +32,7 @@ use crate::belief::goal::Goal;
 use crate::belief::noise::Noise;
 use crate::belief::sample::{Reading, Sample};
 use crate::belief::tolerance::Tolerance;
-use crate::belief::version_space::GivenError;
+use crate::belief::true_labels::GivenError;
 use crate::belief::weight::Prior;
 use crate::geometry::area::Area;
 use crate::geometry::hull::{Hull, HullError};

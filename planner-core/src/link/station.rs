@@ -3,13 +3,13 @@
 use heapless::Vec;
 
 use crate::belief::ObservationError;
-use crate::belief::cell_posterior::CellPosterior;
+use crate::belief::doubtful_labels::CellPosterior;
 use crate::belief::estimate::Estimates;
 use crate::belief::goal::{Accuracy, Criterion, Goal};
 use crate::belief::noise::Noise;
-use crate::belief::noisy_belief::NoisyBelief;
+use crate::belief::predictions::NoisyBelief;
 use crate::belief::sample::{Reading, Sample};
-use crate::belief::version_space::{GivenError, VersionSpace};
+use crate::belief::true_labels::{GivenError, VersionSpace};
 use crate::belief::weight::Prior;
 use crate::geometry::area::Area;
 use crate::geometry::polygon_area::KeepOut;

@@ -12,11 +12,11 @@
 
 use crate::belief::Belief as _;
 use crate::belief::ObservationError;
-use crate::belief::cell_view::{CellView, Certainty};
+use crate::belief::cells::{CellView, Certainty};
 use crate::belief::observation_log::{FromLog as _, ObservationLog};
 use crate::belief::sample::{Label, Reading};
 use crate::belief::tolerance::Tolerance;
-use crate::belief::version_space::VersionSpace;
+use crate::belief::true_labels::VersionSpace;
 use crate::geometry::arc::SlopeArc;
 use crate::geometry::area::Area;
 use crate::geometry::workspace::Workspace;

@@ -19,12 +19,11 @@
 
 use crate::belief::Belief as _;
 use crate::belief::ObservationError;
-use crate::belief::cell_view::CellView;
+use crate::belief::cells::CellView;
 use crate::belief::goal::{Criterion, Goal, NoGoal};
 use crate::belief::noise::Noise;
-use crate::belief::noisy_belief::NoisyBelief;
 use crate::belief::observation_log::FromLog;
-use crate::belief::predictor::{Prediction, PredictiveBelief, Predictor};
+use crate::belief::predictions::{NoisyBelief, Prediction, PredictiveBelief, Predictor};
 use crate::belief::sample::{Label, Reading, Sample};
 use crate::belief::tolerance::Tolerance;
 use crate::belief::weight::Prior;
@@ -401,11 +400,11 @@ mod tests {
     use nalgebra::Point2;
 
     use super::*;
-    use crate::belief::cell_view::Certainty;
+    use crate::belief::cells::Certainty;
     use crate::belief::noise::{Noise, Reliability};
-    use crate::belief::noisy_belief::NoisyBelief;
+    use crate::belief::predictions::NoisyBelief;
     use crate::belief::sample::Sample;
-    use crate::belief::version_space::VersionSpace;
+    use crate::belief::true_labels::VersionSpace;
     use crate::geometry::heading::Heading;
     use crate::geometry::lattice::Site;
     use crate::motion::unicycle::Unicycle;

@@ -10,8 +10,6 @@
 //! [`snapshot`] is what a planner has to remember over a sleep.
 
 pub mod cfc;
-#[cfg(feature = "serde")]
-mod checked;
 pub mod lookahead;
 pub mod options;
 pub mod scc;

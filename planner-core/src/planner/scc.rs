@@ -26,8 +26,8 @@ use heapless::Vec;
 
 use crate::belief::Belief as _;
 use crate::belief::ObservationError;
-use crate::belief::cell_posterior::{CellPosterior, Hypothesis};
-use crate::belief::cell_view::CellView;
+use crate::belief::cells::CellView;
+use crate::belief::doubtful_labels::{CellPosterior, Hypothesis};
 use crate::belief::noise::Noise;
 use crate::belief::observation_log::{FromLog as _, ObservationLog};
 use crate::belief::sample::{Reading, Sample};

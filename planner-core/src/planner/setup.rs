@@ -2,7 +2,7 @@
 
 use crate::belief::Belief;
 use crate::belief::tolerance::Tolerance;
-use crate::belief::version_space::GivenError;
+use crate::belief::true_labels::GivenError;
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, RoomError};
 

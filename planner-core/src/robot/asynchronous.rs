@@ -175,7 +175,7 @@ mod tests {
 
     use super::*;
     use crate::belief::sample::{Label, Sample};
-    use crate::belief::version_space::VersionSpace;
+    use crate::belief::true_labels::VersionSpace;
     use crate::geometry::area::Area;
     use crate::geometry::heading::Heading;
     use crate::geometry::lattice::Site;

@@ -11,7 +11,7 @@
 
 use core::num::NonZeroU32;
 
-use crate::belief::cell_view::Certainty;
+use crate::belief::cells::Certainty;
 use crate::geometry::heading::{Angle, Heading};
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose, Ray, Side, room_for_errors};

@@ -1,6 +1,6 @@
 //! Why a search found no further motion.
 
-use crate::belief::cell_view::CellView;
+use crate::belief::cells::CellView;
 use crate::geometry::lattice::{Site, Vector};
 use crate::geometry::workspace::Workspace;
 

@@ -9,8 +9,8 @@ use core::num::NonZeroU32;
 
 use heapless::Vec;
 
-use crate::belief::cell_view::CellView;
-use crate::belief::predictor::Prediction;
+use crate::belief::cells::CellView;
+use crate::belief::predictions::Prediction;
 use crate::geometry::lattice::UNITS_PER_METRE;
 use crate::geometry::workspace::Workspace;
 use crate::motion::action::Action;
@@ -267,9 +267,9 @@ impl Prospects {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::belief::cell_view::Certainty;
+    use crate::belief::cells::Certainty;
     use crate::belief::sample::{Label, Sample};
-    use crate::belief::version_space::VersionSpace;
+    use crate::belief::true_labels::VersionSpace;
     use crate::geometry::heading::Heading;
     use crate::geometry::lattice::Site;
 

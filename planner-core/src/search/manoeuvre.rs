@@ -20,7 +20,7 @@
 //! way. As long as there is neither, it lowers the count of motions to a safe pose. A safe vehicle never becomes unsafe
 //! again.
 
-use crate::belief::cell_view::Certainty;
+use crate::belief::cells::Certainty;
 use crate::geometry::approximate::{single, sqrt};
 use crate::geometry::lattice::{Site, Vector};
 use crate::geometry::workspace::Workspace;

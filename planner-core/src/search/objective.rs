@@ -25,7 +25,7 @@ pub struct EffortWeight {
     pub(crate) millionths: u32,
 }
 
-pub(crate) const RANGE: ValueError = ValueError("a weight of the control is from 0 to below 1");
+const RANGE: ValueError = ValueError("a weight of the control is from 0 to below 1");
 
 impl EffortWeight {
     pub(crate) const ONE: u32 = 1_000_000;
@@ -53,6 +53,21 @@ impl EffortWeight {
         let reach = reach_mm as i64 * reach_mm as i64;
         let (weight, one) = (self.millionths as i64, Self::ONE as i64);
         (one - weight) * reach - weight * effort as i64
+    }
+}
+
+/// Millionths.
+impl From<EffortWeight> for u32 {
+    fn from(EffortWeight { millionths }: EffortWeight) -> Self {
+        millionths
+    }
+}
+
+impl TryFrom<u32> for EffortWeight {
+    type Error = ValueError;
+
+    fn try_from(millionths: u32) -> Result<Self, ValueError> {
+        (millionths < Self::ONE).then_some(Self { millionths }).ok_or(RANGE)
     }
 }
 

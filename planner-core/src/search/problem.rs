@@ -18,7 +18,7 @@
 //! - **By the rule.** Directions that the rule forbids are skipped in the same way
 //!   ([`direction_rule`](crate::search::direction_rule)).
 
-use crate::belief::cell_view::CellView;
+use crate::belief::cells::CellView;
 use crate::geometry::area::Area;
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose, room_for_errors};

@@ -6,7 +6,7 @@
 
 use heapless::Vec;
 
-use crate::belief::cell_view::{CellView, Certainty};
+use crate::belief::cells::{CellView, Certainty};
 use crate::belief::sample::Label;
 use crate::geometry::angle::CoarseAngle;
 use crate::geometry::approximate::{single, sqrt};

@@ -3,7 +3,7 @@
 use host_sim::mission::definition::Mission;
 use host_sim::mission::read_out::ReadOut;
 use host_sim::mission::results::Ending;
-use planner_core::belief::cell_view::CellView;
+use planner_core::belief::cells::CellView;
 use planner_core::dynamics::{Dynamics as _, Side};
 use planner_core::geometry::lattice::Vector;
 use planner_core::link::message::MissionArea;

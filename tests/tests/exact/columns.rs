@@ -5,7 +5,7 @@ use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::{Mission, Table};
 use host_sim::world::noise::{Extent, NoiseModel};
 use nalgebra::Point2;
-use planner_core::belief::columns::Columns;
+use planner_core::belief::predictions::Columns;
 use planner_core::{Label, PosteriorView, Reliability, Sample, Site};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

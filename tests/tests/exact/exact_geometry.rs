@@ -1,8 +1,7 @@
 //! Orientation and cuts against arbitrary-precision integers.
 
 use num_bigint::{BigInt, Sign};
-use planner_core::belief::constraint::Constraint;
-use planner_core::belief::dual_cell::{Cut, CutError, DualCell};
+use planner_core::belief::cells::{Constraint, Cut, CutError, DualCell};
 use planner_core::geometry::lattice::orient;
 use planner_core::{Label, Sample, Site};
 use rand::{RngExt, SeedableRng};

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use host_sim::world::World;
 use nalgebra::Point2;
-use planner_core::belief::cell_posterior::Hypothesis;
+use planner_core::belief::doubtful_labels::Hypothesis;
 use planner_core::belief::estimate;
 use planner_core::error::ObservationError;
 use planner_core::{
@@ -214,7 +214,7 @@ fn certain_labels_leave_the_version_space() {
             assert_eq!(alone.is_ok(), among.is_ok());
             let one = table.iter().next().expect("one hypothesis");
             assert_eq!(table.iter().len(), 1);
-            let corners = |edges: &[planner_core::belief::constraint::Constraint],
+            let corners = |edges: &[planner_core::belief::cells::Constraint],
                            samples: &[Sample]| {
                 let mut sites: Vec<_> = edges
                     .iter()

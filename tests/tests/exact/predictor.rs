@@ -8,7 +8,7 @@ use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::{Lines, Mission};
 use host_sim::world::noise::{Extent, NoiseModel};
 use nalgebra::Point2;
-use planner_core::belief::predictor::{Prediction as _, Predictor as _};
+use planner_core::belief::predictions::{Prediction as _, Predictor as _};
 use planner_core::{
     Belief as _, Certainty, Label, Line, NoisyBelief, PosteriorView, PredictiveBelief as _,
     Reading, Reliability, Sample, Site,

@@ -9,7 +9,7 @@ use host_sim::mission::scenario::{self, Overrides};
 use host_sim::world::errors::{CUT, Errors};
 use host_sim::world::noise::{Extent, NoiseModel};
 use nalgebra::Point2;
-use planner_core::belief::cell_posterior::Hypothesis;
+use planner_core::belief::doubtful_labels::Hypothesis;
 use planner_core::planner::Stage;
 use planner_core::{
     Belief as _, Label, Line, Noise, PosteriorView, Prior, Reading, Reliability, Sample, Site,

@@ -5,7 +5,7 @@
 //!
 //! In the last two, `share` is the [`share_above`](Prediction::share_above) of a site.
 
-use crate::belief::cell_view::CellView;
+use crate::belief::cells::CellView;
 use crate::belief::sample::{Label, Reading};
 use crate::belief::tolerance::Tolerance;
 use crate::belief::{Belief, ObservationError};

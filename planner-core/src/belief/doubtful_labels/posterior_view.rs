@@ -5,11 +5,10 @@
 //! outside the trusted balls that a hypothesis agrees with, and the others. A probability is this weight divided by the
 //! sum over all separable sequences. A bound on the effect of pruning is [`PosteriorView::pruned_mass`].
 
-use crate::belief::cell_posterior::{CellPosterior, Hypothesis};
-use crate::belief::cell_view::{CellView, intercepts};
+use crate::belief::cells::{CellView, Moments, intercepts};
+use crate::belief::doubtful_labels::cell_posterior::{CellPosterior, Hypothesis};
 use crate::belief::estimate::{Estimates, area, bisector, maximum_margin, share_above};
 use crate::belief::goal::{Bounds, Criterion, Goal};
-use crate::belief::moments::Moments;
 use crate::belief::sample::Reading;
 use crate::belief::tolerance::Tolerance;
 use crate::belief::weight::LogWeight;

@@ -18,7 +18,7 @@
 
 use heapless::Vec;
 
-use crate::belief::cell_view::CellView;
+use crate::belief::cells::CellView;
 use crate::belief::noise::Reliability;
 use crate::belief::sample::{Label, Sample};
 use crate::belief::tolerance::Tolerance;

@@ -10,11 +10,11 @@
 
 use heapless::Vec;
 
-use crate::belief::cell_view::CellView;
-use crate::belief::predictor::{Prediction, PredictiveBelief, Predictor, entropy};
+use crate::belief::cells::CellView;
+use crate::belief::predictions::predictor::{Prediction, PredictiveBelief, Predictor, entropy};
 use crate::belief::sample::{Label, Reading};
 use crate::belief::tolerance::Tolerance;
-use crate::belief::version_space::VersionSpace;
+use crate::belief::true_labels::VersionSpace;
 use crate::belief::weight::LogWeight;
 use crate::belief::{Belief, ObservationError};
 use crate::geometry::approximate::{METRE, UnitVector, cross, inverse_sqrt};
@@ -282,7 +282,7 @@ mod tests {
 
     use super::*;
     use crate::belief::sample::Sample;
-    use crate::belief::version_space::VersionSpace;
+    use crate::belief::true_labels::VersionSpace;
 
     fn at(x: f64, z: f64) -> Site {
         Site::try_from(Point2::new(x, z)).unwrap()

@@ -2,16 +2,16 @@
 //! [`Columns`] are an approximate copy of its distribution, from which look-ahead predicts the next labels.
 
 use crate::belief::ObservationError;
-use crate::belief::cell_posterior::CellPosterior;
-use crate::belief::cell_view::CellView;
-use crate::belief::columns::{After, Columns};
+use crate::belief::cells::CellView;
+use crate::belief::doubtful_labels::CellPosterior;
 use crate::belief::list::List;
 use crate::belief::noise::{Noise, Reliability};
 use crate::belief::observation_log::{FromLog, ObservationLog, ReplayError};
-use crate::belief::predictor::{Prediction, PredictiveBelief, Predictor, entropy};
+use crate::belief::predictions::columns::{After, Columns};
+use crate::belief::predictions::predictor::{Prediction, PredictiveBelief, Predictor, entropy};
 use crate::belief::sample::{Label, Reading, Sample};
 use crate::belief::tolerance::Tolerance;
-use crate::belief::version_space::GivenError;
+use crate::belief::true_labels::GivenError;
 use crate::belief::weight::Prior;
 use crate::geometry::lattice::Site;
 

@@ -6,9 +6,9 @@
 
 use core::f32::consts::FRAC_PI_2;
 
-use crate::belief::cell_view::CellView;
+use crate::belief::cells::cell_view::CellView;
+use crate::belief::cells::trapezoids::{Trapezoid, Trapezoids};
 use crate::belief::sample::Sample;
-use crate::belief::trapezoids::{Trapezoid, Trapezoids};
 use crate::geometry::approximate::{METRE, UnitVector, cross, inverse_sqrt};
 use crate::geometry::lattice::Site;
 use crate::geometry::local_line::{Frame, LocalLine};

@@ -2,7 +2,7 @@
 //!
 //! A cell stores its edges only. A [`CellView`] is a cell together with the samples that its edges name.
 
-use crate::belief::constraint::Constraint;
+use crate::belief::cells::constraint::Constraint;
 use crate::belief::sample::{Label, Sample};
 use crate::geometry::approximate::{single, sqrt};
 use crate::geometry::arc::SlopeArc;

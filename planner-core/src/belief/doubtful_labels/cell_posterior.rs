@@ -18,21 +18,19 @@
 //! the cells, the more closely the weights follow the likelihood. Each label is still one sample. The pruned mass keeps
 //! the value that it had when it was lost.
 //!
-//! [`PosteriorView::pruned_mass`]: crate::belief::posterior_view::PosteriorView::pruned_mass
+//! [`PosteriorView::pruned_mass`]: crate::belief::doubtful_labels::posterior_view::PosteriorView::pruned_mass
 
 use crate::belief::ObservationError;
-use crate::belief::blur::{Blur, Doubt, Scale};
-use crate::belief::cell_view::{CellView, Certainty};
-use crate::belief::constraint::Constraint;
-use crate::belief::dual_cell::DualCell;
+use crate::belief::cells::{CellView, Certainty, Constraint, DualCell};
+use crate::belief::doubtful_labels::blur::{Blur, Doubt, Scale};
+use crate::belief::doubtful_labels::pruned::PrunedMass;
 use crate::belief::estimate::area;
 use crate::belief::list::List;
 use crate::belief::noise::{Noise, Reliability};
 use crate::belief::observation_log::{FromLog, ObservationLog, ReplayError};
-use crate::belief::pruned::PrunedMass;
 use crate::belief::sample::{Label, Sample, SampleBuffer};
 use crate::belief::tolerance::{Short, Tolerance};
-use crate::belief::version_space::{GivenError, VersionSpace};
+use crate::belief::true_labels::{GivenError, VersionSpace};
 use crate::belief::weight::{Coarse, LogWeight, Prior};
 use crate::geometry::lattice::Site;
 
@@ -535,7 +533,7 @@ impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
 
 /// All labels count as reliable as the table's noise says. A [`NoisyBelief`] restores labels of other reliabilities.
 ///
-/// [`NoisyBelief`]: crate::belief::noisy_belief::NoisyBelief
+/// [`NoisyBelief`]: crate::belief::predictions::NoisyBelief
 impl<const N: usize, const H: usize, const E: usize> FromLog for CellPosterior<N, H, E> {
     type ObservationLog = ObservationLog<N>;
 

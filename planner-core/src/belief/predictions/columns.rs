@@ -20,11 +20,11 @@
 //!
 //! The columns use the area prior, uniform over lines, whatever the table's prior is.
 
-use crate::belief::cell_posterior::CellPosterior;
-use crate::belief::column::{Column, Step, Threshold, exp};
-use crate::belief::directions::{Direction, directions};
+use crate::belief::doubtful_labels::CellPosterior;
 use crate::belief::list::List;
 use crate::belief::noise::Reliability;
+use crate::belief::predictions::column::{Column, Step, Threshold, exp};
+use crate::belief::predictions::directions::{Direction, directions};
 use crate::belief::sample::{Label, Sample};
 use crate::geometry::lattice::{Site, Vector};
 
@@ -81,7 +81,7 @@ impl<const K: usize> Columns<K> {
     }
 
     /// The share of the lines that have a site on their +1 side, as
-    /// [`PosteriorView::share_above`](crate::belief::posterior_view::PosteriorView::share_above). Some 850 instructions for 16
+    /// [`PosteriorView::share_above`](crate::belief::doubtful_labels::PosteriorView::share_above). Some 850 instructions for 16
     /// directions, however many labels there are.
     pub fn share_above(&self, site: Site) -> f32 {
         let place = self.view.vector(site);

@@ -9,7 +9,7 @@
 //! So a sum over a cell has only positive terms. The terms are made from the widths at a trapezoid's ends, and these
 //! are exact integers over lengths. No digits cancel, however thin the cell is.
 
-use crate::belief::cell_view::CellView;
+use crate::belief::cells::cell_view::CellView;
 use crate::belief::sample::{Label, Sample};
 use crate::geometry::approximate::{METRE, UnitVector, cross};
 use crate::geometry::lattice::{Site, Vector};

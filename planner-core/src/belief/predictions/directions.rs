@@ -8,7 +8,7 @@
 
 use heapless::binary_heap::{BinaryHeap, Min};
 
-use crate::belief::cell_posterior::CellPosterior;
+use crate::belief::doubtful_labels::CellPosterior;
 use crate::belief::weight::LogWeight;
 use crate::geometry::approximate::precise_heading_of;
 use crate::geometry::arc::SlopeArc;

@@ -9,8 +9,8 @@
 //!
 //! A cell does not contain the samples, so several cells can share one buffer of them.
 
-use crate::belief::cell_view::{CellView, Kept, run_length};
-use crate::belief::constraint::Constraint;
+use crate::belief::cells::cell_view::{CellView, Kept, run_length};
+use crate::belief::cells::constraint::Constraint;
 use crate::belief::sample::Sample;
 use crate::geometry::lattice::{Vector, orient};
 

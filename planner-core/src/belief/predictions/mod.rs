@@ -1,0 +1,14 @@
+//! How much the next labels are expected to tell. A version space predicts by itself, as a polygon of lines. A
+//! [`NoisyBelief`] is a table of cells with columns, an approximate copy of its distribution.
+
+mod column;
+mod columns;
+mod directions;
+mod dual_polygon;
+mod noisy_belief;
+mod predictor;
+
+#[cfg(feature = "internals")]
+pub use columns::Columns;
+pub use noisy_belief::{NoisyBelief, sequences_of};
+pub use predictor::{Prediction, PredictiveBelief, Predictor};

@@ -1,0 +1,7 @@
+//! What is known where labels are true: the one cell that they leave.
+
+mod given;
+mod version_space;
+
+pub use given::GivenError;
+pub use version_space::VersionSpace;
