@@ -1,5 +1,7 @@
 //! A car: arcs of at most some curvature, forward only.
 
+use core::num::{NonZeroU32, NonZeroU64};
+
 use crate::geometry::angle::CoarseAngle;
 use crate::geometry::approximate::acos;
 use crate::geometry::heading::{Angle, Heading};
@@ -83,7 +85,9 @@ impl Car {
         if turn_step_urad == 0 || turn_step_urad > 785_398 {
             return Err(GridError::Turn);
         }
-        let slowest = shortest_mm.div_ceil(speed_step_mm).max(1);
+        // A grid has a step: nothing divides by zero.
+        let step_mm = NonZeroU32::new(speed_step_mm).ok_or(GridError::Circle)?;
+        let slowest = (shortest_mm / step_mm + u32::from(shortest_mm % step_mm > 0)).max(1);
         if radius_mm == 0 || radius_mm >= Self::WIDEST_MM || slowest >= u32::from(speeds) {
             return Err(GridError::Circle);
         }
@@ -102,7 +106,7 @@ impl Car {
         };
         car.turns = car.turns_at(speeds - 1);
         car.grid = ActionGrid::new(2 * car.turns + 1, speeds, speed_step_mm)?;
-        car.find_circle()
+        car.find_circle(step_mm)
     }
 
     /// What it can do.
@@ -110,11 +114,11 @@ impl Car {
         self.shape
     }
 
-    fn find_circle(mut self) -> Result<Self, GridError> {
-        let Shape { radius_mm, speed_step_mm, speeds, .. } = self.shape;
+    fn find_circle(mut self, step_mm: NonZeroU32) -> Result<Self, GridError> {
+        let Shape { radius_mm, speeds, .. } = self.shape;
         let (sin, _) = sin_cos(Self::CIRCLING);
         let chord_mm = (2 * u64::from(radius_mm) * sin as u64) >> 29;
-        let speed = (chord_mm / u64::from(speed_step_mm)) as u32;
+        let speed = (chord_mm / NonZeroU64::from(step_mm)) as u32;
         let speed = speed.max(u32::from(self.slowest)).min(u32::from(speeds) - 1) as u16;
         (self.circle_speed, self.circle_turn) = (speed, self.turns_at(speed));
         let turn = self.turn(self.circle_turn);

@@ -290,8 +290,15 @@ impl Scale {
         const FACTOR: u32 = 482_764;
         let units = tolerance.units().max(1);
         let shift = units.ilog2();
-        let factor = (u64::from(FACTOR) << shift) / u64::from(units);
-        Self { factor: factor as u32, shift }
+        // `(FACTOR << shift) / units` bit by bit: a chip would carry the long division for this alone.
+        let (mut rest, mut factor) = (u64::from(FACTOR) << shift, 0);
+        for bit in (0..=FACTOR.ilog2()).rev() {
+            let part = u64::from(units) << bit;
+            if rest >= part {
+                (rest, factor) = (rest - part, factor | 1 << bit);
+            }
+        }
+        Self { factor, shift }
     }
 
     /// The argument of a distance, cut to what is enough.
@@ -351,6 +358,18 @@ mod tests {
             near(logarithm(value).value(), libm::log(f64::from(value)), 1e-4 * 16.0);
         }
         assert_eq!(logarithm(1.0), LogWeight::ZERO);
+    }
+
+    #[test]
+    fn a_scale_is_the_quotient() {
+        for n in 0..200_000_u32 {
+            let units = 1 + (n.wrapping_mul(2_654_435_761) >> (6 + n % 26));
+            let tolerance = Tolerance::try_from(units).unwrap();
+            let shift = units.ilog2();
+            let is = (u64::from(482_764_u32) << shift) / u64::from(units);
+            let Scale { factor, shift: got } = Scale::by(tolerance);
+            assert_eq!((u64::from(factor), got), (is, shift), "{units}");
+        }
     }
 
     /// Beside the mean of many points of the curve itself.
