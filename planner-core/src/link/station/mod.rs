@@ -7,5 +7,7 @@ mod terms;
 
 pub use flight::{Flown, Station, Watch};
 pub use planners::{AllLabels, CfcAlone, Mission, Planners, TrueLabels};
-pub use seam::{Prepared, Restart};
+pub use seam::Prepared;
 pub use terms::{FromOutlines, Known, NoTerms, PlannerSetup};
+
+pub use crate::planner::setup::Restart;

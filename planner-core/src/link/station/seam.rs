@@ -7,7 +7,7 @@ use crate::belief::estimate::Estimates;
 use crate::belief::goal::Goal;
 use crate::belief::noise::Noise;
 use crate::belief::predictions::NoisyBelief;
-use crate::belief::sample::{Reading, Sample};
+use crate::belief::sample::Reading;
 use crate::belief::true_labels::{GivenError, VersionSpace};
 use crate::belief::weight::Prior;
 use crate::geometry::workspace::Workspace;
@@ -18,7 +18,7 @@ use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::cfc::Cfc;
 use crate::planner::lookahead::Lookahead;
 use crate::planner::scc::{Policy, Scc};
-use crate::planner::setup::{SetupError, aimed_for};
+use crate::planner::setup::{Restart, SetupError, aimed_for};
 use crate::planner::{Plan, Planner};
 
 #[inline(never)]
@@ -154,7 +154,8 @@ impl Setup {
         prior: Prior,
         noise: Noise,
     ) -> Result<Prepared<&'a mut R>, DeclinedError> {
-        let capacity = R::CAPACITY;
+        let [samples, hypotheses] = R::ROOM.map(|most| most as u16);
+        let capacity = Capacity { samples, hypotheses };
         self.check(capacity)?;
         planner.restart(&self.given, prior, noise).map_err(declined)?;
         Ok(Prepared { planner, capacity })
@@ -168,35 +169,5 @@ fn declined(error: SetupError) -> DeclinedError {
         SetupError::Room(none) => DeclinedError::Vehicle(ShapeError::Room(none)),
         SetupError::Given(why) => DeclinedError::Given(why),
         SetupError::Full => DeclinedError::Given(GivenError::TooMany),
-    }
-}
-
-/// A planner that is too large to be made elsewhere and moved. It begins a mission in the memory where it is.
-pub trait Restart: Planner {
-    /// What it has room for.
-    const CAPACITY: Capacity;
-
-    /// Begins again with what given samples leave.
-    ///
-    /// # Errors
-    /// [`SetupError`], with the planner as it was.
-    fn restart(&mut self, given: &[Sample], prior: Prior, noise: Noise) -> Result<(), SetupError>;
-}
-
-impl<D: Dynamics, G: Workspace, const N: usize, const H: usize> Restart for Scc<D, N, H, G> {
-    const CAPACITY: Capacity = Capacity { samples: N as u16, hypotheses: H as u16 };
-
-    fn restart(&mut self, given: &[Sample], prior: Prior, noise: Noise) -> Result<(), SetupError> {
-        self.restart(given, prior, noise)
-    }
-}
-
-impl<D: Dynamics, G: Workspace, const N: usize, const H: usize> Restart
-    for Lookahead<D, NoisyBelief<N, H>, G>
-{
-    const CAPACITY: Capacity = Capacity { samples: N as u16, hypotheses: H as u16 };
-
-    fn restart(&mut self, given: &[Sample], prior: Prior, noise: Noise) -> Result<(), SetupError> {
-        self.restart(given, prior, noise)
     }
 }
