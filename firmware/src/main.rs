@@ -52,7 +52,7 @@ mod app {
 
     use crate::clock::Clock;
     use crate::log;
-    use crate::mission::Board;
+    use crate::mission::{Board, Deck};
     use crate::reset::Reset;
     use crate::serial::{self, Arrivals, Receiver, Serial};
     use crate::stop::Enable;
@@ -89,7 +89,7 @@ mod app {
         defmt::info!("started: {}, clock: {}", reset, clock);
         let rate = ClockRate { per_second: clock.hz(), emulated: clock == Clock::Emulated };
         let station = Station { link, sensor: Some(sensor), ticks, clock: rate };
-        let board = Board { station, enable };
+        let board = Board { station, deck: Deck { enable, steps: 0 } };
         (Shared {}, Local { board, receiver: Receiver::new(rx, received) })
     }
 

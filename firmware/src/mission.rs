@@ -1,11 +1,9 @@
 //! What `idle` runs: asks for a mission, flies it, logs it, and asks for the next.
 
 use planner_core::link::delivery::LinkError;
-use planner_core::link::message::{Algorithm, DeclinedError, MissionArea, MissionEnd, Setup};
-use planner_core::link::station::{Flown, PlannerSetup, Prepared, Station};
-use planner_core::{
-    Accuracy, AnyVehicle, Goal, LocalLine, Noise, PinSensor, Planner, Policy, Prior, Reading, Step,
-};
+use planner_core::link::message::{MissionArea, MissionEnd, Setup};
+use planner_core::link::station::{AllLabels, Flown, Station, Watch};
+use planner_core::{AnyVehicle, LocalLine, PinSensor, Reading, Step};
 use stm32f4xx_hal::gpio::{Input, PB1};
 
 use crate::serial::Serial;
@@ -20,86 +18,48 @@ const DOUBTFUL_SAMPLES: usize = 36;
 /// All hypotheses that 32 labels can leave.
 const HYPOTHESES: usize = 529;
 
-/// What it plans with: any vehicle in any area.
-type Known = PlannerSetup<AnyVehicle, MissionArea>;
-
 /// The parts of the board that a mission uses.
 pub(crate) struct Board {
     pub(crate) station: Station<Serial, PinSensor<PB1<Input>>>,
-    pub(crate) enable: Enable,
+    pub(crate) deck: Deck,
 }
 
 impl Board {
+    /// Flies missions of any vehicle in any area.
     pub(crate) fn run(&mut self) -> ! {
+        type Planners = AllLabels<TRUE_SAMPLES, DOUBTFUL_SAMPLES, HYPOTHESES>;
         loop {
-            let setup = self.station.await_setup();
-            defmt::info!("mission: {}, {=u16} steps at most", setup.algorithm, setup.steps);
-            match self.station.terms(&setup) {
-                Ok(terms) => self.fly_with(&setup, &terms),
-                Err(none) => log_end(0, &self.station.give_up(none)),
-            }
+            // How it ended is in the log.
+            let _ = self.station.mission::<Planners, AnyVehicle, MissionArea>(&mut self.deck);
         }
     }
+}
 
-    fn fly_with(&mut self, setup: &Setup, terms: &Known) {
-        match setup.algorithm {
-            Algorithm::Cfc => self.fly(setup, &mut setup.cfc::<_, _, TRUE_SAMPLES>(*terms)),
-            Algorithm::Lookahead { evaluations, goal, noise: None } => {
-                self.fly(
-                    setup,
-                    &mut setup.lookahead::<_, _, Accuracy, TRUE_SAMPLES>(*terms, evaluations, goal),
-                );
-            }
-            Algorithm::Lookahead { evaluations, goal, noise: Some((noise, prior)) } => {
-                self.fly_forecast(setup, terms, (evaluations, goal), (noise, prior));
-            }
-            Algorithm::Scc { noise, policy, prior } => {
-                self.fly_scc(setup, terms, policy, (noise, prior));
-            }
-        }
+/// What goes on beside planning: the drive is enabled during a mission, and each step is logged.
+pub(crate) struct Deck {
+    pub(crate) enable: Enable,
+    /// Steps of this mission so far.
+    pub(crate) steps: u16,
+}
+
+impl Watch for Deck {
+    fn set_up(&mut self, setup: &Setup) {
+        self.steps = 0;
+        defmt::info!("mission: {}, {=u16} steps at most", setup.algorithm, setup.steps);
     }
 
-    // Tables of hypotheses are large. Each is in a function of its own, so that only one is on the stack.
-    #[inline(never)]
-    fn fly_forecast(
-        &mut self,
-        setup: &Setup,
-        terms: &Known,
-        (evaluations, goal): (u32, Option<Goal>),
-        (noise, prior): (Noise, Prior),
-    ) {
-        let mut planner = setup.lookahead_in_noise::<_, _, DOUBTFUL_SAMPLES, HYPOTHESES>(
-            *terms,
-            evaluations,
-            goal,
-        );
-        self.fly(setup, &mut setup.prepare(&mut planner, prior, noise));
+    fn begins(&mut self) {
+        self.enable.on();
     }
 
-    #[inline(never)]
-    fn fly_scc(
-        &mut self,
-        setup: &Setup,
-        terms: &Known,
-        policy: Policy,
-        (noise, prior): (Noise, Prior),
-    ) {
-        let mut planner = setup.scc::<_, _, DOUBTFUL_SAMPLES, HYPOTHESES>(*terms, policy);
-        self.fly(setup, &mut setup.prepare(&mut planner, prior, noise));
+    fn stepped(&mut self, step: &Step) {
+        self.steps += 1;
+        log_step(self.steps, step);
     }
 
-    /// Flies a mission. The drive is enabled meanwhile.
-    fn fly<L: Planner>(&mut self, setup: &Setup, planner: &mut Result<Prepared<L>, DeclinedError>) {
-        if planner.is_ok() {
-            self.enable.on();
-        }
-        let mut steps = 0;
-        let flown = self.station.fly(setup, planner, |step| {
-            steps += 1;
-            log_step(steps, step);
-        });
+    fn over(&mut self, flown: &Result<Flown, LinkError>) {
         self.enable.off();
-        log_end(steps, &flown);
+        log_end(self.steps, flown);
     }
 }
 

@@ -89,25 +89,25 @@ fuzz_target!(|bytes: &[u8]| {
             match setup.algorithm {
                 Algorithm::Cfc => {
                     if let Ok(mut prepared) = setup.cfc::<_, _, 16>(terms) {
-                        fly(prepared.planner(), &setup);
+                        fly(prepared.planner_mut(), &setup);
                     }
                 }
                 Algorithm::Lookahead { evaluations, goal, noise: None } => {
                     if let Ok(mut prepared) = setup.lookahead::<_, _, 16>(terms, evaluations, goal)
                     {
-                        fly(prepared.planner(), &setup);
+                        fly(prepared.planner_mut(), &setup);
                     }
                 }
                 Algorithm::Lookahead { evaluations, goal, noise: Some((noise, prior)) } => {
                     let mut planner = setup.lookahead_in_noise::<_, _, 24, 40>(terms, evaluations, goal);
                     if let Ok(mut prepared) = setup.prepare(&mut planner, prior, noise) {
-                        fly(prepared.planner(), &setup);
+                        fly(prepared.planner_mut(), &setup);
                     }
                 }
                 Algorithm::Scc { noise, policy, prior } => {
                     let mut planner = setup.scc::<_, _, 24, 40>(terms, policy);
                     if let Ok(mut prepared) = setup.prepare(&mut planner, prior, noise) {
-                        fly(prepared.planner(), &setup);
+                        fly(prepared.planner_mut(), &setup);
                     }
                 }
             }

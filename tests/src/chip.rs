@@ -3,10 +3,9 @@
 use std::cell::RefCell;
 use std::panic::{self, AssertUnwindSafe};
 
-use planner_core::Accuracy;
 use planner_core::link::delivery::{Link, LinkError, Port};
 use planner_core::link::message::{self, ClockRate, MissionArea};
-use planner_core::link::station::{Flown, PlannerSetup, Station};
+use planner_core::link::station::{AllLabels, Flown, Station};
 use planner_core::motion::any_vehicle::AnyVehicle;
 use planner_core::robot::LabelSensor;
 
@@ -80,24 +79,5 @@ pub fn fly<P: Port, S: LabelSensor>(
     chip: &mut Station<P, S>,
     setup: &message::Setup,
 ) -> Result<Flown, LinkError> {
-    let terms: PlannerSetup<AnyVehicle, MissionArea> = match chip.terms(setup) {
-        Ok(terms) => terms,
-        Err(none) => return chip.give_up(none),
-    };
-    match setup.algorithm {
-        message::Algorithm::Cfc => chip.fly(setup, &mut setup.cfc::<_, _, 68>(terms), |_| {}),
-        message::Algorithm::Lookahead { evaluations, goal, noise: None } => chip.fly(
-            setup,
-            &mut setup.lookahead::<_, _, Accuracy, 68>(terms, evaluations, goal),
-            |_| {},
-        ),
-        message::Algorithm::Lookahead { evaluations, goal, noise: Some((noise, prior)) } => {
-            let mut planner = setup.lookahead_in_noise::<_, _, 36, 529>(terms, evaluations, goal);
-            chip.fly(setup, &mut setup.prepare(&mut planner, prior, noise), |_| {})
-        }
-        message::Algorithm::Scc { noise, policy, prior } => {
-            let mut planner = setup.scc::<_, _, 36, 529>(terms, policy);
-            chip.fly(setup, &mut setup.prepare(&mut planner, prior, noise), |_| {})
-        }
-    }
+    chip.fly_with::<AllLabels<68, 36, 529>, AnyVehicle, MissionArea>(setup, &mut ())
 }

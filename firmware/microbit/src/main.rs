@@ -34,7 +34,6 @@ use planner_core::link::delivery::Link;
 use planner_core::link::station::Station;
 use planner_core::{Label, PinSensor};
 
-use crate::mission::Board;
 use crate::serial::Serial;
 
 #[entry]
@@ -48,6 +47,5 @@ fn main() -> ! {
     let sensor = PinSensor::new(Input::new(chip.P0_03, Pull::Down), Label::Positive);
     let link = Link::new(Serial::open(chip.P0_24, chip.P0_25));
     let sensor = Some(sensor);
-    let station = Station { link, sensor, ticks: time::ticks, clock: time::clock() };
-    Board { station }.run()
+    mission::run(Station { link, sensor, ticks: time::ticks, clock: time::clock() })
 }

@@ -7,8 +7,8 @@ use core::ffi::c_void;
 use core::mem::{MaybeUninit, align_of, size_of};
 
 use planner_core::{
-    Lookahead, NoisyBelief, Plan, Planner as _, Prior, Reliability, SlopeWithin, Tolerance,
-    Unicycle, VersionSpace,
+    Lookahead, NoisyBelief, Plan, Planner as _, Prior, Reliability, Restart as _, SlopeWithin,
+    Tolerance, Unicycle, VersionSpace,
 };
 
 use crate::area::Ground;

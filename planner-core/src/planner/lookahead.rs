@@ -33,7 +33,7 @@ use crate::geometry::value::ValueError;
 use crate::geometry::workspace::Workspace;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Pose, Side};
-use crate::planner::setup::{SetupError, aimed_for, aimed_for_by};
+use crate::planner::setup::{Restart, SetupError, aimed_for, aimed_for_by};
 use crate::planner::silence::Silence;
 use crate::planner::snapshot::{Persist, RestoreError, Snapshot};
 use crate::planner::{Motion, Plan, Planner, StopReason};
@@ -296,19 +296,12 @@ fn second<D: Dynamics, P: Prediction, G: Workspace>(
     most
 }
 
-impl<D: Dynamics, G: Workspace, C, const N: usize, const H: usize>
-    Lookahead<D, NoisyBelief<N, H>, G, C>
+impl<D: Dynamics, G: Workspace, C: Criterion, const N: usize, const H: usize> Restart
+    for Lookahead<D, NoisyBelief<N, H>, G, C>
 {
-    /// Begins again, in place, with what other given samples leave: see [`NoisyBelief::restart`].
-    ///
-    /// # Errors
-    /// [`SetupError`], with the planner as it was.
-    pub fn restart(
-        &mut self,
-        given: &[Sample],
-        prior: Prior,
-        noise: Noise,
-    ) -> Result<(), SetupError> {
+    const ROOM: [usize; 2] = [N, H];
+
+    fn restart(&mut self, given: &[Sample], prior: Prior, noise: Noise) -> Result<(), SetupError> {
         let area = aimed_for(self.area, &self.dynamics, noise.tolerance)?;
         self.belief.restart(given, prior, noise)?;
         (self.area, self.silence) = (area, Silence::NONE);

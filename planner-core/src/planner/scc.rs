@@ -38,7 +38,7 @@ use crate::geometry::workspace::Workspace;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::options::{Options, first_to_second};
-use crate::planner::setup::{SetupError, aimed_for, aimed_for_by};
+use crate::planner::setup::{Restart, SetupError, aimed_for, aimed_for_by};
 use crate::planner::silence::Silence;
 use crate::planner::snapshot::{Persist, RestoreError, Snapshot};
 use crate::planner::vote::Ballot;
@@ -118,23 +118,6 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Workspace> Scc<D, N, H, G> 
     #[inline]
     pub fn voting(self, policy: Policy) -> Self {
         Self { policy, ..self }
-    }
-
-    /// Begins again, in place, with what other given samples leave: see [`CellPosterior::restart`].
-    ///
-    /// # Errors
-    /// [`SetupError`], with the planner as it was.
-    pub fn restart(
-        &mut self,
-        given: &[Sample],
-        prior: Prior,
-        noise: Noise,
-    ) -> Result<(), SetupError> {
-        let area = aimed_for(self.area, &self.dynamics, noise.tolerance)?;
-        self.hypotheses.restart(given, prior, noise)?;
-        self.area = area;
-        self.silence = Silence::NONE;
-        Ok(())
     }
 
     fn is_even(&self) -> bool {
@@ -275,6 +258,17 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Workspace> Planner for Scc<
 
     fn belief(&self) -> &CellPosterior<N, H> {
         &self.hypotheses
+    }
+}
+
+impl<D: Dynamics, const N: usize, const H: usize, G: Workspace> Restart for Scc<D, N, H, G> {
+    const ROOM: [usize; 2] = [N, H];
+
+    fn restart(&mut self, given: &[Sample], prior: Prior, noise: Noise) -> Result<(), SetupError> {
+        let area = aimed_for(self.area, &self.dynamics, noise.tolerance)?;
+        self.hypotheses.restart(given, prior, noise)?;
+        (self.area, self.silence) = (area, Silence::NONE);
+        Ok(())
     }
 }
 

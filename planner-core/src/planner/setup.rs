@@ -1,10 +1,14 @@
 //! What every planner is made of: an area, a vehicle and a belief, which must agree with each other.
 
 use crate::belief::Belief;
+use crate::belief::noise::Noise;
+use crate::belief::sample::Sample;
 use crate::belief::tolerance::Tolerance;
 use crate::belief::true_labels::GivenError;
+use crate::belief::weight::Prior;
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, RoomError};
+use crate::planner::Planner;
 
 /// Area, vehicle and belief contradict each other: no planner is made of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,4 +76,16 @@ pub(crate) fn aimed_for_by<D: Dynamics, G: Workspace>(
         return Err(SetupError::Full);
     }
     aimed_for(area, dynamics, belief.tolerance())
+}
+
+/// A planner that is too large to be made elsewhere and moved. It begins a mission in the memory where it is.
+pub trait Restart: Planner {
+    /// The samples and the hypotheses that it has room for.
+    const ROOM: [usize; 2];
+
+    /// Begins again with what other given samples leave: see [`CellPosterior::restart`](crate::CellPosterior::restart).
+    ///
+    /// # Errors
+    /// [`SetupError`], with the planner as it was.
+    fn restart(&mut self, given: &[Sample], prior: Prior, noise: Noise) -> Result<(), SetupError>;
 }

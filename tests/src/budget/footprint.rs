@@ -1,8 +1,8 @@
 //! The flash and stack that a program needs, read from its ELF.
 //!
 //! **The planner's flash** is the size of all functions that the planner's entries reach, and of the constants in
-//! `.rodata` that these point to. The entries are `station::seam` (plan, observe, estimates) and `Setup::cfc` and
-//! `Setup::prepare`, which are kept as functions of their own. So code that the planner shares with the link (`memcpy`)
+//! `.rodata` that these point to. The entries are those of `station::seam`: plan, observe, estimates, and what makes a
+//! planner of a `Setup`. They are kept as functions of their own. So code that the planner shares with the link (`memcpy`)
 //! counts as the planner's, and so does its code from libm, nalgebra, heapless and compiler-builtins. A mission's loop,
 //! messages, frames and start-up do not count.
 //!
@@ -18,12 +18,8 @@ use crate::program::image::Image;
 
 /// Where calls through registers lead.
 pub const KNOWN: Known<'static> = &[
-    ("bare_core::on_target::cfc", &["bare_core::port::ticks"]),
-    ("bare_core::on_target::any", &["bare_core::port::ticks"]),
-    ("bare_core::on_target::true_labels", &["bare_core::port::ticks"]),
+    ("bare_core::on_target::fly", &["bare_core::port::ticks"]),
     ("firmware::mission::Board::run", &["firmware::time::ticks"]),
-    ("firmware::mission::Board::fly_forecast", &["firmware::time::ticks"]),
-    ("firmware::mission::Board::fly_scc", &["firmware::time::ticks"]),
     // It would wake tasks that wait on the monotonic. There are none.
     ("SysTick", &[]),
 ];
@@ -93,8 +89,7 @@ fn deepest(graph: &Graph<'_>, function: Option<u32>) -> Result<Chain, String> {
 }
 
 fn is_planner_s(name: &str) -> bool {
-    let setup = "planner_core::link::station::<impl planner_core::link::message::Setup>::";
-    name.starts_with(setup) || name.starts_with(SEAM)
+    name.starts_with(SEAM)
 }
 
 /// The planner's entries while a mission runs.

@@ -3,8 +3,8 @@
 use planner_core::dynamics::Dynamics;
 use planner_core::error::{GivenError, SetupError};
 use planner_core::{
-    Area, Boat, CellPosterior, Cfc, Label, Lookahead, Noise, NoisyBelief, Prior, Sample, Scc,
-    Tolerance, Unicycle, VersionSpace, Workspace as _, aimed_for,
+    Area, Boat, CellPosterior, Cfc, Label, Lookahead, Noise, NoisyBelief, Prior, Restart as _,
+    Sample, Scc, Tolerance, Unicycle, VersionSpace, Workspace as _, aimed_for,
 };
 
 fn given() -> [Sample; 4] {

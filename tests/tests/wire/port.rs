@@ -15,7 +15,7 @@ use host_sim::mission::recording::Recording;
 use host_sim::report::trace;
 use planner_core::link::delivery::{Link, Port};
 use planner_core::link::message::{ClockRate, EndReason, LabelSource, MissionEnd};
-use planner_core::link::station::{Flown, Station};
+use planner_core::link::station::{CfcAlone, Flown, Station};
 use planner_core::{Area, Unicycle};
 use serialport::{SerialPort as _, TTYPort};
 
@@ -56,9 +56,7 @@ fn a_board_at_a_serial_port_flies_as_this_machine_does() {
         let link = Link::new(Terminal { tty, until: Instant::now() });
         let clock = ClockRate { per_second: 1_000_000, emulated: false };
         let mut board = Station::<_, Infallible> { link, sensor: None, ticks: || 0, clock };
-        let setup = board.await_setup();
-        let terms = board.terms::<Unicycle, Area>(&setup).expect("it has one");
-        board.fly(&setup, &mut setup.cfc::<_, _, 68>(terms), |_| {})
+        board.mission::<CfcAlone<68>, Unicycle, Area>(&mut ())
     });
     let mission = standard_field::standard(4, 1, Algorithm::Cfc, 10);
     let mut player = Player::new(&mission, LabelSource::Vehicle, 1).expect("a mission for a chip");

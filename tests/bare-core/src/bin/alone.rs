@@ -5,7 +5,10 @@
 #[cfg(target_os = "none")]
 #[bare_core::entry]
 fn main() -> ! {
-    bare_core::cfc::<16>()
+    use planner_core::link::station::CfcAlone;
+    use planner_core::{Area, Unicycle};
+
+    bare_core::fly::<CfcAlone<16>, Unicycle, Area>()
 }
 
 /// On a host there is nothing to run.

@@ -5,7 +5,10 @@
 #[cfg(target_os = "none")]
 #[bare_core::entry]
 fn main() -> ! {
-    bare_core::true_labels::<68>()
+    use planner_core::link::station::TrueLabels;
+    use planner_core::{Area, SlopeWithin, Unicycle};
+
+    bare_core::fly::<TrueLabels<68, SlopeWithin>, Unicycle, Area>()
 }
 
 /// On a host there is nothing to run.

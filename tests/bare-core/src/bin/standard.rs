@@ -5,7 +5,10 @@
 #[cfg(target_os = "none")]
 #[bare_core::entry]
 fn main() -> ! {
-    bare_core::any::<planner_core::Unicycle, planner_core::Area, 36, 529>()
+    use planner_core::link::station::AllLabels;
+    use planner_core::{Area, Unicycle};
+
+    bare_core::fly::<AllLabels<36, 36, 529>, Unicycle, Area>()
 }
 
 /// On a host there is nothing to run.

@@ -5,7 +5,11 @@
 #[cfg(target_os = "none")]
 #[bare_core::entry]
 fn main() -> ! {
-    bare_core::any::<planner_core::AnyVehicle, planner_core::link::message::MissionArea, 36, 529>()
+    use planner_core::AnyVehicle;
+    use planner_core::link::message::MissionArea;
+    use planner_core::link::station::AllLabels;
+
+    bare_core::fly::<AllLabels<36, 36, 529>, AnyVehicle, MissionArea>()
 }
 
 /// On a host there is nothing to run.

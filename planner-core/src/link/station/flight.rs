@@ -1,0 +1,214 @@
+//! A mission that is planned here and driven elsewhere.
+
+use crate::belief::sample::Reading;
+use crate::link::delivery::{Link, LinkError, Port};
+use crate::link::message::{
+    Accepted, ClockRate, DeclinedError, EndReason, LabelSource, MissionEnd, Move, PROTOCOL, Reply,
+    Request, Setup, Took,
+};
+use crate::link::station::seam::{self, Prepared};
+use crate::link::station::terms::{FromOutlines, Known, NoTerms, PlannerSetup};
+use crate::motion::dynamics::Pose;
+use crate::planner::{Motion, Plan, Planner};
+use crate::robot::{Body, LabelSensor, Step};
+
+/// A chip at a link: what a mission needs beside its planner.
+#[derive(Debug)]
+pub struct Station<P, S> {
+    /// The link to the vehicle.
+    pub link: Link<P>,
+    /// The chip's own label sensor, if it has one.
+    pub sensor: Option<S>,
+    /// Ticks that run freely and wrap.
+    pub ticks: fn() -> u32,
+    /// What these are.
+    pub clock: ClockRate,
+}
+
+/// What a chip does beside planning: it enables its drive, or writes a log. It may do nothing: `()`.
+pub trait Watch {
+    /// A mission was set up.
+    fn set_up(&mut self, _: &Setup) {}
+
+    /// It begins: from now on the drive is needed.
+    fn begins(&mut self) {}
+
+    /// A step of it was made.
+    fn stepped(&mut self, _: &Step) {}
+
+    /// It is over, or was never flown: the drive is not needed.
+    fn over(&mut self, _: &Result<Flown, LinkError>) {}
+}
+
+impl Watch for () {}
+
+/// What became of a setup.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Flown {
+    /// It was declined.
+    Declined(DeclinedError),
+    /// A mission was flown.
+    Ended(MissionEnd),
+}
+
+impl<P: Port, S: LabelSensor> Station<P, S> {
+    /// Asks for a mission until someone sets it up. Without a bound: the chip has nothing else to do
+    /// and moves nothing.
+    pub fn await_setup(&mut self) -> Setup {
+        loop {
+            if let Ok(Reply::Setup(setup)) = self.link.ask(Request::Hello { protocol: PROTOCOL }) {
+                return setup;
+            }
+        }
+    }
+
+    /// What to plan with and where, of what the chip has: [`AnyVehicle`](crate::motion::any_vehicle::AnyVehicle) or the
+    /// [`Unicycle`](crate::motion::unicycle::Unicycle) alone, in a [`MissionArea`](crate::link::message::MissionArea) or in
+    /// an [`Area`](crate::geometry::area::Area) alone. If this
+    /// refuses a setup, no planner exists for it, so pass the refusal to [`give_up`](Self::give_up).
+    ///
+    /// # Errors
+    /// [`NoTerms`].
+    pub fn terms<D: Known, G: FromOutlines>(
+        &mut self,
+        setup: &Setup,
+    ) -> Result<PlannerSetup<D, G>, NoTerms> {
+        let area = G::of(setup, &mut self.link)?;
+        Ok(setup.terms(area)?)
+    }
+
+    /// Asks for another setup, unless the link is lost.
+    ///
+    /// # Errors
+    /// [`LinkError`].
+    pub fn give_up(&mut self, none: NoTerms) -> Result<Flown, LinkError> {
+        match none {
+            NoTerms::Declined(declined) => self.decline(declined),
+            NoTerms::Lost(lost) => Err(lost),
+        }
+    }
+
+    /// Asks for another setup.
+    ///
+    /// # Errors
+    /// [`LinkError`].
+    pub fn decline(&mut self, declined: DeclinedError) -> Result<Flown, LinkError> {
+        self.link.ask(Request::Declined(declined))?;
+        Ok(Flown::Declined(declined))
+    }
+
+    /// Flies the mission of a setup with the planner that was made for it, in place: planners are large.
+    /// `watch` sees the beginning and every step.
+    ///
+    /// # Errors
+    /// [`LinkError`]. The chip has sent no request since, and sends no more.
+    pub fn fly<L: Planner>(
+        &mut self,
+        setup: &Setup,
+        prepared: &mut Result<Prepared<L>, DeclinedError>,
+        watch: &mut impl Watch,
+    ) -> Result<Flown, LinkError> {
+        let blind = setup.labels == LabelSource::Chip && self.sensor.is_none();
+        let Prepared { planner, capacity } = match prepared {
+            Ok(prepared) if !blind => prepared,
+            declined => {
+                return self
+                    .decline(declined.as_ref().err().copied().unwrap_or(DeclinedError::Labels));
+            }
+        };
+        watch.begins();
+        self.link.ask(Request::Ready(Accepted { capacity: *capacity, clock: self.clock }))?;
+        let chip = self.sensor.as_mut().filter(|_| setup.labels == LabelSource::Chip);
+        let mut vehicle =
+            RemoteVehicle { link: &mut self.link, chip, last: None, took: Took::default() };
+        let reason = mission(planner, &mut vehicle, setup, self.ticks, watch)?;
+        let RemoteVehicle { last, mut took, .. } = vehicle;
+        let estimates = timed(self.ticks, &mut took.estimate, || seam::estimates(planner));
+        let end = MissionEnd { reason, last, took, estimates };
+        self.link.ask(Request::End(end.clone()))?;
+        Ok(Flown::Ended(end))
+    }
+}
+
+/// As [`Agent`](crate::robot::Agent), against the clock: the vehicle is told what each call took.
+fn mission<L: Planner, P: Port, S: LabelSensor>(
+    planner: &mut L,
+    vehicle: &mut RemoteVehicle<'_, P, S>,
+    setup: &Setup,
+    ticks: fn() -> u32,
+    watch: &mut impl Watch,
+) -> Result<EndReason, LinkError> {
+    let mut pose = setup.start;
+    for _ in 0..setup.steps {
+        let motion = match timed(ticks, &mut vehicle.took.plan, || seam::plan(planner, pose)) {
+            Plan::Move(motion) => motion,
+            Plan::Stop(reason) => return Ok(EndReason::Stopped(reason)),
+        };
+        let reading = match vehicle.perform(&motion, &mut pose) {
+            Ok(reading) => reading,
+            Err(NoArrival::Lost(lost)) => return Err(lost),
+            Err(NoArrival::Failed) => return Ok(EndReason::Vehicle),
+            Err(NoArrival::NoLabel) => return Ok(EndReason::Sensor),
+        };
+        let observe = || seam::observe(planner, pose, reading);
+        if let Err(refused) = timed(ticks, &mut vehicle.took.observe, observe) {
+            return Ok(EndReason::Refused(refused));
+        }
+        watch.stepped(&Step { motion, pose, reading });
+    }
+    Ok(EndReason::Steps)
+}
+
+/// Does something, and takes down the ticks that it took.
+fn timed<T>(ticks: fn() -> u32, took: &mut u32, does: impl FnOnce() -> T) -> T {
+    let before = ticks();
+    let done = does();
+    *took = ticks().wrapping_sub(before);
+    done
+}
+
+/// The vehicle at the other end of the link.
+struct RemoteVehicle<'a, P, S> {
+    link: &'a mut Link<P>,
+    /// The chip's own sensor, if labels come from there.
+    chip: Option<&'a mut S>,
+    /// The last reading, if the last motion wanted one.
+    last: Option<Reading>,
+    /// What the last plan and the last observation took.
+    took: Took,
+}
+
+/// Why a motion has no end that is known.
+enum NoArrival {
+    Lost(LinkError),
+    /// The vehicle says so, or answers something that is no answer.
+    Failed,
+    /// It was made, and nothing was sensed.
+    NoLabel,
+}
+
+impl<P: Port, S: LabelSensor> Body for RemoteVehicle<'_, P, S> {
+    type Error = NoArrival;
+
+    fn perform(&mut self, motion: &Motion, pose: &mut Pose) -> Result<Option<Reading>, NoArrival> {
+        let Self { last, took, .. } = *self;
+        let reading = match self.link.ask(Request::Move(Move { motion: *motion, last, took })) {
+            Ok(Reply::Arrived { pose: arrived, reading }) => {
+                *pose = arrived;
+                reading
+            }
+            Ok(_) => return Err(NoArrival::Failed),
+            Err(lost) => return Err(NoArrival::Lost(lost)),
+        };
+        let label = match (reading, &mut self.chip) {
+            _ if !motion.wants_label => None,
+            // Of a motion that is told again this is what the chip's own sensor read then.
+            (Some(reading), _) => Some(reading),
+            (None, Some(sensor)) => Some(sensor.read().map_err(|_| NoArrival::NoLabel)?),
+            (None, None) => return Err(NoArrival::NoLabel),
+        };
+        self.last = label;
+        Ok(label)
+    }
+}

@@ -1,0 +1,13 @@
+//! The chip's side of a mission: a mission comes over a link, is planned here, and is driven elsewhere.
+
+mod flight;
+mod planners;
+mod seam;
+mod terms;
+
+pub use flight::{Flown, Station, Watch};
+pub use planners::{AllLabels, CfcAlone, Mission, Planners, TrueLabels};
+pub use seam::Prepared;
+pub use terms::{FromOutlines, Known, NoTerms, PlannerSetup};
+
+pub use crate::planner::setup::Restart;

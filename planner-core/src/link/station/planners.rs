@@ -1,0 +1,183 @@
+//! The planners that a chip has, and which of them flies a mission.
+//!
+//! A program carries the planners that it names, and no others:
+//!
+//! ```text
+//! loop {
+//!     let _ = station.mission::<TrueLabels<68>, AnyVehicle, Area>(&mut ());
+//! }
+//! ```
+
+use core::marker::PhantomData;
+
+use crate::belief::estimate::Estimates;
+use crate::belief::goal::{Accuracy, Criterion};
+use crate::belief::sample::Reading;
+use crate::belief::tolerance::Tolerance;
+use crate::belief::{Belief as _, ObservationError};
+use crate::geometry::workspace::Workspace;
+use crate::link::delivery::{LinkError, Port};
+use crate::link::message::{Algorithm, DeclinedError, Setup};
+use crate::link::station::flight::{Flown, Station, Watch};
+use crate::link::station::seam::Prepared;
+use crate::link::station::terms::{FromOutlines, Known, PlannerSetup};
+use crate::motion::dynamics::{Dynamics, Pose};
+use crate::planner::{Plan, Planner};
+use crate::robot::LabelSensor;
+
+/// The planners that a chip has.
+pub trait Planners {
+    /// Flies a mission with the planner that its setup names, or declines it.
+    ///
+    /// # Errors
+    /// [`LinkError`].
+    fn fly<P: Port, S: LabelSensor, D: Dynamics, G: Workspace, W: Watch>(
+        mission: Mission<'_, P, S, W>,
+        terms: PlannerSetup<D, G>,
+    ) -> Result<Flown, LinkError>;
+}
+
+/// Algorithm 1, with room for `N` samples. Of the estimates it has the centre alone.
+#[derive(Debug)]
+pub enum CfcAlone<const N: usize> {}
+
+/// Algorithm 1 and look-ahead for labels that are true, with room for `N` samples. Look-ahead takes goals of a
+/// criterion, and declines others.
+#[derive(Debug)]
+pub struct TrueLabels<const N: usize, C = Accuracy>(PhantomData<C>);
+
+/// All algorithms: with room for `T` samples whose labels are true, or for `N` samples whose labels may be wrong and
+/// `H` hypotheses.
+#[derive(Debug)]
+pub enum AllLabels<const T: usize, const N: usize, const H: usize> {}
+
+/// A mission that was set up.
+#[derive(Debug)]
+pub struct Mission<'a, P, S, W> {
+    station: &'a mut Station<P, S>,
+    setup: &'a Setup,
+    watch: &'a mut W,
+}
+
+impl<P: Port, S: LabelSensor> Station<P, S> {
+    /// Asks for a mission until someone sets it up, and flies it with one of some planners.
+    ///
+    /// # Errors
+    /// As [`fly`](Self::fly).
+    pub fn mission<A: Planners, D: Known, G: FromOutlines>(
+        &mut self,
+        watch: &mut impl Watch,
+    ) -> Result<Flown, LinkError> {
+        let setup = self.await_setup();
+        self.fly_with::<A, D, G>(&setup, watch)
+    }
+
+    /// Flies the mission of a setup with one of some planners.
+    ///
+    /// # Errors
+    /// As [`fly`](Self::fly).
+    pub fn fly_with<A: Planners, D: Known, G: FromOutlines>(
+        &mut self,
+        setup: &Setup,
+        watch: &mut impl Watch,
+    ) -> Result<Flown, LinkError> {
+        watch.set_up(setup);
+        let flown = match self.terms::<D, G>(setup) {
+            Ok(terms) => A::fly(Mission { station: self, setup, watch }, terms),
+            Err(none) => self.give_up(none),
+        };
+        watch.over(&flown);
+        flown
+    }
+}
+
+impl<P: Port, S: LabelSensor, W: Watch> Mission<'_, P, S, W> {
+    fn fly<L: Planner>(
+        self,
+        planner: &mut Result<Prepared<L>, DeclinedError>,
+    ) -> Result<Flown, LinkError> {
+        self.station.fly(self.setup, planner, self.watch)
+    }
+}
+
+impl<const N: usize> Planners for CfcAlone<N> {
+    fn fly<P: Port, S: LabelSensor, D: Dynamics, G: Workspace, W: Watch>(
+        mission: Mission<'_, P, S, W>,
+        terms: PlannerSetup<D, G>,
+    ) -> Result<Flown, LinkError> {
+        let setup = mission.setup;
+        match setup.algorithm {
+            Algorithm::Cfc => {
+                let mut prepared = setup.cfc::<_, _, N>(terms);
+                let prepared = prepared.as_mut().map(|it| it.wrapped(CentreAlone));
+                mission.fly(&mut prepared.map_err(|declined| *declined))
+            }
+            _ => mission.station.decline(DeclinedError::Algorithm),
+        }
+    }
+}
+
+/// A planner that estimates the centre alone.
+struct CentreAlone<'a, L>(&'a mut L);
+
+impl<L: Planner> Planner for CentreAlone<'_, L> {
+    type Belief = L::Belief;
+
+    fn plan(&mut self, pose: Pose) -> Plan {
+        self.0.plan(pose)
+    }
+
+    fn observe_within(
+        &mut self,
+        pose: Pose,
+        reading: Option<Reading>,
+        tolerance: Tolerance,
+    ) -> Result<(), ObservationError> {
+        self.0.observe_within(pose, reading, tolerance)
+    }
+
+    fn belief(&self) -> &L::Belief {
+        self.0.belief()
+    }
+
+    fn estimates(&self) -> Estimates {
+        let centre = self.belief().centre();
+        Estimates { bisector: None, centre, maximum_margin: None }
+    }
+}
+
+impl<const N: usize, C: Criterion> Planners for TrueLabels<N, C> {
+    fn fly<P: Port, S: LabelSensor, D: Dynamics, G: Workspace, W: Watch>(
+        mission: Mission<'_, P, S, W>,
+        terms: PlannerSetup<D, G>,
+    ) -> Result<Flown, LinkError> {
+        let setup = mission.setup;
+        match setup.algorithm {
+            Algorithm::Lookahead { evaluations, goal, noise: None } => {
+                mission.fly(&mut setup.lookahead::<_, _, C, N>(terms, evaluations, goal))
+            }
+            Algorithm::Cfc => mission.fly(&mut setup.cfc::<_, _, N>(terms)),
+            _ => mission.station.decline(DeclinedError::Algorithm),
+        }
+    }
+}
+
+impl<const T: usize, const N: usize, const H: usize> Planners for AllLabels<T, N, H> {
+    fn fly<P: Port, S: LabelSensor, D: Dynamics, G: Workspace, W: Watch>(
+        mission: Mission<'_, P, S, W>,
+        terms: PlannerSetup<D, G>,
+    ) -> Result<Flown, LinkError> {
+        let setup = mission.setup;
+        match setup.algorithm {
+            Algorithm::Lookahead { evaluations, goal, noise: Some((noise, prior)) } => {
+                let mut planner = setup.lookahead_in_noise::<_, _, N, H>(terms, evaluations, goal);
+                mission.fly(&mut setup.prepare(&mut planner, prior, noise))
+            }
+            Algorithm::Scc { noise, policy, prior } => {
+                let mut planner = setup.scc::<_, _, N, H>(terms, policy);
+                mission.fly(&mut setup.prepare(&mut planner, prior, noise))
+            }
+            _ => TrueLabels::<T, Accuracy>::fly(mission, terms),
+        }
+    }
+}
