@@ -6,7 +6,6 @@ use planner_core::{Motion, Pose, Step};
 
 use crate::mission::definition::Mission;
 use crate::mission::flight::Flown;
-use crate::mission::read_out::ReadOut;
 use crate::mission::recording::{Recorder, Recording};
 use crate::mission::results::Ending;
 
@@ -15,8 +14,7 @@ use crate::mission::results::Ending;
 /// # Errors
 /// Names the sample that contradicts what is known.
 pub fn fly(mission: &Mission, actions: &[Action]) -> Result<Recording> {
-    let mut belief: Box<dyn ReadOut> =
-        if mission.is_noisy() { Box::new(mission.table()) } else { Box::new(mission.lines()) };
+    let mut belief = mission.belief();
     let (mut robot, mut pose) = (mission.robot(), mission.start);
     let mut recorder = Recorder::new(mission.clone());
     for &action in actions {
