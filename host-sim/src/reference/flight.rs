@@ -2,8 +2,9 @@
 
 use anyhow::Result;
 use planner_core::dynamics::{Action, Dynamics as _};
-use planner_core::{Motion, Pose, Step};
+use planner_core::{Motion, Step};
 
+use crate::mission::baseline::motion;
 use crate::mission::definition::Mission;
 use crate::mission::flight::Flown;
 use crate::mission::recording::{Recorder, Recording};
@@ -18,24 +19,12 @@ pub fn fly(mission: &Mission, actions: &[Action]) -> Result<Recording> {
     let (mut robot, mut pose) = (mission.robot(), mission.start);
     let mut recorder = Recorder::new(mission.clone());
     for &action in actions {
-        let Some(motion) = motion(mission, pose, action) else { break };
+        let Some(target) = mission.vehicle.target(pose, action) else { break };
+        let motion = Motion { examined: 0, ..motion(&mission.vehicle, pose, action, target) };
         let Ok(reading) = robot.perform(&motion, &mut pose);
         let seen = reading.map_or(Ok(()), |reading| belief.observe(pose.site, reading));
         seen.map_err(|refused| recorder.refusal(&refused))?;
         recorder.take(&Step { motion, pose, reading }, robot.true_pose(), &*belief);
     }
     Ok(recorder.end(Flown { ending: Ending::Steps, belief }))
-}
-
-fn motion(mission: &Mission, pose: Pose, action: Action) -> Option<Motion> {
-    Some(Motion {
-        stage: None,
-        recovery: None,
-        action,
-        control: mission.vehicle.control(pose, action),
-        target: mission.vehicle.target(pose, action)?,
-        wants_label: true,
-        examined: 0,
-        proven: true,
-    })
 }
