@@ -224,7 +224,7 @@ fn doubted(table: &Table, world: &World) -> Option<(BestRecord, CredibleRecord)>
         slope_arcs: credible.slope_arc.intervals_deg().to_vec(),
         intercept: credible.intercept,
         probability: credible.probability,
-        cells: credible.cells,
+        cells: Some(credible.cells),
         hypotheses: table.iter().len(),
         holds: members.map(|members| members.contains(&true)),
     };

@@ -184,7 +184,7 @@ pub struct BestRecord {
 }
 
 /// A credible set.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct CredibleRecord {
     /// The probability that was asked for.
     pub level: f64,
@@ -194,8 +194,9 @@ pub struct CredibleRecord {
     pub intercept: Option<[f64; 2]>,
     /// Its probability, which is at least the level.
     pub probability: f64,
-    /// Number of its hypotheses.
-    pub cells: usize,
+    /// Number of its hypotheses, where there are hypotheses.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cells: Option<usize>,
     /// Number of all hypotheses.
     #[serde(skip)]
     pub hypotheses: usize,
@@ -259,7 +260,7 @@ pub struct ActionRecord {
 }
 
 /// A line; slope and intercept are `None` for a vertical one.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct LineRecord {
     /// The paper's `rho`.
     pub slope: Option<f64>,
@@ -286,13 +287,13 @@ pub struct LineError {
 
 /// The three estimates, `None` where there is none.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
-pub struct EstimateRecords {
+pub struct EstimateRecords<L = LineRecord> {
     /// The paper's.
-    pub bisector: Option<LineRecord>,
+    pub bisector: Option<L>,
     /// The centre of the version space, or the posterior mean.
-    pub centre: Option<LineRecord>,
+    pub centre: Option<L>,
     /// The hard-margin separator.
-    pub maximum_margin: Option<LineRecord>,
+    pub maximum_margin: Option<L>,
 }
 
 impl StepResult {

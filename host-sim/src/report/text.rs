@@ -325,7 +325,7 @@ fn outcome(end: &End) -> String {
         arcs(&credible.slope_arcs),
         range(credible.intercept),
         credible.probability,
-        credible.cells,
+        credible.cells.unwrap_or_default(),
         credible.hypotheses,
         truth(credible.holds),
     )
