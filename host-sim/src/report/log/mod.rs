@@ -13,6 +13,8 @@ use std::io::Cursor;
 use std::iter;
 
 use anyhow::{Context as _, Result};
+use foxglove::Encode;
+use foxglove::messages::{FrameTransform, PointCloud, PoseInFrame, SceneUpdate};
 use mcap::records::MessageHeader;
 use mcap::{WriteOptions, Writer};
 use prost::Message;
@@ -20,10 +22,7 @@ use prost::Message;
 use crate::mission::recording::Recording;
 use crate::mission::results::PoseRecord;
 use crate::report::flat;
-use crate::report::log::messages::{
-    CLOUD, FRAME, FrameTransform, POSE, Pose, PoseInFrame, ROBOT, SCENE, SceneUpdate, TRANSFORM,
-    Timestamp,
-};
+use crate::report::log::messages::{FRAME, ROBOT, time};
 use crate::report::log::plotted::Plot;
 use crate::report::page::scene::Flight;
 
@@ -41,7 +40,13 @@ struct Log {
 struct Channel(u16);
 
 impl Log {
-    fn channel(&mut self, topic: &str, (schema, descriptors): (&str, &[u8])) -> Result<Channel> {
+    /// A channel for one of Foxglove's messages.
+    fn channel<M: Encode>(&mut self, topic: &str) -> Result<Channel> {
+        let schema = M::get_schema().context("a message with a schema")?;
+        self.channel_of(topic, &schema.name, &schema.data)
+    }
+
+    fn channel_of(&mut self, topic: &str, schema: &str, descriptors: &[u8]) -> Result<Channel> {
         let schema = self.writer.add_schema(schema, PROTOBUF, descriptors)?;
         Ok(Channel(self.writer.add_channel(schema, topic, PROTOBUF, &BTreeMap::new())?))
     }
@@ -54,7 +59,7 @@ impl Log {
             let channel = if let Some(channel) = self.clouds.get(&topic) {
                 *channel
             } else {
-                let channel = self.channel(&topic, CLOUD)?;
+                let channel = self.channel::<PointCloud>(&topic)?;
                 self.clouds.insert(topic, channel);
                 channel
             };
@@ -92,10 +97,12 @@ pub fn mcap(recording: &Recording) -> Result<Vec<u8>> {
     let results = &recording.results;
     let rows = flat::rows(results);
     let plot = Plot::of(&rows)?;
-    let (poses, scenes) = (log.channel("/pose", POSE)?, log.channel("/scene", SCENE)?);
+    let poses = log.channel::<PoseInFrame>("/pose")?;
+    let scenes = log.channel::<SceneUpdate>("/scene")?;
     let (name, descriptors) = plot.schema();
-    let steps = log.channel("/step", (name, &descriptors))?;
-    let (frames, robot) = (log.channel("/tf", TRANSFORM)?, log.channel("/robot", CLOUD)?);
+    let steps = log.channel_of("/step", name, &descriptors)?;
+    let frames = log.channel::<FrameTransform>("/tf")?;
+    let robot = log.channel::<PointCloud>("/robot")?;
     let flight = Flight::of(recording.mission.algorithm.title(), recording);
     let size = flight.size();
     log.write(robot, 0, &cloud::of(&drawing::robot(&flight), size))?;
@@ -117,8 +124,8 @@ pub fn mcap(recording: &Recording) -> Result<Vec<u8>> {
 }
 
 fn pose(second: u32, &PoseRecord { x, z, heading }: &PoseRecord) -> PoseInFrame {
-    let (timestamp, frame_id) = (Some(Timestamp::of(second)), FRAME.to_owned());
-    PoseInFrame { timestamp, frame_id, pose: Some(Pose::new([x, z], heading)) }
+    let (timestamp, frame_id) = (Some(time(second)), FRAME.to_owned());
+    PoseInFrame { timestamp, frame_id, pose: Some(messages::pose([x, z], heading)) }
 }
 
 /// The robot's frame at a pose.

@@ -8,7 +8,7 @@ use prost_types::{DescriptorProto, FieldDescriptorProto, FileDescriptorSet, Oneo
 use serde_json::json;
 
 use crate::report::flat::Row;
-use crate::report::log::messages::{STEP, Timestamp};
+use crate::report::log::messages::{STEP, time};
 use crate::report::page::scene::Scene;
 
 /// The fields of a message, one for each number.
@@ -48,7 +48,7 @@ impl Plot {
                 key => row.get(key),
             };
             let (wire, encoded) = match field.r#type() {
-                Type::Message => (2, Some(Timestamp::of(second).encode_length_delimited_to_vec())),
+                Type::Message => (2, Some(time(second).encode_length_delimited_to_vec())),
                 Type::String => (2, value.as_str().map(text).transpose()?),
                 Type::Double => (1, value.as_f64().map(|number| number.to_le_bytes().into())),
                 _ => (0, value.as_i64().map(|number| varint(field, number)).transpose()?),
