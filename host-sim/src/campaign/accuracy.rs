@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use anyhow::Result;
 use planner_core::dynamics::Dynamics as _;
-use planner_core::{Line, LocalLine};
 use serde::{Deserialize, Serialize};
 
 use crate::campaign::course::Tally;
@@ -14,8 +13,9 @@ use crate::campaign::spread::Spread;
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::Mission;
 use crate::mission::read_out::ReadOut;
+use crate::mission::recording::beside_truth;
+use crate::mission::results::LineRecord;
 use crate::mission::vehicle::VehicleTable;
-use crate::world::polygon::misclassified;
 
 /// Steps at which missions are compared.
 const STEPS: [u32; 8] = [1, 2, 5, 10, 20, 30, 40, 60];
@@ -106,6 +106,7 @@ impl Measure for Accuracy {
     type Checkpoint = Checkpoint;
 
     const IS_WHOLE: bool = true;
+    const WANTS_EXPECTED: bool = false;
 
     fn stages(&self, steps: u32) -> Vec<u32> {
         let last = (!STEPS.contains(&steps)).then_some(steps);
@@ -122,14 +123,11 @@ impl Measure for Accuracy {
         belief: &dyn ReadOut,
         progress: &Progress,
     ) -> Option<Checkpoint> {
-        let estimates = belief.estimates();
-        let errors =
-            |estimate: Option<LocalLine>| match (estimate.map(Line::from), mission.world.line()) {
-                (Some(line), Some(truth)) => {
-                    (line.angle_to_deg(truth), misclassified(mission.config.area, truth, &line))
-                }
-                _ => (90.0, 0.5),
-            };
+        let estimates = beside_truth(mission, belief.estimates());
+        let errors = |estimate: Option<LineRecord>| {
+            let error = estimate.and_then(|line| line.error);
+            error.map_or((90.0, 0.5), |it| (it.degrees, it.misclassified))
+        };
         let (centre_deg, centre_misclassified) = errors(estimates.centre);
         let (maximum_margin_deg, maximum_margin_misclassified) = errors(estimates.maximum_margin);
         let (bisector_deg, bisector_misclassified) = errors(estimates.bisector);

@@ -5,14 +5,14 @@ use std::collections::BTreeMap;
 
 use anyhow::Result;
 use planner_core::belief::doubtful_labels::Hypothesis;
-use planner_core::{Line, PosteriorView, Prior, Sample};
+use planner_core::{Line, PosteriorView, Prior};
 use serde::{Deserialize, Serialize};
 
 use crate::campaign::ensemble::{self, Campaign, Measure, Measured, Progress};
 use crate::campaign::sorting::{Sorted, Sorting, Value};
 use crate::campaign::spread::Spread;
 use crate::mission::algorithm::Algorithm;
-use crate::mission::definition::{Mission, Table};
+use crate::mission::definition::Mission;
 use crate::mission::read_out::{LEVEL, ReadOut};
 use crate::mission::vehicle::VehicleTable;
 use crate::world::noise::limit;
@@ -153,6 +153,7 @@ impl Measure for Calibrated {
     type Checkpoint = Checkpoint;
 
     const IS_WHOLE: bool = false;
+    const WANTS_EXPECTED: bool = true;
 
     fn stages(&self, _: u32) -> Vec<u32> {
         LABELS.to_vec()
@@ -191,7 +192,7 @@ impl Measure for Calibrated {
             field: progress.field,
             labels: progress.labels,
             bits: by_area.information(),
-            expected_bits: expected(mission, table),
+            expected_bits: progress.expected_bits,
             hypotheses: table.iter().len(),
             pruned_mass: by_area.pruned_mass(),
             mean_deg: by_area.mean().and_then(error).unwrap_or(90.0),
@@ -268,18 +269,6 @@ impl Summary {
         let vehicle = VehicleTable::of(campaign.vehicle);
         Ok(Self { title, algorithm, fields, seed, vehicle, p, limit: limit(p), rows })
     }
-}
-
-/// The expected information of a table's labels, by the exact distribution before each.
-fn expected(mission: &Mission, table: &Table) -> f64 {
-    let mut known = mission.table();
-    let given = known.samples().len();
-    let told = table.samples().iter().skip(given).map(|&Sample { site, label }| {
-        let told = known.expects(site).bits;
-        known.read(site, label).expect("taken in once already");
-        told
-    });
-    told.sum()
 }
 
 /// 1 for what holds, so that sums count.

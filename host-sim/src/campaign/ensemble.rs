@@ -67,6 +67,8 @@ pub struct Progress {
     pub steps: u32,
     /// Labels taken in.
     pub labels: u32,
+    /// Bits that these were expected to carry, each by the belief before it, if the measure wants that.
+    pub expected_bits: f64,
     /// Control cost.
     pub control_cost: f64,
     /// Metres travelled.
@@ -80,6 +82,9 @@ pub trait Measure: Sync {
 
     /// Whether each mission has a row at each stage, also at those that it did not reach.
     const IS_WHOLE: bool;
+
+    /// Whether it wants [`Progress::expected_bits`].
+    const WANTS_EXPECTED: bool;
 
     /// The stages at which missions of so many steps are compared, in rising order.
     fn stages(&self, steps: u32) -> Vec<u32>;
@@ -186,9 +191,15 @@ impl Campaign {
         let (mut rows, mut course) = (Vec::new(), Course::default());
         let mut now = Progress { field: number, ..Progress::default() };
         let mut stages = self.stages(measure).into_iter().peekable();
+        let mut before = M::WANTS_EXPECTED.then(|| mission.belief());
         let Flown { ending, belief } = mission.fly(|step, belief| {
             now.steps += 1;
-            now.labels += u32::from(matches!(step.reading, Some(Reading::Side(_))));
+            let is_label = matches!(step.reading, Some(Reading::Side(_)));
+            now.labels += u32::from(is_label);
+            if let Some(before) = before.as_mut().filter(|_| is_label) {
+                now.expected_bits += before.expects(step.pose.site).bits;
+                *before = belief.boxed();
+            }
             now.control_cost += cost(step.motion.control);
             now.metres += f64::from(step.motion.control.distance_m);
             course.count(step);

@@ -12,6 +12,8 @@ use std::vec;
 
 use rayon::prelude::*;
 
+use crate::world::in_order::{in_order, number};
+
 /// Values in a run: 16 MB, and as much again while it is sorted.
 const RUN: usize = 1 << 20;
 
@@ -33,11 +35,11 @@ pub(crate) struct Value {
 
 impl Value {
     pub(crate) fn new(slot: u32, value: f64, is_marked: bool) -> Self {
-        Self { slot, is_marked, order: flip(value.to_bits() as i64) }
+        Self { slot, is_marked, order: in_order(value) }
     }
 
     pub(crate) fn value(self) -> f64 {
-        f64::from_bits(flip(self.order) as u64)
+        number(self.order)
     }
 
     fn key(&self) -> (u32, i64) {
@@ -57,11 +59,6 @@ impl Value {
         let slot = u32::from_le_bytes([a, b, c, d]);
         Self { slot: slot >> 1, is_marked: slot & 1 == 1, order: i64::from_le_bytes(order) }
     }
-}
-
-/// Bits of a float to an integer of the same order, by `f64::total_cmp`, and back.
-fn flip(bits: i64) -> i64 {
-    bits ^ (((bits >> 63) as u64) >> 1) as i64
 }
 
 /// Values that are being collected.

@@ -117,8 +117,7 @@ pub(crate) fn fly(args: &FlyArgs) -> Result<Done> {
 /// A mission whose truth an ideal vehicle can sense: where the file tells none, a line that the oracle leaves.
 fn sensed(mut mission: Mission, name: &str) -> Result<Mission> {
     if mission.world.line().is_none() {
-        let belief = mission.planner().belief().boxed();
-        let Some(line) = belief.estimates().centre.map(Line::from) else {
+        let Some(line) = mission.belief().estimates().centre.map(Line::from) else {
             let expected =
                 "a line, or an oracle that a line separates, for the ideal vehicle to sense";
             return wrong("truth", "none", expected).with_context(|| name.to_owned());

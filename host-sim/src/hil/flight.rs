@@ -170,20 +170,16 @@ impl Timings {
             (_, Some(time)) => format!("{time:.1}"),
             _ => "-".into(),
         };
-        let mut table = Table::new([
-            Column::right("step", 4),
-            Column::right("plan", 12),
-            Column::right("observe", 12),
-            Column::right("round trip ms", 14),
-        ]);
-        for row in &self.rows {
-            table.row([
-                row.step.to_string(),
-                number(row.plan_instructions, row.plan_us),
-                number(row.observe_instructions, row.observe_us),
-                format!("{:.1}", row.turnaround_ms),
-            ]);
-        }
+        let observe = |row: &Timing| number(row.observe_instructions, row.observe_us);
+        let table = Table::of(
+            &self.rows,
+            &[
+                (Column::right("step", 4), &|row| row.step.to_string()),
+                (Column::right("plan", 12), &|row| number(row.plan_instructions, row.plan_us)),
+                (Column::right("observe", 12), &observe),
+                (Column::right("round trip ms", 14), &|row| format!("{:.1}", row.turnaround_ms)),
+            ],
+        );
         format!("What each step took on the chip, {unit}, and from here:\n{table}")
     }
 }

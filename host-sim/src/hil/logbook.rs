@@ -13,7 +13,7 @@ use serde_json::Value;
 use crate::mission::results::{End, Start, StepResult};
 use crate::output::file::place_for;
 use crate::output::partial::{Begin, Partial};
-use crate::report::trace;
+use crate::report::trace::{self, Record};
 
 /// The trace of a mission that is being flown.
 #[derive(Debug)]
@@ -90,23 +90,19 @@ fn begins(line: &[u8], header: &str) -> Result<()> {
         file to begin the mission anew";
     let whole =
         line.strip_suffix(b"\n").and_then(|line| str::from_utf8(line).ok()).context(NONE)?;
-    let found: Value = serde_json::from_str(whole).ok().context(NONE)?;
-    if found["record"] != "start" {
-        bail!(NONE);
-    }
+    let Ok(Record::Start(_)) = Record::read(whole.as_bytes()) else { bail!(NONE) };
     same(whole, header)
 }
 
 /// Computes the step of a line again. Returns `false` if the line is the mission's end, which is written anew.
 fn follow(line: &[u8], make: impl FnOnce(Option<Reading>) -> Result<String>) -> Result<bool> {
     let line = str::from_utf8(line).context("expected a step")?;
-    let found: Value = serde_json::from_str(line).context("expected a step")?;
-    match found["record"].as_str() {
-        Some("end") => return Ok(false),
-        Some("step") => {}
-        _ => bail!("expected a step"),
-    }
-    let read = match found["label"].as_i64() {
+    let step = match Record::read(line.as_bytes()).context("expected a step")? {
+        Record::End(_) => return Ok(false),
+        Record::Step(step) => step,
+        Record::Start(_) => bail!("expected a step"),
+    };
+    let read = match step.label {
         Some(-1) => Some(Reading::Side(Label::Negative)),
         Some(0) => Some(Reading::Boundary),
         Some(1) => Some(Reading::Side(Label::Positive)),

@@ -6,10 +6,11 @@ use planner_core::{DrivingPrice, EffortWeight, Following, Options};
 use serde::{Deserialize, Serialize};
 
 /// Who plans.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum Algorithm {
     /// Algorithm 1, noiseless labels.
+    #[default]
     Cfc,
     /// Algorithm 2, noisy labels.
     Scc,

@@ -1,9 +1,9 @@
 //! The motions of a real vehicle: when each began and ended, and how far from its target the vehicle came to rest.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A motion of a real vehicle.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Leg {
     /// When it was asked for, seconds since the flight began.
     pub began: f64,
@@ -14,7 +14,7 @@ pub struct Leg {
 }
 
 /// The motions of a flight.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Legs {
     /// How many there were.
     pub motions: usize,

@@ -23,6 +23,7 @@ use planner_core::{
     Workspace as _,
 };
 
+use crate::mission::baseline::{motion, take_in};
 use crate::mission::definition::{Lines, Table};
 use crate::mission::read_out::ReadOut;
 
@@ -135,14 +136,10 @@ impl<D: Dynamics, B: ReadOut> Planner for Margin<D, B> {
             return Plan::Stop(StopReason::Cornered);
         };
         Plan::Move(Motion {
-            stage: None,
             recovery,
-            action,
-            control: self.dynamics.control(pose, action),
-            target,
             wants_label: recovery.is_none(),
             examined: u32::try_from(self.dynamics.grid().actions()).unwrap_or(u32::MAX),
-            proven: true,
+            ..motion(&self.dynamics, pose, action, target)
         })
     }
 
@@ -152,8 +149,7 @@ impl<D: Dynamics, B: ReadOut> Planner for Margin<D, B> {
         reading: Option<Reading>,
         tolerance: Tolerance,
     ) -> Result<(), ObservationError> {
-        let observe = |reading| self.belief.observe_within(pose.site, reading, tolerance);
-        reading.map_or(Ok(()), observe)
+        take_in(&mut self.belief, pose, reading, tolerance)
     }
 
     fn belief(&self) -> &B {

@@ -62,6 +62,14 @@ impl Mission {
         }
     }
 
+    /// What is known before the first label.
+    ///
+    /// # Panics
+    /// As [`planner`](Self::planner).
+    pub fn belief(&self) -> Box<dyn ReadOut> {
+        if self.is_noisy() { Box::new(self.table()) } else { Box::new(self.lines()) }
+    }
+
     fn planner_of(&self, dynamics: impl Dynamics + 'static) -> AnyPlanner {
         let (area, rng) = (self.config.area, ChaCha8Rng::seed_from_u64(self.seed));
         match self.algorithm {

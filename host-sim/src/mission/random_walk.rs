@@ -9,6 +9,8 @@ use planner_core::{
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
+use crate::mission::baseline::{motion, take_in};
+
 /// Takes each action that stays in the area with equal probability. If an error has brought it outside, it also takes
 /// actions that lead no further from the area's middle. It reads no label until it is inside.
 pub struct RandomWalk<D, B> {
@@ -44,16 +46,9 @@ impl<D: Dynamics, B: Belief> Planner for RandomWalk<D, B> {
                         && self.dynamics.keeps_inside(pose, *target, &self.area, 0)
             });
             if let Some(target) = target {
-                return Plan::Move(Motion {
-                    stage: None,
-                    recovery: None,
-                    action,
-                    control: self.dynamics.control(pose, action),
-                    target,
-                    wants_label: self.area.contains(target.site),
-                    examined: 1,
-                    proven: true,
-                });
+                let wants_label = self.area.contains(target.site);
+                let motion = motion(&self.dynamics, pose, action, target);
+                return Plan::Move(Motion { wants_label, ..motion });
             }
         }
     }
@@ -64,8 +59,7 @@ impl<D: Dynamics, B: Belief> Planner for RandomWalk<D, B> {
         reading: Option<Reading>,
         tolerance: Tolerance,
     ) -> Result<(), ObservationError> {
-        let observe = |reading| self.belief.observe_within(pose.site, reading, tolerance);
-        reading.map_or(Ok(()), observe)
+        take_in(&mut self.belief, pose, reading, tolerance)
     }
 
     fn belief(&self) -> &B {

@@ -1,4 +1,6 @@
-//! A mission that is recorded: its results grow step by step.
+//! A mission that is recorded, once: what each step was, what was expected of it, and what was known after it.
+//!
+//! Text, trace, flat rows, figures, pages and logs are made from the recording. None of them plans or observes again.
 
 use anyhow::{Result, anyhow};
 use nalgebra::Point2;
@@ -11,8 +13,8 @@ use crate::mission::flight::Flown;
 use crate::mission::legs::{Leg, Legs};
 use crate::mission::read_out::{Knowledge, LEVEL, ReadOut};
 use crate::mission::results::{
-    BestRecord, CredibleRecord, End, EstimateRecords, KeepOutRecord, LineError, NoisyEnd,
-    NoisyStep, Results, Start, StepResult, VERSION, recovery_name, stage_name,
+    BestRecord, CredibleRecord, End, EstimateRecords, KeepOutRecord, LineError, Results, Start,
+    StepResult, VERSION, cost, recovery_name, stage_name,
 };
 use crate::mission::stop::GoalRecord;
 use crate::mission::vehicle::VehicleTable;
@@ -28,6 +30,8 @@ pub struct Recording {
     pub steps: Vec<Step>,
     /// What came of it.
     pub results: Results,
+    /// What was known before each step.
+    pub before: Vec<Box<dyn ReadOut>>,
     /// What is known in the end.
     pub belief: Box<dyn ReadOut>,
 }
@@ -37,23 +41,31 @@ pub struct Recorder {
     mission: Mission,
     steps: Vec<Step>,
     results: Vec<StepResult>,
+    before: Vec<Box<dyn ReadOut>>,
+    /// What is known now.
+    belief: Box<dyn ReadOut>,
 }
 
 impl Recorder {
     /// Nothing has happened yet.
-    pub const fn new(mission: Mission) -> Self {
-        Self { mission, steps: Vec::new(), results: Vec::new() }
+    pub fn new(mission: Mission) -> Self {
+        let belief = mission.belief();
+        Self { mission, steps: Vec::new(), results: Vec::new(), before: Vec::new(), belief }
     }
 
     /// Takes down a step, where the robot truly is after it, if it errs, and what is known.
     pub fn take(&mut self, step: &Step, true_pose: Option<Pose>, belief: &dyn ReadOut) {
         let Knowledge { slope_arcs, intercept, bits, doubt } = belief.knowledge();
         let motion = &step.motion;
+        let before = std::mem::replace(&mut self.belief, belief.boxed());
+        let (cost_before, metres_before) =
+            self.last().map_or((0.0, 0.0), |last| (last.control_cost, last.metres));
+        let reliability = belief.hypotheses().map(|table| table.reliability(step.pose.site));
         self.steps.push(*step);
         self.results.push(StepResult {
             step: self.steps.len(),
-            problem: motion.stage.map(stage_name),
-            recovery: motion.recovery.map(recovery_name),
+            problem: motion.stage.map(|stage| stage_name(stage).into()),
+            recovery: motion.recovery.map(|recovery| recovery_name(recovery).into()),
             action: motion.into(),
             pose: step.pose.into(),
             true_pose: true_pose.map(Into::into),
@@ -63,21 +75,21 @@ impl Recorder {
             bits,
             examined: motion.examined,
             proven: (!motion.proven).then_some(false),
-            noisy: doubt.map(|doubt| NoisyStep {
-                trusted: belief
-                    .hypotheses()
-                    .is_some_and(|it| it.reliability(step.pose.site) == Reliability::CERTAIN),
-                hypotheses: doubt.hypotheses,
-                pruned_mass: doubt.pruned_mass,
-                entropy: doubt.entropy,
-            }),
+            trusted: reliability.map(|it| it == Reliability::CERTAIN),
+            hypotheses: doubt.map(|doubt| doubt.hypotheses),
+            pruned_mass: doubt.map(|doubt| doubt.pruned_mass),
+            entropy: doubt.map(|doubt| doubt.entropy),
             flown: None,
             fact: self
                 .mission
                 .world
                 .line()
                 .map(|line| reading(line, true_pose.unwrap_or(step.pose).site).sign()),
+            expected: motion.wants_label.then(|| before.expects(motion.target.site)),
+            control_cost: cost_before + cost(motion.control),
+            metres: metres_before + f64::from(motion.control.distance_m),
         });
+        self.before.push(before);
     }
 
     /// Takes down how a real vehicle made the steps so far.
@@ -121,16 +133,19 @@ impl Recorder {
 
     /// The mission is over.
     pub fn end(self, Flown { ending, belief }: Flown) -> Recording {
-        let Self { mission, steps, results } = self;
+        let Self { mission, steps, results, before, .. } = self;
+        let doubted = belief.hypotheses().and_then(|table| doubted(table, &mission.world));
+        let (best, credible) = doubted.unzip();
         let end = End {
-            reason: ending.name(),
+            reason: ending.name().into(),
             estimates: beside_truth(&mission, belief.estimates()),
-            noisy: belief.hypotheses().and_then(|table| noisy_end(table, &mission.world)),
+            best,
+            credible,
             goal: GoalRecord::of(&mission, &*belief),
             flown: Legs::of(&results.iter().filter_map(|step| step.flown).collect::<Vec<_>>()),
         };
         let results = Results { start: start(&mission), steps: results, end };
-        Recording { mission, steps, results, belief }
+        Recording { mission, steps, results, before, belief }
     }
 }
 
@@ -142,6 +157,11 @@ impl Recording {
     pub fn of(mission: &Mission) -> Result<Self> {
         let (recording, refusal) = Self::until_refusal(mission);
         refusal.map_or(Ok(recording), Err)
+    }
+
+    /// What was known at the start and after each step.
+    pub fn known(&self) -> impl Iterator<Item = &dyn ReadOut> {
+        self.before.iter().chain([&self.belief]).map(|belief| &**belief)
     }
 
     /// Flies a mission and records it as far as it goes. The error names the sample that the planner refused, if one
@@ -185,28 +205,28 @@ fn start(mission: &Mission) -> Start {
     }
 }
 
-fn noisy_end(table: &Table, world: &World) -> Option<NoisyEnd> {
+/// What labels that may err come to: the paper's outcome by the paper's prior, and the credible set by the chosen one.
+fn doubted(table: &Table, world: &World) -> Option<(BestRecord, CredibleRecord)> {
     let holds = |hypothesis: &Hypothesis<15>| world.is_among(table.lines(hypothesis));
     let by_sequences = table.weighed_by(Prior::Sequences);
     let best = PosteriorView::new(&by_sequences).best()?;
     let posterior = PosteriorView::new(table);
     let credible = posterior.credible(LEVEL);
     let members: Option<Vec<bool>> = posterior.members(&credible).map(holds).collect();
-    Some(NoisyEnd {
-        best: BestRecord {
-            slope_arcs: best.slope_arc.intervals_deg().to_vec(),
-            intercept: best.intercept,
-            probability: best.probability,
-            holds: holds(best.hypothesis),
-        },
-        credible: CredibleRecord {
-            level: credible.level,
-            slope_arcs: credible.slope_arc.intervals_deg().to_vec(),
-            intercept: credible.intercept,
-            probability: credible.probability,
-            cells: credible.cells,
-            hypotheses: table.iter().len(),
-            holds: members.map(|members| members.contains(&true)),
-        },
-    })
+    let best = BestRecord {
+        slope_arcs: best.slope_arc.intervals_deg().to_vec(),
+        intercept: best.intercept,
+        probability: best.probability,
+        holds: holds(best.hypothesis),
+    };
+    let credible = CredibleRecord {
+        level: credible.level,
+        slope_arcs: credible.slope_arc.intervals_deg().to_vec(),
+        intercept: credible.intercept,
+        probability: credible.probability,
+        cells: Some(credible.cells),
+        hypotheses: table.iter().len(),
+        holds: members.map(|members| members.contains(&true)),
+    };
+    Some((best, credible))
 }

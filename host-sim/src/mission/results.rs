@@ -1,5 +1,10 @@
-//! A mission's results: plain data, computed once. Serialised, they are the records of the trace, whose contract is in
-//! ARCHITECTURE.md. Fields that only reports use are not serialised.
+//! A mission's results: plain data, recorded once. Serialised, they are the records of the trace, whose contract is in
+//! ARCHITECTURE.md; the same types read a trace again. Fields that only reports use are not serialised.
+//!
+//! A new field of a step is added here and in [`Recorder::take`](crate::mission::recording::Recorder::take). Flat rows
+//! and the log take it over from the trace.
+
+use std::borrow::Cow;
 
 use nalgebra::Point2;
 use planner_core::dynamics::Control;
@@ -10,10 +15,11 @@ use planner_core::search::recovery::Recovery;
 use planner_core::{
     Estimates, KeepOut, Line, LocalLine, Motion, Pose, Sample, Site, StopReason, Workspace as _,
 };
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::legs::{Leg, Legs};
+use crate::mission::read_out::Expectation;
 use crate::mission::stop::GoalRecord;
 use crate::mission::vehicle::VehicleTable;
 
@@ -32,20 +38,25 @@ pub struct Results {
 pub const VERSION: u32 = 1;
 
 /// What a mission began with.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Start {
     /// [`VERSION`].
+    #[serde(default)]
     pub version: u32,
     /// Who planned.
+    #[serde(default)]
     pub algorithm: Algorithm,
     /// Seed of whatever was random.
+    #[serde(default)]
     pub seed: u64,
     /// The weight of the control.
+    #[serde(default)]
     pub varrho: f64,
     /// Where positions stayed.
+    #[serde(default)]
     pub area: AreaRecord,
     /// What no motion touches.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub keep_out: Vec<KeepOutRecord>,
     /// The oracle's samples.
     pub oracle: Vec<SampleRecord>,
@@ -53,6 +64,7 @@ pub struct Start {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub vehicle: Option<VehicleTable>,
     /// Where the agent began.
+    #[serde(default)]
     pub pose: PoseRecord,
     /// The true line, if there is one.
     pub truth: Option<LineRecord>,
@@ -69,16 +81,18 @@ pub struct Start {
     pub slope_arcs: Vec<[f64; 2]>,
 }
 
-/// A step, and what was known after it.
-#[derive(Clone, Debug, Serialize)]
+/// A step: what was done, what was expected of it, what was read, and what was known after it.
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct StepResult {
     /// Its number, from 1.
+    #[serde(default)]
     pub step: usize,
     /// The one-step problem that was solved, for planners that pose one.
-    pub problem: Option<&'static str>,
+    pub problem: Option<Name>,
     /// The rung of the recovery ladder, if it was climbed.
-    pub recovery: Option<&'static str>,
+    pub recovery: Option<Name>,
     /// What was done.
+    #[serde(default)]
     pub action: ActionRecord,
     /// Where it ended.
     pub pose: PoseRecord,
@@ -88,50 +102,65 @@ pub struct StepResult {
     /// What was sensed there: -1, 0 on the boundary, 1; `None` if nothing was.
     pub label: Option<i8>,
     /// The slopes left, as intervals of degrees.
+    #[serde(default)]
     pub slope_arcs: Vec<[f64; 2]>,
     /// The intercepts left, metres; `None` when unbounded.
     pub intercept: Option<[f64; 2]>,
     /// Bits learnt since the start.
+    #[serde(default)]
     pub bits: f64,
     /// Actions whose position was looked at to find this one.
+    #[serde(default)]
     pub examined: u32,
     /// `Some(false)` if it is not known to be the best.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub proven: Option<bool>,
-    /// What noisy labels add.
-    #[serde(flatten)]
-    pub noisy: Option<NoisyStep>,
+    /// Where labels may err: whether the sample lies in a trusted ball.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub trusted: Option<bool>,
+    /// Where labels may err: the number of hypotheses.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hypotheses: Option<usize>,
+    /// Where labels may err: the probability given up as the table was full, at most.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pruned_mass: Option<f64>,
+    /// Where labels may err: the entropy over the hypotheses, bits.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub entropy: Option<f64>,
     /// How a real vehicle made it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flown: Option<Leg>,
     /// What a perfect sensor reads there, if the true line is known.
     #[serde(skip)]
     pub fact: Option<i8>,
+    /// What was expected of its label before it was read, if one was asked for.
+    #[serde(skip)]
+    pub expected: Option<Expectation>,
+    /// Control cost up to and with this step.
+    #[serde(skip)]
+    pub control_cost: f64,
+    /// Metres travelled up to and with this step.
+    #[serde(skip)]
+    pub metres: f64,
 }
 
-/// The distribution over hypotheses after a step.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct NoisyStep {
-    /// The sample lies in a trusted ball.
-    pub trusted: bool,
-    /// Number of hypotheses.
-    pub hypotheses: usize,
-    /// The probability given up as the table was full, at most.
-    pub pruned_mass: f64,
-    /// Entropy over the hypotheses, bits.
-    pub entropy: f64,
-}
+/// A name that the trace gives: ours, or one that was read.
+pub type Name = Cow<'static, str>;
 
 /// How a mission ended, and what was known then.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(default)]
 pub struct End {
     /// Why it ended.
-    pub reason: &'static str,
+    pub reason: Name,
     /// The estimates of the line.
     pub estimates: EstimateRecords,
-    /// What noisy labels come to.
-    #[serde(flatten)]
-    pub noisy: Option<NoisyEnd>,
+    /// Where labels may err: the paper's outcome, by the paper's prior.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub best: Option<BestRecord>,
+    /// Where labels may err: the credible set, by the chosen prior.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub credible: Option<CredibleRecord>,
     /// Its goal, if it had one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub goal: Option<GoalRecord>,
@@ -140,18 +169,8 @@ pub struct End {
     pub flown: Option<Legs>,
 }
 
-/// What noisy labels come to: the paper's outcome by the paper's prior, and the credible set by the
-/// chosen one.
-#[derive(Clone, Debug, Serialize)]
-pub struct NoisyEnd {
-    /// The paper's outcome.
-    pub best: BestRecord,
-    /// The credible set.
-    pub credible: CredibleRecord,
-}
-
 /// The most likely hypothesis.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct BestRecord {
     /// The slopes of its lines, as intervals of degrees.
     pub slope_arcs: Vec<[f64; 2]>,
@@ -165,7 +184,7 @@ pub struct BestRecord {
 }
 
 /// A credible set.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct CredibleRecord {
     /// The probability that was asked for.
     pub level: f64,
@@ -175,8 +194,9 @@ pub struct CredibleRecord {
     pub intercept: Option<[f64; 2]>,
     /// Its probability, which is at least the level.
     pub probability: f64,
-    /// Number of its hypotheses.
-    pub cells: usize,
+    /// Number of its hypotheses, where there are hypotheses.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cells: Option<usize>,
     /// Number of all hypotheses.
     #[serde(skip)]
     pub hypotheses: usize,
@@ -186,7 +206,7 @@ pub struct CredibleRecord {
 }
 
 /// An area, metres.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct AreaRecord {
     /// From and to.
     pub x: [f64; 2],
@@ -198,7 +218,7 @@ pub struct AreaRecord {
 }
 
 /// What is kept out of, metres: all within a radius of a convex polygon, or of a point.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct KeepOutRecord {
     /// The corners.
     pub polygon: Vec<[f64; 2]>,
@@ -207,7 +227,7 @@ pub struct KeepOutRecord {
 }
 
 /// A sample.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct SampleRecord {
     /// Metres.
     pub x: f64,
@@ -218,7 +238,7 @@ pub struct SampleRecord {
 }
 
 /// A pose.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct PoseRecord {
     /// Metres.
     pub x: f64,
@@ -229,7 +249,7 @@ pub struct PoseRecord {
 }
 
 /// An action.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct ActionRecord {
     /// Its name in the grid.
     pub index: u32,
@@ -240,7 +260,7 @@ pub struct ActionRecord {
 }
 
 /// A line; slope and intercept are `None` for a vertical one.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct LineRecord {
     /// The paper's `rho`.
     pub slope: Option<f64>,
@@ -266,25 +286,20 @@ pub struct LineError {
 }
 
 /// The three estimates, `None` where there is none.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct EstimateRecords {
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub struct EstimateRecords<L = LineRecord> {
     /// The paper's.
-    pub bisector: Option<LineRecord>,
+    pub bisector: Option<L>,
     /// The centre of the version space, or the posterior mean.
-    pub centre: Option<LineRecord>,
+    pub centre: Option<L>,
     /// The hard-margin separator.
-    pub maximum_margin: Option<LineRecord>,
+    pub maximum_margin: Option<L>,
 }
 
 impl StepResult {
     /// Whether what was sensed is not what a perfect sensor reads, as far as that is known.
     pub fn is_wrong(&self) -> bool {
         self.label.zip(self.fact).is_some_and(|(seen, fact)| seen != fact)
-    }
-
-    /// Its control cost.
-    pub fn cost(&self) -> f64 {
-        cost(Control { distance_m: self.action.v, turn_rad: self.action.w })
     }
 }
 
@@ -302,13 +317,12 @@ impl Results {
 
     /// Metres travelled.
     pub fn travelled(&self) -> f64 {
-        // A sum of nothing would be less than nothing: -0.
-        self.steps.iter().fold(0.0, |sum, step| sum + f64::from(step.action.v))
+        self.steps.last().map_or(0.0, |last| last.metres)
     }
 
     /// The control cost.
     pub fn cost(&self) -> f64 {
-        self.steps.iter().fold(0.0, |sum, step| sum + step.cost())
+        self.steps.last().map_or(0.0, |last| last.control_cost)
     }
 }
 

@@ -38,7 +38,7 @@ const MOST_BOUNDING: usize = 15;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
-    #[serde(default = "defaults::algorithm")]
+    #[serde(default)]
     algorithm: Algorithm,
     #[serde(default = "defaults::steps")]
     steps: u32,
@@ -70,11 +70,6 @@ struct File {
 }
 
 mod defaults {
-    use crate::mission::algorithm::Algorithm;
-
-    pub(super) fn algorithm() -> Algorithm {
-        Algorithm::Cfc
-    }
     pub(super) fn steps() -> u32 {
         10
     }

@@ -88,7 +88,7 @@ impl StopTable {
 }
 
 /// What a mission was to find out, and whether it did.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct GoalRecord {
     /// Any two of the lines left make an angle of so many degrees at most.
     #[serde(skip_serializing_if = "Option::is_none")]

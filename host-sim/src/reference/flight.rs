@@ -2,11 +2,11 @@
 
 use anyhow::Result;
 use planner_core::dynamics::{Action, Dynamics as _};
-use planner_core::{Motion, Pose, Step};
+use planner_core::{Motion, Step};
 
+use crate::mission::baseline::motion;
 use crate::mission::definition::Mission;
 use crate::mission::flight::Flown;
-use crate::mission::read_out::ReadOut;
 use crate::mission::recording::{Recorder, Recording};
 use crate::mission::results::Ending;
 
@@ -15,29 +15,16 @@ use crate::mission::results::Ending;
 /// # Errors
 /// Names the sample that contradicts what is known.
 pub fn fly(mission: &Mission, actions: &[Action]) -> Result<Recording> {
-    let mut belief: Box<dyn ReadOut> =
-        if mission.is_noisy() { Box::new(mission.table()) } else { Box::new(mission.lines()) };
+    let mut belief = mission.belief();
     let (mut robot, mut pose) = (mission.robot(), mission.start);
     let mut recorder = Recorder::new(mission.clone());
     for &action in actions {
-        let Some(motion) = motion(mission, pose, action) else { break };
+        let Some(target) = mission.vehicle.target(pose, action) else { break };
+        let motion = Motion { examined: 0, ..motion(&mission.vehicle, pose, action, target) };
         let Ok(reading) = robot.perform(&motion, &mut pose);
         let seen = reading.map_or(Ok(()), |reading| belief.observe(pose.site, reading));
         seen.map_err(|refused| recorder.refusal(&refused))?;
         recorder.take(&Step { motion, pose, reading }, robot.true_pose(), &*belief);
     }
     Ok(recorder.end(Flown { ending: Ending::Steps, belief }))
-}
-
-fn motion(mission: &Mission, pose: Pose, action: Action) -> Option<Motion> {
-    Some(Motion {
-        stage: None,
-        recovery: None,
-        action,
-        control: mission.vehicle.control(pose, action),
-        target: mission.vehicle.target(pose, action)?,
-        wants_label: true,
-        examined: 0,
-        proven: true,
-    })
 }

@@ -17,6 +17,7 @@ use rayon::prelude::*;
 use crate::output::notes::progress;
 use crate::reference::instance::{Choice, Instance, Partial};
 use crate::reference::relaxation::Relaxation;
+use crate::world::in_order::in_order;
 
 /// The least number of beginnings that are shared out to the cores, if there are as many.
 const TASKS: usize = 1000;
@@ -255,11 +256,4 @@ impl Branch {
     fn by_bound(&self, other: &Self) -> Ordering {
         self.bound.total_cmp(&other.bound).then_with(|| self.actions.cmp(&other.actions))
     }
-}
-
-/// A number as an integer of the same order.
-fn in_order(value: f64) -> i64 {
-    // Negative numbers have the sign bit, and grow with the others the wrong way.
-    let bits = value.to_bits() as i64;
-    bits ^ (((bits >> 63) as u64) >> 1) as i64
 }

@@ -1,7 +1,7 @@
 //! The answer that samples give: one type, however far they are trusted.
 
 use anyhow::{Context as _, Result, anyhow, bail};
-use nalgebra::Point2;
+use nalgebra::{Point2, Vector2};
 use planner_core::error::GivenError;
 use planner_core::{Area, Label, Line, Sample};
 
@@ -11,7 +11,7 @@ use crate::replay::hull::{Row, in_order};
 use crate::replay::line_posterior::{Cell, LinePosterior, TooOpen};
 use crate::replay::line_set::{self, ByNormal, intercepts, slope_arcs};
 use crate::replay::outlier::{Repeats, outliers};
-use crate::replay::patch::Mass;
+use crate::replay::patch::{Mass, Patch};
 use crate::replay::sample_file::SampleFile;
 use crate::replay::separation::{self, Separation};
 use crate::replay::shortest_pairs::bisector;
@@ -187,7 +187,53 @@ fn contradiction(
     }
 }
 
+/// The lines of a record are weighed by its labels. The answer is their mean, the smallest set that has the level, and
+/// the most likely line, with the samples that disagree with it.
 fn doubted(file: &SampleFile, p: f64, tolerance: Option<f64>) -> Result<Answer> {
+    let SampleFile { name, samples, .. } = file;
+    let (middle, reach) = ground(file)?;
+    let LinePosterior { cells, pruned_mass } = posterior(file, p, tolerance, (middle, reach))?;
+    let home = |(normal, distance): ByNormal| (normal, distance + normal.dot(&middle.coords));
+    let mean = |mass: &Mass| {
+        let length = mass.normal.norm();
+        line_set::line(home((mass.normal / length, mass.distance / length)))
+    };
+    let mut all = Mass::default();
+    for cell in &cells {
+        all.add(&cell.mass, 1.0);
+    }
+    let (set, probability) = credible(&cells);
+    let slope_arcs = slope_arcs(set.iter().map(|cell| cell.patch.directions()));
+    let of_patch = |patch: &Patch| {
+        let of_corner = |corner: &Point2<f64>| home(patch.quarter.normal(*corner));
+        patch.lines.0.iter().map(of_corner).collect::<Vec<_>>()
+    };
+    let bounds: Vec<_> = set.iter().flat_map(|cell| of_patch(&cell.patch)).collect();
+    let most_likely = most_likely(&cells, &all).and_then(|cell| mean(&cell.mass));
+    let most_likely =
+        most_likely.with_context(|| format!("{name}: expected labels that prefer some line"))?;
+    let alike = if tolerance.is_none() { alike(&most_likely, samples) } else { None };
+    let most_likely = alike.as_ref().and_then(Separation::centre).map_or(most_likely, Line::from);
+    let off = tolerance.unwrap_or(0.0);
+    let disagrees = |sample: &Sample| {
+        f64::from(sample.label.sign()) * most_likely.distance(sample.site.into()) < -off
+    };
+    let disagreeing = (0..samples.len()).filter(|index| disagrees(&samples[*index])).collect();
+    Ok(Answer {
+        bounding: Vec::new(),
+        intercept: intercepts(&slope_arcs, bounds.iter().copied()),
+        slope_arcs,
+        centre: mean(&all),
+        maximum_margin: alike.and_then(|lines| lines.maximum_margin()).map(Line::from),
+        bisector: None,
+        tolerance,
+        doubt: Some(Doubted { p, pruned_mass, probability, most_likely, disagreeing }),
+        bounds,
+    })
+}
+
+/// The middle of the ground around the samples of a file, which has both labels, and half of its size.
+fn ground(file: &SampleFile) -> Result<(Point2<f64>, Vector2<f64>)> {
     let SampleFile { name, samples, .. } = file;
     let has = |label: Label| samples.iter().any(|sample| sample.label == label);
     if !(has(Label::Positive) && has(Label::Negative)) {
@@ -196,82 +242,45 @@ fn doubted(file: &SampleFile, p: f64, tolerance: Option<f64>) -> Result<Answer> 
     let area = area_around(samples)
         .with_context(|| format!("{name}: expected samples that are apart from each other"))?;
     let [min, max] = [area.min(), area.max()].map(Point2::<f64>::from);
-    let middle = nalgebra::center(&min, &max);
-    let votes = Votes::of(samples, &file.certain, middle).map_err(|index| {
+    Ok((nalgebra::center(&min, &max), (max - min) / 2.0))
+}
+
+/// The distribution over all lines through some ground.
+fn posterior(
+    file: &SampleFile,
+    p: f64,
+    tolerance: Option<f64>,
+    (middle, reach): (Point2<f64>, Vector2<f64>),
+) -> Result<LinePosterior> {
+    let name = &file.name;
+    let votes = Votes::of(&file.samples, &file.certain, middle).map_err(|index| {
         anyhow!("{}: found a certain label, and another at the same place", file.place(index))
     })?;
-    let posterior = LinePosterior::of(&votes, &Doubt::new(p, tolerance), (max - min) / 2.0)
-        .map_err(|why| match why {
-            TooOpen::Cells(_) | TooOpen::Work(_) => {
-                anyhow!(
-                    "{name}: labels that are true with probability {p} leave too much open: {why}"
-                )
-            }
-            TooOpen::NoLine => anyhow!("{name}: no line agrees with the labels that are certain"),
-        })?;
-    let home = |(normal, distance): ByNormal| (normal, distance + normal.dot(&middle.coords));
-    let mean_of = |mass: &Mass| {
-        let length = mass.normal.norm();
-        line_set::line(home((mass.normal / length, mass.distance / length)))
-    };
-    // The smallest set of the level; of lines that are alike, all.
-    let (mut held, mut count) = (0.0, 0);
-    let mut least = f64::INFINITY;
-    for Cell { log, mass, .. } in &posterior.cells {
+    LinePosterior::of(&votes, &Doubt::new(p, tolerance), reach).map_err(|why| match why {
+        TooOpen::Cells(_) | TooOpen::Work(_) => {
+            anyhow!("{name}: labels that are true with probability {p} leave too much open: {why}")
+        }
+        TooOpen::NoLine => anyhow!("{name}: no line agrees with the labels that are certain"),
+    })
+}
+
+/// The smallest set of cells that has the level, and its probability. Of cells that are equally likely it has all.
+fn credible(cells: &[Cell]) -> (&[Cell], f64) {
+    let (mut held, mut count, mut least) = (0.0, 0, f64::INFINITY);
+    for Cell { log, mass, .. } in cells {
         if held >= LEVEL && *log < least - 1e-9 {
             break;
         }
         (held, count, least) = (held + mass.measure, count + 1, *log);
     }
-    let set = &posterior.cells[..count];
-    let bounds: Vec<_> = set
-        .iter()
-        .flat_map(|Cell { patch, .. }| {
-            patch.corners.iter().map(|at| home(patch.quarter.normal(*at)))
-        })
-        .collect();
-    let slope_arcs = slope_arcs(set.iter().map(|cell| cell.patch.directions()));
-    let intercept = intercepts(&slope_arcs, bounds.iter().copied());
-    let mut all = Mass::default();
-    for cell in &posterior.cells {
-        all.add(&cell.mass, 1.0);
-    }
-    let mean = mean_of(&all);
-    let most_likely = most_likely(&posterior.cells, &all).and_then(|cell| mean_of(&cell.mass));
-    let most_likely =
-        most_likely.with_context(|| format!("{name}: expected labels that prefer some line"))?;
-    // All lines between the same samples give the labels that the most likely line gives.
-    let relabelled =
-        samples.iter().map(|sample| Sample { label: side(&most_likely, sample), ..*sample });
+    (&cells[..count], held)
+}
+
+/// The lines that give samples the labels that one line gives them.
+fn alike(line: &Line, samples: &[Sample]) -> Option<Separation> {
+    let relabelled = samples.iter().map(|sample| Sample { label: side(line, sample), ..*sample });
     let relabelled: Vec<_> = relabelled.collect();
-    let about = tolerance
-        .is_none()
-        .then(|| Separation::of(&relabelled, &in_order(&relabelled)).ok())
-        .flatten();
-    let centre = about.as_ref().and_then(Separation::centre).map(Line::from);
-    let most_likely = centre.unwrap_or(most_likely);
-    let off = tolerance.unwrap_or(0.0);
-    let disagrees = |sample: &Sample| {
-        f64::from(sample.label.sign()) * most_likely.distance(sample.site.into()) < -off
-    };
-    let disagreeing = (0..samples.len()).filter(|index| disagrees(&samples[*index])).collect();
-    Ok(Answer {
-        bounding: Vec::new(),
-        slope_arcs,
-        intercept,
-        centre: mean,
-        maximum_margin: about.and_then(|it| it.maximum_margin()).map(Line::from),
-        bisector: None,
-        tolerance,
-        doubt: Some(Doubted {
-            p,
-            pruned_mass: posterior.pruned_mass,
-            probability: held,
-            most_likely,
-            disagreeing,
-        }),
-        bounds,
-    })
+    Separation::of(&relabelled, &in_order(&relabelled)).ok()
 }
 
 fn side(line: &Line, sample: &Sample) -> Label {

@@ -1,12 +1,13 @@
 //! The answer for a map: `GeoJSON` (RFC 7946), whose coordinates are longitude and latitude in degrees, WGS84.
 
 use anyhow::{Context as _, Result, bail};
+use geojson::{Feature, FeatureCollection, Geometry, GeometryValue};
 use nalgebra::Point2;
-use planner_core::Area;
 use serde_json::{Value, json};
 
 use crate::replay::record::Replay;
 use crate::report::picture::area_around;
+use crate::world::polygon::Polygon;
 
 impl Replay {
     /// Samples, lines, and the ground to which all lines left give one label. Where labels may be wrong, these are the
@@ -32,9 +33,8 @@ impl Replay {
                 let ring = ring.collect::<Result<Vec<_>>>()?;
                 let level = self.answer.doubt.as_ref().map(|doubt| doubt.probability);
                 features.push(feature(
-                    "Polygon",
-                    &json!([ring]),
-                    &json!({ "kind": "ground", "label": label, "probability": level.unwrap_or(1.0) }),
+                    GeometryValue::new_polygon([ring]),
+                    json!({ "kind": "ground", "label": label, "probability": level.unwrap_or(1.0) }),
                 ));
             }
         }
@@ -46,7 +46,8 @@ impl Replay {
         ] {
             if let Some([from, to]) = line.and_then(|line| self.ends(&line)) {
                 let ends = [self.degrees(from)?, self.degrees(to)?];
-                features.push(feature("LineString", &json!(ends), &json!({ "kind": kind })));
+                features
+                    .push(feature(GeometryValue::new_line_string(ends), json!({ "kind": kind })));
             }
         }
         let disagreeing = self.answer.doubt.as_ref().map(|doubt| &doubt.disagreeing);
@@ -60,14 +61,16 @@ impl Replay {
             if let Some(disagrees) = disagrees {
                 told["disagrees"] = disagrees.into();
             }
-            features.push(feature("Point", &json!(self.degrees(sample.site.into())?), &told));
+            let at = self.degrees(sample.site.into())?;
+            features.push(feature(GeometryValue::new_point(at), told));
         }
-        if self.crosses_meridian(area_corners(area))? {
+        if self.crosses_meridian(&Polygon::from(area))? {
             bail!(
                 "--geojson: {name} lies on both sides of the 180th meridian, expected positions on one"
             );
         }
-        Ok(json!({ "type": "FeatureCollection", "features": features }).to_string() + "\n")
+        let all = FeatureCollection { features, ..FeatureCollection::default() };
+        Ok(json!(all).to_string() + "\n")
     }
 
     /// Longitude and latitude.
@@ -76,22 +79,14 @@ impl Replay {
         Ok([lon, lat])
     }
 
-    fn crosses_meridian(&self, corners: [Point2<f64>; 4]) -> Result<bool> {
-        let lons = corners.iter().map(|corner| Ok(self.degrees(*corner)?[0]));
+    fn crosses_meridian(&self, ground: &Polygon) -> Result<bool> {
+        let lons = ground.0.iter().map(|corner| Ok(self.degrees(*corner)?[0]));
         let lons = lons.collect::<Result<Vec<_>>>()?;
         Ok(lons.iter().any(|a| lons.iter().any(|b| (a - b).abs() > 180.0)))
     }
 }
 
-fn area_corners(area: Area) -> [Point2<f64>; 4] {
-    let (a, b) = (Point2::<f64>::from(area.min()), Point2::<f64>::from(area.max()));
-    [a, Point2::new(b.x, a.y), b, Point2::new(a.x, b.y)]
-}
-
-fn feature(kind: &str, coordinates: &Value, properties: &Value) -> Value {
-    json!({
-        "type": "Feature",
-        "geometry": { "type": kind, "coordinates": coordinates },
-        "properties": properties,
-    })
+fn feature(geometry: GeometryValue, properties: Value) -> Feature {
+    let properties = if let Value::Object(map) = properties { Some(map) } else { None };
+    Feature { geometry: Some(Geometry::new(geometry)), properties, ..Feature::default() }
 }

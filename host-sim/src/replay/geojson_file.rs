@@ -6,10 +6,9 @@ use serde::Deserialize;
 use serde::de::IgnoredAny;
 use serde_json::{Deserializer, Value};
 
-use crate::replay::label_name::{label_name, no_label};
-use crate::replay::label_words::LabelWords;
+use crate::replay::label_name::LabelName;
 use crate::replay::missing::is_missing;
-use crate::replay::numbers::{self, Decimal, Numbers};
+use crate::replay::reading::{Reading, Row};
 use crate::replay::rows::{Layout, Rows, Unit};
 
 /// The keys that tell `GeoJSON` from a trace.
@@ -34,16 +33,12 @@ pub(crate) fn is_one(text: &[u8]) -> bool {
 /// # Errors
 /// Names the file and the feature, what was found and what was expected.
 pub(crate) fn parse(name: &str, text: &[u8], layout: &Layout) -> Result<Rows> {
-    numbers::settled(|decimal| pass(name, text, layout, decimal))
+    Reading::of(name, layout, None, |reading| pass(reading, text))
 }
 
-fn pass(
-    name: &str,
-    text: &[u8],
-    layout: &Layout,
-    settled: Option<Decimal>,
-) -> Result<(Rows, Option<Decimal>)> {
-    let wanted = label_name(name, "GeoJSON", layout)?;
+fn pass(reading: &mut Reading, text: &[u8]) -> Result<()> {
+    let (name, layout) = (reading.name, reading.layout);
+    let mut label = LabelName::of(name, "GeoJSON", layout)?;
     let mut file: Value = serde_json::from_slice(text)
         .map_err(|error| anyhow!("{name}:{}: expected GeoJSON: {error}", error.line()))?;
     let kind = &file["type"];
@@ -54,58 +49,45 @@ fn pass(
     let Value::Array(features) = file["features"].take() else {
         bail!("{name}: found GeoJSON without features, expected a FeatureCollection of points");
     };
-    let mut numbers = Numbers::of(None, settled);
-    let mut words = LabelWords::of(layout.threshold);
-    let is_geographic = layout.crs.is_none();
-    let mut rows = Rows { is_geographic, unit: Unit::Feature, ..Rows::default() };
-    // The properties of the first point, and whether any point has the wanted one.
-    let (mut others, mut has_label) = (None::<(usize, Vec<String>)>, false);
+    reading.rows =
+        Rows { is_geographic: layout.crs.is_none(), unit: Unit::Feature, ..Rows::default() };
     for (number, feature) in (1..).zip(features) {
-        let at = |error: anyhow::Error| anyhow!("{}: {error}", Unit::Feature.place(name, number));
-        let feature: Feature = serde_json::from_value(feature)
-            .map_err(|error| at(anyhow!("expected a feature of GeoJSON: {error}")))?;
-        let position = match feature.geometry.as_ref().map(|geometry| &geometry.value) {
-            Some(GeometryValue::Point { coordinates }) if coordinates.len() >= 2 => {
-                [coordinates[0], coordinates[1]]
-            }
-            Some(other) => {
-                let lacks = format!("found a {}, which is no point", other.type_name());
-                rows.skip(layout, number, lacks).map_err(at)?;
-                continue;
-            }
-            None => {
-                rows.skip(layout, number, "found no geometry".to_owned()).map_err(at)?;
-                continue;
-            }
-        };
-        let value = feature.property(wanted);
-        has_label |= value.is_some();
-        let has =
-            || feature.properties.iter().flat_map(|it| it.keys().cloned()).collect::<Vec<_>>();
-        others.get_or_insert_with(|| (number, has()));
-        let text = match value {
-            None | Some(Value::Null) => String::new(),
-            Some(Value::String(text)) => text.trim().to_owned(),
-            Some(value @ (Value::Bool(_) | Value::Number(_))) => value.to_string(),
-            Some(value) => bail!(at(anyhow!("label: found {value}, expected a word or a number"))),
-        };
-        if is_missing(&text) {
-            let lacks = format!("label: found {text:?} in {wanted}");
-            rows.skip(layout, number, lacks).map_err(at)?;
-            continue;
+        reading.row(number, |reading| read(reading, &mut label, feature, number))?;
+    }
+    label.end(|number| Unit::Feature.place(name, number))
+}
+
+fn read(
+    reading: &mut Reading,
+    label: &mut LabelName,
+    feature: Value,
+    number: usize,
+) -> Result<Row> {
+    let feature: Feature = serde_json::from_value(feature)
+        .map_err(|error| anyhow!("expected a feature of GeoJSON: {error}"))?;
+    let [x, z] = match feature.geometry.as_ref().map(|geometry| &geometry.value) {
+        Some(GeometryValue::Point { coordinates }) if coordinates.len() >= 2 => {
+            [coordinates[0], coordinates[1]]
         }
-        let label = words.read(&text, &mut numbers, number).map_err(at)?;
-        let [x, z] = position;
-        rows.push(if is_geographic { [z, x] } else { [x, z] }, label, number);
+        Some(other) => {
+            return Ok(Row::Gap(format!("found a {}, which is no point", other.type_name())));
+        }
+        None => return Ok(Row::Gap("found no geometry".to_owned())),
+    };
+    let value = feature.property(label.wanted);
+    let all = || feature.properties.iter().flat_map(|it| it.keys().cloned()).collect();
+    label.see(number, value.is_some(), all);
+    let text = match value {
+        None | Some(Value::Null) => String::new(),
+        Some(Value::String(text)) => text.trim().to_owned(),
+        Some(value @ (Value::Bool(_) | Value::Number(_))) => value.to_string(),
+        Some(value) => bail!("label: found {value}, expected a word or a number"),
+    };
+    if is_missing(&text) {
+        return Ok(Row::Gap(format!("label: found {text:?} in {}", label.wanted)));
     }
-    if let (false, Some((number, others))) = (has_label, others) {
-        let place = Unit::Feature.place(name, number);
-        return Err(no_label(&place, wanted, layout, &others));
-    }
-    let at = |(number, error)| anyhow!("{}: {error}", Unit::Feature.place(name, number));
-    words.end().map_err(at)?;
-    let settled = numbers.end().map_err(at)?;
-    Ok((rows, settled))
+    let position = if reading.rows.is_geographic { [z, x] } else { [x, z] };
+    Ok(Row::Sample(position, reading.label(&text, number)?))
 }
 
 /// Coordinates are degrees, unless the file says otherwise. `GeoJSON` from before RFC 7946 may do so.

@@ -3,10 +3,9 @@
 use anyhow::{Context as _, Result, anyhow, bail};
 use roxmltree::{Document, Node};
 
-use crate::replay::label_name::{label_name, no_label};
-use crate::replay::label_words::LabelWords;
+use crate::replay::label_name::LabelName;
 use crate::replay::missing::is_missing;
-use crate::replay::numbers::{self, Decimal, Numbers};
+use crate::replay::reading::{Reading, Row};
 use crate::replay::rows::{Layout, Rows};
 
 /// Elements that are points.
@@ -17,16 +16,12 @@ const POINTS: [&str; 3] = ["wpt", "rtept", "trkpt"];
 /// # Errors
 /// Names the file and the line, what was found and what was expected.
 pub(crate) fn parse(name: &str, text: &[u8], layout: &Layout) -> Result<Rows> {
-    numbers::settled(|decimal| pass(name, text, layout, decimal))
+    Reading::of(name, layout, None, |reading| pass(reading, text))
 }
 
-fn pass(
-    name: &str,
-    text: &[u8],
-    layout: &Layout,
-    settled: Option<Decimal>,
-) -> Result<(Rows, Option<Decimal>)> {
-    let wanted = label_name(name, "GPX", layout)?;
+fn pass(reading: &mut Reading, text: &[u8]) -> Result<()> {
+    let name = reading.name;
+    let mut label = LabelName::of(name, "GPX", reading.layout)?;
     let text = std::str::from_utf8(text)
         .map_err(|error| anyhow!("{name}: expected XML in UTF-8: {error}"))?;
     let document = Document::parse(text)
@@ -37,63 +32,50 @@ fn pass(
         let line = document.text_pos_at(root.range().start).row;
         bail!("{name}:{line}: found the element {found:?}, expected gpx");
     }
+    reading.rows.is_geographic = true;
     let is_point = |node: &Node| node.is_element() && POINTS.contains(&node.tag_name().name());
-    let mut numbers = Numbers::of(None, settled);
-    let mut words = LabelWords::of(layout.threshold);
-    let mut rows = Rows { is_geographic: true, ..Rows::default() };
     let (mut line, mut seen) = (1, 0);
-    // The elements of the first point, and whether any point has the wanted one.
-    let (mut others, mut has_label) = (None, false);
     for point in root.descendants().filter(is_point) {
         let begins = point.range().start;
         line += text[seen..begins].matches('\n').count();
         seen = begins;
-        let at = |error: anyhow::Error| anyhow!("{name}:{line}: {error}");
-        let label = label(point, wanted);
-        has_label |= label.is_some();
-        others.get_or_insert_with(|| (line, elements(point)));
-        let mut position = [0.0; 2];
-        let mut lacks = None;
-        for (value, attribute) in position.iter_mut().zip(["lat", "lon"]) {
-            let field = point.attribute(attribute);
-            let field = field
-                .with_context(|| format!("found a point without {attribute}, expected degrees"))
-                .map_err(at)?
-                .trim();
-            if is_missing(field) {
-                lacks = Some(format!("{attribute}: found {field:?}"));
-                continue;
-            }
-            *value = numbers
-                .read(field, line)
-                .with_context(|| format!("{attribute}: found {field:?}, expected a finite number"))
-                .map_err(at)?;
-        }
-        let label = label.unwrap_or_default();
-        if is_missing(label) {
-            lacks = Some(format!("label: found {label:?} in {wanted}"));
-        }
-        if let Some(lacks) = lacks {
-            rows.skip(layout, line, lacks).map_err(at)?;
-            continue;
-        }
-        rows.push(position, words.read(label, &mut numbers, line).map_err(at)?, line);
+        reading.row(line, |reading| read(reading, &mut label, point, line))?;
     }
-    match others {
-        None => bail!("{name}: found GPX with no points, expected wpt, rtept or trkpt"),
-        Some((line, others)) if !has_label => {
-            return Err(no_label(&format!("{name}:{line}"), wanted, layout, &others));
-        }
-        Some(_) => {}
+    if label.first.is_none() {
+        bail!("{name}: found GPX with no points, expected wpt, rtept or trkpt");
     }
-    let at = |(line, error)| anyhow!("{name}:{line}: {error}");
-    words.end().map_err(at)?;
-    let settled = numbers.end().map_err(at)?;
-    Ok((rows, settled))
+    label.end(|line| format!("{name}:{line}"))
+}
+
+fn read(reading: &mut Reading, label: &mut LabelName, point: Node, line: usize) -> Result<Row> {
+    let wanted = label.wanted;
+    let told = text(point, wanted);
+    label.see(line, told.is_some(), || elements(point));
+    let mut position = [0.0; 2];
+    let mut lacks = None;
+    for (value, attribute) in position.iter_mut().zip(["lat", "lon"]) {
+        let field = point.attribute(attribute);
+        let field = field
+            .with_context(|| format!("found a point without {attribute}, expected degrees"))?
+            .trim();
+        if is_missing(field) {
+            lacks = Some(format!("{attribute}: found {field:?}"));
+        } else {
+            *value = reading.number(attribute, field, line)?;
+        }
+    }
+    let told = told.unwrap_or_default();
+    if is_missing(told) {
+        lacks = Some(format!("label: found {told:?} in {wanted}"));
+    }
+    match lacks {
+        Some(lacks) => Ok(Row::Gap(lacks)),
+        None => Ok(Row::Sample(position, reading.label(told, line)?)),
+    }
 }
 
 /// The text of the element called `wanted`: a child, or else one further below, as in extensions.
-fn label<'a>(point: Node<'a, '_>, wanted: &str) -> Option<&'a str> {
+fn text<'a>(point: Node<'a, '_>, wanted: &str) -> Option<&'a str> {
     // Which prefix stands for a namespace is up to the file.
     let wanted = wanted.rsplit(':').next().unwrap_or(wanted);
     let is_it = |node: &Node| node.is_element() && node.tag_name().name() == wanted;

@@ -16,6 +16,7 @@ use planner_core::Label;
 
 use crate::replay::doubt::{Doubt, Votes};
 use crate::replay::patch::{Mass, Patch, Quarter};
+use crate::world::polygon::Polygon;
 
 /// A patch of lines that explain the labels about equally well.
 #[derive(Clone, Debug)]
@@ -83,6 +84,9 @@ const LITTLE: f64 = 0.1;
 
 /// Boxes narrower than this are done, whatever cuts them: positions are no finer.
 const FINEST: f64 = 1e-12;
+
+/// The corners of a square about the origin, in order.
+const CORNERS: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
 
 /// The logarithm of the share at which the rest is left out.
 const REST: f64 = -12.0;
@@ -152,8 +156,7 @@ impl LinePosterior {
     /// The distribution over the lines that cross a rectangle about the origin. `reach` is half its size along each
     /// axis.
     pub(crate) fn of(votes: &[Votes], doubt: &Doubt, reach: Vector2<f64>) -> Result<Self, TooOpen> {
-        let corner = |x: f64, z: f64| Point2::new(x * reach.x, z * reach.y);
-        let ground = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+        let ground = CORNERS.map(|[x, z]| Point2::new(x * reach.x, z * reach.y));
         let extent = reach.amax();
         let mut problem = Problem { votes, doubt, ground, extent, work: 0 };
         let all: Vec<u32> = (0..votes.len() as u32).collect();
@@ -336,11 +339,11 @@ impl Problem<'_> {
     /// The cells of a box that is done.
     fn cut(&self, line_box: &LineBox, mut take: impl FnMut(Cell)) {
         let ([slope, offset], [half_slope, half_offset]) = (line_box.middle, line_box.half);
-        let corner = |a: f64, b: f64| [slope + a * half_slope, offset + b * half_offset];
-        let corners =
-            vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+        let corner =
+            |[a, b]: [f64; 2]| Point2::new(slope + a * half_slope, offset + b * half_offset);
+        let lines = Polygon(CORNERS.map(corner).into());
         let quarter = line_box.quarter;
-        let mut parts = vec![(Patch { quarter, corners }, line_box.settled)];
+        let mut parts = vec![(Patch { quarter, lines }, line_box.settled)];
         let mut split = |at: [f64; 2], told: &dyn Fn(Label) -> f64| {
             let whole = std::mem::take(&mut parts);
             for (patch, log) in whole {
@@ -387,10 +390,10 @@ impl Problem<'_> {
             }
         }
         for (patch, log) in parts {
-            let [slope, offset] = patch.middle();
+            let middle = patch.middle();
             let above = self.ground.map(|corner| {
                 let [ahead, left] = quarter.seen(corner);
-                left - slope * ahead - offset > 0.0
+                left - middle.x * ahead - middle.y > 0.0
             });
             if above == [true; 4] || above == [false; 4] {
                 continue;
@@ -398,10 +401,10 @@ impl Problem<'_> {
             let (log, mass) = match line_box.blurred {
                 None => (log, patch.mass(|_| 1.0)),
                 Some(blurred) => {
-                    let change = |at: [f64; 2]| -> f64 {
+                    let change = |at: Point2<f64>| -> f64 {
                         (0..2).map(|k| blurred.change[k] * (at[k] - line_box.middle[k])).sum()
                     };
-                    let own = change([slope, offset]);
+                    let own = change(middle);
                     (log + blurred.log + own, patch.mass(|at| libm::exp(change(at) - own)))
                 }
             };

@@ -20,6 +20,7 @@ pub mod missing;
 pub mod numbers;
 pub mod outlier;
 pub mod patch;
+mod reading;
 pub mod record;
 pub mod rows;
 pub mod sample_file;

@@ -31,20 +31,6 @@ impl Decimal {
     }
 }
 
-/// Reads a file in one pass or two. Its separators may be known only at its end. Then the first pass returns the
-/// decimal separator, and the second reads with it.
-///
-/// # Errors
-/// Those of a pass.
-pub(crate) fn settled<T>(
-    pass: impl Fn(Option<Decimal>) -> Result<(T, Option<Decimal>)>,
-) -> Result<T> {
-    match pass(None)? {
-        (read, None) => Ok(read),
-        (_, settled) => Ok(pass(settled)?.0),
-    }
-}
-
 /// A number as it stands on a line.
 type Seen = Option<(usize, String)>;
 

@@ -5,7 +5,9 @@
 //! separates the lines that pass below the position from those that pass above. So a patch bounded by positions is a
 //! convex polygon. The measure of lines, d(angle) d(distance), has the density `(1 + slope^2)^(-3/2)` there.
 
-use nalgebra::{Point2, Vector2};
+use nalgebra::{Point2, Vector2, center};
+
+use crate::world::polygon::Polygon;
 
 /// The direction along an axis that lines are nearest to: one of four.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,8 +31,9 @@ impl Quarter {
         [along.dot(&at.coords), along.perp(&at.coords)]
     }
 
-    /// A line's unit normal and its distance along it.
-    pub(crate) fn normal(self, [slope, offset]: [f64; 2]) -> (Vector2<f64>, f64) {
+    /// The unit normal of the line with this slope and offset, and its distance along it.
+    pub(crate) fn normal(self, line: Point2<f64>) -> (Vector2<f64>, f64) {
+        let (slope, offset) = (line.x, line.y);
         let along = self.along();
         let left = Vector2::new(-along.y, along.x);
         let length = libm::hypot(1.0, slope);
@@ -67,56 +70,45 @@ impl Mass {
 #[derive(Clone, Debug)]
 pub(crate) struct Patch {
     pub(crate) quarter: Quarter,
-    /// Slopes and offsets, in order around it.
-    pub(crate) corners: Vec<[f64; 2]>,
+    /// Its lines: slopes as x, offsets as y.
+    pub(crate) lines: Polygon,
 }
 
 impl Patch {
     /// The lines that have a position, as it is [seen](Quarter::seen), on their +1 side, and those that have it on
     /// the other.
     pub(crate) fn split(&self, [ahead, left]: [f64; 2]) -> [Option<Self>; 2] {
-        let height = |[slope, offset]: [f64; 2]| left - slope * ahead - offset;
-        let mut parts = [Vec::new(), Vec::new()];
-        for (p, q) in self.corners.iter().zip(self.corners.iter().cycle().skip(1)) {
-            let (d, e) = (height(*p), height(*q));
-            for (part, side) in parts.iter_mut().zip([1.0, -1.0]) {
-                if side * d >= 0.0 {
-                    part.push(*p);
-                }
-                if (d > 0.0 && e < 0.0) || (d < 0.0 && e > 0.0) {
-                    let share = d / (d - e);
-                    part.push([0, 1].map(|k| p[k] + (q[k] - p[k]) * share));
-                }
-            }
-        }
-        parts.map(|corners| (corners.len() >= 3).then_some(Self { quarter: self.quarter, corners }))
+        [1.0, -1.0].map(|side| {
+            let lines = self.lines.above(|line| side * (left - line.x * ahead - line.y));
+            (lines.0.len() >= 3).then_some(Self { quarter: self.quarter, lines })
+        })
     }
 
     /// The directions of the lines, from one to another, radians.
     pub(crate) fn directions(&self) -> [f64; 2] {
-        let directions = self.corners.iter().map(|corner| self.quarter.direction(corner[0]));
+        let directions = self.lines.0.iter().map(|line| self.quarter.direction(line.x));
         directions
             .fold([f64::INFINITY, f64::NEG_INFINITY], |[from, to], it| [from.min(it), to.max(it)])
     }
 
     /// A line inside.
-    pub(crate) fn middle(&self) -> [f64; 2] {
-        let count = self.corners.len() as f64;
-        [0, 1].map(|k| self.corners.iter().map(|corner| corner[k]).sum::<f64>() / count)
+    pub(crate) fn middle(&self) -> Point2<f64> {
+        let corners = self.lines.0.iter();
+        Point2::from(
+            corners.map(|line| line.coords).sum::<Vector2<f64>>() / self.lines.0.len() as f64,
+        )
     }
 
     /// The integrals, with a factor for each line: over triangles about the middle, exact for quadratic factors.
-    pub(crate) fn mass(&self, factor: impl Fn([f64; 2]) -> f64) -> Mass {
+    pub(crate) fn mass(&self, factor: impl Fn(Point2<f64>) -> f64) -> Mass {
         let middle = self.middle();
         let mut mass = Mass::default();
-        for (p, q) in self.corners.iter().zip(self.corners.iter().cycle().skip(1)) {
-            let [a, b] = [p, q].map(|it| Vector2::new(it[0] - middle[0], it[1] - middle[1]));
-            let third = a.perp(&b).abs() / 6.0;
-            let between = |a: [f64; 2], b: [f64; 2]| [0, 1].map(|k| a[k].midpoint(b[k]));
-            for at in [between(middle, *p), between(*p, *q), between(*q, middle)] {
-                let (normal, distance) = self.quarter.normal(at);
-                let squared = 1.0 + at[0] * at[0];
-                let weight = factor(at) * third / (squared * squared.sqrt());
+        for (p, q) in self.lines.sides() {
+            let third = (p - middle).perp(&(q - middle)).abs() / 6.0;
+            for line in [center(&middle, &p), center(&p, &q), center(&q, &middle)] {
+                let (normal, distance) = self.quarter.normal(line);
+                let squared = 1.0 + line.x * line.x;
+                let weight = factor(line) * third / (squared * squared.sqrt());
                 mass.add(&Mass { measure: 1.0, normal, distance }, weight);
             }
         }

@@ -8,7 +8,7 @@ use planner_core::Line;
 use serde::Serialize;
 
 use crate::mission::read_out::LEVEL;
-use crate::mission::results::{EstimateRecords, LineRecord};
+use crate::mission::results::{CredibleRecord, EstimateRecords, LineRecord};
 use crate::replay::answer::{Answer, Trust};
 use crate::replay::rows::Layout;
 use crate::replay::sample_file::SampleFile;
@@ -36,7 +36,7 @@ pub struct Record {
     #[serde(skip_serializing_if = "Option::is_none")]
     crs: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    in_file: Option<EstimatesInFile>,
+    in_file: Option<EstimateRecords<LineInFile>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     tolerance: Option<f64>,
     #[serde(flatten)]
@@ -50,14 +50,6 @@ struct SkippedRecord {
     /// The line of the first, or its feature.
     #[serde(skip_serializing_if = "Option::is_none")]
     first: Option<usize>,
-}
-
-/// The estimates in the file's own coordinates.
-#[derive(Serialize)]
-struct EstimatesInFile {
-    bisector: Option<LineInFile>,
-    centre: Option<LineInFile>,
-    maximum_margin: Option<LineInFile>,
 }
 
 /// A line in a file's own coordinates.
@@ -77,18 +69,9 @@ pub(crate) struct LineInFile {
 struct DoubtRecord {
     p: f64,
     pruned_mass: f64,
+    /// The smallest set of lines that has the level; lines that are equally likely are in it together.
     credible: CredibleRecord,
     most_likely: MostLikelyRecord,
-}
-
-/// The smallest set of lines that holds a probability; lines that are equally likely are in it together.
-#[derive(Serialize)]
-struct CredibleRecord {
-    level: f64,
-    slope_arcs: Vec<[f64; 2]>,
-    intercept: Option<[f64; 2]>,
-    /// Its probability.
-    probability: f64,
 }
 
 /// The most likely line.
@@ -169,7 +152,7 @@ impl Replay {
             estimates,
             origin: self.file.frame.origin(),
             crs: self.file.frame.crs().map(ToString::to_string),
-            in_file: self.file.frame.origin().map(|_| EstimatesInFile {
+            in_file: self.file.frame.origin().map(|_| EstimateRecords {
                 bisector: in_file(self.answer.bisector),
                 centre: in_file(self.answer.centre),
                 maximum_margin: in_file(self.answer.maximum_margin),
@@ -183,6 +166,7 @@ impl Replay {
                     slope_arcs: slope_arcs.clone(),
                     intercept: *intercept,
                     probability: doubt.probability,
+                    ..CredibleRecord::default()
                 },
                 most_likely: MostLikelyRecord {
                     line: doubt.most_likely.into(),

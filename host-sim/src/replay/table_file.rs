@@ -2,15 +2,14 @@
 
 use std::borrow::Cow;
 
-use anyhow::{Context as _, Result, anyhow};
+use anyhow::{Result, anyhow};
 use csv::ByteRecord;
-use planner_core::Label;
 
 use crate::replay::columns::{Columns, Places};
 use crate::replay::delimiter::Delimiter;
-use crate::replay::label_words::LabelWords;
 use crate::replay::missing::is_missing;
-use crate::replay::numbers::{self, Decimal, Numbers};
+use crate::replay::numbers::Numbers;
+use crate::replay::reading::{Reading, Row};
 use crate::replay::rows::{Layout, Rows};
 
 fn reader(text: &[u8], delimiter: Delimiter) -> csv::Reader<&[u8]> {
@@ -64,18 +63,13 @@ fn guess(text: &[u8], columns: &Columns) -> Delimiter {
 /// # Errors
 /// Names the file and the line, what was found and what was expected.
 pub(crate) fn parse(name: &str, text: &[u8], layout: &Layout) -> Result<Rows> {
-    numbers::settled(|decimal| pass(name, text, layout, decimal))
-}
-
-/// A pass over the rows, with the decimal separator if it is known. It returns the separator if another pass is needed.
-fn pass(
-    name: &str,
-    text: &[u8],
-    layout: &Layout,
-    settled: Option<Decimal>,
-) -> Result<(Rows, Option<Decimal>)> {
     let columns = layout.columns.clone().unwrap_or_default();
     let delimiter = layout.delimiter.unwrap_or_else(|| guess(text, &columns));
+    Reading::of(name, layout, Some(delimiter), |reading| pass(reading, text, &columns, delimiter))
+}
+
+fn pass(reading: &mut Reading, text: &[u8], columns: &Columns, delimiter: Delimiter) -> Result<()> {
+    let name = reading.name;
     let mut reader = reader(text, delimiter);
     let mut lines = Lines::of(text);
     let mut row = ByteRecord::new();
@@ -84,71 +78,39 @@ fn pass(
         Ok(there.then(|| lines.row(row)))
     };
     let mut line = next(&mut row)?;
-    let at = |line: usize, error: anyhow::Error| anyhow!("{name}:{line}: {error}");
     let first = format!("{name}:{}", line.unwrap_or(1));
-    let places = places(&first, &row, &columns, delimiter)?;
-    let mut titles = None;
+    let places = places(&first, &row, columns, delimiter)?;
+    reading.rows.is_geographic = places.is_geographic;
     if places.has_header {
         let title = |column: usize| field(&row, delimiter, column).trim().to_owned();
-        titles = Some(places.position.map(title));
+        reading.rows.titles = Some(places.position.map(title));
         line = next(&mut row)?;
     }
-    let mut reading = Reading {
-        places,
-        delimiter,
-        numbers: Numbers::of(Some(delimiter), settled),
-        words: LabelWords::of(layout.threshold),
-    };
-    let mut rows = Rows { is_geographic: places.is_geographic, titles, ..Rows::default() };
     while let Some(number) = line {
-        match reading.row(&row, number).map_err(|error| at(number, error))? {
-            Found::Sample(position, label) => rows.push(position, label, number),
-            Found::Gap(lacks) => {
-                rows.skip(layout, number, lacks).map_err(|error| at(number, error))?;
-            }
-        }
+        reading.row(number, |reading| read(reading, &row, places, delimiter, number))?;
         line = next(&mut row)?;
     }
-    reading.words.end().map_err(|(line, error)| at(line, error))?;
-    let settled = reading.numbers.end().map_err(|(line, error)| at(line, error))?;
-    Ok((rows, settled))
+    Ok(())
 }
 
-/// What a row is.
-enum Found {
-    Sample([f64; 2], Label),
-    /// It lacks a value.
-    Gap(String),
-}
-
-/// What the rows of a file are read with.
-struct Reading {
+fn read(
+    reading: &mut Reading,
+    row: &ByteRecord,
     places: Places,
     delimiter: Delimiter,
-    numbers: Numbers,
-    words: LabelWords,
-}
-
-impl Reading {
-    fn row(&mut self, row: &ByteRecord, line: usize) -> Result<Found> {
-        let Places { position, label, .. } = self.places;
-        let [first, second] = self.places.names();
-        let columns = [(first, position[0]), (second, position[1]), ("label", label)];
-        let fields = columns.map(|(_, column)| field(row, self.delimiter, column));
-        let texts = fields.each_ref().map(|field| field.trim());
-        let named = columns.iter().zip(texts);
-        if let Some(((name, _), text)) = named.clone().find(|(_, text)| is_missing(text)) {
-            return Ok(Found::Gap(format!("{name}: found {text:?}")));
-        }
-        let mut at = [0.0; 2];
-        for (at, ((name, _), text)) in at.iter_mut().zip(named) {
-            *at = self
-                .numbers
-                .read(text, line)
-                .with_context(|| format!("{name}: found {text:?}, expected a finite number"))?;
-        }
-        Ok(Found::Sample(at, self.words.read(texts[2], &mut self.numbers, line)?))
+    line: usize,
+) -> Result<Row> {
+    let [a, b] = places.position;
+    let fields = [a, b, places.label].map(|column| field(row, delimiter, column));
+    let texts = fields.each_ref().map(|field| field.trim());
+    let [first, second] = places.names();
+    let names = [first, second, "label"];
+    if let Some((name, text)) = names.iter().zip(texts).find(|(_, text)| is_missing(text)) {
+        return Ok(Row::Gap(format!("{name}: found {text:?}")));
     }
+    let position =
+        [reading.number(first, texts[0], line)?, reading.number(second, texts[1], line)?];
+    Ok(Row::Sample(position, reading.label(texts[2], line)?))
 }
 
 const COMMENT: u8 = b'#';

@@ -2,44 +2,9 @@
 
 use anyhow::{Result, anyhow, bail};
 use planner_core::Label;
-use serde::Deserialize;
 
 use crate::replay::rows::{Layout, Rows};
-
-/// The fields of a record that are read here; the contract of the trace is in ARCHITECTURE.md. All kinds share one
-/// structure. With a tagged enumeration serde would not understand numbers if another crate makes it keep their digits.
-#[derive(Deserialize)]
-struct Record {
-    #[serde(rename = "record")]
-    kind: Kind,
-    oracle: Option<Vec<Given>>,
-    p: Option<f64>,
-    pose: Option<Pose>,
-    label: Option<i8>,
-    #[serde(default)]
-    trusted: bool,
-}
-
-#[derive(Clone, Copy, Deserialize)]
-#[serde(rename_all = "lowercase")]
-enum Kind {
-    Start,
-    Step,
-    End,
-}
-
-#[derive(Deserialize)]
-struct Given {
-    x: f64,
-    z: f64,
-    label: i8,
-}
-
-#[derive(Deserialize)]
-struct Pose {
-    x: f64,
-    z: f64,
-}
+use crate::report::trace::Record;
 
 /// The rows of a trace. A reading on the boundary itself has no side, and is left out.
 ///
@@ -57,51 +22,45 @@ pub(crate) fn parse(name: &str, text: &[u8], layout: &Layout) -> Result<Rows> {
         if record.trim_ascii().is_empty() {
             continue;
         }
-        let expected =
-            format!("{name}:{line}: expected a record of a trace, as run --trace writes it");
-        let record: Record =
-            serde_json::from_slice(record).map_err(|error| anyhow!("{expected}: {error}"))?;
-        match (record.kind, rows.p) {
-            (Kind::Start, None) => {
-                let (Some(oracle), Some(p)) = (record.oracle, record.p) else {
-                    bail!("{expected}: found a start without oracle or p")
-                };
-                rows.p = Some(p);
-                rows.certain = (0..oracle.len()).collect();
-                for given in oracle {
-                    take(&mut rows, [given.x, given.z], given.label, line)
-                        .map_err(|error| anyhow!("{name}:{line}: {error}"))?;
-                }
-            }
-            (Kind::Start, Some(_)) => {
-                bail!("{name}:{line}: found a second start, expected the trace of one mission")
-            }
-            (_, None) => {
-                bail!("{name}:{line}: found no start, expected a trace, which begins with it")
-            }
-            (Kind::Step, _) => {
-                let Some(pose) = record.pose else {
-                    bail!("{expected}: found a step without pose")
-                };
-                let Some(label) = record.label.filter(|label| *label != 0) else { continue };
-                if record.trusted {
-                    rows.certain.push(rows.labels.len());
-                }
-                take(&mut rows, [pose.x, pose.z], label, line)
-                    .map_err(|error| anyhow!("{name}:{line}: {error}"))?;
-            }
-            (Kind::End, _) => {}
-        }
+        let record = Record::read(record).map_err(|error| {
+            anyhow!(
+                "{name}:{line}: expected a record of a trace, as run --trace writes it: {error}"
+            )
+        })?;
+        take(&mut rows, record, line).map_err(|error| anyhow!("{name}:{line}: {error}"))?;
     }
     Ok(rows)
 }
 
-fn take(rows: &mut Rows, position: [f64; 2], label: i8, line: usize) -> Result<()> {
-    let label = match label {
-        1 => Label::Positive,
-        -1 => Label::Negative,
-        other => bail!("label: found {other}, expected -1 or 1"),
-    };
-    rows.push(position, label, line);
+fn take(rows: &mut Rows, record: Record<'_>, line: usize) -> Result<()> {
+    match (record, rows.p) {
+        (Record::Start(start), None) => {
+            rows.p = Some(start.p);
+            rows.certain = (0..start.oracle.len()).collect();
+            for given in &start.oracle {
+                rows.push([given.x, given.z], label(given.label)?, line);
+            }
+        }
+        (Record::Start(_), Some(_)) => {
+            bail!("found a second start, expected the trace of one mission")
+        }
+        (_, None) => bail!("found no start, expected a trace, which begins with it"),
+        (Record::Step(step), Some(_)) => {
+            let Some(read) = step.label.filter(|read| *read != 0) else { return Ok(()) };
+            if step.trusted == Some(true) {
+                rows.certain.push(rows.labels.len());
+            }
+            rows.push([step.pose.x, step.pose.z], label(read)?, line);
+        }
+        (Record::End(_), Some(_)) => {}
+    }
     Ok(())
+}
+
+fn label(read: i8) -> Result<Label> {
+    match read {
+        1 => Ok(Label::Positive),
+        -1 => Ok(Label::Negative),
+        other => bail!("label: found {other}, expected -1 or 1"),
+    }
 }

@@ -4,16 +4,10 @@ use std::collections::BTreeMap;
 use std::fmt::Display;
 
 use crate::campaign::accuracy::{self, Row};
-use crate::campaign::calibration::{self, Calibration};
+use crate::campaign::calibration;
 use crate::campaign::spread::Spread;
 use crate::mission::algorithm::Algorithm;
 use crate::report::table::{Column, Table};
-
-const ESTIMATES: [Column; 3] = [
-    Column::centre("centre", 26).apart(),
-    Column::centre("maximum margin", 26).apart(),
-    Column::centre("bisector (paper)", 26).apart(),
-];
 
 fn spread(Spread { median, p90, worst }: Spread, decimals: usize) -> String {
     format!("{median:>8.decimals$} {p90:>8.decimals$} {worst:>8.decimals$}")
@@ -45,33 +39,36 @@ pub fn accuracy(summary: &accuracy::Summary) -> String {
     )
 }
 
+/// The errors of the slope.
 fn degrees(rows: &[Row]) -> Table {
-    let first = [Column::right("step", 4), Column::right("bits/step", 9)];
-    let mut table = Table::new([&first[..], &ESTIMATES].concat());
-    for row in rows {
-        let errors = [row.centre_deg, row.maximum_margin_deg, row.bisector_deg];
-        let first = [row.step.to_string(), format!("{:.3}", row.bits_per_step)];
-        table.row(first.into_iter().chain(errors.map(|it| spread(it, 3))));
-    }
-    table
+    let of = |title| Column::centre(title, 26).apart();
+    Table::of(
+        rows,
+        &[
+            (Column::right("step", 4), &|row| row.step.to_string()),
+            (Column::right("bits/step", 9), &|row| format!("{:.3}", row.bits_per_step)),
+            (of("centre"), &|row| spread(row.centre_deg, 3)),
+            (of("maximum margin"), &|row| spread(row.maximum_margin_deg, 3)),
+            (of("bisector (paper)"), &|row| spread(row.bisector_deg, 3)),
+        ],
+    )
 }
 
+/// The misclassified shares.
 fn areas(rows: &[Row]) -> Table {
-    let first = [Column::right("step", 4), Column::right("cost", 9)];
-    let last = [Column::right("metres", 8).apart()];
-    let mut table = Table::new([&first[..], &ESTIMATES, &last].concat());
-    for row in rows {
-        let shares = [
-            row.centre_misclassified,
-            row.maximum_margin_misclassified,
-            row.bisector_misclassified,
-        ];
-        let first = [row.step.to_string(), format!("{:.1}", row.control_cost)];
-        let shares = shares.map(|it| spread(it.scaled(100.0), 4));
-        let last = [format!("{:.1}", row.metres)];
-        table.row(first.into_iter().chain(shares).chain(last));
-    }
-    table
+    let of = |title| Column::centre(title, 26).apart();
+    let percent = |share: Spread| spread(share.scaled(100.0), 4);
+    Table::of(
+        rows,
+        &[
+            (Column::right("step", 4), &|row| row.step.to_string()),
+            (Column::right("cost", 9), &|row| format!("{:.1}", row.control_cost)),
+            (of("centre"), &|row| percent(row.centre_misclassified)),
+            (of("maximum margin"), &|row| percent(row.maximum_margin_misclassified)),
+            (of("bisector (paper)"), &|row| percent(row.bisector_misclassified)),
+            (Column::right("metres", 8).apart(), &|row| format!("{:.1}", row.metres)),
+        ],
+    )
 }
 
 fn counts<K: Display>(counts: &BTreeMap<K, u64>) -> String {
@@ -82,33 +79,23 @@ fn counts<K: Display>(counts: &BTreeMap<K, u64>) -> String {
 /// The information of labels that may be wrong, and whether statements hold.
 pub fn calibration(summary: &calibration::Summary) -> String {
     let calibration::Summary { title, limit, rows, .. } = summary;
-    let mut table = Table::new([
-        Column::right("labels", 6),
-        Column::right("missions", 8),
-        Column::right("bits", 7),
-        Column::right("bits/label", 10),
-        Column::right("of limit", 9),
-        Column::right("expected", 9),
-        Column::right("hypotheses", 11),
-        Column::right("pruned", 8),
-        Column::centre("mean line, slope error deg", 26),
-        Column::right("cost", 7),
-    ]);
-    for row in rows {
-        let each = row.bits / f64::from(row.labels);
-        table.row([
-            row.labels.to_string(),
-            row.missions.to_string(),
-            format!("{:.3}", row.bits),
-            format!("{each:.4}"),
-            row.share.map_or("-".into(), |share| format!("{:.1}%", 100.0 * share)),
-            row.expected_share.map_or("-".into(), |share| format!("{:.1}%", 100.0 * share)),
-            format!("{:.1}", row.hypotheses),
-            format!("{:.4}", row.pruned_mass),
-            spread(row.mean_deg, 3),
-            format!("{:.1}", row.control_cost),
-        ]);
-    }
+    let percent = |share: Option<f64>| share.map_or("-".into(), |it| format!("{:.1}%", 100.0 * it));
+    let each = |row: &calibration::Row| row.bits / f64::from(row.labels);
+    let table = Table::of(
+        rows,
+        &[
+            (Column::right("labels", 6), &|row| row.labels.to_string()),
+            (Column::right("missions", 8), &|row| row.missions.to_string()),
+            (Column::right("bits", 7), &|row| format!("{:.3}", row.bits)),
+            (Column::right("bits/label", 10), &|row| format!("{:.4}", each(row))),
+            (Column::right("of limit", 9), &|row| percent(row.share)),
+            (Column::right("expected", 9), &|row| percent(row.expected_share)),
+            (Column::right("hypotheses", 11), &|row| format!("{:.1}", row.hypotheses)),
+            (Column::right("pruned", 8), &|row| format!("{:.4}", row.pruned_mass)),
+            (Column::centre("mean line, slope error deg", 26), &|row| spread(row.mean_deg, 3)),
+            (Column::right("cost", 7), &|row| format!("{:.1}", row.control_cost)),
+        ],
+    );
     let [by_area, by_sequences] = [0, 1].map(|prior| coverage(rows, prior));
     format!(
         "{title}; a label tells {limit:.4} bits at most\n\n{table}\n\
@@ -118,23 +105,20 @@ pub fn calibration(summary: &calibration::Summary) -> String {
 
 /// How often statements hold, by one of the two priors.
 fn coverage(rows: &[calibration::Row], prior: usize) -> Table {
-    let mut table = Table::new([
-        Column::right("labels", 6),
-        Column::right("coverage", 8).apart(),
-        Column::right("stated", 7),
-        Column::left("best hypothesis in five bins: mean stated > share that hold the truth", 0)
-            .apart(),
-    ]);
-    for row in rows {
-        let Calibration { coverage, stated, best } = &row.calibration[prior];
-        let bins: Vec<_> =
-            best.iter().map(|(_, stated, hit)| format!("{stated:.3} > {hit:.3}")).collect();
-        table.row([
-            row.labels.to_string(),
-            format!("{coverage:.3}"),
-            format!("{stated:.3}"),
-            bins.join(" | "),
-        ]);
-    }
-    table
+    const BEST: &str = "best hypothesis in five bins: mean stated > share that hold the truth";
+    let of = |row: &calibration::Row| row.calibration[prior].clone();
+    let bins = |row: &calibration::Row| {
+        let bins = of(row).best.into_iter();
+        let bins = bins.map(|(_, stated, hit)| format!("{stated:.3} > {hit:.3}"));
+        bins.collect::<Vec<_>>().join(" | ")
+    };
+    Table::of(
+        rows,
+        &[
+            (Column::right("labels", 6), &|row| row.labels.to_string()),
+            (Column::right("coverage", 8).apart(), &|row| format!("{:.3}", of(row).coverage)),
+            (Column::right("stated", 7), &|row| format!("{:.3}", of(row).stated)),
+            (Column::left(BEST, 0).apart(), &bins),
+        ],
+    )
 }

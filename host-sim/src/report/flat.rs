@@ -1,106 +1,99 @@
 //! The steps of a mission as flat records, for data frames: every key on every line, and no lists.
+//!
+//! Rows are made from the trace. Keys are those of the trace, and each part of a list or an object there has a key of
+//! its own here. So a new field of a step needs nothing here.
 
-use serde::Serialize;
+use std::collections::{BTreeMap, BTreeSet};
 
-use crate::mission::algorithm::Algorithm;
-use crate::mission::results::{PoseRecord, Results, Start, StepResult};
+use serde::{Serialize, Serializer};
+use serde_json::{Map, Value, json};
+
+use crate::mission::results::{Results, Start, StepResult};
 use crate::output::file::json;
+use crate::report::trace;
 
-/// A step, with what the trace has once for all steps. Keys are those of the trace. Each part of a list or an object
-/// there has a key of its own here.
-#[derive(Serialize)]
-pub(crate) struct Row {
-    pub(crate) algorithm: Algorithm,
-    pub(crate) seed: u64,
-    pub(crate) p: f64,
-    pub(crate) truth_angle: Option<f64>,
-    pub(crate) truth_slope: Option<f64>,
-    pub(crate) truth_intercept: Option<f64>,
-    pub(crate) step: usize,
-    pub(crate) problem: Option<&'static str>,
-    pub(crate) recovery: Option<&'static str>,
-    pub(crate) index: u32,
-    pub(crate) v: f32,
-    pub(crate) w: f32,
-    pub(crate) x: f64,
-    pub(crate) z: f64,
-    pub(crate) heading: f64,
-    pub(crate) true_x: Option<f64>,
-    pub(crate) true_z: Option<f64>,
-    pub(crate) true_heading: Option<f64>,
-    pub(crate) label: Option<i8>,
-    pub(crate) trusted: Option<bool>,
-    /// One interval: across the vertical it ends beyond 90.
-    pub(crate) slope_from: Option<f64>,
-    pub(crate) slope_to: Option<f64>,
-    pub(crate) intercept_from: Option<f64>,
-    pub(crate) intercept_to: Option<f64>,
-    pub(crate) bits: f64,
-    pub(crate) entropy: Option<f64>,
-    pub(crate) hypotheses: Option<usize>,
-    pub(crate) pruned_mass: Option<f64>,
-    pub(crate) examined: u32,
-    pub(crate) proven: bool,
-    /// Up to and with this step.
-    pub(crate) control_cost: f64,
-    pub(crate) metres: f64,
+/// The keys that every row has, in their order. Keys that only some missions have come after them.
+const KEYS: &str = "algorithm seed p truth_angle truth_slope truth_intercept step problem recovery index v w x z \
+    heading true_x true_z true_heading label trusted slope_from slope_to intercept_from intercept_to bits entropy \
+    hypotheses pruned_mass examined proven control_cost metres";
+
+/// A step: its keys in their order, with null where it has no value.
+#[derive(Clone, Debug)]
+pub(crate) struct Row(Vec<(String, Value)>);
+
+impl Row {
+    /// The value under a key, null if there is none.
+    pub(crate) fn get(&self, wanted: &str) -> &Value {
+        self.0.iter().find(|(key, _)| key == wanted).map_or(&Value::Null, |(_, value)| value)
+    }
+
+    /// The keys that only some missions have.
+    pub(crate) fn added(&self) -> impl Iterator<Item = &str> {
+        self.0.iter().skip(KEYS.split(' ').count()).map(|(key, _)| key.as_str())
+    }
+}
+
+impl Serialize for Row {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(key, value)| (key, value)))
+    }
 }
 
 /// The steps of a mission, one a line.
 pub fn lines(results: &Results) -> String {
-    rows(results).map(|row| json(&row)).collect()
+    rows(results).iter().map(json).collect()
 }
 
 /// The steps of a mission.
-pub(crate) fn rows(results: &Results) -> impl Iterator<Item = Row> {
-    let (mut control_cost, mut metres) = (0.0, 0.0);
-    results.steps.iter().map(move |step| {
-        control_cost += step.cost();
-        metres += f64::from(step.action.v);
-        Row { control_cost, metres, ..Row::of(&results.start, step) }
-    })
+pub(crate) fn rows(results: &Results) -> Vec<Row> {
+    let steps = results.steps.iter().map(|step| parts(&results.start, step));
+    let steps: Vec<_> = steps.collect();
+    let usual = KEYS.split(' ').map(ToOwned::to_owned);
+    let added: BTreeSet<_> = steps.iter().flat_map(BTreeMap::keys).cloned().collect();
+    let added = added.into_iter().filter(|key| !KEYS.split(' ').any(|usual| usual == key));
+    let keys: Vec<_> = usual.chain(added).collect();
+    let value = |step: &BTreeMap<_, _>, key| step.get(key).cloned().unwrap_or(Value::Null);
+    let row = |step| Row(keys.iter().map(|key| (key.clone(), value(step, key))).collect());
+    steps.iter().map(row).collect()
 }
 
-impl Row {
-    fn of(start: &Start, step: &StepResult) -> Self {
-        let truth = start.truth.as_ref();
-        let truly = |of: fn(&PoseRecord) -> f64| step.true_pose.as_ref().map(of);
-        let arc = interval(&step.slope_arcs);
-        Self {
-            algorithm: start.algorithm,
-            seed: start.seed,
-            p: start.p,
-            truth_angle: truth.map(|line| line.angle),
-            truth_slope: truth.and_then(|line| line.slope),
-            truth_intercept: truth.and_then(|line| line.intercept),
-            step: step.step,
-            problem: step.problem,
-            recovery: step.recovery,
-            index: step.action.index,
-            v: step.action.v,
-            w: step.action.w,
-            x: step.pose.x,
-            z: step.pose.z,
-            heading: step.pose.heading,
-            true_x: truly(|pose| pose.x),
-            true_z: truly(|pose| pose.z),
-            true_heading: truly(|pose| pose.heading),
-            label: step.label,
-            trusted: step.noisy.map(|it| it.trusted),
-            slope_from: arc.map(|[from, _]| from),
-            slope_to: arc.map(|[_, to]| to),
-            intercept_from: step.intercept.map(|[from, _]| from),
-            intercept_to: step.intercept.map(|[_, to]| to),
-            bits: step.bits,
-            entropy: step.noisy.map(|it| it.entropy),
-            hypotheses: step.noisy.map(|it| it.hypotheses),
-            pruned_mass: step.noisy.map(|it| it.pruned_mass),
-            examined: step.examined,
-            proven: step.proven.unwrap_or(true),
-            control_cost: 0.0,
-            metres: 0.0,
+/// The parts of a step's record, and what the trace has once for all steps.
+fn parts(
+    Start { algorithm, seed, p, truth, .. }: &Start,
+    step: &StepResult,
+) -> BTreeMap<String, Value> {
+    // From its line in the trace, as single precision has its own digits there.
+    let mut record: Map<_, _> = serde_json::from_str(&trace::step(step)).expect("an object");
+    let pose = record.remove("true_pose");
+    record.retain(|key, _| !["record", "slope_arcs"].contains(&key.as_str()));
+    let more = json!({
+        "algorithm": algorithm,
+        "seed": seed,
+        "p": p,
+        "truth": truth,
+        "slope": interval(&step.slope_arcs),
+        "true": pose,
+        "proven": step.proven.unwrap_or(true),
+        "control_cost": step.control_cost,
+        "metres": step.metres,
+    });
+    record.extend(more.as_object().cloned().unwrap_or_default());
+    let mut parts = BTreeMap::new();
+    for (key, value) in record {
+        match value {
+            Value::Null => {}
+            Value::Object(of) if ["pose", "action"].contains(&key.as_str()) => parts.extend(of),
+            Value::Object(of) => {
+                parts.extend(of.into_iter().map(|(part, value)| (format!("{key}_{part}"), value)));
+            }
+            Value::Array(ends) => {
+                let ends = ["from", "to"].map(|end| format!("{key}_{end}")).into_iter().zip(ends);
+                parts.extend(ends);
+            }
+            value => drop(parts.insert(key, value)),
         }
     }
+    parts
 }
 
 /// Slopes as one interval, degrees; across the vertical it ends beyond 90.

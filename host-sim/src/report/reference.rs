@@ -21,7 +21,7 @@ pub fn text(title: &str, solution: &Solution) -> String {
         problem.line_cost(),
     );
     text += &match optimum {
-        Some(recording) => steps(&recording.results.steps),
+        Some(recording) => steps(&recording.results.steps).to_string(),
         None if instance.begin().is_none() => {
             "No line has the oracle's points on the sides of their labels, a metre off.\n"
                 .to_owned()
@@ -29,66 +29,45 @@ pub fn text(title: &str, solution: &Solution) -> String {
         None => "No sequence of so many motions keeps the constraints.\n".to_owned(),
     };
     text.push('\n');
-    text += &table(accounts);
+    text += &table(accounts).to_string();
     text += &broken(accounts);
     text
 }
 
 /// The motions.
-fn steps(steps: &[StepResult]) -> String {
-    let mut table = Table::new([
-        Column::right("step", 4),
-        Column::right("v", 5).apart(),
-        Column::right("w", 6).apart(),
-        Column::right("x", 7).apart(),
-        Column::right("z", 7).apart(),
-        Column::right("label", 5).apart(),
-        Column::left("slope arc deg", 16).apart(),
-        Column::right("bits", 5),
-    ]);
-    for step in steps {
-        table.row([
-            step.step.to_string(),
-            format!("{:.2}", step.action.v),
-            format!("{:.2}", step.action.w),
-            format!("{:.3}", step.pose.x),
-            format!("{:.3}", step.pose.z),
-            text::signed(step.fact),
-            text::arcs(&step.slope_arcs),
-            format!("{:.2}", step.bits),
-        ]);
-    }
-    table.to_string()
+fn steps(steps: &[StepResult]) -> Table {
+    Table::of(
+        steps,
+        &[
+            (Column::right("step", 4), &|it| it.step.to_string()),
+            (Column::right("v", 5).apart(), &|it| format!("{:.2}", it.action.v)),
+            (Column::right("w", 6).apart(), &|it| format!("{:.2}", it.action.w)),
+            (Column::right("x", 7).apart(), &|it| format!("{:.3}", it.pose.x)),
+            (Column::right("z", 7).apart(), &|it| format!("{:.3}", it.pose.z)),
+            (Column::right("label", 5).apart(), &|it| text::signed(it.fact)),
+            (Column::left("slope arc deg", 16).apart(), &|it| text::arcs(&it.slope_arcs)),
+            (Column::right("bits", 5), &|it| format!("{:.2}", it.bits)),
+        ],
+    )
 }
 
 /// The cost of each.
-fn table(accounts: &[Account]) -> String {
-    let mut table = Table::new([
-        Column::left("", 18),
-        Column::right("objective", 9),
-        Column::right("above", 7).apart(),
-        Column::right("line", 7).apart(),
-        Column::right("control", 7).apart(),
-        Column::right("samples", 7).apart(),
-        Column::right("bits", 5).apart(),
-        Column::left("slope arc deg", 24).apart(),
-        Column::left("broken", 0),
-    ]);
+fn table(accounts: &[Account]) -> Table {
     let figure = |value: Option<f64>| value.map_or("-".to_owned(), |it| format!("{it:.3}"));
-    for account in accounts {
-        table.row([
-            account.planner.to_owned(),
-            figure(account.objective),
-            figure(account.above),
-            figure(account.line_cost),
-            format!("{:.3}", account.control_cost),
-            account.samples.to_string(),
-            format!("{:.2}", account.bits),
-            text::arcs(&account.slope_arcs),
-            account.broken.join(", "),
-        ]);
-    }
-    table.to_string()
+    Table::of(
+        accounts,
+        &[
+            (Column::left("", 18), &|it| it.planner.to_owned()),
+            (Column::right("objective", 9), &|it| figure(it.objective)),
+            (Column::right("above", 7).apart(), &|it| figure(it.above)),
+            (Column::right("line", 7).apart(), &|it| figure(it.line_cost)),
+            (Column::right("control", 7).apart(), &|it| format!("{:.3}", it.control_cost)),
+            (Column::right("samples", 7).apart(), &|it| it.samples.to_string()),
+            (Column::right("bits", 5).apart(), &|it| format!("{:.2}", it.bits)),
+            (Column::left("slope arc deg", 24).apart(), &|it| text::arcs(&it.slope_arcs)),
+            (Column::left("broken", 0), &|it| it.broken.join(", ")),
+        ],
+    )
 }
 
 /// The constraints that were broken.

@@ -52,7 +52,19 @@ pub struct Table {
     text: String,
 }
 
+/// A column, and the cell that it has for a row.
+pub type Cells<'a, R> = (Column, &'a dyn Fn(&R) -> String);
+
 impl Table {
+    /// A table of rows of one kind.
+    pub fn of<R>(rows: &[R], columns: &[Cells<R>]) -> Self {
+        let mut table = Self::new(columns.iter().map(|(column, _)| *column).collect::<Vec<_>>());
+        for row in rows {
+            table.row(columns.iter().map(|(_, cell)| cell(row)));
+        }
+        table
+    }
+
     /// A table with no row yet.
     pub fn new(columns: impl Into<Vec<Column>>) -> Self {
         let columns = columns.into();
@@ -85,9 +97,7 @@ impl Table {
         }
         self.text.push('\n');
     }
-}
 
-impl Table {
     /// Adds a line that is no row.
     pub fn line(&mut self, line: &str) {
         self.text += line;

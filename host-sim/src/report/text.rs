@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::mission::algorithm::Algorithm;
-use crate::mission::results::{EstimateRecords, LineRecord, NoisyEnd, Results, Start, StepResult};
+use crate::mission::results::{End, EstimateRecords, LineRecord, Results, Start, StepResult};
 use crate::mission::stop::GoalRecord;
 use crate::report::table::{Column, Table};
 use crate::world::noise::limit;
@@ -64,7 +64,7 @@ pub fn named(
 
 /// Names and lines of a mission's estimates, the recommended one first.
 pub fn estimates(results: &Results) -> [(&'static str, Option<LineRecord>); 3] {
-    let names = if results.end.noisy.is_some() { NOISY_NAMES } else { NAMES };
+    let names = if results.end.best.is_some() { NOISY_NAMES } else { NAMES };
     named(names, &results.end.estimates)
 }
 
@@ -72,11 +72,7 @@ pub fn estimates(results: &Results) -> [(&'static str, Option<LineRecord>); 3] {
 /// is the most likely hypothesis, which its maximum margin stands for.
 pub fn printed_estimates(results: &Results) -> [(&'static str, Option<LineRecord>); 3] {
     let [centre, margin, bisector] = estimates(results);
-    if results.end.noisy.is_some() {
-        [margin, centre, bisector]
-    } else {
-        [bisector, centre, margin]
-    }
+    if results.end.best.is_some() { [margin, centre, bisector] } else { [bisector, centre, margin] }
 }
 
 /// The story of a mission: a table of steps, then the estimates beside the truth.
@@ -86,7 +82,7 @@ pub fn mission(title: &str, results: &Results) -> String {
 
 /// The story of a mission as the paper prints it, with its own estimate first.
 pub fn printed(title: &str, results: &Results) -> String {
-    let by_its_prior = if results.end.noisy.is_some() {
+    let by_its_prior = if results.end.best.is_some() {
         "Bits are by the paper's prior, so they are more than the labels told: it takes all sequences\n\
          for alike, however few lines realise them.\n\n"
     } else {
@@ -102,7 +98,7 @@ pub fn outcome_alone(title: &str, results: &Results) -> String {
 
 fn story(title: &str, results: &Results) -> String {
     let beginning = beginning(title, &results.start);
-    let steps = if results.end.noisy.is_some() {
+    let steps = if results.end.best.is_some() {
         noisy_steps(&results.steps)
     } else {
         steps(&results.steps, &results.start)
@@ -111,7 +107,7 @@ fn story(title: &str, results: &Results) -> String {
 }
 
 fn end(results: &Results, estimates: &[(&str, Option<LineRecord>); 3]) -> String {
-    let why = why(results.end.reason);
+    let why = why(&results.end.reason);
     let mut text = format!(
         "Ended: {why}. {} samples in {} steps, {:.1} m travelled, control cost {:.1}.\n",
         results.samples(),
@@ -127,10 +123,7 @@ fn end(results: &Results, estimates: &[(&str, Option<LineRecord>); 3]) -> String
         text.push('\n');
     }
     text.push('\n');
-    if let Some(noisy) = &results.end.noisy {
-        text += &outcome(noisy);
-    }
-    text + &errors(results.start.truth.as_ref(), estimates)
+    text + &outcome(&results.end) + &errors(results.start.truth.as_ref(), estimates)
 }
 
 /// Why a mission ended, in words.
@@ -155,7 +148,7 @@ pub(crate) fn why(reason: &str) -> &str {
 /// Advice on what to change so that a mission goes further, if it ended before its steps.
 fn remedy(results: &Results) -> Option<&'static str> {
     let is_unmet = results.end.goal.as_ref().is_some_and(|goal| !goal.is_met);
-    Some(match results.end.reason {
+    Some(match &*results.end.reason {
         "resolution" => "To go on, allow finer turns and speeds: turn_step, step.",
         "tolerance" if is_unmet => {
             "This goal cannot be reached with this tolerance: accept a wider one, or bring better positions."
@@ -236,7 +229,7 @@ const MOTION: [Column; 5] = [
 fn motion(step: &StepResult) -> [String; 5] {
     [
         step.step.to_string(),
-        step.problem.unwrap_or("-").to_owned(),
+        step.problem.as_deref().unwrap_or("-").to_owned(),
         fixed(f64::from(step.action.w).to_degrees(), 1),
         fixed(step.action.v.into(), 1),
         format!("({}, {})", fixed(step.pose.x, 3), fixed(step.pose.z, 3)),
@@ -276,7 +269,7 @@ fn steps(steps: &[StepResult], start: &Start) -> Table {
 }
 
 fn note(step: &StepResult, flipped: bool) -> &'static str {
-    match (step.recovery, step.label) {
+    match (step.recovery.as_deref(), step.label) {
         (Some("reorient"), _) => "nothing uncertain ahead: turns in place",
         (Some("transit"), _) => "nothing uncertain near: drives on",
         (_, Some(0)) => "exactly on the line: no flip",
@@ -299,14 +292,13 @@ fn noisy_steps(steps: &[StepResult]) -> Table {
     ];
     let mut table = Table::new([&MOTION[..], &said].concat());
     for step in steps {
-        let Some(noisy) = step.noisy else { continue };
         let wrong = if step.is_wrong() { " !" } else { "  " };
-        let trusted = if noisy.trusted { "  (trusted)" } else { "" };
+        let trusted = if step.trusted == Some(true) { "  (trusted)" } else { "" };
         let said = [
             signed(step.label),
             format!("{}{wrong}", signed(step.fact)),
-            noisy.hypotheses.to_string(),
-            format!("{:.2}", noisy.entropy),
+            step.hypotheses.unwrap_or_default().to_string(),
+            format!("{:.2}", step.entropy.unwrap_or_default()),
             fixed(step.bits, 2),
             format!("{}{trusted}", arcs(&step.slope_arcs)),
         ];
@@ -315,7 +307,8 @@ fn noisy_steps(steps: &[StepResult]) -> Table {
     table
 }
 
-fn outcome(NoisyEnd { best, credible }: &NoisyEnd) -> String {
+fn outcome(end: &End) -> String {
+    let (Some(best), Some(credible)) = (&end.best, &end.credible) else { return String::new() };
     let truth = |holds: Option<bool>| match holds {
         Some(true) => "; holds the truth",
         Some(false) => "; misses the truth",
@@ -332,7 +325,7 @@ fn outcome(NoisyEnd { best, credible }: &NoisyEnd) -> String {
         arcs(&credible.slope_arcs),
         range(credible.intercept),
         credible.probability,
-        credible.cells,
+        credible.cells.unwrap_or_default(),
         credible.hypotheses,
         truth(credible.holds),
     )

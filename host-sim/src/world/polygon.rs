@@ -48,18 +48,28 @@ impl Polygon {
     /// The part on the +1 side of the line (`side` 1) or on the other (`side` -1).
     #[must_use]
     pub fn clip(&self, line: &Line, side: f64) -> Self {
-        let corners = &self.0;
-        let mut kept = Vec::with_capacity(corners.len() + 1);
-        for (p, q) in corners.iter().zip(corners.iter().cycle().skip(1)) {
-            let (d, e) = (side * line.distance(*p), side * line.distance(*q));
+        self.above(|at| side * line.distance(at))
+    }
+
+    /// The part where a linear function is not negative.
+    #[must_use]
+    pub fn above(&self, height: impl Fn(Point2<f64>) -> f64) -> Self {
+        let mut kept = Vec::with_capacity(self.0.len() + 1);
+        for (p, q) in self.sides() {
+            let (d, e) = (height(p), height(q));
             if d >= 0.0 {
-                kept.push(*p);
+                kept.push(p);
             }
             if (d > 0.0 && e < 0.0) || (d < 0.0 && e > 0.0) {
                 kept.push(p + (q - p) * (d / (d - e)));
             }
         }
         Self(kept)
+    }
+
+    /// The sides in order, each by its two ends.
+    pub fn sides(&self) -> impl Iterator<Item = (Point2<f64>, Point2<f64>)> + '_ {
+        self.0.iter().copied().zip(self.0.iter().copied().cycle().skip(1))
     }
 
     /// Where a line enters and leaves it; none if it passes by.
@@ -71,11 +81,9 @@ impl Polygon {
     /// The part in a convex polygon whose corners go counter-clockwise.
     #[must_use]
     pub fn within(self, convex: &Self) -> Self {
-        let corners = &convex.0;
-        let sides = corners.iter().zip(corners.iter().cycle().skip(1));
-        let lines = sides.filter_map(|(p, q)| {
+        let lines = convex.sides().filter_map(|(p, q)| {
             let way = q - p;
-            Line::through(*p, Vector2::new(-way.y, way.x))
+            Line::through(p, Vector2::new(-way.y, way.x))
         });
         lines.fold(self, |ground, line| ground.clip(&line, 1.0))
     }
@@ -109,17 +117,8 @@ impl Polygon {
 
     /// Whether a place lies in a convex polygon, or on its border.
     pub fn holds(&self, at: Point2<f64>) -> bool {
-        let corners = &self.0;
-        let turns = corners
-            .iter()
-            .zip(corners.iter().cycle().skip(1))
-            .map(|(p, q)| (q - p).perp(&(at - p)));
-        let (mut left, mut right) = (false, false);
-        turns.for_each(|turn| {
-            left |= turn > 0.0;
-            right |= turn < 0.0;
-        });
-        !(left && right)
+        let turns = || self.sides().map(|(p, q)| (q - p).perp(&(at - p)));
+        turns().all(|turn| turn >= 0.0) || turns().all(|turn| turn <= 0.0)
     }
 
     /// The longest way across the rectangle around it, metres.
@@ -131,12 +130,7 @@ impl Polygon {
 
     /// Area, square metres.
     pub fn area(&self) -> f64 {
-        let corners = &self.0;
-        let twice: f64 = corners
-            .iter()
-            .zip(corners.iter().cycle().skip(1))
-            .map(|(p, q)| p.coords.perp(&q.coords))
-            .sum();
+        let twice: f64 = self.sides().map(|(p, q)| p.coords.perp(&q.coords)).sum();
         twice.abs() / 2.0
     }
 }

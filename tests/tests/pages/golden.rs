@@ -127,7 +127,7 @@ fn describe(table: &mut String, name: &str, results: &Results) -> std::fmt::Resu
         let line = format!(
             "{:>4} {} {:>5} {:>5.2} {:>3.1} ({:.4}, {:.4}) {:>2} {:>6.3} bits {}",
             step.step,
-            step.problem.unwrap_or("--"),
+            step.problem.as_deref().unwrap_or("--"),
             step.action.index,
             step.action.w,
             step.action.v,
@@ -135,7 +135,7 @@ fn describe(table: &mut String, name: &str, results: &Results) -> std::fmt::Resu
             step.pose.z,
             step.label.map_or("-".into(), |label| format!("{label:+}")),
             step.bits,
-            step.recovery.unwrap_or_default(),
+            step.recovery.as_deref().unwrap_or_default(),
         );
         writeln!(table, "{}", line.trim_end())?;
     }

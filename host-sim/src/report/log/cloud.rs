@@ -1,8 +1,12 @@
 //! The drawing once more, as clouds of coloured points. Rerun reads point clouds from a log, but no scenes.
 
-use crate::report::log::messages::{
-    Color, Entity, PackedField, Point, PointCloud, Pose, Solid, Triangles,
+use foxglove::messages::packed_element_field::NumericType;
+use foxglove::messages::{
+    Color, PackedElementField, Point3, PointCloud, Pose, SceneEntity, TriangleListPrimitive,
+    Vector3,
 };
+
+use crate::report::log::messages::pose;
 use crate::report::page::scene::Place;
 
 /// Distance between two points of a line, as a share of the area's size.
@@ -12,56 +16,60 @@ const SPACING: f64 = 0.004;
 const ACROSS: i32 = 9;
 
 /// Fields of a point: three single-precision coordinates, then four bytes of colour.
-const FIELDS: [(&str, u32, i32); 7] = [
-    ("x", 0, FLOAT32),
-    ("y", 4, FLOAT32),
-    ("z", 8, FLOAT32),
-    ("red", 12, UINT8),
-    ("green", 13, UINT8),
-    ("blue", 14, UINT8),
-    ("alpha", 15, UINT8),
+const FIELDS: [(&str, u32, NumericType); 7] = [
+    ("x", 0, NumericType::Float32),
+    ("y", 4, NumericType::Float32),
+    ("z", 8, NumericType::Float32),
+    ("red", 12, NumericType::Uint8),
+    ("green", 13, NumericType::Uint8),
+    ("blue", 14, NumericType::Uint8),
+    ("alpha", 15, NumericType::Uint8),
 ];
 const STRIDE: u32 = 16;
 
-/// Numeric types, as `foxglove.PackedElementField` numbers them.
-const UINT8: i32 = 1;
-const FLOAT32: i32 = 7;
-
 /// The cloud of all that an entity draws; `size` is the area's, in metres.
-pub(super) fn of(entity: &Entity, size: f64) -> PointCloud {
+pub(super) fn of(entity: &SceneEntity, size: f64) -> PointCloud {
     let mut cloud = Cloud { spacing: SPACING * size, data: Vec::new() };
     for line in &entity.lines {
-        let places: Vec<_> = line.points.iter().map(Point::place).collect();
-        cloud.strip(&places, line.kind == 1, line.color);
+        let places: Vec<_> = line.points.iter().map(place).collect();
+        cloud.strip(&places, line.r#type == 1, line.color);
     }
     for triangles in &entity.triangles {
         // A surface may be translucent. Its outline is not.
         let color = triangles.color.map(|color| Color { a: 1.0, ..color });
         cloud.strip(&outline(triangles), true, color);
     }
-    for solid in &entity.cubes {
-        cloud.mark(solid, &[[1.0, 0.0]]);
+    for it in &entity.cubes {
+        cloud.mark((it.pose, it.size, it.color), &[[1.0, 0.0]]);
     }
-    for solid in &entity.spheres {
-        cloud.mark(solid, &[[1.0, 0.0], [0.0, 1.0]]);
+    for it in &entity.spheres {
+        cloud.mark((it.pose, it.size, it.color), &[[1.0, 0.0], [0.0, 1.0]]);
     }
     PointCloud {
         timestamp: entity.timestamp,
         frame_id: entity.frame_id.clone(),
-        pose: Some(Pose::new([0.0, 0.0], 0.0)),
+        pose: Some(pose([0.0, 0.0], 0.0)),
         point_stride: STRIDE,
         fields: FIELDS
-            .map(|(name, offset, kind)| PackedField { name: name.to_owned(), offset, kind })
+            .map(|(name, offset, kind)| PackedElementField {
+                name: name.to_owned(),
+                offset,
+                r#type: kind.into(),
+            })
             .into(),
-        data: cloud.data,
+        data: cloud.data.into(),
     }
 }
 
 /// The corners of a polygon that is drawn as a fan of triangles about its first corner.
-fn outline(triangles: &Triangles) -> Vec<Place> {
+fn outline(triangles: &TriangleListPrimitive) -> Vec<Place> {
     let corners = triangles.points.chunks_exact(3).enumerate();
     let corners = corners.flat_map(|(k, corner)| if k == 0 { corner } else { &corner[2..] });
-    corners.map(Point::place).collect()
+    corners.map(place).collect()
+}
+
+fn place(point: &Point3) -> Place {
+    [point.x, point.y]
 }
 
 struct Cloud {
@@ -97,15 +105,19 @@ impl Cloud {
     }
 
     /// A bar or a cross about a sample, whose arms run both ways along some axes.
-    fn mark(&mut self, solid: &Solid, axes: &[Place]) {
-        let at = solid.pose.and_then(|pose| pose.position).map_or([0.0, 0.0], |at| at.place());
-        let size = solid.size.map_or(0.0, |size| size.place()[0]);
-        self.point(at, solid.color);
+    fn mark(
+        &mut self,
+        (pose, size, color): (Option<Pose>, Option<Vector3>, Option<Color>),
+        axes: &[Place],
+    ) {
+        let at = pose.and_then(|pose| pose.position).map_or([0.0, 0.0], |at| [at.x, at.y]);
+        let size = size.map_or(0.0, |size| size.x);
+        self.point(at, color);
         let arm = ACROSS / 2;
         for [x, z] in axes {
             for k in (-arm..=arm).filter(|k| *k != 0) {
                 let off = size * f64::from(k) / f64::from(2 * arm);
-                self.point([at[0] + off * x, at[1] + off * z], solid.color);
+                self.point([at[0] + off * x, at[1] + off * z], color);
             }
         }
     }

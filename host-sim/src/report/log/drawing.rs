@@ -1,10 +1,12 @@
 //! The drawing of a mission for a viewer: the area and the true line once, then what each step adds or replaces.
 
+use foxglove::messages::{
+    Color, CubePrimitive, LinePrimitive, SceneEntity, SceneUpdate, SpherePrimitive,
+    TriangleListPrimitive, Vector3,
+};
 use planner_core::Label;
 
-use crate::report::log::messages::{
-    Color, Entity, FRAME, Line, Point, Pose, ROBOT, SceneUpdate, Solid, Timestamp, Triangles,
-};
+use crate::report::log::messages::{FRAME, ROBOT, point, pose, time};
 use crate::report::page::scene::{BandRecord, Flight, GroundRecord, Mark, Place, Scene};
 use crate::report::picture::Kind;
 use crate::report::style;
@@ -23,7 +25,7 @@ pub(super) fn begin(flight: &Flight) -> SceneUpdate {
     let border = line(&flight.area, true, THIN, opaque(style::PATH.colour));
     let keep_outs = flight.keep_outs.iter().map(|ring| fan(ring, opaque(KEEP_OUT)));
     let mut entities = vec![
-        Entity { lines: vec![border], triangles: keep_outs.collect(), ..entity("area", 0) },
+        SceneEntity { lines: vec![border], triangles: keep_outs.collect(), ..entity("area", 0) },
         entity("path", 0),
         entity("samples", 0),
         samples(
@@ -35,20 +37,20 @@ pub(super) fn begin(flight: &Flight) -> SceneUpdate {
     ];
     if let Some(truth) = &flight.truth {
         let line = line(&truth.ends, false, THICK, opaque(TRUTH));
-        entities.push(Entity { lines: vec![line], ..entity("true line", 0) });
+        entities.push(SceneEntity { lines: vec![line], ..entity("true line", 0) });
     }
     if let Some(scene) = flight.scenes.first() {
         entities.extend(known(scene, 0));
     }
-    SceneUpdate { entities }
+    SceneUpdate { entities, ..SceneUpdate::default() }
 }
 
 /// The robot: a triangle that points ahead, in the robot's own frame.
-pub(super) fn robot(flight: &Flight) -> Entity {
+pub(super) fn robot(flight: &Flight) -> SceneEntity {
     let size = SAMPLE * flight.size();
     let corners = [[1.5 * size, 0.0], [-size, size], [-size, -size]];
     let border = line(&corners, true, THICK, opaque(style::PATH.colour));
-    Entity { lines: vec![border], frame_id: ROBOT.to_owned(), ..entity("robot", 0) }
+    SceneEntity { lines: vec![border], frame_id: ROBOT.to_owned(), ..entity("robot", 0) }
 }
 
 /// What each step adds.
@@ -63,16 +65,16 @@ pub(super) fn steps(flight: &Flight) -> impl Iterator<Item = SceneUpdate> {
         }
         let way = line(&path, false, THIN, opaque(style::PATH.colour));
         let mut entities = vec![
-            Entity { lines: vec![way], ..entity("path", second) },
+            SceneEntity { lines: vec![way], ..entity("path", second) },
             samples("samples", second, read.iter().copied(), size),
         ];
         entities.extend(known(scene, second));
-        SceneUpdate { entities }
+        SceneUpdate { entities, ..SceneUpdate::default() }
     })
 }
 
 /// What is known: the ground and the estimate.
-fn known(scene: &Scene, second: u32) -> [Entity; 2] {
+fn known(scene: &Scene, second: u32) -> [SceneEntity; 2] {
     let estimate = scene.estimate.iter();
     let estimate = estimate
         .map(|it| line(&it.ends, false, THICK, opaque(style::of_line(Kind::Estimate).colour)));
@@ -83,7 +85,7 @@ fn known(scene: &Scene, second: u32) -> [Entity; 2] {
             let certain = labels.into_iter().zip(regions).map(|(label, ring)| {
                 fan(ring, Color { a: 0.25, ..opaque(style::of_label(label)) })
             });
-            Entity { triangles: certain.collect(), ..ground }
+            SceneEntity { triangles: certain.collect(), ..ground }
         }
         GroundRecord::Bands(bands) => {
             let borders = bands.iter().flat_map(|BandRecord { from, rings }| {
@@ -93,30 +95,43 @@ fn known(scene: &Scene, second: u32) -> [Entity; 2] {
                     line(&places, true, THIN, color)
                 })
             });
-            Entity { lines: borders.collect(), ..ground }
+            SceneEntity { lines: borders.collect(), ..ground }
         }
         GroundRecord::Plain => ground,
     };
-    [ground, Entity { lines: estimate.collect(), ..entity("estimate", second) }]
+    [ground, SceneEntity { lines: estimate.collect(), ..entity("estimate", second) }]
 }
 
-fn entity(id: &str, second: u32) -> Entity {
-    let timestamp = Some(Timestamp::of(second));
-    Entity { timestamp, frame_id: FRAME.to_owned(), id: id.to_owned(), ..Entity::default() }
+fn entity(id: &str, second: u32) -> SceneEntity {
+    let timestamp = Some(time(second));
+    SceneEntity {
+        timestamp,
+        frame_id: FRAME.to_owned(),
+        id: id.to_owned(),
+        ..SceneEntity::default()
+    }
 }
 
 /// Spheres for +1, cubes for -1.
-fn samples(id: &str, second: u32, samples: impl Iterator<Item = (Place, i8)>, size: f64) -> Entity {
+fn samples(
+    id: &str,
+    second: u32,
+    samples: impl Iterator<Item = (Place, i8)>,
+    size: f64,
+) -> SceneEntity {
     let mut entity = entity(id, second);
     for (at, label) in samples {
-        let of = |label| Solid {
-            pose: Some(Pose::new(at, 0.0)),
-            size: Some(Point::cube(size)),
-            color: Some(opaque(style::of_label(label))),
-        };
+        let (pose, size) = (Some(pose(at, 0.0)), Some(Vector3 { x: size, y: size, z: size }));
+        let color = |label| Some(opaque(style::of_label(label)));
         match label {
-            1.. => entity.spheres.push(of(Label::Positive)),
-            ..0 => entity.cubes.push(of(Label::Negative)),
+            1.. => {
+                let color = color(Label::Positive);
+                entity.spheres.push(SpherePrimitive { pose, size, color });
+            }
+            ..0 => {
+                let color = color(Label::Negative);
+                entity.cubes.push(CubePrimitive { pose, size, color });
+            }
             0 => {}
         }
     }
@@ -137,24 +152,26 @@ fn opaque(name: &str) -> Color {
     Color { r: part(1), g: part(3), b: part(5), a: 1.0 }
 }
 
-fn line(places: &[Place], is_loop: bool, thickness: f64, color: Color) -> Line {
-    Line {
-        kind: i32::from(is_loop),
-        pose: Some(Pose::new([0.0, 0.0], 0.0)),
+fn line(places: &[Place], is_loop: bool, thickness: f64, color: Color) -> LinePrimitive {
+    LinePrimitive {
+        r#type: i32::from(is_loop),
+        pose: Some(pose([0.0, 0.0], 0.0)),
         thickness,
         scale_invariant: true,
-        points: places.iter().copied().map(Point::at).collect(),
+        points: places.iter().copied().map(point).collect(),
         color: Some(color),
+        ..LinePrimitive::default()
     }
 }
 
 /// A convex polygon as triangles about its first corner.
-fn fan(ring: &[Place], color: Color) -> Triangles {
+fn fan(ring: &[Place], color: Color) -> TriangleListPrimitive {
     let corners = ring.split_first().map_or(&[][..], |(_, rest)| rest).windows(2);
     let points = corners.flat_map(|pair| [ring[0], pair[0], pair[1]]);
-    Triangles {
-        pose: Some(Pose::new([0.0, 0.0], 0.0)),
-        points: points.map(Point::at).collect(),
+    TriangleListPrimitive {
+        pose: Some(pose([0.0, 0.0], 0.0)),
+        points: points.map(point).collect(),
         color: Some(color),
+        ..TriangleListPrimitive::default()
     }
 }

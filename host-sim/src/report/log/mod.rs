@@ -6,23 +6,24 @@
 mod cloud;
 mod drawing;
 mod messages;
+mod plotted;
 
 use std::collections::BTreeMap;
 use std::io::Cursor;
 use std::iter;
 
 use anyhow::{Context as _, Result};
+use foxglove::Encode;
+use foxglove::messages::{FrameTransform, PointCloud, PoseInFrame, SceneUpdate};
 use mcap::records::MessageHeader;
 use mcap::{WriteOptions, Writer};
 use prost::Message;
 
 use crate::mission::recording::Recording;
-use crate::mission::results::{PoseRecord, Results};
+use crate::mission::results::PoseRecord;
 use crate::report::flat;
-use crate::report::log::messages::{
-    CLOUD, FRAME, FrameTransform, POSE, Plotted, Pose, PoseInFrame, ROBOT, SCENE, STEP,
-    SceneUpdate, TRANSFORM, Timestamp,
-};
+use crate::report::log::messages::{FRAME, ROBOT, time};
+use crate::report::log::plotted::Plot;
 use crate::report::page::scene::Flight;
 
 const PROTOBUF: &str = "protobuf";
@@ -39,7 +40,13 @@ struct Log {
 struct Channel(u16);
 
 impl Log {
-    fn channel(&mut self, topic: &str, (schema, descriptors): (&str, &[u8])) -> Result<Channel> {
+    /// A channel for one of Foxglove's messages.
+    fn channel<M: Encode>(&mut self, topic: &str) -> Result<Channel> {
+        let schema = M::get_schema().context("a message with a schema")?;
+        self.channel_of(topic, &schema.name, &schema.data)
+    }
+
+    fn channel_of(&mut self, topic: &str, schema: &str, descriptors: &[u8]) -> Result<Channel> {
         let schema = self.writer.add_schema(schema, PROTOBUF, descriptors)?;
         Ok(Channel(self.writer.add_channel(schema, topic, PROTOBUF, &BTreeMap::new())?))
     }
@@ -52,7 +59,7 @@ impl Log {
             let channel = if let Some(channel) = self.clouds.get(&topic) {
                 *channel
             } else {
-                let channel = self.channel(&topic, CLOUD)?;
+                let channel = self.channel::<PointCloud>(&topic)?;
                 self.clouds.insert(topic, channel);
                 channel
             };
@@ -62,16 +69,20 @@ impl Log {
     }
 
     /// Writes a message that holds from a second on.
-    fn write(
+    fn write(&mut self, channel: Channel, second: u32, message: &impl Message) -> Result<()> {
+        self.write_bytes(channel, second, &message.encode_to_vec())
+    }
+
+    fn write_bytes(
         &mut self,
         Channel(channel_id): Channel,
         second: u32,
-        message: &impl Message,
+        message: &[u8],
     ) -> Result<()> {
         let log_time = u64::from(second) * 1_000_000_000;
         let header =
             MessageHeader { channel_id, sequence: second, log_time, publish_time: log_time };
-        Ok(self.writer.write_to_known_channel(&header, &message.encode_to_vec())?)
+        Ok(self.writer.write_to_known_channel(&header, message)?)
     }
 }
 
@@ -83,10 +94,15 @@ pub fn mcap(recording: &Recording) -> Result<Vec<u8>> {
     let options = WriteOptions::new().compression(None).library("host-sim");
     let writer = options.create(Cursor::new(Vec::new())).context("the log could not be begun")?;
     let mut log = Log { writer, clouds: BTreeMap::new() };
-    let (poses, scenes, steps) =
-        (log.channel("/pose", POSE)?, log.channel("/scene", SCENE)?, log.channel("/step", STEP)?);
-    let (frames, robot) = (log.channel("/tf", TRANSFORM)?, log.channel("/robot", CLOUD)?);
     let results = &recording.results;
+    let rows = flat::rows(results);
+    let plot = Plot::of(&rows)?;
+    let poses = log.channel::<PoseInFrame>("/pose")?;
+    let scenes = log.channel::<SceneUpdate>("/scene")?;
+    let (name, descriptors) = plot.schema();
+    let steps = log.channel_of("/step", name, &descriptors)?;
+    let frames = log.channel::<FrameTransform>("/tf")?;
+    let robot = log.channel::<PointCloud>("/robot")?;
     let flight = Flight::of(recording.mission.algorithm.title(), recording);
     let size = flight.size();
     log.write(robot, 0, &cloud::of(&drawing::robot(&flight), size))?;
@@ -100,16 +116,16 @@ pub fn mcap(recording: &Recording) -> Result<Vec<u8>> {
     for (second, drawn) in (1..).zip(drawing::steps(&flight)) {
         log.draw(scenes, second, &drawn, size)?;
     }
-    for (second, plotted) in (1..).zip(plotted(results, &flight)) {
-        log.write(steps, second, &plotted)?;
+    for (second, (row, scene)) in (1..).zip(rows.iter().zip(flight.scenes.iter().skip(1))) {
+        log.write_bytes(steps, second, &plot.message(second, row, scene)?)?;
     }
     log.writer.finish().context("the log could not be completed")?;
     Ok(log.writer.into_inner().into_inner())
 }
 
 fn pose(second: u32, &PoseRecord { x, z, heading }: &PoseRecord) -> PoseInFrame {
-    let (timestamp, frame_id) = (Some(Timestamp::of(second)), FRAME.to_owned());
-    PoseInFrame { timestamp, frame_id, pose: Some(Pose::new([x, z], heading)) }
+    let (timestamp, frame_id) = (Some(time(second)), FRAME.to_owned());
+    PoseInFrame { timestamp, frame_id, pose: Some(messages::pose([x, z], heading)) }
 }
 
 /// The robot's frame at a pose.
@@ -121,30 +137,4 @@ fn transform(PoseInFrame { timestamp, frame_id, pose }: &PoseInFrame) -> FrameTr
         translation: pose.and_then(|pose| pose.position),
         rotation: pose.and_then(|pose| pose.orientation),
     }
-}
-
-/// The numbers of each step, as flat rows have them, and how far the estimate is off.
-fn plotted(results: &Results, flight: &Flight) -> impl Iterator<Item = Plotted> {
-    let stages = flight.scenes.iter().skip(1);
-    (1..).zip(flat::rows(results).zip(stages)).map(|(second, (row, scene))| {
-        let estimate = scene.estimate.as_ref();
-        Plotted {
-            timestamp: Some(Timestamp::of(second)),
-            step: second,
-            problem: row.problem.unwrap_or_default().to_owned(),
-            recovery: row.recovery.unwrap_or_default().to_owned(),
-            label: row.label.map(i32::from),
-            slope_from: row.slope_from,
-            slope_to: row.slope_to,
-            intercept_from: row.intercept_from,
-            intercept_to: row.intercept_to,
-            bits: row.bits,
-            entropy: row.entropy,
-            hypotheses: row.hypotheses.map(|count| count as u32),
-            control_cost: row.control_cost,
-            metres: row.metres,
-            slope_error_deg: estimate.and_then(|line| line.off_deg),
-            misclassified: estimate.and_then(|line| line.misclassified),
-        }
-    })
 }

@@ -1,19 +1,18 @@
 //! The data of a mission that a page draws: where the mission takes place, and a scene for the start and for each step.
-//!
-//! The knowledge after each step is computed from the steps: a planner that plans nothing takes them in again. So it is
-//! the same for a mission that a chip has planned.
+
+use std::iter;
 
 use nalgebra::Point2;
 use planner_core::{Line, Sample, Step};
 use serde::Serialize;
 
-use crate::mission::read_out::{Expectation, ReadOut};
+use crate::mission::read_out::ReadOut;
 use crate::mission::recording::{Recording, beside_truth};
 use crate::mission::results::{LineError, LineRecord, PoseRecord, StepResult};
 use crate::report::bands::Band;
 use crate::report::examples::bits;
 use crate::report::ground::Ground;
-use crate::report::page::words::{self, Taken, Told};
+use crate::report::page::words::{self, Told};
 use crate::report::picture::{Picture, Stop};
 use crate::report::text;
 use crate::world::polygon::Polygon;
@@ -202,26 +201,22 @@ impl Flight {
         let seen = |record: &LineRecord| seen(record, &border, rounding);
         let [(estimate, _), ..] = text::estimates(results);
         let mark = |s: &Sample| Mark { at: rounding.place(s.site.into()), label: s.label.sign() };
-        let mut scenes = Vec::with_capacity(steps.len() + 1);
-        let mut watcher = mission.planner();
-        let mut sums = Sums::default();
-        scenes.push({
-            let now = Stage { recording, rounding, step: None, sums, estimate };
-            now.scene(watcher.belief(), None)
-        });
         let stops = picture.path.iter().flat_map(|(_, stops)| stops);
-        for ((step, result), stop) in steps.iter().zip(&results.steps).zip(stops) {
-            let expectation =
-                step.motion.wants_label.then(|| watcher.belief().expects(step.motion.target.site));
-            // It was taken in once already.
-            let _ = watcher.observe(step.pose, step.reading);
-            let before = sums.bits;
-            sums.take(result, expectation, watcher.belief());
-            let motion = moved(recording, (step, result, stop), expectation, rounding);
-            let step = Some(Taken { result, expectation, rise: sums.bits - before });
-            let now = Stage { recording, rounding, step, sums, estimate };
-            scenes.push(now.scene(watcher.belief(), Some(motion)));
-        }
+        let steps = steps.iter().zip(&results.steps).zip(stops);
+        let taken = iter::once(None).chain(steps.map(Some));
+        let mut sums = Sums::default();
+        let stage = Stage { recording, rounding, estimate };
+        let scenes = recording.known().zip(taken).map(|(belief, taken)| {
+            let bits = bits(belief);
+            let rise = bits - std::mem::replace(&mut sums.bits, bits);
+            let Some(((step, result), stop)) = taken else {
+                return stage.scene(belief, None, sums, None);
+            };
+            sums.expected_bits += result.expected.map_or(0.0, |it| it.bits);
+            let motion = moved(recording, (step, result, stop), rounding);
+            stage.scene(belief, Some((result, rise)), sums, Some(motion))
+        });
+        let mut scenes: Vec<_> = scenes.collect();
         if let Some(last) = scenes.last_mut() {
             last.told.extend(words::ended(results));
         }
@@ -239,51 +234,38 @@ impl Flight {
     }
 }
 
-/// The sums that grow from step to step.
+/// Bits that were learnt so far, and that were expected.
 #[derive(Clone, Copy, Default)]
 struct Sums {
     bits: f64,
     expected_bits: f64,
-    cost: f64,
-    metres: f64,
 }
 
-impl Sums {
-    fn take(
-        &mut self,
-        result: &StepResult,
-        expectation: Option<Expectation>,
-        belief: &dyn ReadOut,
-    ) {
-        self.bits = bits(belief);
-        self.expected_bits += expectation.map_or(0.0, |it| it.bits);
-        self.cost += result.cost();
-        self.metres += f64::from(result.action.v);
-    }
-}
-
-/// The start or a step of a mission, from which a scene is made.
+/// The mission that scenes are made of.
 struct Stage<'a> {
     recording: &'a Recording,
     rounding: Rounding,
-    /// The step that led here.
-    step: Option<Taken<'a>>,
-    sums: Sums,
     /// What the recommended estimate is called.
     estimate: &'static str,
 }
 
 impl Stage<'_> {
-    fn scene(&self, belief: &dyn ReadOut, motion: Option<Moved>) -> Scene {
-        let &Self { recording, rounding, step, sums, estimate } = self;
+    /// The scene after a step, which brought so many bits, or at the start.
+    fn scene(
+        &self,
+        belief: &dyn ReadOut,
+        step: Option<(&StepResult, f64)>,
+        Sums { bits, expected_bits }: Sums,
+        motion: Option<Moved>,
+    ) -> Scene {
+        let &Self { recording, rounding, estimate } = self;
         let mission = &recording.mission;
         let area = mission.config.area;
-        let Sums { bits, expected_bits, cost, metres } = sums;
         let knowledge = belief.knowledge();
         let centre = beside_truth(mission, belief.estimates()).centre;
         let told = words::stage(recording, step, (&knowledge, bits), (estimate, centre.as_ref()));
-        let start = PoseRecord::from(mission.start);
-        let PoseRecord { x, z, heading } = step.map_or(start, |step| step.result.pose);
+        let start = recording.results.start.pose;
+        let PoseRecord { x, z, heading } = step.map_or(start, |(step, _)| step.pose);
         Scene {
             motion,
             at: rounding.place(Point2::new(x, z)),
@@ -294,8 +276,8 @@ impl Stage<'_> {
             intercepts: knowledge.intercept,
             bits,
             expected_bits,
-            cost,
-            metres,
+            cost: step.map_or(0.0, |(step, _)| step.control_cost),
+            metres: step.map_or(0.0, |(step, _)| step.metres),
             told,
         }
     }
@@ -304,7 +286,6 @@ impl Stage<'_> {
 fn moved(
     recording: &Recording,
     (step, result, stop): (&Step, &StepResult, &Stop),
-    expectation: Option<Expectation>,
     rounding: Rounding,
 ) -> Moved {
     let [target, end] = [step.motion.target.site, step.pose.site];
@@ -316,8 +297,8 @@ fn moved(
         truly: stop.truly.map(|at| rounding.place(at)),
         label: result.label,
         is_wrong: result.is_wrong() && result.label != Some(0),
-        chance: expectation.map(|it| it.chance),
-        expected: expectation.map(|it| it.bits),
+        chance: result.expected.map(|it| it.chance),
+        expected: result.expected.map(|it| it.bits),
     }
 }
 

@@ -26,31 +26,20 @@ impl Told {
     }
 }
 
-/// A step that was taken.
-#[derive(Clone, Copy)]
-pub(crate) struct Taken<'a> {
-    /// The result of the motion.
-    pub(crate) result: &'a StepResult,
-    /// The expectation of its label.
-    pub(crate) expectation: Option<Expectation>,
-    /// The increase of the information, bits.
-    pub(crate) rise: f64,
-}
-
-/// The sentences for a step, or for the start without one. They get what is known with the bits learnt, and the
-/// recommended estimate with its name.
+/// The sentences for a step, with the increase of the information in bits, or for the start without one. They get what
+/// is known with the bits learnt, and the recommended estimate with its name.
 pub(crate) fn stage(
     recording: &Recording,
-    step: Option<Taken<'_>>,
+    step: Option<(&StepResult, f64)>,
     (knowledge, bits): (&Knowledge, f64),
     (name, estimate): (&str, Option<&LineRecord>),
 ) -> Vec<Told> {
     let Recording { mission, results, .. } = recording;
-    let mut told = if let Some(Taken { result, expectation, rise }) = step {
+    let mut told = if let Some((step, rise)) = step {
         vec![
-            Told::new("Planned", planned(mission, result)),
-            Told::new("Expected", expected(expectation)),
-            Told::new("Read", read(result, rise)),
+            Told::new("Planned", planned(mission, step)),
+            Told::new("Expected", expected(step.expected)),
+            Told::new("Read", read(step, rise)),
         ]
     } else {
         vec![Told::new("Given", given(results))]
@@ -62,7 +51,7 @@ pub(crate) fn stage(
 
 /// Why a mission ended, and what is promised of what it found.
 pub(crate) fn ended(results: &Results) -> Vec<Told> {
-    let why = text::why(results.end.reason);
+    let why = text::why(&results.end.reason);
     let promise = results.end.goal.as_ref().map(|goal| text::promise(goal).trim_end().to_owned());
     let promise = promise.map_or(String::new(), |promise| format!(" {promise}"));
     vec![Told::new("Ended", format!("{}.{promise}", sentence(why)))]
@@ -101,7 +90,7 @@ fn given(results: &Results) -> String {
 
 /// The planner's choice, and the likely reason for it.
 fn planned(mission: &Mission, step: &StepResult) -> String {
-    let why = match (step.problem, step.recovery) {
+    let why = match (step.problem.as_deref(), step.recovery.as_deref()) {
         (_, Some("reorient")) => "Nothing uncertain ahead, so it turns in place",
         (_, Some("transit")) => "Nothing uncertain in reach, so it drives on",
         (Some("P1"), None) => "P1, look for the opposite label",
@@ -125,7 +114,7 @@ fn planned(mission: &Mission, step: &StepResult) -> String {
 
 /// The one-step problem and the rung of the recovery ladder, as the trace names them.
 pub(crate) fn problem(step: &StepResult) -> String {
-    let named: Vec<_> = step.problem.into_iter().chain(step.recovery).collect();
+    let named: Vec<_> = step.problem.iter().chain(&step.recovery).map(|name| &**name).collect();
     if named.is_empty() { "\u{2013}".to_owned() } else { named.join(", ") }
 }
 

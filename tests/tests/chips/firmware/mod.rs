@@ -90,7 +90,11 @@ fn the_chip_stops_when_enough_is_known() {
         let mission = scenario::parse("", &text, overrides).expect("a good scenario");
         let played = chip.fly(&mission, Faults::default()).expect("it flies as here");
         let Results { steps, end, .. } = &played.recording.results;
-        assert_eq!((end.reason, end.goal.map(|goal| goal.is_met)), ("known", Some(true)), "{stop}");
+        assert_eq!(
+            (&*end.reason, end.goal.map(|goal| goal.is_met)),
+            ("known", Some(true)),
+            "{stop}"
+        );
         assert!((5..32).contains(&steps.len()), "{stop}: {} steps", steps.len());
         assert_eq!(trace::lines(&played.recording.results), here(&mission), "{stop}");
         let log = chip.messages_until(number, "bisector");
