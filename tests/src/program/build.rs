@@ -41,6 +41,36 @@ pub fn build(package: &str, target: &str) -> Result<PathBuf, String> {
     Ok(directory.join(target).join("release"))
 }
 
+/// The target of the chip that budgets are for. Any run builds for it, and a long one for other cores too.
+pub const CHIP: &str = "thumbv7em-none-eabihf";
+
+/// The folder with the programs of a package for a target, built; `None`, and a visible line, where only a long run
+/// builds for it, or where that cannot be done.
+///
+/// # Panics
+/// When they fail to build, or with `CI` set where they cannot be built.
+pub fn folder(package: &str, target: &str) -> Option<PathBuf> {
+    let what = format!("{package} for {target}");
+    if target != CHIP && !crate::is_long() {
+        leave_out(&what, "a long run has it: LONG=1 cargo test -p tests");
+        return None;
+    }
+    if !can_build(target) {
+        skip(&what, "the target is not installed");
+        return None;
+    }
+    Some(build(package, target).unwrap_or_else(|errors| panic!("{errors}")))
+}
+
+/// As [`folder`], as a function that reads a program.
+///
+/// # Panics
+/// As [`folder`].
+pub fn programs(package: &str, target: &str) -> Option<impl Fn(&str) -> Vec<u8> + use<>> {
+    let folder = folder(package, target)?;
+    Some(move |name: &str| fs::read(folder.join(name)).expect("cargo left an ELF"))
+}
+
 /// Builds host-sim with `MAVLink`, in a target directory of its own.
 ///
 /// # Errors
@@ -64,7 +94,7 @@ pub fn flying() -> Result<PathBuf, String> {
 
 /// Whether the standard library for a target is installed; where it is missing, rustup is asked to add
 /// it.
-pub fn can_build(target: &str) -> bool {
+fn can_build(target: &str) -> bool {
     static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
     let _guard = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
     let is_there = || {
@@ -94,10 +124,10 @@ pub fn skip(what: &str, why: &str) {
     leave_out(what, why);
 }
 
-/// Whether this is a long run. If it is not, says that only a long run has a test, as it builds host-sim anew.
+/// Whether this is a long run. If it is not, says that only a long run has a test.
 pub fn is_long(what: &str, module: &str) -> bool {
     if !crate::is_long() {
-        leave_out(what, &format!("it builds host-sim anew: LONG=1 cargo test -p tests {module}::"));
+        leave_out(what, &format!("a long run has it: LONG=1 cargo test -p tests {module}::"));
     }
     crate::is_long()
 }
