@@ -41,18 +41,20 @@ pub fn build(package: &str, target: &str) -> Result<PathBuf, String> {
     Ok(directory.join(target).join("release"))
 }
 
-/// The target of the chip that budgets are for. Any run builds for it, and a long one for other cores too.
+/// The target of the chip that budgets are for. Any run builds for it; `CORES=all` in the environment asks for
+/// other cores too, as does a long run.
 pub const CHIP: &str = "thumbv7em-none-eabihf";
 
-/// The folder with the programs of a package for a target, built; `None`, and a visible line, where only a long run
-/// builds for it, or where that cannot be done.
+/// The folder with the programs of a package for a target, built; `None`, and a visible line, where nobody asks for
+/// its core, or where that cannot be done.
 ///
 /// # Panics
 /// When they fail to build, or with `CI` set where they cannot be built.
 pub fn folder(package: &str, target: &str) -> Option<PathBuf> {
     let what = format!("{package} for {target}");
-    if target != CHIP && !crate::is_long() {
-        leave_out(&what, "a long run has it: LONG=1 cargo test -p tests");
+    let is_asked_for = crate::is_long() || env::var("CORES").is_ok_and(|it| it == "all");
+    if target != CHIP && !is_asked_for {
+        leave_out(&what, "CORES=all cargo test has it");
         return None;
     }
     if !can_build(target) {

@@ -1,5 +1,5 @@
-//! Flash, RAM, stack and instructions on every core, held to the committed figures of `cores.toml`. A long
-//! run measures the micro:bit's firmware, and the small and the standard program on three cores.
+//! Flash, RAM, stack and instructions on every core, held to the committed figures of `cores.toml`. With
+//! `CORES=all` the micro:bit's firmware is measured, in a long run also the small and the standard program on three cores.
 
 use std::collections::BTreeMap;
 use std::fs;
