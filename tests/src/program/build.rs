@@ -116,6 +116,19 @@ pub fn has_tool(name: &str) -> bool {
     Command::new(name).arg("--version").output().is_ok()
 }
 
+/// Whether Python has a module of a package. If not, says which part of a test is left out.
+///
+/// # Panics
+/// As [`skip`].
+pub fn has_module(module: &str, package: &str, what: &str) -> bool {
+    let import = Command::new("python3").args(["-c", &format!("import {module}")]).output();
+    let is_there = import.is_ok_and(|it| it.status.success());
+    if !is_there {
+        skip(what, &format!("python3 has no {package}"));
+    }
+    is_there
+}
+
 /// Says that a part of a test is left out, and why: at once, and again when all tests have run (the test
 /// `zz_skipped`).
 ///
