@@ -19,7 +19,7 @@ fn counts(world: &World, conversions: &mut u32) -> i32 {
     (2_048.0 + 800.0 * world.height()).clamp(0.0, 4_095.0) as i32 + ripple
 }
 
-pub(crate) fn main() -> Result {
+fn main() -> Result {
     let world = World::new()?;
     let mut conversions = 0;
     let measure = || Ok::<_, Infallible>(counts(&world, &mut conversions));

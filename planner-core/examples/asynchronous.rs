@@ -35,7 +35,7 @@ async fn measure(bus: &mut impl I2c<Error = Infallible>) -> std::result::Result<
     Ok(u16::from_be_bytes(register).into())
 }
 
-pub(crate) fn main() -> Result {
+fn main() -> Result {
     let world = World::new()?;
     let space = VersionSpace::<24>::new(&field::given()?)?;
     let planner = Lookahead::new(field::area()?, Unicycle::paper(), space)?;

@@ -81,7 +81,7 @@ impl Rover {
     }
 }
 
-pub(crate) fn main() -> Result {
+fn main() -> Result {
     let given = [
         Sample::at([2.0, 1.0], Label::Negative)?,
         Sample::at([2.0, 8.0], Label::Positive)?,

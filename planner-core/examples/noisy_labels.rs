@@ -9,7 +9,7 @@ use planner_core::{
     Belief as _, Goal, Lookahead, Noise, NoisyBelief, Plan, Planner as _, Unicycle, sequences_of,
 };
 
-pub(crate) fn main() -> Result {
+fn main() -> Result {
     let world = World::new()?;
     let noise = Noise::new(0.85)?; // measured: twenty labels where the truth is known
     let belief = NoisyBelief::<40, { sequences_of(36) }>::new(&field::given()?, noise)?;

@@ -25,7 +25,7 @@ impl Pivots for Notches {
     }
 }
 
-pub(crate) fn main() -> Result {
+fn main() -> Result {
     // So many rays, from standing still to 16 steps of 250 mm.
     let dynamics = Notches(ActionGrid::new(2 * MOST + 1, 17, 250)?);
     check(&dynamics)?; // in a test of yours

@@ -10,7 +10,7 @@ use field::{Result, World};
 use planner_core::robot::{DriveFn, SensorFn};
 use planner_core::{Agent, Event, Goal, Lookahead, Motion, Unicycle, Vehicle, VersionSpace};
 
-pub(crate) fn main() -> Result {
+fn main() -> Result {
     let world = World::new()?;
     // What commands your motors. Its error is yours: a stall, a lost position.
     let drive = DriveFn(|motion: &Motion| {

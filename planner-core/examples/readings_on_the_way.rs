@@ -12,7 +12,7 @@ use planner_core::{Certainty, Lookahead, Plan, Planner as _, Pose, Unicycle, Ver
 /// Readings along a motion, the one at its end included.
 const READINGS: i32 = 5;
 
-pub(crate) fn main() -> Result {
+fn main() -> Result {
     let world = World::new()?;
     let space = VersionSpace::<68>::new(&field::given()?)?;
     let mut planner = Lookahead::new(field::area()?, Unicycle::paper(), space)?;

@@ -42,7 +42,7 @@ fn wake(backup: &mut Backup, world: &World) -> Result<Option<Finder>> {
     Ok(None)
 }
 
-pub(crate) fn main() -> Result {
+fn main() -> Result {
     let world = World::new()?;
     let mut backup = [0; 512];
     loop {

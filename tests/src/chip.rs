@@ -1,6 +1,7 @@
 //! A chip within the test's own thread: what it flies, what its port leads to, and its power, which may fail.
 
 use std::cell::RefCell;
+use std::convert::Infallible;
 use std::panic::{self, AssertUnwindSafe};
 
 use planner_core::link::delivery::{Link, LinkError, Port};
@@ -26,10 +27,9 @@ pub trait FarEnd {
 }
 
 /// A chip's port.
-#[derive(Debug)]
-pub struct Socket<'a, F>(pub &'a RefCell<F>);
+pub struct Socket<'a>(&'a RefCell<dyn FarEnd + 'a>);
 
-impl<F: FarEnd> Port for Socket<'_, F> {
+impl Port for Socket<'_> {
     fn send(&mut self, frame: &[u8]) {
         let sent = self.0.borrow_mut().send(frame);
         if let Err(off) = sent {
@@ -42,11 +42,14 @@ impl<F: FarEnd> Port for Socket<'_, F> {
     }
 }
 
+/// A chip's label sensor.
+pub type Sensor<'a> = &'a mut (dyn LabelSensor<Error = Infallible> + 'a);
+
+/// A chip. It is one type wherever its port leads, so that its planners are compiled once.
+pub type Chip<'a> = Station<Socket<'a>, Sensor<'a>>;
+
 /// A chip, with a label sensor or none.
-pub fn chip<F: FarEnd, S: LabelSensor>(
-    end: &RefCell<F>,
-    sensor: Option<S>,
-) -> Station<Socket<'_, F>, S> {
+pub fn chip<'a>(end: &'a RefCell<dyn FarEnd + 'a>, sensor: Option<Sensor<'a>>) -> Chip<'a> {
     let clock = ClockRate { per_second: 1, emulated: false };
     Station { link: Link::new(Socket(end)), sensor, ticks: || 0, clock }
 }
@@ -55,7 +58,10 @@ pub fn chip<F: FarEnd, S: LabelSensor>(
 ///
 /// # Errors
 /// When its power fails before.
-pub fn power_up<F: FarEnd, S: LabelSensor>(end: &RefCell<F>, sensor: Option<S>) -> Result<(), Off> {
+pub fn power_up<'a>(
+    end: &'a RefCell<dyn FarEnd + 'a>,
+    sensor: Option<Sensor<'a>>,
+) -> Result<(), Off> {
     let ended = panic::catch_unwind(AssertUnwindSafe(|| {
         let mut chip = chip(end, sensor);
         loop {
@@ -75,9 +81,6 @@ pub fn power_up<F: FarEnd, S: LabelSensor>(end: &RefCell<F>, sensor: Option<S>) 
 ///
 /// # Errors
 /// As [`Station::fly`].
-pub fn fly<P: Port, S: LabelSensor>(
-    chip: &mut Station<P, S>,
-    setup: &message::Setup,
-) -> Result<Flown, LinkError> {
+pub fn fly(chip: &mut Chip<'_>, setup: &message::Setup) -> Result<Flown, LinkError> {
     chip.fly_with::<AllLabels<68, 36, 529>, AnyVehicle, MissionArea>(setup, &mut ())
 }

@@ -1,8 +1,5 @@
 //! Missions that a program of the package `bare-core` flies in the emulator.
 
-use std::fs;
-use std::path::Path;
-
 use anyhow::Result;
 use host_sim::hil::player::{Played, Player};
 use host_sim::mission::definition::Mission;
@@ -12,20 +9,11 @@ use crate::emulator::{Core, Emulator, Event};
 use crate::program::build;
 
 /// A core, the target that it runs, and what people call it.
-pub const CORES: [(Core, &str); 2] =
-    [(Core::M4F, "thumbv7em-none-eabihf"), (Core::M0, "thumbv6m-none-eabi")];
+pub const CORES: [(Core, &str); 2] = [(Core::M4F, build::CHIP), (Core::M0, "thumbv6m-none-eabi")];
 
-/// Builds the programs for a target; `None`, and a visible line, where that cannot be done.
-///
-/// # Panics
-/// When they fail to build, or with `CI` set where they cannot be built.
+/// The programs for a target, as [`build::programs`] has them.
 pub fn build(target: &str) -> Option<impl Fn(&str) -> Vec<u8> + use<>> {
-    if !build::can_build(target) {
-        build::skip("the planner on a bare core", &format!("the target {target} is not installed"));
-        return None;
-    }
-    let folder = build::build("bare-core", target).unwrap_or_else(|errors| panic!("{errors}"));
-    Some(move |name: &str| fs::read(Path::new(&folder).join(name)).expect("cargo left an ELF"))
+    build::programs("bare-core", target)
 }
 
 /// Lets a program fly a mission, from where it asks for one.

@@ -42,6 +42,38 @@ pub fn build(package: &str, target: &str) -> Result<PathBuf, String> {
     Ok(directory.join(target).join(profile))
 }
 
+/// The target of the chip that budgets are for. Any run builds for it; `CORES=all` in the environment asks for
+/// other cores too, as does a long run.
+pub const CHIP: &str = "thumbv7em-none-eabihf";
+
+/// The folder with the programs of a package for a target, built; `None`, and a visible line, where nobody asks for
+/// its core, or where that cannot be done.
+///
+/// # Panics
+/// When they fail to build, or with `CI` set where they cannot be built.
+pub fn folder(package: &str, target: &str) -> Option<PathBuf> {
+    let what = format!("{package} for {target}");
+    let is_asked_for = crate::is_long() || env::var("CORES").is_ok_and(|it| it == "all");
+    if target != CHIP && !is_asked_for {
+        leave_out(&what, "CORES=all cargo test has it");
+        return None;
+    }
+    if !can_build(target) {
+        skip(&what, "the target is not installed");
+        return None;
+    }
+    Some(build(package, target).unwrap_or_else(|errors| panic!("{errors}")))
+}
+
+/// As [`folder`], as a function that reads a program.
+///
+/// # Panics
+/// As [`folder`].
+pub fn programs(package: &str, target: &str) -> Option<impl Fn(&str) -> Vec<u8> + use<>> {
+    let folder = folder(package, target)?;
+    Some(move |name: &str| fs::read(folder.join(name)).expect("cargo left an ELF"))
+}
+
 /// Builds host-sim with `MAVLink`, in a target directory of its own.
 ///
 /// # Errors
@@ -65,7 +97,7 @@ pub fn flying() -> Result<PathBuf, String> {
 
 /// Whether the standard library for a target is installed; where it is missing, rustup is asked to add
 /// it.
-pub fn can_build(target: &str) -> bool {
+fn can_build(target: &str) -> bool {
     static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
     let _guard = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
     let is_there = || {
@@ -85,6 +117,19 @@ pub fn has_tool(name: &str) -> bool {
     Command::new(name).arg("--version").output().is_ok()
 }
 
+/// Whether Python has a module of a package. If not, says which part of a test is left out.
+///
+/// # Panics
+/// As [`skip`].
+pub fn has_module(module: &str, package: &str, what: &str) -> bool {
+    let import = Command::new("python3").args(["-c", &format!("import {module}")]).output();
+    let is_there = import.is_ok_and(|it| it.status.success());
+    if !is_there {
+        skip(what, &format!("python3 has no {package}"));
+    }
+    is_there
+}
+
 /// Says that a part of a test is left out, and why: at once, and again when all tests have run (the test
 /// `zz_skipped`).
 ///
@@ -95,10 +140,10 @@ pub fn skip(what: &str, why: &str) {
     leave_out(what, why);
 }
 
-/// Whether this is a long run. If it is not, says that only a long run has a test, as it builds host-sim anew.
+/// Whether this is a long run. If it is not, says that only a long run has a test.
 pub fn is_long(what: &str, module: &str) -> bool {
     if !crate::is_long() {
-        leave_out(what, &format!("it builds host-sim anew: LONG=1 cargo test -p tests {module}::"));
+        leave_out(what, &format!("a long run has it: LONG=1 cargo test -p tests {module}::"));
     }
     crate::is_long()
 }

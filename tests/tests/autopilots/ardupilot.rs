@@ -216,10 +216,8 @@ fn vehicles_of_ardupilot_find_a_line_and_what_happens_is_told() {
             "no ardurover, ardusub and params/ where ARDUPILOT says, or in ../shared/autopilot";
         return build::leave_out(what, why);
     };
-    let import = Command::new("python3").args(["-c", "import pymavlink"]).output();
-    if !import.is_ok_and(|it| it.status.success()) {
-        let why = "python3 has no pymavlink";
-        return build::skip(what, why);
+    if !build::has_module("pymavlink", "pymavlink", what) {
+        return;
     }
     let program = build::flying().expect("it builds");
     let (next, failed, faults) = (AtomicUsize::new(0), Mutex::new(Vec::new()), &mut Vec::new());

@@ -277,10 +277,8 @@ fn missions_over_a_bad_link_are_those_of_run_or_end_at_rest() {
         return;
     }
     let _alone = crate::alone();
-    let import = Command::new("python3").args(["-c", "import pymavlink"]).output();
-    if !import.is_ok_and(|it| it.status.success()) {
-        let why = "python3 has no pymavlink";
-        return build::skip(what, why);
+    if !build::has_module("pymavlink", "pymavlink", what) {
+        return;
     }
     let program = build::flying().expect("it builds");
     let (next, began) = (AtomicU64::new(0), Instant::now());

@@ -8,7 +8,6 @@
 //! ```
 
 use std::io::{self, Write as _};
-use std::{fs, path::Path};
 
 use host_sim::mission::algorithm::Algorithm;
 use planner_core::motion::unicycle::Grid;
@@ -22,11 +21,10 @@ use tests::budget::tolerance::Costs;
 use tests::budget::workload::{DOUBT, Workload};
 use tests::emulator::{Call, Core};
 use tests::is_long;
-use tests::program::build;
+use tests::program::build::{CHIP, programs};
 use tests::program::image::Image;
 
-/// The chip, and the cores whose sizes alone are compared.
-const CHIP: &str = "thumbv7em-none-eabihf";
+/// The cores whose sizes alone are compared.
 const OTHERS: [&str; 2] = ["thumbv6m-none-eabi", "riscv32imac-unknown-none-elf"];
 
 /// The programs. All but a long run leave out the last.
@@ -44,17 +42,6 @@ const NEXT: [(&str, &str); 1] = [(
     "the plan's search is four fifths of it in small, estimates a sixth: less code for the search",
 )];
 
-/// A program for a target; `None`, and a visible line, where it cannot be built.
-fn build(package: &str, target: &str) -> Option<impl Fn(&str) -> Vec<u8> + use<>> {
-    if !build::can_build(target) {
-        build::skip(package, &format!("the target {target} is not installed"));
-        return None;
-    }
-    let folder = build::build(package, target);
-    let folder = folder.unwrap_or_else(|errors| panic!("{errors}"));
-    Some(move |name: &str| fs::read(Path::new(&folder).join(name)).expect("cargo left an ELF"))
-}
-
 /// Where figures go.
 struct Books {
     budgets: Budgets,
@@ -66,7 +53,8 @@ fn every_figure_keeps_its_budget() {
     let mut books = Books { budgets: Budgets::open(), hardest: Hardest::open() };
     // Held by `anything_on_a_chip`.
     let mut skipped = vec![anything::SECTION];
-    if let (Some(bare), Some(firmware)) = (build("bare-core", CHIP), build("firmware", CHIP)) {
+    if let (Some(bare), Some(firmware)) = (programs("bare-core", CHIP), programs("firmware", CHIP))
+    {
         for name in looked_at() {
             let elf = bare(name);
             let (bound, fits) = size(&mut books.budgets, name, &elf);
@@ -87,7 +75,7 @@ fn every_figure_keeps_its_budget() {
         skipped.extend(["firmware"].into_iter().chain(PROGRAMS));
     }
     for target in OTHERS.into_iter().filter(|_| is_long()) {
-        let Some(program) = build("bare-core", target) else {
+        let Some(program) = programs("bare-core", target) else {
             skipped.push(target);
             continue;
         };
@@ -307,7 +295,7 @@ fn time_large(books: &mut Books, elf: &[u8], fits: bool) -> u32 {
 
 #[test]
 fn a_program_that_can_panic_is_found_out() {
-    let Some(bare) = build("bare-core", CHIP) else { return };
+    let Some(bare) = programs("bare-core", CHIP) else { return };
     let panics = |name| Footprint::of(&Image::read(&bare(name))).expect("a graph").panics;
     assert_eq!(
         panics("panicking"),
@@ -322,7 +310,7 @@ fn a_program_that_can_panic_is_found_out() {
 fn the_planner_forbids_unsafe_code_and_does_not_allocate() {
     let text = include_str!("../../../planner-core/src/lib.rs");
     assert!(text.starts_with("#![no_std]\n#![forbid(unsafe_code)]\n"));
-    let Some(bare) = build("bare-core", CHIP) else { return };
+    let Some(bare) = programs("bare-core", CHIP) else { return };
     for name in looked_at() {
         let image = Image::read(&bare(name));
         let allocates = |name: &str| name.contains("__rust_alloc") || name.starts_with("alloc::");

@@ -1,5 +1,5 @@
 //! The firmware of the micro:bit under QEMU: what it has no room for it declines, a bad link changes nothing, and the
-//! drive is enabled for as long as it may be.
+//! drive is enabled for as long as it may be. Asked for by `CORES=all`.
 
 use std::fs;
 use std::io::{Read as _, Write as _};

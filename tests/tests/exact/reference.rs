@@ -279,7 +279,7 @@ fn vehicles() -> [AnyVehicle; 3] {
 fn of_equals_the_first_is_found_with_any_vehicle() {
     for vehicle in vehicles() {
         let mut found = 0;
-        for number in 0..40 {
+        for number in 0..cases(8, 40) {
             let horizon = if number % 4 == 0 { 4 } else { 3 };
             let line = if number % 3 == 0 { LineCost::Margin } else { LineCost::Slope };
             let field = standard(2, number, Algorithm::Cfc, horizon);
@@ -305,7 +305,7 @@ fn of_equals_the_first_is_found_with_any_vehicle() {
                 _ => panic!("{vehicle:?}, field {number}: {solved:?}, expected {expected:?}"),
             }
         }
-        assert!(found >= 5, "{vehicle:?}: {found} fields have an optimum");
+        assert!(found >= cases(1, 5) as u32, "{vehicle:?}: {found} fields have an optimum");
     }
 }
 

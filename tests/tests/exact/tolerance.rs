@@ -271,7 +271,7 @@ fn paper(algorithm: Algorithm, errors: Errors) -> Vec<f64> {
             .or(last)
             .unwrap_or_else(|| panic!("seed {seed}: {labels} labels, then {:?}", flown.ending))
     };
-    let mut degrees: Vec<f64> = (0..300).into_par_iter().map(each).collect();
+    let mut degrees: Vec<f64> = (0..cases(60, 300)).into_par_iter().map(each).collect();
     degrees.sort_by(f64::total_cmp);
     degrees
 }
@@ -284,8 +284,9 @@ fn the_papers_example_is_as_near_as_positions_allow() {
         for (errors, most) in [(position, most), (motion, 0.35)] {
             for algorithm in [Algorithm::Cfc, Algorithm::Lookahead] {
                 let degrees = paper(algorithm, errors);
-                let median = degrees[150];
-                println!("{algorithm:?}, {errors:?}: {median:.4}, 90 % {:.4} deg", degrees[270]);
+                let [median, nine_tenths] =
+                    [5, 9].map(|tenths| degrees[degrees.len() * tenths / 10]);
+                println!("{algorithm:?}, {errors:?}: {median:.4}, 90 % {nine_tenths:.4} deg");
                 assert!(median <= most, "{algorithm:?}, {errors:?}: {median} deg");
             }
         }

@@ -13,6 +13,7 @@ use planner_core::search::recovery::Recovery;
 use planner_core::{
     Belief as _, Label, Line, Pose, Reading, Sample, Site, Step, Unicycle, Workspace as _,
 };
+use tests::cases;
 
 /// A line in lattice units: where `normal . q` is `offset`, with the normal of length 1.
 #[derive(Clone, Copy)]
@@ -187,7 +188,7 @@ fn of_labels_that_err_it_asks_where_the_start_leaves_doubt() {
 /// It never waits, and what is uncertain is asked again and again, also when it is thinner than the grid can hit.
 #[test]
 fn it_moves_on() {
-    for number in 0..40 {
+    for number in 0..cases(8, 40) {
         let mission = standard_field::standard(5, number, Algorithm::Margin, 64);
         let steps = steps(&mission);
         assert_eq!(steps.len(), 64, "field {number}");

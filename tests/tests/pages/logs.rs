@@ -67,16 +67,6 @@ fn flat_rows_have_one_shape_and_say_what_the_trace_says() {
     }
 }
 
-/// Whether Python has a module. Without it, a line says which part of the tests is left out.
-fn has_module(module: &str, package: &str, what: &str) -> bool {
-    let import = Command::new("python3").args(["-c", &format!("import {module}")]).output();
-    let is_there = import.is_ok_and(|it| it.status.success());
-    if !is_there {
-        build::skip(what, &format!("python3 has no {package}"));
-    }
-    is_there
-}
-
 /// The lines that a script in Python prints of a mission's log.
 fn read_by(script: &str, recording: &Recording) -> Vec<Map<String, Value>> {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join(script);
@@ -90,7 +80,7 @@ fn read_by(script: &str, recording: &Recording) -> Vec<Map<String, Value>> {
 
 #[test]
 fn a_reader_of_others_finds_in_a_log_what_the_trace_says() {
-    if !has_module("mcap_protobuf", "mcap-protobuf-support", "the log's reader") {
+    if !build::has_module("mcap_protobuf", "mcap-protobuf-support", "the log's reader") {
         return;
     }
     for (name, recording) in recordings() {
@@ -173,7 +163,7 @@ impl InRerun {
 
 #[test]
 fn rerun_shows_the_robot_the_map_and_the_curves_of_a_log() {
-    if !has_module("rerun.chunk", "rerun-sdk", "the log in Rerun") {
+    if !build::has_module("rerun.chunk", "rerun-sdk", "the log in Rerun") {
         return;
     }
     for (name, recording) in recordings() {

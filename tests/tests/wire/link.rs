@@ -5,7 +5,6 @@
 
 use std::cell::RefCell;
 use std::collections::BTreeSet;
-use std::convert::Infallible;
 use std::fmt::Debug;
 
 use host_sim::campaign::standard_field;
@@ -16,13 +15,13 @@ use host_sim::mission::definition::Mission;
 use host_sim::mission::recording::Recording;
 use host_sim::report::trace;
 use planner_core::error::{GivenError, GridError, RoomError, ShapeError};
-use planner_core::link::delivery::{Link, LinkError, Port};
+use planner_core::link::delivery::{Link, LinkError};
 use planner_core::link::frame::{Decoder, Envelope, FRAME, Frame, Message};
 use planner_core::link::message::{
     Capacity, ClockRate, DeclinedError, EndReason, LabelSource, MissionArea, Outline, PROTOCOL,
     Reply, Request, Settings, Setup,
 };
-use planner_core::link::station::{Flown, NoTerms, Station};
+use planner_core::link::station::{Flown, NoTerms};
 use planner_core::motion::any_vehicle::Shape;
 use planner_core::motion::car;
 use planner_core::{AnyVehicle, Area, KeepOut, Site, StopReason, Unicycle};
@@ -30,7 +29,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use tests::chip::{self, FarEnd, Off, Socket, fly};
+use tests::chip::{self, Chip, FarEnd, Off, Socket, fly};
 use tests::missions::{SEED, mission, of_any_vehicle, stopping};
 use tests::wire::{WAIT, Way, Wire};
 
@@ -70,8 +69,6 @@ impl FarEnd for Network {
         })
     }
 }
-
-type Chip<'a> = Station<Socket<'a, Network>, Infallible>;
 
 fn chip(network: &RefCell<Network>) -> Chip<'_> {
     chip::chip(network, None)
@@ -211,7 +208,7 @@ fn outlines_of_no_polygon_are_refused() {
 
 #[test]
 fn a_cut_link_ends_every_mission_within_the_bound_and_with_no_motion_after_it() {
-    let bound = WAIT * u32::from(Link::<Socket<'_, Network>>::ATTEMPTS);
+    let bound = WAIT * u32::from(Link::<Socket<'_>>::ATTEMPTS);
     (0..1000u64).into_par_iter().for_each(|number| {
         let mission = mission(number);
         let network = RefCell::new(Network::new(&mission, Faults::default()));
@@ -289,34 +286,33 @@ fn a_chip_declines_what_it_has_no_room_for_and_says_how_much_it_has() {
 /// Frames of every message, of missions with all that makes messages long.
 fn corpus() -> Vec<Vec<u8>> {
     /// Hears what passes.
-    struct Tap<'a>(Socket<'a, Network>, &'a RefCell<Vec<Vec<u8>>>);
-    impl Port for Tap<'_> {
-        fn send(&mut self, frame: &[u8]) {
-            self.1.borrow_mut().push(frame.to_vec());
-            self.0.send(frame);
+    struct Tap(Network, Vec<Vec<u8>>);
+    impl FarEnd for Tap {
+        fn send(&mut self, frame: &[u8]) -> Result<(), Off> {
+            self.1.push(frame.to_vec());
+            self.0.send(frame)
         }
 
         fn receive(&mut self) -> Option<u8> {
             let arrived = self.0.receive()?;
-            let mut frames = self.1.borrow_mut();
-            match frames.last_mut() {
+            match self.1.last_mut() {
                 Some(last) if last.len() < 2 || last.last() != Some(&0) => last.push(arrived),
-                _ => frames.push(vec![arrived]),
+                _ => self.1.push(vec![arrived]),
             }
             Some(arrived)
         }
     }
-    let frames = RefCell::new(Vec::new());
+    let mut frames = Vec::new();
     let missions = (0..20).map(mission).chain((0..6).map(|number| of_any_vehicle(number, 6)));
     for mission in missions {
-        let network = RefCell::new(Network::new(&mission, Faults::default()));
+        let tap = RefCell::new(Tap(Network::new(&mission, Faults::default()), Vec::new()));
         let clock = ClockRate { per_second: 168_000_000, emulated: true };
-        let link = Link::new(Tap(Socket(&network), &frames));
-        let mut chip = Station::<_, Infallible> { link, sensor: None, ticks: || 77, clock };
+        let mut chip = Chip { ticks: || 77, clock, ..chip::chip(&tap, None) };
         let setup = chip.await_setup();
         assert!(fly(&mut chip, &setup).is_ok());
+        drop(chip);
+        frames.extend(tap.into_inner().1);
     }
-    let mut frames = frames.into_inner();
     // What no good mission says.
     let capacity = Capacity { samples: 36, hypotheses: 529 };
     for declined in [

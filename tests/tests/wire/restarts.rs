@@ -5,7 +5,6 @@
 
 use std::cell::RefCell;
 use std::collections::VecDeque;
-use std::convert::Infallible;
 use std::fmt::Debug;
 use std::time::Duration;
 
@@ -163,10 +162,10 @@ fn restarts(number: u64, faults: Faults) -> Vec<(usize, Duration)> {
             let context = format!("mission {number}: {restart:?}");
             let seed = number * 1_000 + at as u64;
             let yard = RefCell::new(Yard::new(&mission, faults, seed, restart));
-            let off = power_up(&yard, None::<Infallible>).is_err();
+            let off = power_up(&yard, None).is_err();
             assert_eq!(off, chip, "{context}");
             if off {
-                assert!(power_up(&yard, None::<Infallible>).is_ok(), "{context}");
+                assert!(power_up(&yard, None).is_ok(), "{context}");
             }
             let Yard { garage, flown_after, .. } = yard.into_inner();
             assert!(garage.ended && garage.motions == motions, "{context}");

@@ -115,7 +115,7 @@ impl LabelSensor for Sensor<'_, '_> {
 /// Chips, one after the other as their power fails, until the mission is over; the trace.
 fn flown(yard: Yard<'_>) -> String {
     let (place, yard) = (yard.place, RefCell::new(yard));
-    while power_up(&yard, Some(Sensor(&yard))).is_err() {}
+    while power_up(&yard, Some(&mut Sensor(&yard))).is_err() {}
     let Yard { player, restarts, .. } = yard.into_inner();
     assert!(restarts.is_empty(), "{restarts:?} never came");
     let played = player.expect("it has started").finish().expect("the mission is over");

@@ -17,9 +17,7 @@ use host_sim::hil::qemu::Emulator;
 use host_sim::mission::definition::Mission;
 use planner_core::link::message::LabelSource;
 use tempfile::{NamedTempFile, TempPath};
-use tests::program::build;
-
-const TARGET: &str = "thumbv7em-none-eabihf";
+use tests::machines::STM32;
 
 /// For anything that the chip does within two seconds of its own, where a busy machine gives it few.
 const PATIENCE: Duration = Duration::from_mins(1);
@@ -99,17 +97,5 @@ impl Chip {
 /// The firmware, built once; `None`, and a visible line, where it cannot be built or run.
 pub(crate) fn firmware() -> Option<&'static Path> {
     static ELF: OnceLock<Option<PathBuf>> = OnceLock::new();
-    let build = || {
-        if !build::can_build(TARGET) {
-            build::skip("firmware under QEMU", "the target thumbv7em-none-eabihf is not installed");
-            return None;
-        }
-        if !build::has_tool("qemu-system-arm") {
-            build::skip("firmware under QEMU", "qemu-system-arm is not on PATH");
-            return None;
-        }
-        let folder = build::build("firmware", TARGET);
-        Some(folder.unwrap_or_else(|errors| panic!("{errors}")).join("firmware"))
-    };
-    ELF.get_or_init(build).as_deref()
+    ELF.get_or_init(|| STM32.elf()).as_deref()
 }
