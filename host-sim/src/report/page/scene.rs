@@ -15,6 +15,7 @@ use crate::report::ground::Ground;
 use crate::report::page::words::{self, Told};
 use crate::report::picture::{Picture, Stop};
 use crate::report::text;
+use crate::world::extent::{around, span};
 use crate::world::polygon::Polygon;
 
 /// Places are rounded to the area's size divided by this: a twentieth of a pixel.
@@ -155,9 +156,7 @@ struct Rounding {
 
 impl Rounding {
     fn of(border: &Polygon) -> Self {
-        let corners = || border.0.iter();
-        let low = corners().copied().reduce(|a, b| a.inf(&b)).unwrap_or_default();
-        let high = corners().copied().reduce(|a, b| a.sup(&b)).unwrap_or_default();
+        let [low, high] = around(border.0.iter().copied()).unwrap_or_default();
         Self { unit: 10_f64.powf(((high - low).amax() / GRAIN).log10().floor()) }
     }
 
@@ -185,8 +184,8 @@ impl Flight {
     /// The longer side of the area, metres.
     pub(crate) fn size(&self) -> f64 {
         let side = |axis: usize| {
-            let along = self.area.iter().map(|at| at[axis]);
-            along.clone().fold(f64::MIN, f64::max) - along.fold(f64::MAX, f64::min)
+            let [from, to] = span(self.area.iter().map(|at| at[axis]));
+            to - from
         };
         side(0).max(side(1))
     }
