@@ -9,7 +9,7 @@ use clap::{Args, Subcommand};
 
 use crate::campaign::behaviour::behaviour;
 use crate::campaign::ensemble::{Campaign, Checkpoint as _, Measure};
-use crate::campaign::field_record::FieldRecord;
+use crate::campaign::field_record;
 use crate::campaign::order::Order;
 use crate::campaign::rows::{Planners, RowReader, RowWriter};
 use crate::campaign::shard::Shard;
@@ -107,11 +107,12 @@ pub(crate) fn campaign(args: CampaignArgs) -> Result<String> {
 }
 
 /// Writes the fields, which are the same for every planner.
-fn write_fields(campaign: &Campaign, fields: Range<u64>, output: Output) -> Result<()> {
-    let mut writer = csv::Writer::from_writer(output);
+fn write_fields(campaign: &Campaign, fields: Range<u64>, mut output: Output) -> Result<()> {
+    output.write_all(field_record::COLUMNS.as_bytes())?;
+    let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(output);
     for field in fields {
-        let record = FieldRecord::of(field, &campaign.mission(field));
-        writer.serialize(record.context("a standard field")?)?;
+        let row = field_record::row(field, &campaign.mission(field));
+        writer.serialize(row.context("a standard field")?)?;
     }
     writer.into_inner().map_err(csv::IntoInnerError::into_error)?.complete()
 }

@@ -59,24 +59,19 @@ pub struct Pilot {
 impl Pilot {
     /// Waits for the vehicle with this system id.
     pub fn new(system: u8, labels: LabelSource, limits: Limits) -> Self {
-        let requests = Requests::new(&labels.source);
-        let stage = Stage::Preparing { since: None, complete: None };
-        let (vehicle, slide) = (Vehicle::default(), Slide::default());
-        let (beat, failure, ended) = (None, None, None);
-        let (down, rests) = (0.0, false);
         Self {
             system,
+            requests: Requests::new(&labels.source),
             labels,
             limits,
-            vehicle,
-            requests,
-            stage,
-            beat,
-            slide,
-            down,
-            failure,
-            ended,
-            rests,
+            vehicle: Vehicle::default(),
+            stage: Stage::Preparing { since: None, complete: None },
+            beat: None,
+            slide: Slide::default(),
+            down: 0.0,
+            failure: None,
+            ended: None,
+            rests: false,
         }
     }
 

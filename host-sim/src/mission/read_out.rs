@@ -59,10 +59,14 @@ pub trait ReadOut: Belief + Debug + Send {
     fn samples(&self) -> &[Sample];
 
     /// The lines that agree with every label, where these are true.
-    fn version_space(&self) -> Option<&Lines>;
+    fn version_space(&self) -> Option<&Lines> {
+        None
+    }
 
     /// The hypotheses, where labels may err.
-    fn hypotheses(&self) -> Option<&Table>;
+    fn hypotheses(&self) -> Option<&Table> {
+        None
+    }
 
     /// A copy.
     fn boxed(&self) -> Box<dyn ReadOut>;
@@ -96,10 +100,6 @@ impl ReadOut for Lines {
 
     fn version_space(&self) -> Option<&Lines> {
         Some(self)
-    }
-
-    fn hypotheses(&self) -> Option<&Table> {
-        None
     }
 
     fn boxed(&self) -> Box<dyn ReadOut> {
@@ -140,10 +140,6 @@ impl ReadOut for Table {
 
     fn samples(&self) -> &[Sample] {
         self.samples()
-    }
-
-    fn version_space(&self) -> Option<&Lines> {
-        None
     }
 
     fn hypotheses(&self) -> Option<&Table> {

@@ -68,6 +68,7 @@ impl Recorder {
             recovery: motion.recovery.map(|recovery| recovery_name(recovery).into()),
             action: motion.into(),
             pose: step.pose.into(),
+            target: (motion.target != step.pose).then(|| motion.target.into()),
             true_pose: true_pose.map(Into::into),
             label: step.reading.map(Reading::sign),
             slope_arcs,

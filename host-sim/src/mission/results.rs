@@ -96,6 +96,9 @@ pub struct StepResult {
     pub action: ActionRecord,
     /// Where it ended.
     pub pose: PoseRecord,
+    /// Where the motion should have ended, if it ended elsewhere.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub target: Option<PoseRecord>,
     /// Where the robot truly was, if it errs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub true_pose: Option<PoseRecord>,

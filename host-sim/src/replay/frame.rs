@@ -14,6 +14,7 @@ use planner_core::{Line, Site};
 
 use crate::replay::crs::Crs;
 use crate::replay::rows::Layout;
+use crate::world::extent::span;
 
 /// How far the lattice reaches, metres.
 const REACH: f64 = LIMIT as f64 / UNITS_PER_METRE as f64;
@@ -155,13 +156,7 @@ fn to_grain(degrees: f64) -> f64 {
 
 /// The least and the most of both coordinates.
 fn bounds(positions: &[[f64; 2]]) -> [[f64; 2]; 2] {
-    let of = |k: usize| {
-        let values = positions.iter().map(|at| at[k]);
-        values.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], it| {
-            [least.min(it), most.max(it)]
-        })
-    };
-    [of(0), of(1)]
+    [0, 1].map(|k| span(positions.iter().map(|at| at[k])))
 }
 
 /// The middle of latitudes and longitudes, to a ten-thousandth of a degree. Longitudes are counted from the first

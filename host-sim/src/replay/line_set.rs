@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use nalgebra::Vector2;
 use planner_core::{Label, Line};
 
+use crate::world::extent::span;
 use crate::world::polygon::Polygon;
 
 /// A line `normal . q = distance`, with a unit normal that points to its +1 side; metres.
@@ -49,11 +50,7 @@ pub(crate) fn intercepts(
     if *from <= -90.0 || *to >= 90.0 {
         return None;
     }
-    let range = [f64::INFINITY, f64::NEG_INFINITY];
-    Some(lines.into_iter().fold(range, |[low, high], (normal, distance)| {
-        let intercept = distance / normal.y;
-        [low.min(intercept), high.max(intercept)]
-    }))
+    Some(span(lines.into_iter().map(|(normal, distance)| distance / normal.y)))
 }
 
 /// The parts of some ground that all lines label +1, and -1.

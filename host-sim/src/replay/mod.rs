@@ -11,6 +11,7 @@ pub mod frame;
 pub mod geojson;
 pub mod geojson_file;
 pub mod gpx_file;
+mod halving;
 pub mod hull;
 pub mod label_name;
 pub mod label_words;

@@ -7,6 +7,7 @@
 
 use planner_core::{Label, Sample};
 
+use crate::replay::halving::last_good;
 use crate::replay::hull::{Hull, Row};
 
 /// Samples that repeat each other, by their indices: one leaves them out together.
@@ -48,12 +49,8 @@ fn smallest_contradiction(rows: &[Row], are_separable: impl Fn(&[Row]) -> bool) 
         are_separable(&some)
     };
     while agree(&needed, &[]) && !others.is_empty() {
-        // The first `good` of the others agree with those that are needed, and the first `bad` do not.
-        let (mut good, mut bad) = (0, others.len());
-        while bad - good > 1 {
-            let middle = good.midpoint(bad);
-            *(if agree(&needed, &others[..middle]) { &mut good } else { &mut bad }) = middle;
-        }
+        // The first `good` of the others agree with those that are needed, and one more does not.
+        let good = last_good(others.len(), |count| agree(&needed, &others[..count]));
         needed.push(others[good]);
         others.truncate(good);
     }

@@ -7,6 +7,7 @@
 
 use nalgebra::{Point2, Vector2, center};
 
+use crate::world::extent::span;
 use crate::world::polygon::Polygon;
 
 /// The direction along an axis that lines are nearest to: one of four.
@@ -86,9 +87,7 @@ impl Patch {
 
     /// The directions of the lines, from one to another, radians.
     pub(crate) fn directions(&self) -> [f64; 2] {
-        let directions = self.lines.0.iter().map(|line| self.quarter.direction(line.x));
-        directions
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[from, to], it| [from.min(it), to.max(it)])
+        span(self.lines.0.iter().map(|line| self.quarter.direction(line.x)))
     }
 
     /// A line inside.

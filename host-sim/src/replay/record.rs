@@ -121,12 +121,7 @@ impl Replay {
     /// Where a line crosses the border of the ground around the samples, from left to right as one looks from its +1
     /// side.
     pub(crate) fn ends(&self, line: &Line) -> Option<[Point2<f64>; 2]> {
-        let on = Polygon::from(area_around(&self.file.samples)?).across(line);
-        let [a, b, _] = line.coefficients();
-        let along = |at: &Point2<f64>| b * at.x - a * at.y;
-        let first = on.iter().min_by(|p, q| along(p).total_cmp(&along(q)))?;
-        let last = on.iter().max_by(|p, q| along(p).total_cmp(&along(q)))?;
-        Some([*first, *last])
+        Polygon::from(area_around(&self.file.samples)?).chord(line)
     }
 
     /// What the samples determine, as a record.

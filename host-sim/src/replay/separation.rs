@@ -11,6 +11,7 @@ use planner_core::geometry::line::Bound;
 use planner_core::{LocalLine, Sample};
 
 use crate::replay::facing::Facing;
+use crate::replay::halving::last_good;
 use crate::replay::hull::Row;
 
 /// All lines that separate a record: a version space of any size.
@@ -88,16 +89,7 @@ fn first_are_separable(rows: &[Row], count: usize) -> bool {
 /// The index of the first sample that no line separates from those before it, where there is one. The more
 /// samples, the fewer lines: so it is found by halving.
 fn first_inseparable(samples: &[Sample], rows: &[Row]) -> usize {
-    let (mut separable, mut inseparable) = (0, samples.len());
-    while inseparable - separable > 1 {
-        let middle = separable.midpoint(inseparable);
-        if first_are_separable(rows, middle) {
-            separable = middle;
-        } else {
-            inseparable = middle;
-        }
-    }
-    separable
+    last_good(samples.len(), |count| first_are_separable(rows, count))
 }
 
 /// Puts a cycle of rows into the order of `VersionSpace`, so that sums over it are the same to the last bit. That order

@@ -19,6 +19,7 @@ use planner_core::Sample;
 use planner_core::geometry::lattice::{UNITS_PER_METRE, Vector};
 
 use crate::replay::facing::{Facing, Pair};
+use crate::replay::halving::last_good;
 use crate::replay::hull::Row;
 use crate::replay::line_set::{ByNormal, intercepts, slope_arcs};
 
@@ -97,12 +98,7 @@ impl TolerantSeparation {
         if stretches.is_empty() {
             // The more samples, the fewer lines.
             let agree = |count: usize| first_are_separable(rows, count, tolerance);
-            let (mut good, mut bad) = (0, samples.len());
-            while bad - good > 1 {
-                let middle = good.midpoint(bad);
-                *(if agree(middle) { &mut good } else { &mut bad }) = middle;
-            }
-            return Err(NoSeparation::Contradiction(good));
+            return Err(NoSeparation::Contradiction(last_good(samples.len(), agree)));
         }
         let covered: f64 = stretches.iter().map(|it| it.to - it.from).sum();
         if covered > TAU - 1e-9 {

@@ -14,6 +14,7 @@ use planner_core::link::message::MissionArea;
 
 use crate::mission::definition::Table;
 use crate::mission::read_out::LEVEL;
+use crate::world::extent::span;
 use crate::world::polygon::Polygon;
 
 /// The thresholds of the bands: the least probability that lines pass a place of each. Ground below the first is blank.
@@ -116,9 +117,7 @@ impl Frame {
 
     /// Where columns stand, in order.
     fn columns(&self, area: &Polygon, samples: impl Iterator<Item = Point2<f64>>) -> Vec<f64> {
-        let corners = area.0.iter().map(|corner| self.coordinates(*corner).x);
-        let (from, to) = corners
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(from, to), s| (from.min(s), to.max(s)));
+        let [from, to] = span(area.0.iter().map(|corner| self.coordinates(*corner).x));
         let even = |k| from + (to - from) * f64::from(k) / f64::from(COLUMNS);
         let samples = samples.map(|at| self.coordinates(at).x).filter(|s| from < *s && *s < to);
         let mut columns: Vec<_> = (0..=COLUMNS).map(even).chain(samples).collect();
@@ -139,9 +138,8 @@ impl Ends {
     fn of(hypotheses: &[Weighed], s: f64) -> Self {
         let mut ends = Vec::with_capacity(2 * hypotheses.len());
         for Weighed { bounds, probability } in hypotheses {
-            let places = || bounds.iter().map(|it| it.at + it.slope * s);
-            ends.push((places().fold(f64::INFINITY, f64::min), *probability));
-            ends.push((places().fold(f64::NEG_INFINITY, f64::max), -probability));
+            let [from, to] = span(bounds.iter().map(|it| it.at + it.slope * s));
+            ends.extend([(from, *probability), (to, -probability)]);
         }
         // Where one ends and another begins both count.
         ends.sort_by(|a, b| a.0.total_cmp(&b.0).then(b.1.total_cmp(&a.1)));

@@ -14,6 +14,7 @@ use crate::report::placing::{Placing, foot};
 use crate::report::shapes::{Anchor, Spot, width};
 use crate::report::sheet::Sheet;
 use crate::report::style::{BORDER, Fill, HEADING, INK, PATH, Stroke};
+use crate::world::extent::around;
 use crate::world::polygon::Polygon;
 
 /// Metres and pixels of a map, and what is on it so far.
@@ -42,8 +43,7 @@ impl Map {
         const TOP: f64 = 70.0;
         let bounds = area.bounds();
         let ends = [bounds.min(), bounds.max()].map(Point2::<f64>::from);
-        let min = more.iter().fold(ends[0], |min, at| min.inf(at));
-        let max = more.iter().fold(ends[1], |max, at| max.sup(at));
+        let [min, max] = around(ends.into_iter().chain(more.iter().copied())).unwrap_or(ends);
         let scale = SIZE / (max - min).amax();
         let size = (max - min).map(|metres| (metres * scale).max(LEAST));
         let axis = |figures, pixels| Axis { scale: Scale::Linear, figures, pixels };
@@ -152,19 +152,10 @@ impl Map {
         meaning: &str,
         beside: Option<&str>,
     ) {
-        let part = Polygon::from(self.area).clip(line, 1.0);
-        let detail = 1e-9 * Polygon::from(self.area).diameter() + 1e-6;
-        let on = part.0.iter().filter(|at| line.distance(**at).abs() < detail);
-        let [a, b, _] = line.coefficients();
-        let along = |at: &&Point2<f64>| at.x * b - at.y * a;
-        let (first, last) = (
-            on.clone().min_by(|p, q| along(p).total_cmp(&along(q))),
-            on.max_by(|p, q| along(p).total_cmp(&along(q))),
-        );
-        let (Some(first), Some(last)) = (first, last) else { return };
-        self.stretch(&[*first, *last], stroke, meaning);
+        let Some(chord) = Polygon::from(self.area).chord(line) else { return };
+        self.stretch(&chord, stroke, meaning);
         if let Some(name) = beside {
-            let mut ends = self.spots(&[*first, *last]);
+            let mut ends = self.spots(&chord);
             ends.sort_by(|p, q| p.x.total_cmp(&q.x));
             let inward = (ends[0] - ends[1]).normalize() * 16.0;
             self.beside(name, ends[1] + inward, 14.0);

@@ -12,6 +12,7 @@ use crate::mission::definition::Table;
 use crate::mission::read_out::LEVEL;
 use crate::mission::recording::Recording;
 pub use crate::report::ground::Ground;
+use crate::world::extent::around;
 use crate::world::reading;
 
 /// What to draw.
@@ -244,8 +245,7 @@ fn bounding(table: &Table) -> Vec<Named> {
 /// ends there is no margin.
 pub fn area_around(samples: &[Sample]) -> Option<Area> {
     const END: f64 = (LIMIT - 1) as f64 / UNITS_PER_METRE as f64;
-    let places = || samples.iter().map(|s| Point2::<f64>::from(s.site));
-    let (min, max) = (places().reduce(|a, b| a.inf(&b))?, places().reduce(|a, b| a.sup(&b))?);
+    let [min, max] = around(samples.iter().map(|s| s.site.into()))?;
     let margin = Vector2::repeat(0.1 * (max - min).amax());
     let corner = |at: Point2<f64>| Site::try_from(at.map(|m| m.clamp(-END, END))).ok();
     Area::new(corner(min - margin)?, corner(max + margin)?).ok()

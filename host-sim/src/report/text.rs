@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use crate::mission::algorithm::Algorithm;
 use crate::mission::results::{End, EstimateRecords, LineRecord, Results, Start, StepResult};
 use crate::mission::stop::GoalRecord;
-use crate::report::table::{Column, Table};
+use crate::report::table::{Cells, Column, Table};
 use crate::world::noise::limit;
 
 /// Slope intervals as text.
@@ -218,23 +218,15 @@ fn beginning(title: &str, start: &Start) -> String {
 }
 
 /// The columns of a step's motion.
-const MOTION: [Column; 5] = [
-    Column::right("step", 4),
-    Column::left("problem", 7).apart(),
-    Column::right("turn deg", 8),
-    Column::right("go m", 5),
-    Column::left("now at m", 16).apart(),
+const MOTION: [Cells<'static, StepResult>; 5] = [
+    (Column::right("step", 4), &|it| it.step.to_string()),
+    (Column::left("problem", 7).apart(), &|it| it.problem.as_deref().unwrap_or("-").to_owned()),
+    (Column::right("turn deg", 8), &|it| fixed(f64::from(it.action.w).to_degrees(), 1)),
+    (Column::right("go m", 5), &|it| fixed(it.action.v.into(), 1)),
+    (Column::left("now at m", 16).apart(), &|it| {
+        format!("({}, {})", fixed(it.pose.x, 3), fixed(it.pose.z, 3))
+    }),
 ];
-
-fn motion(step: &StepResult) -> [String; 5] {
-    [
-        step.step.to_string(),
-        step.problem.as_deref().unwrap_or("-").to_owned(),
-        fixed(f64::from(step.action.w).to_degrees(), 1),
-        fixed(step.action.v.into(), 1),
-        format!("({}, {})", fixed(step.pose.x, 3), fixed(step.pose.z, 3)),
-    ]
-}
 
 pub(crate) fn signed(label: Option<i8>) -> String {
     label.map_or("-".into(), |label| format!("{label:+}"))
@@ -242,30 +234,30 @@ pub(crate) fn signed(label: Option<i8>) -> String {
 
 /// The steps of a mission with true labels, and what these leave.
 fn steps(steps: &[StepResult], start: &Start) -> Table {
-    let left = [
-        Column::right("label", 5),
-        Column::left("slopes left, deg", 26).apart(),
-        Column::left("intercepts left, m", 19),
-        Column::right("bits", 5),
-        Column::left("", 0).apart(),
+    let notes = notes(steps, start);
+    let left: [Cells<StepResult>; 5] = [
+        (Column::right("label", 5), &|it| signed(it.label)),
+        (Column::left("slopes left, deg", 26).apart(), &|it| arcs(&it.slope_arcs)),
+        (Column::left("intercepts left, m", 19), &|it| range(it.intercept)),
+        (Column::right("bits", 5), &|it| fixed(it.bits, 2)),
+        (Column::left("", 0).apart(), &|it| notes[it.step - 1].to_owned()),
     ];
-    let mut table = Table::new([&MOTION[..], &left].concat());
+    Table::of(steps, &[&MOTION[..], &left].concat())
+}
+
+/// What is worth a note, for each step.
+fn notes(steps: &[StepResult], start: &Start) -> Vec<&'static str> {
+    if start.algorithm == Algorithm::Random {
+        return vec![""; steps.len()];
+    }
     let mut past = start.oracle.first().map_or(0, |first| first.label);
-    for step in steps {
+    let noted = steps.iter().map(|step| {
         let label = step.label.filter(|label| *label != 0);
         let flipped = label.is_some_and(|label| label != past);
         past = label.unwrap_or(past);
-        let note = if start.algorithm == Algorithm::Random { "" } else { note(step, flipped) };
-        let left = [
-            signed(step.label),
-            arcs(&step.slope_arcs),
-            range(step.intercept),
-            fixed(step.bits, 2),
-            note.to_owned(),
-        ];
-        table.row(motion(step).into_iter().chain(left));
-    }
-    table
+        note(step, flipped)
+    });
+    noted.collect()
 }
 
 fn note(step: &StepResult, flipped: bool) -> &'static str {
@@ -282,29 +274,19 @@ fn note(step: &StepResult, flipped: bool) -> &'static str {
 
 /// The steps of a mission whose labels may err: what was seen, what was true, and what is known.
 fn noisy_steps(steps: &[StepResult]) -> Table {
-    let said = [
-        Column::right("label", 5),
-        Column::right("in fact", 6),
-        Column::right("hypotheses", 10),
-        Column::right("entropy", 7),
-        Column::right("bits", 5),
-        Column::left("slopes of the 90 % set, deg", 0).apart(),
+    let wrong = |it: &StepResult| if it.is_wrong() { " !" } else { "  " };
+    let trusted = |it: &StepResult| if it.trusted == Some(true) { "  (trusted)" } else { "" };
+    let said: [Cells<StepResult>; 6] = [
+        (Column::right("label", 5), &|it| signed(it.label)),
+        (Column::right("in fact", 6), &|it| signed(it.fact) + wrong(it)),
+        (Column::right("hypotheses", 10), &|it| it.hypotheses.unwrap_or_default().to_string()),
+        (Column::right("entropy", 7), &|it| format!("{:.2}", it.entropy.unwrap_or_default())),
+        (Column::right("bits", 5), &|it| fixed(it.bits, 2)),
+        (Column::left("slopes of the 90 % set, deg", 0).apart(), &|it| {
+            arcs(&it.slope_arcs) + trusted(it)
+        }),
     ];
-    let mut table = Table::new([&MOTION[..], &said].concat());
-    for step in steps {
-        let wrong = if step.is_wrong() { " !" } else { "  " };
-        let trusted = if step.trusted == Some(true) { "  (trusted)" } else { "" };
-        let said = [
-            signed(step.label),
-            format!("{}{wrong}", signed(step.fact)),
-            step.hypotheses.unwrap_or_default().to_string(),
-            format!("{:.2}", step.entropy.unwrap_or_default()),
-            fixed(step.bits, 2),
-            format!("{}{trusted}", arcs(&step.slope_arcs)),
-        ];
-        table.row(motion(step).into_iter().chain(said));
-    }
-    table
+    Table::of(steps, &[&MOTION[..], &said].concat())
 }
 
 fn outcome(end: &End) -> String {

@@ -6,6 +6,8 @@ use planner_core::geometry::lattice::UNITS_PER_METRE;
 use planner_core::link::message::MissionArea;
 use planner_core::{Area, KeepOut, Label, Line, Sample};
 
+use crate::world::extent::around;
+
 /// A convex polygon as its corners in order; empty when there are none.
 #[derive(Clone, Debug)]
 pub struct Polygon(pub Vec<Point2<f64>>);
@@ -78,6 +80,20 @@ impl Polygon {
         part.into_iter().filter(|at| line.distance(*at).abs() < 1e-6).collect()
     }
 
+    /// The two ends of the part of a line in it, from left to right as one looks from the line's +1 side; `None` if the
+    /// line passes by.
+    pub fn chord(&self, line: &Line) -> Option<[Point2<f64>; 2]> {
+        let detail = 1e-9 * self.diameter() + 1e-6;
+        let part = self.clip(line, 1.0).0;
+        let on = || part.iter().copied().filter(|at| line.distance(*at).abs() < detail);
+        let [a, b, _] = line.coefficients();
+        let along = |p: &Point2<f64>, q: &Point2<f64>| {
+            let [p, q] = [p, q].map(|at| b * at.x - a * at.y);
+            p.total_cmp(&q)
+        };
+        Some([on().min_by(along)?, on().max_by(along)?])
+    }
+
     /// The part in a convex polygon whose corners go counter-clockwise.
     #[must_use]
     pub fn within(self, convex: &Self) -> Self {
@@ -123,9 +139,7 @@ impl Polygon {
 
     /// The longest way across the rectangle around it, metres.
     pub fn diameter(&self) -> f64 {
-        let min = self.0.iter().copied().reduce(|a, b| a.inf(&b));
-        let max = self.0.iter().copied().reduce(|a, b| a.sup(&b));
-        min.zip(max).map_or(0.0, |(min, max)| (max - min).norm())
+        around(self.0.iter().copied()).map_or(0.0, |[min, max]| (max - min).norm())
     }
 
     /// Area, square metres.

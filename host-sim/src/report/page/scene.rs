@@ -15,6 +15,7 @@ use crate::report::ground::Ground;
 use crate::report::page::words::{self, Told};
 use crate::report::picture::{Picture, Stop};
 use crate::report::text;
+use crate::world::extent::{around, span};
 use crate::world::polygon::Polygon;
 
 /// Places are rounded to the area's size divided by this: a twentieth of a pixel.
@@ -155,9 +156,7 @@ struct Rounding {
 
 impl Rounding {
     fn of(border: &Polygon) -> Self {
-        let corners = || border.0.iter();
-        let low = corners().copied().reduce(|a, b| a.inf(&b)).unwrap_or_default();
-        let high = corners().copied().reduce(|a, b| a.sup(&b)).unwrap_or_default();
+        let [low, high] = around(border.0.iter().copied()).unwrap_or_default();
         Self { unit: 10_f64.powf(((high - low).amax() / GRAIN).log10().floor()) }
     }
 
@@ -185,8 +184,8 @@ impl Flight {
     /// The longer side of the area, metres.
     pub(crate) fn size(&self) -> f64 {
         let side = |axis: usize| {
-            let along = self.area.iter().map(|at| at[axis]);
-            along.clone().fold(f64::MIN, f64::max) - along.fold(f64::MAX, f64::min)
+            let [from, to] = span(self.area.iter().map(|at| at[axis]));
+            to - from
         };
         side(0).max(side(1))
     }
@@ -202,19 +201,17 @@ impl Flight {
         let [(estimate, _), ..] = text::estimates(results);
         let mark = |s: &Sample| Mark { at: rounding.place(s.site.into()), label: s.label.sign() };
         let stops = picture.path.iter().flat_map(|(_, stops)| stops);
-        let steps = steps.iter().zip(&results.steps).zip(stops);
-        let taken = iter::once(None).chain(steps.map(Some));
-        let mut sums = Sums::default();
+        let taken = steps.iter().zip(&results.steps).zip(stops);
+        let taken = taken.map(|((step, result), stop)| Some(Taken { step, result, stop }));
         let stage = Stage { recording, rounding, estimate };
-        let scenes = recording.known().zip(taken).map(|(belief, taken)| {
+        let mut sums = Sums::default();
+        let scenes = recording.known().zip(iter::once(None).chain(taken)).map(|(belief, taken)| {
             let bits = bits(belief);
-            let rise = bits - std::mem::replace(&mut sums.bits, bits);
-            let Some(((step, result), stop)) = taken else {
-                return stage.scene(belief, None, sums, None);
-            };
-            sums.expected_bits += result.expected.map_or(0.0, |it| it.bits);
-            let motion = moved(recording, (step, result, stop), rounding);
-            stage.scene(belief, Some((result, rise)), sums, Some(motion))
+            sums.rise = bits - sums.bits;
+            sums.bits = bits;
+            let expected = taken.and_then(|it| it.result.expected);
+            sums.expected_bits += expected.map_or(0.0, |it| it.bits);
+            stage.scene(belief, taken, sums)
         });
         let mut scenes: Vec<_> = scenes.collect();
         if let Some(last) = scenes.last_mut() {
@@ -234,11 +231,20 @@ impl Flight {
     }
 }
 
-/// Bits that were learnt so far, and that were expected.
+/// Bits that were learnt so far, those of the last step, and those that were expected so far.
 #[derive(Clone, Copy, Default)]
 struct Sums {
     bits: f64,
+    rise: f64,
     expected_bits: f64,
+}
+
+/// A step that was taken.
+#[derive(Clone, Copy)]
+struct Taken<'a> {
+    step: &'a Step,
+    result: &'a StepResult,
+    stop: &'a Stop,
 }
 
 /// The mission that scenes are made of.
@@ -250,24 +256,21 @@ struct Stage<'a> {
 }
 
 impl Stage<'_> {
-    /// The scene after a step, which brought so many bits, or at the start.
-    fn scene(
-        &self,
-        belief: &dyn ReadOut,
-        step: Option<(&StepResult, f64)>,
-        Sums { bits, expected_bits }: Sums,
-        motion: Option<Moved>,
-    ) -> Scene {
+    /// The scene after a step, or at the start.
+    fn scene(&self, belief: &dyn ReadOut, taken: Option<Taken>, sums: Sums) -> Scene {
         let &Self { recording, rounding, estimate } = self;
         let mission = &recording.mission;
         let area = mission.config.area;
         let knowledge = belief.knowledge();
         let centre = beside_truth(mission, belief.estimates()).centre;
-        let told = words::stage(recording, step, (&knowledge, bits), (estimate, centre.as_ref()));
+        let Sums { bits, rise, expected_bits } = sums;
+        let step = taken.map(|it| it.result);
+        let read = step.map(|step| (step, rise));
+        let told = words::stage(recording, read, (&knowledge, bits), (estimate, centre.as_ref()));
         let start = recording.results.start.pose;
-        let PoseRecord { x, z, heading } = step.map_or(start, |(step, _)| step.pose);
+        let PoseRecord { x, z, heading } = step.map_or(start, |step| step.pose);
         Scene {
-            motion,
+            motion: taken.map(|taken| self.moved(taken)),
             at: rounding.place(Point2::new(x, z)),
             heading,
             ground: GroundRecord::of(&Ground::of(belief, area), rounding),
@@ -276,29 +279,26 @@ impl Stage<'_> {
             intercepts: knowledge.intercept,
             bits,
             expected_bits,
-            cost: step.map_or(0.0, |(step, _)| step.control_cost),
-            metres: step.map_or(0.0, |(step, _)| step.metres),
+            cost: step.map_or(0.0, |step| step.control_cost),
+            metres: step.map_or(0.0, |step| step.metres),
             told,
         }
     }
-}
 
-fn moved(
-    recording: &Recording,
-    (step, result, stop): (&Step, &StepResult, &Stop),
-    rounding: Rounding,
-) -> Moved {
-    let [target, end] = [step.motion.target.site, step.pose.site];
-    Moved {
-        problem: words::problem(result),
-        motion: words::motion(&recording.mission, result),
-        way: stop.way.iter().map(|at| rounding.place(*at)).collect(),
-        target: (target != end).then(|| rounding.place(target.into())),
-        truly: stop.truly.map(|at| rounding.place(at)),
-        label: result.label,
-        is_wrong: result.is_wrong() && result.label != Some(0),
-        chance: result.expected.map(|it| it.chance),
-        expected: result.expected.map(|it| it.bits),
+    fn moved(&self, Taken { step, result, stop }: Taken) -> Moved {
+        let place = |at: Point2<f64>| self.rounding.place(at);
+        let [target, end] = [step.motion.target.site, step.pose.site];
+        Moved {
+            problem: words::problem(result),
+            motion: words::motion(&self.recording.mission, result),
+            way: stop.way.iter().copied().map(place).collect(),
+            target: (target != end).then(|| place(target.into())),
+            truly: stop.truly.map(place),
+            label: result.label,
+            is_wrong: result.is_wrong() && result.label != Some(0),
+            chance: result.expected.map(|it| it.chance),
+            expected: result.expected.map(|it| it.bits),
+        }
     }
 }
 
