@@ -209,44 +209,48 @@ impl<D: Dynamics, G: Workspace> Search<'_, D, G> {
     ) -> Verdict {
         let (n, side) = rank;
         let heading = self.dynamics.heading(pose, side, n);
-        if let Some(turn) = self.view.leaves_area_until(heading, side) {
-            return Verdict::Infeasible { turn, on_inner_circles_too: true };
-        }
-        if let Some((label, turn)) = self.view.certain_until(heading, side) {
-            let on_inner_circles_too = self.view.own_label == Certainty::Certain(label);
-            return Verdict::Infeasible { turn, on_inner_circles_too };
-        }
-        if let Some(turn) = self.view.outside_until(heading, side) {
-            return Verdict::Infeasible { turn, on_inner_circles_too: false };
+        if let Some(verdict) = self.seen(heading, side) {
+            return verdict;
         }
         let Some(looks) = self.effort.looks.checked_sub(1) else { return Verdict::NoneBetter };
         self.effort.looks = looks;
-        let grid = self.dynamics.grid();
-        let ray = self.dynamics.ray(pose, side, n);
-        let value = self.weight.objective(grid.reach_mm(speed), ray.turn_cost);
-        if !is_better(value, rank, hunt.found.best.as_ref()) {
+        let (grid, ray) = (self.dynamics.grid(), self.dynamics.ray(pose, side, n));
+        let objective = self.weight.objective(grid.reach_mm(speed), ray.turn_cost);
+        let Findings { best, best_forbidden } = &mut hunt.found;
+        if !is_better(objective, rank, best.as_ref()) {
             return Verdict::NoneBetter;
         }
-        let action = grid.action(ray.index, speed);
-        let choice = |target| (Choice { action, target, objective: value }, rank);
-        let only_these = |turn| Verdict::Infeasible { turn, on_inner_circles_too: false };
-        if hunt.rule.admits(ray.step) {
-            let target = match self.worthwhile_end(pose, &ray, speed, hunt.is_coarse) {
-                Ok(target) => target,
-                Err(turn) => return only_these(turn),
-            };
-            hunt.found.best = Some(choice(target));
-            return Verdict::Best;
+        let is_allowed = hunt.rule.admits(ray.step);
+        let place = if is_allowed { best } else { best_forbidden };
+        // An allowed one is better than the best, see above.
+        if is_allowed || hunt.keeps_forbidden && is_better(objective, rank, place.as_ref()) {
+            match self.worthwhile_end(pose, &ray, speed, hunt.is_coarse) {
+                Ok(target) => {
+                    let action = grid.action(ray.index, speed);
+                    *place = Some((Choice { action, target, objective }, rank));
+                }
+                Err(turn) => return Verdict::Infeasible { turn, on_inner_circles_too: false },
+            }
         }
-        if hunt.keeps_forbidden && is_better(value, rank, hunt.found.best_forbidden.as_ref()) {
-            let target = match self.worthwhile_end(pose, &ray, speed, hunt.is_coarse) {
-                Ok(target) => target,
-                Err(turn) => return only_these(turn),
-            };
-            hunt.found.best_forbidden = Some(choice(target));
+        if is_allowed {
+            return Verdict::Best;
         }
         let turn = hunt.rule.forbidden_until(heading, ray.step, side);
         Verdict::Infeasible { turn, on_inner_circles_too: true }
+    }
+
+    /// The verdict of the view on rays of a heading, if it has one: they leave the area, or end on certain ground or
+    /// outside.
+    fn seen(&mut self, heading: Heading, side: Side) -> Option<Verdict> {
+        let infeasible =
+            |turn, on_inner_circles_too| Some(Verdict::Infeasible { turn, on_inner_circles_too });
+        if let Some(turn) = self.view.leaves_area_until(heading, side) {
+            return infeasible(turn, true);
+        }
+        if let Some((label, turn)) = self.view.certain_until(heading, side) {
+            return infeasible(turn, self.view.own_label == Certainty::Certain(label));
+        }
+        infeasible(self.view.outside_until(heading, side)?, false)
     }
 
     /// The pose at a ray's end, if a label there can tell something. The end and the way there must lie inside the

@@ -190,15 +190,13 @@ impl<'a> CellView<'a> {
             turn > 0
         });
         let Some(start) = agreements.next() else { return Kept::None };
-        let (mut first, mut last) = (None, None);
-        let mut before = start;
+        let (mut first, mut last, mut before) = (None, None, start);
         for k in 0..self.edges.len() {
             let after = agreements.next().unwrap_or(start);
-            if !before && after {
-                first = Some(k);
-            }
-            if before && !after {
-                last = Some(k);
+            match (before, after) {
+                (false, true) => first = Some(k),
+                (true, false) => last = Some(k),
+                _ => {}
             }
             before = after;
         }

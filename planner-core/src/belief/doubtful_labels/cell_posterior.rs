@@ -450,40 +450,43 @@ impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
     /// Weighs the `k`-th hypothesis by the newest sample, splitting it first if the sample cuts it.
     /// One that becomes impossible is left without edges.
     fn update(&mut self, k: usize, edge: Constraint, reliability: Reliability, doubts: &[Doubt]) {
-        let (agree, disagree) = self.weights(reliability);
         let Some(newest) = self.samples.get(edge.index()) else { return };
-        let (before, newest_doubt) = doubts.split_at(doubts.len().saturating_sub(1));
         let Some(whole) = self.table.get(k).copied() else { return };
-        match self.certainty(&whole, newest.site) {
-            Certainty::Certain(certain) => {
-                let weight = if certain == edge.label() { agree } else { disagree };
-                let told = self.told_by(&whole, newest_doubt);
-                let Some(place) = self.table.get_mut(k) else { return };
-                match weight {
-                    Some(weight) => place.weigh(weight + told),
-                    None => place.cell = DualCell::NONE,
-                }
-            }
-            Certainty::Uncertain => {
-                let opposite = Constraint::new(edge.index() as u8, -edge.label());
-                // A cell's measure is the same each time it is computed, and so is the weight of its labels. So the
-                // quotients lose nothing.
-                let weight = match self.prior {
-                    Prior::Area => LogWeight::ZERO - self.log_area(&whole),
-                    Prior::Sequences => LogWeight::ZERO,
-                } - self.told_by(&whole, before);
-                let mut part = |edge, by| self.part(&whole, edge, weight + by, doubts);
-                let agreeing = agree.map(|by| part(edge, by));
-                let other = disagree.map(|by| part(opposite, by));
-                let (kept, split_off) =
-                    if agreeing.is_some() { (agreeing, other) } else { (other, None) };
-                if let (Some(kept), Some(place)) = (kept, self.table.get_mut(k)) {
-                    *place = kept;
-                }
-                if let Some(split_off) = split_off {
-                    self.add(k, split_off);
-                }
-            }
+        let (agree, disagree) = self.weights(reliability);
+        let (before, newest_doubt) = doubts.split_at(doubts.len().saturating_sub(1));
+        let Certainty::Certain(label) = self.certainty(&whole, newest.site) else {
+            let weight = LogWeight::ZERO - self.prior_weight(&whole) - self.told_by(&whole, before);
+            let opposite = Constraint::new(edge.index() as u8, -edge.label());
+            let mut part = |edge, by| self.part(&whole, edge, weight + by, doubts);
+            let parts = [agree.map(|by| part(edge, by)), disagree.map(|by| part(opposite, by))];
+            return self.replace(k, parts);
+        };
+        let told = self.told_by(&whole, newest_doubt);
+        let weight = if label == edge.label() { agree } else { disagree };
+        match (weight, self.table.get_mut(k)) {
+            (Some(weight), Some(place)) => place.weigh(weight + told),
+            (None, Some(place)) => place.cell = DualCell::NONE,
+            (_, None) => {}
+        }
+    }
+
+    /// The weight of a hypothesis before any label. A cell's measure is the same each time it is computed, and so is
+    /// the weight of its labels. So quotients lose nothing.
+    fn prior_weight(&self, hypothesis: &Hypothesis<E>) -> LogWeight {
+        match self.prior {
+            Prior::Area => self.log_area(hypothesis),
+            Prior::Sequences => LogWeight::ZERO,
+        }
+    }
+
+    /// Puts the first part that there is in the place of the `k`-th hypothesis, and adds the other.
+    fn replace(&mut self, k: usize, parts: [Option<Hypothesis<E>>; 2]) {
+        let mut parts = parts.into_iter().flatten();
+        if let (Some(kept), Some(place)) = (parts.next(), self.table.get_mut(k)) {
+            *place = kept;
+        }
+        if let Some(split_off) = parts.next() {
+            self.add(k, split_off);
         }
     }
 
@@ -513,11 +516,7 @@ impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
         if part.cell.cut(&self.samples, edge).is_err() {
             self.outer_cells = self.outer_cells.saturating_add(1);
         }
-        let weight = weight + self.told_by(&part, doubts);
-        part.weigh(match self.prior {
-            Prior::Area => weight + self.log_area(&part),
-            Prior::Sequences => weight,
-        });
+        part.weigh(weight + self.told_by(&part, doubts) + self.prior_weight(&part));
         part
     }
 
