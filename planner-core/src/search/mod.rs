@@ -17,6 +17,7 @@ mod detour;
 pub mod direction_rule;
 pub(crate) mod lookout;
 pub(crate) mod manoeuvre;
+mod motions;
 pub mod objective;
 pub mod problem;
 pub mod recovery;

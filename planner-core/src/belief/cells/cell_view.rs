@@ -193,10 +193,8 @@ impl<'a> CellView<'a> {
         let (mut first, mut last, mut before) = (None, None, start);
         for k in 0..self.edges.len() {
             let after = agreements.next().unwrap_or(start);
-            match (before, after) {
-                (false, true) => first = Some(k),
-                (true, false) => last = Some(k),
-                _ => {}
+            if after != before {
+                *(if after { &mut first } else { &mut last }) = Some(k);
             }
             before = after;
         }
