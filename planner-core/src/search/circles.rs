@@ -209,48 +209,42 @@ impl<D: Dynamics, G: Workspace> Search<'_, D, G> {
     ) -> Verdict {
         let (n, side) = rank;
         let heading = self.dynamics.heading(pose, side, n);
-        if let Some(verdict) = self.seen(heading, side) {
-            return verdict;
+        if let Some(turn) = self.view.leaves_area_until(heading, side) {
+            return Verdict::Infeasible { turn, on_inner_circles_too: true };
+        }
+        if let Some((label, turn)) = self.view.certain_until(heading, side) {
+            let on_inner_circles_too = self.view.own_label == Certainty::Certain(label);
+            return Verdict::Infeasible { turn, on_inner_circles_too };
+        }
+        if let Some(turn) = self.view.outside_until(heading, side) {
+            return Verdict::Infeasible { turn, on_inner_circles_too: false };
         }
         let Some(looks) = self.effort.looks.checked_sub(1) else { return Verdict::NoneBetter };
         self.effort.looks = looks;
         let (grid, ray) = (self.dynamics.grid(), self.dynamics.ray(pose, side, n));
         let objective = self.weight.objective(grid.reach_mm(speed), ray.turn_cost);
-        let Findings { best, best_forbidden } = &mut hunt.found;
-        if !is_better(objective, rank, best.as_ref()) {
+        if !is_better(objective, rank, hunt.found.best.as_ref()) {
             return Verdict::NoneBetter;
         }
         let is_allowed = hunt.rule.admits(ray.step);
-        let place = if is_allowed { best } else { best_forbidden };
-        // An allowed one is better than the best, see above.
-        if is_allowed || hunt.keeps_forbidden && is_better(objective, rank, place.as_ref()) {
-            match self.worthwhile_end(pose, &ray, speed, hunt.is_coarse) {
-                Ok(target) => {
-                    let action = grid.action(ray.index, speed);
-                    *place = Some((Choice { action, target, objective }, rank));
-                }
+        let is_wanted = is_allowed
+            || hunt.keeps_forbidden
+                && is_better(objective, rank, hunt.found.best_forbidden.as_ref());
+        if is_wanted {
+            let target = match self.worthwhile_end(pose, &ray, speed, hunt.is_coarse) {
+                Ok(target) => target,
                 Err(turn) => return Verdict::Infeasible { turn, on_inner_circles_too: false },
-            }
+            };
+            let action = grid.action(ray.index, speed);
+            let choice = Some((Choice { action, target, objective }, rank));
+            let Findings { best, best_forbidden } = &mut hunt.found;
+            *(if is_allowed { best } else { best_forbidden }) = choice;
         }
         if is_allowed {
             return Verdict::Best;
         }
         let turn = hunt.rule.forbidden_until(heading, ray.step, side);
         Verdict::Infeasible { turn, on_inner_circles_too: true }
-    }
-
-    /// The verdict of the view on rays of a heading, if it has one: they leave the area, or end on certain ground or
-    /// outside.
-    fn seen(&mut self, heading: Heading, side: Side) -> Option<Verdict> {
-        let infeasible =
-            |turn, on_inner_circles_too| Some(Verdict::Infeasible { turn, on_inner_circles_too });
-        if let Some(turn) = self.view.leaves_area_until(heading, side) {
-            return infeasible(turn, true);
-        }
-        if let Some((label, turn)) = self.view.certain_until(heading, side) {
-            return infeasible(turn, self.view.own_label == Certainty::Certain(label));
-        }
-        infeasible(self.view.outside_until(heading, side)?, false)
     }
 
     /// The pose at a ray's end, if a label there can tell something. The end and the way there must lie inside the
