@@ -28,31 +28,21 @@ use serde::{Deserialize, Serialize};
 
 use crate::belief::ObservationError;
 use crate::belief::estimate::Estimates;
-use crate::belief::goal::Goal;
-use crate::belief::noise::Noise;
-use crate::belief::sample::{Reading, Sample};
-use crate::belief::tolerance::Tolerance;
+use crate::belief::sample::Reading;
 use crate::belief::true_labels::GivenError;
-use crate::belief::weight::Prior;
-use crate::geometry::area::Area;
 use crate::geometry::hull::{Hull, HullError};
 use crate::geometry::lattice::Site;
 use crate::geometry::polygon_area::{KeepOut, PolygonArea};
 use crate::link::frame::Message;
-use crate::motion::any_vehicle::{Shape, ShapeError};
+use crate::motion::any_vehicle::ShapeError;
 use crate::motion::dynamics::Pose;
-use crate::planner::lookahead::DrivingPrice;
-use crate::planner::options::{Crossing, Following, Options};
-use crate::planner::scc::Policy;
 use crate::planner::{Motion, StopReason};
-use crate::search::objective::EffortWeight;
+
+pub use crate::link::setup::{Algorithm, Capacity, LabelSource, MOST_GIVEN, Settings, Setup};
 
 /// The version of this protocol. The layout of [`Request::Hello`] and of its frame is that of every
 /// version from 2 on.
 pub const PROTOCOL: u16 = 6;
-
-/// Given samples that a setup can hold.
-pub const MOST_GIVEN: usize = 16;
 
 /// Corners that an area can have, and each keep-out in it.
 pub const MOST_CORNERS: usize = 8;
@@ -136,108 +126,6 @@ pub enum Reply {
     Busy,
     /// To any: it belongs to no session that runs here, or is older than the last.
     Stale,
-}
-
-/// What a mission fixes beforehand, whichever algorithm flies it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Settings<G = Area> {
-    /// Where positions must stay.
-    pub area: G,
-    /// The weight of the control in the objective of Algorithms 1 and 2, or look-ahead's price of driving.
-    pub weight: EffortWeight,
-    /// How P1 looks for the opposite label.
-    pub crossing: Crossing,
-    /// How P2 follows the boundary.
-    pub following: Following,
-    /// The largest distance of a position from where it is reported.
-    pub tolerance: Tolerance,
-}
-
-impl<G> Settings<G> {
-    /// What Algorithms 1 and 2 leave open.
-    pub const fn options(&self) -> Options {
-        Options { weight: self.weight, crossing: self.crossing, following: self.following }
-    }
-
-    /// The price of look-ahead.
-    pub fn price(&self) -> DrivingPrice {
-        self.weight.into()
-    }
-}
-
-/// A mission.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Setup {
-    /// [`PROTOCOL`] as the vehicle has it.
-    pub protocol: u16,
-    /// Who plans.
-    pub algorithm: Algorithm,
-    /// What the mission fixes beforehand.
-    pub config: Settings,
-    /// The number of keep-outs, if the area is more than the rectangle of [`Settings::area`]. Then the chip asks for
-    /// [outlines](Request::Outline).
-    pub keep_outs: Option<u8>,
-    /// The parameters of the vehicle. The [chip](Setup::terms) decides whether it supports such a vehicle. It may
-    /// support a single kind.
-    pub vehicle: Shape,
-    /// The capacity asked for.
-    pub capacity: Capacity,
-    /// Steps at most.
-    pub steps: u16,
-    /// Where the vehicle is.
-    pub start: Pose,
-    /// Who reads labels.
-    pub labels: LabelSource,
-    /// The given samples, the paper's oracle points.
-    pub given: Vec<Sample, MOST_GIVEN, u8>,
-}
-
-/// Who plans.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Algorithm {
-    /// Algorithm 1, noiseless labels.
-    Cfc,
-    /// Algorithm 2, noisy labels.
-    Scc {
-        /// What is known of the noise.
-        noise: Noise,
-        /// How hypotheses choose an action together.
-        policy: Policy,
-        /// How they are weighed.
-        prior: Prior,
-    },
-    /// Look-ahead.
-    Lookahead {
-        /// Ends of motions that a plan evaluates, at most.
-        evaluations: u32,
-        /// The goal at which the mission ends, if it has one.
-        goal: Option<Goal>,
-        /// What is known of the noise, and how hypotheses are weighed, if labels may be wrong.
-        noise: Option<(Noise, Prior)>,
-    },
-}
-
-/// Capacity for a mission's memory.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Capacity {
-    /// Samples, the given ones included.
-    pub samples: u16,
-    /// Hypotheses; 1 where there is but one.
-    pub hypotheses: u16,
-}
-
-/// Who reads labels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum LabelSource {
-    /// The vehicle: they come with [`Reply::Arrived`].
-    Vehicle,
-    /// The chip, from its own sensor, at the end of each motion whose reading is not told.
-    Chip,
 }
 
 /// What the chip accepts, and what its figures mean.
@@ -370,17 +258,21 @@ impl Message for Reply {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::belief::noise::Reliability;
-    use crate::belief::sample::Label;
+    use crate::belief::noise::{Noise, Reliability};
+    use crate::belief::sample::{Label, Sample};
     use crate::belief::tolerance::Tolerance;
+    use crate::belief::weight::Prior;
     use crate::geometry::area::Area;
     use crate::geometry::heading::Heading;
     use crate::geometry::lattice::{LIMIT, Site, Vector};
     use crate::geometry::local_line::LocalLine;
     use crate::link::frame::{Decoder, Envelope, FRAME, Frame};
     use crate::motion::action::{Action, Control};
+    use crate::motion::any_vehicle::Shape;
     use crate::motion::car;
     use crate::planner::Stage;
+    use crate::planner::options::{Crossing, Following};
+    use crate::planner::scc::Policy;
     use crate::search::objective::EffortWeight;
     use crate::search::recovery::Recovery;
 

@@ -11,4 +11,5 @@
 pub mod delivery;
 pub mod frame;
 pub mod message;
+mod setup;
 pub mod station;

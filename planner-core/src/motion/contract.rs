@@ -209,34 +209,46 @@ fn arrives<D: Dynamics>(dynamics: &D, pose: Pose, ray: &Ray) -> bool {
     by == ray.displacement(speed) && dynamics.tangent_intersection(pose, end).is_none_or(meets)
 }
 
-/// Checks which rays speeds have.
+/// Checks which rays speeds have: the fastest all, a slower one no more than a faster, and each those that it says.
 fn speeds<D: Dynamics>(dynamics: &D, pose: Pose) -> Result<(), ContractError> {
-    let (grid, RayFan { left, right, .. }) = (dynamics.grid(), dynamics.fan());
-    let fastest = u32::from(grid.speeds() - 1);
-    let [mut most_left, mut most_right] = [left, right];
+    let RayFan { left, right, .. } = dynamics.fan();
+    let fastest = u32::from(dynamics.grid().speeds() - 1);
+    let mut most = [left, right];
     for slower in looked_at(fastest) {
         let speed = (fastest - slower) as u16;
-        let Some([on_left, on_right]) = dynamics.rays_at(speed) else { continue };
-        let all = slower > 0 || fastest == 0 || [on_left, on_right] == [left, right];
-        if !all || on_left > most_left || on_right > most_right {
+        let Some(rays) = dynamics.rays_at(speed) else { continue };
+        let has_all = slower > 0 || fastest == 0 || rays == [left, right];
+        let has_more = rays[0] > most[0] || rays[1] > most[1];
+        if !has_all || has_more || !has_rays(dynamics, pose, speed, rays) {
             return Err(ContractError::Speeds(speed));
         }
-        for (side, last, count) in
-            [(Side::Left, left - 1, on_left), (Side::Right, right, on_right.saturating_add(1))]
-        {
-            for n in [count.wrapping_sub(1), count] {
-                let ray = (n <= last).then(|| dynamics.ray(pose, side, n));
-                let exists = n < count && (n > 0 || on_left > 0);
-                let is_known =
-                    |ray: Ray| dynamics.ray_of(pose, grid.action(ray.index, speed)).is_some();
-                if ray.is_some_and(|ray| is_known(ray) != exists) {
-                    return Err(ContractError::Speeds(speed));
-                }
-            }
-        }
-        [most_left, most_right] = [on_left, on_right];
+        most = rays;
     }
     Ok(())
+}
+
+/// Whether a speed has so many rays on the left and on the right: on each side it has the last of them, and not the
+/// next. Without any on the left it has none straight ahead.
+fn has_rays<D: Dynamics>(
+    dynamics: &D,
+    pose: Pose,
+    speed: u16,
+    [on_left, on_right]: [u32; 2],
+) -> bool {
+    let (grid, RayFan { left, right, .. }) = (dynamics.grid(), dynamics.fan());
+    let is_right = |side, last: u32, count: u32, n: u32| {
+        let exists = n < count && (n > 0 || on_left > 0);
+        let is_known = || {
+            let ray = dynamics.ray(pose, side, n);
+            dynamics.ray_of(pose, grid.action(ray.index, speed)).is_some()
+        };
+        n > last || is_known() == exists
+    };
+    [(Side::Left, left - 1, on_left), (Side::Right, right, on_right.saturating_add(1))]
+        .into_iter()
+        .all(|(side, last, count)| {
+            [count.wrapping_sub(1), count].into_iter().all(|n| is_right(side, last, count, n))
+        })
 }
 
 /// Goes round a turning circle.

@@ -19,20 +19,19 @@
 
 use crate::belief::Belief as _;
 use crate::belief::ObservationError;
-use crate::belief::cells::CellView;
 use crate::belief::goal::{Criterion, Goal, NoGoal};
 use crate::belief::noise::Noise;
 use crate::belief::observation_log::FromLog;
-use crate::belief::predictions::{NoisyBelief, Prediction, PredictiveBelief, Predictor};
-use crate::belief::sample::{Label, Reading, Sample};
+use crate::belief::predictions::{NoisyBelief, PredictiveBelief};
+use crate::belief::sample::{Reading, Sample};
 use crate::belief::tolerance::Tolerance;
 use crate::belief::weight::Prior;
 use crate::geometry::area::Area;
 use crate::geometry::lattice::Vector;
 use crate::geometry::value::ValueError;
 use crate::geometry::workspace::Workspace;
-use crate::motion::action::Action;
-use crate::motion::dynamics::{Dynamics, Pose, Side};
+use crate::motion::dynamics::{Dynamics, Pose};
+use crate::planner::decision::Decision;
 use crate::planner::setup::{Restart, SetupError, aimed_for, aimed_for_by};
 use crate::planner::silence::Silence;
 use crate::planner::snapshot::{Persist, RestoreError, Snapshot};
@@ -40,7 +39,7 @@ use crate::planner::{Motion, Plan, Planner, StopReason};
 use crate::search::course::Course;
 use crate::search::dead_end::{DeadEnd, is_broad};
 use crate::search::direction_rule::ArcRule;
-use crate::search::lookout::{ENOUGH, Lookout, Prospect, Prospects, Sought};
+use crate::search::lookout::Lookout;
 use crate::search::objective::{Effort, EffortWeight, LOOKS};
 use crate::search::problem::Problem;
 use crate::search::recovery::{Found, solve_or_recover};
@@ -97,22 +96,12 @@ impl Default for DrivingPrice {
 /// ground is thinner than the lattice.
 pub const EVALUATIONS: u32 = 512;
 
-/// Circles on which the first step may end, and the second.
-const FIRST_CIRCLES: u16 = 6;
-const SECOND_CIRCLES: u16 = 3;
-
-/// Circles on which the first step may end if none of the usual ones has an open place.
-const MOST_CIRCLES: u16 = 24;
-
 /// Motions are usually no longer than this part of the mean of the area's sides. Longer ones tell nothing more. They
 /// also end near the border, where less is in reach.
 const USUAL: f32 = 0.125;
 
 /// The least expected information of a label that is worth its way, as a share of the most that a label can carry.
 const LEAST: f32 = 0.15;
-
-/// Where no label is worth as much, turns in place are considered.
-const POOR: f32 = 0.9;
 
 /// The look-ahead planner: `D` is the vehicle, `B` the belief that it learns from, `G` the area, and `C` what its
 /// [`Goal`] asks of the line.
@@ -130,14 +119,6 @@ pub struct Lookahead<D, B, G = Area, C = NoGoal> {
     evaluations: u32,
     goal: Option<Goal<C>>,
     silence: Silence,
-}
-
-/// What to do, and what the two labels after it are worth.
-struct Decision {
-    action: Action,
-    target: Pose,
-    worth: f32,
-    wants_label: bool,
 }
 
 impl<D: Dynamics, B: PredictiveBelief, G: Workspace> Lookahead<D, B, G> {
@@ -201,58 +182,24 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion> Lookahead<D, 
         &mut self.belief
     }
 
-    /// The motion that is worth the most; `None` if no label is in reach.
-    fn decide(&self, lookout: &mut Lookout<'_, D, G>, pose: Pose) -> Option<Decision> {
-        let predictor = self.belief.predictor(pose.site);
-        let mut prospects = Prospects::new();
-        let fastest = self.dynamics.grid().speeds().saturating_sub(1);
-        for circles in [(FIRST_CIRCLES, lookout.usual), (MOST_CIRCLES, fastest)] {
-            if prospects.as_slice().is_empty() {
-                let mut sought = Sought::Prospects(&mut prospects, self.belief.ground());
-                lookout.look(&predictor, pose, circles, &mut sought);
-            }
-        }
-        let mut best = None;
-        let is_better =
-            |worth: f32, best: &Option<Decision>| best.as_ref().is_none_or(|it| worth > it.worth);
-        for &Prospect { action, target, share, worth } in prospects.as_slice() {
-            let above = predictor.chance(target.site, share);
-            // Starts as an upper bound on the worth. It is exact once both labels have been evaluated.
-            let mut total = worth + ENOUGH;
-            for (label, chance) in [(Label::Positive, above), (Label::Negative, 1.0 - above)] {
-                if is_better(total, &best) {
-                    let after = predictor.after(target.site, label);
-                    let next = second(lookout, &after, target, None);
-                    total -= chance * (ENOUGH - next);
-                }
-            }
-            if is_better(total, &best) {
-                best = Some(Decision { action, target, worth: total, wants_label: true });
-            }
-        }
-        let most = prospects.as_slice().first().map_or(0.0, |first| first.worth);
-        if most < POOR {
-            for side in [Side::Left, Side::Right] {
-                let Some((action, target)) = self.dynamics.turn_in_place(pose, side) else {
-                    continue;
-                };
-                let effort = self.dynamics.ray_of(pose, action).map_or(0, |ray| ray.turn_cost);
-                // Nothing is learnt by a turn: what the next plan would refuse is worth nothing.
-                let next = second(lookout, &predictor, target, Some(self.belief.ground()));
-                let total = next - lookout.cost(0, effort);
-                if next > 0.0 && is_better(total, &best) {
-                    best = Some(Decision { action, target, worth: total, wants_label: false });
-                }
-            }
-        }
-        best
-    }
-
-    /// The least information that a label must be expected to carry. Where positions err, there is always one more
-    /// label that tells next to nothing.
-    fn least(&self) -> f32 {
+    /// What a plan looks for labels with.
+    fn lookout(&self) -> Lookout<'_, D, G> {
+        let Self { area, dynamics, evaluations, .. } = self;
+        let grid = dynamics.grid();
+        let side = area.bounds().half_sides().into_iter().map(|half| half as f32).sum::<f32>();
+        let most = (USUAL * side / grid.step_units()) as u16;
+        let usual = grid.speeds().saturating_sub(1).min(most).max(1);
+        // Where positions err, there is always one more label that tells next to nothing.
         let errs = self.belief.ground().shift != Vector::default();
-        if errs { LEAST } else { 0.0 }
+        Lookout {
+            dynamics,
+            area: *area,
+            weight: self.price.0,
+            usual,
+            scale: 2_000.0 / grid.reach_mm(usual) as f32,
+            least: if errs { LEAST } else { 0.0 },
+            evaluations: *evaluations,
+        }
     }
 
     /// What the ladder finds where no label is in reach that is worth it.
@@ -266,34 +213,6 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion> Lookahead<D, 
         let found = solve_or_recover(&problem, search, None, course);
         (found, search.effort)
     }
-}
-
-/// The fastest speed that is usually considered, at least 1, and the factor for lengths in the cost. The factor makes
-/// the reach of that speed count as the paper's 2 m.
-fn usual<D: Dynamics, G: Workspace>(dynamics: &D, area: &G) -> (u16, f32) {
-    let grid = dynamics.grid();
-    let side = area.bounds().half_sides().into_iter().map(|half| half as f32).sum::<f32>();
-    let most = (USUAL * side / grid.step_units()) as u16;
-    let fastest = grid.speeds().saturating_sub(1).min(most).max(1);
-    (fastest, 2_000.0 / grid.reach_mm(fastest) as f32)
-}
-
-/// The worth of the best label after one more motion; 0 if there is none. If `ground` is given, only ends count on
-/// which these lines disagree.
-fn second<D: Dynamics, P: Prediction, G: Workspace>(
-    lookout: &mut Lookout<'_, D, G>,
-    prediction: &P,
-    pose: Pose,
-    ground: Option<CellView<'_>>,
-) -> f32 {
-    let mut most = 0.0;
-    lookout.look(
-        prediction,
-        pose,
-        (SECOND_CIRCLES, lookout.usual),
-        &mut Sought::Worth(&mut most, ground),
-    );
-    most
 }
 
 impl<D: Dynamics, G: Workspace, C: Criterion, const N: usize, const H: usize> Restart
@@ -315,7 +234,6 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion> Planner
     type Belief = B::Belief;
 
     fn plan(&mut self, pose: Pose) -> Plan {
-        let (area, weight) = (self.area, self.price.0);
         if self.goal.is_some_and(|goal| self.belief().meets(goal, self.bounds)) {
             return Plan::Stop(StopReason::Known);
         }
@@ -323,15 +241,13 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion> Planner
             return Plan::Stop(StopReason::SamplesFull);
         }
         self.belief.prepare();
-        let (dynamics, evaluations) = (&self.dynamics, self.evaluations);
-        let (usual, scale) = usual(dynamics, &area);
-        let least = self.least();
-        let mut lookout = Lookout { dynamics, area, weight, usual, scale, least, evaluations };
-        if let Some(decision) = self.decide(&mut lookout, pose) {
+        let mut lookout = self.lookout();
+        let (least, dynamics) = (lookout.least, &self.dynamics);
+        if let Some(decision) = Decision::of(&self.belief, &mut lookout, pose) {
             let Decision { action, target, wants_label, .. } = decision;
-            self.silence.bears(false);
             let looks = lookout.evaluations;
-            let effort = Effort { looks, examined: evaluations - looks };
+            let effort = Effort { looks, examined: self.evaluations - looks };
+            self.silence.bears(false);
             let found = Found::of(None, (action, target));
             let mut course = self.silence.course();
             course.give_up_way();
@@ -394,9 +310,8 @@ mod tests {
 
     use super::*;
     use crate::belief::cells::Certainty;
-    use crate::belief::noise::{Noise, Reliability};
-    use crate::belief::predictions::NoisyBelief;
-    use crate::belief::sample::Sample;
+    use crate::belief::noise::Reliability;
+    use crate::belief::sample::Label;
     use crate::belief::true_labels::VersionSpace;
     use crate::geometry::heading::Heading;
     use crate::geometry::lattice::Site;
@@ -484,12 +399,9 @@ mod tests {
         planner.belief.prepare();
         let mut before = f32::NEG_INFINITY;
         for evaluations in [0, 1, 2, 5, 10, 20, 50, 100, 150, 200, 300, 400, 512, 1_000, 5_000] {
-            let dynamics = &planner.dynamics;
-            let (area, weight) = (planner.area, planner.price.0);
-            let (usual, scale) = usual(dynamics, &area);
-            let least = planner.least();
-            let mut lookout = Lookout { dynamics, area, weight, usual, scale, least, evaluations };
-            let decision = planner.decide(&mut lookout, pose);
+            planner.evaluations = evaluations;
+            let mut lookout = planner.lookout();
+            let decision = Decision::of(&planner.belief, &mut lookout, pose);
             assert!(lookout.evaluations <= evaluations);
             let worth = decision.map_or(f32::NEG_INFINITY, |decision| decision.worth);
             assert!(worth >= before, "{worth} with {evaluations}, {before} with fewer, {pose:?}");

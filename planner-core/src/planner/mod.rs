@@ -10,6 +10,7 @@
 //! [`snapshot`] is what a planner has to remember over a sleep.
 
 pub mod cfc;
+mod decision;
 pub mod lookahead;
 pub mod options;
 pub mod scc;

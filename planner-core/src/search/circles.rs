@@ -221,29 +221,27 @@ impl<D: Dynamics, G: Workspace> Search<'_, D, G> {
         }
         let Some(looks) = self.effort.looks.checked_sub(1) else { return Verdict::NoneBetter };
         self.effort.looks = looks;
-        let grid = self.dynamics.grid();
-        let ray = self.dynamics.ray(pose, side, n);
-        let value = self.weight.objective(grid.reach_mm(speed), ray.turn_cost);
-        if !is_better(value, rank, hunt.found.best.as_ref()) {
+        let (grid, ray) = (self.dynamics.grid(), self.dynamics.ray(pose, side, n));
+        let objective = self.weight.objective(grid.reach_mm(speed), ray.turn_cost);
+        if !is_better(objective, rank, hunt.found.best.as_ref()) {
             return Verdict::NoneBetter;
         }
-        let action = grid.action(ray.index, speed);
-        let choice = |target| (Choice { action, target, objective: value }, rank);
-        let only_these = |turn| Verdict::Infeasible { turn, on_inner_circles_too: false };
-        if hunt.rule.admits(ray.step) {
+        let is_allowed = hunt.rule.admits(ray.step);
+        let is_wanted = is_allowed
+            || hunt.keeps_forbidden
+                && is_better(objective, rank, hunt.found.best_forbidden.as_ref());
+        if is_wanted {
             let target = match self.worthwhile_end(pose, &ray, speed, hunt.is_coarse) {
                 Ok(target) => target,
-                Err(turn) => return only_these(turn),
+                Err(turn) => return Verdict::Infeasible { turn, on_inner_circles_too: false },
             };
-            hunt.found.best = Some(choice(target));
-            return Verdict::Best;
+            let action = grid.action(ray.index, speed);
+            let choice = Some((Choice { action, target, objective }, rank));
+            let Findings { best, best_forbidden } = &mut hunt.found;
+            *(if is_allowed { best } else { best_forbidden }) = choice;
         }
-        if hunt.keeps_forbidden && is_better(value, rank, hunt.found.best_forbidden.as_ref()) {
-            let target = match self.worthwhile_end(pose, &ray, speed, hunt.is_coarse) {
-                Ok(target) => target,
-                Err(turn) => return only_these(turn),
-            };
-            hunt.found.best_forbidden = Some(choice(target));
+        if is_allowed {
+            return Verdict::Best;
         }
         let turn = hunt.rule.forbidden_until(heading, ray.step, side);
         Verdict::Infeasible { turn, on_inner_circles_too: true }

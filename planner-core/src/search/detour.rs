@@ -99,7 +99,8 @@ pub(crate) fn begin<G: Workspace>(
     best.map(|(way, _)| way)
 }
 
-fn distance(way: Vector) -> f32 {
+/// The length of a way.
+pub(crate) fn distance(way: Vector) -> f32 {
     sqrt(single(way.dot(way)))
 }
 

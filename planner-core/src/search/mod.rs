@@ -6,7 +6,7 @@
 //! and their crossings with the circle show which rays can be skipped.
 //!
 //! If no action is feasible, a ladder of recoveries takes over. It leads round keep-outs if necessary (`detour`). A
-//! vehicle that cannot turn on the spot makes a `manoeuvre`. Look-ahead searches the same circles for the places where
+//! vehicle that cannot turn on the spot makes a `manoeuvre`, of `motions`. Look-ahead searches the same circles for the places where
 //! labels tell the most (`lookout`).
 
 pub(crate) mod circles;
@@ -17,6 +17,7 @@ mod detour;
 pub mod direction_rule;
 pub(crate) mod lookout;
 pub(crate) mod manoeuvre;
+mod motions;
 pub mod objective;
 pub mod problem;
 pub mod recovery;

@@ -50,6 +50,7 @@ use crate::search::dead_end::{DeadEnd, way_to_open_ground};
 use crate::search::detour::{self, Way};
 use crate::search::direction_rule::{ArcRule, DirectionRule};
 use crate::search::manoeuvre::{manoeuvre, waypoint};
+use crate::search::motions::Leg;
 use crate::search::problem::Problem;
 use crate::search::wander::{drift, is_open, stays, wander};
 
@@ -109,27 +110,26 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule, G: Workspace>(
     course: &mut Course,
 ) -> Result<Found, DeadEnd> {
     let (area, pose) = (problem.area, search.pose);
+    let goes_round = goes_round(search.dynamics, pose);
     let mut ladder = Ladder { problem: problem.undirected(), search, course };
     // Before the search has used up its looks.
     let is_outside = !area.contains(pose.site);
     let home =
         is_outside.then(|| ladder.leg(pose, area.way_home(pose.site)).ok_or(DeadEnd::Outside));
-    let found = ladder.solve(problem, before).or_else(|| ladder.go_on());
-    if let Some(found) = found {
+    if let Some(found) = ladder.solve(problem, before).or_else(|| ladder.go_on()) {
         return Ok(found);
     }
-    // Few looks find a way nearly always, unless it has to go round. More of them are worth it where there is much ground
-    // to find.
-    let goes_round = goes_round(ladder.search.dynamics, pose);
-    let half = |ladder: &Ladder<'_, '_, '_, D, G>| ladder.search.effort.looks / 2;
-    let first = if goes_round { half(&ladder) } else { FIRST_LOOKS };
-    let climbed = ladder.climb(home, first);
+    // Few looks find a way nearly always, unless it has to go round.
+    let looks = if goes_round { ladder.half_the_looks() } else { FIRST_LOOKS };
+    let climbed = ladder.climb(home, looks);
     let Err(why) = climbed else { return climbed };
     let open = way_to_open_ground(problem.lines, &area, pose.site);
     let Some(open) = open.filter(|_| why != DeadEnd::Outside) else {
         return Err(why.of_thin_ground(problem.lines));
     };
-    let climbed = if goes_round { climbed } else { ladder.climb(home, half(&ladder)) };
+    // More of them are worth it where there is much ground to find.
+    let looks = ladder.half_the_looks();
+    let climbed = if goes_round { climbed } else { ladder.climb(home, looks) };
     climbed.or_else(|why| ladder.begin(open).ok_or(why.of_open_ground()))
 }
 
@@ -153,9 +153,6 @@ pub(crate) fn turn_round<D: Dynamics, R: DirectionRule, G: Workspace>(
 fn goes_round<D: Dynamics>(dynamics: &D, pose: Pose) -> bool {
     dynamics.turning_circle(pose, Side::Left).is_some()
 }
-
-/// An action and where it leads.
-type Leg = (Action, Pose);
 
 /// The result of following a bearing.
 enum Approach {
@@ -183,7 +180,7 @@ impl<D: Dynamics, G: Workspace> Ladder<'_, '_, '_, D, G> {
         problem: &Problem<'_, R, G>,
         before: Option<Findings>,
     ) -> Option<Found> {
-        let kept = self.search.effort.keep_back(self.search.effort.looks / 2);
+        let kept = self.search.effort.keep_back(self.half_the_looks());
         let Findings { best, best_forbidden } = self.search.best(&problem.rule, before);
         self.search.effort.give_back(kept);
         if let Some((best, _)) = best {
@@ -196,6 +193,10 @@ impl<D: Dynamics, G: Workspace> Ladder<'_, '_, '_, D, G> {
             return turned;
         }
         Some(Found::of(Some(Recovery::Undirected), (best.action, best.target)))
+    }
+
+    fn half_the_looks(&self) -> u32 {
+        self.search.effort.looks / 2
     }
 
     /// The rungs 2 to 4, or a manoeuvre, with so many looks; `home` is the way back from outside, if that is where the

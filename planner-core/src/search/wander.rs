@@ -10,11 +10,11 @@
 use heapless::Vec;
 
 use crate::geometry::workspace::Workspace;
-use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Pose, Side};
 use crate::search::circles::Search;
 use crate::search::course::REST;
 use crate::search::direction_rule::DirectionRule;
+use crate::search::motions::Leg;
 use crate::search::objective::Effort;
 use crate::search::problem::Problem;
 
@@ -29,9 +29,6 @@ const MOTIONS: usize = 1 + REST;
 
 /// Drives that are drawn, at most, to find one that stays inside.
 const DRIFTS: u32 = 64;
-
-/// An action and where it leads.
-type Leg = (Action, Pose);
 
 /// A way, at whose end a label can be asked.
 type Drawn = Vec<Leg, MOTIONS, u8>;

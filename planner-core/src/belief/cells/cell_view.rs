@@ -81,8 +81,7 @@ impl<'a> CellView<'a> {
         let i = *self.edges.get(k)?;
         let j = *self.edges.get(k + 1).or(self.edges.first())?;
         let (p, q) = (self.samples.get(i.index())?.site, self.samples.get(j.index())?.site);
-        let along = if i.label() == j.label() { q - p } else { p - q };
-        Some(Bound { through: p, along })
+        Some(through([p, q], i.label() == j.label()))
     }
 
     /// The vertices: the lines through two samples that bound the set, in cyclic order.
@@ -190,15 +189,11 @@ impl<'a> CellView<'a> {
             turn > 0
         });
         let Some(start) = agreements.next() else { return Kept::None };
-        let (mut first, mut last) = (None, None);
-        let mut before = start;
+        let (mut first, mut last, mut before) = (None, None, start);
         for k in 0..self.edges.len() {
             let after = agreements.next().unwrap_or(start);
-            if !before && after {
-                first = Some(k);
-            }
-            if before && !after {
-                last = Some(k);
+            if after != before {
+                *(if after { &mut first } else { &mut last }) = Some(k);
             }
             before = after;
         }
@@ -237,8 +232,11 @@ impl<'a> CellView<'a> {
 
 /// The line through two samples that are neighbours round a cell.
 pub fn bound(p: Sample, q: Sample) -> Bound {
-    let along = if p.label == q.label { q.site - p.site } else { p.site - q.site };
-    Bound { through: p.site, along }
+    through([p.site, q.site], p.label == q.label)
+}
+
+fn through([p, q]: [Site; 2], are_alike: bool) -> Bound {
+    Bound { through: p, along: if are_alike { q - p } else { p - q } }
 }
 
 /// The vertices of a set of lines whose samples that matter, in cyclic order, are these: what

@@ -41,6 +41,45 @@ struct End {
     width: f32,
 }
 
+/// A turn of directions from `-h` to `h` about the middle one.
+struct Turn {
+    middle: [f32; 2],
+    /// Of `h`.
+    cos: f32,
+    sin: f32,
+    /// The integral of `cos^2`.
+    even: f32,
+    /// The integral of `sin^2` by the sine of `h`, and by its square.
+    odd: f32,
+    odder: f32,
+}
+
+impl Turn {
+    /// From one unit vector to another, less than half a turn to its left. What is small is computed without the
+    /// difference of like numbers.
+    fn of([x0, z0]: [f32; 2], [x1, z1]: [f32; 2]) -> Self {
+        let (sin, cos) = (x0 * z1 - z0 * x1, x0 * x1 + z0 * z1);
+        let is_wide = cos < 0.0;
+        // Of the sine and the cosine of `h` the larger, and the smaller.
+        let square = 0.5 + 0.5 * cos.abs();
+        let larger = square * inverse_sqrt(square);
+        let smaller = sin / (2.0 * larger);
+        let scale = 0.5 / larger;
+        let (x, z) = if is_wide { (z1 - z0, x0 - x1) } else { (x0 + x1, z0 + z1) };
+        let middle = [x * scale, z * scale];
+        let series = SERIES.iter().fold(0.0, |sum, factor| smaller * smaller * sum + factor);
+        let cubic = smaller * smaller * series;
+        if is_wide {
+            let even = FRAC_PI_2 - smaller * cubic;
+            let (odd, odder) = ((even - sin) / larger, (even - sin) / (larger * larger));
+            Self { middle, cos: smaller, sin: larger, even, odd, odder }
+        } else {
+            let (even, odder) = (smaller * cubic + sin, smaller * series);
+            Self { middle, cos: larger, sin: smaller, even, odd: cubic, odder }
+        }
+    }
+}
+
 impl Moments {
     /// Over a cell.
     pub(crate) fn of(lines: CellView<'_>) -> Option<Self> {
@@ -77,36 +116,13 @@ impl Moments {
     /// ends gives the even part, half their difference the odd one. Only even products contribute, and these reduce to
     /// the integrals of `cos^2`, `h + sin h cos h`, and of `sin^2`, `h - sin h cos h`.
     fn add(&mut self, begins: End, ends: End) {
-        let ([x0, z0], [x1, z1]) = (begins.unit, ends.unit);
-        let (sin, cos) = (x0 * z1 - z0 * x1, x0 * x1 + z0 * z1);
-        let is_wide = cos < 0.0;
-        // Of the sine and the cosine of `h` the larger, and the smaller.
-        let square = 0.5 + 0.5 * cos.abs();
-        let larger = square * inverse_sqrt(square);
-        let smaller = sin / (2.0 * larger);
-        let scale = 0.5 / larger;
-        // The direction in the middle, from what does not cancel.
-        let (x, z) = if is_wide { (z1 - z0, x0 - x1) } else { (x0 + x1, z0 + z1) };
-        let (x, z) = (x * scale, z * scale);
-        let series = SERIES.iter().fold(0.0, |sum, factor| smaller * smaller * sum + factor);
-        let cubic = smaller * smaller * series;
-        // The integral of `cos^2`, and that of `sin^2` by the sine of `h` and by its square.
-        let (even, odd, odder, cos_half, sin_half);
-        if is_wide {
-            even = FRAC_PI_2 - smaller * cubic;
-            (odd, odder) = ((even - sin) / larger, (even - sin) / (larger * larger));
-            (cos_half, sin_half) = (smaller, larger);
-        } else {
-            even = smaller * cubic + sin;
-            (odd, odder) = (cubic, smaller * series);
-            (cos_half, sin_half) = (larger, smaller);
-        }
-        let width = (begins.width + ends.width) / (2.0 * cos_half);
+        let Turn { middle: [x, z], cos, sin, even, odd, odder } = Turn::of(begins.unit, ends.unit);
+        let width = (begins.width + ends.width) / (2.0 * cos);
         let widening = 0.5 * (ends.width - begins.width);
         // Of the middle of the interval.
-        let offset = (begins.lowest + ends.lowest) / (2.0 * cos_half) + 0.5 * width;
+        let offset = (begins.lowest + ends.lowest) / (2.0 * cos) + 0.5 * width;
         let rise = 0.5 * (ends.lowest - begins.lowest + widening);
-        self.measure += 2.0 * sin_half * (width * SCALE);
+        self.measure += 2.0 * sin * (width * SCALE);
         let (even, odd) = (even * (width * SCALE), odd * (widening * SCALE));
         let [ahead, left] = self.normal;
         self.normal = [ahead - z * even - x * odd, left + x * even - z * odd];

@@ -32,52 +32,47 @@ const ONE: i32 = 1 << 16;
 /// Larger arguments are clamped to this value, where the curve is within 2^-64 of its limit.
 const BEYOND: i32 = 64 * ONE;
 
-/// `2^-f` for `f` from 0 to 1 in 32 parts, in units of 2^-16. Linear interpolation between entries has a relative error
-/// of 6 10^-5.
-#[expect(clippy::indexing_slicing, reason = "an error is one of compilation")]
-const POWERS: [u32; 33] = {
-    let mut table = [0; 33];
-    let mut k = 0;
-    while k < table.len() {
-        table[k] = (exp(k as f64 / -32.0 * core::f64::consts::LN_2) * 65_536.0 + 0.5) as u32;
-        k += 1;
-    }
-    table
-};
+/// A table of a function's values, made when the program is compiled.
+macro_rules! table {
+    ($(#[$doc:meta])* $name:ident: [$item:ty; $len:literal] = |$k:ident| $value:expr) => {
+        $(#[$doc])*
+        #[expect(clippy::indexing_slicing, reason = "an error is one of compilation")]
+        const $name: [$item; $len] = {
+            let mut table = [0; $len];
+            let mut $k = 0;
+            while $k < $len {
+                table[$k] = $value;
+                $k += 1;
+            }
+            table
+        };
+    };
+}
 
-/// `log2(m)` for `m` from 1 to 2 in 64 parts, in units of 2^-16. To 5 10^-5.
-#[expect(clippy::indexing_slicing, reason = "an error is one of compilation")]
-const LOGARITHMS: [u32; 65] = {
-    let mut table = [0; 65];
-    let mut k = 0;
-    while k < table.len() {
-        let log = log1p(k as f64 / 64.0) / core::f64::consts::LN_2;
-        table[k] = (log * 65_536.0 + 0.5) as u32;
-        k += 1;
-    }
-    table
-};
+table! {
+    /// `2^-f` for `f` from 0 to 1 in 32 parts, in units of 2^-16. Linear interpolation between entries has a relative
+    /// error of 6 10^-5.
+    POWERS: [u32; 33] = |k| (exp(k as f64 / -32.0 * core::f64::consts::LN_2) * 65_536.0 + 0.5) as u32
+}
 
-/// `log2(1 + 2^-x)` for `x` from 0 to 16 in parts of 1/16, in units of 2^-16. To 10^-4.
-#[expect(clippy::indexing_slicing, reason = "an error is one of compilation")]
-const SOFT: [u16; 257] = {
-    let mut table = [0; 257];
-    let mut k = 0;
-    while k < table.len() {
+table! {
+    /// `log2(m)` for `m` from 1 to 2 in 64 parts, in units of 2^-16. To 5 10^-5.
+    LOGARITHMS: [u32; 65] =
+        |k| (log1p(k as f64 / 64.0) / core::f64::consts::LN_2 * 65_536.0 + 0.5) as u32
+}
+
+table! {
+    /// `log2(1 + 2^-x)` for `x` from 0 to 16 in parts of 1/16, in units of 2^-16. To 10^-4.
+    SOFT: [u16; 257] = |k| {
         let power = exp(k as f64 / -16.0 * core::f64::consts::LN_2);
         let units = (log1p(power) / core::f64::consts::LN_2 * 65_536.0 + 0.5) as u32;
-        table[k] = if units > 65_535 { 65_535 } else { units as u16 };
-        k += 1;
+        if units > 65_535 { 65_535 } else { units as u16 }
     }
-    table
-};
+}
 
-/// `1 / sqrt(f)` for `f` from 1/4 to 1 in 192 parts, in units of 2^-14. To 6 10^-5 of it.
-#[expect(clippy::indexing_slicing, reason = "an error is one of compilation")]
-const ROOTS: [u16; 193] = {
-    let mut table = [0; 193];
-    let mut k = 0;
-    while k < table.len() {
+table! {
+    /// `1 / sqrt(f)` for `f` from 1/4 to 1 in 192 parts, in units of 2^-14. To 6 10^-5 of it.
+    ROOTS: [u16; 193] = |k| {
         let f = (k + 64) as f64 / 256.0;
         // Newton's iteration from above converges for numbers about 1.
         let mut root = 1.0;
@@ -86,23 +81,14 @@ const ROOTS: [u16; 193] = {
             root = 0.5 * (root + f / root);
             rounds += 1;
         }
-        table[k] = (16_384.0 / root + 0.5) as u16;
-        k += 1;
+        (16_384.0 / root + 0.5) as u16
     }
-    table
-};
+}
 
-/// `1 / n`, in units of 2^-16.
-#[expect(clippy::indexing_slicing, reason = "an error is one of compilation")]
-const PARTS: [i32; 16] = {
-    let mut table = [ONE; 16];
-    let mut n = 1;
-    while n < table.len() {
-        table[n] = (ONE + n as i32 / 2) / n as i32;
-        n += 1;
-    }
-    table
-};
+table! {
+    /// `1 / n`, in units of 2^-16; of 0 that is 1.
+    PARTS: [i32; 16] = |n| if n == 0 { ONE } else { (ONE + n as i32 / 2) / n as i32 }
+}
 
 /// The exponential function of a number from -12 to 1, when tables are made.
 const fn exp(x: f64) -> f64 {

@@ -145,38 +145,32 @@ impl Column {
             it.offset = self.normal.along(it.site);
         }
         sort(thresholds);
-        let begin = thresholds.iter().rposition(|it| it.step == Step::BEGIN)?;
-        let end = thresholds.iter().position(|it| it.step == Step::END)?;
-        let inside = thresholds.get(begin + 1..end)?;
-        let [from, to] = [thresholds.get(begin)?.offset, thresholds.get(end)?.offset];
-        if from >= to {
-            return None;
-        }
-        let before = thresholds.iter().take(begin).filter(|it| it.step != Step::BEGIN);
-        let bottom: i32 = before.map(|it| it.step.0).sum();
-        let (mut log, mut peak) = (bottom, bottom);
-        for it in inside {
+        let Lines { bottom, from, inside, to } = Lines::among(thresholds)?;
+        let mut log = bottom;
+        let peak = inside.iter().fold(bottom, |peak, it| {
             log += it.step.0;
-            peak = peak.max(log);
-        }
+            peak.max(log)
+        });
         let mut knots: List<Knot, S> = List::filled(Knot::NONE);
         pile_up(&mut knots, bottom - peak, from, inside, to);
         self.keep(&knots);
         Some(peak)
     }
 
-    /// Keeps as many of these knots as there is room for.
+    /// Keeps as many of these knots as there is room for: all, or those between pieces of more and more mass.
     fn keep(&mut self, knots: &[Knot]) {
         let all = knots.last().map_or(0.0, |last| last.below);
-        let _ = [f32::INFINITY, 64.0, 24.0, 12.0, 8.0, 4.0, 2.0, 1.0].iter().any(|parts| {
+        for parts in [f32::INFINITY, 64.0, 24.0, 12.0, 8.0, 4.0, 2.0, 1.0] {
             self.knots = [Knot { offset: Knot::BEYOND, below: all }; KNOTS];
-            self.keep_between(knots, all / parts)
-        });
+            if self.keep_between(knots, all / parts) {
+                return;
+            }
+        }
     }
 
-    #[inline(never)] // or it is unrolled for each
     /// Keeps knots so that the pieces between them hold more than `least` mass each. Returns whether one place was left
     /// for the knot beyond all offsets.
+    #[inline(never)] // or it is unrolled for each
     fn keep_between(&mut self, knots: &[Knot], least: f32) -> bool {
         let Some((&first, others)) = knots.split_first() else { return false };
         let (mut kept, mut last) = (first, first);
@@ -191,6 +185,30 @@ impl Column {
             last = knot;
         }
         has_room && keep(last) && places.next().is_some()
+    }
+}
+
+/// The lines that certain labels leave, among thresholds by rising offset.
+struct Lines<'a> {
+    /// The logarithm of their density where they begin, by the labels before.
+    bottom: i32,
+    /// Where they begin.
+    from: i32,
+    inside: &'a [Threshold],
+    /// Where they end.
+    to: i32,
+}
+
+impl<'a> Lines<'a> {
+    /// `None` if there are none.
+    fn among(thresholds: &'a [Threshold]) -> Option<Self> {
+        let begin = thresholds.iter().rposition(|it| it.step == Step::BEGIN)?;
+        let end = thresholds.iter().position(|it| it.step == Step::END)?;
+        let inside = thresholds.get(begin + 1..end)?;
+        let [from, to] = [thresholds.get(begin)?.offset, thresholds.get(end)?.offset];
+        let before = thresholds.iter().take(begin).filter(|it| it.step != Step::BEGIN);
+        let bottom = before.map(|it| it.step.0).sum();
+        (from < to).then_some(Self { bottom, from, inside, to })
     }
 }
 

@@ -100,26 +100,25 @@ impl Density {
         let _ = self.changes.push(Change { at: from.saturating_add(width), by: -by });
     }
 
-    /// The medians of `K` equal parts.
+    /// The medians of `K` equal parts: half a part of the mass lies before the first, and a part between two.
     fn medians<const K: usize>(mut self) -> [Direction; K] {
         let half = self.mass / (2 * K as u64);
         let mut medians = [Direction { heading: self.first, density: f32::INFINITY }; K];
         let mut places = medians.iter_mut();
-        let (mut at, mut density, mut to_next) = (0, 0_i64, half);
-        while let Some(change) = self.changes.pop() {
-            let mut ahead = density as u64 * u64::from(change.at - at);
+        let (mut from, mut density, mut to_next) = (0, 0_i64, half);
+        while let Some(Change { at: to, by }) = self.changes.pop() {
+            let mut ahead = density as u64 * u64::from(to - from);
             while ahead > to_next
                 && let Some(place) = places.next()
             {
                 ahead -= to_next;
                 to_next = 2 * half;
-                let beyond = (ahead as f32 / density as f32) as u32;
-                let heading = self.first.turned(Angle(change.at.saturating_sub(beyond)));
+                let turn = to.saturating_sub((ahead as f32 / density as f32) as u32);
+                let heading = self.first.turned(Angle(turn));
                 *place = Direction { heading, density: density as f32 };
             }
             to_next = to_next.saturating_sub(ahead);
-            at = change.at;
-            density += change.by;
+            (from, density) = (to, density + by);
         }
         medians
     }

@@ -4,31 +4,19 @@
 //! is a cell of the arrangement that the samples' lines draw on the starting polygon. So there are at most
 //! `1 + t + t (t - 1) / 2`: 56 for 10 labels, 529 for 32, 2,081 for 64. A hypothesis is such a cell with a weight, 24
 //! bytes in all. A sample splits the cells that it cuts and reweights the others. The table is the whole distribution,
-//! exactly, until it is full.
-//!
-//! - *Full table.* Before a sample is taken in, the least likely hypotheses are dropped whole. A bound on the mass that
-//!   they may have reached since is [`PosteriorView::pruned_mass`].
-//! - *A cell with more edges than it can hold* keeps the lines that the sample would have cut off. That is an outer
-//!   approximation, counted in [`outer_cells`](CellPosterior::outer_cells). With 15 edges it has not been seen to happen:
-//!   over the tests' missions of 64 labels a cell has 9 at most.
-//!
-//! Where positions err, the weight of a label does not change in a step from one side of its site to the other. Steps,
-//! wherever they are placed, would claim more knowledge than there is. Instead, a hypothesis is weighed by the label's
-//! mean likelihood over its lines. When a hypothesis splits, each part is weighed anew by all labels. So the narrower
-//! the cells, the more closely the weights follow the likelihood. Each label is still one sample. The pruned mass keeps
-//! the value that it had when it was lost.
-//!
-//! [`PosteriorView::pruned_mass`]: crate::belief::doubtful_labels::posterior_view::PosteriorView::pruned_mass
+//! exactly, until it is full (`taking`).
+
+mod taking;
 
 use crate::belief::ObservationError;
-use crate::belief::cells::{CellView, Certainty, Constraint, DualCell};
-use crate::belief::doubtful_labels::blur::{Blur, Doubt, Scale};
+use crate::belief::cells::{CellView, Certainty, DualCell};
+use crate::belief::doubtful_labels::blur::{Blur, Scale};
 use crate::belief::doubtful_labels::pruned::PrunedMass;
 use crate::belief::estimate::area;
 use crate::belief::list::List;
 use crate::belief::noise::{Noise, Reliability};
 use crate::belief::observation_log::{FromLog, ObservationLog, ReplayError};
-use crate::belief::sample::{Label, Sample, SampleBuffer};
+use crate::belief::sample::{Sample, SampleBuffer};
 use crate::belief::tolerance::{Short, Tolerance};
 use crate::belief::true_labels::{GivenError, VersionSpace};
 use crate::belief::weight::{Coarse, LogWeight, Prior};
@@ -287,15 +275,6 @@ impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
         self.tolerances.iter().map(|it| it.at_most(self.noise.tolerance))
     }
 
-    /// The weights of the lines on the label's side of a sample and on the other. Where positions err, both weights are
-    /// alike, as each hypothesis is [weighed](Self::told_by) for itself.
-    fn weights(&self, reliability: Reliability) -> (Option<LogWeight>, Option<LogWeight>) {
-        if self.is_blurred() {
-            return (Some(LogWeight::ZERO), Some(LogWeight::ZERO));
-        }
-        (reliability.agree(), reliability.disagree())
-    }
-
     /// Whether the noise says that positions err.
     pub(crate) fn is_blurred(&self) -> bool {
         self.noise.tolerance != Tolerance::NONE
@@ -307,218 +286,10 @@ impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
         Blur::<E>::of(self.lines(hypothesis)).sides(site, Scale::by(self.noise.tolerance))
     }
 
-    /// Fills a list with the labels, ready to weigh hypotheses by. Leaves it empty where positions do not err.
-    #[inline(never)] // its list is not for all of the stack's time
-    fn doubts(&self, doubts: &mut List<Doubt, N>) {
-        if !self.is_blurred() {
-            return;
-        }
-        for (&label, tolerance) in self.labels().iter().zip(self.tolerances()) {
-            let reliability = self.reliability_within(label.site, tolerance);
-            let _ = doubts.push(Doubt::new(label, reliability, tolerance)); // there is as much room
-        }
-    }
-
-    /// The weight that some labels give a hypothesis where positions err.
-    fn told_by(&self, hypothesis: &Hypothesis<E>, labels: &[Doubt]) -> LogWeight {
-        if labels.is_empty() {
-            return LogWeight::ZERO;
-        }
-        Blur::<E>::of(self.lines(hypothesis)).told(labels)
-    }
-
     /// Whether a position may be off by so much.
     pub(crate) fn admits(&self, tolerance: Tolerance) -> Result<(), ObservationError> {
         let is_within = tolerance <= self.noise.tolerance;
         is_within.then_some(()).ok_or(ObservationError::Tolerance(tolerance))
-    }
-
-    /// Takes in a label that is read at a site, as far as it can be believed there.
-    ///
-    /// # Errors
-    /// As [`take`](Self::take).
-    pub fn read(&mut self, site: Site, label: Label) -> Result<(), ObservationError> {
-        self.read_within(site, label, self.noise.tolerance)
-    }
-
-    /// As [`read`](Self::read), of a label whose own position may be off by so much.
-    ///
-    /// # Errors
-    /// As [`take_within`](Self::take_within).
-    pub fn read_within(
-        &mut self,
-        site: Site,
-        label: Label,
-        tolerance: Tolerance,
-    ) -> Result<(), ObservationError> {
-        let reliability = self.reliability_within(site, tolerance);
-        self.take_within(Sample { site, label }, reliability, tolerance)
-    }
-
-    /// Takes in a label of some reliability: splits the hypotheses that the sample cuts and reweights all.
-    ///
-    /// Cost: one orientation for each edge, in integers. At most `t + 1` hypotheses split, each at the cost of two cuts
-    /// and two measures, in integers and single precision. Where positions err, each hypothesis is weighed by the
-    /// distances of its vertices, and those that split by all labels anew. That costs some eight times as much.
-    ///
-    /// # Errors
-    /// [`ObservationError::Contradiction`] when a label that is certain leaves no hypothesis,
-    /// [`ObservationError::Full`], and where positions err [`ObservationError::Reliability`] unless the label is as
-    /// reliable as the noise says. The table is then as it was.
-    pub fn take(
-        &mut self,
-        sample: Sample,
-        reliability: Reliability,
-    ) -> Result<(), ObservationError> {
-        self.take_within(sample, reliability, self.noise.tolerance)
-    }
-
-    /// As [`take`](Self::take), of a label whose own position may be off by so much: at most by the
-    /// [noise](Self::noise)'s tolerance. The less it may be off, the more the label tells.
-    ///
-    /// # Errors
-    /// As `take`, and [`ObservationError::Tolerance`]; the table is then as it was.
-    pub fn take_within(
-        &mut self,
-        sample: Sample,
-        reliability: Reliability,
-        tolerance: Tolerance,
-    ) -> Result<(), ObservationError> {
-        self.admits(tolerance)?;
-        if self.is_blurred() && reliability != self.reliability_within(sample.site, tolerance) {
-            return Err(ObservationError::Reliability);
-        }
-        let (agree, disagree) = self.weights(reliability);
-        let weight = |label: Label| if label == sample.label { agree } else { disagree };
-        let survives = |hypothesis: &Hypothesis<E>| match self.certainty(hypothesis, sample.site) {
-            Certainty::Certain(label) => weight(label).is_some(),
-            Certainty::Uncertain => true,
-        };
-        let doubtful = agree.is_some() && disagree.is_some();
-        if self.samples.is_full() {
-            return Err(ObservationError::Full(sample));
-        }
-        if !doubtful && !self.table.iter().any(survives) {
-            return Err(ObservationError::Contradiction(sample));
-        }
-        if doubtful {
-            self.make_room(sample.site);
-        }
-        let Ok(index) = self.samples.push(sample) else {
-            return Err(ObservationError::Full(sample));
-        };
-        let _ = self.tolerances.push(Short::of(tolerance)); // there is as much room
-        let mut doubts = List::filled(Doubt::NONE);
-        self.doubts(&mut doubts);
-        for k in 0..self.table.len() {
-            self.update(k, Constraint::new(index, sample.label), reliability, &doubts);
-        }
-        if !doubtful {
-            self.table.retain(|hypothesis| !hypothesis.cell.edges().is_empty());
-        }
-        self.pruned.split(reliability);
-        self.rescale();
-        Ok(())
-    }
-
-    /// Drops the least likely hypotheses until there is room for those that a sample at `q` splits off.
-    fn make_room(&mut self, q: Site) {
-        // Exact cells tile the starting polygon, and a line crosses at most one more of them than
-        // there are other lines.
-        if self.outer_cells == 0 && self.table.len() + self.taken() < H {
-            return;
-        }
-        let splits = |it: &Self, h: &Hypothesis<E>| it.certainty(h, q) == Certainty::Uncertain;
-        let mut more = self.table.iter().filter(|h| splits(self, h)).count();
-        while self.table.len() > 1 && self.table.len() + more > H {
-            let weights = self.table.iter().map(Hypothesis::weight).enumerate();
-            let Some((least, _)) = weights.min_by_key(|(_, weight)| *weight) else { return };
-            let Some(gone) = self.table.swap_remove(least) else { return };
-            more -= usize::from(splits(self, &gone));
-            self.give_up(&gone);
-        }
-    }
-
-    fn give_up(&mut self, gone: &Hypothesis<E>) {
-        let (weight, area) = (gone.weight(), self.log_area(gone));
-        match self.prior {
-            Prior::Area => self.pruned.add(weight, weight - area),
-            Prior::Sequences => self.pruned.add(weight + area, weight),
-        }
-    }
-
-    /// Weighs the `k`-th hypothesis by the newest sample, splitting it first if the sample cuts it.
-    /// One that becomes impossible is left without edges.
-    fn update(&mut self, k: usize, edge: Constraint, reliability: Reliability, doubts: &[Doubt]) {
-        let (agree, disagree) = self.weights(reliability);
-        let Some(newest) = self.samples.get(edge.index()) else { return };
-        let (before, newest_doubt) = doubts.split_at(doubts.len().saturating_sub(1));
-        let Some(whole) = self.table.get(k).copied() else { return };
-        match self.certainty(&whole, newest.site) {
-            Certainty::Certain(certain) => {
-                let weight = if certain == edge.label() { agree } else { disagree };
-                let told = self.told_by(&whole, newest_doubt);
-                let Some(place) = self.table.get_mut(k) else { return };
-                match weight {
-                    Some(weight) => place.weigh(weight + told),
-                    None => place.cell = DualCell::NONE,
-                }
-            }
-            Certainty::Uncertain => {
-                let opposite = Constraint::new(edge.index() as u8, -edge.label());
-                // A cell's measure is the same each time it is computed, and so is the weight of its labels. So the
-                // quotients lose nothing.
-                let weight = match self.prior {
-                    Prior::Area => LogWeight::ZERO - self.log_area(&whole),
-                    Prior::Sequences => LogWeight::ZERO,
-                } - self.told_by(&whole, before);
-                let mut part = |edge, by| self.part(&whole, edge, weight + by, doubts);
-                let agreeing = agree.map(|by| part(edge, by));
-                let other = disagree.map(|by| part(opposite, by));
-                let (kept, split_off) =
-                    if agreeing.is_some() { (agreeing, other) } else { (other, None) };
-                if let (Some(kept), Some(place)) = (kept, self.table.get_mut(k)) {
-                    *place = kept;
-                }
-                if let Some(split_off) = split_off {
-                    self.add(k, split_off);
-                }
-            }
-        }
-    }
-
-    /// Adds what was split off the `k`-th hypothesis.
-    fn add(&mut self, k: usize, split_off: Hypothesis<E>) {
-        if let Err(mut refused) = self.table.push(split_off) {
-            // Only a table of one hypothesis comes here: the likelier part stays.
-            if let Some(place) = self.table.get_mut(k)
-                && refused.weight() > place.weight()
-            {
-                core::mem::swap(place, &mut refused);
-            }
-            self.give_up(&refused);
-        }
-    }
-
-    /// The part of a hypothesis on one side of a sample, weighed anew and by the measure of its lines if
-    /// that is the prior.
-    fn part(
-        &mut self,
-        whole: &Hypothesis<E>,
-        edge: Constraint,
-        weight: LogWeight,
-        doubts: &[Doubt],
-    ) -> Hypothesis<E> {
-        let mut part = *whole;
-        if part.cell.cut(&self.samples, edge).is_err() {
-            self.outer_cells = self.outer_cells.saturating_add(1);
-        }
-        let weight = weight + self.told_by(&part, doubts);
-        part.weigh(match self.prior {
-            Prior::Area => weight + self.log_area(&part),
-            Prior::Sequences => weight,
-        });
-        part
     }
 
     /// Makes the heaviest hypothesis the unit of all weights.
