@@ -59,16 +59,16 @@ impl Span {
     }
 
     /// Whether there is no number in it.
-    pub(crate) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(self) -> bool {
         self.low > self.high
     }
 
-    pub(crate) fn contains(&self, number: f32) -> bool {
+    pub(crate) fn contains(self, number: f32) -> bool {
         self.low <= number && number <= self.high
     }
 
     /// The number in it that is nearest to one.
-    pub(crate) fn nearest(&self, number: f32) -> f32 {
+    pub(crate) fn nearest(self, number: f32) -> f32 {
         match () {
             () if number < self.low => self.low,
             () if number > self.high => self.high,
@@ -76,7 +76,7 @@ impl Span {
         }
     }
 
-    pub(crate) fn width(&self) -> f32 {
+    pub(crate) fn width(self) -> f32 {
         self.high - self.low
     }
 }

@@ -193,8 +193,7 @@ impl<'a, G: Workspace> View<'a, G> {
         let inverse_radius = 1.0 / (f32::from(speed) * self.step);
         let may_be_uncertain = self.certain_within * inverse_radius < 1.0;
         if may_be_uncertain {
-            let margin = self.margin;
-            self.bounds.iter_mut().for_each(|line| line.cross(inverse_radius, margin));
+            cross_all(&mut self.bounds, inverse_radius, self.margin);
             if self.aside > 0.0 {
                 self.widen(inverse_radius);
             }
@@ -214,30 +213,14 @@ impl<'a, G: Workspace> View<'a, G> {
     /// The label of the circle's ground at a heading, where it is certain, and how far a turn to a side
     /// keeps it so.
     pub(crate) fn certain_until(&self, heading: Heading, side: Side) -> Option<(Label, u32)> {
-        let mut bounds = self.bounds.iter();
-        let (label, mut turn) = match (bounds.next(), self.beyond) {
-            (Some(first), _) => first.certain_until(heading, side)?,
-            (None, [true, _]) => (Label::Negative, CoarseAngle::WHOLE_TURN),
-            (None, [false, _]) => (Label::Positive, CoarseAngle::WHOLE_TURN),
-        };
-        for line in bounds {
-            let (other, least) = line.certain_until(heading, side)?;
-            if other != label {
-                return None;
-            }
-            turn = turn.min(least);
-        }
-        let [below, above] = self.beyond;
-        let contradicted = if label == Label::Positive { below } else { above };
-        (!contradicted).then(|| (label, turn.turn()))
+        certain_until(&self.bounds, self.beyond, heading, side)
     }
 
     /// How far a turn to a side keeps the circle outside the area, if it is certain to be outside at a
     /// heading.
     pub(crate) fn outside_until(&mut self, heading: Heading, side: Side) -> Option<u32> {
         if !self.sides_are_crossed {
-            let (inverse_radius, margin) = (self.inverse_radius, self.margin);
-            self.sides.iter_mut().for_each(|line| line.cross(inverse_radius, margin));
+            cross_all(&mut self.sides, self.inverse_radius, self.margin);
             self.sides_are_crossed = true;
         }
         outside_until(&self.sides, heading, side)
@@ -291,7 +274,43 @@ impl<'a, G: Workspace> View<'a, G> {
     }
 }
 
+// The loops over lines depend on no type parameter. So they are compiled once, at the level of this crate.
+
+/// Looks at a circle, where it crosses each of the lines.
+#[inline(never)]
+fn cross_all(lines: &mut [SeenLine], inverse_radius: f32, margin: f32) {
+    lines.iter_mut().for_each(|line| line.cross(inverse_radius, margin));
+}
+
+/// The label that all lines give a circle at a heading, and how far a turn to a side keeps it so. `beyond` says whether
+/// lines that are not among these have the agent on their -1 side, or on their +1 side.
+#[inline(never)]
+fn certain_until(
+    lines: &[SeenLine],
+    beyond: [bool; 2],
+    heading: Heading,
+    side: Side,
+) -> Option<(Label, u32)> {
+    let mut lines = lines.iter();
+    let (label, mut turn) = match (lines.next(), beyond) {
+        (Some(first), _) => first.certain_until(heading, side)?,
+        (None, [true, _]) => (Label::Negative, CoarseAngle::WHOLE_TURN),
+        (None, [false, _]) => (Label::Positive, CoarseAngle::WHOLE_TURN),
+    };
+    for line in lines {
+        let (other, least) = line.certain_until(heading, side)?;
+        if other != label {
+            return None;
+        }
+        turn = turn.min(least);
+    }
+    let [below, above] = beyond;
+    let contradicted = if label == Label::Positive { below } else { above };
+    (!contradicted).then(|| (label, turn.turn()))
+}
+
 /// How far a turn keeps a circle beyond one of these sides, if it is certain to be there at a heading.
+#[inline(never)]
 fn outside_until(sides: &[SeenLine], heading: Heading, side: Side) -> Option<u32> {
     sides.iter().find_map(|line| match line.certain_until(heading, side) {
         Some((Label::Positive, turn)) => Some(turn.turn()),
