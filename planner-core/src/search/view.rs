@@ -277,14 +277,14 @@ impl<'a, G: Workspace> View<'a, G> {
 // The loops over lines depend on no type parameter. So they are compiled once, at the level of this crate.
 
 /// Looks at a circle, where it crosses each of the lines.
-#[inline(never)]
 fn cross_all(lines: &mut [SeenLine], inverse_radius: f32, margin: f32) {
-    lines.iter_mut().for_each(|line| line.cross(inverse_radius, margin));
+    for line in lines {
+        line.cross(inverse_radius, margin);
+    }
 }
 
 /// The label that all lines give a circle at a heading, and how far a turn to a side keeps it so. `beyond` says whether
 /// lines that are not among these have the agent on their -1 side, or on their +1 side.
-#[inline(never)]
 fn certain_until(
     lines: &[SeenLine],
     beyond: [bool; 2],
@@ -310,7 +310,6 @@ fn certain_until(
 }
 
 /// How far a turn keeps a circle beyond one of these sides, if it is certain to be there at a heading.
-#[inline(never)]
 fn outside_until(sides: &[SeenLine], heading: Heading, side: Side) -> Option<u32> {
     sides.iter().find_map(|line| match line.certain_until(heading, side) {
         Some((Label::Positive, turn)) => Some(turn.turn()),
