@@ -279,7 +279,9 @@ impl<'a, G: Workspace> View<'a, G> {
 /// Looks at a circle, where it crosses each of the lines.
 #[inline(never)]
 fn cross_all(lines: &mut [SeenLine], inverse_radius: f32, margin: f32) {
-    lines.iter_mut().for_each(|line| line.cross(inverse_radius, margin));
+    for line in lines {
+        line.cross(inverse_radius, margin);
+    }
 }
 
 /// The label that all lines give a circle at a heading, and how far a turn to a side keeps it so. `beyond` says whether
