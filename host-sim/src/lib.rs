@@ -3,15 +3,12 @@
 
 #![forbid(unsafe_code)]
 
-pub mod campaign;
+pub use host_missions::{campaign, mission, output, reference, world};
+
 pub mod cli;
 #[cfg(feature = "mavlink")]
 pub mod fly;
 pub mod hil;
-pub mod mission;
-pub mod output;
-pub mod reference;
 pub mod replay;
 pub mod report;
 pub mod size;
-pub mod world;

@@ -1,6 +1,6 @@
 //! The storeys of ARCHITECTURE.md: a module reads only from its own folder and from folders below it, and
-//! modules never read each other in a circle. Checked on the sources of `planner-core` and `host-sim`, test
-//! code included; then on made-up sources, so that the check is known to fail when it should.
+//! modules never read each other in a circle. Checked on the sources of `planner-core` and `host-sim` (with the crate
+//! below it), test code included; then on made-up sources, so that the check is known to fail when it should.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -40,19 +40,21 @@ type Reads = BTreeMap<String, BTreeSet<String>>;
 
 #[test]
 fn planner_core_reads_downwards() {
-    check("planner-core", PLANNER_CORE);
+    check("planner-core", &["planner-core/src"], PLANNER_CORE);
 }
 
 #[test]
 fn host_sim_reads_downwards() {
-    check("host-sim", HOST_SIM);
+    check("host-sim", &["host-sim/missions/src", "host-sim/src"], HOST_SIM);
 }
 
 /// Fails with a line for each import from above and for each circle.
-fn check(package: &str, storeys: Storeys) {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(package).join("src");
+fn check(package: &str, folders: &[&str], storeys: Storeys) {
     let mut modules = Modules::new();
-    read_folder(&folder, &[], &mut modules);
+    for folder in folders {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(folder);
+        read_folder(&folder, &[], &mut modules);
+    }
     for name in storeys.iter().copied().flatten() {
         assert!(modules.contains_key([(*name).to_owned()].as_slice()), "{package} has no {name}");
     }

@@ -27,10 +27,10 @@ use crate::world::errors::{CUT, Errors};
 use crate::world::noise::{Extent, NoiseModel};
 
 /// The paper's noiseless example (Section V).
-pub const PAPER_NOISELESS: &str = include_str!("../../scenarios/paper-noiseless.toml");
+pub const PAPER_NOISELESS: &str = include_str!("../../../scenarios/paper-noiseless.toml");
 
 /// The paper's noisy example (Section V).
-pub const PAPER_NOISY: &str = include_str!("../../scenarios/paper-noisy.toml");
+pub const PAPER_NOISY: &str = include_str!("../../../scenarios/paper-noisy.toml");
 
 /// The most oracle points that may bound the line. A hypothesis stores this many constraints.
 const MOST_BOUNDING: usize = 15;

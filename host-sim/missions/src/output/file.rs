@@ -102,7 +102,10 @@ pub fn prepare<const N: usize>(
 }
 
 /// Where a path leads, if a file can be written there.
-pub(crate) fn place_for(path: &Path) -> Result<Place> {
+///
+/// # Errors
+/// Why none can.
+pub fn place_for(path: &Path) -> Result<Place> {
     if path.is_dir() || path.as_os_str().as_encoded_bytes().ends_with(b"/") {
         bail!("{}: found a directory, expected a file", path.display());
     }

@@ -10,11 +10,10 @@ use serde::de::{Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
 /// Refuses a value by the name of its field.
-pub(crate) fn wrong<T>(
-    field: &str,
-    found: impl Display,
-    expected: impl Display,
-) -> anyhow::Result<T> {
+///
+/// # Errors
+/// Always: what was found, and what was expected.
+pub fn wrong<T>(field: &str, found: impl Display, expected: impl Display) -> anyhow::Result<T> {
     bail!("{field}: found {found}, expected {expected}")
 }
 

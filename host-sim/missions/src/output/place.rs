@@ -12,7 +12,7 @@ const DESCRIPTORS: [&str; 2] = ["/proc", "/dev/fd"];
 
 /// Where a path leads in the end.
 #[derive(Clone, Debug)]
-pub(crate) struct Place {
+pub struct Place {
     /// Absolute and without symbolic links, but for those that name a descriptor.
     path: PathBuf,
     /// A pipe or a device: to be written through, as it cannot be replaced.
@@ -26,7 +26,10 @@ type Node = (u64, u64);
 
 impl Place {
     /// Follows a path through symbolic links. The file at its end need not exist.
-    pub(crate) fn of(path: &Path) -> io::Result<Self> {
+    ///
+    /// # Errors
+    /// When a link on the way cannot be read.
+    pub fn of(path: &Path) -> io::Result<Self> {
         let mut path = path.to_owned();
         for _ in 0..MOST_LINKS {
             let name = path.file_name().ok_or(ErrorKind::InvalidFilename)?.to_owned();
@@ -48,27 +51,30 @@ impl Place {
     }
 
     /// The path without symbolic links.
-    pub(crate) fn path(&self) -> &Path {
+    pub fn path(&self) -> &Path {
         &self.path
     }
 
     /// The folder that it stands in.
-    pub(crate) fn folder(&self) -> &Path {
+    pub fn folder(&self) -> &Path {
         folder(&self.path)
     }
 
     /// Whether it is a pipe or a device.
-    pub(crate) fn is_stream(&self) -> bool {
+    pub fn is_stream(&self) -> bool {
         self.is_stream
     }
 
     /// Whether both are the same place, under whatever names.
-    pub(crate) fn is(&self, other: &Self) -> bool {
+    pub fn is(&self, other: &Self) -> bool {
         self.path == other.path || (self.node.is_some() && self.node == other.node)
     }
 
     /// Opens a stream. A pipe waits for its reader.
-    pub(crate) fn open_stream(&self) -> io::Result<File> {
+    ///
+    /// # Errors
+    /// When it cannot be opened.
+    pub fn open_stream(&self) -> io::Result<File> {
         match self.node.and_then(own_stream) {
             // Opened a second time, a redirected one would begin anew at its start.
             Some(own) => Ok(own),

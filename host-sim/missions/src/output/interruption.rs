@@ -13,15 +13,15 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// What the signal handler cleans up. An entry whose file or process has gone already does no harm.
 #[derive(Debug)]
-pub(crate) struct Unfinished {
+pub struct Unfinished {
     /// Temporary files, to be removed.
-    pub(crate) files: BTreeSet<PathBuf>,
+    pub files: BTreeSet<PathBuf>,
     /// Child processes by their ids, to be ended.
-    pub(crate) children: BTreeMap<u32, Child>,
+    pub children: BTreeMap<u32, Child>,
     /// A last message to the user: where to find what is kept.
-    pub(crate) farewell: Option<String>,
+    pub farewell: Option<String>,
     /// Whether the command ends the program itself, because it must stop a vehicle first.
-    pub(crate) is_deferred: bool,
+    pub is_deferred: bool,
 }
 
 static UNFINISHED: Mutex<Unfinished> = Mutex::new(Unfinished {
@@ -46,7 +46,7 @@ pub fn deferred() -> Option<i32> {
 }
 
 /// The registry, locked.
-pub(crate) fn unfinished() -> MutexGuard<'static, Unfinished> {
+pub fn unfinished() -> MutexGuard<'static, Unfinished> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 

@@ -38,24 +38,24 @@ pub struct Partial {
 
 /// What is to be written.
 #[derive(Clone, Copy)]
-pub(crate) struct Begin<'a> {
+pub struct Begin<'a> {
     /// What it holds, in the plural: rows, steps.
-    pub(crate) holds: &'static str,
+    pub holds: &'static str,
     /// What it begins with.
-    pub(crate) header: &'a str,
+    pub header: &'a str,
     /// The record of the work, if the file does not show by itself which work it belongs to.
-    pub(crate) record: Option<Record<'a>>,
+    pub record: Option<Record<'a>>,
     /// Whether to continue an existing file.
-    pub(crate) resume: bool,
+    pub resume: bool,
 }
 
 /// The record of the work, which stands beside the file.
 #[derive(Clone, Copy)]
-pub(crate) struct Record<'a> {
+pub struct Record<'a> {
     /// The record.
-    pub(crate) text: &'a str,
+    pub text: &'a str,
     /// Checks an existing record.
-    pub(crate) check: &'a dyn Fn(&str) -> Result<()>,
+    pub check: &'a dyn Fn(&str) -> Result<()>,
 }
 
 /// Checks an existing file by its record and checksums, and returns how many of its bytes are as they were written.
@@ -75,7 +75,7 @@ fn judge(
 }
 
 /// A path with something after it.
-pub(crate) fn with_suffix(path: &Path, suffix: &str) -> PathBuf {
+pub fn with_suffix(path: &Path, suffix: &str) -> PathBuf {
     let mut path = OsString::from(path);
     path.push(suffix);
     path.into()
@@ -87,7 +87,7 @@ impl Partial {
     /// # Errors
     /// Names the file if it exists although none is to be continued. Also if another program is writing it, or if it
     /// cannot be written.
-    pub(crate) fn open(path: &Path, place: &Place, begin: Begin) -> Result<Self> {
+    pub fn open(path: &Path, place: &Place, begin: Begin) -> Result<Self> {
         let name = with_suffix(path, ".partial").display().to_string();
         let path = with_suffix(place.path(), ".partial");
         let record = begin.record.map(|_| with_suffix(place.path(), ".partial.json"));
@@ -149,7 +149,7 @@ impl Partial {
     }
 
     /// What its user calls it.
-    pub(crate) fn name(&self) -> &str {
+    pub fn name(&self) -> &str {
         &self.name
     }
 
@@ -157,7 +157,7 @@ impl Partial {
     ///
     /// # Errors
     /// When it cannot be opened.
-    pub(crate) fn reader(&self, bytes: u64) -> io::Result<io::Take<File>> {
+    pub fn reader(&self, bytes: u64) -> io::Result<io::Take<File>> {
         Ok(File::open(&self.path)?.take(bytes.min(self.counted)))
     }
 
@@ -165,7 +165,7 @@ impl Partial {
     ///
     /// # Errors
     /// When it cannot be cut.
-    pub(crate) fn cut(&mut self, bytes: u64) -> io::Result<()> {
+    pub fn cut(&mut self, bytes: u64) -> io::Result<()> {
         self.file.set_len(bytes)?;
         self.ledger.as_mut().map_or(Ok(()), |it| it.cut(&self.path, bytes))
     }
@@ -176,12 +176,12 @@ impl Partial {
     }
 
     /// From now on the message at an interruption names this file.
-    pub(crate) fn announce(&self) {
+    pub fn announce(&self) {
         unfinished().farewell = Some(format!("stopped: {}", self.farewell()));
     }
 
     /// Where to find what is finished.
-    pub(crate) fn farewell(&self) -> String {
+    pub fn farewell(&self) -> String {
         let Self { holds, name, .. } = self;
         format!("finished {holds} are in {name}; the same command with --resume goes on with them")
     }
@@ -190,7 +190,7 @@ impl Partial {
     ///
     /// # Errors
     /// Names the file that could not be written or moved.
-    pub(crate) fn complete(
+    pub fn complete(
         &self,
         beside: impl FnOnce(u64, Option<Checksum>) -> Option<String>,
     ) -> Result<()> {

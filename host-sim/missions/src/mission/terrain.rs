@@ -120,7 +120,7 @@ pub(crate) fn site(field: &str, x: f64, z: f64) -> Result<Site> {
 ///
 /// # Errors
 /// Names `field` and what is in the way.
-pub(crate) fn check_inside(field: &str, site: Site, area: &MissionArea) -> Result<()> {
+pub fn check_inside(field: &str, site: Site, area: &MissionArea) -> Result<()> {
     let at = Point2::<f64>::from(site);
     let found = format!("({}, {})", at.x, at.y);
     if !area.encloses(site) {

@@ -28,7 +28,7 @@ const OTHERS: [&str; 20] = [
 ///
 /// # Errors
 /// Names the file, the flag and the ending to use.
-pub(crate) fn check(flag: &str, path: &Path) -> Result<()> {
+pub fn check(flag: &str, path: &Path) -> Result<()> {
     let Some((_, own)) = WRITTEN.iter().find(|(it, _)| *it == flag) else { return Ok(()) };
     let Some(ending) = path.extension().and_then(|it| it.to_str()) else { return Ok(()) };
     let ending = ending.to_lowercase();

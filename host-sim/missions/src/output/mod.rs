@@ -1,7 +1,7 @@
 //! Output: files that appear whole or not at all, whatever interrupts the program, and messages beside them.
 
 pub mod checksum;
-pub(crate) mod ending;
+pub mod ending;
 pub mod file;
 pub mod interruption;
 mod ledger;

@@ -2,7 +2,7 @@
 //! Also shapes in metres.
 
 pub mod errors;
-pub(crate) mod extent;
+pub mod extent;
 pub(crate) mod in_order;
 pub mod noise;
 pub mod polygon;

@@ -76,7 +76,7 @@ pub enum Source {
 
 impl Source {
     /// What a number is called there.
-    pub(crate) fn name(self, key: &str) -> String {
+    pub fn name(self, key: &str) -> String {
         match (self, key) {
             (Self::File, "kind") => "vehicle".to_owned(),
             (Self::File, "tolerance") => key.to_owned(),

@@ -1,0 +1,11 @@
+//! Missions in simulated worlds, and what campaigns measure over many of them: the part of `host-sim` that computes.
+//!
+//! It is a crate of its own because a build need optimise no more than this.
+
+#![forbid(unsafe_code)]
+
+pub mod campaign;
+pub mod mission;
+pub mod output;
+pub mod reference;
+pub mod world;
