@@ -6,7 +6,7 @@
 use nalgebra::Point2;
 
 use crate::geometry::area::Area;
-use crate::geometry::lattice::{Site, orient};
+use crate::geometry::lattice::{Site, Vector, orient};
 
 /// The corners of a convex hull, counter-clockwise, `C` at most.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,6 +14,7 @@ use crate::geometry::lattice::{Site, orient};
 pub struct Hull<const C: usize> {
     corners: [Site; C],
     count: u8,
+    extent: Extent,
 }
 
 /// These corners are not those of a convex polygon, or too many.
@@ -70,7 +71,7 @@ impl<const C: usize> Hull<C> {
             }
             _ => return Err(HullError::NotConvex),
         }
-        Ok(Self { corners: all, count })
+        Ok(Self { corners: all, count, extent: Extent::of(corners) })
     }
 
     /// The hull with these corners, `[x, z]` in metres or points of `nalgebra`, in either order around it.
@@ -96,12 +97,17 @@ impl<const C: usize> Hull<C> {
         for (place, corner) in corners.iter_mut().zip([min, right, max, left]) {
             *place = corner;
         }
-        Self { corners, count: 4 }
+        Self { corners, count: 4, extent: Extent::of(&[min, max]) }
     }
 
     /// Its corners.
     pub fn corners(&self) -> &[Site] {
         self.corners.get(..usize::from(self.count)).unwrap_or_default()
+    }
+
+    /// The box around it.
+    pub(crate) const fn extent(&self) -> Extent {
+        self.extent
     }
 }
 
@@ -125,25 +131,44 @@ pub(crate) fn edges(corners: &[Site]) -> impl Iterator<Item = (Site, Site)> + Cl
 /// Cost: if their boxes are further apart, a comparison for each corner. If an edge of one separates them, a cross product
 /// for each corner of one and edge of the other. Otherwise, near corners, several of these.
 pub fn are_apart(a: &[Site], b: &[Site], by: u32) -> bool {
-    have_boxes_apart(a, b, by)
-        || has_edge_between(a, b, by)
-        || has_edge_between(b, a, by)
-        || have_corners_apart(a, b, by)
+    Extent::of(a).is_apart_from(Extent::of(b), by) || are_apart_beside(a, b, by)
 }
 
-/// Whether the boxes around two hulls are further apart than this: then the hulls are.
-pub(crate) fn have_boxes_apart(a: &[Site], b: &[Site], by: u32) -> bool {
-    let by = i64::from(by);
-    let apart = |of: fn(Site) -> i32| {
-        let range = |hull: &[Site]| {
-            hull.iter()
-                .fold((i32::MAX, i32::MIN), |(low, high), q| (low.min(of(*q)), high.max(of(*q))))
+/// The same of hulls whose boxes are not so far apart.
+pub(crate) fn are_apart_beside(a: &[Site], b: &[Site], by: u32) -> bool {
+    has_edge_between(a, b, by) || has_edge_between(b, a, by) || have_corners_apart(a, b, by)
+}
+
+/// The box around a hull, by its least and its greatest coordinates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub(crate) struct Extent {
+    low: Vector,
+    high: Vector,
+}
+
+impl Extent {
+    pub(crate) fn of(hull: &[Site]) -> Self {
+        let none = Self {
+            low: Vector { x: i32::MAX, z: i32::MAX },
+            high: Vector { x: i32::MIN, z: i32::MIN },
         };
-        let ((low_a, high_a), (low_b, high_b)) = (range(a), range(b));
-        let gap = |low: i32, high: i32| i64::from(low) - i64::from(high) > by;
-        gap(low_a, high_b) || gap(low_b, high_a)
-    };
-    apart(Site::x) || apart(Site::z)
+        hull.iter().fold(none, |Self { low, high }, q| Self {
+            low: Vector { x: low.x.min(q.x()), z: low.z.min(q.z()) },
+            high: Vector { x: high.x.max(q.x()), z: high.z.max(q.z()) },
+        })
+    }
+
+    /// Whether a box is further away than this: then the hull in it is.
+    pub(crate) fn is_apart_from(self, other: Self, by: u32) -> bool {
+        // No two positions are as far apart as the least of these: no sum overflows.
+        let by = by.min(1 << 30) as i32;
+        let gap = |low: i32, high: i32| low > high + by;
+        gap(self.low.x, other.high.x)
+            || gap(other.low.x, self.high.x)
+            || gap(self.low.z, other.high.z)
+            || gap(other.low.z, self.high.z)
+    }
 }
 
 /// Whether one of a hull's edges separates it from another hull. All of the other hull must lie further than `by`

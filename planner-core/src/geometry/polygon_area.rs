@@ -257,6 +257,7 @@ impl<const C: usize, const K: usize> Workspace for PolygonArea<C, K> {
     fn keep_outs(&self) -> impl Iterator<Item = Obstacle<'_>> {
         self.hulls().map(|KeepOut { hull, radius }| Obstacle {
             corners: hull.corners(),
+            extent: hull.extent(),
             radius: *radius,
             margin: self.bounds.margin(),
         })

@@ -1,7 +1,7 @@
 //! Where motions may go: a convex area without its keep-outs.
 
 use crate::geometry::area::Area;
-use crate::geometry::hull::{are_apart, have_boxes_apart};
+use crate::geometry::hull::{Extent, are_apart_beside};
 use crate::geometry::lattice::{LIMIT, Site, UNITS_PER_METRE, Vector};
 use crate::geometry::value::ValueError;
 
@@ -162,22 +162,33 @@ impl HalfPlane {
 pub struct Obstacle<'a> {
     /// The hull's corners.
     pub corners: &'a [Site],
+    /// The box around them.
+    pub(crate) extent: Extent,
     /// The distance, lattice units.
     pub radius: u32,
     /// How far motions stay from it besides, lattice units.
     pub margin: u32,
 }
 
-impl Obstacle<'_> {
-    /// Whether the box around a hull comes as near as the margin to the box around it. Cheap.
-    pub(crate) fn is_near(&self, hull: &[Site]) -> bool {
-        !have_boxes_apart(self.corners, hull, self.radius.saturating_add(self.margin))
+impl<'a> Obstacle<'a> {
+    /// All within a radius of a hull, from which motions stay a margin away.
+    pub fn new(corners: &'a [Site], radius: u32, margin: u32) -> Self {
+        Self { corners, extent: Extent::of(corners), radius, margin }
+    }
+
+    /// Whether the box around it comes as near as its margin to another box. Cheap.
+    pub(crate) fn is_near(&self, extent: Extent) -> bool {
+        !self.extent.is_apart_from(extent, self.radius.saturating_add(self.margin))
     }
 
     /// Whether a hull is further from it than its margin and `by` together, lattice units.
     pub fn is_clear_of(&self, hull: &[Site], by: u32) -> bool {
         let by = self.radius.saturating_add(self.margin).saturating_add(by);
-        are_apart(self.corners, hull, by)
+        self.is_apart_from(hull, by)
+    }
+
+    fn is_apart_from(&self, hull: &[Site], by: u32) -> bool {
+        self.extent.is_apart_from(Extent::of(hull), by) || are_apart_beside(self.corners, hull, by)
     }
 
     fn lets_pass(&self, swept: &[Site]) -> bool {
@@ -185,8 +196,8 @@ impl Obstacle<'_> {
         if self.is_clear_of(swept, 0) {
             return true;
         }
-        let begins = |apart: u32| are_apart(self.corners, start, apart);
+        let begins = |apart: u32| self.is_apart_from(start, apart);
         let is_near = !begins(self.radius.saturating_add(self.margin));
-        is_near && (!begins(self.radius) || are_apart(self.corners, swept, self.radius))
+        is_near && (!begins(self.radius) || self.is_apart_from(swept, self.radius))
     }
 }

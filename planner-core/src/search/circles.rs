@@ -213,7 +213,7 @@ impl<D: Dynamics, G: Workspace> Search<'_, D, G> {
             return Verdict::Infeasible { turn, on_inner_circles_too: true };
         }
         if let Some((label, turn)) = self.view.certain_until(heading, side) {
-            let on_inner_circles_too = self.view.own_label == Certainty::Certain(label);
+            let on_inner_circles_too = self.view.own_label() == Certainty::Certain(label);
             return Verdict::Infeasible { turn, on_inner_circles_too };
         }
         if let Some(turn) = self.view.outside_until(heading, side) {

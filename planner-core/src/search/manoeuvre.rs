@@ -100,7 +100,7 @@ pub(crate) fn manoeuvre<D: Dynamics, R: DirectionRule, G: Workspace>(
         waypoint,
         nearest: waypoint.map_or(0.0, |waypoint| LEAST * distance(waypoint - from.site)),
         approach: None,
-        comes_near: search.view.own_label == Certainty::Uncertain,
+        comes_near: search.view.own_label() == Certainty::Uncertain,
         is_hemmed_in: search.is_hemmed_in,
         looks_at_long_ways: false,
     };

@@ -1,5 +1,6 @@
 //! The worth of a motion, the choice that follows from it, and the limit on the effort of finding it.
 
+use crate::geometry::hull::Extent;
 use crate::geometry::lattice::Site;
 use crate::geometry::value::ValueError;
 use crate::geometry::workspace::Workspace;
@@ -116,11 +117,9 @@ impl Effort {
         is_enough
     }
 
-    /// Takes the looks that it costs to see whether a hull touches a keep-out: one for each keep-out nearby, and one
-    /// for each two of its corners.
+    /// Takes the looks of a [sweep].
     pub(crate) fn take_sweep<G: Workspace>(&mut self, area: &G, hull: &[Site]) -> bool {
-        let near = area.keep_outs().filter(|it| it.is_near(hull));
-        let looks = near.map(|it| 1 + it.corners.len() as u32 / 2).sum();
+        let looks = sweep(area, hull);
         looks == 0 || self.take(looks)
     }
 
@@ -128,4 +127,12 @@ impl Effort {
     pub(crate) const fn is_enough(self) -> bool {
         self.looks > 0
     }
+}
+
+/// The looks that it costs to see whether a hull touches a keep-out: one for each keep-out nearby, and one for each two
+/// of its corners.
+pub(crate) fn sweep<G: Workspace>(area: &G, hull: &[Site]) -> u32 {
+    let extent = Extent::of(hull);
+    let near = area.keep_outs().filter(|it| it.is_near(extent));
+    near.map(|it| 1 + it.corners.len() as u32 / 2).sum()
 }

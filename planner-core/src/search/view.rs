@@ -25,6 +25,20 @@ const MOST_LINES: usize = 16;
 /// A margin greater than there is between any two headings.
 const NOTHING_IS_CERTAIN: f32 = core::f32::consts::PI;
 
+/// Where certain ground ends, as seen from one position.
+struct Ground {
+    /// The label that all lines give to the agent's position.
+    own_label: Certainty,
+    /// Within this distance all ground is certain, lattice units, the margin taken off.
+    certain_within: f32,
+    /// The lines within reach that bound the uncertain ground, or every so-many-th of all.
+    bounds: Vec<SeenLine, MOST_LINES, u8>,
+    /// How far within reach the others are from the ones that stand for them, lattice units.
+    aside: f32,
+    /// Whether there are bounds beyond reach that have the agent on their -1 side, or on their +1 side.
+    beyond: [bool; 2],
+}
+
 /// All that a search sees from one position.
 pub(crate) struct View<'a, G> {
     lines: CellView<'a>,
@@ -36,16 +50,8 @@ pub(crate) struct View<'a, G> {
     /// Safety margin as a share of the radius. It covers lattice rounding and approximation errors on the
     /// smallest circle, where they matter most: what is certain there all along a ray is so on all of it.
     margin: f32,
-    /// The label that all lines give to the agent's position.
-    pub(crate) own_label: Certainty,
-    /// Within this distance all ground is certain, lattice units, the margin taken off.
-    certain_within: f32,
-    /// The lines within reach that bound the uncertain ground, or every so-many-th of all.
-    bounds: Vec<SeenLine, MOST_LINES, u8>,
-    /// How far within reach the others are from the ones that stand for them, lattice units.
-    aside: f32,
-    /// Whether there are bounds beyond reach that have the agent on their -1 side, or on their +1 side.
-    beyond: [bool; 2],
+    /// Where certain ground ends.
+    ground: Ground,
     /// The sides of the area within reach, with what is outside uphill; crossed with the present circle
     /// when it comes to them.
     sides: Vec<SeenLine, 4, u8>,
@@ -72,11 +78,13 @@ impl<'a, G: Workspace> View<'a, G> {
             speeds: grid.speeds(),
             step: grid.step_units(),
             margin,
-            own_label: Certainty::Uncertain,
-            certain_within: 0.0,
-            bounds: Vec::new(),
-            aside: 0.0,
-            beyond: [false; 2],
+            ground: Ground {
+                own_label: Certainty::Uncertain,
+                certain_within: 0.0,
+                bounds: Vec::new(),
+                aside: 0.0,
+                beyond: [false; 2],
+            },
             sides: Vec::new(),
             sides_are_crossed: false,
             inverse_radius: 0.0,
@@ -87,41 +95,8 @@ impl<'a, G: Workspace> View<'a, G> {
     /// Sees what there is.
     pub(crate) fn open(&mut self) {
         let reach = f32::from(self.speeds) * self.step * (1.0 + self.margin);
-        self.see_bounds(reach);
+        self.ground.see(self.lines, self.site, reach, self.margin);
         self.see_sides(reach);
-    }
-
-    fn see_bounds(&mut self, reach: f32) {
-        let (mut signs, mut nearest) = ([false; 2], f32::INFINITY);
-        // Neighbours in the order of the cell look alike.
-        let stride = self.lines.edges.len().div_ceil(MOST_LINES);
-        for (k, bound) in self.lines.bounds().enumerate() {
-            let value = bound.at(self.site);
-            let line = SeenLine::of(bound, value);
-            let [below, above] = &mut signs;
-            *below |= value < 0;
-            *above |= value > 0;
-            let distance = line.height.abs();
-            nearest = if distance < nearest { distance } else { nearest };
-            if stride > 1 && !k.is_multiple_of(stride) {
-                let aside = self.bounds.last().map_or(0.0, |kept| kept.aside(&line, reach));
-                self.aside = if aside > self.aside { aside } else { self.aside };
-            } else if distance < reach || stride > 1 {
-                // There are so many at most: nothing is refused.
-                let _ = self.bounds.push(line);
-            } else {
-                let [below, above] = &mut self.beyond;
-                *below |= value < 0;
-                *above |= value > 0;
-            }
-        }
-        self.own_label = match signs {
-            [true, true] => Certainty::Uncertain,
-            [true, false] => Certainty::Certain(Label::Negative),
-            [false, _] => Certainty::Certain(Label::Positive),
-        };
-        let is_certain = self.own_label != Certainty::Uncertain;
-        self.certain_within = if is_certain { nearest / (1.0 + self.margin) } else { 0.0 };
     }
 
     fn see_sides(&mut self, reach: f32) {
@@ -151,6 +126,11 @@ impl<'a, G: Workspace> View<'a, G> {
         }
     }
 
+    /// The label that all lines give to the agent's position.
+    pub(crate) const fn own_label(&self) -> Certainty {
+        self.ground.own_label
+    }
+
     /// Where positions stay.
     pub(crate) const fn area(&self) -> &G {
         &self.area
@@ -164,7 +144,7 @@ impl<'a, G: Workspace> View<'a, G> {
     /// How far one can travel with no uncertain ground in reach, lattice units; negative if some may be.
     pub(crate) fn out_of_reach_for(&self) -> f32 {
         let reach = f32::from(self.speeds) * self.step * (1.0 + self.margin);
-        0.999 * self.certain_within - reach
+        0.999 * self.ground.certain_within - reach
     }
 
     /// Whether a label at a position can tell something. Exact.
@@ -185,16 +165,16 @@ impl<'a, G: Workspace> View<'a, G> {
     /// Whether what lies this way is further than one motion reaches.
     pub(crate) fn is_far(&self, way: Vector) -> bool {
         let reach = f32::from(self.speeds - 1) * self.step * (1.0 + self.margin);
-        self.own_label != Certainty::Uncertain && single(way.dot(way)) > reach * reach
+        self.ground.own_label != Certainty::Uncertain && single(way.dot(way)) > reach * reach
     }
 
     /// Looks at the circle of a speed, unless all ground up to there is certain.
     pub(crate) fn enter_circle(&mut self, speed: u16) -> bool {
         let inverse_radius = 1.0 / (f32::from(speed) * self.step);
-        let may_be_uncertain = self.certain_within * inverse_radius < 1.0;
+        let may_be_uncertain = self.ground.certain_within * inverse_radius < 1.0;
         if may_be_uncertain {
-            cross_all(&mut self.bounds, inverse_radius, self.margin);
-            if self.aside > 0.0 {
+            cross_all(&mut self.ground.bounds, inverse_radius, self.margin);
+            if self.ground.aside > 0.0 {
                 self.widen(inverse_radius);
             }
             (self.inverse_radius, self.sides_are_crossed) = (inverse_radius, false);
@@ -205,15 +185,15 @@ impl<'a, G: Workspace> View<'a, G> {
     /// Crosses again where lines stand for others beside them.
     #[cold]
     fn widen(&mut self, inverse_radius: f32) {
-        let margin = self.margin + self.aside * inverse_radius;
+        let margin = self.margin + self.ground.aside * inverse_radius;
         let margin = if margin < NOTHING_IS_CERTAIN { margin } else { NOTHING_IS_CERTAIN };
-        self.bounds.iter_mut().for_each(|line| line.cross_wide(inverse_radius, margin));
+        self.ground.bounds.iter_mut().for_each(|line| line.cross_wide(inverse_radius, margin));
     }
 
     /// The label of the circle's ground at a heading, where it is certain, and how far a turn to a side
     /// keeps it so.
     pub(crate) fn certain_until(&self, heading: Heading, side: Side) -> Option<(Label, u32)> {
-        certain_until(&self.bounds, self.beyond, heading, side)
+        certain_until(&self.ground.bounds, self.ground.beyond, heading, side)
     }
 
     /// How far a turn to a side keeps the circle outside the area, if it is certain to be outside at a
@@ -247,9 +227,9 @@ impl<'a, G: Workspace> View<'a, G> {
         let from = [apart(bounds.min().x(), here.x()), apart(bounds.min().z(), here.z())];
         let to = [apart(bounds.max().x(), here.x()), apart(bounds.max().z(), here.z())];
         let mut nearest: Option<(Vector, f32)> = None;
-        let all_are_kept = here == self.site && self.bounds.len() == self.lines.edges.len();
+        let all_are_kept = here == self.site && self.ground.bounds.len() == self.lines.edges.len();
         for (k, bound) in self.lines.bounds().enumerate() {
-            let kept = self.bounds.get(k).filter(|_| all_are_kept);
+            let kept = self.ground.bounds.get(k).filter(|_| all_are_kept);
             let line = kept.copied().unwrap_or_else(|| SeenLine::of(bound, bound.at(here)));
             let (foot, along) = line.foot_and_way();
             let mut inside = Span::inside(foot, along, from, to);
@@ -275,6 +255,42 @@ impl<'a, G: Workspace> View<'a, G> {
 }
 
 // The loops over lines depend on no type parameter. So they are compiled once, at the level of this crate.
+
+impl Ground {
+    /// Sees where it ends, as far as one motion reaches.
+    fn see(&mut self, lines: CellView<'_>, site: Site, reach: f32, margin: f32) {
+        let (mut signs, mut nearest) = ([false; 2], f32::INFINITY);
+        // Neighbours in the order of the cell look alike.
+        let stride = lines.edges.len().div_ceil(MOST_LINES);
+        for (k, bound) in lines.bounds().enumerate() {
+            let value = bound.at(site);
+            let line = SeenLine::of(bound, value);
+            let [below, above] = &mut signs;
+            *below |= value < 0;
+            *above |= value > 0;
+            let distance = line.height.abs();
+            nearest = if distance < nearest { distance } else { nearest };
+            if stride > 1 && !k.is_multiple_of(stride) {
+                let aside = self.bounds.last().map_or(0.0, |kept| kept.aside(&line, reach));
+                self.aside = if aside > self.aside { aside } else { self.aside };
+            } else if distance < reach || stride > 1 {
+                // There are so many at most: nothing is refused.
+                let _ = self.bounds.push(line);
+            } else {
+                let [below, above] = &mut self.beyond;
+                *below |= value < 0;
+                *above |= value > 0;
+            }
+        }
+        self.own_label = match signs {
+            [true, true] => Certainty::Uncertain,
+            [true, false] => Certainty::Certain(Label::Negative),
+            [false, _] => Certainty::Certain(Label::Positive),
+        };
+        let is_certain = self.own_label != Certainty::Uncertain;
+        self.certain_within = if is_certain { nearest / (1.0 + margin) } else { 0.0 };
+    }
+}
 
 /// Looks at a circle, where it crosses each of the lines.
 fn cross_all(lines: &mut [SeenLine], inverse_radius: f32, margin: f32) {

@@ -15,7 +15,7 @@ use crate::search::circles::Search;
 use crate::search::course::REST;
 use crate::search::direction_rule::DirectionRule;
 use crate::search::motions::Leg;
-use crate::search::objective::Effort;
+use crate::search::objective::{Effort, sweep};
 use crate::search::problem::Problem;
 
 /// The looks that a drawn drive costs, with all its checks.
@@ -158,19 +158,15 @@ pub(crate) fn stays<D: Dynamics, G: Workspace>(
     effort: &mut Effort,
     [from, to]: [Pose; 2],
 ) -> bool {
-    let way = [from.site, to.site];
     if !area.contains(to.site) {
         return false;
     }
     // The way and two circles, twice.
-    for _ in 0..3 {
-        effort.take_sweep(area, &way);
-    }
+    let looks = sweep(area, &[from.site, to.site]).saturating_mul(3);
+    effort.take(looks);
     if dynamics.keeps_inside(from, to, area, 0) {
         return true;
     }
-    for _ in 0..3 {
-        effort.take_sweep(area, &way);
-    }
+    effort.take(looks);
     !dynamics.is_safe(from, area) && dynamics.stays_inside(from, to, area)
 }
