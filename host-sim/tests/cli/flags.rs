@@ -51,7 +51,7 @@ fn a_chip_that_cannot_be_is_refused() {
         (&["m.toml", &other], &["host-sim", "firmware's ELF"]),
         (&["m.toml", "--port", "x", "--emulator"], &["--port", "--emulator"]),
         (&["m.toml", "--port", "no-such-device"], &["no-such-device", "expected a serial port"]),
-        (&["m.toml", "--emulator"], &["release/firmware", "in the repository", "--emulator=ELF"]),
+        (&["m.toml", "--emulator"], &["chip/firmware", "in the repository", "--emulator=ELF"]),
         (&["m.toml", "--emulator=m.toml"], &["m.toml", "ELF", "cargo firmware"]),
         (
             &["m.toml", "--emulator", "--machine", "microbit"],
