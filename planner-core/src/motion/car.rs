@@ -147,8 +147,15 @@ impl Car {
     /// Rays to one side of the one ahead, at a speed.
     fn turns_at(&self, speed: u16) -> u32 {
         let limit = u64::from(self.limit(speed).0) + 1;
-        let turns = ((limit << 32) - HALF - 1).checked_div(self.step).unwrap_or(0);
-        (turns as u32).min(self.turns)
+        // `rest / step` by short divisions, as each plan asks for it thousands of times: they come near it from below.
+        let above = NonZeroU32::MIN.saturating_add((self.step >> 32) as u32);
+        let (mut rest, mut turns) = ((limit << 32) - HALF - 1, 0_u32);
+        while 0 < self.step && self.step <= rest && turns < self.turns {
+            let more = ((rest >> 32) as u32 / above).max(1);
+            turns = turns.saturating_add(more);
+            rest = rest.saturating_sub(u64::from(more) * self.step);
+        }
+        turns.min(self.turns)
     }
 
     /// The greatest angle of a chord of this length: the arc sine of `c / 2R`, less its error.
