@@ -11,6 +11,8 @@
 //! 3. considers turns in place as well, if no end is worth much;
 //! 4. climbs the recovery ladder, as Algorithm 1 does, if there is no such motion.
 //!
+//! With a [`Goal`] it stops when that is met, after an [`audit`](crate::planner::audit).
+//!
 //! The search is anytime: a plan evaluates at most [`EVALUATIONS`] ends and keeps the best found so far. The order of
 //! the ends does not depend on the limit. So a higher limit never gives a worse motion by the plan's own measure.
 //!
@@ -19,6 +21,7 @@
 
 use crate::belief::Belief as _;
 use crate::belief::ObservationError;
+use crate::belief::cells::CellView;
 use crate::belief::goal::{Criterion, Goal, NoGoal};
 use crate::belief::noise::Noise;
 use crate::belief::observation_log::FromLog;
@@ -31,14 +34,16 @@ use crate::geometry::lattice::Vector;
 use crate::geometry::value::ValueError;
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose};
+use crate::planner::audit::Audit;
 use crate::planner::decision::Decision;
 use crate::planner::setup::{Restart, SetupError, aimed_for, aimed_for_by};
 use crate::planner::silence::Silence;
 use crate::planner::snapshot::{Persist, RestoreError, Snapshot};
-use crate::planner::{Motion, Plan, Planner, StopReason};
+use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
 use crate::search::course::Course;
 use crate::search::dead_end::{DeadEnd, is_broad};
 use crate::search::direction_rule::ArcRule;
+use crate::search::errand::Errand;
 use crate::search::lookout::Lookout;
 use crate::search::objective::{Effort, EffortWeight, LOOKS};
 use crate::search::problem::Problem;
@@ -118,6 +123,8 @@ pub struct Lookahead<D, B, G = Area, C = NoGoal> {
     belief: B,
     evaluations: u32,
     goal: Option<Goal<C>>,
+    /// What is seen before the goal's promise is made; `None` if it is made at once.
+    audit: Option<Audit>,
     silence: Silence,
 }
 
@@ -148,8 +155,8 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion> Lookahead<D, 
     ) -> Self {
         let bounds = area.bounds().whole();
         let goal = goal.map(|goal| goal.in_bounds_of(&area));
-        let silence = Silence::NONE;
-        Self { area, price, bounds, dynamics, belief, evaluations, goal, silence }
+        let (audit, silence) = (Some(Audit::NONE), Silence::NONE);
+        Self { area, price, bounds, dynamics, belief, evaluations, goal, audit, silence }
     }
 
     /// The same, with another price of driving than [`DrivingPrice::USUAL`].
@@ -166,13 +173,27 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion> Lookahead<D, 
         Self { evaluations, ..self }
     }
 
-    /// The same, but it stops when the belief meets the goal. `None` means no goal.
+    /// The same, but it stops when the belief meets the goal and an [`audit`](crate::planner::audit) has found no label
+    /// against it. `None` means no goal.
     #[must_use]
     #[inline]
     pub fn until<W: Criterion>(self, goal: impl Into<Option<Goal<W>>>) -> Lookahead<D, B, G, W> {
-        let Self { area, price, bounds, dynamics, belief, evaluations, silence, .. } = self;
+        let Self { area, price, bounds, dynamics, belief, evaluations, audit, silence, .. } = self;
         let goal = goal.into().map(|goal| goal.in_bounds_of(&area));
-        Lookahead { area, price, bounds, dynamics, belief, evaluations, goal, silence }
+        Lookahead { area, price, bounds, dynamics, belief, evaluations, goal, audit, silence }
+    }
+
+    /// The same, but it stops as soon as the belief meets the goal. It then says `Known` also of a boundary that bends or
+    /// moves.
+    #[must_use]
+    #[inline]
+    pub fn without_audit(self) -> Self {
+        Self { audit: None, ..self }
+    }
+
+    /// What the audit has seen so far; `None` if there is none.
+    pub const fn audit(&self) -> Option<&Audit> {
+        self.audit.as_ref()
     }
 
     /// The belief, for example to take in a label that has its own reliability. The planner then forgets its turns
@@ -202,6 +223,24 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion> Lookahead<D, 
         }
     }
 
+    /// What to do when the goal is met: the audit's next motion, or what it came to. Labels that may be wrong refute
+    /// nothing, so there is no audit of them.
+    fn conclude(&mut self, pose: Pose) -> Plan {
+        let known = Plan::Stop(StopReason::Known);
+        let Some(audit) = self.audit.as_mut().filter(|_| B::LABELS_ARE_TRUE) else { return known };
+        let Some(estimate) = self.belief.belief().centre() else { return known };
+        let lines = lines_within(&self.belief, self.belief.belief().tolerance());
+        let (dynamics, mut effort) = (&self.dynamics, Effort::of(LOOKS));
+        let with = (dynamics, &self.area);
+        let Some(Errand { leg, arrives }) = audit.plan(with, (lines, estimate), pose, &mut effort)
+        else {
+            return known;
+        };
+        let found = Found::of(None, leg);
+        let motion = Motion::of(Some(Stage::Audit), pose, &found, dynamics, effort);
+        Plan::Move(Motion { wants_label: arrives, ..motion })
+    }
+
     /// What the ladder finds where no label is in reach that is worth it.
     fn recover(&self, pose: Pose, course: &mut Course) -> (Result<Found, DeadEnd>, Effort) {
         let lines = self.belief.ground();
@@ -215,6 +254,12 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion> Lookahead<D, 
     }
 }
 
+/// The lines on whose uncertain ground a label may tell something, for a position that may be off by so much.
+fn lines_within<B: PredictiveBelief>(belief: &B, tolerance: Tolerance) -> CellView<'_> {
+    let lines = belief.ground();
+    CellView { shift: tolerance.shift(lines.slope_arc()).unwrap_or(lines.shift), ..lines }
+}
+
 impl<D: Dynamics, G: Workspace, C: Criterion, const N: usize, const H: usize> Restart
     for Lookahead<D, NoisyBelief<N, H>, G, C>
 {
@@ -224,6 +269,7 @@ impl<D: Dynamics, G: Workspace, C: Criterion, const N: usize, const H: usize> Re
         let area = aimed_for(self.area, &self.dynamics, noise.tolerance)?;
         self.belief.restart(given, prior, noise)?;
         (self.area, self.silence) = (area, Silence::NONE);
+        self.audit = self.audit.map(|_| Audit::NONE);
         Ok(())
     }
 }
@@ -234,8 +280,13 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion> Planner
     type Belief = B::Belief;
 
     fn plan(&mut self, pose: Pose) -> Plan {
-        if self.goal.is_some_and(|goal| self.belief().meets(goal, self.bounds)) {
-            return Plan::Stop(StopReason::Known);
+        if let Some(goal) = self.goal {
+            if self.audit.is_some_and(|audit| audit.refuted().is_some()) {
+                return Plan::Stop(StopReason::NoLine);
+            }
+            if self.belief().meets(goal, self.bounds) {
+                return self.conclude(pose);
+            }
         }
         if self.belief().is_full() {
             return Plan::Stop(StopReason::SamplesFull);
@@ -275,7 +326,13 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion> Planner
         reading: Option<Reading>,
         tolerance: Tolerance,
     ) -> Result<(), ObservationError> {
-        if let Some(reading) = reading {
+        let is_of_audit = self.goal.is_some()
+            && tolerance <= self.belief.belief().tolerance()
+            && self.audit.as_mut().is_some_and(|audit| {
+                let lines = lines_within(&self.belief, tolerance);
+                audit.observe(lines, pose.site, reading)
+            });
+        if let Some(reading) = reading.filter(|_| !is_of_audit) {
             self.belief.observe_within(pose.site, reading, tolerance)?;
         }
         self.silence.observe(reading.is_some());
@@ -300,6 +357,7 @@ impl<D: Dynamics, B: PredictiveBelief + FromLog, G: Workspace, C: Criterion> Per
         let (log, &silence) = snapshot.open()?;
         self.belief.replay(log)?;
         self.silence = silence;
+        self.audit = self.audit.map(|_| Audit::NONE);
         Ok(())
     }
 }

@@ -6,9 +6,10 @@
 //! | [`cfc`] | the paper's Algorithm 1, for labels that are true |
 //! | [`scc`] | the paper's Algorithm 2, for labels that are sometimes wrong |
 //!
-//! [`options`] are what Algorithms 1 and 2 leave open. [`setup`] checks the parts that every planner is made of. A
+//! [`audit`] is what look-ahead does before it promises a goal. [`options`] are what Algorithms 1 and 2 leave open. [`setup`] checks the parts that every planner is made of. A
 //! [`snapshot`] is what a planner has to remember over a sleep.
 
+pub mod audit;
 pub mod cfc;
 mod decision;
 pub mod lookahead;
@@ -43,6 +44,8 @@ pub enum Stage {
     P3,
     /// Explore directions in which some hypothesis has it.
     P4,
+    /// No problem of the paper: visit ground that is certain, before a goal counts as met.
+    Audit,
 }
 
 /// A motion to make.
@@ -118,6 +121,11 @@ pub enum StopReason {
     ///
     /// [tolerance]: crate::belief::tolerance::Tolerance
     Tolerance,
+    /// No straight, still line explains the labels: on ground that was certain the [audit] read the other label. The
+    /// boundary bends or moves, or the sensor fails. A shorter stretch, or a tolerance that covers the bend, may help.
+    ///
+    /// [audit]: crate::planner::audit
+    NoLine,
 }
 
 impl From<DeadEnd> for StopReason {

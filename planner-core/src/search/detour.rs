@@ -1,4 +1,4 @@
-//! The way to uncertain ground, round keep-outs.
+//! The way to uncertain ground, or to a place, round keep-outs.
 //!
 //! Each keep-out has eight waypoints: the corners of an octagon around it, with some space to spare. The search finds
 //! the shortest way from the agent along waypoints that see each other (Dijkstra, 1959). Such a way ends at a point
@@ -48,15 +48,39 @@ pub(crate) fn begin<G: Workspace>(
     effort: &mut Effort,
 ) -> Option<Way> {
     let area = view.area();
-    if area.keep_outs().next().is_none() {
-        return Some(Way::Straight(straight));
-    }
     let way_out = |site: Site| {
         view.way_out_from(site, |way| site.step(way).is_ok_and(|end| area.lets_pass(&[site, end])))
     };
+    begin_by(area, view.step(), (from, straight), effort, way_out)
+}
+
+/// The same to a place, in an area for motions that are a step long at least.
+pub(crate) fn begin_to<G: Workspace>(
+    place: Site,
+    (area, step): (&G, f32),
+    from: Site,
+    effort: &mut Effort,
+) -> Option<Way> {
+    let way_out = |site: Site| {
+        let way = place - site;
+        area.lets_pass(&[site, place]).then(|| (way, distance(way)))
+    };
+    begin_by(area, step, (from, place - from), effort, way_out)
+}
+
+/// The same to wherever the straight way leads from each position.
+fn begin_by<G: Workspace>(
+    area: &G,
+    step: f32,
+    (from, straight): (Site, Vector),
+    effort: &mut Effort,
+    way_out: impl Fn(Site) -> Option<(Vector, f32)>,
+) -> Option<Way> {
+    if area.keep_outs().next().is_none() {
+        return Some(Way::Straight(straight));
+    }
     let mut best = way_out(from).map(|(way, length)| (Way::Straight(way), length));
     let mut waypoints: Vec<Waypoint, MOST, u8> = Vec::new();
-    let step = view.step();
     for keep_out in area.keep_outs() {
         for site in octagon(&keep_out, 2.0 * step).into_iter().flatten() {
             if area.contains(site) {

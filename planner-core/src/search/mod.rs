@@ -7,14 +7,15 @@
 //!
 //! If no action is feasible, a ladder of recoveries takes over. It leads round keep-outs if necessary (`detour`). A
 //! vehicle that cannot turn on the spot makes a `manoeuvre`, of `motions`. Look-ahead searches the same circles for the places where
-//! labels tell the most (`lookout`).
+//! labels tell the most (`lookout`). An `errand` leads to a given place.
 
 pub(crate) mod circles;
 pub(crate) mod course;
 pub(crate) mod crossing;
 pub(crate) mod dead_end;
-mod detour;
+pub(crate) mod detour;
 pub mod direction_rule;
+pub(crate) mod errand;
 pub(crate) mod lookout;
 pub(crate) mod manoeuvre;
 mod motions;

@@ -463,7 +463,7 @@ enum Drive {
 }
 
 /// Whether a drive brings a point nearer by an eighth of its own length at least.
-fn nears(ray: &Ray, speed: u16, goal: Vector) -> bool {
+pub(crate) fn nears(ray: &Ray, speed: u16, goal: Vector) -> bool {
     let drive = ray.displacement(speed);
     let square = |v: Vector| single(v.dot(v));
     // |goal - drive| <= |goal| - |drive| / 8 follows from this.

@@ -1,6 +1,7 @@
 //! Whole missions in simulated worlds: how they end, what they find, and what they never do.
 
 mod anything;
+mod audit;
 mod campaign;
 mod failures;
 mod fields;

@@ -402,6 +402,7 @@ pub fn stage_name(stage: Stage) -> &'static str {
         Stage::P2 => "P2",
         Stage::P3 => "P3",
         Stage::P4 => "P4",
+        Stage::Audit => "audit",
     }
 }
 
@@ -438,6 +439,7 @@ impl Ending {
             Self::Stopped(StopReason::Cornered) => "cornered",
             Self::Stopped(StopReason::Undecided) => "undecided",
             Self::Stopped(StopReason::Tolerance) => "tolerance",
+            Self::Stopped(StopReason::NoLine) => "no line",
             Self::Stopped(_) => "stopped",
         }
     }

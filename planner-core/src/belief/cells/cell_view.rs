@@ -148,7 +148,7 @@ impl<'a> CellView<'a> {
     }
 
     /// Within this distance of a position all lines agree as they do there; 0 where they do not.
-    fn certain_within(self, q: Site) -> f32 {
+    pub(crate) fn certain_within(self, q: Site) -> f32 {
         let (mut least, mut signs) = (f32::INFINITY, [false; 2]);
         for bound in self.bounds() {
             let value = bound.at(q);

@@ -211,6 +211,8 @@ fn measure<'a>(apex: Vertex, rest: impl Iterator<Item = &'a Vertex>) -> f32 {
 }
 
 impl<const N: usize> PredictiveBelief for VersionSpace<N> {
+    const LABELS_ARE_TRUE: bool = true;
+
     type Belief = Self;
     type Predictor<'a> = DualPolygon;
 

@@ -123,6 +123,8 @@ impl<const N: usize, const H: usize> FromLog for NoisyBelief<N, H> {
 }
 
 impl<const N: usize, const H: usize> PredictiveBelief for NoisyBelief<N, H> {
+    const LABELS_ARE_TRUE: bool = false;
+
     type Belief = CellPosterior<N, H>;
     type Predictor<'a> = TablePredictor<'a, N, H>;
 

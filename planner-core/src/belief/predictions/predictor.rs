@@ -13,6 +13,9 @@ use crate::geometry::lattice::Site;
 
 /// A belief that can predict labels: what look-ahead plans with.
 pub trait PredictiveBelief {
+    /// Whether a label on certain ground is always the one that all lines have there.
+    const LABELS_ARE_TRUE: bool;
+
     /// What is known.
     type Belief: Belief;
 

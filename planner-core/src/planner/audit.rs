@@ -1,0 +1,247 @@
+//! The audit before a goal's promise: labels on ground that is certain, close to either side of the estimate, at both
+//! ends and in the middle of its chord.
+//!
+//! A planner that asks only where it is uncertain cannot contradict itself. A boundary that bends or moves, or a sensor
+//! that fails, leaves a narrow set of lines all the same. So once the goal is met, the planner visits six places where
+//! all lines left agree on the label. If each label is the one that all lines have there, the line is known. If one is
+//! not, no line explains the labels. With true labels of a straight, still line that cannot happen.
+//!
+//! A place lies as near to the lines left as the vehicle can aim. Where the border, a keep-out or the vehicle is in the
+//! way, a place nearer to the middle of the chord takes its turn. A place that cannot be visited is left out.
+
+use crate::belief::cells::{CellView, Certainty};
+use crate::belief::sample::{Reading, Sample};
+use crate::geometry::approximate::{METRE, UnitVector, inverse_sqrt};
+use crate::geometry::area::Area;
+use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
+use crate::geometry::local_line::LocalLine;
+use crate::geometry::span::Span;
+use crate::geometry::workspace::Workspace;
+use crate::motion::dynamics::{Dynamics, Pose, Side};
+use crate::search::detour::distance;
+use crate::search::errand::{Errand, errand, motions_to};
+use crate::search::objective::Effort;
+
+/// The places: by twos at one end of the chord, in its middle, and at the other end. The first of the two is on the
+/// +1 side.
+const PLACES: u8 = 6;
+
+/// Where on the chord places lie, as shares of it: the first is best, the others take its turn.
+const ALONG: [[f32; 5]; 3] = [
+    [0.03, 0.08, 0.14, 0.21, 0.29],
+    [0.5, 0.46, 0.54, 0.4, 0.6],
+    [0.97, 0.92, 0.86, 0.79, 0.71],
+];
+
+/// How near a place lies to uncertain ground, as a share of the mean of the area's sides: 12.5 cm of 20 m. No nearer
+/// than the shortest motion, and never farther than 12.5 cm unless that is longer.
+const NEAR: f32 = 1.0 / 160.0;
+
+/// A vehicle that goes round a circle to turn is led no nearer to a place than this share of the circle's radius.
+const NEAR_CIRCLE: f32 = 0.25;
+
+/// How far from the estimate a place lies at most, as a share of the chord.
+const MOST_ASIDE: f32 = 0.25;
+
+/// Motions to a place at most: twice as many as a straight drive along the chord takes, and so many for turns.
+const TURNS: u32 = 32;
+
+/// An audit that is under way.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Audit {
+    /// Labels that all lines left have there too.
+    agreed: u8,
+    /// A label that no line left has there.
+    refuted: Option<Sample>,
+    now: Course,
+    /// The course with the motion that was planned last, and whether that ends at its place.
+    next: Course,
+    arrives: bool,
+}
+
+/// Which places are settled, and which one motions lead to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+struct Course {
+    /// A bit for each place.
+    settled: u8,
+    /// The place, and which of its [`ALONG`].
+    to: Option<(u8, u8)>,
+    /// Motions on the way there so far.
+    motions: u16,
+}
+
+impl Audit {
+    /// Nothing has been seen.
+    pub(crate) const NONE: Self = {
+        let none = Course { settled: 0, to: None, motions: 0 };
+        Self { agreed: 0, refuted: None, now: none, next: none, arrives: false }
+    };
+
+    /// Labels that were read on certain ground and are what all lines left have there.
+    pub const fn agreed(&self) -> u8 {
+        self.agreed
+    }
+
+    /// The label that was read where no line left has it.
+    pub const fn refuted(&self) -> Option<Sample> {
+        self.refuted
+    }
+
+    /// The next motion of the audit. `None` if it is over.
+    ///
+    /// Places are visited in the order of their distance. Cost: the looks of the effort at most.
+    pub(crate) fn plan<D: Dynamics, G: Workspace>(
+        &mut self,
+        (dynamics, area): (&D, &G),
+        (lines, estimate): (CellView<'_>, LocalLine),
+        pose: Pose,
+        effort: &mut Effort,
+    ) -> Option<Errand> {
+        let grid = dynamics.grid();
+        let circle = dynamics.turning_circle(pose, Side::Left).map_or(0, |it| it.radius);
+        let least = grid.step_units().max(NEAR_CIRCLE * circle as f32);
+        let chord = Chord::of(estimate, area.bounds(), least)?;
+        let reach = f32::from(grid.speeds().saturating_sub(1)) * grid.step_units();
+        let most = TURNS as u16 + (2.0 * chord.length() / reach) as u16;
+        let mut course = self.now;
+        loop {
+            let (place, first) = match course.to {
+                Some(to) => to,
+                None => (chord.nearest(dynamics, pose, course.settled)?, 0),
+            };
+            for turn in first..ALONG[0].len() as u8 {
+                let is_same = self.now.to == Some((place, turn));
+                let motions = if is_same { self.now.motions } else { 0 };
+                let site = if motions < most { chord.place(place, turn, lines, effort) } else { None };
+                let site = site.filter(|site| area.contains_disc(*site, chord.near as i32));
+                let found = site.and_then(|it| errand((dynamics, area), pose, (it, chord.near), effort));
+                if let Some(found) = found {
+                    let to = Some((place, turn));
+                    self.next = Course { to, motions: motions + 1, ..course };
+                    self.arrives = found.arrives;
+                    return Some(found);
+                }
+            }
+            course = Course { settled: course.settled | 1 << place, to: None, motions: 0 };
+        }
+    }
+
+    /// Records the motion that was planned last, and what was read at its end, where the position may be off by the
+    /// shift of these lines. Returns whether the reading was one of the audit, which no belief has to take in.
+    pub(crate) fn observe(
+        &mut self,
+        lines: CellView<'_>,
+        site: Site,
+        reading: Option<Reading>,
+    ) -> bool {
+        self.now = self.next;
+        if !core::mem::take(&mut self.arrives) {
+            return false;
+        }
+        let settled = self.now.to.map_or(0, |(place, _)| 1 << place);
+        self.now = Course { settled: self.now.settled | settled, to: None, motions: 0 };
+        self.next = self.now;
+        let (Some(reading), Certainty::Certain(label)) = (reading, lines.certainty(site)) else {
+            return false;
+        };
+        // Wherever the position really is, the lines agree.
+        let other = lines.place(site, -label);
+        if other.is_none_or(|it| lines.certainty(it) != Certainty::Certain(label)) {
+            return false;
+        }
+        if reading == Reading::Side(label) {
+            self.agreed += 1;
+        } else {
+            self.refuted = Some(Sample { site, label: -label });
+        }
+        true
+    }
+}
+
+/// The estimate as it crosses the area's rectangle.
+struct Chord {
+    /// The middle of the area; from there in metres, a point of the line, and its direction.
+    middle: Site,
+    base: [f32; 2],
+    way: [f32; 2],
+    /// What of it lies inside.
+    inside: Span,
+    /// How near places are to uncertain ground, and motions end to them; lattice units.
+    near: f32,
+}
+
+impl Chord {
+    /// The chord of an estimate, with places that are no nearer than `least`.
+    fn of(estimate: LocalLine, area: Area, least: f32) -> Option<Self> {
+        let (middle, half) = (area.middle(), area.half_sides().map(|side| side as f32));
+        let unit = UnitVector::of(estimate.along());
+        let (slope, intercept) = (estimate.slope(), estimate.intercept());
+        let per_length = inverse_sqrt(1.0 + slope * slope);
+        let way = [unit.x - slope * unit.z, unit.z + slope * unit.x].map(|it| it * per_length);
+        let about = estimate.about() - middle;
+        let base = [
+            about.x as f32 * METRE - unit.z * intercept,
+            about.z as f32 * METRE + unit.x * intercept,
+        ];
+        let sides = half.map(|side| side * METRE);
+        let inside = Span::inside(base, way, sides.map(|side| -side), sides);
+        let usual = NEAR * (half[0] + half[1]);
+        let eighth = UNITS_PER_METRE as f32 / 8.0;
+        let near = if usual < eighth { usual } else { eighth };
+        let near = if near > least { near } else { least };
+        (!inside.is_empty()).then_some(Self { middle, base, way, inside, near })
+    }
+
+    /// Lattice units.
+    fn length(&self) -> f32 {
+        self.inside.width() * UNITS_PER_METRE as f32
+    }
+
+    /// The site at a share of the chord, and so many lattice units to its left.
+    fn site(&self, along: f32, aside: f32) -> Option<Site> {
+        let ahead = self.inside.low + along * self.inside.width();
+        let [x, z] = self.way;
+        let aside = aside * METRE;
+        let at = [self.base[0] + ahead * x - aside * z, self.base[1] + ahead * z + aside * x];
+        let [x, z] = at.map(|it| (it * UNITS_PER_METRE as f32) as i32);
+        self.middle.step(Vector::new(x, z)?).ok()
+    }
+
+    /// The place to which the fewest motions lead, of those that are not settled.
+    fn nearest<D: Dynamics>(&self, dynamics: &D, pose: Pose, settled: u8) -> Option<u8> {
+        let mut nearest = None;
+        for place in (0..PLACES).filter(|place| settled >> place & 1 == 0) {
+            let site = self.site(ALONG.get(usize::from(place / 2))?[0], 2.0 * side(place) * self.near);
+            let off = site.map_or(f32::INFINITY, |site| motions_to(dynamics, pose, site));
+            if nearest.is_none_or(|(least, _)| off < least) {
+                nearest = Some((off, place));
+            }
+        }
+        nearest.map(|(_, place)| place)
+    }
+
+    /// Where a place lies: nearest to the chord of all from which uncertain ground is far enough.
+    fn place(&self, place: u8, turn: u8, lines: CellView<'_>, effort: &mut Effort) -> Option<Site> {
+        let along = *ALONG.get(usize::from(place / 2))?.get(usize::from(turn))?;
+        let shift = distance(lines.shift);
+        let due = self.near + 2.0 * shift;
+        let mut aside = due;
+        while aside < MOST_ASIDE * self.length() && effort.take(1) {
+            let site = self.site(along, side(place) * aside)?;
+            let certain_within = lines.certain_within(site);
+            if certain_within >= due {
+                return Some(site);
+            }
+            let (lacks, least) = (due - certain_within, 0.125 * aside);
+            aside += if lacks > least { lacks } else { least };
+        }
+        None
+    }
+}
+
+/// Even places lie on the +1 side.
+const fn side(place: u8) -> f32 {
+    if place.is_multiple_of(2) { 1.0 } else { -1.0 }
+}

@@ -1,0 +1,193 @@
+//! A motion on the way to a place, for any vehicle.
+//!
+//! The vehicle turns to one side, on the spot or round its circle, until a drive brings it nearer to the place, and makes
+//! that drive. Of all such ways the errand takes the one with the fewest motions. If there is none, it drives straight
+//! on first. Keep-outs are passed by their waypoints (`detour`).
+//!
+//! An errand has no state, and it need not arrive: whoever runs it counts the motions.
+
+use crate::geometry::approximate::heading_of;
+use crate::geometry::heading::Angle;
+use crate::geometry::lattice::{Site, Vector};
+use crate::geometry::workspace::Workspace;
+use crate::motion::dynamics::{Dynamics, Pose, Side, TurningCircle};
+use crate::search::detour::{self, Way, distance};
+use crate::search::motions::{Leg, Motions};
+use crate::search::objective::Effort;
+use crate::search::recovery::nears;
+use crate::search::wander::stays;
+
+/// Straight motions before a turn at most, where no turn leads to the place at once.
+const STRAIGHT: u32 = 8;
+
+/// Turns to one side at most. A vehicle with finer turns goes as far as these lead it.
+const TURNS: u32 = 64;
+
+/// The looks that a place on a way takes.
+const LOOKS_A_PLACE: u32 = 4;
+
+/// A motion on the way, and whether it ends at the place.
+#[derive(Clone, Copy)]
+pub(crate) struct Errand {
+    pub(crate) leg: Leg,
+    pub(crate) arrives: bool,
+}
+
+/// What drives lead to.
+#[derive(Clone, Copy)]
+struct Aim {
+    site: Site,
+    /// A drive that ends so near to it arrives, lattice units. None arrives at a waypoint.
+    near: Option<f32>,
+}
+
+/// The best way so far: its first motion, and about how many motions it has.
+#[derive(Clone, Copy)]
+struct Best {
+    errand: Errand,
+    motions: f32,
+}
+
+/// Where a way has come to.
+#[derive(Clone, Copy)]
+struct Place {
+    pose: Pose,
+    first: Option<Leg>,
+    motions: u32,
+}
+
+/// The next motion on the way to a place, which ends `near` it, lattice units. `None` if there is no way.
+///
+/// Cost: the looks that are left, at most.
+pub(crate) fn errand<D: Dynamics, G: Workspace>(
+    (dynamics, area): (&D, &G),
+    pose: Pose,
+    (place, near): (Site, f32),
+    effort: &mut Effort,
+) -> Option<Errand> {
+    let step = dynamics.grid().step_units();
+    let aim = match detour::begin_to(place, (area, step), pose.site, effort)? {
+        Way::Straight(_) => Aim { site: place, near: Some(near) },
+        Way::Round(way) => Aim { site: pose.site.step(way).ok()?, near: None },
+    };
+    let mut motions = Motions::new(dynamics, area, pose, *effort);
+    let best = search(&mut motions, pose, aim);
+    *effort = motions.effort;
+    best.map(|best| best.errand)
+}
+
+/// About how many motions lead from a pose to a place in sight, one at least: so many turns, and a straight drive. Where
+/// the place lies within the vehicle's circle, a whole turn comes before it.
+pub(crate) fn motions_to<D: Dynamics>(dynamics: &D, pose: Pose, place: Site) -> f32 {
+    let (grid, way) = (dynamics.grid(), place - pose.site);
+    let reach = f32::from(grid.speeds().saturating_sub(1)) * grid.step_units();
+    let drives = distance(way) / reach;
+    let drives = if drives > 1.0 { drives } else { 1.0 };
+    let circle = |side| dynamics.turning_circle(pose, side);
+    let turned = match (dynamics.turn_in_place(pose, Side::Left), circle(Side::Left)) {
+        (Some((_, turned)), _) => Some(turned),
+        (None, Some(circle)) => dynamics.target(pose, circle.action),
+        (None, None) => None,
+    };
+    let Some(turned) = turned else { return drives };
+    let is_within = |circle: TurningCircle| distance(Vector { x: way.x - circle.centre.x, z: way.z - circle.centre.z }) < circle.radius as f32;
+    let is_within = [Side::Left, Side::Right].into_iter().filter_map(circle).any(is_within);
+    let off = (heading_of(way).since(pose.heading).0 as i32).unsigned_abs() as f32;
+    let off = if is_within { 2.0 * Angle::HALF_TURN.0 as f32 } else { off };
+    drives + off / turned.heading.since(pose.heading).0 as f32
+}
+
+fn search<D: Dynamics, G: Workspace>(
+    motions: &mut Motions<'_, '_, D, G>,
+    pose: Pose,
+    aim: Aim,
+) -> Option<Best> {
+    let mut best = None;
+    let mut from = Place { pose, first: None, motions: 0 };
+    for _ in 0..=STRAIGHT {
+        drive(motions, from, aim, &mut best);
+        for side in [Side::Left, Side::Right] {
+            turn(motions, from, side, aim, &mut best);
+        }
+        if best.is_some() {
+            break;
+        }
+        let Some(leg) = motions.straight(from.pose) else { break };
+        from = from.after(leg);
+    }
+    best
+}
+
+/// Turns to a side and looks at each place on the way, for a whole turn at most.
+fn turn<D: Dynamics, G: Workspace>(
+    motions: &mut Motions<'_, '_, D, G>,
+    from: Place,
+    side: Side,
+    aim: Aim,
+    best: &mut Option<Best>,
+) {
+    let (mut place, mut turned) = (from, 0_u32);
+    for _ in 0..TURNS {
+        let on_the_spot = motions.dynamics.turn_in_place(place.pose, side);
+        let Some(leg) = on_the_spot.or_else(|| motions.round(place.pose, side)) else { return };
+        place = place.after(leg);
+        let left = place.pose.heading.since(from.pose.heading).0;
+        let turn = if side == Side::Left { left } else { left.wrapping_neg() };
+        if turn <= turned || !drive(motions, place, aim, best) {
+            return;
+        }
+        turned = turn;
+    }
+}
+
+/// Looks for a drive from a place that ends at the aim, or brings it nearer. Whether more motions may still make a
+/// better way.
+fn drive<D: Dynamics, G: Workspace>(
+    motions: &mut Motions<'_, '_, D, G>,
+    from: Place,
+    aim: Aim,
+    best: &mut Option<Best>,
+) -> bool {
+    let is_short = best.is_none_or(|best| ((from.motions + 1) as f32) < best.motions);
+    if !is_short || !motions.effort.take(LOOKS_A_PLACE) {
+        return false;
+    }
+    let (dynamics, grid) = (motions.dynamics, motions.dynamics.grid());
+    let way = aim.site - from.pose.site;
+    let (fastest, steps) = (grid.speeds().saturating_sub(1), distance(way) / grid.step_units());
+    let nearest = (steps + 0.5) as u16;
+    for ray in dynamics.around(from.pose, heading_of(way)) {
+        // The speeds that may arrive, then ever slower ones that do not overshoot.
+        let arriving = [nearest, nearest.saturating_sub(1), nearest.saturating_add(1)];
+        let arriving = arriving.into_iter().filter(|_| aim.near.is_some());
+        let most = (steps as u16).min(fastest);
+        let nearing = (0..u16::BITS).map(|k| most >> k).take_while(|speed| *speed > 0);
+        let mut speeds = arriving.map(|it| (it, true)).chain(nearing.map(|it| (it, false)));
+        let found = speeds.find_map(|(speed, arrives)| {
+            let leads_there = (1..=fastest).contains(&speed)
+                && (arrives || nears(&ray, speed, way))
+                && motions.effort.take(1);
+            let action = leads_there.then(|| grid.action(ray.index, speed))?;
+            let after = dynamics.target(from.pose, action)?;
+            let left = distance(aim.site - after.site);
+            let ends = !arrives || aim.near.is_some_and(|near| left <= near);
+            let goes = ends && stays(dynamics, motions.area, &mut motions.effort, [from.pose, after]);
+            let more = if arrives { 0.0 } else { motions_to(dynamics, after, aim.site) };
+            goes.then(|| ((action, after), arrives, (from.motions + 1) as f32 + more))
+        });
+        if let Some((leg, arrives, motions)) = found
+            && best.is_none_or(|best| motions < best.motions)
+        {
+            let arrives = arrives && from.first.is_none();
+            let errand = Errand { leg: from.first.unwrap_or(leg), arrives };
+            *best = Some(Best { errand, motions });
+        }
+    }
+    true
+}
+
+impl Place {
+    fn after(self, leg: Leg) -> Self {
+        Self { pose: leg.1, first: self.first.or(Some(leg)), motions: self.motions + 1 }
+    }
+}
