@@ -7,14 +7,18 @@ use std::fmt::Debug;
 
 use crc::{CRC_32_ISO_HDLC, Crc};
 use libfuzzer_sys::fuzz_target;
-use planner_core::{Label, Reading, Workspace as _, AnyVehicle, Pose, Plan, Planner};
 use planner_core::link::delivery::{Heard, Responder};
 use planner_core::link::frame::{Decoder, Envelope, FRAME, Frame, Message};
 use planner_core::link::message::{Algorithm, MissionArea, Reply, Request, Setup};
 use planner_core::motion::contract;
+use planner_core::{Accuracy, AnyVehicle, Label, Plan, Planner, Pose, Reading, sequences_of};
 
 /// Steps that a mission is flown for.
 const STEPS: usize = 6;
+
+/// Samples and hypotheses that there is room for: as many as the seeds ask for.
+const SAMPLES: usize = 24;
+const HYPOTHESES: usize = sequences_of(20);
 
 /// Content as it goes over the wire: with its check sum, and without zeros.
 fn framed(content: &[u8]) -> Vec<u8> {
@@ -72,10 +76,7 @@ fuzz_target!(|bytes: &[u8]| {
         for byte in stream {
             if let Some(Heard::New(request)) = responder.hear(*byte) {
                 // Of no session that was offered: only the one after 7 can be.
-                assert!(matches!(
-                    request,
-                    Request::Ready(_) | Request::Declined(_) | Request::Move(_) | Request::End(_)
-                ));
+                assert!(!matches!(request, Request::Hello { .. }));
                 responder.answer(Reply::Noted);
             }
         }
@@ -88,24 +89,29 @@ fuzz_target!(|bytes: &[u8]| {
             contract::check(&terms.dynamics).expect("what is no vehicle is declined");
             match setup.algorithm {
                 Algorithm::Cfc => {
-                    if let Ok(mut prepared) = setup.cfc::<_, _, 16>(terms) {
+                    if let Ok(mut prepared) = setup.cfc::<_, _, SAMPLES>(terms) {
                         fly(prepared.planner_mut(), &setup);
                     }
                 }
                 Algorithm::Lookahead { evaluations, goal, noise: None } => {
-                    if let Ok(mut prepared) = setup.lookahead::<_, _, 16>(terms, evaluations, goal)
+                    if let Ok(mut prepared) =
+                        setup.lookahead::<_, _, Accuracy, SAMPLES>(terms, evaluations, goal)
                     {
                         fly(prepared.planner_mut(), &setup);
                     }
                 }
                 Algorithm::Lookahead { evaluations, goal, noise: Some((noise, prior)) } => {
-                    let mut planner = setup.lookahead_in_noise::<_, _, 24, 40>(terms, evaluations, goal);
+                    let mut planner = setup.lookahead_in_noise::<_, _, SAMPLES, HYPOTHESES>(
+                        terms,
+                        evaluations,
+                        goal,
+                    );
                     if let Ok(mut prepared) = setup.prepare(&mut planner, prior, noise) {
                         fly(prepared.planner_mut(), &setup);
                     }
                 }
                 Algorithm::Scc { noise, policy, prior } => {
-                    let mut planner = setup.scc::<_, _, 24, 40>(terms, policy);
+                    let mut planner = setup.scc::<_, _, SAMPLES, HYPOTHESES>(terms, policy);
                     if let Ok(mut prepared) = setup.prepare(&mut planner, prior, noise) {
                         fly(prepared.planner_mut(), &setup);
                     }

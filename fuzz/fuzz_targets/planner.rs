@@ -6,17 +6,24 @@
 
 use arbitrary::{Arbitrary, Unstructured};
 use libfuzzer_sys::fuzz_target;
-use planner_core::{Certainty, NoisyBelief, Accuracy, Goal, CellPosterior, Noise, Reliability, PredictiveBelief, PosteriorView, Label, Reading, Sample, Tolerance, VersionSpace, Prior, Belief, Area, Heading, Site, Pose, Holonomic, Unicycle, Cfc, Crossing, Following, Lookahead, Policy, Scc, Motion, Plan, Planner, StopReason};
+use planner_core::dynamics::Dynamics;
 use planner_core::error::ObservationError;
 use planner_core::geometry::lattice::orient;
 use planner_core::motion::contract;
-use planner_core::dynamics::Dynamics;
-use planner_core::planner::Config;
 use planner_core::planner::lookahead::EVALUATIONS;
-use planner_core::search::objective::{LOOKS, EffortWeight};
+use planner_core::search::objective::{EffortWeight, LOOKS};
+use planner_core::{
+    Accuracy, Angle, Area, Belief, CellPosterior, Certainty, Cfc, Crossing, Following, Goal,
+    Heading, Holonomic, Label, Lookahead, Motion, Noise, NoisyBelief, Options, Plan, Planner,
+    Policy, Pose, PosteriorView, PredictiveBelief, Prior, Reading, Reliability, Sample, Scc, Site,
+    StopReason, Tolerance, Unicycle, VersionSpace,
+};
 
 /// Actions that are tried one by one, at most.
 const FEW: u64 = 3_000;
+
+/// Why a constructor refuses nothing.
+const AGREE: &str = "an area, a vehicle and a belief that agree";
 
 #[derive(Arbitrary, Debug)]
 struct Case {
@@ -33,7 +40,7 @@ struct Case {
     varrho: u32,
     crossing: u8,
     follows_bisector: bool,
-    p: f64,
+    p: u16,
     trusted_radius: u32,
     steps: Vec<Step>,
 }
@@ -82,9 +89,9 @@ fn run<D: Dynamics + Copy>(case: &Case, dynamics: D, world: &World) -> Option<()
     let space = VersionSpace::<16>::new(&oracle).ok()?;
     let half = 40_000;
     let corner = |v: i32| world.site(v, v).unwrap_or(Site::ORIGIN);
-    let config = Config {
-        area: Area::new(corner(-half), corner(half))?,
-        varrho: EffortWeight::new(f64::from(case.varrho % 1_000_000) / 1e6)?,
+    let area = Area::new(corner(-half), corner(half)).ok()?;
+    let options = Options {
+        weight: EffortWeight::new(f64::from(case.varrho % 1_000_000) / 1e6).ok()?,
         crossing: [Crossing::Unrestricted, Crossing::AlongOracle, Crossing::AcrossBisector]
             [usize::from(case.crossing % 3)],
         following: if case.follows_bisector {
@@ -92,13 +99,12 @@ fn run<D: Dynamics + Copy>(case: &Case, dynamics: D, world: &World) -> Option<()
         } else {
             Following::Unrestricted
         },
-        tolerance: Tolerance::NONE,
     };
     let (x, z, heading) = case.start;
     let start = Pose { site: world.site(x.into(), z.into())?, heading: Heading(heading) };
-    let cfc = Cfc::new(config, dynamics, space.clone()).expect("settings that agree");
-    fly_true(case, cfc, world, start, &config, |planner, pose| {
-        let few = dynamics.grid().actions() <= FEW && config.area.contains(pose.site);
+    let cfc = Cfc::new(area, dynamics, space.clone()).expect(AGREE).with(options);
+    fly_true(case, cfc, world, start, area, |planner, pose| {
+        let few = dynamics.grid().actions() <= FEW && area.contains(pose.site);
         let slow = few.then(|| planner.problem().solve_exhaustively(&dynamics, pose).best);
         let quick = few.then(|| planner.problem().solve(&dynamics, pose).best);
         assert_eq!(quick, slow, "from {pose:?}");
@@ -108,17 +114,17 @@ fn run<D: Dynamics + Copy>(case: &Case, dynamics: D, world: &World) -> Option<()
     });
     // Bytes that mean something else as well, so that there are no more of them.
     let accuracy = if case.follows_bisector {
-        Accuracy::SlopeArc(Heading(case.varrho % (1 << 30)))
+        Accuracy::SlopeArc(Angle(case.varrho % (1 << 30)))
     } else {
         Accuracy::Misclassified(case.varrho % 1_000_000)
     };
     let goal = Goal { accuracy, level: 500_000 + case.start.2 % 500_000 };
     for goal in [None, Some(goal)] {
-        let planner = Lookahead::new(config.area, dynamics, space.clone()).expect("settings that agree").until(goal);
-        fly_true(case, planner, world, start, &config, |planner, pose| {
+        let planner = Lookahead::new(area, dynamics, space.clone()).expect(AGREE).until(goal);
+        fly_true(case, planner, world, start, area, |planner, pose| {
             let plan = look_ahead(planner, pose);
             let known = plan == Plan::Stop(StopReason::Known);
-            assert_eq!(known, goal.is_some_and(|it| planner.belief().meets(it, config.area)));
+            assert_eq!(known, goal.is_some_and(|it| planner.belief().meets(it, area)));
             if let (true, Accuracy::SlopeArc(most)) = (known, accuracy) {
                 let width = planner.belief().slope_arc().width_deg();
                 assert!(width <= most.radians().to_degrees(), "{width} of {most:?}");
@@ -126,7 +132,7 @@ fn run<D: Dynamics + Copy>(case: &Case, dynamics: D, world: &World) -> Option<()
             plan
         });
     }
-    let reliability = Reliability::new(case.p)?;
+    let reliability = Reliability::new(f64::from(case.p) / f64::from(u16::MAX)).ok()?;
     for (policy, prior) in [
         (Policy::Joint, Prior::Area),
         (Policy::MixtureOfStart, Prior::Sequences),
@@ -135,23 +141,29 @@ fn run<D: Dynamics + Copy>(case: &Case, dynamics: D, world: &World) -> Option<()
         let noise =
             Noise { reliability, trusted_radius: case.trusted_radius, tolerance: Tolerance::NONE };
         let table = CellPosterior::<16, 24>::new(&oracle, prior, noise).ok()?;
-        let scc = Scc::new(config, policy, dynamics, table).expect("settings that agree");
-        fly_any(case, scc, world, start, &config, |planner, pose| planner.plan(pose));
-        let noisy = NoisyBelief::<16, 24>::new(&oracle, prior, noise).ok()?;
-        let planner = Lookahead::new(config.area, dynamics, noisy).expect("settings that agree").until(Some(goal));
-        fly_any(case, planner, world, start, &config, look_ahead);
+        let scc = Scc::new(area, dynamics, table).expect(AGREE).with(options).voting(policy);
+        fly_any(case, scc, world, start, area, |planner, pose| planner.plan(pose));
+        let mut noisy = NoisyBelief::<16, 24>::NONE;
+        noisy.restart(&oracle, prior, noise).ok()?;
+        let planner = Lookahead::new(area, dynamics, noisy).expect(AGREE).until(goal);
+        fly_any(case, planner, world, start, area, look_ahead);
     }
     Some(())
 }
 
 /// A plan of look-ahead: the same each time, and if a label is wanted, on uncertain ground.
-fn look_ahead<D: Dynamics, B: PredictiveBelief>(planner: &mut Lookahead<D, B>, pose: Pose) -> Plan {
+fn look_ahead<D: Dynamics + Clone, B: PredictiveBelief + Clone>(
+    planner: &mut Lookahead<D, B, Area, Accuracy>,
+    pose: Pose,
+) -> Plan {
     let plan = planner.plan(pose);
     assert_eq!(plan, planner.plan(pose), "from {pose:?}");
-    if let Plan::Move(Motion { target, wants_label, examined, .. }) = plan {
-        let certainty = planner.belief_mut().ground().certainty(target.site);
+    if let Plan::Move(Motion { recovery, target, wants_label, examined, .. }) = plan {
+        // Of a copy, as the planner itself would forget its turns.
+        let certainty = planner.clone().belief_mut().ground().certainty(target.site);
         assert!(!wants_label || certainty == Certainty::Uncertain, "to {target:?}");
-        assert!(examined <= EVALUATIONS);
+        // The ladder looks further.
+        assert!(examined <= if recovery.is_some() { LOOKS } else { EVALUATIONS });
     }
     plan
 }
@@ -162,14 +174,14 @@ fn fly_true<P: Planner<Belief = VersionSpace<16>>>(
     mut planner: P,
     world: &World,
     mut pose: Pose,
-    config: &Config,
+    area: Area,
     mut plan: impl FnMut(&mut P, Pose) -> Plan,
 ) {
     for step in &case.steps {
         let reading = match step {
             Step::Fly { .. } | Step::Pass => {
                 let Plan::Move(motion) = plan(&mut planner, pose) else { return };
-                assert!(config.area.contains(motion.target.site));
+                assert!(area.contains(motion.target.site));
                 pose = motion.target;
                 let reads = motion.wants_label && !matches!(step, Step::Pass);
                 reads.then(|| world.reading(pose.site))
@@ -200,14 +212,14 @@ fn fly_any<P: Planner<Belief = CellPosterior<16, 24>>>(
     mut planner: P,
     world: &World,
     mut pose: Pose,
-    config: &Config,
+    area: Area,
     mut plan: impl FnMut(&mut P, Pose) -> Plan,
 ) {
     for step in &case.steps {
         let reading = match step {
             Step::Fly { .. } | Step::Pass => {
                 let Plan::Move(motion) = plan(&mut planner, pose) else { return };
-                assert!(config.area.contains(motion.target.site));
+                assert!(area.contains(motion.target.site));
                 pose = motion.target;
                 let lies = matches!(step, Step::Fly { lies: true });
                 let flip = |reading| match reading {
