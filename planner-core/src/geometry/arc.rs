@@ -86,7 +86,11 @@ impl SlopeArc {
             (x * scale, z * scale)
         };
         let ((ax, az), (bx, bz)) = (unit(self.from), unit(self.to));
-        Vector { x: (ax + bx) as i32, z: (az + bz) as i32 }
+        let (x, z) = (ax + bx, az + bz);
+        // Of nearly opposite ends the sum has no digits left: their difference is at right angles to it.
+        let is_sum = x.abs() + z.abs() > (1 << 25) as f32;
+        let (x, z) = if is_sum { (x, z) } else { (bz - az, ax - bx) };
+        Vector { x: x as i32, z: z as i32 }
     }
 
     /// Width in degrees.
@@ -152,6 +156,18 @@ mod tests {
         assert_eq!(SlopeArc::new(v(-1, 1), v(-1, -1)).intervals_deg(), [[-45.0, 45.0]]);
         assert_eq!(SlopeArc::new(v(1, 1), v(0, 1)).intervals_deg(), [[45.0, 90.0]]);
         assert_eq!(SlopeArc::new(v(0, 1), v(-1, 1)).intervals_deg(), [[-90.0, -45.0]]);
+    }
+
+    #[test]
+    fn a_bisector_halves_arcs_of_any_width() {
+        for n in 1..20_000 {
+            let wide = core::f64::consts::PI * (1.0 - 1.0 / f64::from(n));
+            let (sin, cos) = libm::sincos(wide);
+            let arc = SlopeArc::new(v(1 << 28, 0), v((cos * 268e6) as i32, (sin * 268e6) as i32));
+            let Vector { x, z } = arc.bisector();
+            let off = libm::atan2(f64::from(z), f64::from(x)) - wide / 2.0;
+            assert!(off.abs() < 2e-4, "{n}: {off}");
+        }
     }
 
     #[test]

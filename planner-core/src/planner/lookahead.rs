@@ -500,6 +500,21 @@ mod tests {
     }
 
     #[test]
+    fn it_plans_where_lines_point_nearly_all_ways() {
+        let lattice = |x, z| Site::new(x, z).unwrap();
+        let given = [
+            (lattice(0, 0), Label::Negative),
+            (lattice(896, 0), Label::Negative),
+            (lattice(283_160, -752), Label::Positive),
+        ];
+        let space = VersionSpace::<16>::new(&given.map(|(site, label)| Sample { site, label }));
+        let area = Area::metres([-10.0, -10.0], [10.0, 10.0]).unwrap();
+        let mut planner = Lookahead::new(area, Unicycle::default(), space.unwrap()).unwrap();
+        let pose = Pose { site: lattice(-60_000, 40_000), heading: Heading::default() };
+        assert!(matches!(planner.plan(pose), Plan::Move(_)));
+    }
+
+    #[test]
     fn it_stops_when_it_should() {
         for field in fields() {
             let start = field.start();
@@ -512,7 +527,7 @@ mod tests {
             full.observe(motion.target, Some(label.into())).unwrap();
             stops(full.plan(start), StopReason::SamplesFull);
             // What is known is known also where there is no more room, and outside.
-            stops(full.until(arc(89.0)).plan(outside), StopReason::Known);
+            stops(full.until(arc(89.0)).without_audit().plan(outside), StopReason::Known);
             stops(field.doubtful().until(arc(89.0)).plan(start), StopReason::Known);
             let few = |it: Plan| assert!(matches!(it, Plan::Move(_)));
             few(field.true_labels::<64>().until(arc(5.0)).plan(start));
