@@ -136,7 +136,7 @@ SAMPLE = {"site": SITE, "label": LABEL}
 CAPACITY = {"samples": "u16", "hypotheses": "u16"}
 TOOK = {"observe": "u32", "plan": "u32", "estimate": "u32"}
 MOTION = {
-    "stage": Optional(Choice(P1=None, P2=None, P3=None, P4=None)),
+    "stage": Optional(Choice(P1=None, P2=None, P3=None, P4=None, Audit=None)),
     "recovery": Optional(Choice(Undirected=None, Reorient=None, Transit=None)),
     "action": "u32",
     "control": {"v": "f32", "w": "f32"},
@@ -153,7 +153,7 @@ BAD_GRID = Choice(Actions=None, Reach=None, Turn=None, Circle=None)
 NO_VEHICLE = Choice(Kind=None, Grid=BAD_GRID, Room={"across_mm": "u32"})
 STOP = Choice(
     Resolution=None, SamplesFull=None, OutsideArea=None, Cornered=None, Known=None, Undecided=None,
-    Tolerance=None,
+    Tolerance=None, NoLine=None,
 )
 REFUSED = Choice(Contradiction=SAMPLE, Full=SAMPLE, Tolerance="u32", Reliability=None)
 REQUEST = Choice(

@@ -17,6 +17,9 @@ use crate::mission::definition::Mission;
 /// # Errors
 /// When no chip can fly such a mission.
 pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
+    if mission.goal.is_some() && !mission.audits {
+        bail!("stop.audit: found false, expected true: a board always audits");
+    }
     let algorithm = match mission.algorithm {
         Algorithm::Cfc => message::Algorithm::Cfc,
         Algorithm::Scc => message::Algorithm::Scc {

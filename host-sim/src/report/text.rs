@@ -3,8 +3,10 @@
 use std::fmt::Write as _;
 
 use crate::mission::algorithm::Algorithm;
-use crate::mission::results::{End, EstimateRecords, LineRecord, Results, Start, StepResult};
-use crate::mission::stop::GoalRecord;
+use crate::mission::results::{
+    AUDIT, End, EstimateRecords, LineRecord, Results, Start, StepResult,
+};
+use crate::mission::stop::{AuditRecord, GoalRecord};
 use crate::report::table::{Cells, Column, Table};
 use crate::world::noise::limit;
 
@@ -132,6 +134,7 @@ pub(crate) fn why(reason: &str) -> &str {
         "steps" => "all steps are taken",
         "known" => "what was asked for is known",
         "resolution" => "what is uncertain is thinner than the action grid can hit",
+        "no line" => "no straight, still line explains the labels",
         "tolerance" => {
             "what is uncertain is so thin that no label tells more, as positions err by the tolerance"
         }
@@ -150,6 +153,10 @@ fn remedy(results: &Results) -> Option<&'static str> {
     let is_unmet = results.end.goal.as_ref().is_some_and(|goal| !goal.is_met);
     Some(match &*results.end.reason {
         "resolution" => "To go on, allow finer turns and speeds: turn_step, step.",
+        "no line" => {
+            "The boundary bends or moves, or the sensor fails. Try a shorter stretch, a tolerance that covers the bend, \
+             or the sensor."
+        }
         "tolerance" if is_unmet => {
             "This goal cannot be reached with this tolerance: accept a wider one, or bring better positions."
         }
@@ -166,7 +173,7 @@ fn remedy(results: &Results) -> Option<&'static str> {
 
 /// Whether the goal is met, in words.
 pub(crate) fn promise(goal: &GoalRecord) -> String {
-    let &GoalRecord { slope_arc_deg, misclassified, level, is_met } = goal;
+    let &GoalRecord { slope_arc_deg, misclassified, level, is_met, audit } = goal;
     let sure = level.map_or(String::new(), |level| format!(" with probability {level} at least"));
     let known = if is_met { "Known" } else { "Not known yet" };
     let lines = if level.is_some() {
@@ -182,7 +189,21 @@ pub(crate) fn promise(goal: &GoalRecord) -> String {
             format!("disagree on no more than {percent} % of the area")
         }
     };
-    format!("{known}{sure}: {lines} {what}.\n")
+    let audit = audit.map(|it| audited(&it)).unwrap_or_default();
+    format!("{known}{sure}: {lines} {what}.\n{audit}")
+}
+
+/// What an audit came to, in words.
+fn audited(audit: &AuditRecord) -> String {
+    let &AuditRecord { agreed, refuted, motions, metres } = audit;
+    let price = format!("{motions} motions, {metres:.1} m");
+    match refuted {
+        Some(step) => format!(
+            "Refuted: step {step} read a label on certain ground that no line left has there, after {agreed} that agreed \
+             ({price}).\n"
+        ),
+        None => format!("Audited: {agreed} labels on certain ground agree ({price}).\n"),
+    }
 }
 
 fn beginning(title: &str, start: &Start) -> String {
@@ -264,6 +285,7 @@ fn note(step: &StepResult, flipped: bool) -> &'static str {
     match (step.recovery.as_deref(), step.label) {
         (Some("reorient"), _) => "nothing uncertain ahead: turns in place",
         (Some("transit"), _) => "nothing uncertain near: drives on",
+        _ if step.problem.as_deref() == Some(AUDIT) => "",
         (_, Some(0)) => "exactly on the line: no flip",
         (Some("undirected"), _) if flipped => "no way across: any direction; flipped",
         (Some("undirected"), _) => "no way across: any direction",

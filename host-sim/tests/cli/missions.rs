@@ -199,7 +199,9 @@ fn a_noisy_run_adds_to_the_trace() {
 #[test]
 fn nothing_is_not_printed_as_less_than_nothing() {
     let folder = folder();
-    let known = format!("algorithm = \"lookahead\"\nstop = {{ slope_arc_deg = 80 }}\n{GOOD}");
+    let known = format!(
+        "algorithm = \"lookahead\"\nstop = {{ slope_arc_deg = 80, audit = false }}\n{GOOD}"
+    );
     let known = known.replace("algorithm = \"cfc\"\n", "");
     fs::write(folder.path().join("m.toml"), known).expect("a file");
     let said = prints(folder.path(), &["run", "m.toml"]);

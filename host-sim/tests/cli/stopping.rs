@@ -30,7 +30,7 @@ fn a_mission_ends_when_enough_is_known_and_says_what_it_promises() {
         let arcs = step["slope_arcs"].as_array().expect("arcs");
         arcs.iter().map(|arc| arc[1].as_f64().unwrap() - arc[0].as_f64().unwrap()).sum::<f64>()
     };
-    let (story, records) = flown(&stopping(GOOD, "{ slope_arc_deg = 0.5 }"));
+    let (story, records) = flown(&stopping(GOOD, "{ slope_arc_deg = 0.5, audit = false }"));
     assert!(
         story.contains("Known: any two of the lines left differ by 0.5 deg at most."),
         "{story}"
@@ -39,8 +39,18 @@ fn a_mission_ends_when_enough_is_known_and_says_what_it_promises() {
     assert_eq!(end["reason"], "known");
     assert_eq!(end["goal"], serde_json::json!({ "slope_arc_deg": 0.5, "is_met": true }));
     assert!(width(last) <= 0.5 && width(before) > 0.5, "no sooner and no later");
+    // The same mission with its audit is the same so far.
+    let (story, audited) = flown(&stopping(GOOD, "{ slope_arc_deg = 0.5 }"));
+    let (asked, audit) = audited.split_at(records.len() - 1);
+    assert_eq!(asked, &records[..records.len() - 1]);
+    let [audit @ .., end] = audit else { panic!("an end") };
+    assert!(audit.iter().all(|step| step["problem"] == "audit"));
+    assert_eq!(audit.iter().filter(|step| step["label"].is_i64()).count(), 6);
+    assert_eq!((&end["reason"], &end["goal"]["audit"]["agreed"]), (&"known".into(), &6.into()));
+    assert_eq!(end["goal"]["audit"]["motions"], audit.len());
+    assert!(story.contains("Audited: 6 labels on certain ground agree ("), "{story}");
 
-    let (story, records) = flown(&stopping(GOOD, "{ misclassified = 0.001 }"));
+    let (story, records) = flown(&stopping(GOOD, "{ misclassified = 0.001, audit = false }"));
     let promise = "Known: any two of the lines left disagree on no more than 0.1 % of the area.";
     assert!(story.contains(promise), "{story}");
     let end = &records[records.len() - 1];
@@ -83,7 +93,7 @@ fn a_promise_that_is_not_kept_is_not_made() {
 #[test]
 fn a_stop_that_means_nothing_is_refused() {
     let folder = folder();
-    let cases: [(&str, &str, &[&str]); 13] = [
+    let cases: [(&str, &str, &[&str]); 14] = [
         (GOOD, "{ slope_arc_deg = 0.0 }", &["stop.slope_arc_deg", "found 0", "below 90"]),
         (GOOD, "{ slope_arc_deg = 90.0 }", &["stop.slope_arc_deg", "found 90", "below 90"]),
         (GOOD, "{ slope_arc_deg = nan }", &["stop.slope_arc_deg", "found NaN"]),
@@ -97,6 +107,7 @@ fn a_stop_that_means_nothing_is_refused() {
         (NOISY, "{ slope_arc_deg = 1.0, level = 1.0 }", &["stop.level", "found 1", "0.9999"]),
         (NOISY, "{ slope_arc_deg = 1.0, level = 0.0 }", &["stop.level", "found 0", "above 0"]),
         (NOISY, "{ level = 0.9 }", &["stop: found neither"]),
+        (NOISY, "{ slope_arc_deg = 1.0, audit = true }", &["stop.audit", "found true", "noise"]),
     ];
     for (scenario, stop, parts) in cases {
         fs::write(folder.path().join("bad.toml"), stopping(scenario, stop)).expect("a file");

@@ -58,6 +58,9 @@ pub enum Status {
     SnapshotVersion,
     /// Refused: a planner of this mission cannot have made the snapshot.
     SnapshotMission,
+    /// Stopped: no straight, still line explains the labels, as the audit before the goal's promise read another label on
+    /// ground that was certain.
+    NoLine,
 }
 
 impl From<ObservationError> for Status {
@@ -335,6 +338,7 @@ impl From<StopReason> for Status {
             StopReason::Known => Self::Known,
             StopReason::SamplesFull => Self::Full,
             StopReason::Tolerance => Self::Imprecise,
+            StopReason::NoLine => Self::NoLine,
             StopReason::OutsideArea | StopReason::Cornered => Self::Stuck,
             StopReason::Undecided => Self::Undecided,
             _ => Self::Resolution,

@@ -27,11 +27,8 @@ use crate::search::objective::Effort;
 const PLACES: u8 = 6;
 
 /// Where on the chord places lie, as shares of it: the first is best, the others take its turn.
-const ALONG: [[f32; 5]; 3] = [
-    [0.03, 0.08, 0.14, 0.21, 0.29],
-    [0.5, 0.46, 0.54, 0.4, 0.6],
-    [0.97, 0.92, 0.86, 0.79, 0.71],
-];
+const ALONG: [[f32; 5]; 3] =
+    [[0.03, 0.08, 0.14, 0.21, 0.29], [0.5, 0.46, 0.54, 0.4, 0.6], [0.97, 0.92, 0.86, 0.79, 0.71]];
 
 /// How near a place lies to uncertain ground, as a share of the mean of the area's sides: 12.5 cm of 20 m. No nearer
 /// than the shortest motion, and never farther than 12.5 cm unless that is longer.
@@ -114,9 +111,11 @@ impl Audit {
             for turn in first..ALONG[0].len() as u8 {
                 let is_same = self.now.to == Some((place, turn));
                 let motions = if is_same { self.now.motions } else { 0 };
-                let site = if motions < most { chord.place(place, turn, lines, effort) } else { None };
+                let site =
+                    if motions < most { chord.place(place, turn, lines, effort) } else { None };
                 let site = site.filter(|site| area.contains_disc(*site, chord.near as i32));
-                let found = site.and_then(|it| errand((dynamics, area), pose, (it, chord.near), effort));
+                let found =
+                    site.and_then(|it| errand((dynamics, area), pose, (it, chord.near), effort));
                 if let Some(found) = found {
                     let to = Some((place, turn));
                     self.next = Course { to, motions: motions + 1, ..course };
@@ -213,7 +212,8 @@ impl Chord {
     fn nearest<D: Dynamics>(&self, dynamics: &D, pose: Pose, settled: u8) -> Option<u8> {
         let mut nearest = None;
         for place in (0..PLACES).filter(|place| settled >> place & 1 == 0) {
-            let site = self.site(ALONG.get(usize::from(place / 2))?[0], 2.0 * side(place) * self.near);
+            let site =
+                self.site(ALONG.get(usize::from(place / 2))?[0], 2.0 * side(place) * self.near);
             let off = site.map_or(f32::INFINITY, |site| motions_to(dynamics, pose, site));
             if nearest.is_none_or(|(least, _)| off < least) {
                 nearest = Some((off, place));

@@ -90,7 +90,10 @@ pub(crate) fn motions_to<D: Dynamics>(dynamics: &D, pose: Pose, place: Site) -> 
         (None, None) => None,
     };
     let Some(turned) = turned else { return drives };
-    let is_within = |circle: TurningCircle| distance(Vector { x: way.x - circle.centre.x, z: way.z - circle.centre.z }) < circle.radius as f32;
+    let is_within = |circle: TurningCircle| {
+        distance(Vector { x: way.x - circle.centre.x, z: way.z - circle.centre.z })
+            < circle.radius as f32
+    };
     let is_within = [Side::Left, Side::Right].into_iter().filter_map(circle).any(is_within);
     let off = (heading_of(way).since(pose.heading).0 as i32).unsigned_abs() as f32;
     let off = if is_within { 2.0 * Angle::HALF_TURN.0 as f32 } else { off };
@@ -171,7 +174,8 @@ fn drive<D: Dynamics, G: Workspace>(
             let after = dynamics.target(from.pose, action)?;
             let left = distance(aim.site - after.site);
             let ends = !arrives || aim.near.is_some_and(|near| left <= near);
-            let goes = ends && stays(dynamics, motions.area, &mut motions.effort, [from.pose, after]);
+            let goes =
+                ends && stays(dynamics, motions.area, &mut motions.effort, [from.pose, after]);
             let more = if arrives { 0.0 } else { motions_to(dynamics, after, aim.site) };
             goes.then(|| ((action, after), arrives, (from.motions + 1) as f32 + more))
         });

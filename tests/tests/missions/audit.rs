@@ -4,15 +4,15 @@ use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::Mission;
 use nalgebra::{Point2, Vector2};
+use planner_core::dynamics::Dynamics;
 use planner_core::error::ObservationError;
 use planner_core::link::message::MissionArea;
+use planner_core::motion::car::Shape;
 use planner_core::planner::Stage;
 use planner_core::{
-    AnyVehicle, Boat, Car, Goal, Label, Line, Plan, Planner as _, Sample, Site, StopReason, Unicycle,
-    VersionSpace, Workspace as _,
+    AnyVehicle, Boat, Car, Goal, Label, Line, Plan, Planner as _, Sample, Site, StopReason,
+    Unicycle, VersionSpace, Workspace as _,
 };
-use planner_core::dynamics::Dynamics;
-use planner_core::motion::car::Shape;
 use rayon::prelude::*;
 use tests::cases;
 
@@ -62,7 +62,8 @@ impl<'a> Field<'a> {
     fn label(&self, site: Site, motion: u32) -> Label {
         let at = Point2::<f64>::from(site);
         let [a, b, _] = self.line.coefficients();
-        let middle = Point2::new(10.0, 10.0) - Vector2::new(a, b) * self.line.distance(Point2::new(10.0, 10.0));
+        let middle = Point2::new(10.0, 10.0)
+            - Vector2::new(a, b) * self.line.distance(Point2::new(10.0, 10.0));
         let along = (at - middle).dot(&Vector2::new(b, -a));
         let is_above = self.line.distance(at) > (self.bend)(along, motion);
         if is_above { Label::Positive } else { Label::Negative }

@@ -98,5 +98,6 @@ pub fn standard(seed: u64, number: u64, algorithm: Algorithm, steps: u32) -> Mis
         policy: Policy::default(),
         prior: Prior::default(),
         goal: None,
+        audits: true,
     }
 }

@@ -56,6 +56,8 @@ pub struct Mission {
     pub prior: Prior,
     /// What is enough to know, if the mission is to end there (look-ahead).
     pub goal: Option<Goal>,
+    /// Whether an audit comes before the goal's promise, where labels are true.
+    pub audits: bool,
 }
 
 impl Mission {

@@ -140,6 +140,7 @@ impl Mission {
         belief: B,
     ) -> Lookahead<D, B, G, Accuracy> {
         let planner = Lookahead::new(area, dynamics, belief).expect(FITS);
-        planner.pricing(self.config.price()).until(self.goal)
+        let planner = planner.pricing(self.config.price()).until(self.goal);
+        if self.audits { planner } else { planner.without_audit() }
     }
 }

@@ -6,17 +6,19 @@ use anyhow::{Result, anyhow};
 use nalgebra::Point2;
 use planner_core::belief::doubtful_labels::Hypothesis;
 use planner_core::error::ObservationError;
-use planner_core::{Estimates, Line, Pose, PosteriorView, Prior, Reading, Reliability, Step};
+use planner_core::{
+    Estimates, Line, Pose, PosteriorView, Prior, Reading, Reliability, Step, StopReason,
+};
 
 use crate::mission::definition::{Mission, Table};
 use crate::mission::flight::Flown;
 use crate::mission::legs::{Leg, Legs};
 use crate::mission::read_out::{Knowledge, LEVEL, ReadOut};
 use crate::mission::results::{
-    BestRecord, CredibleRecord, End, EstimateRecords, KeepOutRecord, LineError, Results, Start,
-    StepResult, VERSION, cost, recovery_name, stage_name,
+    AUDIT, BestRecord, CredibleRecord, End, Ending, EstimateRecords, KeepOutRecord, LineError,
+    Results, Start, StepResult, VERSION, cost, recovery_name, stage_name,
 };
-use crate::mission::stop::GoalRecord;
+use crate::mission::stop::{AuditRecord, GoalRecord};
 use crate::mission::vehicle::VehicleTable;
 use crate::world::polygon::misclassified;
 use crate::world::{World, reading};
@@ -142,7 +144,7 @@ impl Recorder {
             estimates: beside_truth(&mission, belief.estimates()),
             best,
             credible,
-            goal: GoalRecord::of(&mission, &*belief),
+            goal: GoalRecord::of(&mission, &*belief, audit(&results, ending)),
             flown: Legs::of(&results.iter().filter_map(|step| step.flown).collect::<Vec<_>>()),
         };
         let results = Results { start: start(&mission), steps: results, end };
@@ -204,6 +206,22 @@ fn start(mission: &Mission) -> Start {
         steps: mission.steps,
         slope_arcs: mission.given.slope_arc().intervals_deg().to_vec(),
     }
+}
+
+/// What the audit of a mission came to, by its steps.
+fn audit(steps: &[StepResult], ending: Ending) -> Option<AuditRecord> {
+    let is_of_audit = |step: &&StepResult| step.problem.as_deref() == Some(AUDIT);
+    let before = steps.iter().take_while(|step| !is_of_audit(step)).last();
+    let audited = || steps.iter().filter(is_of_audit);
+    let last = audited().last()?;
+    let refuted = (ending == Ending::Stopped(StopReason::NoLine)).then_some(last.step);
+    let labels = audited().filter(|step| step.label.is_some()).count();
+    Some(AuditRecord {
+        agreed: labels - usize::from(refuted.is_some()),
+        refuted,
+        motions: audited().count(),
+        metres: last.metres - before.map_or(0.0, |step| step.metres),
+    })
 }
 
 /// What labels that may err come to: the paper's outcome by the paper's prior, and the credible set by the chosen one.

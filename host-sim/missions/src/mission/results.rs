@@ -395,6 +395,9 @@ impl EstimateRecords {
     }
 }
 
+/// The name of a motion of an audit, in the place of a problem's.
+pub const AUDIT: &str = "audit";
+
 /// The name of a one-step problem.
 pub fn stage_name(stage: Stage) -> &'static str {
     match stage {
@@ -402,7 +405,7 @@ pub fn stage_name(stage: Stage) -> &'static str {
         Stage::P2 => "P2",
         Stage::P3 => "P3",
         Stage::P4 => "P4",
-        Stage::Audit => "audit",
+        Stage::Audit => AUDIT,
     }
 }
 

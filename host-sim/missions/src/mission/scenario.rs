@@ -249,6 +249,7 @@ fn mission(file: &File, overrides: Overrides) -> Result<Mission> {
         policy: file.policy.into(),
         prior: file.prior.into(),
         goal: goal.transpose()?,
+        audits: file.stop.as_ref().is_none_or(|table| table.0.audits()),
     })
 }
 

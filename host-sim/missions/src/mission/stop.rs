@@ -32,9 +32,15 @@ pub(crate) struct StopTable {
     slope_arc_deg: Option<f64>,
     misclassified: Option<f64>,
     level: Option<f64>,
+    audit: Option<bool>,
 }
 
 impl StopTable {
+    /// Whether an audit comes before the promise.
+    pub(crate) fn audits(&self) -> bool {
+        self.audit.unwrap_or(true)
+    }
+
     /// The goal that it asks for.
     ///
     /// # Errors
@@ -70,6 +76,10 @@ impl StopTable {
             }
             (None, None) => return wrong("stop", "neither", "slope_arc_deg or misclassified"),
         };
+        if self.audit == Some(true) && labels_err {
+            let expected = "none with noise, as labels that may be wrong refute nothing";
+            return wrong("stop.audit", true, expected);
+        }
         let level = match self.level {
             Some(level) if !labels_err => {
                 let expected = "none without noise, as what true labels leave is certain";
@@ -99,14 +109,32 @@ pub struct GoalRecord {
     /// With this probability at least; `None` where labels are true.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub level: Option<f64>,
-    /// Whether the goal is met in the end.
+    /// Whether the goal is met in the end, and nothing speaks against it.
     pub is_met: bool,
+    /// What the audit came to, if there was one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub audit: Option<AuditRecord>,
+}
+
+/// The labels on certain ground that were asked for before a goal's promise, and their price.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub struct AuditRecord {
+    /// Labels that all lines left have there too.
+    pub agreed: usize,
+    /// The step with a label that no line left has there.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub refuted: Option<usize>,
+    /// Motions.
+    pub motions: usize,
+    /// Metres driven.
+    pub metres: f64,
 }
 
 impl GoalRecord {
     /// What a mission was to find out, beside what is known in the end.
-    pub fn of(mission: &Mission, belief: &dyn ReadOut) -> Option<Self> {
+    pub fn of(mission: &Mission, belief: &dyn ReadOut, audit: Option<AuditRecord>) -> Option<Self> {
         let goal = mission.goal?;
+        let is_refuted = audit.is_some_and(|audit| audit.refuted.is_some());
         let (slope_arc_deg, misclassified) = match goal.accuracy {
             Accuracy::SlopeArc(turn) => {
                 let degrees = f64::from(turn.0 + TURN_OFF) / UNITS_PER_DEGREE;
@@ -115,8 +143,9 @@ impl GoalRecord {
             Accuracy::Misclassified(share) => (None, Some(f64::from(share + SHARE_OFF) / MILLION)),
         };
         let level = mission.is_noisy().then(|| f64::from(goal.level) / MILLION);
-        let is_met =
-            belief.reaches(goal.in_bounds_of(&mission.config.area), mission.config.area.bounds());
-        Some(Self { slope_arc_deg, misclassified, level, is_met })
+        let is_met = !is_refuted
+            && belief
+                .reaches(goal.in_bounds_of(&mission.config.area), mission.config.area.bounds());
+        Some(Self { slope_arc_deg, misclassified, level, is_met, audit })
     }
 }

@@ -7,7 +7,7 @@ use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::Mission;
 use crate::mission::read_out::{Expectation, Knowledge};
 use crate::mission::recording::Recording;
-use crate::mission::results::{LineRecord, Results, StepResult};
+use crate::mission::results::{AUDIT, LineRecord, Results, StepResult};
 use crate::report::text;
 use crate::world::noise::limit;
 
@@ -96,6 +96,9 @@ fn planned(mission: &Mission, step: &StepResult) -> String {
         (Some("P1"), None) => "P1, look for the opposite label",
         (Some("P2"), None) => "P2, follow the boundary",
         (Some("P3"), None) => "P3, explore where no hypothesis has the boundary run",
+        (Some(AUDIT), _) => {
+            "An audit: to certain ground beside the estimate, where all lines left agree"
+        }
         (Some("P4"), None) => "P4, explore where some hypothesis has the boundary run",
         (Some("P1"), Some(_)) => "P1, no way across, so in any direction",
         (Some("P2"), Some(_)) => "P2, no way along, so in any direction",
