@@ -15,6 +15,7 @@ use planner_core::link::frame::Frame;
 use planner_core::link::message::{
     self, ClockRate, EndReason, LabelSource, MissionArea, PROTOCOL, Reply, Request, Setup, Took,
 };
+use planner_core::planner::Stage;
 use planner_core::{Estimates, Motion, Plan, Pose, Reading, Step};
 
 use crate::hil::logbook::Logbook;
@@ -271,6 +272,10 @@ impl Player {
     fn make(&mut self, motion: Motion) -> (Pose, Option<Reading>) {
         let robot_senses = self.setup.labels == LabelSource::Vehicle;
         let made = Motion { wants_label: motion.wants_label && robot_senses, ..motion };
+        if motion.stage == Some(Stage::Audit) {
+            // The planner here has to know that the label is the audit's.
+            let _ = self.planner.plan(self.pose);
+        }
         let Ok(sensed) = self.robot.perform(&made, &mut self.pose);
         (self.pending, self.restarts) = (Some((motion, sensed)), 0);
         (self.pose, sensed)

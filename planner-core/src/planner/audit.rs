@@ -46,6 +46,7 @@ const TURNS: u32 = 32;
 /// An audit that is under way.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Audit {
     /// Labels that all lines left have there too.
     agreed: u8,
@@ -60,6 +61,7 @@ pub struct Audit {
 /// Which places are settled, and which one motions lead to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Course {
     /// A bit for each place.
     settled: u8,

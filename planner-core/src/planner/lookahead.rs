@@ -347,17 +347,17 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion> Planner
 impl<D: Dynamics, B: PredictiveBelief + FromLog, G: Workspace, C: Criterion> Persist
     for Lookahead<D, B, G, C>
 {
-    type Snapshot = Snapshot<B::ObservationLog, Silence>;
+    type Snapshot = Snapshot<B::ObservationLog, (Silence, Audit)>;
 
     fn snapshot(&self) -> Self::Snapshot {
-        Snapshot::new(self.belief.log(), self.silence)
+        Snapshot::new(self.belief.log(), (self.silence, self.audit.unwrap_or(Audit::NONE)))
     }
 
     fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), RestoreError> {
-        let (log, &silence) = snapshot.open()?;
+        let (log, &(silence, audit)) = snapshot.open()?;
         self.belief.replay(log)?;
         self.silence = silence;
-        self.audit = self.audit.map(|_| Audit::NONE);
+        self.audit = self.audit.map(|_| audit);
         Ok(())
     }
 }

@@ -86,7 +86,9 @@ fn the_chip_stops_when_enough_is_known() {
         (scenario::PAPER_NOISY, "slope_arc_deg = 5.0"),
         (scenario::PAPER_NOISY, "misclassified = 0.05\nlevel = 0.8"),
     ]) {
-        let text = format!("{}\n[stop]\n{stop}\n", text.replace("p = 0.7", "p = 0.9"));
+        // Long motions, so that the steps suffice for the audit as well.
+        let vehicle = "vehicle = { kind = \"unicycle\", reach = 6.0, step = 0.1 }\n";
+        let text = format!("{vehicle}{text}\n[stop]\n{stop}\n").replace("p = 0.7", "p = 0.9");
         let mission = scenario::parse("", &text, overrides).expect("a good scenario");
         let played = chip.fly(&mission, Faults::default()).expect("it flies as here");
         let Results { steps, end, .. } = &played.recording.results;
