@@ -122,6 +122,11 @@ typedef enum {
    Refused: a planner of this mission cannot have made the snapshot.
    */
   PLANNER_STATUS_SNAPSHOT_MISSION,
+  /*
+   Stopped: no straight, still line explains the labels, as the audit before the goal's promise read another label on
+   ground that was certain.
+   */
+  PLANNER_STATUS_NO_LINE,
 } planner_status;
 
 /*
