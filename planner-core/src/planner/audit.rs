@@ -41,7 +41,10 @@ const NEAR_CIRCLE: f32 = 0.25;
 const MOST_ASIDE: f32 = 0.25;
 
 /// Motions to a place at most: twice as many as a straight drive along the chord takes, and so many for turns.
-const TURNS: u32 = 32;
+const TURNS: u16 = 16;
+
+/// An audit ends when so many places in a row were out of reach.
+const MISSES: u8 = 3;
 
 /// An audit that is under way.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -69,14 +72,24 @@ struct Course {
     to: Option<(u8, u8)>,
     /// Motions on the way there so far.
     motions: u16,
+    /// Places given up since the last label.
+    missed: u8,
+}
+
+impl Course {
+    const NONE: Self = Self { settled: 0, to: None, motions: 0, missed: 0 };
+
+    /// The same with its place settled.
+    fn settle(self) -> Self {
+        let settled = self.to.map_or(0, |(place, _)| 1 << place);
+        Self { settled: self.settled | settled, to: None, motions: 0, ..self }
+    }
 }
 
 impl Audit {
     /// Nothing has been seen.
-    pub(crate) const NONE: Self = {
-        let none = Course { settled: 0, to: None, motions: 0 };
-        Self { agreed: 0, refuted: None, now: none, next: none, arrives: false }
-    };
+    pub(crate) const NONE: Self =
+        Self { agreed: 0, refuted: None, now: Course::NONE, next: Course::NONE, arrives: false };
 
     /// Labels that were read on certain ground and are what all lines left have there.
     pub const fn agreed(&self) -> u8 {
@@ -103,30 +116,32 @@ impl Audit {
         let least = grid.step_units().max(NEAR_CIRCLE * circle as f32);
         let chord = Chord::of(estimate, area.bounds(), least)?;
         let reach = f32::from(grid.speeds().saturating_sub(1)) * grid.step_units();
-        let most = TURNS as u16 + (2.0 * chord.length() / reach) as u16;
+        let most = TURNS + (2.0 * chord.length() / reach) as u16;
         let mut course = self.now;
-        loop {
+        while course.missed < MISSES {
             let (place, first) = match course.to {
+                Some(_) if course.motions >= most => {
+                    course = Course { missed: course.missed + 1, ..course.settle() };
+                    continue;
+                }
                 Some(to) => to,
                 None => (chord.nearest(dynamics, pose, course.settled)?, 0),
             };
             for turn in first..ALONG[0].len() as u8 {
-                let is_same = self.now.to == Some((place, turn));
-                let motions = if is_same { self.now.motions } else { 0 };
-                let site =
-                    if motions < most { chord.place(place, turn, lines, effort) } else { None };
+                let site = chord.place(place, turn, lines, effort);
                 let site = site.filter(|site| area.contains_disc(*site, chord.near as i32));
                 let found =
                     site.and_then(|it| errand((dynamics, area), pose, (it, chord.near), effort));
                 if let Some(found) = found {
                     let to = Some((place, turn));
-                    self.next = Course { to, motions: motions + 1, ..course };
+                    self.next = Course { to, motions: course.motions + 1, ..course };
                     self.arrives = found.arrives;
                     return Some(found);
                 }
             }
-            course = Course { settled: course.settled | 1 << place, to: None, motions: 0 };
+            course = Course { to: Some((place, 0)), ..course }.settle();
         }
+        None
     }
 
     /// Records the motion that was planned last, and what was read at its end, where the position may be off by the
@@ -141,8 +156,7 @@ impl Audit {
         if !core::mem::take(&mut self.arrives) {
             return false;
         }
-        let settled = self.now.to.map_or(0, |(place, _)| 1 << place);
-        self.now = Course { settled: self.now.settled | settled, to: None, motions: 0 };
+        self.now = Course { missed: 0, ..self.now.settle() };
         self.next = self.now;
         let (Some(reading), Certainty::Certain(label)) = (reading, lines.certainty(site)) else {
             return false;
