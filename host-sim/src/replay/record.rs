@@ -12,6 +12,7 @@ use crate::mission::results::{CredibleRecord, EstimateRecords, LineRecord};
 use crate::replay::answer::{Answer, Trust};
 use crate::replay::rows::Layout;
 use crate::replay::sample_file::SampleFile;
+use crate::replay::verdict::FitRecord;
 use crate::report::picture::area_around;
 use crate::world::polygon::Polygon;
 
@@ -41,6 +42,8 @@ pub struct Record {
     tolerance: Option<f64>,
     #[serde(flatten)]
     doubt: Option<DoubtRecord>,
+    /// Whether a straight line explains the labels.
+    fit: FitRecord,
 }
 
 /// Rows that lack a value.
@@ -153,6 +156,7 @@ impl Replay {
                 maximum_margin: in_file(self.answer.maximum_margin),
             }),
             tolerance: *tolerance,
+            fit: self.fit_record(),
             doubt: doubt.as_ref().map(|doubt| DoubtRecord {
                 p: doubt.p,
                 pruned_mass: doubt.pruned_mass,

@@ -33,6 +33,7 @@ impl Replay {
         if let Some(doubt) = &self.answer.doubt {
             text += &self.doubt_in_words(doubt);
         }
+        text += &self.verdict_in_words();
         text
     }
 
