@@ -18,7 +18,7 @@ use crate::replay::fit::sweep::{Directed, line, spread, threshold};
 pub(crate) struct Explained {
     /// The logarithm of the odds against all straight lines.
     pub(crate) log_odds: f64,
-    /// How many labels disagree with it. Where positions err it is an estimate.
+    /// How many labels disagree with it by more than the tolerance, which is three deviations.
     pub(crate) disagreeing: usize,
     /// The shape's own number: of an arc the radius, of a line that moves how far it does, metres.
     pub(crate) number: f64,
@@ -129,15 +129,13 @@ fn explained(
     straight: f64,
     number: f64,
 ) -> Explained {
-    let evidence = labels.evidence(0..labels.count(), height);
-    let (log, share) = evidence.mixed();
-    let disagreeing =
-        if labels.sigma == 0.0 { evidence.disagreeing } else { share * labels.count() as f64 };
-    Explained {
-        log_odds: log - price - straight,
-        disagreeing: disagreeing.round() as usize,
-        number,
-    }
+    let (log, _) = labels.evidence(0..labels.count(), &height).mixed();
+    let disagrees = |index: &usize| {
+        let on_its_side = if labels.is_positive[*index] { 1.0 } else { -1.0 } * height(*index);
+        on_its_side < -3.0 * labels.sigma
+    };
+    let disagreeing = (0..labels.count()).filter(disagrees).count();
+    Explained { log_odds: log - price - straight, disagreeing, number }
 }
 
 impl Lifted<'_> {
@@ -219,7 +217,7 @@ pub(crate) fn two_lines(labels: &Labels, best: Directed, straight: f64) -> Expla
     });
     let (_, mut pair) = finished
         .min_by_key(|(against, _)| *against)
-        .unwrap_or_else(|| (usize::MAX, Pair { lines: [best; 2], both: true }));
+        .unwrap_or((usize::MAX, Pair { lines: [best; 2], both: true }));
     let (steps, reach) = (steps(labels), labels.radius);
     for line in &mut pair.lines {
         line.angle = snapped(line.angle.rem_euclid(TAU), [0.0, TAU], steps);
