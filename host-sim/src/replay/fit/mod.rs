@@ -12,7 +12,9 @@
 //! Under a tolerance the line is the most likely one to a tenth in the logarithm, and *too many* counts labels beyond
 //! the tolerance of the fitted line. These are approximations too.
 //!
-//! Measured on straight files, `LONG=1 cargo test -p host-sim false_alarms -- --nocapture`: see there.
+//! Measured: of 2,000 straight surveys of 32 to 336 labels, of which 1 to 20 % are wrong, half of them with positions
+//! that err, 3 were refused (2 *too many*, 1 *drift by trials*). The seed is 7:
+//! `LONG=1 cargo test -p host-sim --lib false_alarms -- --nocapture`.
 
 pub(crate) mod counts;
 pub(crate) mod labels;
