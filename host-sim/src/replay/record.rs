@@ -10,9 +10,9 @@ use serde::Serialize;
 use crate::mission::read_out::LEVEL;
 use crate::mission::results::{CredibleRecord, EstimateRecords, LineRecord};
 use crate::replay::answer::{Answer, Trust};
+use crate::replay::fit_record::FitRecord;
 use crate::replay::rows::Layout;
 use crate::replay::sample_file::SampleFile;
-use crate::replay::verdict::FitRecord;
 use crate::report::picture::area_around;
 use crate::world::polygon::Polygon;
 
@@ -156,7 +156,7 @@ impl Replay {
                 maximum_margin: in_file(self.answer.maximum_margin),
             }),
             tolerance: *tolerance,
-            fit: self.fit_record(),
+            fit: FitRecord::of(&self.file, &self.answer.fit, doubt.as_ref().map(|doubt| doubt.p)),
             doubt: doubt.as_ref().map(|doubt| DoubtRecord {
                 p: doubt.p,
                 pruned_mass: doubt.pruned_mass,

@@ -1,10 +1,10 @@
-//! Whether a straight line fits: the report's last lines, the warning and the record.
+//! Whether a straight line fits, as a record.
 
 use serde::Serialize;
 
-use crate::replay::fit::{Piece, Run, TESTS};
+use crate::replay::fit::{Fit, Piece, Run, TESTS};
 use crate::replay::fit_words::Words;
-use crate::replay::record::Replay;
+use crate::replay::sample_file::SampleFile;
 
 /// How well a line fits.
 #[derive(Serialize)]
@@ -48,43 +48,20 @@ struct TestRecord {
     p_value: f64,
 }
 
-impl Replay {
-    /// The verdict in words, if the line is not to be relied on.
-    pub fn warning(&self) -> Option<String> {
-        let Words { says, advice } = Words::of(&self.file, &self.answer.fit, self.told_p());
-        self.answer.fit.verdict.is_bad().then(|| format!("{says} {advice}"))
-    }
-
-    /// What the file is called.
-    pub fn name(&self) -> &str {
-        &self.file.name
-    }
-
-    fn told_p(&self) -> Option<f64> {
-        self.answer.doubt.as_ref().map(|doubt| doubt.p)
-    }
-
-    /// The verdict, with what to do, a line each.
-    pub(crate) fn verdict_in_words(&self) -> String {
-        let Words { says, advice } = Words::of(&self.file, &self.answer.fit, self.told_p());
-        let advice = if advice.is_empty() { advice } else { advice + "\n" };
-        format!("\n{says}\n{advice}")
-    }
-
-    /// How well the line fits, as a record.
-    pub(crate) fn fit_record(&self) -> FitRecord {
-        let fit = &self.answer.fit;
-        let Words { says, advice } = Words::of(&self.file, fit, self.told_p());
+impl FitRecord {
+    /// The fit to the samples of a file. `p` is what was said of the labels.
+    pub(crate) fn of(file: &SampleFile, fit: &Fit, p: Option<f64>) -> Self {
+        let Words { says, advice } = Words::of(file, fit, p);
         let test = |(name, p_value)| TestRecord { name, p_value };
-        FitRecord {
+        Self {
             labels: fit.labels,
             disagreeing: fit.disagreeing,
             expected: fit.expected,
             suggested_p: fit.suggested_p,
             longest_run: fit.longest_run.map(|Run { count, ends }| RunRecord {
                 count,
-                first: self.file.line(ends[0]),
-                last: self.file.line(ends[1]),
+                first: file.line(ends[0]),
+                last: file.line(ends[1]),
             }),
             along: fit.along.iter().map(PieceRecord::from).collect(),
             tests: TESTS.into_iter().zip(fit.p_values).map(test).collect(),
