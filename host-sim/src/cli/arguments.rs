@@ -72,9 +72,9 @@ impl Cli {
         let text = match self.command {
             Some(Command::Fly(args)) => return fly(&args),
             Some(Command::Run(args)) => return run(&args),
+            Some(Command::Replay(args)) => return replay(&args),
             Some(Command::Hil(args)) => return hil(&args),
             None => paper::tell(),
-            Some(Command::Replay(args)) => replay(&args),
             Some(Command::Campaign(args)) => campaign(*args),
             Some(Command::Figure(args)) => figure(&args),
             Some(Command::Size(args)) => size(&args),

@@ -59,7 +59,11 @@ Examples:
   host-sim replay boat.csv --columns label=oil --p 0.95 --tolerance 4.5 --geojson oil.geojson
   host-sim replay salinity.csv --columns label=psu --threshold 34    above 34 is +1
   host-sim replay utm.csv --crs EPSG:25832 --geojson line.geojson    metres of UTM zone 32
-  host-sim replay track.gpx --columns label=name                     <name>yes</name> at each point";
+  host-sim replay track.gpx --columns label=name                     <name>yes</name> at each point
+  host-sim replay boat.csv --p 0.95 --strict                         exit status 1 if no straight line fits
+
+The last lines say whether a straight line fits: a run of labels, a bend, a drift, a second boundary, or a --p that is too
+high for the file. Then a warning goes to standard error. On straight files a verdict is wrong at most once in a hundred.";
 
 pub(crate) const CAMPAIGN: &str = "\
 Examples:

@@ -3,13 +3,15 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use anyhow::{Context as _, Result, bail};
+use anyhow::{Context as _, Result, anyhow, bail};
 use clap::Args;
 use planner_core::Tolerance;
 
+use crate::cli::done::Done;
 use crate::cli::format::Format;
 use crate::cli::help;
 use crate::output::file::{json, prepare};
+use crate::output::notes::warn;
 use crate::replay::answer::Trust;
 use crate::replay::columns::Columns;
 use crate::replay::crs::Crs;
@@ -33,7 +35,8 @@ pub(crate) struct ReplayArgs {
     /// Labels are measured values: above this they are +1, else -1
     #[arg(long, value_name = "V", value_parser = threshold, allow_hyphen_values = true)]
     pub(crate) threshold: Option<f64>,
-    /// Refuse a row without a position or a label; else such rows are skipped and counted
+    /// Refuse a row without a position or a label; else such rows are skipped and counted. Also end with exit status 1
+    /// if no straight line explains the labels, or --p is too high for them; else a warning says so
     #[arg(long)]
     pub(crate) strict: bool,
     /// The coordinate system of positions in metres, such as EPSG:25832 (UTM zone 32), to place them on a map
@@ -82,8 +85,11 @@ fn tolerance(text: &str) -> Result<f64> {
     metres.context("expected metres, 0 to 1024")
 }
 
+/// The exit status if no straight line explains the labels and `--strict` asks for one.
+const NO_LINE: u8 = 1;
+
 /// Reads them, and what to print.
-pub(crate) fn replay(args: &ReplayArgs) -> Result<String> {
+pub(crate) fn replay(args: &ReplayArgs) -> Result<Done> {
     let asked = [("--figure", args.figure.as_deref()), ("--geojson", args.geojson.as_deref())];
     let [figure, geojson] = prepare(&[("the samples", &args.samples)], asked)?;
     let layout = Layout {
@@ -104,8 +110,17 @@ pub(crate) fn replay(args: &ReplayArgs) -> Result<String> {
             output.write(content)?;
         }
     }
-    Ok(match args.format {
+    let text = match args.format {
         Format::Text => replay.report(),
         Format::Json => json(&replay.record()),
-    })
+    };
+    let failure = match replay.warning() {
+        Some(why) if args.strict => Some((anyhow!("{}: {why}", replay.name()), NO_LINE)),
+        Some(why) => {
+            warn(replay.name(), why);
+            None
+        }
+        None => None,
+    };
+    Ok(Done { text, failure })
 }

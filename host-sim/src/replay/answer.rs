@@ -7,6 +7,8 @@ use planner_core::{Area, Label, Line, Sample};
 
 use crate::mission::read_out::LEVEL;
 use crate::replay::doubt::{Doubt, Votes};
+use crate::replay::fit::{Fit, Question};
+use crate::replay::fit_words::Words;
 use crate::replay::hull::{Row, in_order};
 use crate::replay::line_posterior::{Cell, LinePosterior, TooOpen};
 use crate::replay::line_set::{self, ByNormal, intercepts, slope_arcs};
@@ -28,6 +30,12 @@ pub struct Trust {
     pub tolerance: f64,
 }
 
+/// The reliability by which the likeliest line of labels is found that no line separates, if none is given.
+const SUPPOSED: f64 = 0.9;
+
+/// Files with more samples are refused without an explanation.
+const MOST_EXPLAINED: usize = 20_000;
+
 /// What samples determine.
 pub(crate) struct Answer {
     /// The samples that bound the lines left, of labels that are true.
@@ -45,6 +53,8 @@ pub(crate) struct Answer {
     pub(crate) tolerance: Option<f64>,
     /// Where labels may be wrong.
     pub(crate) doubt: Option<Doubted>,
+    /// Whether a straight line explains the labels.
+    pub(crate) fit: Fit,
     /// Lines that bound the set.
     bounds: Vec<ByNormal>,
 }
@@ -91,7 +101,7 @@ fn exact(file: &SampleFile) -> Result<Answer> {
     let lines = Separation::of(&file.samples, &rows).map_err(|why| match why {
         GivenError::NotSeparable(index) => {
             let outliers = outliers(&file.samples, &rows, separation::are_separable);
-            contradiction(file, index, &outliers, "")
+            contradiction(file, index, &outliers, None)
         }
         why => {
             anyhow!("{}: {why}; expected samples of both labels, not all on one line", file.name)
@@ -106,6 +116,7 @@ fn exact(file: &SampleFile) -> Result<Answer> {
         bisector: bisector(&rows).map(Line::from),
         tolerance: None,
         doubt: None,
+        fit: Fit::exact(file.samples.len()),
         bounds: Vec::new(),
     })
 }
@@ -116,8 +127,7 @@ fn tolerant(file: &SampleFile, tolerance: f64) -> Result<Answer> {
         NoSeparation::Contradiction(index) => {
             let are_separable = |rows: &[Row]| tolerant::are_separable(rows, tolerance);
             let outliers = outliers(&file.samples, &rows, are_separable);
-            let within = format!(", wherever within {tolerance} m they are");
-            contradiction(file, index, &outliers, &within)
+            contradiction(file, index, &outliers, Some(tolerance))
         }
         NoSeparation::OneLabel => {
             anyhow!("{}: the samples share one label; expected samples of both labels", file.name)
@@ -136,6 +146,7 @@ fn tolerant(file: &SampleFile, tolerance: f64) -> Result<Answer> {
         bisector: None,
         tolerance: Some(tolerance),
         doubt: None,
+        fit: Fit::exact(file.samples.len()),
         bounds: lines.bounds(),
     })
 }
@@ -146,9 +157,11 @@ fn contradiction(
     file: &SampleFile,
     index: usize,
     outliers: &[Repeats],
-    within: &str,
+    tolerance: Option<f64>,
 ) -> anyhow::Error {
     const DOUBT: &str = "say by --p how often labels are right";
+    let within = tolerance.map(|it| format!(", wherever within {it} m they are"));
+    let within = within.unwrap_or_default();
     let unit = file.unit.name();
     let named = |rows: &Repeats| {
         let lines: Vec<_> = rows.iter().map(|row| file.line(*row).to_string()).collect();
@@ -162,7 +175,13 @@ fn contradiction(
     let none = format!("no line separates this sample from those above it by their labels{within}");
     let others = |rows: &Repeats| file.samples.len() - rows.len();
     match outliers {
-        [] => anyhow!("{}: {none}, and no single row is to blame; {DOUBT}", file.place(index)),
+        [] => {
+            let explanation = explanation(file, tolerance).unwrap_or_default();
+            anyhow!(
+                "{}: {none}, and no single row is to blame; {DOUBT}{explanation}",
+                file.place(index)
+            )
+        }
         [rows] if rows.len() == 1 => anyhow!(
             "{}: no line separates this sample from the others by their labels{within}, but without this row one separates \
              the other {}; correct or remove it, or {DOUBT}",
@@ -185,6 +204,15 @@ fn contradiction(
             )
         }
     }
+}
+
+/// What explains labels that no line separates, for a message; `None` for files that take long.
+fn explanation(file: &SampleFile, tolerance: Option<f64>) -> Option<String> {
+    if file.samples.len() > MOST_EXPLAINED {
+        return None;
+    }
+    let Answer { fit, .. } = doubted(file, SUPPOSED, tolerance).ok()?;
+    Some(format!(". {}", Words::explanation(file, &fit)))
 }
 
 /// The lines of a record are weighed by its labels. The answer is their mean, the smallest set that has the level, and
@@ -219,6 +247,7 @@ fn doubted(file: &SampleFile, p: f64, tolerance: Option<f64>) -> Result<Answer> 
         f64::from(sample.label.sign()) * most_likely.distance(sample.site.into()) < -off
     };
     let disagreeing = (0..samples.len()).filter(|index| disagrees(&samples[*index])).collect();
+    let fit = fit(file, &most_likely, p, off);
     Ok(Answer {
         bounding: Vec::new(),
         intercept: intercepts(&slope_arcs, bounds.iter().copied()),
@@ -228,8 +257,23 @@ fn doubted(file: &SampleFile, p: f64, tolerance: Option<f64>) -> Result<Answer> 
         bisector: None,
         tolerance,
         doubt: Some(Doubted { p, pruned_mass, probability, most_likely, disagreeing }),
+        fit,
         bounds,
     })
+}
+
+/// How well the most likely line explains the labels that may be wrong.
+fn fit(file: &SampleFile, line: &Line, p: f64, tolerance: f64) -> Fit {
+    let mut is_certain = vec![false; file.samples.len()];
+    for &index in &file.certain {
+        is_certain[index] = true;
+    }
+    let rows: Vec<_> = (0..file.samples.len()).filter(|index| !is_certain[*index]).collect();
+    let samples = || rows.iter().map(|index| file.samples[*index]);
+    let at: Vec<_> = samples().map(|sample| Point2::<f64>::from(sample.site)).collect();
+    let is_positive: Vec<_> = samples().map(|sample| sample.label == Label::Positive).collect();
+    let question = Question { at: &at, is_positive: &is_positive, line, p, tolerance };
+    Fit::of(&question).numbered(&rows)
 }
 
 /// The middle of the ground around the samples of a file, which has both labels, and half of its size.

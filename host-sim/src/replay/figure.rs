@@ -5,7 +5,7 @@ use planner_core::Sample;
 
 use crate::replay::answer::Answer;
 use crate::replay::record::Replay;
-use crate::report::picture::{Dot, Ground, Kind, Named, Picture, area_around};
+use crate::report::picture::{Dot, Ground, Kind, Named, Picture, Ring, area_around};
 
 /// Samples that a figure shows beside those that bound the line.
 const MOST_OTHERS: usize = 2_000;
@@ -20,18 +20,18 @@ impl Replay {
         let samples = &self.file.samples;
         let area = area_around(samples).context("no area around the samples")?;
         let Answer { bounding, doubt, .. } = &self.answer;
-        let mut wrong = vec![false; samples.len()];
+        let mut rings = vec![None; samples.len()];
         for &index in doubt.iter().flat_map(|doubt| &doubt.disagreeing) {
-            wrong[index] = true;
+            rings[index] = Some(Ring::Disagrees);
         }
         let count = samples.len();
         let every =
             if count - bounding.len() > MOST_OTHERS { count.div_ceil(MOST_OTHERS) } else { 1 };
-        let dot = |s: &Sample, wrong| Dot { at: s.site.into(), label: s.label, wrong };
+        let dot = |s: &Sample, ring| Dot { at: s.site.into(), label: s.label, ring };
         let mut dots: Vec<_> =
-            samples.iter().zip(wrong).step_by(every).map(|(s, wrong)| dot(s, wrong)).collect();
+            samples.iter().zip(rings).step_by(every).map(|(s, ring)| dot(s, ring)).collect();
         if every > 1 {
-            dots.extend(bounding.iter().map(|s| dot(s, false)));
+            dots.extend(bounding.iter().map(|s| dot(s, None)));
         }
         let sparse = (every > 1).then(|| {
             let bounding = bounding.len();
@@ -39,12 +39,16 @@ impl Replay {
         });
         let note = match (sparse, doubt) {
             (note, None) => note,
-            (None, Some(_)) => Some(
-                "by all lines of the 90 % credible set; ringed: disagrees with the line".to_owned(),
-            ),
+            (None, Some(_)) => Some("by all lines of the 90 % credible set".to_owned()),
             (Some(_), Some(_)) => {
                 Some(format!("one in {every} of {count}; by the 90 % credible set"))
             }
+        };
+        let verdict = &self.answer.fit.verdict;
+        let note = if verdict.is_bad() {
+            note.map(|note| format!("{note}; verdict: {}", verdict.name()))
+        } else {
+            note
         };
         let (name, line) = self.named()[0];
         let centre = line.map(|line| Named {

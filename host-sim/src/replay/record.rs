@@ -10,6 +10,7 @@ use serde::Serialize;
 use crate::mission::read_out::LEVEL;
 use crate::mission::results::{CredibleRecord, EstimateRecords, LineRecord};
 use crate::replay::answer::{Answer, Trust};
+use crate::replay::fit_record::FitRecord;
 use crate::replay::rows::Layout;
 use crate::replay::sample_file::SampleFile;
 use crate::report::picture::area_around;
@@ -41,6 +42,8 @@ pub struct Record {
     tolerance: Option<f64>,
     #[serde(flatten)]
     doubt: Option<DoubtRecord>,
+    /// Whether a straight line explains the labels.
+    fit: FitRecord,
 }
 
 /// Rows that lack a value.
@@ -153,6 +156,7 @@ impl Replay {
                 maximum_margin: in_file(self.answer.maximum_margin),
             }),
             tolerance: *tolerance,
+            fit: FitRecord::of(&self.file, &self.answer.fit, doubt.as_ref().map(|doubt| doubt.p)),
             doubt: doubt.as_ref().map(|doubt| DoubtRecord {
                 p: doubt.p,
                 pruned_mass: doubt.pruned_mass,

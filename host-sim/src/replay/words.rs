@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use planner_core::Line;
 
 use crate::replay::answer::{Answer, Doubted};
+use crate::replay::fit_words::Words;
 use crate::replay::record::{LineInFile, Replay};
 use crate::replay::rows::Skipped;
 use crate::report::text;
@@ -33,7 +34,31 @@ impl Replay {
         if let Some(doubt) = &self.answer.doubt {
             text += &self.doubt_in_words(doubt);
         }
+        text += &self.verdict_in_words();
         text
+    }
+
+    /// What the file is called.
+    pub fn name(&self) -> &str {
+        &self.file.name
+    }
+
+    /// The verdict on the fit, if the line is not to be relied on.
+    pub fn warning(&self) -> Option<String> {
+        let Words { says, advice } = self.verdict();
+        self.answer.fit.verdict.is_bad().then(|| format!("{says} {advice}"))
+    }
+
+    fn verdict(&self) -> Words {
+        let p = self.answer.doubt.as_ref().map(|doubt| doubt.p);
+        Words::of(&self.file, &self.answer.fit, p)
+    }
+
+    /// The verdict, and what to do, a line each.
+    fn verdict_in_words(&self) -> String {
+        let Words { says, advice } = self.verdict();
+        let advice = if advice.is_empty() { advice } else { advice + "\n" };
+        format!("\n{says}\n{advice}")
     }
 
     fn headline(&self) -> String {

@@ -4,6 +4,7 @@ use nalgebra::Vector2;
 use planner_core::Label;
 use svg::node::element::{Group, Path};
 
+use crate::report::picture::Ring;
 use crate::report::shapes::{Anchor, NUMBER, Spot, circle, outline, rectangle, square, text};
 use crate::report::style::{self, Fill, INK, Stroke};
 
@@ -14,8 +15,8 @@ pub(crate) enum Look {
     Read(Label),
     /// One that was given: larger, outlined.
     Given(Label),
-    /// A ring about a wrong label.
-    Wrong,
+    /// A ring about a label.
+    Ringed(Ring),
     /// A diamond where a robot starts.
     Start,
     /// A small circle where no label was read.
@@ -41,7 +42,8 @@ impl Look {
             Self::Read(Label::Negative) => "read-negative",
             Self::Given(Label::Positive) => "given-positive",
             Self::Given(Label::Negative) => "given-negative",
-            Self::Wrong => "wrong",
+            Self::Ringed(Ring::Wrong) => "wrong",
+            Self::Ringed(Ring::Disagrees) => "disagrees",
             Self::Start => "start",
             Self::Unread => "unread",
             Self::Truly => "truly",
@@ -65,7 +67,7 @@ impl Look {
                 let group = group.set("fill", style::of_label(label));
                 group.set("stroke", "#000000").set("stroke-width", 1.8)
             }
-            Self::Wrong | Self::Start => outlined(group, 1.4),
+            Self::Ringed(_) | Self::Start => outlined(group, 1.4),
             Self::Truly => outlined(group, 1.1),
             Self::Unread => outlined(group, 1.2).set("fill", "#ffffff"),
             Self::Number => group.set("fill", INK),
@@ -88,7 +90,7 @@ impl Look {
             Self::Read(Label::Negative) => group.add(square(at, 4.1)),
             Self::Given(Label::Positive) => group.add(circle(at, 6.8)),
             Self::Given(Label::Negative) => group.add(square(at, 6.1)),
-            Self::Wrong => group.add(circle(at, 9.5)),
+            Self::Ringed(_) => group.add(circle(at, 9.5)),
             Self::Start => {
                 let to = |x: f64, y: f64| at + Vector2::new(x, y) * 13.0;
                 let corners = [to(1.0, 0.0), to(0.0, 1.0), to(-1.0, 0.0), to(0.0, -1.0)];

@@ -9,7 +9,7 @@ use crate::report::bands::Band;
 use crate::report::ground::Ground;
 use crate::report::look::Look;
 use crate::report::numbers;
-use crate::report::picture::{Dot, Stop};
+use crate::report::picture::{Dot, Ring, Stop};
 use crate::report::placing::{Placing, foot};
 use crate::report::shapes::{Anchor, Spot, width};
 use crate::report::sheet::Sheet;
@@ -240,13 +240,17 @@ impl Map {
             } else {
                 (Look::Read(dot.label), format!("label {sign:+} was read here"), 5.0)
             };
-            if dot.wrong {
-                self.sheet.mark(Look::Wrong, at);
-                self.sheet.name(Look::Wrong, "ringed: the label is wrong");
+            if let Some(ring) = dot.ring {
+                let meaning = match ring {
+                    Ring::Wrong => "ringed: the label is wrong",
+                    Ring::Disagrees => "ringed: disagrees with the line",
+                };
+                self.sheet.mark(Look::Ringed(ring), at);
+                self.sheet.name(Look::Ringed(ring), meaning);
             }
             self.sheet.mark(look, at);
             self.sheet.name(look, meaning);
-            self.placing.mark(at, if dot.wrong { 10.0 } else { radius });
+            self.placing.mark(at, if dot.ring.is_some() { 10.0 } else { radius });
         }
     }
 

@@ -154,7 +154,7 @@ fn bounded(title: &str, note: &str, recording: &Recording, four: &[Sample]) -> R
         (p3, Label::Positive),
         (p4, Label::Negative),
     ];
-    map.samples(&dots.map(|(at, label)| Dot { at: *at, label, wrong: false }), 4);
+    map.samples(&dots.map(|(at, label)| Dot { at: *at, label, ring: None }), 4);
     Ok(map.finish(&[]))
 }
 

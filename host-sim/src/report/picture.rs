@@ -45,8 +45,17 @@ pub struct Dot {
     pub at: Point2<f64>,
     /// The label that was seen.
     pub label: Label,
-    /// It is known to be false.
-    pub wrong: bool,
+    /// Why it has a ring, if it has one.
+    pub ring: Option<Ring>,
+}
+
+/// What a ring about a sample says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ring {
+    /// The label is known to be false.
+    Wrong,
+    /// The label disagrees with the line. The truth is not known.
+    Disagrees,
 }
 
 /// The end of a step.
@@ -119,7 +128,7 @@ impl Picture {
         let dot = |s: &Sample| Dot {
             at: s.site.into(),
             label: s.label,
-            wrong: !mission.world.agrees(s.site, s.label),
+            ring: (!mission.world.agrees(s.site, s.label)).then_some(Ring::Wrong),
         };
         let mut from = Point2::from(mission.start.site);
         let stops = results.steps.iter().map(|step| Stop {

@@ -31,6 +31,7 @@ mod shards;
 mod size;
 mod stopping;
 mod tolerances;
+mod verdicts;
 
 const GOOD: &str = include_str!("../../scenarios/paper-noiseless.toml");
 
