@@ -7,6 +7,7 @@
 //! | [`tolerance`] | handles positions that err |
 //! | [`cells`] | the lines that agree with some labels, and what can be read off them |
 //! | [`estimate`] | three estimates of the line |
+//! | [`evidence`] | what speaks against a straight, still line |
 //! | [`goal`] | decides when the line is known well enough |
 //! | [`true_labels`] | for labels that are true: the version space |
 //! | [`doubtful_labels`] | for labels that may be wrong: a table of weighted cells, and its distribution |
@@ -18,6 +19,7 @@
 pub mod cells;
 pub mod doubtful_labels;
 pub mod estimate;
+pub mod evidence;
 pub mod goal;
 pub(crate) mod list;
 pub mod noise;
@@ -30,7 +32,7 @@ pub mod weight;
 
 use crate::belief::estimate::Estimates;
 use crate::belief::goal::{Criterion, Goal};
-use crate::belief::sample::{Reading, Sample};
+use crate::belief::sample::{Label, Reading, Sample};
 use crate::belief::tolerance::Tolerance;
 use crate::geometry::area::Area;
 use crate::geometry::lattice::Site;
@@ -84,6 +86,13 @@ pub trait Belief {
 
     /// The chance that a label read at a site is +1, errors of the sensor included.
     fn chance(&self, site: Site) -> f64;
+
+    /// The chance of a label read at a site whose position may be off by the tolerance, or more than that. Where positions
+    /// are exact, it is exact.
+    fn chance_of(&self, site: Site, label: Label) -> f64 {
+        let above = self.chance(site);
+        if label == Label::Positive { above } else { 1.0 - above }
+    }
 }
 
 /// Why a sample was not taken. What is known is as it was.

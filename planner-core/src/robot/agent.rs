@@ -1,9 +1,11 @@
 //! The loop that joins a planner to a body.
 
 use crate::belief::ObservationError;
+use crate::belief::evidence::Alarm;
 use crate::belief::sample::Reading;
 use crate::geometry::line::Line;
 use crate::motion::dynamics::Pose;
+use crate::planner::watched::Watched;
 use crate::planner::{Motion, Plan, Planner, StopReason};
 use crate::robot::body::Body;
 
@@ -95,6 +97,13 @@ impl<P: Planner, B> Agent<P, B> {
     /// The best estimate of the line so far, see [`Planner::estimate`].
     pub fn estimate(&self) -> Option<Line> {
         self.planner.estimate()
+    }
+}
+
+impl<P: Planner, B> Agent<Watched<P>, B> {
+    /// What speaks against a straight, still line, if it is much.
+    pub fn alarm(&self) -> Option<Alarm> {
+        self.planner.alarm()
     }
 }
 

@@ -313,4 +313,11 @@ impl<const N: usize> Belief for VersionSpace<N> {
     fn chance(&self, site: Site) -> f64 {
         share_above(self.lines(), site).into()
     }
+
+    /// The share of the lines that the label would leave.
+    fn chance_of(&self, site: Site, label: Label) -> f64 {
+        let lines = self.lines();
+        let above = lines.place(site, label).map_or(1.0, |place| self.chance(place));
+        if label == Label::Positive { above } else { 1.0 - above }
+    }
 }

@@ -1,0 +1,68 @@
+//! A planner whose labels are watched: the [`Evidence`] of its mission against the model.
+
+use crate::belief::evidence::{Alarm, Evidence};
+use crate::belief::sample::Reading;
+use crate::belief::tolerance::Tolerance;
+use crate::belief::{Belief as _, ObservationError};
+use crate::motion::dynamics::Pose;
+use crate::planner::{Plan, Planner};
+
+/// A planner, and the evidence of its labels against a straight, still line and a sensor as described.
+///
+/// It plans as the planner alone. It computes the chance of each label before it is taken in.
+#[derive(Clone, Debug)]
+pub struct Watched<P> {
+    planner: P,
+    evidence: Evidence,
+}
+
+impl<P: Planner> Watched<P> {
+    /// A planner that has taken in no label yet.
+    #[inline] // it is made where it stays, as it may be large
+    pub const fn new(planner: P) -> Self {
+        Self { planner, evidence: Evidence::NONE }
+    }
+
+    /// The planner.
+    pub const fn planner(&self) -> &P {
+        &self.planner
+    }
+
+    /// The evidence so far.
+    pub const fn evidence(&self) -> &Evidence {
+        &self.evidence
+    }
+
+    /// What speaks against the model, if it is much.
+    pub fn alarm(&self) -> Option<Alarm> {
+        self.evidence.alarm()
+    }
+}
+
+impl<P: Planner> Planner for Watched<P> {
+    type Belief = P::Belief;
+
+    fn plan(&mut self, pose: Pose) -> Plan {
+        self.planner.plan(pose)
+    }
+
+    fn observe_within(
+        &mut self,
+        pose: Pose,
+        reading: Option<Reading>,
+        tolerance: Tolerance,
+    ) -> Result<(), ObservationError> {
+        let label = if let Some(Reading::Side(label)) = reading { Some(label) } else { None };
+        let chance = label.map_or(1.0, |label| self.belief().chance_of(pose.site, label));
+        let taken = self.planner.observe_within(pose, reading, tolerance);
+        let counts = matches!(taken, Ok(()) | Err(ObservationError::Contradiction(_)));
+        if let Some(label) = label.filter(|_| counts) {
+            self.evidence.observe(label, chance);
+        }
+        taken
+    }
+
+    fn belief(&self) -> &P::Belief {
+        self.planner.belief()
+    }
+}
