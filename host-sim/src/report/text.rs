@@ -195,6 +195,9 @@ fn beginning(title: &str, start: &Start) -> String {
         "True line, unknown to the agent: {truth}\nThe oracle's points: {}",
         oracle.collect::<Vec<_>>().join(", ")
     );
+    if let Some(faults) = faults(start) {
+        let _ = writeln!(text, "The sensor fails, unknown to the agent: {faults}");
+    }
     let _ = writeln!(
         text,
         "It starts at ({}, {}), heading {} deg; slopes {} deg are possible.\n",
@@ -207,14 +210,26 @@ fn beginning(title: &str, start: &Start) -> String {
         let each = limit(start.p);
         let _ = writeln!(
             text,
-            "A label is true with probability {}, so it tells {each:.3} bits at most on average, \
+            "{} is true with probability {}, so it tells {each:.3} bits at most on average, \
              {} of them {:.2}.\n",
+            a_label(start),
             start.p,
             start.steps,
             f64::from(start.steps) * each,
         );
     }
     text
+}
+
+/// How the sensor fails, if it does.
+pub(crate) fn faults(start: &Start) -> Option<String> {
+    let each = start.sensor.iter().map(ToString::to_string).collect::<Vec<_>>();
+    (!each.is_empty()).then(|| each.join("; "))
+}
+
+/// A label that no fault of the sensor spoils, at the beginning of a sentence.
+pub(crate) fn a_label(start: &Start) -> &'static str {
+    if start.sensor.is_empty() { "A label" } else { "A label that no fault spoils" }
 }
 
 /// The columns of a step's motion.
@@ -255,7 +270,8 @@ fn notes(steps: &[StepResult], start: &Start) -> Vec<&'static str> {
         let label = step.label.filter(|label| *label != 0);
         let flipped = label.is_some_and(|label| label != past);
         past = label.unwrap_or(past);
-        note(step, flipped)
+        let is_spoilt = !start.sensor.is_empty() && step.is_wrong();
+        if is_spoilt { "the label is wrong" } else { note(step, flipped) }
     });
     noted.collect()
 }

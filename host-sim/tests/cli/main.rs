@@ -11,6 +11,7 @@ mod comfort;
 mod contradictions;
 mod edited;
 mod endings;
+mod faults;
 mod figures;
 mod flags;
 mod flying;

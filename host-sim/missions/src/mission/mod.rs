@@ -14,6 +14,7 @@ pub mod read_out;
 pub mod recording;
 pub mod results;
 pub mod scenario;
+pub mod sensor;
 pub mod stop;
 pub mod strict;
 pub mod terrain;

@@ -199,6 +199,7 @@ fn start(mission: &Mission) -> Start {
         vehicle: VehicleTable::of(mission.vehicle),
         pose: mission.start.into(),
         truth: mission.world.line().map(|line| (*line).into()),
+        sensor: mission.sensor.iter().map(Into::into).collect(),
         p: mission.noise.map_or(1.0, |noise| noise.p),
         labels_err: mission.noise.is_some(),
         steps: mission.steps,

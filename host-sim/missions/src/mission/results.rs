@@ -20,6 +20,7 @@ use serde::{Deserialize, Serialize};
 use crate::mission::algorithm::Algorithm;
 use crate::mission::legs::{Leg, Legs};
 use crate::mission::read_out::Expectation;
+use crate::mission::sensor::FaultTable;
 use crate::mission::stop::GoalRecord;
 use crate::mission::vehicle::VehicleTable;
 
@@ -68,6 +69,9 @@ pub struct Start {
     pub pose: PoseRecord,
     /// The true line, if there is one.
     pub truth: Option<LineRecord>,
+    /// How the sensor fails.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sensor: Vec<FaultTable>,
     /// Labels are true with this probability.
     pub p: f64,
     /// Whether they may err.

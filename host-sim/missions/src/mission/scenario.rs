@@ -18,6 +18,7 @@ use serde::Deserialize;
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::{CAPACITY, Lines, Mission};
 use crate::mission::names::{CrossingName, FanName, FollowingName, PolicyName, PriorName};
+use crate::mission::sensor::{self, FaultTable};
 use crate::mission::stop::StopTable;
 use crate::mission::strict::{Numbers, Table, wrong};
 use crate::mission::terrain::{self, AreaTable, KeepOutTable, site};
@@ -57,6 +58,8 @@ struct File {
     noise: Option<Table<NoiseTable>>,
     #[serde(default)]
     errors: Table<ErrorsTable>,
+    #[serde(default)]
+    sensor: Vec<Table<FaultTable>>,
     tolerance: Option<f64>,
     stop: Option<Table<StopTable>>,
     #[serde(default)]
@@ -140,12 +143,13 @@ pub fn read(path: &Path, overrides: Overrides) -> Result<Mission> {
     parse(&path.display().to_string(), &content(path)?, overrides)
 }
 
-/// As [`read`], for a real vehicle: the file need not have a `truth`.
+/// As [`read`], for a real vehicle: the file need not have a `truth`, and its `sensor` is not simulated.
 ///
 /// # Errors
 /// As [`read`].
 pub fn read_real(path: &Path, overrides: Overrides) -> Result<Mission> {
-    any(&path.display().to_string(), &content(path)?, overrides)
+    let mission = any(&path.display().to_string(), &content(path)?, overrides)?;
+    Ok(Mission { sensor: Vec::new(), ..mission })
 }
 
 /// As [`read`], from the text of the file called `name`.
@@ -246,6 +250,7 @@ fn mission(file: &File, overrides: Overrides) -> Result<Mission> {
         given,
         noise,
         errors,
+        sensor: sensor::faults(file.sensor.iter().map(|table| &table.0))?,
         policy: file.policy.into(),
         prior: file.prior.into(),
         goal: goal.transpose()?,

@@ -123,6 +123,11 @@ fn problem(mission: &Mission, line: Option<LineCost>) -> Result<Problem> {
             "errors: found a robot that errs, expected none, as the paper's problems have no such errors"
         );
     }
+    if !mission.sensor.is_empty() {
+        bail!(
+            "sensor: found one that fails, expected none, as the paper's problems have no such faults"
+        );
+    }
     if mission.config.tolerance != Tolerance::NONE {
         let found = mission.config.tolerance.metres();
         bail!(

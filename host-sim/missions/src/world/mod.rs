@@ -3,6 +3,7 @@
 
 pub mod errors;
 pub mod extent;
+pub mod faults;
 pub(crate) mod in_order;
 pub mod noise;
 pub mod polygon;
@@ -13,7 +14,7 @@ use planner_core::belief::cells::CellView;
 use planner_core::{Label, Line, Reading, Site};
 
 /// The world: its straight boundary, if that is known. Around a real vehicle it is not.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct World {
     boundary: Option<Line>,
 }

@@ -65,12 +65,19 @@ pub(crate) fn about(recording: &Recording) -> Vec<String> {
     if let Some(truth) = &start.truth {
         about.push(format!("The true line, unknown to a planner: {}.", line(truth)));
     }
+    let faults = text::faults(start);
+    if let Some(faults) = &faults {
+        about.push(format!("The sensor fails, unknown to a planner: {}.", minus(faults)));
+    }
     if start.labels_err {
         let each = limit(start.p);
         about.push(format!(
-            "A label is true with probability {}, so it tells {each:.3} bits at most on average.",
+            "{} is true with probability {}, so it tells {each:.3} bits at most on average.",
+            text::a_label(start),
             start.p
         ));
+    } else if faults.is_some() {
+        about.push("Planners take labels to be true.".to_owned());
     } else {
         about.push("Labels are true, so each tells one bit at most on average.".to_owned());
     }
