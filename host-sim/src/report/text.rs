@@ -2,10 +2,16 @@
 
 use std::fmt::Write as _;
 
+use planner_core::Line;
+
 use crate::mission::algorithm::Algorithm;
-use crate::mission::results::{End, EstimateRecords, LineRecord, Results, Start, StepResult};
+use crate::mission::results::{
+    End, EstimateRecords, FitRecord, LineRecord, Results, Start, StepResult,
+};
 use crate::mission::stop::GoalRecord;
+use crate::output::plain;
 use crate::report::table::{Cells, Column, Table};
+use crate::world::boundary::BoundaryRecord;
 use crate::world::noise::limit;
 
 /// Slope intervals as text.
@@ -123,7 +129,7 @@ fn end(results: &Results, estimates: &[(&str, Option<LineRecord>); 3]) -> String
         text.push('\n');
     }
     text.push('\n');
-    text + &outcome(&results.end) + &errors(results.start.truth.as_ref(), estimates)
+    text + &outcome(&results.end) + &errors(results, estimates)
 }
 
 /// Why a mission ended, in words.
@@ -187,12 +193,18 @@ pub(crate) fn promise(goal: &GoalRecord) -> String {
 
 fn beginning(title: &str, start: &Start) -> String {
     let mut text = format!("{title}\n");
-    let truth = start.truth.map_or("not known".into(), |truth| line(&truth));
+    let truth = match (&start.truth, &start.boundary) {
+        (Some(truth), _) => format!("line, unknown to the agent: {}", line(truth)),
+        (_, Some(boundary)) => {
+            format!("boundary, unknown to the agent: {}", self::boundary(boundary))
+        }
+        _ => "line, unknown to the agent: not known".into(),
+    };
     let oracle = start.oracle.iter().map(|s| format!("({}, {}) is {:+}", s.x, s.z, s.label));
     // Writing to a string cannot fail.
     let _ = writeln!(
         text,
-        "True line, unknown to the agent: {truth}\nThe oracle's points: {}",
+        "True {truth}\nThe oracle's points: {}",
         oracle.collect::<Vec<_>>().join(", ")
     );
     if let Some(faults) = faults(start) {
@@ -219,6 +231,35 @@ fn beginning(title: &str, start: &Start) -> String {
         );
     }
     text
+}
+
+/// A boundary that is no fixed line, in words.
+pub(crate) fn boundary(record: &BoundaryRecord) -> String {
+    let base = || record.line.and_then(|[a, b, c]| Line::from_coefficients(a, b, c));
+    let base = base().map_or(String::new(), |line| {
+        let words = self::line(&line.into());
+        words.split_whitespace().collect::<Vec<_>>().join(" ")
+    });
+    match record {
+        BoundaryRecord { circle: Some([x, z, radius]), .. } => {
+            format!("a circle about ({x}, {z}) with a radius of {radius} m, +1 inside")
+        }
+        BoundaryRecord { sine: Some([height, length, phase]), .. } => format!(
+            "a sine of height {height} m, length {length} m and phase {phase} rad about {base}"
+        ),
+        BoundaryRecord { polyline: Some(points), .. } => {
+            format!("a polyline through {} points, +1 above", points.len())
+        }
+        BoundaryRecord { raster: Some(file), threshold: Some(threshold), .. } => {
+            format!("the raster {}, +1 from {threshold} up", plain::name(file))
+        }
+        BoundaryRecord { drift: Some([offset, turn]), .. } => {
+            format!(
+                "{base} at the start; each motion moves it by {offset} m and turns it by {turn} deg"
+            )
+        }
+        _ => "not known".to_owned(),
+    }
 }
 
 /// How the sensor fails, if it does.
@@ -330,15 +371,19 @@ fn outcome(end: &End) -> String {
 }
 
 /// The estimates beside the truth.
-fn errors(truth: Option<&LineRecord>, estimates: &[(&str, Option<LineRecord>); 3]) -> String {
+fn errors(results: &Results, estimates: &[(&str, Option<LineRecord>); 3]) -> String {
     let mut table = Table::new([
         Column::left("", 28),
         Column::left("line", 36),
         Column::right("error deg", 9),
         Column::right("misclassified", 13),
     ]);
-    if let Some(truth) = truth {
+    if let Some(truth) = &results.start.truth {
         table.row(["truth".into(), line(truth)]);
+    }
+    if let Some(FitRecord { line: best, misclassified, .. }) = &results.end.fit {
+        let share = format!("{:.3}%", 100.0 * misclassified);
+        table.row(["line that fits best".into(), line(best), String::new(), share]);
     }
     for &(name, estimate) in estimates {
         let Some(estimate) = estimate else {

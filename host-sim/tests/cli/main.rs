@@ -32,6 +32,7 @@ mod shards;
 mod size;
 mod stopping;
 mod tolerances;
+mod worlds;
 
 const GOOD: &str = include_str!("../../scenarios/paper-noiseless.toml");
 

@@ -18,4 +18,5 @@ pub mod sensor;
 pub mod stop;
 pub mod strict;
 pub mod terrain;
+mod truth;
 pub mod vehicle;

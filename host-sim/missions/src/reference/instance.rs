@@ -64,7 +64,10 @@ impl Instance {
             bail!("--horizon: found {horizon}, expected 1 to {LONGEST}");
         }
         let problem = problem(&mission, line)?;
-        let truth = mission.world.line().ok_or_else(|| anyhow!("truth: expected a line"))?;
+        let truth = mission
+            .world
+            .line()
+            .ok_or_else(|| anyhow!("truth: found none, or no fixed line, expected one"))?;
         let [_, upwards, _] = truth.coefficients();
         if upwards == 0.0 && problem == Problem::Divided(LineCost::Slope) {
             bail!(

@@ -110,6 +110,7 @@ impl Body for Failing {
 
     fn perform(&mut self, motion: &Motion, pose: &mut Pose) -> Result<Option<Reading>, Infallible> {
         let start = self.place(*pose);
+        self.world.advance();
         let reading = self.body.perform(motion, pose)?;
         if !motion.wants_label {
             return Ok(reading);

@@ -45,7 +45,7 @@ pub(crate) fn stage(
         vec![Told::new("Given", given(results))]
     };
     told.push(Told::new("Known", known(knowledge, bits)));
-    told.push(Told::new("Estimate", estimated(name, estimate)));
+    told.push(Told::new("Estimate", estimated(name, estimate, results)));
     told
 }
 
@@ -64,6 +64,10 @@ pub(crate) fn about(recording: &Recording) -> Vec<String> {
     let mut about = Vec::new();
     if let Some(truth) = &start.truth {
         about.push(format!("The true line, unknown to a planner: {}.", line(truth)));
+    }
+    if let Some(boundary) = &start.boundary {
+        let words = minus(&text::boundary(boundary));
+        about.push(format!("The true boundary, unknown to a planner: {words}."));
     }
     let faults = text::faults(start);
     if let Some(faults) = &faults {
@@ -170,12 +174,13 @@ fn known(knowledge: &Knowledge, bits: f64) -> String {
     format!("Slopes{of} {arcs} deg, intercepts {range}{metres}. {bits} bits told so far.{doubt}")
 }
 
-fn estimated(name: &str, estimate: Option<&LineRecord>) -> String {
+fn estimated(name: &str, estimate: Option<&LineRecord>, results: &Results) -> String {
     let Some(estimate) = estimate else { return format!("{}: none.", sentence(name)) };
+    let truth = if results.start.boundary.is_some() { "the best line" } else { "the truth" };
     let off = estimate.error.map_or(String::new(), |error| {
         let share = 100.0 * error.misclassified;
         format!(
-            "; {} deg off the truth, {} % of the area misjudged",
+            "; {} deg off {truth}, {} % of the area misjudged",
             small(error.degrees),
             small(share)
         )
