@@ -149,13 +149,15 @@ fn each_world_flies_a_mission_and_is_drawn() {
     }
 }
 
+/// What is positive on the +1 side at x, z and after so many motions.
+type Height = fn(f64, f64, f64) -> f64;
+
 /// Labels of a mission without faults or noise are those of the boundary, by a formula of its own.
 #[test]
 fn labels_are_those_of_the_boundary_at_their_time() {
     let folder = folder();
     let flat =
         |x: f64, z: f64, k: f64| z - 0.41 * x - 3.5 - 0.1 * k * (1.0_f64 + 0.41 * 0.41).sqrt();
-    type Height = fn(f64, f64, f64) -> f64;
     let cases: [(&str, Height); 4] = [
         ("{ circle = [6.0, 22.0, 16.0] }", |x, z, _| 16.0 - (x - 6.0).hypot(z - 22.0)),
         ("{ sine = [3.0, 40.0, 0] }", |x, z, _| z - 3.0 * (std::f64::consts::TAU * x / 40.0).sin()),

@@ -222,7 +222,7 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
         |it| it.0.vehicle(Source::File, algorithm, has_fan, grid),
     )?;
     let area = terrain::area(&file.area.0, &file.keep_out)?;
-    let truth = file.truth.as_ref().map(|table| table.0.world(area, folder)).transpose()?;
+    let truth = file.truth.as_ref().map(|table| table.0.world(&area, folder)).transpose()?;
     let world = truth.unwrap_or(World::UNKNOWN);
     let given = oracle(&file.oracle, &area, &world)?;
     let bounding = given.cell().edges().len();

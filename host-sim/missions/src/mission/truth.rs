@@ -43,8 +43,8 @@ impl TruthTable {
     ///
     /// # Errors
     /// Names the field, what was found and what was expected.
-    pub(crate) fn world(&self, area: MissionArea, folder: &Path) -> Result<World> {
-        let area = Polygon::from(area);
+    pub(crate) fn world(&self, area: &MissionArea, folder: &Path) -> Result<World> {
+        let area = Polygon::from(*area);
         self.check_keys()?;
         let rectangle = around(area.0.iter().copied()).unwrap_or_default();
         let curve: Box<dyn Curve> = if let Some(Numbers([x, z, radius])) = self.circle {

@@ -85,7 +85,7 @@ impl Failing {
             FaultKind::Garbage => Some(Label::Negative.into()),
             FaultKind::Inverted => reading.map(|reading| match reading {
                 Reading::Side(label) => Reading::Side(-label),
-                on_it => on_it,
+                on_it @ Reading::Boundary => on_it,
             }),
             FaultKind::Slow(metres) => reading.map(|_| self.world.reading(before(way, metres))),
             FaultKind::Delayed(labels) => {

@@ -21,6 +21,9 @@ pub struct Moving {
 impl Moving {
     /// The line after so many motions. A turn about the place keeps its distance from the line, so that neither the
     /// order of turns and offsets counts, nor rounding adds up.
+    ///
+    /// # Panics
+    /// Never: a turned normal has a length.
     pub fn after(&self, motions: u32) -> Line {
         if motions == 0 {
             return self.start;

@@ -153,7 +153,7 @@ mod tests {
         let grid = ascii(text).unwrap();
         assert_eq!((grid.corner, grid.cell, grid.columns), (Point2::new(10.0, -2.0), [1.0; 2], 3));
         assert_eq!(grid.values[..4], [1.0, 2.0, 3.0, 4.0]);
-        assert!(grid.values[4].is_nan() && grid.values[5] == 6.5);
+        assert!(grid.values[4].is_nan() && grid.values[5..] == [6.5]);
         for (good, bad, said) in [
             ("NCOLS 3\n", "", "expected ncols"),
             ("nrows 2", "nrows two", "found nrows two"),

@@ -52,6 +52,9 @@ struct Strip {
 
 impl Survey {
     /// Surveys an area. The best line is one that meets the area.
+    ///
+    /// # Panics
+    /// Never: its lines have finite coefficients.
     pub fn of(area: &Polygon, curve: &dyn Curve) -> Self {
         let is_positive = |at| curve.side(at) == Reading::Side(Label::Positive);
         let [columns, rows] = [0, 1].map(|axis| strips(area, axis, &is_positive));
@@ -127,7 +130,7 @@ impl Survey {
                     .min_by(|p, q| p.1.misclassified.total_cmp(&q.1.misclassified));
                 match next {
                     Some((place, fit)) if fit.misclassified < best.misclassified => {
-                        (at, best) = (place, fit)
+                        (at, best) = (place, fit);
                     }
                     _ => steps = steps.map(|step| step / 2.0),
                 }
