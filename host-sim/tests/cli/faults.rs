@@ -187,6 +187,20 @@ fn a_slow_sensor_errs_near_the_line() {
     assert!(wrong > 0, "none of the labels is late");
 }
 
+/// By the protocol, a board that gets no reading ends its mission; and one that reads its own sensor has other faults.
+#[test]
+fn a_board_is_refused_faults_that_it_cannot_fly_with() {
+    for sensor in ["[{ off = true }]", "[{ stuck = 1 }, { delayed = 1 }]", "[{ dropouts = 0.1 }]"] {
+        let args = ["hil", "m.toml", "--emulator=m.toml"];
+        let parts =
+            ["m.toml: sensor: found off, delayed or dropouts, expected none of them with hil"];
+        refuses(failing(GOOD, sensor).path(), &args, &parts);
+    }
+    let args = ["hil", "m.toml", "--emulator=m.toml", "--labels", "chip"];
+    let parts = ["m.toml: sensor: found faults, expected none with --labels chip"];
+    refuses(failing(GOOD, "[{ stuck = 1 }]").path(), &args, &parts);
+}
+
 #[test]
 fn the_papers_problem_has_no_faults() {
     let folder = failing(GOOD, "[{ off = true }]");

@@ -42,6 +42,11 @@ pub enum FaultKind {
 }
 
 impl Fault {
+    /// Whether it can leave a label that was asked for without a reading.
+    pub const fn reads_nothing(&self) -> bool {
+        matches!(self.kind, FaultKind::Off | FaultKind::Delayed(_) | FaultKind::Dropouts(_))
+    }
+
     /// Whether it comes before the noise. A slow sensor reads another place, and that label may be flipped.
     pub const fn precedes_noise(&self) -> bool {
         matches!(self.kind, FaultKind::Slow(_))

@@ -79,7 +79,7 @@ impl Survey {
     fn best(&self, area: &Polygon) -> Fit {
         const TURNS: u32 = 90;
         const OFFSETS: i32 = 40;
-        const STARTS: usize = 12;
+        const STARTS: usize = 4;
         let [min, max] = around(area.0.iter().copied()).unwrap_or_default();
         let (middle, size) = (nalgebra::center(&min, &max), (max - min).norm());
         let judged = |[turn, offset]: [f64; 2]| {

@@ -74,11 +74,11 @@ fn cases() -> Vec<Case> {
             p.y > piece[0].y + slope * (p.x - piece[0].x)
         }),
     ));
+    let grid = grid();
     cases.push((
-        Box::new(Raster::new("r.asc".into(), &grid(), 5.0)),
-        Box::new(|p| {
+        Box::new(Raster::new("r.asc".into(), &grid, 5.0)),
+        Box::new(move |p| {
             // The nearest of all cells, by their middles.
-            let grid = grid();
             let cells = (0..96).map(|n| {
                 let [column, row] = [n % 12, n / 12].map(|it| it as f64);
                 let off = [p.x - 1.75 - 1.5 * column, p.y - 17.0 + 2.0 * row];
@@ -112,12 +112,12 @@ fn labels_are_those_of_the_formulas() {
 fn the_label_changes_at_the_distance_and_not_before() {
     const STEP: f64 = 0.01;
     for (curve, is_positive) in cases() {
-        for place in places(25, 2) {
+        for place in places(16, 2) {
             let distance = curve.distance(place);
             let begins = is_positive(place);
             let most = distance + 0.1;
-            let changed = (0..1_440).filter_map(|ray| {
-                let (sin, cos) = (f64::from(ray) / 1_440.0 * TAU).sin_cos();
+            let changed = (0..1_000).filter_map(|ray| {
+                let (sin, cos) = (f64::from(ray) / 1_000.0 * TAU).sin_cos();
                 let steps = (1..).map(|n| STEP * f64::from(n)).take_while(|it| *it < most);
                 let mut steps = steps
                     .filter(|far| is_positive(place + Vector2::new(cos, sin) * *far) != begins);
