@@ -190,6 +190,25 @@ fn labels_are_those_of_the_boundary_at_their_time() {
     }
 }
 
+/// Labels that are true when they are read are never called wrong, however far the line has moved since.
+#[test]
+fn a_label_is_judged_by_the_line_at_its_time() {
+    let folder = folder();
+    let text = scenario("{ slope = 0.41, intercept = 3.5, drift = [0.1, 1.0] }");
+    let text = text.replace("\"cfc\"", "\"lookahead\"");
+    let text = text.replace("steps = 10", "steps = 30\nnoise = { p = 0.9 }");
+    for (p, is_wrong) in [("0.9", true), ("1.0", false)] {
+        fs::write(folder.path().join("m.toml"), text.replace("0.9", p)).expect("a file");
+        let (said, _) = flown(folder.path());
+        let figure = fs::read_to_string(folder.path().join("f.svg")).expect("a figure");
+        assert_eq!(
+            (said.contains(" !"), figure.contains("ringed")),
+            (is_wrong, is_wrong),
+            "{said}"
+        );
+    }
+}
+
 /// A drift of nothing and a sine without height are the line itself, but for what results call it.
 #[test]
 fn what_does_not_move_or_bend_flies_as_the_line_does() {

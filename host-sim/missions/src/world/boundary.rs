@@ -1,6 +1,7 @@
 //! What a boundary is that is no straight line: the side of a place, the distance from it, and how it is drawn.
 
 use std::fmt::Debug;
+use std::panic::RefUnwindSafe;
 
 use nalgebra::Point2;
 use planner_core::{Label, Reading};
@@ -8,8 +9,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::world::way::Way;
 
-/// A boundary that is no straight line.
-pub trait Curve: Debug + Send + Sync {
+/// A boundary that is no straight line. It does not change.
+pub trait Curve: Debug + Send + Sync + RefUnwindSafe {
     /// The side that a place is on.
     fn side(&self, at: Point2<f64>) -> Reading;
 
