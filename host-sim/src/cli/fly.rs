@@ -116,7 +116,11 @@ pub(crate) fn fly(args: &FlyArgs) -> Result<Done> {
 
 /// A mission whose truth an ideal vehicle can sense: where the file tells none, a line that the oracle leaves.
 fn sensed(mut mission: Mission, name: &str) -> Result<Mission> {
-    if mission.world.line().is_none() {
+    if mission.world.moves() {
+        let expected = "no drift: the ideal vehicle does not count motions";
+        return wrong("truth.drift", "one", expected).with_context(|| name.to_owned());
+    }
+    if !mission.world.is_known() {
         let Some(line) = mission.belief().estimates().centre.map(Line::from) else {
             let expected =
                 "a line, or an oracle that a line separates, for the ideal vehicle to sense";

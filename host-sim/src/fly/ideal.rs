@@ -51,7 +51,7 @@ impl Ideal {
     pub fn new(mission: &Mission, system: u8, labels: LabelSource) -> Self {
         Self {
             system,
-            world: mission.world,
+            world: mission.world.clone(),
             labels,
             now: Duration::ZERO,
             ticks: 0,

@@ -11,6 +11,24 @@ use planner_core::planner::lookahead;
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::Mission;
+use crate::mission::strict::wrong;
+use crate::world::faults::Fault;
+
+/// Whether a board can fly with the faults of the sensor. By the protocol a missing reading is no label of a mission.
+fn check_sensor(mission: &Mission, labels: LabelSource) -> Result<()> {
+    if labels == LabelSource::Chip && !mission.sensor.is_empty() {
+        return wrong(
+            "sensor",
+            "faults",
+            "none with --labels chip: the board reads its own sensor",
+        );
+    }
+    if mission.sensor.iter().any(Fault::reads_nothing) {
+        let expected = "none of them with hil: a missing reading ends the mission of a board";
+        return wrong("sensor", "off, delayed or dropouts", expected);
+    }
+    Ok(())
+}
 
 /// The setup of a mission, as it is sent to a chip.
 ///
@@ -20,6 +38,7 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
     if mission.goal.is_some() && !mission.audits {
         bail!("stop.audit: found false, expected true: a board always audits");
     }
+    check_sensor(mission, labels)?;
     let algorithm = match mission.algorithm {
         Algorithm::Cfc => message::Algorithm::Cfc,
         Algorithm::Scc => message::Algorithm::Scc {

@@ -3,8 +3,8 @@
 use nalgebra::Point2;
 
 use crate::report::map::Map;
-use crate::report::picture::Picture;
-use crate::report::style::{self, TRUTH};
+use crate::report::picture::{Picture, Truth};
+use crate::report::style::{self, PAST_TRUTH, TRUTH};
 
 impl Picture {
     /// The picture as an SVG document.
@@ -13,8 +13,14 @@ impl Picture {
         let mut map = Map::new(&self.title, self.note.as_deref(), &self.area, &self.places());
         map.ground(&self.ground);
         map.limits();
-        if let Some(truth) = self.truth {
+        if let Some(truth) = self.truth.as_ref().and_then(Truth::line) {
             map.line(&truth, TRUTH, "true line", None);
+        }
+        for it in self.truth.iter().flat_map(Truth::outlines) {
+            let stroke = if it.is_past { PAST_TRUTH } else { TRUTH };
+            for way in &it.ways {
+                map.stretch(way, stroke, it.name);
+            }
         }
         for it in &self.lines {
             map.line(&it.line, style::of_line(it.kind), &it.name, it.beside.as_deref());

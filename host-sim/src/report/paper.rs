@@ -11,7 +11,7 @@ use crate::mission::scenario::{self, Overrides, PAPER_NOISELESS, PAPER_NOISY};
 use crate::report::ground::Ground;
 use crate::report::look::Look;
 use crate::report::map::Map;
-use crate::report::picture::{Dot, Kind, Picture};
+use crate::report::picture::{Dot, Kind, Picture, Truth};
 use crate::report::style::{self, Fill, Stroke, TRUTH};
 use crate::world::polygon::Polygon;
 
@@ -56,7 +56,8 @@ fn fly(text: &str, change: fn(Mission) -> Mission) -> Result<Recording> {
 
 /// A map of a mission with the ground of either label, as the true line divides it.
 fn divided(title: &str, note: &str, picture: &Picture) -> Result<(Map, Line)> {
-    let truth = picture.truth.context("a mission without a line")?;
+    let truth = picture.truth.as_ref().and_then(Truth::line);
+    let truth = truth.context("a mission without a line")?;
     let mut map = Map::new(title, Some(note), &picture.area, &[]);
     for label in [Label::Positive, Label::Negative] {
         let side = Polygon::from(picture.area).clip(&truth, f64::from(label.sign()));

@@ -5,15 +5,17 @@ use planner_core::belief::estimate;
 use planner_core::geometry::lattice::{LIMIT, UNITS_PER_METRE, Vector};
 use planner_core::link::message::MissionArea;
 use planner_core::{
-    AnyVehicle, Area, Label, Line, LocalLine, PosteriorView, Reading, Sample, Site,
+    AnyVehicle, Area, Label, Line, LocalLine, PosteriorView, Reading, Sample, Site, Step,
 };
 
-use crate::mission::definition::Table;
+use crate::mission::definition::{Mission, Table};
 use crate::mission::read_out::LEVEL;
 use crate::mission::recording::Recording;
 pub use crate::report::ground::Ground;
 use crate::world::extent::around;
+use crate::world::polygon::Polygon;
 use crate::world::reading;
+use crate::world::way::Way;
 
 /// What to draw.
 #[derive(Clone, Debug)]
@@ -32,8 +34,8 @@ pub struct Picture {
     pub given: usize,
     /// Where a mission began, and the ends of its steps.
     pub path: Option<(Point2<f64>, Vec<Stop>)>,
-    /// The true line, where known.
-    pub truth: Option<Line>,
+    /// The true boundary, where known.
+    pub truth: Option<Truth>,
     /// Other lines, with their names.
     pub lines: Vec<Named>,
 }
@@ -56,6 +58,63 @@ pub enum Ring {
     Wrong,
     /// The label disagrees with the line. The truth is not known.
     Disagrees,
+}
+
+/// The true boundary.
+#[derive(Clone, Debug)]
+pub enum Truth {
+    /// A line that stays where it is.
+    Line(Line),
+    /// Any other.
+    Drawn(Vec<Outline>),
+}
+
+/// A boundary at some time.
+#[derive(Clone, Debug)]
+pub struct Outline {
+    /// What it is, for the legend.
+    pub name: &'static str,
+    /// Whether it is no longer there in the end.
+    pub is_past: bool,
+    /// Its parts in the area.
+    pub ways: Vec<Way>,
+}
+
+impl Truth {
+    /// The boundary of a mission's world: a line that moves at the start and after so many motions.
+    fn of(mission: &Mission, motions: usize) -> Option<Self> {
+        let world = &mission.world;
+        if let Some(line) = world.line() {
+            return Some(Self::Line(*line));
+        }
+        let area = Polygon::from(mission.config.area);
+        let at = |motions, name, is_past| {
+            let ways = world.after(motions).ways(&area);
+            Outline { name, is_past, ways }
+        };
+        let outlines = if world.moves() {
+            vec![at(0, "true line at the start", true), at(motions, "true line at the end", false)]
+        } else {
+            vec![at(0, "true boundary", false)]
+        };
+        world.is_known().then_some(Self::Drawn(outlines))
+    }
+
+    /// The line, if it is one that stays where it is.
+    pub const fn line(&self) -> Option<Line> {
+        match self {
+            Self::Line(line) => Some(*line),
+            Self::Drawn(_) => None,
+        }
+    }
+
+    /// What else is drawn.
+    pub fn outlines(&self) -> &[Outline] {
+        match self {
+            Self::Line(_) => &[],
+            Self::Drawn(outlines) => outlines,
+        }
+    }
 }
 
 /// The end of a step.
@@ -125,10 +184,25 @@ impl Picture {
             lines.extend(Named::estimate("posterior mean", centre));
             lines.extend(bounding(table));
         }
-        let dot = |s: &Sample| Dot {
+        // The number of the step that took a sample; given ones were true at the start.
+        let mut taken = (1..).zip(&recording.steps);
+        let number = |s: &Sample| {
+            let is_it =
+                |step: &Step| step.pose.site == s.site && step.reading == Some(s.label.into());
+            taken.find(|(_, step)| is_it(step)).map_or(0, |(number, _)| number)
+        };
+        let given = mission.given.samples().len();
+        let samples = belief.samples().iter();
+        let numbers: Vec<usize> = if mission.world.moves() {
+            let of_steps = samples.clone().skip(given).map(number);
+            std::iter::repeat_n(0, given).chain(of_steps).collect()
+        } else {
+            vec![0; samples.len()]
+        };
+        let dot = |(s, number): (&Sample, usize)| Dot {
             at: s.site.into(),
             label: s.label,
-            ring: (!mission.world.agrees(s.site, s.label)).then_some(Ring::Wrong),
+            ring: (!mission.world.after(number).agrees(s.site, s.label)).then_some(Ring::Wrong),
         };
         let mut from = Point2::from(mission.start.site);
         let stops = results.steps.iter().map(|step| Stop {
@@ -148,10 +222,10 @@ impl Picture {
             note: Some(note(recording)),
             area,
             ground: Ground::of(&**belief, area),
-            samples: belief.samples().iter().map(dot).collect(),
-            given: mission.given.samples().len(),
+            samples: samples.zip(numbers).map(dot).collect(),
+            given,
             path: Some((Point2::from(mission.start.site), stops.collect())),
-            truth: mission.world.line().copied(),
+            truth: Truth::of(mission, recording.steps.len()),
             lines,
         }
     }
@@ -265,7 +339,6 @@ mod tests {
     use super::*;
     use crate::campaign::standard_field;
     use crate::mission::algorithm::Algorithm;
-    use crate::world::polygon::Polygon;
 
     #[test]
     fn certain_ground_is_on_one_side_of_every_bound() {

@@ -30,6 +30,8 @@ pub(crate) struct Stroke {
 }
 
 pub(crate) const TRUTH: Stroke = solid("truth", "#000000", 2.2);
+pub(crate) const PAST_TRUTH: Stroke =
+    Stroke { class: "past-truth", colour: "#000000", width: 2.2, dashes: "2 5" };
 pub(crate) const PATH: Stroke = solid("path", "#4a4a4a", 1.1);
 pub(crate) const HEADING: Stroke = solid("heading", "#4a4a4a", 2.6);
 pub(crate) const BORDER: Stroke = solid("border", INK, 0.8);

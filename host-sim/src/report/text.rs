@@ -2,12 +2,16 @@
 
 use std::fmt::Write as _;
 
+use planner_core::Line;
+
 use crate::mission::algorithm::Algorithm;
 use crate::mission::results::{
-    AUDIT, End, EstimateRecords, LineRecord, Results, Start, StepResult,
+    AUDIT, End, EstimateRecords, FitRecord, LineRecord, Results, Start, StepResult,
 };
 use crate::mission::stop::{AuditRecord, GoalRecord};
+use crate::output::plain;
 use crate::report::table::{Cells, Column, Table};
+use crate::world::boundary::BoundaryRecord;
 use crate::world::noise::limit;
 
 /// Slope intervals as text.
@@ -125,7 +129,7 @@ fn end(results: &Results, estimates: &[(&str, Option<LineRecord>); 3]) -> String
         text.push('\n');
     }
     text.push('\n');
-    text + &outcome(&results.end) + &errors(results.start.truth.as_ref(), estimates)
+    text + &outcome(&results.end) + &errors(results, estimates)
 }
 
 /// Why a mission ended, in words.
@@ -208,14 +212,23 @@ fn audited(audit: &AuditRecord) -> String {
 
 fn beginning(title: &str, start: &Start) -> String {
     let mut text = format!("{title}\n");
-    let truth = start.truth.map_or("not known".into(), |truth| line(&truth));
+    let truth = match (&start.truth, &start.boundary) {
+        (Some(truth), _) => format!("line, unknown to the agent: {}", line(truth)),
+        (_, Some(boundary)) => {
+            format!("boundary, unknown to the agent: {}", self::boundary(boundary))
+        }
+        _ => "line, unknown to the agent: not known".into(),
+    };
     let oracle = start.oracle.iter().map(|s| format!("({}, {}) is {:+}", s.x, s.z, s.label));
     // Writing to a string cannot fail.
     let _ = writeln!(
         text,
-        "True line, unknown to the agent: {truth}\nThe oracle's points: {}",
+        "True {truth}\nThe oracle's points: {}",
         oracle.collect::<Vec<_>>().join(", ")
     );
+    if let Some(faults) = faults(start) {
+        let _ = writeln!(text, "The sensor fails, unknown to the agent: {faults}");
+    }
     let _ = writeln!(
         text,
         "It starts at ({}, {}), heading {} deg; slopes {} deg are possible.\n",
@@ -228,14 +241,55 @@ fn beginning(title: &str, start: &Start) -> String {
         let each = limit(start.p);
         let _ = writeln!(
             text,
-            "A label is true with probability {}, so it tells {each:.3} bits at most on average, \
+            "{} is true with probability {}, so it tells {each:.3} bits at most on average, \
              {} of them {:.2}.\n",
+            a_label(start),
             start.p,
             start.steps,
             f64::from(start.steps) * each,
         );
     }
     text
+}
+
+/// A boundary that is no fixed line, in words.
+pub(crate) fn boundary(record: &BoundaryRecord) -> String {
+    let base = || record.line.and_then(|[a, b, c]| Line::from_coefficients(a, b, c));
+    let base = base().map_or(String::new(), |line| {
+        let words = self::line(&line.into());
+        words.split_whitespace().collect::<Vec<_>>().join(" ")
+    });
+    match record {
+        BoundaryRecord { circle: Some([x, z, radius]), .. } => {
+            format!("a circle about ({x}, {z}) with a radius of {radius} m, +1 inside")
+        }
+        BoundaryRecord { sine: Some([height, length, phase]), .. } => format!(
+            "a sine of height {height} m, length {length} m and phase {phase} rad about {base}"
+        ),
+        BoundaryRecord { polyline: Some(points), .. } => {
+            format!("a polyline through {} points, +1 above", points.len())
+        }
+        BoundaryRecord { raster: Some(file), threshold: Some(threshold), .. } => {
+            format!("the raster {}, +1 from {threshold} up", plain::name(file))
+        }
+        BoundaryRecord { drift: Some([offset, turn]), .. } => {
+            format!(
+                "{base} at the start; each motion moves it by {offset} m and turns it by {turn} deg"
+            )
+        }
+        _ => "not known".to_owned(),
+    }
+}
+
+/// How the sensor fails, if it does.
+pub(crate) fn faults(start: &Start) -> Option<String> {
+    let each = start.sensor.iter().map(ToString::to_string).collect::<Vec<_>>();
+    (!each.is_empty()).then(|| each.join("; "))
+}
+
+/// A label that no fault of the sensor spoils, at the beginning of a sentence.
+pub(crate) fn a_label(start: &Start) -> &'static str {
+    if start.sensor.is_empty() { "A label" } else { "A label that no fault spoils" }
 }
 
 /// The columns of a step's motion.
@@ -276,7 +330,8 @@ fn notes(steps: &[StepResult], start: &Start) -> Vec<&'static str> {
         let label = step.label.filter(|label| *label != 0);
         let flipped = label.is_some_and(|label| label != past);
         past = label.unwrap_or(past);
-        note(step, flipped)
+        let is_spoilt = !start.sensor.is_empty() && step.is_wrong();
+        if is_spoilt { "the label is wrong" } else { note(step, flipped) }
     });
     noted.collect()
 }
@@ -336,15 +391,19 @@ fn outcome(end: &End) -> String {
 }
 
 /// The estimates beside the truth.
-fn errors(truth: Option<&LineRecord>, estimates: &[(&str, Option<LineRecord>); 3]) -> String {
+fn errors(results: &Results, estimates: &[(&str, Option<LineRecord>); 3]) -> String {
     let mut table = Table::new([
         Column::left("", 28),
         Column::left("line", 36),
         Column::right("error deg", 9),
         Column::right("misclassified", 13),
     ]);
-    if let Some(truth) = truth {
+    if let Some(truth) = &results.start.truth {
         table.row(["truth".into(), line(truth)]);
+    }
+    if let Some(FitRecord { line: best, misclassified, .. }) = &results.end.fit {
+        let share = format!("{:.3}%", 100.0 * misclassified);
+        table.row(["line that fits best".into(), line(best), String::new(), share]);
     }
     for &(name, estimate) in estimates {
         let Some(estimate) = estimate else {

@@ -11,6 +11,7 @@ mod comfort;
 mod contradictions;
 mod edited;
 mod endings;
+mod faults;
 mod figures;
 mod flags;
 mod flying;
@@ -32,6 +33,7 @@ mod size;
 mod stopping;
 mod tolerances;
 mod verdicts;
+mod worlds;
 
 const GOOD: &str = include_str!("../../scenarios/paper-noiseless.toml");
 

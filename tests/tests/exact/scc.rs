@@ -131,15 +131,21 @@ const SOME_MOTION: Motion = Motion {
 #[test]
 fn the_world_flips_labels_where_it_should_and_as_often() {
     let mission = standard_field::standard(1, 2, Algorithm::Scc, 1);
-    let world = mission.world;
+    let world = mission.world.clone();
     let given = mission.given.samples();
     for extent in [Extent::OutsideBalls(3.0), Extent::Band(2.0), Extent::OutsideBalls(0.0)] {
         let model = NoiseModel { p: 0.7, extent };
         let noisy =
             host_sim::mission::definition::Mission { noise: Some(model), ..mission.clone() };
-        let (body, rng) = (Ideal { world }, ChaCha8Rng::seed_from_u64(4));
+        let (body, rng) = (Ideal { world: world.clone() }, ChaCha8Rng::seed_from_u64(4));
         let noise = noisy.noise_told();
-        let mut robot = Flipped { body: Box::new(body), model, world, given: given.to_vec(), rng };
+        let mut robot = Flipped {
+            body: Box::new(body),
+            model,
+            world: world.clone(),
+            given: given.to_vec(),
+            rng,
+        };
         let mut places = ChaCha8Rng::seed_from_u64(5);
         let (mut exposed, mut flipped) = (0, 0);
         for _ in 0..40_000 {

@@ -60,8 +60,8 @@ fn fly(number: u64, planner: impl Planner) -> (u32, u32) {
     let mission = standard_field::standard(8, number, Algorithm::Cfc, 20);
     let place = Cell::new(mission.start);
     let rng = ChaCha8Rng::seed_from_u64(number);
-    let drive = Failing { world: mission.world, place: &place, rng };
-    let sensor = Sensor(drive.world, &place);
+    let drive = Failing { world: mission.world.clone(), place: &place, rng };
+    let sensor = Sensor(drive.world.clone(), &place);
     let mut agent = Agent::new(planner, Vehicle { drive, sensor }, mission.start);
     let (mut labels, mut failed, mut outside) = (0, 0, 0);
     while labels < 20 {

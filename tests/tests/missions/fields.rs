@@ -30,7 +30,7 @@ fn fields_never_contradict_themselves_or_the_truth() {
         .map(|number| {
             let mission = standard_field::standard(2, number, Algorithm::Cfc, 40);
             let mut rng = ChaCha8Rng::seed_from_u64(number);
-            let world = mission.world;
+            let world = mission.world.clone();
             let truth = *world.line().expect("a line");
             let mut certain = 0;
             let flown = mission.fly(|step, belief| {
@@ -75,7 +75,7 @@ fn every_plan_is_what_trying_all_actions_would_make_it() {
     let rungs = Mutex::new(BTreeMap::new());
     (0..cases(100, 2_000)).into_par_iter().for_each(|number| {
         let mission = standard_field::standard(12, number, Algorithm::Cfc, 60);
-        let mut robot = Ideal { world: mission.world };
+        let mut robot = Ideal { world: mission.world.clone() };
         let mut planner = mission.cfc(mission.config.area, unicycle);
         let mut pose = mission.start;
         for step in 1..=mission.steps {

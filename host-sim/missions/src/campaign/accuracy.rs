@@ -123,7 +123,7 @@ impl Measure for Accuracy {
         belief: &dyn ReadOut,
         progress: &Progress,
     ) -> Option<Checkpoint> {
-        let estimates = beside_truth(mission, belief.estimates());
+        let estimates = beside_truth(mission, &mission.world, belief.estimates());
         let errors = |estimate: Option<LineRecord>| {
             let error = estimate.and_then(|line| line.error);
             error.map_or((90.0, 0.5), |it| (it.degrees, it.misclassified))

@@ -95,6 +95,7 @@ pub fn standard(seed: u64, number: u64, algorithm: Algorithm, steps: u32) -> Mis
         given,
         noise: None,
         errors: Errors::default(),
+        sensor: Vec::new(),
         policy: Policy::default(),
         prior: Prior::default(),
         goal: None,

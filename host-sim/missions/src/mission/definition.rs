@@ -12,6 +12,7 @@ use rand_chacha::ChaCha8Rng;
 use crate::mission::algorithm::Algorithm;
 use crate::world::World;
 use crate::world::errors::{CUT, Erring, Errors};
+use crate::world::faults::{Failing, Fault};
 use crate::world::noise::{Flipped, NoiseModel};
 use crate::world::robot::{Ideal, Robot};
 
@@ -50,6 +51,8 @@ pub struct Mission {
     pub noise: Option<NoiseModel>,
     /// How the robot errs.
     pub errors: Errors,
+    /// How the sensor fails, which no planner is told. Later faults act on what earlier ones leave.
+    pub sensor: Vec<Fault>,
     /// How hypotheses choose an action together (Algorithm 2).
     pub policy: Policy,
     /// How hypotheses are weighed beforehand (Algorithm 2, look-ahead).
@@ -141,14 +144,28 @@ impl Mission {
             rng.set_stream(stream); // the random walk has stream 0
             rng
         };
+        let world = || self.world.clone();
         let body: Box<dyn Robot> = if self.errors == Errors::default() {
-            Box::new(Ideal { world: self.world })
+            Box::new(Ideal { world: world() })
         } else {
-            Box::new(Erring::new(self.world, self.errors, self.start, rng(2)))
+            Box::new(Erring::new(world(), self.errors, self.start, rng(2)))
         };
-        let Some(model) = self.noise else { return body };
-        let rng = rng(1);
-        let given = self.given.samples().to_vec();
-        Box::new(Flipped { body, model, world: self.world, given, rng })
+        // Each fault has a stream of its own.
+        let failing = |body: Box<dyn Robot>, precedes_noise| {
+            let faults = (3..).zip(&self.sensor);
+            faults
+                .filter(|(_, it)| it.precedes_noise() == precedes_noise)
+                .fold(body, |body, (stream, fault)| {
+                    Box::new(Failing::new(body, *fault, world(), rng(stream)))
+                })
+        };
+        let body = failing(body, true);
+        let body: Box<dyn Robot> = if let Some(model) = self.noise {
+            let given = self.given.samples().to_vec();
+            Box::new(Flipped { body, model, world: world(), given, rng: rng(1) })
+        } else {
+            body
+        };
+        failing(body, false)
     }
 }

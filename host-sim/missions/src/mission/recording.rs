@@ -15,13 +15,12 @@ use crate::mission::flight::Flown;
 use crate::mission::legs::{Leg, Legs};
 use crate::mission::read_out::{Knowledge, LEVEL, ReadOut};
 use crate::mission::results::{
-    AUDIT, BestRecord, CredibleRecord, End, Ending, EstimateRecords, KeepOutRecord, LineError,
-    Results, Start, StepResult, VERSION, cost, recovery_name, stage_name,
+    AUDIT, BestRecord, CredibleRecord, End, Ending, EstimateRecords, FitRecord, KeepOutRecord,
+    LineError, Results, Start, StepResult, VERSION, cost, recovery_name, stage_name,
 };
 use crate::mission::stop::{AuditRecord, GoalRecord};
 use crate::mission::vehicle::VehicleTable;
-use crate::world::polygon::misclassified;
-use crate::world::{World, reading};
+use crate::world::World;
 
 /// A mission that is over: its results, and what is known in the end.
 #[derive(Debug)]
@@ -83,16 +82,18 @@ impl Recorder {
             pruned_mass: doubt.map(|doubt| doubt.pruned_mass),
             entropy: doubt.map(|doubt| doubt.entropy),
             flown: None,
-            fact: self
-                .mission
-                .world
-                .line()
-                .map(|line| reading(line, true_pose.unwrap_or(step.pose).site).sign()),
+            fact: self.fact(true_pose.unwrap_or(step.pose)),
             expected: motion.wants_label.then(|| before.expects(motion.target.site)),
             control_cost: cost_before + cost(motion.control),
             metres: metres_before + f64::from(motion.control.distance_m),
         });
         self.before.push(before);
+    }
+
+    /// What a perfect sensor reads at a pose at the end of the current step, if the boundary is known.
+    fn fact(&self, at: Pose) -> Option<i8> {
+        let world = self.mission.world.after(self.steps.len());
+        world.is_known().then(|| world.reading(at.site).sign())
     }
 
     /// Takes down how a real vehicle made the steps so far.
@@ -139,9 +140,11 @@ impl Recorder {
         let Self { mission, steps, results, before, .. } = self;
         let doubted = belief.hypotheses().and_then(|table| doubted(table, &mission.world));
         let (best, credible) = doubted.unzip();
+        let world = mission.world.after(steps.len());
         let end = End {
             reason: ending.name().into(),
-            estimates: beside_truth(&mission, belief.estimates()),
+            estimates: beside_truth(&mission, &world, belief.estimates()),
+            fit: world.fit().filter(|_| world.line().is_none()).map(FitRecord::from),
             best,
             credible,
             goal: GoalRecord::of(&mission, &*belief, audit(&results, ending)),
@@ -178,12 +181,13 @@ impl Recording {
     }
 }
 
-/// Estimates of a mission's line, each beside the truth.
-pub fn beside_truth(mission: &Mission, estimates: Estimates) -> EstimateRecords {
+/// Estimates of a mission's line, each beside its world as that is at the time. Degrees are those to the true line, or to
+/// the line that misclassifies least.
+pub fn beside_truth(mission: &Mission, world: &World, estimates: Estimates) -> EstimateRecords {
     let error = |line: &Line| {
-        mission.world.line().map(|truth| LineError {
-            degrees: line.angle_to_deg(truth),
-            misclassified: misclassified(mission.config.area, truth, line),
+        Some(LineError {
+            degrees: line.angle_to_deg(&world.fit()?.line),
+            misclassified: world.misclassified(mission.config.area, line)?,
         })
     };
     EstimateRecords::beside(estimates, error)
@@ -201,6 +205,8 @@ fn start(mission: &Mission) -> Start {
         vehicle: VehicleTable::of(mission.vehicle),
         pose: mission.start.into(),
         truth: mission.world.line().map(|line| (*line).into()),
+        boundary: mission.world.record(),
+        sensor: mission.sensor.iter().map(Into::into).collect(),
         p: mission.noise.map_or(1.0, |noise| noise.p),
         labels_err: mission.noise.is_some(),
         steps: mission.steps,

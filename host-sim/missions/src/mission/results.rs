@@ -20,8 +20,11 @@ use serde::{Deserialize, Serialize};
 use crate::mission::algorithm::Algorithm;
 use crate::mission::legs::{Leg, Legs};
 use crate::mission::read_out::Expectation;
+use crate::mission::sensor::FaultTable;
 use crate::mission::stop::GoalRecord;
 use crate::mission::vehicle::VehicleTable;
+use crate::world::boundary::BoundaryRecord;
+use crate::world::survey::Fit;
 
 /// The results of a mission: its start, its steps and its end.
 #[derive(Clone, Debug)]
@@ -66,8 +69,14 @@ pub struct Start {
     /// Where the agent began.
     #[serde(default)]
     pub pose: PoseRecord,
-    /// The true line, if there is one.
+    /// The true line, if there is one that stays where it is.
     pub truth: Option<LineRecord>,
+    /// The true boundary, if it is no fixed line.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub boundary: Option<BoundaryRecord>,
+    /// How the sensor fails.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sensor: Vec<FaultTable>,
     /// Labels are true with this probability.
     pub p: f64,
     /// Whether they may err.
@@ -158,6 +167,9 @@ pub struct End {
     pub reason: Name,
     /// The estimates of the line.
     pub estimates: EstimateRecords,
+    /// The straight line that misclassifies least, where the true boundary is no fixed line.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fit: Option<FitRecord>,
     /// Where labels may err: the paper's outcome, by the paper's prior.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub best: Option<BestRecord>,
@@ -288,6 +300,22 @@ pub struct LineError {
     pub misclassified: f64,
 }
 
+/// The straight line that misclassifies least.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub struct FitRecord {
+    /// The paper's `rho`; `None` of a vertical line.
+    pub slope: Option<f64>,
+    /// The paper's `c`, metres; `None` of a vertical line.
+    pub intercept: Option<f64>,
+    /// Degrees.
+    pub angle: f64,
+    /// The share of the area that it misclassifies.
+    pub misclassified: f64,
+    /// The line.
+    #[serde(skip)]
+    pub line: LineRecord,
+}
+
 /// The three estimates, `None` where there is none.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct EstimateRecords<L = LineRecord> {
@@ -377,6 +405,14 @@ impl From<Line> for LineRecord {
             coefficients: line.coefficients(),
             error: None,
         }
+    }
+}
+
+impl From<Fit> for FitRecord {
+    fn from(Fit { line, misclassified }: Fit) -> Self {
+        let line = LineRecord::from(line);
+        let LineRecord { slope, intercept, angle, .. } = line;
+        Self { slope, intercept, angle, misclassified, line }
     }
 }
 

@@ -10,17 +10,18 @@ use planner_core::link::message::MissionArea;
 use planner_core::link::message::Settings;
 use planner_core::motion::unicycle::Grid;
 use planner_core::{
-    EffortWeight, Following, Heading, Label, Line, Pose, Reliability, Sample, Tolerance,
-    VersionSpace,
+    EffortWeight, Following, Heading, Label, Pose, Reliability, Sample, Tolerance, VersionSpace,
 };
 use serde::Deserialize;
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::{CAPACITY, Lines, Mission};
 use crate::mission::names::{CrossingName, FanName, FollowingName, PolicyName, PriorName};
+use crate::mission::sensor::{self, FaultTable};
 use crate::mission::stop::StopTable;
-use crate::mission::strict::{Numbers, Table, wrong};
+use crate::mission::strict::{Table, wrong};
 use crate::mission::terrain::{self, AreaTable, KeepOutTable, site};
+use crate::mission::truth::TruthTable;
 use crate::mission::vehicle::{self, Source, VehicleTable};
 use crate::world::World;
 use crate::world::errors::{CUT, Errors};
@@ -57,6 +58,8 @@ struct File {
     noise: Option<Table<NoiseTable>>,
     #[serde(default)]
     errors: Table<ErrorsTable>,
+    #[serde(default)]
+    sensor: Vec<Table<FaultTable>>,
     tolerance: Option<f64>,
     stop: Option<Table<StopTable>>,
     #[serde(default)]
@@ -107,14 +110,6 @@ struct StartTable {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct TruthTable {
-    slope: Option<f64>,
-    intercept: Option<f64>,
-    line: Option<Numbers<3>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
 struct SampleTable {
     x: f64,
     z: f64,
@@ -137,28 +132,38 @@ pub struct Overrides {
 /// # Errors
 /// One message with the file, the line or field, what was found and what was expected.
 pub fn read(path: &Path, overrides: Overrides) -> Result<Mission> {
-    parse(&path.display().to_string(), &content(path)?, overrides)
+    simulated(&path.display().to_string(), &content(path)?, beside(path), overrides)
 }
 
-/// As [`read`], for a real vehicle: the file need not have a `truth`.
+/// As [`read`], for a real vehicle: the file need not have a `truth`, and its `sensor` is not simulated.
 ///
 /// # Errors
 /// As [`read`].
 pub fn read_real(path: &Path, overrides: Overrides) -> Result<Mission> {
-    any(&path.display().to_string(), &content(path)?, overrides)
+    let mission = any(&path.display().to_string(), &content(path)?, beside(path), overrides)?;
+    Ok(Mission { sensor: Vec::new(), ..mission })
 }
 
-/// As [`read`], from the text of the file called `name`.
+/// As [`read`], from the text of the file called `name`. Other files are sought in the current folder.
 ///
 /// # Errors
 /// As [`read`].
 pub fn parse(name: &str, text: &str, overrides: Overrides) -> Result<Mission> {
-    let mission = any(name, text, overrides)?;
-    if mission.world.line().is_none() {
+    simulated(name, text, Path::new(""), overrides)
+}
+
+fn simulated(name: &str, text: &str, folder: &Path, overrides: Overrides) -> Result<Mission> {
+    let mission = any(name, text, folder, overrides)?;
+    if !mission.world.is_known() {
         let found = wrong("truth", "none", "the line that the simulated world is divided by");
         return found.with_context(|| name.to_owned());
     }
     Ok(mission)
+}
+
+/// The folder of a file.
+fn beside(path: &Path) -> &Path {
+    path.parent().unwrap_or(path)
 }
 
 fn content(path: &Path) -> Result<String> {
@@ -167,7 +172,7 @@ fn content(path: &Path) -> Result<String> {
 }
 
 /// The mission, whether it says what is true or not.
-fn any(name: &str, text: &str, overrides: Overrides) -> Result<Mission> {
+fn any(name: &str, text: &str, folder: &Path, overrides: Overrides) -> Result<Mission> {
     let file: File = toml::from_str(text).map_err(|error| {
         let line = error.span().map_or(1, |span| 1 + text[..span.start].matches('\n').count());
         anyhow!("{name}:{line}: {}", error.message().replace('\n', "; "))
@@ -176,7 +181,7 @@ fn any(name: &str, text: &str, overrides: Overrides) -> Result<Mission> {
     if let Some(steps) = overrides.steps {
         check_steps("--steps", steps, file.oracle.len())?;
     }
-    mission(&file, overrides).map_err(|error| anyhow!("{name}: {error:#}"))
+    mission(&file, folder, overrides).map_err(|error| anyhow!("{name}: {error:#}"))
 }
 
 /// Whether this many steps fit beside the oracle's samples.
@@ -201,7 +206,7 @@ pub fn check_steps(field: &str, steps: u32, oracle: usize) -> Result<()> {
     Ok(())
 }
 
-fn mission(file: &File, overrides: Overrides) -> Result<Mission> {
+fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> {
     let steps = overrides.steps.unwrap_or(file.steps);
     check_steps("steps", steps, file.oracle.len())?;
     let algorithm = overrides.algorithm.unwrap_or(file.algorithm);
@@ -217,8 +222,8 @@ fn mission(file: &File, overrides: Overrides) -> Result<Mission> {
         |it| it.0.vehicle(Source::File, algorithm, has_fan, grid),
     )?;
     let area = terrain::area(&file.area.0, &file.keep_out)?;
-    let truth = file.truth.as_ref().map(|table| truth(&table.0)).transpose()?;
-    let world = truth.map_or(World::UNKNOWN, World::divided_by);
+    let truth = file.truth.as_ref().map(|table| table.0.world(&area, folder)).transpose()?;
+    let world = truth.unwrap_or(World::UNKNOWN);
     let given = oracle(&file.oracle, &area, &world)?;
     let bounding = given.cell().edges().len();
     if bounding > MOST_BOUNDING {
@@ -246,6 +251,7 @@ fn mission(file: &File, overrides: Overrides) -> Result<Mission> {
         given,
         noise,
         errors,
+        sensor: sensor::faults(file.sensor.iter().map(|table| &table.0))?,
         policy: file.policy.into(),
         prior: file.prior.into(),
         goal: goal.transpose()?,
@@ -361,24 +367,6 @@ pub fn trusted(field: &str, radius: f64) -> Result<f64> {
         return wrong(field, radius, "a radius in metres, at least 0 and below 8192");
     }
     Ok(radius)
-}
-
-fn truth(table: &TruthTable) -> Result<Line> {
-    let expected = "either { slope, intercept } or { line = [A, B, C] }";
-    let coefficients = table.line.as_ref().map(|numbers| numbers.0);
-    let line = match (table.slope, table.intercept, coefficients) {
-        (Some(slope), Some(intercept), None) => Line::from_slope(slope, intercept),
-        (None, None, Some([a, b, c])) => Line::from_coefficients(a, b, c),
-        (None, None, None) => return wrong("truth", "neither", expected),
-        (_, _, Some(_)) => return wrong("truth", "both", expected),
-        _ => return wrong("truth", "only one of slope and intercept", expected),
-    };
-    let found = match (table.slope, table.intercept, coefficients) {
-        (Some(slope), Some(intercept), _) => format!("slope {slope}, intercept {intercept}"),
-        (_, _, line) => format!("{:?}", line.unwrap_or_default()),
-    };
-    let finite = "finite numbers, A and B not both 0";
-    line.map_or_else(|| wrong("truth", found, finite), Ok)
 }
 
 fn oracle(tables: &[Table<SampleTable>], area: &MissionArea, world: &World) -> Result<Lines> {

@@ -64,7 +64,10 @@ impl Instance {
             bail!("--horizon: found {horizon}, expected 1 to {LONGEST}");
         }
         let problem = problem(&mission, line)?;
-        let truth = mission.world.line().ok_or_else(|| anyhow!("truth: expected a line"))?;
+        let truth = mission
+            .world
+            .line()
+            .ok_or_else(|| anyhow!("truth: found none, or no fixed line, expected one"))?;
         let [_, upwards, _] = truth.coefficients();
         if upwards == 0.0 && problem == Problem::Divided(LineCost::Slope) {
             bail!(
@@ -121,6 +124,11 @@ fn problem(mission: &Mission, line: Option<LineCost>) -> Result<Problem> {
     if mission.errors != Errors::default() {
         bail!(
             "errors: found a robot that errs, expected none, as the paper's problems have no such errors"
+        );
+    }
+    if !mission.sensor.is_empty() {
+        bail!(
+            "sensor: found one that fails, expected none, as the paper's problems have no such faults"
         );
     }
     if mission.config.tolerance != Tolerance::NONE {

@@ -51,6 +51,7 @@ impl Body for Erring {
     /// Turns and drives from the true pose. The turn and the length are those of the motion from the assumed pose, plus
     /// the robot's errors.
     fn perform(&mut self, motion: &Motion, pose: &mut Pose) -> Result<Option<Reading>, Infallible> {
+        self.world.advance();
         let Self { errors, truth, .. } = *self;
         let turn = Heading(motion.target.heading.0.wrapping_sub(pose.heading.0)).radians();
         let drive = metres(motion.target.site) - metres(pose.site);

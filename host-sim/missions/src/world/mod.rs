@@ -1,69 +1,184 @@
-//! The simulated world: the line that divides the plane, the label at each place, and robots that move and sense there.
-//! Also shapes in metres.
+//! The simulated world: the boundary that divides the plane, the label at each place, and robots that move and sense
+//! there. Also shapes in metres.
 
+pub mod boundary;
+pub mod circle;
 pub mod errors;
 pub mod extent;
+pub mod faults;
 pub(crate) mod in_order;
+pub mod moving;
 pub mod noise;
 pub mod polygon;
+pub mod polyline;
+pub mod raster;
+pub mod raster_file;
 pub mod robot;
+pub mod sine;
+pub mod survey;
+pub mod way;
+
+#[cfg(test)]
+mod tests;
+
+use std::sync::Arc;
 
 use nalgebra::Point2;
 use planner_core::belief::cells::CellView;
 use planner_core::{Label, Line, Reading, Site};
 
-/// The world: its straight boundary, if that is known. Around a real vehicle it is not.
-#[derive(Clone, Copy, Debug)]
+use crate::world::boundary::{BoundaryRecord, Curve, side};
+use crate::world::moving::Moving;
+use crate::world::polygon::Polygon;
+use crate::world::survey::{Fit, Survey};
+use crate::world::way::{Way, parts};
+
+/// The world: its boundary, if that is known. Around a real vehicle it is not.
+#[derive(Clone, Debug)]
 pub struct World {
-    boundary: Option<Line>,
+    boundary: Boundary,
+    /// The motions that the robot has made.
+    motions: u32,
+}
+
+#[derive(Clone, Debug)]
+enum Boundary {
+    Unknown,
+    Line(Line),
+    Moving(Moving),
+    Curved(Arc<Curved>),
+}
+
+/// A boundary that is no straight line, and what it makes of the mission's area.
+#[derive(Debug)]
+struct Curved {
+    curve: Box<dyn Curve>,
+    survey: Survey,
 }
 
 impl World {
     /// A world that a line divides.
     pub const fn divided_by(line: Line) -> Self {
-        Self { boundary: Some(line) }
+        Self { boundary: Boundary::Line(line), motions: 0 }
+    }
+
+    /// A world that a line divides which moves.
+    pub const fn divided_by_moving(line: Moving) -> Self {
+        Self { boundary: Boundary::Moving(line), motions: 0 }
+    }
+
+    /// A world that a curve divides, for missions in an area.
+    pub fn divided_by_curve(curve: Box<dyn Curve>, area: &Polygon) -> Self {
+        let survey = Survey::of(area, &*curve);
+        Self { boundary: Boundary::Curved(Arc::new(Curved { curve, survey })), motions: 0 }
     }
 
     /// A world of which nobody knows what divides it: no simulated robot senses anything there.
-    pub const UNKNOWN: Self = Self { boundary: None };
+    pub const UNKNOWN: Self = Self { boundary: Boundary::Unknown, motions: 0 };
 
-    /// The line that divides it, if that is known.
+    /// Whether anything is known of its boundary.
+    pub const fn is_known(&self) -> bool {
+        !matches!(self.boundary, Boundary::Unknown)
+    }
+
+    /// Whether its boundary moves.
+    pub const fn moves(&self) -> bool {
+        matches!(self.boundary, Boundary::Moving(_))
+    }
+
+    /// The line that divides it, if that is known and stays the same.
     pub const fn line(&self) -> Option<&Line> {
-        self.boundary.as_ref()
+        match &self.boundary {
+            Boundary::Line(line) => Some(line),
+            _ => None,
+        }
+    }
+
+    /// The world after so many motions of the robot.
+    #[must_use]
+    pub fn after(&self, motions: usize) -> Self {
+        Self { motions: motions as u32, ..self.clone() }
+    }
+
+    /// The robot makes a motion.
+    pub const fn advance(&mut self) {
+        self.motions += 1;
+    }
+
+    /// The straight line that divides it now.
+    fn line_now(&self) -> Option<Line> {
+        match &self.boundary {
+            Boundary::Line(line) => Some(*line),
+            Boundary::Moving(moving) => Some(moving.after(self.motions)),
+            Boundary::Unknown | Boundary::Curved(_) => None,
+        }
     }
 
     /// The distance of a site from the boundary in metres, positive on its +1 side; not a number without one.
     pub fn distance(&self, site: Site) -> f64 {
-        self.boundary.map_or(f64::NAN, |line| line.distance(Point2::from(site)))
+        let at = Point2::from(site);
+        match &self.boundary {
+            Boundary::Curved(it) => it.curve.distance(at) * f64::from(it.curve.side(at).sign()),
+            _ => self.line_now().map_or(f64::NAN, |line| line.distance(at)),
+        }
     }
 
     /// The reading of a perfect sensor at a site: neither side if the world is not known.
     pub fn reading(&self, site: Site) -> Reading {
-        side(self.distance(site))
+        match &self.boundary {
+            Boundary::Curved(it) => it.curve.side(Point2::from(site)),
+            _ => side(self.distance(site)),
+        }
     }
 
     /// Whether a label can be the true one of a site. Where the boundary is not known, any label can.
     pub fn agrees(&self, site: Site, label: Label) -> bool {
-        self.boundary.is_none() || self.reading(site) == Reading::Side(label)
+        !self.is_known() || self.reading(site) == Reading::Side(label)
     }
 
     /// Whether its line is among the lines of a cell; `None` without a line.
     pub fn is_among(&self, lines: CellView<'_>) -> Option<bool> {
         self.line().map(|_| lines.support().all(|s| self.agrees(s.site, s.label)))
     }
+
+    /// The share of an area to which a line gives the wrong label; `None` if the boundary is not known. A curve has its
+    /// own area.
+    pub fn misclassified(&self, area: impl Into<Polygon>, line: &Line) -> Option<f64> {
+        match &self.boundary {
+            Boundary::Curved(it) => Some(it.survey.misclassified(line)),
+            _ => self.line_now().map(|truth| polygon::misclassified(area, &truth, line)),
+        }
+    }
+
+    /// The straight line that misclassifies least now; `None` if the boundary is not known.
+    pub fn fit(&self) -> Option<Fit> {
+        match &self.boundary {
+            Boundary::Curved(it) => Some(it.survey.fit),
+            _ => self.line_now().map(|line| Fit { line, misclassified: 0.0 }),
+        }
+    }
+
+    /// The boundary within an area now.
+    pub fn ways(&self, area: &Polygon) -> Vec<Way> {
+        if let Boundary::Curved(it) = &self.boundary {
+            let rectangle = extent::around(area.0.iter().copied()).unwrap_or_default();
+            return it.curve.ways(rectangle).iter().flat_map(|way| parts(way, area)).collect();
+        }
+        let chord = self.line_now().and_then(|line| area.chord(&line));
+        chord.into_iter().map(Vec::from).collect()
+    }
+
+    /// What its boundary is, if that is known and no fixed line.
+    pub fn record(&self) -> Option<BoundaryRecord> {
+        match &self.boundary {
+            Boundary::Unknown | Boundary::Line(_) => None,
+            Boundary::Moving(moving) => Some(moving.record()),
+            Boundary::Curved(it) => Some(it.curve.record()),
+        }
+    }
 }
 
 /// The reading of a perfect sensor at a site if a line divides the plane.
 pub fn reading(line: &Line, site: Site) -> Reading {
     side(line.distance(Point2::from(site)))
-}
-
-fn side(distance: f64) -> Reading {
-    if distance > 0.0 {
-        Label::Positive.into()
-    } else if distance < 0.0 {
-        Label::Negative.into()
-    } else {
-        Reading::Boundary
-    }
 }

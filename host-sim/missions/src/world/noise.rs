@@ -65,6 +65,7 @@ impl Body for Flipped {
     type Error = Infallible;
 
     fn perform(&mut self, motion: &Motion, pose: &mut Pose) -> Result<Option<Reading>, Infallible> {
+        self.world.advance();
         let Some(reading) = self.body.perform(motion, pose)? else { return Ok(None) };
         let place = self.body.true_pose().unwrap_or(*pose).site;
         let exposed = match self.model.extent {

@@ -24,6 +24,7 @@ impl Body for Ideal {
 
     fn perform(&mut self, motion: &Motion, pose: &mut Pose) -> Result<Option<Reading>, Infallible> {
         *pose = motion.target;
+        self.world.advance();
         Ok(motion.wants_label.then(|| self.world.reading(pose.site)))
     }
 }

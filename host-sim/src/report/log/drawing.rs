@@ -39,6 +39,10 @@ pub(super) fn begin(flight: &Flight) -> SceneUpdate {
         let line = line(&truth.ends, false, THICK, opaque(TRUTH));
         entities.push(SceneEntity { lines: vec![line], ..entity("true line", 0) });
     }
+    for it in &flight.boundary {
+        let lines = it.ways.iter().map(|way| line(way, false, THICK, opaque(TRUTH)));
+        entities.push(SceneEntity { lines: lines.collect(), ..entity(it.name, 0) });
+    }
     if let Some(scene) = flight.scenes.first() {
         entities.extend(known(scene, 0));
     }

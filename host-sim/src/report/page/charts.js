@@ -19,7 +19,7 @@ const CHARTS = [
     told: (scene) => (scene.intercepts ? `${figure(scene.intercepts[0], 2)} to ${figure(scene.intercepts[1], 2)}` : 'unbounded'),
   },
   {
-    title: () => 'Estimate off the truth, deg',
+    title: (flight) => `Estimate off the ${flight.boundary ? 'best line' : 'truth'}, deg`,
     isLogarithmic: true,
     line: (scene) => scene.estimate?.off_deg,
     told: (scene) => (scene.estimate?.off_deg == null ? 'none' : small(scene.estimate.off_deg)),

@@ -34,6 +34,9 @@ function drawMap(svg, flight, step, width, from) {
   for (const keepOut of flight.keep_outs) add(svg, 'path', { class: 'keep-out', d: ring(keepOut) });
   add(svg, 'path', { class: 'border', d: ring(flight.area) });
   if (flight.truth) add(svg, 'path', { class: 'truth', d: through(flight.truth.ends.map(at)) });
+  for (const { ways, is_past } of flight.boundary ?? []) {
+    for (const way of ways) add(svg, 'path', { class: is_past ? 'truth past' : 'truth', d: through(way.map(at)) });
+  }
   if (scene.estimate) add(svg, 'path', { class: 'estimate', d: through(scene.estimate.ends.map(at)) });
 
   const way = past.flatMap((it) => (it.motion ? it.motion.way : [it.at]));

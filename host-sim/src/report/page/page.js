@@ -124,6 +124,7 @@ function legend(figure, flight) {
     });
   }
   if (flight.truth) item('the true line', stroke('truth'));
+  for (const { name, is_past } of flight.boundary ?? []) item(`the ${name}`, stroke(is_past ? 'truth past' : 'truth'));
   item(flight.estimate, stroke('estimate'));
   item('path, and the last motion', (svg) => { add(svg, 'path', { class: 'path', d: 'M1 9H12' }); add(svg, 'path', { class: 'leg', d: 'M12 9H25' }); });
   item('robot and its heading', (svg) => { add(svg, 'circle', { class: 'halo', cx: 8, cy: 9, r: 7 }); add(svg, 'path', { class: 'bow', d: 'M16 5L24 9L16 13Z' }); });

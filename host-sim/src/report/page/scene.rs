@@ -13,7 +13,7 @@ use crate::report::bands::Band;
 use crate::report::examples::bits;
 use crate::report::ground::Ground;
 use crate::report::page::words::{self, Told};
-use crate::report::picture::{Picture, Stop};
+use crate::report::picture::{Outline, Picture, Stop, Truth};
 use crate::report::text;
 use crate::world::extent::{around, span};
 use crate::world::polygon::Polygon;
@@ -38,6 +38,9 @@ pub(crate) struct Flight {
     pub(crate) given: Vec<Mark>,
     /// The true line, where known.
     pub(crate) truth: Option<SeenLine>,
+    /// The true boundary, where it is known and no fixed line.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) boundary: Vec<SeenBoundary>,
     /// The start, and each step.
     pub(crate) scenes: Vec<Scene>,
     /// The picture of the end, for where no script runs.
@@ -71,6 +74,17 @@ pub(crate) struct SeenLine {
     pub(crate) off_deg: Option<f64>,
     /// The share of the area that gets the wrong label.
     pub(crate) misclassified: Option<f64>,
+}
+
+/// The true boundary as it is seen in the area.
+#[derive(Debug, Serialize)]
+pub(crate) struct SeenBoundary {
+    /// What it is, for the legend.
+    pub(crate) name: &'static str,
+    /// Whether it is no longer there.
+    is_past: bool,
+    /// Its parts.
+    pub(crate) ways: Vec<Vec<Place>>,
 }
 
 /// The state of knowledge after some step, and the motion that led there.
@@ -173,6 +187,10 @@ impl Rounding {
         self.corners(&polygon.0)
     }
 
+    fn boundary(self, &Outline { name, is_past, ref ways }: &Outline) -> SeenBoundary {
+        SeenBoundary { name, is_past, ways: ways.iter().map(|way| self.corners(way)).collect() }
+    }
+
     fn corners(self, places: &[Point2<f64>]) -> Ring {
         let mut corners: Ring = places.iter().map(|at| self.place(*at)).collect();
         corners.dedup();
@@ -225,6 +243,12 @@ impl Flight {
             keep_outs: area.hulls().map(|hull| rounding.ring(&Polygon::from(hull))).collect(),
             given: mission.given.samples().iter().map(mark).collect(),
             truth: results.start.truth.as_ref().map(seen),
+            boundary: picture
+                .truth
+                .iter()
+                .flat_map(Truth::outlines)
+                .map(|it| rounding.boundary(it))
+                .collect(),
             scenes,
             picture,
         }
@@ -262,7 +286,8 @@ impl Stage<'_> {
         let mission = &recording.mission;
         let area = mission.config.area;
         let knowledge = belief.knowledge();
-        let centre = beside_truth(mission, belief.estimates()).centre;
+        let world = mission.world.after(taken.map_or(0, |it| it.result.step));
+        let centre = beside_truth(mission, &world, belief.estimates()).centre;
         let Sums { bits, rise, expected_bits } = sums;
         let step = taken.map(|it| it.result);
         let read = step.map(|step| (step, rise));

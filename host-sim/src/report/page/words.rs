@@ -45,7 +45,7 @@ pub(crate) fn stage(
         vec![Told::new("Given", given(results))]
     };
     told.push(Told::new("Known", known(knowledge, bits)));
-    told.push(Told::new("Estimate", estimated(name, estimate)));
+    told.push(Told::new("Estimate", estimated(name, estimate, results)));
     told
 }
 
@@ -65,12 +65,23 @@ pub(crate) fn about(recording: &Recording) -> Vec<String> {
     if let Some(truth) = &start.truth {
         about.push(format!("The true line, unknown to a planner: {}.", line(truth)));
     }
+    if let Some(boundary) = &start.boundary {
+        let words = minus(&text::boundary(boundary));
+        about.push(format!("The true boundary, unknown to a planner: {words}."));
+    }
+    let faults = text::faults(start);
+    if let Some(faults) = &faults {
+        about.push(format!("The sensor fails, unknown to a planner: {}.", minus(faults)));
+    }
     if start.labels_err {
         let each = limit(start.p);
         about.push(format!(
-            "A label is true with probability {}, so it tells {each:.3} bits at most on average.",
+            "{} is true with probability {}, so it tells {each:.3} bits at most on average.",
+            text::a_label(start),
             start.p
         ));
+    } else if faults.is_some() {
+        about.push("Planners take labels to be true.".to_owned());
     } else {
         about.push("Labels are true, so each tells one bit at most on average.".to_owned());
     }
@@ -166,12 +177,13 @@ fn known(knowledge: &Knowledge, bits: f64) -> String {
     format!("Slopes{of} {arcs} deg, intercepts {range}{metres}. {bits} bits told so far.{doubt}")
 }
 
-fn estimated(name: &str, estimate: Option<&LineRecord>) -> String {
+fn estimated(name: &str, estimate: Option<&LineRecord>, results: &Results) -> String {
     let Some(estimate) = estimate else { return format!("{}: none.", sentence(name)) };
+    let truth = if results.start.boundary.is_some() { "the best line" } else { "the truth" };
     let off = estimate.error.map_or(String::new(), |error| {
         let share = 100.0 * error.misclassified;
         format!(
-            "; {} deg off the truth, {} % of the area misjudged",
+            "; {} deg off {truth}, {} % of the area misjudged",
             small(error.degrees),
             small(share)
         )

@@ -100,7 +100,8 @@ type Lines = BTreeMap<String, ([i64; 4], [f32; 2])>;
 fn here(flight: Flight) -> (Vec<Step>, Lines) {
     let mission = flight.mission();
     let mut planner = mission.planner();
-    let body = Misread { ideal: Ideal { world: mission.world }, wrong: flight.wrong, labels: 0 };
+    let body =
+        Misread { ideal: Ideal { world: mission.world.clone() }, wrong: flight.wrong, labels: 0 };
     let mut agent = Agent::new(&mut *planner, body, mission.start);
     let mut steps = Vec::new();
     for _ in 0..flight.steps {

@@ -1,0 +1,141 @@
+//! `sensor` of a scenario file: how the simulated sensor fails. The trace has the same keys.
+
+use anyhow::Result;
+use planner_core::Label;
+use serde::{Deserialize, Serialize};
+
+use crate::mission::strict::wrong;
+use crate::world::faults::{Fault, FaultKind};
+
+/// One fault: one kind, and the labels that it spoils, by their numbers from 1.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct FaultTable {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    off: Option<bool>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    stuck: Option<i64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    garbage: Option<bool>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    inverted: Option<bool>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    slow: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    delayed: Option<i64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    dropouts: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    from: Option<i64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    to: Option<i64>,
+}
+
+/// The most faults of a sensor.
+const MOST: usize = 16;
+
+/// The longest way by which a sensor is slow, metres.
+const FURTHEST: f64 = 1024.0;
+
+/// The faults of some tables.
+///
+/// # Errors
+/// Names the field, what was found and what was expected.
+pub(crate) fn faults<'a>(
+    tables: impl ExactSizeIterator<Item = &'a FaultTable>,
+) -> Result<Vec<Fault>> {
+    if tables.len() > MOST {
+        return wrong("sensor", format!("{} faults", tables.len()), format!("at most {MOST}"));
+    }
+    tables.enumerate().map(|(i, table)| table.fault(&format!("sensor[{i}]"))).collect()
+}
+
+impl FaultTable {
+    fn fault(&self, field: &str) -> Result<Fault> {
+        let name = |key: &str| format!("{field}.{key}");
+        let is_on = |key: &str, value: bool, kind: FaultKind| {
+            if value { Ok(kind) } else { wrong(&name(key), "false", "true, or no such key") }
+        };
+        let kinds = [
+            self.off.map(|it| is_on("off", it, FaultKind::Off)),
+            self.stuck.map(|it| match it {
+                1 => Ok(FaultKind::Stuck(Label::Positive)),
+                -1 => Ok(FaultKind::Stuck(Label::Negative)),
+                other => wrong(&name("stuck"), other, "-1 or 1"),
+            }),
+            self.garbage.map(|it| is_on("garbage", it, FaultKind::Garbage)),
+            self.inverted.map(|it| is_on("inverted", it, FaultKind::Inverted)),
+            self.slow.map(|it| match it {
+                0.0..=FURTHEST => Ok(FaultKind::Slow(it)),
+                _ => wrong(&name("slow"), it, format!("a distance in metres, 0 to {FURTHEST}")),
+            }),
+            self.delayed.map(|it| Ok(FaultKind::Delayed(count(&name("delayed"), it, 1)?))),
+            self.dropouts.map(|it| match it {
+                0.0..=1.0 => Ok(FaultKind::Dropouts(it)),
+                _ => wrong(&name("dropouts"), it, "a probability in [0, 1]"),
+            }),
+        ];
+        let mut kinds = kinds.into_iter().flatten();
+        let kind = match (kinds.next(), kinds.next()) {
+            (Some(kind), None) => kind?,
+            (none, _) => {
+                let found = if none.is_none() { "no kind" } else { "more than one kind" };
+                let expected = "one of off, stuck, garbage, inverted, slow, delayed and dropouts";
+                return wrong(field, found, expected);
+            }
+        };
+        let from = self.from.map_or(Ok(1), |it| count(&name("from"), it, 1))?;
+        let to = self.to.map_or(Ok(u32::MAX), |it| count(&name("to"), it, from))?;
+        Ok(Fault { kind, from, to })
+    }
+}
+
+fn count(field: &str, value: i64, least: u32) -> Result<u32> {
+    let count = u32::try_from(value).ok().filter(|count| (least..u32::MAX).contains(count));
+    count.map_or_else(
+        || wrong(field, value, format!("a whole number of labels, {least} or more")),
+        Ok,
+    )
+}
+
+impl From<&Fault> for FaultTable {
+    fn from(&Fault { kind, from, to }: &Fault) -> Self {
+        let table = Self {
+            from: (from > 1).then_some(from.into()),
+            to: (to < u32::MAX).then_some(to.into()),
+            ..Self::default()
+        };
+        match kind {
+            FaultKind::Off => Self { off: Some(true), ..table },
+            FaultKind::Stuck(label) => Self { stuck: Some(label.sign().into()), ..table },
+            FaultKind::Garbage => Self { garbage: Some(true), ..table },
+            FaultKind::Inverted => Self { inverted: Some(true), ..table },
+            FaultKind::Slow(metres) => Self { slow: Some(metres), ..table },
+            FaultKind::Delayed(labels) => Self { delayed: Some(labels.into()), ..table },
+            FaultKind::Dropouts(probability) => Self { dropouts: Some(probability), ..table },
+        }
+    }
+}
+
+/// The fault in words, as `stuck at +1 from label 5 on`.
+impl std::fmt::Display for FaultTable {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let kinds = [
+            self.off.map(|_| "off".to_owned()),
+            self.stuck.map(|label| format!("stuck at {label:+}")),
+            self.garbage.map(|_| "either label by chance".to_owned()),
+            self.inverted.map(|_| "inverted".to_owned()),
+            self.slow.map(|metres| format!("slow by {metres} m")),
+            self.delayed.map(|labels| {
+                format!("late by {labels} label{}", if labels == 1 { "" } else { "s" })
+            }),
+            self.dropouts.map(|share| format!("no reading with probability {share}")),
+        ];
+        f.write_str(&kinds.into_iter().flatten().collect::<String>())?;
+        match (self.from, self.to) {
+            (None, None) => Ok(()),
+            (Some(from), None) => write!(f, " from label {from} on"),
+            (from, Some(to)) => write!(f, " from label {} to {to}", from.unwrap_or(1)),
+        }
+    }
+}

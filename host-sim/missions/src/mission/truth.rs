@@ -1,0 +1,178 @@
+//! `truth` of a scenario file: the boundary of the simulated world.
+
+use std::path::Path;
+
+use anyhow::Result;
+use nalgebra::Point2;
+use planner_core::Line;
+use planner_core::link::message::MissionArea;
+use serde::Deserialize;
+
+use crate::mission::strict::{Numbers, wrong};
+use crate::world::World;
+use crate::world::boundary::Curve;
+use crate::world::circle::Circle;
+use crate::world::extent::around;
+use crate::world::moving::Moving;
+use crate::world::polygon::Polygon;
+use crate::world::polyline::Polyline;
+use crate::world::raster::Raster;
+use crate::world::raster_file::Grid;
+use crate::world::sine::Sine;
+
+/// Lengths are up to so many metres, so that no sum of theirs overflows.
+const FURTHEST: f64 = 1e6;
+
+/// The boundary: a straight line, or another kind by its key.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct TruthTable {
+    slope: Option<f64>,
+    intercept: Option<f64>,
+    line: Option<Numbers<3>>,
+    circle: Option<Numbers<3>>,
+    sine: Option<Numbers<3>>,
+    polyline: Option<Vec<Numbers<2>>>,
+    raster: Option<String>,
+    threshold: Option<f64>,
+    drift: Option<Numbers<2>>,
+}
+
+impl TruthTable {
+    /// The world that it describes. A raster is sought in a folder.
+    ///
+    /// # Errors
+    /// Names the field, what was found and what was expected.
+    pub(crate) fn world(&self, area: &MissionArea, folder: &Path) -> Result<World> {
+        let area = Polygon::from(*area);
+        self.check_keys()?;
+        let rectangle = around(area.0.iter().copied()).unwrap_or_default();
+        let curve: Box<dyn Curve> = if let Some(Numbers([x, z, radius])) = self.circle {
+            Box::new(circle([x, z], radius)?)
+        } else if let Some(Numbers(wave)) = self.sine {
+            Box::new(self.sine(wave)?)
+        } else if let Some(points) = &self.polyline {
+            Box::new(polyline(points)?)
+        } else if let (Some(name), Some(threshold)) = (&self.raster, self.threshold) {
+            if !threshold.is_finite() {
+                return wrong("truth.threshold", threshold, "a number");
+            }
+            let grid = Grid::read(&folder.join(name), rectangle);
+            let grid = grid.or_else(|why| wrong("truth.raster", name, why))?;
+            Box::new(Raster::new(name.clone(), &grid, threshold))
+        } else {
+            let start = self.line()?;
+            let Some(Numbers([offset, turn])) = self.drift else {
+                return Ok(World::divided_by(start));
+            };
+            if !(offset.abs() <= FURTHEST && turn.abs() <= 360.0) {
+                let expected = "metres and degrees for each motion, up to 1e6 and 360";
+                return wrong("truth.drift", format!("[{offset}, {turn}]"), expected);
+            }
+            let [min, max] = rectangle;
+            let about = nalgebra::center(&min, &max);
+            return Ok(World::divided_by_moving(Moving { start, offset, turn, about }));
+        };
+        Ok(World::divided_by_curve(curve, &area))
+    }
+
+    /// Whether the keys describe one boundary.
+    fn check_keys(&self) -> Result<()> {
+        let has_base = self.slope.is_some() || self.intercept.is_some() || self.line.is_some();
+        let has_raster = self.raster.is_some() || self.threshold.is_some();
+        let kinds = [
+            ("circle", self.circle.is_some()),
+            ("sine", self.sine.is_some()),
+            ("polyline", self.polyline.is_some()),
+            ("raster", has_raster),
+            ("drift", self.drift.is_some()),
+            ("a line", has_base && self.sine.is_none() && self.drift.is_none()),
+        ];
+        let found: Vec<_> =
+            kinds.iter().filter(|(_, is_found)| *is_found).map(|(name, _)| *name).collect();
+        if found.len() > 1 {
+            return wrong("truth", found.join(" and "), "one boundary");
+        }
+        match (has_raster, self.raster.is_some(), self.threshold.is_some()) {
+            (true, true, false) => wrong("truth", "raster without threshold", "both"),
+            (true, false, true) => wrong("truth", "threshold without raster", "both"),
+            _ => Ok(()),
+        }
+    }
+
+    /// The straight line.
+    fn line(&self) -> Result<Line> {
+        let expected = "either { slope, intercept } or { line = [A, B, C] }";
+        let coefficients = self.line.as_ref().map(|numbers| numbers.0);
+        let line = match (self.slope, self.intercept, coefficients) {
+            (Some(slope), Some(intercept), None) => Line::from_slope(slope, intercept),
+            (None, None, Some([a, b, c])) => Line::from_coefficients(a, b, c),
+            (None, None, None) => return wrong("truth", "neither", expected),
+            (_, _, Some(_)) => return wrong("truth", "both", expected),
+            _ => return wrong("truth", "only one of slope and intercept", expected),
+        };
+        let found = match (self.slope, self.intercept, coefficients) {
+            (Some(slope), Some(intercept), _) => format!("slope {slope}, intercept {intercept}"),
+            (_, _, line) => format!("{:?}", line.unwrap_or_default()),
+        };
+        let finite = "finite numbers, A and B not both 0";
+        line.map_or_else(|| wrong("truth", found, finite), Ok)
+    }
+
+    /// A sine over its base line, which is the x axis unless the file says otherwise.
+    fn sine(&self, [height, length, phase]: [f64; 3]) -> Result<Sine> {
+        let is_one = (0.0..=FURTHEST).contains(&height)
+            && (1e-3..=FURTHEST).contains(&length)
+            && phase.abs() <= FURTHEST;
+        if !is_one {
+            let expected = "[height, length, phase]: metres from 0, metres from 0.001, and radians";
+            return wrong("truth.sine", format!("[{height}, {length}, {phase}]"), expected);
+        }
+        let base = if self.line.is_some() {
+            self.line()?
+        } else {
+            let [slope, intercept] = [self.slope, self.intercept].map(Option::unwrap_or_default);
+            Self { slope: Some(slope), intercept: Some(intercept), ..Self::NONE }.line()?
+        };
+        Ok(Sine { base, height, length, phase })
+    }
+
+    const NONE: Self = Self {
+        slope: None,
+        intercept: None,
+        line: None,
+        circle: None,
+        sine: None,
+        polyline: None,
+        raster: None,
+        threshold: None,
+        drift: None,
+    };
+}
+
+fn circle([x, z]: [f64; 2], radius: f64) -> Result<Circle> {
+    if !(x.abs() <= FURTHEST && z.abs() <= FURTHEST && radius > 0.0 && radius <= FURTHEST) {
+        let expected = "[x, z, radius] in metres, up to 1e6, with a radius above 0";
+        return wrong("truth.circle", format!("[{x}, {z}, {radius}]"), expected);
+    }
+    Ok(Circle { middle: Point2::new(x, z), radius })
+}
+
+fn polyline(points: &[Numbers<2>]) -> Result<Polyline> {
+    const FIELD: &str = "truth.polyline";
+    if points.len() < 2 {
+        return wrong(FIELD, format!("{} points", points.len()), "2 at least");
+    }
+    for (i, pair) in points.iter().enumerate() {
+        let Numbers([x, z]) = *pair;
+        if !(x.abs() <= FURTHEST && z.abs() <= FURTHEST) {
+            return wrong(&format!("{FIELD}[{i}]"), format!("[{x}, {z}]"), "metres, up to 1e6");
+        }
+        if i > 0 && x <= points[i - 1].0[0] {
+            let expected = format!("an x above that of the point before, {}", points[i - 1].0[0]);
+            return wrong(&format!("{FIELD}[{i}]"), format!("[{x}, {z}]"), expected);
+        }
+    }
+    let places = points.iter().map(|Numbers(at)| Point2::from(*at)).collect();
+    Polyline::through(places).map_or_else(|| wrong(FIELD, "these", "points from left to right"), Ok)
+}

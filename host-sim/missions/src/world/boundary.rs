@@ -1,0 +1,63 @@
+//! What a boundary is that is no straight line: the side of a place, the distance from it, and how it is drawn.
+
+use std::fmt::Debug;
+use std::panic::RefUnwindSafe;
+
+use nalgebra::Point2;
+use planner_core::{Label, Reading};
+use serde::{Deserialize, Serialize};
+
+use crate::world::way::Way;
+
+/// A boundary that is no straight line. It does not change.
+pub trait Curve: Debug + Send + Sync + RefUnwindSafe {
+    /// The side that a place is on.
+    fn side(&self, at: Point2<f64>) -> Reading;
+
+    /// The distance of a place from the boundary, metres.
+    fn distance(&self, at: Point2<f64>) -> f64;
+
+    /// The boundary as far as it lies in a rectangle. It may be drawn beyond.
+    fn ways(&self, within: [Point2<f64>; 2]) -> Vec<Way>;
+
+    /// What it is, for the trace.
+    fn record(&self) -> BoundaryRecord;
+}
+
+/// A boundary that is no fixed line, by the keys that it has in a scenario file.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct BoundaryRecord {
+    /// `a x + b z + c = 0` with `a^2 + b^2 = 1`, for a sine and for a line that moves.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub line: Option<[f64; 3]>,
+    /// By so many metres and degrees the line moves in each motion.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub drift: Option<[f64; 2]>,
+    /// The middle and the radius.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub circle: Option<[f64; 3]>,
+    /// Height, length and phase.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sine: Option<[f64; 3]>,
+    /// The points.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub polyline: Option<Vec<[f64; 2]>>,
+    /// The file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub raster: Option<String>,
+    /// From this value up the label is +1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub threshold: Option<f64>,
+}
+
+/// The side of a place by a number that is positive on the +1 side.
+pub fn side(height: f64) -> Reading {
+    if height > 0.0 {
+        Label::Positive.into()
+    } else if height < 0.0 {
+        Label::Negative.into()
+    } else {
+        Reading::Boundary
+    }
+}

@@ -1,0 +1,177 @@
+//! Rasters as files have them: PNG images, and grids of ESRI's ASCII format.
+
+use std::fs::{self, File};
+use std::io::BufReader;
+use std::path::Path;
+
+use anyhow::{Context as _, Result, anyhow, bail};
+use nalgebra::Point2;
+use png::{BitDepth, ColorType, Decoder, Transformations};
+
+/// The most cells.
+const MOST_CELLS: usize = 4_000_000;
+
+/// The longest file, bytes.
+const MOST_BYTES: u64 = 1 << 27;
+
+/// Values in cells.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grid {
+    /// The corner with the least coordinates, metres.
+    pub corner: Point2<f64>,
+    /// The size of a cell, metres.
+    pub cell: [f64; 2],
+    /// Cells in a row.
+    pub columns: usize,
+    /// The values, row by row from the greatest z down. What has no value is not a number.
+    pub values: Vec<f64>,
+}
+
+impl Grid {
+    /// Reads a file by the end of its name, `.png` or `.asc`. An image is stretched over a rectangle.
+    ///
+    /// # Errors
+    /// What was expected.
+    pub fn read(path: &Path, rectangle: [Point2<f64>; 2]) -> Result<Self> {
+        let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
+        let is_image = ending == "png";
+        if !is_image && ending != "asc" {
+            bail!("a PNG image (.png) or an ESRI ASCII grid (.asc)");
+        }
+        // A device or a pipe may have no end.
+        let found = fs::metadata(path).ok().filter(|it| it.is_file() && it.len() <= MOST_BYTES);
+        found.with_context(|| format!("a readable file of {} MB at most", MOST_BYTES >> 20))?;
+        if is_image {
+            image(path, rectangle).map_err(|why| anyhow!("a PNG image: {why:#}"))
+        } else {
+            let text = fs::read_to_string(path).map_err(|why| anyhow!("a text file: {why}"))?;
+            ascii(&text).map_err(|why| anyhow!("an ESRI ASCII grid: {why:#}"))
+        }
+    }
+}
+
+/// Whether there are so many cells as can be handled.
+fn check_cells(columns: usize, rows: usize) -> Result<()> {
+    let count = columns.checked_mul(rows);
+    if !count.is_some_and(|count| (1..=MOST_CELLS).contains(&count)) {
+        bail!("found {columns} x {rows} cells, expected 1 to {MOST_CELLS}");
+    }
+    Ok(())
+}
+
+/// The luminance of each pixel, as the file has it: up to 255, with 16 bits up to 65535.
+fn image(path: &Path, [min, max]: [Point2<f64>; 2]) -> Result<Grid> {
+    let mut decoder = Decoder::new(BufReader::new(File::open(path)?));
+    decoder.set_transformations(Transformations::EXPAND);
+    let mut reader = decoder.read_info()?;
+    let [columns, rows] = [reader.info().width, reader.info().height].map(|it| it as usize);
+    check_cells(columns, rows)?;
+    let mut bytes = vec![0; reader.output_buffer_size().context("it is too large")?];
+    let frame = reader.next_frame(&mut bytes)?;
+    bytes.truncate(frame.buffer_size());
+    let samples: Vec<f64> = if frame.bit_depth == BitDepth::Sixteen {
+        let pairs = bytes.chunks_exact(2);
+        pairs.map(|pair| u16::from_be_bytes([pair[0], pair[1]]).into()).collect()
+    } else {
+        bytes.into_iter().map(f64::from).collect()
+    };
+    let pixels = samples.chunks_exact(frame.color_type.samples());
+    let values = pixels.map(|pixel| match (frame.color_type, pixel) {
+        (ColorType::Rgb | ColorType::Rgba, [red, green, blue, ..]) => {
+            // The weights of Rec. 709, so that grey keeps its value.
+            (2126.0 * red + 7152.0 * green + 722.0 * blue) / 10_000.0
+        }
+        _ => pixel[0],
+    });
+    let values = values.collect();
+    let size = max - min;
+    Ok(Grid { corner: min, cell: [size.x / columns as f64, size.y / rows as f64], columns, values })
+}
+
+/// A grid as text: keys with their values, then the cells.
+fn ascii(text: &str) -> Result<Grid> {
+    let mut words = text.split_ascii_whitespace().peekable();
+    let [mut columns, mut rows] = [None; 2];
+    let [mut cell, mut missing] = [None; 2];
+    let mut corner = [None; 2];
+    while let Some(key) = words.next_if(|word| word.starts_with(|c: char| c.is_ascii_alphabetic()))
+    {
+        let key = key.to_ascii_lowercase();
+        let word = words.next().with_context(|| format!("found {key} without a value"))?;
+        let number: f64 =
+            word.parse().map_err(|_| anyhow!("found {key} {word}, expected a number"))?;
+        let count =
+            || word.parse::<usize>().map_err(|_| anyhow!("found {key} {word}, expected a count"));
+        match key.as_str() {
+            "ncols" => columns = Some(count()?),
+            "nrows" => rows = Some(count()?),
+            "xllcorner" => corner[0] = Some((number, 0.0)),
+            "yllcorner" => corner[1] = Some((number, 0.0)),
+            "xllcenter" => corner[0] = Some((number, 0.5)),
+            "yllcenter" => corner[1] = Some((number, 0.5)),
+            "cellsize" => cell = Some(number),
+            "nodata_value" => missing = Some(number),
+            _ => bail!(
+                "found {key}, expected ncols, nrows, xllcorner, yllcorner, cellsize or nodata_value"
+            ),
+        }
+    }
+    let columns = columns.context("expected ncols")?;
+    let rows = rows.context("expected nrows")?;
+    let cell = cell
+        .filter(|it| (1e-6..=1e6).contains(it))
+        .context("expected a cellsize in metres, above 0")?;
+    check_cells(columns, rows)?;
+    let least = |axis: usize, name| {
+        let (at, cells) = corner[axis].with_context(|| format!("expected {name}"))?;
+        if f64::abs(at) <= 1e6 {
+            Ok(at - cells * cell)
+        } else {
+            bail!("found {name} {at}, expected up to 1e6 m")
+        }
+    };
+    let corner = Point2::new(least(0, "xllcorner")?, least(1, "yllcorner")?);
+    let value = |word: &str| match word.parse::<f64>() {
+        Ok(value) if Some(value) == missing => Ok(f64::NAN),
+        Ok(value) => Ok(value),
+        Err(_) => bail!("found {word}, expected a number"),
+    };
+    let values = words.map(value).collect::<Result<Vec<_>>>()?;
+    if values.len() != columns * rows {
+        bail!("found {} values, expected {columns} x {rows}", values.len());
+    }
+    Ok(Grid { corner, cell: [cell; 2], columns, values })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_ascii_grid_is_read() {
+        let text = "NCOLS 3\nnrows 2\nxllcenter 10.5\nYLLCORNER -2\ncellsize 1\nNODATA_value -9999\n1 2 3\n4 -9999 6.5\n";
+        let grid = ascii(text).unwrap();
+        assert_eq!((grid.corner, grid.cell, grid.columns), (Point2::new(10.0, -2.0), [1.0; 2], 3));
+        assert_eq!(grid.values[..4], [1.0, 2.0, 3.0, 4.0]);
+        assert!(grid.values[4].is_nan() && grid.values[5..] == [6.5]);
+        for (good, bad, said) in [
+            ("NCOLS 3\n", "", "expected ncols"),
+            ("nrows 2", "nrows two", "found nrows two"),
+            ("nrows 2", "nrows 2.5", "expected a count"),
+            ("nrows 2", "nrows 3", "found 6 values, expected 3 x 3"),
+            ("nrows 2", "nrows 0", "found 3 x 0 cells"),
+            ("nrows 2", "nrows 99999999999999999999", "expected a count"),
+            ("nrows 2", "nrows 9999999", "expected 1 to 4000000"),
+            ("xllcenter 10.5\n", "", "expected xllcorner"),
+            ("YLLCORNER -2", "YLLCORNER 2e6", "expected up to 1e6 m"),
+            ("cellsize 1", "cellsize 0", "expected a cellsize in metres"),
+            ("cellsize 1", "dx 1 dy 2", "found dx, expected ncols"),
+            ("6.5", "six", "found six, expected a number"),
+            ("6.5", "", "found 5 values"),
+        ] {
+            assert!(text.contains(good), "{good}");
+            let error = ascii(&text.replace(good, bad)).unwrap_err().to_string();
+            assert!(error.contains(said), "{bad}: {error}");
+        }
+    }
+}
