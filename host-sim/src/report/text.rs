@@ -3,10 +3,11 @@
 use std::fmt::Write as _;
 
 use planner_core::Line;
+use planner_core::belief::evidence::Alarm;
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::results::{
-    AUDIT, End, EstimateRecords, FitRecord, LineRecord, Results, Start, StepResult,
+    AUDIT, AlarmRecord, End, EstimateRecords, FitRecord, LineRecord, Results, Start, StepResult,
 };
 use crate::mission::stop::{AuditRecord, GoalRecord};
 use crate::output::plain;
@@ -124,6 +125,9 @@ fn end(results: &Results, estimates: &[(&str, Option<LineRecord>); 3]) -> String
     if let Some(goal) = &results.end.goal {
         text += &promise(goal);
     }
+    if let Some(alarm) = &results.end.alarm {
+        text += &warning(alarm);
+    }
     if let Some(remedy) = remedy(results) {
         text += remedy;
         text.push('\n');
@@ -179,7 +183,12 @@ fn remedy(results: &Results) -> Option<&'static str> {
 pub(crate) fn promise(goal: &GoalRecord) -> String {
     let &GoalRecord { slope_arc_deg, misclassified, level, is_met, audit } = goal;
     let sure = level.map_or(String::new(), |level| format!(" with probability {level} at least"));
-    let known = if is_met { "Known" } else { "Not known yet" };
+    let is_refuted = audit.is_some_and(|audit| audit.refuted.is_some());
+    let known = match () {
+        () if is_met => "Known",
+        () if is_refuted => "Not known",
+        () => "Not known yet",
+    };
     let lines = if level.is_some() {
         "the line is one of a set of which any two"
     } else {
@@ -208,6 +217,14 @@ fn audited(audit: &AuditRecord) -> String {
         ),
         None => format!("Audited: {agreed} labels on certain ground agree ({price}).\n"),
     }
+}
+
+/// What speaks against a straight, still line, in words.
+pub(crate) fn warning(&AlarmRecord { step, evidence, suspect }: &AlarmRecord) -> String {
+    let (alarm, level) = (Alarm { evidence, suspect }, Alarm::ALARM);
+    let name = if evidence >= level { "Alarm" } else { "Warning" };
+    let much = if evidence < 1e4 { format!("{evidence:.0}") } else { "over 10000".to_owned() };
+    format!("{name}: {alarm}. The evidence is {much} at step {step}; {level} is an alarm.\n")
 }
 
 fn beginning(title: &str, start: &Start) -> String {

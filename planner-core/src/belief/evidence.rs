@@ -25,8 +25,15 @@ const BEGINS: f32 = 0.05;
 /// The chance with which a stuck sensor repeats its label.
 const REPEATS: f32 = 0.97;
 
+/// A label counts as no less likely than this, so that one label does not hide what the others say.
+const LEAST: f32 = 1e-6;
+
 /// Evidence is not counted beyond this, as single precision ends.
 const MOST: f32 = 1e30;
+
+/// A failing sensor is suspected if it explains the labels so many times better than a coin: a coin stands for a boundary
+/// that bends or moves as well.
+const CLEARLY: f32 = 8.0;
 
 /// What explains the labels better than the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -90,17 +97,16 @@ impl Evidence {
     pub const NONE: Self = Self { made: [0.0; 3], left: 1.0, last: None };
 
     /// Takes in a label. `chance` is that of this label before it was read, or more: what
-    /// [`Belief::chance_of`](crate::belief::Belief::chance_of) says. With 0 it is as a label that was refused.
+    /// [`Belief::chance_of`](crate::belief::Belief::chance_of) says. With 0 it is a label that no line left has.
     pub fn observe(&mut self, label: Label, chance: f64) {
-        let chance = chance as f32;
+        let chance = if chance as f32 > LEAST { chance as f32 } else { LEAST };
         let repeats = match self.last {
             None => 0.5,
             Some(last) if last == label => REPEATS,
             Some(_) => 1.0 - REPEATS,
         };
         for (made, bet) in self.made.iter_mut().zip([0.5, 1.0 - chance, repeats]) {
-            let ratio = bet / chance;
-            let more = (*made + BEGINS * self.left) * if ratio < MOST { ratio } else { MOST };
+            let more = (*made + BEGINS * self.left) * (bet / chance);
             *made = if more < MOST { more } else { MOST };
         }
         self.left *= 1.0 - BEGINS;
@@ -116,8 +122,8 @@ impl Evidence {
     pub fn alarm(&self) -> Option<Alarm> {
         let [coin, inverted, stuck] = self.made;
         let suspect = match () {
-            () if stuck >= coin && stuck >= inverted => Suspect::Stuck,
-            () if inverted > coin => Suspect::Inverted,
+            () if stuck > CLEARLY * coin && stuck > inverted => Suspect::Stuck,
+            () if inverted > CLEARLY * coin => Suspect::Inverted,
             () => Suspect::Coin,
         };
         let evidence = self.value();

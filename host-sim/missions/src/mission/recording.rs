@@ -5,6 +5,7 @@
 use anyhow::{Result, anyhow};
 use nalgebra::Point2;
 use planner_core::belief::doubtful_labels::Hypothesis;
+use planner_core::belief::evidence::{Alarm, Evidence};
 use planner_core::error::ObservationError;
 use planner_core::{
     Estimates, Line, Pose, PosteriorView, Prior, Reading, Reliability, Step, StopReason,
@@ -15,8 +16,8 @@ use crate::mission::flight::Flown;
 use crate::mission::legs::{Leg, Legs};
 use crate::mission::read_out::{Knowledge, LEVEL, ReadOut};
 use crate::mission::results::{
-    AUDIT, BestRecord, CredibleRecord, End, Ending, EstimateRecords, FitRecord, KeepOutRecord,
-    LineError, Results, Start, StepResult, VERSION, cost, recovery_name, stage_name,
+    AUDIT, AlarmRecord, BestRecord, CredibleRecord, End, Ending, EstimateRecords, FitRecord,
+    KeepOutRecord, LineError, Results, Start, StepResult, VERSION, cost, recovery_name, stage_name,
 };
 use crate::mission::stop::{AuditRecord, GoalRecord};
 use crate::mission::vehicle::VehicleTable;
@@ -45,13 +46,19 @@ pub struct Recorder {
     before: Vec<Box<dyn ReadOut>>,
     /// What is known now.
     belief: Box<dyn ReadOut>,
+    /// What the labels say against a straight, still line.
+    evidence: Evidence,
+    /// The most of it that was an alarm.
+    alarm: Option<AlarmRecord>,
 }
 
 impl Recorder {
     /// Nothing has happened yet.
     pub fn new(mission: Mission) -> Self {
         let belief = mission.belief();
-        Self { mission, steps: Vec::new(), results: Vec::new(), before: Vec::new(), belief }
+        let (steps, results, before) = (Vec::new(), Vec::new(), Vec::new());
+        let evidence = Evidence::NONE;
+        Self { mission, steps, results, before, belief, evidence, alarm: None }
     }
 
     /// Takes down a step, where the robot truly is after it, if it errs, and what is known.
@@ -62,7 +69,15 @@ impl Recorder {
         let (cost_before, metres_before) =
             self.last().map_or((0.0, 0.0), |last| (last.control_cost, last.metres));
         let reliability = belief.hypotheses().map(|table| table.reliability(step.pose.site));
+        if let Some(Reading::Side(label)) = step.reading {
+            self.evidence.observe(label, before.chance_of(step.pose.site, label));
+        }
         self.steps.push(*step);
+        let alarm = self.evidence.alarm();
+        let (number, most) = (self.steps.len(), self.alarm.map_or(0.0, |alarm| alarm.evidence));
+        if let Some(Alarm { evidence, suspect }) = alarm.filter(|it| it.evidence > most) {
+            self.alarm = Some(AlarmRecord { step: number, evidence, suspect });
+        }
         self.results.push(StepResult {
             step: self.steps.len(),
             problem: motion.stage.map(|stage| stage_name(stage).into()),
@@ -81,6 +96,7 @@ impl Recorder {
             hypotheses: doubt.map(|doubt| doubt.hypotheses),
             pruned_mass: doubt.map(|doubt| doubt.pruned_mass),
             entropy: doubt.map(|doubt| doubt.entropy),
+            evidence: alarm.map(|alarm| alarm.evidence),
             flown: None,
             fact: self.fact(true_pose.unwrap_or(step.pose)),
             expected: motion.wants_label.then(|| before.expects(motion.target.site)),
@@ -137,7 +153,7 @@ impl Recorder {
 
     /// The mission is over.
     pub fn end(self, Flown { ending, belief }: Flown) -> Recording {
-        let Self { mission, steps, results, before, .. } = self;
+        let Self { mission, steps, results, before, alarm, .. } = self;
         let doubted = belief.hypotheses().and_then(|table| doubted(table, &mission.world));
         let (best, credible) = doubted.unzip();
         let world = mission.world.after(steps.len());
@@ -148,6 +164,7 @@ impl Recorder {
             best,
             credible,
             goal: GoalRecord::of(&mission, &*belief, audit(&results, ending)),
+            alarm,
             flown: Legs::of(&results.iter().filter_map(|step| step.flown).collect::<Vec<_>>()),
         };
         let results = Results { start: start(&mission), steps: results, end };

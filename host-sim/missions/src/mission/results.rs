@@ -7,6 +7,7 @@
 use std::borrow::Cow;
 
 use nalgebra::Point2;
+use planner_core::belief::evidence::Suspect;
 use planner_core::dynamics::Control;
 use planner_core::geometry::lattice::UNITS_PER_METRE;
 use planner_core::link::message::MissionArea;
@@ -139,6 +140,9 @@ pub struct StepResult {
     /// Where labels may err: the entropy over the hypotheses, bits.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub entropy: Option<f64>,
+    /// The evidence against a straight, still line, from a warning on.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub evidence: Option<f32>,
     /// How a real vehicle made it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flown: Option<Leg>,
@@ -179,9 +183,23 @@ pub struct End {
     /// Its goal, if it had one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub goal: Option<GoalRecord>,
+    /// The most that spoke against a straight, still line, from a warning on.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub alarm: Option<AlarmRecord>,
     /// How near to its targets a real vehicle came.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flown: Option<Legs>,
+}
+
+/// What speaks against a straight, still line and a sensor as described.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub struct AlarmRecord {
+    /// The step after which it was the most.
+    pub step: usize,
+    /// The e-value then.
+    pub evidence: f32,
+    /// What explains the labels best.
+    pub suspect: Suspect,
 }
 
 /// The most likely hypothesis.

@@ -54,7 +54,10 @@ pub(crate) fn ended(results: &Results) -> Vec<Told> {
     let why = text::why(&results.end.reason);
     let promise = results.end.goal.as_ref().map(|goal| text::promise(goal).trim_end().to_owned());
     let promise = promise.map_or(String::new(), |promise| format!(" {promise}"));
-    vec![Told::new("Ended", format!("{}.{promise}", sentence(why)))]
+    let mut ended = vec![Told::new("Ended", format!("{}.{promise}", sentence(why)))];
+    let alarm = results.end.alarm.as_ref();
+    ended.extend(alarm.map(|it| Told::new("Warning", text::warning(it).trim_end().to_owned())));
+    ended
 }
 
 /// What a mission is, before it begins.
