@@ -124,7 +124,7 @@
 //!   [`ObservationError`](error::ObservationError), and the planner stays as it was.
 //! - Positions lie within 8,192 m of the origin, one motion is shorter than 3,000 m, and a buffer holds
 //!   3 to 128 samples.
-//! - The boundary is one straight line. [`Cfc`] and [`Scc`] look one step ahead, [`Lookahead`] two.
+//! - The boundary is one straight, still line. [`watch`] says when the labels speak against it. [`Cfc`] and [`Scc`] look one step ahead, [`Lookahead`] two.
 
 #[cfg(not(feature = "internals"))]
 mod belief;
@@ -151,6 +151,7 @@ pub mod robot;
 mod search;
 #[cfg(feature = "internals")]
 pub mod search;
+pub mod watch;
 
 pub use nalgebra;
 
@@ -188,6 +189,6 @@ pub use crate::planner::options::{Crossing, Following, Options};
 pub use crate::planner::scc::{Policy, Scc};
 pub use crate::planner::setup::{Restart, aimed_for};
 pub use crate::planner::snapshot::{Persist, SNAPSHOT_VERSION, Snapshot};
-pub use crate::planner::{Motion, Plan, Planner, StopReason};
+pub use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
 pub use crate::robot::{Agent, Event, PinSensor, Step, ThresholdSensor, Vehicle};
 pub use crate::search::objective::EffortWeight;
