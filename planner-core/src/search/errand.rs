@@ -1,8 +1,8 @@
 //! A motion on the way to a place, for any vehicle.
 //!
 //! The vehicle turns to one side, on the spot or round its circle, until a drive brings it nearer to the place, and makes
-//! that drive. Of all such ways the errand takes the one with the fewest motions. If there is none, it drives straight
-//! on first. Keep-outs are passed by their waypoints (`detour`).
+//! that drive. Of all such ways the errand takes the one with the fewest motions. If there is none, a vehicle that goes
+//! round to turn drives straight on first. Keep-outs are passed by their waypoints (`detour`).
 //!
 //! An errand has no state, and it need not arrive: whoever runs it counts the motions.
 
@@ -115,7 +115,10 @@ fn search<D: Dynamics, G: Workspace>(
         if best.is_some() {
             break;
         }
-        let Some(leg) = motions.straight(from.pose) else { break };
+        // One that turns on the spot has tried all directions.
+        let goes_round = motions.dynamics.turning_circle(from.pose, Side::Left).is_some();
+        let ahead = if goes_round { motions.straight(from.pose) } else { None };
+        let Some(leg) = ahead else { break };
         from = from.after(leg);
     }
     best

@@ -1,11 +1,12 @@
 //! Whole missions in simulated worlds: how they end, what they find, and what they never do.
 
 mod anything;
-mod audit;
+
 mod campaign;
 mod failures;
 mod fields;
 mod garden;
+mod honesty;
 mod lookahead;
 mod margin;
 mod recovery;
