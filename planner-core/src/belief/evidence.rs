@@ -164,7 +164,7 @@ mod tests {
             for model in [
                 |_: u32, _: u32| 0.5,
                 |n: u32, _: u32| 0.1 + 0.8 * f64::from(n % 3) / 2.0,
-                |_: u32, before: u32| if before.count_ones() % 2 == 0 { 0.3 } else { 0.8 },
+                |_: u32, before: u32| if before.count_ones().is_multiple_of(2) { 0.3 } else { 0.8 },
             ] {
                 let mean = mean(labels, model);
                 assert!((mean - 1.0).abs() < 1e-4, "{labels}: {mean}");
@@ -181,7 +181,7 @@ mod tests {
         };
         let (up, down) = (Label::Positive, Label::Negative);
         assert_eq!(after(&mut (0..20).map(|_| (up, 0.5))), Some(Suspect::Stuck));
-        let turns = |n: u32| if n % 2 == 0 { up } else { down };
+        let turns = |n: u32| if n.is_multiple_of(2) { up } else { down };
         assert_eq!(after(&mut (0..20).map(|n| (turns(n), 0.1))), Some(Suspect::Inverted));
         let half = |n: u32| if n % 4 < 2 { 0.05 } else { 0.95 };
         assert_eq!(after(&mut (0..40).map(|n| (turns(n), half(n)))), Some(Suspect::Coin));

@@ -236,7 +236,7 @@ fn audit(steps: &[StepResult], ending: Ending) -> Option<AuditRecord> {
     let is_of_audit = |step: &&StepResult| step.problem.as_deref() == Some(AUDIT);
     let before = steps.iter().take_while(|step| !is_of_audit(step)).last();
     let audited = || steps.iter().filter(is_of_audit);
-    let last = audited().last()?;
+    let last = audited().next_back()?;
     let refuted = (ending == Ending::Stopped(StopReason::NoLine)).then_some(last.step);
     let labels = audited().filter(|step| step.label.is_some()).count();
     Some(AuditRecord {
