@@ -5,7 +5,7 @@ use planner_core::belief::estimate;
 use planner_core::geometry::lattice::{LIMIT, UNITS_PER_METRE, Vector};
 use planner_core::link::message::MissionArea;
 use planner_core::{
-    AnyVehicle, Area, Label, Line, LocalLine, PosteriorView, Reading, Sample, Site, Step,
+    AnyVehicle, Area, Label, Line, LocalLine, PosteriorView, Reading, Sample, Site, Stage, Step,
 };
 
 use crate::mission::definition::{Mission, Table};
@@ -204,6 +204,17 @@ impl Picture {
             label: s.label,
             ring: (!mission.world.after(number).agrees(s.site, s.label)).then_some(Ring::Wrong),
         };
+        // No belief takes in the labels of an audit.
+        let refuted = results.end.goal.and_then(|goal| goal.audit?.refuted);
+        let audited = (1..).zip(&recording.steps).filter_map(|(number, step)| {
+            let is_of_audit = step.motion.stage == Some(Stage::Audit);
+            let Some(Reading::Side(label)) = step.reading.filter(|_| is_of_audit) else {
+                return None;
+            };
+            let site = step.pose.site;
+            let disagrees = (refuted == Some(number)).then_some(Ring::Disagrees);
+            Some(Dot { ring: disagrees, ..dot((&Sample { site, label }, number)) })
+        });
         let mut from = Point2::from(mission.start.site);
         let stops = results.steps.iter().map(|step| Stop {
             way: {
@@ -222,7 +233,7 @@ impl Picture {
             note: Some(note(recording)),
             area,
             ground: Ground::of(&**belief, area),
-            samples: samples.zip(numbers).map(dot).collect(),
+            samples: samples.zip(numbers).map(dot).chain(audited).collect(),
             given,
             path: Some((Point2::from(mission.start.site), stops.collect())),
             truth: Truth::of(mission, recording.steps.len()),

@@ -58,6 +58,30 @@ fn a_mission_ends_when_enough_is_known_and_says_what_it_promises() {
     assert_eq!(end["goal"], serde_json::json!({ "misclassified": 0.001, "is_met": true }));
 }
 
+/// A boundary that bends ends no mission as known.
+#[test]
+fn a_mission_that_no_line_explains_says_so() {
+    let circle = "truth = { circle = [6.0, 22.0, 16.0] }";
+    let scenario = stopping(GOOD, "{ slope_arc_deg = 0.5 }");
+    let scenario = scenario.lines().map(|it| if it.starts_with("truth") { circle } else { it });
+    let scenario = scenario.collect::<Vec<_>>().join("\n");
+    let (story, records) = flown(&scenario);
+    let end = &records[records.len() - 1];
+    assert_eq!((&end["reason"], &end["goal"]["is_met"]), (&"no line".into(), &false.into()));
+    assert_eq!(end["goal"]["audit"]["refuted"], records.len() - 2);
+    assert!(end["alarm"]["evidence"].as_f64() > Some(100.0), "{end}");
+    for part in
+        ["no straight, still line explains the labels", "Not known: ", "Refuted: ", "Alarm: "]
+    {
+        assert!(story.contains(part), "{part} in {story}");
+    }
+    let folder = folder();
+    fs::write(folder.path().join("m.toml"), scenario).expect("a file");
+    prints(folder.path(), &["run", "m.toml", "--figure", "m.svg", "--report", "m.html"]);
+    let figure = fs::read_to_string(folder.path().join("m.svg")).expect("a figure");
+    assert!(figure.contains("disagrees with the line"));
+}
+
 #[test]
 fn in_noise_a_promise_has_a_level() {
     let steps = |stop: &str, level: f64| {
