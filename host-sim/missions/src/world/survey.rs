@@ -1,7 +1,7 @@
 //! What a curved boundary makes of an area: the share that a line misclassifies, and the line that misclassifies least.
 //!
 //! The area is cut into columns and into rows. Along each of them the boundary is found exactly, but for parts thinner
-//! than a [`PLACES`]th of it, so that a share is a sum of lengths.
+//! than one `PLACES`th of it, so that a share is a sum of lengths.
 
 use std::f64::consts::PI;
 
