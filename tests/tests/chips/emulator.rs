@@ -46,16 +46,20 @@ fn missions() -> Vec<Mission> {
             2 => (Algorithm::Lookahead, false, Grid::Fine),
             _ => (Algorithm::Lookahead, true, Grid::Paper),
         };
-        let steps = if is_noisy { 8 } else { 20 };
+        let steps = match number % 16 {
+            _ if is_noisy => 8,
+            2 | 6 => 32, // with an audit
+            _ => 20,
+        };
         let mut mission = standard_field::standard(5, number, algorithm, steps);
         mission.vehicle = grid.into();
         if is_noisy {
             mission.noise = Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.5) });
         }
         let accuracy = match number % 16 {
-            2 => Some(Accuracy::Misclassified(3_000)),
+            2 => Some(Accuracy::Misclassified(30_000)),
             3 => Some(Accuracy::Misclassified(400_000)),
-            6 => Angle::from_degrees(0.5).ok().map(Accuracy::SlopeArc),
+            6 => Angle::from_degrees(5.0).ok().map(Accuracy::SlopeArc),
             7 => Angle::from_degrees(45.0).ok().map(Accuracy::SlopeArc),
             _ => None,
         };
