@@ -16,7 +16,7 @@ const PLANNER_CORE: Storeys = &[
     &["search"],
     &["planner"],
     &["robot"],
-    &["dynamics", "error", "link"],
+    &["dynamics", "error", "link", "watch"],
 ];
 
 const HOST_SIM: Storeys = &[
