@@ -119,12 +119,15 @@ fn run<D: Dynamics + Copy>(case: &Case, dynamics: D, world: &World) -> Option<()
         Accuracy::Misclassified(case.varrho % 1_000_000)
     };
     let goal = Goal { accuracy, level: 500_000 + case.start.2 % 500_000 };
-    for goal in [None, Some(goal)] {
+    for (goal, audits) in [(None, true), (Some(goal), false), (Some(goal), true)] {
         let planner = Lookahead::new(area, dynamics, space.clone()).expect(AGREE).until(goal);
+        let planner = if audits { planner } else { planner.without_audit() };
         fly_true(case, planner, world, start, area, |planner, pose| {
             let plan = look_ahead(planner, pose);
             let known = plan == Plan::Stop(StopReason::Known);
-            assert_eq!(known, goal.is_some_and(|it| planner.belief().meets(it, area)));
+            let is_met = goal.is_some_and(|it| planner.belief().meets(it, area));
+            assert!(if audits { is_met || !known } else { is_met == known });
+            assert_ne!(plan, Plan::Stop(StopReason::NoLine), "a true line is accused");
             if let (true, Accuracy::SlopeArc(most)) = (known, accuracy) {
                 let width = planner.belief().slope_arc().width_deg();
                 assert!(width <= most.radians().to_degrees(), "{width} of {most:?}");
@@ -151,17 +154,19 @@ fn run<D: Dynamics + Copy>(case: &Case, dynamics: D, world: &World) -> Option<()
     Some(())
 }
 
-/// A plan of look-ahead: the same each time, and if a label is wanted, on uncertain ground.
+/// A plan of look-ahead: the same each time, and if a label is wanted, on uncertain ground, or in an audit on certain
+/// ground.
 fn look_ahead<D: Dynamics + Clone, B: PredictiveBelief + Clone>(
     planner: &mut Lookahead<D, B, Area, Accuracy>,
     pose: Pose,
 ) -> Plan {
     let plan = planner.plan(pose);
     assert_eq!(plan, planner.plan(pose), "from {pose:?}");
-    if let Plan::Move(Motion { recovery, target, wants_label, examined, .. }) = plan {
+    if let Plan::Move(Motion { stage, recovery, target, wants_label, examined, .. }) = plan {
         // Of a copy, as the planner itself would forget its turns.
         let certainty = planner.clone().belief_mut().ground().certainty(target.site);
-        assert!(!wants_label || certainty == Certainty::Uncertain, "to {target:?}");
+        let is_open = certainty == Certainty::Uncertain;
+        assert!(!wants_label || is_open != (stage == Some(Stage::Audit)), "to {target:?}");
         // The ladder looks further.
         assert!(examined <= if recovery.is_some() { LOOKS } else { EVALUATIONS });
     }

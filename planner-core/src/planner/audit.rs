@@ -30,8 +30,8 @@ const PLACES: u8 = 6;
 const ALONG: [[f32; 5]; 3] =
     [[0.03, 0.08, 0.14, 0.21, 0.29], [0.5, 0.46, 0.54, 0.4, 0.6], [0.97, 0.92, 0.86, 0.79, 0.71]];
 
-/// How near a place lies to uncertain ground, as a share of the mean of the area's sides: 12.5 cm of 20 m. No nearer
-/// than the shortest motion, and never farther than 12.5 cm unless that is longer.
+/// How near a place lies to uncertain ground, as a share of the mean of the area's sides: 12.5 cm of 20 m. It lies no
+/// farther than 12.5 cm, unless the vehicle cannot aim so well: no nearer than the shortest motion.
 const NEAR: f32 = 1.0 / 160.0;
 
 /// A vehicle that goes round a circle to turn is led no nearer to a place than this share of the circle's radius.
@@ -116,7 +116,7 @@ impl Audit {
         let least = grid.step_units().max(NEAR_CIRCLE * circle as f32);
         let chord = Chord::of(estimate, area.bounds(), least)?;
         let reach = f32::from(grid.speeds().saturating_sub(1)) * grid.step_units();
-        let most = TURNS + (2.0 * chord.length() / reach) as u16;
+        let most = TURNS.saturating_add((2.0 * chord.length() / reach) as u16);
         let mut course = self.now;
         while course.missed < MISSES {
             let (place, first) = match course.to {
@@ -164,6 +164,10 @@ impl Audit {
         // Wherever the position really is, the lines agree.
         let other = lines.place(site, -label);
         if other.is_none_or(|it| lines.certainty(it) != Certainty::Certain(label)) {
+            return false;
+        }
+        // One of the lines may pass just here.
+        if reading == Reading::Boundary && lines.certain_within(site) <= 0.0 {
             return false;
         }
         if reading == Reading::Side(label) {

@@ -326,15 +326,17 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion> Planner
         reading: Option<Reading>,
         tolerance: Tolerance,
     ) -> Result<(), ObservationError> {
+        let mut audit = self.audit;
         let is_of_audit = self.goal.is_some()
             && tolerance <= self.belief.belief().tolerance()
-            && self.audit.as_mut().is_some_and(|audit| {
+            && audit.as_mut().is_some_and(|audit| {
                 let lines = lines_within(&self.belief, tolerance);
                 audit.observe(lines, pose.site, reading)
             });
         if let Some(reading) = reading.filter(|_| !is_of_audit) {
             self.belief.observe_within(pose.site, reading, tolerance)?;
         }
+        self.audit = audit;
         self.silence.observe(reading.is_some());
         Ok(())
     }
@@ -512,6 +514,44 @@ mod tests {
         let mut planner = Lookahead::new(area, Unicycle::default(), space.unwrap()).unwrap();
         let pose = Pose { site: lattice(-60_000, 40_000), heading: Heading::default() };
         assert!(matches!(planner.plan(pose), Plan::Move(_)));
+    }
+
+    #[test]
+    fn an_audit_begins_in_an_area_of_any_size() {
+        for field in fields() {
+            let shortest = Unicycle::new(10_000, 1.5, 2, 1).unwrap();
+            let area = Area::metres([-8_000.0, -8_000.0], [8_000.0, 8_000.0]).unwrap();
+            let space = VersionSpace::<16>::new(&field.given()).unwrap();
+            let goal = Goal::slope_within_degrees(89.0).unwrap();
+            let planner = Lookahead::new(area, shortest, space).unwrap();
+            let plan = planner.until(goal).plan(field.start());
+            assert!(matches!(plan, Plan::Move(Motion { stage: Some(Stage::Audit), .. })));
+        }
+    }
+
+    #[test]
+    fn a_refused_label_leaves_an_audit_as_it_was() {
+        for field in fields() {
+            let (start, goal) = (field.start(), Goal::slope_within_degrees(89.0).unwrap());
+            let mut planner = field.true_labels::<5>();
+            let Plan::Move(motion) = planner.plan(start) else { panic!("no motion") };
+            let label = field.label(motion.target.site);
+            planner.observe(motion.target, Some(label.into())).unwrap();
+            let mut planner = planner.until(goal);
+            let plan = planner.plan(start);
+            assert!(matches!(plan, Plan::Move(_)));
+            let before = planner.snapshot();
+            // It ended where nothing is certain, and there is no room.
+            let middle = Site::try_from(Point2::new(10.0, 10.0)).unwrap();
+            let places =
+                (0..400).map(|n| middle.step(Vector::new(n % 20 << 13, n / 20 << 13).unwrap()));
+            let open =
+                |site: &Site| planner.belief.ground().certainty(*site) == Certainty::Uncertain;
+            let Some(site) = places.map(Result::unwrap).find(open) else { continue };
+            let refused = planner.observe(Pose { site, ..start }, Some(Label::Positive.into()));
+            assert!(matches!(refused, Err(ObservationError::Full(_))));
+            assert_eq!(planner.snapshot(), before);
+        }
     }
 
     #[test]
