@@ -3,7 +3,7 @@
 
 #![forbid(unsafe_code)]
 
-pub use host_missions::{campaign, mission, output, reference, world};
+pub use host_missions::{campaign, fitting, mission, output, reference, world};
 
 pub mod cli;
 #[cfg(feature = "mavlink")]

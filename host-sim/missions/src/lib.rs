@@ -5,6 +5,7 @@
 #![forbid(unsafe_code)]
 
 pub mod campaign;
+pub mod fitting;
 pub mod mission;
 pub mod output;
 pub mod reference;

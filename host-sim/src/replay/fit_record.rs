@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::replay::fit::{Fit, Piece, Run, TESTS};
+use crate::fitting::fit::{Fit, Piece, Run, TESTS};
 use crate::replay::fit_words::Words;
 use crate::replay::sample_file::SampleFile;
 

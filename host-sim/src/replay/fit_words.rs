@@ -1,7 +1,7 @@
 //! What a verdict on a fit says, and what to do, in words.
 
-use crate::replay::fit::stretch::Fault;
-use crate::replay::fit::{Fit, Run, Verdict};
+use crate::fitting::fit::Fault;
+use crate::fitting::fit::{Fit, Run, Verdict};
 use crate::replay::sample_file::SampleFile;
 
 /// Fewer labels than this show gross faults alone.

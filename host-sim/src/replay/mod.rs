@@ -1,37 +1,27 @@
-//! Recorded samples: the lines that agree with them, however many they are.
+//! Recorded samples: how files are read, and what [`fitting`](crate::fitting) says of them.
 
 pub mod answer;
 pub mod columns;
 pub mod crs;
 pub mod delimiter;
-pub mod doubt;
-pub mod facing;
+#[cfg(test)]
+mod false_alarms;
 mod figure;
-pub(crate) mod fit;
 mod fit_record;
 mod fit_words;
 pub mod frame;
 pub mod geojson;
 pub mod geojson_file;
 pub mod gpx_file;
-mod halving;
-pub mod hull;
 pub mod label_name;
 pub mod label_words;
-pub mod line_posterior;
-pub mod line_set;
 pub mod missing;
 pub mod numbers;
-pub mod outlier;
-pub mod patch;
 mod reading;
 pub mod record;
 pub mod rows;
 pub mod sample_file;
-pub mod separation;
-pub mod shortest_pairs;
 pub mod swapped;
 pub mod table_file;
-pub mod tolerant;
 pub mod trace_file;
 mod words;

@@ -21,6 +21,7 @@ const PLANNER_CORE: Storeys = &[
 
 const HOST_SIM: Storeys = &[
     &["output", "world"],
+    &["fitting"],
     &["mission"],
     &["campaign", "reference", "size"],
     &["report"],

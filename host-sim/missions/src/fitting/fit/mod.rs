@@ -19,22 +19,21 @@
 pub(crate) mod counts;
 pub(crate) mod labels;
 pub(crate) mod shapes;
-pub(crate) mod stretch;
+pub mod stretch;
 pub(crate) mod sweep;
-#[cfg(test)]
-mod tests;
 mod trials;
 
 use nalgebra::{Point2, Vector2};
 use planner_core::Line;
 
-use crate::replay::fit::labels::Labels;
-use crate::replay::fit::shapes::{Lift, arc, moving, two_lines};
-use crate::replay::fit::stretch::{Fault, stretch};
-use crate::replay::fit::sweep::Directed;
+use crate::fitting::fit::labels::Labels;
+use crate::fitting::fit::shapes::{Lift, arc, moving, two_lines};
+pub use crate::fitting::fit::stretch::Fault;
+use crate::fitting::fit::stretch::stretch;
+use crate::fitting::fit::sweep::Directed;
 
 /// The names of the tests.
-pub(crate) const TESTS: [&str; 9] = [
+pub const TESTS: [&str; 9] = [
     "too many",
     "too few",
     "longest run",
@@ -47,63 +46,69 @@ pub(crate) const TESTS: [&str; 9] = [
 ];
 
 /// A test speaks against the line if its p-value is this or less.
-pub(crate) const EACH: f64 = 0.01 / TESTS.len() as f64;
+pub const EACH: f64 = 0.01 / TESTS.len() as f64;
 
 /// How many pieces of the line are told apart.
 const PIECES: usize = 5;
 
 /// What is asked of a fit.
-pub(crate) struct Question<'a> {
+pub struct Question<'a> {
     /// Where labels that may be wrong were read, in the order of the file.
-    pub(crate) at: &'a [Point2<f64>],
-    pub(crate) is_positive: &'a [bool],
+    pub at: &'a [Point2<f64>],
+    /// Whether the label is +1.
+    pub is_positive: &'a [bool],
     /// The most likely line.
-    pub(crate) line: &'a Line,
+    pub line: &'a Line,
     /// How often labels are said to be true.
-    pub(crate) p: f64,
+    pub p: f64,
     /// Metres; 0 where positions are exact.
-    pub(crate) tolerance: f64,
+    pub tolerance: f64,
 }
 
 /// How well a line fits. Labels are numbered as they were given.
 #[derive(Clone, Debug)]
-pub(crate) struct Fit {
+pub struct Fit {
     /// Labels that may disagree: further from the line than the tolerance.
-    pub(crate) labels: usize,
-    pub(crate) disagreeing: usize,
+    pub labels: usize,
+    /// How many of them do.
+    pub disagreeing: usize,
     /// The counts that neither *too many* nor *too few* speaks against.
-    pub(crate) expected: [usize; 2],
+    pub expected: [usize; 2],
     /// How often labels are true, by those that disagree.
-    pub(crate) suggested_p: f64,
+    pub suggested_p: f64,
     /// The most disagreeing labels in a row.
-    pub(crate) longest_run: Option<Run>,
-    pub(crate) along: Vec<Piece>,
+    pub longest_run: Option<Run>,
+    /// Pieces of the line, from end to end.
+    pub along: Vec<Piece>,
     /// The p-values of the [`TESTS`].
-    pub(crate) p_values: [f64; TESTS.len()],
-    pub(crate) verdict: Verdict,
+    pub p_values: [f64; TESTS.len()],
+    /// What follows from the tests.
+    pub verdict: Verdict,
 }
 
 /// Disagreeing labels in a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Run {
-    pub(crate) count: usize,
+pub struct Run {
+    /// How many.
+    pub count: usize,
     /// The first and the last.
-    pub(crate) ends: [usize; 2],
+    pub ends: [usize; 2],
 }
 
 /// A piece of the line, with the labels beside it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Piece {
+pub struct Piece {
     /// Where it begins and ends, metres.
-    pub(crate) ends: [Point2<f64>; 2],
-    pub(crate) labels: usize,
+    pub ends: [Point2<f64>; 2],
+    /// How many labels are nearer to it than to other pieces.
+    pub labels: usize,
     /// Labels -1 on the +1 side, and labels +1 on the -1 side.
-    pub(crate) disagreeing: [usize; 2],
+    pub disagreeing: [usize; 2],
 }
 
 /// What explains the labels.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Verdict {
+pub enum Verdict {
     /// A straight line, as far as the tests see.
     Fits,
     /// A straight line, with more wrong labels than was said.
@@ -114,18 +119,42 @@ pub(crate) enum Verdict {
     Row(Run),
     /// The labels from one to another say something else than where they are: so many in all, of which so many
     /// disagree with the line. Elsewhere labels are true with probability `p`.
-    Stretch { ends: [usize; 2], fault: Fault, counts: [usize; 2], p: f64 },
+    Stretch {
+        /// The first and the last label.
+        ends: [usize; 2],
+        /// What they say instead.
+        fault: Fault,
+        /// How many they are, and how many disagree with the line.
+        counts: [usize; 2],
+        /// How often labels elsewhere are true.
+        p: f64,
+    },
     /// An arc of this radius, which is so far from its chord. So many labels disagree with it.
-    Bend { radius: f64, sagitta: f64, disagreeing: usize },
+    Bend {
+        /// Metres.
+        radius: f64,
+        /// How far the arc is from its chord, metres.
+        sagitta: f64,
+        /// How many labels disagree with the arc.
+        disagreeing: usize,
+    },
     /// A line that moved so far while the labels were read.
-    Drift { metres: f64, disagreeing: usize },
+    Drift {
+        /// How far the line moved.
+        metres: f64,
+        /// How many labels disagree with the moving line.
+        disagreeing: usize,
+    },
     /// Two lines.
-    TwoLines { disagreeing: usize },
+    TwoLines {
+        /// How many labels disagree with both.
+        disagreeing: usize,
+    },
 }
 
 impl Verdict {
     /// Its name in records.
-    pub(crate) fn name(&self) -> &'static str {
+    pub fn name(&self) -> &'static str {
         match self {
             Self::Fits => "fits",
             Self::TooHigh => "p too high",
@@ -138,14 +167,14 @@ impl Verdict {
     }
 
     /// Whether what is said of the line is not to be trusted. A `p` that is too low only makes sets too wide.
-    pub(crate) fn is_bad(&self) -> bool {
+    pub fn is_bad(&self) -> bool {
         !matches!(self, Self::Fits | Self::TooLow)
     }
 }
 
 impl Fit {
     /// Of so many labels, all of which agree.
-    pub(crate) fn exact(labels: usize) -> Self {
+    pub fn exact(labels: usize) -> Self {
         Self {
             labels,
             disagreeing: 0,
@@ -159,7 +188,7 @@ impl Fit {
     }
 
     /// How well the most likely line fits.
-    pub(crate) fn of(question: &Question) -> Self {
+    pub fn of(question: &Question) -> Self {
         let Question { at, is_positive, line, p, tolerance } = *question;
         let heights: Vec<_> = at.iter().map(|at| line.distance(*at)).collect();
         let signed =
@@ -208,7 +237,8 @@ impl Fit {
 
 impl Fit {
     /// The same with the labels numbered as `rows` says.
-    pub(crate) fn numbered(mut self, rows: &[usize]) -> Self {
+    #[must_use]
+    pub fn numbered(mut self, rows: &[usize]) -> Self {
         let of = |ends: [usize; 2]| ends.map(|end| rows[end]);
         let of_run = |run: Run| Run { ends: of(run.ends), ..run };
         self.longest_run = self.longest_run.map(of_run);

@@ -10,7 +10,7 @@ use planner_core::{Label, Sample};
 
 /// How far labels and positions can be believed.
 #[derive(Debug)]
-pub(crate) struct Doubt {
+pub struct Doubt {
     /// The probability that a label is true, above 1/2 and below 1.
     p: f64,
     blur: Option<Blur>,
@@ -39,22 +39,24 @@ const NODES: f64 = 128.0;
 
 /// The labels recorded at one position.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Votes {
+pub struct Votes {
     /// Where.
-    pub(crate) at: Point2<f64>,
+    pub at: Point2<f64>,
     /// How many say +1 and may be wrong.
     positive: u32,
     /// How many say -1 and may be wrong.
     negative: u32,
     /// What it is for certain, if that is known.
-    pub(crate) certain: Option<Label>,
+    pub certain: Option<Label>,
 }
 
 /// A logarithm, and how it changes with the distance, per metre.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Told {
-    pub(crate) log: f64,
-    pub(crate) slope: f64,
+pub struct Told {
+    /// The logarithm.
+    pub log: f64,
+    /// Its derivative.
+    pub slope: f64,
 }
 
 /// Beyond this many deviations a position is certainly on its side.
@@ -72,7 +74,7 @@ fn normal_density(t: f64) -> f64 {
 impl Doubt {
     /// Labels that are true with a probability, and positions that are off by a tolerance in metres at most, which is
     /// three deviations.
-    pub(crate) fn new(p: f64, tolerance: Option<f64>) -> Self {
+    pub fn new(p: f64, tolerance: Option<f64>) -> Self {
         let Some(tolerance) = tolerance else { return Self { p, blur: None } };
         let sigma = tolerance / 3.0;
         let exactly = |t: f64| blurred_label(p, sigma, t);
@@ -100,13 +102,13 @@ impl Doubt {
     }
 
     /// How far from a line the side of a position is uncertain, metres; 0 where positions are exact.
-    pub(crate) fn blurred_within(&self) -> f64 {
+    pub fn blurred_within(&self) -> f64 {
         self.blur.as_ref().map_or(0.0, |blur| FAR * blur.sigma)
     }
 
     /// Upper bounds on the first and the second derivative by the distance, for any label. They hold for lines at this
     /// distance from the position, give or take `spread`, metres.
-    pub(crate) fn bounds(&self, distance: f64, spread: f64) -> [f64; 2] {
+    pub fn bounds(&self, distance: f64, spread: f64) -> [f64; 2] {
         let Some(Blur { sigma, bounds, .. }) = &self.blur else { return [0.0; 2] };
         let bin = |at: f64| ((at / sigma + FAR) * 2.0).clamp(0.0, BINS as f64 - 1.0) as usize;
         let within = &bounds[bin(distance - spread)..=bin(distance + spread)];
@@ -125,7 +127,7 @@ impl Doubt {
     }
 
     /// The weight of all labels of a position that is `distance` metres on the +1 side of a line nearby.
-    pub(crate) fn near(&self, votes: &Votes, distance: f64) -> Told {
+    pub fn near(&self, votes: &Votes, distance: f64) -> Told {
         let mut told = Told::default();
         for (count, side) in [(votes.positive, 1.0), (votes.negative, -1.0)] {
             // Nearly all positions have one label.
@@ -139,7 +141,7 @@ impl Doubt {
     }
 
     /// The weight of all labels of a position that is certainly on a side of a line.
-    pub(crate) fn on(&self, votes: &Votes, side: Label) -> f64 {
+    pub fn on(&self, votes: &Votes, side: Label) -> f64 {
         if votes.certain.is_some_and(|certain| certain != side) {
             return f64::NEG_INFINITY;
         }
@@ -174,13 +176,15 @@ impl Blur {
 
 impl Votes {
     /// How many labels may be wrong.
-    pub(crate) fn count(&self) -> f64 {
+    pub fn count(&self) -> f64 {
         f64::from(self.positive) + f64::from(self.negative)
     }
 
     /// The labels by position, relative to `middle`. `certain` has the indices of the samples whose labels are certain.
-    /// If certain labels of a position differ, the error is the index of the second.
-    pub(crate) fn of(
+    ///
+    /// # Errors
+    /// The index of the second of two certain labels of one position that differ.
+    pub fn of(
         samples: &[Sample],
         certain: &[usize],
         middle: Point2<f64>,

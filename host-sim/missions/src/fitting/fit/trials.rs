@@ -1,6 +1,6 @@
 //! Whether few labels show a bend or a drift: by trials.
 //!
-//! For few labels the [bounded odds](crate::replay::fit::shapes) are weak. So the labels are drawn anew, many times, as
+//! For few labels the [bounded odds](crate::fitting::fit::shapes) are weak. So the labels are drawn anew, many times, as
 //! the fitted line and the file's own share of wrong labels would have them. Each time a line and an arc (or a moving
 //! line) are fitted. The p-value is the share of trials in which the arc gains as much as it does in the file. Seeds are
 //! fixed. Trials end when ten have gained as much (Besag and Clifford 1991), so most files need few.
@@ -8,9 +8,9 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use crate::replay::fit::labels::Labels;
-use crate::replay::fit::shapes::Lift;
-use crate::replay::fit::sweep::{Directed, line};
+use crate::fitting::fit::labels::Labels;
+use crate::fitting::fit::shapes::Lift;
+use crate::fitting::fit::sweep::{Directed, line};
 
 /// The most labels with which trials are worth their time. More show by bounded odds what they show.
 const MOST: usize = 600;

@@ -13,33 +13,35 @@
 use planner_core::geometry::lattice::Vector;
 use planner_core::{Label, Sample};
 
-use crate::replay::hull::{Hull, Row};
+use crate::fitting::hull::{Hull, Row};
 
 /// A sample of each label.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Pair {
+pub struct Pair {
     positive: Row,
     negative: Row,
 }
 
 impl Pair {
     /// The difference of their positions: the vector from the negative one to the positive one.
-    pub(crate) fn apart(self) -> Vector {
+    pub fn apart(self) -> Vector {
         self.positive.site() - self.negative.site()
     }
 
-    pub(crate) fn positive(self) -> Sample {
+    /// The one labelled +1.
+    pub fn positive(self) -> Sample {
         self.positive.sample
     }
 
-    pub(crate) fn negative(self) -> Sample {
+    /// The one labelled -1.
+    pub fn negative(self) -> Sample {
         self.negative.sample
     }
 }
 
 /// The hulls of both labels and their polygon of differences.
 #[derive(Debug)]
-pub(crate) struct Facing {
+pub struct Facing {
     positive: Hull,
     negative: Hull,
     /// The polygon's corners, counter-clockwise, some of them more than once. Where an edge comes of two that
@@ -49,7 +51,7 @@ pub(crate) struct Facing {
 
 impl Facing {
     /// The hulls of the first `count` samples of a record.
-    pub(crate) fn of(rows: &[Row], count: usize) -> Self {
+    pub fn of(rows: &[Row], count: usize) -> Self {
         let rows = rows.iter().filter(|row| row.index < count);
         let positive = Hull::of(rows.clone(), Label::Positive);
         let negative = Hull::of(rows, Label::Negative);
@@ -58,24 +60,25 @@ impl Facing {
         Self { positive, negative, differences }
     }
 
-    pub(crate) fn are_of_one_label(&self) -> bool {
+    /// Whether one of the labels is missing.
+    pub fn are_of_one_label(&self) -> bool {
         self.differences.is_empty()
     }
 
     /// The corners of the polygon of differences, counter-clockwise, some of them more than once.
-    pub(crate) fn differences(&self) -> &[Pair] {
+    pub fn differences(&self) -> &[Pair] {
         &self.differences
     }
 
     /// Whether each hull is on a line.
-    pub(crate) fn are_flat(&self) -> bool {
+    pub fn are_flat(&self) -> bool {
         self.positive.is_flat() && self.negative.is_flat()
     }
 
     /// The rightmost and the leftmost difference as seen from the origin, the nearest of several: samples
     /// through which the lines pass that touch both hulls and pass between them. `None` when the hulls touch
     /// each other: no line separates them.
-    pub(crate) fn ends(&self) -> Option<[Pair; 2]> {
+    pub fn ends(&self) -> Option<[Pair; 2]> {
         let length = |pair: Pair| pair.apart().dot(pair.apart());
         let end = |side: i64| {
             self.differences.iter().copied().reduce(|end, pair| {
@@ -102,7 +105,7 @@ impl Facing {
 
     /// The corners that bound the separating lines, in the cyclic order of a cell: those of the positive hull
     /// from the left end to the right, then those of the negative one back again.
-    pub(crate) fn between(&self, right: Pair, left: Pair) -> Vec<Row> {
+    pub fn between(&self, right: Pair, left: Pair) -> Vec<Row> {
         let positive: Vec<_> = self.positive.corners().collect();
         let mut negative: Vec<_> = self.negative.corners().collect();
         negative.reverse();

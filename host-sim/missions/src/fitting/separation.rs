@@ -10,23 +10,23 @@ use planner_core::geometry::lattice::orient;
 use planner_core::geometry::line::Bound;
 use planner_core::{LocalLine, Sample};
 
-use crate::replay::facing::Facing;
-use crate::replay::halving::last_good;
-use crate::replay::hull::Row;
+use crate::fitting::facing::Facing;
+use crate::fitting::halving::last_good;
+use crate::fitting::hull::Row;
 
 /// All lines that separate a record: a version space of any size.
 #[derive(Debug)]
-pub(crate) struct Separation {
+pub struct Separation {
     /// The samples that bound the lines, in cyclic order.
     support: Vec<Sample>,
 }
 
 impl Separation {
-    /// The lines that separate some samples, whose rows [in order](crate::replay::hull::in_order) are these.
+    /// The lines that separate some samples, whose rows [in order](crate::fitting::hull::in_order) are these.
     ///
     /// # Errors
     /// As `VersionSpace::new`, for any number of samples.
-    pub(crate) fn of(samples: &[Sample], rows: &[Row]) -> Result<Self, GivenError> {
+    pub fn of(samples: &[Sample], rows: &[Row]) -> Result<Self, GivenError> {
         let hulls = Facing::of(rows, samples.len());
         if hulls.are_of_one_label() {
             return Err(if hulls.are_flat() {
@@ -45,38 +45,38 @@ impl Separation {
     }
 
     /// The samples that bound the lines: the others follow from these.
-    pub(crate) fn support(&self) -> impl ExactSizeIterator<Item = Sample> + Clone + '_ {
+    pub fn support(&self) -> impl ExactSizeIterator<Item = Sample> + Clone + '_ {
         self.support.iter().copied()
     }
 
     /// The lines through two samples that bound the others, in cyclic order.
-    pub(crate) fn bounds(&self) -> impl Iterator<Item = Bound> + Clone + '_ {
+    pub fn bounds(&self) -> impl Iterator<Item = Bound> + Clone + '_ {
         cells::bounds(self.support())
     }
 
     /// The directions of the lines.
-    pub(crate) fn slope_arc(&self) -> SlopeArc {
+    pub fn slope_arc(&self) -> SlopeArc {
         SlopeArc::spanning(self.bounds().map(|bound| bound.along)).unwrap_or_default()
     }
 
     /// The range of the lines' intercepts in metres; `None` when it is unbounded.
-    pub(crate) fn intercepts(&self) -> Option<[f64; 2]> {
+    pub fn intercepts(&self) -> Option<[f64; 2]> {
         cells::intercepts(self.bounds())
     }
 
     /// The mean of the lines.
-    pub(crate) fn centre(&self) -> Option<LocalLine> {
+    pub fn centre(&self) -> Option<LocalLine> {
         estimate::centre_of(&self.support)
     }
 
     /// The line in the middle of the widest strip between the labels.
-    pub(crate) fn maximum_margin(&self) -> Option<LocalLine> {
+    pub fn maximum_margin(&self) -> Option<LocalLine> {
         estimate::maximum_margin_of(&self.support)
     }
 }
 
 /// Whether a line separates some rows in order.
-pub(crate) fn are_separable(rows: &[Row]) -> bool {
+pub fn are_separable(rows: &[Row]) -> bool {
     first_are_separable(rows, usize::MAX)
 }
 
@@ -115,8 +115,8 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
 
     use super::*;
-    use crate::replay::hull::in_order;
-    use crate::replay::shortest_pairs::bisector;
+    use crate::fitting::hull::in_order;
+    use crate::fitting::shortest_pairs::bisector;
 
     /// A few samples on a coarse grid, far apart or near: many repeat each other and many are collinear. Most are
     /// labelled by a line, some of them wrongly.

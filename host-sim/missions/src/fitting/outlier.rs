@@ -7,17 +7,17 @@
 
 use planner_core::{Label, Sample};
 
-use crate::replay::halving::last_good;
-use crate::replay::hull::{Hull, Row};
+use crate::fitting::halving::last_good;
+use crate::fitting::hull::{Hull, Row};
 
 /// Samples that repeat each other, by their indices: one leaves them out together.
-pub(crate) type Repeats = Vec<usize>;
+pub type Repeats = Vec<usize>;
 
 /// The samples each of which, left out alone, leaves both labels and a line that separates them.
 ///
-/// `rows` are the rows [in order](crate::replay::hull::in_order) of the samples, and no line separates them.
+/// `rows` are the rows [in order](crate::fitting::hull::in_order) of the samples, and no line separates them.
 /// `are_separable` says whether a line separates some rows in order. It is asked for all rows a few times.
-pub(crate) fn outliers(
+pub fn outliers(
     samples: &[Sample],
     rows: &[Row],
     are_separable: impl Fn(&[Row]) -> bool,

@@ -18,10 +18,10 @@ use nalgebra::{Point2, Vector2};
 use planner_core::Sample;
 use planner_core::geometry::lattice::{UNITS_PER_METRE, Vector};
 
-use crate::replay::facing::{Facing, Pair};
-use crate::replay::halving::last_good;
-use crate::replay::hull::Row;
-use crate::replay::line_set::{ByNormal, intercepts, slope_arcs};
+use crate::fitting::facing::{Facing, Pair};
+use crate::fitting::halving::last_good;
+use crate::fitting::hull::Row;
+use crate::fitting::line_set::{ByNormal, intercepts, slope_arcs};
 
 /// Directions of the normal between which the same two samples bound the lines, radians.
 #[derive(Clone, Copy, Debug)]
@@ -33,7 +33,7 @@ struct Stretch {
 
 /// All lines that agree with a record within a tolerance.
 #[derive(Debug)]
-pub(crate) struct TolerantSeparation {
+pub struct TolerantSeparation {
     /// The tolerance and the rounding of positions, metres.
     tolerance: f64,
     stretches: Vec<Stretch>,
@@ -41,7 +41,7 @@ pub(crate) struct TolerantSeparation {
 
 /// Why there is no such set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum NoSeparation {
+pub enum NoSeparation {
     /// All samples have the same label.
     OneLabel,
     /// No line agrees with the samples up to and including the one at this index, the first such.
@@ -83,12 +83,11 @@ impl Stretch {
 }
 
 impl TolerantSeparation {
-    /// Of some samples, whose rows [in order](crate::replay::hull::in_order) are these.
-    pub(crate) fn of(
-        samples: &[Sample],
-        rows: &[Row],
-        tolerance: f64,
-    ) -> Result<Self, NoSeparation> {
+    /// Of some samples, whose rows [in order](crate::fitting::hull::in_order) are these.
+    ///
+    /// # Errors
+    /// [`NoSeparation`].
+    pub fn of(samples: &[Sample], rows: &[Row], tolerance: f64) -> Result<Self, NoSeparation> {
         let tolerance = with_rounding(tolerance);
         let all = Facing::of(rows, samples.len());
         if all.are_of_one_label() {
@@ -108,7 +107,7 @@ impl TolerantSeparation {
     }
 
     /// The samples that bound the lines.
-    pub(crate) fn support(&self) -> Vec<Sample> {
+    pub fn support(&self) -> Vec<Sample> {
         let mut support: Vec<Sample> = Vec::new();
         for stretch in &self.stretches {
             for sample in [stretch.pair.positive(), stretch.pair.negative()] {
@@ -121,12 +120,12 @@ impl TolerantSeparation {
     }
 
     /// The directions of the lines, as intervals of degrees.
-    pub(crate) fn slope_arcs(&self) -> Vec<[f64; 2]> {
+    pub fn slope_arcs(&self) -> Vec<[f64; 2]> {
         slope_arcs(self.stretches.iter().map(|it| [it.from - PI / 2.0, it.to - PI / 2.0]))
     }
 
     /// The range of the lines' intercepts, metres; `None` when it is unbounded.
-    pub(crate) fn intercepts(&self) -> Option<[f64; 2]> {
+    pub fn intercepts(&self) -> Option<[f64; 2]> {
         let bounds = self.stretches.iter().flat_map(|it| {
             // The directions in which a line that touches the disc about a sample has its least and greatest intercept.
             let rims = [it.pair.positive(), it.pair.negative()].into_iter().flat_map(|sample| {
@@ -144,7 +143,7 @@ impl TolerantSeparation {
     }
 
     /// Lines that bound the set.
-    pub(crate) fn bounds(&self) -> Vec<ByNormal> {
+    pub fn bounds(&self) -> Vec<ByNormal> {
         let of = |it: &Stretch| {
             let (it, tolerance) = (*it, self.tolerance);
             it.places().flat_map(move |at| it.bounds(at, tolerance))
@@ -153,7 +152,7 @@ impl TolerantSeparation {
     }
 
     /// The mean of the lines, as unit normals with their distances, by the measure of lines.
-    pub(crate) fn centre(&self) -> ByNormal {
+    pub fn centre(&self) -> ByNormal {
         // Gauss's rule of three points.
         const RULE: [(f64, f64); 3] =
             [(-0.774_596_669_241_483_4, 5.0), (0.0, 8.0), (0.774_596_669_241_483_4, 5.0)];
@@ -176,7 +175,7 @@ impl TolerantSeparation {
     }
 
     /// The line that stays furthest from being wrong: in the middle where the range of distances is widest.
-    pub(crate) fn maximum_margin(&self) -> Option<ByNormal> {
+    pub fn maximum_margin(&self) -> Option<ByNormal> {
         let width = |stretch: &Stretch, at: f64| {
             let [low, high] = stretch.distances(at, self.tolerance);
             high - low
@@ -202,7 +201,7 @@ fn with_rounding(tolerance: f64) -> f64 {
 }
 
 /// Whether a line agrees with some rows in order within a tolerance.
-pub(crate) fn are_separable(rows: &[Row], tolerance: f64) -> bool {
+pub fn are_separable(rows: &[Row], tolerance: f64) -> bool {
     first_are_separable(rows, usize::MAX, with_rounding(tolerance))
 }
 

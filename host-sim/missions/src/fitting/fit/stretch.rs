@@ -1,17 +1,17 @@
 //! A stretch of the file in which labels say something else than where they are: a sensor that was fouled, stuck or
 //! turned round for a while.
 //!
-//! As for the [other boundaries](crate::replay::fit::shapes), the odds are bounds: over all stretches of the file, the
+//! As for the [other boundaries](crate::fitting::fit::shapes), the odds are bounds: over all stretches of the file, the
 //! kinds of faults, and a grid of lines for the rest of the file.
 
 use std::f64::consts::TAU;
 
-use crate::replay::fit::labels::{Evidence, Labels};
-use crate::replay::fit::sweep::{Directed, line, spread};
+use crate::fitting::fit::labels::{Evidence, Labels};
+use crate::fitting::fit::sweep::{Directed, line, spread};
 
 /// What labels say in a stretch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Fault {
+pub enum Fault {
     /// Either label, as a coin falls.
     Coin,
     /// The label of the other side.

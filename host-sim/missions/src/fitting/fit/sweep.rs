@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use crate::replay::fit::labels::Labels;
+use crate::fitting::fit::labels::Labels;
 
 /// A threshold: labels above it are to be +1.
 #[derive(Clone, Copy, Debug)]

@@ -5,19 +5,22 @@ use planner_core::{Label, Sample, Site};
 
 /// A sample and its row in the record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Row {
-    pub(crate) sample: Sample,
-    pub(crate) index: usize,
+pub struct Row {
+    /// The sample.
+    pub sample: Sample,
+    /// Its number in the recording.
+    pub index: usize,
 }
 
 impl Row {
-    pub(crate) fn site(self) -> Site {
+    /// Where it is.
+    pub fn site(self) -> Site {
         self.sample.site
     }
 }
 
 /// The rows of a record by their positions; of those that repeat a sample, the first.
-pub(crate) fn in_order(samples: &[Sample]) -> Vec<Row> {
+pub fn in_order(samples: &[Sample]) -> Vec<Row> {
     let mut rows: Vec<_> =
         samples.iter().enumerate().map(|(index, sample)| Row { sample: *sample, index }).collect();
     let place = |row: &Row| (row.site().x(), row.site().z(), row.sample.label.sign());
@@ -29,31 +32,28 @@ pub(crate) fn in_order(samples: &[Sample]) -> Vec<Row> {
 /// A convex hull as two chains of corners between its first and its last in order, both of which are in both
 /// chains; no three of its corners are on one line.
 #[derive(Debug)]
-pub(crate) struct Hull {
+pub struct Hull {
     /// From the first to the last, counter-clockwise.
-    pub(crate) lower: Vec<Row>,
+    pub lower: Vec<Row>,
     /// On from the last to the first.
-    pub(crate) upper: Vec<Row>,
+    pub upper: Vec<Row>,
 }
 
 impl Hull {
     /// The hull of those of some rows in order that have a label (Andrew's monotone chain).
-    pub(crate) fn of<'a>(
-        rows: impl DoubleEndedIterator<Item = &'a Row> + Clone,
-        label: Label,
-    ) -> Self {
+    pub fn of<'a>(rows: impl DoubleEndedIterator<Item = &'a Row> + Clone, label: Label) -> Self {
         let rows = rows.copied().filter(|row| row.sample.label == label);
         Self { lower: chain(rows.clone()), upper: chain(rows.rev()) }
     }
 
     /// The corners, counter-clockwise.
-    pub(crate) fn corners(&self) -> impl Iterator<Item = Row> + '_ {
+    pub fn corners(&self) -> impl Iterator<Item = Row> + '_ {
         let back = self.upper.get(1..self.upper.len().max(2) - 1).unwrap_or_default();
         self.lower.iter().chain(back).copied()
     }
 
     /// Whether all of it is on one line.
-    pub(crate) fn is_flat(&self) -> bool {
+    pub fn is_flat(&self) -> bool {
         self.lower.len() <= 2 && self.upper.len() <= 2
     }
 }

@@ -12,10 +12,11 @@ use crate::world::polygon::Polygon;
 
 /// The direction along an axis that lines are nearest to: one of four.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Quarter(pub(crate) u8);
+pub struct Quarter(pub u8);
 
 impl Quarter {
-    pub(crate) const ALL: [Self; 4] = [Self(0), Self(1), Self(2), Self(3)];
+    /// All four.
+    pub const ALL: [Self; 4] = [Self(0), Self(1), Self(2), Self(3)];
 
     fn along(self) -> Vector2<f64> {
         match self.0 {
@@ -27,13 +28,13 @@ impl Quarter {
     }
 
     /// How far ahead and to the left a position is.
-    pub(crate) fn seen(self, at: Point2<f64>) -> [f64; 2] {
+    pub fn seen(self, at: Point2<f64>) -> [f64; 2] {
         let along = self.along();
         [along.dot(&at.coords), along.perp(&at.coords)]
     }
 
     /// The unit normal of the line with this slope and offset, and its distance along it.
-    pub(crate) fn normal(self, line: Point2<f64>) -> (Vector2<f64>, f64) {
+    pub fn normal(self, line: Point2<f64>) -> (Vector2<f64>, f64) {
         let (slope, offset) = (line.x, line.y);
         let along = self.along();
         let left = Vector2::new(-along.y, along.x);
@@ -42,25 +43,25 @@ impl Quarter {
     }
 
     /// The direction of lines of a slope, radians.
-    pub(crate) fn direction(self, slope: f64) -> f64 {
+    pub fn direction(self, slope: f64) -> f64 {
         f64::from(self.0) * std::f64::consts::FRAC_PI_2 + libm::atan(slope)
     }
 }
 
 /// The integrals over some lines, by their measure.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Mass {
+pub struct Mass {
     /// Of 1.
-    pub(crate) measure: f64,
+    pub measure: f64,
     /// Of the unit normal.
-    pub(crate) normal: Vector2<f64>,
+    pub normal: Vector2<f64>,
     /// Of the distance along it, metres.
-    pub(crate) distance: f64,
+    pub distance: f64,
 }
 
 impl Mass {
     /// Adds another, whose lines count with this weight.
-    pub(crate) fn add(&mut self, other: &Self, weight: f64) {
+    pub fn add(&mut self, other: &Self, weight: f64) {
         self.measure += weight * other.measure;
         self.normal += other.normal * weight;
         self.distance += weight * other.distance;
@@ -69,16 +70,17 @@ impl Mass {
 
 /// A convex patch.
 #[derive(Clone, Debug)]
-pub(crate) struct Patch {
-    pub(crate) quarter: Quarter,
+pub struct Patch {
+    /// The quarter of the directions that its lines are in.
+    pub quarter: Quarter,
     /// Its lines: slopes as x, offsets as y.
-    pub(crate) lines: Polygon,
+    pub lines: Polygon,
 }
 
 impl Patch {
     /// The lines that have a position, as it is [seen](Quarter::seen), on their +1 side, and those that have it on
     /// the other.
-    pub(crate) fn split(&self, [ahead, left]: [f64; 2]) -> [Option<Self>; 2] {
+    pub fn split(&self, [ahead, left]: [f64; 2]) -> [Option<Self>; 2] {
         [1.0, -1.0].map(|side| {
             let lines = self.lines.above(|line| side * (left - line.x * ahead - line.y));
             (lines.0.len() >= 3).then_some(Self { quarter: self.quarter, lines })
@@ -86,12 +88,12 @@ impl Patch {
     }
 
     /// The directions of the lines, from one to another, radians.
-    pub(crate) fn directions(&self) -> [f64; 2] {
+    pub fn directions(&self) -> [f64; 2] {
         span(self.lines.0.iter().map(|line| self.quarter.direction(line.x)))
     }
 
     /// A line inside.
-    pub(crate) fn middle(&self) -> Point2<f64> {
+    pub fn middle(&self) -> Point2<f64> {
         let corners = self.lines.0.iter();
         Point2::from(
             corners.map(|line| line.coords).sum::<Vector2<f64>>() / self.lines.0.len() as f64,
@@ -99,7 +101,7 @@ impl Patch {
     }
 
     /// The integrals, with a factor for each line: over triangles about the middle, exact for quadratic factors.
-    pub(crate) fn mass(&self, factor: impl Fn(Point2<f64>) -> f64) -> Mass {
+    pub fn mass(&self, factor: impl Fn(Point2<f64>) -> f64) -> Mass {
         let middle = self.middle();
         let mut mass = Mass::default();
         for (p, q) in self.lines.sides() {

@@ -9,16 +9,16 @@ use crate::world::extent::span;
 use crate::world::polygon::Polygon;
 
 /// A line `normal . q = distance`, with a unit normal that points to its +1 side; metres.
-pub(crate) type ByNormal = (Vector2<f64>, f64);
+pub type ByNormal = (Vector2<f64>, f64);
 
 /// As a line of the planner's.
-pub(crate) fn line((normal, distance): ByNormal) -> Option<Line> {
+pub fn line((normal, distance): ByNormal) -> Option<Line> {
     Line::from_coefficients(normal.x, normal.y, -distance)
 }
 
 /// The smallest arc of slopes that spans some ranges of directions, radians. It is given as intervals of degrees within
 /// [-90, 90], two where it crosses the vertical.
-pub(crate) fn slope_arcs(directions: impl IntoIterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
+pub fn slope_arcs(directions: impl IntoIterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
     const ALL: [f64; 2] = [-90.0, 90.0];
     let turned = |[from, to]: [f64; 2]| {
         let first = from.rem_euclid(PI);
@@ -42,7 +42,7 @@ pub(crate) fn slope_arcs(directions: impl IntoIterator<Item = [f64; 2]>) -> Vec<
 }
 
 /// The range of the intercepts of some lines whose slopes span arcs, metres; `None` where a vertical one is among them.
-pub(crate) fn intercepts(
+pub fn intercepts(
     arcs: &[[f64; 2]],
     lines: impl IntoIterator<Item = ByNormal>,
 ) -> Option<[f64; 2]> {
@@ -54,7 +54,7 @@ pub(crate) fn intercepts(
 }
 
 /// The parts of some ground that all lines label +1, and -1.
-pub(crate) fn agreed(ground: &Polygon, lines: &[ByNormal]) -> [Polygon; 2] {
+pub fn agreed(ground: &Polygon, lines: &[ByNormal]) -> [Polygon; 2] {
     [Label::Positive, Label::Negative].map(|label| {
         let side = f64::from(label.sign());
         let clip = |rest: Polygon, it: &ByNormal| match line(*it) {

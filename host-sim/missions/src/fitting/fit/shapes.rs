@@ -10,8 +10,8 @@ use std::f64::consts::TAU;
 
 use nalgebra::Point2;
 
-use crate::replay::fit::labels::Labels;
-use crate::replay::fit::sweep::{Directed, line, spread, threshold};
+use crate::fitting::fit::labels::Labels;
+use crate::fitting::fit::sweep::{Directed, line, spread, threshold};
 
 /// A boundary that explains the labels.
 #[derive(Clone, Copy, Debug)]

@@ -9,13 +9,13 @@ use rand_chacha::ChaCha8Rng;
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
 
-use crate::replay::hull::Row;
+use crate::fitting::hull::Row;
 
 /// A row at its position.
 type Placed = GeomWithData<[i64; 2], Row>;
 
-/// `estimate::bisector` of a separable record whose rows [in order](crate::replay::hull::in_order) are these.
-pub(crate) fn bisector(rows: &[Row]) -> Option<LocalLine> {
+/// `estimate::bisector` of a separable record whose rows [in order](crate::fitting::hull::in_order) are these.
+pub fn bisector(rows: &[Row]) -> Option<LocalLine> {
     let of = |label| rows.iter().copied().filter(move |row| row.sample.label == label);
     let mut negative: Vec<_> = of(Label::Negative).collect();
     // In no order, the shortest so far is soon so short that few positive samples come into question. Only arcs

@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::*;
+use crate::fitting::fit::{TESTS, Verdict};
 use crate::replay::answer::Trust;
 use crate::replay::record::Replay;
 use crate::replay::rows::Layout;

@@ -14,32 +14,33 @@ use std::collections::BinaryHeap;
 use nalgebra::{Point2, Vector2};
 use planner_core::Label;
 
-use crate::replay::doubt::{Doubt, Votes};
-use crate::replay::patch::{Mass, Patch, Quarter};
+use crate::fitting::doubt::{Doubt, Votes};
+use crate::fitting::patch::{Mass, Patch, Quarter};
 use crate::world::polygon::Polygon;
 
 /// A patch of lines that explain the labels about equally well.
 #[derive(Clone, Debug)]
-pub(crate) struct Cell {
-    pub(crate) patch: Patch,
+pub struct Cell {
+    /// The lines of it.
+    pub patch: Patch,
     /// The logarithm of what the labels say of its lines.
-    pub(crate) log: f64,
+    pub log: f64,
     /// The probability of its lines by the labels, and their integrals.
-    pub(crate) mass: Mass,
+    pub mass: Mass,
 }
 
 /// The distribution.
 #[derive(Debug)]
-pub(crate) struct LinePosterior {
+pub struct LinePosterior {
     /// The most likely lines first; their measures add up to 1.
-    pub(crate) cells: Vec<Cell>,
+    pub cells: Vec<Cell>,
     /// What has been left out, as a share of all, at most.
-    pub(crate) pruned_mass: f64,
+    pub pruned_mass: f64,
 }
 
 /// Why there is no distribution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum TooOpen {
+pub enum TooOpen {
     /// More cells than this.
     Cells(usize),
     /// More work than this, positions by boxes.
@@ -155,7 +156,10 @@ struct Problem<'a> {
 impl LinePosterior {
     /// The distribution over the lines that cross a rectangle about the origin. `reach` is half its size along each
     /// axis.
-    pub(crate) fn of(votes: &[Votes], doubt: &Doubt, reach: Vector2<f64>) -> Result<Self, TooOpen> {
+    ///
+    /// # Errors
+    /// [`TooOpen`].
+    pub fn of(votes: &[Votes], doubt: &Doubt, reach: Vector2<f64>) -> Result<Self, TooOpen> {
         let ground = CORNERS.map(|[x, z]| Point2::new(x * reach.x, z * reach.y));
         let extent = reach.amax();
         let mut problem = Problem { votes, doubt, ground, extent, work: 0 };
