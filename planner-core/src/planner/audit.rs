@@ -10,7 +10,7 @@
 //! way, a place nearer to the middle of the chord takes its turn. A place that cannot be visited is left out.
 
 use crate::belief::cells::{CellView, Certainty};
-use crate::belief::sample::{Reading, Sample};
+use crate::belief::sample::{Label, Reading, Sample};
 use crate::geometry::approximate::{METRE, UnitVector, inverse_sqrt};
 use crate::geometry::area::Area;
 use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
@@ -144,38 +144,35 @@ impl Audit {
         None
     }
 
-    /// Records the motion that was planned last, and what was read at its end, where the position may be off by the
-    /// shift of these lines. Returns whether the reading was one of the audit, which no belief has to take in.
-    pub(crate) fn observe(
-        &mut self,
+    /// The label that all lines left have at the end of the motion that was planned last, wherever the position really
+    /// is within their shift. `None` if the reading there is not one of the audit: a belief has to take it in.
+    pub(crate) fn expects(
+        &self,
         lines: CellView<'_>,
         site: Site,
-        reading: Option<Reading>,
-    ) -> bool {
-        self.now = self.next;
-        if !core::mem::take(&mut self.arrives) {
-            return false;
-        }
-        self.now = Course { missed: 0, ..self.now.settle() };
-        self.next = self.now;
-        let (Some(reading), Certainty::Certain(label)) = (reading, lines.certainty(site)) else {
-            return false;
-        };
-        // Wherever the position really is, the lines agree.
-        let other = lines.place(site, -label);
-        if other.is_none_or(|it| lines.certainty(it) != Certainty::Certain(label)) {
-            return false;
-        }
+        reading: Reading,
+    ) -> Option<Label> {
+        let Certainty::Certain(label) = lines.certainty(site) else { return None };
+        let other = lines.place(site, -label)?;
+        let is_certain = lines.certainty(other) == Certainty::Certain(label);
         // One of the lines may pass just here.
-        if reading == Reading::Boundary && lines.certain_within(site) <= 0.0 {
-            return false;
+        let is_open = reading == Reading::Boundary && lines.certain_within(site) <= 0.0;
+        (self.arrives && is_certain && !is_open).then_some(label)
+    }
+
+    /// Records the motion that was planned last, and what was read at its end, if that was [of the
+    /// audit](Self::expects): the label that was expected, and the reading.
+    pub(crate) fn observe(&mut self, site: Site, seen: Option<(Label, Reading)>) {
+        self.now = self.next;
+        if core::mem::take(&mut self.arrives) {
+            self.now = Course { missed: 0, ..self.now.settle() };
+            self.next = self.now;
         }
-        if reading == Reading::Side(label) {
-            self.agreed += 1;
-        } else {
-            self.refuted = Some(Sample { site, label: -label });
+        match seen {
+            Some((label, reading)) if reading == Reading::Side(label) => self.agreed += 1,
+            Some((label, _)) => self.refuted = Some(Sample { site, label: -label }),
+            None => {}
         }
-        true
     }
 }
 

@@ -326,17 +326,18 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion> Planner
         reading: Option<Reading>,
         tolerance: Tolerance,
     ) -> Result<(), ObservationError> {
-        let mut audit = self.audit;
-        let is_of_audit = self.goal.is_some()
-            && tolerance <= self.belief.belief().tolerance()
-            && audit.as_mut().is_some_and(|audit| {
-                let lines = lines_within(&self.belief, tolerance);
-                audit.observe(lines, pose.site, reading)
-            });
-        if let Some(reading) = reading.filter(|_| !is_of_audit) {
+        let audit = if self.goal.is_some() { &mut self.audit } else { &mut None };
+        let is_allowed = tolerance <= self.belief.belief().tolerance();
+        let seen = reading.filter(|_| is_allowed).zip(audit.as_ref()).and_then(|(it, audit)| {
+            let lines = lines_within(&self.belief, tolerance);
+            Some((audit.expects(lines, pose.site, it)?, it))
+        });
+        if let (Some(reading), None) = (reading, seen) {
             self.belief.observe_within(pose.site, reading, tolerance)?;
         }
-        self.audit = audit;
+        if let Some(audit) = audit {
+            audit.observe(pose.site, seen);
+        }
         self.silence.observe(reading.is_some());
         Ok(())
     }
@@ -544,7 +545,7 @@ mod tests {
             // It ended where nothing is certain, and there is no room.
             let middle = Site::try_from(Point2::new(10.0, 10.0)).unwrap();
             let places =
-                (0..400).map(|n| middle.step(Vector::new(n % 20 << 13, n / 20 << 13).unwrap()));
+                (0..400).map(|n| middle.step(Vector::new((n % 20) << 13, (n / 20) << 13).unwrap()));
             let open =
                 |site: &Site| planner.belief.ground().certainty(*site) == Certainty::Uncertain;
             let Some(site) = places.map(Result::unwrap).find(open) else { continue };
