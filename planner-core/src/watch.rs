@@ -31,9 +31,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A goal of [`Lookahead`](crate::Lookahead) has an [`Audit`] by itself where labels are true. Its motions have
-//! [`Stage::Audit`](crate::Stage::Audit), and a label against all lines left ends the mission with
-//! [`StopReason::NoLine`](crate::StopReason::NoLine).
+//! A goal of [`Lookahead`](crate::Lookahead) has an [`Audit`] by itself. Its motions have [`Stage::Audit`](crate::Stage::Audit).
+//! Labels against all lines that are likely enough end the mission with
+//! [`StopReason::NoLine`](crate::StopReason::NoLine). Where labels are true, one is enough.
 
 pub use crate::belief::evidence::{Alarm, Evidence, Suspect};
 pub use crate::planner::audit::Audit;

@@ -45,13 +45,10 @@ pub fn by_turns(seed: u64, number: u64, steps: u32) -> Mission {
 /// Never: its angles are finite.
 pub fn stopping(number: u64) -> Mission {
     let is_noisy = number % 4 >= 2;
-    let steps = if is_noisy { 18 } else { 28 };
-    let mut mission = standard_field::standard(SEED, number, Algorithm::Lookahead, steps);
-    if !is_noisy {
-        // Long motions, so that the steps suffice for the audit as well.
-        let far = Unicycle::new(1_000, 1.57, 61, 100);
-        mission.vehicle = AnyVehicle::Unicycle(far.expect("a unicycle"));
-    }
+    let mut mission = standard_field::standard(SEED, number, Algorithm::Lookahead, 28);
+    // Long motions, so that the steps suffice for the audit as well.
+    let far = Unicycle::new(1_000, 1.57, 61, 100);
+    mission.vehicle = AnyVehicle::Unicycle(far.expect("a unicycle"));
     mission.noise = is_noisy.then_some(NoiseModel { p: 0.9, extent: Extent::OutsideBalls(0.5) });
     let (degrees, share) = if is_noisy { (10.0, 100_000) } else { (1.0, 5_000) };
     let accuracy = if number.is_multiple_of(2) {

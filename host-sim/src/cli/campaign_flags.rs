@@ -107,7 +107,7 @@ impl CampaignFlags {
     /// # Errors
     /// Names the flag, what was found and what was expected.
     pub(crate) fn campaigns(&self) -> Result<Campaigns> {
-        scenario::check_steps("--steps", self.steps, ORACLE)?;
+        scenario::check_steps("--steps", self.steps, ORACLE, false)?;
         check_once(&self.compare)?;
         let planners = self.planners();
         let p = self.p.unwrap_or(if planners.contains(&Algorithm::Scc) { 0.7 } else { 1.0 });

@@ -10,7 +10,7 @@ use planner_core::link::message::{
 use planner_core::planner::lookahead;
 
 use crate::mission::algorithm::Algorithm;
-use crate::mission::definition::Mission;
+use crate::mission::definition::{CAPACITY, Mission};
 use crate::mission::strict::wrong;
 use crate::world::faults::Fault;
 
@@ -59,7 +59,9 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
         anyhow!("oracle: found {} points, expected at most {most} on a board", samples.len())
     })?;
     // True labels leave one hypothesis. `t` labels that may be wrong leave at most `1 + t + t (t - 1) / 2`.
-    let taken = mission.steps;
+    // Labels of an audit take no room.
+    let most = (CAPACITY - samples.len()) as u32;
+    let taken = mission.steps.min(most);
     let hypotheses = match mission.algorithm {
         _ if mission.is_noisy() => 1 + taken + taken * taken.saturating_sub(1) / 2,
         _ => 1,
@@ -72,7 +74,7 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
     let config = Settings { area: area.bounds(), weight, crossing, following, tolerance };
     let is_plain = area.sides().next().is_none() && area.hulls().next().is_none();
     let keep_outs = (!is_plain).then(|| area.hulls().count() as u8);
-    let (protocol, vehicle, steps) = (PROTOCOL, mission.vehicle.into(), taken as u16);
+    let (protocol, vehicle, steps) = (PROTOCOL, mission.vehicle.into(), mission.steps as u16);
     Ok(Setup {
         protocol,
         algorithm,

@@ -123,7 +123,7 @@ fn end(results: &Results, estimates: &[(&str, Option<LineRecord>); 3]) -> String
         results.cost(),
     );
     if let Some(goal) = &results.end.goal {
-        text += &promise(goal);
+        text += &promise(goal, &results.end.reason);
     }
     if let Some(alarm) = &results.end.alarm {
         text += &warning(alarm);
@@ -179,12 +179,14 @@ fn remedy(results: &Results) -> Option<&'static str> {
     })
 }
 
-/// Whether the goal is met, in words.
-pub(crate) fn promise(goal: &GoalRecord) -> String {
+/// Whether the goal is met, in words, of a mission that ended for a reason.
+pub(crate) fn promise(goal: &GoalRecord, reason: &str) -> String {
     let &GoalRecord { slope_arc_deg, misclassified, level, is_met, audit } = goal;
     let sure = level.map_or(String::new(), |level| format!(" with probability {level} at least"));
     let is_refuted = audit.is_some_and(|audit| audit.refuted.is_some());
+    let is_cut_short = is_met && audit.is_some() && reason != "known";
     let known = match () {
+        () if is_cut_short => "Known, if a straight, still line fits,",
         () if is_met => "Known",
         () if is_refuted => "Not known",
         () => "Not known yet",
@@ -203,19 +205,28 @@ pub(crate) fn promise(goal: &GoalRecord) -> String {
         }
     };
     let audit = audit.map(|it| audited(&it)).unwrap_or_default();
-    format!("{known}{sure}: {lines} {what}.\n{audit}")
+    let more = if is_cut_short { "The audit is not finished: allow more steps.\n" } else { "" };
+    format!("{known}{sure}: {lines} {what}.\n{audit}{more}")
 }
 
 /// What an audit came to, in words.
 fn audited(audit: &AuditRecord) -> String {
-    let &AuditRecord { agreed, refuted, motions, metres } = audit;
+    let &AuditRecord { agreed, disagreed, refuted, motions, metres } = audit;
     let price = format!("{motions} motions, {metres:.1} m");
-    match refuted {
-        Some(step) => format!(
+    match (refuted, disagreed) {
+        (Some(step), Some(others)) => format!(
+            "Refuted: up to step {step} {others} labels disagreed where the side is all but certain, and {agreed} agreed \
+             ({price}).\n"
+        ),
+        (None, Some(others)) => format!(
+            "Audited: {agreed} labels beside the estimate agree, and {others} disagree, as labels that may be wrong do \
+             ({price}).\n"
+        ),
+        (Some(step), None) => format!(
             "Refuted: step {step} read a label on certain ground that no line left has there, after {agreed} that agreed \
              ({price}).\n"
         ),
-        None => format!("Audited: {agreed} labels on certain ground agree ({price}).\n"),
+        (None, None) => format!("Audited: {agreed} labels on certain ground agree ({price}).\n"),
     }
 }
 

@@ -27,6 +27,11 @@ const fn rounded(value: i64) -> f32 {
     if value < 0 { -size } else { size }
 }
 
+/// The length of a way, lattice units.
+pub(crate) fn distance(way: Vector) -> f32 {
+    sqrt(single(way.dot(way)))
+}
+
 /// The inverse of the square root of a positive number, to 2 10^-7 of it. By Newton's iteration from the
 /// well-known guess: some 20 instructions and the same on every machine, where libm's square root takes 150.
 pub(crate) fn inverse_sqrt(x: f32) -> f32 {

@@ -3,30 +3,34 @@
 //!
 //! A planner that asks only where it is uncertain cannot contradict itself. A boundary that bends or moves, or a sensor
 //! that fails, leaves a narrow set of lines all the same. So once the goal is met, the planner visits six places where
-//! all lines left agree on the label. If each label is the one that all lines have there, the line is known. If one is
-//! not, no line explains the labels. With true labels of a straight, still line that cannot happen.
+//! the belief is sure of the label.
 //!
-//! A place lies as near to the lines left as the vehicle can aim. Where the border, a keep-out or the vehicle is in the
-//! way, a place nearer to the middle of the chord takes its turn. A place that cannot be visited is left out.
+//! - *Labels that are true*: all lines left agree there. If each label is the one that they have, the line is known. If
+//!   one is not, no line explains the labels. With true labels of a straight, still line that cannot happen.
+//! - *Labels that may be wrong*: all but 0.03 % of the distribution agrees there. Sequential tests ask for as many labels
+//!   as the goal's level needs (`belief/predictions/verdicts.rs`). A place on the other side passes with a probability of `(1 - level) / level`
+//!   at most. On the model one audit in 100 refutes at most.
+//!
+//! A place lies as near to the lines left as the vehicle can aim. Where
+//! the border, a keep-out or the vehicle is in the way, a place nearer to the middle of the chord takes its turn. A place
+//! that cannot be visited is left out.
 
-use crate::belief::cells::{CellView, Certainty};
+use crate::belief::noise::Reliability;
+use crate::belief::predictions::{Heard, PLACES, PredictiveBelief, Verdict, Verdicts};
 use crate::belief::sample::{Label, Reading, Sample};
-use crate::geometry::approximate::{METRE, UnitVector, inverse_sqrt};
+use crate::geometry::approximate::{METRE, UnitVector, distance, inverse_sqrt};
 use crate::geometry::area::Area;
 use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
 use crate::geometry::local_line::LocalLine;
 use crate::geometry::span::Span;
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose, Side};
-use crate::search::detour::distance;
 use crate::search::errand::{Errand, errand, motions_to};
 use crate::search::objective::Effort;
+use crate::search::wander::stays;
 
-/// The places: by twos at one end of the chord, in its middle, and at the other end. The first of the two is on the
-/// +1 side.
-const PLACES: u8 = 6;
-
-/// Where on the chord places lie, as shares of it: the first is best, the others take its turn.
+/// Where on the chord places lie, as shares of it: the first is best, the others take its turn. Places are numbered by
+/// twos, at one end of the chord, in its middle, and at the other end. The first of the two is on the +1 side.
 const ALONG: [[f32; 5]; 3] =
     [[0.03, 0.08, 0.14, 0.21, 0.29], [0.5, 0.46, 0.54, 0.4, 0.6], [0.97, 0.92, 0.86, 0.79, 0.71]];
 
@@ -46,14 +50,20 @@ const TURNS: u16 = 16;
 /// An audit ends when so many places in a row were out of reach.
 const MISSES: u8 = 3;
 
+/// The most labels of one audit: beyond, labels are so often wrong that no test ends.
+const LABELS: u16 = 480;
+
 /// An audit that is under way.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Audit {
-    /// Labels that all lines left have there too.
-    agreed: u8,
-    /// A label that no line left has there.
+pub struct Audit<V> {
+    /// Labels as the belief has them, and others.
+    agreed: u16,
+    disagreed: u16,
+    /// What the labels come to.
+    verdicts: V,
+    /// The label that refuted the model.
     refuted: Option<Sample>,
     now: Course,
     /// The course with the motion that was planned last, and whether that ends at its place.
@@ -79,24 +89,41 @@ struct Course {
 impl Course {
     const NONE: Self = Self { settled: 0, to: None, motions: 0, missed: 0 };
 
+    /// The same with its place left.
+    fn leave(self) -> Self {
+        Self { to: None, motions: 0, ..self }
+    }
+
     /// The same with its place settled.
     fn settle(self) -> Self {
         let settled = self.to.map_or(0, |(place, _)| 1 << place);
-        Self { settled: self.settled | settled, to: None, motions: 0, ..self }
+        Self { settled: self.settled | settled, ..self.leave() }
     }
 }
 
-impl Audit {
+impl<V: Verdicts> Audit<V> {
     /// Nothing has been seen.
-    pub(crate) const NONE: Self =
-        Self { agreed: 0, refuted: None, now: Course::NONE, next: Course::NONE, arrives: false };
+    pub(crate) const NONE: Self = Self {
+        agreed: 0,
+        disagreed: 0,
+        verdicts: V::NONE,
+        refuted: None,
+        now: Course::NONE,
+        next: Course::NONE,
+        arrives: false,
+    };
 
-    /// Labels that were read on certain ground and are what all lines left have there.
-    pub const fn agreed(&self) -> u8 {
+    /// Labels that were read where the belief is sure, and are what it is sure of.
+    pub const fn agreed(&self) -> u16 {
         self.agreed
     }
 
-    /// The label that was read where no line left has it.
+    /// Labels that were read where the belief is sure of the other label.
+    pub const fn disagreed(&self) -> u16 {
+        self.disagreed
+    }
+
+    /// The label that refuted the model: no line that is likely enough explains the labels.
     pub const fn refuted(&self) -> Option<Sample> {
         self.refuted
     }
@@ -104,10 +131,10 @@ impl Audit {
     /// The next motion of the audit. `None` if it is over.
     ///
     /// Places are visited in the order of their distance. Cost: the looks of the effort at most.
-    pub(crate) fn plan<D: Dynamics, G: Workspace>(
+    pub(crate) fn plan<D: Dynamics, G: Workspace, B: PredictiveBelief>(
         &mut self,
         (dynamics, area): (&D, &G),
-        (lines, estimate): (CellView<'_>, LocalLine),
+        (belief, estimate): (&B, LocalLine),
         pose: Pose,
         effort: &mut Effort,
     ) -> Option<Errand> {
@@ -118,7 +145,7 @@ impl Audit {
         let reach = f32::from(grid.speeds().saturating_sub(1)) * grid.step_units();
         let most = TURNS.saturating_add((2.0 * chord.length() / reach) as u16);
         let mut course = self.now;
-        while course.missed < MISSES {
+        while course.missed < MISSES && self.agreed + self.disagreed < LABELS {
             let (place, first) = match course.to {
                 Some(_) if course.motions >= most => {
                     course = Course { missed: course.missed + 1, ..course.settle() };
@@ -128,10 +155,13 @@ impl Audit {
                 None => (chord.nearest(dynamics, pose, course.settled)?, 0),
             };
             for turn in first..ALONG[0].len() as u8 {
-                let site = chord.place(place, turn, lines, effort);
+                let site = chord.place(place, turn, belief, effort);
                 let site = site.filter(|site| area.contains_disc(*site, chord.near as i32));
-                let found =
-                    site.and_then(|it| errand((dynamics, area), pose, (it, chord.near), effort));
+                let found = site.and_then(|it| {
+                    let to = (it, chord.near);
+                    self.again(place, (dynamics, area), pose, to, effort)
+                        .or_else(|| errand((dynamics, area), pose, to, effort))
+                });
                 if let Some(found) = found {
                     let to = Some((place, turn));
                     self.next = Course { to, motions: course.motions + 1, ..course };
@@ -144,35 +174,59 @@ impl Audit {
         None
     }
 
-    /// The label that all lines left have at the end of the motion that was planned last, wherever the position really
-    /// is within their shift. `None` if the reading there is not one of the audit: a belief has to take it in.
-    pub(crate) fn expects(
+    /// A turn on the spot, where one label of a place does not decide and the vehicle is there.
+    fn again<D: Dynamics, G: Workspace>(
         &self,
-        lines: CellView<'_>,
-        site: Site,
-        reading: Reading,
-    ) -> Option<Label> {
-        let Certainty::Certain(label) = lines.certainty(site) else { return None };
-        let other = lines.place(site, -label)?;
-        let is_certain = lines.certainty(other) == Certainty::Certain(label);
-        // One of the lines may pass just here.
-        let is_open = reading == Reading::Boundary && lines.certain_within(site) <= 0.0;
-        (self.arrives && is_certain && !is_open).then_some(label)
+        place: u8,
+        (dynamics, area): (&D, &G),
+        pose: Pose,
+        (site, near): (Site, f32),
+        effort: &mut Effort,
+    ) -> Option<Errand> {
+        if !self.verdicts.is_open(place.into()) {
+            return None;
+        }
+        let leg = dynamics.turn_in_place(pose, Side::Left)?;
+        let stays =
+            distance(site - pose.site) <= near && stays(dynamics, area, effort, [pose, leg.1]);
+        stays.then_some(Errand { leg, arrives: true })
     }
 
-    /// Records the motion that was planned last, and what was read at its end, if that was [of the
-    /// audit](Self::expects): the label that was expected, and the reading.
-    pub(crate) fn observe(&mut self, site: Site, seen: Option<(Label, Reading)>) {
+    /// Whether the motion that was planned last ends where the audit asks for a label.
+    pub(crate) const fn arrives(&self) -> bool {
+        self.arrives
+    }
+
+    /// Records the motion that was planned last, and what was read at its end, if the belief is sure of the label there:
+    /// that label, how often it is read there, and the reading. `level` is that of the goal, in millionths.
+    pub(crate) fn observe(
+        &mut self,
+        site: Site,
+        seen: Option<(Label, Reliability, Reading)>,
+        level: u32,
+    ) {
         self.now = self.next;
-        if core::mem::take(&mut self.arrives) {
-            self.now = Course { missed: 0, ..self.now.settle() };
-            self.next = self.now;
+        if !core::mem::take(&mut self.arrives) {
+            return;
         }
-        match seen {
-            Some((label, reading)) if reading == Reading::Side(label) => self.agreed += 1,
-            Some((label, _)) => self.refuted = Some(Sample { site, label: -label }),
-            None => {}
+        let place = self.now.to.map_or(0, |(place, _)| usize::from(place));
+        let left = Course { missed: 0, ..self.now.leave() };
+        self.now = Course { missed: 0, ..self.now.settle() };
+        if let Some((label, reliability, reading)) = seen {
+            let agrees = reading == Reading::Side(label);
+            let is_last = self.now.settled == (1 << PLACES) - 1;
+            if agrees {
+                self.agreed += 1;
+            } else {
+                self.disagreed += 1;
+            }
+            match self.verdicts.observe(Heard { place, is_last, agrees, reliability, level }) {
+                Verdict::Agrees => {}
+                Verdict::Open => self.now = left,
+                Verdict::Refutes => self.refuted = Some(Sample { site, label: -label }),
+            }
         }
+        self.next = self.now;
     }
 }
 
@@ -228,7 +282,7 @@ impl Chord {
     /// The place to which the fewest motions lead, of those that are not settled.
     fn nearest<D: Dynamics>(&self, dynamics: &D, pose: Pose, settled: u8) -> Option<u8> {
         let mut nearest = None;
-        for place in (0..PLACES).filter(|place| settled >> place & 1 == 0) {
+        for place in (0..PLACES as u8).filter(|place| settled >> place & 1 == 0) {
             let site =
                 self.site(ALONG.get(usize::from(place / 2))?[0], 2.0 * side(place) * self.near);
             let off = site.map_or(f32::INFINITY, |site| motions_to(dynamics, pose, site));
@@ -239,19 +293,25 @@ impl Chord {
         nearest.map(|(_, place)| place)
     }
 
-    /// Where a place lies: nearest to the chord of all from which uncertain ground is far enough.
-    fn place(&self, place: u8, turn: u8, lines: CellView<'_>, effort: &mut Effort) -> Option<Site> {
+    /// Where a place lies: nearest to the chord of all where the belief is sure far enough around.
+    fn place<B: PredictiveBelief>(
+        &self,
+        place: u8,
+        turn: u8,
+        belief: &B,
+        effort: &mut Effort,
+    ) -> Option<Site> {
         let along = *ALONG.get(usize::from(place / 2))?.get(usize::from(turn))?;
-        let shift = distance(lines.shift);
-        let due = self.near + 2.0 * shift;
+        let due = self.near + belief.margin();
         let mut aside = due;
         while aside < MOST_ASIDE * self.length() && effort.take(1) {
             let site = self.site(along, side(place) * aside)?;
-            let certain_within = lines.certain_within(site);
-            if certain_within >= due {
+            let inner = self.site(along, side(place) * (aside - due))?;
+            let lacks = belief.lacks(site, inner, due);
+            if lacks <= 0.0 {
                 return Some(site);
             }
-            let (lacks, least) = (due - certain_within, 0.125 * aside);
+            let least = 0.125 * aside;
             aside += if lacks > least { lacks } else { least };
         }
         None

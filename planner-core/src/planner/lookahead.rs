@@ -21,7 +21,6 @@
 
 use crate::belief::Belief as _;
 use crate::belief::ObservationError;
-use crate::belief::cells::CellView;
 use crate::belief::goal::{Criterion, Goal, NoGoal};
 use crate::belief::noise::Noise;
 use crate::belief::observation_log::FromLog;
@@ -113,7 +112,7 @@ const LEAST: f32 = 0.15;
 ///
 /// A plan looks two labels ahead.
 #[derive(Clone, Debug)]
-pub struct Lookahead<D, B, G = Area, C = NoGoal> {
+pub struct Lookahead<D, B: PredictiveBelief, G = Area, C = NoGoal> {
     /// Where motions aim for.
     area: G,
     price: DrivingPrice,
@@ -124,7 +123,7 @@ pub struct Lookahead<D, B, G = Area, C = NoGoal> {
     evaluations: u32,
     goal: Option<Goal<C>>,
     /// What is seen before the goal's promise is made; `None` if it is made at once.
-    audit: Option<Audit>,
+    audit: Option<Audit<B::Verdicts>>,
     silence: Silence,
 }
 
@@ -192,7 +191,7 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion> Lookahead<D, 
     }
 
     /// What the audit has seen so far; `None` if there is none.
-    pub const fn audit(&self) -> Option<&Audit> {
+    pub const fn audit(&self) -> Option<&Audit<B::Verdicts>> {
         self.audit.as_ref()
     }
 
@@ -223,16 +222,16 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion> Lookahead<D, 
         }
     }
 
-    /// What to do when the goal is met: the audit's next motion, or what it came to. Labels that may be wrong refute
-    /// nothing, so there is no audit of them.
+    /// What to do when the goal is met: the audit's next motion, or what it came to.
     fn conclude(&mut self, pose: Pose) -> Plan {
         let known = Plan::Stop(StopReason::Known);
-        let Some(audit) = self.audit.as_mut().filter(|_| B::LABELS_ARE_TRUE) else { return known };
+        let Some(audit) = self.audit.as_mut() else { return known };
         let Some(estimate) = self.belief.belief().centre() else { return known };
-        let lines = lines_within(&self.belief, self.belief.belief().tolerance());
+        self.belief.prepare();
         let (dynamics, mut effort) = (&self.dynamics, Effort::of(LOOKS));
         let with = (dynamics, &self.area);
-        let Some(Errand { leg, arrives }) = audit.plan(with, (lines, estimate), pose, &mut effort)
+        let Some(Errand { leg, arrives }) =
+            audit.plan(with, (&self.belief, estimate), pose, &mut effort)
         else {
             return known;
         };
@@ -252,12 +251,6 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion> Lookahead<D, 
         let found = solve_or_recover(&problem, search, None, course);
         (found, search.effort)
     }
-}
-
-/// The lines on whose uncertain ground a label may tell something, for a position that may be off by so much.
-fn lines_within<B: PredictiveBelief>(belief: &B, tolerance: Tolerance) -> CellView<'_> {
-    let lines = belief.ground();
-    CellView { shift: tolerance.shift(lines.slope_arc()).unwrap_or(lines.shift), ..lines }
 }
 
 impl<D: Dynamics, G: Workspace, C: Criterion, const N: usize, const H: usize> Restart
@@ -326,17 +319,20 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion> Planner
         reading: Option<Reading>,
         tolerance: Tolerance,
     ) -> Result<(), ObservationError> {
-        let audit = if self.goal.is_some() { &mut self.audit } else { &mut None };
-        let is_allowed = tolerance <= self.belief.belief().tolerance();
-        let seen = reading.filter(|_| is_allowed).zip(audit.as_ref()).and_then(|(it, audit)| {
-            let lines = lines_within(&self.belief, tolerance);
-            Some((audit.expects(lines, pose.site, it)?, it))
+        let mut audit = self.goal.and_then(|goal| Some((self.audit.as_mut()?, goal.level)));
+        let is_audited = tolerance <= self.belief.belief().tolerance()
+            && audit.as_ref().is_some_and(|(audit, _)| audit.arrives());
+        let seen = reading.filter(|_| is_audited).and_then(|reading| {
+            let (label, reliability) = self.belief.sure_of(pose.site, reading, tolerance)?;
+            Some((label, reliability, reading))
         });
-        if let (Some(reading), None) = (reading, seen) {
+        // Once the goal is met, a label for which there is no room is not missed.
+        let is_spare = is_audited && self.belief.belief().is_full();
+        if let Some(reading) = reading.filter(|_| seen.is_none() && !is_spare) {
             self.belief.observe_within(pose.site, reading, tolerance)?;
         }
-        if let Some(audit) = audit {
-            audit.observe(pose.site, seen);
+        if let Some((audit, level)) = &mut audit {
+            audit.observe(pose.site, seen, *level);
         }
         self.silence.observe(reading.is_some());
         Ok(())
@@ -350,7 +346,7 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion> Planner
 impl<D: Dynamics, B: PredictiveBelief + FromLog, G: Workspace, C: Criterion> Persist
     for Lookahead<D, B, G, C>
 {
-    type Snapshot = Snapshot<B::ObservationLog, (Silence, Audit)>;
+    type Snapshot = Snapshot<B::ObservationLog, (Silence, Audit<B::Verdicts>)>;
 
     fn snapshot(&self) -> Self::Snapshot {
         Snapshot::new(self.belief.log(), (self.silence, self.audit.unwrap_or(Audit::NONE)))
@@ -569,7 +565,7 @@ mod tests {
             stops(full.plan(start), StopReason::SamplesFull);
             // What is known is known also where there is no more room, and outside.
             stops(full.until(arc(89.0)).without_audit().plan(outside), StopReason::Known);
-            stops(field.doubtful().until(arc(89.0)).plan(start), StopReason::Known);
+            stops(field.doubtful().until(arc(89.0)).without_audit().plan(start), StopReason::Known);
             let few = |it: Plan| assert!(matches!(it, Plan::Move(_)));
             few(field.true_labels::<64>().until(arc(5.0)).plan(start));
             few(field.doubtful().until(arc(5.0)).plan(start));

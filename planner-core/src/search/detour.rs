@@ -9,7 +9,7 @@
 
 use heapless::Vec;
 
-use crate::geometry::approximate::{single, sqrt};
+use crate::geometry::approximate::distance;
 use crate::geometry::heading::Heading;
 use crate::geometry::lattice::{Site, Vector};
 use crate::geometry::span::Span;
@@ -121,11 +121,6 @@ fn begin_by<G: Workspace>(
         }
     }
     best.map(|(way, _)| way)
-}
-
-/// The length of a way.
-pub(crate) fn distance(way: Vector) -> f32 {
-    sqrt(single(way.dot(way)))
 }
 
 /// The corners of the octagon that holds a keep-out with so much space to spare; those beyond the lattice are left out.

@@ -6,12 +6,12 @@
 //!
 //! An errand has no state, and it need not arrive: whoever runs it counts the motions.
 
-use crate::geometry::approximate::heading_of;
+use crate::geometry::approximate::{distance, heading_of};
 use crate::geometry::heading::Angle;
 use crate::geometry::lattice::{Site, Vector};
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose, Side, TurningCircle};
-use crate::search::detour::{self, Way, distance};
+use crate::search::detour::{self, Way};
 use crate::search::motions::{Leg, Motions};
 use crate::search::objective::Effort;
 use crate::search::recovery::nears;

@@ -19,12 +19,13 @@
 //! again.
 
 use crate::belief::cells::Certainty;
+use crate::geometry::approximate::distance;
 use crate::geometry::lattice::Site;
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose, Side};
 use crate::search::circles::Search;
 use crate::search::dead_end::DeadEnd;
-use crate::search::detour::{self, Way, distance};
+use crate::search::detour::{self, Way};
 use crate::search::direction_rule::DirectionRule;
 use crate::search::motions::{Leg, Motions, Start};
 use crate::search::objective::OPENING;

@@ -96,7 +96,7 @@ fn labels_that_may_be_wrong_keep_promises_as_often_as_stated() {
         let kept: Vec<bool> = (0..cases(60, 1_000))
             .into_par_iter()
             .filter_map(|number| {
-                let mut mission = mission(number, 64, slope_arc());
+                let mut mission = mission(number, 400, slope_arc());
                 mission.noise = Some(noise(p));
                 let (ending, belief) = flown(&mission);
                 if ending != "known" {

@@ -3,6 +3,7 @@
 mod anything;
 
 mod campaign;
+mod doubtful_audits;
 mod failures;
 mod fields;
 mod garden;

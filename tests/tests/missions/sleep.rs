@@ -297,7 +297,7 @@ fn what_is_no_snapshot_of_such_a_planner_is_refused() {
     // The other kind of labels.
     let kind = Err(RestoreError::Log(ReplayError::Kind));
     // An audit comes after what the others remember.
-    let as_lookahead = [&of_scc[..], &[0; 16]].concat();
+    let as_lookahead = [&of_scc[..], &[0; 32]].concat();
     let as_lookahead = postcard::from_bytes(&as_lookahead).expect("as it is told");
     assert_eq!(lookahead.restore(&as_lookahead), kind);
     assert_eq!(scc.restore(&postcard::from_bytes(&of_lookahead).expect("as it is told")), kind);

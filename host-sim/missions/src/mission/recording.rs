@@ -8,7 +8,7 @@ use planner_core::belief::doubtful_labels::Hypothesis;
 use planner_core::belief::evidence::{Alarm, Evidence};
 use planner_core::error::ObservationError;
 use planner_core::{
-    Estimates, Line, Pose, PosteriorView, Prior, Reading, Reliability, Step, StopReason,
+    Estimates, Line, Pose, PosteriorView, Prior, Reading, Reliability, Stage, Step, StopReason,
 };
 
 use crate::mission::definition::{Mission, Table};
@@ -16,7 +16,7 @@ use crate::mission::flight::Flown;
 use crate::mission::legs::{Leg, Legs};
 use crate::mission::read_out::{Knowledge, LEVEL, ReadOut};
 use crate::mission::results::{
-    AUDIT, AlarmRecord, BestRecord, CredibleRecord, End, Ending, EstimateRecords, FitRecord,
+    AlarmRecord, BestRecord, CredibleRecord, End, Ending, EstimateRecords, FitRecord,
     KeepOutRecord, LineError, Results, Start, StepResult, VERSION, cost, recovery_name, stage_name,
 };
 use crate::mission::stop::{AuditRecord, GoalRecord};
@@ -163,7 +163,7 @@ impl Recorder {
             fit: world.fit().filter(|_| world.line().is_none()).map(FitRecord::from),
             best,
             credible,
-            goal: GoalRecord::of(&mission, &*belief, audit(&results, ending)),
+            goal: GoalRecord::of(&mission, &*belief, audit((&steps, &results), &before, ending)),
             alarm,
             flown: Legs::of(&results.iter().filter_map(|step| step.flown).collect::<Vec<_>>()),
         };
@@ -231,19 +231,28 @@ fn start(mission: &Mission) -> Start {
     }
 }
 
-/// What the audit of a mission came to, by its steps.
-fn audit(steps: &[StepResult], ending: Ending) -> Option<AuditRecord> {
-    let is_of_audit = |step: &&StepResult| step.problem.as_deref() == Some(AUDIT);
-    let before = steps.iter().take_while(|step| !is_of_audit(step)).last();
-    let audited = || steps.iter().filter(is_of_audit);
-    let last = audited().next_back()?;
-    let refuted = (ending == Ending::Stopped(StopReason::NoLine)).then_some(last.step);
-    let labels = audited().filter(|step| step.label.is_some()).count();
+/// What the audit of a mission came to, by its steps, their results, and what was known before each.
+fn audit(
+    (steps, results): (&[Step], &[StepResult]),
+    before: &[Box<dyn ReadOut>],
+    ending: Ending,
+) -> Option<AuditRecord> {
+    let is_of_audit = |step: &Step| step.motion.stage == Some(Stage::Audit);
+    let begin = steps.iter().position(is_of_audit)?;
+    let of_audit = || steps.iter().zip(before).filter(|(step, _)| is_of_audit(step));
+    let agrees = of_audit().filter_map(|(step, before)| {
+        let Some(Reading::Side(label)) = step.reading else { return None };
+        Some(before.chance_of(step.pose.site, label) > 0.5)
+    });
+    let (labels, agreed) = (agrees.clone().count(), agrees.filter(|it| *it).count());
+    let metres = |step: usize| results[step].metres;
     Some(AuditRecord {
-        agreed: labels - usize::from(refuted.is_some()),
-        refuted,
-        motions: audited().count(),
-        metres: last.metres - before.map_or(0.0, |step| step.metres),
+        agreed,
+        disagreed: before[begin].hypotheses().map(|_| labels - agreed),
+        refuted: (ending == Ending::Stopped(StopReason::NoLine)).then_some(steps.len()),
+        motions: of_audit().count(),
+        metres: metres(steps.iter().rposition(is_of_audit)?)
+            - begin.checked_sub(1).map_or(0.0, metres),
     })
 }
 

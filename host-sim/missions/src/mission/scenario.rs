@@ -179,16 +179,26 @@ fn any(name: &str, text: &str, folder: &Path, overrides: Overrides) -> Result<Mi
     })?;
     // A wrong number of steps in a flag is reported as the flag's.
     if let Some(steps) = overrides.steps {
-        check_steps("--steps", steps, file.oracle.len())?;
+        check_steps("--steps", steps, file.oracle.len(), file.audits())?;
     }
     mission(&file, folder, overrides).map_err(|error| anyhow!("{name}: {error:#}"))
+}
+
+/// The most steps of a mission with an audit, whose labels take no room.
+const MOST_WITH_AUDIT: u32 = 1_000;
+
+impl File {
+    /// Whether an audit comes before a goal's promise.
+    fn audits(&self) -> bool {
+        self.stop.as_ref().is_some_and(|table| table.0.audits())
+    }
 }
 
 /// Whether this many steps fit beside the oracle's samples.
 ///
 /// # Errors
 /// Names `field` or the oracle, the number and the limit.
-pub fn check_steps(field: &str, steps: u32, oracle: usize) -> Result<()> {
+pub fn check_steps(field: &str, steps: u32, oracle: usize, audits: bool) -> Result<()> {
     let most = CAPACITY.saturating_sub(oracle);
     if most == 0 {
         let expected = format!(
@@ -197,7 +207,10 @@ pub fn check_steps(field: &str, steps: u32, oracle: usize) -> Result<()> {
         );
         return wrong("oracle", format!("{oracle} points"), expected);
     }
-    if steps == 0 || steps as usize > most {
+    if audits && !(1..=MOST_WITH_AUDIT).contains(&steps) {
+        return wrong(field, steps, format!("1 to {MOST_WITH_AUDIT}"));
+    }
+    if !audits && (steps == 0 || steps as usize > most) {
         let room = format!(
             "1 to {most} (the planner holds {CAPACITY} samples, {oracle} of them the oracle's)"
         );
@@ -208,7 +221,7 @@ pub fn check_steps(field: &str, steps: u32, oracle: usize) -> Result<()> {
 
 fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> {
     let steps = overrides.steps.unwrap_or(file.steps);
-    check_steps("steps", steps, file.oracle.len())?;
+    check_steps("steps", steps, file.oracle.len(), file.audits())?;
     let algorithm = overrides.algorithm.unwrap_or(file.algorithm);
     let weight = file.varrho.map_or_else(|| Ok(algorithm.weight()), weight)?;
     let grid = file.fan.map_or(algorithm.grid(), Grid::from);

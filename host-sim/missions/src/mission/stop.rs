@@ -76,10 +76,6 @@ impl StopTable {
             }
             (None, None) => return wrong("stop", "neither", "slope_arc_deg or misclassified"),
         };
-        if self.audit == Some(true) && labels_err {
-            let expected = "none with noise, as labels that may be wrong refute nothing";
-            return wrong("stop.audit", true, expected);
-        }
         let level = match self.level {
             Some(level) if !labels_err => {
                 let expected = "none without noise, as what true labels leave is certain";
@@ -116,12 +112,15 @@ pub struct GoalRecord {
     pub audit: Option<AuditRecord>,
 }
 
-/// The labels on certain ground that were asked for before a goal's promise, and their price.
+/// The labels on ground of which the belief is sure, before a goal's promise, and their price.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct AuditRecord {
-    /// Labels that all lines left have there too.
+    /// Labels that the belief expected.
     pub agreed: usize,
-    /// The step with a label that no line left has there.
+    /// Other labels, where labels may be wrong.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub disagreed: Option<usize>,
+    /// The step with the label that refuted the model.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub refuted: Option<usize>,
     /// Motions.

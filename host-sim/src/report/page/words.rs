@@ -52,7 +52,8 @@ pub(crate) fn stage(
 /// Why a mission ended, and what is promised of what it found.
 pub(crate) fn ended(results: &Results) -> Vec<Told> {
     let why = text::why(&results.end.reason);
-    let promise = results.end.goal.as_ref().map(|goal| text::promise(goal).trim_end().to_owned());
+    let promise = |goal| text::promise(goal, &results.end.reason).trim_end().to_owned();
+    let promise = results.end.goal.as_ref().map(promise);
     let promise = promise.map_or(String::new(), |promise| format!(" {promise}"));
     let mut ended = vec![Told::new("Ended", format!("{}.{promise}", sentence(why)))];
     let alarm = results.end.alarm.as_ref();

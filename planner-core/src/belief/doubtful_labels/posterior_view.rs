@@ -251,6 +251,19 @@ impl<'a, const N: usize, const H: usize, const E: usize> PosteriorView<'a, N, H,
     }
 }
 
+impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
+    /// [`PosteriorView::share_above`] in single precision, to 10^-5.
+    pub(crate) fn above(&self, site: Site) -> f32 {
+        let (mut above, mut all) = (0.0, 0.0);
+        for hypothesis in self.iter() {
+            let weight = hypothesis.weight().exp_single();
+            all += weight;
+            above += weight * share_above(self.lines(hypothesis), site);
+        }
+        above / all
+    }
+}
+
 fn most_likely<const N: usize, const H: usize, const E: usize>(
     hypotheses: &CellPosterior<N, H, E>,
 ) -> Option<&Hypothesis<E>> {

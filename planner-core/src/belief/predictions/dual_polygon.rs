@@ -10,14 +10,16 @@
 
 use heapless::Vec;
 
-use crate::belief::cells::CellView;
+use crate::belief::cells::{CellView, Certainty};
+use crate::belief::noise::Reliability;
 use crate::belief::predictions::predictor::{Prediction, PredictiveBelief, Predictor, entropy};
+use crate::belief::predictions::verdicts::Decisive;
 use crate::belief::sample::{Label, Reading};
 use crate::belief::tolerance::Tolerance;
 use crate::belief::true_labels::VersionSpace;
 use crate::belief::weight::LogWeight;
 use crate::belief::{Belief, ObservationError};
-use crate::geometry::approximate::{METRE, UnitVector, cross, inverse_sqrt};
+use crate::geometry::approximate::{METRE, UnitVector, cross, distance, inverse_sqrt};
 use crate::geometry::lattice::{Site, Vector};
 
 /// The number of vertices that a polygon keeps. From a cell with more, it takes this many, spread evenly.
@@ -211,9 +213,8 @@ fn measure<'a>(apex: Vertex, rest: impl Iterator<Item = &'a Vertex>) -> f32 {
 }
 
 impl<const N: usize> PredictiveBelief for VersionSpace<N> {
-    const LABELS_ARE_TRUE: bool = true;
-
     type Belief = Self;
+    type Verdicts = Decisive;
     type Predictor<'a> = DualPolygon;
 
     fn belief(&self) -> &Self {
@@ -237,6 +238,33 @@ impl<const N: usize> PredictiveBelief for VersionSpace<N> {
 
     fn ground(&self) -> CellView<'_> {
         self.lines()
+    }
+
+    fn sure_of(
+        &self,
+        site: Site,
+        reading: Reading,
+        tolerance: Tolerance,
+    ) -> Option<(Label, Reliability)> {
+        let lines = self.lines();
+        let shift = tolerance.shift(lines.slope_arc()).unwrap_or(lines.shift);
+        let lines = CellView { shift, ..lines };
+        let Certainty::Certain(label) = lines.certainty(site) else { return None };
+        // Wherever the position really is, the lines agree.
+        let is_certain = lines.certainty(lines.place(site, -label)?) == Certainty::Certain(label);
+        // One of the lines may pass just here.
+        let is_open = reading == Reading::Boundary && lines.certain_within(site) <= 0.0;
+        (is_certain && !is_open).then_some((label, Reliability::CERTAIN))
+    }
+
+    fn margin(&self) -> f32 {
+        let lines = self.lines();
+        let shift = Belief::tolerance(self).shift(lines.slope_arc()).unwrap_or(lines.shift);
+        2.0 * distance(shift)
+    }
+
+    fn lacks(&self, site: Site, _: Site, due: f32) -> f32 {
+        due - self.lines().certain_within(site)
     }
 }
 

@@ -9,11 +9,15 @@ use crate::belief::noise::{Noise, Reliability};
 use crate::belief::observation_log::{FromLog, ObservationLog, ReplayError};
 use crate::belief::predictions::columns::{After, Columns};
 use crate::belief::predictions::predictor::{Prediction, PredictiveBelief, Predictor, entropy};
+use crate::belief::predictions::verdicts::Odds;
 use crate::belief::sample::{Label, Reading, Sample};
 use crate::belief::tolerance::Tolerance;
 use crate::belief::true_labels::GivenError;
 use crate::belief::weight::Prior;
 use crate::geometry::lattice::Site;
+
+/// How much of the distribution may have the other label where the belief is sure of one.
+const UNSURE: f32 = 0.0003;
 
 /// The number of directions that represent all lines.
 const DIRECTIONS: usize = 16;
@@ -123,9 +127,8 @@ impl<const N: usize, const H: usize> FromLog for NoisyBelief<N, H> {
 }
 
 impl<const N: usize, const H: usize> PredictiveBelief for NoisyBelief<N, H> {
-    const LABELS_ARE_TRUE: bool = false;
-
     type Belief = CellPosterior<N, H>;
+    type Verdicts = Odds;
     type Predictor<'a> = TablePredictor<'a, N, H>;
 
     fn belief(&self) -> &CellPosterior<N, H> {
@@ -153,6 +156,34 @@ impl<const N: usize, const H: usize> PredictiveBelief for NoisyBelief<N, H> {
 
     fn ground(&self) -> CellView<'_> {
         self.table.start()
+    }
+
+    fn sure_of(
+        &self,
+        site: Site,
+        reading: Reading,
+        tolerance: Tolerance,
+    ) -> Option<(Label, Reliability)> {
+        // A reading on the boundary agrees with both sides.
+        let label = side(self.table.above(site)).filter(|_| reading != Reading::Boundary)?;
+        Some((label, self.table.reliability_within(site, tolerance)))
+    }
+
+    fn margin(&self) -> f32 {
+        self.table.noise().tolerance.units() as f32
+    }
+
+    fn lacks(&self, _: Site, inner: Site, due: f32) -> f32 {
+        if side(self.columns.share_above(inner)).is_some() { 0.0 } else { due }
+    }
+}
+
+/// The side of a place, by the share of the lines that have it on their +1 side; `None` where that is not sure.
+fn side(above: f32) -> Option<Label> {
+    match above {
+        _ if above > 1.0 - UNSURE => Some(Label::Positive),
+        _ if above < UNSURE => Some(Label::Negative),
+        _ => None,
     }
 }
 

@@ -6,6 +6,8 @@
 //! In the last two, `share` is the [`share_above`](Prediction::share_above) of a site.
 
 use crate::belief::cells::CellView;
+use crate::belief::noise::Reliability;
+use crate::belief::predictions::verdicts::Verdicts;
 use crate::belief::sample::{Label, Reading};
 use crate::belief::tolerance::Tolerance;
 use crate::belief::{Belief, ObservationError};
@@ -13,11 +15,11 @@ use crate::geometry::lattice::Site;
 
 /// A belief that can predict labels: what look-ahead plans with.
 pub trait PredictiveBelief {
-    /// Whether a label on certain ground is always the one that all lines have there.
-    const LABELS_ARE_TRUE: bool;
-
     /// What is known.
     type Belief: Belief;
+
+    /// What the labels of an audit come to.
+    type Verdicts: Verdicts;
 
     /// What predicts the next labels.
     type Predictor<'a>: Predictor
@@ -46,6 +48,23 @@ pub trait PredictiveBelief {
 
     /// The lines on whose uncertain ground a label may tell something.
     fn ground(&self) -> CellView<'_>;
+
+    /// Of which label the belief is sure at a site that may be off by so much, and how often that label is read there.
+    /// `None` where it is not sure, and where the reading tells nothing.
+    fn sure_of(
+        &self,
+        site: Site,
+        reading: Reading,
+        tolerance: Tolerance,
+    ) -> Option<(Label, Reliability)>;
+
+    /// How far from a place the belief has to be sure, so that it is sure wherever a robot really is; lattice units.
+    fn margin(&self) -> f32;
+
+    /// How much farther from the lines a site has to be, about, so that the belief is sure within `due` around it;
+    /// lattice units, and 0 where it is. `inner` lies so much nearer to the lines. Ask it after
+    /// [`prepare`](Self::prepare).
+    fn lacks(&self, site: Site, inner: Site, due: f32) -> f32;
 }
 
 /// A prediction of the label at a place, and of the information that it carries.

@@ -84,7 +84,7 @@ fn the_chip_stops_when_enough_is_known() {
         (scenario::PAPER_NOISELESS, "slope_arc_deg = 0.5"),
         (scenario::PAPER_NOISELESS, "misclassified = 0.001"),
         (scenario::PAPER_NOISY, "slope_arc_deg = 5.0"),
-        (scenario::PAPER_NOISY, "misclassified = 0.05\nlevel = 0.8"),
+        (scenario::PAPER_NOISY, "misclassified = 0.15\nlevel = 0.8"),
     ]) {
         // Long motions, so that the steps suffice for the audit as well.
         let vehicle = "vehicle = { kind = \"unicycle\", reach = 6.0, step = 0.1 }\n";
