@@ -31,7 +31,7 @@
 /*
  Bytes that a snapshot can have: those of a planner that is full, as far from the origin as a position can be, fit in.
  */
-#define PLANNER_SNAPSHOT_BYTES 1020
+#define PLANNER_SNAPSHOT_BYTES 1100
 
 /*
  What a call came to.

@@ -13,7 +13,7 @@ use crate::snapshot::Snapshot;
 use crate::types::{Line, Status};
 
 /// A belief that can take in a label whose reliability differs from the mission's.
-trait Believe: PredictiveBelief {
+trait Believe: PredictiveBelief<Verdicts: Serialize + DeserializeOwned> {
     /// How reliable the labels of the mission are.
     fn usual(known: &Self::Belief) -> Reliability;
 

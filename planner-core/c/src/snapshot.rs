@@ -9,7 +9,7 @@ use serde::de::DeserializeOwned;
 use crate::types::Status;
 
 /// Bytes that a snapshot can have: those of a planner that is full, as far from the origin as a position can be, fit in.
-pub const SNAPSHOT_BYTES: usize = 1020;
+pub const SNAPSHOT_BYTES: usize = 1100;
 
 /// What a planner has to remember over a sleep. It may be kept as it is, or as its first `count` bytes alone.
 #[repr(C)]

@@ -197,6 +197,15 @@ impl<V: Verdicts> Audit<V> {
         self.arrives
     }
 
+    /// Records the motion that was planned last, without a label.
+    pub(crate) fn pass(&mut self) {
+        self.now = self.next;
+        if core::mem::take(&mut self.arrives) {
+            self.now = Course { missed: 0, ..self.now.settle() };
+            self.next = self.now;
+        }
+    }
+
     /// Records the motion that was planned last, and what was read at its end, if the belief is sure of the label there:
     /// that label, how often it is read there, and the reading. `level` is that of the goal, in millionths.
     pub(crate) fn observe(
@@ -205,13 +214,9 @@ impl<V: Verdicts> Audit<V> {
         seen: Option<(Label, Reliability, Reading)>,
         level: u32,
     ) {
-        self.now = self.next;
-        if !core::mem::take(&mut self.arrives) {
-            return;
-        }
-        let place = self.now.to.map_or(0, |(place, _)| usize::from(place));
-        let left = Course { missed: 0, ..self.now.leave() };
-        self.now = Course { missed: 0, ..self.now.settle() };
+        let place = self.next.to.map_or(0, |(place, _)| usize::from(place));
+        let left = Course { missed: 0, ..self.next.leave() };
+        self.pass();
         if let Some((label, reliability, reading)) = seen {
             let agrees = reading == Reading::Side(label);
             let is_last = self.now.settled == (1 << PLACES) - 1;

@@ -196,9 +196,12 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion> Lookahead<D, 
     }
 
     /// The belief, for example to take in a label that has its own reliability. The planner then forgets its turns
-    /// since the last label, as after a label.
-    pub const fn belief_mut(&mut self) -> &mut B {
+    /// since the last label, as after a label. A place of an audit counts as visited, and its label as not judged.
+    pub fn belief_mut(&mut self) -> &mut B {
         self.silence = Silence::NONE;
+        if let Some(audit) = &mut self.audit {
+            audit.pass();
+        }
         &mut self.belief
     }
 
