@@ -3,6 +3,7 @@
 mod anything;
 
 mod campaign;
+mod deviations;
 mod failures;
 mod fields;
 mod garden;

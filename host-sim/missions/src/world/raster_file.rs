@@ -1,4 +1,4 @@
-//! Rasters as files have them: PNG images, and grids of ESRI's ASCII format.
+//! Rasters as files have them: PNG images, grids of ESRI's ASCII format, and `GeoTIFF`.
 
 use std::fs::{self, File};
 use std::io::BufReader;
@@ -7,6 +7,8 @@ use std::path::Path;
 use anyhow::{Context as _, Result, anyhow, bail};
 use nalgebra::Point2;
 use png::{BitDepth, ColorType, Decoder, Transformations};
+
+use crate::world::geotiff;
 
 /// The most cells.
 const MOST_CELLS: usize = 4_000_000;
@@ -28,20 +30,25 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Reads a file by the end of its name, `.png` or `.asc`. An image is stretched over a rectangle.
+    /// Reads a file by the end of its name: `.png`, `.asc`, `.tif` or `.tiff`. An image is stretched over a rectangle.
     ///
     /// # Errors
     /// What was expected.
     pub fn read(path: &Path, rectangle: [Point2<f64>; 2]) -> Result<Self> {
         let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
-        let is_image = ending == "png";
-        if !is_image && ending != "asc" {
-            bail!("a PNG image (.png) or an ESRI ASCII grid (.asc)");
+        let is_tiff = ending == "tif" || ending == "tiff";
+        if !is_tiff && ending != "png" && ending != "asc" {
+            bail!("a PNG image (.png), an ESRI ASCII grid (.asc) or a GeoTIFF (.tif)");
         }
         // A device or a pipe may have no end.
         let found = fs::metadata(path).ok().filter(|it| it.is_file() && it.len() <= MOST_BYTES);
         found.with_context(|| format!("a readable file of {} MB at most", MOST_BYTES >> 20))?;
-        if is_image {
+        if is_tiff {
+            let grid = File::open(path)
+                .map_err(Into::into)
+                .and_then(|file| geotiff::read(BufReader::new(file)));
+            grid.map_err(|why| anyhow!("a GeoTIFF: {why:#}"))
+        } else if ending == "png" {
             image(path, rectangle).map_err(|why| anyhow!("a PNG image: {why:#}"))
         } else {
             let text = fs::read_to_string(path).map_err(|why| anyhow!("a text file: {why}"))?;
@@ -51,10 +58,24 @@ impl Grid {
 }
 
 /// Whether there are so many cells as can be handled.
-fn check_cells(columns: usize, rows: usize) -> Result<()> {
+///
+/// # Errors
+/// The count.
+pub(super) fn check_cells(columns: usize, rows: usize) -> Result<()> {
     let count = columns.checked_mul(rows);
     if !count.is_some_and(|count| (1..=MOST_CELLS).contains(&count)) {
         bail!("found {columns} x {rows} cells, expected 1 to {MOST_CELLS}");
+    }
+    Ok(())
+}
+
+/// Whether cells have such a size, metres.
+///
+/// # Errors
+/// Names `field` and the size.
+pub(super) fn check_size(field: &str, cell: [f64; 2]) -> Result<()> {
+    if !cell.iter().all(|it| (1e-6..=1e6).contains(it)) {
+        bail!("found {field} {cell:?}, expected metres, above 0");
     }
     Ok(())
 }
