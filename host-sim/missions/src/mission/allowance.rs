@@ -2,6 +2,8 @@
 //!
 //! [`planner_core::Deviation`] has the rule by which they enter the tolerance, and what is promised then.
 
+use std::iter;
+
 use anyhow::Result;
 use planner_core::{Deviation, Tolerance};
 use serde::{Deserialize, Serialize};
@@ -78,8 +80,9 @@ pub fn sum(position_m: f64, allowance: &Allowance) -> String {
     let all = tidy(all);
     let parts = allowance.parts();
     let parts = parts.iter().filter(|(_, metres)| *metres > 0.0);
-    let parts = parts.map(|(name, metres)| format!(" + {metres} {name}")).collect::<String>();
-    format!("{all} m ({position_m} position{parts})")
+    let parts = parts.map(|(name, metres)| format!("{metres} {name}"));
+    let parts = iter::once(format!("{position_m} position")).chain(parts).collect::<Vec<_>>();
+    format!("{all} m ({})", parts.join(" + "))
 }
 
 /// The tolerance of a planner and its parts, metres, for the trace.
