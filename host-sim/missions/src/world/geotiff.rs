@@ -9,7 +9,7 @@ use nalgebra::Point2;
 use tiff::decoder::{Decoder, DecodingResult};
 use tiff::tags::{PhotometricInterpretation, PlanarConfiguration, Tag};
 
-use crate::world::raster_file::{Grid, check_cells, check_size};
+use crate::world::grid::{Grid, check_cells, check_size};
 
 /// The directory of geographic keys has four numbers a key.
 const KEY: usize = 4;
