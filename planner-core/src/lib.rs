@@ -68,6 +68,7 @@
 //! | a planner | [`Lookahead`]. [`Cfc`] and [`Scc`] are the paper's Algorithms 1 and 2 |
 //! | labels that are true | [`VersionSpace`], with a tolerance if positions err |
 //! | labels that are sometimes wrong | [`NoisyBelief`], made with a [`Noise`]: how often labels are right |
+//! | a boundary that bends or moves a little | a tolerance from a [`Deviation`] |
 //! | to stop when the line is known well enough | [`Goal`] |
 //! | a field that is no rectangle, places to keep out of | [`PolygonArea`] and [`KeepOut`] |
 //! | a vehicle | [`Unicycle`], [`Boat`], [`Car`], [`Holonomic`], or [`dynamics`] of your own |
@@ -157,6 +158,7 @@ pub use nalgebra;
 
 pub use crate::belief::Belief;
 pub use crate::belief::cells::Certainty;
+pub use crate::belief::deviation::Deviation;
 pub use crate::belief::doubtful_labels::CellPosterior;
 pub use crate::belief::doubtful_labels::PosteriorView;
 pub use crate::belief::estimate::Estimates;

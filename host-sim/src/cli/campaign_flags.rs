@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 use crate::campaign::ensemble::Campaign;
 use crate::campaign::rows::Planners;
 use crate::mission::algorithm::Algorithm;
+use crate::mission::allowance::Allowance;
 use crate::mission::names::{CrossingName, FanName, FollowingName, PolicyName, PriorName};
 use crate::mission::scenario;
 use crate::mission::vehicle::{Source, VehicleTable};
@@ -74,12 +75,26 @@ pub(crate) struct CampaignFlags {
     /// The largest position error that planners assume, metres [default: 3 times the position error]
     #[arg(long, value_name = "METRES")]
     tolerance: Option<f64>,
+    /// Added to the tolerance: how far the boundary may be from a straight line, metres (the fields' are straight)
+    #[arg(long, value_name = "METRES", default_value_t = 0.0, allow_hyphen_values = true)]
+    #[serde(default, skip_serializing_if = "is_none")]
+    bend: f64,
+    /// Added to the tolerance: how far the line may move during a mission, metres (the fields' do not move)
+    #[arg(long, value_name = "METRES", default_value_t = 0.0, allow_hyphen_values = true)]
+    #[serde(default, skip_serializing_if = "is_none")]
+    drift: f64,
     /// How hypotheses choose an action together (scc) [default: mixture-of-own]
     #[arg(long, value_enum)]
     policy: Option<PolicyName>,
     /// How hypotheses are weighed in that (scc; lookahead and margin where p is below 1) [default: area]
     #[arg(long, value_enum)]
     prior: Option<PriorName>,
+}
+
+/// Whether a distance is 0: it is then not stored, as before there were such flags.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+fn is_none(metres: &f64) -> bool {
+    *metres == 0.0
 }
 
 /// What is to be flown.
@@ -120,7 +135,10 @@ impl CampaignFlags {
             motion: scenario::deviation("--motion-error", self.motion_error)?,
             ..Errors::default()
         };
-        let tolerance = scenario::tolerance("--tolerance", self.tolerance, errors)?;
+        let allowance = Allowance { bend: self.bend, drift: self.drift, ..Allowance::NONE };
+        allowance.check("--")?;
+        let position = scenario::position("--tolerance", self.tolerance, errors)?;
+        let tolerance = allowance.tolerance("--tolerance", position)?;
         let extent = Extent::OutsideBalls(trusted_radius);
         let campaign = |algorithm: Algorithm| {
             Ok::<_, anyhow::Error>(Campaign {

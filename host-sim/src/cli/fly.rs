@@ -77,7 +77,7 @@ pub(crate) fn fly(args: &FlyArgs) -> Result<Done> {
     let acceptance = acceptance(&mission, args.acceptance, &run.name())?;
     let labels = LabelSource::new(args.label.clone(), threshold(args.threshold)?);
     let &FlyArgs { system, wait: ready, motion_time: motion, label_time: label, .. } = args;
-    let tolerance = mission.config.tolerance.metres();
+    let tolerance = mission.position_tolerance();
     let limits = Limits { acceptance, tolerance, ready, motion, label };
     let pilot = Pilot::new(system, labels.clone(), limits);
     let Some(address) = &args.mavlink else {
@@ -152,7 +152,7 @@ fn acceptance(mission: &Mission, asked: Option<f64>, name: &str) -> Result<f64> 
         let expected = "unicycle or boat: a setpoint says where a motion ends, not along which arc";
         return wrong("vehicle", "car", expected).with_context(|| name.to_owned());
     }
-    let tolerance = mission.config.tolerance.metres();
+    let tolerance = mission.position_tolerance();
     if tolerance <= 0.0 {
         let expected = "one above 0: a vehicle's local position is always off by something";
         return wrong("tolerance", "0 m", expected).with_context(|| name.to_owned());

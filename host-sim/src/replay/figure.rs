@@ -39,9 +39,9 @@ impl Replay {
         });
         let note = match (sparse, doubt) {
             (note, None) => note,
-            (None, Some(_)) => Some("by all lines of the 90 % credible set".to_owned()),
+            (None, Some(_)) => Some("set: the 90 % credible set of lines".to_owned()),
             (Some(_), Some(_)) => {
-                Some(format!("one in {every} of {count}; by the 90 % credible set"))
+                Some(format!("one in {every} of {count}; set: the 90 % credible set"))
             }
         };
         let verdict = &self.answer.fit.verdict;
@@ -61,7 +61,10 @@ impl Replay {
             title: self.file.name.clone(),
             note,
             area: area.into(),
-            ground: Ground::Certain(self.answer.ground(area)),
+            ground: match doubt {
+                None => Ground::Certain(self.answer.ground(area)),
+                Some(_) => Ground::Agreed(self.answer.ground(area)),
+            },
             samples: dots,
             given: 0,
             path: None,

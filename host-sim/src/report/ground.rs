@@ -13,6 +13,8 @@ use crate::world::polygon::Polygon;
 pub enum Ground {
     /// The regions of certainty, of +1 and of -1.
     Certain([Polygon; 2]),
+    /// Where all lines of a credible set have +1, and where all have -1.
+    Agreed([Polygon; 2]),
     /// Where lines of the credible set pass, the least likely band first; each lies within the one before it.
     Credible(Vec<Band>),
     /// Nothing to show.

@@ -86,15 +86,24 @@ impl Map {
     /// What is known of the ground.
     pub(crate) fn ground(&mut self, ground: &Ground) {
         match ground {
-            Ground::Certain([positive, negative]) => {
-                for (label, region) in [(Label::Positive, positive), (Label::Negative, negative)] {
-                    let meaning = format!("ground certain to have label {:+}", label.sign());
-                    self.fill(Fill::Of(label), &[&region.0[..]], &meaning);
-                }
+            Ground::Certain(regions) => {
+                self.regions(regions, "ground certain to have label");
                 self.sheet.name(Look::Ground(Fill::Blank), "white: still uncertain");
+            }
+            Ground::Agreed(regions) => {
+                self.regions(regions, "all lines of the set have label");
+                self.sheet.name(Look::Ground(Fill::Blank), "white: lines of the set differ");
             }
             Ground::Credible(bands) => self.shade(bands),
             Ground::Plain => {}
+        }
+    }
+
+    /// Ground of either label.
+    fn regions(&mut self, [positive, negative]: &[Polygon; 2], meaning: &str) {
+        for (label, region) in [(Label::Positive, positive), (Label::Negative, negative)] {
+            let meaning = format!("{meaning} {:+}", label.sign());
+            self.fill(Fill::Of(label), &[&region.0[..]], &meaning);
         }
     }
 

@@ -6,6 +6,7 @@ use planner_core::Line;
 use planner_core::belief::evidence::Alarm;
 
 use crate::mission::algorithm::Algorithm;
+use crate::mission::allowance::ToleranceRecord;
 use crate::mission::results::{
     AUDIT, AlarmRecord, End, EstimateRecords, FitRecord, LineRecord, Results, Start, StepResult,
 };
@@ -124,6 +125,10 @@ fn end(results: &Results, estimates: &[(&str, Option<LineRecord>); 3]) -> String
     );
     if let Some(goal) = &results.end.goal {
         text += &promise(goal, &results.end.reason);
+        if let Some(told) = results.start.tolerance.filter(|_| goal.is_met && goal.level.is_none())
+        {
+            text += &of_the_boundary(&told);
+        }
     }
     if let Some(alarm) = &results.end.alarm {
         text += &warning(alarm);
@@ -164,6 +169,14 @@ fn remedy(results: &Results) -> Option<&'static str> {
         "no line" => {
             "The boundary bends or moves, or the sensor fails. Try a shorter stretch, a tolerance that covers the bend, \
              or the sensor."
+        }
+        "tolerance" if results.start.tolerance.is_some() && is_unmet => {
+            "This goal cannot be reached with this tolerance: accept a wider one, take a shorter stretch of the \
+             boundary or less time (a smaller bend and drift), or bring better positions."
+        }
+        "tolerance" if results.start.tolerance.is_some() => {
+            "To know more, take a shorter stretch of the boundary or less time (a smaller bend and drift), or bring \
+             better positions."
         }
         "tolerance" if is_unmet => {
             "This goal cannot be reached with this tolerance: accept a wider one, or bring better positions."
@@ -207,6 +220,18 @@ pub(crate) fn promise(goal: &GoalRecord, reason: &str) -> String {
     let audit = audit.map(|it| audited(&it)).unwrap_or_default();
     let more = if is_cut_short { "The audit is not finished: allow more steps.\n" } else { "" };
     format!("{known}{sure}: {lines} {what}.\n{audit}{more}")
+}
+
+/// What a promise means for a boundary that bends or moves.
+pub(crate) fn of_the_boundary(told: &ToleranceRecord) -> String {
+    let &ToleranceRecord { bend, drift, .. } = told;
+    if bend + drift == 0.0 {
+        return String::new();
+    }
+    format!(
+        "If the boundary bends by at most {bend} m and moves by at most {drift} m, one of these lines was within {bend} m \
+         of it at each time.\n"
+    )
 }
 
 /// What an audit came to, in words.
@@ -254,6 +279,9 @@ fn beginning(title: &str, start: &Start) -> String {
         "True {truth}\nThe oracle's points: {}",
         oracle.collect::<Vec<_>>().join(", ")
     );
+    if let Some(told) = &start.tolerance {
+        let _ = writeln!(text, "{}.", tolerance(told));
+    }
     if let Some(faults) = faults(start) {
         let _ = writeln!(text, "The sensor fails, unknown to the agent: {faults}");
     }
@@ -278,6 +306,14 @@ fn beginning(title: &str, start: &Start) -> String {
         );
     }
     text
+}
+
+/// The tolerance and its parts, in words.
+pub(crate) fn tolerance(told: &ToleranceRecord) -> String {
+    format!(
+        "The planner takes a label to be true of the straight line within {} of the reported position",
+        told.words()
+    )
 }
 
 /// A boundary that is no fixed line, in words.

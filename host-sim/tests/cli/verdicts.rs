@@ -73,6 +73,9 @@ fn recordings_that_no_straight_line_explains_are_told_apart() {
         assert!(svg.contains("ringed: disagrees with the line"), "{name}");
         assert!(svg.contains(&format!("verdict: {verdict}")), "{name}");
         assert!(!svg.contains("wrong"), "{name}");
+        // Nothing is certain where labels may be wrong: the ground is that of the 90 % set.
+        assert!(svg.contains("all lines of the set have label +1"), "{name}");
+        assert!(svg.contains("set: the 90 % credible set") && !svg.contains("certain"), "{name}");
         // Without --p they are refused as before. The message says what explains them.
         let output = host_sim(folder.path(), &["replay", &file]);
         let message = text(&output.stderr);

@@ -19,15 +19,20 @@ fn scenario(truth: &str) -> String {
     GOOD.replace(LINE, &format!("truth = {truth}"))
 }
 
-/// An image of 20 x 20 pixels: in grey or in colour, of 8 or 16 bits.
+/// Values of 20 x 20 cells from the upper left: 100 above a line of slope 1/2, and 0 below.
+fn field() -> impl Iterator<Item = u8> {
+    (0..400_u16).map(|n| {
+        let (x, z) = (f64::from(n % 20) + 0.5, 19.5 - f64::from(n / 20));
+        if z > 0.5 * x + 3.0 { 100 } else { 0 }
+    })
+}
+
+/// An image of these cells, 100 of 255 being grey: in grey or in colour, of 8 or 16 bits.
 fn image(path: &Path, color: png::ColorType, depth: png::BitDepth) {
     let mut encoder = png::Encoder::new(fs::File::create(path).expect("a file"), 20, 20);
     encoder.set_color(color);
     encoder.set_depth(depth);
-    let bytes = (0..400_u16).flat_map(|n| {
-        // Grey above a line of slope 1/2: 100 of 255, and black below.
-        let (x, z) = (f64::from(n % 20) + 0.5, 19.5 - f64::from(n / 20));
-        let value = if z > 0.5 * x + 3.0 { 100 } else { 0 };
+    let bytes = field().flat_map(|value| {
         let samples = match color {
             png::ColorType::Rgb => vec![value; 3],
             png::ColorType::GrayscaleAlpha => vec![value, 7],
@@ -38,6 +43,28 @@ fn image(path: &Path, color: png::ColorType, depth: png::BitDepth) {
     });
     let mut writer = encoder.write_header().expect("a header");
     writer.write_image_data(&bytes.collect::<Vec<u8>>()).expect("an image");
+}
+
+/// The same field as [`image`] as an ASCII grid of metres.
+fn grid(path: &Path) {
+    let values = field().map(|it| it.to_string()).collect::<Vec<_>>().join(" ");
+    let head = "ncols 20\nnrows 20\nxllcorner 0\nyllcorner 0\ncellsize 1\n";
+    fs::write(path, format!("{head}{values}\n")).expect("a file");
+}
+
+/// The same field as a `GeoTIFF` of metres.
+fn geotiff(path: &Path, compression: tiff::encoder::Compression) {
+    use tiff::encoder::{TiffEncoder, colortype::Gray32Float};
+    use tiff::tags::Tag;
+    let file = fs::File::create(path).expect("a file");
+    let mut encoder = TiffEncoder::new(file).expect("a file").with_compression(compression);
+    let mut image = encoder.new_image::<Gray32Float>(20, 20).expect("an image");
+    let tags = image.encoder();
+    tags.write_tag(Tag::ModelPixelScaleTag, &[1.0, 1.0, 0.0][..]).expect("a scale");
+    // The upper left corner.
+    tags.write_tag(Tag::ModelTiepointTag, &[0.0, 0.0, 0.0, 0.0, 20.0, 0.0][..]).expect("a place");
+    let values: Vec<f32> = field().map(f32::from).collect();
+    image.write_data(&values).expect("values");
 }
 
 fn records(printed: &str) -> Vec<Value> {
@@ -239,6 +266,7 @@ fn what_does_not_move_or_bend_flies_as_the_line_does() {
 #[test]
 fn images_of_every_kind_are_one_world() {
     use png::{BitDepth, ColorType};
+    use tiff::encoder::{Compression, DeflateLevel};
     let folder = folder();
     fs::create_dir(folder.path().join("sub")).expect("a folder");
     let mut flown = Vec::new();
@@ -258,6 +286,18 @@ fn images_of_every_kind_are_one_world() {
         flown.push((records[1..].to_vec(), color, depth));
     }
     assert!(flown.windows(2).all(|pair| pair[0].0 == pair[1].0), "{flown:?}");
+    // Grids have a place of their own, which is here that of the area.
+    let sub = folder.path().join("sub");
+    grid(&sub.join("map.asc"));
+    geotiff(&sub.join("map.tif"), Compression::Uncompressed);
+    geotiff(&sub.join("map.TIFF"), Compression::Deflate(DeflateLevel::default()));
+    geotiff(&sub.join("lzw.tif"), Compression::Lzw);
+    for name in ["map.asc", "map.tif", "map.TIFF", "lzw.tif"] {
+        let truth = format!("{{ raster = \"{name}\", threshold = 100 }}");
+        fs::write(sub.join("m.toml"), scenario(&truth)).expect("a file");
+        let printed = prints(folder.path(), &["run", "sub/m.toml", "--format", "json"]);
+        assert_eq!(records(&printed)[1..], flown[0].0, "{name}");
+    }
     let slope = flown[0].0.last().expect("an end")["fit"]["slope"].as_f64().expect("a slope");
     assert!((slope - 0.5).abs() < 0.02, "{slope}");
 }
@@ -270,7 +310,7 @@ fn wrong_worlds_are_refused() {
     write("short.asc", "ncols 4\nnrows 4\nxllcorner 0\nyllcorner 0\ncellsize 5\n1 2 3\n");
     write("none.png", "no image");
     write("map.tif", "II*");
-    let cases: [(&str, &[&str]); 31] = [
+    let cases: [(&str, &[&str]); 32] = [
         ("{ circle = [10, 10] }", &["bad.toml:9", "array of 3 numbers"]),
         ("{ circle = [10, 10, 0] }", &["truth.circle: found [10, 10, 0]", "a radius above 0"]),
         ("{ circle = [10, nan, 3] }", &["truth.circle", "NaN"]),
@@ -303,7 +343,11 @@ fn wrong_worlds_are_refused() {
         ("{ raster = \"grid.asc\", threshold = nan }", &["truth.threshold: found NaN"]),
         (
             "{ raster = \"map.tif\", threshold = 5 }",
-            &["truth.raster: found map.tif", ".png", ".asc"],
+            &["truth.raster: found map.tif, expected a GeoTIFF:"],
+        ),
+        (
+            "{ raster = \"map.bmp\", threshold = 5 }",
+            &["truth.raster: found map.bmp", ".png", ".asc", ".tif"],
         ),
         (
             "{ raster = \"no.asc\", threshold = 5 }",

@@ -5,6 +5,7 @@
 //! | --- | --- |
 //! | [`sample`], [`noise`], [`weight`] | labels, readings and samples; how reliable labels are; weights as logarithms |
 //! | [`tolerance`] | handles positions that err |
+//! | [`deviation`] | how much tolerance a boundary needs that bends or moves |
 //! | [`cells`] | the lines that agree with some labels, and what can be read off them |
 //! | [`estimate`] | three estimates of the line |
 //! | [`evidence`] | what speaks against a straight, still line |
@@ -17,6 +18,7 @@
 //! Nothing here knows how the robot moves.
 
 pub mod cells;
+pub mod deviation;
 pub mod doubtful_labels;
 pub mod estimate;
 pub mod evidence;

@@ -3,6 +3,7 @@
 mod anything;
 
 mod campaign;
+mod deviations;
 mod doubtful_audits;
 mod failures;
 mod fields;

@@ -187,7 +187,8 @@ impl Campaign {
     ) -> Result<Vec<Measured<M::Checkpoint>>> {
         let mission = self.mission(number);
         let (tolerance, area) = (mission.config.tolerance, mission.config.area);
-        scenario::check_tolerance("--tolerance", tolerance, &mission.given, &area)?;
+        let words = || format!("{} m", tolerance.metres());
+        scenario::check_tolerance("--tolerance", tolerance, words, &mission.given, &area)?;
         let (mut rows, mut course) = (Vec::new(), Course::default());
         let mut now = Progress { field: number, ..Progress::default() };
         let mut stages = self.stages(measure).into_iter().peekable();

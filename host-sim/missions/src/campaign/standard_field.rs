@@ -17,6 +17,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use crate::mission::algorithm::Algorithm;
+use crate::mission::allowance::Allowance;
 use crate::mission::definition::Mission;
 use crate::world::errors::Errors;
 use crate::world::{World, reading};
@@ -89,6 +90,7 @@ pub fn standard(seed: u64, number: u64, algorithm: Algorithm, steps: u32) -> Mis
             following: algorithm.following(),
             tolerance: Tolerance::NONE,
         },
+        allowance: Allowance::NONE,
         vehicle: algorithm.grid().into(),
         start: Pose { site: oracle[0].site, heading },
         world: World::divided_by(truth),

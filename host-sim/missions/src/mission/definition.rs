@@ -10,6 +10,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use crate::mission::algorithm::Algorithm;
+use crate::mission::allowance::{Allowance, ToleranceRecord, tidy};
 use crate::world::World;
 use crate::world::errors::{CUT, Erring, Errors};
 use crate::world::faults::{Failing, Fault};
@@ -39,6 +40,8 @@ pub struct Mission {
     pub seed: u64,
     /// Area, weight of the control, directions of P1 and P2, tolerance.
     pub config: Settings<MissionArea>,
+    /// The part of the tolerance that allows for a boundary that bends or moves, and for late labels.
+    pub allowance: Allowance,
     /// What moves.
     pub vehicle: AnyVehicle,
     /// Where the agent starts.
@@ -116,14 +119,45 @@ impl Mission {
         belief
     }
 
-    /// A warning, if the tolerance is smaller than the robot's errors of position and labels are taken to be true.
+    /// How far the planner takes reported positions to be off, metres: the tolerance without the allowance.
+    pub fn position_tolerance(&self) -> f64 {
+        let all = self.config.tolerance.metres();
+        let Allowance { bend, drift, lag } = self.allowance;
+        if self.allowance == Allowance::NONE {
+            all
+        } else {
+            tidy(all - bend - drift - lag).max(0.0)
+        }
+    }
+
+    /// The tolerance and its parts, if it has any beside that of positions.
+    pub fn tolerance_record(&self) -> Option<ToleranceRecord> {
+        let record = || ToleranceRecord::of(self.position_tolerance(), &self.allowance);
+        (self.allowance != Allowance::NONE).then(record)
+    }
+
+    /// What the planner is told that does not cover the simulated world, where labels are taken to be true: the
+    /// positions' part of the tolerance is smaller than the robot's errors, or an oracle's point is so near to the
+    /// boundary that its label may be untrue of the straight line.
     pub fn warning(&self) -> Option<String> {
-        let needs = CUT * self.errors.position;
-        let told = self.config.tolerance.metres();
-        (told < needs && !self.is_noisy()).then(|| {
-            format!(
+        if self.is_noisy() {
+            return None;
+        }
+        let (needs, told) = (CUT * self.errors.position, self.position_tolerance());
+        if told < needs {
+            return Some(format!(
                 "tolerance: {told} m with positions that err by up to {needs} m: true labels may be \
                  refused, or cut the true line off"
+            ));
+        }
+        let needs = self.allowance.of_given();
+        let samples = self.given.samples().iter().enumerate();
+        let far = samples.map(|(k, sample)| (k, self.world.distance(sample.site).abs()));
+        let (k, near) = far.min_by(|a, b| a.1.total_cmp(&b.1))?;
+        (near < needs).then(|| {
+            format!(
+                "oracle[{k}]: {near:.3} m from the boundary, which may bend and drift by {needs} m: a label so near may \
+                 cut the line off that fits best"
             )
         })
     }

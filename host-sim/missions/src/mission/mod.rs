@@ -2,6 +2,7 @@
 //! the record of how it went.
 
 pub mod algorithm;
+pub mod allowance;
 pub mod baseline;
 pub mod definition;
 pub mod flight;

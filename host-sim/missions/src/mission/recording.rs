@@ -220,6 +220,7 @@ fn start(mission: &Mission) -> Start {
         keep_out: mission.config.area.hulls().map(KeepOutRecord::from).collect(),
         oracle: mission.given.samples().iter().map(Into::into).collect(),
         vehicle: VehicleTable::of(mission.vehicle),
+        tolerance: mission.tolerance_record(),
         pose: mission.start.into(),
         truth: mission.world.line().map(|line| (*line).into()),
         boundary: mission.world.record(),

@@ -19,6 +19,7 @@ use planner_core::{
 use serde::{Deserialize, Serialize};
 
 use crate::mission::algorithm::Algorithm;
+use crate::mission::allowance::ToleranceRecord;
 use crate::mission::legs::{Leg, Legs};
 use crate::mission::read_out::Expectation;
 use crate::mission::sensor::FaultTable;
@@ -67,6 +68,9 @@ pub struct Start {
     /// What moved, unless it is the unicycle of a fan.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub vehicle: Option<VehicleTable>,
+    /// The tolerance and its parts, if it allows for more than positions that err.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tolerance: Option<ToleranceRecord>,
     /// Where the agent began.
     #[serde(default)]
     pub pose: PoseRecord,

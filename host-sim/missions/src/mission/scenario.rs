@@ -15,6 +15,7 @@ use planner_core::{
 use serde::Deserialize;
 
 use crate::mission::algorithm::Algorithm;
+use crate::mission::allowance::{self, Allowance};
 use crate::mission::definition::{CAPACITY, Lines, Mission};
 use crate::mission::names::{CrossingName, FanName, FollowingName, PolicyName, PriorName};
 use crate::mission::sensor::{self, FaultTable};
@@ -61,6 +62,8 @@ struct File {
     #[serde(default)]
     sensor: Vec<Table<FaultTable>>,
     tolerance: Option<f64>,
+    #[serde(default)]
+    allow: Table<Allowance>,
     stop: Option<Table<StopTable>>,
     #[serde(default)]
     area: Table<AreaTable>,
@@ -245,8 +248,12 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
     }
     let start = start(&file.start.0, &given, &area)?;
     let errors = errors(&file.errors.0)?;
-    let tolerance = tolerance("tolerance", file.tolerance, errors)?;
-    check_tolerance("tolerance", tolerance, &given, &area)?;
+    let allowance = file.allow.0;
+    allowance.check("allow.")?;
+    let position = position("tolerance", file.tolerance, errors)?;
+    let tolerance = allowance.tolerance("tolerance", position)?;
+    let words = || allowance::sum(position, &allowance);
+    check_tolerance("tolerance", tolerance, words, &given, &area)?;
     let noise = file.noise.as_ref().map(|table| noise(&table.0)).transpose()?;
     let following = file.following.map_or(algorithm.following(), Following::from);
     let crossing = file.crossing.into();
@@ -258,6 +265,7 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
         steps,
         seed: overrides.seed.unwrap_or(file.seed),
         config,
+        allowance,
         vehicle,
         start,
         world,
@@ -302,26 +310,28 @@ pub fn deviation(field: &str, metres: f64) -> Result<f64> {
     Ok(metres)
 }
 
-/// The tolerance of the planner: as given, otherwise as much as covers the robot's errors of position.
+/// The part of the planner's tolerance for positions, metres: as given, otherwise as much as covers the robot's errors.
 ///
 /// # Errors
 /// Names `field` and the number.
-pub fn tolerance(field: &str, metres: Option<f64>, errors: Errors) -> Result<Tolerance> {
+pub fn position(field: &str, metres: Option<f64>, errors: Errors) -> Result<f64> {
     let metres = metres.unwrap_or(CUT * errors.position);
-    Tolerance::new(metres).or_else(|_| wrong(field, metres, "a distance in metres, 0 to 1024"))
+    let is_one = Tolerance::new(metres).is_ok();
+    if is_one { Ok(metres) } else { wrong(field, metres, "a distance in metres, 0 to 1024") }
 }
 
 /// Whether something is left to find out under a tolerance.
 ///
 /// # Errors
-/// Names `field`, and what the tolerance is too much for.
+/// Names `field`, the tolerance by `words`, and what it is too much for.
 pub fn check_tolerance(
     field: &str,
     tolerance: Tolerance,
+    words: impl Fn() -> String,
     given: &Lines,
     area: &MissionArea,
 ) -> Result<()> {
-    let found = || format!("{} m", tolerance.metres());
+    let found = words;
     if !terrain::leaves_any(area, tolerance.metres()) {
         return wrong(field, found(), "less than half the breadth of the area");
     }

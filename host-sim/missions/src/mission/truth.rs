@@ -17,7 +17,7 @@ use crate::world::moving::Moving;
 use crate::world::polygon::Polygon;
 use crate::world::polyline::Polyline;
 use crate::world::raster::Raster;
-use crate::world::raster_file::Grid;
+use crate::world::raster_file;
 use crate::world::sine::Sine;
 
 /// Lengths are up to so many metres, so that no sum of theirs overflows.
@@ -57,7 +57,7 @@ impl TruthTable {
             if !threshold.is_finite() {
                 return wrong("truth.threshold", threshold, "a number");
             }
-            let grid = Grid::read(&folder.join(name), rectangle);
+            let grid = raster_file::read(&folder.join(name), rectangle);
             let grid = grid.or_else(|why| wrong("truth.raster", name, why))?;
             Box::new(Raster::new(name.clone(), &grid, threshold))
         } else {

@@ -255,6 +255,7 @@ pub fn check_room(
             return wrong(&source.name("kind"), of_area(config.area.bounds(), tolerance), none);
         }
         let found = format!("{tolerance} m");
+        // Reading a scenario file has refused such a tolerance by its parts.
         wrong(&source.name("tolerance"), found, "less than half the breadth of the area")
     })
 }

@@ -6,6 +6,7 @@ use planner_core::motion::dynamics::room_for_errors;
 use planner_core::{Label, Pose, Sample, Tolerance, Workspace as _};
 
 use crate::mission::algorithm::Algorithm;
+use crate::mission::allowance::Allowance;
 use crate::mission::definition::Mission;
 use crate::mission::results::cost;
 use crate::reference::objective::{LineCost, Lines, Problem};
@@ -129,6 +130,12 @@ fn problem(mission: &Mission, line: Option<LineCost>) -> Result<Problem> {
     if !mission.sensor.is_empty() {
         bail!(
             "sensor: found one that fails, expected none, as the paper's problems have no such faults"
+        );
+    }
+    if mission.allowance != Allowance::NONE {
+        bail!(
+            "allow: found a boundary that may bend or drift, or late labels, expected none, as the paper's problems \
+             have none of them"
         );
     }
     if mission.config.tolerance != Tolerance::NONE {

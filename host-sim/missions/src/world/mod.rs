@@ -6,6 +6,8 @@ pub mod circle;
 pub mod errors;
 pub mod extent;
 pub mod faults;
+pub mod geotiff;
+pub mod grid;
 pub(crate) mod in_order;
 pub mod moving;
 pub mod noise;

@@ -6,7 +6,7 @@ use nalgebra::Point2;
 use planner_core::{Label, Reading};
 
 use crate::world::boundary::{BoundaryRecord, Curve};
-use crate::world::raster_file::Grid;
+use crate::world::grid::Grid;
 use crate::world::way::{self, Way};
 
 /// How far the cells of the border reach, metres: beyond every place of the lattice.

@@ -1,4 +1,4 @@
-//! Rasters as files have them: PNG images, and grids of ESRI's ASCII format.
+//! Rasters as files have them: PNG images, grids of ESRI's ASCII format, and `GeoTIFF`.
 
 use std::fs::{self, File};
 use std::io::BufReader;
@@ -8,55 +8,36 @@ use anyhow::{Context as _, Result, anyhow, bail};
 use nalgebra::Point2;
 use png::{BitDepth, ColorType, Decoder, Transformations};
 
-/// The most cells.
-const MOST_CELLS: usize = 4_000_000;
+use crate::world::geotiff;
+use crate::world::grid::{Grid, check_cells};
 
 /// The longest file, bytes.
 const MOST_BYTES: u64 = 1 << 27;
 
-/// Values in cells.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Grid {
-    /// The corner with the least coordinates, metres.
-    pub corner: Point2<f64>,
-    /// The size of a cell, metres.
-    pub cell: [f64; 2],
-    /// Cells in a row.
-    pub columns: usize,
-    /// The values, row by row from the greatest z down. What has no value is not a number.
-    pub values: Vec<f64>,
-}
-
-impl Grid {
-    /// Reads a file by the end of its name, `.png` or `.asc`. An image is stretched over a rectangle.
-    ///
-    /// # Errors
-    /// What was expected.
-    pub fn read(path: &Path, rectangle: [Point2<f64>; 2]) -> Result<Self> {
-        let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
-        let is_image = ending == "png";
-        if !is_image && ending != "asc" {
-            bail!("a PNG image (.png) or an ESRI ASCII grid (.asc)");
-        }
-        // A device or a pipe may have no end.
-        let found = fs::metadata(path).ok().filter(|it| it.is_file() && it.len() <= MOST_BYTES);
-        found.with_context(|| format!("a readable file of {} MB at most", MOST_BYTES >> 20))?;
-        if is_image {
-            image(path, rectangle).map_err(|why| anyhow!("a PNG image: {why:#}"))
-        } else {
-            let text = fs::read_to_string(path).map_err(|why| anyhow!("a text file: {why}"))?;
-            ascii(&text).map_err(|why| anyhow!("an ESRI ASCII grid: {why:#}"))
-        }
+/// Reads a file by the end of its name: `.png`, `.asc`, `.tif` or `.tiff`. An image is stretched over a rectangle.
+///
+/// # Errors
+/// What was expected.
+pub fn read(path: &Path, rectangle: [Point2<f64>; 2]) -> Result<Grid> {
+    let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
+    let is_tiff = ending == "tif" || ending == "tiff";
+    if !is_tiff && ending != "png" && ending != "asc" {
+        bail!("a PNG image (.png), an ESRI ASCII grid (.asc) or a GeoTIFF (.tif)");
     }
-}
-
-/// Whether there are so many cells as can be handled.
-fn check_cells(columns: usize, rows: usize) -> Result<()> {
-    let count = columns.checked_mul(rows);
-    if !count.is_some_and(|count| (1..=MOST_CELLS).contains(&count)) {
-        bail!("found {columns} x {rows} cells, expected 1 to {MOST_CELLS}");
+    // A device or a pipe may have no end.
+    let found = fs::metadata(path).ok().filter(|it| it.is_file() && it.len() <= MOST_BYTES);
+    found.with_context(|| format!("a readable file of {} MB at most", MOST_BYTES >> 20))?;
+    if is_tiff {
+        let grid = File::open(path)
+            .map_err(Into::into)
+            .and_then(|file| geotiff::read(BufReader::new(file)));
+        grid.map_err(|why| anyhow!("a GeoTIFF: {why:#}"))
+    } else if ending == "png" {
+        image(path, rectangle).map_err(|why| anyhow!("a PNG image: {why:#}"))
+    } else {
+        let text = fs::read_to_string(path).map_err(|why| anyhow!("a text file: {why}"))?;
+        ascii(&text).map_err(|why| anyhow!("an ESRI ASCII grid: {why:#}"))
     }
-    Ok(())
 }
 
 /// The luminance of each pixel, as the file has it: up to 255, with 16 bits up to 65535.

@@ -10,11 +10,11 @@ use rand_chacha::ChaCha8Rng;
 use crate::world::World;
 use crate::world::boundary::Curve;
 use crate::world::circle::Circle;
+use crate::world::grid::Grid;
 use crate::world::moving::Moving;
 use crate::world::polygon::Polygon;
 use crate::world::polyline::Polyline;
 use crate::world::raster::Raster;
-use crate::world::raster_file::Grid;
 use crate::world::sine::Sine;
 
 /// A boundary, and whether a place is +1 by a formula of its own.

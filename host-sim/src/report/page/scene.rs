@@ -343,7 +343,7 @@ fn seen(record: &LineRecord, border: &Polygon, rounding: Rounding) -> SeenLine {
 impl GroundRecord {
     fn of(ground: &Ground, rounding: Rounding) -> Self {
         match ground {
-            Ground::Certain(regions) => {
+            Ground::Certain(regions) | Ground::Agreed(regions) => {
                 Self::Certain(regions.each_ref().map(|it| rounding.ring(it)))
             }
             Ground::Credible(bands) => {

@@ -90,7 +90,9 @@ pub(crate) fn about(recording: &Recording) -> Vec<String> {
         about.push("Labels are true, so each tells one bit at most on average.".to_owned());
     }
     let tolerance = mission.config.tolerance.metres();
-    if tolerance > 0.0 {
+    if let Some(tolerance) = &start.tolerance {
+        about.push(format!("{}.", text::tolerance(tolerance)));
+    } else if tolerance > 0.0 {
         about
             .push(format!("Planners take reported positions to be off by up to {tolerance:.3} m."));
     }
