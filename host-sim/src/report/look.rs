@@ -44,6 +44,8 @@ impl Look {
             Self::Given(Label::Negative) => "given-negative",
             Self::Ringed(Ring::Wrong) => "wrong",
             Self::Ringed(Ring::Disagrees) => "disagrees",
+            Self::Ringed(Ring::Against) => "against",
+            Self::Ringed(Ring::Refutes) => "refutes",
             Self::Start => "start",
             Self::Unread => "unread",
             Self::Truly => "truly",
@@ -67,6 +69,7 @@ impl Look {
                 let group = group.set("fill", style::of_label(label));
                 group.set("stroke", "#000000").set("stroke-width", 1.8)
             }
+            Self::Ringed(Ring::Against) => outlined(group, 1.4).set("stroke-dasharray", "3 2"),
             Self::Ringed(_) | Self::Start => outlined(group, 1.4),
             Self::Truly => outlined(group, 1.1),
             Self::Unread => outlined(group, 1.2).set("fill", "#ffffff"),
@@ -90,6 +93,7 @@ impl Look {
             Self::Read(Label::Negative) => group.add(square(at, 4.1)),
             Self::Given(Label::Positive) => group.add(circle(at, 6.8)),
             Self::Given(Label::Negative) => group.add(square(at, 6.1)),
+            Self::Ringed(Ring::Refutes) => group.add(circle(at, 8.5)).add(circle(at, 12.5)),
             Self::Ringed(_) => group.add(circle(at, 9.5)),
             Self::Start => {
                 let to = |x: f64, y: f64| at + Vector2::new(x, y) * 13.0;

@@ -244,13 +244,15 @@ impl Map {
                 let meaning = match ring {
                     Ring::Wrong => "ringed: the label is wrong",
                     Ring::Disagrees => "ringed: disagrees with the line",
+                    Ring::Against => "dashed ring: disagrees with the best line",
+                    Ring::Refutes => "double ring: no line left has this label here",
                 };
                 self.sheet.mark(Look::Ringed(ring), at);
                 self.sheet.name(Look::Ringed(ring), meaning);
             }
             self.sheet.mark(look, at);
             self.sheet.name(look, meaning);
-            self.placing.mark(at, if dot.ring.is_some() { 10.0 } else { radius });
+            self.placing.mark(at, if dot.ring.is_some() { 13.0 } else { radius });
         }
     }
 

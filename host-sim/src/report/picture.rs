@@ -58,6 +58,10 @@ pub enum Ring {
     Wrong,
     /// The label disagrees with the line. The truth is not known.
     Disagrees,
+    /// The label disagrees with the line that the fewest do.
+    Against,
+    /// No line left has this label here.
+    Refutes,
 }
 
 /// The true boundary.
@@ -160,6 +164,8 @@ pub enum Kind {
     SecondBest,
     /// The third-best candidate.
     ThirdBest,
+    /// The line that the fewest labels disagree with, if no line explains them all.
+    Fewest,
 }
 
 impl Named {
@@ -184,6 +190,17 @@ impl Picture {
             lines.extend(Named::estimate("posterior mean", centre));
             lines.extend(bounding(table));
         }
+        let diagnosis = results.end.diagnosis.as_ref();
+        let fewest = diagnosis.and_then(|it| {
+            let [a, b, c] = it.line.coefficients;
+            Line::from_coefficients(a, b, c)
+        });
+        lines.extend(fewest.map(|line| Named {
+            name: "line that the fewest labels disagree with".to_owned(),
+            line,
+            kind: Kind::Fewest,
+            beside: None,
+        }));
         // The number of the step that took a sample; given ones were true at the start.
         let mut taken = (1..).zip(&recording.steps);
         let number = |s: &Sample| {
@@ -199,10 +216,15 @@ impl Picture {
         } else {
             vec![0; samples.len()]
         };
-        let dot = |(s, number): (&Sample, usize)| Dot {
-            at: s.site.into(),
-            label: s.label,
-            ring: (!mission.world.after(number).agrees(s.site, s.label)).then_some(Ring::Wrong),
+        let disagrees = |s: &Sample| {
+            let is_above = |line: &Line| line.distance(s.site.into()) > 0.0;
+            fewest.as_ref().is_some_and(|it| is_above(it) != (s.label == Label::Positive))
+        };
+        let dot = |(s, number): (&Sample, usize)| {
+            let is_wrong = !mission.world.after(number).agrees(s.site, s.label);
+            let wrong = is_wrong.then_some(Ring::Wrong);
+            let ring = wrong.or_else(|| disagrees(s).then_some(Ring::Against));
+            Dot { at: s.site.into(), label: s.label, ring }
         };
         // No belief takes in the labels of an audit.
         let refuted = results.end.goal.and_then(|goal| goal.audit?.refuted);
@@ -212,8 +234,9 @@ impl Picture {
                 return None;
             };
             let site = step.pose.site;
-            let disagrees = (refuted == Some(number)).then_some(Ring::Disagrees);
-            Some(Dot { ring: disagrees, ..dot((&Sample { site, label }, number)) })
+            let dot = dot((&Sample { site, label }, number));
+            let refutes = (refuted == Some(number)).then_some(Ring::Refutes);
+            Some(Dot { ring: refutes.or(dot.ring), ..dot })
         });
         let mut from = Point2::from(mission.start.site);
         let stops = results.steps.iter().map(|step| Stop {

@@ -6,11 +6,13 @@ use planner_core::Line;
 use planner_core::belief::evidence::Alarm;
 
 use crate::mission::algorithm::Algorithm;
+use crate::mission::diagnosis::DiagnosisRecord;
 use crate::mission::results::{
     AUDIT, AlarmRecord, End, EstimateRecords, FitRecord, LineRecord, Results, Start, StepResult,
 };
 use crate::mission::stop::{AuditRecord, GoalRecord};
 use crate::output::plain;
+use crate::report::diagnosis;
 use crate::report::table::{Cells, Column, Table};
 use crate::world::boundary::BoundaryRecord;
 use crate::world::noise::limit;
@@ -128,12 +130,21 @@ fn end(results: &Results, estimates: &[(&str, Option<LineRecord>); 3]) -> String
     if let Some(alarm) = &results.end.alarm {
         text += &warning(alarm);
     }
+    for (of, words) in results.end.diagnosis.iter().flat_map(diagnosed) {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{of}: {words}");
+    }
     if let Some(remedy) = remedy(results) {
         text += remedy;
         text.push('\n');
     }
     text.push('\n');
     text + &outcome(&results.end) + &errors(results, estimates)
+}
+
+/// Why no straight, still line explains the labels, and what to do: sentences with their headings.
+pub(crate) fn diagnosed(record: &DiagnosisRecord) -> Vec<(&'static str, String)> {
+    diagnosis::told(record, &line(&record.line))
 }
 
 /// Why a mission ended, in words.
@@ -161,10 +172,6 @@ fn remedy(results: &Results) -> Option<&'static str> {
     let is_unmet = results.end.goal.as_ref().is_some_and(|goal| !goal.is_met);
     Some(match &*results.end.reason {
         "resolution" => "To go on, allow finer turns and speeds: turn_step, step.",
-        "no line" => {
-            "The boundary bends or moves, or the sensor fails. Try a shorter stretch, a tolerance that covers the bend, \
-             or the sensor."
-        }
         "tolerance" if is_unmet => {
             "This goal cannot be reached with this tolerance: accept a wider one, or bring better positions."
         }

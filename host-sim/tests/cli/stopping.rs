@@ -79,7 +79,7 @@ fn a_mission_that_no_line_explains_says_so() {
     fs::write(folder.path().join("m.toml"), scenario).expect("a file");
     prints(folder.path(), &["run", "m.toml", "--figure", "m.svg", "--report", "m.html"]);
     let figure = fs::read_to_string(folder.path().join("m.svg")).expect("a figure");
-    assert!(figure.contains("disagrees with the line"));
+    assert!(figure.contains("double ring: no line left has this label here"));
 }
 
 #[test]

@@ -4,6 +4,7 @@
 pub mod algorithm;
 pub mod baseline;
 pub mod definition;
+pub mod diagnosis;
 pub mod flight;
 pub mod legs;
 pub mod margin;

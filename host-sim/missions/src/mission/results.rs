@@ -19,6 +19,7 @@ use planner_core::{
 use serde::{Deserialize, Serialize};
 
 use crate::mission::algorithm::Algorithm;
+use crate::mission::diagnosis::DiagnosisRecord;
 use crate::mission::legs::{Leg, Legs};
 use crate::mission::read_out::Expectation;
 use crate::mission::sensor::FaultTable;
@@ -186,6 +187,9 @@ pub struct End {
     /// The most that spoke against a straight, still line, from a warning on.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub alarm: Option<AlarmRecord>,
+    /// What explains the labels, if something speaks against a straight, still line.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub diagnosis: Option<DiagnosisRecord>,
     /// How near to its targets a real vehicle came.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flown: Option<Legs>,
@@ -329,6 +333,9 @@ pub struct FitRecord {
     pub angle: f64,
     /// The share of the area that it misclassifies.
     pub misclassified: f64,
+    /// The shares that the estimates misclassify.
+    #[serde(default)]
+    pub estimates: EstimateRecords<f64>,
     /// The line.
     #[serde(skip)]
     pub line: LineRecord,
@@ -426,11 +433,18 @@ impl From<Line> for LineRecord {
     }
 }
 
-impl From<Fit> for FitRecord {
-    fn from(Fit { line, misclassified }: Fit) -> Self {
+impl FitRecord {
+    /// The line that misclassifies least, beside the estimates.
+    pub fn beside(Fit { line, misclassified }: Fit, estimates: &EstimateRecords) -> Self {
         let line = LineRecord::from(line);
         let LineRecord { slope, intercept, angle, .. } = line;
-        Self { slope, intercept, angle, misclassified, line }
+        let share = |it: Option<LineRecord>| it?.error.map(|error| error.misclassified);
+        let estimates = EstimateRecords {
+            bisector: share(estimates.bisector),
+            centre: share(estimates.centre),
+            maximum_margin: share(estimates.maximum_margin),
+        };
+        Self { slope, intercept, angle, misclassified, estimates, line }
     }
 }
 
