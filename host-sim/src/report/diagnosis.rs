@@ -34,6 +34,7 @@ fn best_line(record: &DiagnosisRecord, line: &str) -> String {
     let listed: Vec<_> = steps.iter().take(LISTED).map(ToString::to_string).collect();
     let more = if steps.len() > LISTED { ", ..." } else { "" };
     let which = match steps.len() {
+        0 if *disagreeing > 0 => ": given samples".to_owned(),
         0 => String::new(),
         1 => format!(": step {}", listed[0]),
         _ => format!(": steps {}{more}", listed.join(", ")),
