@@ -62,6 +62,7 @@ impl Replay {
             note,
             area: area.into(),
             ground: Ground::Certain(self.answer.ground(area)),
+            is_refuted: false,
             samples: dots,
             given: 0,
             path: None,

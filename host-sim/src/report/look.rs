@@ -21,6 +21,8 @@ pub(crate) enum Look {
     Start,
     /// A small circle where no label was read.
     Unread,
+    /// The same, struck through, where one was asked for.
+    Missing,
     /// A cross where a robot truly was.
     Truly,
     /// The number of a step.
@@ -48,6 +50,7 @@ impl Look {
             Self::Ringed(Ring::Refutes) => "refutes",
             Self::Start => "start",
             Self::Unread => "unread",
+            Self::Missing => "missing",
             Self::Truly => "truly",
             Self::Number => "number",
             Self::Line(stroke) => stroke.class,
@@ -72,7 +75,7 @@ impl Look {
             Self::Ringed(Ring::Against) => outlined(group, 1.4).set("stroke-dasharray", "3 2"),
             Self::Ringed(_) | Self::Start => outlined(group, 1.4),
             Self::Truly => outlined(group, 1.1),
-            Self::Unread => outlined(group, 1.2).set("fill", "#ffffff"),
+            Self::Unread | Self::Missing => outlined(group, 1.2).set("fill", "#ffffff"),
             Self::Number => group.set("fill", INK),
             Self::Line(Stroke { colour, width, dashes, .. }) => {
                 let group = group.set("fill", "none").set("stroke", colour);
@@ -101,6 +104,11 @@ impl Look {
                 group.add(Path::new().set("d", outline(&corners).close()))
             }
             Self::Unread => group.add(circle(at, 3.4)),
+            Self::Missing => {
+                let half = Vector2::new(4.6, -4.6);
+                let stroke = Path::new().set("d", outline(&[at - half, at + half]));
+                group.add(circle(at, 3.4)).add(stroke)
+            }
             Self::Truly => {
                 let to = |x: f64, y: f64| at + Vector2::new(x, y) * 3.6;
                 let strokes = [[to(-1.0, -1.0), to(1.0, 1.0)], [to(-1.0, 1.0), to(1.0, -1.0)]];

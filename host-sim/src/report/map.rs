@@ -84,11 +84,15 @@ impl Map {
     }
 
     /// What is known of the ground.
-    pub(crate) fn ground(&mut self, ground: &Ground) {
+    ///
+    /// `is_refuted`: a label contradicts it.
+    pub(crate) fn ground(&mut self, ground: &Ground, is_refuted: bool) {
         match ground {
             Ground::Certain([positive, negative]) => {
                 for (label, region) in [(Label::Positive, positive), (Label::Negative, negative)] {
-                    let meaning = format!("ground certain to have label {:+}", label.sign());
+                    let certain =
+                        if is_refuted { "taken to be certain of" } else { "certain to have" };
+                    let meaning = format!("ground {certain} label {:+}", label.sign());
                     self.fill(Fill::Of(label), &[&region.0[..]], &meaning);
                 }
                 self.sheet.name(Look::Ground(Fill::Blank), "white: still uncertain");
@@ -221,7 +225,10 @@ impl Map {
                 self.placing.way(&[at, truly]);
                 self.placing.mark(truly, 4.0);
             }
-            if !stop.sensed {
+            if stop.lacks_reading {
+                self.sheet.mark(Look::Missing, at);
+                self.sheet.name(Look::Missing, "a label was asked for, and none came");
+            } else if !stop.sensed {
                 self.sheet.mark(Look::Unread, at);
                 self.sheet.name(Look::Unread, "a stop where no label was read");
             }

@@ -2,6 +2,7 @@
 
 use nalgebra::{Point2, Rotation2, Vector2};
 use planner_core::belief::estimate;
+use planner_core::belief::evidence::Alarm;
 use planner_core::geometry::lattice::{LIMIT, UNITS_PER_METRE, Vector};
 use planner_core::link::message::MissionArea;
 use planner_core::{
@@ -28,6 +29,8 @@ pub struct Picture {
     pub area: MissionArea,
     /// What is known of it.
     pub ground: Ground,
+    /// Whether a label contradicts that.
+    pub is_refuted: bool,
     /// The samples, with the labels that were seen.
     pub samples: Vec<Dot>,
     /// How many of them were given, not taken on the way.
@@ -134,6 +137,8 @@ pub struct Stop {
     pub heading: f64,
     /// Whether a side of the boundary was sensed there.
     pub sensed: bool,
+    /// Whether a label was asked for there, and the sensor read nothing.
+    pub lacks_reading: bool,
 }
 
 /// A line with a name for the legend.
@@ -250,12 +255,14 @@ impl Picture {
             truly: step.true_pose.map(|pose| Point2::new(pose.x, pose.z)),
             heading: step.pose.heading,
             sensed: step.label.is_some_and(|label| label != 0),
+            lacks_reading: step.label.is_none() && step.expected.is_some(),
         });
         Self {
             title: title.to_owned(),
             note: Some(note(recording)),
             area,
             ground: Ground::of(&**belief, area),
+            is_refuted: refuted.is_some(),
             samples: samples.zip(numbers).map(dot).chain(audited).collect(),
             given,
             path: Some((Point2::from(mission.start.site), stops.collect())),
@@ -321,8 +328,16 @@ fn note(Recording { mission, results, .. }: &Recording) -> String {
     let labels = if mission.noise.is_some() { ", labels may be wrong" } else { "" };
     let (steps, planner) = (results.steps.len(), mission.algorithm.title());
     let plural = if steps == 1 { "" } else { "s" };
+    let is_refuted =
+        results.end.goal.is_some_and(|goal| goal.audit.is_some_and(|it| it.refuted.is_some()));
+    let ending = match &results.end.alarm {
+        _ if is_refuted => "; no straight line fits",
+        Some(alarm) if alarm.evidence >= Alarm::ALARM => "; labels raise an alarm",
+        Some(_) => "; labels raise a warning",
+        None => "",
+    };
     format!(
-        "A robot looks for the straight boundary of +1 and -1{labels}: {planner}, {steps} step{plural}"
+        "A robot looks for the straight boundary of +1 and -1{labels}: {planner}, {steps} step{plural}{ending}"
     )
 }
 
