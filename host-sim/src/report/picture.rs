@@ -195,7 +195,7 @@ impl Picture {
             lines.extend(Named::estimate("posterior mean", centre));
             lines.extend(bounding(table));
         }
-        let diagnosis = results.end.diagnosis.as_ref();
+        let diagnosis = results.end.diagnosis.as_deref();
         let fewest = diagnosis.and_then(|it| {
             let [a, b, c] = it.line.coefficients;
             Line::from_coefficients(a, b, c)

@@ -130,7 +130,7 @@ fn end(results: &Results, estimates: &[(&str, Option<LineRecord>); 3]) -> String
     if let Some(alarm) = &results.end.alarm {
         text += &warning(alarm);
     }
-    for (of, words) in results.end.diagnosis.iter().flat_map(diagnosed) {
+    for (of, words) in results.end.diagnosis.iter().flat_map(|it| diagnosed(it)) {
         // Writing to a string cannot fail.
         let _ = writeln!(text, "{of}: {words}");
     }
@@ -425,7 +425,7 @@ fn errors(results: &Results, estimates: &[(&str, Option<LineRecord>); 3]) -> Str
     if let Some(truth) = &results.start.truth {
         table.row(["truth".into(), line(truth)]);
     }
-    if let Some(FitRecord { line: best, misclassified, .. }) = &results.end.fit {
+    if let Some(FitRecord { line: best, misclassified, .. }) = results.end.fit.as_deref() {
         let share = format!("{:.3}%", 100.0 * misclassified);
         table.row(["line that fits best".into(), line(best), String::new(), share]);
     }

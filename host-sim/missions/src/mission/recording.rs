@@ -165,12 +165,12 @@ impl Recorder {
         let end = End {
             reason: ending.name().into(),
             estimates,
-            fit: fit.map(|fit| FitRecord::beside(fit, &estimates)),
+            fit: fit.map(|fit| Box::new(FitRecord::beside(fit, &estimates))),
             best,
             credible,
             goal: GoalRecord::of(&mission, &*belief, audit(&results, ending)),
             alarm,
-            diagnosis,
+            diagnosis: diagnosis.map(Box::new),
             flown: Legs::of(&results.iter().filter_map(|step| step.flown).collect::<Vec<_>>()),
         };
         let results = Results { start: start(&mission), steps: results, end };

@@ -174,7 +174,7 @@ pub struct End {
     pub estimates: EstimateRecords,
     /// The straight line that misclassifies least, where the true boundary is no fixed line.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub fit: Option<FitRecord>,
+    pub fit: Option<Box<FitRecord>>,
     /// Where labels may err: the paper's outcome, by the paper's prior.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub best: Option<BestRecord>,
@@ -189,7 +189,7 @@ pub struct End {
     pub alarm: Option<AlarmRecord>,
     /// What explains the labels, if something speaks against a straight, still line.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub diagnosis: Option<DiagnosisRecord>,
+    pub diagnosis: Option<Box<DiagnosisRecord>>,
     /// How near to its targets a real vehicle came.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flown: Option<Legs>,
