@@ -259,7 +259,12 @@ impl Map {
             }
             self.sheet.mark(look, at);
             self.sheet.name(look, meaning);
-            self.placing.mark(at, if dot.ring.is_some() { 13.0 } else { radius });
+            let radius = match dot.ring {
+                None => radius,
+                Some(Ring::Refutes) => 13.0,
+                Some(_) => 10.0,
+            };
+            self.placing.mark(at, radius);
         }
     }
 

@@ -4,9 +4,11 @@
 pub mod algorithm;
 pub mod baseline;
 pub mod definition;
+mod diagnosing;
 pub mod diagnosis;
 pub mod flight;
 pub mod legs;
+mod line_record;
 pub mod margin;
 pub mod names;
 pub mod planners;

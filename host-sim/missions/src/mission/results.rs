@@ -21,6 +21,7 @@ use serde::{Deserialize, Serialize};
 use crate::mission::algorithm::Algorithm;
 use crate::mission::diagnosis::DiagnosisRecord;
 use crate::mission::legs::{Leg, Legs};
+pub use crate::mission::line_record::{LineError, LineRecord};
 use crate::mission::read_out::Expectation;
 use crate::mission::sensor::FaultTable;
 use crate::mission::stop::GoalRecord;
@@ -296,32 +297,6 @@ pub struct ActionRecord {
     pub w: f32,
 }
 
-/// A line; slope and intercept are `None` for a vertical one.
-#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
-pub struct LineRecord {
-    /// The paper's `rho`.
-    pub slope: Option<f64>,
-    /// The paper's `c`, metres.
-    pub intercept: Option<f64>,
-    /// Degrees.
-    pub angle: f64,
-    /// `a x + b z + c = 0` with `a^2 + b^2 = 1`.
-    #[serde(skip)]
-    pub coefficients: [f64; 3],
-    /// Beside the truth, if there is one.
-    #[serde(skip)]
-    pub error: Option<LineError>,
-}
-
-/// How far an estimate is from the true line.
-#[derive(Clone, Copy, Debug)]
-pub struct LineError {
-    /// Between the two, degrees.
-    pub degrees: f64,
-    /// The share of the area that gets the wrong label.
-    pub misclassified: f64,
-}
-
 /// The straight line that misclassifies least.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct FitRecord {
@@ -418,18 +393,6 @@ impl From<Pose> for PoseRecord {
 impl From<&Motion> for ActionRecord {
     fn from(motion: &Motion) -> Self {
         Self { index: motion.action.0, v: motion.control.distance_m, w: motion.control.turn_rad }
-    }
-}
-
-impl From<Line> for LineRecord {
-    fn from(line: Line) -> Self {
-        Self {
-            slope: line.slope(),
-            intercept: line.intercept(),
-            angle: line.angle_deg(),
-            coefficients: line.coefficients(),
-            error: None,
-        }
     }
 }
 
