@@ -76,7 +76,7 @@ fn log_end(steps: u16, flown: &Result<Flown, LinkError>) {
     }
 }
 
-fn log_step(number: u16, Step { motion, pose, reading }: &Step) {
+fn log_step(number: u16, Step { motion, pose, reading, .. }: &Step) {
     defmt::info!(
         "step {=u16}: {} {}, action {=u32}, to x {=i32}, z {=i32}, heading {=u32:#010x}, label {}",
         number,

@@ -125,7 +125,9 @@
 //!   [`ObservationError`](error::ObservationError), and the planner stays as it was.
 //! - Positions lie within 8,192 m of the origin, one motion is shorter than 3,000 m, and a buffer holds
 //!   3 to 128 samples.
-//! - The boundary is one straight, still line. [`watch`] says when the labels speak against it. [`Cfc`] and [`Scc`] look one step ahead, [`Lookahead`] two.
+//! - The boundary is one straight, still line. Wrap the planner in [`Watched`](watch::Watched): then
+//!   [`Step::alarm`] says when the labels speak against it.
+//! - [`Cfc`] and [`Scc`] look one step ahead, [`Lookahead`] two.
 
 #[cfg(not(feature = "internals"))]
 mod belief;

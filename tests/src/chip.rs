@@ -27,7 +27,7 @@ pub trait FarEnd {
 }
 
 /// A chip's port.
-pub struct Socket<'a>(&'a RefCell<dyn FarEnd + 'a>);
+pub struct Socket<'a>(pub &'a RefCell<dyn FarEnd + 'a>);
 
 impl Port for Socket<'_> {
     fn send(&mut self, frame: &[u8]) {

@@ -254,6 +254,9 @@ impl Player {
             EndReason::Steps => Ending::Steps,
             EndReason::Stopped(reason) => Ending::Stopped(reason),
             EndReason::Refused(refused) => bail!("the board refused what agrees: {refused}"),
+            EndReason::Sensor if self.setup.labels == LabelSource::Vehicle => {
+                bail!("step {}: the board got no label where it wanted one", self.motions())
+            }
             EndReason::Sensor => bail!("step {}: the board's sensor failed", self.motions()),
             EndReason::Vehicle => bail!("step {}: the vehicle failed", self.motions()),
         };
@@ -303,7 +306,7 @@ impl Player {
         if let Err(refused) = self.planner.observe(pose, reading) {
             return Err(self.recorder.refusal(&refused));
         }
-        let step = Step { motion, pose, reading };
+        let step = Step { motion, pose, reading, alarm: None };
         self.recorder.take(&step, self.robot.true_pose(), self.planner.belief());
         match (&mut self.logbook, self.recorder.last()) {
             (Some(logbook), Some(step)) => logbook.take(step),

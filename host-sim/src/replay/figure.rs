@@ -65,6 +65,7 @@ impl Replay {
                 None => Ground::Certain(self.answer.ground(area)),
                 Some(_) => Ground::Agreed(self.answer.ground(area)),
             },
+            is_refuted: false,
             samples: dots,
             given: 0,
             path: None,

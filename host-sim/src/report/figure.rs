@@ -11,7 +11,7 @@ impl Picture {
     pub fn svg(&self) -> String {
         let stops = self.path.as_ref().map_or(&[][..], |(_, stops)| stops);
         let mut map = Map::new(&self.title, self.note.as_deref(), &self.area, &self.places());
-        map.ground(&self.ground);
+        map.ground(&self.ground, self.is_refuted);
         map.limits();
         if let Some(truth) = self.truth.as_ref().and_then(Truth::line) {
             map.line(&truth, TRUTH, "true line", None);

@@ -21,6 +21,8 @@ pub(crate) enum Look {
     Start,
     /// A small circle where no label was read.
     Unread,
+    /// The same, struck through, where one was asked for.
+    Missing,
     /// A cross where a robot truly was.
     Truly,
     /// The number of a step.
@@ -44,8 +46,11 @@ impl Look {
             Self::Given(Label::Negative) => "given-negative",
             Self::Ringed(Ring::Wrong) => "wrong",
             Self::Ringed(Ring::Disagrees) => "disagrees",
+            Self::Ringed(Ring::Against) => "against",
+            Self::Ringed(Ring::Refutes) => "refutes",
             Self::Start => "start",
             Self::Unread => "unread",
+            Self::Missing => "missing",
             Self::Truly => "truly",
             Self::Number => "number",
             Self::Line(stroke) => stroke.class,
@@ -67,9 +72,10 @@ impl Look {
                 let group = group.set("fill", style::of_label(label));
                 group.set("stroke", "#000000").set("stroke-width", 1.8)
             }
+            Self::Ringed(Ring::Against) => outlined(group, 1.4).set("stroke-dasharray", "3 2"),
             Self::Ringed(_) | Self::Start => outlined(group, 1.4),
             Self::Truly => outlined(group, 1.1),
-            Self::Unread => outlined(group, 1.2).set("fill", "#ffffff"),
+            Self::Unread | Self::Missing => outlined(group, 1.2).set("fill", "#ffffff"),
             Self::Number => group.set("fill", INK),
             Self::Line(Stroke { colour, width, dashes, .. }) => {
                 let group = group.set("fill", "none").set("stroke", colour);
@@ -90,6 +96,7 @@ impl Look {
             Self::Read(Label::Negative) => group.add(square(at, 4.1)),
             Self::Given(Label::Positive) => group.add(circle(at, 6.8)),
             Self::Given(Label::Negative) => group.add(square(at, 6.1)),
+            Self::Ringed(Ring::Refutes) => group.add(circle(at, 8.5)).add(circle(at, 12.5)),
             Self::Ringed(_) => group.add(circle(at, 9.5)),
             Self::Start => {
                 let to = |x: f64, y: f64| at + Vector2::new(x, y) * 13.0;
@@ -97,6 +104,11 @@ impl Look {
                 group.add(Path::new().set("d", outline(&corners).close()))
             }
             Self::Unread => group.add(circle(at, 3.4)),
+            Self::Missing => {
+                let half = Vector2::new(4.6, -4.6);
+                let stroke = Path::new().set("d", outline(&[at - half, at + half]));
+                group.add(circle(at, 3.4)).add(stroke)
+            }
             Self::Truly => {
                 let to = |x: f64, y: f64| at + Vector2::new(x, y) * 3.6;
                 let strokes = [[to(-1.0, -1.0), to(1.0, 1.0)], [to(-1.0, 1.0), to(1.0, -1.0)]];

@@ -84,10 +84,13 @@ impl Map {
     }
 
     /// What is known of the ground.
-    pub(crate) fn ground(&mut self, ground: &Ground) {
+    ///
+    /// `is_refuted`: a label contradicts it.
+    pub(crate) fn ground(&mut self, ground: &Ground, is_refuted: bool) {
         match ground {
             Ground::Certain(regions) => {
-                self.regions(regions, "ground certain to have label");
+                let certain = if is_refuted { "taken to be certain of" } else { "certain to have" };
+                self.regions(regions, &format!("ground {certain} label"));
                 self.sheet.name(Look::Ground(Fill::Blank), "white: still uncertain");
             }
             Ground::Agreed(regions) => {
@@ -230,7 +233,10 @@ impl Map {
                 self.placing.way(&[at, truly]);
                 self.placing.mark(truly, 4.0);
             }
-            if !stop.sensed {
+            if stop.lacks_reading {
+                self.sheet.mark(Look::Missing, at);
+                self.sheet.name(Look::Missing, "a label was asked for, and none came");
+            } else if !stop.sensed {
                 self.sheet.mark(Look::Unread, at);
                 self.sheet.name(Look::Unread, "a stop where no label was read");
             }
@@ -253,13 +259,20 @@ impl Map {
                 let meaning = match ring {
                     Ring::Wrong => "ringed: the label is wrong",
                     Ring::Disagrees => "ringed: disagrees with the line",
+                    Ring::Against => "dashed ring: disagrees with the best line",
+                    Ring::Refutes => "double ring: no line left has this label here",
                 };
                 self.sheet.mark(Look::Ringed(ring), at);
                 self.sheet.name(Look::Ringed(ring), meaning);
             }
             self.sheet.mark(look, at);
             self.sheet.name(look, meaning);
-            self.placing.mark(at, if dot.ring.is_some() { 10.0 } else { radius });
+            let radius = match dot.ring {
+                None => radius,
+                Some(Ring::Refutes) => 13.0,
+                Some(_) => 10.0,
+            };
+            self.placing.mark(at, radius);
         }
     }
 

@@ -5,6 +5,7 @@ pub mod bands;
 pub mod campaign;
 pub mod comparison;
 pub mod curves;
+mod diagnosis;
 pub mod examples;
 pub mod figure;
 pub mod flat;

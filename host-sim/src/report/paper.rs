@@ -134,7 +134,7 @@ fn bounded(title: &str, note: &str, recording: &Recording, four: &[Sample]) -> R
     let mut map = Map::new(title, Some(note), &area, &[]);
     let support: Vec<_> =
         recording.belief.version_space().into_iter().flat_map(Lines::support).collect();
-    map.ground(&Ground::certain(area, &support));
+    map.ground(&Ground::certain(area, &support), false);
     for (name, from, to) in [("l13", p1, p3), ("l14", p1, p4), ("l23", p2, p3), ("l24", p2, p4)] {
         let way = to - from;
         let line = Line::through(*from, Vector2::new(-way.y, way.x)).context("two points")?;

@@ -2,6 +2,7 @@
 
 use nalgebra::{Point2, Rotation2, Vector2};
 use planner_core::belief::estimate;
+use planner_core::belief::evidence::Alarm;
 use planner_core::geometry::lattice::{LIMIT, UNITS_PER_METRE, Vector};
 use planner_core::link::message::MissionArea;
 use planner_core::{
@@ -28,6 +29,8 @@ pub struct Picture {
     pub area: MissionArea,
     /// What is known of it.
     pub ground: Ground,
+    /// Whether a label contradicts that.
+    pub is_refuted: bool,
     /// The samples, with the labels that were seen.
     pub samples: Vec<Dot>,
     /// How many of them were given, not taken on the way.
@@ -58,6 +61,10 @@ pub enum Ring {
     Wrong,
     /// The label disagrees with the line. The truth is not known.
     Disagrees,
+    /// The label disagrees with the line that the fewest do.
+    Against,
+    /// No line left has this label here.
+    Refutes,
 }
 
 /// The true boundary.
@@ -130,6 +137,8 @@ pub struct Stop {
     pub heading: f64,
     /// Whether a side of the boundary was sensed there.
     pub sensed: bool,
+    /// Whether a label was asked for there, and the sensor read nothing.
+    pub lacks_reading: bool,
 }
 
 /// A line with a name for the legend.
@@ -160,6 +169,8 @@ pub enum Kind {
     SecondBest,
     /// The third-best candidate.
     ThirdBest,
+    /// The line that the fewest labels disagree with, if no line explains them all.
+    Fewest,
 }
 
 impl Named {
@@ -184,6 +195,17 @@ impl Picture {
             lines.extend(Named::estimate("posterior mean", centre));
             lines.extend(bounding(table));
         }
+        let diagnosis = results.end.diagnosis.as_deref();
+        let fewest = diagnosis.and_then(|it| {
+            let [a, b, c] = it.line.coefficients;
+            Line::from_coefficients(a, b, c)
+        });
+        lines.extend(fewest.map(|line| Named {
+            name: "line that the fewest labels disagree with".to_owned(),
+            line,
+            kind: Kind::Fewest,
+            beside: None,
+        }));
         // The number of the step that took a sample; given ones were true at the start.
         let mut taken = (1..).zip(&recording.steps);
         let number = |s: &Sample| {
@@ -199,10 +221,15 @@ impl Picture {
         } else {
             vec![0; samples.len()]
         };
-        let dot = |(s, number): (&Sample, usize)| Dot {
-            at: s.site.into(),
-            label: s.label,
-            ring: (!mission.world.after(number).agrees(s.site, s.label)).then_some(Ring::Wrong),
+        let disagrees = |s: &Sample| {
+            let is_above = |line: &Line| line.distance(s.site.into()) > 0.0;
+            fewest.as_ref().is_some_and(|it| is_above(it) != (s.label == Label::Positive))
+        };
+        let dot = |(s, number): (&Sample, usize)| {
+            let is_wrong = !mission.world.after(number).agrees(s.site, s.label);
+            let wrong = is_wrong.then_some(Ring::Wrong);
+            let ring = wrong.or_else(|| disagrees(s).then_some(Ring::Against));
+            Dot { at: s.site.into(), label: s.label, ring }
         };
         // No belief takes in the labels of an audit.
         let refuted = results.end.goal.and_then(|goal| goal.audit?.refuted);
@@ -212,8 +239,9 @@ impl Picture {
                 return None;
             };
             let site = step.pose.site;
-            let disagrees = (refuted == Some(number)).then_some(Ring::Disagrees);
-            Some(Dot { ring: disagrees, ..dot((&Sample { site, label }, number)) })
+            let dot = dot((&Sample { site, label }, number));
+            let refutes = (refuted == Some(number)).then_some(Ring::Refutes);
+            Some(Dot { ring: refutes.or(dot.ring), ..dot })
         });
         let mut from = Point2::from(mission.start.site);
         let stops = results.steps.iter().map(|step| Stop {
@@ -227,12 +255,14 @@ impl Picture {
             truly: step.true_pose.map(|pose| Point2::new(pose.x, pose.z)),
             heading: step.pose.heading,
             sensed: step.label.is_some_and(|label| label != 0),
+            lacks_reading: step.label.is_none() && step.expected.is_some(),
         });
         Self {
             title: title.to_owned(),
             note: Some(note(recording)),
             area,
             ground: Ground::of(&**belief, area),
+            is_refuted: refuted.is_some(),
             samples: samples.zip(numbers).map(dot).chain(audited).collect(),
             given,
             path: Some((Point2::from(mission.start.site), stops.collect())),
@@ -298,8 +328,16 @@ fn note(Recording { mission, results, .. }: &Recording) -> String {
     let labels = if mission.noise.is_some() { ", labels may be wrong" } else { "" };
     let (steps, planner) = (results.steps.len(), mission.algorithm.title());
     let plural = if steps == 1 { "" } else { "s" };
+    let is_refuted =
+        results.end.goal.is_some_and(|goal| goal.audit.is_some_and(|it| it.refuted.is_some()));
+    let ending = match &results.end.alarm {
+        _ if is_refuted => "; no straight line fits",
+        Some(alarm) if alarm.evidence >= Alarm::ALARM => "; labels raise an alarm",
+        Some(_) => "; labels raise a warning",
+        None => "",
+    };
     format!(
-        "A robot looks for the straight boundary of +1 and -1{labels}: {planner}, {steps} step{plural}"
+        "A robot looks for the straight boundary of +1 and -1{labels}: {planner}, {steps} step{plural}{ending}"
     )
 }
 

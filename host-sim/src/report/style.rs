@@ -136,6 +136,7 @@ pub(crate) const fn of_line(kind: Kind) -> Stroke {
         Kind::MaximumMargin => ("maximum-margin", "#be003c", 2.2, "9 5"),
         Kind::SecondBest => ("second-best", "#5a5a5a", 1.8, "6 4 2 4"),
         Kind::ThirdBest => ("third-best", "#8a8a8a", 1.8, "2 4"),
+        Kind::Fewest => ("fewest", "#be003c", 2.0, "3 3"),
     };
     Stroke { class, colour, width, dashes }
 }

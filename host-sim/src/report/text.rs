@@ -7,11 +7,13 @@ use planner_core::belief::evidence::Alarm;
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::ToleranceRecord;
+use crate::mission::diagnosis::DiagnosisRecord;
 use crate::mission::results::{
     AUDIT, AlarmRecord, End, EstimateRecords, FitRecord, LineRecord, Results, Start, StepResult,
 };
 use crate::mission::stop::{AuditRecord, GoalRecord};
 use crate::output::plain;
+use crate::report::diagnosis;
 use crate::report::table::{Cells, Column, Table};
 use crate::world::boundary::BoundaryRecord;
 use crate::world::noise::limit;
@@ -133,12 +135,21 @@ fn end(results: &Results, estimates: &[(&str, Option<LineRecord>); 3]) -> String
     if let Some(alarm) = &results.end.alarm {
         text += &warning(alarm);
     }
+    for (of, words) in results.end.diagnosis.iter().flat_map(|it| diagnosed(it)) {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{of}: {words}");
+    }
     if let Some(remedy) = remedy(results) {
         text += remedy;
         text.push('\n');
     }
     text.push('\n');
     text + &outcome(&results.end) + &errors(results, estimates)
+}
+
+/// Why no straight, still line explains the labels, and what to do: sentences with their headings.
+pub(crate) fn diagnosed(record: &DiagnosisRecord) -> Vec<(&'static str, String)> {
+    diagnosis::told(record, &line(&record.line))
 }
 
 /// Why a mission ended, in words.
@@ -166,10 +177,6 @@ fn remedy(results: &Results) -> Option<&'static str> {
     let is_unmet = results.end.goal.as_ref().is_some_and(|goal| !goal.is_met);
     Some(match &*results.end.reason {
         "resolution" => "To go on, allow finer turns and speeds: turn_step, step.",
-        "no line" => {
-            "The boundary bends or moves, or the sensor fails. Try a shorter stretch, a tolerance that covers the bend, \
-             or the sensor."
-        }
         "tolerance" if results.start.tolerance.is_some() && is_unmet => {
             "This goal cannot be reached with this tolerance: accept a wider one, take a shorter stretch of the \
              boundary or less time (a smaller bend and drift), or bring better positions."
@@ -465,7 +472,7 @@ fn errors(results: &Results, estimates: &[(&str, Option<LineRecord>); 3]) -> Str
     if let Some(truth) = &results.start.truth {
         table.row(["truth".into(), line(truth)]);
     }
-    if let Some(FitRecord { line: best, misclassified, .. }) = &results.end.fit {
+    if let Some(FitRecord { line: best, misclassified, .. }) = results.end.fit.as_deref() {
         let share = format!("{:.3}%", 100.0 * misclassified);
         table.row(["line that fits best".into(), line(best), String::new(), share]);
     }

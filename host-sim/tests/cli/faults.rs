@@ -169,6 +169,43 @@ fn wrong_labels_are_marked_where_the_sensor_fails() {
     assert!(!said.contains("sensor") && !said.contains("wrong"), "{said}");
 }
 
+/// A sensor that is stuck is found out by its labels: with a goal and without, and also where labels may be wrong.
+#[test]
+fn a_stuck_sensor_is_named_in_the_result() {
+    let goal = "stop = { slope_arc_deg = 0.5 }\n";
+    let doubtful = "noise = { p = 0.9 }\n";
+    for (algorithm, more) in
+        [("lookahead", goal), ("lookahead", ""), ("cfc", ""), ("scc", doubtful)]
+    {
+        let scenario = GOOD
+            .replace("\"cfc\"", &format!("\"{algorithm}\""))
+            .replace("steps = 10", &format!("steps = 40\n{more}"));
+        let folder = failing(&scenario, "[{ stuck = 1 }]");
+        let records = flown(folder.path());
+        let end = records.last().expect("an end");
+        let told = &end["diagnosis"];
+        let cause = told["cause"].as_str().expect("a cause");
+        // Where labels are true, it and an inverted one may read the same.
+        let shares = ["stuck", "inverted"].map(|it| told["shares"][it].as_f64());
+        let is_named = cause.starts_with("stuck") || shares.iter().flatten().sum::<f64>() > 0.75;
+        assert!(is_named, "{algorithm} {more}: {told}");
+        assert_eq!(told.get("refuting").is_some(), more == goal);
+        assert_eq!(told.get("shares").is_some(), more != doubtful);
+        let output = host_sim(folder.path(), &["run", "m.toml", "-q"]);
+        let said = text(&output.stdout);
+        let explanation = said.lines().find(|line| line.starts_with("Explanation: "));
+        let explanation = explanation.expect("an explanation");
+        assert!(explanation.contains("the sensor is stuck on a label"), "{said}");
+        assert!(said.contains("To do: check the sensor"), "{said}");
+    }
+    // Of a sound sensor nothing is said.
+    let scenario = GOOD
+        .replace("\"cfc\"", "\"lookahead\"")
+        .replace("steps = 10", &format!("steps = 40\n{goal}"));
+    let records = flown(failing(&scenario, "[]").path());
+    assert!(records.last().expect("an end").get("diagnosis").is_none());
+}
+
 /// A slow sensor reads the place before, so its labels are wrong within that distance of the line alone.
 #[test]
 fn a_slow_sensor_errs_near_the_line() {

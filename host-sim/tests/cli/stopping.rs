@@ -71,16 +71,66 @@ fn a_mission_that_no_line_explains_says_so() {
     assert_eq!((&end["reason"], &end["goal"]["is_met"]), (&"no line".into(), &false.into()));
     assert_eq!(end["goal"]["audit"]["refuted"], records.len() - 2);
     assert!(end["alarm"]["evidence"].as_f64() > Some(100.0), "{end}");
-    for part in
-        ["no straight, still line explains the labels", "Not known: ", "Refuted: ", "Alarm: "]
-    {
+    for part in [
+        "no straight, still line explains the labels",
+        "Not known: ",
+        "Refuted: ",
+        "Alarm: ",
+        "\nSeen: step ",
+        "\nBest line: z = ",
+        "\nExplanation: ",
+        "\nTo do: ",
+    ] {
         assert!(story.contains(part), "{part} in {story}");
     }
+    // The label that refutes is that of the last step, and the line is one that disagrees with so many labels.
+    let (diagnosis, last) = (&end["diagnosis"], &records[records.len() - 2]);
+    let refuting = &diagnosis["refuting"];
+    assert_eq!((&refuting["step"], &refuting["label"]), (&last["step"], &last["label"]));
+    assert_eq!((&refuting["x"], &refuting["z"]), (&last["pose"]["x"], &last["pose"]["z"]));
+    assert_eq!(refuting["expected"].as_i64(), refuting["label"].as_i64().map(|label| -label));
+    let number = |value: &Value| value.as_f64().expect("a number");
+    let [slope, intercept] = ["slope", "intercept"].map(|key| number(&diagnosis["line"][key]));
+    let above = |x: &Value, z: &Value| number(z) > slope * number(x) + intercept;
+    let given = records[0]["oracle"].as_array().expect("samples").iter();
+    let given = given.map(|it| (above(&it["x"], &it["z"]), &it["label"]));
+    let read = records[1..records.len() - 1].iter().filter(|step| step["label"].is_i64());
+    let read = read.map(|it| (above(&it["pose"]["x"], &it["pose"]["z"]), &it["label"]));
+    let labels: Vec<_> = given.chain(read).collect();
+    // Of which side is +1 the slope says nothing.
+    let wrong = labels.iter().filter(|(above, label)| *above != (**label == 1)).count();
+    let wrong = wrong.min(labels.len() - wrong);
+    assert_eq!(diagnosis["disagreeing"], wrong);
+    assert_eq!(diagnosis["labels"], labels.len());
+    let share = wrong as f64 / labels.len() as f64;
+    assert!((number(&diagnosis["share"]) - share).abs() < 1e-12 && wrong > 0);
+    let shares = diagnosis["shares"].as_object().expect("shares").values().map(number);
+    assert!((shares.sum::<f64>() - 1.0).abs() < 0.005, "{diagnosis}");
     let folder = folder();
     fs::write(folder.path().join("m.toml"), scenario).expect("a file");
     prints(folder.path(), &["run", "m.toml", "--figure", "m.svg", "--report", "m.html"]);
     let figure = fs::read_to_string(folder.path().join("m.svg")).expect("a figure");
-    assert!(figure.contains("disagrees with the line"));
+    assert!(figure.contains("double ring: no line left has this label here"));
+    assert!(figure.contains("line that the fewest labels disagree with"));
+    let page = fs::read_to_string(folder.path().join("m.html")).expect("a page");
+    assert!(["Seen", "Best line", "Explanation", "To do"].iter().all(|it| page.contains(it)));
+}
+
+/// The tolerance that a result advises is one with which the mission ends otherwise.
+#[test]
+fn the_advice_of_a_mission_without_a_line_can_be_followed() {
+    let sine = "truth = { sine = [1.0, 20.0, 0.0], slope = 0.41, intercept = 3.5 }";
+    let scenario = stopping(GOOD, "{ slope_arc_deg = 0.5 }");
+    let scenario = scenario.lines().map(|it| if it.starts_with("truth") { sine } else { it });
+    let scenario = scenario.collect::<Vec<_>>().join("\n");
+    let (story, records) = flown(&scenario);
+    let diagnosis = &records[records.len() - 1]["diagnosis"];
+    let metres = diagnosis["tolerance"].as_f64().expect("a tolerance");
+    assert!((0.1..5.0).contains(&metres), "{diagnosis}");
+    assert!(story.contains(&format!("a tolerance of {metres} m")), "{story}");
+    let (story, records) = flown(&format!("tolerance = {metres}\n{scenario}"));
+    let end = &records[records.len() - 1];
+    assert!(end["reason"] != "no line" && end.get("diagnosis").is_none(), "{story}");
 }
 
 #[test]

@@ -145,6 +145,15 @@ fn each_world_flies_a_mission_and_is_drawn() {
             "{truth}: {share}"
         );
         assert!(end["fit"]["slope"].is_number() && end["fit"]["angle"].is_number());
+        if let Some(inside) = inside(&truth) {
+            for name in ["bisector", "centre", "maximum_margin"] {
+                let estimate = &end["estimates"][name];
+                let slow = misclassified(estimate, inside);
+                let told = end["fit"]["estimates"][name].as_f64().expect("a share");
+                assert!((told - slow).abs() < 2e-3, "{truth}: {name} {told}, {slow}");
+                assert!(told >= share - 1e-4, "{truth}: {name} is better than the best line");
+            }
+        }
         let line = format!("True boundary, unknown to the agent: {words}\n");
         assert!(said.contains(&line), "{line} in {said}");
         let best =
@@ -174,6 +183,28 @@ fn each_world_flies_a_mission_and_is_drawn() {
                 && page.contains("deg off the best line")
         );
     }
+}
+
+/// What is positive on the +1 side of some of the worlds, by formulas of their own.
+fn inside(truth: &str) -> Option<fn(f64, f64) -> f64> {
+    match truth {
+        _ if truth.contains("circle") => Some(|x, z| 16.0 - (x - 6.0).hypot(z - 22.0)),
+        // From (0, 3) by (10, 6) to (18, 12), and on beyond its ends.
+        _ if truth.contains("polyline") => {
+            Some(|x, z| z - if x < 10.0 { 3.0 + 0.3 * x } else { 6.0 + 0.75 * (x - 10.0) })
+        }
+        _ => None,
+    }
+}
+
+/// The share of the area that a line of the trace misclassifies, by the labels of a grid of places. +1 is above it.
+fn misclassified(line: &Value, inside: fn(f64, f64) -> f64) -> f64 {
+    const SIDE: i32 = 500;
+    let [slope, intercept] = ["slope", "intercept"].map(|key| line[key].as_f64().expect("metres"));
+    let at = |k: i32| 20.0 * (f64::from(k) + 0.5) / f64::from(SIDE);
+    let places = (0..SIDE * SIDE).map(|k| (at(k % SIDE), at(k / SIDE)));
+    let wrong = places.filter(|(x, z)| (*z > slope * x + intercept) != (inside(*x, *z) > 0.0));
+    wrong.count() as f64 / f64::from(SIDE * SIDE)
 }
 
 /// What is positive on the +1 side at x, z and after so many motions.

@@ -66,6 +66,16 @@ impl Alarm {
 
     /// The least evidence of an alarm: at most 1 mission in 100 reaches it while the model is true.
     pub const ALARM: f32 = 100.0;
+
+    /// Whether it is an alarm, and not only a warning.
+    pub fn is_grave(&self) -> bool {
+        self.evidence >= Self::ALARM
+    }
+
+    /// What is new after a label: a warning that was none before it, or an alarm that was none.
+    pub(crate) fn risen(before: Option<Self>, after: Option<Self>) -> Option<Self> {
+        after.filter(|after| before.is_none_or(|before| after.is_grave() && !before.is_grave()))
+    }
 }
 
 impl core::fmt::Display for Alarm {
@@ -170,6 +180,20 @@ mod tests {
                 assert!((mean - 1.0).abs() < 1e-4, "{labels}: {mean}");
             }
         }
+    }
+
+    #[test]
+    fn a_warning_and_an_alarm_are_new_once_each() {
+        let of = |evidence| {
+            (evidence >= Alarm::WARNING).then_some(Alarm { evidence, suspect: Suspect::Coin })
+        };
+        let values = [1.0, 19.9, 20.0, 60.0, 99.9, 100.0, 3e5, 100.0, 70.0, 101.0, 5.0, 200.0];
+        let new = values
+            .windows(2)
+            .map(|pair| Alarm::risen(of(pair[0]), of(pair[1])).map(|alarm| alarm.evidence as u32));
+        let told =
+            [None, Some(20), None, None, Some(100), None, None, None, Some(101), None, Some(200)];
+        assert!(new.eq(told));
     }
 
     #[test]

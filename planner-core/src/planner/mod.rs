@@ -23,6 +23,7 @@ mod vote;
 pub mod watched;
 
 use crate::belief::estimate::Estimates;
+use crate::belief::evidence::Alarm;
 use crate::belief::sample::Reading;
 use crate::belief::tolerance::Tolerance;
 use crate::belief::{Belief, ObservationError};
@@ -188,6 +189,12 @@ pub trait Planner {
     /// What is known.
     fn belief(&self) -> &Self::Belief;
 
+    /// What speaks against a straight, still line, if it is much. Only a [`Watched`](crate::watch::Watched) planner says
+    /// so: any other has `None`.
+    fn alarm(&self) -> Option<Alarm> {
+        None
+    }
+
     /// The line as far as it is known: all three estimates.
     fn estimates(&self) -> Estimates {
         self.belief().estimates()
@@ -218,6 +225,10 @@ impl<T: Planner + ?Sized> Planner for &mut T {
 
     fn belief(&self) -> &T::Belief {
         T::belief(self)
+    }
+
+    fn alarm(&self) -> Option<Alarm> {
+        T::alarm(self)
     }
 
     fn estimates(&self) -> Estimates {

@@ -65,4 +65,8 @@ impl<P: Planner> Planner for Watched<P> {
     fn belief(&self) -> &P::Belief {
         self.planner.belief()
     }
+
+    fn alarm(&self) -> Option<Alarm> {
+        self.evidence.alarm()
+    }
 }

@@ -29,6 +29,9 @@ pub struct Step {
     pub pose: Pose,
     /// What was sensed there, if a sample was taken.
     pub reading: Option<Reading>,
+    /// What has begun to speak against a straight, still line. It is there on the step that brings the evidence of a
+    /// [`Watched`] planner to a warning or to an alarm, and on no other.
+    pub alarm: Option<Alarm>,
 }
 
 /// What ended a step early.
@@ -101,7 +104,8 @@ impl<P: Planner, B> Agent<P, B> {
 }
 
 impl<P: Planner, B> Agent<Watched<P>, B> {
-    /// What speaks against a straight, still line, if it is much.
+    /// What speaks against a straight, still line, if it is much. A label that was refused counts too, of which there
+    /// is no [`Step`].
     pub fn alarm(&self) -> Option<Alarm> {
         self.planner.alarm()
     }
@@ -141,7 +145,9 @@ impl<P: Planner, B> Agent<P, B> {
         motion: Motion,
         reading: Option<Reading>,
     ) -> Result<Event, AgentError<E>> {
+        let before = self.planner.alarm();
         self.planner.observe(self.pose, reading).map_err(AgentError::Observation)?;
-        Ok(Event::Step(Step { motion, pose: self.pose, reading }))
+        let alarm = Alarm::risen(before, self.planner.alarm());
+        Ok(Event::Step(Step { motion, pose: self.pose, reading, alarm }))
     }
 }

@@ -182,6 +182,7 @@ mod tests {
     use crate::motion::unicycle::Unicycle;
     use crate::planner::cfc::Cfc;
     use crate::planner::lookahead::Lookahead;
+    use crate::planner::watched::Watched;
 
     const STEPS: usize = 24;
 
@@ -212,6 +213,7 @@ mod tests {
     struct Robot<'a> {
         at: &'a Cell<Pose>,
         stuck: &'a Cell<Option<Driver>>,
+        senses: fn(Site) -> Label,
     }
 
     #[derive(Clone, Copy, PartialEq)]
@@ -233,7 +235,7 @@ mod tests {
         type Error = Infallible;
 
         fn read(&mut self) -> Result<Reading, Infallible> {
-            Ok(label(self.at.get().site).into())
+            Ok((self.senses)(self.at.get().site).into())
         }
     }
 
@@ -285,15 +287,18 @@ mod tests {
 
     /// Called and awaited drivers make the same motions and readings. So they do if two of three steps were dropped
     /// before, on the way or while they sensed.
-    fn missions_are_the_same(planner: impl Planner + Clone) {
+    ///
+    /// How many of its steps tell of an alarm.
+    fn missions_are_the_same(planner: impl Planner + Clone, senses: fn(Site) -> Label) -> usize {
         let [here, there] = [Cell::new(start()), Cell::new(start())];
         let (stuck, free) = (Cell::new(None), Cell::new(None));
         let robot = |at, stuck| {
-            let robot = Robot { at, stuck };
+            let robot = Robot { at, stuck, senses };
             Vehicle { drive: robot, sensor: robot }
         };
         let mut called = Agent::new(planner.clone(), robot(&here, &free), start());
         let mut awaited = Agent::new(planner, robot(&there, &stuck), start());
+        let mut alarms = 0;
         for number in 0..STEPS {
             let before = awaited.pose();
             let sticks = [None, Some(Driver::Drive), Some(Driver::Sensor)][number % 3];
@@ -308,14 +313,16 @@ mod tests {
                 step(&mut awaited)
             });
             let [expected, event] = [called.step().ok(), event].map(|event| match event {
-                Some(Event::Step(it)) => (it.motion.target, it.pose, it.reading),
+                Some(Event::Step(it)) => (it.motion.target, it.pose, it.reading, it.alarm),
                 other => panic!("step {number}: {other:?}"),
             });
             assert_eq!(event, expected, "step {number}");
             // Where no label is wanted none is read.
             let wants = [false, true, event.2.is_some()];
             assert_eq!(is_cut, wants[number % 3], "step {number}");
+            alarms += usize::from(event.3.is_some());
         }
+        alarms
     }
 
     /// What a sensor reads when it is awaited; none if it does not end when it is asked three times.
@@ -331,7 +338,7 @@ mod tests {
     #[test]
     fn a_threshold_reads_the_same_whether_it_is_called_or_awaited() {
         let (at, stuck) = (Cell::new(start()), Cell::new(None));
-        let robot = Robot { at: &at, stuck: &stuck };
+        let robot = Robot { at: &at, stuck: &stuck, senses: label };
         let values = [9, 15, 10, 20, 21, 15, i32::MIN, 15, i32::MAX];
         for above in [Label::Positive, Label::Negative] {
             for first in 0..values.len() {
@@ -384,7 +391,13 @@ mod tests {
 
     #[test]
     fn a_mission_is_the_same_with_drivers_that_are_awaited() {
-        missions_are_the_same(Lookahead::new(area(), Unicycle::paper(), known()).unwrap());
-        missions_are_the_same(Cfc::new(area(), Unicycle::paper(), known()).unwrap());
+        let planner = Lookahead::new(area(), Unicycle::paper(), known()).unwrap();
+        assert_eq!(missions_are_the_same(planner, label), 0);
+        let planner = Cfc::new(area(), Unicycle::paper(), known()).unwrap();
+        assert_eq!(missions_are_the_same(planner.clone(), label), 0);
+        // A sensor that is stuck: nobody is told of it who does not watch, and whoever does is told.
+        let stuck = |_| Label::Positive;
+        assert_eq!(missions_are_the_same(planner.clone(), stuck), 0);
+        assert_eq!(missions_are_the_same(Watched::new(planner), stuck), 1);
     }
 }

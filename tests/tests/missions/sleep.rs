@@ -73,7 +73,11 @@ where
         let observed = planner.observe(pose, reading);
         observed.map_err(|refused| recorder.refusal(&refused).to_string())?;
         (planner, pose) = sleep(planner, pose, &make);
-        recorder.take(&Step { motion, pose, reading }, robot.true_pose(), planner.belief());
+        recorder.take(
+            &Step { motion, pose, reading, alarm: None },
+            robot.true_pose(),
+            planner.belief(),
+        );
     }
     let recording = recorder.end(Flown { ending, belief: planner.belief().boxed() });
     Ok(trace::lines(&recording.results))

@@ -1,6 +1,7 @@
 //! What goes over the link to a chip: messages, frames, delivery, restarts.
 
 mod link;
+mod missing;
 mod player;
 mod port;
 mod protocol;

@@ -7,9 +7,13 @@
 //! | [`doubt`], [`line_posterior`] | labels that may be wrong: the distribution over lines |
 //! | [`outlier`] | the rows without which a line separates the rest |
 //! | [`fit`] | whether any straight, still line explains the labels |
+//! | [`fewest`] | the line that the fewest labels of a mission disagree with |
+//! | [`explanation`] | what explains labels of a mission that no line explains |
 
 pub mod doubt;
+pub mod explanation;
 pub mod facing;
+pub mod fewest;
 pub mod fit;
 mod halving;
 pub mod hull;

@@ -12,6 +12,7 @@ use planner_core::{
 };
 
 use crate::mission::definition::{Mission, Table};
+use crate::mission::diagnosis::DiagnosisRecord;
 use crate::mission::flight::Flown;
 use crate::mission::legs::{Leg, Legs};
 use crate::mission::read_out::{Knowledge, LEVEL, ReadOut};
@@ -157,14 +158,19 @@ impl Recorder {
         let doubted = belief.hypotheses().and_then(|table| doubted(table, &mission.world));
         let (best, credible) = doubted.unzip();
         let world = mission.world.after(steps.len());
+        let estimates = beside_truth(&mission, &world, belief.estimates());
+        let fit = world.fit().filter(|_| world.line().is_none());
+        let diagnosis =
+            DiagnosisRecord::of(&mission, (&steps, &results), (ending, alarm.as_ref()), &*belief);
         let end = End {
             reason: ending.name().into(),
-            estimates: beside_truth(&mission, &world, belief.estimates()),
-            fit: world.fit().filter(|_| world.line().is_none()).map(FitRecord::from),
+            estimates,
+            fit: fit.map(|fit| Box::new(FitRecord::beside(fit, &estimates))),
             best,
             credible,
             goal: GoalRecord::of(&mission, &*belief, audit((&steps, &results), &before, ending)),
             alarm,
+            diagnosis: diagnosis.map(Box::new),
             flown: Legs::of(&results.iter().filter_map(|step| step.flown).collect::<Vec<_>>()),
         };
         let results = Results { start: start(&mission), steps: results, end };

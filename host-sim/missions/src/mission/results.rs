@@ -20,7 +20,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::ToleranceRecord;
+use crate::mission::diagnosis::DiagnosisRecord;
 use crate::mission::legs::{Leg, Legs};
+pub use crate::mission::line_record::{LineError, LineRecord};
 use crate::mission::read_out::Expectation;
 use crate::mission::sensor::FaultTable;
 use crate::mission::stop::GoalRecord;
@@ -177,7 +179,7 @@ pub struct End {
     pub estimates: EstimateRecords,
     /// The straight line that misclassifies least, where the true boundary is no fixed line.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub fit: Option<FitRecord>,
+    pub fit: Option<Box<FitRecord>>,
     /// Where labels may err: the paper's outcome, by the paper's prior.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub best: Option<BestRecord>,
@@ -190,6 +192,9 @@ pub struct End {
     /// The most that spoke against a straight, still line, from a warning on.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub alarm: Option<AlarmRecord>,
+    /// What explains the labels, if something speaks against a straight, still line.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub diagnosis: Option<Box<DiagnosisRecord>>,
     /// How near to its targets a real vehicle came.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flown: Option<Legs>,
@@ -296,32 +301,6 @@ pub struct ActionRecord {
     pub w: f32,
 }
 
-/// A line; slope and intercept are `None` for a vertical one.
-#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
-pub struct LineRecord {
-    /// The paper's `rho`.
-    pub slope: Option<f64>,
-    /// The paper's `c`, metres.
-    pub intercept: Option<f64>,
-    /// Degrees.
-    pub angle: f64,
-    /// `a x + b z + c = 0` with `a^2 + b^2 = 1`.
-    #[serde(skip)]
-    pub coefficients: [f64; 3],
-    /// Beside the truth, if there is one.
-    #[serde(skip)]
-    pub error: Option<LineError>,
-}
-
-/// How far an estimate is from the true line.
-#[derive(Clone, Copy, Debug)]
-pub struct LineError {
-    /// Between the two, degrees.
-    pub degrees: f64,
-    /// The share of the area that gets the wrong label.
-    pub misclassified: f64,
-}
-
 /// The straight line that misclassifies least.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct FitRecord {
@@ -333,6 +312,9 @@ pub struct FitRecord {
     pub angle: f64,
     /// The share of the area that it misclassifies.
     pub misclassified: f64,
+    /// The shares that the estimates misclassify.
+    #[serde(default)]
+    pub estimates: EstimateRecords<f64>,
     /// The line.
     #[serde(skip)]
     pub line: LineRecord,
@@ -418,23 +400,18 @@ impl From<&Motion> for ActionRecord {
     }
 }
 
-impl From<Line> for LineRecord {
-    fn from(line: Line) -> Self {
-        Self {
-            slope: line.slope(),
-            intercept: line.intercept(),
-            angle: line.angle_deg(),
-            coefficients: line.coefficients(),
-            error: None,
-        }
-    }
-}
-
-impl From<Fit> for FitRecord {
-    fn from(Fit { line, misclassified }: Fit) -> Self {
+impl FitRecord {
+    /// The line that misclassifies least, beside the estimates.
+    pub fn beside(Fit { line, misclassified }: Fit, estimates: &EstimateRecords) -> Self {
         let line = LineRecord::from(line);
         let LineRecord { slope, intercept, angle, .. } = line;
-        Self { slope, intercept, angle, misclassified, line }
+        let share = |it: Option<LineRecord>| it?.error.map(|error| error.misclassified);
+        let estimates = EstimateRecords {
+            bisector: share(estimates.bisector),
+            centre: share(estimates.centre),
+            maximum_margin: share(estimates.maximum_margin),
+        };
+        Self { slope, intercept, angle, misclassified, estimates, line }
     }
 }
 

@@ -24,7 +24,7 @@ pub fn fly(mission: &Mission, actions: &[Action]) -> Result<Recording> {
         let Ok(reading) = robot.perform(&motion, &mut pose);
         let seen = reading.map_or(Ok(()), |reading| belief.observe(pose.site, reading));
         seen.map_err(|refused| recorder.refusal(&refused))?;
-        recorder.take(&Step { motion, pose, reading }, robot.true_pose(), &*belief);
+        recorder.take(&Step { motion, pose, reading, alarm: None }, robot.true_pose(), &*belief);
     }
     Ok(recorder.end(Flown { ending: Ending::Steps, belief }))
 }

@@ -58,6 +58,8 @@ pub(crate) fn ended(results: &Results) -> Vec<Told> {
     let mut ended = vec![Told::new("Ended", format!("{}.{promise}", sentence(why)))];
     let alarm = results.end.alarm.as_ref();
     ended.extend(alarm.map(|it| Told::new("Warning", text::warning(it).trim_end().to_owned())));
+    let diagnosis = results.end.diagnosis.iter().flat_map(|it| text::diagnosed(it));
+    ended.extend(diagnosis.map(|(of, words)| Told::new(of, minus(&sentence(&words)))));
     ended
 }
 

@@ -1,5 +1,6 @@
 //! A mission that is planned here and driven elsewhere.
 
+use crate::belief::evidence::Alarm;
 use crate::belief::sample::Reading;
 use crate::link::delivery::{Link, LinkError, Port};
 use crate::link::message::{
@@ -151,11 +152,13 @@ fn mission<L: Planner, P: Port, S: LabelSensor>(
             Err(NoArrival::Failed) => return Ok(EndReason::Vehicle),
             Err(NoArrival::NoLabel) => return Ok(EndReason::Sensor),
         };
+        let before = planner.alarm();
         let observe = || seam::observe(planner, pose, reading);
         if let Err(refused) = timed(ticks, &mut vehicle.took.observe, observe) {
             return Ok(EndReason::Refused(refused));
         }
-        watch.stepped(&Step { motion, pose, reading });
+        let alarm = Alarm::risen(before, planner.alarm());
+        watch.stepped(&Step { motion, pose, reading, alarm });
     }
     Ok(EndReason::Steps)
 }
@@ -192,7 +195,9 @@ impl<P: Port, S: LabelSensor> Body for RemoteVehicle<'_, P, S> {
     type Error = NoArrival;
 
     fn perform(&mut self, motion: &Motion, pose: &mut Pose) -> Result<Option<Reading>, NoArrival> {
-        let Self { last, took, .. } = *self;
+        let took = self.took;
+        // What comes of this motion takes its place: nothing, if it has no end or no label.
+        let last = self.last.take();
         let reading = match self.link.ask(Request::Move(Move { motion: *motion, last, took })) {
             Ok(Reply::Arrived { pose: arrived, reading }) => {
                 *pose = arrived;

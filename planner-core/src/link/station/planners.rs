@@ -11,6 +11,7 @@
 use core::marker::PhantomData;
 
 use crate::belief::estimate::Estimates;
+use crate::belief::evidence::Alarm;
 use crate::belief::goal::{Accuracy, Criterion};
 use crate::belief::sample::Reading;
 use crate::belief::tolerance::Tolerance;
@@ -138,6 +139,10 @@ impl<L: Planner> Planner for CentreAlone<'_, L> {
 
     fn belief(&self) -> &L::Belief {
         self.0.belief()
+    }
+
+    fn alarm(&self) -> Option<Alarm> {
+        self.0.alarm()
     }
 
     fn estimates(&self) -> Estimates {

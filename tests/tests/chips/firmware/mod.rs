@@ -130,7 +130,7 @@ fn garbage_is_passed_over() {
 }
 
 /// What the chip logs of a step.
-fn step_message(number: usize, Step { motion, pose, reading }: &Step) -> String {
+fn step_message(number: usize, Step { motion, pose, reading, .. }: &Step) -> String {
     let (stage, recovery, action) = (motion.stage, motion.recovery, motion.action.0);
     let (x, z, heading) = (pose.site.x(), pose.site.z(), pose.heading.0);
     let label = reading.map(Reading::sign);

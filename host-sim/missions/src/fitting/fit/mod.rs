@@ -321,7 +321,7 @@ fn shapes_of(question: &Question, along: &[Piece]) -> Vec<(usize, f64, Verdict)>
         radius: 0.5 * (high - low).norm(),
     };
     let [a, b, _] = line.coefficients();
-    let best = Directed { angle: b.atan2(a), offset: -line.distance(middle) };
+    let best = Directed { angle: libm::atan2(b, a), offset: -line.distance(middle) };
     let height = best.heights(&labels);
     let (straight, share) = labels.evidence(0..at.len(), &height).greatest();
     // An alternative that explains all labels would not say enough.

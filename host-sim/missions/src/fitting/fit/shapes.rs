@@ -95,7 +95,7 @@ pub(crate) fn arc(labels: &Labels, best: Directed, straight: f64) -> Option<Expl
     if bend == 0.0 {
         return None;
     }
-    let (sin, cos) = directed.angle.sin_cos();
+    let (sin, cos) = libm::sincos(directed.angle);
     let height = |index: usize| {
         let at = labels.at[index];
         let (up, along) = (at.x * cos + at.y * sin, at.y * cos - at.x * sin);
@@ -182,7 +182,7 @@ impl Lifted<'_> {
     }
 
     fn threshold(&self, some: &[usize], angle: f64, bend: f64) -> (f64, usize) {
-        let (sin, cos) = angle.sin_cos();
+        let (sin, cos) = libm::sincos(angle);
         let value = |&index: &usize| {
             let at = self.labels.at[index];
             let height = at.x * cos + at.y * sin - bend * self.lift[index];

@@ -51,7 +51,7 @@ pub(crate) struct Directed {
 impl Directed {
     /// How far above the line each position is.
     pub(crate) fn heights(self, labels: &Labels) -> impl Fn(usize) -> f64 {
-        let (sin, cos) = self.angle.sin_cos();
+        let (sin, cos) = libm::sincos(self.angle);
         let offset = self.offset;
         move |index| {
             let at = labels.at[index];
@@ -65,7 +65,7 @@ impl Directed {
 pub(crate) fn line(labels: &Labels, some: &[usize], near: Option<f64>) -> (Directed, usize) {
     let mut values = Vec::with_capacity(some.len());
     let mut of = |angle: f64| {
-        let (sin, cos) = angle.sin_cos();
+        let (sin, cos) = libm::sincos(angle);
         values.clear();
         values.extend(some.iter().map(|&index| {
             let at = labels.at[index];

@@ -1,0 +1,171 @@
+//! The line that the fewest labels disagree with, of labels that no line need separate.
+//!
+//! Which labels lie on which side of a line changes, as the line turns, only where it is parallel to the line through two
+//! of them. So one direction between each two neighbouring ones of those stands for all. The search is exact, but for
+//! directions that differ by the rounding of double precision. `O(n^3 log n)` for `n` labels: it is for those of a mission.
+
+use std::f64::consts::{PI, TAU};
+
+use nalgebra::{Point2, Vector2};
+use planner_core::{Label, Line, Sample};
+
+use crate::fitting::fit::sweep::threshold;
+
+/// A line, and the labels that disagree with it.
+#[derive(Clone, Debug)]
+pub struct Fewest {
+    /// The line. Of several that the same number disagrees with, it is one that the others leave the most room.
+    pub line: Line,
+    /// The numbers of the labels that disagree, in order.
+    pub disagreeing: Vec<usize>,
+}
+
+impl Fewest {
+    /// The line that the fewest of some labels disagree with. `None` without a label.
+    pub fn of(samples: &[Sample]) -> Option<Self> {
+        let places: Vec<_> = samples.iter().map(|it| Point2::<f64>::from(it.site)).collect();
+        let middle = middle(&places)?;
+        let labels = places.iter().zip(samples);
+        let labels: Vec<_> =
+            labels.map(|(at, it)| (at - middle, it.label == Label::Positive)).collect();
+        let mut best: Option<(usize, f64, Vector2<f64>, f64)> = None;
+        let mut heights = Vec::new();
+        for angle in between(&turns(&places)) {
+            let (sin, cos) = libm::sincos(angle);
+            let normal = Vector2::new(cos, sin);
+            heights.clear();
+            heights.extend(labels.iter().map(|(at, is_positive)| (normal.dot(at), *is_positive)));
+            let found = threshold(&mut heights);
+            let room = heights.iter().map(|(height, _)| (height - found.at).abs());
+            let room = room.fold(f64::INFINITY, f64::min);
+            if best.is_none_or(|(least, most, ..)| {
+                found.against < least || (found.against == least && room > most)
+            }) {
+                best = Some((found.against, room, normal, found.at));
+            }
+        }
+        let (_, _, normal, at) = best?;
+        let line = Line::through(middle + normal * at, normal)?;
+        let disagreeing = (0..samples.len()).filter(|k| {
+            let (place, is_positive) = labels[*k];
+            (normal.dot(&place) > at) != is_positive
+        });
+        Some(Self { line, disagreeing: disagreeing.collect() })
+    }
+}
+
+/// The middle of the rectangle around some places.
+fn middle(places: &[Point2<f64>]) -> Option<Point2<f64>> {
+    let [low, high] = crate::world::extent::around(places.iter().copied())?;
+    Some(nalgebra::center(&low, &high))
+}
+
+/// The directions in which two of some places have the same height, as angles of normals below half a turn, in order.
+fn turns(places: &[Point2<f64>]) -> Vec<f64> {
+    let mut turns = Vec::new();
+    for (k, p) in places.iter().enumerate() {
+        for q in places.iter().take(k) {
+            let way = p - q;
+            if way != Vector2::zeros() {
+                turns.push(libm::atan2(way.x, -way.y).rem_euclid(PI));
+            }
+        }
+    }
+    turns.sort_by(f64::total_cmp);
+    turns.dedup();
+    turns
+}
+
+/// Angles of normals, one between each two neighbouring ones of some all around.
+fn between(turns: &[f64]) -> Vec<f64> {
+    let Some(first) = turns.first() else { return vec![0.0, PI] };
+    let next = turns.iter().skip(1).copied().chain([first + PI]);
+    let middles = turns.iter().zip(next).map(|(turn, next)| f64::midpoint(*turn, next));
+    middles.flat_map(|it| [it, it + PI]).map(|it| it.rem_euclid(TAU)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use planner_core::Site;
+    use rand::{RngExt as _, SeedableRng as _};
+    use rand_chacha::ChaCha8Rng;
+
+    fn drawn(rng: &mut ChaCha8Rng, count: usize, side: i32, wrong: f64) -> Vec<Sample> {
+        let [a, b, c] = [0; 3].map(|_| rng.random_range(-1.0..1.0) * f64::from(side));
+        let sample = |_| {
+            let [x, z] = [0; 2].map(|_| rng.random_range(-side..=side));
+            let is_above = a * f64::from(x) + b * f64::from(z) + 0.3 * c * f64::from(side) > 0.0;
+            let is_positive = is_above != rng.random_bool(wrong);
+            let label = if is_positive { Label::Positive } else { Label::Negative };
+            Sample { site: Site::new(x, z).expect("near"), label }
+        };
+        (0..count).map(sample).collect()
+    }
+
+    /// Every line that passes two of the places, moved and turned a little to either side of each: in integers.
+    fn fewest_by_pairs(samples: &[Sample]) -> usize {
+        let count = samples.len();
+        let positive = samples.iter().filter(|it| it.label == Label::Positive).count();
+        let mut least = positive.min(count - positive);
+        for p in samples {
+            for q in samples {
+                let way = [q.site.x() - p.site.x(), q.site.z() - p.site.z()].map(i64::from);
+                if way == [0; 2] {
+                    continue;
+                }
+                // On the line: those before a place are on one side and those after it on the other, as it turns.
+                let place = |it: &Sample| {
+                    let off = [it.site.x() - p.site.x(), it.site.z() - p.site.z()].map(i64::from);
+                    (way[0] * off[1] - way[1] * off[0], way[0] * off[0] + way[1] * off[1])
+                };
+                let mut cuts: Vec<i64> =
+                    samples.iter().map(place).filter(|it| it.0 == 0).map(|it| it.1).collect();
+                cuts.push(i64::MIN);
+                for cut in cuts {
+                    for first in [false, true] {
+                        let is_above = |it: &Sample| match place(it) {
+                            (0, along) => (along <= cut) == first,
+                            (off, _) => off > 0,
+                        };
+                        let against = samples
+                            .iter()
+                            .filter(|it| is_above(it) != (it.label == Label::Positive))
+                            .count();
+                        least = least.min(against).min(count - against);
+                    }
+                }
+            }
+        }
+        least
+    }
+
+    #[test]
+    fn no_line_has_fewer_labels_against_it() {
+        for seed in 0..300 {
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            let count = rng.random_range(1..14);
+            let wrong = [0.0, 0.1, 0.5][seed as usize % 3];
+            // On a coarse grid many places are on one line, and some are the same.
+            let side = if seed % 2 == 0 { 5 } else { 900_000 };
+            let samples = drawn(&mut rng, count, side, wrong);
+            let found = Fewest::of(&samples).expect("a line");
+            let is_against = |it: &Sample| {
+                (found.line.distance(Point2::from(it.site)) > 0.0) != (it.label == Label::Positive)
+            };
+            let against: Vec<_> = (0..samples.len()).filter(|k| is_against(&samples[*k])).collect();
+            assert_eq!(found.disagreeing, against, "seed {seed}");
+            assert_eq!(against.len(), fewest_by_pairs(&samples), "seed {seed}");
+        }
+    }
+
+    #[test]
+    fn labels_that_a_line_separates_all_agree() {
+        for seed in 0..100 {
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            let samples = drawn(&mut rng, 10, 900_000, 0.0);
+            assert!(Fewest::of(&samples).expect("a line").disagreeing.is_empty(), "seed {seed}");
+        }
+        assert!(Fewest::of(&[]).is_none());
+    }
+}

@@ -1,0 +1,126 @@
+//! Why no straight, still line explains the labels of a mission, and what to do, in words.
+
+use crate::fitting::explanation::Cause;
+use crate::mission::diagnosis::{DiagnosisRecord, RefutingRecord, Shares};
+
+/// A cause is named beside others from this share on.
+const NAMED: f64 = 0.1;
+
+/// Steps that are listed at most.
+const LISTED: usize = 8;
+
+/// What is said, each sentence with its heading. `line` is the best line in words.
+pub(crate) fn told(record: &DiagnosisRecord, line: &str) -> Vec<(&'static str, String)> {
+    let seen = record.refuting.as_ref().map(|it| ("Seen", seen(it)));
+    let rest = [
+        ("Best line", best_line(record, line)),
+        ("Explanation", explanation(record)),
+        ("To do", advice(record)),
+    ];
+    seen.into_iter().chain(rest).collect()
+}
+
+fn seen(&RefutingRecord { step, x, z, label, expected }: &RefutingRecord) -> String {
+    format!(
+        "step {step} read {label:+} at ({x:.3}, {z:.3}), where all lines left have {expected:+}."
+    )
+}
+
+fn best_line(record: &DiagnosisRecord, line: &str) -> String {
+    let DiagnosisRecord { labels, disagreeing, share, steps, .. } = record;
+    let line = line.split_whitespace().collect::<Vec<_>>().join(" ");
+    let percent = 100.0 * share;
+    let verb = if *disagreeing == 1 { "disagrees" } else { "disagree" };
+    let listed: Vec<_> = steps.iter().take(LISTED).map(ToString::to_string).collect();
+    let more = if steps.len() > LISTED { ", ..." } else { "" };
+    let which = match steps.len() {
+        0 if *disagreeing > 0 => ": given samples".to_owned(),
+        0 => String::new(),
+        1 => format!(": step {}", listed[0]),
+        _ => format!(": steps {}{more}", listed.join(", ")),
+    };
+    format!("{line}. {disagreeing} of {labels} labels {verb} with it ({percent:.1} %){which}.")
+}
+
+/// A cause in words.
+fn words(cause: Cause) -> &'static str {
+    match cause {
+        Cause::Line => "a straight, still line",
+        Cause::Bend => "the boundary bends",
+        Cause::Drift => "the boundary moves",
+        Cause::Stuck => "the sensor is stuck on a label",
+        Cause::Inverted => "the sensor reads the other label",
+        Cause::StuckOrInverted => {
+            "the sensor is stuck on a label, or reads the other one (both read the same here)"
+        }
+        Cause::Late => "labels come some samples late",
+        Cause::Random => "labels are wrong at random",
+        Cause::Unclear => "the labels cannot tell",
+    }
+}
+
+fn explanation(record: &DiagnosisRecord) -> String {
+    let likely = record.shares.as_ref().map(likely).unwrap_or_default();
+    let percent = |share: f64| format!("{:.0} %", 100.0 * share);
+    if record.cause == Cause::Unclear {
+        let each =
+            likely.iter().map(|(cause, share)| format!("{} ({})", words(*cause), percent(*share)));
+        let each: Vec<_> = each.collect();
+        return match each.split_last() {
+            None => "the labels cannot tell.".to_owned(),
+            Some((last, [])) => format!("the labels cannot tell. Most likely {last}."),
+            Some((last, before)) => {
+                format!("the labels cannot tell. Perhaps {}, or {last}.", before.join(", "))
+            }
+        };
+    }
+    let share = match (record.cause, &record.shares) {
+        (_, None) => None,
+        (Cause::StuckOrInverted, Some(shares)) => Some(shares.stuck + shares.inverted),
+        (_, Some(_)) => likely.first().map(|(_, share)| *share),
+    };
+    let share =
+        share.map_or(String::new(), |share| format!(", with a probability of {}", percent(share)));
+    format!("{}{share}.", words(record.cause))
+}
+
+/// The causes that are worth a word, the likeliest first.
+fn likely(shares: &Shares) -> Vec<(Cause, f64)> {
+    let mut all = vec![
+        (Cause::Line, shares.line),
+        (Cause::Bend, shares.bend),
+        (Cause::Drift, shares.drift),
+        (Cause::Stuck, shares.stuck),
+        (Cause::Inverted, shares.inverted),
+        (Cause::Late, shares.late),
+        (Cause::Random, shares.random),
+    ];
+    all.retain(|(_, share)| *share >= NAMED);
+    all.sort_by(|p, q| q.1.total_cmp(&p.1));
+    all
+}
+
+/// What to do.
+fn advice(record: &DiagnosisRecord) -> String {
+    let cover = record.tolerance.map(|metres| {
+        format!("a tolerance of {metres} m, which covers a bend or a drift as these labels have it")
+    });
+    let or_cover = |what: &str| match &cover {
+        Some(cover) => format!("{what}, or {cover}."),
+        None => format!("{what}."),
+    };
+    match record.cause {
+        Cause::Line => "fly again. While a line is true, 1 mission in 20 has a warning and 1 in 100 an alarm.".to_owned(),
+        Cause::Bend => or_cover("take a shorter stretch (half of it bends a quarter as much)"),
+        Cause::Drift => or_cover("take less time"),
+        Cause::Stuck | Cause::Inverted | Cause::StuckOrInverted => {
+            "check the sensor at a place of either label, and fly again.".to_owned()
+        }
+        Cause::Late => "let the sensor settle before it reads, or check its clock.".to_owned(),
+        Cause::Random => {
+            "check the sensor. If some labels are wrong, say how often they are right: noise = { p = 0.9 }."
+                .to_owned()
+        }
+        Cause::Unclear => or_cover("check the sensor, take a shorter stretch"),
+    }
+}
