@@ -7,7 +7,8 @@ use planner_core::belief::evidence::Alarm;
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::results::{
-    AUDIT, AlarmRecord, End, EstimateRecords, FitRecord, LineRecord, Results, Start, StepResult,
+    AUDIT, AlarmRecord, End, EstimateRecords, FitRecord, LineRecord, PTold, ReliabilityRecord,
+    Results, Start, StepResult,
 };
 use crate::mission::stop::{AuditRecord, GoalRecord};
 use crate::output::plain;
@@ -124,6 +125,9 @@ fn end(results: &Results, estimates: &[(&str, Option<LineRecord>); 3]) -> String
     );
     if let Some(goal) = &results.end.goal {
         text += &promise(goal);
+    }
+    if let Some(reliability) = &results.end.reliability {
+        text += &shown(reliability);
     }
     if let Some(alarm) = &results.end.alarm {
         text += &warning(alarm);
@@ -265,8 +269,32 @@ fn beginning(title: &str, start: &Start) -> String {
             start.steps,
             f64::from(start.steps) * each,
         );
+        if let Some(told) = told(start) {
+            let _ = writeln!(text, "{told}\n");
+        }
     }
     text
+}
+
+/// What planners are told of how often labels are true, if that is another thing.
+pub(crate) fn told(start: &Start) -> Option<String> {
+    Some(match start.p_told? {
+        PTold::Number(p) => format!("The planner takes it to be true with probability {p}."),
+        PTold::Beta([a, b]) => {
+            let mean = fixed(a / (a + b), 3);
+            format!(
+                "The planner does not know this probability: its prior is Beta({a}, {b}), with the mean {mean}."
+            )
+        }
+    })
+}
+
+/// What labels have shown of how often they are true, in words.
+pub(crate) fn shown(&ReliabilityRecord { mean, deviation }: &ReliabilityRecord) -> String {
+    let [mean, deviation] = [mean, deviation].map(|it| fixed(it, 3));
+    format!(
+        "Labels are true with a probability of {mean} +- {deviation}, as they show themselves.\n"
+    )
 }
 
 /// A boundary that is no fixed line, in words.

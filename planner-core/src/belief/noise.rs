@@ -2,7 +2,7 @@
 
 use crate::belief::sample::Sample;
 use crate::belief::tolerance::Tolerance;
-use crate::belief::trust::Trust;
+use crate::belief::trust::{AnyReliability, Trust};
 use crate::belief::unknown_reliability::UnknownReliability;
 use crate::geometry::lattice::Site;
 use crate::geometry::value::ValueError;
@@ -75,6 +75,12 @@ impl<R: Trust> Noise<R> {
         } else {
             self.reliability.nominal()
         }
+    }
+}
+
+impl From<Noise> for Noise<AnyReliability> {
+    fn from(Noise { reliability, trusted_radius, tolerance }: Noise) -> Self {
+        Self { reliability: reliability.into(), trusted_radius, tolerance }
     }
 }
 

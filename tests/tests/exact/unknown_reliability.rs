@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use nalgebra::Point2;
 use planner_core::belief::doubtful_labels::Hypothesis;
 use planner_core::belief::estimate;
+use planner_core::belief::predictions::{Prediction as _, Predictor as _};
 use planner_core::error::{GivenError, ObservationError};
 use planner_core::{
     AnyReliability, Belief as _, CellPosterior, FromLog as _, Label, Line, Noise, NoisyBelief,

@@ -14,4 +14,5 @@ mod scale;
 mod sleep;
 mod symmetry;
 mod terrain;
+mod unknown_p;
 mod vehicles;
