@@ -353,7 +353,8 @@ fn noise(table: &NoiseTable) -> Result<(NoiseModel, Option<AnyReliability>)> {
         Told::Number(p) => {
             let p = probability("noise.p", p)?;
             // It is what the planner believes, if the sensor does otherwise.
-            let told = true_p.map(|_| Reliability::new(p)).transpose().map_err(Error::msg)?;
+            let differs = true_p.is_some_and(|true_p| true_p.to_bits() != p.to_bits());
+            let told = differs.then(|| Reliability::new(p)).transpose().map_err(Error::msg)?;
             (true_p.unwrap_or(p), told.map(AnyReliability::Known))
         }
         Told::Beta(parameters) => {
@@ -391,7 +392,7 @@ pub fn p_prior(field: &str, [a, b]: [f64; 2]) -> Result<UnknownReliability> {
 /// Names `field`, and what it does not go with.
 pub fn check_unknown(field: &str, tolerance: Tolerance, algorithm: Algorithm) -> Result<()> {
     if tolerance != Tolerance::NONE {
-        let found = format!("a prior, and a tolerance of {} m", tolerance.metres());
+        let found = format!("a prior, and a tolerance of {:.3} m", tolerance.metres());
         return wrong(field, found, "a number where positions err, or exact positions");
     }
     if !algorithm.weighs(true) {
