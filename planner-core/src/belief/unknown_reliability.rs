@@ -134,7 +134,7 @@ mod tests {
         let log_beta = |a: f64, b: f64| libm::lgamma(a) + libm::lgamma(b) - libm::lgamma(a + b);
         for (a, b) in [(8.0, 2.0), (0.75, 0.5), (1000.0, 250.0), (1.001, 1.0)] {
             let prior = UnknownReliability::beta(a, b).unwrap();
-            assert_eq!(prior.parameters(), [a, b]);
+            assert_eq!(prior.parameters().map(f64::to_bits), [a, b].map(f64::to_bits));
             for last in 0..=128_u8 {
                 // In any order: here those that agree come first, or last.
                 for agrees_first in [true, false] {

@@ -39,7 +39,9 @@ impl Joint {
         });
         let mut grid: Vec<_> = grid.collect();
         let most = grid.iter().map(|it| it[1]).fold(f64::NEG_INFINITY, f64::max);
-        grid.iter_mut().for_each(|it| it[1] = (it[1] - most).exp());
+        for it in &mut grid {
+            it[1] = (it[1] - most).exp();
+        }
         let mut cells = BTreeMap::new();
         for bits in 0..1_u64 << seen.len() {
             let truth =
@@ -64,7 +66,9 @@ impl Joint {
         }
         let total: f64 = cells.values().flat_map(|(_, weights)| weights).sum();
         assert!(total > 0.0, "no line is left");
-        cells.values_mut().for_each(|(_, it)| it.iter_mut().for_each(|weight| *weight /= total));
+        for weight in cells.values_mut().flat_map(|(_, it)| it) {
+            *weight /= total;
+        }
         Self { grid, cells }
     }
 

@@ -68,7 +68,7 @@ fn on_average_over_the_prior_stated_probabilities_are_right() {
 /// A prior costs little where its mean is right, and keeps much of the coverage that a wrong number loses.
 #[test]
 fn a_prior_bears_a_sensor_that_is_worse_than_stated() {
-    let fields = cases(200, 4_000);
+    let fields = cases(100, 4_000);
     for real in [0.55, 0.6, 0.7, 0.8, 0.9, 0.99] {
         let of = |told| flown(told, Some(real), Algorithm::Lookahead, fields);
         let [right, wrong, prior] = [Told::Number(real), Told::Number(0.8), Told::Beta].map(of);
