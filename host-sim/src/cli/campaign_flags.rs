@@ -4,8 +4,8 @@ use std::slice;
 
 use anyhow::{Result, bail};
 use clap::Args;
-use planner_core::AnyVehicle;
 use planner_core::motion::unicycle::Grid;
+use planner_core::{AnyReliability, AnyVehicle, Reliability, UnknownReliability};
 use serde::{Deserialize, Serialize};
 
 use crate::campaign::ensemble::Campaign;
@@ -63,6 +63,12 @@ pub(crate) struct CampaignFlags {
     /// Labels are true with this probability (scc, lookahead, margin, random) [default: 0.7 for scc, 1 else]
     #[arg(long)]
     p: Option<f64>,
+    /// Nobody knows that probability: planners are told the prior Beta(A, B), and each field's is drawn from it
+    #[arg(long, value_name = "A,B", conflicts_with = "p")]
+    p_prior: Option<String>,
+    /// Labels are really true with this probability, whatever planners are told (with --p below 1, or --p-prior)
+    #[arg(long, value_name = "P")]
+    true_p: Option<f64>,
     /// Within this distance of the oracle's points labels are certain, metres (where p is below 1) [default: 0]
     #[arg(long)]
     trusted_radius: Option<f64>,
@@ -127,6 +133,10 @@ impl CampaignFlags {
         let planners = self.planners();
         let p = self.p.unwrap_or(if planners.contains(&Algorithm::Scc) { 0.7 } else { 1.0 });
         let p = scenario::probability("--p", p)?;
+        let prior = self.p_prior.as_deref().map(prior).transpose()?;
+        let p = prior.map_or(p, UnknownReliability::mean);
+        let p_told = self.p_told(p, prior)?;
+        let true_p = self.true_p.unwrap_or(p);
         planners.iter().try_for_each(|&planner| self.check_meanings(planner, p))?;
         let radius = self.trusted_radius.unwrap_or_default();
         let trusted_radius = scenario::trusted("--trusted-radius", radius)?;
@@ -139,6 +149,11 @@ impl CampaignFlags {
         allowance.check("--")?;
         let position = scenario::position("--tolerance", self.tolerance, errors)?;
         let tolerance = allowance.tolerance("--tolerance", position)?;
+        if prior.is_some() {
+            for &planner in planners {
+                scenario::check_unknown("--p-prior", tolerance, planner)?;
+            }
+        }
         let extent = Extent::OutsideBalls(trusted_radius);
         let campaign = |algorithm: Algorithm| {
             Ok::<_, anyhow::Error>(Campaign {
@@ -150,7 +165,9 @@ impl CampaignFlags {
                 crossing: self.crossing.unwrap_or_default().into(),
                 following: self.following.map_or(algorithm.following(), Into::into),
                 vehicle: self.moving(algorithm)?,
-                noise: algorithm.weighs(p < 1.0).then_some(NoiseModel { p, extent }),
+                noise: algorithm.weighs(p < 1.0).then_some(NoiseModel { p: true_p, extent }),
+                p_told,
+                draws_p: prior.is_some() && self.true_p.is_none(),
                 errors,
                 tolerance,
                 policy: self.policy.unwrap_or_default().into(),
@@ -162,6 +179,21 @@ impl CampaignFlags {
         let labels_err =
             if are_compared { p < 1.0 } else { of_each.iter().any(|it| it.noise.is_some()) };
         Ok(Campaigns { of_each, are_compared, labels_err })
+    }
+
+    /// What planners are told of how often labels are true, if that is not what simulated sensors do. `p` is that number,
+    /// or the mean of the prior.
+    fn p_told(&self, p: f64, prior: Option<UnknownReliability>) -> Result<Option<AnyReliability>> {
+        if let Some(true_p) = self.true_p {
+            scenario::probability("--true-p", true_p)?;
+            if p >= 1.0 {
+                bail!(
+                    "--true-p: found {true_p} where planners take labels to be true, expected with --p below 1 or --p-prior"
+                );
+            }
+        }
+        let known = || self.true_p.and_then(|_| Reliability::new(p).ok()).map(AnyReliability::from);
+        Ok(prior.map(AnyReliability::from).or_else(known))
     }
 
     /// Who plans.
@@ -184,6 +216,11 @@ impl CampaignFlags {
         let flag = if self.compare.is_empty() { "--algorithm" } else { "--compare" };
         let name = planner.name();
         if p < 1.0 && !planner.weighs(true) {
+            if let Some(prior) = &self.p_prior {
+                bail!(
+                    "--p-prior: found {prior}, expected none with {flag} {name}, which takes labels to be true"
+                );
+            }
             let found = if self.p.is_some() { "" } else { ", the default with scc" };
             bail!(
                 "--p: found {p}{found}, expected 1 with {flag} {name}, which takes labels to be true"
@@ -219,6 +256,18 @@ impl CampaignFlags {
             }
         }
         Ok(())
+    }
+}
+
+/// The prior of a flag.
+///
+/// # Errors
+/// Names the flag, what was found and what was expected.
+fn prior(text: &str) -> Result<UnknownReliability> {
+    let numbers: Vec<f64> = text.split(',').flat_map(|it| it.trim().parse()).collect();
+    match (&numbers[..], text.split(',').count()) {
+        (&[a, b], 2) => scenario::p_prior("--p-prior", [a, b]),
+        _ => bail!("--p-prior: found {text}, expected the a and b of a Beta prior, such as 8,2"),
     }
 }
 

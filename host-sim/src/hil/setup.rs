@@ -39,17 +39,19 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
         bail!("stop.audit: found false, expected true: a board always audits");
     }
     check_sensor(mission, labels)?;
+    let Some(noise) = mission.noise_known() else {
+        let expected = "a number with hil: a board is told how often labels are true";
+        return wrong("noise.p", "a prior", expected);
+    };
     let algorithm = match mission.algorithm {
         Algorithm::Cfc => message::Algorithm::Cfc,
-        Algorithm::Scc => message::Algorithm::Scc {
-            noise: mission.noise_told(),
-            policy: mission.policy,
-            prior: mission.prior,
-        },
+        Algorithm::Scc => {
+            message::Algorithm::Scc { noise, policy: mission.policy, prior: mission.prior }
+        }
         Algorithm::Lookahead => message::Algorithm::Lookahead {
             evaluations: lookahead::EVALUATIONS,
             goal: mission.goal,
-            noise: mission.noise.map(|_| (mission.noise_told(), mission.prior)),
+            noise: mission.noise.map(|_| (noise, mission.prior)),
         },
         other => bail!("algorithm: found {}, expected cfc, scc or lookahead", other.name()),
     };

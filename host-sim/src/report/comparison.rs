@@ -1,6 +1,6 @@
 //! Campaigns of several planners on the same fields, side by side: a column each.
 
-use crate::campaign::calibration::Calibration;
+use crate::campaign::calibration::{Calibration, how_often};
 use crate::campaign::{accuracy, calibration};
 use crate::mission::algorithm::Algorithm;
 use crate::report::table::{Column, Table};
@@ -65,9 +65,12 @@ pub fn calibration(summaries: &[calibration::Summary]) -> String {
     });
     add("control cost", |row| format!("{:.1}", row.control_cost));
     format!(
-        "{} standard fields, seed {}, p = {}; a label tells {:.4} bits at most; \
+        "{} standard fields, seed {}, {}; a label tells {:.4} bits at most; \
          errors are medians, sets by the area prior\n\n{table}",
-        first.fields, first.seed, first.p, first.limit
+        first.fields,
+        first.seed,
+        how_often(first.p, first.p_told, first.draws_p),
+        first.limit
     )
 }
 

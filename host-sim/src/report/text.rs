@@ -9,7 +9,8 @@ use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::ToleranceRecord;
 use crate::mission::diagnosis::DiagnosisRecord;
 use crate::mission::results::{
-    AUDIT, AlarmRecord, End, EstimateRecords, FitRecord, LineRecord, Results, Start, StepResult,
+    AUDIT, AlarmRecord, End, EstimateRecords, FitRecord, LineRecord, PTold, ReliabilityRecord,
+    Results, Start, StepResult,
 };
 use crate::mission::stop::{AuditRecord, GoalRecord};
 use crate::output::plain;
@@ -131,6 +132,9 @@ fn end(results: &Results, estimates: &[(&str, Option<LineRecord>); 3]) -> String
         {
             text += &of_the_boundary(&told);
         }
+    }
+    if let Some(reliability) = &results.end.reliability {
+        text += &shown(reliability);
     }
     if let Some(alarm) = &results.end.alarm {
         text += &warning(alarm);
@@ -311,6 +315,9 @@ fn beginning(title: &str, start: &Start) -> String {
             start.steps,
             f64::from(start.steps) * each,
         );
+        if let Some(told) = told(start) {
+            let _ = writeln!(text, "{told}\n");
+        }
     }
     text
 }
@@ -320,6 +327,27 @@ pub(crate) fn tolerance(told: &ToleranceRecord) -> String {
     format!(
         "The planner takes a label to be true of the straight line within {} of the reported position",
         told.words()
+    )
+}
+
+/// What planners are told of how often labels are true, if that is another thing.
+pub(crate) fn told(start: &Start) -> Option<String> {
+    Some(match start.p_told? {
+        PTold::Number(p) => format!("The planner takes it to be true with probability {p}."),
+        PTold::Beta([a, b]) => {
+            let mean = fixed(a / (a + b), 3);
+            format!(
+                "The planner does not know this probability: its prior is Beta({a}, {b}), with the mean {mean}."
+            )
+        }
+    })
+}
+
+/// What labels have shown of how often they are true, in words.
+pub(crate) fn shown(&ReliabilityRecord { mean, deviation }: &ReliabilityRecord) -> String {
+    let [mean, deviation] = [mean, deviation].map(|it| fixed(it, 3));
+    format!(
+        "Labels are true with a probability of {mean} +- {deviation}, as they show themselves.\n"
     )
 }
 

@@ -33,6 +33,7 @@ mod shards;
 mod size;
 mod stopping;
 mod tolerances;
+mod unknown_p;
 mod verdicts;
 mod worlds;
 

@@ -3,7 +3,8 @@
 //!
 //! | module | contains |
 //! | --- | --- |
-//! | [`sample`], [`noise`], [`weight`] | labels, readings and samples; how reliable labels are; weights as logarithms |
+//! | [`sample`], [`weight`] | labels, readings and samples; weights as logarithms |
+//! | [`noise`], [`reliability`], [`unknown_reliability`], [`trust`] | how reliable labels are: a number, a prior, either |
 //! | [`tolerance`] | handles positions that err |
 //! | [`deviation`] | how much tolerance a boundary needs that bends or moves |
 //! | [`cells`] | the lines that agree with some labels, and what can be read off them |
@@ -27,9 +28,12 @@ pub(crate) mod list;
 pub mod noise;
 pub mod observation_log;
 pub mod predictions;
+pub mod reliability;
 pub mod sample;
 pub mod tolerance;
 pub mod true_labels;
+pub mod trust;
+pub mod unknown_reliability;
 pub mod weight;
 
 use crate::belief::estimate::Estimates;
@@ -110,8 +114,8 @@ pub enum ObservationError {
     Full(Sample),
     /// The position may be off by so much, which is more than the tolerance that was configured.
     Tolerance(Tolerance),
-    /// A label that may be wrong came with a reliability of its own, and positions err. Then every label is as reliable as
-    /// the noise says.
+    /// A label that may be wrong came with a reliability of its own, and positions err or nobody knows the reliability.
+    /// Then every label is as reliable as the noise says.
     Reliability,
 }
 
@@ -132,7 +136,8 @@ impl core::fmt::Display for ObservationError {
                 tolerance.metres()
             ),
             Self::Reliability => f.write_str(
-                "where positions err, a label is as reliable as the noise says, and has no reliability of its own",
+                "where positions err or the reliability is unknown, a label is as reliable as the noise says, and has no \
+                 reliability of its own",
             ),
         }
     }

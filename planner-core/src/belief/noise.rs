@@ -2,101 +2,21 @@
 
 use crate::belief::sample::Sample;
 use crate::belief::tolerance::Tolerance;
-use crate::belief::weight::LogWeight;
+use crate::belief::trust::{AnyReliability, Trust};
+use crate::belief::unknown_reliability::UnknownReliability;
 use crate::geometry::lattice::Site;
 use crate::geometry::value::ValueError;
 
-/// How far a label can be believed: it is true with probability `p`.
-///
-/// Stored as the logarithm of the odds `p / (1 - p)`, to 10^-10. A posterior needs nothing else: lines that agree with
-/// a label gain this much on those that do not.
+pub use crate::belief::reliability::Reliability;
+
+/// What is known of the noise. `R` is a [`Reliability`] where the probability of a true label is known, otherwise an
+/// [`UnknownReliability`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "i64", into = "i64"))]
-pub struct Reliability {
-    log_odds: LogWeight,
-}
-
-const RANGE: ValueError = ValueError("a reliability is a probability from 0 to 1");
-
-const ODDS: ValueError = ValueError("odds are those of a probability");
-
-impl Reliability {
-    /// The log odds of a certain label. Those of any double between 0 and 1 are below 746 in size.
-    const BEYOND: LogWeight = LogWeight(1_000 * LogWeight::ONE);
-
-    /// The label is true for certain, as within a trusted ball.
-    pub const CERTAIN: Self = Self { log_odds: Self::BEYOND };
-
-    /// The label says nothing: `p` = 1/2. All zeros in memory.
-    pub const NONE: Self = Self { log_odds: LogWeight::ZERO };
-
-    /// A label that is true with probability `p`: 1 is certain, 0 certainly wrong, and 1/2 says nothing.
-    ///
-    /// # Errors
-    /// [`ValueError`] outside [0, 1].
-    pub fn new(p: f64) -> Result<Self, ValueError> {
-        let beyond = Self::BEYOND.value();
-        let inside = (0.0..=1.0).contains(&p);
-        let reliability = inside.then(|| {
-            let log_odds = libm::log(p) - libm::log1p(-p); // infinite for 0 and 1
-            Self { log_odds: LogWeight::from_log(log_odds.clamp(-beyond, beyond)) }
-        });
-        reliability.ok_or(RANGE)
-    }
-
-    /// The probability that the label is true.
-    pub fn probability(self) -> f64 {
-        1.0 / (1.0 + libm::exp(-self.log_odds.value()))
-    }
-
-    /// As [`probability`](Self::probability), in single precision.
-    pub(crate) fn single(self) -> f32 {
-        let [agree, disagree] = self.weights();
-        agree / (agree + disagree)
-    }
-
-    /// The weights of lines that agree with the label and of those that do not, relative to the likelier side.
-    pub(crate) fn weights(self) -> [f32; 2] {
-        let weight = |it: Option<LogWeight>| it.map_or(0.0, LogWeight::exp_single);
-        [weight(self.agree()), weight(self.disagree())]
-    }
-
-    /// The weight of lines that agree with the label, relative to the likelier side; `None` when no line can agree.
-    pub(crate) fn agree(self) -> Option<LogWeight> {
-        (self.log_odds.0 > -Self::BEYOND.0).then_some(LogWeight(self.log_odds.0.min(0)))
-    }
-
-    /// The weight of lines that do not agree; `None` when all must agree.
-    pub(crate) fn disagree(self) -> Option<LogWeight> {
-        (self.log_odds < Self::BEYOND).then_some(LogWeight(self.log_odds.0.saturating_neg().min(0)))
-    }
-}
-
-/// The logarithm of the odds, in units of 2^-32.
-impl From<Reliability> for i64 {
-    fn from(reliability: Reliability) -> Self {
-        reliability.log_odds.0
-    }
-}
-
-impl TryFrom<i64> for Reliability {
-    type Error = ValueError;
-
-    fn try_from(units: i64) -> Result<Self, ValueError> {
-        let inside = units.unsigned_abs() <= Self::BEYOND.0.unsigned_abs();
-        inside.then_some(Self { log_odds: LogWeight(units) }).ok_or(ODDS)
-    }
-}
-
-/// What is known of the noise.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Noise {
+pub struct Noise<R = Reliability> {
     /// How far a label can be believed.
-    pub reliability: Reliability,
+    pub reliability: R,
     /// Within this distance of a given sample's site labels are certain, lattice units; see
     /// [`trusted_radius`].
     pub trusted_radius: u32,
@@ -127,16 +47,40 @@ impl Noise {
     ) -> Result<Self, ValueError> {
         Ok(Self { tolerance: tolerance.try_into().map_err(Into::into)?, ..self })
     }
+}
 
+impl Noise<UnknownReliability> {
+    /// Labels that are true with a probability that nobody knows, wherever they are read. It is the same for all labels,
+    /// and has the prior Beta(a, b); see [`UnknownReliability::beta`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn beta(a: f64, b: f64) -> Result<Self, ValueError> {
+        let reliability = UnknownReliability::beta(a, b)?;
+        Ok(Self { reliability, trusted_radius: 0, tolerance: Tolerance::NONE })
+    }
+}
+
+impl<R: Trust> Noise<R> {
     /// The reliability of a label at a site. It is certain in a trusted ball (the paper's `B_r(p_j)`), whose radius is
-    /// reduced by the tolerance.
+    /// reduced by the tolerance. Elsewhere it is [`Trust::nominal`].
     pub fn at(&self, site: Site, given: &[Sample]) -> Reliability {
         let radius = u64::from(self.trusted_radius.saturating_sub(self.tolerance.units()));
         let near = |s: &Sample| {
             let apart = site - s.site;
             apart.dot(apart).unsigned_abs() <= radius * radius
         };
-        if radius > 0 && given.iter().any(near) { Reliability::CERTAIN } else { self.reliability }
+        if radius > 0 && given.iter().any(near) {
+            Reliability::CERTAIN
+        } else {
+            self.reliability.nominal()
+        }
+    }
+}
+
+impl From<Noise> for Noise<AnyReliability> {
+    fn from(Noise { reliability, trusted_radius, tolerance }: Noise) -> Self {
+        Self { reliability: reliability.into(), trusted_radius, tolerance }
     }
 }
 
@@ -144,34 +88,4 @@ impl Noise {
 pub fn trusted_radius(metres: f64) -> Option<u32> {
     let inside = Site::try_from(nalgebra::Point2::new(metres, 0.0)).ok()?;
     u32::try_from(inside.x()).ok()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn odds_are_those_of_the_probability() {
-        for p in [5e-324, 1e-300, 1e-9, 0.3, 0.5, 0.7, 0.999, 1.0 - f64::EPSILON] {
-            let it = Reliability::new(p).unwrap();
-            let exact = libm::log(p) - libm::log1p(-p);
-            assert!((it.log_odds.value() - exact).abs() < 2e-10, "{p}");
-            let [agree, disagree] = [it.agree(), it.disagree()].map(Option::unwrap);
-            assert_eq!((agree - disagree, agree.max(disagree)), (it.log_odds, LogWeight::ZERO));
-            assert_eq!(Reliability::try_from(i64::from(it)), Ok(it));
-        }
-        let sure = Reliability::new(1.0).unwrap();
-        assert_eq!(
-            (sure, sure.agree(), sure.disagree()),
-            (Reliability::CERTAIN, Some(LogWeight::ZERO), None)
-        );
-        let wrong = Reliability::new(0.0).unwrap();
-        assert_eq!((wrong.agree(), wrong.disagree()), (None, Some(LogWeight::ZERO)));
-        for units in [i64::MIN, i64::MAX, Reliability::BEYOND.0 + 1] {
-            assert_eq!(Reliability::try_from(units), Err(ODDS));
-        }
-        for p in [-0.1, 1.1, f64::NAN] {
-            assert_eq!(Reliability::new(p), Err(RANGE));
-        }
-    }
 }

@@ -28,10 +28,11 @@ use crate::belief::Belief as _;
 use crate::belief::ObservationError;
 use crate::belief::cells::CellView;
 use crate::belief::doubtful_labels::{CellPosterior, Hypothesis};
-use crate::belief::noise::Noise;
+use crate::belief::noise::{Noise, Reliability};
 use crate::belief::observation_log::{FromLog as _, ObservationLog};
 use crate::belief::sample::{Reading, Sample};
 use crate::belief::tolerance::Tolerance;
+use crate::belief::trust::Trust;
 use crate::belief::weight::Prior;
 use crate::geometry::area::Area;
 use crate::geometry::workspace::Workspace;
@@ -72,24 +73,28 @@ pub enum Policy {
 /// Algorithm 2 for `D`'s dynamics, with room for `N` samples, the given ones included, and `H`
 /// hypotheses.
 #[derive(Clone, Debug)]
-pub struct Scc<D, const N: usize, const H: usize, G = Area> {
+pub struct Scc<D, const N: usize, const H: usize, G = Area, R: Trust = Reliability> {
     /// Where motions aim for.
     area: G,
     options: Options,
     policy: Policy,
     dynamics: D,
-    hypotheses: CellPosterior<N, H>,
+    hypotheses: CellPosterior<N, H, 15, R>,
     silence: Silence,
 }
 
-impl<D: Dynamics, const N: usize, const H: usize, G: Workspace> Scc<D, N, H, G> {
+impl<D: Dynamics, const N: usize, const H: usize, G: Workspace, R: Trust> Scc<D, N, H, G, R> {
     /// A planner over a table of hypotheses, whose prior weighs their votes. It has [`Options::SCC`] and
     /// [`Policy::MixtureOfOwn`].
     ///
     /// # Errors
     /// [`SetupError`].
     #[inline] // it is made where it stays, as it may be large
-    pub fn new(area: G, dynamics: D, hypotheses: CellPosterior<N, H>) -> Result<Self, SetupError> {
+    pub fn new(
+        area: G,
+        dynamics: D,
+        hypotheses: CellPosterior<N, H, 15, R>,
+    ) -> Result<Self, SetupError> {
         let area = aimed_for_by(area, &dynamics, &hypotheses)?;
         Ok(Self::of((area, dynamics), hypotheses, Options::SCC, Policy::default()))
     }
@@ -99,7 +104,7 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Workspace> Scc<D, N, H, G> 
     #[inline]
     pub(crate) fn of(
         (area, dynamics): (G, D),
-        hypotheses: CellPosterior<N, H>,
+        hypotheses: CellPosterior<N, H, 15, R>,
         options: Options,
         policy: Policy,
     ) -> Self {
@@ -125,7 +130,7 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Workspace> Scc<D, N, H, G> 
     }
 
     /// The problem of a hypothesis: where it votes to go.
-    pub fn problem<'a>(&'a self, hypothesis: &'a Hypothesis<15>) -> Problem<'a, ArcRule, G> {
+    pub fn problem<'a>(&'a self, hypothesis: &'a Hypothesis<15, R>) -> Problem<'a, ArcRule, G> {
         let own = self.hypotheses.lines(hypothesis);
         let ground = match self.policy {
             Policy::MixtureOfOwn => own,
@@ -140,7 +145,7 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Workspace> Scc<D, N, H, G> 
         self.on(ground, rule)
     }
 
-    fn on<'a, R>(&self, lines: CellView<'a>, rule: R) -> Problem<'a, R, G> {
+    fn on<'a, T>(&self, lines: CellView<'a>, rule: T) -> Problem<'a, T, G> {
         Problem { lines, area: self.area, weight: self.options.weight, rule }
     }
 
@@ -219,8 +224,10 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Workspace> Scc<D, N, H, G> 
     }
 }
 
-impl<D: Dynamics, const N: usize, const H: usize, G: Workspace> Planner for Scc<D, N, H, G> {
-    type Belief = CellPosterior<N, H>;
+impl<D: Dynamics, const N: usize, const H: usize, G: Workspace, R: Trust> Planner
+    for Scc<D, N, H, G, R>
+{
+    type Belief = CellPosterior<N, H, 15, R>;
 
     fn plan(&mut self, pose: Pose) -> Plan {
         if self.hypotheses.is_full() {
@@ -256,7 +263,7 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Workspace> Planner for Scc<
         Ok(())
     }
 
-    fn belief(&self) -> &CellPosterior<N, H> {
+    fn belief(&self) -> &CellPosterior<N, H, 15, R> {
         &self.hypotheses
     }
 }
@@ -272,7 +279,9 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Workspace> Restart for Scc<
     }
 }
 
-impl<D: Dynamics, const N: usize, const H: usize, G: Workspace> Persist for Scc<D, N, H, G> {
+impl<D: Dynamics, const N: usize, const H: usize, G: Workspace, R: Trust> Persist
+    for Scc<D, N, H, G, R>
+{
     type Snapshot = Snapshot<ObservationLog<N>, Silence>;
 
     fn snapshot(&self) -> Self::Snapshot {

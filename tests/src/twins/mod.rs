@@ -4,3 +4,4 @@ pub mod brute;
 pub mod exact_mean;
 pub mod ladder;
 pub mod probit;
+pub mod unknown_p;

@@ -13,4 +13,5 @@ mod reference;
 mod scc;
 mod search;
 mod tolerance;
+mod unknown_reliability;
 mod version_space;

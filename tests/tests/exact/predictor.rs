@@ -5,13 +5,13 @@ use std::f64::consts::PI;
 
 use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
-use host_sim::mission::definition::{Lines, Mission};
+use host_sim::mission::definition::{DoubtfulBelief, Lines, Mission};
 use host_sim::world::noise::{Extent, NoiseModel};
 use nalgebra::Point2;
 use planner_core::belief::predictions::{Prediction as _, Predictor as _};
 use planner_core::{
-    Belief as _, Certainty, Label, Line, NoisyBelief, PosteriorView, PredictiveBelief as _,
-    Reading, Reliability, Sample, Site,
+    Belief as _, Certainty, Label, Line, PosteriorView, PredictiveBelief as _, Reading,
+    Reliability, Sample, Site,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -114,12 +114,7 @@ fn any_site(rng: &mut ChaCha8Rng, mission: &Mission) -> Site {
 }
 
 /// So many labels, true or false, that are possible.
-fn labelled<const N: usize, const H: usize>(
-    noisy: &mut NoisyBelief<N, H>,
-    mission: &Mission,
-    rng: &mut ChaCha8Rng,
-    labels: usize,
-) {
+fn labelled(noisy: &mut DoubtfulBelief, mission: &Mission, rng: &mut ChaCha8Rng, labels: usize) {
     let most = noisy.belief().taken() + labels;
     while noisy.belief().taken() < most {
         let site = any_site(rng, mission);

@@ -21,14 +21,14 @@ use planner_core::motion::unicycle::Grid;
 use planner_core::planner::Stage;
 use planner_core::robot::Body as _;
 use planner_core::{
-    Crossing, Heading, Label, Motion, Noise, Plan, Planner, Policy, Pose, Prior, Reading,
-    Reliability, Sample, Scc, Site, Tolerance, Unicycle,
+    AnyReliability, Crossing, Heading, Label, Motion, Noise, Plan, Planner, Policy, Pose, Prior,
+    Reading, Reliability, Sample, Scc, Site, Tolerance, Unicycle,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
-type Planner64 = Scc<Unicycle, CAPACITY, HYPOTHESES, MissionArea>;
+type Planner64 = Scc<Unicycle, CAPACITY, HYPOTHESES, MissionArea, AnyReliability>;
 
 /// The election the slow way: every hypothesis tries every action, and all votes are summed.
 fn slow_election(planner: &Planner64, pose: Pose) -> Option<Action> {
@@ -236,6 +236,8 @@ fn campaign(algorithm: Algorithm, fields: u64, steps: u32, policy: Policy) -> Su
         seed: 1,
         crossing: Crossing::default(),
         following: algorithm.following(),
+        p_told: None,
+        draws_p: false,
         errors: Errors::default(),
         tolerance: Tolerance::NONE,
         vehicle: Grid::Paper.into(),

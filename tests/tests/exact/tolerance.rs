@@ -12,8 +12,8 @@ use nalgebra::Point2;
 use planner_core::belief::doubtful_labels::Hypothesis;
 use planner_core::planner::Stage;
 use planner_core::{
-    Belief as _, Label, Line, Noise, PosteriorView, Prior, Reading, Reliability, Sample, Site,
-    StopReason, Tolerance, Workspace as _,
+    AnyReliability, Belief as _, Label, Line, Noise, PosteriorView, Prior, Reading, Reliability,
+    Sample, Site, StopReason, Tolerance, Workspace as _,
 };
 use rayon::prelude::*;
 use tests::cases;
@@ -141,7 +141,8 @@ fn stated(mission: &Mission, belief: &dyn ReadOut) -> (f64, bool) {
     let table = belief.hypotheses().expect("doubtful labels");
     let posterior = PosteriorView::new(table);
     let set = posterior.credible(LEVEL);
-    let holds = |h: &Hypothesis<15>| mission.world.is_among(table.lines(h)) == Some(true);
+    let holds =
+        |h: &Hypothesis<15, AnyReliability>| mission.world.is_among(table.lines(h)) == Some(true);
     (set.probability, posterior.members(&set).any(holds))
 }
 
@@ -232,7 +233,7 @@ fn certain_labels_are_told_within_the_ball_alone() {
     let given = given.map(|(x, z, label)| Sample { site: at(x, z), label });
     let given =
         [given[0], given[1], given[2], Sample { site: at(18.0, 5.0), label: Label::Negative }];
-    let mut table = Table::new(&given, Prior::Area, noise).expect("they are separable");
+    let mut table = Table::new(&given, Prior::Area, noise.into()).expect("they are separable");
     assert_eq!(table.reliability(at(3.4, 1.0)), Reliability::CERTAIN);
     assert_eq!(table.reliability(at(3.6, 1.0)), noise.reliability);
     // Certain, and yet near enough to the line to be read on its other side.

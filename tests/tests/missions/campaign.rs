@@ -19,6 +19,8 @@ fn campaign(algorithm: Algorithm, following: Following, steps: u32) -> Summary {
         following,
         vehicle: Grid::Paper.into(),
         noise: None,
+        p_told: None,
+        draws_p: false,
         errors: Errors::default(),
         tolerance: Tolerance::NONE,
         policy: Policy::default(),

@@ -185,6 +185,8 @@ fn campaign(seed: u64, steps: u32, grid: Grid, noise: Option<NoiseModel>) -> Cam
         tolerance: Tolerance::NONE,
         vehicle: grid.into(),
         noise,
+        p_told: None,
+        draws_p: false,
         errors: Errors::default(),
         policy: Policy::default(),
         prior: Prior::default(),

@@ -16,4 +16,5 @@ mod scale;
 mod sleep;
 mod symmetry;
 mod terrain;
+mod unknown_p;
 mod vehicles;

@@ -151,7 +151,7 @@ fn every_vehicle_and_robots_that_err_sleep_as_well() {
 fn labels_keep_the_reliability_that_they_came_with() {
     let mission = noisy(standard_field::standard(45, 7, Algorithm::Lookahead, 0), 0.8);
     let middle = standard_field::area().middle();
-    for noise in [mission.noise_told(), Noise::NONE] {
+    for noise in [mission.noise_known().expect("a number"), Noise::NONE] {
         let noise = Noise { reliability: Reliability::new(0.8).expect("a probability"), ..noise };
         let make = || {
             let noisy = NoisyBelief::<36, 529>::new(mission.given.samples(), noise).expect("four");

@@ -5,15 +5,17 @@ use std::collections::BTreeMap;
 
 use anyhow::Result;
 use planner_core::belief::doubtful_labels::Hypothesis;
-use planner_core::{Line, PosteriorView, Prior};
+use planner_core::{AnyReliability, Line, PosteriorView, Prior, UnknownReliability};
 use serde::{Deserialize, Serialize};
 
+use crate::campaign::drawn;
 use crate::campaign::ensemble::{self, Campaign, Measure, Measured, Progress};
 use crate::campaign::sorting::{Sorted, Sorting, Value};
 use crate::campaign::spread::Spread;
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::Mission;
 use crate::mission::read_out::{LEVEL, ReadOut};
+use crate::mission::results::PTold;
 use crate::mission::vehicle::VehicleTable;
 use crate::world::noise::limit;
 
@@ -111,8 +113,14 @@ pub struct Summary {
     /// What moved, unless it is the unicycle of a fan.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub vehicle: Option<VehicleTable>,
-    /// Labels are true with this probability.
+    /// Labels are true with this probability; the mean of the prior where each field's is drawn from it.
     pub p: f64,
+    /// What planners are told instead.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub p_told: Option<PTold>,
+    /// Whether it is drawn.
+    #[serde(skip)]
+    pub draws_p: bool,
     /// Bits that a label can tell at most, on average: `1 - H(p)`.
     pub limit: f64,
     /// The ensemble as labels come in.
@@ -177,7 +185,9 @@ impl Measure for Calibrated {
             let table = &table.weighed_by(prior);
             let posterior = PosteriorView::new(table);
             let set = posterior.credible(LEVEL);
-            let holds = |h: &Hypothesis<15>| mission.world.is_among(table.lines(h)) == Some(true);
+            let holds = |h: &Hypothesis<15, AnyReliability>| {
+                mission.world.is_among(table.lines(h)) == Some(true)
+            };
             let best = posterior.best().expect("a hypothesis");
             Statement {
                 credible_probability: set.probability,
@@ -246,7 +256,13 @@ impl Summary {
         rows: impl IntoIterator<Item = Result<Measured<Checkpoint>>>,
     ) -> Result<Self> {
         let &Campaign { algorithm, fields, seed, noise, .. } = campaign;
-        let p = noise.map_or(1.0, |noise| noise.p);
+        let drawn_from = match campaign.p_told {
+            Some(AnyReliability::Unknown(prior)) if campaign.draws_p => Some(prior),
+            _ => None,
+        };
+        let p = drawn_from.map_or(noise.map_or(1.0, |noise| noise.p), UnknownReliability::mean);
+        let limit = drawn_from.map_or(limit(p), |prior| drawn::mean(prior, limit));
+        let p_told = campaign.p_told.map(PTold::from);
         let (mut stages, mut sorting) = (BTreeMap::<u32, Sums>::new(), Sorting::default());
         for row in rows {
             let Measured { checkpoint, .. } = row?;
@@ -262,12 +278,36 @@ impl Summary {
             }
         }
         let mut sorted = sorting.sorted()?;
-        let rows = stages.iter().map(|(&labels, sums)| sums.row(labels, limit(p), &mut sorted));
+        let rows = stages.iter().map(|(&labels, sums)| sums.row(labels, limit, &mut sorted));
         let rows = rows.collect::<Result<_>>()?;
-        let title =
-            format!("{}, {fields} standard fields, seed {seed}, p = {p}", algorithm.title());
+        let title = format!(
+            "{}, {fields} standard fields, seed {seed}, {}",
+            algorithm.title(),
+            how_often(p, p_told, campaign.draws_p)
+        );
         let vehicle = VehicleTable::of(campaign.vehicle);
-        Ok(Self { title, algorithm, fields, seed, vehicle, p, limit: limit(p), rows })
+        Ok(Self {
+            title,
+            algorithm,
+            fields,
+            seed,
+            vehicle,
+            p,
+            p_told,
+            draws_p: campaign.draws_p,
+            limit,
+            rows,
+        })
+    }
+}
+
+/// How often labels are true, and what planners are told of it.
+pub fn how_often(p: f64, told: Option<PTold>, is_drawn: bool) -> String {
+    match told {
+        None => format!("p = {p}"),
+        Some(PTold::Number(told)) => format!("p = {p}, told {told}"),
+        Some(PTold::Beta([a, b])) if is_drawn => format!("p drawn from Beta({a}, {b}), told so"),
+        Some(PTold::Beta([a, b])) => format!("p = {p}, told Beta({a}, {b})"),
     }
 }
 

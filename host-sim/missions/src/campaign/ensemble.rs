@@ -6,12 +6,15 @@ use std::vec;
 
 use anyhow::{Context as _, Result};
 use indicatif::ProgressBar;
-use planner_core::{AnyVehicle, Crossing, Following, Policy, Prior, Reading, Tolerance};
+use planner_core::{
+    AnyReliability, AnyVehicle, Crossing, Following, Policy, Prior, Reading, Tolerance,
+};
 use rayon::prelude::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::campaign::course::Course;
+use crate::campaign::drawn;
 use crate::campaign::standard_field;
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::Mission;
@@ -48,6 +51,10 @@ pub struct Campaign {
     pub vehicle: AnyVehicle,
     /// How labels are flipped; `None` when they are true.
     pub noise: Option<NoiseModel>,
+    /// How often labels are true, as planners are told, if that is not the `p` of the noise.
+    pub p_told: Option<AnyReliability>,
+    /// Whether the `p` of each field's noise is drawn from the prior that planners are told.
+    pub draws_p: bool,
     /// How robots err.
     pub errors: Errors,
     /// The tolerance of the planners.
@@ -171,6 +178,12 @@ impl Campaign {
         (mission.vehicle, mission.errors) = (self.vehicle, self.errors);
         mission.config.tolerance = self.tolerance;
         (mission.noise, mission.policy, mission.prior) = (self.noise, self.policy, self.prior);
+        mission.p_told = self.p_told;
+        if let (true, Some(prior), Some(noise)) =
+            (self.draws_p, mission.unknown_p(), mission.noise.as_mut())
+        {
+            noise.p = drawn::p(prior, mission.seed);
+        }
         mission
     }
 

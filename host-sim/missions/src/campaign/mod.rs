@@ -5,6 +5,7 @@ pub mod accuracy;
 pub mod behaviour;
 pub mod calibration;
 pub mod course;
+pub mod drawn;
 pub mod ensemble;
 pub mod field_record;
 pub mod order;

@@ -96,6 +96,7 @@ pub fn standard(seed: u64, number: u64, algorithm: Algorithm, steps: u32) -> Mis
         world: World::divided_by(truth),
         given,
         noise: None,
+        p_told: None,
         errors: Errors::default(),
         sensor: Vec::new(),
         policy: Policy::default(),

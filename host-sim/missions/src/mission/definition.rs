@@ -3,8 +3,8 @@
 use planner_core::link::message::MissionArea;
 use planner_core::link::message::Settings;
 use planner_core::{
-    AnyVehicle, CellPosterior, Crossing, Following, Goal, Noise, NoisyBelief, Policy, Pose, Prior,
-    VersionSpace,
+    AnyReliability, AnyVehicle, CellPosterior, Crossing, Following, Goal, Noise, NoisyBelief,
+    Policy, Pose, Prior, UnknownReliability, VersionSpace,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -27,7 +27,10 @@ pub const HYPOTHESES: usize = 2081;
 pub type Lines = VersionSpace<CAPACITY>;
 
 /// The hypothesis table of simulated planners.
-pub type Table = CellPosterior<CAPACITY, HYPOTHESES>;
+pub type Table = CellPosterior<CAPACITY, HYPOTHESES, 15, AnyReliability>;
+
+/// The belief of simulated look-ahead in noise.
+pub type DoubtfulBelief = NoisyBelief<CAPACITY, HYPOTHESES, AnyReliability>;
 
 /// Everything that determines a mission.
 #[derive(Clone, Debug)]
@@ -52,6 +55,8 @@ pub struct Mission {
     pub given: Lines,
     /// How labels are flipped; `None` when they are true.
     pub noise: Option<NoiseModel>,
+    /// How often labels are true, as planners are told, if that is not the `p` of the noise.
+    pub p_told: Option<AnyReliability>,
     /// How the robot errs.
     pub errors: Errors,
     /// How the sensor fails, which no planner is told. Later faults act on what earlier ones leave.
@@ -93,10 +98,29 @@ impl Mission {
     }
 
     /// What a planner is told of the noise.
-    pub fn noise_told(&self) -> Noise {
+    pub fn noise_told(&self) -> Noise<AnyReliability> {
         let tolerance = self.config.tolerance;
         let exact = Noise { tolerance, ..Noise::NONE };
-        self.noise.map_or(exact, |model| model.told(tolerance))
+        let Noise { reliability, trusted_radius, tolerance } =
+            self.noise.map_or(exact, |model| model.told(tolerance));
+        let reliability = self.p_told.unwrap_or(reliability.into());
+        Noise { reliability, trusted_radius, tolerance }
+    }
+
+    /// The same with a reliability that is known; `None` if planners are told a prior.
+    pub fn noise_known(&self) -> Option<Noise> {
+        let Noise { reliability, trusted_radius, tolerance } = self.noise_told();
+        match reliability {
+            AnyReliability::Known(reliability) => {
+                Some(Noise { reliability, trusted_radius, tolerance })
+            }
+            AnyReliability::Unknown(_) => None,
+        }
+    }
+
+    /// The prior of a reliability that planners do not know.
+    pub fn unknown_p(&self) -> Option<UnknownReliability> {
+        if let Some(AnyReliability::Unknown(prior)) = self.p_told { Some(prior) } else { None }
     }
 
     /// The table before the first label.
@@ -112,7 +136,7 @@ impl Mission {
     ///
     /// # Panics
     /// As [`table`](Self::table).
-    pub fn noisy_belief(&self) -> NoisyBelief<CAPACITY, HYPOTHESES> {
+    pub fn noisy_belief(&self) -> DoubtfulBelief {
         let mut belief = NoisyBelief::NONE;
         let made = belief.restart(self.given.samples(), self.prior, self.noise_told());
         made.expect("15 points bound the line at most");

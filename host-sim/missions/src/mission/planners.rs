@@ -3,14 +3,14 @@
 use planner_core::dynamics::Dynamics;
 use planner_core::error::ObservationError;
 use planner_core::{
-    Accuracy, AnyVehicle, Cfc, Lookahead, NoisyBelief, Plan, Planner, Pose, PredictiveBelief,
+    Accuracy, AnyReliability, AnyVehicle, Cfc, Lookahead, Plan, Planner, Pose, PredictiveBelief,
     Reading, Scc, Tolerance, Workspace,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use crate::mission::algorithm::Algorithm;
-use crate::mission::definition::{CAPACITY, HYPOTHESES, Lines, Mission};
+use crate::mission::definition::{CAPACITY, DoubtfulBelief, HYPOTHESES, Lines, Mission};
 use crate::mission::margin::Margin;
 use crate::mission::random_walk::RandomWalk;
 use crate::mission::read_out::ReadOut;
@@ -104,7 +104,7 @@ impl Mission {
         &self,
         area: G,
         dynamics: D,
-    ) -> Scc<D, CAPACITY, HYPOTHESES, G> {
+    ) -> Scc<D, CAPACITY, HYPOTHESES, G, AnyReliability> {
         let planner = Scc::new(area, dynamics, self.table()).expect(FITS);
         planner.with(self.config.options()).voting(self.policy)
     }
@@ -129,7 +129,7 @@ impl Mission {
         &self,
         area: G,
         dynamics: D,
-    ) -> Lookahead<D, NoisyBelief<CAPACITY, HYPOTHESES>, G, Accuracy> {
+    ) -> Lookahead<D, DoubtfulBelief, G, Accuracy> {
         self.looking_ahead(area, dynamics, self.noisy_belief())
     }
 

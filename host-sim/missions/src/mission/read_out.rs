@@ -2,7 +2,9 @@
 
 use std::fmt::Debug;
 
-use planner_core::{Area, Belief, Goal, Label, PosteriorView, Sample, Site, Tolerance};
+use planner_core::{
+    AnyReliability, Area, Belief, Goal, Label, PosteriorView, Reliability, Sample, Site, Tolerance,
+};
 
 use crate::mission::definition::{Lines, Table};
 use crate::world::noise::limit;
@@ -126,7 +128,13 @@ impl ReadOut for Table {
     fn expects(&self, site: Site) -> Expectation {
         let chance = self.chance(site);
         let is_exact = self.noise().tolerance == Tolerance::NONE;
-        let bits = if is_exact {
+        let is_trusted = self.reliability(site) == Reliability::CERTAIN;
+        let bits = if is_exact && is_unknown(self) && !is_trusted {
+            // Each hypothesis has a reliability of its own.
+            let posterior = PosteriorView::new(self);
+            let of = |h| posterior.probability(h) * limit(self.agreement(h));
+            self.iter().map(of).sum::<f64>() - limit(chance)
+        } else if is_exact {
             limit(self.reliability(site).probability()) - limit(chance)
         } else {
             mean_told(self, site, chance)
@@ -149,6 +157,11 @@ impl ReadOut for Table {
     fn boxed(&self) -> Box<dyn ReadOut> {
         Box::new(self.clone())
     }
+}
+
+/// Whether nobody knows how reliable labels are.
+pub fn is_unknown(table: &Table) -> bool {
+    matches!(table.noise().reliability, AnyReliability::Unknown(_))
 }
 
 /// The mean information of the two possible labels where positions err. A copy of the belief takes each in; one that it

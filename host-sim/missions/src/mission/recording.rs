@@ -8,17 +8,19 @@ use planner_core::belief::doubtful_labels::Hypothesis;
 use planner_core::belief::evidence::{Alarm, Evidence};
 use planner_core::error::ObservationError;
 use planner_core::{
-    Estimates, Line, Pose, PosteriorView, Prior, Reading, Reliability, Stage, Step, StopReason,
+    AnyReliability, Estimates, Line, Pose, PosteriorView, Prior, Reading, Reliability,
+    ReliabilityEstimate, Stage, Step, StopReason,
 };
 
 use crate::mission::definition::{Mission, Table};
 use crate::mission::diagnosis::DiagnosisRecord;
 use crate::mission::flight::Flown;
 use crate::mission::legs::{Leg, Legs};
-use crate::mission::read_out::{Knowledge, LEVEL, ReadOut};
+use crate::mission::read_out::{Knowledge, LEVEL, ReadOut, is_unknown};
 use crate::mission::results::{
     AlarmRecord, BestRecord, CredibleRecord, End, Ending, EstimateRecords, FitRecord,
-    KeepOutRecord, LineError, Results, Start, StepResult, VERSION, cost, recovery_name, stage_name,
+    KeepOutRecord, LineError, PTold, ReliabilityRecord, Results, Start, StepResult, VERSION, cost,
+    recovery_name, stage_name,
 };
 use crate::mission::stop::{AuditRecord, GoalRecord};
 use crate::mission::vehicle::VehicleTable;
@@ -168,6 +170,7 @@ impl Recorder {
             fit: fit.map(|fit| Box::new(FitRecord::beside(fit, &estimates))),
             best,
             credible,
+            reliability: belief.hypotheses().filter(|it| is_unknown(it)).map(learnt),
             goal: GoalRecord::of(&mission, &*belief, audit((&steps, &results), &before, ending)),
             alarm,
             diagnosis: diagnosis.map(Box::new),
@@ -232,6 +235,7 @@ fn start(mission: &Mission) -> Start {
         boundary: mission.world.record(),
         sensor: mission.sensor.iter().map(Into::into).collect(),
         p: mission.noise.map_or(1.0, |noise| noise.p),
+        p_told: mission.p_told.map(PTold::from),
         labels_err: mission.noise.is_some(),
         steps: mission.steps,
         slope_arcs: mission.given.slope_arc().intervals_deg().to_vec(),
@@ -263,9 +267,16 @@ fn audit(
     })
 }
 
+/// What labels have shown of a reliability that nobody knows.
+fn learnt(table: &Table) -> ReliabilityRecord {
+    let ReliabilityEstimate { mean, deviation } = PosteriorView::new(table).reliability();
+    ReliabilityRecord { mean, deviation }
+}
+
 /// What labels that may err come to: the paper's outcome by the paper's prior, and the credible set by the chosen one.
 fn doubted(table: &Table, world: &World) -> Option<(BestRecord, CredibleRecord)> {
-    let holds = |hypothesis: &Hypothesis<15>| world.is_among(table.lines(hypothesis));
+    let holds =
+        |hypothesis: &Hypothesis<15, AnyReliability>| world.is_among(table.lines(hypothesis));
     let by_sequences = table.weighed_by(Prior::Sequences);
     let best = PosteriorView::new(&by_sequences).best()?;
     let posterior = PosteriorView::new(table);

@@ -14,7 +14,8 @@ use planner_core::link::message::MissionArea;
 use planner_core::planner::Stage;
 use planner_core::search::recovery::Recovery;
 use planner_core::{
-    Estimates, KeepOut, Line, LocalLine, Motion, Pose, Sample, Site, StopReason, Workspace as _,
+    AnyReliability, Estimates, KeepOut, Line, LocalLine, Motion, Pose, Sample, Site, StopReason,
+    Workspace as _,
 };
 use serde::{Deserialize, Serialize};
 
@@ -86,6 +87,9 @@ pub struct Start {
     pub sensor: Vec<FaultTable>,
     /// Labels are true with this probability.
     pub p: f64,
+    /// What planners are told instead.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub p_told: Option<PTold>,
     /// Whether they may err.
     #[serde(skip)]
     pub labels_err: bool,
@@ -186,6 +190,9 @@ pub struct End {
     /// Where labels may err: the credible set, by the chosen prior.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub credible: Option<CredibleRecord>,
+    /// What labels have shown of a reliability that nobody knows.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reliability: Option<ReliabilityRecord>,
     /// Its goal, if it had one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub goal: Option<GoalRecord>,
@@ -198,6 +205,37 @@ pub struct End {
     /// How near to its targets a real vehicle came.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flown: Option<Legs>,
+}
+
+/// How often labels are true, as planners are told: a number, or the parameters of a Beta prior.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum PTold {
+    /// They are told this.
+    Number(f64),
+    /// Nobody knows; this is the prior.
+    Beta([f64; 2]),
+}
+
+impl From<AnyReliability> for PTold {
+    fn from(told: AnyReliability) -> Self {
+        match told {
+            AnyReliability::Known(reliability) => {
+                // Its logarithm of the odds is kept to 10^-10.
+                Self::Number((reliability.probability() * 1e9).round() / 1e9)
+            }
+            AnyReliability::Unknown(prior) => Self::Beta(prior.parameters()),
+        }
+    }
+}
+
+/// What is known of a reliability in the end.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub struct ReliabilityRecord {
+    /// Its mean.
+    pub mean: f64,
+    /// Its standard deviation.
+    pub deviation: f64,
 }
 
 /// What speaks against a straight, still line and a sensor as described.

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use anyhow::{Context as _, Result, anyhow};
+use anyhow::{Context as _, Error, Result, anyhow};
 use nalgebra::Point2;
 use planner_core::belief::noise::trusted_radius;
 use planner_core::error::GivenError;
@@ -10,7 +10,8 @@ use planner_core::link::message::MissionArea;
 use planner_core::link::message::Settings;
 use planner_core::motion::unicycle::Grid;
 use planner_core::{
-    EffortWeight, Following, Heading, Label, Pose, Reliability, Sample, Tolerance, VersionSpace,
+    AnyReliability, EffortWeight, Following, Heading, Label, Pose, Reliability, Sample, Tolerance,
+    UnknownReliability, VersionSpace,
 };
 use serde::Deserialize;
 
@@ -87,9 +88,18 @@ mod defaults {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct NoiseTable {
-    p: f64,
+    p: Told,
+    true_p: Option<f64>,
     trusted_radius: Option<f64>,
     band: Option<f64>,
+}
+
+/// How often labels are true, as planners are told.
+#[derive(Clone, Copy, Deserialize)]
+#[serde(untagged, expecting = "expected a probability, or the [a, b] of a Beta prior")]
+enum Told {
+    Number(f64),
+    Beta([f64; 2]),
 }
 
 /// Standard deviations, metres and radians.
@@ -255,6 +265,10 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
     let words = || allowance::sum(position, &allowance);
     check_tolerance("tolerance", tolerance, words, &given, &area)?;
     let noise = file.noise.as_ref().map(|table| noise(&table.0)).transpose()?;
+    let (noise, p_told) = noise.map_or((None, None), |(noise, p_told)| (Some(noise), p_told));
+    if matches!(p_told, Some(AnyReliability::Unknown(_))) {
+        check_unknown("noise.p", tolerance, algorithm)?;
+    }
     let following = file.following.map_or(algorithm.following(), Following::from);
     let crossing = file.crossing.into();
     let config = Settings { area, weight, crossing, following, tolerance };
@@ -271,6 +285,7 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
         world,
         given,
         noise,
+        p_told,
         errors,
         sensor: sensor::faults(file.sensor.iter().map(|table| &table.0))?,
         policy: file.policy.into(),
@@ -355,8 +370,21 @@ pub fn check_tolerance(
     Ok(())
 }
 
-fn noise(table: &NoiseTable) -> Result<NoiseModel> {
-    let p = probability("noise.p", table.p)?;
+fn noise(table: &NoiseTable) -> Result<(NoiseModel, Option<AnyReliability>)> {
+    let true_p = table.true_p.map(|p| probability("noise.true_p", p)).transpose()?;
+    let (p, p_told) = match table.p {
+        Told::Number(p) => {
+            let p = probability("noise.p", p)?;
+            // It is what the planner believes, if the sensor does otherwise.
+            let differs = true_p.is_some_and(|true_p| true_p.to_bits() != p.to_bits());
+            let told = differs.then(|| Reliability::new(p)).transpose().map_err(Error::msg)?;
+            (true_p.unwrap_or(p), told.map(AnyReliability::Known))
+        }
+        Told::Beta(parameters) => {
+            let prior = p_prior("noise.p", parameters)?;
+            (true_p.unwrap_or(prior.mean()), Some(AnyReliability::Unknown(prior)))
+        }
+    };
     let extent = match (table.trusted_radius, table.band) {
         (Some(_), Some(_)) => {
             return wrong("noise", "both trusted_radius and band", "one of them");
@@ -367,7 +395,34 @@ fn noise(table: &NoiseTable) -> Result<NoiseModel> {
             Extent::OutsideBalls(trusted("noise.trusted_radius", radius.unwrap_or(0.0))?)
         }
     };
-    Ok(NoiseModel { p, extent })
+    Ok((NoiseModel { p, extent }, p_told))
+}
+
+/// The prior of a reliability that nobody knows.
+///
+/// # Errors
+/// Names `field` and the parameters.
+pub fn p_prior(field: &str, [a, b]: [f64; 2]) -> Result<UnknownReliability> {
+    UnknownReliability::beta(a, b).or_else(|_| {
+        let expected = "the a and b of a Beta prior, from 0.5 to 1000 with a > b: its mean a / (a + b) is above one half";
+        wrong(field, format!("[{a}, {b}]"), expected)
+    })
+}
+
+/// Whether a planner can do with a reliability that nobody knows.
+///
+/// # Errors
+/// Names `field`, and what it does not go with.
+pub fn check_unknown(field: &str, tolerance: Tolerance, algorithm: Algorithm) -> Result<()> {
+    if tolerance != Tolerance::NONE {
+        let found = format!("a prior, and a tolerance of {:.3} m", tolerance.metres());
+        return wrong(field, found, "a number where positions err, or exact positions");
+    }
+    if !algorithm.weighs(true) {
+        let found = format!("a prior with algorithm {}", algorithm.name());
+        return wrong(field, found, "scc or lookahead: cfc takes labels to be true");
+    }
+    Ok(())
 }
 
 /// Whether this is a probability.

@@ -56,6 +56,8 @@ pub(crate) fn ended(results: &Results) -> Vec<Told> {
     let promise = results.end.goal.as_ref().map(promise);
     let promise = promise.map_or(String::new(), |promise| format!(" {promise}"));
     let mut ended = vec![Told::new("Ended", format!("{}.{promise}", sentence(why)))];
+    let shown = results.end.reliability.as_ref();
+    ended.extend(shown.map(|it| Told::new("Sensor", text::shown(it).trim_end().to_owned())));
     let alarm = results.end.alarm.as_ref();
     ended.extend(alarm.map(|it| Told::new("Warning", text::warning(it).trim_end().to_owned())));
     let diagnosis = results.end.diagnosis.iter().flat_map(|it| text::diagnosed(it));
@@ -86,6 +88,7 @@ pub(crate) fn about(recording: &Recording) -> Vec<String> {
             text::a_label(start),
             start.p
         ));
+        about.extend(text::told(start));
     } else if faults.is_some() {
         about.push("Planners take labels to be true.".to_owned());
     } else {

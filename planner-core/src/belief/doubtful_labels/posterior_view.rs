@@ -3,14 +3,17 @@
 //! The motions depend only on the labels seen, so they cancel in the paper's Equation 8. What is left is the weight
 //! `p^agree (1 - p)^disagree`. `p` is the probability that a label is true. `agree` and `disagree` count the labels
 //! outside the trusted balls that a hypothesis agrees with, and the others. A probability is this weight divided by the
-//! sum over all separable sequences. A bound on the effect of pruning is [`PosteriorView::pruned_mass`].
+//! sum over all separable sequences. Where nobody knows `p`, the weight is the mean of that over the prior of `p`, see
+//! [`UnknownReliability`](crate::UnknownReliability). A bound on the effect of pruning is [`PosteriorView::pruned_mass`].
 
 use crate::belief::cells::{CellView, Moments, intercepts};
 use crate::belief::doubtful_labels::cell_posterior::{CellPosterior, Hypothesis};
 use crate::belief::estimate::{Estimates, area, bisector, maximum_margin, share_above};
 use crate::belief::goal::{Bounds, Criterion, Goal};
+use crate::belief::reliability::Reliability;
 use crate::belief::sample::Reading;
 use crate::belief::tolerance::Tolerance;
+use crate::belief::trust::Trust;
 use crate::belief::weight::LogWeight;
 use crate::belief::{Belief, ObservationError};
 use crate::geometry::arc::SlopeArc;
@@ -23,16 +26,17 @@ use crate::geometry::local_line::LocalLine;
 ///
 /// Building it and each read-out cost one exponential for each hypothesis.
 #[derive(Clone, Copy, Debug)]
-pub struct PosteriorView<'a, const N: usize, const H: usize, const E: usize> {
-    hypotheses: &'a CellPosterior<N, H, E>,
+pub struct PosteriorView<'a, const N: usize, const H: usize, const E: usize, R: Trust = Reliability>
+{
+    hypotheses: &'a CellPosterior<N, H, E, R>,
     total: f64,
 }
 
 /// The paper's outcome: the most likely hypothesis (Section IV-B).
 #[derive(Clone, Copy, Debug)]
-pub struct Best<'a, const E: usize> {
+pub struct Best<'a, const E: usize, R = Reliability> {
     /// The hypothesis.
-    pub hypothesis: &'a Hypothesis<E>,
+    pub hypothesis: &'a Hypothesis<E, R>,
     /// Its probability.
     pub probability: f64,
     /// The slopes of its lines.
@@ -58,7 +62,18 @@ pub struct Credible {
     cut: Option<(LogWeight, usize)>,
 }
 
-impl<const N: usize, const H: usize, const E: usize> Belief for CellPosterior<N, H, E> {
+/// What is known of the probability that a doubtful label is true.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReliabilityEstimate {
+    /// Its mean: the chance that the next doubtful label is true.
+    pub mean: f64,
+    /// Its standard deviation; 0 where it is known.
+    pub deviation: f64,
+}
+
+impl<const N: usize, const H: usize, const E: usize, R: Trust> Belief
+    for CellPosterior<N, H, E, R>
+{
     fn is_full(&self) -> bool {
         self.is_full()
     }
@@ -110,12 +125,12 @@ impl<const N: usize, const H: usize, const E: usize> Belief for CellPosterior<N,
 }
 
 /// The hypotheses of a table that weigh this much at least.
-struct Heaviest<'a, const N: usize, const H: usize, const E: usize> {
-    table: &'a CellPosterior<N, H, E>,
+struct Heaviest<'a, const N: usize, const H: usize, const E: usize, R: Trust> {
+    table: &'a CellPosterior<N, H, E, R>,
     least: LogWeight,
 }
 
-impl<const N: usize, const H: usize, const E: usize> Bounds for Heaviest<'_, N, H, E> {
+impl<const N: usize, const H: usize, const E: usize, R: Trust> Bounds for Heaviest<'_, N, H, E, R> {
     fn each(&self, mut f: impl FnMut(Bound)) {
         for hypothesis in self.table.iter().filter(|it| it.weight() >= self.least) {
             self.table.lines(hypothesis).bounds().for_each(&mut f);
@@ -123,16 +138,16 @@ impl<const N: usize, const H: usize, const E: usize> Bounds for Heaviest<'_, N, 
     }
 }
 
-impl<'a, const N: usize, const H: usize, const E: usize> PosteriorView<'a, N, H, E> {
+impl<'a, const N: usize, const H: usize, const E: usize, R: Trust> PosteriorView<'a, N, H, E, R> {
     /// The posterior of a table.
-    pub fn new(hypotheses: &'a CellPosterior<N, H, E>) -> Self {
+    pub fn new(hypotheses: &'a CellPosterior<N, H, E, R>) -> Self {
         let total = hypotheses.iter().map(|h| h.weight().exp()).sum();
         Self { hypotheses, total }
     }
 
     /// The probability of a hypothesis of the table, to 10^-6 of it; what is less likely than 10^-37 is
     /// held to be about that.
-    pub fn probability(&self, hypothesis: &Hypothesis<E>) -> f64 {
+    pub fn probability(&self, hypothesis: &Hypothesis<E, R>) -> f64 {
         hypothesis.weight().exp() / self.total
     }
 
@@ -144,7 +159,7 @@ impl<'a, const N: usize, const H: usize, const E: usize> PosteriorView<'a, N, H,
     }
 
     /// The most likely hypothesis, the first of equals.
-    pub fn best(&self) -> Option<Best<'a, E>> {
+    pub fn best(&self) -> Option<Best<'a, E, R>> {
         let hypothesis = most_likely(self.hypotheses)?;
         let lines = self.hypotheses.lines(hypothesis);
         Some(Best {
@@ -180,12 +195,15 @@ impl<'a, const N: usize, const H: usize, const E: usize> PosteriorView<'a, N, H,
     }
 
     /// The hypotheses of a credible set of this posterior.
-    pub fn members(&self, set: &Credible) -> impl Iterator<Item = &'a Hypothesis<E>> {
+    pub fn members(&self, set: &Credible) -> impl Iterator<Item = &'a Hypothesis<E, R>> {
         self.down_to(set.cut)
     }
 
     /// The hypotheses above a weight, and the first so many of that weight.
-    fn down_to(&self, cut: Option<(LogWeight, usize)>) -> impl Iterator<Item = &'a Hypothesis<E>> {
+    fn down_to(
+        &self,
+        cut: Option<(LogWeight, usize)>,
+    ) -> impl Iterator<Item = &'a Hypothesis<E, R>> {
         let mut alike = cut.map_or(0, |(_, alike)| alike);
         self.hypotheses.iter().filter(move |h| {
             let Some((least, _)) = cut else { return false };
@@ -231,9 +249,37 @@ impl<'a, const N: usize, const H: usize, const E: usize> PosteriorView<'a, N, H,
         self.hypotheses.iter().map(share).sum()
     }
 
+    /// The distribution of the probability that a doubtful label is true, as far as labels have shown it.
+    ///
+    /// It is exact for the hypotheses that are held. Where the probability is known, it is that number.
+    pub fn reliability(&self) -> ReliabilityEstimate {
+        let trust = self.hypotheses.noise().reliability;
+        let Some(prior) = trust.unknown() else {
+            return ReliabilityEstimate { mean: trust.nominal().probability(), deviation: 0.0 };
+        };
+        let (mut mean, mut square) = (0.0, 0.0);
+        for hypothesis in self.hypotheses.iter() {
+            let (weight, counts) =
+                (self.probability(hypothesis), self.hypotheses.counts(hypothesis));
+            mean += weight * prior.agrees(counts);
+            square += weight * prior.square(counts);
+        }
+        let variance = square - mean * mean;
+        let deviation = libm::sqrt(if variance > 0.0 { variance } else { 0.0 });
+        ReliabilityEstimate { mean, deviation }
+    }
+
     /// The chance that a label read at a site is +1.
     fn chance(&self, site: Site) -> f64 {
         let table = self.hypotheses;
+        let is_unknown = table.noise().reliability.unknown().is_some();
+        if is_unknown && table.reliability(site) != Reliability::CERTAIN {
+            let chance = |h| {
+                let (above, p) = (f64::from(share_above(table.lines(h), site)), table.agreement(h));
+                (above * p + (1.0 - above) * (1.0 - p)) * self.probability(h)
+            };
+            return table.iter().map(chance).sum();
+        }
         let above = if table.is_blurred() {
             let above = |h| f64::from(table.sides(h, site)[0]) * self.probability(h);
             table.iter().map(above).sum()
@@ -251,7 +297,7 @@ impl<'a, const N: usize, const H: usize, const E: usize> PosteriorView<'a, N, H,
     }
 }
 
-impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
+impl<const N: usize, const H: usize, const E: usize, R: Trust> CellPosterior<N, H, E, R> {
     /// [`PosteriorView::share_above`] in single precision, to 10^-5.
     pub(crate) fn above(&self, site: Site) -> f32 {
         let (mut above, mut all) = (0.0, 0.0);
@@ -264,16 +310,16 @@ impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
     }
 }
 
-fn most_likely<const N: usize, const H: usize, const E: usize>(
-    hypotheses: &CellPosterior<N, H, E>,
-) -> Option<&Hypothesis<E>> {
+fn most_likely<const N: usize, const H: usize, const E: usize, R: Trust>(
+    hypotheses: &CellPosterior<N, H, E, R>,
+) -> Option<&Hypothesis<E, R>> {
     hypotheses.iter().reduce(|best, next| if next.weight() > best.weight() { next } else { best })
 }
 
 /// [`PosteriorView::mean`], in the frame of the most likely hypothesis: in single precision, and without the sum
 /// of all weights.
-fn mean<const N: usize, const H: usize, const E: usize>(
-    hypotheses: &CellPosterior<N, H, E>,
+fn mean<const N: usize, const H: usize, const E: usize, R: Trust>(
+    hypotheses: &CellPosterior<N, H, E, R>,
 ) -> Option<LocalLine> {
     let frame = Moments::of(hypotheses.lines(most_likely(hypotheses)?))?.frame();
     let mut all = Moments::none(frame);

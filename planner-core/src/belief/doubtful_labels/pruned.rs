@@ -34,6 +34,11 @@ impl PrunedMass {
         }
     }
 
+    /// Multiplies the bound by the area prior by the largest chance that a lost hypothesis can give to a label.
+    pub(crate) fn weigh_area(&mut self, most: LogWeight) {
+        self.area = up(self.area * most.exp_bound());
+    }
+
     /// Divides the bound by `unit`, the new unit of all weights.
     pub(crate) fn rescale(&mut self, unit: LogWeight) {
         if self.area > 0.0 {

@@ -4,6 +4,9 @@
 //! between neighbouring thresholds. At a threshold it is multiplied by the odds of the label there, or ends if the
 //! label is certain.
 //!
+//! Where nobody knows the reliability of labels, the density is a function of the number of labels that agree ([`Counts`]).
+//! At a threshold this number changes by one.
+//!
 //! A column stores knots on the cumulative mass, with straight lines between them. It stores every knot if there is
 //! room, and otherwise the knots that separate the most mass.
 
@@ -41,6 +44,11 @@ impl Step {
         }
     }
 
+    /// By how much a doubtful label changes the number of labels that agree.
+    pub(crate) fn counting(label: Label) -> Self {
+        Self(if label == Label::Positive { -1 } else { 1 })
+    }
+
     fn by(LogWeight(units): LogWeight) -> Self {
         const MOST: i64 = 80 << 16;
         Self((units >> 16).clamp(-MOST, MOST) as i32)
@@ -70,6 +78,56 @@ impl Threshold {
         let is_certain = step == Step::BEGIN || step == Step::END;
         let factor = if is_certain { 0.0 } else { exp(step.0) };
         Self { site, step, factor, offset: 0 }
+    }
+
+    /// That of a doubtful label at a place where labels are counted. The density has no factor there.
+    pub(crate) fn counting(site: Vector, label: Label) -> Self {
+        Self { site, step: Step::counting(label), factor: 0.0, offset: 0 }
+    }
+}
+
+/// What the sum of the steps so far says of the density.
+pub(crate) trait Density: Copy {
+    /// The logarithm of the density, in units of 2^-16.
+    fn log(self, sum: i32) -> i32;
+
+    /// A sum and a density from which the steps go on, so that logarithms are less by `peak`.
+    fn below(self, sum: i32, peak: i32) -> (i32, Self);
+}
+
+/// Steps are logarithms, so their sum is one.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sums;
+
+impl Density for Sums {
+    #[inline]
+    fn log(self, sum: i32) -> i32 {
+        sum
+    }
+
+    #[inline]
+    fn below(self, sum: i32, peak: i32) -> (i32, Self) {
+        (sum - peak, self)
+    }
+}
+
+/// Steps count labels: the density is that of the number of labels that agree.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Counts<'a> {
+    /// Logarithms by the number of labels that agree, in units of 2^-16.
+    pub(crate) logs: &'a [i32],
+    /// The number of labels that agree with the lines at the smallest offsets.
+    pub(crate) first: i32,
+    pub(crate) peak: i32,
+}
+
+impl Density for Counts<'_> {
+    fn log(self, sum: i32) -> i32 {
+        self.logs.get((self.first + sum) as usize).map_or(i32::MIN / 2, |log| log - self.peak)
+    }
+
+    fn below(self, sum: i32, peak: i32) -> (i32, Self) {
+        (sum, Self { peak: self.peak + peak, ..self })
     }
 }
 
@@ -139,6 +197,7 @@ impl Column {
         &mut self,
         direction: SinCos,
         thresholds: &mut List<Threshold, S>,
+        density: impl Density,
     ) -> Option<i32> {
         *self = Self { normal: direction.left(), ..Self::NONE };
         for it in thresholds.iter_mut() {
@@ -146,13 +205,13 @@ impl Column {
         }
         sort(thresholds);
         let Lines { bottom, from, inside, to } = Lines::among(thresholds)?;
-        let mut log = bottom;
-        let peak = inside.iter().fold(bottom, |peak, it| {
-            log += it.step.0;
-            peak.max(log)
+        let mut sum = bottom;
+        let peak = inside.iter().fold(density.log(bottom), |peak, it| {
+            sum += it.step.0;
+            peak.max(density.log(sum))
         });
         let mut knots: List<Knot, S> = List::filled(Knot::NONE);
-        pile_up(&mut knots, bottom - peak, from, inside, to);
+        pile_up(&mut knots, density.below(bottom, peak), from, inside, to);
         self.keep(&knots);
         Some(peak)
     }
@@ -190,7 +249,7 @@ impl Column {
 
 /// The lines that certain labels leave, among thresholds by rising offset.
 struct Lines<'a> {
-    /// The logarithm of their density where they begin, by the labels before.
+    /// The sum of the steps where they begin, by the labels before.
     bottom: i32,
     /// Where they begin.
     from: i32,
@@ -212,11 +271,11 @@ impl<'a> Lines<'a> {
     }
 }
 
-/// Adds knots where lines begin, at each threshold inside, and where they end. `log` is the density's logarithm at the
+/// Adds knots where lines begin, at each threshold inside, and where they end. `sum` is that of the steps at the
 /// beginning; the density is 1 at its maximum.
 fn pile_up<const S: usize>(
     knots: &mut List<Knot, S>,
-    mut log: i32,
+    (mut sum, scale): (i32, impl Density),
     from: i32,
     inside: &[Threshold],
     to: i32,
@@ -226,14 +285,14 @@ fn pile_up<const S: usize>(
         let _ = knots.push(knot);
     };
     let mut at = Knot { offset: from, below: 0.0 };
-    let mut density = density_of(log);
+    let mut density = density_of(scale.log(sum));
     add(at);
     for it in inside {
         at = at.up_to(it.offset, density);
         add(at);
-        log += it.step.0;
+        sum += it.step.0;
         let next = density * it.factor;
-        density = if next > NOTHING { next } else { density_of(log) };
+        density = if next > NOTHING { next } else { density_of(scale.log(sum)) };
     }
     add(at.up_to(to, density));
 }
@@ -274,7 +333,7 @@ mod tests {
             let _ = thresholds.push(Threshold::new(Vector { x: 7, z: 4 * offset }, step));
         }
         let mut column = Column::NONE;
-        let peak = column.lay(Heading(0).unit(), &mut thresholds).unwrap();
+        let peak = column.lay(Heading(0).unit(), &mut thresholds, Sums).unwrap();
         (column, peak)
     }
 
@@ -318,7 +377,7 @@ mod tests {
             let _ = thresholds.push(Threshold::new(Vector { x: 0, z }, step));
         }
         let mut column = Column::NONE;
-        assert_eq!(column.lay(Heading(0).unit(), &mut thresholds), None);
+        assert_eq!(column.lay(Heading(0).unit(), &mut thresholds, Sums), None);
         for z in [-9, 0, 9] {
             assert!(column.mass_above(Vector { x: 0, z }) <= 0.0);
         }

@@ -23,9 +23,10 @@
 use crate::belief::doubtful_labels::CellPosterior;
 use crate::belief::list::List;
 use crate::belief::noise::Reliability;
-use crate::belief::predictions::column::{Column, Step, Threshold, exp};
+use crate::belief::predictions::column::{Column, Counts, Density, Step, Sums, Threshold, exp};
 use crate::belief::predictions::directions::{Direction, directions};
 use crate::belief::sample::{Label, Sample};
+use crate::belief::trust::Trust;
 use crate::geometry::lattice::{Site, Vector};
 
 /// A column's mass is limited to this many times the mean (truncated importance sampling). One direction in some
@@ -50,10 +51,11 @@ impl<const K: usize> Columns<K> {
     /// Computes the columns from the given samples of a table and the labels that it has taken in since. `believed`
     /// contains the reliability of each label. The directions are those of the table's lines.
     ///
-    /// `O(H + K S)`: some 150,000 instructions for 30 labels and 16 directions.
-    pub fn lay<const N: usize, const H: usize, const E: usize>(
+    /// `O(H + K S)`: some 150,000 instructions for 30 labels and 16 directions. Where nobody knows the reliability, every
+    /// label that is not certain counts alike.
+    pub fn lay<const N: usize, const H: usize, const E: usize, R: Trust>(
         &mut self,
-        table: &CellPosterior<N, H, E>,
+        table: &CellPosterior<N, H, E, R>,
         believed: &[Reliability],
     ) {
         let support = table.start().support().map(|sample| (sample, Reliability::CERTAIN));
@@ -64,13 +66,29 @@ impl<const K: usize> Columns<K> {
         self.view = View::of(from, samples().map(|(sample, _)| sample.site));
         // Each of its samples at most: there is room.
         let mut thresholds: List<Threshold, N> = List::filled(Threshold::NONE);
+        let prior = table.noise().reliability.unknown();
         for (Sample { site, label }, reliability) in samples() {
-            let step = Step::of(label, reliability);
-            let _ = thresholds.push(Threshold::new(self.view.vector(site), step));
+            let place = self.view.vector(site);
+            let _ = thresholds.push(if prior.is_some() && reliability != Reliability::CERTAIN {
+                Threshold::counting(place, label)
+            } else {
+                Threshold::new(place, Step::of(label, reliability))
+            });
         }
         let directions: [Direction; K] = directions(table);
         let mut peaks = [None; K];
-        lay_each(&mut self.lines, &directions, &mut thresholds, &mut peaks);
+        if let Some(prior) = prior {
+            let doubtful = || labels.clone().filter(|(_, it)| *it != Reliability::CERTAIN);
+            let first = doubtful().filter(|(it, _)| it.label == Label::Positive).count() as i32;
+            let mut logs: List<i32, N> = List::filled(0);
+            prior.likelihoods(doubtful().count() as u8, |log| {
+                let _ = logs.push((log.0 >> 16) as i32); // there are more samples than labels
+            });
+            let density = Counts { logs: &logs, first, peak: 0 };
+            lay_each(&mut self.lines, &directions, &mut thresholds, &mut peaks, density);
+        } else {
+            lay_each(&mut self.lines, &directions, &mut thresholds, &mut peaks, Sums);
+        }
         cut(&mut self.lines);
     }
 
@@ -139,9 +157,10 @@ fn lay_each<const N: usize>(
     directions: &[Direction],
     thresholds: &mut List<Threshold, N>,
     peaks: &mut [Option<i32>],
+    density: impl Density,
 ) {
     for ((column, direction), peak) in columns.iter_mut().zip(directions).zip(&mut *peaks) {
-        *peak = column.lay(direction.heading.unit(), thresholds);
+        *peak = column.lay(direction.heading.unit(), thresholds, density);
     }
     let highest = peaks.iter().flatten().max().copied().unwrap_or(0);
     for ((column, direction), peak) in columns.iter_mut().zip(directions).zip(peaks) {

@@ -9,6 +9,7 @@
 use heapless::binary_heap::{BinaryHeap, Min};
 
 use crate::belief::doubtful_labels::CellPosterior;
+use crate::belief::trust::Trust;
 use crate::belief::weight::LogWeight;
 use crate::geometry::approximate::precise_heading_of;
 use crate::geometry::arc::SlopeArc;
@@ -27,8 +28,14 @@ pub(crate) struct Direction {
 const HEAVY: usize = 32;
 
 /// Where the lines of a table lie.
-pub(crate) fn directions<const N: usize, const H: usize, const E: usize, const K: usize>(
-    table: &CellPosterior<N, H, E>,
+pub(crate) fn directions<
+    const N: usize,
+    const H: usize,
+    const E: usize,
+    R: Trust,
+    const K: usize,
+>(
+    table: &CellPosterior<N, H, E, R>,
 ) -> [Direction; K] {
     let (mut heaviest, mut rest) = (BinaryHeap::<(u32, u16), Min, HEAVY>::new(), 0.0);
     for (k, hypothesis) in (0..).zip(table.iter()) {

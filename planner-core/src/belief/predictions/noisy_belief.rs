@@ -1,9 +1,13 @@
 //! The belief for labels that may be wrong. A [`CellPosterior`], an exact table of hypotheses, contains what is known.
 //! [`Columns`] are an approximate copy of its distribution, from which look-ahead predicts the next labels.
+//!
+//! Where nobody knows the reliability of labels, table and columns weigh lines by their counts of labels, which is exact.
+//! Predictions take the next labels to be true with the mean of the reliability. That is an approximation: lines with which
+//! more labels agree also give the next label a higher chance to be true. No read-out depends on it.
 
 use crate::belief::ObservationError;
 use crate::belief::cells::CellView;
-use crate::belief::doubtful_labels::CellPosterior;
+use crate::belief::doubtful_labels::{CellPosterior, PosteriorView};
 use crate::belief::list::List;
 use crate::belief::noise::{Noise, Reliability};
 use crate::belief::observation_log::{FromLog, ObservationLog, ReplayError};
@@ -13,6 +17,7 @@ use crate::belief::predictions::verdicts::Odds;
 use crate::belief::sample::{Label, Reading, Sample};
 use crate::belief::tolerance::Tolerance;
 use crate::belief::true_labels::GivenError;
+use crate::belief::trust::{Mean as _, Trust};
 use crate::belief::weight::Prior;
 use crate::geometry::lattice::Site;
 
@@ -39,14 +44,14 @@ pub const fn sequences_of(labels: usize) -> usize {
 ///
 /// The given samples count among the `N`. [`sequences_of`] computes `H`.
 #[derive(Clone, Debug)]
-pub struct NoisyBelief<const N: usize, const H: usize> {
-    table: CellPosterior<N, H>,
+pub struct NoisyBelief<const N: usize, const H: usize, R: Trust = Reliability> {
+    table: CellPosterior<N, H, 15, R>,
     /// The reliability of each label of the table.
     believed: List<Reliability, N>,
     columns: Columns<DIRECTIONS>,
 }
 
-impl<const N: usize, const H: usize> NoisyBelief<N, H> {
+impl<const N: usize, const H: usize, R: Trust> NoisyBelief<N, H, R> {
     /// No sample and no hypothesis: memory to [`restart`](Self::restart) in.
     pub const NONE: Self = Self {
         table: CellPosterior::NONE,
@@ -58,7 +63,7 @@ impl<const N: usize, const H: usize> NoisyBelief<N, H> {
     ///
     /// # Errors
     /// As [`CellPosterior::new`].
-    pub fn new(given: &[Sample], noise: Noise) -> Result<Self, GivenError> {
+    pub fn new(given: &[Sample], noise: Noise<R>) -> Result<Self, GivenError> {
         let mut belief = Self::NONE;
         belief.restart(given, Prior::Area, noise)?;
         Ok(belief)
@@ -72,7 +77,7 @@ impl<const N: usize, const H: usize> NoisyBelief<N, H> {
         &mut self,
         given: &[Sample],
         prior: Prior,
-        noise: Noise,
+        noise: Noise<R>,
     ) -> Result<(), GivenError> {
         self.table.restart(given, prior, noise)?;
         self.believed.clear();
@@ -107,7 +112,7 @@ impl<const N: usize, const H: usize> NoisyBelief<N, H> {
     }
 }
 
-impl<const N: usize, const H: usize> FromLog for NoisyBelief<N, H> {
+impl<const N: usize, const H: usize, R: Trust> FromLog for NoisyBelief<N, H, R> {
     type ObservationLog = ObservationLog<N>;
 
     fn log(&self) -> ObservationLog<N> {
@@ -126,12 +131,12 @@ impl<const N: usize, const H: usize> FromLog for NoisyBelief<N, H> {
     }
 }
 
-impl<const N: usize, const H: usize> PredictiveBelief for NoisyBelief<N, H> {
-    type Belief = CellPosterior<N, H>;
+impl<const N: usize, const H: usize, R: Trust + 'static> PredictiveBelief for NoisyBelief<N, H, R> {
+    type Belief = CellPosterior<N, H, 15, R>;
     type Verdicts = Odds;
-    type Predictor<'a> = TablePredictor<'a, N, H>;
+    type Predictor<'a> = TablePredictor<'a, N, H, R>;
 
-    fn belief(&self) -> &CellPosterior<N, H> {
+    fn belief(&self) -> &CellPosterior<N, H, 15, R> {
         &self.table
     }
 
@@ -150,7 +155,7 @@ impl<const N: usize, const H: usize> PredictiveBelief for NoisyBelief<N, H> {
         self.columns.lay(&self.table, &self.believed);
     }
 
-    fn predictor(&self, _: Site) -> TablePredictor<'_, N, H> {
+    fn predictor(&self, _: Site) -> TablePredictor<'_, N, H, R> {
         TablePredictor { labels: Labels::of(&self.table), columns: &self.columns }
     }
 
@@ -166,7 +171,12 @@ impl<const N: usize, const H: usize> PredictiveBelief for NoisyBelief<N, H> {
     ) -> Option<(Label, Reliability)> {
         // A reading on the boundary agrees with both sides.
         let label = side(self.table.above(site)).filter(|_| reading != Reading::Boundary)?;
-        Some((label, self.table.reliability_within(site, tolerance)))
+        let told = self.table.reliability_within(site, tolerance);
+        // Where nobody knows, as often as labels have shown so far.
+        let is_unknown = self.table.noise().reliability.unknown().is_some();
+        let shown = (is_unknown && told != Reliability::CERTAIN)
+            .then(|| Reliability::new(PosteriorView::new(&self.table).reliability().mean));
+        Some((label, shown.and_then(Result::ok).unwrap_or(told)))
     }
 
     fn margin(&self) -> f32 {
@@ -189,26 +199,49 @@ fn side(above: f32) -> Option<Label> {
 
 /// How reliable labels are, and how much one can tell at most.
 #[derive(Clone, Copy, Debug)]
-struct Labels<'a, const N: usize, const H: usize> {
-    table: &'a CellPosterior<N, H>,
+struct Labels<'a, const N: usize, const H: usize, R: Trust> {
+    table: &'a CellPosterior<N, H, 15, R>,
+    /// How often one is true outside the trusted balls, if nobody knows.
+    mean: R::Mean,
     /// What one can tell outside the trusted balls, bits.
     capacity: f32,
 }
 
-impl<'a, const N: usize, const H: usize> Labels<'a, N, H> {
-    fn of(table: &'a CellPosterior<N, H>) -> Self {
-        let capacity = 1.0 - entropy(table.noise().reliability.single());
-        Self { table, capacity }
+/// Predictions take labels to be true at least as often as this. Where the mean of an unknown reliability is less, no label
+/// would be worth its way.
+const LEAST: f64 = 0.51;
+
+impl<'a, const N: usize, const H: usize, R: Trust> Labels<'a, N, H, R> {
+    fn of(table: &'a CellPosterior<N, H, 15, R>) -> Self {
+        let mean = R::Mean::of(|| {
+            let mean = PosteriorView::new(table).reliability().mean;
+            if mean > LEAST { mean as f32 } else { LEAST as f32 }
+        });
+        let labels = Self { table, mean, capacity: 0.0 };
+        Self { capacity: 1.0 - entropy(labels.usual()), ..labels }
+    }
+
+    /// How often a label outside the trusted balls is true.
+    fn usual(&self) -> f32 {
+        if self.table.noise().reliability.unknown().is_some() {
+            return self.mean.value();
+        }
+        self.table.noise().reliability.nominal().single()
     }
 
     /// How often a label at a site is true.
     fn p(&self, site: Site) -> f32 {
-        self.table.reliability(site).single()
+        let reliability = self.table.reliability(site);
+        let is_unknown = self.table.noise().reliability.unknown().is_some();
+        if is_unknown && reliability != Reliability::CERTAIN {
+            return self.mean.value();
+        }
+        reliability.single()
     }
 
     /// The expected information of a label, as a share of the most that a label can carry.
     fn information(&self, site: Site, share: f32) -> f32 {
-        information(share, self.p(site), (self.table.noise().reliability.single(), self.capacity))
+        information(share, self.p(site), (self.usual(), self.capacity))
     }
 }
 
@@ -235,19 +268,19 @@ fn chance(share: f32, p: f32) -> f32 {
 
 /// The predictor of a table of hypotheses.
 #[derive(Clone, Copy, Debug)]
-pub struct TablePredictor<'a, const N: usize, const H: usize> {
-    labels: Labels<'a, N, H>,
+pub struct TablePredictor<'a, const N: usize, const H: usize, R: Trust = Reliability> {
+    labels: Labels<'a, N, H, R>,
     columns: &'a Columns<DIRECTIONS>,
 }
 
 /// The prediction of that table when one more label is known.
 #[derive(Clone, Copy, Debug)]
-pub struct TablePredictorAfter<'a, const N: usize, const H: usize> {
-    labels: Labels<'a, N, H>,
+pub struct TablePredictorAfter<'a, const N: usize, const H: usize, R: Trust = Reliability> {
+    labels: Labels<'a, N, H, R>,
     columns: After<'a, DIRECTIONS>,
 }
 
-impl<const N: usize, const H: usize> Prediction for TablePredictor<'_, N, H> {
+impl<const N: usize, const H: usize, R: Trust> Prediction for TablePredictor<'_, N, H, R> {
     fn share_above(&self, site: Site) -> f32 {
         self.columns.share_above(site)
     }
@@ -257,7 +290,7 @@ impl<const N: usize, const H: usize> Prediction for TablePredictor<'_, N, H> {
     }
 }
 
-impl<const N: usize, const H: usize> Prediction for TablePredictorAfter<'_, N, H> {
+impl<const N: usize, const H: usize, R: Trust> Prediction for TablePredictorAfter<'_, N, H, R> {
     fn share_above(&self, site: Site) -> f32 {
         self.columns.share_above(site)
     }
@@ -267,9 +300,9 @@ impl<const N: usize, const H: usize> Prediction for TablePredictorAfter<'_, N, H
     }
 }
 
-impl<const N: usize, const H: usize> Predictor for TablePredictor<'_, N, H> {
+impl<const N: usize, const H: usize, R: Trust> Predictor for TablePredictor<'_, N, H, R> {
     type After<'a>
-        = TablePredictorAfter<'a, N, H>
+        = TablePredictorAfter<'a, N, H, R>
     where
         Self: 'a;
 
@@ -277,7 +310,7 @@ impl<const N: usize, const H: usize> Predictor for TablePredictor<'_, N, H> {
         chance(share, self.labels.p(site))
     }
 
-    fn after(&self, site: Site, label: Label) -> TablePredictorAfter<'_, N, H> {
+    fn after(&self, site: Site, label: Label) -> TablePredictorAfter<'_, N, H, R> {
         let heights = self.columns.heights(site);
         let columns = self.columns.after(heights, label, self.labels.p(site));
         TablePredictorAfter { labels: self.labels, columns }

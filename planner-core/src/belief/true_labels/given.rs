@@ -25,6 +25,8 @@ pub enum GivenError {
     TooVague,
     /// The tolerance is negative, above 1,024 m, or no number.
     Tolerance,
+    /// Positions err, and nobody knows the reliability of labels. A table weighs one of the two.
+    Reliability,
 }
 
 impl core::fmt::Display for GivenError {
@@ -35,6 +37,9 @@ impl core::fmt::Display for GivenError {
             Self::NotSeparable(i) => write!(f, "no line separates the samples 0 to {i}"),
             Self::TooMany => f.write_str("there are more samples than the buffer holds"),
             Self::Tolerance => f.write_str("a tolerance is from 0 to 1024 m"),
+            Self::Reliability => f.write_str(
+                "where positions err, the reliability of labels is a number and no prior",
+            ),
             Self::TooVague => f.write_str("positions err too much for what the samples leave open"),
         }
     }

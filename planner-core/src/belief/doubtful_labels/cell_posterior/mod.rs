@@ -8,6 +8,8 @@
 
 mod taking;
 
+use core::marker::PhantomData;
+
 use crate::belief::ObservationError;
 use crate::belief::cells::{CellView, Certainty, DualCell};
 use crate::belief::doubtful_labels::blur::{Blur, Scale};
@@ -19,25 +21,39 @@ use crate::belief::observation_log::{FromLog, ObservationLog, ReplayError};
 use crate::belief::sample::{Sample, SampleBuffer};
 use crate::belief::tolerance::{Short, Tolerance};
 use crate::belief::true_labels::{GivenError, VersionSpace};
+use crate::belief::trust::{Tallies, Trust, counts};
+use crate::belief::unknown_reliability::Counts;
 use crate::belief::weight::{Coarse, LogWeight, Prior};
 use crate::geometry::lattice::Site;
 
 /// A sequence of true labels that some line realises: the cell of these lines, and the sequence's weight given the
 /// labels seen. 24 bytes for `E = 15`.
+///
+/// Where nobody knows the reliability of labels, it also counts those that disagree with it. The count is in the lowest
+/// byte of the 64 bits. The weight has the others: 128 labels need 49 of them.
 #[derive(Clone, Copy, Debug)]
-pub struct Hypothesis<const E: usize> {
+pub struct Hypothesis<const E: usize, R = Reliability> {
     cell: DualCell<E>,
     /// The weight in two halves, or a hypothesis would be padded to a multiple of 8 bytes.
     high: i32,
     low: u32,
+    trust: PhantomData<R>,
 }
 
-impl<const E: usize> Hypothesis<E> {
+impl<const E: usize, R: Trust> Hypothesis<E, R> {
     /// A placeholder that no line realises. All its bytes are zero, so memory filled with it costs no flash.
-    const NONE: Self = Self { cell: DualCell::NONE, high: 0, low: 0 };
+    const NONE: Self = Self { cell: DualCell::NONE, high: 0, low: 0, trust: PhantomData };
 
     fn new(cell: DualCell<E>, LogWeight(units): LogWeight) -> Self {
-        Self { cell, high: (units >> 32) as i32, low: units as u32 }
+        Self::of(cell, units << R::BITS)
+    }
+
+    fn of(cell: DualCell<E>, bits: i64) -> Self {
+        Self { cell, high: (bits >> 32) as i32, low: bits as u32, trust: PhantomData }
+    }
+
+    const fn bits(&self) -> i64 {
+        (self.high as i64) << 32 | self.low as i64
     }
 
     /// The lines that realise it.
@@ -47,11 +63,23 @@ impl<const E: usize> Hypothesis<E> {
 
     /// Its weight by the table's prior, relative to the heaviest hypothesis.
     pub const fn weight(&self) -> LogWeight {
-        LogWeight((self.high as i64) << 32 | self.low as i64)
+        LogWeight(self.bits() >> R::BITS)
     }
 
     fn weigh(&mut self, by: LogWeight) {
-        *self = Self::new(self.cell, self.weight() + by);
+        *self = Self::of(self.cell, self.bits() + (by.0 << R::BITS));
+    }
+
+    /// One more label disagrees.
+    fn count(&mut self) {
+        if R::BITS > 0 {
+            *self = Self::of(self.cell, self.bits() + 1);
+        }
+    }
+
+    /// The number of doubtful labels that disagree, where labels are counted.
+    fn disagree(&self) -> u8 {
+        (self.bits() & ((1 << R::BITS) - 1)) as u8
     }
 }
 
@@ -63,27 +91,38 @@ impl<const E: usize> Hypothesis<E> {
 /// Weights are exact but for the logarithms of a label's odds (to 10^-10 each) and of a cell's measure
 /// (to 10^-6), however certain labels are.
 ///
+/// `R` says how far labels can be believed: with a [`Reliability`] that is known, or an
+/// [`UnknownReliability`](crate::UnknownReliability). With the latter a hypothesis has the weight of its counts of
+/// labels, summed over all probabilities, and the table takes four bytes more. A label then costs two logarithms in
+/// double precision for each hypothesis.
+///
 /// A table without room for one hypothesis does not compile:
 ///
 /// ```compile_fail,E0080
 /// use planner_core::CellPosterior;
-/// let table = CellPosterior::<16, 0>::NONE;
+/// let table: CellPosterior<16, 0> = CellPosterior::NONE;
 /// ```
 #[derive(Clone, Debug)]
-pub struct CellPosterior<const N: usize, const H: usize, const E: usize = 15> {
+pub struct CellPosterior<
+    const N: usize,
+    const H: usize,
+    const E: usize = 15,
+    R: Trust = Reliability,
+> {
     samples: SampleBuffer<N>,
     /// How far the position of each label taken in may be off.
     tolerances: List<Short, N>,
     given: u8,
     start: DualCell<E>,
-    table: List<Hypothesis<E>, H>,
+    table: List<Hypothesis<E, R>, H>,
     prior: Prior,
-    noise: Noise,
+    noise: Noise<R>,
     pruned: PrunedMass,
     outer_cells: u16,
+    tally: R::Tally,
 }
 
-impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
+impl<const N: usize, const H: usize, const E: usize, R: Trust> CellPosterior<N, H, E, R> {
     /// No sample and no hypothesis: memory to [`restart`](Self::restart) in.
     pub const NONE: Self = {
         assert!(H >= 1, "a table holds at least one hypothesis");
@@ -94,13 +133,10 @@ impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
             start: DualCell::NONE,
             table: List::filled(Hypothesis::NONE),
             prior: Prior::Area,
-            noise: Noise {
-                reliability: Reliability::NONE,
-                trusted_radius: 0,
-                tolerance: Tolerance::NONE,
-            },
+            noise: Noise { reliability: R::NONE, trusted_radius: 0, tolerance: Tolerance::NONE },
             pruned: PrunedMass::NOTHING,
             outer_cells: 0,
+            tally: R::Tally::NONE,
         }
     };
 
@@ -108,8 +144,9 @@ impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
     /// labels will make of it, `noise` says how far these can be believed.
     ///
     /// # Errors
-    /// [`GivenError`], and `TooMany` also when more than `E` of them bound the line.
-    pub fn new(given: &[Sample], prior: Prior, noise: Noise) -> Result<Self, GivenError> {
+    /// [`GivenError`], and `TooMany` also when more than `E` of them bound the line. `Reliability` if positions err and
+    /// the reliability is unknown.
+    pub fn new(given: &[Sample], prior: Prior, noise: Noise<R>) -> Result<Self, GivenError> {
         let mut hypotheses = Self::NONE;
         hypotheses.restart(given, prior, noise)?;
         Ok(hypotheses)
@@ -123,8 +160,11 @@ impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
         &mut self,
         given: &[Sample],
         prior: Prior,
-        noise: Noise,
+        noise: Noise<R>,
     ) -> Result<(), GivenError> {
+        if noise.reliability.unknown().is_some() && noise.tolerance != Tolerance::NONE {
+            return Err(GivenError::Reliability);
+        }
         let space = VersionSpace::<N>::new(given)?;
         let start: DualCell<E> = space.cell().resized().ok_or(GivenError::TooMany)?;
         self.samples = space.into_samples();
@@ -137,6 +177,7 @@ impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
         (self.prior, self.noise) = (prior, noise);
         self.pruned = PrunedMass::NOTHING;
         self.outer_cells = 0;
+        self.tally = R::Tally::NONE;
         Ok(())
     }
 
@@ -164,11 +205,11 @@ impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
     }
 
     /// What is known of the noise.
-    pub const fn noise(&self) -> Noise {
+    pub const fn noise(&self) -> Noise<R> {
         self.noise
     }
 
-    /// How far a label at a site can be believed.
+    /// How far a label at a site can be believed. Where nobody knows, it is [`Trust::nominal`].
     pub fn reliability(&self, site: Site) -> Reliability {
         self.noise.at(site, self.given())
     }
@@ -185,7 +226,7 @@ impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
 
     /// The logarithm of the measure of a hypothesis's lines, radian metres, to 10^-6; at least -96.
     #[inline(never)] // called from many places
-    pub fn log_area(&self, hypothesis: &Hypothesis<E>) -> LogWeight {
+    pub fn log_area(&self, hypothesis: &Hypothesis<E, R>) -> LogWeight {
         Coarse::of(area(self.lines(hypothesis))).into()
     }
 
@@ -215,12 +256,12 @@ impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
     }
 
     /// The hypotheses that are held.
-    pub fn iter(&self) -> impl ExactSizeIterator<Item = &Hypothesis<E>> + Clone {
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &Hypothesis<E, R>> + Clone {
         self.table.iter()
     }
 
     /// The lines of a hypothesis of this table.
-    pub fn lines<'a>(&'a self, hypothesis: &'a Hypothesis<E>) -> CellView<'a> {
+    pub fn lines<'a>(&'a self, hypothesis: &'a Hypothesis<E, R>) -> CellView<'a> {
         hypothesis.cell.lines(&self.samples)
     }
 
@@ -232,6 +273,21 @@ impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
     /// An upper bound on the pruned mass, on the scale of the weights in the table.
     pub(crate) fn pruned_mass(&self) -> f64 {
         f64::from(self.pruned.mass(self.prior))
+    }
+
+    /// The chance that the next doubtful label agrees with the lines of a hypothesis: the reliability, or its mean for these
+    /// lines where nobody knows it. The more labels agree with a line, the higher it is.
+    pub fn agreement(&self, hypothesis: &Hypothesis<E, R>) -> f64 {
+        let trust = self.noise.reliability;
+        trust.unknown().map_or_else(
+            || trust.nominal().probability(),
+            |prior| prior.agrees(self.counts(hypothesis)),
+        )
+    }
+
+    /// The counts of labels of a hypothesis, where labels are counted.
+    pub(crate) fn counts(&self, hypothesis: &Hypothesis<E, R>) -> Counts {
+        counts(&self.tally, hypothesis.disagree())
     }
 
     /// A weight such that the hypotheses of at least that weight have a probability of `level`, in millionths. Their
@@ -261,7 +317,7 @@ impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
     /// Weights in one band differ by a factor of `e^(1/2)` at most.
     const BAND: i64 = LogWeight::ONE / 2;
 
-    fn certainty(&self, hypothesis: &Hypothesis<E>, q: Site) -> Certainty {
+    fn certainty(&self, hypothesis: &Hypothesis<E, R>, q: Site) -> Certainty {
         self.lines(hypothesis).certainty(q)
     }
 
@@ -282,7 +338,7 @@ impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
 
     /// The probabilities that the true position is on the +1 side and on the -1 side if `site` is reported. Both are
     /// averages over the lines of a hypothesis.
-    pub(crate) fn sides(&self, hypothesis: &Hypothesis<E>, site: Site) -> [f32; 2] {
+    pub(crate) fn sides(&self, hypothesis: &Hypothesis<E, R>, site: Site) -> [f32; 2] {
         Blur::<E>::of(self.lines(hypothesis)).sides(site, Scale::by(self.noise.tolerance))
     }
 
@@ -305,7 +361,9 @@ impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
 /// All labels count as reliable as the table's noise says. A [`NoisyBelief`] restores labels of other reliabilities.
 ///
 /// [`NoisyBelief`]: crate::belief::predictions::NoisyBelief
-impl<const N: usize, const H: usize, const E: usize> FromLog for CellPosterior<N, H, E> {
+impl<const N: usize, const H: usize, const E: usize, R: Trust> FromLog
+    for CellPosterior<N, H, E, R>
+{
     type ObservationLog = ObservationLog<N>;
 
     fn log(&self) -> ObservationLog<N> {

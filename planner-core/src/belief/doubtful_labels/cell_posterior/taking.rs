@@ -6,6 +6,10 @@
 //!   approximation, counted in [`outer_cells`](CellPosterior::outer_cells). With 15 edges it has not been seen to happen:
 //!   over the tests' missions of 64 labels a cell has 9 at most.
 //!
+//! Where nobody knows the reliability of labels, a label multiplies the weight of a hypothesis by the chance that its counts
+//! give to that label. The pruned mass is multiplied by the largest such chance that any lost hypothesis can have: of their
+//! counts the smallest are kept. By the paper's prior it keeps its value, as the chances of both labels add up to one.
+//!
 //! Where positions err, the weight of a label does not change in a step from one side of its site to the other. Steps,
 //! wherever they are placed, would claim more knowledge than there is. Instead, a hypothesis is weighed by the label's
 //! mean likelihood over its lines. When a hypothesis splits, each part is weighed anew by all labels. So the narrower
@@ -22,10 +26,11 @@ use crate::belief::list::List;
 use crate::belief::noise::Reliability;
 use crate::belief::sample::{Label, Sample};
 use crate::belief::tolerance::{Short, Tolerance};
+use crate::belief::trust::{Tallies as _, Trust};
 use crate::belief::weight::{LogWeight, Prior};
 use crate::geometry::lattice::Site;
 
-impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
+impl<const N: usize, const H: usize, const E: usize, R: Trust> CellPosterior<N, H, E, R> {
     /// Takes in a label that is read at a site, as far as it can be believed there.
     ///
     /// # Errors
@@ -57,7 +62,8 @@ impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
     /// # Errors
     /// [`ObservationError::Contradiction`] when a label that is certain leaves no hypothesis,
     /// [`ObservationError::Full`], and where positions err [`ObservationError::Reliability`] unless the label is as
-    /// reliable as the noise says. The table is then as it was.
+    /// reliable as the noise says. The same where nobody knows the reliability, unless the label is certain. The table is
+    /// then as it was.
     pub fn take(
         &mut self,
         sample: Sample,
@@ -81,9 +87,16 @@ impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
         if self.is_blurred() && reliability != self.reliability_within(sample.site, tolerance) {
             return Err(ObservationError::Reliability);
         }
+        if self.noise.reliability.unknown().is_some()
+            && reliability != Reliability::CERTAIN
+            && reliability != self.noise.reliability.nominal()
+        {
+            return Err(ObservationError::Reliability);
+        }
         let (agree, disagree) = self.weights(reliability);
         let weight = |label: Label| if label == sample.label { agree } else { disagree };
-        let survives = |hypothesis: &Hypothesis<E>| match self.certainty(hypothesis, sample.site) {
+        let survives = |hypothesis: &Hypothesis<E, R>| match self.certainty(hypothesis, sample.site)
+        {
             Certainty::Certain(label) => weight(label).is_some(),
             Certainty::Uncertain => true,
         };
@@ -103,15 +116,30 @@ impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
         let _ = self.tolerances.push(Short::of(tolerance)); // there is as much room
         let mut doubts = List::filled(Doubt::NONE);
         self.doubts(&mut doubts);
+        self.split_pruned(reliability);
         for k in 0..self.table.len() {
             self.update(k, Constraint::new(index, sample.label), reliability, &doubts);
         }
         if !doubtful {
             self.table.retain(|hypothesis| !hypothesis.cell.edges().is_empty());
         }
-        self.pruned.split(reliability);
+        if doubtful {
+            self.tally.count();
+        }
         self.rescale();
         Ok(())
+    }
+
+    /// Updates the bound on the pruned mass before a label of some reliability weighs the table.
+    fn split_pruned(&mut self, reliability: Reliability) {
+        match self.noise.reliability.unknown() {
+            None => self.pruned.split(reliability),
+            Some(_) if reliability == Reliability::CERTAIN => {}
+            Some(prior) => {
+                let most = prior.most(self.tally.labels(), self.tally.fewest());
+                self.pruned.weigh_area(most);
+            }
+        }
     }
 
     /// The weights of the lines on the label's side of a sample and on the other. Where positions err, both weights are
@@ -121,6 +149,22 @@ impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
             return (Some(LogWeight::ZERO), Some(LogWeight::ZERO));
         }
         (reliability.agree(), reliability.disagree())
+    }
+
+    /// The weights of a label on either side for a hypothesis. Where nobody knows the reliability, a doubtful label has the
+    /// weights of the hypothesis's counts.
+    fn weights_for(
+        &self,
+        hypothesis: &Hypothesis<E, R>,
+        reliability: Reliability,
+    ) -> (Option<LogWeight>, Option<LogWeight>) {
+        if let Some(prior) = self.noise.reliability.unknown()
+            && reliability != Reliability::CERTAIN
+        {
+            let [agree, disagree] = prior.weights(self.counts(hypothesis));
+            return (Some(agree), Some(disagree));
+        }
+        self.weights(reliability)
     }
 
     /// Fills a list with the labels, ready to weigh hypotheses by. Leaves it empty where positions do not err.
@@ -136,7 +180,7 @@ impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
     }
 
     /// The weight that some labels give a hypothesis where positions err.
-    fn told_by(&self, hypothesis: &Hypothesis<E>, labels: &[Doubt]) -> LogWeight {
+    fn told_by(&self, hypothesis: &Hypothesis<E, R>, labels: &[Doubt]) -> LogWeight {
         if labels.is_empty() {
             return LogWeight::ZERO;
         }
@@ -150,7 +194,7 @@ impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
         if self.outer_cells == 0 && self.table.len() + self.taken() < H {
             return;
         }
-        let splits = |it: &Self, h: &Hypothesis<E>| it.certainty(h, q) == Certainty::Uncertain;
+        let splits = |it: &Self, h: &Hypothesis<E, R>| it.certainty(h, q) == Certainty::Uncertain;
         let mut more = self.table.iter().filter(|h| splits(self, h)).count();
         while self.table.len() > 1 && self.table.len() + more > H {
             let weights = self.table.iter().map(Hypothesis::weight).enumerate();
@@ -161,8 +205,9 @@ impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
         }
     }
 
-    fn give_up(&mut self, gone: &Hypothesis<E>) {
+    fn give_up(&mut self, gone: &Hypothesis<E, R>) {
         let (weight, area) = (gone.weight(), self.log_area(gone));
+        self.tally.drop_with(gone.disagree());
         match self.prior {
             Prior::Area => self.pruned.add(weight, weight - area),
             Prior::Sequences => self.pruned.add(weight + area, weight),
@@ -174,19 +219,27 @@ impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
     fn update(&mut self, k: usize, edge: Constraint, reliability: Reliability, doubts: &[Doubt]) {
         let Some(newest) = self.samples.get(edge.index()) else { return };
         let Some(whole) = self.table.get(k).copied() else { return };
-        let (agree, disagree) = self.weights(reliability);
+        let (agree, disagree) = self.weights_for(&whole, reliability);
         let (before, newest_doubt) = doubts.split_at(doubts.len().saturating_sub(1));
         let Certainty::Certain(label) = self.certainty(&whole, newest.site) else {
             let weight = LogWeight::ZERO - self.prior_weight(&whole) - self.told_by(&whole, before);
             let opposite = Constraint::new(edge.index() as u8, -edge.label());
             let mut part = |edge, by| self.part(&whole, edge, weight + by, doubts);
-            let parts = [agree.map(|by| part(edge, by)), disagree.map(|by| part(opposite, by))];
+            let mut parts = [agree.map(|by| part(edge, by)), disagree.map(|by| part(opposite, by))];
+            if let [_, Some(opposed)] = &mut parts {
+                opposed.count();
+            }
             return self.replace(k, parts);
         };
         let told = self.told_by(&whole, newest_doubt);
         let weight = if label == edge.label() { agree } else { disagree };
         match (weight, self.table.get_mut(k)) {
-            (Some(weight), Some(place)) => place.weigh(weight + told),
+            (Some(weight), Some(place)) => {
+                place.weigh(weight + told);
+                if label != edge.label() {
+                    place.count();
+                }
+            }
             (None, Some(place)) => place.cell = DualCell::NONE,
             (_, None) => {}
         }
@@ -194,7 +247,7 @@ impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
 
     /// The weight of a hypothesis before any label. A cell's measure is the same each time it is computed, and so is
     /// the weight of its labels. So quotients lose nothing.
-    fn prior_weight(&self, hypothesis: &Hypothesis<E>) -> LogWeight {
+    fn prior_weight(&self, hypothesis: &Hypothesis<E, R>) -> LogWeight {
         match self.prior {
             Prior::Area => self.log_area(hypothesis),
             Prior::Sequences => LogWeight::ZERO,
@@ -202,7 +255,7 @@ impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
     }
 
     /// Puts the first part that there is in the place of the `k`-th hypothesis, and adds the other.
-    fn replace(&mut self, k: usize, parts: [Option<Hypothesis<E>>; 2]) {
+    fn replace(&mut self, k: usize, parts: [Option<Hypothesis<E, R>>; 2]) {
         let mut parts = parts.into_iter().flatten();
         if let (Some(kept), Some(place)) = (parts.next(), self.table.get_mut(k)) {
             *place = kept;
@@ -213,7 +266,7 @@ impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
     }
 
     /// Adds what was split off the `k`-th hypothesis.
-    fn add(&mut self, k: usize, split_off: Hypothesis<E>) {
+    fn add(&mut self, k: usize, split_off: Hypothesis<E, R>) {
         if let Err(mut refused) = self.table.push(split_off) {
             // Only a table of one hypothesis comes here: the likelier part stays.
             if let Some(place) = self.table.get_mut(k)
@@ -229,11 +282,11 @@ impl<const N: usize, const H: usize, const E: usize> CellPosterior<N, H, E> {
     /// that is the prior.
     fn part(
         &mut self,
-        whole: &Hypothesis<E>,
+        whole: &Hypothesis<E, R>,
         edge: Constraint,
         weight: LogWeight,
         doubts: &[Doubt],
-    ) -> Hypothesis<E> {
+    ) -> Hypothesis<E, R> {
         let mut part = *whole;
         if part.cell.cut(&self.samples, edge).is_err() {
             self.outer_cells = self.outer_cells.saturating_add(1);
