@@ -217,16 +217,8 @@ impl<'a, const N: usize, const H: usize, R: Trust> Labels<'a, N, H, R> {
             let mean = PosteriorView::new(table).reliability().mean;
             if mean > LEAST { mean as f32 } else { LEAST as f32 }
         });
-        let labels = Self { table, mean, capacity: 0.0 };
-        Self { capacity: 1.0 - entropy(labels.usual()), ..labels }
-    }
-
-    /// How often a label outside the trusted balls is true.
-    fn usual(&self) -> f32 {
-        if self.table.noise().reliability.unknown().is_some() {
-            return self.mean.value();
-        }
-        self.table.noise().reliability.nominal().single()
+        let capacity = 1.0 - entropy(usual(table, mean));
+        Self { table, mean, capacity }
     }
 
     /// How often a label at a site is true.
@@ -241,8 +233,17 @@ impl<'a, const N: usize, const H: usize, R: Trust> Labels<'a, N, H, R> {
 
     /// The expected information of a label, as a share of the most that a label can carry.
     fn information(&self, site: Site, share: f32) -> f32 {
-        information(share, self.p(site), (self.usual(), self.capacity))
+        information(share, self.p(site), (usual(self.table, self.mean), self.capacity))
     }
+}
+
+/// How often a label outside the trusted balls is true; its mean, where nobody knows.
+fn usual<const N: usize, const H: usize, R: Trust>(
+    table: &CellPosterior<N, H, 15, R>,
+    mean: R::Mean,
+) -> f32 {
+    let trust = table.noise().reliability;
+    if trust.unknown().is_some() { mean.value() } else { trust.nominal().single() }
 }
 
 /// The expected information of a label that is true with probability `p`, as a share of the most that a label can

@@ -116,7 +116,7 @@ impl<const N: usize, const H: usize, const E: usize, R: Trust> CellPosterior<N, 
         let _ = self.tolerances.push(Short::of(tolerance)); // there is as much room
         let mut doubts = List::filled(Doubt::NONE);
         self.doubts(&mut doubts);
-        self.split_pruned(reliability);
+        self.weigh_pruned(reliability);
         for k in 0..self.table.len() {
             self.update(k, Constraint::new(index, sample.label), reliability, &doubts);
         }
@@ -126,19 +126,20 @@ impl<const N: usize, const H: usize, const E: usize, R: Trust> CellPosterior<N, 
         if doubtful {
             self.tally.count();
         }
+        if self.noise.reliability.unknown().is_none() {
+            self.pruned.split(reliability);
+        }
         self.rescale();
         Ok(())
     }
 
-    /// Updates the bound on the pruned mass before a label of some reliability weighs the table.
-    fn split_pruned(&mut self, reliability: Reliability) {
-        match self.noise.reliability.unknown() {
-            None => self.pruned.split(reliability),
-            Some(_) if reliability == Reliability::CERTAIN => {}
-            Some(prior) => {
-                let most = prior.most(self.tally.labels(), self.tally.fewest());
-                self.pruned.weigh_area(most);
-            }
+    /// Updates the bound on the pruned mass before a label of an unknown reliability weighs the table.
+    fn weigh_pruned(&mut self, reliability: Reliability) {
+        if let Some(prior) = self.noise.reliability.unknown()
+            && reliability != Reliability::CERTAIN
+        {
+            let most = prior.most(self.tally.labels(), self.tally.fewest());
+            self.pruned.weigh_area(most);
         }
     }
 
