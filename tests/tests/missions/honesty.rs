@@ -8,13 +8,12 @@ use host_sim::campaign::standard_field;
 use host_sim::fitting::explanation::{Cause, Explanation, Told};
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::{CAPACITY, Mission};
-use host_sim::world::noise::{Extent, NoiseModel};
 use host_sim::world::polygon::misclassified;
 use nalgebra::{Point2, Vector2};
 use planner_core::error::ObservationError;
 use planner_core::motion::car::Shape;
 use planner_core::robot::{DriveFn, SensorFn};
-use planner_core::watch::{Alarm, Suspect, Watched};
+use planner_core::watch::{Alarm, Watched};
 use planner_core::{
     Agent, AnyVehicle, Belief as _, Boat, Car, Event, Goal, Label, Line, Lookahead, Motion, Plan,
     Planner, Sample, Site, Stage, StopReason, Tolerance, Unicycle, Vehicle, VersionSpace,
@@ -379,49 +378,6 @@ fn bent_and_drifting_boundaries_are_refuted() {
     }
     let drifts = |_: f64, motion: u32| 0.05 * f64::from(motion);
     assert!(share("drifts by 5 cm a step", &drifts, cases(60, 200)) <= 1.0);
-}
-
-/// On the model: missions of 20 to 60 labels that raise an alarm.
-#[test]
-fn an_alarm_is_rare_while_the_model_is_true() {
-    for (algorithm, noise, few, many) in [
-        (Algorithm::Cfc, None, 100, 10_000),
-        (Algorithm::Lookahead, None, 100, 10_000),
-        (Algorithm::Scc, Some(0.7), 8, 200),
-        (Algorithm::Lookahead, Some(0.7), 8, 200),
-        (Algorithm::Lookahead, Some(0.9), 8, 200),
-    ] {
-        let reached = |number: u64| {
-            let steps = if noise.is_some() { 30 } else { 20 + 20 * (number % 3) as u32 };
-            let mut mission = standard_field::standard(42, number, algorithm, steps);
-            mission.noise = noise.map(|p| NoiseModel { p, extent: Extent::OutsideBalls(0.5) });
-            let mut evidence = planner_core::watch::Evidence::NONE;
-            let mut before = mission.belief();
-            let (mut most, mut suspect) = (0.0_f32, None);
-            let flown = mission.fly(|step, after| {
-                if let Some(planner_core::Reading::Side(label)) = step.reading {
-                    evidence.observe(label, before.chance_of(step.pose.site, label));
-                }
-                before = after.boxed();
-                if evidence.value() > most {
-                    (most, suspect) = (evidence.value(), evidence.alarm().map(|it| it.suspect));
-                }
-            });
-            assert!(flown.is_ok());
-            (most, suspect)
-        };
-        let numbers = 0..cases(few, many);
-        let reached: Vec<(f32, Option<Suspect>)> = numbers.into_par_iter().map(reached).collect();
-        let share = |least: f32| {
-            100.0 * reached.iter().filter(|it| it.0 >= least).count() as f64 / reached.len() as f64
-        };
-        let (warnings, alarms) = (share(Alarm::WARNING), share(Alarm::ALARM));
-        println!(
-            "{algorithm:?}, {noise:?}: {warnings:.2} % warnings, {alarms:.2} % alarms of {}",
-            reached.len()
-        );
-        assert!(alarms <= 1.0 && warnings <= 5.0);
-    }
 }
 
 /// How a planner moves, and what its steps say.

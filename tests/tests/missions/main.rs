@@ -1,7 +1,7 @@
 //! Whole missions in simulated worlds: how they end, what they find, and what they never do.
 
+mod alarms;
 mod anything;
-
 mod campaign;
 mod deviations;
 mod doubtful_audits;
