@@ -3,11 +3,11 @@
 //! Nine tests look for what a straight line and independent errors do not explain. Each has the level [`EACH`], so
 //! that a straight line is refused in 1 % of the files at most.
 //!
-//! - *too many* and *too few*: [`counts`]. Bounds, as the line is fitted to the same labels.
-//! - *longest run*: [`counts`]. A bound for the true line. Its factor for the fitted one is not a proof.
-//! - *stretch* of the file: [`stretch`]. *Arc*, *drift* and *two lines*: [`shapes`]. Bounded odds against all lines and
+//! - *too many* and *too few*: `counts`. Bounds, as the line is fitted to the same labels.
+//! - *longest run*: `counts`. A bound for the true line. Its factor for the fitted one is not a proof.
+//! - *stretch* of the file: `stretch`. *Arc*, *drift* and *two lines*: `shapes`. Bounded odds against all lines and
 //!   all shares of wrong labels.
-//! - *arc by trials* and *drift by trials*: [`trials`]. They simulate files of the fitted line.
+//! - *arc by trials* and *drift by trials*: `trials`. They simulate files of the fitted line.
 //!
 //! Under a tolerance the line is the most likely one to a tenth in the logarithm, and *too many* counts labels beyond
 //! the tolerance of the fitted line. These are approximations too.

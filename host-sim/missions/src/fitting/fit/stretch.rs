@@ -1,7 +1,7 @@
 //! A stretch of the file in which labels say something else than where they are: a sensor that was fouled, stuck or
 //! turned round for a while.
 //!
-//! As for the [other boundaries](crate::fitting::fit::shapes), the odds are bounds: over all stretches of the file, the
+//! As for the other boundaries (`shapes`), the odds are bounds: over all stretches of the file, the
 //! kinds of faults, and a grid of lines for the rest of the file.
 
 use std::f64::consts::TAU;
