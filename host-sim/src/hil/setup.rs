@@ -62,8 +62,8 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
     })?;
     // True labels leave one hypothesis. `t` labels that may be wrong leave at most `1 + t + t (t - 1) / 2`.
     // Labels of an audit take no room.
-    let most = (CAPACITY - samples.len()) as u32;
-    let taken = mission.steps.min(most);
+    let most = if mission.goal.is_some() { CAPACITY - samples.len() } else { usize::MAX };
+    let taken = mission.steps.min(most as u32);
     let hypotheses = match mission.algorithm {
         _ if mission.is_noisy() => 1 + taken + taken * taken.saturating_sub(1) / 2,
         _ => 1,

@@ -16,7 +16,7 @@ use host_sim::mission::scenario::{self, Overrides};
 use host_sim::report::trace;
 use host_sim::world::noise::{Extent, NoiseModel};
 use planner_core::motion::unicycle::Grid;
-use planner_core::{Accuracy, Angle, Goal, Policy};
+use planner_core::{Accuracy, Angle, AnyVehicle, Goal, Policy, Unicycle};
 use rayon::prelude::*;
 use tests::budget::timing;
 use tests::budget::workload::Workload;
@@ -47,12 +47,17 @@ fn missions() -> Vec<Mission> {
             _ => (Algorithm::Lookahead, true, Grid::Paper),
         };
         let steps = match number % 16 {
+            2 | 3 | 6 | 7 => 32, // with an audit
             _ if is_noisy => 8,
-            2 | 6 => 32, // with an audit
             _ => 20,
         };
         let mut mission = standard_field::standard(5, number, algorithm, steps);
         mission.vehicle = grid.into();
+        if matches!(number % 16, 3 | 7) {
+            // Long motions, so that the steps suffice for the audit as well.
+            let far = Unicycle::new(1_000, 1.57, 61, 100).expect("a unicycle");
+            mission.vehicle = AnyVehicle::Unicycle(far);
+        }
         if is_noisy {
             mission.noise = Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.5) });
         }
