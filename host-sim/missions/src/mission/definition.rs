@@ -67,7 +67,7 @@ pub struct Mission {
     pub prior: Prior,
     /// What is enough to know, if the mission is to end there (look-ahead).
     pub goal: Option<Goal>,
-    /// Whether an audit comes before the goal's promise, where labels are true.
+    /// Whether an audit comes before the goal's promise.
     pub audits: bool,
 }
 
