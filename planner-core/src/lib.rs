@@ -195,6 +195,7 @@ pub use crate::planner::lookahead::{DrivingPrice, Lookahead};
 pub use crate::planner::options::{Crossing, Following, Options};
 pub use crate::planner::scc::{Policy, Scc};
 pub use crate::planner::setup::{Restart, aimed_for};
+pub use crate::planner::sight::{Far, Near, Seeks, Sight};
 pub use crate::planner::snapshot::{Persist, SNAPSHOT_VERSION, Snapshot};
 pub use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
 pub use crate::robot::{Agent, Event, PinSensor, Step, ThresholdSensor, Vehicle};

@@ -10,9 +10,13 @@ use serde::{Deserialize, Serialize};
 
 use crate::campaign::ensemble::Campaign;
 use crate::campaign::rows::Planners;
+use crate::campaign::standard_field::SIDE_M;
 use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::Allowance;
-use crate::mission::names::{CrossingName, FanName, FollowingName, PolicyName, PriorName};
+use crate::mission::asking::Asking;
+use crate::mission::names::{
+    CrossingName, FanName, FollowingName, PolicyName, PriorName, SeeksName,
+};
 use crate::mission::scenario;
 use crate::mission::vehicle::{Source, VehicleTable};
 use crate::world::errors::Errors;
@@ -89,6 +93,22 @@ pub(crate) struct CampaignFlags {
     #[arg(long, value_name = "METRES", default_value_t = 0.0, allow_hyphen_values = true)]
     #[serde(default, skip_serializing_if = "is_none")]
     drift: f64,
+    /// The sides of the fields, metres: the standard fields are stretched to them [default: 20,20]
+    #[arg(long, value_name = "X,Z", value_delimiter = ',')]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    area: Vec<f64>,
+    /// What a label costs, metres driven: labels are sought all over the area (lookahead)
+    #[arg(long, value_name = "METRES")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    price: Option<f64>,
+    /// What a label is to bring (lookahead with --price) [default: accuracy]
+    #[arg(long, value_enum)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    seek: Option<SeeksName>,
+    /// Labels in each at most; then missions are compared by labels and not by steps
+    #[arg(long)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    labels: Option<u32>,
     /// How hypotheses choose an action together (scc) [default: mixture-of-own]
     #[arg(long, value_enum)]
     policy: Option<PolicyName>,
@@ -128,7 +148,9 @@ impl CampaignFlags {
     /// # Errors
     /// Names the flag, what was found and what was expected.
     pub(crate) fn campaigns(&self) -> Result<Campaigns> {
-        scenario::check_steps("--steps", self.steps, ORACLE, false)?;
+        if self.labels.is_none() {
+            scenario::check_steps("--steps", self.steps, ORACLE, false)?;
+        }
         check_once(&self.compare)?;
         let planners = self.planners();
         let p = self.p.unwrap_or(if planners.contains(&Algorithm::Scc) { 0.7 } else { 1.0 });
@@ -172,6 +194,12 @@ impl CampaignFlags {
                 tolerance,
                 policy: self.policy.unwrap_or_default().into(),
                 prior: self.prior.unwrap_or_default().into(),
+                sides: sides(&self.area)?,
+                asking: Asking {
+                    price: self.price.filter(|_| algorithm == Algorithm::Lookahead),
+                    seeks: self.seek.unwrap_or_default().into(),
+                    labels: self.labels,
+                },
             })
         };
         let of_each = planners.iter().map(|&it| campaign(it)).collect::<Result<Vec<_>>>()?;
@@ -268,6 +296,15 @@ fn prior(text: &str) -> Result<UnknownReliability> {
     match (&numbers[..], text.split(',').count()) {
         (&[a, b], 2) => scenario::p_prior("--p-prior", [a, b]),
         _ => bail!("--p-prior: found {text}, expected the a and b of a Beta prior, such as 8,2"),
+    }
+}
+
+/// The sides of a flag.
+fn sides(flag: &[f64]) -> Result<[f64; 2]> {
+    match *flag {
+        [] => Ok([SIDE_M; 2]),
+        [x, z] if [x, z].iter().all(|side| (1.0..=8_000.0).contains(side)) => Ok([x, z]),
+        _ => bail!("--area: found {flag:?}, expected two sides in metres, each from 1 to 8000"),
     }
 }
 

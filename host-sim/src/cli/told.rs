@@ -42,7 +42,9 @@ pub(crate) fn tell(campaigns: &Campaigns, opening: impl Opening, format: Format)
             all => (comparison::calibration(all), json(&all), curves),
         }
     } else {
-        let mut passage = opening.open(&Accuracy)?;
+        let by_label = campaigns.of_each.iter().any(|it| it.asking.labels.is_some());
+        let measure = Accuracy { by_label };
+        let mut passage = opening.open(&measure)?;
         let summaries = each()
             .map(|(k, it)| accuracy::Summary::of(it, passage.rows(k, it)?))
             .collect::<Result<Vec<_>>>()?;

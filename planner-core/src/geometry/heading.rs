@@ -169,6 +169,13 @@ impl SinCos {
         Self { cos: -self.sin, sin: self.cos }
     }
 
+    /// The sine of its turn to the left from another direction.
+    pub(crate) fn turn_from(self, other: Self) -> f32 {
+        const UNIT: f32 = 1.0 / (1_u64 << 60) as f32;
+        let across = other.cos as i64 * self.sin as i64 - other.sin as i64 * self.cos as i64;
+        across as f32 * UNIT
+    }
+
     /// How far a vector reaches in this direction, rounded down to a multiple of four and divided by four:
     /// the upper word of the product. The vector's components may have any size.
     pub(crate) const fn along(self, v: Vector) -> i32 {

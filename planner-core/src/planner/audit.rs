@@ -18,13 +18,13 @@
 use crate::belief::noise::Reliability;
 use crate::belief::predictions::{Heard, PLACES, PredictiveBelief, Verdict, Verdicts};
 use crate::belief::sample::{Label, Reading, Sample};
-use crate::geometry::approximate::{METRE, UnitVector, distance, inverse_sqrt};
+use crate::geometry::approximate::distance;
 use crate::geometry::area::Area;
-use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
+use crate::geometry::lattice::{Site, UNITS_PER_METRE};
 use crate::geometry::local_line::LocalLine;
-use crate::geometry::span::Span;
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose, Side};
+use crate::search::chord::Chord;
 use crate::search::errand::{Errand, errand, motions_to};
 use crate::search::objective::Effort;
 use crate::search::wander::stays;
@@ -141,9 +141,9 @@ impl<V: Verdicts> Audit<V> {
         let grid = dynamics.grid();
         let circle = dynamics.turning_circle(pose, Side::Left).map_or(0, |it| it.radius);
         let least = grid.step_units().max(NEAR_CIRCLE * circle as f32);
-        let chord = Chord::of(estimate, area.bounds(), least)?;
+        let places = Places::of(estimate, area.bounds(), least)?;
         let reach = f32::from(grid.speeds().saturating_sub(1)) * grid.step_units();
-        let most = TURNS.saturating_add((2.0 * chord.length() / reach) as u16);
+        let most = TURNS.saturating_add((2.0 * places.chord.length() / reach) as u16);
         let mut course = self.now;
         while course.missed < MISSES && self.agreed + self.disagreed < LABELS {
             let (place, first) = match course.to {
@@ -152,13 +152,13 @@ impl<V: Verdicts> Audit<V> {
                     continue;
                 }
                 Some(to) => to,
-                None => (chord.nearest(dynamics, pose, course.settled)?, 0),
+                None => (places.nearest(dynamics, pose, course.settled)?, 0),
             };
             for turn in first..ALONG[0].len() as u8 {
-                let site = chord.place(place, turn, belief, effort);
-                let site = site.filter(|site| area.contains_disc(*site, chord.near as i32));
+                let site = places.place(place, turn, belief, effort);
+                let site = site.filter(|site| area.contains_disc(*site, places.near as i32));
                 let found = site.and_then(|it| {
-                    let to = (it, chord.near);
+                    let to = (it, places.near);
                     self.again(place, (dynamics, area), pose, to, effort)
                         .or_else(|| errand((dynamics, area), pose, to, effort))
                 });
@@ -235,61 +235,31 @@ impl<V: Verdicts> Audit<V> {
     }
 }
 
-/// The estimate as it crosses the area's rectangle.
-struct Chord {
-    /// The middle of the area; from there in metres, a point of the line, and its direction.
-    middle: Site,
-    base: [f32; 2],
-    way: [f32; 2],
-    /// What of it lies inside.
-    inside: Span,
+/// The chord of the estimate, and how near to it an audit goes.
+struct Places {
+    chord: Chord,
     /// How near places are to uncertain ground, and motions end to them; lattice units.
     near: f32,
 }
 
-impl Chord {
-    /// The chord of an estimate, with places that are no nearer than `least`.
+impl Places {
+    /// The places by an estimate, no nearer than `least`.
     fn of(estimate: LocalLine, area: Area, least: f32) -> Option<Self> {
-        let (middle, half) = (area.middle(), area.half_sides().map(|side| side as f32));
-        let unit = UnitVector::of(estimate.along());
-        let (slope, intercept) = (estimate.slope(), estimate.intercept());
-        let per_length = inverse_sqrt(1.0 + slope * slope);
-        let way = [unit.x - slope * unit.z, unit.z + slope * unit.x].map(|it| it * per_length);
-        let about = estimate.about() - middle;
-        let base = [
-            about.x as f32 * METRE - unit.z * intercept,
-            about.z as f32 * METRE + unit.x * intercept,
-        ];
-        let sides = half.map(|side| side * METRE);
-        let inside = Span::inside(base, way, sides.map(|side| -side), sides);
-        let usual = NEAR * (half[0] + half[1]);
+        let [half, other] = area.half_sides().map(|side| side as f32);
+        let usual = NEAR * (half + other);
         let eighth = UNITS_PER_METRE as f32 / 8.0;
         let near = if usual < eighth { usual } else { eighth };
         let near = if near > least { near } else { least };
-        (!inside.is_empty()).then_some(Self { middle, base, way, inside, near })
-    }
-
-    /// Lattice units.
-    fn length(&self) -> f32 {
-        self.inside.width() * UNITS_PER_METRE as f32
-    }
-
-    /// The site at a share of the chord, and so many lattice units to its left.
-    fn site(&self, along: f32, aside: f32) -> Option<Site> {
-        let ahead = self.inside.low + along * self.inside.width();
-        let [x, z] = self.way;
-        let aside = aside * METRE;
-        let at = [self.base[0] + ahead * x - aside * z, self.base[1] + ahead * z + aside * x];
-        let [x, z] = at.map(|it| (it * UNITS_PER_METRE as f32) as i32);
-        self.middle.step(Vector::new(x, z)?).ok()
+        Some(Self { chord: Chord::of(estimate, area)?, near })
     }
 
     /// The place to which the fewest motions lead, of those that are not settled.
     fn nearest<D: Dynamics>(&self, dynamics: &D, pose: Pose, settled: u8) -> Option<u8> {
         let mut nearest = None;
         for place in (0..PLACES as u8).filter(|place| settled >> place & 1 == 0) {
-            let site =
-                self.site(ALONG.get(usize::from(place / 2))?[0], 2.0 * side(place) * self.near);
+            let site = self
+                .chord
+                .site(ALONG.get(usize::from(place / 2))?[0], 2.0 * side(place) * self.near);
             let off = site.map_or(f32::INFINITY, |site| motions_to(dynamics, pose, site));
             if nearest.is_none_or(|(least, _)| off < least) {
                 nearest = Some((off, place));
@@ -309,9 +279,9 @@ impl Chord {
         let along = *ALONG.get(usize::from(place / 2))?.get(usize::from(turn))?;
         let due = self.near + belief.margin();
         let mut aside = due;
-        while aside < MOST_ASIDE * self.length() && effort.take(1) {
-            let site = self.site(along, side(place) * aside)?;
-            let inner = self.site(along, side(place) * (aside - due))?;
+        while aside < MOST_ASIDE * self.chord.length() && effort.take(1) {
+            let site = self.chord.site(along, side(place) * aside)?;
+            let inner = self.chord.site(along, side(place) * (aside - due))?;
             let lacks = belief.lacks(site, inner, due);
             if lacks <= 0.0 {
                 return Some(site);

@@ -19,11 +19,13 @@ const MOST_CIRCLES: u16 = 24;
 const POOR: f32 = 0.9;
 
 /// What to do, and what the two labels after it are worth.
-pub(crate) struct Decision {
+pub struct Decision {
     pub(crate) action: Action,
     pub(crate) target: Pose,
     pub(crate) worth: f32,
     pub(crate) wants_label: bool,
+    /// Whether it is on the way to a place beyond the ends of one motion.
+    pub(crate) is_far: bool,
 }
 
 impl Decision {
@@ -34,14 +36,7 @@ impl Decision {
         pose: Pose,
     ) -> Option<Self> {
         let (predictor, ground) = (belief.predictor(pose.site), belief.ground());
-        let mut prospects = Prospects::new();
-        let fastest = lookout.dynamics.grid().speeds().saturating_sub(1);
-        for circles in [(FIRST_CIRCLES, lookout.usual), (MOST_CIRCLES, fastest)] {
-            if prospects.as_slice().is_empty() {
-                let mut sought = Sought::Prospects(&mut prospects, ground);
-                lookout.look(&predictor, pose, circles, &mut sought);
-            }
-        }
+        let prospects = prospects(&predictor, ground, lookout, pose);
         let mut best = None;
         for prospect in prospects.as_slice() {
             look_beyond(lookout, &predictor, prospect, &mut best);
@@ -55,11 +50,29 @@ impl Decision {
     }
 
     /// Takes the place of the best so far, if this one is worth more.
-    fn beat(self, best: &mut Option<Self>) {
+    pub(crate) fn beat(self, best: &mut Option<Self>) {
         if is_better(self.worth, best.as_ref()) {
             *best = Some(self);
         }
     }
+}
+
+/// The ends of motions whose labels tell the most.
+pub(crate) fn prospects<P: Prediction, D: Dynamics, G: Workspace>(
+    prediction: &P,
+    ground: CellView<'_>,
+    lookout: &mut Lookout<'_, D, G>,
+    pose: Pose,
+) -> Prospects {
+    let mut prospects = Prospects::new();
+    let fastest = lookout.dynamics.grid().speeds().saturating_sub(1);
+    for circles in [(FIRST_CIRCLES, lookout.usual), (MOST_CIRCLES, fastest)] {
+        if prospects.as_slice().is_empty() {
+            let mut sought = Sought::Prospects(&mut prospects, ground);
+            lookout.look(prediction, pose, circles, &mut sought);
+        }
+    }
+    prospects
 }
 
 fn is_better(worth: f32, best: Option<&Decision>) -> bool {
@@ -83,7 +96,7 @@ fn look_beyond<P: Predictor, D: Dynamics, G: Workspace>(
         let after = predictor.after(target.site, label);
         worth -= chance * (ENOUGH - second(lookout, &after, target, None));
     }
-    Decision { action, target, worth, wants_label: true }.beat(best);
+    Decision { action, target, worth, wants_label: true, is_far: false }.beat(best);
 }
 
 /// Considers a turn in place to a side. Nothing is learnt by it: what the next plan would refuse is worth nothing.
@@ -99,7 +112,7 @@ fn look_aside<P: Prediction, D: Dynamics, G: Workspace>(
     let next = second(lookout, prediction, target, Some(ground));
     if next > 0.0 {
         let worth = next - lookout.cost(0, effort);
-        Decision { action, target, worth, wants_label: false }.beat(best);
+        Decision { action, target, worth, wants_label: false, is_far: false }.beat(best);
     }
 }
 

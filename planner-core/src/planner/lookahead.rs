@@ -36,6 +36,7 @@ use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::audit::Audit;
 use crate::planner::decision::Decision;
 use crate::planner::setup::{Restart, SetupError, aimed_for, aimed_for_by};
+use crate::planner::sight::{Near, Sight};
 use crate::planner::silence::Silence;
 use crate::planner::snapshot::{Persist, RestoreError, Snapshot};
 use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
@@ -112,7 +113,7 @@ const LEAST: f32 = 0.15;
 ///
 /// A plan looks two labels ahead.
 #[derive(Clone, Debug)]
-pub struct Lookahead<D, B: PredictiveBelief, G = Area, C = NoGoal> {
+pub struct Lookahead<D, B: PredictiveBelief, G = Area, C = NoGoal, S: Sight = Near> {
     /// Where motions aim for.
     area: G,
     price: DrivingPrice,
@@ -121,10 +122,12 @@ pub struct Lookahead<D, B: PredictiveBelief, G = Area, C = NoGoal> {
     dynamics: D,
     belief: B,
     evaluations: u32,
+    sight: S,
     goal: Option<Goal<C>>,
     /// What is seen before the goal's promise is made; `None` if it is made at once.
     audit: Option<Audit<B::Verdicts>>,
     silence: Silence,
+    journey: S::Journey,
 }
 
 impl<D: Dynamics, B: PredictiveBelief, G: Workspace> Lookahead<D, B, G> {
@@ -155,7 +158,53 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion> Lookahead<D, 
         let bounds = area.bounds().whole();
         let goal = goal.map(|goal| goal.in_bounds_of(&area));
         let (audit, silence) = (Some(Audit::NONE), Silence::NONE);
-        Self { area, price, bounds, dynamics, belief, evaluations, goal, audit, silence }
+        let (sight, journey) = (Near, ());
+        Self {
+            area,
+            price,
+            bounds,
+            dynamics,
+            belief,
+            evaluations,
+            sight,
+            goal,
+            audit,
+            silence,
+            journey,
+        }
+    }
+}
+
+impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion, S: Sight>
+    Lookahead<D, B, G, C, S>
+{
+    /// The same with another goal and another sight.
+    #[inline]
+    fn with<W, T: Sight>(self, goal: Option<Goal<W>>, sight: T) -> Lookahead<D, B, G, W, T> {
+        let Self { area, price, bounds, dynamics, belief, evaluations, audit, silence, .. } = self;
+        let journey = T::Journey::default();
+        Lookahead {
+            area,
+            price,
+            bounds,
+            dynamics,
+            belief,
+            evaluations,
+            sight,
+            goal,
+            audit,
+            silence,
+            journey,
+        }
+    }
+
+    /// The same, but labels are sought as far as the sight says: [`Far`](crate::planner::sight::Far) sight is for areas
+    /// that are large for the reach of one motion.
+    #[must_use]
+    #[inline]
+    pub fn seeing<T: Sight>(self, sight: T) -> Lookahead<D, B, G, C, T> {
+        let goal = self.goal;
+        self.with(goal, sight)
     }
 
     /// The same, with another price of driving than [`DrivingPrice::USUAL`].
@@ -176,10 +225,10 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion> Lookahead<D, 
     /// against it. `None` means no goal.
     #[must_use]
     #[inline]
-    pub fn until<W: Criterion>(self, goal: impl Into<Option<Goal<W>>>) -> Lookahead<D, B, G, W> {
-        let Self { area, price, bounds, dynamics, belief, evaluations, audit, silence, .. } = self;
-        let goal = goal.into().map(|goal| goal.in_bounds_of(&area));
-        Lookahead { area, price, bounds, dynamics, belief, evaluations, goal, audit, silence }
+    pub fn until<W: Criterion>(self, goal: impl Into<Option<Goal<W>>>) -> Lookahead<D, B, G, W, S> {
+        let goal = goal.into().map(|goal| goal.in_bounds_of(&self.area));
+        let sight = self.sight;
+        self.with(goal, sight)
     }
 
     /// The same, but it stops as soon as the belief meets the goal. It then says `Known` also of a boundary that bends or
@@ -198,7 +247,7 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion> Lookahead<D, 
     /// The belief, for example to take in a label that has its own reliability. The planner then forgets its turns
     /// since the last label, as after a label. A place of an audit counts as visited, and its label as not judged.
     pub fn belief_mut(&mut self) -> &mut B {
-        self.silence = Silence::NONE;
+        (self.silence, self.journey) = (Silence::NONE, S::Journey::default());
         if let Some(audit) = &mut self.audit {
             audit.pass();
         }
@@ -249,15 +298,15 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion> Lookahead<D, 
         let (area, weight) = (self.area, self.price.0);
         let rule = ArcRule::default();
         let problem = Problem { lines, area, weight, rule };
-        let mut search = problem.search(&self.dynamics, pose, Effort::of(LOOKS));
+        let mut search = problem.search(&self.dynamics, pose, Effort::of(LOOKS - S::LOOKS));
         let search = search.open();
         let found = solve_or_recover(&problem, search, None, course);
         (found, search.effort)
     }
 }
 
-impl<D: Dynamics, G: Workspace, C: Criterion, const N: usize, const H: usize> Restart
-    for Lookahead<D, NoisyBelief<N, H>, G, C>
+impl<D: Dynamics, G: Workspace, C: Criterion, S: Sight, const N: usize, const H: usize> Restart
+    for Lookahead<D, NoisyBelief<N, H>, G, C, S>
 {
     const ROOM: [usize; 2] = [N, H];
 
@@ -265,13 +314,14 @@ impl<D: Dynamics, G: Workspace, C: Criterion, const N: usize, const H: usize> Re
         let area = aimed_for(self.area, &self.dynamics, noise.tolerance)?;
         self.belief.restart(given, prior, noise)?;
         (self.area, self.silence) = (area, Silence::NONE);
+        self.journey = S::Journey::default();
         self.audit = self.audit.map(|_| Audit::NONE);
         Ok(())
     }
 }
 
-impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion> Planner
-    for Lookahead<D, B, G, C>
+impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion, S: Sight> Planner
+    for Lookahead<D, B, G, C, S>
 {
     type Belief = B::Belief;
 
@@ -290,15 +340,21 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion> Planner
         self.belief.prepare();
         let mut lookout = self.lookout();
         let (least, dynamics) = (lookout.least, &self.dynamics);
-        if let Some(decision) = Decision::of(&self.belief, &mut lookout, pose) {
-            let Decision { action, target, wants_label, .. } = decision;
-            let looks = lookout.evaluations;
+        let mut journey = self.journey;
+        let decision = self.sight.decide(&self.belief, &mut lookout, pose, &mut journey);
+        let looks = lookout.evaluations;
+        self.journey = journey;
+        if let Some(decision) = decision {
+            let Decision { action, target, wants_label, is_far, .. } = decision;
             let effort = Effort { looks, examined: self.evaluations - looks };
             self.silence.bears(false);
             let found = Found::of(None, (action, target));
+            let motion = Motion { wants_label, ..Motion::of(None, pose, &found, dynamics, effort) };
+            if is_far {
+                return Plan::Move(motion);
+            }
             let mut course = self.silence.course();
             course.give_up_way();
-            let motion = Motion { wants_label, ..Motion::of(None, pose, &found, dynamics, effort) };
             return self.silence.keep(pose, motion, course, dynamics);
         }
         let mut course = self.silence.course();
@@ -338,6 +394,7 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion> Planner
             audit.observe(pose.site, seen, *level);
         }
         self.silence.observe(reading.is_some());
+        S::observe(&mut self.journey, reading.is_some());
         Ok(())
     }
 
@@ -346,19 +403,20 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion> Planner
     }
 }
 
-impl<D: Dynamics, B: PredictiveBelief + FromLog, G: Workspace, C: Criterion> Persist
-    for Lookahead<D, B, G, C>
+impl<D: Dynamics, B: PredictiveBelief + FromLog, G: Workspace, C: Criterion, S: Sight> Persist
+    for Lookahead<D, B, G, C, S>
 {
-    type Snapshot = Snapshot<B::ObservationLog, (Silence, Audit<B::Verdicts>)>;
+    type Snapshot = Snapshot<B::ObservationLog, (Silence, Audit<B::Verdicts>, S::Journey)>;
 
     fn snapshot(&self) -> Self::Snapshot {
-        Snapshot::new(self.belief.log(), (self.silence, self.audit.unwrap_or(Audit::NONE)))
+        let audit = self.audit.unwrap_or(Audit::NONE);
+        Snapshot::new(self.belief.log(), (self.silence, audit, self.journey))
     }
 
     fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), RestoreError> {
-        let (log, &(silence, audit)) = snapshot.open()?;
+        let (log, &(silence, audit, journey)) = snapshot.open()?;
         self.belief.replay(log)?;
-        self.silence = silence;
+        (self.silence, self.journey) = (silence, journey);
         self.audit = self.audit.map(|_| audit);
         Ok(())
     }

@@ -17,6 +17,7 @@ pub mod lookahead;
 pub mod options;
 pub mod scc;
 pub mod setup;
+pub mod sight;
 pub mod silence;
 pub mod snapshot;
 mod vote;

@@ -58,7 +58,7 @@ pub(crate) fn way_to_open_ground<G: Workspace>(
 }
 
 /// One of the places that are spread evenly over an area's rectangle, if it lies inside. No line passes many of them.
-fn place<G: Workspace>(area: &G, k: u32) -> Option<Site> {
+pub(crate) fn place<G: Workspace>(area: &G, k: u32) -> Option<Site> {
     // The additive recurrence of the plastic number (Roberts, 2018).
     const STEPS: [u32; 2] = [3_242_174_889, 2_447_445_414];
     let (min, max) = (area.bounds().min(), area.bounds().max());

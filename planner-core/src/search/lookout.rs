@@ -75,7 +75,7 @@ impl Sought<'_> {
 }
 
 /// The possible motions, where they may lead, their cost, and how many ends may still be evaluated.
-pub(crate) struct Lookout<'a, D, G> {
+pub struct Lookout<'a, D, G> {
     pub(crate) dynamics: &'a D,
     pub(crate) area: G,
     pub(crate) weight: EffortWeight,

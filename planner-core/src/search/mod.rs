@@ -7,8 +7,10 @@
 //!
 //! If no action is feasible, a ladder of recoveries takes over. It leads round keep-outs if necessary (`detour`). A
 //! vehicle that cannot turn on the spot makes a `manoeuvre`, of `motions`. Look-ahead searches the same circles for the places where
-//! labels tell the most (`lookout`). An `errand` leads to a given place.
+//! labels tell the most (`lookout`). An `errand` leads to a given place. A `chord` is the part of an estimate that lies in
+//! the area.
 
+pub(crate) mod chord;
 pub(crate) mod circles;
 pub(crate) mod course;
 pub(crate) mod crossing;

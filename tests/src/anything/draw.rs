@@ -15,7 +15,7 @@ use planner_core::link::message::{MOST_CORNERS, MissionArea};
 use planner_core::motion::car::{self};
 use planner_core::{
     Accuracy, Angle, AnyVehicle, Boat, Car, Goal, Heading, Hull, KeepOut, Label, Line, Pose,
-    Sample, Site, Tolerance, Unicycle, VersionSpace, Workspace as _, aimed_for,
+    Sample, Seeks, Site, Tolerance, Unicycle, VersionSpace, Workspace as _, aimed_for,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -109,6 +109,10 @@ fn attempt(rng: &mut ChaCha8Rng, seed: u64) -> Option<Mission> {
             Accuracy::Misclassified(scale(rng, 20.0, 100_000.0) as u32)
         };
         mission.goal = Some(Goal { accuracy, level: 900_000 });
+    }
+    if algorithm == Algorithm::Lookahead && rng.random() {
+        mission.asking.price = Some(side * scale(rng, 1e-3, 3.0));
+        mission.asking.seeks = if rng.random() { Seeks::Accuracy } else { Seeks::Bits };
     }
     inset.encloses(given[0].site).then_some(mission)
 }

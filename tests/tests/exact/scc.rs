@@ -228,23 +228,9 @@ fn perfect_labels_lead_as_in_the_noiseless_case() {
 }
 
 fn campaign(algorithm: Algorithm, fields: u64, steps: u32, policy: Policy) -> Summary {
-    let campaign = Campaign {
-        algorithm,
-        fields,
-        steps,
-        every: false,
-        seed: 1,
-        crossing: Crossing::default(),
-        following: algorithm.following(),
-        p_told: None,
-        draws_p: false,
-        errors: Errors::default(),
-        tolerance: Tolerance::NONE,
-        vehicle: Grid::Paper.into(),
-        noise: Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.0) }),
-        policy,
-        prior: Prior::Area,
-    };
+    let noise = Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.0) });
+    let (vehicle, usual) = (Grid::Paper.into(), Campaign::of(algorithm, steps));
+    let campaign = Campaign { fields, vehicle, noise, policy, ..usual };
     let rows = campaign.run(&Calibrated).expect("there is room");
     let summary = Summary::of(&campaign, rows).expect("no trusted label");
     println!("{}", tables::calibration(&summary));

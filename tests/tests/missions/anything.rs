@@ -67,11 +67,11 @@ fn random_missions_keep_every_invariant() {
 
 /// What a mission is, for one who looks into a finding.
 fn about(number: u64, mission: &Mission) -> String {
-    let Mission { algorithm, vehicle, errors, noise, goal, start, .. } = mission;
+    let Mission { algorithm, vehicle, errors, noise, goal, start, asking, .. } = mission;
     let tolerance = mission.config.tolerance.metres();
     format!(
         "mission {number}: {algorithm:?}, {vehicle:?}\n{:?}\nstart {start:?}, tolerance {tolerance}, {errors:?}, \
-         {noise:?}, {goal:?}\n",
+         {noise:?}, {goal:?}, {asking:?}\n",
         Ground::of(&mission.config.area)
     )
 }

@@ -4,29 +4,13 @@ use host_sim::campaign::accuracy::{Accuracy, Row, Summary};
 use host_sim::campaign::ensemble::Campaign;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::report::campaign as tables;
-use host_sim::world::errors::Errors;
 use planner_core::motion::unicycle::Grid;
-use planner_core::{Crossing, Following, Options, Policy, Prior, Tolerance};
+use planner_core::{Following, Options};
 
 fn campaign(algorithm: Algorithm, following: Following, steps: u32) -> Summary {
-    let campaign = Campaign {
-        algorithm,
-        fields: 1000,
-        steps,
-        every: false,
-        seed: 1,
-        crossing: Crossing::default(),
-        following,
-        vehicle: Grid::Paper.into(),
-        noise: None,
-        p_told: None,
-        draws_p: false,
-        errors: Errors::default(),
-        tolerance: Tolerance::NONE,
-        policy: Policy::default(),
-        prior: Prior::default(),
-    };
-    let rows = campaign.run(&Accuracy).expect("there is room");
+    let vehicle = Grid::Paper.into();
+    let campaign = Campaign { following, vehicle, ..Campaign::of(algorithm, steps) };
+    let rows = campaign.run(&Accuracy { by_label: false }).expect("there is room");
     let summary = Summary::of(&campaign, rows).expect("labels are true");
     println!("{}", tables::accuracy(&summary));
     summary

@@ -8,13 +8,12 @@ use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::{Mission, Table};
 use host_sim::mission::read_out::ReadOut;
 use host_sim::report::campaign as tables;
-use host_sim::world::errors::Errors;
 use host_sim::world::noise::{Extent, NoiseModel, limit};
 use host_sim::world::polygon::misclassified;
 use planner_core::motion::unicycle::Grid;
 use planner_core::{
-    Accuracy, Angle, Crossing, Goal, Label, Line, Plan, Planner as _, Policy, PosteriorView, Prior,
-    Reliability, Sample, Tolerance, Unicycle,
+    Accuracy, Angle, Goal, Label, Line, Plan, Planner as _, PosteriorView, Reliability, Sample,
+    Unicycle,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -174,23 +173,8 @@ fn labels_of_reliabilities_of_their_own_tell_nearly_what_they_can() {
 }
 
 fn campaign(seed: u64, steps: u32, grid: Grid, noise: Option<NoiseModel>) -> Campaign {
-    Campaign {
-        algorithm: Algorithm::Lookahead,
-        fields: cases(100, 1_000),
-        steps,
-        every: false,
-        seed,
-        crossing: Crossing::default(),
-        following: Algorithm::Lookahead.following(),
-        tolerance: Tolerance::NONE,
-        vehicle: grid.into(),
-        noise,
-        p_told: None,
-        draws_p: false,
-        errors: Errors::default(),
-        policy: Policy::default(),
-        prior: Prior::default(),
-    }
+    let (fields, vehicle) = (cases(100, 1_000), grid.into());
+    Campaign { fields, seed, vehicle, noise, ..Campaign::of(Algorithm::Lookahead, steps) }
 }
 
 /// How much of a figure of 1,000 fields chance may take from one of fewer.
@@ -202,7 +186,7 @@ fn chance() -> f64 {
 fn true_labels_teach_what_they_should() {
     for seed in [1, 2] {
         let campaign = campaign(seed, 40, Grid::Fine, None);
-        let rows = campaign.run(&Accurate).expect("there is room");
+        let rows = campaign.run(&Accurate { by_label: false }).expect("there is room");
         let summary = accuracy::Summary::of(&campaign, rows).expect("labels are true");
         println!("{}", tables::accuracy(&summary));
         let at = |step| summary.rows.iter().find(|row| row.step == step).expect("a mark");

@@ -3,11 +3,8 @@
 use host_sim::campaign::calibration::{Calibrated, Row, Summary};
 use host_sim::campaign::ensemble::Campaign;
 use host_sim::mission::algorithm::Algorithm;
-use host_sim::world::errors::Errors;
 use host_sim::world::noise::{Extent, NoiseModel};
-use planner_core::{
-    AnyReliability, Crossing, Policy, Prior, Reliability, Tolerance, UnknownReliability,
-};
+use planner_core::{AnyReliability, Reliability, UnknownReliability};
 use tests::cases;
 
 const LABELS: u32 = 30;
@@ -27,21 +24,11 @@ fn flown(told: Told, real: Option<f64>, algorithm: Algorithm, fields: u64) -> Ro
     };
     let extent = Extent::OutsideBalls(0.0);
     let campaign = Campaign {
-        algorithm,
         fields,
-        steps: LABELS + 6,
-        every: false,
-        seed: 1,
-        crossing: Crossing::default(),
-        following: algorithm.following(),
-        vehicle: algorithm.grid().into(),
         noise: Some(NoiseModel { p: real.unwrap_or(0.8), extent }),
         p_told: Some(told),
         draws_p: real.is_none(),
-        errors: Errors::default(),
-        tolerance: Tolerance::NONE,
-        policy: Policy::default(),
-        prior: Prior::Area,
+        ..Campaign::of(algorithm, LABELS + 6)
     };
     let rows = campaign.run(&Calibrated).expect("there is room");
     let summary = Summary::of(&campaign, rows).expect("no field is refused");

@@ -21,7 +21,10 @@ use crate::mission::vehicle::VehicleTable;
 const STEPS: [u32; 8] = [1, 2, 5, 10, 20, 30, 40, 60];
 
 /// The accuracy of the three estimates. A mission that ended earlier counts with what it knew at its end.
-pub struct Accuracy;
+pub struct Accuracy {
+    /// Whether missions are compared after so many labels, and not steps.
+    pub by_label: bool,
+}
 
 /// The state of knowledge after some steps of one mission.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -114,7 +117,7 @@ impl Measure for Accuracy {
     }
 
     fn stage(&self, progress: &Progress) -> u32 {
-        progress.steps
+        if self.by_label { progress.labels } else { progress.steps }
     }
 
     fn checkpoint(
@@ -133,7 +136,7 @@ impl Measure for Accuracy {
         let (bisector_deg, bisector_misclassified) = errors(estimates.bisector);
         Some(Checkpoint {
             field: progress.field,
-            step: progress.steps,
+            step: self.stage(progress),
             bits: belief.information(),
             centre_deg,
             maximum_margin_deg,
@@ -147,7 +150,11 @@ impl Measure for Accuracy {
     }
 
     fn held(&self, end: &Progress, stage: u32) -> Option<Progress> {
-        Some(Progress { steps: stage, ..*end })
+        Some(if self.by_label {
+            Progress { labels: stage, ..*end }
+        } else {
+            Progress { steps: stage, ..*end }
+        })
     }
 }
 
@@ -187,7 +194,7 @@ impl Summary {
             for (slot, pick) in (SPREAD.len() as u32 * checkpoint.step..).zip(SPREAD) {
                 sorting.push(Value::new(slot, pick(&checkpoint), false))?;
             }
-            if checkpoint.step == campaign.steps {
+            if checkpoint.step == campaign.length() {
                 tally.add(&course);
             }
         }

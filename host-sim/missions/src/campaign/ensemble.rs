@@ -15,8 +15,9 @@ use serde::de::DeserializeOwned;
 
 use crate::campaign::course::Course;
 use crate::campaign::drawn;
-use crate::campaign::standard_field;
+use crate::campaign::standard_field::{self, SIDE_M};
 use crate::mission::algorithm::Algorithm;
+use crate::mission::asking::Asking;
 use crate::mission::definition::Mission;
 use crate::mission::flight::Flown;
 use crate::mission::read_out::ReadOut;
@@ -63,6 +64,10 @@ pub struct Campaign {
     pub policy: Policy,
     /// How hypotheses are weighed.
     pub prior: Prior,
+    /// The sides of the fields, metres.
+    pub sides: [f64; 2],
+    /// What labels cost, what they are to bring, and how many there may be.
+    pub asking: Asking,
 }
 
 /// How far a mission has come.
@@ -131,6 +136,29 @@ pub struct Measured<C> {
 }
 
 impl Campaign {
+    /// A planner with its usual settings in 1,000 standard fields of seed 1, with true labels: so many steps in each.
+    pub fn of(algorithm: Algorithm, steps: u32) -> Self {
+        Self {
+            algorithm,
+            fields: 1_000,
+            steps,
+            every: false,
+            seed: 1,
+            crossing: Crossing::default(),
+            following: algorithm.following(),
+            vehicle: algorithm.grid().into(),
+            noise: None,
+            p_told: None,
+            draws_p: false,
+            errors: Errors::default(),
+            tolerance: Tolerance::NONE,
+            policy: Policy::default(),
+            prior: Prior::default(),
+            sides: [SIDE_M; 2],
+            asking: Asking::USUAL,
+        }
+    }
+
     /// Flies all fields on all cores, with a progress bar on a terminal.
     ///
     /// # Errors
@@ -173,7 +201,9 @@ impl Campaign {
 
     /// The mission in the field with this number.
     pub fn mission(&self, number: u64) -> Mission {
-        let mut mission = standard_field::standard(self.seed, number, self.algorithm, self.steps);
+        let (seed, algorithm, steps) = (self.seed, self.algorithm, self.steps);
+        let mut mission = standard_field::stretched(self.sides, seed, number, algorithm, steps);
+        mission.asking = self.asking;
         (mission.config.crossing, mission.config.following) = (self.crossing, self.following);
         (mission.vehicle, mission.errors) = (self.vehicle, self.errors);
         mission.config.tolerance = self.tolerance;
@@ -187,9 +217,14 @@ impl Campaign {
         mission
     }
 
+    /// Its last stage: so many labels, if they are limited, or steps.
+    pub fn length(&self) -> u32 {
+        self.asking.labels.unwrap_or(self.steps)
+    }
+
     /// The stages at which its missions have rows.
     pub(super) fn stages<M: Measure>(&self, measure: &M) -> Vec<u32> {
-        if self.every { (1..=self.steps).collect() } else { measure.stages(self.steps) }
+        if self.every { (1..=self.length()).collect() } else { measure.stages(self.length()) }
     }
 
     /// The rows of a field.

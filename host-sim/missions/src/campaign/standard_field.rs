@@ -18,6 +18,7 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::Allowance;
+use crate::mission::asking::Asking;
 use crate::mission::definition::Mission;
 use crate::world::errors::Errors;
 use crate::world::{World, reading};
@@ -34,6 +35,13 @@ pub fn area() -> Area {
     Area::new(corner(0.0), corner(SIDE_M)).expect("has an inside")
 }
 
+/// A place of the standard area where it comes to lie in one with other sides.
+fn stretch(site: Site, sides: [f64; 2]) -> Site {
+    let at = Point2::<f64>::from(site);
+    let [x, z] = sides.map(|side| side / SIDE_M);
+    Site::try_from(Point2::new(at.x * x, at.y * z)).expect("within an area on the lattice")
+}
+
 /// A unit vector by libm, the same on every machine.
 fn unit(angle: f64) -> Vector2<f64> {
     let (sin, cos) = libm::sincos(angle);
@@ -46,22 +54,38 @@ fn unit(angle: f64) -> Vector2<f64> {
 /// # Panics
 /// Never: what it draws is within metres of the area.
 pub fn standard(seed: u64, number: u64, algorithm: Algorithm, steps: u32) -> Mission {
+    stretched([SIDE_M; 2], seed, number, algorithm, steps)
+}
+
+/// The same field stretched to other sides, metres; the true line is drawn anew.
+///
+/// # Panics
+/// When the sides are not those of an area on the lattice.
+pub fn stretched(
+    sides: [f64; 2],
+    seed: u64,
+    number: u64,
+    algorithm: Algorithm,
+    steps: u32,
+) -> Mission {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     rng.set_stream(number);
     let turn = |rng: &mut ChaCha8Rng| rng.random_range(0.0..std::f64::consts::TAU);
-    let area = area();
+    let standard = area();
+    let area = Area::metres([0.0; 2], sides).expect("an area on the lattice");
     let (oracle, given) = loop {
         let middle = Point2::new(rng.random_range(6.0..14.0), rng.random_range(6.0..14.0));
         let along = unit(turn(&mut rng));
         let left = Vector2::new(-along.y, along.x);
         let corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)];
-        let oracle = corners.map(|(end, side)| {
+        let drawn = corners.map(|(end, side)| {
             let (run, off) = (rng.random_range(3.0..8.0), rng.random_range(1.5..5.0));
             let site = Site::try_from(middle + along * (end * run) + left * (side * off));
             let label = if side > 0.0 { Label::Positive } else { Label::Negative };
             Sample { site: site.expect("metres from the area"), label }
         });
-        if oracle.iter().all(|s| area.contains(s.site))
+        let oracle = drawn.map(|sample| Sample { site: stretch(sample.site, sides), ..sample });
+        if drawn.iter().all(|s| standard.contains(s.site))
             && let Ok(given) = VersionSpace::new(&oracle)
         {
             break (oracle, given);
@@ -69,10 +93,10 @@ pub fn standard(seed: u64, number: u64, algorithm: Algorithm, steps: u32) -> Mis
     };
     let heading = Heading::from_radians(turn(&mut rng)).expect("an angle");
     let truth = loop {
-        let half = SIDE_M / 2.0;
-        let radius = half * std::f64::consts::SQRT_2;
+        let half = Vector2::from(sides) / 2.0;
+        let radius = libm::hypot(half.x, half.y);
         let normal = unit(turn(&mut rng));
-        let point = Point2::new(half, half) + normal * rng.random_range(-radius..radius);
+        let point = Point2::from(half) + normal * rng.random_range(-radius..radius);
         let agrees =
             |line: &Line| oracle.iter().all(|s| reading(line, s.site) == Reading::Side(s.label));
         if let Some(line) = Line::through(point, normal).filter(agrees) {
@@ -103,5 +127,6 @@ pub fn standard(seed: u64, number: u64, algorithm: Algorithm, steps: u32) -> Mis
         prior: Prior::default(),
         goal: None,
         audits: true,
+        asking: Asking::USUAL,
     }
 }

@@ -11,6 +11,7 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::{Allowance, ToleranceRecord, tidy};
+use crate::mission::asking::Asking;
 use crate::world::World;
 use crate::world::errors::{CUT, Erring, Errors};
 use crate::world::faults::{Failing, Fault};
@@ -69,6 +70,8 @@ pub struct Mission {
     pub goal: Option<Goal>,
     /// Whether an audit comes before the goal's promise.
     pub audits: bool,
+    /// What labels cost, what they are to bring, and how many there may be.
+    pub asking: Asking,
 }
 
 impl Mission {

@@ -39,9 +39,15 @@ impl Mission {
         let mut robot = self.robot();
         let mut agent = Agent::new(&mut *planner, &mut *robot, self.start);
         let (mut ending, mut refused) = (Ending::Steps, None);
+        let mut labels = 0;
         for _ in 0..self.steps {
+            if self.asking.labels.is_some_and(|most| labels >= most) {
+                ending = Ending::Labels;
+                break;
+            }
             match agent.step() {
                 Ok(Event::Step(step)) => {
+                    labels += u32::from(step.reading.is_some());
                     watch(&step, agent.body().true_pose(), agent.planner.belief());
                 }
                 Ok(Event::Stopped(reason)) => {

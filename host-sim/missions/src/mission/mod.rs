@@ -3,6 +3,7 @@
 
 pub mod algorithm;
 pub mod allowance;
+pub mod asking;
 pub mod baseline;
 pub mod definition;
 mod diagnosing;

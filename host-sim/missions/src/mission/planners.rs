@@ -75,8 +75,12 @@ impl Mission {
         match self.algorithm {
             Algorithm::Cfc => erased(self.cfc(area, dynamics)),
             Algorithm::Scc => erased(self.scc(area, dynamics)),
-            Algorithm::Lookahead if self.is_noisy() => erased(self.doubtful(area, dynamics)),
-            Algorithm::Lookahead => erased(self.lookahead(area, dynamics)),
+            Algorithm::Lookahead => match (self.is_noisy(), self.asking.sight()) {
+                (true, None) => erased(self.doubtful(area, dynamics)),
+                (true, Some(far)) => erased(self.doubtful(area, dynamics).seeing(far)),
+                (false, None) => erased(self.lookahead(area, dynamics)),
+                (false, Some(far)) => erased(self.lookahead(area, dynamics).seeing(far)),
+            },
             Algorithm::Margin if self.is_noisy() => {
                 erased(Margin { dynamics, area, belief: self.table() })
             }

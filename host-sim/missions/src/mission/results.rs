@@ -496,6 +496,8 @@ pub fn recovery_name(recovery: Recovery) -> &'static str {
 pub enum Ending {
     /// All steps were taken.
     Steps,
+    /// All labels were read that there may be.
+    Labels,
     /// The planner had no further motion.
     Stopped(StopReason),
     /// A real vehicle could not go on, or a label contradicted what was known.
@@ -507,6 +509,7 @@ impl Ending {
     pub fn name(self) -> &'static str {
         match self {
             Self::Steps => "steps",
+            Self::Labels => "labels",
             Self::BrokenOff => "broken off",
             Self::Stopped(StopReason::Resolution) => "resolution",
             Self::Stopped(StopReason::SamplesFull) => "samples full",

@@ -17,6 +17,7 @@ use serde::Deserialize;
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::{self, Allowance};
+use crate::mission::asking::Asking;
 use crate::mission::definition::{CAPACITY, Lines, Mission};
 use crate::mission::names::{CrossingName, FanName, FollowingName, PolicyName, PriorName};
 use crate::mission::sensor::{self, FaultTable};
@@ -292,6 +293,7 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
         prior: file.prior.into(),
         goal: goal.transpose()?,
         audits: file.stop.as_ref().is_none_or(|table| table.0.audits()),
+        asking: Asking::USUAL,
     })
 }
 

@@ -188,6 +188,32 @@ impl Column {
         low.below + part * (high.below - low.below)
     }
 
+    /// The mass of the lines that have a place on their +1 side, and the sums of their offsets and of their squares, each
+    /// less the offset of the middle of a stretch.
+    #[inline(never)] // from two places, and not for speed
+    pub(crate) fn moments_above(&self, place: Option<Vector>, middle: Vector) -> [f32; 3] {
+        let (to, middle) = (place.map(|it| self.normal.along(it)), self.normal.along(middle));
+        let mut sums = [0.0; 3];
+        for pair in self.knots.windows(2) {
+            let [low, high] = *pair else { break };
+            let end = to.unwrap_or(high.offset).min(high.offset);
+            let breadth = (high.offset - low.offset) as f32;
+            if end <= low.offset || high.below <= low.below {
+                continue;
+            }
+            let mass = (end - low.offset) as f32 / breadth * (high.below - low.below);
+            let (a, b) = ((low.offset - middle) as f32, (end - middle) as f32);
+            let more = [1.0, (a + b) * 0.5, (a * a + a * b + b * b) * (1.0 / 3.0)];
+            sums.iter_mut().zip(more).for_each(|(sum, more)| *sum += mass * more);
+        }
+        sums
+    }
+
+    /// By how much its direction is turned to the left of another, about, radians.
+    pub(crate) fn turn_from(&self, other: SinCos) -> f32 {
+        self.normal.turn_from(other.left())
+    }
+
     /// Computes the column of a direction. The thresholds may come in any order. They are left sorted by offset, which
     /// is nearly the order for a direction close by.
     ///

@@ -25,8 +25,10 @@ use crate::belief::list::List;
 use crate::belief::noise::Reliability;
 use crate::belief::predictions::column::{Column, Counts, Density, Step, Sums, Threshold, exp};
 use crate::belief::predictions::directions::{Direction, directions};
+use crate::belief::predictions::spread::{LineSums, Stretch, Whole};
 use crate::belief::sample::{Label, Sample};
 use crate::belief::trust::Trust;
+use crate::geometry::approximate::precise_heading_of;
 use crate::geometry::lattice::{Site, Vector};
 
 /// A column's mass is limited to this many times the mean (truncated importance sampling). One direction in some
@@ -106,6 +108,30 @@ impl<const K: usize> Columns<K> {
         self.lines.iter().map(|column| column.mass_above(place)).sum()
     }
 
+    /// How far the lines lie apart over a stretch.
+    pub fn spread(&self, over: &Stretch) -> ColumnSpread<'_, K> {
+        let direction = precise_heading_of(over.along).unit();
+        let middle = self.view.vector(over.middle);
+        let turns = self.lines.each_ref().map(|column| column.turn_from(direction));
+        let (mut sums, mut squares) = (LineSums::default(), [0.0; 2]);
+        for (column, &turn) in self.lines.iter().zip(&turns) {
+            let [mass, offset, square] = column.moments_above(None, middle);
+            sums.add(mass, [0.0, turn]);
+            sums.offset += offset;
+            squares[0] += square;
+            squares[1] += mass * turn * turn;
+        }
+        // A quarter of a unit of the view is a unit of offsets.
+        let length = 0.25 * over.length * (1_u32 << self.view.shift) as f32;
+        ColumnSpread {
+            columns: self,
+            middle,
+            turns,
+            sums,
+            whole: Whole::new(sums, squares, length),
+        }
+    }
+
     /// The columns after a label is read at the site whose [`heights`](Self::heights) these are. Labels there are true
     /// with probability `p`. A label that is almost impossible changes nothing, as single precision has no digits left
     /// for it.
@@ -132,6 +158,33 @@ pub struct After<'a, const K: usize> {
     plus: f32,
     /// The weight of the others.
     minus: f32,
+}
+
+/// How far the lines of columns lie apart over a stretch.
+#[derive(Clone, Copy, Debug)]
+pub struct ColumnSpread<'a, const K: usize> {
+    columns: &'a Columns<K>,
+    middle: Vector,
+    /// That of each column against the stretch.
+    turns: [f32; K],
+    /// All lines.
+    sums: LineSums,
+    whole: Whole,
+}
+
+impl<const K: usize> ColumnSpread<'_, K> {
+    /// See [`Spread::reduction`](crate::belief::predictions::Spread::reduction), of a label that is true with probability
+    /// `p`.
+    pub fn reduction(&self, site: Site, p: f32) -> f32 {
+        let place = self.columns.view.vector(site);
+        let mut sums = LineSums::default();
+        for (column, &turn) in self.columns.lines.iter().zip(&self.turns) {
+            let [mass, offset, _] = column.moments_above(Some(place), self.middle);
+            sums.add(mass, [0.0, turn]);
+            sums.offset += offset;
+        }
+        self.whole.reduction([sums, self.sums.without(sums)], p)
+    }
 }
 
 impl<const K: usize> After<'_, K> {

@@ -13,6 +13,7 @@ use heapless::Vec;
 use crate::belief::cells::{CellView, Certainty};
 use crate::belief::noise::Reliability;
 use crate::belief::predictions::predictor::{Prediction, PredictiveBelief, Predictor, entropy};
+use crate::belief::predictions::spread::{LineSums, Spread, Stretch, Whole};
 use crate::belief::predictions::verdicts::Decisive;
 use crate::belief::sample::{Label, Reading};
 use crate::belief::tolerance::Tolerance;
@@ -71,6 +72,11 @@ impl Vertex {
     /// How far a place lies above it.
     fn below(self, [x, z]: [f32; 2]) -> f32 {
         z - self.slope * x - self.offset
+    }
+
+    /// How far from the frame's origin it passes, and about how far it is turned against the first axis.
+    fn polar(self) -> [f32; 2] {
+        [self.offset / self.secant, self.slope / self.secant]
     }
 
     /// The line between this one and another that passes through a place. `above` and `above_other` are how far the
@@ -216,6 +222,7 @@ impl<const N: usize> PredictiveBelief for VersionSpace<N> {
     type Belief = Self;
     type Verdicts = Decisive;
     type Predictor<'a> = DualPolygon;
+    type Spread<'a> = PolygonSpread;
 
     fn belief(&self) -> &Self {
         self
@@ -234,6 +241,10 @@ impl<const N: usize> PredictiveBelief for VersionSpace<N> {
 
     fn predictor(&self, from: Site) -> DualPolygon {
         DualPolygon::of(self.lines(), from)
+    }
+
+    fn spread(&self, over: &Stretch) -> PolygonSpread {
+        PolygonSpread::of(DualPolygon::of(self.lines(), over.middle), over.length * METRE)
     }
 
     fn ground(&self) -> CellView<'_> {
@@ -304,6 +315,71 @@ impl Predictor for DualPolygon {
         }
         after.measured()
     }
+}
+
+/// How far the lines of a polygon lie apart over a stretch.
+#[derive(Clone, Debug)]
+pub struct PolygonSpread {
+    polygon: DualPolygon,
+    whole: Whole,
+}
+
+impl PolygonSpread {
+    /// Over a stretch of so many metres, in the middle of which the polygon's frame lies.
+    fn of(polygon: DualPolygon, length: f32) -> Self {
+        let (mut sums, mut squares) = (LineSums::default(), [0.0; 2]);
+        if let [apex, ref rest @ ..] = *polygon.vertices {
+            for (mass, corners) in triangles(apex, rest.iter()) {
+                sums.add(mass, mean(corners));
+                for (axis, square) in squares.iter_mut().enumerate() {
+                    let at = corners.map(|corner| corner.get(axis).copied().unwrap_or(0.0));
+                    let sum = at[0] + at[1] + at[2];
+                    let own = at[0] * at[0] + at[1] * at[1] + at[2] * at[2];
+                    *square += mass * (own + sum * sum) / 12.0;
+                }
+            }
+        }
+        Self { polygon, whole: Whole::new(sums, squares, length) }
+    }
+}
+
+impl Spread for PolygonSpread {
+    fn reduction(&self, site: Site) -> f32 {
+        let polygon = &self.polygon;
+        let place = polygon.axis.see(site - polygon.origin);
+        let sums = [Label::Positive, Label::Negative].map(|label| {
+            let mut sums = LineSums::default();
+            if let Some(part) = polygon.part(place, label) {
+                for (mass, corners) in triangles(part.start, polygon.rest(&part)) {
+                    sums.add(mass, mean(corners));
+                }
+            }
+            sums
+        });
+        // Where positions err, a label removes as much less as it tells less.
+        let share = (sums[0].mass / polygon.measure).clamp(0.0, 1.0);
+        let told = polygon.information(site, share);
+        let most = entropy(share);
+        let told = if told < most { told / most } else { 1.0 };
+        self.whole.reduction(sums, 1.0) * told
+    }
+}
+
+/// The triangles of a polygon of lines: the measure of each, and its corners as offsets and turns.
+fn triangles<'a>(
+    apex: Vertex,
+    rest: impl Iterator<Item = &'a Vertex>,
+) -> impl Iterator<Item = (f32, [[f32; 2]; 3])> {
+    rest.scan(apex, move |before, &vertex| {
+        let corners = [apex, *before, vertex].map(Vertex::polar);
+        let triangle = (apex.triangle(*before, vertex), corners);
+        *before = vertex;
+        Some(triangle)
+    })
+}
+
+fn mean([a, b, c]: [[f32; 2]; 3]) -> [f32; 2] {
+    [a[0] + b[0] + c[0], a[1] + b[1] + c[1]].map(|sum| sum * (1.0 / 3.0))
 }
 
 #[cfg(test)]

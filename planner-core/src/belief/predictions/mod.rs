@@ -7,11 +7,13 @@ mod directions;
 mod dual_polygon;
 mod noisy_belief;
 mod predictor;
+mod spread;
 mod verdicts;
 
 #[cfg(feature = "internals")]
 pub use columns::Columns;
 pub use noisy_belief::{NoisyBelief, sequences_of};
 pub use predictor::{Prediction, PredictiveBelief, Predictor};
+pub use spread::{Spread, Stretch};
 pub(crate) use verdicts::{Heard, PLACES};
 pub use verdicts::{Verdict, Verdicts};

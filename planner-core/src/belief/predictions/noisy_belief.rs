@@ -11,8 +11,9 @@ use crate::belief::doubtful_labels::{CellPosterior, PosteriorView};
 use crate::belief::list::List;
 use crate::belief::noise::{Noise, Reliability};
 use crate::belief::observation_log::{FromLog, ObservationLog, ReplayError};
-use crate::belief::predictions::columns::{After, Columns};
+use crate::belief::predictions::columns::{After, ColumnSpread, Columns};
 use crate::belief::predictions::predictor::{Prediction, PredictiveBelief, Predictor, entropy};
+use crate::belief::predictions::spread::{Spread, Stretch};
 use crate::belief::predictions::verdicts::Odds;
 use crate::belief::sample::{Label, Reading, Sample};
 use crate::belief::tolerance::Tolerance;
@@ -135,6 +136,7 @@ impl<const N: usize, const H: usize, R: Trust + 'static> PredictiveBelief for No
     type Belief = CellPosterior<N, H, 15, R>;
     type Verdicts = Odds;
     type Predictor<'a> = TablePredictor<'a, N, H, R>;
+    type Spread<'a> = TableSpread<'a, N, H, R>;
 
     fn belief(&self) -> &CellPosterior<N, H, 15, R> {
         &self.table
@@ -157,6 +159,10 @@ impl<const N: usize, const H: usize, R: Trust + 'static> PredictiveBelief for No
 
     fn predictor(&self, _: Site) -> TablePredictor<'_, N, H, R> {
         TablePredictor { labels: Labels::of(&self.table), columns: &self.columns }
+    }
+
+    fn spread(&self, over: &Stretch) -> TableSpread<'_, N, H, R> {
+        TableSpread { labels: Labels::of(&self.table), columns: self.columns.spread(over) }
     }
 
     fn ground(&self) -> CellView<'_> {
@@ -279,6 +285,19 @@ pub struct TablePredictor<'a, const N: usize, const H: usize, R: Trust = Reliabi
 pub struct TablePredictorAfter<'a, const N: usize, const H: usize, R: Trust = Reliability> {
     labels: Labels<'a, N, H, R>,
     columns: After<'a, DIRECTIONS>,
+}
+
+/// How far the lines of that table lie apart over a stretch.
+#[derive(Clone, Copy, Debug)]
+pub struct TableSpread<'a, const N: usize, const H: usize, R: Trust = Reliability> {
+    labels: Labels<'a, N, H, R>,
+    columns: ColumnSpread<'a, DIRECTIONS>,
+}
+
+impl<const N: usize, const H: usize, R: Trust> Spread for TableSpread<'_, N, H, R> {
+    fn reduction(&self, site: Site) -> f32 {
+        self.columns.reduction(site, self.labels.p(site))
+    }
 }
 
 impl<const N: usize, const H: usize, R: Trust> Prediction for TablePredictor<'_, N, H, R> {

@@ -7,6 +7,7 @@
 
 use crate::belief::cells::CellView;
 use crate::belief::noise::Reliability;
+use crate::belief::predictions::spread::{Spread, Stretch};
 use crate::belief::predictions::verdicts::Verdicts;
 use crate::belief::sample::{Label, Reading};
 use crate::belief::tolerance::Tolerance;
@@ -23,6 +24,11 @@ pub trait PredictiveBelief {
 
     /// What predicts the next labels.
     type Predictor<'a>: Predictor
+    where
+        Self: 'a;
+
+    /// What says how far lines lie apart.
+    type Spread<'a>: Spread
     where
         Self: 'a;
 
@@ -45,6 +51,9 @@ pub trait PredictiveBelief {
 
     /// The predictor for questions asked from a site.
     fn predictor(&self, from: Site) -> Self::Predictor<'_>;
+
+    /// How far the lines lie apart over a stretch. Ask it after [`prepare`](Self::prepare).
+    fn spread(&self, over: &Stretch) -> Self::Spread<'_>;
 
     /// The lines on whose uncertain ground a label may tell something.
     fn ground(&self) -> CellView<'_>;
