@@ -29,7 +29,7 @@ def setup(args):
             "cfc": ("Cfc", None),
             "scc": ("Scc", {**doubt, "policy": ("MixtureOfOwn", None)}),
             "lookahead": ("Lookahead", {"evaluations": 512, "goal": None,
-                                        "noise": doubt if args.p < 1 else None}),
+                                        "noise": doubt if args.p < 1 else None, "far": None}),
         }[args.algorithm],
         "config": {
             "area": {"min": site(0, 0), "max": site(20, 20)},
@@ -44,6 +44,7 @@ def setup(args):
         "capacity": {"samples": 4 + taken,
                      "hypotheses": 1 + taken + taken * (taken - 1) // 2 if args.p < 1 else 1},
         "steps": taken,
+        "most_labels": None,
         "start": {"site": site(2, 1), "heading": 0},
         "labels": ("Vehicle", None),
         "given": [{"site": site(x, z), "label": (label, None)} for x, z, label in (

@@ -11,7 +11,7 @@ import struct
 import sys
 import zlib
 
-PROTOCOL = 6
+PROTOCOL = 7
 METRE = 1 << 16
 
 
@@ -162,11 +162,12 @@ REQUEST = Choice(
     Ready={"capacity": CAPACITY, "clock": {"per_second": "u32", "emulated": "bool"}},
     Declined=Choice(
         Protocol="u16", Algorithm=None, Capacity=CAPACITY, Given=NO_SPACE, Labels=None,
-        Vehicle=NO_VEHICLE, Area=None, Tolerance=None,
+        Vehicle=NO_VEHICLE, Area=None, Tolerance=None, Goal=None, Price=None,
     ),
     Move={"motion": MOTION, "last": Optional(READING), "took": TOOK},
     End={
-        "reason": Choice(Steps=None, Stopped=STOP, Refused=REFUSED, Sensor=None, Vehicle=None),
+        "reason": Choice(Steps=None, Stopped=STOP, Refused=REFUSED, Sensor=None, Vehicle=None,
+                         Labels=None),
         "last": Optional(READING),
         "took": TOOK,
         "estimates": {name: Optional(LINE) for name in ("bisector", "centre", "maximum_margin")},
@@ -175,6 +176,7 @@ REQUEST = Choice(
 NOISE = {"reliability": "i64", "trusted_radius": "u32", "tolerance": "u32"}
 POLICY = Choice(Joint=None, MixtureOfStart=None, MixtureOfOwn=None)
 PRIOR = Choice(Area=None, Sequences=None)
+FAR = {"price_mm": "u32", "seeks": Choice(Accuracy=None, Bits=None)}
 GOAL = {"accuracy": Choice(SlopeArc="u32", Misclassified="u32"), "level": "u32"}
 STEPS = {"turn_step_urad": "u32", "sharpest": "u32", "speeds": "u16", "speed_step_mm": "u32"}
 CIRCLE = {"radius_mm": "u32", "shortest_mm": "u32", "turn_step_urad": "u32", "speeds": "u16",
@@ -185,7 +187,7 @@ SETUP = {
         Cfc=None,
         Scc={"noise": NOISE, "policy": POLICY, "prior": PRIOR},
         Lookahead={"evaluations": "u32", "goal": Optional(GOAL),
-                   "noise": Optional({"noise": NOISE, "prior": PRIOR})},
+                   "noise": Optional({"noise": NOISE, "prior": PRIOR}), "far": Optional(FAR)},
     ),
     "config": {
         "area": {"min": SITE, "max": SITE},
@@ -198,6 +200,7 @@ SETUP = {
     "vehicle": Choice(Unicycle=STEPS, Boat=STEPS, Car=CIRCLE),
     "capacity": CAPACITY,
     "steps": "u16",
+    "most_labels": Optional("u16"),
     "start": POSE,
     "labels": Choice(Vehicle=None, Chip=None),
     "given": List(SAMPLE, 16),

@@ -2,10 +2,10 @@
 
 use std::slice;
 
-use anyhow::{Result, bail};
+use anyhow::{Error, Result, bail};
 use clap::Args;
 use planner_core::motion::unicycle::Grid;
-use planner_core::{AnyReliability, AnyVehicle, Reliability, UnknownReliability};
+use planner_core::{AnyReliability, AnyVehicle, Area, Reliability, UnknownReliability};
 use serde::{Deserialize, Serialize};
 
 use crate::campaign::ensemble::Campaign;
@@ -32,7 +32,7 @@ pub(crate) struct CampaignFlags {
     /// Number of standard fields
     #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) fields: u64,
-    /// Steps in each, 1 to 64
+    /// Steps in each, 1 to 64; with --labels or --price up to 10000
     #[arg(long, default_value_t = 20)]
     steps: u32,
     /// Measure at every step (or label), not only at those of the usual tables
@@ -148,9 +148,7 @@ impl CampaignFlags {
     /// # Errors
     /// Names the flag, what was found and what was expected.
     pub(crate) fn campaigns(&self) -> Result<Campaigns> {
-        if self.labels.is_none() {
-            scenario::check_steps("--steps", self.steps, ORACLE, false)?;
-        }
+        let (sides, room) = (sides(&self.area)?, scenario::room(ORACLE)?);
         check_once(&self.compare)?;
         let planners = self.planners();
         let p = self.p.unwrap_or(if planners.contains(&Algorithm::Scc) { 0.7 } else { 1.0 });
@@ -178,15 +176,22 @@ impl CampaignFlags {
         }
         let extent = Extent::OutsideBalls(trusted_radius);
         let campaign = |algorithm: Algorithm| {
-            Ok::<_, anyhow::Error>(Campaign {
-                algorithm,
+            let vehicle = self.moving(algorithm)?;
+            let area = Area::metres([0.0; 2], sides).map_err(Error::msg)?.into();
+            // What is meant for look-ahead alone does not keep others from being compared with it.
+            let is_meant = algorithm == Algorithm::Lookahead || self.compare.is_empty();
+            let asked =
+                (self.price.filter(|_| is_meant), self.labels, self.seek.filter(|_| is_meant));
+            let names = ["--price", "--labels", "--seek"];
+            let asking = Asking::of(names, asked, (algorithm, &area, &vehicle), room)?;
+            scenario::check_steps("--steps", self.steps, room, &asking, false)?;
+            Ok::<_, Error>(Campaign {
                 fields: self.fields,
-                steps: self.steps,
                 every: self.every,
                 seed: self.seed,
                 crossing: self.crossing.unwrap_or_default().into(),
                 following: self.following.map_or(algorithm.following(), Into::into),
-                vehicle: self.moving(algorithm)?,
+                vehicle,
                 noise: algorithm.weighs(p < 1.0).then_some(NoiseModel { p: true_p, extent }),
                 p_told,
                 draws_p: prior.is_some() && self.true_p.is_none(),
@@ -194,12 +199,9 @@ impl CampaignFlags {
                 tolerance,
                 policy: self.policy.unwrap_or_default().into(),
                 prior: self.prior.unwrap_or_default().into(),
-                sides: sides(&self.area)?,
-                asking: Asking {
-                    price: self.price.filter(|_| algorithm == Algorithm::Lookahead),
-                    seeks: self.seek.unwrap_or_default().into(),
-                    labels: self.labels,
-                },
+                sides,
+                asking,
+                ..Campaign::of(algorithm, self.steps)
             })
         };
         let of_each = planners.iter().map(|&it| campaign(it)).collect::<Result<Vec<_>>>()?;

@@ -252,6 +252,7 @@ impl Player {
     fn judge(&self, end: &message::MissionEnd) -> Result<Ending> {
         let reason = match end.reason {
             EndReason::Steps => Ending::Steps,
+            EndReason::Labels => Ending::Labels,
             EndReason::Stopped(reason) => Ending::Stopped(reason),
             EndReason::Refused(refused) => bail!("the board refused what agrees: {refused}"),
             EndReason::Sensor if self.setup.labels == LabelSource::Vehicle => {

@@ -52,6 +52,7 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
             evaluations: lookahead::EVALUATIONS,
             goal: mission.goal,
             noise: mission.noise.map(|_| (noise, mission.prior)),
+            far: mission.asking.sight(),
         },
         other => bail!("algorithm: found {}, expected cfc, scc or lookahead", other.name()),
     };
@@ -62,8 +63,10 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
     })?;
     // True labels leave one hypothesis. `t` labels that may be wrong leave at most `1 + t + t (t - 1) / 2`.
     // Labels of an audit take no room.
-    let most = if mission.goal.is_some() { CAPACITY - samples.len() } else { usize::MAX };
-    let taken = mission.steps.min(most as u32);
+    let room = CAPACITY - samples.len();
+    let is_apart = mission.goal.is_some() || mission.asking.is_apart();
+    let most = if is_apart { room as u32 } else { u32::MAX };
+    let taken = mission.asking.labels.unwrap_or(most).min(mission.steps);
     let hypotheses = match mission.algorithm {
         _ if mission.is_noisy() => 1 + taken + taken * taken.saturating_sub(1) / 2,
         _ => 1,
@@ -85,6 +88,7 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
         vehicle,
         capacity,
         steps,
+        most_labels: mission.asking.labels.map(|labels| labels as u16),
         start,
         labels,
         given,
@@ -105,10 +109,13 @@ pub(crate) fn declined(declined: DeclinedError, setup: &Setup) -> anyhow::Error 
         }
         DeclinedError::Capacity(Capacity { samples, hypotheses }) => {
             let most = usize::from(samples).saturating_sub(setup.given.len());
+            let (key, found) = match setup.most_labels {
+                Some(labels) => ("labels", labels),
+                None => ("steps", setup.steps),
+            };
             anyhow!(
-                "steps: found {}, expected at most {most}: the board has room for {samples} samples \
+                "{key}: found {found}, expected at most {most}: the board has room for {samples} samples \
                  and {hypotheses} hypotheses, {} of the samples the oracle's",
-                setup.steps,
                 setup.given.len(),
             )
         }
@@ -118,6 +125,7 @@ pub(crate) fn declined(declined: DeclinedError, setup: &Setup) -> anyhow::Error 
         DeclinedError::Area => anyhow!("area: declined by the board: {declined}"),
         DeclinedError::Tolerance => anyhow!("tolerance: declined by the board: {declined}"),
         DeclinedError::Goal => anyhow!("stop: declined by the board: {declined}"),
+        DeclinedError::Price => anyhow!("price: declined by the board: {declined}"),
         DeclinedError::Labels => {
             anyhow!("--labels: found chip, but this board has no label sensor")
         }

@@ -160,6 +160,7 @@ pub(crate) fn diagnosed(record: &DiagnosisRecord) -> Vec<(&'static str, String)>
 pub(crate) fn why(reason: &str) -> &str {
     match reason {
         "steps" => "all steps are taken",
+        "labels" => "all labels are read",
         "known" => "what was asked for is known",
         "resolution" => "what is uncertain is thinner than the action grid can hit",
         "no line" => "no straight, still line explains the labels",
@@ -304,16 +305,19 @@ fn beginning(title: &str, start: &Start) -> String {
         fixed(start.pose.heading.to_degrees(), 1),
         arcs(&start.slope_arcs),
     );
+    if let Some(price) = start.price {
+        let _ = writeln!(text, "A label costs as much as {price} m of driving.\n");
+    }
     if start.labels_err {
-        let each = limit(start.p);
+        let (each, most) = (limit(start.p), start.labels.unwrap_or(start.steps));
         let _ = writeln!(
             text,
             "{} is true with probability {}, so it tells {each:.3} bits at most on average, \
              {} of them {:.2}.\n",
             a_label(start),
             start.p,
-            start.steps,
-            f64::from(start.steps) * each,
+            most,
+            f64::from(most) * each,
         );
         if let Some(told) = told(start) {
             let _ = writeln!(text, "{told}\n");

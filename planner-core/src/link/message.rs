@@ -42,7 +42,7 @@ pub use crate::link::setup::{Algorithm, Capacity, LabelSource, MOST_GIVEN, Setti
 
 /// The version of this protocol. The layout of [`Request::Hello`] and of its frame is that of every
 /// version from 2 on.
-pub const PROTOCOL: u16 = 6;
+pub const PROTOCOL: u16 = 7;
 
 /// Corners that an area can have, and each keep-out in it.
 pub const MOST_CORNERS: usize = 8;
@@ -171,6 +171,8 @@ pub enum DeclinedError {
     Tolerance,
     /// The chip cannot check this goal.
     Goal,
+    /// The chip looks for labels within one motion, so they have no price.
+    Price,
 }
 
 impl core::fmt::Display for DeclinedError {
@@ -187,6 +189,7 @@ impl core::fmt::Display for DeclinedError {
             Self::Vehicle(why) => why.fmt(f),
             Self::Area => f.write_str("the chip cannot plan in this area"),
             Self::Goal => f.write_str("the chip cannot check this goal"),
+            Self::Price => f.write_str("the chip looks for labels within one motion"),
         }
     }
 }
@@ -245,6 +248,8 @@ pub enum EndReason {
     Sensor,
     /// The vehicle could not make a motion.
     Vehicle,
+    /// All labels were read that there may be.
+    Labels,
 }
 
 impl Message for Request {
@@ -335,6 +340,7 @@ mod tests {
             }),
             capacity: Capacity { samples: u16::MAX, hypotheses: u16::MAX },
             steps: u16::MAX,
+            most_labels: Some(24),
             start: Pose { site: far(-1, -1), heading: Heading(u32::MAX) },
             labels: LabelSource::Chip,
             given: Vec::from_array([sample; MOST_GIVEN]),

@@ -14,6 +14,7 @@ use crate::motion::dynamics::Pose;
 use crate::planner::lookahead::DrivingPrice;
 use crate::planner::options::{Crossing, Following, Options};
 use crate::planner::scc::Policy;
+use crate::planner::sight::Far;
 use crate::search::objective::EffortWeight;
 
 /// Given samples that a setup can hold.
@@ -67,6 +68,8 @@ pub struct Setup {
     pub capacity: Capacity,
     /// Steps at most.
     pub steps: u16,
+    /// Labels at most, if they are limited by themselves.
+    pub most_labels: Option<u16>,
     /// Where the vehicle is.
     pub start: Pose,
     /// Who reads labels.
@@ -98,6 +101,8 @@ pub enum Algorithm {
         goal: Option<Goal>,
         /// What is known of the noise, and how hypotheses are weighed, if labels may be wrong.
         noise: Option<(Noise, Prior)>,
+        /// The price of a label, if labels are sought all over the area.
+        far: Option<Far>,
     },
 }
 

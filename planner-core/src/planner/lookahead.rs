@@ -298,7 +298,8 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion, S: Sight>
         let (area, weight) = (self.area, self.price.0);
         let rule = ArcRule::default();
         let problem = Problem { lines, area, weight, rule };
-        let mut search = problem.search(&self.dynamics, pose, Effort::of(LOOKS - S::LOOKS));
+        let mut search =
+            problem.search(&self.dynamics, pose, Effort::of(LOOKS - self.sight.looks()));
         let search = search.open();
         let found = solve_or_recover(&problem, search, None, course);
         (found, search.effort)

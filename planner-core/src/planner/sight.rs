@@ -47,11 +47,20 @@ const TURNS: u16 = 16;
 /// The usual price of a label, as a share of the mean of the area's sides.
 const USUAL: f64 = 0.125;
 
+/// An area is large if its mean side is longer than so many of the longest motions.
+const LARGE: f32 = 16.0;
+
 /// How far look-ahead looks for labels: [`Near`] or [`Far`].
 pub trait Sight: Copy {
     /// Looks that it takes of a plan, beside those at ends of one motion.
     #[doc(hidden)]
-    const LOOKS: u32;
+    fn looks(self) -> u32 {
+        0
+    }
+
+    /// The sight that a price asks for, or that none does, if this is one.
+    #[doc(hidden)]
+    fn of(far: Option<Far>) -> Option<Self>;
 
     /// What is remembered since the last label.
     #[doc(hidden)]
@@ -77,9 +86,11 @@ pub trait Sight: Copy {
 pub struct Near;
 
 impl Sight for Near {
-    const LOOKS: u32 = 0;
-
     type Journey = ();
+
+    fn of(far: Option<Far>) -> Option<Self> {
+        far.is_none().then_some(Self)
+    }
 
     fn decide<B: PredictiveBelief, D: Dynamics, G: Workspace>(
         self,
@@ -95,11 +106,12 @@ impl Sight for Near {
 }
 
 /// All of the area, one label deep.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Far {
-    /// What a label costs, lattice units of driving.
-    price: f32,
+    /// What a label costs, millimetres of driving.
+    price_mm: u32,
     seeks: Seeks,
 }
 
@@ -117,23 +129,31 @@ pub enum Seeks {
 }
 
 impl Far {
-    /// A label costs as much as a drive of so many metres. With a high price the planner drives far for each label, with
-    /// 0 it asks at the next best place.
+    /// A label costs as much as a drive of so many metres, to the nearest millimetre. With a high price the planner
+    /// drives far for each label, with 0 it asks at the next good place.
     ///
     /// # Errors
     /// [`ValueError`] unless it is from 0 to 16,384 m.
     pub fn at_price(metres: f64) -> Result<Self, ValueError> {
         const RANGE: ValueError =
             ValueError("the price of a label is from 0 to 16384 m of driving");
+        let price_mm = libm::round(metres * 1e3) as u32;
         let is_price = (0.0..=16_384.0).contains(&metres);
-        let price = (metres * f64::from(UNITS_PER_METRE)) as f32;
-        is_price.then_some(Self { price, seeks: Seeks::Accuracy }).ok_or(RANGE)
+        is_price.then_some(Self { price_mm, seeks: Seeks::Accuracy }).ok_or(RANGE)
     }
 
     /// At the usual price: an eighth of the mean of the sides of the rectangle around an area.
     pub fn across(area: &impl Workspace) -> Self {
-        let [x, z] = area.bounds().half_sides().map(f64::from);
-        Self { price: (USUAL * (x + z)) as f32, seeks: Seeks::Accuracy }
+        let sides = area.bounds().half_sides().map(f64::from).into_iter().sum::<f64>();
+        let price_mm = (USUAL * 1e3 / f64::from(UNITS_PER_METRE) * sides) as u32;
+        Self { price_mm, seeks: Seeks::Accuracy }
+    }
+
+    /// At the usual price where an area is so large for the longest motion that far sight pays: its mean side is more
+    /// than sixteen such motions. `None` elsewhere.
+    pub fn usual(area: &impl Workspace, dynamics: &impl Dynamics) -> Option<Self> {
+        let sides = area.bounds().half_sides().map(|half| half as f32).into_iter().sum::<f32>();
+        (sides > LARGE * reach(dynamics)).then(|| Self::across(area))
     }
 
     /// The same, for labels that are to bring something else.
@@ -144,7 +164,7 @@ impl Far {
 
     /// What a label costs, metres of driving.
     pub fn price(self) -> f64 {
-        f64::from(self.price) / f64::from(UNITS_PER_METRE)
+        f64::from(self.price_mm) * 1e-3
     }
 }
 
@@ -173,9 +193,15 @@ enum Stretch {
 }
 
 impl Sight for Far {
-    const LOOKS: u32 = LOOKS;
-
     type Journey = Journey;
+
+    fn of(far: Option<Far>) -> Option<Self> {
+        far
+    }
+
+    fn looks(self) -> u32 {
+        LOOKS
+    }
 
     fn decide<B: PredictiveBelief, D: Dynamics, G: Workspace>(
         self,
@@ -190,10 +216,11 @@ impl Sight for Far {
             Seeks::Accuracy => chord.stretch().map(|over| belief.spread(&over)),
             Seeks::Bits => None,
         };
+        let price = self.price_mm as f32 * (1e-3 * UNITS_PER_METRE as f32) + 1.0;
         let worth = |site: Site, share: f32| {
             let told = predictor.information(site, share);
             let brings = spread.as_ref().map_or(1.0, |spread| spread.reduction(site)) * told;
-            brings / (self.price + distance(site - pose.site) + 1.0)
+            brings / (price + distance(site - pose.site))
         };
         let mut best = None;
         for it in prospects(&predictor, belief.ground(), lookout, pose).as_slice() {
@@ -247,6 +274,36 @@ impl Sight for Far {
     }
 }
 
+/// [`Near`], or [`Far`] where there is a price: for programs that are told at run time.
+impl Sight for Option<Far> {
+    type Journey = Journey;
+
+    fn of(far: Option<Far>) -> Option<Self> {
+        Some(far)
+    }
+
+    fn decide<B: PredictiveBelief, D: Dynamics, G: Workspace>(
+        self,
+        belief: &B,
+        lookout: &mut Lookout<'_, D, G>,
+        pose: Pose,
+        journey: &mut Journey,
+    ) -> Option<Decision> {
+        match self {
+            None => Near.decide(belief, lookout, pose, &mut ()),
+            Some(far) => far.decide(belief, lookout, pose, journey),
+        }
+    }
+
+    fn observe(journey: &mut Journey, has_label: bool) {
+        Far::observe(journey, has_label);
+    }
+
+    fn looks(self) -> u32 {
+        self.map_or(0, Sight::looks)
+    }
+}
+
 /// Whether a label at a place is to be considered.
 fn tells<B: PredictiveBelief, D: Dynamics, G: Workspace>(
     belief: &B,
@@ -264,9 +321,14 @@ fn tells<B: PredictiveBelief, D: Dynamics, G: Workspace>(
 
 /// How near to a place a way ends, lattice units: an eighth of the longest motion, and a step at least.
 fn nearness<D: Dynamics>(dynamics: &D) -> f32 {
+    let (eighth, step) = (0.125 * reach(dynamics), dynamics.grid().step_units());
+    if eighth > step { eighth } else { step }
+}
+
+/// The longest motion, lattice units.
+fn reach(dynamics: &impl Dynamics) -> f32 {
     let grid = dynamics.grid();
-    let eighth = f32::from(grid.speeds().saturating_sub(1)) / 8.0;
-    grid.step_units() * if eighth > 1.0 { eighth } else { 1.0 }
+    f32::from(grid.speeds().saturating_sub(1)) * grid.step_units()
 }
 
 /// A place beyond the ends of one motion, and what it is worth.

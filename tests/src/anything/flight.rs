@@ -61,14 +61,8 @@ pub fn fly(mission: &Mission, most_asked: u64) -> Flight {
     match (mission.algorithm, mission.is_noisy()) {
         (Algorithm::Cfc, _) => fly.with(mission.cfc(area, vehicle)),
         (Algorithm::Scc, _) => fly.with(mission.scc(area, vehicle)),
-        (_, true) => match mission.asking.sight() {
-            None => fly.with(mission.doubtful(area, vehicle)),
-            Some(far) => fly.with(mission.doubtful(area, vehicle).seeing(far)),
-        },
-        (_, false) => match mission.asking.sight() {
-            None => fly.with(mission.lookahead(area, vehicle)),
-            Some(far) => fly.with(mission.lookahead(area, vehicle).seeing(far)),
-        },
+        (_, true) => fly.with(mission.doubtful(area, vehicle)),
+        (_, false) => fly.with(mission.lookahead(area, vehicle)),
     }
 }
 

@@ -10,7 +10,7 @@ use host_sim::mission::definition::{CAPACITY, HYPOTHESES, Table};
 use host_sim::mission::recording::Recording;
 use host_sim::report::campaign as tables;
 use host_sim::report::trace;
-use host_sim::world::errors::Errors;
+
 use host_sim::world::noise::{Extent, Flipped, NoiseModel, limit};
 use host_sim::world::robot::Ideal;
 use nalgebra::Point2;
@@ -21,8 +21,8 @@ use planner_core::motion::unicycle::Grid;
 use planner_core::planner::Stage;
 use planner_core::robot::Body as _;
 use planner_core::{
-    AnyReliability, Crossing, Heading, Label, Motion, Noise, Plan, Planner, Policy, Pose, Prior,
-    Reading, Reliability, Sample, Scc, Site, Tolerance, Unicycle,
+    AnyReliability, Heading, Label, Motion, Noise, Plan, Planner, Policy, Pose, Prior, Reading,
+    Reliability, Sample, Scc, Site, Tolerance, Unicycle,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

@@ -1,6 +1,16 @@
-//! What labels cost, what they are to bring, and how many there may be.
+//! What labels cost, what they are to bring, and how many there may be: `price`, `labels` and `ask` of scenario files.
 
-use planner_core::{Far, Seeks};
+use anyhow::Result;
+use planner_core::link::message::MissionArea;
+use planner_core::{AnyVehicle, Far, Seeks};
+use serde::Deserialize;
+
+use crate::mission::algorithm::Algorithm;
+use crate::mission::names::SeeksName;
+use crate::mission::strict::wrong;
+
+/// The most steps of a mission whose labels are limited by themselves.
+pub const MOST_STEPS: u32 = 10_000;
 
 /// How a mission asks for labels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -13,9 +23,61 @@ pub struct Asking {
     pub labels: Option<u32>,
 }
 
+/// `ask` of a scenario file.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AskTable {
+    seek: Option<SeeksName>,
+}
+
 impl Asking {
     /// Labels are sought within one motion, and there may be as many as there is room for.
     pub const USUAL: Self = Self { price: None, seeks: Seeks::Accuracy, labels: None };
+
+    /// What a file or flags ask for. Without a price labels have the usual one where the area is large for the vehicle.
+    /// `names` are those of price, limit and choice; there is `room` for so many labels.
+    ///
+    /// # Errors
+    /// Names the field, what was found and what was expected.
+    pub fn of(
+        [price_name, labels_name, seek_name]: [&str; 3],
+        (price, labels, seek): (Option<f64>, Option<u32>, Option<SeeksName>),
+        (algorithm, area, vehicle): (Algorithm, &MissionArea, &AnyVehicle),
+        room: usize,
+    ) -> Result<Self> {
+        let looks_ahead = algorithm == Algorithm::Lookahead;
+        let usual = if looks_ahead { Far::usual(area, vehicle).map(Far::price) } else { None };
+        let sought = price.or(usual);
+        for (name, is_given) in [(price_name, price.is_some()), (seek_name, seek.is_some())] {
+            if is_given && !looks_ahead {
+                let found = format!("with algorithm {}", algorithm.name());
+                return wrong(name, found, "with algorithm lookahead");
+            }
+        }
+        if let Some(price) = price
+            && Far::at_price(price).is_err()
+        {
+            return wrong(price_name, price, "metres driven, 0 to 16384");
+        }
+        if seek.is_some() && sought.is_none() {
+            let expected =
+                format!("with a {price_name}: a label within one motion is to bring bits");
+            return wrong(seek_name, "one", expected);
+        }
+        if let Some(labels) = labels
+            && (labels == 0 || labels as usize > room)
+        {
+            let expected =
+                format!("1 to {room}, for which the planner has room beside the oracle's");
+            return wrong(labels_name, labels, expected);
+        }
+        Ok(Self { price: sought, seeks: seek.unwrap_or_default().into(), labels })
+    }
+
+    /// Whether labels are limited by themselves, so that a mission may have more steps than there is room for labels.
+    pub fn is_apart(&self) -> bool {
+        self.price.is_some() || self.labels.is_some()
+    }
 
     /// The sight of look-ahead, if labels have a price.
     ///
@@ -24,5 +86,12 @@ impl Asking {
     pub fn sight(&self) -> Option<Far> {
         let price = self.price?;
         Some(Far::at_price(price).expect("prices out of range were refused").seeking(self.seeks))
+    }
+}
+
+impl AskTable {
+    /// What a label is to bring.
+    pub fn seek(&self) -> Option<SeeksName> {
+        self.seek
     }
 }

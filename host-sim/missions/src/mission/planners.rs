@@ -3,8 +3,8 @@
 use planner_core::dynamics::Dynamics;
 use planner_core::error::ObservationError;
 use planner_core::{
-    Accuracy, AnyReliability, AnyVehicle, Cfc, Lookahead, Plan, Planner, Pose, PredictiveBelief,
-    Reading, Scc, Tolerance, Workspace,
+    Accuracy, AnyReliability, AnyVehicle, Cfc, Far, Lookahead, Plan, Planner, Pose,
+    PredictiveBelief, Reading, Scc, Tolerance, Workspace,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -75,12 +75,8 @@ impl Mission {
         match self.algorithm {
             Algorithm::Cfc => erased(self.cfc(area, dynamics)),
             Algorithm::Scc => erased(self.scc(area, dynamics)),
-            Algorithm::Lookahead => match (self.is_noisy(), self.asking.sight()) {
-                (true, None) => erased(self.doubtful(area, dynamics)),
-                (true, Some(far)) => erased(self.doubtful(area, dynamics).seeing(far)),
-                (false, None) => erased(self.lookahead(area, dynamics)),
-                (false, Some(far)) => erased(self.lookahead(area, dynamics).seeing(far)),
-            },
+            Algorithm::Lookahead if self.is_noisy() => erased(self.doubtful(area, dynamics)),
+            Algorithm::Lookahead => erased(self.lookahead(area, dynamics)),
             Algorithm::Margin if self.is_noisy() => {
                 erased(Margin { dynamics, area, belief: self.table() })
             }
@@ -121,7 +117,7 @@ impl Mission {
         &self,
         area: G,
         dynamics: D,
-    ) -> Lookahead<D, Lines, G, Accuracy> {
+    ) -> Lookahead<D, Lines, G, Accuracy, Option<Far>> {
         self.looking_ahead(area, dynamics, self.lines())
     }
 
@@ -133,7 +129,7 @@ impl Mission {
         &self,
         area: G,
         dynamics: D,
-    ) -> Lookahead<D, DoubtfulBelief, G, Accuracy> {
+    ) -> Lookahead<D, DoubtfulBelief, G, Accuracy, Option<Far>> {
         self.looking_ahead(area, dynamics, self.noisy_belief())
     }
 
@@ -142,9 +138,10 @@ impl Mission {
         area: G,
         dynamics: D,
         belief: B,
-    ) -> Lookahead<D, B, G, Accuracy> {
+    ) -> Lookahead<D, B, G, Accuracy, Option<Far>> {
         let planner = Lookahead::new(area, dynamics, belief).expect(FITS);
-        let planner = planner.pricing(self.config.price()).until(self.goal);
+        let planner =
+            planner.seeing(self.asking.sight()).pricing(self.config.price()).until(self.goal);
         if self.audits { planner } else { planner.without_audit() }
     }
 }

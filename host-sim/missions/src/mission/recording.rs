@@ -236,6 +236,8 @@ fn start(mission: &Mission) -> Start {
         sensor: mission.sensor.iter().map(Into::into).collect(),
         p: mission.noise.map_or(1.0, |noise| noise.p),
         p_told: mission.p_told.map(PTold::from),
+        price: mission.asking.price,
+        labels: mission.asking.labels,
         labels_err: mission.noise.is_some(),
         steps: mission.steps,
         slope_arcs: mission.given.slope_arc().intervals_deg().to_vec(),

@@ -17,7 +17,7 @@ use serde::Deserialize;
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::{self, Allowance};
-use crate::mission::asking::Asking;
+use crate::mission::asking::{AskTable, Asking, MOST_STEPS};
 use crate::mission::definition::{CAPACITY, Lines, Mission};
 use crate::mission::names::{CrossingName, FanName, FollowingName, PolicyName, PriorName};
 use crate::mission::sensor::{self, FaultTable};
@@ -67,6 +67,10 @@ struct File {
     #[serde(default)]
     allow: Table<Allowance>,
     stop: Option<Table<StopTable>>,
+    price: Option<f64>,
+    labels: Option<u32>,
+    #[serde(default)]
+    ask: Table<AskTable>,
     #[serde(default)]
     area: Table<AreaTable>,
     #[serde(default)]
@@ -191,11 +195,11 @@ fn any(name: &str, text: &str, folder: &Path, overrides: Overrides) -> Result<Mi
         let line = error.span().map_or(1, |span| 1 + text[..span.start].matches('\n').count());
         anyhow!("{name}:{line}: {}", error.message().replace('\n', "; "))
     })?;
-    // A wrong number of steps in a flag is reported as the flag's.
-    if let Some(steps) = overrides.steps {
-        check_steps("--steps", steps, file.oracle.len(), file.audits())?;
-    }
-    mission(&file, folder, overrides).map_err(|error| anyhow!("{name}: {error:#}"))
+    mission(&file, folder, overrides).map_err(|error| {
+        let text = format!("{error:#}");
+        // A wrong number of steps in a flag is reported as the flag's.
+        if text.starts_with("--") { error } else { anyhow!("{name}: {text}") }
+    })
 }
 
 /// The most steps of a mission with an audit, whose labels take no room.
@@ -208,34 +212,54 @@ impl File {
     }
 }
 
-/// Whether this many steps fit beside the oracle's samples.
+/// The room for labels beside the oracle's samples.
 ///
 /// # Errors
-/// Names `field` or the oracle, the number and the limit.
-pub fn check_steps(field: &str, steps: u32, oracle: usize, audits: bool) -> Result<()> {
-    let most = CAPACITY.saturating_sub(oracle);
-    if most == 0 {
+/// Names the oracle, the number of its points and the limit.
+pub fn room(oracle: usize) -> Result<usize> {
+    let room = CAPACITY.saturating_sub(oracle);
+    if room == 0 {
         let expected = format!(
             "at most {}: a planner holds {CAPACITY} samples, and so many leave room for one step",
             CAPACITY - 1
         );
         return wrong("oracle", format!("{oracle} points"), expected);
     }
-    if audits && !(1..=MOST_WITH_AUDIT).contains(&steps) {
-        return wrong(field, steps, format!("1 to {MOST_WITH_AUDIT}"));
+    Ok(room)
+}
+
+/// Whether a mission may have this many steps: as many as there is room for labels, unless those are limited by
+/// themselves or an audit reads some that take no room.
+///
+/// # Errors
+/// Names `field`, the number and the limit.
+pub fn check_steps(
+    field: &str,
+    steps: u32,
+    room: usize,
+    asking: &Asking,
+    audits: bool,
+) -> Result<()> {
+    let most = match () {
+        () if asking.is_apart() => MOST_STEPS,
+        () if audits => MOST_WITH_AUDIT,
+        () => room as u32,
+    };
+    if (1..=most).contains(&steps) {
+        return Ok(());
     }
-    if !audits && (steps == 0 || steps as usize > most) {
-        let room = format!(
-            "1 to {most} (the planner holds {CAPACITY} samples, {oracle} of them the oracle's)"
-        );
-        return wrong(field, steps, room);
-    }
-    Ok(())
+    let oracle = CAPACITY - room;
+    let why = if most == room as u32 {
+        format!(" (the planner holds {CAPACITY} samples, {oracle} of them the oracle's)")
+    } else {
+        String::new()
+    };
+    wrong(field, steps, format!("1 to {most}{why}"))
 }
 
 fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> {
+    let room = room(file.oracle.len())?;
     let steps = overrides.steps.unwrap_or(file.steps);
-    check_steps("steps", steps, file.oracle.len(), file.audits())?;
     let algorithm = overrides.algorithm.unwrap_or(file.algorithm);
     let weight = file.varrho.map_or_else(|| Ok(algorithm.weight()), weight)?;
     let grid = file.fan.map_or(algorithm.grid(), Grid::from);
@@ -249,6 +273,11 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
         |it| it.0.vehicle(Source::File, algorithm, has_fan, grid),
     )?;
     let area = terrain::area(&file.area.0, &file.keep_out)?;
+    let asked = (file.price, file.labels, file.ask.0.seek());
+    let names = ["price", "labels", "ask.seek"];
+    let asking = Asking::of(names, asked, (algorithm, &area, &vehicle), room)?;
+    let steps_name = if overrides.steps.is_some() { "--steps" } else { "steps" };
+    check_steps(steps_name, steps, room, &asking, file.audits())?;
     let truth = file.truth.as_ref().map(|table| table.0.world(&area, folder)).transpose()?;
     let world = truth.unwrap_or(World::UNKNOWN);
     let given = oracle(&file.oracle, &area, &world)?;
@@ -293,7 +322,7 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
         prior: file.prior.into(),
         goal: goal.transpose()?,
         audits: file.stop.as_ref().is_none_or(|table| table.0.audits()),
-        asking: Asking::USUAL,
+        asking,
     })
 }
 

@@ -140,8 +140,11 @@ fn mission<L: Planner, P: Port, S: LabelSensor>(
     ticks: fn() -> u32,
     watch: &mut impl Watch,
 ) -> Result<EndReason, LinkError> {
-    let mut pose = setup.start;
+    let (mut pose, mut labels) = (setup.start, 0);
     for _ in 0..setup.steps {
+        if setup.most_labels.is_some_and(|most| labels >= most) {
+            return Ok(EndReason::Labels);
+        }
         let motion = match timed(ticks, &mut vehicle.took.plan, || seam::plan(planner, pose)) {
             Plan::Move(motion) => motion,
             Plan::Stop(reason) => return Ok(EndReason::Stopped(reason)),
@@ -152,6 +155,7 @@ fn mission<L: Planner, P: Port, S: LabelSensor>(
             Err(NoArrival::Failed) => return Ok(EndReason::Vehicle),
             Err(NoArrival::NoLabel) => return Ok(EndReason::Sensor),
         };
+        labels += u16::from(reading.is_some());
         let before = planner.alarm();
         let observe = || seam::observe(planner, pose, reading);
         if let Err(refused) = timed(ticks, &mut vehicle.took.observe, observe) {

@@ -23,6 +23,7 @@ use crate::link::station::flight::{Flown, Station, Watch};
 use crate::link::station::seam::Prepared;
 use crate::link::station::terms::{FromOutlines, Known, PlannerSetup};
 use crate::motion::dynamics::{Dynamics, Pose};
+use crate::planner::sight::{Near, Sight};
 use crate::planner::{Plan, Planner};
 use crate::robot::LabelSensor;
 
@@ -43,14 +44,14 @@ pub trait Planners {
 pub enum CfcAlone<const N: usize> {}
 
 /// Algorithm 1 and look-ahead for labels that are true, with room for `N` samples. Look-ahead takes goals of a
-/// criterion, and declines others.
+/// criterion, and declines others. So it does with prices of labels, by its [`Sight`].
 #[derive(Debug)]
-pub struct TrueLabels<const N: usize, C = Accuracy>(PhantomData<C>);
+pub struct TrueLabels<const N: usize, C = Accuracy, S = Near>(PhantomData<(C, S)>);
 
 /// All algorithms: with room for `T` samples whose labels are true, or for `N` samples whose labels may be wrong and
-/// `H` hypotheses.
+/// `H` hypotheses. Look-ahead has a [`Sight`]: `Option<Far>` takes prices of labels too.
 #[derive(Debug)]
-pub enum AllLabels<const T: usize, const N: usize, const H: usize> {}
+pub struct AllLabels<const T: usize, const N: usize, const H: usize, S = Near>(PhantomData<S>);
 
 /// A mission that was set up.
 #[derive(Debug)]
@@ -151,15 +152,16 @@ impl<L: Planner> Planner for CentreAlone<'_, L> {
     }
 }
 
-impl<const N: usize, C: Criterion> Planners for TrueLabels<N, C> {
+impl<const N: usize, C: Criterion, V: Sight> Planners for TrueLabels<N, C, V> {
     fn fly<P: Port, S: LabelSensor, D: Dynamics, G: Workspace, W: Watch>(
         mission: Mission<'_, P, S, W>,
         terms: PlannerSetup<D, G>,
     ) -> Result<Flown, LinkError> {
         let setup = mission.setup;
         match setup.algorithm {
-            Algorithm::Lookahead { evaluations, goal, noise: None } => {
-                mission.fly(&mut setup.lookahead::<_, _, C, N>(terms, evaluations, goal))
+            Algorithm::Lookahead { evaluations, goal, noise: None, far } => {
+                let asked = (evaluations, far);
+                mission.fly(&mut setup.lookahead::<_, _, C, V, N>(terms, asked, goal))
             }
             Algorithm::Cfc => mission.fly(&mut setup.cfc::<_, _, N>(terms)),
             _ => mission.station.decline(DeclinedError::Algorithm),
@@ -167,22 +169,26 @@ impl<const N: usize, C: Criterion> Planners for TrueLabels<N, C> {
     }
 }
 
-impl<const T: usize, const N: usize, const H: usize> Planners for AllLabels<T, N, H> {
+impl<const T: usize, const N: usize, const H: usize, V: Sight> Planners for AllLabels<T, N, H, V> {
     fn fly<P: Port, S: LabelSensor, D: Dynamics, G: Workspace, W: Watch>(
         mission: Mission<'_, P, S, W>,
         terms: PlannerSetup<D, G>,
     ) -> Result<Flown, LinkError> {
         let setup = mission.setup;
         match setup.algorithm {
-            Algorithm::Lookahead { evaluations, goal, noise: Some((noise, prior)) } => {
-                let mut planner = setup.lookahead_in_noise::<_, _, N, H>(terms, evaluations, goal);
+            Algorithm::Lookahead { evaluations, goal, noise: Some((noise, prior)), far } => {
+                let Some(sight) = V::of(far) else {
+                    return mission.station.decline(DeclinedError::Price);
+                };
+                let mut planner =
+                    setup.lookahead_in_noise::<_, _, V, N, H>(terms, evaluations, goal, sight);
                 mission.fly(&mut setup.prepare(&mut planner, prior, noise))
             }
             Algorithm::Scc { noise, policy, prior } => {
                 let mut planner = setup.scc::<_, _, N, H>(terms, policy);
                 mission.fly(&mut setup.prepare(&mut planner, prior, noise))
             }
-            _ => TrueLabels::<T, Accuracy>::fly(mission, terms),
+            _ => TrueLabels::<T, Accuracy, V>::fly(mission, terms),
         }
     }
 }

@@ -19,6 +19,7 @@ use crate::planner::cfc::Cfc;
 use crate::planner::lookahead::Lookahead;
 use crate::planner::scc::{Policy, Scc};
 use crate::planner::setup::{Restart, SetupError, aimed_for};
+use crate::planner::sight::{Far, Sight};
 use crate::planner::{Plan, Planner};
 
 #[inline(never)]
@@ -115,18 +116,20 @@ impl Setup {
     /// # Errors
     /// [`DeclinedError`].
     #[inline(never)]
-    pub fn lookahead<D: Dynamics, G: Workspace, C: Criterion, const N: usize>(
+    pub fn lookahead<D: Dynamics, G: Workspace, C: Criterion, S: Sight, const N: usize>(
         &self,
         PlannerSetup { dynamics, area, options }: PlannerSetup<D, G>,
-        evaluations: u32,
+        (evaluations, far): (u32, Option<Far>),
         goal: Option<Goal>,
-    ) -> Result<Prepared<Lookahead<D, VersionSpace<N>, G, C>>, DeclinedError> {
+    ) -> Result<Prepared<Lookahead<D, VersionSpace<N>, G, C, S>>, DeclinedError> {
+        let sight = S::of(far).ok_or(DeclinedError::Price)?;
         let goal = goal.map(|goal| Goal::of(goal).ok_or(DeclinedError::Goal)).transpose()?;
         let capacity = Capacity { samples: N as u16, hypotheses: 1 };
         self.check(capacity)?;
         let space = self.space()?;
         let price = options.weight.into();
         let planner = Lookahead::of((area, dynamics), space, price, evaluations, goal);
+        let planner = planner.seeing(sight);
         Ok(Prepared { planner, capacity })
     }
 
@@ -141,13 +144,21 @@ impl Setup {
 
     /// Look-ahead with labels that may be wrong, with none of its samples yet: the memory for
     /// [`prepare`](Self::prepare).
-    pub fn lookahead_in_noise<D: Dynamics, G: Workspace, const N: usize, const H: usize>(
+    pub fn lookahead_in_noise<
+        D: Dynamics,
+        G: Workspace,
+        S: Sight,
+        const N: usize,
+        const H: usize,
+    >(
         &self,
         PlannerSetup { dynamics, area, options }: PlannerSetup<D, G>,
         evaluations: u32,
         goal: Option<Goal>,
-    ) -> Lookahead<D, NoisyBelief<N, H>, G, Accuracy> {
-        Lookahead::of((area, dynamics), NoisyBelief::NONE, options.weight.into(), evaluations, goal)
+        sight: S,
+    ) -> Lookahead<D, NoisyBelief<N, H>, G, Accuracy, S> {
+        let price = options.weight.into();
+        Lookahead::of((area, dynamics), NoisyBelief::NONE, price, evaluations, goal).seeing(sight)
     }
 
     /// Begins the mission in this memory, so that there is never a second planner beside it.

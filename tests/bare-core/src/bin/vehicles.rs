@@ -1,15 +1,15 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 #![forbid(unsafe_code)]
-//! All algorithms and all vehicles, with 32 labels beside 4 given samples.
+//! All algorithms, all vehicles and prices of labels, with 32 labels beside 4 given samples.
 
 #[cfg(target_os = "none")]
 #[bare_core::entry]
 fn main() -> ! {
-    use planner_core::AnyVehicle;
     use planner_core::link::message::MissionArea;
     use planner_core::link::station::AllLabels;
+    use planner_core::{AnyVehicle, Far};
 
-    bare_core::fly::<AllLabels<36, 36, 529>, AnyVehicle, MissionArea>()
+    bare_core::fly::<AllLabels<36, 36, 529, Option<Far>>, AnyVehicle, MissionArea>()
 }
 
 /// On a host there is nothing to run.
