@@ -12,8 +12,9 @@
 //!   at most. On the model one audit in 100 refutes at most.
 //!
 //! A place lies as near to the lines left as the vehicle can aim. Where
-//! the border, a keep-out or the vehicle is in the way, a place nearer to the middle of the chord takes its turn. A place
-//! that cannot be visited is left out.
+//! the border, a keep-out or the vehicle is in the way, a place nearer to the middle of the chord takes its turn. So it does
+//! where a motion brings the vehicle no nearer: a car may circle about a place at which it cannot arrive. A place that
+//! cannot be visited is left out.
 
 use crate::belief::noise::Reliability;
 use crate::belief::predictions::{Heard, PLACES, PredictiveBelief, Verdict, Verdicts};
@@ -46,6 +47,9 @@ const MOST_ASIDE: f32 = 0.25;
 
 /// Motions to a place at most: twice as many as a straight drive along the chord takes, and so many for turns.
 const TURNS: u16 = 16;
+
+/// The next place takes its turn when more motions are left to one than before its last motion, by more than this.
+const STRAYS: u8 = 2;
 
 /// An audit ends when so many places in a row were out of reach.
 const MISSES: u8 = 3;
@@ -82,16 +86,24 @@ struct Course {
     to: Option<(u8, u8)>,
     /// Motions on the way there so far.
     motions: u16,
+    /// About how many were left when the last one was planned, with it. `None` where keep-outs lay between.
+    left: Option<u8>,
     /// Places given up since the last label.
     missed: u8,
 }
 
 impl Course {
-    const NONE: Self = Self { settled: 0, to: None, motions: 0, missed: 0 };
+    const NONE: Self = Self { settled: 0, to: None, motions: 0, left: None, missed: 0 };
 
     /// The same with its place left.
     fn leave(self) -> Self {
-        Self { to: None, motions: 0, ..self }
+        Self { to: None, motions: 0, left: None, ..self }
+    }
+
+    /// Whether the last motion led away from the place: so many are left now.
+    fn strays(self, motions: Option<u8>) -> bool {
+        let left = self.left.map(|left| left.saturating_add(STRAYS));
+        left.zip(motions).is_some_and(|(left, motions)| motions > left)
     }
 
     /// The same with its place settled.
@@ -162,14 +174,16 @@ impl<V: Verdicts> Audit<V> {
                     self.again(place, (dynamics, area), pose, to, effort)
                         .or_else(|| errand((dynamics, area), pose, to, effort))
                 });
+                let found = found.filter(|found| turn > first || !course.strays(found.motions));
                 if let Some(found) = found {
-                    let to = Some((place, turn));
-                    self.next = Course { to, motions: course.motions + 1, ..course };
+                    let (to, motions) = (Some((place, turn)), course.motions + 1);
+                    self.next = Course { to, motions, left: found.motions, ..course };
                     self.arrives = found.arrives;
                     return Some(found);
                 }
             }
-            course = Course { to: Some((place, 0)), ..course }.settle();
+            let missed = course.missed + u8::from(course.motions > 0);
+            course = Course { to: Some((place, 0)), missed, ..course }.settle();
         }
         None
     }
@@ -189,7 +203,7 @@ impl<V: Verdicts> Audit<V> {
         let leg = dynamics.turn_in_place(pose, Side::Left)?;
         let stays =
             distance(site - pose.site) <= near && stays(dynamics, area, effort, [pose, leg.1]);
-        stays.then_some(Errand { leg, arrives: true })
+        stays.then_some(Errand { leg, arrives: true, motions: Some(1) })
     }
 
     /// Whether the motion that was planned last ends where the audit asks for a label.

@@ -4,7 +4,7 @@
 //! that drive. Of all such ways the errand takes the one with the fewest motions. If there is none, a vehicle that goes
 //! round to turn drives straight on first. Keep-outs are passed by their waypoints (`detour`).
 //!
-//! An errand has no state, and it need not arrive: whoever runs it counts the motions.
+//! An errand has no state, and it need not arrive: whoever runs it counts the motions, and watches how many are left.
 
 use crate::geometry::approximate::{distance, heading_of};
 use crate::geometry::heading::Angle;
@@ -31,6 +31,8 @@ const LOOKS_A_PLACE: u32 = 4;
 pub(crate) struct Errand {
     pub(crate) leg: Leg,
     pub(crate) arrives: bool,
+    /// About how many motions lead to the place, with this one. `None` where keep-outs lie between.
+    pub(crate) motions: Option<u8>,
 }
 
 /// What drives lead to.
@@ -73,7 +75,8 @@ pub(crate) fn errand<D: Dynamics, G: Workspace>(
     let mut motions = Motions::new(dynamics, area, pose, *effort);
     let best = search(&mut motions, pose, aim);
     *effort = motions.effort;
-    best.map(|best| best.errand)
+    let motions = |best: Best| aim.near.map(|_| best.motions as u8);
+    best.map(|best| Errand { motions: motions(best), ..best.errand })
 }
 
 /// About how many motions lead from a pose to a place in sight, one at least: so many turns, and a straight drive. Where
@@ -186,7 +189,7 @@ fn drive<D: Dynamics, G: Workspace>(
             && best.is_none_or(|best| motions < best.motions)
         {
             let arrives = arrives && from.first.is_none();
-            let errand = Errand { leg: from.first.unwrap_or(leg), arrives };
+            let errand = Errand { leg: from.first.unwrap_or(leg), arrives, motions: None };
             *best = Some(Best { errand, motions });
         }
     }
