@@ -26,7 +26,7 @@ use crate::geometry::local_line::LocalLine;
 use crate::geometry::span::Span;
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose, Side};
-use crate::search::errand::{Errand, errand, motions_to};
+use crate::search::errand::{Errand, UNKNOWN, errand, motions_to};
 use crate::search::objective::Effort;
 use crate::search::wander::stays;
 
@@ -76,7 +76,7 @@ pub struct Audit<V> {
 }
 
 /// Which places are settled, and which one motions lead to.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Course {
@@ -86,24 +86,23 @@ struct Course {
     to: Option<(u8, u8)>,
     /// Motions on the way there so far.
     motions: u16,
-    /// About how many were left when the last one was planned, with it. `None` where keep-outs lay between.
-    left: Option<u8>,
+    /// About how many were left when the last one was planned, with it; or [`UNKNOWN`].
+    left: u8,
     /// Places given up since the last label.
     missed: u8,
 }
 
 impl Course {
-    const NONE: Self = Self { settled: 0, to: None, motions: 0, left: None, missed: 0 };
+    const NONE: Self = Self { settled: 0, to: None, motions: 0, left: UNKNOWN, missed: 0 };
 
     /// The same with its place left.
     fn leave(self) -> Self {
-        Self { to: None, motions: 0, left: None, ..self }
+        Self { to: None, motions: 0, left: UNKNOWN, ..self }
     }
 
     /// Whether the last motion led away from the place: so many are left now.
-    fn strays(self, motions: Option<u8>) -> bool {
-        let left = self.left.map(|left| left.saturating_add(STRAYS));
-        left.zip(motions).is_some_and(|(left, motions)| motions > left)
+    fn strays(self, motions: u8) -> bool {
+        motions < UNKNOWN && motions > self.left.saturating_add(STRAYS)
     }
 
     /// The same with its place settled.
@@ -174,8 +173,9 @@ impl<V: Verdicts> Audit<V> {
                     self.again(place, (dynamics, area), pose, to, effort)
                         .or_else(|| errand((dynamics, area), pose, to, effort))
                 });
-                let found = found.filter(|found| turn > first || !course.strays(found.motions));
-                if let Some(found) = found {
+                if let Some(found) = found
+                    && (turn > first || !course.strays(found.motions))
+                {
                     let (to, motions) = (Some((place, turn)), course.motions + 1);
                     self.next = Course { to, motions, left: found.motions, ..course };
                     self.arrives = found.arrives;
@@ -203,7 +203,7 @@ impl<V: Verdicts> Audit<V> {
         let leg = dynamics.turn_in_place(pose, Side::Left)?;
         let stays =
             distance(site - pose.site) <= near && stays(dynamics, area, effort, [pose, leg.1]);
-        stays.then_some(Errand { leg, arrives: true, motions: Some(1) })
+        stays.then_some(Errand { leg, arrives: true, motions: 1 })
     }
 
     /// Whether the motion that was planned last ends where the audit asks for a label.

@@ -26,13 +26,16 @@ const TURNS: u32 = 64;
 /// The looks that a place on a way takes.
 const LOOKS_A_PLACE: u32 = 4;
 
+/// Nobody knows how many motions lead to the place.
+pub(crate) const UNKNOWN: u8 = u8::MAX;
+
 /// A motion on the way, and whether it ends at the place.
 #[derive(Clone, Copy)]
 pub(crate) struct Errand {
     pub(crate) leg: Leg,
     pub(crate) arrives: bool,
-    /// About how many motions lead to the place, with this one. `None` where keep-outs lie between.
-    pub(crate) motions: Option<u8>,
+    /// About how many motions lead to the place, with this one. [`UNKNOWN`] where keep-outs lie between.
+    pub(crate) motions: u8,
 }
 
 /// What drives lead to.
@@ -75,8 +78,10 @@ pub(crate) fn errand<D: Dynamics, G: Workspace>(
     let mut motions = Motions::new(dynamics, area, pose, *effort);
     let best = search(&mut motions, pose, aim);
     *effort = motions.effort;
-    let motions = |best: Best| aim.near.map(|_| best.motions as u8);
-    best.map(|best| Errand { motions: motions(best), ..best.errand })
+    best.map(|best| {
+        let motions = if aim.near.is_some() { best.motions as u8 } else { UNKNOWN };
+        Errand { motions, ..best.errand }
+    })
 }
 
 /// About how many motions lead from a pose to a place in sight, one at least: so many turns, and a straight drive. Where
@@ -189,7 +194,7 @@ fn drive<D: Dynamics, G: Workspace>(
             && best.is_none_or(|best| motions < best.motions)
         {
             let arrives = arrives && from.first.is_none();
-            let errand = Errand { leg: from.first.unwrap_or(leg), arrives, motions: None };
+            let errand = Errand { leg: from.first.unwrap_or(leg), arrives, motions: UNKNOWN };
             *best = Some(Best { errand, motions });
         }
     }
