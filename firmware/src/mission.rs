@@ -3,6 +3,7 @@
 use planner_core::link::delivery::LinkError;
 use planner_core::link::message::{MissionArea, MissionEnd, Setup};
 use planner_core::link::station::{AllLabels, Flown, Station, Watch};
+use planner_core::watch::Alarm;
 use planner_core::{AnyVehicle, Far, LocalLine, PinSensor, Reading, Step};
 use stm32f4xx_hal::gpio::{Input, PB1};
 
@@ -43,6 +44,8 @@ pub(crate) struct Deck {
 }
 
 impl Watch for Deck {
+    const ALARMS: bool = true;
+
     fn set_up(&mut self, setup: &Setup) {
         self.steps = 0;
         defmt::info!("mission: {}, {=u16} steps at most", setup.algorithm, setup.steps);
@@ -55,6 +58,9 @@ impl Watch for Deck {
     fn stepped(&mut self, step: &Step) {
         self.steps += 1;
         log_step(self.steps, step);
+        if let Some(alarm) = &step.alarm {
+            log_alarm(self.steps, alarm);
+        }
     }
 
     fn over(&mut self, flown: &Result<Flown, LinkError>) {
@@ -87,6 +93,15 @@ fn log_step(number: u16, Step { motion, pose, reading, .. }: &Step) {
         pose.site.z(),
         pose.heading.0,
         reading.map(Reading::sign),
+    );
+}
+
+fn log_alarm(number: u16, Alarm { evidence, suspect }: &Alarm) {
+    defmt::warn!(
+        "step {=u16}: evidence {=f32} against a straight, still line: {}",
+        number,
+        evidence,
+        suspect
     );
 }
 

@@ -12,8 +12,9 @@
 //!   at most. On the model one audit in 100 refutes at most.
 //!
 //! A place lies as near to the lines left as the vehicle can aim. Where
-//! the border, a keep-out or the vehicle is in the way, a place nearer to the middle of the chord takes its turn. A place
-//! that cannot be visited is left out.
+//! the border, a keep-out or the vehicle is in the way, a place nearer to the middle of the chord takes its turn. So it does
+//! where a motion brings the vehicle no nearer: a car may circle about a place at which it cannot arrive. A place that
+//! cannot be visited is left out.
 
 use crate::belief::noise::Reliability;
 use crate::belief::predictions::{Heard, PLACES, PredictiveBelief, Verdict, Verdicts};
@@ -25,7 +26,7 @@ use crate::geometry::local_line::LocalLine;
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose, Side};
 use crate::search::chord::Chord;
-use crate::search::errand::{Errand, errand, motions_to};
+use crate::search::errand::{Errand, UNKNOWN, errand, motions_to};
 use crate::search::objective::Effort;
 use crate::search::wander::stays;
 
@@ -46,6 +47,9 @@ const MOST_ASIDE: f32 = 0.25;
 
 /// Motions to a place at most: twice as many as a straight drive along the chord takes, and so many for turns.
 const TURNS: u16 = 16;
+
+/// The next place takes its turn when more motions are left to one than before its last motion, by more than this.
+const STRAYS: u8 = 2;
 
 /// An audit ends when so many places in a row were out of reach.
 const MISSES: u8 = 3;
@@ -72,7 +76,7 @@ pub struct Audit<V> {
 }
 
 /// Which places are settled, and which one motions lead to.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Course {
@@ -82,16 +86,23 @@ struct Course {
     to: Option<(u8, u8)>,
     /// Motions on the way there so far.
     motions: u16,
+    /// About how many were left when the last one was planned, with it; or [`UNKNOWN`].
+    left: u8,
     /// Places given up since the last label.
     missed: u8,
 }
 
 impl Course {
-    const NONE: Self = Self { settled: 0, to: None, motions: 0, missed: 0 };
+    const NONE: Self = Self { settled: 0, to: None, motions: 0, left: UNKNOWN, missed: 0 };
 
     /// The same with its place left.
     fn leave(self) -> Self {
-        Self { to: None, motions: 0, ..self }
+        Self { to: None, motions: 0, left: UNKNOWN, ..self }
+    }
+
+    /// Whether the last motion led away from the place: so many are left now.
+    fn strays(self, motions: u8) -> bool {
+        motions < UNKNOWN && motions > self.left.saturating_add(STRAYS)
     }
 
     /// The same with its place settled.
@@ -162,14 +173,17 @@ impl<V: Verdicts> Audit<V> {
                     self.again(place, (dynamics, area), pose, to, effort)
                         .or_else(|| errand((dynamics, area), pose, to, effort))
                 });
-                if let Some(found) = found {
-                    let to = Some((place, turn));
-                    self.next = Course { to, motions: course.motions + 1, ..course };
+                if let Some(found) = found
+                    && (turn > first || !course.strays(found.motions))
+                {
+                    let (to, motions) = (Some((place, turn)), course.motions + 1);
+                    self.next = Course { to, motions, left: found.motions, ..course };
                     self.arrives = found.arrives;
                     return Some(found);
                 }
             }
-            course = Course { to: Some((place, 0)), ..course }.settle();
+            let missed = course.missed + u8::from(course.motions > 0);
+            course = Course { to: Some((place, 0)), missed, ..course }.settle();
         }
         None
     }
@@ -189,7 +203,7 @@ impl<V: Verdicts> Audit<V> {
         let leg = dynamics.turn_in_place(pose, Side::Left)?;
         let stays =
             distance(site - pose.site) <= near && stays(dynamics, area, effort, [pose, leg.1]);
-        stays.then_some(Errand { leg, arrives: true })
+        stays.then_some(Errand { leg, arrives: true, motions: 1 })
     }
 
     /// Whether the motion that was planned last ends where the audit asks for a label.

@@ -282,7 +282,7 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion, S: Sight>
         self.belief.prepare();
         let (dynamics, mut effort) = (&self.dynamics, Effort::of(LOOKS));
         let with = (dynamics, &self.area);
-        let Some(Errand { leg, arrives }) =
+        let Some(Errand { leg, arrives, .. }) =
             audit.plan(with, (&self.belief, estimate), pose, &mut effort)
         else {
             return known;

@@ -257,7 +257,7 @@ impl Sight for Far {
                 let with = (lookout.dynamics, &lookout.area);
                 errand(with, pose, (site, nearness(lookout.dynamics)), &mut effort)
             });
-            if let Some(Errand { leg: (action, target), arrives }) = way.flatten() {
+            if let Some(Errand { leg: (action, target), arrives, .. }) = way.flatten() {
                 let wants_label = arrives && belief.ground().may_tell(target.site);
                 let is_there = arrives && !wants_label;
                 journey.next = if is_there { Stretch::Over } else { Stretch::To(site, left - 1) };

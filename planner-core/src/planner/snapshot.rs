@@ -22,8 +22,8 @@ use crate::planner::Planner;
 
 /// The version of snapshots. It is written first, and changes whenever the data that follow change. From 2 on they hold
 /// the tolerances that observations brought, and how a planner turned since the last label; from 3 on the way that is
-/// under way; from 4 on the audit of look-ahead, and from 5 on its odds.
-pub const SNAPSHOT_VERSION: u16 = 5;
+/// under way; from 4 on the audit of look-ahead, from 5 on its odds, and from 6 on whether it strays.
+pub const SNAPSHOT_VERSION: u16 = 6;
 
 /// What a planner has to remember over a sleep: the log of its belief (`T`), and what else it plans by (`M`).
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -4,7 +4,7 @@
 //! that drive. Of all such ways the errand takes the one with the fewest motions. If there is none, a vehicle that goes
 //! round to turn drives straight on first. Keep-outs are passed by their waypoints (`detour`).
 //!
-//! An errand has no state, and it need not arrive: whoever runs it counts the motions.
+//! An errand has no state, and it need not arrive: whoever runs it counts the motions, and watches how many are left.
 
 use crate::geometry::approximate::{distance, heading_of};
 use crate::geometry::heading::Angle;
@@ -26,11 +26,16 @@ const TURNS: u32 = 64;
 /// The looks that a place on a way takes.
 const LOOKS_A_PLACE: u32 = 4;
 
+/// Nobody knows how many motions lead to the place.
+pub(crate) const UNKNOWN: u8 = u8::MAX;
+
 /// A motion on the way, and whether it ends at the place.
 #[derive(Clone, Copy)]
 pub(crate) struct Errand {
     pub(crate) leg: Leg,
     pub(crate) arrives: bool,
+    /// About how many motions lead to the place, with this one. [`UNKNOWN`] where keep-outs lie between.
+    pub(crate) motions: u8,
 }
 
 /// What drives lead to.
@@ -73,7 +78,10 @@ pub(crate) fn errand<D: Dynamics, G: Workspace>(
     let mut motions = Motions::new(dynamics, area, pose, *effort);
     let best = search(&mut motions, pose, aim);
     *effort = motions.effort;
-    best.map(|best| best.errand)
+    best.map(|best| {
+        let motions = if aim.near.is_some() { best.motions as u8 } else { UNKNOWN };
+        Errand { motions, ..best.errand }
+    })
 }
 
 /// About how many motions lead from a pose to a place in sight, one at least: so many turns, and a straight drive. Where
@@ -186,7 +194,7 @@ fn drive<D: Dynamics, G: Workspace>(
             && best.is_none_or(|best| motions < best.motions)
         {
             let arrives = arrives && from.first.is_none();
-            let errand = Errand { leg: from.first.unwrap_or(leg), arrives };
+            let errand = Errand { leg: from.first.unwrap_or(leg), arrives, motions: UNKNOWN };
             *best = Some(Best { errand, motions });
         }
     }

@@ -40,6 +40,8 @@ pub enum Finder {
 pub enum Ended {
     /// The goal is met.
     Known,
+    /// The audit says that no line explains its labels.
+    NoLine,
     /// All labels are taken that there is room for.
     Full,
     /// The planner found no way on, and said so.
@@ -137,9 +139,7 @@ pub fn fly(garden: &Garden, finder: Finder) -> Outcome {
     let belief = NoisyBelief::<SAMPLES, HYPOTHESES>::new(&garden.given, noise);
     let planner = Lookahead::new(area, garden.setting.dynamics(1), belief.expect("four places"));
     let price = DrivingPrice::new(garden.setting.varrho).expect("a price");
-    // Chords by hand have no audit either.
-    let planner = planner.expect("settings that agree").pricing(price);
-    with(garden, planner.until(goal()).without_audit())
+    with(garden, planner.expect("settings that agree").pricing(price).until(goal()))
 }
 
 /// One degree in nine of ten cases.
@@ -195,6 +195,7 @@ fn with<P: Planner>(garden: &Garden, planner: P) -> Outcome {
 const fn ended(reason: StopReason) -> Ended {
     match reason {
         StopReason::Known => Ended::Known,
+        StopReason::NoLine => Ended::NoLine,
         StopReason::SamplesFull => Ended::Full,
         StopReason::OutsideArea => Ended::Outside,
         _ => Ended::NoWay,

@@ -7,9 +7,7 @@ use host_sim::world::noise::{Extent, NoiseModel};
 use nalgebra::{Point2, Rotation2, Vector2};
 use planner_core::belief::estimate::{area, bisector, centre, maximum_margin};
 use planner_core::geometry::lattice::orient;
-use planner_core::{
-    Belief as _, Label, Line, LocalLine, PosteriorView, Sample, Site, VersionSpace,
-};
+use planner_core::{Belief, Label, Line, LocalLine, PosteriorView, Sample, Site, VersionSpace};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -254,6 +252,15 @@ fn the_bisector_is_that_of_the_two_shortest_pairs() {
     }
 }
 
+/// The chances that the evidence takes in, where positions are exact.
+fn single_precision_agrees(belief: &impl Belief, site: Site, above: f64) {
+    let chances = [(Label::Positive, above), (Label::Negative, 1.0 - above)];
+    for (label, chance) in chances {
+        let single = f64::from(belief.chance_of(site, label));
+        assert!((single - chance).abs() < 5e-6, "{site:?}, {label:?}: {single} for {chance}");
+    }
+}
+
 /// The chance of a label against the measures of what either label would leave.
 #[test]
 fn chances_are_shares_of_what_is_left() {
@@ -274,6 +281,7 @@ fn chances_are_shares_of_what_is_left() {
                 (chance - share).abs() < 1e-6,
                 "field {number}, {site:?}: {chance} for {share}"
             );
+            single_precision_agrees(&space, site, share);
             split += u32::from(share > 0.0 && share < 1.0);
         }
     }
@@ -307,6 +315,7 @@ fn chances_of_labels_that_may_err_are_those_of_the_next_posterior() {
                 .sum();
             let expected = above * p + (1.0 - above) * (1.0 - p);
             assert!((chance - expected).abs() < 1e-6, "field {number}: {chance} for {expected}");
+            single_precision_agrees(table, site, expected);
             assert!((0.2 - 1e-6..=0.8 + 1e-6).contains(&chance));
         }
     }

@@ -240,6 +240,9 @@ fn certain_labels_are_told_within_the_ball_alone() {
     let before = table.chance(at(2.0, 6.6));
     table.read(at(2.0, 6.6), Label::Negative).expect("possible");
     let after = table.chance(at(2.0, 6.6));
+    for (label, chance) in [(Label::Positive, after), (Label::Negative, 1.0 - after)] {
+        assert!((f64::from(table.chance_of(at(2.0, 6.6), label)) - chance).abs() < 5e-6);
+    }
     assert!(0.05 < after && after < before, "{before} to {after}");
 }
 

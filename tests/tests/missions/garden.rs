@@ -110,6 +110,9 @@ impl Row {
         broken.extend(self.find("undone", |it| it.undone > 0));
         broken.extend(self.find("bump", Outcome::is_bump));
         broken.extend(self.find("lost", |it| matches!(it.ended, Ended::Outside | Ended::Refused)));
+        // One in a hundred at most, and these are few missions.
+        let accused = self.which(|it| it.ended == Ended::NoLine).len();
+        assert!(accused * 50 <= self.flown.len().max(50), "{accused} lines are accused");
         broken
     }
 }
@@ -138,6 +141,15 @@ fn every_mission_ends_without_a_bump_and_knows_more_than_by_hand() {
     let [ours, by_chords, by_edge] =
         [&lookahead, &chords, &edge].map(|row| row.median(|it| it.slope_error));
     assert!(ours <= by_chords && ours <= by_edge, "{ours} of {by_chords}, {by_edge}");
+}
+
+/// A car whose audit has a place between the border, a keep-out and its own turning circle: no way there arrives. With
+/// the other cars it is part of a long run.
+#[test]
+fn a_car_goes_on_from_a_place_that_it_circles() {
+    let setting = Setting { vehicle: Vehicle::Car, fixes: Fixes::AtStops, ..Setting::GARDEN };
+    let outcome = fly(&Garden::draw(setting, 109), Finder::Lookahead);
+    assert!(outcome.ended == Ended::Known && outcome.fruitless <= FRUITLESS, "{outcome:?}");
 }
 
 /// Settings that a porter may come to, in the long runs. `ROW` in the environment picks rows by a part of their name:

@@ -11,7 +11,7 @@ use crate::belief::doubtful_labels::cell_posterior::{CellPosterior, Hypothesis};
 use crate::belief::estimate::{Estimates, area, bisector, maximum_margin, share_above};
 use crate::belief::goal::{Bounds, Criterion, Goal};
 use crate::belief::reliability::Reliability;
-use crate::belief::sample::Reading;
+use crate::belief::sample::{Label, Reading};
 use crate::belief::tolerance::Tolerance;
 use crate::belief::trust::Trust;
 use crate::belief::weight::LogWeight;
@@ -121,6 +121,23 @@ impl<const N: usize, const H: usize, const E: usize, R: Trust> Belief
 
     fn chance(&self, site: Site) -> f64 {
         PosteriorView::new(self).chance(site)
+    }
+
+    fn chance_of(&self, site: Site, label: Label) -> f32 {
+        let reliability = self.reliability(site);
+        let is_unknown =
+            self.noise().reliability.unknown().is_some() && reliability != Reliability::CERTAIN;
+        let p = reliability.single();
+        let above = self.mean_of(|hypothesis| {
+            let above = if self.is_blurred() {
+                self.sides(hypothesis, site)[0]
+            } else {
+                share_above(self.lines(hypothesis), site)
+            };
+            let p = if is_unknown { self.agreement(hypothesis) as f32 } else { p };
+            p * above + (1.0 - p) * (1.0 - above)
+        });
+        if label == Label::Positive { above } else { 1.0 - above }
     }
 }
 
@@ -300,13 +317,18 @@ impl<'a, const N: usize, const H: usize, const E: usize, R: Trust> PosteriorView
 impl<const N: usize, const H: usize, const E: usize, R: Trust> CellPosterior<N, H, E, R> {
     /// [`PosteriorView::share_above`] in single precision, to 10^-5.
     pub(crate) fn above(&self, site: Site) -> f32 {
-        let (mut above, mut all) = (0.0, 0.0);
+        self.mean_of(|hypothesis| share_above(self.lines(hypothesis), site))
+    }
+
+    /// The mean of something over all hypotheses, in single precision.
+    fn mean_of(&self, of: impl Fn(&Hypothesis<E, R>) -> f32) -> f32 {
+        let (mut sum, mut all) = (0.0, 0.0);
         for hypothesis in self.iter() {
             let weight = hypothesis.weight().exp_single();
             all += weight;
-            above += weight * share_above(self.lines(hypothesis), site);
+            sum += weight * of(hypothesis);
         }
-        above / all
+        sum / all
     }
 }
 

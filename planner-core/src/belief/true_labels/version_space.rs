@@ -315,9 +315,9 @@ impl<const N: usize> Belief for VersionSpace<N> {
     }
 
     /// The share of the lines that the label would leave.
-    fn chance_of(&self, site: Site, label: Label) -> f64 {
+    fn chance_of(&self, site: Site, label: Label) -> f32 {
         let lines = self.lines();
-        let above = lines.place(site, label).map_or(1.0, |place| self.chance(place));
+        let above = lines.place(site, label).map_or(1.0, |place| share_above(lines, place));
         if label == Label::Positive { above } else { 1.0 - above }
     }
 }

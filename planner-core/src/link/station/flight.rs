@@ -28,6 +28,10 @@ pub struct Station<P, S> {
 
 /// What a chip does beside planning: it enables its drive, or writes a log. It may do nothing: `()`.
 pub trait Watch {
+    /// Whether steps report what speaks against a straight, still line ([`Step::alarm`]). Planners are then
+    /// [`Watched`](crate::watch::Watched), which takes some 2 KB of flash on a core with single-precision instructions.
+    const ALARMS: bool = false;
+
     /// A mission was set up.
     fn set_up(&mut self, _: &Setup) {}
 

@@ -24,6 +24,7 @@ use crate::link::station::seam::Prepared;
 use crate::link::station::terms::{FromOutlines, Known, PlannerSetup};
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::sight::{Near, Sight};
+use crate::planner::watched::Watched;
 use crate::planner::{Plan, Planner};
 use crate::robot::LabelSensor;
 
@@ -98,7 +99,11 @@ impl<P: Port, S: LabelSensor, W: Watch> Mission<'_, P, S, W> {
         self,
         planner: &mut Result<Prepared<L>, DeclinedError>,
     ) -> Result<Flown, LinkError> {
-        self.station.fly(self.setup, planner, self.watch)
+        if !W::ALARMS {
+            return self.station.fly(self.setup, planner, self.watch);
+        }
+        let watched = planner.as_mut().map(|it| it.wrapped(Watched::new));
+        self.station.fly(self.setup, &mut watched.map_err(|declined| *declined), self.watch)
     }
 }
 

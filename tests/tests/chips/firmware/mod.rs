@@ -21,10 +21,12 @@ use host_sim::mission::recording::Recording;
 use host_sim::mission::results::Results;
 use host_sim::mission::scenario::{self, Overrides};
 use host_sim::report::trace;
+use host_sim::world::faults::{Fault, FaultKind};
 use planner_core::link::delivery::{Link, Port};
 use planner_core::link::message::LabelSource;
 use planner_core::robot::Body;
-use planner_core::{Agent, Event, Label, Motion, Pose, Reading, Step};
+use planner_core::watch::{Alarm, Watched};
+use planner_core::{Agent, Event, Label, Motion, Plan, Planner as _, Pose, Reading, Step};
 use rand::{Rng as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -169,6 +171,50 @@ fn the_log_tells_the_mission() {
         ));
     }
     assert_eq!(log, expected);
+}
+
+/// A stuck sensor where labels are true, and inverted ones where they may be wrong: the log has a warning and an alarm
+/// after the labels that bring the evidence so far.
+#[test]
+fn the_log_warns_of_labels_that_no_line_explains() {
+    let Some(chip) = Chip::start(&[]) else { return };
+    let (stuck, inverted) = (FaultKind::Stuck(Label::Positive), FaultKind::Inverted);
+    let mut expected = Vec::new();
+    for (number, (text, algorithm, kind)) in (1..).zip([
+        (scenario::PAPER_NOISELESS, Algorithm::Cfc, stuck),
+        (scenario::PAPER_NOISELESS, Algorithm::Lookahead, stuck),
+        (scenario::PAPER_NOISY, Algorithm::Scc, inverted),
+        (scenario::PAPER_NOISY, Algorithm::Lookahead, stuck),
+    ]) {
+        let overrides = Overrides { algorithm: Some(algorithm), steps: Some(32), seed: None };
+        let text = text.replace("p = 0.7", "p = 0.95");
+        let mut mission = scenario::parse("", &text, overrides).expect("a good scenario");
+        mission.sensor = vec![Fault { kind, from: 3, to: u32::MAX }];
+        let played = chip.fly(&mission, Faults::default()).expect("it flies");
+        assert_eq!(trace::lines(&played.recording.results), here(&mission), "{algorithm:?}");
+        let mut planner = mission.planner();
+        let (mut planner, mut pose) = (Watched::new(&mut *planner), mission.start);
+        for (step, number) in played.recording.steps.iter().zip(1..) {
+            let evidence = |alarm: Option<Alarm>| alarm.map_or(0.0, |it| it.evidence);
+            let before = evidence(planner.alarm());
+            assert!(matches!(planner.plan(pose), Plan::Move(_)));
+            planner.observe(step.pose, step.reading).expect("no label contradicts another");
+            pose = step.pose;
+            let passes = |level| before < level && evidence(planner.alarm()) >= level;
+            if let Some(Alarm { evidence, suspect }) = planner.alarm()
+                && (passes(Alarm::WARNING) || passes(Alarm::ALARM))
+            {
+                expected.push(format!(
+                    "step {number}: evidence {evidence:?} against a straight, still line: {suspect:?}"
+                ));
+            }
+        }
+        let log = chip.messages_until(number, "bisector");
+        let told = log.into_iter().filter(|it| it.contains("evidence"));
+        assert_eq!(told.collect::<Vec<_>>(), expected);
+    }
+    println!("{expected:#?}");
+    assert!(expected.len() >= 6);
 }
 
 /// What was written to a port's set and reset register, by QEMU's log: it has no GPIO but says so.
