@@ -12,6 +12,7 @@ mod predictor;
 mod reference;
 mod scc;
 mod search;
+mod spread;
 mod tolerance;
 mod unknown_reliability;
 mod version_space;

@@ -6,6 +6,7 @@ mod campaign;
 mod deviations;
 mod doubtful_audits;
 mod failures;
+mod far;
 mod fields;
 mod garden;
 mod honesty;

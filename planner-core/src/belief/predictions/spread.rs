@@ -25,11 +25,11 @@ const LEAST: f32 = 1.0 / 1024.0;
 #[derive(Clone, Copy, Debug)]
 pub struct Stretch {
     /// The middle of it, on the estimate.
-    pub(crate) middle: Site,
+    pub middle: Site,
     /// Its direction, of a length near 2^24.
-    pub(crate) along: Vector,
+    pub along: Vector,
     /// How long it is, lattice units.
-    pub(crate) length: f32,
+    pub length: f32,
 }
 
 /// The variance of lines over a stretch.
