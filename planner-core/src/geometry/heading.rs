@@ -172,7 +172,8 @@ impl SinCos {
     /// The sine of its turn to the left from another direction.
     pub(crate) fn turn_from(self, other: Self) -> f32 {
         const UNIT: f32 = 1.0 / (1_u64 << 60) as f32;
-        let across = other.cos as i64 * self.sin as i64 - other.sin as i64 * self.cos as i64;
+        let [from, to] = [other, self].map(|it| Vector { x: it.cos, z: it.sin });
+        let across = from.cross(to);
         across as f32 * UNIT
     }
 

@@ -24,7 +24,7 @@ use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::decision::{Decision, prospects};
 use crate::search::chord::Chord;
 use crate::search::dead_end::place;
-use crate::search::errand::{Errand, errand, motions_to};
+use crate::search::errand::{Errand, UNKNOWN, errand, motions_to};
 use crate::search::lookout::Lookout;
 use crate::search::objective::Effort;
 
@@ -41,8 +41,10 @@ const TRIES: usize = 3;
 /// The looks of these ways together.
 const LOOKS: u32 = 2_048;
 
-/// Motions to a place at most: twice as many as lead straight to it, and so many more.
-const TURNS: u16 = 16;
+/// Motions to a place at most: so many more than a way seems to take at its beginning. What needs more goes round about
+/// the place. Where keep-outs lie between, twice as many as lead straight there, and so many more.
+const MORE: u16 = 2;
+const MORE_ROUND: u16 = 16;
 
 /// The usual price of a label, as a share of the mean of the area's sides.
 const USUAL: f64 = 0.125;
@@ -249,19 +251,28 @@ impl Sight for Far {
         let mut effort = Effort::of(LOOKS);
         journey.next = journey.now;
         for Place { site, worth } in places.list.into_iter().take_while(|it| it.worth > most) {
-            let left = match journey.now {
-                Stretch::To(_, left) => left,
-                _ => TURNS.saturating_add((2.0 * motions_to(lookout.dynamics, pose, site)) as u16),
-            };
-            let way = (left > 0).then(|| {
-                let with = (lookout.dynamics, &lookout.area);
-                errand(with, pose, (site, nearness(lookout.dynamics)), &mut effort)
-            });
-            if let Some(Errand { leg: (action, target), arrives, .. }) = way.flatten() {
-                let wants_label = arrives && belief.ground().may_tell(target.site);
-                let is_there = arrives && !wants_label;
-                journey.next = if is_there { Stretch::Over } else { Stretch::To(site, left - 1) };
-                return Some(Decision { action, target, worth, wants_label, is_far: true });
+            let with = (lookout.dynamics, &lookout.area);
+            let near = nearness(lookout.dynamics);
+            let way = errand(with, pose, (site, near), &mut effort);
+            if let Some(Errand { leg: (action, target), arrives, motions }) = way {
+                let seems = (motions != UNKNOWN).then_some(u16::from(motions));
+                let left = match (journey.now, seems) {
+                    (Stretch::To(_, left), _) => left,
+                    (_, Some(motions)) => motions.saturating_add(MORE),
+                    (_, None) => {
+                        let straight = motions_to(lookout.dynamics, pose, site);
+                        (2.0 * straight) as u16 + MORE_ROUND
+                    }
+                };
+                if let Some(after) = left.checked_sub(1)
+                    && seems.is_none_or(|motions| motions <= left)
+                {
+                    // What can be reached of the place may lie on certain ground.
+                    let wants_label = arrives && belief.ground().may_tell(target.site);
+                    let is_over = arrives && !wants_label;
+                    journey.next = if is_over { Stretch::Over } else { Stretch::To(site, after) };
+                    return Some(Decision { action, target, worth, wants_label, is_far: true });
+                }
             }
             journey.next = Stretch::Over;
         }

@@ -86,7 +86,7 @@ fn weighed(about: &About, given: &Lines, labels: &[Sample], p: f64) -> Vec<(Line
 }
 
 /// The variance over a stretch of 20 m.
-fn variance(lines: impl Iterator<Item = ([f64; 2], f64)> + Clone) -> f64 {
+fn variance(lines: &(impl Iterator<Item = ([f64; 2], f64)> + Clone)) -> f64 {
     let mass: f64 = lines.clone().map(|(_, weight)| weight).sum();
     [400.0 / 12.0, 1.0]
         .into_iter()
@@ -111,10 +111,10 @@ fn expected(lines: &[(Line, [f64; 2], f64)], site: Site, p: f64) -> f64 {
                 (*at, weight * if is_so { p } else { 1.0 - p })
             });
             let chance = after.clone().map(|(_, weight)| weight).sum::<f64>() / mass;
-            if chance > 1e-9 { chance * variance(after) } else { 0.0 }
+            if chance > 1e-9 { chance * variance(&after) } else { 0.0 }
         })
         .sum();
-    1.0 - left / variance(whole)
+    1.0 - left / variance(&whole)
 }
 
 /// Places about the estimate at which at least a twentieth of the lines disagree with the others.

@@ -83,7 +83,7 @@ impl Whole {
 
     /// The share of the variance that a label is expected to remove which parts the lines into these two, and is true
     /// with probability `p`.
-    pub(crate) fn reduction(&self, [part, other]: [LineSums; 2], p: f32) -> f32 {
+    pub(crate) fn reduction(self, [part, other]: [LineSums; 2], p: f32) -> f32 {
         let (a, b) = (1.0 / part.mass, 1.0 / other.mass);
         let offset = part.offset * a - other.offset * b;
         let turn = part.turn * a - other.turn * b;

@@ -41,6 +41,9 @@ pub(super) fn estimates<L: Planner>(planner: &L) -> Estimates {
     planner.estimates()
 }
 
+/// Look-ahead for labels that are true.
+type OfTrueLabels<D, G, C, S, const N: usize> = Lookahead<D, VersionSpace<N>, G, C, S>;
+
 /// A planner that was made for a setup.
 #[derive(Clone, Debug)]
 pub struct Prepared<L> {
@@ -121,7 +124,7 @@ impl Setup {
         PlannerSetup { dynamics, area, options }: PlannerSetup<D, G>,
         (evaluations, far): (u32, Option<Far>),
         goal: Option<Goal>,
-    ) -> Result<Prepared<Lookahead<D, VersionSpace<N>, G, C, S>>, DeclinedError> {
+    ) -> Result<Prepared<OfTrueLabels<D, G, C, S, N>>, DeclinedError> {
         let sight = S::of(far).ok_or(DeclinedError::Price)?;
         let goal = goal.map(|goal| Goal::of(goal).ok_or(DeclinedError::Goal)).transpose()?;
         let capacity = Capacity { samples: N as u16, hypotheses: 1 };
