@@ -5,7 +5,12 @@ use host_sim::campaign::ensemble::Campaign;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::asking::Asking;
 use host_sim::report::campaign as tables;
-use planner_core::{AnyVehicle, Seeks, Unicycle};
+use nalgebra::Point2;
+use planner_core::geometry::lattice::UNITS_PER_METRE;
+use planner_core::{
+    AnyVehicle, Area, Far, Heading, Label, Lookahead, Near, NoGoal, Persist as _, Plan,
+    Planner as _, Pose, Sample, Seeks, Sight, Site, Unicycle, VersionSpace,
+};
 use tests::{cases, is_long};
 
 /// Motions without a goal end here.
@@ -80,4 +85,99 @@ fn a_higher_price_drives_farther_for_more() {
     let (accuracy, bits) = (at(&accuracy, 16), at(&bits, 16));
     assert!(bits.metres < 0.6 * accuracy.metres, "{} m, {} m", bits.metres, accuracy.metres);
     assert!(accuracy.centre_deg.median < bits.centre_deg.median, "{accuracy:?}, {bits:?}");
+}
+
+type Seeing<S> = Lookahead<Unicycle, VersionSpace<32>, Area, NoGoal, S>;
+
+fn site(x: f64, z: f64) -> Site {
+    Site::try_from(Point2::new(x, z)).expect("as it should")
+}
+
+/// The line is `z = 250`, 500 m x 500 m large.
+fn label(site: Site) -> Label {
+    if site.z() >= 250 * UNITS_PER_METRE { Label::Positive } else { Label::Negative }
+}
+
+fn area() -> Area {
+    Area::metres([0.0, 0.0], [500.0, 500.0]).expect("as it should")
+}
+
+fn planner<S: Sight>(sight: S) -> Seeing<S> {
+    let places = [(200.0, 150.0), (210.0, 330.0), (300.0, 360.0), (310.0, 190.0)];
+    let given = places.map(|(x, z)| site(x, z)).map(|site| Sample { site, label: label(site) });
+    let space = VersionSpace::new(&given).expect("as it should");
+    Lookahead::new(area(), Unicycle::default(), space).expect("as it should").seeing(sight)
+}
+
+fn start() -> Pose {
+    Pose { site: site(200.0, 150.0), heading: Heading::default() }
+}
+
+/// Flies so many motions, has each looked at before it is made, and returns the labels.
+fn fly<S: Sight>(sight: S, motions: u32, mut look: impl FnMut(&mut Seeing<S>, Pose)) -> u32 {
+    let (mut planner, mut pose, mut labels) = (planner(sight), start(), 0);
+    for _ in 0..motions {
+        look(&mut planner, pose);
+        let Plan::Move(motion) = planner.plan(pose) else { break };
+        pose = motion.target;
+        let reading = motion.wants_label.then(|| label(pose.site).into());
+        labels += u32::from(reading.is_some());
+        planner.observe(pose, reading).expect("as it should");
+    }
+    labels
+}
+
+#[test]
+fn a_price_buys_driving_for_fewer_labels() {
+    let [none, some, high] = [0.0, 50.0, 16_384.0]
+        .map(|price| fly(Far::at_price(price).expect("as it should"), 400, |_, _| ()));
+    assert!(none >= 28 && high < some && high >= 2, "{none}, {some}, {high} labels");
+    assert!(Far::at_price(-1.0).is_err() && Far::at_price(f64::NAN).is_err());
+}
+
+/// A plan asked twice, and by a planner that was asleep on the way, is the same.
+#[test]
+fn a_way_goes_on_after_a_sleep() {
+    let far = Far::across(&area());
+    let mut silent = 0;
+    fly(far, 150, |awake, pose| {
+        let plan = awake.plan(pose);
+        assert_eq!(plan, awake.plan(pose));
+        let mut woken = planner(far);
+        woken.restore(&awake.snapshot()).expect("as it should");
+        assert_eq!(woken.plan(pose), plan);
+        silent += u32::from(matches!(plan, Plan::Move(motion) if !motion.wants_label));
+    });
+    assert!(silent > 50, "{silent}");
+}
+
+#[test]
+fn what_is_told_at_run_time_sees_as_far() {
+    let far = Far::at_price(20.0).expect("as it should").seeking(Seeks::Bits);
+    for told in [None, Some(far)] {
+        let (mut near, mut distant, mut either) = (planner(Near), planner(far), planner(told));
+        let mut pose = start();
+        for _ in 0..60 {
+            let plan = either.plan(pose);
+            let same = if told.is_some() { distant.plan(pose) } else { near.plan(pose) };
+            assert_eq!(plan, same);
+            let Plan::Move(motion) = plan else { break };
+            pose = motion.target;
+            let reading = motion.wants_label.then(|| label(pose.site).into());
+            near.observe(pose, reading).expect("as it should");
+            distant.observe(pose, reading).expect("as it should");
+            either.observe(pose, reading).expect("as it should");
+        }
+    }
+}
+
+#[test]
+fn sight_is_far_by_default_where_the_area_is_large() {
+    let vehicle = Unicycle::default();
+    let square = |side: f64| Area::metres([0.0, 0.0], [side, side]).expect("as it should");
+    assert_eq!(Far::usual(&square(20.0), &vehicle), None);
+    assert_eq!(Far::usual(&square(32.0), &vehicle), None);
+    let lake = Area::metres([0.0, 0.0], [800.0, 500.0]).expect("as it should");
+    let usual = Far::usual(&lake, &vehicle).expect("as it should");
+    assert!((usual.price() - 81.25).abs() < 1e-3, "{}", usual.price());
 }
