@@ -132,6 +132,13 @@ impl<const N: usize> SampleBuffer<N> {
         let _ = self.samples.pop();
     }
 
+    /// Removes a sample. Those after it move up, so their indices fall by one.
+    pub(crate) fn remove(&mut self, index: usize) {
+        if index < self.samples.len() {
+            let _ = self.samples.remove(index);
+        }
+    }
+
     /// Whether another sample would be refused.
     pub fn is_full(&self) -> bool {
         self.samples.is_full()

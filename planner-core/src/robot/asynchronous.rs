@@ -26,7 +26,8 @@
 //! # Ok::<(), &str>(())
 //! ```
 //!
-//! A step that is dropped before its end leaves the planner as it was and the robot wherever it has come: stop it,
+//! A step that is dropped before its end leaves the planner as it was, but for labels on the way that it has already
+//! taken in. It leaves the robot wherever it has come: stop it,
 //! and tell the agent where it is ([`relocate`](Agent::relocate)).
 
 #![expect(async_fn_in_trait, reason = "executors on chips run futures where they are made")]
@@ -36,6 +37,7 @@ use core::fmt::Debug;
 use embedded_hal::digital::InputPin;
 
 use crate::belief::sample::Reading;
+use crate::geometry::lattice::Site;
 use crate::motion::dynamics::Pose;
 use crate::planner::{Motion, Planner};
 use crate::robot::agent::{Agent, AgentError, Event};
@@ -92,6 +94,19 @@ pub trait Drive {
     /// # Errors
     /// The drive's own.
     async fn drive(&mut self, motion: &Motion) -> Result<Pose, Self::Error>;
+
+    /// As [`drive`](Self::drive), for a vehicle whose labels are to be read on the way as well. It awaits `report` at each
+    /// place where a label is to be read.
+    ///
+    /// # Errors
+    /// As `drive`.
+    async fn drive_reporting(
+        &mut self,
+        motion: &Motion,
+        _report: impl AsyncFnMut(Site),
+    ) -> Result<Pose, Self::Error> {
+        self.drive(motion).await
+    }
 }
 
 impl<T: Drive + ?Sized> Drive for &mut T {
@@ -99,6 +114,14 @@ impl<T: Drive + ?Sized> Drive for &mut T {
 
     async fn drive(&mut self, motion: &Motion) -> Result<Pose, Self::Error> {
         T::drive(self, motion).await
+    }
+
+    async fn drive_reporting(
+        &mut self,
+        motion: &Motion,
+        report: impl AsyncFnMut(Site),
+    ) -> Result<Pose, Self::Error> {
+        T::drive_reporting(self, motion, report).await
     }
 }
 
@@ -117,6 +140,20 @@ pub trait Body {
         motion: &Motion,
         pose: &mut Pose,
     ) -> Result<Option<Reading>, Self::Error>;
+
+    /// As [`perform`](Self::perform), for a body that also reads labels on the way. It passes each to `tell` at once, with
+    /// the place where it was read.
+    ///
+    /// # Errors
+    /// As `perform`.
+    async fn perform_reading(
+        &mut self,
+        motion: &Motion,
+        pose: &mut Pose,
+        _tell: impl FnMut(Site, Reading),
+    ) -> Result<Option<Reading>, Self::Error> {
+        self.perform(motion, pose).await
+    }
 }
 
 impl<T: Body + ?Sized> Body for &mut T {
@@ -129,6 +166,15 @@ impl<T: Body + ?Sized> Body for &mut T {
     ) -> Result<Option<Reading>, T::Error> {
         T::perform(self, motion, pose).await
     }
+
+    async fn perform_reading(
+        &mut self,
+        motion: &Motion,
+        pose: &mut Pose,
+        tell: impl FnMut(Site, Reading),
+    ) -> Result<Option<Reading>, T::Error> {
+        T::perform_reading(self, motion, pose, tell).await
+    }
 }
 
 impl<D: Drive, S: LabelSensor> Body for Vehicle<D, S> {
@@ -140,11 +186,33 @@ impl<D: Drive, S: LabelSensor> Body for Vehicle<D, S> {
         pose: &mut Pose,
     ) -> Result<Option<Reading>, Self::Error> {
         *pose = self.drive.drive(motion).await.map_err(VehicleError::Drive)?;
-        if !motion.wants_label {
-            return Ok(None);
-        }
-        self.sensor.read().await.map(Some).map_err(VehicleError::Sensor)
+        read_at_end(&mut self.sensor, motion).await.map_err(VehicleError::Sensor)
     }
+
+    async fn perform_reading(
+        &mut self,
+        motion: &Motion,
+        pose: &mut Pose,
+        mut tell: impl FnMut(Site, Reading),
+    ) -> Result<Option<Reading>, Self::Error> {
+        let Self { drive, sensor } = self;
+        let mut read = Ok(());
+        let report = async |site| {
+            if read.is_ok() {
+                read = sensor.read().await.map(|reading| tell(site, reading));
+            }
+        };
+        *pose = drive.drive_reporting(motion, report).await.map_err(VehicleError::Drive)?;
+        read.map_err(VehicleError::Sensor)?;
+        read_at_end(sensor, motion).await.map_err(VehicleError::Sensor)
+    }
+}
+
+async fn read_at_end<S: LabelSensor>(
+    sensor: &mut S,
+    motion: &Motion,
+) -> Result<Option<Reading>, S::Error> {
+    if motion.wants_label { sensor.read().await.map(Some) } else { Ok(None) }
 }
 
 impl<P: Planner, B: Body> Agent<P, B> {
@@ -157,9 +225,12 @@ impl<P: Planner, B: Body> Agent<P, B> {
             Ok(motion) => motion,
             Err(reason) => return Ok(Event::Stopped(reason)),
         };
-        let (body, pose) = self.body_and_pose();
-        let reading = body.perform(&motion, pose).await.map_err(AgentError::Body)?;
-        self.take_in(motion, reading)
+        let before = self.planner.alarm();
+        let (mut hear, body, pose) = self.parts();
+        let tell = |site, reading| hear.hear(site, reading);
+        let reading = body.perform_reading(&motion, pose, tell).await.map_err(AgentError::Body)?;
+        hear.refused.map_or(Ok(()), Err).map_err(AgentError::Observation)?;
+        self.take_in(motion, reading, before)
     }
 }
 
@@ -178,7 +249,6 @@ mod tests {
     use crate::belief::true_labels::VersionSpace;
     use crate::geometry::area::Area;
     use crate::geometry::heading::Heading;
-    use crate::geometry::lattice::Site;
     use crate::motion::unicycle::Unicycle;
     use crate::planner::cfc::Cfc;
     use crate::planner::lookahead::Lookahead;
