@@ -13,7 +13,7 @@ use crate::campaign::rows::Planners;
 use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::Allowance;
 use crate::mission::names::{CrossingName, FanName, FollowingName, PolicyName, PriorName};
-use crate::mission::scenario;
+use crate::mission::scenario::{self, Room};
 use crate::mission::vehicle::{Source, VehicleTable};
 use crate::world::errors::Errors;
 use crate::world::noise::{Extent, NoiseModel};
@@ -28,9 +28,13 @@ pub(crate) struct CampaignFlags {
     /// Number of standard fields
     #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) fields: u64,
-    /// Steps in each, 1 to 64
+    /// Steps in each, 1 to 64; where labels are true, 1 to 10000
     #[arg(long, default_value_t = 20)]
     steps: u32,
+    /// Readings of each motion, 1 to 50, evenly spread over its length; the last is the label at its end
+    #[arg(long, default_value_t = 1)]
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    readings: u32,
     /// Measure at every step (or label), not only at those of the usual tables
     #[arg(long)]
     every: bool,
@@ -103,6 +107,16 @@ fn is_none(metres: &f64) -> bool {
     *metres == 0.0
 }
 
+const fn one() -> u32 {
+    1
+}
+
+/// Whether it is 1: it is then not stored, as before there was such a flag.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+const fn is_one(number: &u32) -> bool {
+    *number == 1
+}
+
 /// What is to be flown.
 #[derive(Debug)]
 pub(crate) struct Campaigns {
@@ -128,13 +142,16 @@ impl CampaignFlags {
     /// # Errors
     /// Names the flag, what was found and what was expected.
     pub(crate) fn campaigns(&self) -> Result<Campaigns> {
-        scenario::check_steps("--steps", self.steps, ORACLE, false)?;
+        scenario::check_readings("--readings", self.readings)?;
         check_once(&self.compare)?;
         let planners = self.planners();
         let p = self.p.unwrap_or(if planners.contains(&Algorithm::Scc) { 0.7 } else { 1.0 });
         let p = scenario::probability("--p", p)?;
         let prior = self.p_prior.as_deref().map(prior).transpose()?;
         let p = prior.map_or(p, UnknownReliability::mean);
+        let weighs = planners.iter().any(|it| it.weighs(p < 1.0));
+        let room = if weighs { Room::OfEach } else { Room::OfTrue };
+        scenario::check_steps("--steps", self.steps, ORACLE, room)?;
         let p_told = self.p_told(p, prior)?;
         let true_p = self.true_p.unwrap_or(p);
         planners.iter().try_for_each(|&planner| self.check_meanings(planner, p))?;
@@ -160,6 +177,7 @@ impl CampaignFlags {
                 algorithm,
                 fields: self.fields,
                 steps: self.steps,
+                readings: self.readings,
                 every: self.every,
                 seed: self.seed,
                 crossing: self.crossing.unwrap_or_default().into(),

@@ -232,6 +232,7 @@ fn campaign(algorithm: Algorithm, fields: u64, steps: u32, policy: Policy) -> Su
         algorithm,
         fields,
         steps,
+        readings: 1,
         every: false,
         seed: 1,
         crossing: Crossing::default(),

@@ -13,6 +13,7 @@ fn campaign(algorithm: Algorithm, following: Following, steps: u32) -> Summary {
         algorithm,
         fields: 1000,
         steps,
+        readings: 1,
         every: false,
         seed: 1,
         crossing: Crossing::default(),

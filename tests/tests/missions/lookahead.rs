@@ -178,6 +178,7 @@ fn campaign(seed: u64, steps: u32, grid: Grid, noise: Option<NoiseModel>) -> Cam
         algorithm: Algorithm::Lookahead,
         fields: cases(100, 1_000),
         steps,
+        readings: 1,
         every: false,
         seed,
         crossing: Crossing::default(),

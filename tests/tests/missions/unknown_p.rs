@@ -30,6 +30,7 @@ fn flown(told: Told, real: Option<f64>, algorithm: Algorithm, fields: u64) -> Ro
         algorithm,
         fields,
         steps: LABELS + 6,
+        readings: 1,
         every: false,
         seed: 1,
         crossing: Crossing::default(),

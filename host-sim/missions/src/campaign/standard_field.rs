@@ -82,6 +82,7 @@ pub fn standard(seed: u64, number: u64, algorithm: Algorithm, steps: u32) -> Mis
     Mission {
         algorithm,
         steps,
+        readings: 1,
         seed: seed ^ number.rotate_left(32),
         config: Settings {
             area: area.into(),

@@ -45,6 +45,8 @@ struct File {
     algorithm: Algorithm,
     #[serde(default = "defaults::steps")]
     steps: u32,
+    #[serde(default = "defaults::readings")]
+    readings: u32,
     #[serde(default = "defaults::seed")]
     seed: u64,
     varrho: Option<f64>,
@@ -79,6 +81,9 @@ struct File {
 mod defaults {
     pub(super) fn steps() -> u32 {
         10
+    }
+    pub(super) fn readings() -> u32 {
+        1
     }
     pub(super) fn seed() -> u64 {
         1
@@ -192,15 +197,42 @@ fn any(name: &str, text: &str, folder: &Path, overrides: Overrides) -> Result<Mi
     })?;
     // A wrong number of steps in a flag is reported as the flag's.
     if let Some(steps) = overrides.steps {
-        check_steps("--steps", steps, file.oracle.len(), file.audits())?;
+        check_steps("--steps", steps, file.oracle.len(), file.room(overrides))?;
     }
     mission(&file, folder, overrides).map_err(|error| anyhow!("{name}: {error:#}"))
 }
 
-/// The most steps of a mission with an audit, whose labels take no room.
+/// The most steps of a mission whose labels are true: a version space makes room for more.
+const MOST: u32 = 10_000;
+
+/// The most steps of a mission with an audit where labels may be wrong. Labels of an audit take no room.
 const MOST_WITH_AUDIT: u32 = 1_000;
 
+/// The most readings of a motion.
+const MOST_READINGS: u32 = 50;
+
+/// What the labels of a mission take room for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Room {
+    /// True labels: only those that bound the lines left.
+    OfTrue,
+    /// Labels that may be wrong: each, but for those of an audit.
+    ButAudit,
+    /// Labels that may be wrong: each.
+    OfEach,
+}
+
 impl File {
+    /// What its labels take room for.
+    fn room(&self, overrides: Overrides) -> Room {
+        let algorithm = overrides.algorithm.unwrap_or(self.algorithm);
+        match algorithm.weighs(self.noise.is_some()) {
+            false => Room::OfTrue,
+            true if self.audits() => Room::ButAudit,
+            true => Room::OfEach,
+        }
+    }
+
     /// Whether an audit comes before a goal's promise.
     fn audits(&self) -> bool {
         self.stop.as_ref().is_some_and(|table| table.0.audits())
@@ -211,7 +243,7 @@ impl File {
 ///
 /// # Errors
 /// Names `field` or the oracle, the number and the limit.
-pub fn check_steps(field: &str, steps: u32, oracle: usize, audits: bool) -> Result<()> {
+pub fn check_steps(field: &str, steps: u32, oracle: usize, labels: Room) -> Result<()> {
     let most = CAPACITY.saturating_sub(oracle);
     if most == 0 {
         let expected = format!(
@@ -220,21 +252,41 @@ pub fn check_steps(field: &str, steps: u32, oracle: usize, audits: bool) -> Resu
         );
         return wrong("oracle", format!("{oracle} points"), expected);
     }
-    if audits && !(1..=MOST_WITH_AUDIT).contains(&steps) {
-        return wrong(field, steps, format!("1 to {MOST_WITH_AUDIT}"));
+    let (most, why) = match labels {
+        Room::OfTrue => (MOST, String::new()),
+        Room::ButAudit => (MOST_WITH_AUDIT, String::new()),
+        Room::OfEach => {
+            let why = format!(
+                " where labels may be wrong (the planner holds {CAPACITY} samples, {oracle} of them the oracle's)"
+            );
+            (most as u32, why)
+        }
+    };
+    if !(1..=most).contains(&steps) {
+        return wrong(field, steps, format!("1 to {most}{why}"));
     }
-    if !audits && (steps == 0 || steps as usize > most) {
-        let room = format!(
-            "1 to {most} (the planner holds {CAPACITY} samples, {oracle} of them the oracle's)"
+    Ok(())
+}
+
+/// Whether a motion can have so many readings.
+///
+/// # Errors
+/// Names `field`, the number and the limit.
+pub fn check_readings(field: &str, readings: u32) -> Result<()> {
+    if !(1..=MOST_READINGS).contains(&readings) {
+        return wrong(
+            field,
+            readings,
+            format!("1 to {MOST_READINGS}, the last at the motion's end"),
         );
-        return wrong(field, steps, room);
     }
     Ok(())
 }
 
 fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> {
     let steps = overrides.steps.unwrap_or(file.steps);
-    check_steps("steps", steps, file.oracle.len(), file.audits())?;
+    check_steps("steps", steps, file.oracle.len(), file.room(overrides))?;
+    check_readings("readings", file.readings)?;
     let algorithm = overrides.algorithm.unwrap_or(file.algorithm);
     let weight = file.varrho.map_or_else(|| Ok(algorithm.weight()), weight)?;
     let grid = file.fan.map_or(algorithm.grid(), Grid::from);
@@ -277,6 +329,7 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
     Ok(Mission {
         algorithm,
         steps,
+        readings: file.readings,
         seed: overrides.seed.unwrap_or(file.seed),
         config,
         allowance,
