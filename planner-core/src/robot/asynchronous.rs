@@ -245,6 +245,7 @@ mod tests {
     use nalgebra::Point2;
 
     use super::*;
+    use crate::belief::Belief as _;
     use crate::belief::sample::{Label, Sample};
     use crate::belief::true_labels::VersionSpace;
     use crate::geometry::area::Area;
@@ -393,6 +394,131 @@ mod tests {
             alarms += usize::from(event.3.is_some());
         }
         alarms
+    }
+
+    /// A robot whose drivers of either kind report two places on the way of each motion.
+    #[derive(Clone, Copy)]
+    struct Reporting<'a>(Robot<'a>);
+
+    impl Reporting<'_> {
+        fn places(self, motion: &Motion) -> [Site; 2] {
+            let from = self.0.at.get().site;
+            let way = motion.target.site - from;
+            [3, 2].map(|part| {
+                let by = crate::geometry::lattice::Vector { x: way.x / part, z: way.z / part };
+                from.step(by).unwrap()
+            })
+        }
+
+        fn go(self, site: Site) {
+            self.0.at.set(Pose { site, ..self.0.at.get() });
+        }
+    }
+
+    impl hal::Drive for Reporting<'_> {
+        type Error = Infallible;
+
+        fn drive(&mut self, motion: &Motion) -> Result<Pose, Infallible> {
+            hal::Drive::drive(&mut self.0, motion)
+        }
+
+        fn drive_reporting(
+            &mut self,
+            motion: &Motion,
+            report: &mut dyn FnMut(Site),
+        ) -> Result<Pose, Infallible> {
+            for site in self.places(motion) {
+                self.go(site);
+                report(site);
+            }
+            hal::Drive::drive(&mut self.0, motion)
+        }
+    }
+
+    impl Drive for Reporting<'_> {
+        type Error = Infallible;
+
+        async fn drive(&mut self, motion: &Motion) -> Result<Pose, Infallible> {
+            Drive::drive(&mut self.0, motion).await
+        }
+
+        async fn drive_reporting(
+            &mut self,
+            motion: &Motion,
+            mut report: impl AsyncFnMut(Site),
+        ) -> Result<Pose, Infallible> {
+            for site in self.places(motion) {
+                self.go(site);
+                report(site).await;
+            }
+            Drive::drive(&mut self.0, motion).await
+        }
+    }
+
+    #[test]
+    fn readings_on_the_way_are_taken_in_whether_they_are_called_or_awaited() {
+        let [here, there, other] = [Cell::new(start()), Cell::new(start()), Cell::new(start())];
+        let free = Cell::new(None);
+        let robot = |at| Robot { at, stuck: &free, senses: label };
+        let reporting = |at| Vehicle { drive: Reporting(robot(at)), sensor: robot(at) };
+        let silent = Vehicle { drive: robot(&other), sensor: robot(&other) };
+        let planner = Lookahead::new(area(), Unicycle::paper(), known()).unwrap();
+        let mut called = Agent::new(planner.clone(), reporting(&here), start());
+        let mut awaited = Agent::new(planner.clone(), reporting(&there), start());
+        let mut without = Agent::new(planner, silent, start());
+        for _ in 0..8 {
+            let event = called.step().unwrap();
+            assert_eq!(ended(&mut awaited), event);
+            without.step().unwrap();
+        }
+        let samples = |it: &Lookahead<Unicycle, VersionSpace<32>>| it.belief().samples().to_vec();
+        assert_eq!(samples(&called.planner), samples(&awaited.planner));
+        let [more, fewer] = [&called.planner, &without.planner].map(|it| it.belief().information());
+        assert!(more > 1.2 * fewer, "{more} bits, {fewer} without");
+    }
+
+    #[test]
+    fn a_reading_on_the_way_that_is_refused_is_reported_after_the_motion() {
+        let there = at;
+        let [at, free] = [Cell::new(start()), Cell::new(start())];
+        let (stuck, senses) = (Cell::new(None), |_| Label::Positive);
+        let robot = |at| Robot { at, stuck: &stuck, senses };
+        let vehicle = |at| Vehicle { drive: Reporting(robot(at)), sensor: robot(at) };
+        // Below the line all is certain, as it was there.
+        let sample = |(x, z), label| Sample { site: there(x, z), label };
+        let given = [
+            sample((0.0, 9.0), Label::Negative),
+            sample((20.0, 9.0), Label::Negative),
+            sample((10.0, 20.0), Label::Positive),
+        ];
+        let planner = || {
+            let space = VersionSpace::<32>::new(&given).unwrap();
+            Cfc::new(area(), Unicycle::paper(), space).unwrap()
+        };
+        let mut called = Agent::new(planner(), vehicle(&at), start());
+        let refused = called.step();
+        assert!(matches!(refused, Err(AgentError::Observation(_))), "{refused:?}");
+        assert_eq!(called.pose(), at.get());
+        assert_ne!(called.pose(), start());
+        let mut awaited = Agent::new(planner(), vehicle(&free), start());
+        let mut step = pin!(awaited.step_async());
+        let mut context = Context::from_waker(Waker::noop());
+        let ended = (0..20).find_map(|_| match step.as_mut().poll(&mut context) {
+            Poll::Ready(ended) => Some(ended),
+            Poll::Pending => None,
+        });
+        assert_eq!(ended, Some(refused));
+    }
+
+    /// A step that is asked until it ends.
+    fn ended(agent: &mut Agent<impl Planner, impl Body<Error: Debug>>) -> Event {
+        let mut step = pin!(agent.step_async());
+        let mut context = Context::from_waker(Waker::noop());
+        let event = (0..20).find_map(|_| match step.as_mut().poll(&mut context) {
+            Poll::Ready(event) => Some(event.unwrap()),
+            Poll::Pending => None,
+        });
+        event.unwrap()
     }
 
     /// What a sensor reads when it is awaited; none if it does not end when it is asked three times.
