@@ -56,7 +56,7 @@ fn a_trace_lists_the_readings_of_a_step_if_there_are_several() {
     let replayed: Value = serde_json::from_str(&replayed).expect("results");
     let known = &steps[steps.len() - 1]["slope_arcs"][0];
     for end in 0..2 {
-        let [a, b] = [&replayed["slope_arcs"][0][end], &known[end]].map(|it| it.as_f64());
+        let [a, b] = [&replayed["slope_arcs"][0][end], &known[end]].map(Value::as_f64);
         assert!((a.expect("an end") - b.expect("an end")).abs() < 1e-9, "{replayed}");
     }
 }
@@ -98,6 +98,8 @@ fn more_or_fewer_readings_than_can_be_are_refused() {
     let elf = env!("CARGO_BIN_EXE_host-sim");
     let args = ["hil", "several.toml", "--port", elf];
     refuses(folder.path(), &args, &["readings", "found 5", "1 with hil"]);
+    let args = ["reference", "several.toml", "--horizon", "2"];
+    refuses(folder.path(), &args, &["several.toml", "readings", "found 5", "one label a motion"]);
     if cfg!(feature = "mavlink") {
         let args = ["fly", "several.toml", "--dry-run", "--label", "W"];
         refuses(folder.path(), &args, &["several.toml", "readings", "found 5", "1 with fly"]);

@@ -246,7 +246,7 @@ fn fly<const N: usize>(number: u64, ways: Ways) -> Tally {
         let read = read_out(space.lines());
         assert_eq!(read, twin.read_out(), "{}", at());
         let bits = f64::from(start) / f64::from(area(space.lines()));
-        assert_eq!(space.information(), libm::log2(bits), "{}", at());
+        assert_eq!(space.information().to_bits(), libm::log2(bits).to_bits(), "{}", at());
         // Every corner of the lines left agrees with every sample, so these are all lines that do.
         for bound in space.bounds() {
             let agrees = |s: &Sample| i128::from(bound.at(s.site)) * sign(s.label) >= 0;
