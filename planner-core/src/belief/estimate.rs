@@ -133,17 +133,15 @@ pub(crate) fn shortest_pairs(samples: &[Sample], more: Option<Sample>) -> [Optio
 /// The closest two samples of opposite labels that are not among some: the negative one first.
 #[inline(never)] // in two places, and not for speed
 fn shortest(samples: &[Sample], more: Option<Sample>, but: &[Site]) -> Option<[Site; 2]> {
-    let of = |label| {
-        let all = samples.iter().copied().chain(more);
-        all.filter(move |s| s.label == label && !but.contains(&s.site))
-    };
+    let of = |label| samples.iter().chain(&more).filter(move |s| s.label == label);
     let mut shortest = None;
     let mut least = i64::MAX;
-    for n in of(Label::Negative) {
+    for n in of(Label::Negative).filter(|n| !but.contains(&n.site)) {
         for p in of(Label::Positive) {
             let apart = p.site - n.site;
             let length = apart.dot(apart);
-            if length < least {
+            // Few are shorter, so whether one is free is asked last.
+            if length < least && !but.contains(&p.site) {
                 (shortest, least) = (Some([n.site, p.site]), length);
             }
         }
