@@ -1,40 +1,65 @@
-//! Several readings on the way: where a reading costs little, take some along each motion. What is certain before
-//! tells nothing and takes up room, so ask the belief first.
+//! Several readings on the way: where a reading costs little, take some along each motion. The drive reports where it is
+//! as it goes, and the vehicle reads a label there. The planner keeps a label if it tells something. The buffer has room for
+//! fewer samples than there are labels: what no longer matters makes room.
 //!
 //! `cargo run -p planner-core --example readings_on_the_way`
 
 mod field;
 
+use std::convert::Infallible;
+
 use field::{Result, World};
 use planner_core::nalgebra::Point2;
-use planner_core::{Certainty, Lookahead, Plan, Planner as _, Pose, Unicycle, VersionSpace};
+use planner_core::robot::{Drive, SensorFn};
+use planner_core::{
+    Agent, Event, Lookahead, Motion, Planner as _, Pose, Site, Unicycle, Vehicle, VersionSpace,
+};
 
 /// Readings along a motion, the one at its end included.
 const READINGS: i32 = 5;
 
-fn main() -> Result {
-    let world = World::new()?;
-    let space = VersionSpace::<68>::new(&field::given()?)?;
-    let mut planner = Lookahead::new(field::area()?, Unicycle::paper(), space)?;
-    let mut motions = 0;
-    while motions < 12 {
-        let from = Point2::<f64>::from(world.pose().site);
-        let Plan::Move(motion) = planner.plan(world.pose()) else { break };
-        motions += 1;
+/// A drive that reports where it is at even distances.
+struct Tracks<'a>(&'a World);
+
+impl Drive for Tracks<'_> {
+    type Error = Infallible;
+
+    fn drive(&mut self, motion: &Motion) -> std::result::Result<Pose, Infallible> {
+        self.0.go(motion.target);
+        Ok(motion.target)
+    }
+
+    fn drive_reporting(
+        &mut self,
+        motion: &Motion,
+        report: &mut dyn FnMut(Site),
+    ) -> std::result::Result<Pose, Infallible> {
+        let from = Point2::<f64>::from(self.0.pose().site);
         let way = Point2::from(motion.target.site) - from;
-        for k in 1..=READINGS {
-            let is_end = k == READINGS;
+        for k in 1..READINGS {
             let place = from + way * f64::from(k) / f64::from(READINGS);
-            world.go(if is_end { motion.target } else { Pose::at(place, motion.target.heading)? });
-            // The planner counts on the label at the end; the others are a gift.
-            let asks = planner.belief().certainty(world.pose().site) == Certainty::Uncertain;
-            let reading = (asks || is_end && motion.wants_label).then(|| world.label().into());
-            if reading.is_some() || is_end {
-                planner.observe(world.pose(), reading)?;
+            if let Ok(pose) = Pose::at(place, motion.target.heading) {
+                self.0.go(pose);
+                report(pose.site);
             }
         }
+        self.drive(motion)
     }
-    let labels = planner.belief().samples().len() - 4;
-    println!("{motions} motions, {labels} labels");
-    field::report(planner.estimate(), 0.05)
+}
+
+fn main() -> Result {
+    let world = World::new()?;
+    let space = VersionSpace::<16>::new(&field::given()?)?;
+    let planner = Lookahead::new(field::area()?, Unicycle::paper(), space)?;
+    let sensor = SensorFn(|| Ok::<_, Infallible>(world.label()));
+    let vehicle = Vehicle { drive: Tracks(&world), sensor };
+    let mut agent = Agent::new(planner, vehicle, field::start()?);
+    let mut motions = 0;
+    while motions < 12 {
+        let Event::Step(_) = agent.step()? else { break };
+        motions += 1;
+    }
+    let kept = agent.planner.belief().samples().len();
+    println!("{motions} motions, {} readings, {kept} samples kept", READINGS * motions);
+    field::report(agent.estimate(), 0.01)
 }

@@ -17,7 +17,7 @@ use crate::mission::asking::Asking;
 use crate::mission::names::{
     CrossingName, FanName, FollowingName, PolicyName, PriorName, SeeksName,
 };
-use crate::mission::scenario;
+use crate::mission::scenario::{self, Room};
 use crate::mission::vehicle::{Source, VehicleTable};
 use crate::world::errors::Errors;
 use crate::world::noise::{Extent, NoiseModel};
@@ -32,9 +32,13 @@ pub(crate) struct CampaignFlags {
     /// Number of standard fields
     #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) fields: u64,
-    /// Steps in each, 1 to 64; with --labels or --price up to 10000
+    /// Steps in each, 1 to 64; where labels are true, or with --labels or --price, 1 to 10000
     #[arg(long, default_value_t = 20)]
     steps: u32,
+    /// Readings of each motion, 1 to 50, evenly spread over its length; the last is the label at its end
+    #[arg(long, default_value_t = 1)]
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    readings: u32,
     /// Measure at every step (or label), not only at those of the usual tables
     #[arg(long)]
     every: bool,
@@ -123,6 +127,16 @@ fn is_none(metres: &f64) -> bool {
     *metres == 0.0
 }
 
+const fn one() -> u32 {
+    1
+}
+
+/// Whether it is 1: it is then not stored, as before there was such a flag.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+const fn is_one(number: &u32) -> bool {
+    *number == 1
+}
+
 /// What is to be flown.
 #[derive(Debug)]
 pub(crate) struct Campaigns {
@@ -148,7 +162,8 @@ impl CampaignFlags {
     /// # Errors
     /// Names the flag, what was found and what was expected.
     pub(crate) fn campaigns(&self) -> Result<Campaigns> {
-        let (sides, room) = (sides(&self.area)?, scenario::room(ORACLE)?);
+        scenario::check_readings("--readings", self.readings)?;
+        let sides = sides(&self.area)?;
         check_once(&self.compare)?;
         let planners = self.planners();
         let p = self.p.unwrap_or(if planners.contains(&Algorithm::Scc) { 0.7 } else { 1.0 });
@@ -183,10 +198,14 @@ impl CampaignFlags {
             let asked =
                 (self.price.filter(|_| is_meant), self.labels, self.seek.filter(|_| is_meant));
             let names = ["--price", "--labels", "--seek"];
-            let asking = Asking::of(names, asked, (algorithm, &area, &vehicle), room)?;
-            scenario::check_steps("--steps", self.steps, room, &asking, false)?;
+            let weighs = algorithm.weighs(p < 1.0);
+            let most = scenario::most_labels(ORACLE, weighs)?;
+            let asking = Asking::of(names, asked, (algorithm, &area, &vehicle), most)?;
+            let room = Room::of(weighs, &asking, false);
+            scenario::check_steps("--steps", self.steps, ORACLE, room)?;
             Ok::<_, Error>(Campaign {
                 fields: self.fields,
+                readings: self.readings,
                 every: self.every,
                 seed: self.seed,
                 crossing: self.crossing.unwrap_or_default().into(),

@@ -30,6 +30,18 @@ fn check_sensor(mission: &Mission, labels: LabelSource) -> Result<()> {
     Ok(())
 }
 
+/// Whether a vehicle outside of this program can read as often on a motion.
+///
+/// # Errors
+/// Names `readings`.
+pub(crate) fn check_readings(mission: &Mission, command: &str) -> Result<()> {
+    if mission.readings > 1 {
+        let expected = format!("1 with {command}: it takes in the label at a motion's end alone");
+        return wrong("readings", mission.readings, expected);
+    }
+    Ok(())
+}
+
 /// The setup of a mission, as it is sent to a chip.
 ///
 /// # Errors
@@ -39,6 +51,7 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
         bail!("stop.audit: found false, expected true: a board always audits");
     }
     check_sensor(mission, labels)?;
+    check_readings(mission, "hil")?;
     let Some(noise) = mission.noise_known() else {
         let expected = "a number with hil: a board is told how often labels are true";
         return wrong("noise.p", "a prior", expected);
@@ -62,11 +75,11 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
         anyhow!("oracle: found {} points, expected at most {most} on a board", samples.len())
     })?;
     // True labels leave one hypothesis. `t` labels that may be wrong leave at most `1 + t + t (t - 1) / 2`.
-    // Labels of an audit take no room.
-    let room = CAPACITY - samples.len();
-    let is_apart = mission.goal.is_some() || mission.asking.is_apart();
-    let most = if is_apart { room as u32 } else { u32::MAX };
-    let taken = mission.asking.labels.unwrap_or(most).min(mission.steps);
+    // Labels of an audit take no room, and true labels no more than the planner here has.
+    let room = (CAPACITY - samples.len()) as u32;
+    let is_apart = mission.goal.is_some() || mission.asking.is_apart() || !mission.is_noisy();
+    let most = if is_apart { room } else { u32::MAX };
+    let taken = mission.asking.labels.unwrap_or(most).min(most).min(mission.steps);
     let hypotheses = match mission.algorithm {
         _ if mission.is_noisy() => 1 + taken + taken * taken.saturating_sub(1) / 2,
         _ => 1,

@@ -46,6 +46,12 @@ fn take(rows: &mut Rows, record: Record<'_>, line: usize) -> Result<()> {
         }
         (_, None) => bail!("found no start, expected a trace, which begins with it"),
         (Record::Step(step), Some(_)) => {
+            for it in step.readings.iter().take(step.passed().count()) {
+                // What was left out told the planner nothing.
+                if it.cuts && it.label != 0 {
+                    rows.push([it.x, it.z], label(it.label)?, line);
+                }
+            }
             let Some(read) = step.label.filter(|read| *read != 0) else { return Ok(()) };
             if step.trusted == Some(true) {
                 rows.certain.push(rows.labels.len());

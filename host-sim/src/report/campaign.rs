@@ -5,6 +5,7 @@ use std::fmt::Display;
 
 use crate::campaign::accuracy::{self, Row};
 use crate::campaign::calibration;
+use crate::campaign::ensemble::readings_told;
 use crate::campaign::spread::Spread;
 use crate::mission::algorithm::Algorithm;
 use crate::report::table::{Column, Table};
@@ -28,11 +29,12 @@ pub fn accuracy(summary: &accuracy::Summary) -> String {
         )
     };
     format!(
-        "{}, {fields} standard fields, seed {seed}\n\n\
+        "{}, {fields} standard fields, seed {seed}{}\n\n\
          Slope error, degrees: median, 90th percentile, worst\n\n{degrees}\n\
          Misclassified area, per cent: median, 90th percentile, worst; means so far\n\n{areas}\n\
          Ended by: {}\nRecoveries in {} steps: {}\n{examined}",
         algorithm.title(),
+        readings_told(summary.readings),
         counts(&summary.ends),
         summary.plans,
         counts(&summary.recoveries),

@@ -1,6 +1,7 @@
 //! Campaigns of several planners on the same fields, side by side: a column each.
 
 use crate::campaign::calibration::{Calibration, how_often};
+use crate::campaign::ensemble::readings_told;
 use crate::campaign::{accuracy, calibration};
 use crate::mission::algorithm::Algorithm;
 use crate::report::table::{Column, Table};
@@ -32,8 +33,10 @@ pub fn accuracy(summaries: &[accuracy::Summary]) -> String {
     add("control cost", motion.as_slice(), |row| format!("{:.1}", row.control_cost));
     add("metres", motion.as_slice(), |row| format!("{:.1}", row.metres));
     format!(
-        "{} standard fields, seed {}, true labels; errors are medians\n\n{table}",
-        first.fields, first.seed
+        "{} standard fields, seed {}, true labels{}; errors are medians\n\n{table}",
+        first.fields,
+        first.seed,
+        readings_told(first.readings)
     )
 }
 
@@ -65,11 +68,12 @@ pub fn calibration(summaries: &[calibration::Summary]) -> String {
     });
     add("control cost", |row| format!("{:.1}", row.control_cost));
     format!(
-        "{} standard fields, seed {}, {}; a label tells {:.4} bits at most; \
+        "{} standard fields, seed {}, {}{}; a label tells {:.4} bits at most; \
          errors are medians, sets by the area prior\n\n{table}",
         first.fields,
         first.seed,
         how_often(first.p, first.p_told, first.draws_p),
+        readings_told(first.readings),
         first.limit
     )
 }

@@ -65,6 +65,8 @@ fn parts(
     // From its line in the trace, as single precision has its own digits there.
     let mut record: Map<_, _> = serde_json::from_str(&trace::step(step)).expect("an object");
     let pose = record.remove("true_pose");
+    let readings = record.remove("readings").map(|_| step.readings.len());
+    let cuts = readings.map(|_| step.readings.iter().filter(|it| it.cuts).count());
     record.retain(|key, _| !["record", "slope_arcs"].contains(&key.as_str()));
     let more = json!({
         "algorithm": algorithm,
@@ -73,6 +75,8 @@ fn parts(
         "truth": truth,
         "slope": interval(&step.slope_arcs),
         "true": pose,
+        "readings": readings,
+        "readings_cut": cuts,
         "proven": step.proven.unwrap_or(true),
         "control_cost": step.control_cost,
         "metres": step.metres,

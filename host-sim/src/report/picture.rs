@@ -6,7 +6,7 @@ use planner_core::belief::evidence::Alarm;
 use planner_core::geometry::lattice::{LIMIT, UNITS_PER_METRE, Vector};
 use planner_core::link::message::MissionArea;
 use planner_core::{
-    AnyVehicle, Area, Label, Line, LocalLine, PosteriorView, Reading, Sample, Site, Stage, Step,
+    AnyVehicle, Area, Label, Line, LocalLine, PosteriorView, Reading, Sample, Site, Stage,
 };
 
 use crate::mission::definition::{Mission, Table};
@@ -207,11 +207,21 @@ impl Picture {
             beside: None,
         }));
         // The number of the step that took a sample; given ones were true at the start.
-        let mut taken = (1..).zip(&recording.steps);
+        let steps = (1..).zip(recording.steps.iter().zip(&results.steps));
+        let taken: Vec<_> = steps
+            .flat_map(|(number, (step, result))| {
+                let end = step.reading.map(|reading| (step.pose.site, reading));
+                result.passed().chain(end).map(move |label| (number, label))
+            })
+            .collect();
+        let mut next = taken.iter();
         let number = |s: &Sample| {
-            let is_it =
-                |step: &Step| step.pose.site == s.site && step.reading == Some(s.label.into());
-            taken.find(|(_, step)| is_it(step)).map_or(0, |(number, _)| number)
+            let mut ahead = next.clone();
+            let found = ahead.find(|(_, label)| *label == (s.site, s.label.into()));
+            found.map_or(0, |(number, _)| {
+                next = ahead;
+                *number
+            })
         };
         let given = mission.given.samples().len();
         let samples = belief.samples().iter();

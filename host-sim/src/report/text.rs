@@ -126,6 +126,10 @@ fn end(results: &Results, estimates: &[(&str, Option<LineRecord>); 3]) -> String
         results.travelled(),
         results.cost(),
     );
+    if let Some(readings) = readings(results) {
+        text += &readings;
+        text.push('\n');
+    }
     if let Some(goal) = &results.end.goal {
         text += &promise(goal, &results.end.reason);
         if let Some(told) = results.start.tolerance.filter(|_| goal.is_met && goal.level.is_none())
@@ -149,6 +153,15 @@ fn end(results: &Results, estimates: &[(&str, Option<LineRecord>); 3]) -> String
     }
     text.push('\n');
     text + &outcome(&results.end) + &errors(results, estimates)
+}
+
+/// How many readings there were on the way and at the ends of motions, where there are such on the way.
+pub(crate) fn readings(results: &Results) -> Option<String> {
+    let (readings, cuts) = results.readings();
+    let told = if results.start.labels_err { "were taken in" } else { "ruled out lines" };
+    (readings > 0).then(|| {
+        format!("{readings} readings on the way and at ends of motions; {cuts} of them {told}.")
+    })
 }
 
 /// Why no straight, still line explains the labels, and what to do: sentences with their headings.

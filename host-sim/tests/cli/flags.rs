@@ -12,13 +12,13 @@ fn bad_flags_and_places_are_refused() {
     fs::create_dir(folder.path().join("d")).expect("a folder");
     let cases: [(&[&str], &[&str]); 13] = [
         (&["run", "none.toml"], &["none.toml", "readable"]),
-        (&["run", "m.toml", "--steps", "99"], &["--steps", "found 99", "1 to 64"]),
+        (&["run", "m.toml", "--steps", "10001"], &["--steps", "found 10001", "1 to 10000"]),
         (&["run", "m.toml", "--steps", "many"], &["--steps", "many"]),
         (&["run", "m.toml", "--algorithm", "abc"], &["--algorithm", "abc", "cfc"]),
         (&["run", "m.toml", "--trace", "no/t.jsonl"], &["no/t.jsonl", "expected a place"]),
         (&["run", "m.toml", "--trace", "t.jsonl", "--figure", "d"], &["d", "directory"]),
         (&["campaign", "--fields", "0"], &["--fields", "0"]),
-        (&["campaign", "--steps", "65"], &["--steps", "found 65", "1 to 64"]),
+        (&["campaign", "--steps", "0"], &["--steps", "found 0", "1 to 10000"]),
         (&["campaign", "--p", "1.5"], &["--p", "found 1.5", "[0, 1]"]),
         (&["campaign", "--p", "0.7"], &["--p", "found 0.7", "expected 1", "cfc"]),
         (

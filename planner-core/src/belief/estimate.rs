@@ -101,9 +101,8 @@ fn widest<F: Fn(usize) -> Option<Sample>>(trapezoids: Trapezoids<F>) -> Option<L
 /// `None` when there are no two such pairs or their diagonals do not cross. When the pairs lie side
 /// by side it is a poor estimate: prefer [`centre`]. `O(n^2)` for `n` samples.
 pub fn bisector(samples: &[Sample]) -> Option<LocalLine> {
-    let first = shortest(samples, &[])?;
-    let [n1, p1] = first;
-    let [n2, p2] = shortest(samples, &first)?;
+    let [first, second] = shortest_pairs(samples, None);
+    let ([n1, p1], [n2, p2]) = (first?, second?);
     // The crossing is a way along the diagonal from `n1`, and some way along the other one from `p1`.
     let (d, e, side) = (p2 - n1, n2 - p1, p1 - n1);
     let (on_d, on_e, crossed) = (side.cross(e), side.cross(d), d.cross(e));
@@ -124,15 +123,25 @@ pub fn bisector(samples: &[Sample]) -> Option<LocalLine> {
     frame.line(normal, normal[0] * crossing)
 }
 
+/// The two shortest pairs of opposite labels that share no point, of some samples and one more: each with its negative
+/// point first.
+pub(crate) fn shortest_pairs(samples: &[Sample], more: Option<Sample>) -> [Option<[Site; 2]>; 2] {
+    let first = shortest(samples, more, &[]);
+    [first, first.and_then(|first| shortest(samples, more, &first))]
+}
+
 /// The closest two samples of opposite labels that are not among some: the negative one first.
-fn shortest(samples: &[Sample], but: &[Site]) -> Option<[Site; 2]> {
+#[inline(never)] // in two places, and not for speed
+fn shortest(samples: &[Sample], more: Option<Sample>, but: &[Site]) -> Option<[Site; 2]> {
+    let of = |label| samples.iter().chain(&more).filter(move |s| s.label == label);
     let mut shortest = None;
     let mut least = i64::MAX;
-    for n in samples.iter().filter(|s| s.label == Label::Negative && !but.contains(&s.site)) {
-        for p in samples.iter().filter(|s| s.label == Label::Positive && !but.contains(&s.site)) {
+    for n in of(Label::Negative).filter(|n| !but.contains(&n.site)) {
+        for p in of(Label::Positive) {
             let apart = p.site - n.site;
             let length = apart.dot(apart);
-            if length < least {
+            // Few are shorter, so whether one is free is asked last.
+            if length < least && !but.contains(&p.site) {
                 (shortest, least) = (Some([n.site, p.site]), length);
             }
         }

@@ -51,6 +51,21 @@ pub trait Belief {
     /// Whether another sample would be refused for want of room.
     fn is_full(&self) -> bool;
 
+    /// Takes in what was read at a site on the way of a motion, and returns whether it was kept. It is left out where it
+    /// tells nothing: where all lines left agree on the label. It is also left out where it would take the last
+    /// room, as that is for the label at the motion's end. The site may be off by the [tolerance](Self::tolerance).
+    ///
+    /// Labels that may be wrong count as independent of each other. The errors of a real sensor at places close
+    /// together often are not. So read them as far apart as its errors reach.
+    ///
+    /// # Errors
+    /// As [`observe`](Self::observe). Without room it is no error.
+    fn observe_on_the_way(
+        &mut self,
+        site: Site,
+        reading: Reading,
+    ) -> Result<bool, ObservationError>;
+
     /// The configured tolerance: how far off a position may be at most.
     fn tolerance(&self) -> Tolerance;
 

@@ -19,6 +19,7 @@ use crate::belief::tolerance::Tolerance;
 use crate::belief::true_labels::VersionSpace;
 use crate::geometry::arc::SlopeArc;
 use crate::geometry::area::Area;
+use crate::geometry::lattice::Site;
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::options::{Options, first_to_second};
@@ -218,6 +219,18 @@ impl<D: Dynamics, const N: usize, G: Workspace> Planner for Cfc<D, N, G> {
         Ok(())
     }
 
+    fn observe_on_the_way(
+        &mut self,
+        site: Site,
+        reading: Reading,
+    ) -> Result<bool, ObservationError> {
+        let is_kept = self.space.observe_on_the_way(site, reading)?;
+        if is_kept {
+            self.silence.hear();
+        }
+        Ok(is_kept)
+    }
+
     fn belief(&self) -> &VersionSpace<N> {
         &self.space
     }
@@ -245,7 +258,6 @@ mod tests {
 
     use super::*;
     use crate::belief::sample::Sample;
-    use crate::geometry::lattice::Site;
     use crate::motion::unicycle::Unicycle;
     use crate::search::recovery::Recovery;
 

@@ -29,7 +29,7 @@ use crate::belief::sample::{Reading, Sample};
 use crate::belief::tolerance::Tolerance;
 use crate::belief::weight::Prior;
 use crate::geometry::area::Area;
-use crate::geometry::lattice::Vector;
+use crate::geometry::lattice::{Site, Vector};
 use crate::geometry::value::ValueError;
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose};
@@ -399,6 +399,18 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion, S: Sight> Pla
         Ok(())
     }
 
+    fn observe_on_the_way(
+        &mut self,
+        site: Site,
+        reading: Reading,
+    ) -> Result<bool, ObservationError> {
+        let is_kept = self.belief.observe_on_the_way(site, reading)?;
+        if is_kept {
+            self.silence.hear();
+        }
+        Ok(is_kept)
+    }
+
     fn belief(&self) -> &B::Belief {
         self.belief.belief()
     }
@@ -433,7 +445,6 @@ mod tests {
     use crate::belief::sample::Label;
     use crate::belief::true_labels::VersionSpace;
     use crate::geometry::heading::Heading;
-    use crate::geometry::lattice::Site;
     use crate::motion::unicycle::Unicycle;
 
     fn at(x: f64, z: f64) -> Site {

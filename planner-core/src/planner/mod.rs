@@ -28,6 +28,7 @@ use crate::belief::evidence::Alarm;
 use crate::belief::sample::Reading;
 use crate::belief::tolerance::Tolerance;
 use crate::belief::{Belief, ObservationError};
+use crate::geometry::lattice::Site;
 use crate::geometry::line::Line;
 use crate::motion::action::{Action, Control};
 use crate::motion::dynamics::{Dynamics, Pose};
@@ -188,6 +189,24 @@ pub trait Planner {
         tolerance: Tolerance,
     ) -> Result<(), ObservationError>;
 
+    /// Takes in what was read at a site on the way, before the motion that was planned last has ended. Returns whether
+    /// the belief kept it: see [`Belief::observe_on_the_way`].
+    ///
+    /// Only the belief learns. The motion goes on, and its end is [observed](Self::observe) as without the reading. A
+    /// reading that was kept counts as a label for the rule that a mission ends after long turns without one.
+    ///
+    /// A planner that leaves out this method takes in no such readings.
+    ///
+    /// # Errors
+    /// [`ObservationError`] when the reading contradicts what is known; the planner is then as it was.
+    fn observe_on_the_way(
+        &mut self,
+        _site: Site,
+        _reading: Reading,
+    ) -> Result<bool, ObservationError> {
+        Ok(false)
+    }
+
     /// What is known.
     fn belief(&self) -> &Self::Belief;
 
@@ -223,6 +242,14 @@ impl<T: Planner + ?Sized> Planner for &mut T {
         tolerance: Tolerance,
     ) -> Result<(), ObservationError> {
         T::observe_within(self, pose, reading, tolerance)
+    }
+
+    fn observe_on_the_way(
+        &mut self,
+        site: Site,
+        reading: Reading,
+    ) -> Result<bool, ObservationError> {
+        T::observe_on_the_way(self, site, reading)
     }
 
     fn belief(&self) -> &T::Belief {

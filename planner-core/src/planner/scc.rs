@@ -35,6 +35,7 @@ use crate::belief::tolerance::Tolerance;
 use crate::belief::trust::Trust;
 use crate::belief::weight::Prior;
 use crate::geometry::area::Area;
+use crate::geometry::lattice::Site;
 use crate::geometry::workspace::Workspace;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Pose};
@@ -80,6 +81,9 @@ pub struct Scc<D, const N: usize, const H: usize, G = Area, R: Trust = Reliabili
     policy: Policy,
     dynamics: D,
     hypotheses: CellPosterior<N, H, 15, R>,
+    /// Whether the number of labels that were read on the way of motions is odd. They do not count for the turns of
+    /// P3 and P4.
+    is_odd_on_the_way: bool,
     silence: Silence,
 }
 
@@ -108,7 +112,8 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Workspace, R: Trust> Scc<D,
         options: Options,
         policy: Policy,
     ) -> Self {
-        Self { area, options, policy, dynamics, hypotheses, silence: Silence::NONE }
+        let (is_odd_on_the_way, silence) = (false, Silence::NONE);
+        Self { area, options, policy, dynamics, hypotheses, is_odd_on_the_way, silence }
     }
 
     /// The same with other options.
@@ -126,7 +131,7 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Workspace, R: Trust> Scc<D,
     }
 
     fn is_even(&self) -> bool {
-        self.hypotheses.taken().is_multiple_of(2)
+        self.hypotheses.taken().is_multiple_of(2) != self.is_odd_on_the_way
     }
 
     /// The problem of a hypothesis: where it votes to go.
@@ -263,6 +268,19 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Workspace, R: Trust> Planne
         Ok(())
     }
 
+    fn observe_on_the_way(
+        &mut self,
+        site: Site,
+        reading: Reading,
+    ) -> Result<bool, ObservationError> {
+        let is_kept = self.hypotheses.observe_on_the_way(site, reading)?;
+        if is_kept {
+            self.is_odd_on_the_way = !self.is_odd_on_the_way;
+            self.silence.hear();
+        }
+        Ok(is_kept)
+    }
+
     fn belief(&self) -> &CellPosterior<N, H, 15, R> {
         &self.hypotheses
     }
@@ -274,7 +292,7 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Workspace> Restart for Scc<
     fn restart(&mut self, given: &[Sample], prior: Prior, noise: Noise) -> Result<(), SetupError> {
         let area = aimed_for(self.area, &self.dynamics, noise.tolerance)?;
         self.hypotheses.restart(given, prior, noise)?;
-        (self.area, self.silence) = (area, Silence::NONE);
+        (self.area, self.is_odd_on_the_way, self.silence) = (area, false, Silence::NONE);
         Ok(())
     }
 }
@@ -282,16 +300,16 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Workspace> Restart for Scc<
 impl<D: Dynamics, const N: usize, const H: usize, G: Workspace, R: Trust> Persist
     for Scc<D, N, H, G, R>
 {
-    type Snapshot = Snapshot<ObservationLog<N>, Silence>;
+    type Snapshot = Snapshot<ObservationLog<N>, (Silence, bool)>;
 
     fn snapshot(&self) -> Self::Snapshot {
-        Snapshot::new(self.hypotheses.log(), self.silence)
+        Snapshot::new(self.hypotheses.log(), (self.silence, self.is_odd_on_the_way))
     }
 
     fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), RestoreError> {
-        let (log, &silence) = snapshot.open()?;
+        let (log, &(silence, is_odd_on_the_way)) = snapshot.open()?;
         self.hypotheses.replay(log)?;
-        self.silence = silence;
+        (self.silence, self.is_odd_on_the_way) = (silence, is_odd_on_the_way);
         Ok(())
     }
 }

@@ -153,6 +153,12 @@ impl Silence {
         *self = if has_label { Self { dull, ..Self::NONE } } else { self.after(self.next) };
     }
 
+    /// Records that a label was read on the way of the motion that was planned last.
+    pub(crate) const fn hear(&mut self) {
+        let Self { dull, next_is_dull, .. } = *self;
+        *self = Self { dull, next_is_dull, ..Self::NONE };
+    }
+
     fn after(self, turn: Turn) -> Self {
         let (by, on_the_spot) = match turn {
             Turn::None => return Self { dull: self.dull, ..Self::NONE },

@@ -2,7 +2,7 @@
 //!
 //! The settings (area, dynamics, noise, goal) are part of the program. A [`Snapshot`] contains only what a mission adds
 //! to them: the samples of the belief, the turns since the last label, and the way that is under way. For Algorithm 1
-//! it also contains the phase, for look-ahead the audit. With the feature `serde` a snapshot converts to bytes and back,
+//! it also contains the phase, for Algorithm 2 the parity of readings on the way, for look-ahead the audit. With the feature `serde` a snapshot converts to bytes and back,
 //! in any format that serde supports:
 //!
 //! ```text
@@ -22,7 +22,8 @@ use crate::planner::Planner;
 
 /// The version of snapshots. It is written first, and changes whenever the data that follow change. From 2 on they hold
 /// the tolerances that observations brought, and how a planner turned since the last label; from 3 on the way that is
-/// under way; from 4 on the audit of look-ahead, from 5 on its odds, and from 6 on whether it strays.
+/// under way; from 4 on the audit of look-ahead, from 5 on its odds, and from 6 on whether it strays, and of Algorithm 2
+/// whether the number of readings on the way is odd.
 pub const SNAPSHOT_VERSION: u16 = 6;
 
 /// What a planner has to remember over a sleep: the log of its belief (`T`), and what else it plans by (`M`).

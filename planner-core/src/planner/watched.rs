@@ -4,6 +4,7 @@ use crate::belief::evidence::{Alarm, Evidence};
 use crate::belief::sample::Reading;
 use crate::belief::tolerance::Tolerance;
 use crate::belief::{Belief as _, ObservationError};
+use crate::geometry::lattice::Site;
 use crate::motion::dynamics::Pose;
 use crate::planner::{Plan, Planner};
 
@@ -56,6 +57,22 @@ impl<P: Planner> Planner for Watched<P> {
         let chance = label.map_or(1.0, |label| self.belief().chance_of(pose.site, label));
         let taken = self.planner.observe_within(pose, reading, tolerance);
         let counts = matches!(taken, Ok(()) | Err(ObservationError::Contradiction(_)));
+        if let Some(label) = label.filter(|_| counts) {
+            self.evidence.observe(label, chance);
+        }
+        taken
+    }
+
+    fn observe_on_the_way(
+        &mut self,
+        site: Site,
+        reading: Reading,
+    ) -> Result<bool, ObservationError> {
+        let label = if let Reading::Side(label) = reading { Some(label) } else { None };
+        let chance = label.map_or(1.0, |label| self.belief().chance_of(site, label));
+        let taken = self.planner.observe_on_the_way(site, reading);
+        // Whether it counts must not depend on what was read.
+        let counts = matches!(taken, Ok(_) | Err(ObservationError::Contradiction(_)));
         if let Some(label) = label.filter(|_| counts) {
             self.evidence.observe(label, chance);
         }

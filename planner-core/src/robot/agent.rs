@@ -3,6 +3,7 @@
 use crate::belief::ObservationError;
 use crate::belief::evidence::Alarm;
 use crate::belief::sample::Reading;
+use crate::geometry::lattice::Site;
 use crate::geometry::line::Line;
 use crate::motion::dynamics::Pose;
 use crate::planner::watched::Watched;
@@ -112,18 +113,36 @@ impl<P: Planner, B> Agent<Watched<P>, B> {
 }
 
 impl<P: Planner, B: Body> Agent<P, B> {
-    /// Plans one motion, makes it, and takes in what was sensed at its end.
+    /// Plans one motion, makes it, and takes in what was sensed on its way and at its end.
     ///
     /// # Errors
-    /// [`AgentError`]. The pose is that of the last motion whose end is known.
+    /// [`AgentError`]. The pose is that of the last motion whose end is known. A reading on the way that the planner refuses
+    /// is reported when the motion has ended, and what was sensed after it is not taken in.
     pub fn step(&mut self) -> Result<Event, AgentError<B::Error>> {
         let motion = match self.next_motion() {
             Ok(motion) => motion,
             Err(reason) => return Ok(Event::Stopped(reason)),
         };
-        let (body, pose) = self.body_and_pose();
-        let reading = body.perform(&motion, pose).map_err(AgentError::Body)?;
-        self.take_in(motion, reading)
+        let before = self.planner.alarm();
+        let (mut hear, body, pose) = self.parts();
+        let mut tell = |site, reading| hear.hear(site, reading);
+        let reading = body.perform_reading(&motion, pose, &mut tell).map_err(AgentError::Body)?;
+        hear.refused.map_or(Ok(()), Err).map_err(AgentError::Observation)?;
+        self.take_in(motion, reading, before)
+    }
+}
+
+/// A planner that hears labels on the way, until it refuses one.
+pub(super) struct Hearing<'a, P> {
+    planner: &'a mut P,
+    pub(super) refused: Option<ObservationError>,
+}
+
+impl<P: Planner> Hearing<'_, P> {
+    pub(super) fn hear(&mut self, site: Site, reading: Reading) {
+        if self.refused.is_none() {
+            self.refused = self.planner.observe_on_the_way(site, reading).err();
+        }
     }
 }
 
@@ -136,16 +155,17 @@ impl<P: Planner, B> Agent<P, B> {
         }
     }
 
-    pub(super) const fn body_and_pose(&mut self) -> (&mut B, &mut Pose) {
-        (&mut self.body, &mut self.pose)
+    pub(super) const fn parts(&mut self) -> (Hearing<'_, P>, &mut B, &mut Pose) {
+        let Self { planner, body, pose } = self;
+        (Hearing { planner, refused: None }, body, pose)
     }
 
     pub(super) fn take_in<E>(
         &mut self,
         motion: Motion,
         reading: Option<Reading>,
+        before: Option<Alarm>,
     ) -> Result<Event, AgentError<E>> {
-        let before = self.planner.alarm();
         self.planner.observe(self.pose, reading).map_err(AgentError::Observation)?;
         let alarm = Alarm::risen(before, self.planner.alarm());
         Ok(Event::Step(Step { motion, pose: self.pose, reading, alarm }))

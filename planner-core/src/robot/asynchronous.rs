@@ -26,7 +26,8 @@
 //! # Ok::<(), &str>(())
 //! ```
 //!
-//! A step that is dropped before its end leaves the planner as it was and the robot wherever it has come: stop it,
+//! A step that is dropped before its end leaves the planner as it was, but for labels on the way that it has already
+//! taken in. It leaves the robot wherever it has come: stop it,
 //! and tell the agent where it is ([`relocate`](Agent::relocate)).
 
 #![expect(async_fn_in_trait, reason = "executors on chips run futures where they are made")]
@@ -36,6 +37,7 @@ use core::fmt::Debug;
 use embedded_hal::digital::InputPin;
 
 use crate::belief::sample::Reading;
+use crate::geometry::lattice::Site;
 use crate::motion::dynamics::Pose;
 use crate::planner::{Motion, Planner};
 use crate::robot::agent::{Agent, AgentError, Event};
@@ -92,6 +94,19 @@ pub trait Drive {
     /// # Errors
     /// The drive's own.
     async fn drive(&mut self, motion: &Motion) -> Result<Pose, Self::Error>;
+
+    /// As [`drive`](Self::drive), for a vehicle whose labels are to be read on the way as well. It awaits `report` at each
+    /// place where a label is to be read.
+    ///
+    /// # Errors
+    /// As `drive`.
+    async fn drive_reporting(
+        &mut self,
+        motion: &Motion,
+        _report: impl AsyncFnMut(Site),
+    ) -> Result<Pose, Self::Error> {
+        self.drive(motion).await
+    }
 }
 
 impl<T: Drive + ?Sized> Drive for &mut T {
@@ -99,6 +114,14 @@ impl<T: Drive + ?Sized> Drive for &mut T {
 
     async fn drive(&mut self, motion: &Motion) -> Result<Pose, Self::Error> {
         T::drive(self, motion).await
+    }
+
+    async fn drive_reporting(
+        &mut self,
+        motion: &Motion,
+        report: impl AsyncFnMut(Site),
+    ) -> Result<Pose, Self::Error> {
+        T::drive_reporting(self, motion, report).await
     }
 }
 
@@ -117,6 +140,20 @@ pub trait Body {
         motion: &Motion,
         pose: &mut Pose,
     ) -> Result<Option<Reading>, Self::Error>;
+
+    /// As [`perform`](Self::perform), for a body that also reads labels on the way. It passes each to `tell` at once, with
+    /// the place where it was read.
+    ///
+    /// # Errors
+    /// As `perform`.
+    async fn perform_reading(
+        &mut self,
+        motion: &Motion,
+        pose: &mut Pose,
+        _tell: impl FnMut(Site, Reading),
+    ) -> Result<Option<Reading>, Self::Error> {
+        self.perform(motion, pose).await
+    }
 }
 
 impl<T: Body + ?Sized> Body for &mut T {
@@ -129,6 +166,15 @@ impl<T: Body + ?Sized> Body for &mut T {
     ) -> Result<Option<Reading>, T::Error> {
         T::perform(self, motion, pose).await
     }
+
+    async fn perform_reading(
+        &mut self,
+        motion: &Motion,
+        pose: &mut Pose,
+        tell: impl FnMut(Site, Reading),
+    ) -> Result<Option<Reading>, T::Error> {
+        T::perform_reading(self, motion, pose, tell).await
+    }
 }
 
 impl<D: Drive, S: LabelSensor> Body for Vehicle<D, S> {
@@ -140,11 +186,33 @@ impl<D: Drive, S: LabelSensor> Body for Vehicle<D, S> {
         pose: &mut Pose,
     ) -> Result<Option<Reading>, Self::Error> {
         *pose = self.drive.drive(motion).await.map_err(VehicleError::Drive)?;
-        if !motion.wants_label {
-            return Ok(None);
-        }
-        self.sensor.read().await.map(Some).map_err(VehicleError::Sensor)
+        read_at_end(&mut self.sensor, motion).await.map_err(VehicleError::Sensor)
     }
+
+    async fn perform_reading(
+        &mut self,
+        motion: &Motion,
+        pose: &mut Pose,
+        mut tell: impl FnMut(Site, Reading),
+    ) -> Result<Option<Reading>, Self::Error> {
+        let Self { drive, sensor } = self;
+        let mut read = Ok(());
+        let report = async |site| {
+            if read.is_ok() {
+                read = sensor.read().await.map(|reading| tell(site, reading));
+            }
+        };
+        *pose = drive.drive_reporting(motion, report).await.map_err(VehicleError::Drive)?;
+        read.map_err(VehicleError::Sensor)?;
+        read_at_end(sensor, motion).await.map_err(VehicleError::Sensor)
+    }
+}
+
+async fn read_at_end<S: LabelSensor>(
+    sensor: &mut S,
+    motion: &Motion,
+) -> Result<Option<Reading>, S::Error> {
+    if motion.wants_label { sensor.read().await.map(Some) } else { Ok(None) }
 }
 
 impl<P: Planner, B: Body> Agent<P, B> {
@@ -157,9 +225,12 @@ impl<P: Planner, B: Body> Agent<P, B> {
             Ok(motion) => motion,
             Err(reason) => return Ok(Event::Stopped(reason)),
         };
-        let (body, pose) = self.body_and_pose();
-        let reading = body.perform(&motion, pose).await.map_err(AgentError::Body)?;
-        self.take_in(motion, reading)
+        let before = self.planner.alarm();
+        let (mut hear, body, pose) = self.parts();
+        let tell = |site, reading| hear.hear(site, reading);
+        let reading = body.perform_reading(&motion, pose, tell).await.map_err(AgentError::Body)?;
+        hear.refused.map_or(Ok(()), Err).map_err(AgentError::Observation)?;
+        self.take_in(motion, reading, before)
     }
 }
 
@@ -174,11 +245,11 @@ mod tests {
     use nalgebra::Point2;
 
     use super::*;
+    use crate::belief::Belief as _;
     use crate::belief::sample::{Label, Sample};
     use crate::belief::true_labels::VersionSpace;
     use crate::geometry::area::Area;
     use crate::geometry::heading::Heading;
-    use crate::geometry::lattice::Site;
     use crate::motion::unicycle::Unicycle;
     use crate::planner::cfc::Cfc;
     use crate::planner::lookahead::Lookahead;
@@ -323,6 +394,131 @@ mod tests {
             alarms += usize::from(event.3.is_some());
         }
         alarms
+    }
+
+    /// A robot whose drivers of either kind report two places on the way of each motion.
+    #[derive(Clone, Copy)]
+    struct Reporting<'a>(Robot<'a>);
+
+    impl Reporting<'_> {
+        fn places(self, motion: &Motion) -> [Site; 2] {
+            let from = self.0.at.get().site;
+            let way = motion.target.site - from;
+            [3, 2].map(|part| {
+                let by = crate::geometry::lattice::Vector { x: way.x / part, z: way.z / part };
+                from.step(by).unwrap()
+            })
+        }
+
+        fn go(self, site: Site) {
+            self.0.at.set(Pose { site, ..self.0.at.get() });
+        }
+    }
+
+    impl hal::Drive for Reporting<'_> {
+        type Error = Infallible;
+
+        fn drive(&mut self, motion: &Motion) -> Result<Pose, Infallible> {
+            hal::Drive::drive(&mut self.0, motion)
+        }
+
+        fn drive_reporting(
+            &mut self,
+            motion: &Motion,
+            report: &mut dyn FnMut(Site),
+        ) -> Result<Pose, Infallible> {
+            for site in self.places(motion) {
+                self.go(site);
+                report(site);
+            }
+            hal::Drive::drive(&mut self.0, motion)
+        }
+    }
+
+    impl Drive for Reporting<'_> {
+        type Error = Infallible;
+
+        async fn drive(&mut self, motion: &Motion) -> Result<Pose, Infallible> {
+            Drive::drive(&mut self.0, motion).await
+        }
+
+        async fn drive_reporting(
+            &mut self,
+            motion: &Motion,
+            mut report: impl AsyncFnMut(Site),
+        ) -> Result<Pose, Infallible> {
+            for site in self.places(motion) {
+                self.go(site);
+                report(site).await;
+            }
+            Drive::drive(&mut self.0, motion).await
+        }
+    }
+
+    #[test]
+    fn readings_on_the_way_are_taken_in_whether_they_are_called_or_awaited() {
+        let [here, there, other] = [Cell::new(start()), Cell::new(start()), Cell::new(start())];
+        let free = Cell::new(None);
+        let robot = |at| Robot { at, stuck: &free, senses: label };
+        let reporting = |at| Vehicle { drive: Reporting(robot(at)), sensor: robot(at) };
+        let silent = Vehicle { drive: robot(&other), sensor: robot(&other) };
+        let planner = Lookahead::new(area(), Unicycle::paper(), known()).unwrap();
+        let mut called = Agent::new(planner.clone(), reporting(&here), start());
+        let mut awaited = Agent::new(planner.clone(), reporting(&there), start());
+        let mut without = Agent::new(planner, silent, start());
+        for _ in 0..8 {
+            let event = called.step().unwrap();
+            assert_eq!(ended(&mut awaited), event);
+            without.step().unwrap();
+        }
+        let samples = |it: &Lookahead<Unicycle, VersionSpace<32>>| it.belief().samples().to_vec();
+        assert_eq!(samples(&called.planner), samples(&awaited.planner));
+        let [more, fewer] = [&called.planner, &without.planner].map(|it| it.belief().information());
+        assert!(more > 1.2 * fewer, "{more} bits, {fewer} without");
+    }
+
+    #[test]
+    fn a_reading_on_the_way_that_is_refused_is_reported_after_the_motion() {
+        let there = at;
+        let [at, free] = [Cell::new(start()), Cell::new(start())];
+        let (stuck, senses) = (Cell::new(None), |_| Label::Positive);
+        let robot = |at| Robot { at, stuck: &stuck, senses };
+        let vehicle = |at| Vehicle { drive: Reporting(robot(at)), sensor: robot(at) };
+        // Below the line all is certain, as it was there.
+        let sample = |(x, z), label| Sample { site: there(x, z), label };
+        let given = [
+            sample((0.0, 9.0), Label::Negative),
+            sample((20.0, 9.0), Label::Negative),
+            sample((10.0, 20.0), Label::Positive),
+        ];
+        let planner = || {
+            let space = VersionSpace::<32>::new(&given).unwrap();
+            Cfc::new(area(), Unicycle::paper(), space).unwrap()
+        };
+        let mut called = Agent::new(planner(), vehicle(&at), start());
+        let refused = called.step();
+        assert!(matches!(refused, Err(AgentError::Observation(_))), "{refused:?}");
+        assert_eq!(called.pose(), at.get());
+        assert_ne!(called.pose(), start());
+        let mut awaited = Agent::new(planner(), vehicle(&free), start());
+        let mut step = pin!(awaited.step_async());
+        let mut context = Context::from_waker(Waker::noop());
+        let ended = (0..20).find_map(|_| match step.as_mut().poll(&mut context) {
+            Poll::Ready(ended) => Some(ended),
+            Poll::Pending => None,
+        });
+        assert_eq!(ended, Some(refused));
+    }
+
+    /// A step that is asked until it ends.
+    fn ended(agent: &mut Agent<impl Planner, impl Body<Error: Debug>>) -> Event {
+        let mut step = pin!(agent.step_async());
+        let mut context = Context::from_waker(Waker::noop());
+        let event = (0..20).find_map(|_| match step.as_mut().poll(&mut context) {
+            Poll::Ready(event) => Some(event.unwrap()),
+            Poll::Pending => None,
+        });
+        event.unwrap()
     }
 
     /// What a sensor reads when it is awaited; none if it does not end when it is asked three times.

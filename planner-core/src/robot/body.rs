@@ -1,6 +1,7 @@
 //! What a planner moves: a body that makes motions and senses at their ends.
 
 use crate::belief::sample::Reading;
+use crate::geometry::lattice::Site;
 use crate::motion::dynamics::Pose;
 use crate::planner::Motion;
 use crate::robot::hal::{Drive, LabelSensor};
@@ -20,6 +21,23 @@ pub trait Body {
     /// The body's own; `pose` is then where it is as far as it is known.
     fn perform(&mut self, motion: &Motion, pose: &mut Pose)
     -> Result<Option<Reading>, Self::Error>;
+
+    /// As [`perform`](Self::perform), for a body that also reads labels on the way. It passes each to `tell` at once, with
+    /// the place where it was read.
+    ///
+    /// A body without this method reads none, which costs nothing.
+    ///
+    /// # Errors
+    /// As `perform`.
+    #[inline]
+    fn perform_reading(
+        &mut self,
+        motion: &Motion,
+        pose: &mut Pose,
+        _tell: &mut dyn FnMut(Site, Reading),
+    ) -> Result<Option<Reading>, Self::Error> {
+        self.perform(motion, pose)
+    }
 }
 
 impl<T: Body + ?Sized> Body for &mut T {
@@ -27,6 +45,16 @@ impl<T: Body + ?Sized> Body for &mut T {
 
     fn perform(&mut self, motion: &Motion, pose: &mut Pose) -> Result<Option<Reading>, T::Error> {
         T::perform(self, motion, pose)
+    }
+
+    #[inline]
+    fn perform_reading(
+        &mut self,
+        motion: &Motion,
+        pose: &mut Pose,
+        tell: &mut dyn FnMut(Site, Reading),
+    ) -> Result<Option<Reading>, T::Error> {
+        T::perform_reading(self, motion, pose, tell)
     }
 }
 
@@ -45,7 +73,7 @@ pub struct Vehicle<D, S> {
 pub enum VehicleError<D, S> {
     /// The drive failed.
     Drive(D),
-    /// The sensor failed, after the motion.
+    /// The sensor failed, after the motion or on its way.
     Sensor(S),
 }
 
@@ -69,6 +97,35 @@ impl<D: Drive, S: LabelSensor> Body for Vehicle<D, S> {
         pose: &mut Pose,
     ) -> Result<Option<Reading>, Self::Error> {
         *pose = self.drive.drive(motion).map_err(VehicleError::Drive)?;
+        self.read_at_end(motion)
+    }
+
+    /// Reads a label wherever the drive [reports](Drive::drive_reporting) that it is.
+    #[inline]
+    fn perform_reading(
+        &mut self,
+        motion: &Motion,
+        pose: &mut Pose,
+        tell: &mut dyn FnMut(Site, Reading),
+    ) -> Result<Option<Reading>, Self::Error> {
+        let Self { drive, sensor } = self;
+        let mut read = Ok(());
+        let mut report = |site| {
+            if read.is_ok() {
+                read = sensor.read().map(|reading| tell(site, reading));
+            }
+        };
+        *pose = drive.drive_reporting(motion, &mut report).map_err(VehicleError::Drive)?;
+        read.map_err(VehicleError::Sensor)?;
+        self.read_at_end(motion)
+    }
+}
+
+impl<D: Drive, S: LabelSensor> Vehicle<D, S> {
+    fn read_at_end(
+        &mut self,
+        motion: &Motion,
+    ) -> Result<Option<Reading>, VehicleError<D::Error, S::Error>> {
         if !motion.wants_label {
             return Ok(None);
         }

@@ -6,6 +6,7 @@ use core::convert::Infallible;
 use embedded_hal::digital::InputPin;
 
 use crate::belief::sample::{Label, Reading};
+use crate::geometry::lattice::Site;
 use crate::motion::dynamics::Pose;
 use crate::planner::Motion;
 
@@ -49,6 +50,23 @@ pub trait Drive {
     /// # Errors
     /// The drive's own.
     fn drive(&mut self, motion: &Motion) -> Result<Pose, Self::Error>;
+
+    /// As [`drive`](Self::drive), for a vehicle whose labels are to be read on the way as well. It calls `report` at each
+    /// place where a label is to be read, and the label is read before `report` returns. Places spread evenly tell the
+    /// most. The motion's end is none of them.
+    ///
+    /// A drive without this method reports none, which costs nothing.
+    ///
+    /// # Errors
+    /// As `drive`.
+    #[inline]
+    fn drive_reporting(
+        &mut self,
+        motion: &Motion,
+        _report: &mut dyn FnMut(Site),
+    ) -> Result<Pose, Self::Error> {
+        self.drive(motion)
+    }
 }
 
 impl<T: Drive + ?Sized> Drive for &mut T {
@@ -56,6 +74,15 @@ impl<T: Drive + ?Sized> Drive for &mut T {
 
     fn drive(&mut self, motion: &Motion) -> Result<Pose, Self::Error> {
         T::drive(self, motion)
+    }
+
+    #[inline]
+    fn drive_reporting(
+        &mut self,
+        motion: &Motion,
+        report: &mut dyn FnMut(Site),
+    ) -> Result<Pose, Self::Error> {
+        T::drive_reporting(self, motion, report)
     }
 }
 

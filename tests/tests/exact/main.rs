@@ -10,6 +10,7 @@ mod hypotheses;
 mod own_tolerances;
 mod predictor;
 mod reference;
+mod room;
 mod scc;
 mod search;
 mod spread;

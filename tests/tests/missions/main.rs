@@ -12,6 +12,7 @@ mod garden;
 mod honesty;
 mod lookahead;
 mod margin;
+mod readings;
 mod recovery;
 mod scale;
 mod sleep;

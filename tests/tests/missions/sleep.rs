@@ -11,6 +11,7 @@ use host_sim::mission::recording::{Recorder, Recording};
 use host_sim::mission::results::Ending;
 use host_sim::report::trace;
 use host_sim::world::noise::{Extent, NoiseModel};
+use host_sim::world::robot::Glimpse;
 use planner_core::SNAPSHOT_VERSION;
 use planner_core::error::{ReplayError, RestoreError};
 use planner_core::{
@@ -69,10 +70,18 @@ where
                 break;
             }
         };
-        let Ok(reading) = robot.perform(&motion, &mut pose);
+        let mut passed = Vec::new();
+        let mut pass = |it: Glimpse| passed.extend(it.reading.map(|read| (it.reported, read)));
+        let reading = robot.travel(&motion, &mut pose, mission.way(), &mut pass);
+        for &(site, reading) in &passed {
+            let heard = planner.observe_on_the_way(site, reading);
+            heard.map_err(|refused| recorder.refusal(&refused).to_string())?;
+            (planner, pose) = sleep(planner, pose, &make);
+        }
         let observed = planner.observe(pose, reading);
         observed.map_err(|refused| recorder.refusal(&refused).to_string())?;
         (planner, pose) = sleep(planner, pose, &make);
+        recorder.pass(&passed);
         recorder.take(
             &Step { motion, pose, reading, alarm: None },
             robot.true_pose(),
@@ -144,6 +153,23 @@ fn every_vehicle_and_robots_that_err_sleep_as_well() {
     sleeps_without_a_trace("any vehicle", number().map(|number| of_any_vehicle(number, 12)));
     sleeps_without_a_trace("by turns", number().map(|number| by_turns(44, number, 16)));
     sleeps_without_a_trace("stopping", number().map(stopping));
+}
+
+#[test]
+fn readings_on_the_way_outlive_a_sleep() {
+    let number = || (0..cases(12, 120)).into_par_iter();
+    let reading = |mission: Mission| Mission { readings: 4, ..mission };
+    for algorithm in [Algorithm::Cfc, Algorithm::Lookahead] {
+        let mission = |number| reading(standard_field::standard(48, number, algorithm, 30));
+        sleeps_without_a_trace(&algorithm.name(), number().map(mission));
+    }
+    for algorithm in [Algorithm::Scc, Algorithm::Lookahead] {
+        let mission = |number| {
+            let mission = reading(standard_field::standard(49, number, algorithm, 10));
+            noisy(mission, 0.8)
+        };
+        sleeps_without_a_trace(&algorithm.name(), number().map(mission));
+    }
 }
 
 /// What a label's own reliability made of the table is there after the sleep.

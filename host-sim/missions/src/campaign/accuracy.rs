@@ -79,6 +79,9 @@ pub struct Summary {
     /// What moved, unless it is the unicycle of a fan.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub vehicle: Option<VehicleTable>,
+    /// Readings of each motion, if there are several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub readings: Option<u32>,
     /// The ensemble as steps go by.
     pub rows: Vec<Row>,
     /// How many missions ended for which reason.
@@ -213,6 +216,7 @@ impl Summary {
             fields: campaign.fields,
             seed: campaign.seed,
             vehicle: VehicleTable::of(campaign.vehicle),
+            readings: campaign.several_readings(),
             rows,
             ends,
             recoveries,

@@ -9,7 +9,7 @@ use planner_core::{AnyReliability, Line, PosteriorView, Prior, UnknownReliabilit
 use serde::{Deserialize, Serialize};
 
 use crate::campaign::drawn;
-use crate::campaign::ensemble::{self, Campaign, Measure, Measured, Progress};
+use crate::campaign::ensemble::{self, Campaign, Measure, Measured, Progress, readings_told};
 use crate::campaign::sorting::{Sorted, Sorting, Value};
 use crate::campaign::spread::Spread;
 use crate::mission::algorithm::Algorithm;
@@ -115,6 +115,9 @@ pub struct Summary {
     pub vehicle: Option<VehicleTable>,
     /// Labels are true with this probability; the mean of the prior where each field's is drawn from it.
     pub p: f64,
+    /// Readings of each motion, if there are several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub readings: Option<u32>,
     /// What planners are told instead.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub p_told: Option<PTold>,
@@ -278,12 +281,16 @@ impl Summary {
             }
         }
         let mut sorted = sorting.sorted()?;
-        let rows = stages.iter().map(|(&labels, sums)| sums.row(labels, limit, &mut sorted));
+        // Labels on the way carry bits as well, and are not counted: then there are no shares.
+        let readings = campaign.several_readings();
+        let most = if readings.is_some() { 0.0 } else { limit };
+        let rows = stages.iter().map(|(&labels, sums)| sums.row(labels, most, &mut sorted));
         let rows = rows.collect::<Result<_>>()?;
         let title = format!(
-            "{}, {fields} standard fields, seed {seed}, {}",
+            "{}, {fields} standard fields, seed {seed}, {}{}",
             algorithm.title(),
-            how_often(p, p_told, campaign.draws_p)
+            how_often(p, p_told, campaign.draws_p),
+            readings_told(readings)
         );
         let vehicle = VehicleTable::of(campaign.vehicle);
         Ok(Self {
@@ -295,6 +302,7 @@ impl Summary {
             p,
             p_told,
             draws_p: campaign.draws_p,
+            readings,
             limit,
             rows,
         })

@@ -40,6 +40,8 @@ pub struct Campaign {
     pub fields: u64,
     /// Steps in each.
     pub steps: u32,
+    /// Readings of each motion, the label at its end included.
+    pub readings: u32,
     /// Whether missions are measured after every step or label, and not only at the stages of the tables.
     pub every: bool,
     /// Seed of the ensemble.
@@ -70,6 +72,11 @@ pub struct Campaign {
     pub asking: Asking,
 }
 
+/// How many readings a motion has, for titles; nothing if it is one.
+pub fn readings_told(readings: Option<u32>) -> String {
+    readings.map_or(String::new(), |readings| format!(", {readings} readings a motion"))
+}
+
 /// How far a mission has come.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Progress {
@@ -77,9 +84,9 @@ pub struct Progress {
     pub field: u64,
     /// Steps made.
     pub steps: u32,
-    /// Labels taken in.
+    /// Labels taken in at the ends of motions.
     pub labels: u32,
-    /// Bits that these were expected to carry, each by the belief before it, if the measure wants that.
+    /// Bits that all labels were expected to carry, each by the belief before it, if the measure wants that.
     pub expected_bits: f64,
     /// Control cost.
     pub control_cost: f64,
@@ -142,6 +149,7 @@ impl Campaign {
             algorithm,
             fields: 1_000,
             steps,
+            readings: 1,
             every: false,
             seed: 1,
             crossing: Crossing::default(),
@@ -191,6 +199,11 @@ impl Campaign {
         })
     }
 
+    /// The readings of a motion, if there are several.
+    pub(super) fn several_readings(&self) -> Option<u32> {
+        Some(self.readings).filter(|it| *it > 1)
+    }
+
     /// Whether the vehicle can move in the standard area.
     ///
     /// # Errors
@@ -208,7 +221,7 @@ impl Campaign {
         (mission.vehicle, mission.errors) = (self.vehicle, self.errors);
         mission.config.tolerance = self.tolerance;
         (mission.noise, mission.policy, mission.prior) = (self.noise, self.policy, self.prior);
-        mission.p_told = self.p_told;
+        (mission.p_told, mission.readings) = (self.p_told, self.readings);
         if let (true, Some(prior), Some(noise)) =
             (self.draws_p, mission.unknown_p(), mission.noise.as_mut())
         {
@@ -241,12 +254,21 @@ impl Campaign {
         let mut now = Progress { field: number, ..Progress::default() };
         let mut stages = self.stages(measure).into_iter().peekable();
         let mut before = M::WANTS_EXPECTED.then(|| mission.belief());
-        let Flown { ending, belief } = mission.fly(|step, belief| {
+        let (Flown { ending, belief }, refused) = mission.fly_in_sight(|step, sight, belief| {
             now.steps += 1;
             let is_label = matches!(step.reading, Some(Reading::Side(_)));
             now.labels += u32::from(is_label);
-            if let Some(before) = before.as_mut().filter(|_| is_label) {
-                now.expected_bits += before.expects(step.pose.site).bits;
+            if let Some(before) = before.as_mut().filter(|_| is_label || !sight.passed.is_empty()) {
+                for &(site, reading) in sight.passed {
+                    let bits = before.expects(site).bits;
+                    // The planner took it in, so this belief does.
+                    if before.observe_on_the_way(site, reading) == Ok(true) {
+                        now.expected_bits += bits;
+                    }
+                }
+                if is_label {
+                    now.expected_bits += before.expects(step.pose.site).bits;
+                }
                 *before = belief.boxed();
             }
             now.control_cost += cost(step.motion.control);
@@ -257,7 +279,8 @@ impl Campaign {
                 let row = checkpoint.map(|it| Measured { checkpoint: it, course: course.clone() });
                 rows.extend(row);
             }
-        })?;
+        });
+        refused.map_or(Ok(()), Err)?;
         let held = stages.filter_map(|stage| measure.held(&now, stage));
         rows.extend(held.filter_map(|progress| {
             let checkpoint = measure.checkpoint(&mission, &*belief, &progress)?;

@@ -106,6 +106,7 @@ pub fn stretched(
     Mission {
         algorithm,
         steps,
+        readings: 1,
         seed: seed ^ number.rotate_left(32),
         config: Settings {
             area: area.into(),

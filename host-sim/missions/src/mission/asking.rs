@@ -9,9 +9,6 @@ use crate::mission::algorithm::Algorithm;
 use crate::mission::names::SeeksName;
 use crate::mission::strict::wrong;
 
-/// The most steps of a mission whose labels are limited by themselves.
-pub const MOST_STEPS: u32 = 10_000;
-
 /// How a mission asks for labels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Asking {
@@ -35,7 +32,7 @@ impl Asking {
     pub const USUAL: Self = Self { price: None, seeks: Seeks::Accuracy, labels: None };
 
     /// What a file or flags ask for. Without a price labels have the usual one where the area is large for the vehicle.
-    /// `names` are those of price, limit and choice; there is `room` for so many labels.
+    /// `names` are those of price, limit and choice; there is room for `most` labels.
     ///
     /// # Errors
     /// Names the field, what was found and what was expected.
@@ -43,7 +40,7 @@ impl Asking {
         [price_name, labels_name, seek_name]: [&str; 3],
         (price, labels, seek): (Option<f64>, Option<u32>, Option<SeeksName>),
         (algorithm, area, vehicle): (Algorithm, &MissionArea, &AnyVehicle),
-        room: usize,
+        most: u32,
     ) -> Result<Self> {
         let looks_ahead = algorithm == Algorithm::Lookahead;
         let usual = if looks_ahead { Far::usual(area, vehicle).map(Far::price) } else { None };
@@ -65,11 +62,9 @@ impl Asking {
             return wrong(seek_name, "one", expected);
         }
         if let Some(labels) = labels
-            && (labels == 0 || labels as usize > room)
+            && !(1..=most).contains(&labels)
         {
-            let expected =
-                format!("1 to {room}, for which the planner has room beside the oracle's");
-            return wrong(labels_name, labels, expected);
+            return wrong(labels_name, labels, format!("1 to {most}, for which there is room"));
         }
         Ok(Self { price: sought, seeks: seek.unwrap_or_default().into(), labels })
     }

@@ -16,6 +16,7 @@ use crate::world::World;
 use crate::world::errors::{CUT, Erring, Errors};
 use crate::world::faults::{Failing, Fault};
 use crate::world::noise::{Flipped, NoiseModel};
+use crate::world::on_the_way::Way;
 use crate::world::robot::{Ideal, Robot};
 
 /// Samples that a simulated planner can hold, the oracle's included: 64 labels beside its four.
@@ -40,6 +41,8 @@ pub struct Mission {
     pub algorithm: Algorithm,
     /// Steps at most.
     pub steps: u32,
+    /// Readings a motion, evenly spread over its length. The last is the label at its end.
+    pub readings: u32,
     /// Seed of whatever is random.
     pub seed: u64,
     /// Area, weight of the control, directions of P1 and P2, tolerance.
@@ -196,6 +199,11 @@ impl Mission {
     pub fn lines(&self) -> Lines {
         let lines = self.given.clone().with_tolerance(self.config.tolerance);
         lines.expect("the tolerance leaves something to find")
+    }
+
+    /// Where its robot reads on the way of a motion.
+    pub const fn way(&self) -> Way {
+        Way { readings: self.readings, is_arc: matches!(self.vehicle, AnyVehicle::Car(_)) }
     }
 
     /// The robot, ready to be moved from its start.

@@ -3,7 +3,7 @@
 
 use nalgebra::Point2;
 use planner_core::belief::evidence::Suspect;
-use planner_core::{Label, Line, Reading, Sample, Step, StopReason};
+use planner_core::{Label, Line, Reading, Reliability, Sample, Step, StopReason};
 
 use crate::fitting::explanation::{Cause, Explanation, Family, Told};
 use crate::fitting::fewest::Fewest;
@@ -56,10 +56,15 @@ impl DiagnosisRecord {
             return None;
         }
         let given = mission.given.given();
-        let read = steps.iter().zip(results).filter_map(|(step, result)| {
-            let Some(Reading::Side(label)) = step.reading else { return None };
-            let sample = Sample { site: step.pose.site, label };
-            Some(Taken { step: result.step, sample, is_trusted: result.trusted == Some(true) })
+        let read = steps.iter().zip(results).flat_map(|(step, result)| {
+            let taken = |site, reading| {
+                let Reading::Side(label) = reading else { return None };
+                let trusted = belief.hypotheses().map(|table| table.reliability(site));
+                let is_trusted = trusted == Some(Reliability::CERTAIN);
+                Some(Taken { step: result.step, sample: Sample { site, label }, is_trusted })
+            };
+            let passed = result.passed().filter_map(move |(site, reading)| taken(site, reading));
+            passed.chain(step.reading.and_then(|reading| taken(step.pose.site, reading)))
         });
         let read: Vec<_> = read.collect();
         let all: Vec<_> = given

@@ -152,6 +152,14 @@ impl<D: Dynamics, B: ReadOut> Planner for Margin<D, B> {
         take_in(&mut self.belief, pose, reading, tolerance)
     }
 
+    fn observe_on_the_way(
+        &mut self,
+        site: Site,
+        reading: Reading,
+    ) -> Result<bool, ObservationError> {
+        self.belief.observe_on_the_way(site, reading)
+    }
+
     fn belief(&self) -> &B {
         &self.belief
     }

@@ -4,7 +4,7 @@ use planner_core::dynamics::Dynamics;
 use planner_core::error::ObservationError;
 use planner_core::{
     Accuracy, AnyReliability, AnyVehicle, Cfc, Far, Lookahead, Plan, Planner, Pose,
-    PredictiveBelief, Reading, Scc, Tolerance, Workspace,
+    PredictiveBelief, Reading, Scc, Site, Tolerance, Workspace,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -38,6 +38,14 @@ impl<P: Planner<Belief: ReadOut + Sized + 'static>> Planner for Erased<P> {
         tolerance: Tolerance,
     ) -> Result<(), ObservationError> {
         self.0.observe_within(pose, reading, tolerance)
+    }
+
+    fn observe_on_the_way(
+        &mut self,
+        site: Site,
+        reading: Reading,
+    ) -> Result<bool, ObservationError> {
+        self.0.observe_on_the_way(site, reading)
     }
 
     fn belief(&self) -> &(dyn ReadOut + 'static) {

@@ -4,7 +4,7 @@ use planner_core::dynamics::{Action, Dynamics};
 use planner_core::error::ObservationError;
 use planner_core::link::message::MissionArea;
 use planner_core::{
-    Belief, Motion, Plan, Planner, Pose, Reading, StopReason, Tolerance, Workspace as _,
+    Belief, Motion, Plan, Planner, Pose, Reading, Site, StopReason, Tolerance, Workspace as _,
 };
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -60,6 +60,14 @@ impl<D: Dynamics, B: Belief> Planner for RandomWalk<D, B> {
         tolerance: Tolerance,
     ) -> Result<(), ObservationError> {
         take_in(&mut self.belief, pose, reading, tolerance)
+    }
+
+    fn observe_on_the_way(
+        &mut self,
+        site: Site,
+        reading: Reading,
+    ) -> Result<bool, ObservationError> {
+        self.belief.observe_on_the_way(site, reading)
     }
 
     fn belief(&self) -> &B {

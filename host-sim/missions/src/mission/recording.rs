@@ -9,7 +9,7 @@ use planner_core::belief::evidence::{Alarm, Evidence};
 use planner_core::error::ObservationError;
 use planner_core::{
     AnyReliability, Estimates, Line, Pose, PosteriorView, Prior, Reading, Reliability,
-    ReliabilityEstimate, Stage, Step, StopReason,
+    ReliabilityEstimate, Site, Stage, Step, StopReason,
 };
 
 use crate::mission::definition::{Mission, Table};
@@ -19,8 +19,8 @@ use crate::mission::legs::{Leg, Legs};
 use crate::mission::read_out::{Knowledge, LEVEL, ReadOut, is_unknown};
 use crate::mission::results::{
     AlarmRecord, BestRecord, CredibleRecord, End, Ending, EstimateRecords, FitRecord,
-    KeepOutRecord, LineError, PTold, ReliabilityRecord, Results, Start, StepResult, VERSION, cost,
-    recovery_name, stage_name,
+    KeepOutRecord, LineError, PTold, ReadingRecord, ReliabilityRecord, Results, Start, StepResult,
+    VERSION, cost, recovery_name, stage_name,
 };
 use crate::mission::stop::{AuditRecord, GoalRecord};
 use crate::mission::vehicle::VehicleTable;
@@ -49,6 +49,8 @@ pub struct Recorder {
     before: Vec<Box<dyn ReadOut>>,
     /// What is known now.
     belief: Box<dyn ReadOut>,
+    /// What was read on the way of the step that is taken down next.
+    passed: Vec<(Site, Reading)>,
     /// What the labels say against a straight, still line.
     evidence: Evidence,
     /// The most of it that was an alarm.
@@ -61,7 +63,13 @@ impl Recorder {
         let belief = mission.belief();
         let (steps, results, before) = (Vec::new(), Vec::new(), Vec::new());
         let evidence = Evidence::NONE;
-        Self { mission, steps, results, before, belief, evidence, alarm: None }
+        let passed = Vec::new();
+        Self { mission, steps, results, before, belief, passed, evidence, alarm: None }
+    }
+
+    /// Takes down what was read on the way of the step that comes next.
+    pub fn pass(&mut self, passed: &[(Site, Reading)]) {
+        self.passed = passed.to_vec();
     }
 
     /// Takes down a step, where the robot truly is after it, if it errs, and what is known.
@@ -72,9 +80,7 @@ impl Recorder {
         let (cost_before, metres_before) =
             self.last().map_or((0.0, 0.0), |last| (last.control_cost, last.metres));
         let reliability = belief.hypotheses().map(|table| table.reliability(step.pose.site));
-        if let Some(Reading::Side(label)) = step.reading {
-            self.evidence.observe(label, before.chance_of(step.pose.site, label));
-        }
+        let readings = self.take_readings(step, &*before, belief);
         self.steps.push(*step);
         let alarm = self.evidence.alarm();
         let (number, most) = (self.steps.len(), self.alarm.map_or(0.0, |alarm| alarm.evidence));
@@ -90,6 +96,7 @@ impl Recorder {
             target: (motion.target != step.pose).then(|| motion.target.into()),
             true_pose: true_pose.map(Into::into),
             label: step.reading.map(Reading::sign),
+            readings,
             slope_arcs,
             intercept,
             bits,
@@ -107,6 +114,39 @@ impl Recorder {
             metres: metres_before + f64::from(motion.control.distance_m),
         });
         self.before.push(before);
+    }
+
+    /// Takes down the readings of a step, and what its labels say against the model. None are returned of a step that has
+    /// one at most.
+    fn take_readings(
+        &mut self,
+        step: &Step,
+        before: &dyn ReadOut,
+        after: &dyn ReadOut,
+    ) -> Vec<ReadingRecord> {
+        let passed = std::mem::take(&mut self.passed);
+        let mut known = (!passed.is_empty()).then(|| before.boxed());
+        let mut readings = Vec::new();
+        for (site, reading) in passed {
+            let Some(known) = &mut known else { break };
+            if let Reading::Side(label) = reading {
+                self.evidence.observe(label, known.chance_of(site, label));
+            }
+            // The planner took it in, so this belief does.
+            let cuts = known.observe_on_the_way(site, reading).unwrap_or(false);
+            readings.push(ReadingRecord::of(site, reading, cuts));
+        }
+        let known = known.as_deref().unwrap_or(before);
+        if let Some(Reading::Side(label)) = step.reading {
+            self.evidence.observe(label, known.chance_of(step.pose.site, label));
+        }
+        if let Some(reading) = step.reading.filter(|_| !readings.is_empty()) {
+            let support =
+                |it: &dyn ReadOut| it.version_space().map(|it| it.support().collect::<Vec<_>>());
+            let cuts = known.hypotheses().is_some() || support(known) != support(after);
+            readings.push(ReadingRecord::of(step.pose.site, reading, cuts));
+        }
+        readings
     }
 
     /// What a perfect sensor reads at a pose at the end of the current step, if the boundary is known.
@@ -200,8 +240,10 @@ impl Recording {
     /// broke the mission off.
     pub fn until_refusal(mission: &Mission) -> (Self, Option<anyhow::Error>) {
         let mut recorder = Recorder::new(mission.clone());
-        let (flown, refused) =
-            mission.fly_in_sight(|step, truth, belief| recorder.take(step, truth, belief));
+        let (flown, refused) = mission.fly_in_sight(|step, sight, belief| {
+            recorder.pass(sight.passed);
+            recorder.take(step, sight.true_pose, belief);
+        });
         let refusal = refused.map(|it| recorder.refusal(&it));
         (recorder.end(flown), refusal)
     }
@@ -239,6 +281,7 @@ fn start(mission: &Mission) -> Start {
         price: mission.asking.price,
         labels: mission.asking.labels,
         labels_err: mission.noise.is_some(),
+        readings: (mission.readings > 1).then_some(mission.readings),
         steps: mission.steps,
         slope_arcs: mission.given.slope_arc().intervals_deg().to_vec(),
     }

@@ -14,8 +14,8 @@ use planner_core::link::message::MissionArea;
 use planner_core::planner::Stage;
 use planner_core::search::recovery::Recovery;
 use planner_core::{
-    AnyReliability, Estimates, KeepOut, Line, LocalLine, Motion, Pose, Sample, Site, StopReason,
-    Workspace as _,
+    AnyReliability, Estimates, KeepOut, Label, Line, LocalLine, Motion, Pose, Reading, Sample,
+    Site, StopReason, Workspace as _,
 };
 use serde::{Deserialize, Serialize};
 
@@ -96,6 +96,9 @@ pub struct Start {
     /// Labels at most, if they are limited by themselves.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub labels: Option<u32>,
+    /// Readings a motion, if there are several.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub readings: Option<u32>,
     /// Whether they may err.
     #[serde(skip)]
     pub labels_err: bool,
@@ -130,6 +133,9 @@ pub struct StepResult {
     pub true_pose: Option<PoseRecord>,
     /// What was sensed there: -1, 0 on the boundary, 1; `None` if nothing was.
     pub label: Option<i8>,
+    /// All readings of the motion in order, its label at the end included, where there are readings on the way.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub readings: Vec<ReadingRecord>,
     /// The slopes left, as intervals of degrees.
     #[serde(default)]
     pub slope_arcs: Vec<[f64; 2]>,
@@ -323,6 +329,19 @@ pub struct SampleRecord {
     pub label: i8,
 }
 
+/// A reading of a motion that has several.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub struct ReadingRecord {
+    /// Where, metres.
+    pub x: f64,
+    /// Metres.
+    pub z: f64,
+    /// -1, 0 on the boundary, or 1.
+    pub label: i8,
+    /// Whether it told something. A true label does if it rules out lines. A label that may be wrong does if it was taken in.
+    pub cuts: bool,
+}
+
 /// A pose.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct PoseRecord {
@@ -376,6 +395,20 @@ pub struct EstimateRecords<L = LineRecord> {
 }
 
 impl StepResult {
+    /// What was read on the way, before the label at the end.
+    pub fn passed(&self) -> impl Iterator<Item = (Site, Reading)> + '_ {
+        let at_end = usize::from(self.label.is_some());
+        let passed = self.readings.len().saturating_sub(at_end);
+        self.readings.iter().take(passed).filter_map(|it| {
+            let reading = match it.label {
+                1 => Label::Positive.into(),
+                -1 => Label::Negative.into(),
+                _ => Reading::Boundary,
+            };
+            Some((Site::try_from(Point2::new(it.x, it.z)).ok()?, reading))
+        })
+    }
+
     /// Whether what was sensed is not what a perfect sensor reads, as far as that is known.
     pub fn is_wrong(&self) -> bool {
         self.label.zip(self.fact).is_some_and(|(seen, fact)| seen != fact)
@@ -392,6 +425,12 @@ impl Results {
     /// Samples taken on the way.
     pub fn samples(&self) -> usize {
         self.steps.iter().filter(|step| step.label.is_some()).count()
+    }
+
+    /// Readings of motions that have several, and how many of them told something.
+    pub fn readings(&self) -> (usize, usize) {
+        let all = self.steps.iter().flat_map(|step| &step.readings);
+        (all.clone().count(), all.filter(|it| it.cuts).count())
     }
 
     /// Metres travelled.
@@ -422,6 +461,14 @@ impl<const C: usize> From<&KeepOut<C>> for KeepOutRecord {
 
 fn corners(sites: &[Site]) -> Vec<[f64; 2]> {
     sites.iter().map(|site| Point2::<f64>::from(*site).into()).collect()
+}
+
+impl ReadingRecord {
+    /// A reading at a site.
+    pub fn of(site: Site, reading: Reading, cuts: bool) -> Self {
+        let at = Point2::<f64>::from(site);
+        Self { x: at.x, z: at.y, label: reading.sign(), cuts }
+    }
 }
 
 impl From<&Sample> for SampleRecord {

@@ -17,7 +17,7 @@ use serde::Deserialize;
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::{self, Allowance};
-use crate::mission::asking::{AskTable, Asking, MOST_STEPS};
+use crate::mission::asking::{AskTable, Asking};
 use crate::mission::definition::{CAPACITY, Lines, Mission};
 use crate::mission::names::{CrossingName, FanName, FollowingName, PolicyName, PriorName};
 use crate::mission::sensor::{self, FaultTable};
@@ -46,6 +46,8 @@ struct File {
     algorithm: Algorithm,
     #[serde(default = "defaults::steps")]
     steps: u32,
+    #[serde(default = "defaults::readings")]
+    readings: u32,
     #[serde(default = "defaults::seed")]
     seed: u64,
     varrho: Option<f64>,
@@ -84,6 +86,9 @@ struct File {
 mod defaults {
     pub(super) fn steps() -> u32 {
         10
+    }
+    pub(super) fn readings() -> u32 {
+        1
     }
     pub(super) fn seed() -> u64 {
         1
@@ -202,8 +207,39 @@ fn any(name: &str, text: &str, folder: &Path, overrides: Overrides) -> Result<Mi
     })
 }
 
-/// The most steps of a mission with an audit, whose labels take no room.
+/// The most steps of a mission whose labels are true: a version space makes room for more.
+const MOST: u32 = 10_000;
+
+/// The most steps of a mission with an audit where labels may be wrong. Labels of an audit take no room.
 const MOST_WITH_AUDIT: u32 = 1_000;
+
+/// The most readings of a motion.
+const MOST_READINGS: u32 = 50;
+
+/// What the labels of a mission take room for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Room {
+    /// True labels: only those that bound the lines left.
+    OfTrue,
+    /// Labels that may be wrong and are limited by themselves: each, however many steps there are.
+    Apart,
+    /// Labels that may be wrong: each, but for those of an audit.
+    ButAudit,
+    /// Labels that may be wrong: each.
+    OfEach,
+}
+
+impl Room {
+    /// That of a mission, by whether its belief weighs labels, how it asks for them, and whether it audits.
+    pub fn of(weighs: bool, asking: &Asking, audits: bool) -> Self {
+        match () {
+            () if !weighs => Self::OfTrue,
+            () if asking.is_apart() => Self::Apart,
+            () if audits => Self::ButAudit,
+            () => Self::OfEach,
+        }
+    }
+}
 
 impl File {
     /// Whether an audit comes before a goal's promise.
@@ -212,11 +248,12 @@ impl File {
     }
 }
 
-/// The room for labels beside the oracle's samples.
+/// The most labels of a mission, by whether its belief weighs labels: as many as there is room for beside the oracle's
+/// samples.
 ///
 /// # Errors
 /// Names the oracle, the number of its points and the limit.
-pub fn room(oracle: usize) -> Result<usize> {
+pub fn most_labels(oracle: usize, weighs: bool) -> Result<u32> {
     let room = CAPACITY.saturating_sub(oracle);
     if room == 0 {
         let expected = format!(
@@ -225,41 +262,48 @@ pub fn room(oracle: usize) -> Result<usize> {
         );
         return wrong("oracle", format!("{oracle} points"), expected);
     }
-    Ok(room)
+    Ok(if weighs { room as u32 } else { MOST })
 }
 
-/// Whether a mission may have this many steps: as many as there is room for labels, unless those are limited by
-/// themselves or an audit reads some that take no room.
+/// Whether a mission may have this many steps.
 ///
 /// # Errors
 /// Names `field`, the number and the limit.
-pub fn check_steps(
-    field: &str,
-    steps: u32,
-    room: usize,
-    asking: &Asking,
-    audits: bool,
-) -> Result<()> {
-    let most = match () {
-        () if asking.is_apart() => MOST_STEPS,
-        () if audits => MOST_WITH_AUDIT,
-        () => room as u32,
+pub fn check_steps(field: &str, steps: u32, oracle: usize, labels: Room) -> Result<()> {
+    let (most, why) = match labels {
+        Room::OfTrue | Room::Apart => (MOST, String::new()),
+        Room::ButAudit => (MOST_WITH_AUDIT, String::new()),
+        Room::OfEach => {
+            let why = format!(
+                " where labels may be wrong (the planner holds {CAPACITY} samples, {oracle} of them the oracle's)"
+            );
+            (most_labels(oracle, true)?, why)
+        }
     };
-    if (1..=most).contains(&steps) {
-        return Ok(());
+    if !(1..=most).contains(&steps) {
+        return wrong(field, steps, format!("1 to {most}{why}"));
     }
-    let oracle = CAPACITY - room;
-    let why = if most == room as u32 {
-        format!(" (the planner holds {CAPACITY} samples, {oracle} of them the oracle's)")
-    } else {
-        String::new()
-    };
-    wrong(field, steps, format!("1 to {most}{why}"))
+    Ok(())
+}
+
+/// Whether a motion can have so many readings.
+///
+/// # Errors
+/// Names `field`, the number and the limit.
+pub fn check_readings(field: &str, readings: u32) -> Result<()> {
+    if !(1..=MOST_READINGS).contains(&readings) {
+        return wrong(
+            field,
+            readings,
+            format!("1 to {MOST_READINGS}, the last at the motion's end"),
+        );
+    }
+    Ok(())
 }
 
 fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> {
-    let room = room(file.oracle.len())?;
     let steps = overrides.steps.unwrap_or(file.steps);
+    check_readings("readings", file.readings)?;
     let algorithm = overrides.algorithm.unwrap_or(file.algorithm);
     let weight = file.varrho.map_or_else(|| Ok(algorithm.weight()), weight)?;
     let grid = file.fan.map_or(algorithm.grid(), Grid::from);
@@ -275,9 +319,12 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
     let area = terrain::area(&file.area.0, &file.keep_out)?;
     let asked = (file.price, file.labels, file.ask.0.seek());
     let names = ["price", "labels", "ask.seek"];
-    let asking = Asking::of(names, asked, (algorithm, &area, &vehicle), room)?;
+    let weighs = algorithm.weighs(file.noise.is_some());
+    let most = most_labels(file.oracle.len(), weighs)?;
+    let asking = Asking::of(names, asked, (algorithm, &area, &vehicle), most)?;
     let steps_name = if overrides.steps.is_some() { "--steps" } else { "steps" };
-    check_steps(steps_name, steps, room, &asking, file.audits())?;
+    let room = Room::of(weighs, &asking, file.audits());
+    check_steps(steps_name, steps, file.oracle.len(), room)?;
     let truth = file.truth.as_ref().map(|table| table.0.world(&area, folder)).transpose()?;
     let world = truth.unwrap_or(World::UNKNOWN);
     let given = oracle(&file.oracle, &area, &world)?;
@@ -307,6 +354,7 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
     Ok(Mission {
         algorithm,
         steps,
+        readings: file.readings,
         seed: overrides.seed.unwrap_or(file.seed),
         config,
         allowance,

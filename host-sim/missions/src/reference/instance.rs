@@ -122,6 +122,12 @@ impl Instance {
 }
 
 fn problem(mission: &Mission, line: Option<LineCost>) -> Result<Problem> {
+    if mission.readings > 1 {
+        let found = mission.readings;
+        bail!(
+            "readings: found {found}, expected 1, as the paper's problems have one label a motion"
+        );
+    }
     if mission.errors != Errors::default() {
         bail!(
             "errors: found a robot that errs, expected none, as the paper's problems have no such errors"

@@ -1,16 +1,14 @@
 //! A robot that errs: its motions end elsewhere than they should, and its true position differs from the one it
 //! reports.
 
-use std::convert::Infallible;
-
 use nalgebra::{Point2, Vector2};
-use planner_core::robot::Body;
 use planner_core::{Heading, Motion, Pose, Reading, Site};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use crate::world::World;
-use crate::world::robot::Robot;
+use crate::world::on_the_way::Way;
+use crate::world::robot::{Glimpse, Robot, body};
 
 /// Gaussian errors are cut off at this many standard deviations.
 pub const CUT: f64 = 3.0;
@@ -45,12 +43,22 @@ impl Erring {
     }
 }
 
-impl Body for Erring {
-    type Error = Infallible;
+body!(Erring);
+
+impl Robot for Erring {
+    fn true_pose(&self) -> Option<Pose> {
+        Some(self.truth)
+    }
 
     /// Turns and drives from the true pose. The turn and the length are those of the motion from the assumed pose, plus
     /// the robot's errors.
-    fn perform(&mut self, motion: &Motion, pose: &mut Pose) -> Result<Option<Reading>, Infallible> {
+    fn travel(
+        &mut self,
+        motion: &Motion,
+        pose: &mut Pose,
+        way: Way,
+        pass: &mut dyn FnMut(Glimpse),
+    ) -> Option<Reading> {
         self.world.advance();
         let Self { errors, truth, .. } = *self;
         let turn = Heading(motion.target.heading.0.wrapping_sub(pose.heading.0)).radians();
@@ -61,15 +69,14 @@ impl Body for Erring {
         let moves = drive != Vector2::zeros();
         let drive = rotated(drive, off + turned) + if moves { slipped } else { Vector2::zeros() };
         self.truth = displaced(truth, drive, turn + turned);
+        for site in way.sites(truth, self.truth) {
+            let there = Pose { site, ..self.truth };
+            let reported = displaced(there, spread(&mut self.rng, errors.position), 0.0).site;
+            pass(Glimpse { reported, site, reading: Some(self.world.reading(site)) });
+        }
         let reported = spread(&mut self.rng, errors.position);
         *pose = displaced(self.truth, reported, gauss(&mut self.rng, errors.heading));
-        Ok(motion.wants_label.then(|| self.world.reading(self.truth.site)))
-    }
-}
-
-impl Robot for Erring {
-    fn true_pose(&self) -> Option<Pose> {
-        Some(self.truth)
+        motion.wants_label.then(|| self.world.reading(self.truth.site))
     }
 }
 

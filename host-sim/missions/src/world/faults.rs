@@ -1,15 +1,13 @@
 //! How a sensor fails: wrappers around a simulated robot, one for each fault.
 
-use std::convert::Infallible;
-
 use nalgebra::Point2;
-use planner_core::robot::Body;
 use planner_core::{Label, Motion, Pose, Reading, Site};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use crate::world::World;
-use crate::world::robot::Robot;
+use crate::world::on_the_way::Way;
+use crate::world::robot::{Glimpse, Robot, body};
 
 /// A fault of the sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,23 +54,36 @@ impl Fault {
 /// A robot whose sensor fails: a wrapper around any other.
 pub struct Failing {
     body: Box<dyn Robot>,
+    sensor: FailingSensor,
+}
+
+/// Its sensor.
+struct FailingSensor {
     fault: Fault,
-    /// What it moves in.
+    /// What the robot moves in.
     world: World,
     rng: ChaCha8Rng,
-    /// The readings of the sensor without the fault: one for each label that was asked for.
+    /// The readings without the fault: one for each label.
     read: Vec<Option<Reading>>,
 }
 
 impl Failing {
     /// A robot with one fault more.
     pub fn new(body: Box<dyn Robot>, fault: Fault, world: World, rng: ChaCha8Rng) -> Self {
-        Self { body, fault, world, rng, read: Vec::new() }
+        Self { body, sensor: FailingSensor { fault, world, rng, read: Vec::new() } }
     }
 
     /// Where the robot truly is if it reports this pose.
     fn place(&self, reported: Pose) -> Point2<f64> {
         Point2::from(self.body.true_pose().unwrap_or(reported).site)
+    }
+}
+
+impl FailingSensor {
+    /// What it reports of one more label.
+    fn reports(&mut self, reading: Option<Reading>, way: [Point2<f64>; 2]) -> Option<Reading> {
+        self.read.push(reading);
+        self.spoilt(reading, way)
     }
 
     /// What the sensor reports in place of `reading` at the end of a straight way.
@@ -110,30 +121,39 @@ fn before([start, end]: [Point2<f64>; 2], metres: f64) -> Site {
     Site::try_from(place).expect("it lies between two sites")
 }
 
-impl Body for Failing {
-    type Error = Infallible;
-
-    fn perform(&mut self, motion: &Motion, pose: &mut Pose) -> Result<Option<Reading>, Infallible> {
-        let start = self.place(*pose);
-        self.world.advance();
-        let reading = self.body.perform(motion, pose)?;
-        if !motion.wants_label {
-            return Ok(reading);
-        }
-        self.read.push(reading);
-        Ok(self.spoilt(reading, [start, self.place(*pose)]))
-    }
-}
+body!(Failing);
 
 impl Robot for Failing {
     fn true_pose(&self) -> Option<Pose> {
         self.body.true_pose()
+    }
+
+    fn travel(
+        &mut self,
+        motion: &Motion,
+        pose: &mut Pose,
+        way: Way,
+        pass: &mut dyn FnMut(Glimpse),
+    ) -> Option<Reading> {
+        let start = self.place(*pose);
+        let Self { body, sensor } = self;
+        sensor.world.advance();
+        let reading = body.travel(motion, pose, way, &mut |it| {
+            let reading = sensor.reports(it.reading, [start, Point2::from(it.site)]);
+            pass(Glimpse { reading, ..it });
+        });
+        if !motion.wants_label {
+            return reading;
+        }
+        let end = self.place(*pose);
+        self.sensor.reports(reading, [start, end])
     }
 }
 
 #[cfg(test)]
 mod tests {
     use planner_core::dynamics::{Action, Control};
+    use planner_core::robot::Body as _;
     use planner_core::{Heading, Line};
     use rand::SeedableRng as _;
 
@@ -225,9 +245,9 @@ mod tests {
             let fault = Fault { kind, from: 1, to: END };
             let rng = ChaCha8Rng::seed_from_u64(rng.random_range(0..u64::MAX));
             let mut robot = Failing::new(body, fault, World::UNKNOWN, rng);
-            robot.read.push(None);
+            robot.sensor.read.push(None);
             let way = [Point2::origin(); 2];
-            (0..10_000).filter(|_| of(robot.spoilt(Some(Reading::Boundary), way))).count()
+            (0..10_000).filter(|_| of(robot.sensor.spoilt(Some(Reading::Boundary), way))).count()
         };
         let positive = |reading: Option<Reading>| reading.map(Reading::sign) == P;
         let heads = count(FaultKind::Garbage, positive, &mut world);

@@ -11,6 +11,7 @@ pub mod grid;
 pub(crate) mod in_order;
 pub mod moving;
 pub mod noise;
+pub mod on_the_way;
 pub mod polygon;
 pub mod polyline;
 pub mod raster;

@@ -1,15 +1,13 @@
 //! How labels are flipped in the simulated world.
 
-use std::convert::Infallible;
-
 use planner_core::belief::noise::trusted_radius;
-use planner_core::robot::Body;
 use planner_core::{Motion, Noise, Pose, Reading, Reliability, Sample, Tolerance};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use crate::world::World;
-use crate::world::robot::Robot;
+use crate::world::on_the_way::Way;
+use crate::world::robot::{Glimpse, Robot, body};
 
 /// How labels are flipped.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,31 +59,41 @@ pub struct Flipped {
     pub rng: ChaCha8Rng,
 }
 
-impl Body for Flipped {
-    type Error = Infallible;
-
-    fn perform(&mut self, motion: &Motion, pose: &mut Pose) -> Result<Option<Reading>, Infallible> {
-        self.world.advance();
-        let Some(reading) = self.body.perform(motion, pose)? else { return Ok(None) };
-        let place = self.body.true_pose().unwrap_or(*pose).site;
-        let exposed = match self.model.extent {
-            Extent::OutsideBalls(_) => {
-                self.model.told(Tolerance::NONE).at(place, &self.given) != Reliability::CERTAIN
-            }
-            Extent::Band(half) => self.world.distance(place).abs() <= half,
-        };
-        // Drawn whether it is used or not, so that a path's noise does not depend on its places.
-        let flips = self.rng.random_range(0.0..1.0) >= self.model.p;
-        Ok(Some(match reading {
-            Reading::Side(label) if exposed && flips => Reading::Side(-label),
-            reading => reading,
-        }))
-    }
-}
+body!(Flipped);
 
 impl Robot for Flipped {
     fn true_pose(&self) -> Option<Pose> {
         self.body.true_pose()
+    }
+
+    fn travel(
+        &mut self,
+        motion: &Motion,
+        pose: &mut Pose,
+        way: Way,
+        pass: &mut dyn FnMut(Glimpse),
+    ) -> Option<Reading> {
+        self.world.advance();
+        let Self { body, model, world, given, rng } = self;
+        let mut flipped = |reading, place| {
+            let exposed = match model.extent {
+                Extent::OutsideBalls(_) => {
+                    model.told(Tolerance::NONE).at(place, given) != Reliability::CERTAIN
+                }
+                Extent::Band(half) => world.distance(place).abs() <= half,
+            };
+            // Drawn whether it is used or not, so that a path's noise does not depend on its places.
+            let flips = rng.random_range(0.0..1.0) >= model.p;
+            match reading {
+                Reading::Side(label) if exposed && flips => Reading::Side(-label),
+                reading => reading,
+            }
+        };
+        let reading = body.travel(motion, pose, way, &mut |it| {
+            pass(Glimpse { reading: it.reading.map(|reading| flipped(reading, it.site)), ..it });
+        });
+        let place = body.true_pose().unwrap_or(*pose).site;
+        reading.map(|reading| flipped(reading, place))
     }
 }
 

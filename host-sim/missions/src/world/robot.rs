@@ -3,15 +3,55 @@
 use std::convert::Infallible;
 
 use planner_core::robot::Body;
-use planner_core::{Motion, Pose, Reading};
+use planner_core::{Motion, Pose, Reading, Site};
 
 use crate::world::World;
+use crate::world::on_the_way::Way;
 
 /// A robot that cannot fail.
 pub trait Robot: Body<Error = Infallible> {
     /// Its true pose; `None` if the pose that it reports is the true one.
     fn true_pose(&self) -> Option<Pose>;
+
+    /// As [`Body::perform`], and passes on what it senses on the way, in order.
+    fn travel(
+        &mut self,
+        motion: &Motion,
+        pose: &mut Pose,
+        way: Way,
+        pass: &mut dyn FnMut(Glimpse),
+    ) -> Option<Reading>;
 }
+
+/// What a robot senses on the way of a motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Glimpse {
+    /// Where it reports that it is.
+    pub reported: Site,
+    /// Where it truly is.
+    pub site: Site,
+    /// What its sensor reads; `None` if nothing.
+    pub reading: Option<Reading>,
+}
+
+/// A [`Body`] by its [`Robot::travel`], without readings on the way.
+macro_rules! body {
+    ($robot:ty) => {
+        impl planner_core::robot::Body for $robot {
+            type Error = std::convert::Infallible;
+
+            fn perform(
+                &mut self,
+                motion: &planner_core::Motion,
+                pose: &mut planner_core::Pose,
+            ) -> Result<Option<planner_core::Reading>, std::convert::Infallible> {
+                let way = $crate::world::on_the_way::Way::END;
+                Ok($crate::world::robot::Robot::travel(self, motion, pose, way, &mut |_| ()))
+            }
+        }
+    };
+}
+pub(super) use body;
 
 /// A robot that reaches the target of every motion and reads the true label there.
 pub struct Ideal {
@@ -19,18 +59,25 @@ pub struct Ideal {
     pub world: World,
 }
 
-impl Body for Ideal {
-    type Error = Infallible;
-
-    fn perform(&mut self, motion: &Motion, pose: &mut Pose) -> Result<Option<Reading>, Infallible> {
-        *pose = motion.target;
-        self.world.advance();
-        Ok(motion.wants_label.then(|| self.world.reading(pose.site)))
-    }
-}
+body!(Ideal);
 
 impl Robot for Ideal {
     fn true_pose(&self) -> Option<Pose> {
         None
+    }
+
+    fn travel(
+        &mut self,
+        motion: &Motion,
+        pose: &mut Pose,
+        way: Way,
+        pass: &mut dyn FnMut(Glimpse),
+    ) -> Option<Reading> {
+        let from = std::mem::replace(pose, motion.target);
+        self.world.advance();
+        for site in way.sites(from, *pose) {
+            pass(Glimpse { reported: site, site, reading: Some(self.world.reading(site)) });
+        }
+        motion.wants_label.then(|| self.world.reading(pose.site))
     }
 }

@@ -56,6 +56,7 @@ pub(crate) fn ended(results: &Results) -> Vec<Told> {
     let promise = results.end.goal.as_ref().map(promise);
     let promise = promise.map_or(String::new(), |promise| format!(" {promise}"));
     let mut ended = vec![Told::new("Ended", format!("{}.{promise}", sentence(why)))];
+    ended.extend(text::readings(results).map(|words| Told::new("Readings", words)));
     let shown = results.end.reliability.as_ref();
     ended.extend(shown.map(|it| Told::new("Sensor", text::shown(it).trim_end().to_owned())));
     let alarm = results.end.alarm.as_ref();

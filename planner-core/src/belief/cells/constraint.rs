@@ -28,6 +28,11 @@ impl Constraint {
         if self.0 & Self::NEGATIVE == 0 { Label::Positive } else { Label::Negative }
     }
 
+    /// The same edge after another sample is removed from the buffer, at `index`.
+    pub(crate) const fn without(self, index: usize) -> Self {
+        Self(if self.index() > index { self.0 - 1 } else { self.0 })
+    }
+
     /// What memory is filled with where there is no edge: all zeros.
     pub(crate) const NONE: Self = Self(0);
 

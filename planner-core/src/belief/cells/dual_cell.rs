@@ -80,6 +80,13 @@ impl<const E: usize> DualCell<E> {
         Some(cell)
     }
 
+    /// Follows a buffer from which the sample at `index` is removed, which is none of the edges.
+    pub(crate) fn forget(&mut self, index: usize) {
+        for edge in &mut self.edges {
+            *edge = edge.without(index);
+        }
+    }
+
     /// The same cell with another capacity; `None` when its edges do not fit.
     pub(crate) fn resized<const F: usize>(&self) -> Option<DualCell<F>> {
         DualCell::of(self.edges())

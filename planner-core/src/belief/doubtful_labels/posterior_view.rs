@@ -93,6 +93,19 @@ impl<const N: usize, const H: usize, const E: usize, R: Trust> Belief
         self.read_within(site, label, tolerance)
     }
 
+    /// A label is kept where the given samples leave it open.
+    fn observe_on_the_way(
+        &mut self,
+        site: Site,
+        reading: Reading,
+    ) -> Result<bool, ObservationError> {
+        let is_kept = self.keeps_on_the_way(site, reading);
+        if is_kept {
+            self.observe(site, reading)?;
+        }
+        Ok(is_kept)
+    }
+
     /// Returns the bisector of the labels as they were seen, the posterior [mean](PosteriorView::mean), and the maximum
     /// margin of the most likely hypothesis.
     fn estimates(&self) -> Estimates {

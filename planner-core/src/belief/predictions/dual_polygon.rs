@@ -237,6 +237,14 @@ impl<const N: usize> PredictiveBelief for VersionSpace<N> {
         Belief::observe_within(self, site, reading, tolerance)
     }
 
+    fn observe_on_the_way(
+        &mut self,
+        site: Site,
+        reading: Reading,
+    ) -> Result<bool, ObservationError> {
+        Belief::observe_on_the_way(self, site, reading)
+    }
+
     fn prepare(&mut self) {}
 
     fn predictor(&self, from: Site) -> DualPolygon {

@@ -153,6 +153,18 @@ impl<const N: usize, const H: usize, R: Trust + 'static> PredictiveBelief for No
         self.take_within(Sample { site, label }, reliability, tolerance)
     }
 
+    fn observe_on_the_way(
+        &mut self,
+        site: Site,
+        reading: Reading,
+    ) -> Result<bool, ObservationError> {
+        let is_kept = self.table.keeps_on_the_way(site, reading);
+        if is_kept {
+            self.observe_within(site, reading, self.table.noise().tolerance)?;
+        }
+        Ok(is_kept)
+    }
+
     fn prepare(&mut self) {
         self.columns.lay(&self.table, &self.believed);
     }

@@ -46,6 +46,16 @@ pub trait PredictiveBelief {
         tolerance: Tolerance,
     ) -> Result<(), ObservationError>;
 
+    /// Takes in what was read at a site on the way of a motion, and returns whether it was kept.
+    ///
+    /// # Errors
+    /// As [`Belief::observe_on_the_way`].
+    fn observe_on_the_way(
+        &mut self,
+        site: Site,
+        reading: Reading,
+    ) -> Result<bool, ObservationError>;
+
     /// Prepares the predictor. It stays valid until something is observed.
     fn prepare(&mut self);
 

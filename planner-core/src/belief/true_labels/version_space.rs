@@ -6,6 +6,7 @@ use crate::belief::goal::{Criterion, Goal};
 use crate::belief::sample::{Label, Reading, Sample, SampleBuffer};
 use crate::belief::tolerance::Tolerance;
 use crate::belief::true_labels::given::{GivenError, directions_left, first_inseparable_collinear};
+use crate::belief::true_labels::room::{Spare, spare};
 use crate::belief::{Belief, ObservationError};
 use crate::geometry::arc::SlopeArc;
 use crate::geometry::area::Area;
@@ -13,9 +14,10 @@ use crate::geometry::lattice::{Site, Vector};
 use crate::geometry::line::Bound;
 use crate::geometry::local_line::LocalLine;
 
-/// All lines that agree with up to `N` samples (the field's name for the paper's "bounds").
+/// All lines that agree with the samples (the field's name for the paper's "bounds"), with room for `N` of them.
 ///
-/// Each sample is kept; the [`DualCell`] names those that still matter.
+/// The [`DualCell`] names the samples that still matter. When the buffer is full, a sample goes that does not bound the
+/// lines left: see [`insert`](Self::insert). So a mission of thousands of labels runs in the memory of some 32 samples.
 #[derive(Clone, Debug)]
 pub struct VersionSpace<const N: usize> {
     samples: SampleBuffer<N>,
@@ -136,7 +138,7 @@ impl<const N: usize> VersionSpace<N> {
         shift.ok_or(ObservationError::Tolerance(tolerance))
     }
 
-    /// The samples, in the order in which they came.
+    /// The samples that are kept, in the order in which they came: all of them, until the buffer is full.
     pub fn samples(&self) -> &[Sample] {
         &self.samples
     }
@@ -155,11 +157,22 @@ impl<const N: usize> VersionSpace<N> {
         &self.cell
     }
 
-    /// Takes a sample as it is. One orientation an edge.
+    /// Takes a sample as it is.
+    ///
+    /// When the buffer is full, it keeps the given samples and those that bound the lines left. Of all others, that one
+    /// goes which lies deepest in certain ground, be it the new one. The four samples of the paper's
+    /// [`bisector`] go last. So all that is known stays exactly what it would be with all samples kept, and so does all
+    /// that is read off it. Only the bisector may come to differ, if a later label is nearer to a sample that went than
+    /// the bisector's second pair is long.
+    ///
+    /// One orientation an edge. With a full buffer also a root for each sample and edge, and `O(N^2)` distances.
     ///
     /// # Errors
     /// [`ObservationError`], with the version space as it was.
     pub fn insert(&mut self, sample: Sample) -> Result<Cut, ObservationError> {
+        if self.samples.is_full() && !self.makes_room(sample)? {
+            return Ok(Cut::Unchanged);
+        }
         let index = self.samples.push(sample).map_err(|full| ObservationError::Full(full.0))?;
         self.cell.cut(&self.samples, Constraint::new(index, sample.label)).map_err(|error| {
             self.samples.pop();
@@ -168,6 +181,26 @@ impl<const N: usize> VersionSpace<N> {
                 CutError::Full => ObservationError::Full(sample),
             }
         })
+    }
+
+    /// Removes the sample that matters least, and returns true. If that is the new one, it need not be stored.
+    fn makes_room(&mut self, sample: Sample) -> Result<bool, ObservationError> {
+        match spare(self.cell.lines(&self.samples), self.given, sample) {
+            Spare::Stored(index) => {
+                self.samples.remove(index);
+                self.cell.forget(index);
+                Ok(true)
+            }
+            Spare::New => Ok(false),
+            Spare::Contradiction => Err(ObservationError::Contradiction(sample)),
+            Spare::None => Err(ObservationError::Full(sample)),
+        }
+    }
+
+    /// How many samples there would be room for if all of those went that neither were given nor bound the lines left.
+    fn room(&self) -> usize {
+        let edges = self.cell.edges().iter();
+        N - self.given - edges.filter(|edge| edge.index() >= self.given).count()
     }
 
     /// Takes a reading, and returns the label that the site has from now on.
@@ -203,25 +236,37 @@ impl<const N: usize> VersionSpace<N> {
         tolerance: Tolerance,
     ) -> Result<Label, ObservationError> {
         let shift = self.shift_within(tolerance)?;
-        let label = match reading {
-            Reading::Side(label) => label,
-            Reading::Boundary => match self.certainty(site) {
-                Certainty::Uncertain => either,
-                Certainty::Certain(label) if self.bounds().any(|bound| bound.at(site) == 0) => {
-                    (self.expected, self.shift) = (tolerance, shift);
-                    return Ok(label);
-                }
-                Certainty::Certain(label) => -label,
-            },
-        };
-        let place = CellView { shift, ..self.lines() }.place(site, label);
-        let cut = place.map(|site| self.insert(Sample { site, label })).transpose()?;
+        let (label, told) = self.told(site, reading, either, shift);
+        let cut = told.map(|sample| self.insert(sample)).transpose()?;
         (self.expected, self.shift) = (tolerance, shift);
         if cut == Some(Cut::Smaller) && tolerance != Tolerance::NONE {
             // Arcs only narrow: there is always one.
             self.shift = self.shift_by(tolerance).unwrap_or(shift);
         }
         Ok(label)
+    }
+
+    /// The label that a site has from now on, and the sample that says so, as it is taken in under a shift. `None` if
+    /// the reading tells nothing.
+    fn told(
+        &self,
+        site: Site,
+        reading: Reading,
+        either: Label,
+        shift: Vector,
+    ) -> (Label, Option<Sample>) {
+        let label = match reading {
+            Reading::Side(label) => label,
+            Reading::Boundary => match self.certainty(site) {
+                Certainty::Uncertain => either,
+                Certainty::Certain(label) if self.bounds().any(|bound| bound.at(site) == 0) => {
+                    return (label, None);
+                }
+                Certainty::Certain(label) => -label,
+            },
+        };
+        let place = CellView { shift, ..self.lines() }.place(site, label);
+        (label, place.map(|site| Sample { site, label }))
     }
 
     /// By how much a tolerance shifts the next sample.
@@ -268,8 +313,9 @@ impl<const N: usize> VersionSpace<N> {
 }
 
 impl<const N: usize> Belief for VersionSpace<N> {
+    /// Whether the given samples and those that bound the lines left take up all the room.
     fn is_full(&self) -> bool {
-        self.samples.is_full()
+        self.room() == 0
     }
 
     fn tolerance(&self) -> Tolerance {
@@ -284,6 +330,30 @@ impl<const N: usize> Belief for VersionSpace<N> {
         tolerance: Tolerance,
     ) -> Result<(), ObservationError> {
         self.take_within(site, reading, Label::Positive, tolerance).map(|_| ())
+    }
+
+    /// Only a label that cuts is kept.
+    fn observe_on_the_way(
+        &mut self,
+        site: Site,
+        reading: Reading,
+    ) -> Result<bool, ObservationError> {
+        let shift = self.shift_within(self.tolerance)?;
+        let (_, told) = self.told(site, reading, Label::Positive, shift);
+        let Some(sample) = told else { return Ok(false) };
+        let certainty = self.certainty(sample.site);
+        if certainty == Certainty::Certain(sample.label) {
+            return Ok(false);
+        }
+        if certainty == Certainty::Uncertain && self.room() < 2 {
+            // The last room is for the label at the motion's end.
+            return Ok(false);
+        }
+        self.insert(sample)?;
+        if self.tolerance != Tolerance::NONE {
+            self.shift = self.shift_by(self.expected).unwrap_or(self.shift);
+        }
+        Ok(true)
     }
 
     fn estimates(&self) -> Estimates {

@@ -16,6 +16,7 @@ use crate::belief::goal::{Accuracy, Criterion};
 use crate::belief::sample::Reading;
 use crate::belief::tolerance::Tolerance;
 use crate::belief::{Belief as _, ObservationError};
+use crate::geometry::lattice::Site;
 use crate::geometry::workspace::Workspace;
 use crate::link::delivery::{LinkError, Port};
 use crate::link::message::{Algorithm, DeclinedError, Setup};
@@ -141,6 +142,14 @@ impl<L: Planner> Planner for CentreAlone<'_, L> {
         tolerance: Tolerance,
     ) -> Result<(), ObservationError> {
         self.0.observe_within(pose, reading, tolerance)
+    }
+
+    fn observe_on_the_way(
+        &mut self,
+        site: Site,
+        reading: Reading,
+    ) -> Result<bool, ObservationError> {
+        self.0.observe_on_the_way(site, reading)
     }
 
     fn belief(&self) -> &L::Belief {

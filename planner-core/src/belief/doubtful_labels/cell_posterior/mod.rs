@@ -18,7 +18,7 @@ use crate::belief::estimate::area;
 use crate::belief::list::List;
 use crate::belief::noise::{Noise, Reliability};
 use crate::belief::observation_log::{FromLog, ObservationLog, ReplayError};
-use crate::belief::sample::{Sample, SampleBuffer};
+use crate::belief::sample::{Reading, Sample, SampleBuffer};
 use crate::belief::tolerance::{Short, Tolerance};
 use crate::belief::true_labels::{GivenError, VersionSpace};
 use crate::belief::trust::{Tallies, Trust, counts};
@@ -248,6 +248,13 @@ impl<const N: usize, const H: usize, const E: usize, R: Trust> CellPosterior<N, 
     /// Whether another sample would be refused for want of room.
     pub(crate) fn is_full(&self) -> bool {
         self.samples.is_full()
+    }
+
+    /// Whether a reading on the way of a motion may tell something, and leaves room for the label at the motion's end.
+    pub(crate) fn keeps_on_the_way(&self, site: Site, reading: Reading) -> bool {
+        reading != Reading::Boundary
+            && self.samples.len() + 2 <= N
+            && self.start().certainty(site) == Certainty::Uncertain
     }
 
     /// What the given samples leave: the ground of P3 and P4.
