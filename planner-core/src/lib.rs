@@ -70,6 +70,7 @@
 //! | labels that are sometimes wrong | [`NoisyBelief`], made with a [`Noise`]: how often labels are right |
 //! | a boundary that bends or moves a little | a tolerance from a [`Deviation`] |
 //! | to stop when the line is known well enough | [`Goal`] |
+//! | a large area, few labels | [`Far`] sight: [`Lookahead::seeing`] |
 //! | a field that is no rectangle, places to keep out of | [`PolygonArea`] and [`KeepOut`] |
 //! | a vehicle | [`Unicycle`], [`Boat`], [`Car`], [`Holonomic`], or [`dynamics`] of your own |
 //! | your drive and sensor | [`robot`]: `Drive` and `LabelSensor`; [`robot::asynchronous`] has the same for `async` |
