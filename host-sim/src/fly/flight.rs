@@ -199,9 +199,17 @@ pub fn fly<L: Link>(mut mission: Mission, control: &mut Control<L>) -> Result<Fl
     let bar = count("steps flown").ok();
     let (mut ending, mut failure) = (Ending::Steps, None);
     let mut agent = Agent::new(&mut *planner, &mut *control, mission.start);
+    let mut labels = 0;
     for _ in 0..mission.steps {
+        if mission.asking.is_enough(labels) {
+            ending = Ending::Labels;
+            break;
+        }
         match agent.step() {
-            Ok(Event::Step(step)) => recorder.take(&step, None, agent.planner.belief()),
+            Ok(Event::Step(step)) => {
+                labels += u32::from(step.reading.is_some());
+                recorder.take(&step, None, agent.planner.belief());
+            }
             Ok(Event::Stopped(reason)) => {
                 ending = Ending::Stopped(reason);
                 break;

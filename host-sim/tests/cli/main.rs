@@ -23,6 +23,7 @@ mod maps;
 mod missions;
 mod outliers;
 mod outputs;
+mod prices;
 mod readings;
 mod recordings;
 mod reference;

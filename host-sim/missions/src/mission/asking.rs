@@ -74,6 +74,11 @@ impl Asking {
         self.price.is_some() || self.labels.is_some()
     }
 
+    /// Whether so many labels are as many as there may be.
+    pub fn is_enough(&self, labels: u32) -> bool {
+        self.labels.is_some_and(|most| labels >= most)
+    }
+
     /// The sight of look-ahead, if labels have a price.
     ///
     /// # Panics

@@ -90,7 +90,7 @@ impl Mission {
         let (mut ending, mut refused) = (Ending::Steps, None);
         let mut labels = 0;
         for _ in 0..self.steps {
-            if self.asking.labels.is_some_and(|most| labels >= most) {
+            if self.asking.is_enough(labels) {
                 ending = Ending::Labels;
                 break;
             }
