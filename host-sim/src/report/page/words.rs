@@ -127,6 +127,12 @@ fn planned(mission: &Mission, step: &StepResult) -> String {
         (Some("P2"), Some(_)) => "P2, no way along, so in any direction",
         (_, Some(_)) => "No way in the problem's directions, so in any",
         (_, None) => match mission.algorithm {
+            Algorithm::Lookahead if mission.asking.price.is_some() && step.expected.is_none() => {
+                "On the way to the place whose label is worth the most"
+            }
+            Algorithm::Lookahead if mission.asking.price.is_some() => {
+                "Where a label is worth the most for its price and the way"
+            }
             Algorithm::Lookahead => "Where this label and the next tell the most for their cost",
             Algorithm::Margin => "The place in reach nearest to the maximum-margin line",
             _ => "At random",
