@@ -407,6 +407,8 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion, S: Sight> Pla
         let is_kept = self.belief.observe_on_the_way(site, reading)?;
         if is_kept {
             self.silence.hear();
+            // Another place may be worth more by now.
+            S::observe(&mut self.journey, true);
         }
         Ok(is_kept)
     }

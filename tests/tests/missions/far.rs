@@ -67,6 +67,28 @@ fn a_price_makes_labels_worth_more() {
     }
 }
 
+/// What is read on the way to a place counts: another place may be worth more by then.
+#[test]
+fn readings_on_the_way_to_a_place_pay() {
+    let campaign = |readings| Campaign {
+        fields: cases(60, 300),
+        sides: [800.0, 500.0],
+        vehicle: unicycle(5.0),
+        asking: priced(50.0, 10),
+        readings,
+        ..Campaign::of(Algorithm::Lookahead, MOTIONS)
+    };
+    let [one, five] = [1, 5].map(|readings| {
+        let campaign = campaign(readings);
+        let rows = campaign.run(&Accuracy { by_label: true }).expect("there is room");
+        let summary = Summary::of(&campaign, rows).expect("labels are true");
+        at(&summary, 10).clone()
+    });
+    println!("{one:?}\n{five:?}");
+    assert!(five.centre_deg.median < 0.01 && five.centre_deg.p90 < 0.1, "{five:?}");
+    assert!(one.centre_deg.median > 0.3 && five.metres < one.metres, "{one:?}, {five:?}");
+}
+
 /// The price says what a user wants: the higher it is, the farther the robot drives, and the more it learns from as many
 /// labels. Bits save driving, accuracy saves labels.
 #[test]
