@@ -11,6 +11,7 @@ use host_sim::campaign::standard_field;
 use host_sim::hil::flight;
 use host_sim::hil::player::Player;
 use host_sim::mission::algorithm::Algorithm;
+use host_sim::mission::asking::Asking;
 use host_sim::mission::definition::Mission;
 use host_sim::mission::recording::Recording;
 use host_sim::report::trace;
@@ -46,14 +47,15 @@ fn flies(machine: &mut Machine, mission: &Mission) {
 fn what_it_has_no_room_for_it_declines_by_name() {
     let Some(mut machine) = Machine::start(NRF51, &[]) else { return };
     let noisy = Mission { noise: DOUBT, ..mission(0) };
-    let long = Mission { steps: 65, ..mission(0) };
-    for (mission, why) in
-        [(noisy, "algorithm"), (of_any_vehicle(6, 8), "area"), (long, "at most 64")]
+    let priced = Asking { price: Some(5.0), ..Asking::USUAL };
+    let priced = Mission { asking: priced, ..mission(0) };
+    for (mission, why) in [(noisy, "algorithm"), (of_any_vehicle(6, 8), "area"), (priced, "price")]
     {
         let refusal = machine.fly(&mission).expect_err("it is declined").to_string();
         assert!(refusal.contains(why), "{why}: {refusal}");
     }
-    flies(&mut machine, &Mission { steps: 64, ..mission(0) });
+    // More labels than it has room for: those that no longer matter make room.
+    flies(&mut machine, &Mission { steps: 70, ..mission(0) });
 }
 
 #[test]
