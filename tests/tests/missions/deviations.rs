@@ -12,6 +12,7 @@ use host_sim::world::polygon::misclassified;
 use host_sim::world::sine::Sine;
 use nalgebra::{Point2, Vector2};
 use planner_core::error::ObservationError;
+use planner_core::planner::Stage;
 use planner_core::{
     Belief as _, Deviation, Goal, Label, Line, Plan, Planner, Pose, PosteriorView, Sample,
     StopReason, Tolerance, Unicycle, VersionSpace,
@@ -164,7 +165,10 @@ fn fly(
     let (mut pose, mut motions): (Pose, u32) = (mission.start, 0);
     let mut flown = Flown { is_refuted: false, is_known: false, cut_off: 0, arc: 0.0, off: None };
     while motions < MOTIONS {
+        // After 64 labels it is over: further ones would make room for themselves.
+        let is_full = planner.belief().samples().len() == CAPACITY;
         let step = match planner.plan(pose) {
+            Plan::Move(step) if is_full && step.stage != Some(Stage::Audit) => break,
             Plan::Move(step) => step,
             Plan::Stop(reason) => {
                 flown.is_known = reason == StopReason::Known;
