@@ -89,6 +89,11 @@ impl Area {
         [(x + 1) / 2, (z + 1) / 2]
     }
 
+    /// The mean of its breadth and its height, lattice units.
+    pub(crate) fn mean_side(&self) -> f32 {
+        self.half_sides().into_iter().map(|half| half as f32).sum()
+    }
+
     /// Whether all of a disc lies inside or on the border; the radius in lattice units, below 2^30.
     pub fn contains_disc(&self, centre: Site, radius: i32) -> bool {
         let (from, to) = (centre - self.min, self.max - centre);

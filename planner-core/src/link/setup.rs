@@ -11,10 +11,10 @@ use crate::belief::weight::Prior;
 use crate::geometry::area::Area;
 use crate::motion::any_vehicle::Shape;
 use crate::motion::dynamics::Pose;
+use crate::planner::far::Far;
 use crate::planner::lookahead::DrivingPrice;
 use crate::planner::options::{Crossing, Following, Options};
 use crate::planner::scc::Policy;
-use crate::planner::sight::Far;
 use crate::search::objective::EffortWeight;
 
 /// Given samples that a setup can hold.

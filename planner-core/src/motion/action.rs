@@ -138,6 +138,11 @@ impl ActionGrid {
         self.step_length
     }
 
+    /// Length of the longest motion, lattice units.
+    pub(crate) fn longest_units(self) -> f32 {
+        f32::from(self.speeds.saturating_sub(1)) * self.step_units()
+    }
+
     /// Length of one step of speed, lattice units.
     pub(crate) const fn step_units(self) -> f32 {
         self.step_length as f32 / (1 << Self::STEP_BITS) as f32

@@ -153,7 +153,7 @@ impl<V: Verdicts> Audit<V> {
         let circle = dynamics.turning_circle(pose, Side::Left).map_or(0, |it| it.radius);
         let least = grid.step_units().max(NEAR_CIRCLE * circle as f32);
         let places = Places::of(estimate, area.bounds(), least)?;
-        let reach = f32::from(grid.speeds().saturating_sub(1)) * grid.step_units();
+        let reach = grid.longest_units();
         let most = TURNS.saturating_add((2.0 * places.chord.length() / reach) as u16);
         let mut course = self.now;
         while course.missed < MISSES && self.agreed + self.disagreed < LABELS {
@@ -259,8 +259,7 @@ struct Places {
 impl Places {
     /// The places by an estimate, no nearer than `least`.
     fn of(estimate: LocalLine, area: Area, least: f32) -> Option<Self> {
-        let [half, other] = area.half_sides().map(|side| side as f32);
-        let usual = NEAR * (half + other);
+        let usual = NEAR * area.mean_side();
         let eighth = UNITS_PER_METRE as f32 / 8.0;
         let near = if usual < eighth { usual } else { eighth };
         let near = if near > least { near } else { least };

@@ -198,7 +198,7 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion, S: Sight>
         }
     }
 
-    /// The same, but labels are sought as far as the sight says: [`Far`](crate::planner::sight::Far) sight is for areas
+    /// The same, but labels are sought as far as the sight says: [`Far`](crate::planner::far::Far) sight is for areas
     /// that are large for the reach of one motion.
     #[must_use]
     #[inline]
@@ -258,8 +258,7 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion, S: Sight>
     fn lookout(&self) -> Lookout<'_, D, G> {
         let Self { area, dynamics, evaluations, .. } = self;
         let grid = dynamics.grid();
-        let side = area.bounds().half_sides().into_iter().map(|half| half as f32).sum::<f32>();
-        let most = (USUAL * side / grid.step_units()) as u16;
+        let most = (USUAL * area.bounds().mean_side() / grid.step_units()) as u16;
         let usual = grid.speeds().saturating_sub(1).min(most).max(1);
         // Where positions err, there is always one more label that tells next to nothing.
         let errs = self.belief.ground().shift != Vector::default();

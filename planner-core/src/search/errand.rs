@@ -88,7 +88,7 @@ pub(crate) fn errand<D: Dynamics, G: Workspace>(
 /// the place lies within the vehicle's circle, a whole turn comes before it.
 pub(crate) fn motions_to<D: Dynamics>(dynamics: &D, pose: Pose, place: Site) -> f32 {
     let (grid, way) = (dynamics.grid(), place - pose.site);
-    let reach = f32::from(grid.speeds().saturating_sub(1)) * grid.step_units();
+    let reach = grid.longest_units();
     let drives = distance(way) / reach;
     let drives = if drives > 1.0 { drives } else { 1.0 };
     let circle = |side| dynamics.turning_circle(pose, side);

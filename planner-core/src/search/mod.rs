@@ -20,7 +20,7 @@ pub mod direction_rule;
 pub(crate) mod errand;
 pub(crate) mod lookout;
 pub(crate) mod manoeuvre;
-mod motions;
+pub(crate) mod motions;
 pub mod objective;
 pub mod problem;
 pub mod recovery;

@@ -286,7 +286,7 @@ impl<D: Dynamics, G: Workspace> Ladder<'_, '_, '_, D, G> {
     fn drive_far(&mut self, way: Vector) -> Option<Found> {
         let (dynamics, pose) = (self.search.dynamics, self.search.pose);
         let grid = dynamics.grid();
-        let reach = f32::from(grid.speeds().saturating_sub(1)) * grid.step_units();
+        let reach = grid.longest_units();
         let is_far = sqrt(single(way.dot(way))) > reach && !goes_round(dynamics, pose);
         let leg = if is_far { self.leg(pose, way)? } else { return None };
         Some(Found::of(Some(Recovery::Transit), leg))

@@ -203,3 +203,26 @@ fn sight_is_far_by_default_where_the_area_is_large() {
     let usual = Far::usual(&lake, &vehicle).expect("as it should");
     assert!((usual.price() - 81.25).abs() < 1e-3, "{}", usual.price());
 }
+
+/// More motions than a number of 16 bits holds lead to the places of a large area, where motions are of millimetres.
+#[test]
+fn a_way_may_be_of_any_length() {
+    let area = Area::metres([0.0, 0.0], [8_000.0, 8_000.0]).expect("an area");
+    let places = [(800.0, 400.0), (800.0, 7_200.0), (4_800.0, 7_600.0), (7_200.0, 800.0)];
+    let given = places.map(|(x, z)| site(x, z)).map(|site| {
+        let label =
+            if site.z() > 4_000 * UNITS_PER_METRE { Label::Positive } else { Label::Negative };
+        Sample { site, label }
+    });
+    let space = VersionSpace::<32>::new(&given).expect("an oracle");
+    let vehicle = Unicycle::new(1, std::f64::consts::FRAC_PI_2, 3, 1).expect("a vehicle");
+    let far = Far::at_price(16_384.0).expect("a price");
+    let mut planner = Lookahead::new(area, vehicle, space).expect("room").seeing(far);
+    let mut pose = Pose { site: given[0].site, heading: Heading::default() };
+    for motion in 0..100 {
+        let Plan::Move(next) = planner.plan(pose) else { panic!("it ends after {motion}") };
+        assert!(!next.wants_label, "it gives up after {motion}");
+        pose = next.target;
+        planner.observe(pose, None).expect("no label");
+    }
+}

@@ -16,10 +16,11 @@ use crate::link::station::terms::{Known, PlannerSetup};
 use crate::motion::any_vehicle::ShapeError;
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::cfc::Cfc;
+use crate::planner::far::Far;
 use crate::planner::lookahead::Lookahead;
 use crate::planner::scc::{Policy, Scc};
 use crate::planner::setup::{Restart, SetupError, aimed_for};
-use crate::planner::sight::{Far, Sight};
+use crate::planner::sight::Sight;
 use crate::planner::{Plan, Planner};
 
 #[inline(never)]
