@@ -13,7 +13,7 @@ use crate::campaign::rows::Planners;
 use crate::campaign::standard_field::SIDE_M;
 use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::Allowance;
-use crate::mission::asking::Asking;
+use crate::mission::asking::{Asking, Price};
 use crate::mission::names::{
     CrossingName, FanName, FollowingName, PolicyName, PriorName, SeeksName,
 };
@@ -101,10 +101,11 @@ pub(crate) struct CampaignFlags {
     #[arg(long, value_name = "X,Z", value_delimiter = ',')]
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     area: Vec<f64>,
-    /// What a label costs, metres driven: labels are sought all over the area (lookahead)
-    #[arg(long, value_name = "METRES")]
+    /// What a label costs, metres driven, so that labels are sought all over the area; or none (lookahead) [default: an
+    /// eighth of the mean of its sides where that is over 16 motions, else none]
+    #[arg(long, value_name = "METRES|none")]
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    price: Option<f64>,
+    price: Option<Price>,
     /// What a label is to bring (lookahead with --price) [default: accuracy]
     #[arg(long, value_enum)]
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -138,7 +138,9 @@ pub(crate) fn declined(declined: DeclinedError, setup: &Setup) -> anyhow::Error 
         DeclinedError::Area => anyhow!("area: declined by the board: {declined}"),
         DeclinedError::Tolerance => anyhow!("tolerance: declined by the board: {declined}"),
         DeclinedError::Goal => anyhow!("stop: declined by the board: {declined}"),
-        DeclinedError::Price => anyhow!("price: declined by the board: {declined}"),
+        DeclinedError::Price => {
+            anyhow!("price: declined by the board: {declined}; expected price = \"none\"")
+        }
         DeclinedError::Labels => {
             anyhow!("--labels: found chip, but this board has no label sensor")
         }

@@ -48,6 +48,20 @@ fn a_large_area_gives_labels_a_price() {
     }
 }
 
+/// So it did before there were prices, and boards without far sight still do.
+#[test]
+fn without_a_price_it_looks_one_motion_far() {
+    let folder = folder();
+    fs::write(folder.path().join("m.toml"), lake("lookahead", "labels = 12\nprice = \"none\""))
+        .expect("a file");
+    let told = prints(folder.path(), &["run", "m.toml"]);
+    assert!(told.contains("12 samples in 12 steps") && !told.contains("costs"), "{told}");
+    let lakes = ["--area", "800,500", "--reach", "5", "--labels", "4", "--fields", "2"];
+    let flags = ["campaign", "--algorithm", "lookahead", "--price", "none"];
+    let told = prints(folder.path(), &[&flags[..], &lakes].concat());
+    assert!(told.contains("Ended by: labels 2") && told.contains("in 8 steps"), "{told}");
+}
+
 #[test]
 fn bad_prices_are_refused() {
     let folder = folder();
@@ -55,6 +69,7 @@ fn bad_prices_are_refused() {
     for (algorithm, settings, parts) in [
         ("lookahead", "price = -1.0", &["m.toml: price:", "found -1", "0 to 16384"][..]),
         ("lookahead", "price = 20000.0", &["m.toml: price:", "0 to 16384"]),
+        ("lookahead", "price = \"low\"", &["m.toml:12:", "metres driven"]),
         ("cfc", "price = 5.0", &["m.toml: price:", "with algorithm cfc", "lookahead"]),
         ("lookahead", "labels = 0", &["m.toml: labels:", "found 0", "1 to 10000"]),
         ("lookahead", &format!("labels = 65\n{noise}"), &["m.toml: labels:", "1 to 64"]),
@@ -71,6 +86,7 @@ fn bad_prices_are_refused() {
     refuses(folder.path(), &["run", "m.toml"], &["m.toml: ask.seek:", "with a price"]);
     for (flags, parts) in [
         (&["--price", "5"][..], &["--price:", "with algorithm cfc"][..]),
+        (&["--algorithm", "lookahead", "--price", "low"], &["--price", "metres driven, or none"]),
         (&["--area", "5"], &["--area:", "two sides"]),
         (&["--area", "0,9"], &["--area:", "from 1 to 8000"]),
         (&["--algorithm", "lookahead", "--labels", "0"], &["--labels:", "1 to"]),

@@ -20,10 +20,15 @@
 use crate::belief::observation_log::ReplayError;
 use crate::planner::Planner;
 
-/// The version of snapshots. It is written first, and changes whenever the data that follow change. From 2 on they hold
-/// the tolerances that observations brought, and how a planner turned since the last label; from 3 on the way that is
-/// under way; from 4 on the audit of look-ahead, from 5 on its odds, and from 6 on whether it strays, and of Algorithm 2
-/// whether the number of readings on the way is odd.
+/// The version of snapshots. It is written first, and changes whenever the data that follow change.
+///
+/// | from | they hold |
+/// | --- | --- |
+/// | 2 | the tolerances that observations brought, and how a planner turned since the last label |
+/// | 3 | the way that is under way |
+/// | 4 | the audit of look-ahead |
+/// | 5 | its odds |
+/// | 6 | how many motions its way should take, and of Algorithm 2 whether the readings on the way are odd in number |
 pub const SNAPSHOT_VERSION: u16 = 6;
 
 /// What a planner has to remember over a sleep: the log of its belief (`T`), and what else it plans by (`M`).

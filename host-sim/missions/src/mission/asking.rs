@@ -1,9 +1,11 @@
 //! What labels cost, what they are to bring, and how many there may be: `price`, `labels` and `ask` of scenario files.
 
-use anyhow::Result;
+use std::str::FromStr;
+
+use anyhow::{Result, bail};
 use planner_core::link::message::MissionArea;
 use planner_core::{AnyVehicle, Far, Seeks};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::names::SeeksName;
@@ -18,6 +20,36 @@ pub struct Asking {
     pub seeks: Seeks,
     /// Labels at most.
     pub labels: Option<u32>,
+}
+
+/// `price` of a scenario file and a flag.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged, expecting = "expected metres driven, or \"none\"")]
+pub enum Price {
+    /// Metres driven.
+    Metres(f64),
+    /// Labels are sought within one motion, however large the area is.
+    Word(NoPrice),
+}
+
+/// The word for no price.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum NoPrice {
+    /// Near sight.
+    None,
+}
+
+impl FromStr for Price {
+    type Err = anyhow::Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        match (text, text.parse()) {
+            ("none", _) => Ok(Self::Word(NoPrice::None)),
+            (_, Ok(metres)) => Ok(Self::Metres(metres)),
+            _ => bail!("found {text}, expected metres driven, or none"),
+        }
+    }
 }
 
 /// `ask` of a scenario file.
@@ -38,23 +70,27 @@ impl Asking {
     /// Names the field, what was found and what was expected.
     pub fn of(
         [price_name, labels_name, seek_name]: [&str; 3],
-        (price, labels, seek): (Option<f64>, Option<u32>, Option<SeeksName>),
+        (price, labels, seek): (Option<Price>, Option<u32>, Option<SeeksName>),
         (algorithm, area, vehicle): (Algorithm, &MissionArea, &AnyVehicle),
         most: u32,
     ) -> Result<Self> {
         let looks_ahead = algorithm == Algorithm::Lookahead;
         let usual = if looks_ahead { Far::usual(area, vehicle).map(Far::price) } else { None };
-        let sought = price.or(usual);
+        let sought = match price {
+            Some(Price::Metres(metres)) => Some(metres),
+            Some(Price::Word(NoPrice::None)) => None,
+            None => usual,
+        };
         for (name, is_given) in [(price_name, price.is_some()), (seek_name, seek.is_some())] {
             if is_given && !looks_ahead {
                 let found = format!("with algorithm {}", algorithm.name());
                 return wrong(name, found, "with algorithm lookahead");
             }
         }
-        if let Some(price) = price
+        if let Some(Price::Metres(price)) = price
             && Far::at_price(price).is_err()
         {
-            return wrong(price_name, price, "metres driven, 0 to 16384");
+            return wrong(price_name, price, "metres driven, 0 to 16384, or none");
         }
         if seek.is_some() && sought.is_none() {
             let expected =

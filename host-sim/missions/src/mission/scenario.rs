@@ -17,7 +17,7 @@ use serde::Deserialize;
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::{self, Allowance};
-use crate::mission::asking::{AskTable, Asking};
+use crate::mission::asking::{AskTable, Asking, Price};
 use crate::mission::definition::{CAPACITY, Lines, Mission};
 use crate::mission::names::{CrossingName, FanName, FollowingName, PolicyName, PriorName};
 use crate::mission::sensor::{self, FaultTable};
@@ -69,7 +69,7 @@ struct File {
     #[serde(default)]
     allow: Table<Allowance>,
     stop: Option<Table<StopTable>>,
-    price: Option<f64>,
+    price: Option<Price>,
     labels: Option<u32>,
     #[serde(default)]
     ask: Table<AskTable>,

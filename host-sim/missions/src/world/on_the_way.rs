@@ -16,9 +16,10 @@ impl Way {
     /// A motion with a reading at its end alone.
     pub const END: Self = Self { readings: 1, is_arc: false };
 
-    /// Where readings before the last lie between two poses; none where the robot stays where it is. Along an arc that
-    /// turns by `w`, the place after a share `t` of it lies in the direction of the chord, turned back by `(1 - t) w / 2`, at
-    /// `sin(t w / 2) / sin(w / 2)` of the chord's length.
+    /// Where readings before the last lie between two poses; none where the robot stays where it is.
+    ///
+    /// An arc turns by `w`. Its place after a share `t` lies in the direction of the chord, turned back by `(1 - t) w / 2`.
+    /// It is `sin(t w / 2) / sin(w / 2)` of the chord's length away.
     pub fn sites(self, from: Pose, to: Pose) -> impl Iterator<Item = Site> {
         let [start, end] = [from, to].map(|pose| Point2::<f64>::from(pose.site));
         let (chord, readings) = (end - start, self.readings);

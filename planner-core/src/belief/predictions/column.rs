@@ -188,8 +188,8 @@ impl Column {
         low.below + part * (high.below - low.below)
     }
 
-    /// The mass of the lines that have a place on their +1 side, and the sums of their offsets and of their squares, each
-    /// less the offset of the middle of a stretch.
+    /// The mass of the lines that have a place on their +1 side, or of all; then the sums of their offsets and of the
+    /// squares of these. Offsets count from the middle of a stretch.
     #[inline(never)] // from two places, and not for speed
     pub(crate) fn moments_above(&self, place: Option<Vector>, middle: Vector) -> [f32; 3] {
         let (to, middle) = (place.map(|it| self.normal.along(it)), self.normal.along(middle));

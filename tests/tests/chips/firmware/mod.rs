@@ -178,7 +178,7 @@ fn the_log_tells_the_mission() {
     assert_eq!(log, expected);
 }
 
-/// A stuck sensor where labels are true, and inverted ones where they may be wrong: the log has a warning and an alarm
+/// The sensor is stuck where labels are true, and inverts them where they may be wrong. The log has a warning and an alarm
 /// after the labels that bring the evidence so far.
 #[test]
 fn the_log_warns_of_labels_that_no_line_explains() {
