@@ -71,6 +71,7 @@
 //! | a boundary that bends or moves a little | a tolerance from a [`Deviation`] |
 //! | to stop when the line is known well enough | [`Goal`] |
 //! | a large area, few labels | [`Far`] sight: [`Lookahead::seeing`] |
+//! | no label that hardly tells | [`AnySight::with_least_bits`]: [`Lookahead::seeing`] |
 //! | a field that is no rectangle, places to keep out of | [`PolygonArea`] and [`KeepOut`] |
 //! | a vehicle | [`Unicycle`], [`Boat`], [`Car`], [`Holonomic`], or [`dynamics`] of your own |
 //! | your drive and sensor | [`robot`]: `Drive` and `LabelSensor`; [`robot::asynchronous`] has the same for `async` |
@@ -197,7 +198,7 @@ pub use crate::planner::lookahead::{DrivingPrice, Lookahead};
 pub use crate::planner::options::{Crossing, Following, Options};
 pub use crate::planner::scc::{Policy, Scc};
 pub use crate::planner::setup::{Restart, aimed_for};
-pub use crate::planner::sight::{Near, Sight};
+pub use crate::planner::sight::{AnySight, Near, Sight};
 pub use crate::planner::snapshot::{Persist, SNAPSHOT_VERSION, Snapshot};
 pub use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
 pub use crate::robot::{Agent, Event, PinSensor, Step, ThresholdSensor, Vehicle};

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::convert::Infallible;
 use std::panic::{self, AssertUnwindSafe};
 
-use planner_core::Far;
+use planner_core::AnySight;
 use planner_core::link::delivery::{Link, LinkError, Port};
 use planner_core::link::message::{self, ClockRate, MissionArea};
 use planner_core::link::station::{AllLabels, Flown, Station};
@@ -83,5 +83,5 @@ pub fn power_up<'a>(
 /// # Errors
 /// As [`Station::fly`].
 pub fn fly(chip: &mut Chip<'_>, setup: &message::Setup) -> Result<Flown, LinkError> {
-    chip.fly_with::<AllLabels<68, 36, 529, Option<Far>>, AnyVehicle, MissionArea>(setup, &mut ())
+    chip.fly_with::<AllLabels<68, 36, 529, AnySight>, AnyVehicle, MissionArea>(setup, &mut ())
 }

@@ -13,14 +13,14 @@ use crate::campaign::rows::Planners;
 use crate::campaign::standard_field::SIDE_M;
 use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::Allowance;
-use crate::mission::asking::{Asking, Price};
+use crate::mission::asking::{Asked, Asking, Price};
 use crate::mission::names::{
     CrossingName, FanName, FollowingName, PolicyName, PriorName, SeeksName,
 };
 use crate::mission::scenario::{self, Room};
 use crate::mission::vehicle::{Source, VehicleTable};
 use crate::world::errors::Errors;
-use crate::world::noise::{Extent, NoiseModel};
+use crate::world::noise::{Extent, NoiseModel, limit};
 
 /// Points that the oracle gives in a standard field.
 const ORACLE: usize = 4;
@@ -110,6 +110,10 @@ pub(crate) struct CampaignFlags {
     #[arg(long, value_enum)]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     seek: Option<SeeksName>,
+    /// Bits that a label must be expected to carry, else it is not read (lookahead) [default: 0]
+    #[arg(long, value_name = "BITS", allow_hyphen_values = true)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    worth: Option<f64>,
     /// Labels in each at most; then missions are compared by labels and not by steps
     #[arg(long)]
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -196,12 +200,16 @@ impl CampaignFlags {
             let area = Area::metres([0.0; 2], sides).map_err(Error::msg)?.into();
             // What is meant for look-ahead alone does not keep others from being compared with it.
             let is_meant = algorithm == Algorithm::Lookahead || self.compare.is_empty();
-            let asked =
-                (self.price.filter(|_| is_meant), self.labels, self.seek.filter(|_| is_meant));
-            let names = ["--price", "--labels", "--seek"];
+            let asked = Asked {
+                price: self.price.filter(|_| is_meant),
+                labels: self.labels,
+                seek: self.seek.filter(|_| is_meant),
+                worth: self.worth.filter(|_| is_meant),
+            };
+            let names = ["--price", "--labels", "--seek", "--worth"];
             let weighs = algorithm.weighs(p < 1.0);
             let most = scenario::most_labels(ORACLE, weighs)?;
-            let asking = Asking::of(names, asked, (algorithm, &area, &vehicle), most)?;
+            let asking = Asking::of(names, asked, (algorithm, &area, &vehicle), (most, limit(p)))?;
             let room = Room::of(weighs, &asking, false);
             scenario::check_steps("--steps", self.steps, ORACLE, room)?;
             Ok::<_, Error>(Campaign {

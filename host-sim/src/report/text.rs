@@ -177,6 +177,7 @@ pub(crate) fn why(reason: &str) -> &str {
         "known" => "what was asked for is known",
         "resolution" => "what is uncertain is thinner than the action grid can hit",
         "no line" => "no straight, still line explains the labels",
+        "worth" => "no label in sight was expected to carry the bits asked for",
         "tolerance" => {
             "what is uncertain is so thin that no label tells more, as positions err by the tolerance"
         }
@@ -195,6 +196,7 @@ fn remedy(results: &Results) -> Option<&'static str> {
     let is_unmet = results.end.goal.as_ref().is_some_and(|goal| !goal.is_met);
     Some(match &*results.end.reason {
         "resolution" => "To go on, allow finer turns and speeds: turn_step, step.",
+        "worth" => "To go on, ask for fewer bits a label: ask.worth (or --worth).",
         "tolerance" if results.start.tolerance.is_some() && is_unmet => {
             "This goal cannot be reached with this tolerance: accept a wider one, take a shorter stretch of the \
              boundary or less time (a smaller bend and drift), or bring better positions."
@@ -320,6 +322,10 @@ fn beginning(title: &str, start: &Start) -> String {
     );
     if let Some(price) = start.price {
         let _ = writeln!(text, "A label costs as much as {price} m of driving.\n");
+    }
+    if let Some(worth) = start.worth {
+        let _ =
+            writeln!(text, "A label is read where it is expected to carry {worth} bits or more.\n");
     }
     if start.labels_err {
         let (each, most) = (limit(start.p), start.labels.unwrap_or(start.steps));

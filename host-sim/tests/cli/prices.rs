@@ -62,6 +62,24 @@ fn without_a_price_it_looks_one_motion_far() {
     assert!(told.contains("Ended by: labels 2") && told.contains("in 8 steps"), "{told}");
 }
 
+/// Where no label carries what is asked, results and trace say so, and what to change.
+#[test]
+fn a_mission_ends_where_no_label_is_worth_it() {
+    let folder = folder();
+    let settings = "labels = 40\nask = { worth = 0.53 }\nnoise = { p = 0.9 }";
+    fs::write(folder.path().join("m.toml"), lake("lookahead", settings)).expect("a file");
+    let told = prints(folder.path(), &["run", "m.toml", "--trace", "t.jsonl"]);
+    for said in [
+        "A label is read where it is expected to carry 0.53 bits or more.",
+        "Ended: no label in sight was expected to carry the bits asked for.",
+        "To go on, ask for fewer bits a label: ask.worth (or --worth).",
+    ] {
+        assert!(told.contains(said), "{said}: {told}");
+    }
+    let trace = fs::read_to_string(folder.path().join("t.jsonl")).expect("a trace");
+    assert!(trace.contains("\"worth\":0.53") && trace.contains("\"reason\":\"worth\""), "{trace}");
+}
+
 #[test]
 fn bad_prices_are_refused() {
     let folder = folder();
@@ -75,6 +93,9 @@ fn bad_prices_are_refused() {
         ("lookahead", &format!("labels = 65\n{noise}"), &["m.toml: labels:", "1 to 64"]),
         ("cfc", "ask = { seek = \"bits\" }", &["m.toml: ask.seek:", "lookahead"]),
         ("lookahead", "ask = { seek = \"gold\" }", &["m.toml:12:", "accuracy"]),
+        ("cfc", "ask = { worth = 0.1 }", &["m.toml: ask.worth:", "lookahead"]),
+        ("lookahead", "ask = { worth = 1.1 }", &["m.toml: ask.worth:", "found 1.1", "0 to 1.000"]),
+        ("lookahead", &format!("ask.worth = 0.6\n{noise}"), &["m.toml: ask.worth:", "0 to 0.531"]),
         ("lookahead", "ask = { sek = \"bits\" }", &["m.toml:12:", "sek"]),
     ] {
         fs::write(folder.path().join("m.toml"), lake(algorithm, settings)).expect("a file");
@@ -89,6 +110,7 @@ fn bad_prices_are_refused() {
         (&["--algorithm", "lookahead", "--price", "low"], &["--price", "metres driven, or none"]),
         (&["--area", "5"], &["--area:", "two sides"]),
         (&["--area", "0,9"], &["--area:", "from 1 to 8000"]),
+        (&["--algorithm", "lookahead", "--p", "0.9", "--worth", "0.6"], &["--worth:", "0.531"]),
         (&["--algorithm", "lookahead", "--labels", "0"], &["--labels:", "1 to"]),
     ] {
         refuses(folder.path(), &[&["campaign", "--fields", "1"], flags].concat(), parts);

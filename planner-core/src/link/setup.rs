@@ -11,10 +11,10 @@ use crate::belief::weight::Prior;
 use crate::geometry::area::Area;
 use crate::motion::any_vehicle::Shape;
 use crate::motion::dynamics::Pose;
-use crate::planner::far::Far;
 use crate::planner::lookahead::DrivingPrice;
 use crate::planner::options::{Crossing, Following, Options};
 use crate::planner::scc::Policy;
+use crate::planner::sight::AnySight;
 use crate::search::objective::EffortWeight;
 
 /// Given samples that a setup can hold.
@@ -101,8 +101,8 @@ pub enum Algorithm {
         goal: Option<Goal>,
         /// What is known of the noise, and how hypotheses are weighed, if labels may be wrong.
         noise: Option<(Noise, Prior)>,
-        /// The price of a label, if labels are sought all over the area.
-        far: Option<Far>,
+        /// How far labels are sought, at which price, and what they must carry.
+        sight: AnySight,
     },
 }
 

@@ -157,9 +157,8 @@ impl Far {
         journey.next = journey.now;
         let mut effort = Effort::of(LOOKS);
         for Place { site, worth } in places.list.into_iter().take_while(|it| it.worth > most) {
-            let may_tell = |site| belief.ground().may_tell(site);
-            let leg =
-                journey.go((lookout.dynamics, &lookout.area), pose, site, may_tell, &mut effort);
+            let tells = |site| tells(belief, &predictor, lookout, site);
+            let leg = journey.go((lookout.dynamics, &lookout.area), pose, site, tells, &mut effort);
             if let Some(((action, target), wants_label)) = leg {
                 return Some(Decision { action, target, worth, wants_label, is_far: true });
             }
@@ -257,7 +256,7 @@ impl Journey {
         (dynamics, area): (&D, &G),
         pose: Pose,
         site: Site,
-        may_tell: impl Fn(Site) -> bool,
+        tells: impl Fn(Site) -> bool,
         effort: &mut Effort,
     ) -> Option<(Leg, bool)> {
         self.next = Rest::Over;
@@ -277,8 +276,8 @@ impl Journey {
         if seems.is_some_and(|motions| motions > left) {
             return None;
         }
-        // What can be reached of the place may lie on certain ground.
-        let wants_label = arrives && may_tell(leg.1.site);
+        // A label where the way ends may tell less than at the place itself.
+        let wants_label = arrives && tells(leg.1.site);
         if wants_label || !arrives {
             self.next = Rest::To(site, after);
         }

@@ -24,7 +24,7 @@ use crate::belief::ObservationError;
 use crate::belief::goal::{Criterion, Goal, NoGoal};
 use crate::belief::noise::Noise;
 use crate::belief::observation_log::FromLog;
-use crate::belief::predictions::{NoisyBelief, PredictiveBelief};
+use crate::belief::predictions::{NoisyBelief, Prediction as _, PredictiveBelief};
 use crate::belief::sample::{Reading, Sample};
 use crate::belief::tolerance::Tolerance;
 use crate::belief::weight::Prior;
@@ -254,21 +254,47 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion, S: Sight>
         &mut self.belief
     }
 
+    /// The least expected information of a label that a user has asked for, as a share of the most that one can carry.
+    fn least(&self) -> f32 {
+        let bits = self.sight.least();
+        if bits > 0.0 { bits / self.belief.capacity() } else { 0.0 }
+    }
+
+    /// Whether a label at a site is expected to carry so much.
+    fn carries(&self, site: Site, least: f32) -> bool {
+        let predictor = self.belief.predictor(site);
+        predictor.information(site, predictor.share_above(site)) >= least
+    }
+
+    /// Whether a label is in sight that is expected to carry less than was asked for.
+    fn sees_less(&self, pose: Pose, evaluations: u32) -> bool {
+        let least = self.worthwhile();
+        let mut lookout = Lookout { least, evaluations, ..self.lookout() };
+        let mut journey = self.journey;
+        self.sight.decide(&self.belief, &mut lookout, pose, &mut journey).is_some()
+    }
+
+    /// The least expected information of a label that is worth its way, whatever was asked for.
+    fn worthwhile(&self) -> f32 {
+        // Where positions err, there is always one more label that tells next to nothing.
+        let errs = self.belief.ground().shift != Vector::default();
+        if errs { LEAST } else { 0.0 }
+    }
+
     /// What a plan looks for labels with.
     fn lookout(&self) -> Lookout<'_, D, G> {
         let Self { area, dynamics, evaluations, .. } = self;
         let grid = dynamics.grid();
         let most = (USUAL * area.bounds().mean_side() / grid.step_units()) as u16;
         let usual = grid.speeds().saturating_sub(1).min(most).max(1);
-        // Where positions err, there is always one more label that tells next to nothing.
-        let errs = self.belief.ground().shift != Vector::default();
+        let (asked, least) = (self.least(), self.worthwhile());
         Lookout {
             dynamics,
             area: *area,
             weight: self.price.0,
             usual,
             scale: 2_000.0 / grid.reach_mm(usual) as f32,
-            least: if errs { LEAST } else { 0.0 },
+            least: if asked > least { asked } else { least },
             evaluations: *evaluations,
         }
     }
@@ -357,16 +383,27 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion, S: Sight> Pla
             course.give_up_way();
             return self.silence.keep(pose, motion, course, dynamics);
         }
+        let asked = self.least();
         let mut course = self.silence.course();
         match self.recover(pose, &mut course) {
             (Ok(found), effort) => {
-                let motion = Motion::of(None, pose, &found, dynamics, effort);
+                let mut motion = Motion::of(None, pose, &found, dynamics, effort);
                 // No label in reach is worth its way: this one is on the way to others.
                 let is_dull = least > 0.0 && motion.wants_label;
-                if !self.silence.bears(is_dull) && !is_broad(self.belief.ground()) {
+                if asked > 0.0 && is_dull {
+                    motion.wants_label = self.carries(motion.target.site, asked);
+                }
+                let goes_on = self.silence.bears(is_dull);
+                let is_barred = asked > 0.0 && !motion.wants_label && self.silence.is_dull();
+                if !goes_on && !is_barred && !is_broad(self.belief.ground()) {
                     return Plan::Stop(StopReason::Tolerance);
                 }
-                self.silence.keep(pose, motion, course, dynamics)
+                let plan = self.silence.keep(pose, motion, course, dynamics);
+                let ends = !goes_on || matches!(plan, Plan::Stop(_));
+                if ends && is_barred { Plan::Stop(StopReason::Worth) } else { plan }
+            }
+            (Err(_), _) if asked > 0.0 && self.sees_less(pose, looks) => {
+                Plan::Stop(StopReason::Worth)
             }
             (Err(dead_end), _) => Plan::Stop(dead_end.into()),
         }

@@ -134,6 +134,11 @@ pub enum StopReason {
     ///
     /// [audit]: crate::planner::audit
     NoLine,
+    /// No label was in sight that is expected to carry the [least bits] asked for, for up to sixteen motions. Fewer bits let
+    /// the mission go on.
+    ///
+    /// [least bits]: crate::planner::sight::AnySight::with_least_bits
+    Worth,
 }
 
 impl From<DeadEnd> for StopReason {

@@ -1,21 +1,28 @@
-//! How far look-ahead looks for labels: one motion ([`Near`]), or all of the area ([`Far`]).
+//! How far look-ahead looks for labels: one motion ([`Near`]), or all of the area ([`Far`]). And which of them it reads.
 
 use crate::belief::predictions::PredictiveBelief;
+use crate::geometry::value::ValueError;
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::decision::Decision;
 use crate::planner::far::{Far, Journey, LOOKS};
 use crate::search::lookout::Lookout;
 
-/// How far look-ahead looks for labels: [`Near`] or [`Far`]. A program that is told at run time has `Option<Far>`.
+/// How far look-ahead looks for labels: [`Near`] or [`Far`]. A program that is told at run time has [`AnySight`].
 pub trait Sight: Copy {
     /// What is remembered since the last label.
     #[doc(hidden)]
     type Journey: Copy + core::fmt::Debug + Default + PartialEq;
 
-    /// The sight of a mission whose labels have such a price, or none. `None` if this is another.
+    /// The sight that a mission asks for. `None` if this is another.
     #[doc(hidden)]
-    fn of(far: Option<Far>) -> Option<Self>;
+    fn of(asked: AnySight) -> Option<Self>;
+
+    /// Bits that a label must be expected to carry, beside those of an audit; 0 if all may be read.
+    #[doc(hidden)]
+    fn least(self) -> f32 {
+        0.0
+    }
 
     /// Looks that it takes of a plan, beside those at ends of one motion.
     #[doc(hidden)]
@@ -43,8 +50,8 @@ pub struct Near;
 impl Sight for Near {
     type Journey = ();
 
-    fn of(far: Option<Far>) -> Option<Self> {
-        far.is_none().then_some(Self)
+    fn of(asked: AnySight) -> Option<Self> {
+        (asked == AnySight::from(None)).then_some(Self)
     }
 
     fn looks(self) -> u32 {
@@ -67,8 +74,8 @@ impl Sight for Near {
 impl Sight for Far {
     type Journey = Journey;
 
-    fn of(far: Option<Far>) -> Option<Self> {
-        far
+    fn of(asked: AnySight) -> Option<Self> {
+        asked.far.filter(|_| asked.least == 0)
     }
 
     fn looks(self) -> u32 {
@@ -90,15 +97,51 @@ impl Sight for Far {
     }
 }
 
-impl Sight for Option<Far> {
+/// The sight of a program that is told at run time: near or far, and how many bits a label must be expected to carry.
+///
+/// Where no label in sight carries so many, the planner drives on without reading one, for sixteen motions at most.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct AnySight {
+    far: Option<Far>,
+    /// Thousandths of a bit.
+    least: u16,
+}
+
+/// All labels may be read: near sight where there is no price, else far sight.
+impl From<Option<Far>> for AnySight {
+    fn from(far: Option<Far>) -> Self {
+        Self { far, least: 0 }
+    }
+}
+
+impl AnySight {
+    /// The same, but it reads a label only where it is expected to carry so many bits, to the nearest thousandth. An
+    /// audit's labels are read all the same.
+    ///
+    /// # Errors
+    /// [`ValueError`] unless it is from 0 to 1. A label that is true with probability `p` carries `1 - H(p)` at most.
+    pub fn with_least_bits(self, bits: f64) -> Result<Self, ValueError> {
+        const RANGE: ValueError = ValueError("a label can carry 0 to 1 bits");
+        let least = libm::round(bits * 1e3) as u16;
+        (0.0..=1.0).contains(&bits).then_some(Self { least, ..self }).ok_or(RANGE)
+    }
+}
+
+impl Sight for AnySight {
     type Journey = Journey;
 
-    fn of(far: Option<Far>) -> Option<Self> {
-        Some(far)
+    fn of(asked: Self) -> Option<Self> {
+        Some(asked)
+    }
+
+    fn least(self) -> f32 {
+        1e-3 * f32::from(self.least)
     }
 
     fn looks(self) -> u32 {
-        self.map_or(0, Sight::looks)
+        self.far.map_or(0, Sight::looks)
     }
 
     fn decide<B: PredictiveBelief, D: Dynamics, G: Workspace>(
@@ -108,7 +151,7 @@ impl Sight for Option<Far> {
         pose: Pose,
         journey: &mut Journey,
     ) -> Option<Decision> {
-        match self {
+        match self.far {
             None => Near.decide(belief, lookout, pose, &mut ()),
             Some(far) => far.decide(belief, lookout, pose, journey),
         }

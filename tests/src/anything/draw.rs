@@ -7,7 +7,7 @@ use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::{CAPACITY, Mission};
 use host_sim::world::World;
 use host_sim::world::errors::Errors;
-use host_sim::world::noise::{Extent, NoiseModel};
+use host_sim::world::noise::{Extent, NoiseModel, limit};
 use nalgebra::{Point2, Vector2};
 use planner_core::dynamics::ActionGrid;
 use planner_core::geometry::lattice::UNITS_PER_METRE;
@@ -113,6 +113,10 @@ fn attempt(rng: &mut ChaCha8Rng, seed: u64) -> Option<Mission> {
     if algorithm == Algorithm::Lookahead && rng.random() {
         mission.asking.price = Some(side * scale(rng, 1e-3, 3.0));
         mission.asking.seeks = if rng.random() { Seeks::Accuracy } else { Seeks::Bits };
+    }
+    if algorithm == Algorithm::Lookahead && rng.random_range(0..4) == 0 {
+        let most = mission.noise.map_or(1.0, |noise| limit(noise.p));
+        mission.asking.worth = most * rng.random_range(0.0..1.0);
     }
     inset.encloses(given[0].site).then_some(mission)
 }

@@ -112,6 +112,8 @@ impl Fly<'_> {
             let times = been.entry((pose.site, pose.heading.0)).or_insert(0);
             *times += 1;
             let most = 1 + u32::from(mission.asking.price.is_some());
+            // Where no label is worth it, sixteen motions without one may lead round.
+            let most = if mission.asking.worth > 0.0 { most + 16 } else { most };
             if *times > most && mission.errors == Errors::default() {
                 flight
                     .note(Finding::Endless, format!("at {pose:?} again after {fruitless} motions"));

@@ -44,6 +44,7 @@ pub fn refute(mission: &Mission, belief: &dyn ReadOut, pose: Pose, end: Ending) 
         }
         StopReason::Resolution | StopReason::Tolerance => judge.open_ground(pose),
         StopReason::Cornered | StopReason::Undecided => judge.way_on(pose),
+        StopReason::Worth => judge.worthy(pose),
         _ => Some("an unknown reason".to_owned()),
     }
 }
@@ -118,6 +119,19 @@ impl Judge<'_> {
             }
         }
         None
+    }
+
+    /// A random motion that ends where a label is expected to carry far more than was asked for, if one is found.
+    fn worthy(&self, pose: Pose) -> Option<String> {
+        let mut rng = self.rng();
+        let least = 1.5 * self.mission.asking.worth + 0.05;
+        (0..SEQUENCES).find_map(|_| {
+            let next = random_motion(&self.mission.vehicle, pose, &mut rng)?;
+            let is_open = next.site != pose.site && self.is_open(next.site);
+            let bits = self.belief.expects(next.site).bits;
+            let is_told = is_open && bits > least && self.may_go(pose, next);
+            is_told.then(|| format!("a label at {next:?} carries {bits} bits"))
+        })
     }
 
     fn may_go(&self, from: Pose, to: Pose) -> bool {

@@ -8,7 +8,7 @@ use host_sim::report::campaign as tables;
 use nalgebra::Point2;
 use planner_core::geometry::lattice::UNITS_PER_METRE;
 use planner_core::{
-    AnyVehicle, Area, Far, Heading, Label, Lookahead, Near, NoGoal, Persist as _, Plan,
+    AnySight, AnyVehicle, Area, Far, Heading, Label, Lookahead, Near, NoGoal, Persist as _, Plan,
     Planner as _, Pose, Sample, Seeks, Sight, Site, Unicycle, VersionSpace,
 };
 use tests::{cases, is_long};
@@ -177,7 +177,8 @@ fn a_way_goes_on_after_a_sleep() {
 fn what_is_told_at_run_time_sees_as_far() {
     let far = Far::at_price(20.0).expect("as it should").seeking(Seeks::Bits);
     for told in [None, Some(far)] {
-        let (mut near, mut distant, mut either) = (planner(Near), planner(far), planner(told));
+        let (mut near, mut distant, mut either) =
+            (planner(Near), planner(far), planner(AnySight::from(told)));
         let mut pose = start();
         for _ in 0..60 {
             let plan = either.plan(pose);

@@ -20,3 +20,4 @@ mod symmetry;
 mod terrain;
 mod unknown_p;
 mod vehicles;
+mod worth;

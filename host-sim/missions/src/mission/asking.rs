@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use anyhow::{Result, bail};
 use planner_core::link::message::MissionArea;
-use planner_core::{AnyVehicle, Far, Seeks};
+use planner_core::{AnySight, AnyVehicle, Far, Seeks};
 use serde::{Deserialize, Serialize};
 
 use crate::mission::algorithm::Algorithm;
@@ -20,6 +20,21 @@ pub struct Asking {
     pub seeks: Seeks,
     /// Labels at most.
     pub labels: Option<u32>,
+    /// Bits that a label must be expected to carry (look-ahead).
+    pub worth: f64,
+}
+
+/// What a file or flags ask for.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Asked {
+    /// `price`.
+    pub price: Option<Price>,
+    /// `labels`.
+    pub labels: Option<u32>,
+    /// What a label is to bring.
+    pub seek: Option<SeeksName>,
+    /// Bits that it must be expected to carry.
+    pub worth: Option<f64>,
 }
 
 /// `price` of a scenario file and a flag.
@@ -57,22 +72,24 @@ impl FromStr for Price {
 #[serde(deny_unknown_fields)]
 pub struct AskTable {
     seek: Option<SeeksName>,
+    worth: Option<f64>,
 }
 
 impl Asking {
     /// Labels are sought within one motion, and there may be as many as there is room for.
-    pub const USUAL: Self = Self { price: None, seeks: Seeks::Accuracy, labels: None };
+    pub const USUAL: Self = Self { price: None, seeks: Seeks::Accuracy, labels: None, worth: 0.0 };
 
     /// What a file or flags ask for. Without a price labels have the usual one where the area is large for the vehicle.
-    /// `names` are those of price, limit and choice; there is room for `most` labels.
+    /// `names` are those of price, limit, choice and worth. There is room for `most` labels, of which each carries so many
+    /// `bits` at most.
     ///
     /// # Errors
     /// Names the field, what was found and what was expected.
     pub fn of(
-        [price_name, labels_name, seek_name]: [&str; 3],
-        (price, labels, seek): (Option<Price>, Option<u32>, Option<SeeksName>),
+        [price_name, labels_name, seek_name, worth_name]: [&str; 4],
+        Asked { price, labels, seek, worth }: Asked,
         (algorithm, area, vehicle): (Algorithm, &MissionArea, &AnyVehicle),
-        most: u32,
+        (most, bits): (u32, f64),
     ) -> Result<Self> {
         let looks_ahead = algorithm == Algorithm::Lookahead;
         let usual = if looks_ahead { Far::usual(area, vehicle).map(Far::price) } else { None };
@@ -81,7 +98,12 @@ impl Asking {
             Some(Price::Word(NoPrice::None)) => None,
             None => usual,
         };
-        for (name, is_given) in [(price_name, price.is_some()), (seek_name, seek.is_some())] {
+        let of_lookahead = [
+            (price_name, price.is_some()),
+            (seek_name, seek.is_some()),
+            (worth_name, worth.is_some()),
+        ];
+        for (name, is_given) in of_lookahead {
             if is_given && !looks_ahead {
                 let found = format!("with algorithm {}", algorithm.name());
                 return wrong(name, found, "with algorithm lookahead");
@@ -102,12 +124,17 @@ impl Asking {
         {
             return wrong(labels_name, labels, format!("1 to {most}, for which there is room"));
         }
-        Ok(Self { price: sought, seeks: seek.unwrap_or_default().into(), labels })
+        let worth = worth.unwrap_or(0.0);
+        if !(0.0..=bits).contains(&worth) {
+            let expected = format!("0 to {bits:.3} bits, as many as a label can carry");
+            return wrong(worth_name, worth, expected);
+        }
+        Ok(Self { price: sought, seeks: seek.unwrap_or_default().into(), labels, worth })
     }
 
     /// Whether labels are limited by themselves, so that a mission may have more steps than there is room for labels.
     pub fn is_apart(&self) -> bool {
-        self.price.is_some() || self.labels.is_some()
+        self.price.is_some() || self.labels.is_some() || self.worth > 0.0
     }
 
     /// Whether so many labels are as many as there may be.
@@ -115,19 +142,21 @@ impl Asking {
         self.labels.is_some_and(|most| labels >= most)
     }
 
-    /// The sight of look-ahead, if labels have a price.
+    /// The sight of look-ahead.
     ///
     /// # Panics
-    /// When the price is out of range. Reading scenario files and flags refuses such prices.
-    pub fn sight(&self) -> Option<Far> {
-        let price = self.price?;
-        Some(Far::at_price(price).expect("prices out of range were refused").seeking(self.seeks))
+    /// When price or worth is out of range. Reading scenario files and flags refuses such ones.
+    pub fn sight(&self) -> AnySight {
+        let far = |price| Far::at_price(price).expect("prices out of range were refused");
+        let far = self.price.map(|price| far(price).seeking(self.seeks));
+        let sight = AnySight::from(far).with_least_bits(self.worth);
+        sight.expect("worths out of range were refused")
     }
 }
 
 impl AskTable {
-    /// What a label is to bring.
-    pub fn seek(&self) -> Option<SeeksName> {
-        self.seek
+    /// All that a file asks for, with its price and its limit of labels.
+    pub fn with(&self, price: Option<Price>, labels: Option<u32>) -> Asked {
+        Asked { price, labels, seek: self.seek, worth: self.worth }
     }
 }

@@ -3,7 +3,7 @@
 use planner_core::dynamics::Dynamics;
 use planner_core::error::ObservationError;
 use planner_core::{
-    Accuracy, AnyReliability, AnyVehicle, Cfc, Far, Lookahead, Plan, Planner, Pose,
+    Accuracy, AnyReliability, AnySight, AnyVehicle, Cfc, Lookahead, Plan, Planner, Pose,
     PredictiveBelief, Reading, Scc, Site, Tolerance, Workspace,
 };
 use rand::SeedableRng;
@@ -125,7 +125,7 @@ impl Mission {
         &self,
         area: G,
         dynamics: D,
-    ) -> Lookahead<D, Lines, G, Accuracy, Option<Far>> {
+    ) -> Lookahead<D, Lines, G, Accuracy, AnySight> {
         self.looking_ahead(area, dynamics, self.lines())
     }
 
@@ -137,7 +137,7 @@ impl Mission {
         &self,
         area: G,
         dynamics: D,
-    ) -> Lookahead<D, DoubtfulBelief, G, Accuracy, Option<Far>> {
+    ) -> Lookahead<D, DoubtfulBelief, G, Accuracy, AnySight> {
         self.looking_ahead(area, dynamics, self.noisy_belief())
     }
 
@@ -146,7 +146,7 @@ impl Mission {
         area: G,
         dynamics: D,
         belief: B,
-    ) -> Lookahead<D, B, G, Accuracy, Option<Far>> {
+    ) -> Lookahead<D, B, G, Accuracy, AnySight> {
         let planner = Lookahead::new(area, dynamics, belief).expect(FITS);
         let planner =
             planner.seeing(self.asking.sight()).pricing(self.config.price()).until(self.goal);

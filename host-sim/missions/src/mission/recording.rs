@@ -280,6 +280,7 @@ fn start(mission: &Mission) -> Start {
         p_told: mission.p_told.map(PTold::from),
         price: mission.asking.price,
         labels: mission.asking.labels,
+        worth: (mission.asking.worth > 0.0).then_some(mission.asking.worth),
         labels_err: mission.noise.is_some(),
         readings: (mission.readings > 1).then_some(mission.readings),
         steps: mission.steps,

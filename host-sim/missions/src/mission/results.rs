@@ -96,6 +96,9 @@ pub struct Start {
     /// Labels at most, if they are limited by themselves.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub labels: Option<u32>,
+    /// Bits that a label must be expected to carry.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub worth: Option<f64>,
     /// Readings a motion, if there are several.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub readings: Option<u32>,
@@ -572,6 +575,7 @@ impl Ending {
             Self::Stopped(StopReason::Undecided) => "undecided",
             Self::Stopped(StopReason::Tolerance) => "tolerance",
             Self::Stopped(StopReason::NoLine) => "no line",
+            Self::Stopped(StopReason::Worth) => "worth",
             Self::Stopped(_) => "stopped",
         }
     }

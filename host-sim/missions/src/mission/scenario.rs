@@ -28,7 +28,7 @@ use crate::mission::truth::TruthTable;
 use crate::mission::vehicle::{self, Source, VehicleTable};
 use crate::world::World;
 use crate::world::errors::{CUT, Errors};
-use crate::world::noise::{Extent, NoiseModel};
+use crate::world::noise::{Extent, NoiseModel, limit};
 
 /// The paper's noiseless example (Section V).
 pub const PAPER_NOISELESS: &str = include_str!("../../../scenarios/paper-noiseless.toml");
@@ -317,11 +317,15 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
         |it| it.0.vehicle(Source::File, algorithm, has_fan, grid),
     )?;
     let area = terrain::area(&file.area.0, &file.keep_out)?;
-    let asked = (file.price, file.labels, file.ask.0.seek());
-    let names = ["price", "labels", "ask.seek"];
+    let asked = file.ask.0.with(file.price, file.labels);
+    let names = ["price", "labels", "ask.seek", "ask.worth"];
+    let noise = file.noise.as_ref().map(|table| noise(&table.0)).transpose()?;
+    let (noise, p_told) = noise.map_or((None, None), |(noise, p_told)| (Some(noise), p_told));
+    // Nobody knows what a label can carry if nobody knows how often it is true.
+    let bits = noise.filter(|_| p_told.is_none()).map_or(1.0, |noise| limit(noise.p));
     let weighs = algorithm.weighs(file.noise.is_some());
     let most = most_labels(file.oracle.len(), weighs)?;
-    let asking = Asking::of(names, asked, (algorithm, &area, &vehicle), most)?;
+    let asking = Asking::of(names, asked, (algorithm, &area, &vehicle), (most, bits))?;
     let steps_name = if overrides.steps.is_some() { "--steps" } else { "steps" };
     let room = Room::of(weighs, &asking, file.audits());
     check_steps(steps_name, steps, file.oracle.len(), room)?;
@@ -341,8 +345,6 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
     let tolerance = allowance.tolerance("tolerance", position)?;
     let words = || allowance::sum(position, &allowance);
     check_tolerance("tolerance", tolerance, words, &given, &area)?;
-    let noise = file.noise.as_ref().map(|table| noise(&table.0)).transpose()?;
-    let (noise, p_told) = noise.map_or((None, None), |(noise, p_told)| (Some(noise), p_told));
     if matches!(p_told, Some(AnyReliability::Unknown(_))) {
         check_unknown("noise.p", tolerance, algorithm)?;
     }

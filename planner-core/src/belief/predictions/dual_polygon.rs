@@ -255,6 +255,10 @@ impl<const N: usize> PredictiveBelief for VersionSpace<N> {
         PolygonSpread::of(DualPolygon::of(self.lines(), over.middle), over.length * METRE)
     }
 
+    fn capacity(&self) -> f32 {
+        1.0
+    }
+
     fn ground(&self) -> CellView<'_> {
         self.lines()
     }

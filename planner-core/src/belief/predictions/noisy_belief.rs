@@ -177,6 +177,10 @@ impl<const N: usize, const H: usize, R: Trust + 'static> PredictiveBelief for No
         TableSpread { labels: Labels::of(&self.table), columns: self.columns.spread(over) }
     }
 
+    fn capacity(&self) -> f32 {
+        Labels::of(&self.table).capacity
+    }
+
     fn ground(&self) -> CellView<'_> {
         self.table.start()
     }

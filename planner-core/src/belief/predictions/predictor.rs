@@ -65,6 +65,9 @@ pub trait PredictiveBelief {
     /// How far the lines lie apart over a stretch. Ask it after [`prepare`](Self::prepare).
     fn spread(&self, over: &Stretch) -> Self::Spread<'_>;
 
+    /// The most that a label can carry, bits.
+    fn capacity(&self) -> f32;
+
     /// The lines on whose uncertain ground a label may tell something.
     fn ground(&self) -> CellView<'_>;
 

@@ -51,7 +51,7 @@ pub enum CfcAlone<const N: usize> {}
 pub struct TrueLabels<const N: usize, C = Accuracy, S = Near>(PhantomData<(C, S)>);
 
 /// All algorithms: with room for `T` samples whose labels are true, or for `N` samples whose labels may be wrong and
-/// `H` hypotheses. Look-ahead has a [`Sight`]: `Option<Far>` takes prices of labels too.
+/// `H` hypotheses. Look-ahead has a [`Sight`]: [`AnySight`](crate::AnySight) takes all that a setup asks for.
 #[derive(Debug)]
 pub struct AllLabels<const T: usize, const N: usize, const H: usize, S = Near>(PhantomData<S>);
 
@@ -173,8 +173,8 @@ impl<const N: usize, C: Criterion, V: Sight> Planners for TrueLabels<N, C, V> {
     ) -> Result<Flown, LinkError> {
         let setup = mission.setup;
         match setup.algorithm {
-            Algorithm::Lookahead { evaluations, goal, noise: None, far } => {
-                let asked = (evaluations, far);
+            Algorithm::Lookahead { evaluations, goal, noise: None, sight } => {
+                let asked = (evaluations, sight);
                 mission.fly(&mut setup.lookahead::<_, _, C, V, N>(terms, asked, goal))
             }
             Algorithm::Cfc => mission.fly(&mut setup.cfc::<_, _, N>(terms)),
@@ -190,8 +190,8 @@ impl<const T: usize, const N: usize, const H: usize, V: Sight> Planners for AllL
     ) -> Result<Flown, LinkError> {
         let setup = mission.setup;
         match setup.algorithm {
-            Algorithm::Lookahead { evaluations, goal, noise: Some((noise, prior)), far } => {
-                let Some(sight) = V::of(far) else {
+            Algorithm::Lookahead { evaluations, goal, noise: Some((noise, prior)), sight } => {
+                let Some(sight) = V::of(sight) else {
                     return mission.station.decline(DeclinedError::Price);
                 };
                 let mut planner =

@@ -16,11 +16,10 @@ use crate::link::station::terms::{Known, PlannerSetup};
 use crate::motion::any_vehicle::ShapeError;
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::cfc::Cfc;
-use crate::planner::far::Far;
 use crate::planner::lookahead::Lookahead;
 use crate::planner::scc::{Policy, Scc};
 use crate::planner::setup::{Restart, SetupError, aimed_for};
-use crate::planner::sight::Sight;
+use crate::planner::sight::{AnySight, Sight};
 use crate::planner::{Plan, Planner};
 
 #[inline(never)]
@@ -123,10 +122,10 @@ impl Setup {
     pub fn lookahead<D: Dynamics, G: Workspace, C: Criterion, S: Sight, const N: usize>(
         &self,
         PlannerSetup { dynamics, area, options }: PlannerSetup<D, G>,
-        (evaluations, far): (u32, Option<Far>),
+        (evaluations, sight): (u32, AnySight),
         goal: Option<Goal>,
     ) -> Result<Prepared<OfTrueLabels<D, G, C, S, N>>, DeclinedError> {
-        let sight = S::of(far).ok_or(DeclinedError::Price)?;
+        let sight = S::of(sight).ok_or(DeclinedError::Price)?;
         let goal = goal.map(|goal| Goal::of(goal).ok_or(DeclinedError::Goal)).transpose()?;
         let capacity = Capacity { samples: N as u16, hypotheses: 1 };
         self.check(capacity)?;

@@ -7,9 +7,9 @@
 fn main() -> ! {
     use planner_core::link::message::MissionArea;
     use planner_core::link::station::AllLabels;
-    use planner_core::{AnyVehicle, Far};
+    use planner_core::{AnySight, AnyVehicle};
 
-    bare_core::fly::<AllLabels<36, 36, 529, Option<Far>>, AnyVehicle, MissionArea>()
+    bare_core::fly::<AllLabels<36, 36, 529, AnySight>, AnyVehicle, MissionArea>()
 }
 
 /// On a host there is nothing to run.
