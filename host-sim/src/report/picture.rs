@@ -223,13 +223,15 @@ impl Picture {
                 *number
             })
         };
-        let given = mission.given.samples().len();
-        let samples = belief.samples().iter();
+        // Those of bounds lie far outside of the picture.
+        let (given, first) = (mission.oracle().len(), mission.given.samples().len());
+        let (oracle, read) = (&belief.samples()[..given], &belief.samples()[first..]);
+        let samples = oracle.iter().chain(read);
         let numbers: Vec<usize> = if mission.world.moves() {
             let of_steps = samples.clone().skip(given).map(number);
             std::iter::repeat_n(0, given).chain(of_steps).collect()
         } else {
-            vec![0; samples.len()]
+            vec![0; given + read.len()]
         };
         let disagrees = |s: &Sample| {
             let is_above = |line: &Line| line.distance(s.site.into()) > 0.0;

@@ -299,13 +299,8 @@ fn beginning(title: &str, start: &Start) -> String {
         }
         _ => "line, unknown to the agent: not known".into(),
     };
-    let oracle = start.oracle.iter().map(|s| format!("({}, {}) is {:+}", s.x, s.z, s.label));
     // Writing to a string cannot fail.
-    let _ = writeln!(
-        text,
-        "True {truth}\nThe oracle's points: {}",
-        oracle.collect::<Vec<_>>().join(", ")
-    );
+    let _ = writeln!(text, "True {truth}\n{}", given(start));
     if let Some(told) = &start.tolerance {
         let _ = writeln!(text, "{}.", tolerance(told));
     }
@@ -343,6 +338,28 @@ fn beginning(title: &str, start: &Start) -> String {
         }
     }
     text
+}
+
+/// The oracle's points, and what is known of the line beside them: a line of text each.
+fn given(start: &Start) -> String {
+    let points = start.oracle.iter().map(|s| format!("({}, {}) is {:+}", s.x, s.z, s.label));
+    let points = points.collect::<Vec<_>>().join(", ");
+    let points = (!points.is_empty()).then(|| format!("The oracle's points: {points}"));
+    let known = Some(known(start)).filter(|it| !it.is_empty());
+    points.into_iter().chain(known).collect::<Vec<_>>().join("\n")
+}
+
+/// What is known of the line beside the oracle's points, if anything.
+pub(crate) fn known(start: &Start) -> String {
+    let bounds = start.bounds.unwrap_or_default();
+    let slope = bounds.slope.map(|[a, b]| format!("it runs at {a} to {b} deg"));
+    let intercept = bounds.intercept.map(|[a, b]| format!("it crosses x = 0 at z = {a} to {b}"));
+    let known: Vec<_> = slope.into_iter().chain(intercept).collect();
+    if known.is_empty() {
+        String::new()
+    } else {
+        format!("Known of the line: {}", known.join(", "))
+    }
 }
 
 /// The tolerance and its parts, in words.

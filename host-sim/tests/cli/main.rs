@@ -7,6 +7,7 @@ use std::process::{Command, Output};
 use tempfile::TempDir;
 
 mod allowances;
+mod bounds;
 mod campaigns;
 mod comfort;
 mod contradictions;

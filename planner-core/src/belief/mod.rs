@@ -5,6 +5,7 @@
 //! | --- | --- |
 //! | [`sample`], [`weight`] | labels, readings and samples; weights as logarithms |
 //! | [`noise`], [`reliability`], [`unknown_reliability`], [`trust`] | how reliable labels are: a number, a prior, either |
+//! | [`bounds`] | what is known of the line beforehand, as given samples |
 //! | [`tolerance`] | handles positions that err |
 //! | [`deviation`] | how much tolerance a boundary needs that bends or moves |
 //! | [`cells`] | the lines that agree with some labels, and what can be read off them |
@@ -18,6 +19,7 @@
 //!
 //! Nothing here knows how the robot moves.
 
+pub mod bounds;
 pub mod cells;
 pub mod deviation;
 pub mod doubtful_labels;

@@ -9,6 +9,7 @@ use host_sim::world::World;
 use host_sim::world::errors::Errors;
 use host_sim::world::noise::{Extent, NoiseModel, limit};
 use nalgebra::{Point2, Vector2};
+use planner_core::belief::bounds::slope_within_degrees;
 use planner_core::dynamics::ActionGrid;
 use planner_core::geometry::lattice::UNITS_PER_METRE;
 use planner_core::link::message::{MOST_CORNERS, MissionArea};
@@ -72,7 +73,13 @@ fn attempt(rng: &mut ChaCha8Rng, seed: u64) -> Option<Mission> {
             site(p).filter(|site| area.contains(*site))
         })
     };
-    let (truth, given) = field(rng, side, &area)?;
+    let (truth, mut given) = field(rng, side, &area)?;
+    if rng.random_range(0..6) == 0 {
+        let [a, b, _] = truth.coefficients();
+        let degrees = (-a).atan2(b).to_degrees();
+        let [before, after] = [(); 2].map(|()| scale(rng, 0.1, 60.0));
+        given.extend(slope_within_degrees(&area, [degrees - before, degrees + after]).ok()?);
+    }
     let lines = VersionSpace::<CAPACITY>::new(&given).ok()?;
     lines.clone().with_tolerance(tolerance_told).ok()?;
     let vehicle = vehicle(rng, side)?;

@@ -20,6 +20,7 @@ use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::Allowance;
 use crate::mission::asking::Asking;
 use crate::mission::definition::Mission;
+use crate::mission::given::Bounds;
 use crate::world::errors::Errors;
 use crate::world::{World, reading};
 
@@ -129,5 +130,6 @@ pub fn stretched(
         goal: None,
         audits: true,
         asking: Asking::USUAL,
+        bounds: Bounds::NONE,
     }
 }

@@ -4,7 +4,7 @@ use planner_core::link::message::MissionArea;
 use planner_core::link::message::Settings;
 use planner_core::{
     AnyReliability, AnyVehicle, CellPosterior, Crossing, Following, Goal, Noise, NoisyBelief,
-    Policy, Pose, Prior, UnknownReliability, VersionSpace,
+    Policy, Pose, Prior, Sample, UnknownReliability, VersionSpace,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -12,6 +12,7 @@ use rand_chacha::ChaCha8Rng;
 use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::{Allowance, ToleranceRecord, tidy};
 use crate::mission::asking::Asking;
+use crate::mission::given::Bounds;
 use crate::world::World;
 use crate::world::errors::{CUT, Erring, Errors};
 use crate::world::faults::{Failing, Fault};
@@ -55,8 +56,10 @@ pub struct Mission {
     pub start: Pose,
     /// What is really there.
     pub world: World,
-    /// The lines that the oracle's points leave.
+    /// The lines that the oracle's points and the bounds leave.
     pub given: Lines,
+    /// What is known of the line beside the oracle's points. Its samples are the last ones that are given.
+    pub bounds: Bounds,
     /// How labels are flipped; `None` when they are true.
     pub noise: Option<NoiseModel>,
     /// How often labels are true, as planners are told, if that is not the `p` of the noise.
@@ -181,7 +184,7 @@ impl Mission {
             ));
         }
         let needs = self.allowance.of_given();
-        let samples = self.given.samples().iter().enumerate();
+        let samples = self.oracle().iter().enumerate();
         let far = samples.map(|(k, sample)| (k, self.world.distance(sample.site).abs()));
         let (k, near) = far.min_by(|a, b| a.1.total_cmp(&b.1))?;
         (near < needs).then(|| {
@@ -190,6 +193,12 @@ impl Mission {
                  cut the line off that fits best"
             )
         })
+    }
+
+    /// The oracle's points.
+    pub fn oracle(&self) -> &[Sample] {
+        let given = self.given.samples();
+        &given[..given.len() - self.bounds.len()]
     }
 
     /// What the oracle's points leave open, for samples whose positions err by the tolerance at most.

@@ -22,6 +22,7 @@ use serde::{Deserialize, Serialize};
 use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::ToleranceRecord;
 use crate::mission::diagnosis::DiagnosisRecord;
+use crate::mission::given::Bounds;
 use crate::mission::legs::{Leg, Legs};
 pub use crate::mission::line_record::{LineError, LineRecord};
 use crate::mission::read_out::Expectation;
@@ -68,6 +69,9 @@ pub struct Start {
     pub keep_out: Vec<KeepOutRecord>,
     /// The oracle's samples.
     pub oracle: Vec<SampleRecord>,
+    /// What is known of the line beside them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bounds: Option<Bounds>,
     /// What moved, unless it is the unicycle of a fan.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub vehicle: Option<VehicleTable>,

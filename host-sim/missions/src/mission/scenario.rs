@@ -5,13 +5,12 @@ use std::path::Path;
 use anyhow::{Context as _, Error, Result, anyhow};
 use nalgebra::Point2;
 use planner_core::belief::noise::trusted_radius;
-use planner_core::error::GivenError;
 use planner_core::link::message::MissionArea;
 use planner_core::link::message::Settings;
 use planner_core::motion::unicycle::Grid;
 use planner_core::{
-    AnyReliability, EffortWeight, Following, Heading, Label, Pose, Reliability, Sample, Tolerance,
-    UnknownReliability, VersionSpace,
+    AnyReliability, EffortWeight, Following, Heading, Label, Pose, Reliability, Site, Tolerance,
+    UnknownReliability,
 };
 use serde::Deserialize;
 
@@ -19,6 +18,7 @@ use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::{self, Allowance};
 use crate::mission::asking::{AskTable, Asking, Price};
 use crate::mission::definition::{CAPACITY, Lines, Mission};
+use crate::mission::given::{Bounds, SampleTable, given};
 use crate::mission::names::{CrossingName, FanName, FollowingName, PolicyName, PriorName};
 use crate::mission::sensor::{self, FaultTable};
 use crate::mission::stop::StopTable;
@@ -35,9 +35,6 @@ pub const PAPER_NOISELESS: &str = include_str!("../../../scenarios/paper-noisele
 
 /// The paper's noisy example (Section V).
 pub const PAPER_NOISY: &str = include_str!("../../../scenarios/paper-noisy.toml");
-
-/// The most oracle points that may bound the line. A hypothesis stores this many constraints.
-const MOST_BOUNDING: usize = 15;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -81,6 +78,8 @@ struct File {
     start: Table<StartTable>,
     truth: Option<Table<TruthTable>>,
     oracle: Vec<Table<SampleTable>>,
+    #[serde(default)]
+    bounds: Table<Bounds>,
 }
 
 mod defaults {
@@ -129,14 +128,6 @@ struct StartTable {
     z: Option<f64>,
     #[serde(default)]
     heading: f64,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct SampleTable {
-    x: f64,
-    z: f64,
-    label: i64,
 }
 
 /// What flags put in place of the file's values.
@@ -321,23 +312,22 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
     let names = ["price", "labels", "ask.seek", "ask.worth"];
     let noise = file.noise.as_ref().map(|table| noise(&table.0)).transpose()?;
     let (noise, p_told) = noise.map_or((None, None), |(noise, p_told)| (Some(noise), p_told));
+    check_trust(noise, &file.bounds.0)?;
     // Nobody knows what a label can carry if nobody knows how often it is true.
     let bits = noise.filter(|_| p_told.is_none()).map_or(1.0, |noise| limit(noise.p));
     let weighs = algorithm.weighs(file.noise.is_some());
-    let most = most_labels(file.oracle.len(), weighs)?;
+    let bounds = file.bounds.0;
+    let given_count = file.oracle.len() + bounds.len();
+    let most = most_labels(given_count, weighs)?;
     let asking = Asking::of(names, asked, (algorithm, &area, &vehicle), (most, bits))?;
     let steps_name = if overrides.steps.is_some() { "--steps" } else { "steps" };
     let room = Room::of(weighs, &asking, file.audits());
-    check_steps(steps_name, steps, file.oracle.len(), room)?;
+    check_steps(steps_name, steps, given_count, room)?;
     let truth = file.truth.as_ref().map(|table| table.0.world(&area, folder)).transpose()?;
     let world = truth.unwrap_or(World::UNKNOWN);
-    let given = oracle(&file.oracle, &area, &world)?;
-    let bounding = given.cell().edges().len();
-    if bounding > MOST_BOUNDING {
-        let found = format!("{bounding} points that bound the line");
-        return wrong("oracle", found, format!("at most {MOST_BOUNDING} that do"));
-    }
-    let start = start(&file.start.0, &given, &area)?;
+    let given = given(&file.oracle, &bounds, &area, &world)?;
+    let first = file.oracle.first().map(|_| given.samples()[0].site);
+    let start = start(&file.start.0, first, &area)?;
     let errors = errors(&file.errors.0)?;
     let allowance = file.allow.0;
     allowance.check("allow.")?;
@@ -364,6 +354,7 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
         start,
         world,
         given,
+        bounds,
         noise,
         p_told,
         errors,
@@ -374,6 +365,17 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
         audits: file.stop.as_ref().is_none_or(|table| table.0.audits()),
         asking,
     })
+}
+
+/// Labels are trusted around what the oracle has seen. A bound was seen by nobody.
+fn check_trust(noise: Option<NoiseModel>, bounds: &Bounds) -> Result<()> {
+    let trusts =
+        noise.is_some_and(|it| !matches!(it.extent, Extent::OutsideBalls(radius) if radius <= 0.0));
+    if trusts && !bounds.is_empty() {
+        let expected = "none, as labels are trusted around given points: trusted_radius = 0.0";
+        return wrong("bounds", "some with a trusted radius or a band", expected);
+    }
+    Ok(())
 }
 
 fn weight(weight: f64) -> Result<EffortWeight> {
@@ -528,48 +530,17 @@ pub fn trusted(field: &str, radius: f64) -> Result<f64> {
     Ok(radius)
 }
 
-fn oracle(tables: &[Table<SampleTable>], area: &MissionArea, world: &World) -> Result<Lines> {
-    let mut samples = Vec::with_capacity(tables.len());
-    for (i, Table(table)) in tables.iter().enumerate() {
-        let field = format!("oracle[{i}]");
-        let label = match table.label {
-            1 => Label::Positive,
-            -1 => Label::Negative,
-            other => return wrong(&format!("{field}.label"), other, "-1 or 1"),
-        };
-        let site = site(&field, table.x, table.z)?;
-        terrain::check_inside(&field, site, area)?;
-        if !world.agrees(site, label) {
-            let expected = format!("{}, as the truth has it", world.reading(site).sign());
-            return wrong(&format!("{field}.label"), table.label, expected);
-        }
-        samples.push(Sample { site, label });
-    }
-    VersionSpace::new(&samples).or_else(|error| match error {
-        GivenError::Collinear => {
-            wrong("oracle", "points on one line", "three or more points that are not collinear")
-        }
-        GivenError::OneLabel => {
-            let label = samples.first().map_or(0, |s| s.label.sign());
-            wrong("oracle", format!("only the label {label}"), "points of both labels")
-        }
-        GivenError::NotSeparable(i) => {
-            let expected = "points that a line separates by their labels";
-            wrong(&format!("oracle[{i}]"), "a label that no line allows", expected)
-        }
-        GivenError::TooMany => {
-            wrong("oracle", format!("{} points", samples.len()), format!("at most {CAPACITY}"))
-        }
-        other => wrong("oracle", other, "points that leave lines to find"),
-    })
-}
-
-fn start(table: &StartTable, given: &Lines, area: &MissionArea) -> Result<Pose> {
+/// Where it starts: at the oracle's first point, unless the file says otherwise.
+fn start(table: &StartTable, first: Option<Site>, area: &MissionArea) -> Result<Pose> {
     let Ok(heading) = Heading::from_radians(table.heading) else {
         return wrong("start.heading", table.heading, "a finite angle in radians");
     };
-    let first = Point2::<f64>::from(given.samples()[0].site);
-    let (x, z) = (table.x.unwrap_or(first.x), table.z.unwrap_or(first.y));
+    let first = first.map(Point2::<f64>::from);
+    let place = |told: Option<f64>, first: Option<f64>| told.or(first);
+    let (x, z) = (place(table.x, first.map(|it| it.x)), place(table.z, first.map(|it| it.y)));
+    let (Some(x), Some(z)) = (x, z) else {
+        return wrong("start", "no x and z", "both, as the oracle gives no point to start at");
+    };
     let site = site("start", x, z)?;
     terrain::check_inside("start", site, area)?;
     Ok(Pose { site, heading })

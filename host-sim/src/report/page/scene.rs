@@ -241,7 +241,7 @@ impl Flight {
             labels_err: mission.is_noisy(),
             area: rounding.ring(&border),
             keep_outs: area.hulls().map(|hull| rounding.ring(&Polygon::from(hull))).collect(),
-            given: mission.given.samples().iter().map(mark).collect(),
+            given: mission.oracle().iter().map(mark).collect(),
             truth: results.start.truth.as_ref().map(seen),
             boundary: picture
                 .truth

@@ -108,7 +108,14 @@ pub(crate) fn about(recording: &Recording) -> Vec<String> {
 fn given(results: &Results) -> String {
     let points = results.start.oracle.iter();
     let each = points.map(|s| format!("({}, {}) is {}", s.x, s.z, signed(s.label)));
-    format!("{}.", each.collect::<Vec<_>>().join(", "))
+    let each = each.collect::<Vec<_>>().join(", ");
+    let known = text::known(&results.start);
+    [each, known]
+        .into_iter()
+        .filter(|it| !it.is_empty())
+        .map(|it| format!("{it}."))
+        .collect::<Vec<_>>()
+        .join(" ")
 }
 
 /// The planner's choice, and the likely reason for it.

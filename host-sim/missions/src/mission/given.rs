@@ -1,0 +1,153 @@
+//! What is given beforehand: the oracle's points, and `bounds` of the line, which become samples too.
+
+use anyhow::{Result, anyhow};
+use planner_core::belief::bounds::{intercept_within, slope_within_degrees};
+use planner_core::error::GivenError;
+use planner_core::link::message::MissionArea;
+use planner_core::{Label, Sample, VersionSpace};
+use serde::{Deserialize, Serialize};
+
+use crate::mission::definition::{CAPACITY, Lines};
+use crate::mission::strict::{Table, wrong};
+use crate::mission::terrain::{self, site};
+use crate::world::World;
+
+/// The most given samples that may bound the line. A hypothesis stores this many constraints.
+const MOST_BOUNDING: usize = 15;
+
+/// A point of the oracle in a scenario file.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct SampleTable {
+    x: f64,
+    z: f64,
+    label: i64,
+}
+
+/// `bounds` of a scenario file: what is known of the line beforehand.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Bounds {
+    /// Its direction lies between these, degrees.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub slope: Option<[f64; 2]>,
+    /// It crosses `x = 0` between these, metres.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub intercept: Option<[f64; 2]>,
+}
+
+impl Bounds {
+    /// Nothing is known.
+    pub const NONE: Self = Self { slope: None, intercept: None };
+
+    /// Samples that say the same where +1 lies above the line, in an area.
+    ///
+    /// # Errors
+    /// Names the field, what was found and what was expected.
+    fn samples(&self, area: &MissionArea) -> Result<Vec<Sample>> {
+        let named = |field: &str, found: [f64; 2], error| {
+            anyhow!("bounds.{field}: found {found:?}, expected otherwise: {error}")
+        };
+        let mut samples = Vec::new();
+        if let Some(bounds) = self.slope {
+            let of_slope = slope_within_degrees(area, bounds);
+            samples.extend(of_slope.map_err(|error| named("slope", bounds, error))?);
+        }
+        if let Some(bounds) = self.intercept {
+            let of_intercept = intercept_within(bounds);
+            samples.extend(of_intercept.map_err(|error| named("intercept", bounds, error))?);
+        }
+        Ok(samples)
+    }
+
+    /// How many samples that are.
+    pub const fn len(&self) -> usize {
+        6 * self.slope.is_some() as usize + 2 * self.intercept.is_some() as usize
+    }
+
+    /// Whether nothing is known.
+    pub const fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// The lines that the oracle's points and the bounds leave. The points come first. If they do not say on which side of
+/// the line +1 lies, it lies above.
+///
+/// # Errors
+/// Names the field, what was found and what was expected.
+pub(crate) fn given(
+    oracle: &[Table<SampleTable>],
+    bounds: &Bounds,
+    area: &MissionArea,
+    world: &World,
+) -> Result<Lines> {
+    let oracle = points(oracle, area, world)?;
+    let above = bounds.samples(area)?;
+    let below: Vec<_> =
+        above.iter().map(|&Sample { site, label }| Sample { site, label: -label }).collect();
+    let with = |bounds: &[Sample]| VersionSpace::new(&[&*oracle, bounds].concat());
+    let lines = match with(&above) {
+        Err(GivenError::NotSeparable(k)) if k >= oracle.len() => {
+            with(&below).map(|lines| (lines, &below))
+        }
+        lines => lines.map(|lines| (lines, &above)),
+    };
+    let (lines, bounding) = lines.or_else(|error| refused(error, &oracle, bounds))?;
+    let is_line = world.line().is_some();
+    if is_line && !bounding.iter().all(|it| world.agrees(it.site, it.label)) {
+        return wrong("bounds", "a line outside, the truth", "bounds that hold the truth");
+    }
+    let bounding = lines.cell().edges().len();
+    if bounding > MOST_BOUNDING {
+        let found = format!("{bounding} points that bound the line");
+        return wrong("oracle", found, format!("at most {MOST_BOUNDING} that do"));
+    }
+    Ok(lines)
+}
+
+/// The oracle's points.
+fn points(tables: &[Table<SampleTable>], area: &MissionArea, world: &World) -> Result<Vec<Sample>> {
+    let point = |(i, Table(table)): (usize, &Table<SampleTable>)| {
+        let field = format!("oracle[{i}]");
+        let label = match table.label {
+            1 => Label::Positive,
+            -1 => Label::Negative,
+            other => return wrong(&format!("{field}.label"), other, "-1 or 1"),
+        };
+        let site = site(&field, table.x, table.z)?;
+        terrain::check_inside(&field, site, area)?;
+        if !world.agrees(site, label) {
+            let expected = format!("{}, as the truth has it", world.reading(site).sign());
+            return wrong(&format!("{field}.label"), table.label, expected);
+        }
+        Ok(Sample { site, label })
+    };
+    tables.iter().enumerate().map(point).collect()
+}
+
+/// Why samples leave no lines to find, by field.
+fn refused<T>(error: GivenError, oracle: &[Sample], bounds: &Bounds) -> Result<T> {
+    match error {
+        GivenError::Collinear => {
+            wrong("oracle", "points on one line", "three or more points that are not collinear")
+        }
+        GivenError::OneLabel => {
+            let label = oracle.first().map_or(0, |s| s.label.sign());
+            wrong("oracle", format!("only the label {label}"), "points of both labels")
+        }
+        GivenError::NotSeparable(i) if i >= oracle.len() => {
+            let found = "bounds that no line keeps with the oracle's points";
+            wrong("bounds", found, "bounds that leave a line")
+        }
+        GivenError::NotSeparable(i) => {
+            let expected = "points that a line separates by their labels";
+            wrong(&format!("oracle[{i}]"), "a label that no line allows", expected)
+        }
+        GivenError::TooMany => {
+            let count = oracle.len() + bounds.len();
+            wrong("oracle", format!("{count} points"), format!("at most {CAPACITY}"))
+        }
+        other => wrong("oracle", other, "points that leave lines to find"),
+    }
+}
