@@ -277,11 +277,11 @@ impl Journey {
             return None;
         }
         // A label where the way ends may tell less than at the place itself.
-        let wants_label = arrives && tells(leg.1.site);
-        if wants_label || !arrives {
-            self.next = Rest::To(site, after);
+        if arrives && !tells(leg.1.site) {
+            return None;
         }
-        Some((leg, wants_label))
+        self.next = Rest::To(site, after);
+        Some((leg, arrives))
     }
 }
 
