@@ -65,7 +65,7 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
             evaluations: lookahead::EVALUATIONS,
             goal: mission.goal,
             noise: mission.noise.map(|_| (noise, mission.prior)),
-            sight: mission.asking.sight(),
+            sight: mission.sight(),
         },
         other => bail!("algorithm: found {}, expected cfc, scc or lookahead", other.name()),
     };

@@ -1,7 +1,7 @@
 //! The decision of look-ahead: the motion whose label, and the one after it, are worth the most together.
 
 use crate::belief::cells::CellView;
-use crate::belief::predictions::{Prediction, PredictiveBelief, Predictor};
+use crate::belief::predictions::{Prediction, Predictor};
 use crate::belief::sample::Label;
 use crate::geometry::workspace::Workspace;
 use crate::motion::action::Action;
@@ -30,20 +30,19 @@ pub struct Decision {
 
 impl Decision {
     /// The motion that is worth the most; `None` if no label is in reach.
-    pub(crate) fn of<B: PredictiveBelief, D: Dynamics, G: Workspace>(
-        belief: &B,
+    pub(crate) fn of<P: Predictor, D: Dynamics, G: Workspace>(
+        (predictor, ground): (&P, CellView<'_>),
         lookout: &mut Lookout<'_, D, G>,
         pose: Pose,
     ) -> Option<Self> {
-        let (predictor, ground) = (belief.predictor(pose.site), belief.ground());
-        let prospects = prospects(&predictor, ground, lookout, pose);
+        let prospects = prospects(predictor, ground, lookout, pose);
         let mut best = None;
         for prospect in prospects.as_slice() {
-            look_beyond(lookout, &predictor, prospect, &mut best);
+            look_beyond(lookout, predictor, prospect, &mut best);
         }
         if prospects.as_slice().first().is_none_or(|first| first.worth < POOR) {
             for side in [Side::Left, Side::Right] {
-                look_aside(lookout, &predictor, ground, (pose, side), &mut best);
+                look_aside(lookout, predictor, ground, (pose, side), &mut best);
             }
         }
         best

@@ -13,7 +13,7 @@
 //! The price is the one number that says what a user wants: few labels, or little driving.
 
 use crate::belief::Belief as _;
-use crate::belief::predictions::{Prediction as _, PredictiveBelief, Spread as _};
+use crate::belief::predictions::{Prediction, PredictiveBelief, Spread as _};
 use crate::geometry::approximate::distance;
 use crate::geometry::lattice::{Site, UNITS_PER_METRE};
 use crate::geometry::value::ValueError;
@@ -117,15 +117,14 @@ impl Far {
 
 impl Far {
     /// What to do next; `None` if no label is in sight.
-    pub(crate) fn decide<B: PredictiveBelief, D: Dynamics, G: Workspace>(
+    pub(crate) fn decide<B: PredictiveBelief, P: Prediction, D: Dynamics, G: Workspace>(
         self,
-        belief: &B,
+        (belief, predictor): (&B, &P),
         lookout: &mut Lookout<'_, D, G>,
         pose: Pose,
         journey: &mut Journey,
     ) -> Option<Decision> {
         let chord = Chord::of(belief.belief().centre()?, lookout.area.bounds())?;
-        let predictor = belief.predictor(pose.site);
         let spread = match self.seeks {
             Seeks::Accuracy => chord.stretch().map(|over| belief.spread(&over)),
             Seeks::Bits => None,
@@ -133,12 +132,12 @@ impl Far {
         // A unit more, so that nothing is divided by 0.
         let price = self.price_mm as f32 * (1e-3 * UNITS_PER_METRE as f32) + 1.0;
         let worth = |site: Site, share: f32| {
-            let told = predictor.information(site, share);
+            let told = predictor.brings(site, share, predictor.information(site, share));
             let brings = spread.as_ref().map_or(1.0, |spread| spread.reduction(site)) * told;
             brings / (price + distance(site - pose.site))
         };
         let mut best = None;
-        for it in prospects(&predictor, belief.ground(), lookout, pose).as_slice() {
+        for it in prospects(predictor, belief.ground(), lookout, pose).as_slice() {
             let (action, target, worth) = (it.action, it.target, worth(it.target.site, it.share));
             Decision { action, target, worth, wants_label: true, is_far: false }.beat(&mut best);
         }
@@ -149,7 +148,7 @@ impl Far {
         };
         match journey.now {
             Rest::None => sites(&chord, lookout)
-                .filter(|site| tells(belief, &predictor, lookout, *site))
+                .filter(|site| tells(belief, predictor, lookout, *site))
                 .for_each(consider),
             Rest::To(site, _) => consider(site),
             Rest::Over => {}
@@ -157,7 +156,7 @@ impl Far {
         journey.next = journey.now;
         let mut effort = Effort::of(LOOKS);
         for Place { site, worth } in places.list.into_iter().take_while(|it| it.worth > most) {
-            let tells = |site| tells(belief, &predictor, lookout, site);
+            let tells = |site| tells(belief, predictor, lookout, site);
             let leg = journey.go((lookout.dynamics, &lookout.area), pose, site, tells, &mut effort);
             if let Some(((action, target), wants_label)) = leg {
                 return Some(Decision { action, target, worth, wants_label, is_far: true });
@@ -180,9 +179,9 @@ fn sites<D: Dynamics, G: Workspace>(
 }
 
 /// Whether a label at a site is to be considered.
-fn tells<B: PredictiveBelief, D: Dynamics, G: Workspace>(
+fn tells<B: PredictiveBelief, P: Prediction, D: Dynamics, G: Workspace>(
     belief: &B,
-    predictor: &B::Predictor<'_>,
+    predictor: &P,
     lookout: &Lookout<'_, D, G>,
     site: Site,
 ) -> bool {

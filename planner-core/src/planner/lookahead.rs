@@ -569,7 +569,8 @@ mod tests {
         for evaluations in [0, 1, 2, 5, 10, 20, 50, 100, 150, 200, 300, 400, 512, 1_000, 5_000] {
             planner.evaluations = evaluations;
             let mut lookout = planner.lookout();
-            let decision = Decision::of(&planner.belief, &mut lookout, pose);
+            let with = (&planner.belief.predictor(pose.site), planner.belief.ground());
+            let decision = Decision::of(with, &mut lookout, pose);
             assert!(lookout.evaluations <= evaluations);
             let worth = decision.map_or(f32::NEG_INFINITY, |decision| decision.worth);
             assert!(worth >= before, "{worth} with {evaluations}, {before} with fewer, {pose:?}");

@@ -1,6 +1,6 @@
 //! How far look-ahead looks for labels: one motion ([`Near`]), or all of the area ([`Far`]). And which of them it reads.
 
-use crate::belief::predictions::PredictiveBelief;
+use crate::belief::predictions::{OnTheWay, PredictiveBelief};
 use crate::geometry::value::ValueError;
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose};
@@ -51,7 +51,7 @@ impl Sight for Near {
     type Journey = ();
 
     fn of(asked: AnySight) -> Option<Self> {
-        (asked == AnySight::from(None)).then_some(Self)
+        (asked.far.is_none() && asked.least == 0).then_some(Self)
     }
 
     fn looks(self) -> u32 {
@@ -65,7 +65,7 @@ impl Sight for Near {
         pose: Pose,
         (): &mut (),
     ) -> Option<Decision> {
-        Decision::of(belief, lookout, pose)
+        Decision::of((&belief.predictor(pose.site), belief.ground()), lookout, pose)
     }
 
     fn observe((): &mut (), _: bool) {}
@@ -89,7 +89,7 @@ impl Sight for Far {
         pose: Pose,
         journey: &mut Journey,
     ) -> Option<Decision> {
-        Self::decide(self, belief, lookout, pose, journey)
+        Self::decide(self, (belief, &belief.predictor(pose.site)), lookout, pose, journey)
     }
 
     fn observe(journey: &mut Journey, has_label: bool) {
@@ -97,7 +97,8 @@ impl Sight for Far {
     }
 }
 
-/// The sight of a program that is told at run time: near or far, and how many bits a label must be expected to carry.
+/// The sight of a program that is told at run time: near or far, how many bits a label must be expected to carry, and how
+/// many labels are read a motion.
 ///
 /// Where no label in sight carries so many, the planner drives on without reading one, for sixteen motions at most.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -107,16 +108,25 @@ pub struct AnySight {
     far: Option<Far>,
     /// Thousandths of a bit.
     least: u16,
+    /// A motion.
+    readings: u8,
 }
 
 /// All labels may be read: near sight where there is no price, else far sight.
 impl From<Option<Far>> for AnySight {
     fn from(far: Option<Far>) -> Self {
-        Self { far, least: 0 }
+        Self { far, least: 0, readings: 1 }
     }
 }
 
 impl AnySight {
+    /// The same for a robot that reads so many labels a motion, evenly spread over its length, the last at its end. The
+    /// planner chooses motions by what all of them tell together.
+    #[must_use]
+    pub const fn with_readings(self, readings: u8) -> Self {
+        Self { readings, ..self }
+    }
+
     /// The same, but it reads a label only where it is expected to carry so many bits, to the nearest thousandth. An
     /// audit's labels are read all the same.
     ///
@@ -151,9 +161,10 @@ impl Sight for AnySight {
         pose: Pose,
         journey: &mut Journey,
     ) -> Option<Decision> {
+        let predictor = OnTheWay::new(belief.predictor(pose.site), pose.site, self.readings);
         match self.far {
-            None => Near.decide(belief, lookout, pose, &mut ()),
-            Some(far) => far.decide(belief, lookout, pose, journey),
+            None => Decision::of((&predictor, belief.ground()), lookout, pose),
+            Some(far) => far.decide((belief, &predictor), lookout, pose, journey),
         }
     }
 

@@ -136,7 +136,7 @@ impl<D: Dynamics, G: Workspace> Lookout<'_, D, G> {
         (number, speed): (i64, u16),
         sought: &mut Sought<'_>,
     ) -> Option<Probe> {
-        self.evaluations = self.evaluations.checked_sub(1)?;
+        self.evaluations = self.evaluations.checked_sub(prediction.asks())?;
         let ray = self.ray(pose, number);
         let target = self.dynamics.arrive(pose, &ray, speed).ok()?;
         let share = prediction.share_above(target.site);
@@ -148,7 +148,7 @@ impl<D: Dynamics, G: Workspace> Lookout<'_, D, G> {
             let grid = self.dynamics.grid();
             let cost = self.cost(grid.reach_mm(speed), ray.turn_cost);
             let information = prediction.information(target.site, share);
-            let worth = information - cost;
+            let worth = prediction.brings(target.site, share, information) - cost;
             let action = grid.action(ray.index, speed);
             if information >= self.least && !sought.find(Prospect { action, target, share, worth })
             {

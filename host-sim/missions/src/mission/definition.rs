@@ -3,8 +3,8 @@
 use planner_core::link::message::MissionArea;
 use planner_core::link::message::Settings;
 use planner_core::{
-    AnyReliability, AnyVehicle, CellPosterior, Crossing, Following, Goal, Noise, NoisyBelief,
-    Policy, Pose, Prior, Sample, UnknownReliability, VersionSpace,
+    AnyReliability, AnySight, AnyVehicle, CellPosterior, Crossing, Following, Goal, Noise,
+    NoisyBelief, Policy, Pose, Prior, Sample, UnknownReliability, VersionSpace,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -208,6 +208,12 @@ impl Mission {
     pub fn lines(&self) -> Lines {
         let lines = self.given.clone().with_tolerance(self.config.tolerance);
         lines.expect("the tolerance leaves something to find")
+    }
+
+    /// How far look-ahead looks for labels, what they must carry, and how many there are a motion.
+    pub fn sight(&self) -> AnySight {
+        let readings = u8::try_from(self.readings).unwrap_or(u8::MAX);
+        self.asking.sight().with_readings(readings)
     }
 
     /// Where its robot reads on the way of a motion.

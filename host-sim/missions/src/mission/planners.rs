@@ -148,8 +148,7 @@ impl Mission {
         belief: B,
     ) -> Lookahead<D, B, G, Accuracy, AnySight> {
         let planner = Lookahead::new(area, dynamics, belief).expect(FITS);
-        let planner =
-            planner.seeing(self.asking.sight()).pricing(self.config.price()).until(self.goal);
+        let planner = planner.seeing(self.sight()).pricing(self.config.price()).until(self.goal);
         if self.audits { planner } else { planner.without_audit() }
     }
 }

@@ -12,13 +12,14 @@ use heapless::Vec;
 
 use crate::belief::cells::{CellView, Certainty};
 use crate::belief::noise::Reliability;
-use crate::belief::predictions::predictor::{Prediction, PredictiveBelief, Predictor, entropy};
+use crate::belief::predictions::predictor::{
+    Prediction, PredictiveBelief, Predictor, entropy, log2,
+};
 use crate::belief::predictions::spread::{LineSums, Spread, Stretch, Whole};
 use crate::belief::predictions::verdicts::Decisive;
 use crate::belief::sample::{Label, Reading};
 use crate::belief::tolerance::Tolerance;
 use crate::belief::true_labels::VersionSpace;
-use crate::belief::weight::LogWeight;
 use crate::belief::{Belief, ObservationError};
 use crate::geometry::approximate::{METRE, UnitVector, cross, distance, inverse_sqrt};
 use crate::geometry::lattice::{Site, Vector};
@@ -205,11 +206,6 @@ impl DualPolygon {
     }
 }
 
-/// The logarithm of a share to base 2; of next to none that of very little.
-fn log2(share: f32) -> f32 {
-    LogWeight::of(if share < 1e-6 { 1e-6 } else { share }) * core::f32::consts::LOG2_E
-}
-
 /// The measure of a polygon of lines, from one of them to the others in turn.
 #[inline]
 fn measure<'a>(apex: Vertex, rest: impl Iterator<Item = &'a Vertex>) -> f32 {
@@ -304,6 +300,10 @@ impl Prediction for DualPolygon {
         let [positive, negative] = [Label::Positive, Label::Negative]
             .map(|label| self.share(self.place(site, label)).clamp(0.0, 1.0));
         -share * log2(positive) - (1.0 - share) * log2(1.0 - negative)
+    }
+
+    fn reliability(&self, _: Site) -> f32 {
+        1.0
     }
 }
 

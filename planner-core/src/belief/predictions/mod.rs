@@ -6,6 +6,7 @@ mod columns;
 mod directions;
 mod dual_polygon;
 mod noisy_belief;
+mod on_the_way;
 mod predictor;
 mod spread;
 mod verdicts;
@@ -13,6 +14,7 @@ mod verdicts;
 #[cfg(feature = "internals")]
 pub use columns::Columns;
 pub use noisy_belief::{NoisyBelief, sequences_of};
+pub(crate) use on_the_way::OnTheWay;
 pub use predictor::{Prediction, PredictiveBelief, Predictor};
 pub use spread::{Spread, Stretch};
 pub(crate) use verdicts::{Heard, PLACES};

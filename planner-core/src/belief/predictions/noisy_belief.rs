@@ -324,6 +324,10 @@ impl<const N: usize, const H: usize, R: Trust> Prediction for TablePredictor<'_,
     fn information(&self, site: Site, share: f32) -> f32 {
         self.labels.information(site, share)
     }
+
+    fn reliability(&self, site: Site) -> f32 {
+        self.labels.p(site)
+    }
 }
 
 impl<const N: usize, const H: usize, R: Trust> Prediction for TablePredictorAfter<'_, N, H, R> {
@@ -333,6 +337,10 @@ impl<const N: usize, const H: usize, R: Trust> Prediction for TablePredictorAfte
 
     fn information(&self, site: Site, share: f32) -> f32 {
         self.labels.information(site, share)
+    }
+
+    fn reliability(&self, site: Site) -> f32 {
+        self.labels.p(site)
     }
 }
 

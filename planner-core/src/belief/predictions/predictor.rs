@@ -11,6 +11,7 @@ use crate::belief::predictions::spread::{Spread, Stretch};
 use crate::belief::predictions::verdicts::Verdicts;
 use crate::belief::sample::{Label, Reading};
 use crate::belief::tolerance::Tolerance;
+use crate::belief::weight::LogWeight;
 use crate::belief::{Belief, ObservationError};
 use crate::geometry::lattice::Site;
 
@@ -101,6 +102,20 @@ pub trait Prediction {
     /// The expected information of a label at a site, as a share of the most that a label can carry. `share` is the
     /// site's [`share_above`](Self::share_above).
     fn information(&self, site: Site, share: f32) -> f32;
+
+    /// How often a label at a site is true.
+    fn reliability(&self, site: Site) -> f32;
+
+    /// What a motion to a site brings, as a share of the most that one can bring: the `information` of the label there, and
+    /// of those on the way if there are any.
+    fn brings(&self, _site: Site, _share: f32, information: f32) -> f32 {
+        information
+    }
+
+    /// Places that are asked for that: as many evaluations does the end of a motion take of a plan's limit.
+    fn asks(&self) -> u32 {
+        1
+    }
 }
 
 /// A prediction that can also predict its own state after one more label.
@@ -133,6 +148,11 @@ pub(crate) fn entropy(p: f32) -> f32 {
     let higher = 0.122_157_23 * x2 + 0.113_838_27 * x4;
     let highest = 0.028_746_36 * x16 + 0.013_910_62 * (x32 * x32);
     1.0 - HALF_LOG2_E * x - higher - highest
+}
+
+/// The logarithm of a share to base 2; of next to none that of very little.
+pub(crate) fn log2(share: f32) -> f32 {
+    LogWeight::of(if share < 1e-6 { 1e-6 } else { share }) * core::f32::consts::LOG2_E
 }
 
 #[cfg(test)]
