@@ -9,6 +9,7 @@ pub mod definition;
 mod diagnosing;
 pub mod diagnosis;
 pub mod flight;
+pub mod lawnmower;
 pub mod legs;
 mod line_record;
 pub mod margin;

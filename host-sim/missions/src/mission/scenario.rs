@@ -19,6 +19,7 @@ use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::{self, Allowance};
 use crate::mission::asking::{AskTable, Asking, Price};
 use crate::mission::definition::{CAPACITY, Lines, Mission};
+use crate::mission::lawnmower;
 use crate::mission::names::{CrossingName, FanName, FollowingName, PolicyName, PriorName};
 use crate::mission::sensor::{self, FaultTable};
 use crate::mission::stop::StopTable;
@@ -317,6 +318,9 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
         |it| it.0.vehicle(Source::File, algorithm, has_fan, grid),
     )?;
     let area = terrain::area(&file.area.0, &file.keep_out)?;
+    if algorithm == Algorithm::Lawnmower {
+        lawnmower::check_area(&area)?;
+    }
     let asked = (file.price, file.labels, file.ask.0.seek());
     let names = ["price", "labels", "ask.seek"];
     let weighs = algorithm.weighs(file.noise.is_some());
