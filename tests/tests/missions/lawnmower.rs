@@ -54,13 +54,12 @@ fn flown(mission: &Mission) -> (Vec<Point2<f64>>, Ending) {
     (read, ending)
 }
 
-/// The places of a survey with so many tracks, from the corner with this number.
-fn survey(sides: [f64; 2], labels: u32, tracks: u32, corner: u32) -> Vec<Point2<f64>> {
-    let longer = usize::from(sides[1] > sides[0]);
-    let (long, short) = (sides[longer], sides[1 - longer]);
+/// The places of a survey with so many tracks, along x or z, from the corner with this number.
+fn survey(drawn: &Drawn, (tracks, axis): (u32, usize), corner: u32) -> Vec<Point2<f64>> {
+    let (long, short) = (drawn.sides[axis], drawn.sides[1 - axis]);
     let mut places = Vec::new();
     for track in 0..tracks {
-        let count = labels / tracks + u32::from(track < labels % tracks);
+        let count = drawn.labels / tracks + u32::from(track < drawn.labels % tracks);
         let apart = long / f64::from(count);
         let mut on_track: Vec<_> = (0..count).map(|k| apart * (0.5 + f64::from(k))).collect();
         if (track + corner) % 2 == 1 {
@@ -69,7 +68,7 @@ fn survey(sides: [f64; 2], labels: u32, tracks: u32, corner: u32) -> Vec<Point2<
         let across = short * (0.5 + f64::from(track)) / f64::from(tracks);
         let across = if corner < 2 { across } else { short - across };
         for along in on_track {
-            places.push(if longer == 0 {
+            places.push(if axis == 0 {
                 Point2::new(along, across)
             } else {
                 Point2::new(across, along)
@@ -79,21 +78,29 @@ fn survey(sides: [f64; 2], labels: u32, tracks: u32, corner: u32) -> Vec<Point2<
     places
 }
 
-/// The tracks of the survey that has its first labels at these places, as nearly as motions end.
-fn tracks(drawn: &Drawn, read: &[Point2<f64>]) -> Option<u32> {
+/// All surveys, by tracks and axis, whose first labels are at these places, as nearly as motions end.
+fn found(drawn: &Drawn, read: &[Point2<f64>]) -> Vec<(u32, usize)> {
     let near = 0.15 + 0.006 * drawn.reach;
-    (1..=drawn.labels).find(|&tracks| {
+    let is_there = |of: &(u32, usize)| {
         (0..4).any(|corner| {
-            let places = survey(drawn.sides, drawn.labels, tracks, corner);
+            let places = survey(drawn, *of, corner);
             read.iter().zip(&places).all(|(read, place)| distance(read, place) < near)
         })
-    })
+    };
+    (1..=drawn.labels).flat_map(|tracks| [(tracks, 0), (tracks, 1)]).filter(is_there).collect()
+}
+
+/// How far a label's cell is from a square.
+fn skew(drawn: &Drawn, (tracks, axis): (u32, usize)) -> f64 {
+    let along = drawn.sides[axis] * f64::from(tracks) / f64::from(drawn.labels);
+    let across = drawn.sides[1 - axis] / f64::from(tracks);
+    (along / across).ln().abs()
 }
 
 /// Motions that a survey takes at most: so many on each leg with a turn, and two turns at the start.
-fn motions_at_most(drawn: &Drawn, tracks: u32) -> u32 {
+fn motions_at_most(drawn: &Drawn, of: (u32, usize)) -> u32 {
     let start = Point2::from(drawn.mission.start.site);
-    let surveys = (0..4).map(|corner| survey(drawn.sides, drawn.labels, tracks, corner));
+    let surveys = (0..4).map(|corner| survey(drawn, of, corner));
     let nearest = surveys.min_by(|a, b| {
         let [a, b] = [a, b].map(|it| distance(&start, &it[0]));
         a.total_cmp(&b)
@@ -105,7 +112,7 @@ fn motions_at_most(drawn: &Drawn, tracks: u32) -> u32 {
 }
 
 #[test]
-fn it_reads_its_labels_evenly_on_as_many_tracks_as_the_motions_allow() {
+fn its_labels_lie_in_cells_as_square_as_the_motions_allow() {
     let (mut several, mut held_back) = (0, 0);
     for number in 0..cases(60, 2_000) {
         let drawn = drawn(number);
@@ -113,19 +120,22 @@ fn it_reads_its_labels_evenly_on_as_many_tracks_as_the_motions_allow() {
         let (read, ending) = flown(&drawn.mission);
         let is_whole = read.len() == drawn.labels as usize;
         assert!(is_whole || ending == Ending::Steps, "{ending:?}, {whole}");
-        let found = tracks(&drawn, &read);
+        let found = found(&drawn, &read);
         // A survey of one track may be too long for the mission, and no other is.
-        let tracks = found.unwrap_or_else(|| panic!("{read:?}, {whole}"));
-        assert!(is_whole || tracks == 1, "{tracks} tracks, {whole}");
-        let [x, z] = drawn.sides;
-        let square = (f64::from(drawn.labels) * x.min(z) / x.max(z)).sqrt().round() as u32;
-        assert!(tracks <= square.max(1), "{tracks} tracks, {whole}");
-        if tracks < square {
-            let most = motions_at_most(&drawn, tracks + 1);
-            assert!(most > drawn.mission.steps, "{tracks} tracks are too few, {whole}");
-            held_back += 1;
+        let flown = found.iter().find(|(tracks, _)| is_whole || *tracks == 1);
+        let &flown = flown.unwrap_or_else(|| panic!("{found:?}: {read:?}, {whole}"));
+        let all = (1..=drawn.labels).flat_map(|tracks| [(tracks, 0), (tracks, 1)]);
+        let squarer = all.filter(|of| skew(&drawn, *of) < skew(&drawn, flown) - 1e-9);
+        for of in squarer.clone() {
+            // Surveys with more tracks than square cells take are not driven.
+            let [x, z] = drawn.sides;
+            let ratio = if of.1 == 0 { z / x } else { x / z };
+            let most = (f64::from(drawn.labels) * ratio).sqrt().round().max(1.0);
+            let fits = motions_at_most(&drawn, of) <= drawn.mission.steps;
+            assert!(!fits || f64::from(of.0) > most, "{flown:?} and not {of:?}, {whole}");
         }
-        several += u32::from(tracks > 1);
+        held_back += u32::from(squarer.count() > 1);
+        several += u32::from(flown.0 > 1);
     }
     println!("{several} have several tracks, {held_back} have fewer than square cells would take");
     assert!(several > 20 && held_back > 5, "{several}, {held_back}");

@@ -1,9 +1,9 @@
 //! A lawnmower: the survey that a user drives who has no planner. A baseline, blind to the labels it reads.
 //!
-//! Its tracks are parallel to the area's longer side, evenly spaced, and driven to and fro. As many labels as the mission
-//! may read are spread evenly over the tracks, so that they lie in cells as near to squares as possible. If such a survey
-//! takes more motions than the mission has, it has fewer tracks. It begins at the corner that is nearest to the start.
-//! Labels of a track are at least one of the longest motions apart. So are the tracks.
+//! Its tracks are parallel to a side of the area, evenly spaced, and driven to and fro. As many labels as the mission may
+//! read are spread evenly over them. Of all such surveys that the motions of the mission allow, it drives the one whose
+//! labels lie in cells as near to squares as possible. It begins at the corner that is nearest to the start. Labels of a
+//! track are at least one of the longest motions apart. So are the tracks.
 //!
 //! A mission without a limit on labels reads one after each motion. Where a survey ends before the mission, the vehicle
 //! drives the same tracks back.
@@ -66,8 +66,8 @@ impl<D: Dynamics, B: Belief> Lawnmower<D, B> {
     }
 }
 
-/// The places of the survey with the most tracks, up to square cells, that takes so many motions from its start at most.
-/// If none does, the one with a single track.
+/// The places of a survey, in order: of all that take so many motions at most, the one with the squarest cells. If none
+/// does, a single track.
 fn survey(
     area: &MissionArea,
     dynamics: &impl Dynamics,
@@ -75,66 +75,93 @@ fn survey(
     motions: u32,
     labels: u32,
 ) -> Vec<Site> {
-    let ground = Ground::of(area);
     let grid = dynamics.grid();
-    let reach = f64::from(grid.reach_m(grid.speeds() - 1));
-    // So many fit beside each other, one longest motion apart.
-    let fit = |length: f64| (libm::floor(length / reach) as u32).clamp(1, labels);
-    let square = libm::round(libm::sqrt(f64::from(labels) * ground.short / ground.long)) as u32;
-    let nearest = |tracks: u32| {
+    let apart = f64::from(grid.reach_m(grid.speeds() - 1));
+    let mut patterns: Vec<_> = [true, false]
+        .into_iter()
+        .flat_map(|is_along_x| {
+            let pattern = move |tracks| Pattern::new(area, is_along_x, (tracks, labels), apart);
+            // With more tracks than in square cells, a survey is only longer.
+            let square = pattern(1).square();
+            (1..=square).map(pattern)
+        })
+        .collect();
+    patterns.sort_by(|a, b| a.elongation().total_cmp(&b.elongation()));
+    let mut surveys = patterns.iter().map(|pattern| pattern.nearest(start.site));
+    let fits = |survey: &Vec<Site>| takes(dynamics, start, survey, motions).is_some();
+    let single = || patterns.iter().find(|it| it.tracks == 1).map(|it| it.nearest(start.site));
+    surveys.find(fits).or_else(single).unwrap_or_default()
+}
+
+/// How tracks lie in a rectangle; metres.
+#[derive(Clone, Copy)]
+struct Pattern {
+    min: Point2<f64>,
+    is_along_x: bool,
+    /// Of a track, and of all tracks side by side.
+    length: f64,
+    breadth: f64,
+    tracks: u32,
+    labels: u32,
+    /// Tracks, and labels of a track, are so far apart at least.
+    apart: f64,
+}
+
+impl Pattern {
+    fn new(area: &MissionArea, is_along_x: bool, (tracks, labels): (u32, u32), apart: f64) -> Self {
+        let [min, max] = [area.bounds().min(), area.bounds().max()].map(Point2::<f64>::from);
+        let [x, z] = (max - min).into();
+        let (length, breadth) = if is_along_x { (x, z) } else { (z, x) };
+        Self { min, is_along_x, length, breadth, tracks, labels, apart }
+    }
+
+    /// How many fit on a length.
+    fn fit(&self, length: f64) -> u32 {
+        (libm::floor(length / self.apart) as u32).clamp(1, self.labels)
+    }
+
+    /// With so many tracks labels lie in squares, or nearly.
+    fn square(&self) -> u32 {
+        let tracks = libm::sqrt(f64::from(self.labels) * self.breadth / self.length);
+        (libm::round(tracks) as u32).clamp(1, self.fit(self.breadth))
+    }
+
+    /// How many times as long as broad the cell of a label is, or as broad as long.
+    fn elongation(&self) -> f64 {
+        let tracks = f64::from(self.tracks);
+        let ratio = self.length * tracks * tracks / (f64::from(self.labels) * self.breadth);
+        ratio.max(1.0 / ratio)
+    }
+
+    /// The places from the corner that is nearest to a site.
+    fn nearest(&self, site: Site) -> Vec<Site> {
         let corners = [[false, false], [true, false], [false, true], [true, true]];
-        let surveys = corners.map(|corner| {
-            let track = |track: u32| {
-                // Of labels that cannot be shared out evenly, the first tracks have one more.
-                let count = ((labels + tracks - 1 - track) / tracks).min(fit(ground.long));
-                let place = move |k| ground.place(corner, [track, tracks], [k, count]);
-                (0..count).filter_map(place)
-            };
-            (0..tracks).flat_map(track).collect::<Vec<_>>()
-        });
+        let surveys = corners.map(|corner| self.places(corner));
         let way = |survey: &Vec<Site>| {
-            let way = survey.first().map(|&first| first - start.site);
+            let way = survey.first().map(|&first| first - site);
             way.map_or(0, |way| way.dot(way))
         };
         surveys.into_iter().min_by_key(way).unwrap_or_default()
-    };
-    let most = square.clamp(1, fit(ground.short));
-    let fits = |survey: &Vec<Site>| takes(dynamics, start, survey, motions).is_some();
-    (1..=most).rev().map(nearest).find(fits).unwrap_or_else(|| nearest(1))
-}
-
-/// The rectangle that is surveyed, metres.
-#[derive(Clone, Copy)]
-struct Ground {
-    min: Point2<f64>,
-    /// Whether its longer side is along x.
-    is_wide: bool,
-    long: f64,
-    short: f64,
-}
-
-impl Ground {
-    fn of(area: &MissionArea) -> Self {
-        let [min, max] = [area.bounds().min(), area.bounds().max()].map(Point2::<f64>::from);
-        let [x, z] = (max - min).into();
-        Self { min, is_wide: x >= z, long: x.max(z), short: x.min(z) }
     }
 
-    /// The `k`-th of `count` places on one of `tracks`, with the survey mirrored along its tracks, or across them.
-    fn place(
-        &self,
-        [along, across]: [bool; 2],
-        [track, tracks]: [u32; 2],
-        [k, count]: [u32; 2],
-    ) -> Option<Site> {
+    /// The places of all tracks, mirrored along them, or across.
+    fn places(&self, [is_back, is_aside]: [bool; 2]) -> Vec<Site> {
         let share = |k: u32, of: u32, is_mirrored: bool| {
             let share = (f64::from(k) + 0.5) / f64::from(of);
             if is_mirrored { 1.0 - share } else { share }
         };
-        let along = self.long * share(k, count, along != (track % 2 == 1));
-        let across = self.short * share(track, tracks, across);
-        let [x, z] = if self.is_wide { [along, across] } else { [across, along] };
-        Site::try_from(Point2::new(self.min.x + x, self.min.y + z)).ok()
+        let track = |track: u32| {
+            // Of labels that cannot be shared out evenly, the first tracks have one more.
+            let count = (self.labels + self.tracks - 1 - track) / self.tracks;
+            let count = count.min(self.fit(self.length));
+            let across = self.breadth * share(track, self.tracks, is_aside);
+            (0..count).filter_map(move |k| {
+                let along = self.length * share(k, count, is_back != (track % 2 == 1));
+                let [x, z] = if self.is_along_x { [along, across] } else { [across, along] };
+                Site::try_from(Point2::new(self.min.x + x, self.min.y + z)).ok()
+            })
+        };
+        (0..self.tracks).flat_map(track).collect()
     }
 }
 
