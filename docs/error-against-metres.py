@@ -18,7 +18,7 @@ from pathlib import Path
 FLAGS = "campaign --area 800,500 --reach 5 --labels 24 --steps 400 --every".split()
 # Name, flags, colour, dashes; where the name stands beside the last dot: right, down, anchor.
 CURVES = [
-    ("lawnmower", "--algorithm lawnmower", "#6e6e6e", "7 4", (0, 18, "middle")),
+    ("lawnmower", "--algorithm lawnmower", "#6e6e6e", "7 4", (-3, 18, "middle")),
     ("margin sampling", "--algorithm margin", "#009e73", "2 3", (-8, 26, "end")),
     ("near sight", "--algorithm lookahead --price none", "#d55e00", "9 4 2 4", (-8, 11, "end")),
     ("price 0", "--algorithm lookahead --price 0", "#56b4e9", "", (-7, 5, "end")),

@@ -35,7 +35,7 @@ fn drawn(number: u64) -> Drawn {
     let (steps, labels) = (rng.random_range(30..400), rng.random_range(2..=20));
     let mut mission = standard_field::stretched(sides, SEED, number, Algorithm::Lawnmower, steps);
     mission.asking = Asking { labels: Some(labels), ..Asking::USUAL };
-    let turn_step = if number % 2 == 0 { 1 } else { 10_000 };
+    let turn_step = if number.is_multiple_of(2) { 1 } else { 10_000 };
     let unicycle = Unicycle::new(turn_step, std::f64::consts::FRAC_PI_2, speeds, 100);
     mission.vehicle = AnyVehicle::Unicycle(unicycle.expect("a vehicle"));
     Drawn { mission, sides, reach, labels }
