@@ -1,9 +1,9 @@
 //! A lawnmower: the survey that a user drives who has no planner. A baseline, blind to the labels it reads.
 //!
 //! Its tracks are parallel to a side of the area, evenly spaced, and driven to and fro. As many labels as the mission may
-//! read are spread evenly over them. Of all such surveys that the motions of the mission allow, it drives the one whose
-//! labels lie in cells as near to squares as possible. It begins at the corner that is nearest to the start. Labels of a
-//! track are at least one of the longest motions apart. So are the tracks.
+//! read are spread evenly over them. The mission's motions allow some of these surveys. It drives the one whose labels
+//! lie in the squarest cells. It begins at the corner that is nearest to the start. Labels of a track are at least one of
+//! the longest motions apart. So are the tracks.
 //!
 //! A mission without a limit on labels reads one after each motion. Where a survey ends before the mission, the vehicle
 //! drives the same tracks back.
