@@ -68,7 +68,7 @@ pub(crate) struct CampaignFlags {
     /// How P2 follows the boundary (cfc, scc) [default: along-bisector; for scc anyhow]
     #[arg(long, value_enum)]
     following: Option<FollowingName>,
-    /// Labels are true with this probability (scc, lookahead, margin, random) [default: 0.7 for scc, 1 else]
+    /// Labels are true with this probability (all but cfc) [default: 0.7 for scc, 1 else]
     #[arg(long)]
     p: Option<f64>,
     /// Nobody knows that probability: planners are told the prior Beta(A, B), and each field's is drawn from it
@@ -306,7 +306,7 @@ impl CampaignFlags {
                 "--trusted-radius",
                 self.trusted_radius.is_some(),
                 p < 1.0,
-                "labels that can be wrong: --algorithm scc, lookahead, margin or random, --p below 1",
+                "labels that can be wrong: any --algorithm but cfc, --p below 1",
             ),
         ] {
             if is_given && !has_meaning {

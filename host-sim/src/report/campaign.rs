@@ -18,7 +18,7 @@ fn spread(Spread { median, p90, worst }: Spread, decimals: usize) -> String {
 pub fn accuracy(summary: &accuracy::Summary) -> String {
     let accuracy::Summary { algorithm, fields, seed, rows, .. } = summary;
     let (degrees, areas) = (degrees(rows), areas(rows));
-    let examined = if *algorithm == Algorithm::Random {
+    let examined = if matches!(algorithm, Algorithm::Random | Algorithm::Lawnmower) {
         String::new()
     } else {
         let (mean, actions) = (summary.mean_examined, summary.actions);

@@ -82,7 +82,7 @@ fn each_fault_flies_a_mission() {
         ("[{\"slow\":0.5},{\"stuck\":-1,\"to\":3}]", "[{ slow = 0.5 }, { stuck = -1, to = 3 }]"),
     ] {
         let mut whole = Vec::new();
-        for algorithm in ["scc", "lookahead", "margin", "random"] {
+        for algorithm in ["scc", "lookahead", "margin", "random", "lawnmower"] {
             let scenario = noisy.replace("\"cfc\"", &format!("\"{algorithm}\""));
             let records = flown(failing(&scenario, seen).path());
             let told: Value = serde_json::from_str(sensor).expect("JSON");
@@ -117,7 +117,7 @@ fn each_fault_flies_a_mission() {
 /// Without a reading nothing is learnt, and the mission ends with its steps.
 #[test]
 fn a_sensor_that_is_off_leaves_a_mission_to_its_steps() {
-    for algorithm in ["cfc", "scc", "lookahead", "margin", "random"] {
+    for algorithm in ["cfc", "scc", "lookahead", "margin", "random", "lawnmower"] {
         for steps in [10, 64] {
             let scenario = GOOD
                 .replace("\"cfc\"", &format!("\"{algorithm}\""))

@@ -207,7 +207,7 @@ fn nothing_is_not_printed_as_less_than_nothing() {
     let said = prints(folder.path(), &["run", "m.toml"]);
     assert!(said.contains("0 samples in 0 steps, 0.0 m travelled, control cost 0.0."), "{said}");
     fs::write(folder.path().join("n.toml"), GOOD).expect("a file");
-    for algorithm in ["cfc", "lookahead", "random", "margin"] {
+    for algorithm in ["cfc", "lookahead", "random", "margin", "lawnmower"] {
         for seed in 1..=5 {
             let seed = seed.to_string();
             let flags = ["run", "n.toml", "--algorithm", algorithm, "--steps", "60", "--seed"];

@@ -198,7 +198,7 @@ fn a_stop_that_means_nothing_is_refused() {
     }
     fs::write(folder.path().join("m.toml"), stopping(GOOD, "{ slope_arc_deg = 1.0 }"))
         .expect("a file");
-    for other in ["cfc", "scc", "margin", "random"] {
+    for other in ["cfc", "scc", "margin", "random", "lawnmower"] {
         let found =
             format!("stop: found with algorithm {other}, expected with algorithm lookahead");
         refuses(folder.path(), &["run", "m.toml", "--algorithm", other], &["m.toml", &found]);

@@ -48,7 +48,7 @@ fn a_mission_says_what_labels_have_shown() {
     let folder = folder();
     let noise = "p = [8.0, 2.0], true_p = 0.95, trusted_radius = 0.5";
     fs::write(folder.path().join("m.toml"), scenario(noise)).expect("a file");
-    for algorithm in ["scc", "lookahead", "margin", "random"] {
+    for algorithm in ["scc", "lookahead", "margin", "random", "lawnmower"] {
         let run =
             ["run", "m.toml", "--steps", "40", "--algorithm", algorithm, "--trace", "m.jsonl"];
         let output = host_sim(folder.path(), &run);

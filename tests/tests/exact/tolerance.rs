@@ -88,8 +88,8 @@ fn motions_that_err_change_little() {
 
 /// From outside, where an error has brought them, the other planners come back as well.
 #[test]
-fn margin_sampling_and_the_random_walk_come_back() {
-    for algorithm in [Algorithm::Margin, Algorithm::Random] {
+fn baselines_come_back() {
+    for algorithm in [Algorithm::Margin, Algorithm::Random, Algorithm::Lawnmower] {
         let (mut left, mut came_back) = (0, 0);
         for number in 0..cases(40, 400) {
             let mission = erring(number, algorithm, Errors { motion: 1.0, ..Errors::default() });

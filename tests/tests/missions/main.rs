@@ -10,6 +10,7 @@ mod far;
 mod fields;
 mod garden;
 mod honesty;
+mod lawnmower;
 mod lookahead;
 mod margin;
 mod readings;

@@ -102,7 +102,9 @@ fn asleep_as_asked(mission: &Mission) -> Result<String, String> {
             asleep(mission, || mission.doubtful(area, vehicle))
         }
         Algorithm::Lookahead => asleep(mission, || mission.lookahead(area, vehicle)),
-        Algorithm::Margin | Algorithm::Random => panic!("no planner of planner-core"),
+        Algorithm::Margin | Algorithm::Random | Algorithm::Lawnmower => {
+            panic!("no planner of planner-core")
+        }
     }
 }
 

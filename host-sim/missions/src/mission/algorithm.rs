@@ -20,6 +20,8 @@ pub enum Algorithm {
     Margin,
     /// A random walk, for scale.
     Random,
+    /// Parallel tracks over all of the area.
+    Lawnmower,
 }
 
 impl Algorithm {
@@ -31,13 +33,16 @@ impl Algorithm {
             Self::Lookahead => "look-ahead",
             Self::Margin => "margin sampling",
             Self::Random => "random walk",
+            Self::Lawnmower => "lawnmower",
         }
     }
 
     /// The default direction of P2: the one from which the algorithm learns the most.
     pub fn following(self) -> Following {
         match self {
-            Self::Cfc | Self::Lookahead | Self::Margin | Self::Random => Options::CFC.following,
+            Self::Cfc | Self::Lookahead | Self::Margin | Self::Random | Self::Lawnmower => {
+                Options::CFC.following
+            }
             Self::Scc => Options::SCC.following,
         }
     }
@@ -46,7 +51,9 @@ impl Algorithm {
     pub fn weight(self) -> EffortWeight {
         match self {
             Self::Lookahead => DrivingPrice::USUAL.into(),
-            Self::Cfc | Self::Scc | Self::Margin | Self::Random => EffortWeight::PAPER,
+            Self::Cfc | Self::Scc | Self::Margin | Self::Random | Self::Lawnmower => {
+                EffortWeight::PAPER
+            }
         }
     }
 
@@ -54,7 +61,7 @@ impl Algorithm {
     pub fn grid(self) -> Grid {
         match self {
             Self::Lookahead => Grid::Fine,
-            Self::Cfc | Self::Scc | Self::Margin | Self::Random => Grid::Paper,
+            Self::Cfc | Self::Scc | Self::Margin | Self::Random | Self::Lawnmower => Grid::Paper,
         }
     }
 
@@ -68,7 +75,7 @@ impl Algorithm {
         match self {
             Self::Cfc => false,
             Self::Scc => true,
-            Self::Lookahead | Self::Margin | Self::Random => labels_err,
+            Self::Lookahead | Self::Margin | Self::Random | Self::Lawnmower => labels_err,
         }
     }
 
@@ -76,7 +83,7 @@ impl Algorithm {
     pub fn poses_problems(self) -> bool {
         match self {
             Self::Cfc | Self::Scc => true,
-            Self::Lookahead | Self::Margin | Self::Random => false,
+            Self::Lookahead | Self::Margin | Self::Random | Self::Lawnmower => false,
         }
     }
 

@@ -10,6 +10,7 @@ mod diagnosing;
 pub mod diagnosis;
 pub mod flight;
 pub mod given;
+pub mod lawnmower;
 pub mod legs;
 mod line_record;
 pub mod margin;

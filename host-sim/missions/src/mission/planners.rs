@@ -2,8 +2,9 @@
 
 use planner_core::dynamics::Dynamics;
 use planner_core::error::ObservationError;
+use planner_core::link::message::MissionArea;
 use planner_core::{
-    Accuracy, AnyReliability, AnySight, AnyVehicle, Cfc, Lookahead, Plan, Planner, Pose,
+    Accuracy, AnyReliability, AnySight, AnyVehicle, Belief, Cfc, Lookahead, Plan, Planner, Pose,
     PredictiveBelief, Reading, Scc, Site, Tolerance, Workspace,
 };
 use rand::SeedableRng;
@@ -11,6 +12,7 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::{CAPACITY, DoubtfulBelief, HYPOTHESES, Lines, Mission};
+use crate::mission::lawnmower::Lawnmower;
 use crate::mission::margin::Margin;
 use crate::mission::random_walk::RandomWalk;
 use crate::mission::read_out::ReadOut;
@@ -93,7 +95,15 @@ impl Mission {
                 erased(RandomWalk { dynamics, area, belief: self.table(), rng })
             }
             Algorithm::Random => erased(RandomWalk { dynamics, area, belief: self.lines(), rng }),
+            Algorithm::Lawnmower if self.is_noisy() => {
+                erased(self.lawnmower((area, dynamics, self.table())))
+            }
+            Algorithm::Lawnmower => erased(self.lawnmower((area, dynamics, self.lines()))),
         }
+    }
+
+    fn lawnmower<D: Dynamics, B: Belief>(&self, of: (MissionArea, D, B)) -> Lawnmower<D, B> {
+        Lawnmower::new(of, self.start, self.steps, self.asking.labels)
     }
 
     /// Algorithm 1 with the mission's settings, in an area and with a vehicle that may be others than its own.

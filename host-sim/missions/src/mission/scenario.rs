@@ -19,6 +19,7 @@ use crate::mission::allowance::{self, Allowance};
 use crate::mission::asking::{AskTable, Asking, Price};
 use crate::mission::definition::{CAPACITY, Lines, Mission};
 use crate::mission::given::{Bounds, SampleTable, given};
+use crate::mission::lawnmower;
 use crate::mission::names::{CrossingName, FanName, FollowingName, PolicyName, PriorName};
 use crate::mission::sensor::{self, FaultTable};
 use crate::mission::stop::StopTable;
@@ -308,6 +309,9 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
         |it| it.0.vehicle(Source::File, algorithm, has_fan, grid),
     )?;
     let area = terrain::area(&file.area.0, &file.keep_out)?;
+    if algorithm == Algorithm::Lawnmower {
+        lawnmower::check_area(&area)?;
+    }
     let asked = file.ask.0.with(file.price, file.labels);
     let names = ["price", "labels", "ask.seek", "ask.worth"];
     let noise = file.noise.as_ref().map(|table| noise(&table.0)).transpose()?;

@@ -221,10 +221,10 @@ pub fn with_steps(
     table.vehicle(Source::Flags, algorithm, false, Grid::Paper)
 }
 
-/// Refuses a vehicle that the algorithm cannot drive: margin sampling and the random walk drive no boat and no car, and
-/// margin sampling tries no more than [`MOST_TRIED`] actions.
+/// Refuses a vehicle that the algorithm cannot drive: margin sampling, the random walk and the lawnmower drive no boat and no car,
+/// and margin sampling tries no more than [`MOST_TRIED`] actions.
 fn check_suits(name: &str, vehicle: &AnyVehicle, algorithm: Algorithm) -> Result<()> {
-    let tries = matches!(algorithm, Algorithm::Margin | Algorithm::Random);
+    let tries = matches!(algorithm, Algorithm::Margin | Algorithm::Random | Algorithm::Lawnmower);
     match vehicle {
         AnyVehicle::Boat(_) | AnyVehicle::Car(_) if tries => {
             let found = format!("one that cannot turn on the spot, with {}", algorithm.name());

@@ -142,6 +142,7 @@ fn planned(mission: &Mission, step: &StepResult) -> String {
             }
             Algorithm::Lookahead => "Where this label and the next tell the most for their cost",
             Algorithm::Margin => "The place in reach nearest to the maximum-margin line",
+            Algorithm::Lawnmower => "Along the tracks of its survey",
             _ => "At random",
         },
     };
