@@ -276,11 +276,15 @@ impl Journey {
             return None;
         }
         // A label where the way ends may tell less than at the place itself.
-        if arrives && !tells(leg.1.site) {
+        let wants_label = arrives && tells(leg.1.site);
+        let is_vain = arrives && !wants_label;
+        if is_vain && self.now == Rest::None {
             return None;
         }
-        self.next = Rest::To(site, after);
-        Some((leg, arrives))
+        if !is_vain {
+            self.next = Rest::To(site, after);
+        }
+        Some((leg, wants_label))
     }
 }
 

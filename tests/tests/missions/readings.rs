@@ -55,7 +55,9 @@ fn more_readings_tell_more() {
             bits.sum::<f64>()
         });
         assert!(bits.is_sorted(), "{algorithm:?}: {bits:?}");
-        assert!(bits[2] > 1.3 * bits[0], "{algorithm:?}: {bits:?}");
+        // Look-ahead chooses motions by what all labels tell together: without that it has 1.94 times as much.
+        let times = if algorithm == Algorithm::Lookahead { 1.955 } else { 1.3 };
+        assert!(bits[2] > times * bits[0], "{algorithm:?}: {bits:?}");
     }
 }
 
