@@ -19,8 +19,8 @@ use rand_chacha::ChaCha8Rng;
 use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::Allowance;
 use crate::mission::asking::Asking;
+use crate::mission::bounds::Bounds;
 use crate::mission::definition::Mission;
-use crate::mission::given::Bounds;
 use crate::world::errors::Errors;
 use crate::world::{World, reading};
 

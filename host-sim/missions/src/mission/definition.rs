@@ -12,7 +12,7 @@ use rand_chacha::ChaCha8Rng;
 use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::{Allowance, ToleranceRecord, tidy};
 use crate::mission::asking::Asking;
-use crate::mission::given::Bounds;
+use crate::mission::bounds::Bounds;
 use crate::world::World;
 use crate::world::errors::{CUT, Erring, Errors};
 use crate::world::faults::{Failing, Fault};

@@ -1,12 +1,12 @@
 //! What is given beforehand: the oracle's points, and `bounds` of the line, which become samples too.
 
-use anyhow::{Result, anyhow};
-use planner_core::belief::bounds::{intercept_within, slope_within_degrees};
+use anyhow::Result;
 use planner_core::error::GivenError;
 use planner_core::link::message::MissionArea;
 use planner_core::{Label, Sample, VersionSpace};
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 
+use crate::mission::bounds::Bounds;
 use crate::mission::definition::{CAPACITY, Lines};
 use crate::mission::strict::{Table, wrong};
 use crate::mission::terrain::{self, site};
@@ -22,53 +22,6 @@ pub(crate) struct SampleTable {
     x: f64,
     z: f64,
     label: i64,
-}
-
-/// `bounds` of a scenario file: what is known of the line beforehand.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Bounds {
-    /// Its direction lies between these, degrees.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub slope: Option<[f64; 2]>,
-    /// It crosses `x = 0` between these, metres.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub intercept: Option<[f64; 2]>,
-}
-
-impl Bounds {
-    /// Nothing is known.
-    pub const NONE: Self = Self { slope: None, intercept: None };
-
-    /// Samples that say the same where +1 lies above the line, in an area.
-    ///
-    /// # Errors
-    /// Names the field, what was found and what was expected.
-    fn samples(&self, area: &MissionArea) -> Result<Vec<Sample>> {
-        let named = |field: &str, found: [f64; 2], error| {
-            anyhow!("bounds.{field}: found {found:?}, expected otherwise: {error}")
-        };
-        let mut samples = Vec::new();
-        if let Some(bounds) = self.slope {
-            let of_slope = slope_within_degrees(area, bounds);
-            samples.extend(of_slope.map_err(|error| named("slope", bounds, error))?);
-        }
-        if let Some(bounds) = self.intercept {
-            let of_intercept = intercept_within(bounds);
-            samples.extend(of_intercept.map_err(|error| named("intercept", bounds, error))?);
-        }
-        Ok(samples)
-    }
-
-    /// How many samples that are.
-    pub const fn len(&self) -> usize {
-        6 * self.slope.is_some() as usize + 2 * self.intercept.is_some() as usize
-    }
-
-    /// Whether nothing is known.
-    pub const fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
 }
 
 /// The lines that the oracle's points and the bounds leave. The points come first. If they do not say on which side of

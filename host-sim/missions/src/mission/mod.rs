@@ -5,6 +5,7 @@ pub mod algorithm;
 pub mod allowance;
 pub mod asking;
 pub mod baseline;
+pub mod bounds;
 pub mod definition;
 mod diagnosing;
 pub mod diagnosis;

@@ -21,8 +21,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::ToleranceRecord;
+use crate::mission::bounds::Bounds;
 use crate::mission::diagnosis::DiagnosisRecord;
-use crate::mission::given::Bounds;
 use crate::mission::legs::{Leg, Legs};
 pub use crate::mission::line_record::{LineError, LineRecord};
 use crate::mission::read_out::Expectation;
