@@ -11,7 +11,7 @@ import struct
 import sys
 import zlib
 
-PROTOCOL = 7
+PROTOCOL = 8
 METRE = 1 << 16
 
 
@@ -172,6 +172,7 @@ REQUEST = Choice(
         "took": TOOK,
         "estimates": {name: Optional(LINE) for name in ("bisector", "centre", "maximum_margin")},
     },
+    Onward={"last": Optional(READING)},
 )
 NOISE = {"reliability": "i64", "trusted_radius": "u32", "tolerance": "u32"}
 POLICY = Choice(Joint=None, MixtureOfStart=None, MixtureOfOwn=None)
@@ -210,6 +211,7 @@ REPLY = Choice(
     Outline={"corners": List(SITE, 8), "radius": "u32"},
     Arrived={"pose": POSE, "reading": Optional(READING)},
     Failed=None, Noted=None, Busy=None, Stale=None,
+    OnTheWay={"site": SITE, "reading": Optional(READING)},
 )
 TO_VEHICLE, TO_CHIP = ord("?"), ord("!")
 ENVELOPES = {way: {"way": "u8", "session": "u32", "number": "u32", "message": of}

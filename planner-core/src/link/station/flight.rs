@@ -1,7 +1,9 @@
 //! A mission that is planned here and driven elsewhere.
 
+use crate::belief::ObservationError;
 use crate::belief::evidence::Alarm;
 use crate::belief::sample::Reading;
+use crate::geometry::lattice::Site;
 use crate::link::delivery::{Link, LinkError, Port};
 use crate::link::message::{
     Accepted, ClockRate, DeclinedError, EndReason, LabelSource, MissionEnd, Move, PROTOCOL, Reply,
@@ -11,7 +13,7 @@ use crate::link::station::seam::{self, Prepared};
 use crate::link::station::terms::{FromOutlines, Known, NoTerms, PlannerSetup};
 use crate::motion::dynamics::Pose;
 use crate::planner::{Motion, Plan, Planner};
-use crate::robot::{Body, LabelSensor, Step};
+use crate::robot::{Body, Hearing, LabelSensor, Step};
 
 /// A chip at a link: what a mission needs beside its planner.
 #[derive(Debug)]
@@ -31,6 +33,10 @@ pub trait Watch {
     /// Whether steps report what speaks against a straight, still line ([`Step::alarm`]). Planners are then
     /// [`Watched`](crate::watch::Watched), which takes some 2 KB of flash on a core with single-precision instructions.
     const ALARMS: bool = false;
+
+    /// Whether labels that a vehicle reads on the way are taken in. A chip without this has no code for them: its mission
+    /// ends with [`EndReason::Vehicle`] at the first.
+    const READINGS: bool = false;
 
     /// A mission was set up.
     fn set_up(&mut self, _: &Setup) {}
@@ -137,12 +143,12 @@ impl<P: Port, S: LabelSensor> Station<P, S> {
 }
 
 /// As [`Agent`](crate::robot::Agent), against the clock: the vehicle is told what each call took.
-fn mission<L: Planner, P: Port, S: LabelSensor>(
+fn mission<L: Planner, P: Port, S: LabelSensor, W: Watch>(
     planner: &mut L,
     vehicle: &mut RemoteVehicle<'_, P, S>,
     setup: &Setup,
     ticks: fn() -> u32,
-    watch: &mut impl Watch,
+    watch: &mut W,
 ) -> Result<EndReason, LinkError> {
     let (mut pose, mut labels) = (setup.start, 0);
     for _ in 0..setup.steps {
@@ -153,14 +159,18 @@ fn mission<L: Planner, P: Port, S: LabelSensor>(
             Plan::Move(motion) => motion,
             Plan::Stop(reason) => return Ok(EndReason::Stopped(reason)),
         };
-        let reading = match vehicle.perform(&motion, &mut pose) {
+        let before = planner.alarm();
+        let (performed, refused) = perform::<W, _, _, _>(planner, vehicle, &motion, &mut pose);
+        let reading = match performed {
             Ok(reading) => reading,
             Err(NoArrival::Lost(lost)) => return Err(lost),
             Err(NoArrival::Failed) => return Ok(EndReason::Vehicle),
             Err(NoArrival::NoLabel) => return Ok(EndReason::Sensor),
         };
+        if let Some(refused) = refused {
+            return Ok(EndReason::Refused(refused));
+        }
         labels += u16::from(reading.is_some());
-        let before = planner.alarm();
         let observe = || seam::observe(planner, pose, reading);
         if let Err(refused) = timed(ticks, &mut vehicle.took.observe, observe) {
             return Ok(EndReason::Refused(refused));
@@ -169,6 +179,22 @@ fn mission<L: Planner, P: Port, S: LabelSensor>(
         watch.stepped(&Step { motion, pose, reading, alarm });
     }
     Ok(EndReason::Steps)
+}
+
+/// Has the vehicle make a motion. Returns what was sensed at its end, and why a label on its way was refused, if one was.
+#[inline]
+fn perform<W: Watch, L: Planner, P: Port, S: LabelSensor>(
+    planner: &mut L,
+    vehicle: &mut RemoteVehicle<'_, P, S>,
+    motion: &Motion,
+    pose: &mut Pose,
+) -> (Result<Option<Reading>, NoArrival>, Option<ObservationError>) {
+    if !W::READINGS {
+        return (vehicle.perform(motion, pose), None);
+    }
+    let mut hearing = Hearing::of(planner);
+    let mut tell = |site, reading| seam::observe_on_the_way(&mut hearing, site, reading);
+    (vehicle.perform_reading(motion, pose, &mut tell), hearing.refused)
 }
 
 /// Does something, and takes down the ticks that it took.
@@ -202,18 +228,63 @@ enum NoArrival {
 impl<P: Port, S: LabelSensor> Body for RemoteVehicle<'_, P, S> {
     type Error = NoArrival;
 
+    #[inline]
     fn perform(&mut self, motion: &Motion, pose: &mut Pose) -> Result<Option<Reading>, NoArrival> {
+        let reply = self.begin(motion)?;
+        self.end(motion, pose, &reply)
+    }
+
+    /// A sensor of the chip's that fails on the way ends the mission when the motion has ended.
+    fn perform_reading(
+        &mut self,
+        motion: &Motion,
+        pose: &mut Pose,
+        tell: &mut dyn FnMut(Site, Reading),
+    ) -> Result<Option<Reading>, NoArrival> {
+        let mut reply = self.begin(motion)?;
+        let mut has_failed = false;
+        while let Reply::OnTheWay { site, reading } = reply {
+            let last = match (reading, &mut self.chip) {
+                (None, Some(sensor)) => {
+                    let read = sensor.read().ok();
+                    has_failed |= read.is_none();
+                    read
+                }
+                (told, _) => told,
+            };
+            if let Some(reading) = last {
+                tell(site, reading);
+            }
+            reply = self.link.ask(Request::Onward { last }).map_err(NoArrival::Lost)?;
+        }
+        if has_failed && matches!(reply, Reply::Arrived { .. }) {
+            return Err(NoArrival::NoLabel);
+        }
+        self.end(motion, pose, &reply)
+    }
+}
+
+impl<P: Port, S: LabelSensor> RemoteVehicle<'_, P, S> {
+    /// Asks for a motion.
+    fn begin(&mut self, motion: &Motion) -> Result<Reply, NoArrival> {
         let took = self.took;
         // What comes of this motion takes its place: nothing, if it has no end or no label.
         let last = self.last.take();
-        let reading = match self.link.ask(Request::Move(Move { motion: *motion, last, took })) {
-            Ok(Reply::Arrived { pose: arrived, reading }) => {
-                *pose = arrived;
-                reading
-            }
-            Ok(_) => return Err(NoArrival::Failed),
-            Err(lost) => return Err(NoArrival::Lost(lost)),
+        let request = Request::Move(Move { motion: *motion, last, took });
+        self.link.ask(request).map_err(NoArrival::Lost)
+    }
+
+    /// What the reply to a motion says of its end.
+    fn end(
+        &mut self,
+        motion: &Motion,
+        pose: &mut Pose,
+        reply: &Reply,
+    ) -> Result<Option<Reading>, NoArrival> {
+        let &Reply::Arrived { pose: arrived, reading } = reply else {
+            return Err(NoArrival::Failed);
         };
+        *pose = arrived;
         let label = match (reading, &mut self.chip) {
             _ if !motion.wants_label => None,
             // Of a motion that is told again this is what the chip's own sensor read then.
