@@ -314,8 +314,9 @@ impl Player {
         };
         let is_of_chip = self.setup.labels == LabelSource::Chip;
         let reading = self.under_way().get(told).and_then(|(_, reading)| *reading);
+        let is_new = self.steps() < step;
         match &mut self.pending {
-            Some(made) if is_of_chip && reading.is_none() => made.passed[told].1 = last,
+            Some(made) if is_new && is_of_chip && reading.is_none() => made.passed[told].1 = last,
             _ if reading != last => {
                 bail!("step {step}: read {reading:?} on the way, the board took in {last:?}")
             }
