@@ -193,8 +193,7 @@ fn perform<W: Watch, L: Planner, P: Port, S: LabelSensor>(
         return (vehicle.perform(motion, pose), None);
     }
     let mut hearing = Hearing::of(planner);
-    let mut tell = |site, reading| seam::observe_on_the_way(&mut hearing, site, reading);
-    (vehicle.perform_reading(motion, pose, &mut tell), hearing.refused)
+    (vehicle.perform_hearing(motion, pose, &mut hearing), hearing.refused)
 }
 
 /// Does something, and takes down the ticks that it took.
@@ -225,65 +224,84 @@ enum NoArrival {
     NoLabel,
 }
 
+/// What the vehicle says of a motion.
+enum Answer {
+    /// Where a label on the way is read, and what it is if the vehicle has read it.
+    OnTheWay(Site, Option<Reading>),
+    /// Where it ended, and what the vehicle read there.
+    Arrived(Pose, Option<Reading>),
+}
+
 impl<P: Port, S: LabelSensor> Body for RemoteVehicle<'_, P, S> {
     type Error = NoArrival;
 
     #[inline]
     fn perform(&mut self, motion: &Motion, pose: &mut Pose) -> Result<Option<Reading>, NoArrival> {
-        let reply = self.begin(motion)?;
-        self.end(motion, pose, &reply)
-    }
-
-    /// A sensor of the chip's that fails on the way ends the mission when the motion has ended.
-    fn perform_reading(
-        &mut self,
-        motion: &Motion,
-        pose: &mut Pose,
-        tell: &mut dyn FnMut(Site, Reading),
-    ) -> Result<Option<Reading>, NoArrival> {
-        let mut reply = self.begin(motion)?;
-        let mut has_failed = false;
-        while let Reply::OnTheWay { site, reading } = reply {
-            let last = match (reading, &mut self.chip) {
-                (None, Some(sensor)) => {
-                    let read = sensor.read().ok();
-                    has_failed |= read.is_none();
-                    read
-                }
-                (told, _) => told,
-            };
-            if let Some(reading) = last {
-                tell(site, reading);
-            }
-            reply = self.link.ask(Request::Onward { last }).map_err(NoArrival::Lost)?;
-        }
-        if has_failed && matches!(reply, Reply::Arrived { .. }) {
-            return Err(NoArrival::NoLabel);
-        }
-        self.end(motion, pose, &reply)
+        let answer = self.begin(motion)?;
+        self.end(motion, pose, &answer)
     }
 }
 
 impl<P: Port, S: LabelSensor> RemoteVehicle<'_, P, S> {
+    /// As [`perform`](Body::perform), with labels on the way. If a sensor of the chip's fails there, the mission ends when
+    /// the motion has ended.
+    ///
+    /// Not the body's method, so that no call goes through a pointer: then the stack has a bound that tools can find.
+    fn perform_hearing<L: Planner>(
+        &mut self,
+        motion: &Motion,
+        pose: &mut Pose,
+        hearing: &mut Hearing<'_, L>,
+    ) -> Result<Option<Reading>, NoArrival> {
+        let mut answer = self.begin(motion)?;
+        let mut has_failed = false;
+        while let Answer::OnTheWay(site, told) = answer {
+            let last = self.read_on_the_way(told);
+            match last {
+                Some(reading) => seam::observe_on_the_way(hearing, site, reading),
+                None => has_failed |= self.chip.is_some(),
+            }
+            answer = self.ask(Request::Onward { last })?;
+        }
+        if has_failed {
+            return Err(NoArrival::NoLabel);
+        }
+        self.end(motion, pose, &answer)
+    }
+
+    /// The label that the vehicle has read, or else the chip's own.
+    fn read_on_the_way(&mut self, told: Option<Reading>) -> Option<Reading> {
+        match (told, &mut self.chip) {
+            (None, Some(sensor)) => sensor.read().ok(),
+            _ => told,
+        }
+    }
+
+    fn ask(&mut self, request: Request) -> Result<Answer, NoArrival> {
+        match self.link.ask(request) {
+            Ok(Reply::Arrived { pose, reading }) => Ok(Answer::Arrived(pose, reading)),
+            Ok(Reply::OnTheWay { site, reading }) => Ok(Answer::OnTheWay(site, reading)),
+            Ok(_) => Err(NoArrival::Failed),
+            Err(lost) => Err(NoArrival::Lost(lost)),
+        }
+    }
+
     /// Asks for a motion.
-    fn begin(&mut self, motion: &Motion) -> Result<Reply, NoArrival> {
+    fn begin(&mut self, motion: &Motion) -> Result<Answer, NoArrival> {
         let took = self.took;
         // What comes of this motion takes its place: nothing, if it has no end or no label.
         let last = self.last.take();
-        let request = Request::Move(Move { motion: *motion, last, took });
-        self.link.ask(request).map_err(NoArrival::Lost)
+        self.ask(Request::Move(Move { motion: *motion, last, took }))
     }
 
-    /// What the reply to a motion says of its end.
+    /// What an answer says of a motion's end.
     fn end(
         &mut self,
         motion: &Motion,
         pose: &mut Pose,
-        reply: &Reply,
+        answer: &Answer,
     ) -> Result<Option<Reading>, NoArrival> {
-        let &Reply::Arrived { pose: arrived, reading } = reply else {
-            return Err(NoArrival::Failed);
-        };
+        let &Answer::Arrived(arrived, reading) = answer else { return Err(NoArrival::Failed) };
         *pose = arrived;
         let label = match (reading, &mut self.chip) {
             _ if !motion.wants_label => None,
