@@ -131,8 +131,14 @@ impl<P: Port, S: LabelSensor> Station<P, S> {
         watch.begins();
         self.link.ask(Request::Ready(Accepted { capacity: *capacity, clock: self.clock }))?;
         let chip = self.sensor.as_mut().filter(|_| setup.labels == LabelSource::Chip);
-        let mut vehicle =
-            RemoteVehicle { link: &mut self.link, chip, last: None, took: Took::default() };
+        let mut vehicle = RemoteVehicle {
+            link: &mut self.link,
+            chip,
+            last: None,
+            passed: None,
+            is_blind: false,
+            took: Took::default(),
+        };
         let reason = mission(planner, &mut vehicle, setup, self.ticks, watch)?;
         let RemoteVehicle { last, mut took, .. } = vehicle;
         let estimates = timed(self.ticks, &mut took.estimate, || seam::estimates(planner));
@@ -193,7 +199,20 @@ fn perform<W: Watch, L: Planner, P: Port, S: LabelSensor>(
         return (vehicle.perform(motion, pose), None);
     }
     let mut hearing = Hearing::of(planner);
-    (vehicle.perform_hearing(motion, pose, &mut hearing), hearing.refused)
+    let mut is_under_way = false;
+    let performed = loop {
+        match vehicle.advance(motion, pose, is_under_way) {
+            Ok(Advance::OnTheWay(site, reading)) => {
+                if let Some(reading) = reading {
+                    seam::observe_on_the_way(&mut hearing, site, reading);
+                }
+                is_under_way = true;
+            }
+            Ok(Advance::Ended(reading)) => break Ok(reading),
+            Err(none) => break Err(none),
+        }
+    };
+    (performed, hearing.refused)
 }
 
 /// Does something, and takes down the ticks that it took.
@@ -211,6 +230,10 @@ struct RemoteVehicle<'a, P, S> {
     chip: Option<&'a mut S>,
     /// The last reading, if the last motion wanted one.
     last: Option<Reading>,
+    /// What was read last on the way of the motion.
+    passed: Option<Reading>,
+    /// Whether the chip's own sensor has failed there.
+    is_blind: bool,
     /// What the last plan and the last observation took.
     took: Took,
 }
@@ -224,11 +247,17 @@ enum NoArrival {
     NoLabel,
 }
 
-/// What the vehicle says of a motion.
-enum Answer {
-    /// Where a label on the way is read, and what it is if the vehicle has read it.
+/// How far a motion has come.
+enum Advance {
+    /// To a place on its way, and what was read there, if anything was.
     OnTheWay(Site, Option<Reading>),
-    /// Where it ended, and what the vehicle read there.
+    /// To its end.
+    Ended(Option<Reading>),
+}
+
+/// What the vehicle says of a motion: where it is, and what it has read there.
+enum Answer {
+    OnTheWay(Site, Option<Reading>),
     Arrived(Pose, Option<Reading>),
 }
 
@@ -243,37 +272,36 @@ impl<P: Port, S: LabelSensor> Body for RemoteVehicle<'_, P, S> {
 }
 
 impl<P: Port, S: LabelSensor> RemoteVehicle<'_, P, S> {
-    /// As [`perform`](Body::perform), with labels on the way. If a sensor of the chip's fails there, the mission ends when
-    /// the motion has ended.
+    /// Makes the next part of a motion: up to a label on its way, or up to its end. If a sensor of the chip's fails on the
+    /// way, the mission ends when the motion has ended.
     ///
-    /// Not the body's method, so that no call goes through a pointer: then the stack has a bound that tools can find.
-    fn perform_hearing<L: Planner>(
+    /// Labels go to the planner without a function pointer, so that tools can bound the stack.
+    #[inline(never)]
+    fn advance(
         &mut self,
         motion: &Motion,
         pose: &mut Pose,
-        hearing: &mut Hearing<'_, L>,
-    ) -> Result<Option<Reading>, NoArrival> {
-        let mut answer = self.begin(motion)?;
-        let mut has_failed = false;
-        while let Answer::OnTheWay(site, told) = answer {
-            let last = self.read_on_the_way(told);
-            match last {
-                Some(reading) => seam::observe_on_the_way(hearing, site, reading),
-                None => has_failed |= self.chip.is_some(),
+        is_under_way: bool,
+    ) -> Result<Advance, NoArrival> {
+        let answer = if is_under_way {
+            self.ask(Request::Onward { last: self.passed })?
+        } else {
+            self.begin(motion)?
+        };
+        match (answer, &mut self.chip) {
+            (Answer::OnTheWay(site, told), chip) => {
+                self.passed = match (told, chip) {
+                    (None, Some(sensor)) => {
+                        let read = sensor.read().ok();
+                        self.is_blind |= read.is_none();
+                        read
+                    }
+                    _ => told,
+                };
+                Ok(Advance::OnTheWay(site, self.passed))
             }
-            answer = self.ask(Request::Onward { last })?;
-        }
-        if has_failed {
-            return Err(NoArrival::NoLabel);
-        }
-        self.end(motion, pose, &answer)
-    }
-
-    /// The label that the vehicle has read, or else the chip's own.
-    fn read_on_the_way(&mut self, told: Option<Reading>) -> Option<Reading> {
-        match (told, &mut self.chip) {
-            (None, Some(sensor)) => sensor.read().ok(),
-            _ => told,
+            (Answer::Arrived(..), _) if self.is_blind => Err(NoArrival::NoLabel),
+            (answer, _) => self.end(motion, pose, &answer).map(Advance::Ended),
         }
     }
 
