@@ -16,11 +16,12 @@ use crate::output::partial::{Begin, Partial};
 use crate::report::trace::{self, Record};
 
 /// What was sensed in a step.
-pub(crate) struct Sensed {
+#[derive(Clone, Debug)]
+pub struct Sensed {
     /// On the way, in order.
-    pub(crate) on_the_way: Vec<Reading>,
+    pub on_the_way: Vec<Reading>,
     /// At the end.
-    pub(crate) at_end: Option<Reading>,
+    pub at_end: Option<Reading>,
 }
 
 /// The trace of a mission that is being flown.
@@ -35,7 +36,7 @@ impl Logbook {
     ///
     /// # Errors
     /// Names the file and the line that is not of this mission, or the file that cannot be read or written.
-    pub(crate) fn open(
+    pub fn open(
         path: &Path,
         start: &Start,
         mut make: impl FnMut(Sensed) -> Result<String>,
