@@ -21,7 +21,9 @@ def setup(args):
     site = lambda x, z: {"x": x * METRE, "z": z * METRE}
     odds = round((math.log(args.p) - math.log1p(-args.p)) * 2**32) if args.p < 1 else 1000 << 32
     noise = {"reliability": odds, "trusted_radius": METRE // 2 if args.p < 1 else 0, "tolerance": 0}
-    looks_ahead, taken = args.algorithm == "lookahead", args.steps
+    looks_ahead, taken = args.algorithm == "lookahead", args.steps * args.readings
+    if args.p == 1:
+        taken = min(taken, 64)
     doubt = {"noise": noise, "prior": ("Area", None)}
     return {
         "protocol": PROTOCOL,
@@ -29,7 +31,8 @@ def setup(args):
             "cfc": ("Cfc", None),
             "scc": ("Scc", {**doubt, "policy": ("MixtureOfOwn", None)}),
             "lookahead": ("Lookahead", {"evaluations": 512, "goal": None,
-                                        "noise": doubt if args.p < 1 else None, "far": None}),
+                                        "noise": doubt if args.p < 1 else None,
+                                        "sight": {"far": None, "least": 0, "readings": args.readings}}),
         }[args.algorithm],
         "config": {
             "area": {"min": site(0, 0), "max": site(20, 20)},
@@ -43,7 +46,7 @@ def setup(args):
                                  "sharpest": 1 << 30, "speeds": 21, "speed_step_mm": 100}),
         "capacity": {"samples": 4 + taken,
                      "hypotheses": 1 + taken + taken * (taken - 1) // 2 if args.p < 1 else 1},
-        "steps": taken,
+        "steps": args.steps,
         "most_labels": None,
         "start": {"site": site(2, 1), "heading": 0},
         "labels": ("Vehicle", None),
@@ -53,11 +56,12 @@ def setup(args):
 
 
 class Vehicle:
-    """Reaches every target, reads the label there, and keeps what it has done."""
+    """Reaches every target, reads labels on the way and there, and keeps what it has done."""
 
     def __init__(self, args):
         self.setup, self.args = setup(args), args
-        self.made, self.asked, self.begun, self.labels = [], 0, 0, 0
+        self.made, self.asked, self.begun, self.labels, self.told = [], 0, 0, 0, 0
+        self.site = self.setup["start"]["site"]
         self.end, self.is_dismissed = None, False
 
     def read(self, site):
@@ -76,26 +80,44 @@ class Vehicle:
         if request == "Declined":
             sys.exit(f"the chip declines: {said}")
         if request in ("Move", "End") and self.asked:
-            if said["last"] != self.made[self.asked - 1][2]:
+            if said["last"] != self.made[self.asked - 1][3]:
                 sys.exit(f"step {self.asked}: the chip took in {said['last']}, which was not read")
         if request == "Move":
             motion = write(MOTION, said["motion"])
             if self.asked == len(self.made):
                 self.make(motion, said["motion"])
-            kept, pose, reading = self.made[self.asked]
-            self.asked += 1
-            if kept != motion:
+            self.asked, self.told = self.asked + 1, 0
+            if self.made[self.asked - 1][0] != motion:
                 sys.exit(f"step {self.asked}: the chip asks for another motion than before it restarted")
-            return "Arrived", {"pose": pose, "reading": reading}
+            return self.goes_on()
+        if request == "Onward" and self.told:
+            if said["last"] != self.made[self.asked - 1][1][self.told - 1]["reading"]:
+                sys.exit(f"step {self.asked}: the chip took in {said['last']} on the way, which was not read")
+            return self.goes_on()
         if request == "End":
             self.end = said
             return "Noted", None
         sys.exit(f"{request}: the chip asks for what this mission has not")
 
+    def goes_on(self):
+        """The next label on the way, or the motion's end."""
+        _, passed, pose, reading = self.made[self.asked - 1]
+        if self.told < len(passed):
+            self.told += 1
+            return "OnTheWay", passed[self.told - 1]
+        self.told = 0
+        return "Arrived", {"pose": pose, "reading": reading}
+
     def make(self, motion, said):
-        pose, site = said["target"], said["target"]["site"]
+        pose, site, begin = said["target"], said["target"]["site"], self.site
+        passed = []
+        for k in range(1, self.args.readings if site != begin else 1):
+            between = lambda a, b: math.floor(a + (b - a) * (k / self.args.readings) + 0.5)
+            at = {axis: between(begin[axis], site[axis]) for axis in ("x", "z")}
+            passed.append({"site": at, "reading": self.read(at)})
         reading = self.read(site) if said["wants_label"] else None
-        self.made.append((motion, pose, reading))
+        self.site = site
+        self.made.append((motion, passed, pose, reading))
         label = {"Positive": "+1", "Negative": "-1"}[reading[1][0]] if reading else "none"
         print(f"step {len(self.made)}: action {said['action']} to x {site['x'] / METRE:.4f}, "
               f"z {site['z'] / METRE:.4f} ({site['x']}, {site['z']}, {pose['heading']}), label {label}")
@@ -182,12 +204,15 @@ def main():
     parser.add_argument("address", help="HOST:PORT, or a serial device")
     parser.add_argument("--algorithm", choices=["cfc", "scc", "lookahead"], default="lookahead")
     parser.add_argument("--steps", type=int, default=10)
+    parser.add_argument("--readings", type=int, default=1, help="labels a motion, the last at its end")
     parser.add_argument("--p", type=float, default=1.0, help="how often labels are said to be right")
     parser.add_argument("--line", type=float, nargs=2, default=[0.41, 3.5], metavar=("SLOPE", "INTERCEPT"))
     parser.add_argument("--wrong", type=int, nargs="*", default=[], help="which labels are read wrong")
     args = parser.parse_args()
     if not 0 < args.p <= 1 or args.p < 1 and args.algorithm == "cfc":
         parser.error(f"--p: found {args.p}, expected a probability, and 1 with --algorithm cfc")
+    if args.readings < 1:
+        parser.error(f"--readings: found {args.readings}, expected 1 or more")
     sys.stdout.reconfigure(line_buffering=True)
     vehicle = Vehicle(args)
     try:

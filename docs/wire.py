@@ -11,7 +11,7 @@ import struct
 import sys
 import zlib
 
-PROTOCOL = 7
+PROTOCOL = 8
 METRE = 1 << 16
 
 
@@ -153,7 +153,7 @@ BAD_GRID = Choice(Actions=None, Reach=None, Turn=None, Circle=None)
 NO_VEHICLE = Choice(Kind=None, Grid=BAD_GRID, Room={"across_mm": "u32"})
 STOP = Choice(
     Resolution=None, SamplesFull=None, OutsideArea=None, Cornered=None, Known=None, Undecided=None,
-    Tolerance=None, NoLine=None,
+    Tolerance=None, NoLine=None, Worth=None,
 )
 REFUSED = Choice(Contradiction=SAMPLE, Full=SAMPLE, Tolerance="u32", Reliability=None)
 REQUEST = Choice(
@@ -172,11 +172,13 @@ REQUEST = Choice(
         "took": TOOK,
         "estimates": {name: Optional(LINE) for name in ("bisector", "centre", "maximum_margin")},
     },
+    Onward={"last": Optional(READING)},
 )
 NOISE = {"reliability": "i64", "trusted_radius": "u32", "tolerance": "u32"}
 POLICY = Choice(Joint=None, MixtureOfStart=None, MixtureOfOwn=None)
 PRIOR = Choice(Area=None, Sequences=None)
 FAR = {"price_mm": "u32", "seeks": Choice(Accuracy=None, Bits=None)}
+SIGHT = {"far": Optional(FAR), "least": "u16", "readings": "u8"}
 GOAL = {"accuracy": Choice(SlopeArc="u32", Misclassified="u32"), "level": "u32"}
 STEPS = {"turn_step_urad": "u32", "sharpest": "u32", "speeds": "u16", "speed_step_mm": "u32"}
 CIRCLE = {"radius_mm": "u32", "shortest_mm": "u32", "turn_step_urad": "u32", "speeds": "u16",
@@ -187,7 +189,7 @@ SETUP = {
         Cfc=None,
         Scc={"noise": NOISE, "policy": POLICY, "prior": PRIOR},
         Lookahead={"evaluations": "u32", "goal": Optional(GOAL),
-                   "noise": Optional({"noise": NOISE, "prior": PRIOR}), "far": Optional(FAR)},
+                   "noise": Optional({"noise": NOISE, "prior": PRIOR}), "sight": SIGHT},
     ),
     "config": {
         "area": {"min": SITE, "max": SITE},
@@ -210,6 +212,7 @@ REPLY = Choice(
     Outline={"corners": List(SITE, 8), "radius": "u32"},
     Arrived={"pose": POSE, "reading": Optional(READING)},
     Failed=None, Noted=None, Busy=None, Stale=None,
+    OnTheWay={"site": SITE, "reading": Optional(READING)},
 )
 TO_VEHICLE, TO_CHIP = ord("?"), ord("!")
 ENVELOPES = {way: {"way": "u8", "session": "u32", "number": "u32", "message": of}

@@ -65,6 +65,15 @@ int main(int argc, char **argv) {
         if (status != PLANNER_STATUS_OK) break;
         status = sleep_and_wake(&planner, &mission, &bed);
         if (status != PLANNER_STATUS_OK) break;
+        if (is_true) {
+            const planner_point half = {(pose.x + motion.target.x) / 2, (pose.z + motion.target.z) / 2};
+            bool above = half.z > 0.41 * half.x + 3.5;
+            int32_t there = above ? PLANNER_READING_POSITIVE : PLANNER_READING_NEGATIVE;
+            status = planner_observe_on_the_way(planner, half, there);
+            if (status != PLANNER_STATUS_OK) break;
+            status = sleep_and_wake(&planner, &mission, &bed);
+            if (status != PLANNER_STATUS_OK) break;
+        }
         pose = motion.target;
         int32_t reading = PLANNER_READING_NONE;
         bool wrong = false;

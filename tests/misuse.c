@@ -151,6 +151,10 @@ static int observations(const planner_mission *good, const planner_mission *doub
         IS(planner_observe_within(planner, nowhere, positive, 0.0), PLANNER_STATUS_POSITION);
         IS(planner_observe_within(planner, pose, 3, 0.0), PLANNER_STATUS_READING);
         IS(planner_observe_within(NULL, pose, positive, 0.0), PLANNER_STATUS_MEMORY);
+        IS(planner_observe_on_the_way(planner, far, positive), PLANNER_STATUS_POSITION);
+        IS(planner_observe_on_the_way(planner, here, 3), PLANNER_STATUS_READING);
+        IS(planner_observe_on_the_way(NULL, here, positive), PLANNER_STATUS_MEMORY);
+        IS(planner_observe_on_the_way(planner, here, PLANNER_READING_NONE), PLANNER_STATUS_OK);
         IS(planner_observe_believed(planner, pose, positive, 1.1), PLANNER_STATUS_RELIABILITY);
         IS(planner_observe_believed(planner, pose, positive, -0.1), PLANNER_STATUS_RELIABILITY);
         IS(planner_observe_believed(planner, pose, positive, 0.0 / 0.0), PLANNER_STATUS_RELIABILITY);

@@ -45,6 +45,7 @@ pub(crate) struct Deck {
 
 impl Watch for Deck {
     const ALARMS: bool = true;
+    const READINGS: bool = true;
 
     fn set_up(&mut self, setup: &Setup) {
         self.steps = 0;

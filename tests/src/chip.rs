@@ -7,7 +7,7 @@ use std::panic::{self, AssertUnwindSafe};
 use planner_core::AnySight;
 use planner_core::link::delivery::{Link, LinkError, Port};
 use planner_core::link::message::{self, ClockRate, MissionArea};
-use planner_core::link::station::{AllLabels, Flown, Station};
+use planner_core::link::station::{AllLabels, Flown, Station, Watch};
 use planner_core::motion::any_vehicle::AnyVehicle;
 use planner_core::robot::LabelSensor;
 
@@ -78,10 +78,18 @@ pub fn power_up<'a>(
     })
 }
 
+/// A chip takes in labels that are read on the way.
+#[derive(Clone, Copy, Debug)]
+pub struct Hears;
+
+impl Watch for Hears {
+    const READINGS: bool = true;
+}
+
 /// What the firmware does with a setup.
 ///
 /// # Errors
 /// As [`Station::fly`].
 pub fn fly(chip: &mut Chip<'_>, setup: &message::Setup) -> Result<Flown, LinkError> {
-    chip.fly_with::<AllLabels<68, 36, 529, AnySight>, AnyVehicle, MissionArea>(setup, &mut ())
+    chip.fly_with::<AllLabels<68, 36, 529, AnySight>, AnyVehicle, MissionArea>(setup, &mut Hears)
 }

@@ -38,6 +38,11 @@ pub fn by_turns(seed: u64, number: u64, steps: u32) -> Mission {
     mission
 }
 
+/// A mission with several readings a motion. As many as the firmware has room for, where labels may be wrong.
+pub fn reading(mission: Mission) -> Mission {
+    Mission { readings: 3, ..mission }
+}
+
 /// Missions by look-ahead with a goal, which most of them reach within their steps. By turns it is about the slopes or
 /// the uncertain ground, with true labels or with labels that may be wrong.
 ///

@@ -24,6 +24,8 @@ pub(crate) fn run(mut station: Station<Serial, PinSensor<Input<'static>>>) -> ! 
 struct Drive;
 
 impl Watch for Drive {
+    const READINGS: bool = true;
+
     fn begins(&mut self) {
         stop::begin();
     }

@@ -18,7 +18,6 @@ use crate::fly::limits::Limits;
 use crate::fly::pilot::Pilot;
 use crate::fly::sent;
 use crate::fly::socket::Socket;
-use crate::hil::setup::check_readings;
 use crate::mission::definition::Mission;
 use crate::mission::scenario;
 use crate::mission::strict::wrong;
@@ -75,7 +74,6 @@ fn seconds(text: &str) -> Result<Duration> {
 pub(crate) fn fly(args: &FlyArgs) -> Result<Done> {
     let run = &args.run;
     let mission = run.mission_by(run.algorithm, scenario::read_real)?;
-    check_readings(&mission, "fly").with_context(|| run.name())?;
     let acceptance = acceptance(&mission, args.acceptance, &run.name())?;
     let labels = LabelSource::new(args.label.clone(), threshold(args.threshold)?);
     let &FlyArgs { system, wait: ready, motion_time: motion, label_time: label, .. } = args;

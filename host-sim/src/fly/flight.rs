@@ -5,7 +5,7 @@ use std::time::Duration;
 use planner_core::link::message::MissionArea;
 use planner_core::robot::AgentError;
 use planner_core::robot::Body;
-use planner_core::{Agent, Event, Motion, Planner as _, Pose, Reading};
+use planner_core::{Agent, Event, Motion, Planner as _, Pose, Reading, Site};
 
 use crate::fly::failure::Failure;
 use crate::fly::frame::{self, Ned};
@@ -39,6 +39,8 @@ pub struct Control<L> {
     /// The motions so far, and the time from which theirs are counted.
     legs: Vec<Leg>,
     began: Duration,
+    /// What was read on the way of the last motion.
+    passed: Vec<(Site, Reading)>,
 }
 
 /// A mission that was flown, as far as it went.
@@ -52,7 +54,9 @@ pub struct Flight {
 impl<L: Link> Control<L> {
     /// A pilot at a link; `interrupted` returns the signal that is to end the program, if one arrived.
     pub const fn new(link: L, pilot: Pilot, interrupted: fn() -> Option<i32>) -> Self {
-        Self { link, pilot, interrupted, area: None, legs: Vec::new(), began: Duration::ZERO }
+        let legs = Vec::new();
+        let passed = Vec::new();
+        Self { link, pilot, interrupted, area: None, legs, began: Duration::ZERO, passed }
     }
 
     /// The link.
@@ -139,6 +143,16 @@ impl<L: Link> Body for Control<L> {
     type Error = Failure;
 
     fn perform(&mut self, motion: &Motion, pose: &mut Pose) -> Result<Option<Reading>, Failure> {
+        self.perform_reading(motion, pose, &mut |_, _| ())
+    }
+
+    fn perform_reading(
+        &mut self,
+        motion: &Motion,
+        pose: &mut Pose,
+        tell: &mut dyn FnMut(Site, Reading),
+    ) -> Result<Option<Reading>, Failure> {
+        self.passed.clear();
         let Motion { target, wants_label, .. } = *motion;
         let order = Order {
             to: Ned::from(target.site),
@@ -148,6 +162,11 @@ impl<L: Link> Body for Control<L> {
         let began = self.link.now();
         self.pilot.order(began, order, wants_label);
         loop {
+            for (at, label) in self.pilot.take_passed() {
+                let site = frame::site(at).ok_or(Failure::LatticeError)?;
+                self.passed.push((site, label.into()));
+                tell(site, label.into());
+            }
             if let Some(arrival) = self.pilot.take_arrival() {
                 let reached = frame::pose(target, arrival.fix.at, arrival.yaw);
                 *pose = reached.ok_or(Failure::LatticeError)?;
@@ -194,6 +213,7 @@ fn tell(Legs { motions, seconds, off, off_most, tolerance }: &Legs) {
 pub fn fly<L: Link>(mut mission: Mission, control: &mut Control<L>) -> Result<Flight, Failure> {
     control.prepare()?;
     mission.start = control.start(&mission)?;
+    control.pilot.reads(mission.readings);
     let mut planner = mission.planner();
     let mut recorder = Recorder::new(mission.clone());
     let bar = count("steps flown").ok();
@@ -208,6 +228,7 @@ pub fn fly<L: Link>(mut mission: Mission, control: &mut Control<L>) -> Result<Fl
         match agent.step() {
             Ok(Event::Step(step)) => {
                 labels += u32::from(step.reading.is_some());
+                recorder.pass(&agent.body().passed);
                 recorder.take(&step, None, agent.planner.belief());
             }
             Ok(Event::Stopped(reason)) => {

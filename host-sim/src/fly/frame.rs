@@ -46,14 +46,15 @@ pub fn apart(a: f32, b: f32) -> f64 {
     libm::remainder(f64::from(a) - f64::from(b), TAU).abs()
 }
 
+/// The site of a place; `None` if it is off the lattice.
+pub fn site(at: Ned) -> Option<Site> {
+    Site::try_from(Point2::new(f64::from(at.east), f64::from(at.north))).ok()
+}
+
 /// The pose of a vehicle that was sent to the pose `sent`. A place that equals the target's in single precision counts
 /// as the target's. So does a yaw that is [`ALIKE`]. `None` if it is off the lattice.
 pub fn pose(sent: Pose, at: Ned, facing: f32) -> Option<Pose> {
-    let site = if Ned::from(sent.site) == at {
-        sent.site
-    } else {
-        Site::try_from(Point2::new(f64::from(at.east), f64::from(at.north))).ok()?
-    };
+    let site = if Ned::from(sent.site) == at { sent.site } else { site(at)? };
     let heading = if apart(facing, yaw(sent.heading)) < ALIKE {
         sent.heading
     } else {

@@ -13,6 +13,7 @@ pub mod ideal;
 pub mod label;
 pub mod limits;
 pub mod link;
+mod on_the_way;
 pub mod orders;
 pub mod pilot;
 pub mod requests;

@@ -19,12 +19,15 @@ use std::time::Duration;
 
 use mavlink::MavHeader;
 use mavlink::dialects::common::MavMessage;
+use planner_core::Label;
 
 use crate::fly::failure::Failure;
+use crate::fly::frame::Ned;
 use crate::fly::label::LabelSource;
 use crate::fly::limits::{
     HEARTBEAT, LEAST_STOP, LISTEN, LOST, Limits, MOST_STOP, SETTLED_MS, SILENCE, STEADY,
 };
+use crate::fly::on_the_way::OnTheWay;
 use crate::fly::orders::{AUTOPILOT, Envelope, Order, heartbeat};
 use crate::fly::requests::Requests;
 use crate::fly::slide::Slide;
@@ -47,6 +50,7 @@ pub struct Pilot {
     stage: Stage,
     beat: Option<Duration>,
     slide: Slide,
+    on_the_way: OnTheWay,
     /// The depth that is kept: the one at the start.
     down: f32,
     failure: Option<Failure>,
@@ -68,6 +72,7 @@ impl Pilot {
             stage: Stage::Preparing { since: None, complete: None },
             beat: None,
             slide: Slide::default(),
+            on_the_way: OnTheWay::new(1),
             down: 0.0,
             failure: None,
             ended: None,
@@ -101,6 +106,16 @@ impl Pilot {
         Some((fix.1, facing.yaw))
     }
 
+    /// Has motions with so many labels, the one at the end included.
+    pub(crate) fn reads(&mut self, readings: u32) {
+        self.on_the_way = OnTheWay::new(readings);
+    }
+
+    /// The labels on the way of the motion, and where they were read, since this was asked last.
+    pub(crate) fn take_passed(&mut self) -> Vec<(Ned, Label)> {
+        self.on_the_way.take()
+    }
+
     /// The end of the last motion. It is returned once.
     pub const fn take_arrival(&mut self) -> Option<Arrival> {
         let Stage::There(arrival) = self.stage else { return None };
@@ -112,6 +127,7 @@ impl Pilot {
     pub fn order(&mut self, now: Duration, order: Order, wants_label: bool) {
         if let (Stage::Ready, Some((_, fix))) = (self.stage, self.vehicle.fix) {
             let motion = Motion { order, wants_label, from: fix.at, began: now, sent: None };
+            self.on_the_way.begin(fix, order.to);
             self.stage = Stage::Moving { motion, rest: None };
         }
     }
@@ -183,6 +199,7 @@ impl Pilot {
                 Some(metres) => self.end(now, Some(Failure::Slid(metres))),
                 None => self.locate(now, fix),
             },
+            (Stage::Moving { .. }, News::Label(told)) => self.on_the_way.hear(told),
             // A label that was sensed on the way may arrive late.
             (Stage::Sensing { motion, arrived, is_calm, since, told: None }, News::Label(told))
                 if told.at_ms >= arrived.at_ms =>

@@ -20,12 +20,13 @@ use crate::fly::pilot::Pilot;
 use crate::report::trace;
 
 use spoiled::{
-    Flown, LIMITS, SYSTEM, Spoil, as_it_is, circling, fly, fly_with, is_stop, mission, moves,
-    of_run,
+    Flown, LIMITS, SYSTEM, Spoil, as_it_is, circling, fly, fly_mission, fly_with, is_stop, mission,
+    moves, of_run,
 };
 
 mod endings;
 mod habits;
+mod on_the_way;
 mod spoiled;
 
 #[test]

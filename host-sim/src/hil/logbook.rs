@@ -15,6 +15,15 @@ use crate::output::file::place_for;
 use crate::output::partial::{Begin, Partial};
 use crate::report::trace::{self, Record};
 
+/// What was sensed in a step.
+#[derive(Clone, Debug)]
+pub struct Sensed {
+    /// On the way, in order.
+    pub on_the_way: Vec<Reading>,
+    /// At the end.
+    pub at_end: Option<Reading>,
+}
+
 /// The trace of a mission that is being flown.
 #[derive(Debug)]
 pub struct Logbook {
@@ -22,7 +31,7 @@ pub struct Logbook {
 }
 
 impl Logbook {
-    /// Begins a logbook, or continues an existing one. `make` computes the mission's next step again. It gets the label
+    /// Begins a logbook, or continues an existing one. `make` computes the mission's next step again. It gets the labels
     /// in the file, which the chip's own sensor may have read.
     ///
     /// # Errors
@@ -30,7 +39,7 @@ impl Logbook {
     pub fn open(
         path: &Path,
         start: &Start,
-        mut make: impl FnMut(Option<Reading>) -> Result<String>,
+        mut make: impl FnMut(Sensed) -> Result<String>,
     ) -> Result<Self> {
         let place = place_for(path)?;
         let header = trace::start(start);
@@ -95,20 +104,21 @@ fn begins(line: &[u8], header: &str) -> Result<()> {
 }
 
 /// Computes the step of a line again. Returns `false` if the line is the mission's end, which is written anew.
-fn follow(line: &[u8], make: impl FnOnce(Option<Reading>) -> Result<String>) -> Result<bool> {
+fn follow(line: &[u8], make: impl FnOnce(Sensed) -> Result<String>) -> Result<bool> {
     let line = str::from_utf8(line).context("expected a step")?;
     let step = match Record::read(line.as_bytes()).context("expected a step")? {
         Record::End(_) => return Ok(false),
         Record::Step(step) => step,
         Record::Start(_) => bail!("expected a step"),
     };
-    let read = match step.label {
+    let at_end = match step.label {
         Some(-1) => Some(Reading::Side(Label::Negative)),
         Some(0) => Some(Reading::Boundary),
         Some(1) => Some(Reading::Side(Label::Positive)),
         _ => None,
     };
-    same(line, &make(read)?).map(|()| true)
+    let on_the_way = step.passed().map(|(_, reading)| reading).collect();
+    same(line, &make(Sensed { on_the_way, at_end })?).map(|()| true)
 }
 
 /// Checks that a line is the expected one.

@@ -16,9 +16,9 @@ use planner_core::link::message::{
     self, ClockRate, EndReason, LabelSource, MissionArea, PROTOCOL, Reply, Request, Setup, Took,
 };
 use planner_core::planner::Stage;
-use planner_core::{Estimates, Motion, Plan, Pose, Reading, Step};
+use planner_core::{Estimates, Motion, Plan, Pose, Reading, Site, Step};
 
-use crate::hil::logbook::Logbook;
+use crate::hil::logbook::{Logbook, Sensed};
 use crate::hil::setup;
 use crate::mission::definition::Mission;
 use crate::mission::flight::Flown;
@@ -26,7 +26,8 @@ use crate::mission::planners::AnyPlanner;
 use crate::mission::recording::{Recorder, Recording};
 use crate::mission::results::{Ending, StepResult};
 use crate::report::trace;
-use crate::world::robot::Robot;
+use crate::world::on_the_way::Way;
+use crate::world::robot::{Glimpse, Robot};
 
 /// The most hellos before another request. A chip that sends more hears nothing: it sends a request 16 times at most.
 const MOST_HELLOS: u32 = 5 * 16;
@@ -48,8 +49,14 @@ pub struct Player {
     recorder: Recorder,
     /// How often the chip has asked for a mission since it took up the last.
     hellos: u32,
-    /// The last motion, and what the vehicle sensed at its end: the chip has not said yet what it took in there.
-    pending: Option<(Motion, Option<Reading>)>,
+    /// How often a motion is read on.
+    way: Way,
+    /// The last motion: the chip has not said yet what it took in at its end.
+    pending: Option<Made>,
+    /// What was read on the way of each step.
+    passed: Vec<Vec<Passed>>,
+    /// How many labels on its way the chip was told of the motion under way; `None` if none is.
+    told: Option<usize>,
     /// Ticks of the motions that the chip has asked for since it began.
     took: Vec<Took>,
     /// Whether a chip that restarts may begin again, and how often it has since the last motion that was new.
@@ -63,6 +70,18 @@ pub struct Player {
     outcome: Option<Result<Ending>>,
     /// The chip has heard that its mission is over.
     dismissed: bool,
+}
+
+/// Where the vehicle was on its way, and what was read there. `None` if it has not been said what the chip's sensor read.
+type Passed = (Site, Option<Reading>);
+
+/// A motion that was made.
+struct Made {
+    motion: Motion,
+    /// What was read on its way.
+    passed: Vec<Passed>,
+    /// What the vehicle sensed at its end.
+    sensed: Option<Reading>,
 }
 
 /// A mission that a chip has flown.
@@ -96,7 +115,10 @@ impl Player {
             planner: mission.planner(),
             recorder: Recorder::new(mission.clone()),
             hellos: 0,
+            way: mission.way(),
             pending: None,
+            passed: Vec::new(),
+            told: None,
             took: Vec::new(),
             resumes: false,
             restarts: 0,
@@ -121,7 +143,7 @@ impl Player {
     /// As [`Logbook::open`].
     pub fn keeping(mut self, path: &Path) -> Result<Self> {
         let start = self.recorder.start();
-        let logbook = Logbook::open(path, &start, |read| Ok(trace::step(self.retrace(read)?)))?;
+        let logbook = Logbook::open(path, &start, |read| Ok(trace::step(self.retrace(&read)?)))?;
         Ok(Self { logbook: Some(logbook), ..self.resuming() })
     }
 
@@ -130,9 +152,17 @@ impl Player {
         self.logbook.as_ref()
     }
 
-    /// Where the robot says that it is.
-    pub const fn pose(&self) -> Pose {
-        self.pose
+    /// Where the robot said last that it is: on the way of a motion, or at its end.
+    pub fn place(&self) -> Site {
+        let on_the_way = self.told.and_then(|told| self.under_way().get(told.checked_sub(1)?));
+        on_the_way.map_or(self.pose.site, |(site, _)| *site)
+    }
+
+    /// What is read on the way of the motion that the chip asked for last.
+    fn under_way(&self) -> &[Passed] {
+        let step = self.motions().checked_sub(1).and_then(|step| self.passed.get(step));
+        let passed = step.or_else(|| self.pending.as_ref().map(|made| &made.passed));
+        passed.map_or(&[], Vec::as_slice)
     }
 
     /// Steps that have been flown.
@@ -206,7 +236,7 @@ impl Player {
                 None => bail!("the board asks for outline {number}, which there is not"),
             },
             Request::Declined(declined) => {
-                self.outcome = Some(Err(setup::declined(declined, &self.setup)));
+                self.outcome = Some(Err(setup::declined(declined, &self.setup, self.way.readings)));
                 Ok(Reply::Noted)
             }
             Request::Ready(accepted) => {
@@ -217,12 +247,19 @@ impl Player {
                     bail!("the board restarts again and again after step {}", self.steps());
                 }
                 self.took.clear();
+                self.told = None;
                 Ok(Reply::Noted)
             }
             Request::Move(message::Move { motion, last, took }) => {
+                if self.told.is_some() {
+                    bail!(
+                        "step {}: the board asks for the next motion before its end",
+                        self.motions()
+                    );
+                }
                 self.settle(last, took)?;
-                let (pose, reading) = match self.made() {
-                    Some((made, _, _)) if made != motion => {
+                match self.made() {
+                    Some((made, ..)) if made != motion => {
                         let (step, place) = (self.motions() + 1, |it: Motion| it.target.site);
                         bail!(
                             "step {step}: the board asks for action {} to {:?}, expected {} to {:?} as \
@@ -233,19 +270,67 @@ impl Player {
                             place(made),
                         )
                     }
-                    Some((_, pose, reading)) => (pose, reading),
+                    Some(_) => {}
                     None => self.make(motion),
-                };
+                }
                 self.took.push(Took { observe: 0, ..took });
-                Ok(Reply::Arrived { pose, reading })
+                self.told = Some(0);
+                self.goes_on()
+            }
+            Request::Onward { last } => {
+                self.hear_on_the_way(last)?;
+                self.goes_on()
             }
             Request::End(end) => {
-                let settled = self.settle(end.last, end.took);
+                let settled = match self.told {
+                    None => self.settle(end.last, end.took),
+                    Some(_) => self.no_readings(),
+                };
                 self.ending = end.took;
                 self.outcome = Some(settled.and_then(|()| self.judge(&end)));
                 Ok(Reply::Noted)
             }
         }
+    }
+
+    /// What comes next of the motion under way: a label on the way, or its end.
+    fn goes_on(&mut self) -> Result<Reply> {
+        let told = self.told.context("no motion is under way")?;
+        if let Some(&(site, reading)) = self.under_way().get(told) {
+            self.told = Some(told + 1);
+            return Ok(Reply::OnTheWay { site, reading });
+        }
+        self.told = None;
+        let (_, pose, reading) =
+            self.motions().checked_sub(1).and_then(|at| self.made_at(at)).context("a motion")?;
+        Ok(Reply::Arrived { pose, reading })
+    }
+
+    /// Takes down what the chip took in on the way.
+    fn hear_on_the_way(&mut self, last: Option<Reading>) -> Result<()> {
+        let step = self.motions();
+        let Some(told) = self.told.and_then(|told| told.checked_sub(1)) else {
+            bail!("after step {step}: the board goes on with a motion, but none is under way");
+        };
+        let is_of_chip = self.setup.labels == LabelSource::Chip;
+        let reading = self.under_way().get(told).and_then(|(_, reading)| *reading);
+        let is_new = self.steps() < step;
+        match &mut self.pending {
+            Some(made) if is_new && is_of_chip && reading.is_none() => made.passed[told].1 = last,
+            _ if reading != last => {
+                bail!("step {step}: read {reading:?} on the way, the board took in {last:?}")
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Fails, as the chip ended the mission in the middle of a motion: it was told of a label on the way.
+    fn no_readings(&self) -> Result<()> {
+        bail!(
+            "readings: found {}, expected 1: the board takes in the label at a motion's end alone",
+            self.way.readings
+        )
     }
 
     /// The mission's ending. Fails if a mission cannot end so here.
@@ -267,31 +352,42 @@ impl Player {
 
     /// The chip's next motion, where it ended and the reading there, if it was made before.
     fn made(&self) -> Option<(Motion, Pose, Option<Reading>)> {
-        let known = self.recorder.steps().get(self.motions());
-        let known = known.map(|step| (step.motion, step.pose, step.reading));
-        known.or_else(|| self.pending.map(|(motion, sensed)| (motion, self.pose, sensed)))
+        self.made_at(self.motions())
     }
 
-    /// Makes a motion: where it ended, and what the vehicle sensed there.
-    fn make(&mut self, motion: Motion) -> (Pose, Option<Reading>) {
+    /// The same of the motion of any number, from 0.
+    fn made_at(&self, number: usize) -> Option<(Motion, Pose, Option<Reading>)> {
+        let known = self.recorder.steps().get(number);
+        let known = known.map(|step| (step.motion, step.pose, step.reading));
+        let pending = || self.pending.as_ref().map(|made| (made.motion, self.pose, made.sensed));
+        known.or_else(pending)
+    }
+
+    /// Makes a motion.
+    fn make(&mut self, motion: Motion) {
         let robot_senses = self.setup.labels == LabelSource::Vehicle;
         let made = Motion { wants_label: motion.wants_label && robot_senses, ..motion };
         if motion.stage == Some(Stage::Audit) {
             // The planner here has to know that the label is the audit's.
             let _ = self.planner.plan(self.pose);
         }
-        let Ok(sensed) = self.robot.perform(&made, &mut self.pose);
-        (self.pending, self.restarts) = (Some((motion, sensed)), 0);
-        (self.pose, sensed)
+        let mut passed = Vec::new();
+        let mut pass = |Glimpse { reported, reading, .. }| {
+            if !robot_senses || reading.is_some() {
+                passed.push((reported, reading.filter(|_| robot_senses)));
+            }
+        };
+        let sensed = self.robot.travel(&made, &mut self.pose, self.way, &mut pass);
+        (self.pending, self.restarts) = (Some(Made { motion, passed, sensed }), 0);
     }
 
     /// Records the last step, when the chip reports what it took in at its end.
     fn settle(&mut self, last: Option<Reading>, took: Took) -> Result<()> {
         let Some(current) = self.took.last_mut() else { return Ok(()) };
         current.observe = took.observe;
-        let told = match (self.recorder.steps().get(self.took.len() - 1), self.pending) {
+        let told = match (self.recorder.steps().get(self.took.len() - 1), &self.pending) {
             (Some(step), _) => Some(step.reading),
-            (None, Some((_, sensed))) if self.setup.labels == LabelSource::Vehicle => Some(sensed),
+            (None, Some(made)) if self.setup.labels == LabelSource::Vehicle => Some(made.sensed),
             _ => None,
         };
         if let Some(told) = told.filter(|told| *told != last) {
@@ -300,15 +396,23 @@ impl Player {
         if self.steps() < self.motions() { self.take_in(last) } else { Ok(()) }
     }
 
-    /// Takes in the reading of the last motion.
+    /// Takes in what was read on the way of the last motion, and the reading at its end.
     fn take_in(&mut self, reading: Option<Reading>) -> Result<()> {
-        let Some((motion, _)) = self.pending.take() else { return Ok(()) };
+        let Some(Made { motion, passed, .. }) = self.pending.take() else { return Ok(()) };
         let pose = self.pose;
+        let read: Vec<_> = passed.iter().filter_map(|(site, it)| Some((*site, (*it)?))).collect();
+        for (site, reading) in &read {
+            if let Err(refused) = self.planner.observe_on_the_way(*site, *reading) {
+                return Err(self.recorder.refusal(&refused));
+            }
+        }
         if let Err(refused) = self.planner.observe(pose, reading) {
             return Err(self.recorder.refusal(&refused));
         }
         let step = Step { motion, pose, reading, alarm: None };
+        self.recorder.pass(&read);
         self.recorder.take(&step, self.robot.true_pose(), self.planner.belief());
+        self.passed.push(passed);
         match (&mut self.logbook, self.recorder.last()) {
             (Some(logbook), Some(step)) => logbook.take(step),
             _ => Ok(()),
@@ -316,20 +420,26 @@ impl Player {
     }
 
     /// Makes the next step before a chip asks for it. It is a step from before this program restarted. `read` is what
-    /// the chip's own sensor read.
+    /// was read then, by the chip's own sensor perhaps.
     ///
     /// # Errors
     /// When the mission has no such step.
-    fn retrace(&mut self, read: Option<Reading>) -> Result<&StepResult> {
+    fn retrace(&mut self, read: &Sensed) -> Result<&StepResult> {
         let motion = match self.planner.plan(self.pose) {
             Plan::Move(motion) if self.steps() < usize::from(self.setup.steps) => motion,
             _ => bail!("expected no more than {} steps", self.steps()),
         };
-        let (_, sensed) = self.make(motion);
+        self.make(motion);
+        let made = self.pending.as_mut().context("a motion")?;
         let reading = match self.setup.labels {
-            LabelSource::Vehicle => sensed,
-            LabelSource::Chip if !motion.wants_label => None,
-            LabelSource::Chip => Some(read.context("expected a label")?),
+            LabelSource::Vehicle => made.sensed,
+            LabelSource::Chip => {
+                for (passed, reading) in made.passed.iter_mut().zip(&read.on_the_way) {
+                    passed.1 = Some(*reading);
+                }
+                let label = motion.wants_label.then_some(read.at_end);
+                label.map(|label| label.context("expected a label")).transpose()?
+            }
         };
         self.take_in(reading)?;
         self.recorder.last().context("a step")
@@ -359,7 +469,7 @@ impl Player {
     /// # Errors
     /// When that is refused here, or the chip had not begun.
     pub fn break_off(mut self) -> Result<Played> {
-        let sensed = self.pending.and_then(|(_, reading)| reading);
+        let sensed = self.pending.as_ref().and_then(|made| made.sensed);
         self.take_in(sensed)?;
         self.outcome = Some(Ok(Ending::Steps));
         self.finish()

@@ -30,18 +30,6 @@ fn check_sensor(mission: &Mission, labels: LabelSource) -> Result<()> {
     Ok(())
 }
 
-/// Whether a vehicle outside of this program can read as often on a motion.
-///
-/// # Errors
-/// Names `readings`.
-pub(crate) fn check_readings(mission: &Mission, command: &str) -> Result<()> {
-    if mission.readings > 1 {
-        let expected = format!("1 with {command}: it takes in the label at a motion's end alone");
-        return wrong("readings", mission.readings, expected);
-    }
-    Ok(())
-}
-
 /// The setup of a mission, as it is sent to a chip.
 ///
 /// # Errors
@@ -51,7 +39,6 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
         bail!("stop.audit: found false, expected true: a board always audits");
     }
     check_sensor(mission, labels)?;
-    check_readings(mission, "hil")?;
     let Some(noise) = mission.noise_known() else {
         let expected = "a number with hil: a board is told how often labels are true";
         return wrong("noise.p", "a prior", expected);
@@ -75,11 +62,14 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
         anyhow!("oracle: found {} points, expected at most {most} on a board", samples.len())
     })?;
     // True labels leave one hypothesis. `t` labels that may be wrong leave at most `1 + t + t (t - 1) / 2`.
-    // Labels of an audit take no room, and true labels no more than the planner here has.
+    // Labels of an audit take no room, and true labels no more than the planner here has. A reading on the way may take
+    // as much as the label at the end.
     let room = (CAPACITY - samples.len()) as u32;
     let is_apart = mission.goal.is_some() || mission.asking.is_apart() || !mission.is_noisy();
     let most = if is_apart { room } else { u32::MAX };
-    let taken = mission.asking.labels.unwrap_or(most).min(most).min(mission.steps);
+    let at_ends = mission.asking.labels.unwrap_or(most).min(most).min(mission.steps);
+    let on_the_way = mission.steps * (mission.readings - 1);
+    let taken = (at_ends + on_the_way).min(at_ends.max(room));
     let hypotheses = match mission.algorithm {
         _ if mission.is_noisy() => 1 + taken + taken * taken.saturating_sub(1) / 2,
         _ => 1,
@@ -114,14 +104,23 @@ pub fn outlines(area: &MissionArea) -> impl Iterator<Item = Outline> {
     [border].into_iter().chain(area.hulls().map(Outline::from))
 }
 
-/// The error for a setup that a chip declined. It names the key of the scenario that asks too much.
-pub(crate) fn declined(declined: DeclinedError, setup: &Setup) -> anyhow::Error {
+/// The error for a setup that a chip declined, with so many readings a motion. It names the key of the scenario that asks
+/// too much.
+pub(crate) fn declined(declined: DeclinedError, setup: &Setup, readings: u32) -> anyhow::Error {
     match declined {
         DeclinedError::Protocol(theirs) => {
             anyhow!("the board speaks protocol {theirs}, expected {PROTOCOL}")
         }
         DeclinedError::Capacity(Capacity { samples, hypotheses }) => {
             let most = usize::from(samples).saturating_sub(setup.given.len());
+            if readings > 1 {
+                return anyhow!(
+                    "readings: found {readings} in each of {} steps, expected at most {most} in all: the board has \
+                     room for {samples} samples and {hypotheses} hypotheses, {} of the samples the oracle's",
+                    setup.steps,
+                    setup.given.len(),
+                );
+            }
             let (key, found) = match setup.most_labels {
                 Some(labels) => ("labels", labels),
                 None => ("steps", setup.steps),

@@ -470,6 +470,18 @@ planner_status planner_observe_believed(planner_t *finder,
                                         double p);
 
 /*
+ Takes in what was read at a place on the way, before the motion planned last has ended. The planner keeps a true label
+ only if it rules out lines, and leaves the last room for the label at the end. The motion goes on. Tell
+ `planner_observe` of its end as without this.
+
+ # Safety
+ `finder` must be null or from `planner_begin`.
+ */
+planner_status planner_observe_on_the_way(planner_t *finder,
+                                          planner_point at,
+                                          int32_t reading);
+
+/*
  The line as far as it is known: the mean of all lines that are left, or in noise of their distribution.
  `PLANNER_STATUS_RESOLUTION` if they lie too close together for single precision.
 

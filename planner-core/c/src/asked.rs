@@ -72,6 +72,12 @@ pub(crate) trait Asked {
         believed: Reliability,
     ) -> Result<(), Status>;
 
+    fn observe_on_the_way(
+        &mut self,
+        site: Site,
+        reading: planner_core::Reading,
+    ) -> Result<(), Status>;
+
     fn centre(&self) -> Option<Line>;
     fn bits(&self) -> f64;
     fn chance(&self, site: Site) -> f64;
@@ -119,6 +125,15 @@ where
             let _ = Persist::restore(self, &before);
             refused.into()
         })
+    }
+
+    fn observe_on_the_way(
+        &mut self,
+        site: Site,
+        reading: planner_core::Reading,
+    ) -> Result<(), Status> {
+        let kept = planner_core::Planner::observe_on_the_way(self, site, reading);
+        kept.map(|_| ()).map_err(Status::from)
     }
 
     fn centre(&self) -> Option<Line> {

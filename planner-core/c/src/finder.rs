@@ -281,6 +281,30 @@ pub unsafe extern "C" fn observe_believed(
     }
 }
 
+/// Takes in what was read at a place on the way, before the motion planned last has ended. The planner keeps a true label
+/// only if it rules out lines, and leaves the last room for the label at the end. The motion goes on. Tell
+/// `planner_observe` of its end as without this.
+///
+/// # Safety
+/// `finder` must be null or from `planner_begin`.
+#[unsafe(export_name = "planner_observe_on_the_way")]
+pub unsafe extern "C" fn observe_on_the_way(
+    finder: *mut Finder,
+    at: Point,
+    reading: i32,
+) -> Status {
+    // SAFETY: the caller promises it.
+    let Some(finder) = (unsafe { asked(finder) }) else { return Status::Memory };
+    let observed = match (at.read(), Reading::read(reading)) {
+        (Ok(_), Ok(None)) => Ok(()),
+        (Ok(site), Ok(Some(reading))) => {
+            ask!(finder, it => Asked::observe_on_the_way(it, site, reading))
+        }
+        (Err(status), _) | (_, Err(status)) => Err(status),
+    };
+    observed.err().unwrap_or(Status::Ok)
+}
+
 /// Takes in what was read at a pose, each of which is checked.
 ///
 /// # Safety

@@ -21,8 +21,8 @@ mod verdict;
 
 pub use area::{Area, CORNERS, KEEP_OUTS, KeepOut};
 pub use finder::{
-    begin, bits, bytes, chance, check, estimate, observe, observe_believed, observe_within, plan,
-    restore, save,
+    begin, bits, bytes, chance, check, estimate, observe, observe_believed, observe_on_the_way,
+    observe_within, plan, restore, save,
 };
 pub use snapshot::{SNAPSHOT_BYTES, Snapshot};
 pub use types::{Line, Mission, Motion, Point, Pose, Reading, Sample, Status};

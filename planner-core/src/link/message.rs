@@ -11,6 +11,8 @@
 //!  | -- Ready(Accepted), or Declined --------->  |
 //!  | <-------------------------------- Noted --  |
 //!  | -- Move { motion, what came of the last } ->  |
+//!  | <----------- OnTheWay { site, reading } --  |  at each label on the way
+//!  | -- Onward { last } ---------------------->  |
 //!  | <------------- Arrived { pose, reading } --  |  as often as the mission takes
 //!  | -- End { reason, estimates } ------------>  |
 //!  | <-------------------------------- Noted --  |
@@ -42,7 +44,7 @@ pub use crate::link::setup::{Algorithm, Capacity, LabelSource, MOST_GIVEN, Setti
 
 /// The version of this protocol. The layout of [`Request::Hello`] and of its frame is that of every
 /// version from 2 on.
-pub const PROTOCOL: u16 = 7;
+pub const PROTOCOL: u16 = 8;
 
 /// Corners that an area can have, and each keep-out in it.
 pub const MOST_CORNERS: usize = 8;
@@ -97,6 +99,11 @@ pub enum Request {
     Move(Move),
     /// To take note that the mission is over.
     End(MissionEnd),
+    /// To go on with the motion, after [`Reply::OnTheWay`]: the next answer is of the same kind, or the motion's end.
+    Onward {
+        /// What was read there, as far as the chip knows. `None` if nothing was.
+        last: Option<Reading>,
+    },
 }
 
 /// What the vehicle answers.
@@ -126,6 +133,14 @@ pub enum Reply {
     Busy,
     /// To any: it belongs to no session that runs here, or is older than the last.
     Stale,
+    /// To [`Request::Move`] and [`Request::Onward`]: a label is read on the way of the motion, which goes on.
+    OnTheWay {
+        /// Where the vehicle is, or was when it read the label.
+        site: Site,
+        /// The reading. `None` when the chip has the sensor and must read it. If there is a reading, the chip uses it, as
+        /// with [`Reply::Arrived`].
+        reading: Option<Reading>,
+    },
 }
 
 /// What the chip accepts, and what its figures mean.
@@ -349,7 +364,9 @@ mod tests {
 
     #[test]
     fn the_longest_messages_fit_a_frame_and_arrive_as_they_were_sent() {
-        for reply in [Reply::Setup(longest_setup()), Reply::Outline(widest_outline())] {
+        let reading = Some(Label::Positive.into());
+        let on_the_way = Reply::OnTheWay { site: far(-1, -1), reading };
+        for reply in [Reply::Setup(longest_setup()), Reply::Outline(widest_outline()), on_the_way] {
             let frame = Frame::of(&Envelope::new(u32::MAX, u32::MAX, reply.clone()));
             let arrived = received::<Reply>(&frame).unwrap();
             assert_eq!((arrived.number, arrived.message), (u32::MAX, reply));
@@ -377,6 +394,7 @@ mod tests {
         for request in [
             Request::Move(Move { motion, last, took }),
             Request::End(MissionEnd { reason, last, took, estimates }),
+            Request::Onward { last },
         ] {
             let frame = Frame::of(&Envelope::new(u32::MAX, u32::MAX, request.clone()));
             let arrived = received::<Request>(&frame).unwrap();

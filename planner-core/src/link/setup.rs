@@ -122,6 +122,7 @@ pub struct Capacity {
 pub enum LabelSource {
     /// The vehicle: they come with [`Reply::Arrived`](crate::link::message::Reply::Arrived).
     Vehicle,
-    /// The chip, from its own sensor, at the end of each motion whose reading is not told.
+    /// The chip, from its own sensor, at the end of each motion and wherever the vehicle says on the way. Where a reading
+    /// is told, the chip uses that one.
     Chip,
 }

@@ -133,13 +133,17 @@ impl<P: Planner, B: Body> Agent<P, B> {
 }
 
 /// A planner that hears labels on the way, until it refuses one.
-pub(super) struct Hearing<'a, P> {
+pub(crate) struct Hearing<'a, P> {
     planner: &'a mut P,
-    pub(super) refused: Option<ObservationError>,
+    pub(crate) refused: Option<ObservationError>,
 }
 
-impl<P: Planner> Hearing<'_, P> {
-    pub(super) fn hear(&mut self, site: Site, reading: Reading) {
+impl<'a, P: Planner> Hearing<'a, P> {
+    pub(crate) const fn of(planner: &'a mut P) -> Self {
+        Self { planner, refused: None }
+    }
+
+    pub(crate) fn hear(&mut self, site: Site, reading: Reading) {
         if self.refused.is_none() {
             self.refused = self.planner.observe_on_the_way(site, reading).err();
         }
@@ -157,7 +161,7 @@ impl<P: Planner, B> Agent<P, B> {
 
     pub(super) const fn parts(&mut self) -> (Hearing<'_, P>, &mut B, &mut Pose) {
         let Self { planner, body, pose } = self;
-        (Hearing { planner, refused: None }, body, pose)
+        (Hearing::of(planner), body, pose)
     }
 
     pub(super) fn take_in<E>(

@@ -176,6 +176,13 @@ fn awake<B: PredictiveBelief<Belief: Sized>>(
                 break;
             }
         };
+        if !is_doubtful {
+            let [from, to] = [pose, motion.target].map(|it| Point2::<f64>::from(it.site));
+            let (x, z) = (f64::midpoint(from.x, to.x), f64::midpoint(from.y, to.y));
+            let is_above = z > 0.41 * x + 3.5;
+            let label = if is_above { Label::Positive } else { Label::Negative };
+            planner.observe_on_the_way(at(x, z), label.into()).expect("a possible label");
+        }
         pose = motion.target;
         let here = Point2::<f64>::from(pose.site);
         let label = motion.wants_label.then(|| {

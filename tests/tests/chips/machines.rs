@@ -14,7 +14,7 @@ use planner_core::{Accuracy, Goal};
 use rayon::prelude::*;
 use tests::cases;
 use tests::machines::{Kind, Machine, NRF51, STM32, riscv};
-use tests::missions::of_any_vehicle;
+use tests::missions::{of_any_vehicle, reading};
 
 const SEED: u64 = 8;
 
@@ -37,6 +37,23 @@ fn missions() -> Vec<Mission> {
     let vehicles = (0..cases(20, 120)).step_by(2).filter(|number| number % 5 >= 2);
     let vehicles = vehicles.map(|number| of_any_vehicle(number, 16));
     [example].into_iter().chain(fields).chain(vehicles).collect()
+}
+
+/// The programs of the two boards take in labels on the way; that of the RISC-V core has no code for them.
+#[test]
+fn the_boards_take_in_labels_on_the_way() {
+    let vehicles = (0..30).step_by(2).filter(|number| number % 5 >= 2);
+    let missions: Vec<_> = vehicles.map(|number| reading(of_any_vehicle(number, 8))).collect();
+    for kind in [STM32, NRF51] {
+        let Some(mut machine) = Machine::start(kind, &[]) else { continue };
+        for mission in &missions {
+            let here = Recording::of(mission).expect("labels are true");
+            let flown = machine.fly(mission);
+            let flown = flown.unwrap_or_else(|e| panic!("{}: {e}: {mission:?}", kind.name));
+            let there = trace::lines(&flown.recording.results);
+            assert_eq!(there, trace::lines(&here.results), "{}: {mission:?}", kind.name);
+        }
+    }
 }
 
 #[test]

@@ -30,7 +30,7 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use tests::chip::{self, Chip, FarEnd, Off, Socket, fly};
-use tests::missions::{SEED, mission, of_any_vehicle, stopping};
+use tests::missions::{SEED, mission, of_any_vehicle, reading, stopping};
 use tests::wire::{WAIT, Way, Wire};
 
 /// A wire with the vehicle at its other end.
@@ -304,7 +304,7 @@ fn corpus() -> Vec<Vec<u8>> {
     }
     let mut frames = Vec::new();
     let missions = (0..20).map(mission).chain((0..6).map(|number| of_any_vehicle(number, 6)));
-    for mission in missions {
+    for mission in missions.chain([mission(0), mission(3)].map(reading)) {
         let tap = RefCell::new(Tap(Network::new(&mission, Faults::default()), Vec::new()));
         let clock = ClockRate { per_second: 168_000_000, emulated: true };
         let mut chip = Chip { ticks: || 77, clock, ..chip::chip(&tap, None) };
@@ -369,10 +369,10 @@ fn a_decoder_takes_what_was_sent_and_nothing_else() {
     let corpus = corpus();
     let [requests, replies] = kinds(&corpus);
     assert!(
-        requests.iter().eq(["Declined", "End", "Hello", "Move", "Outline", "Ready"]),
+        requests.iter().eq(["Declined", "End", "Hello", "Move", "Onward", "Outline", "Ready"]),
         "{requests:?}"
     );
-    let all = ["Arrived", "Busy", "Failed", "Noted", "Outline", "Setup", "Stale"];
+    let all = ["Arrived", "Busy", "Failed", "Noted", "OnTheWay", "Outline", "Setup", "Stale"];
     assert!(replies.iter().eq(all), "{replies:?}");
     let longest = corpus.iter().map(Vec::len).max();
     for frame in &corpus {

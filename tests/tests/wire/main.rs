@@ -2,6 +2,7 @@
 
 mod link;
 mod missing;
+mod on_the_way;
 mod player;
 mod port;
 mod protocol;

@@ -8,7 +8,7 @@ use planner_core::link::message::{
     self, Capacity, ClockRate, LabelSource, PROTOCOL, Reply, Request,
 };
 use planner_core::{Belief as _, Estimates, LocalLine, Motion, Pose, Reading};
-use tests::missions::mission;
+use tests::missions::{mission, reading};
 
 /// A player and what a chip of our own says to it.
 struct Liar {
@@ -67,6 +67,42 @@ fn a_player_finds_out_a_chip_that_took_in_another_reading() {
     }
     let last = Some(sensed.into());
     assert!(liar.says(Request::Move(message::Move { motion: motion(1), last, took })).is_ok());
+}
+
+/// On the way too. And a chip that goes on with no motion, or begins the next before the end of one, is none.
+#[test]
+fn a_player_finds_out_a_chip_that_took_in_another_reading_on_the_way() {
+    let mission = reading(mission(0));
+    let took = message::Took::default();
+    let steps = Recording::of(&mission).expect("labels are true").steps;
+    let moves =
+        |n: usize, last| Request::Move(message::Move { motion: steps[n].motion, last, took });
+    let begun = || {
+        let mut liar = Liar::new(&mission);
+        let reply = liar.says(moves(0, None));
+        let Ok(Reply::OnTheWay { reading: Some(Reading::Side(told)), .. }) = reply else {
+            panic!("{reply:?}")
+        };
+        (liar, told)
+    };
+    let error =
+        |liar: &mut Liar, request| liar.says(request).expect_err("it was found out").to_string();
+    let (mut liar, told) = begun();
+    for last in [None, Some(Reading::Boundary), Some((-told).into())] {
+        let (mut liar, _) = begun();
+        let error = error(&mut liar, Request::Onward { last });
+        assert!(error.contains("step 1: read Some"), "{error}");
+    }
+    let early = error(&mut begun().0, moves(1, None));
+    assert!(early.contains("step 1: the board asks for the next motion before its end"), "{early}");
+
+    let last = Some(told.into());
+    let reply = liar.says(Request::Onward { last });
+    let Ok(Reply::OnTheWay { reading: last, .. }) = reply else { panic!("{reply:?}") };
+    let reply = liar.says(Request::Onward { last });
+    assert!(matches!(reply, Ok(Reply::Arrived { .. })), "{reply:?}");
+    let late = error(&mut liar, Request::Onward { last });
+    assert!(late.starts_with("after step 1: the board goes on with a motion"), "{late}");
 }
 
 #[test]

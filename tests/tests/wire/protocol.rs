@@ -185,6 +185,12 @@ fn the_examples_are_what_is_sent() {
     said.is("End", 8, 13, Request::End(end));
     said.is("Stale", 7, 12, Reply::Stale);
 
+    let twice = Recording::of(&Mission { readings: 2, ..paper.clone() }).expect("labels are true");
+    let passed = twice.results.steps[0].passed().next();
+    let (site, reading) = passed.map(|(site, it)| (site, Some(it))).expect("one on the way");
+    said.is("OnTheWay", 12, 3, Reply::OnTheWay { site, reading });
+    said.is("Onward", 12, 4, Request::Onward { last: reading });
+
     said.is("Setup of Algorithm 2", 9, 1, Reply::Setup(setup(&noisy, LabelSource::Vehicle)));
     let least = DeclinedError::Capacity(Capacity { samples: 36, hypotheses: 529 });
     said.is("Declined", 9, 2, Request::Declined(least));

@@ -14,12 +14,12 @@ use host_sim::hil::setup;
 use host_sim::mission::definition::Mission;
 use host_sim::mission::recording::Recording;
 use host_sim::report::trace;
-use planner_core::Reading;
 use planner_core::link::message::{self, ClockRate, LabelSource, Reply, Request};
 use planner_core::robot::LabelSensor;
+use planner_core::{Reading, Reliability};
 use rayon::prelude::*;
 use tests::chip::{FarEnd, Off, power_up};
-use tests::missions::{mission, of_any_vehicle};
+use tests::missions::{mission, of_any_vehicle, reading};
 use tests::wire::Wire;
 
 /// Which end restarts, just before the chip sends its so-many-th frame.
@@ -95,7 +95,7 @@ impl FarEnd for Yard<'_> {
 }
 
 /// The chip's own sensor: it reads where the robot stands, wherever the chip believes to be. In noise one place in nine
-/// reads wrong, always the same.
+/// reads wrong, always the same, but none beside a given sample.
 struct Sensor<'a, 'b>(&'a RefCell<Yard<'b>>);
 
 impl LabelSensor for Sensor<'_, '_> {
@@ -103,9 +103,12 @@ impl LabelSensor for Sensor<'_, '_> {
 
     fn read(&mut self) -> Result<Reading, Infallible> {
         let yard = self.0.borrow();
-        let site = yard.player.as_ref().expect("it has started").pose().site;
-        let wrong = yard.mission.is_noisy() && (site.x() ^ site.z()).rem_euclid(9) == 0;
-        Ok(match yard.mission.world.reading(site) {
+        let site = yard.player.as_ref().expect("it has started").place();
+        let Mission { given, world, .. } = yard.mission;
+        let noise = yard.mission.noise_known().expect("a number");
+        let is_certain = noise.at(site, given.samples()) == Reliability::CERTAIN;
+        let wrong = !is_certain && (site.x() ^ site.z()).rem_euclid(9) == 0;
+        Ok(match world.reading(site) {
             Reading::Side(label) if wrong => Reading::Side(-label),
             reading => reading,
         })
@@ -114,9 +117,14 @@ impl LabelSensor for Sensor<'_, '_> {
 
 /// Chips, one after the other as their power fails, until the mission is over; the trace.
 fn flown(yard: Yard<'_>) -> String {
+    flown_in_frames(yard).0
+}
+
+/// The same, and how many frames the chips sent.
+fn flown_in_frames(yard: Yard<'_>) -> (String, u64) {
     let (place, yard) = (yard.place, RefCell::new(yard));
     while power_up(&yard, Some(&mut Sensor(&yard))).is_err() {}
-    let Yard { player, restarts, .. } = yard.into_inner();
+    let Yard { player, restarts, frames, .. } = yard.into_inner();
     assert!(restarts.is_empty(), "{restarts:?} never came");
     let played = player.expect("it has started").finish().expect("the mission is over");
     let results = &played.recording.results;
@@ -124,12 +132,16 @@ fn flown(yard: Yard<'_>) -> String {
         logbook.complete(&results.end).expect("it takes its place");
         assert_eq!(fs::read_to_string(place).expect("a trace"), trace::lines(results));
     }
-    trace::lines(results)
+    (trace::lines(results), frames)
 }
 
 /// The missions of every planner and vehicle, among keep-outs and with robots that err, by who reads labels.
 fn missions() -> Vec<(Mission, LabelSource)> {
-    let all = (0..12).map(mission).chain((0..24).map(|number| of_any_vehicle(number, 6)));
+    let by_turns = (0..12).map(mission).chain((0..6).map(|number| reading(mission(number))));
+    let of_vehicles = (0..24).map(|number| of_any_vehicle(number, 6));
+    // Every pair of a planner and a vehicle, of robots that err too.
+    let of_readings = (0..12).map(|number| reading(of_any_vehicle(number, 4)));
+    let all = by_turns.chain(of_vehicles).chain(of_readings);
     let by_source = |mission: Mission| {
         // A chip's sensor has no robot that errs to ask where it truly is.
         let by_chip = (mission.errors == host_sim::world::errors::Errors::default())
@@ -139,35 +151,38 @@ fn missions() -> Vec<(Mission, LabelSource)> {
     all.flat_map(by_source).collect()
 }
 
-/// The trace without a restart.
-fn undisturbed((mission, labels): &(Mission, LabelSource)) -> String {
-    let trace = flown(Yard::new(mission, *labels, None));
+/// The trace without a restart, and the frames that the chip sent: a hello, for outlines, that it accepts, two a motion
+/// with a label on the way, one for any other, and the end.
+fn undisturbed((mission, labels): &(Mission, LabelSource)) -> (String, u64) {
+    let (trace, frames) = flown_in_frames(Yard::new(mission, *labels, None));
     if *labels == LabelSource::Vehicle {
         let here = Recording::of(mission).expect("labels that are certain are true");
         assert_eq!(trace, trace::lines(&here.results));
     }
-    trace
+    let motions = trace.lines().count() as u64 - 2;
+    let least = before(mission) + motions + 1;
+    assert_eq!(frames > least, mission.readings > 1, "{mission:?}");
+    (trace, frames)
 }
 
-/// Frames of a mission on a link that loses none: a hello, outlines, the acceptance, each motion and the end.
-fn frames(mission: &Mission, trace: &str) -> u64 {
+/// Frames that a chip sends before the first motion, on a link that loses none.
+fn before(mission: &Mission) -> u64 {
     let setup = setup::setup(mission, LabelSource::Vehicle).expect("a mission");
     let outlines = setup.keep_outs.map_or(0, |count| u64::from(count) + 1);
-    let steps = trace.lines().count() as u64 - 2;
-    1 + outlines + 1 + steps + 1
+    1 + outlines + 1
 }
 
 #[test]
 fn a_chip_that_restarts_anywhere_goes_on() {
     let cut = missions().into_par_iter().map(|case| {
         let (mission, labels) = &case;
-        let whole = undisturbed(&case);
-        for at in 1..=frames(mission, &whole) {
+        let (whole, frames) = undisturbed(&case);
+        for at in 1..=frames {
             let mut yard = Yard::new(mission, *labels, None);
             yard.restarts = vec![Restart::Chip(at)];
             assert!(flown(yard) == whole, "{labels:?}, restart at {at}: {mission:?}");
         }
-        frames(mission, &whole)
+        frames
     });
     println!("{} restarts", cut.sum::<u64>());
 }
@@ -177,8 +192,8 @@ fn a_chip_that_restarts_anywhere_goes_on() {
 fn a_chip_that_restarts_all_the_time_comes_to_the_end() {
     missions().par_iter().for_each(|case| {
         let (mission, labels) = case;
-        let whole = undisturbed(case);
-        let before = frames(mission, &whole) - whole.lines().count() as u64 + 1;
+        let (whole, _) = undisturbed(case);
+        let before = before(mission);
         let mut yard = Yard::new(mission, *labels, None);
         let (mut restarts, mut frames) = (Vec::new(), 0);
         for step in 1..whole.lines().count() as u64 - 1 {
@@ -199,8 +214,8 @@ fn a_host_that_restarts_anywhere_goes_on() {
     let folder = tempfile::tempdir().expect("a folder");
     let cut = missions().into_par_iter().enumerate().map(|(number, case)| {
         let (mission, labels) = &case;
-        let whole = undisturbed(&case);
-        for at in 1..=frames(mission, &whole) {
+        let (whole, frames) = undisturbed(&case);
+        for at in 1..=frames {
             let place = folder.path().join(format!("{number}-{at}.jsonl"));
             let mut yard = Yard::new(mission, *labels, Some(&place));
             // And the chip with it, every other time.
@@ -208,7 +223,7 @@ fn a_host_that_restarts_anywhere_goes_on() {
             yard.restarts.extend((at % 2 == 0).then_some(Restart::Chip(at)));
             assert!(flown(yard) == whole, "{labels:?}, restart at {at}: {mission:?}");
         }
-        frames(mission, &whole) * 3 / 2
+        frames * 3 / 2
     });
     println!("{} restarts", cut.sum::<u64>());
 }
@@ -220,15 +235,15 @@ fn over_a_bad_link_too() {
     let folder = tempfile::tempdir().expect("a folder");
     let cut = missions().into_par_iter().enumerate().map(|(number, case)| {
         let (mission, labels) = &case;
-        let whole = undisturbed(&case);
-        for at in 1..=frames(mission, &whole) {
+        let (whole, frames) = undisturbed(&case);
+        for at in 1..=frames {
             let place = folder.path().join(format!("{number}-{at}.jsonl"));
             let mut yard = Yard::new(mission, *labels, Some(&place));
             yard.wire = Wire::new(faults, 1_000 * number as u64 + at);
             yard.restarts = vec![Restart::Chip(at + 9), Restart::Host(at + 4), Restart::Chip(at)];
             assert!(flown(yard) == whole, "{labels:?}, restarts from {at}: {mission:?}");
         }
-        frames(mission, &whole) * 3
+        frames * 3
     });
     println!("{} restarts", cut.sum::<u64>());
 }

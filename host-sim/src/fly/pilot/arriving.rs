@@ -32,7 +32,10 @@ impl Pilot {
     /// Takes in a position.
     pub(super) fn locate(&mut self, now: Duration, fix: Fix) {
         match self.stage {
-            Stage::Moving { motion, rest } => self.approach(now, motion, rest, fix),
+            Stage::Moving { motion, rest } => {
+                self.on_the_way.locate(fix);
+                self.approach(now, motion, rest, fix);
+            }
             Stage::Sensing { motion, arrived, is_calm, told, .. } => {
                 let acceptance = self.limits.acceptance;
                 let within = if is_calm { acceptance } else { acceptance.max(WOBBLES) };

@@ -115,7 +115,15 @@ pub(super) fn fly_with(
     breaks_at: Option<Duration>,
     interrupted: fn() -> Option<i32>,
 ) -> Flown {
-    let mission = mission();
+    fly_mission(mission(), (there, back), breaks_at, interrupted)
+}
+
+pub(super) fn fly_mission(
+    mission: Mission,
+    (there, back): (Spoil<'_>, Spoil<'_>),
+    breaks_at: Option<Duration>,
+    interrupted: fn() -> Option<i32>,
+) -> Flown {
     let labels = LabelSource::new("WET".parse().expect("a name"), None);
     let ideal = Ideal::new(&mission, SYSTEM, labels.clone());
     let waiting = Vec::new();

@@ -32,7 +32,11 @@ pub(crate) struct OnTheWay<P> {
 impl<P: Prediction> OnTheWay<P> {
     /// With so many readings a motion, the one at its end included.
     pub(crate) const fn new(prediction: P, from: Site, readings: u8) -> Self {
-        let places = if readings < PLACES as u8 { readings } else { PLACES as u8 };
+        let places = match readings {
+            0 => 1,
+            few if few < PLACES as u8 => few,
+            _ => PLACES as u8,
+        };
         Self { prediction, from, places }
     }
 

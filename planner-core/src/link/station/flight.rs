@@ -1,7 +1,9 @@
 //! A mission that is planned here and driven elsewhere.
 
+use crate::belief::ObservationError;
 use crate::belief::evidence::Alarm;
 use crate::belief::sample::Reading;
+use crate::geometry::lattice::Site;
 use crate::link::delivery::{Link, LinkError, Port};
 use crate::link::message::{
     Accepted, ClockRate, DeclinedError, EndReason, LabelSource, MissionEnd, Move, PROTOCOL, Reply,
@@ -11,7 +13,7 @@ use crate::link::station::seam::{self, Prepared};
 use crate::link::station::terms::{FromOutlines, Known, NoTerms, PlannerSetup};
 use crate::motion::dynamics::Pose;
 use crate::planner::{Motion, Plan, Planner};
-use crate::robot::{Body, LabelSensor, Step};
+use crate::robot::{Body, Hearing, LabelSensor, Step};
 
 /// A chip at a link: what a mission needs beside its planner.
 #[derive(Debug)]
@@ -31,6 +33,10 @@ pub trait Watch {
     /// Whether steps report what speaks against a straight, still line ([`Step::alarm`]). Planners are then
     /// [`Watched`](crate::watch::Watched), which takes some 2 KB of flash on a core with single-precision instructions.
     const ALARMS: bool = false;
+
+    /// Whether labels that a vehicle reads on the way are taken in. A chip without this has no code for them: its mission
+    /// ends with [`EndReason::Vehicle`] at the first.
+    const READINGS: bool = false;
 
     /// A mission was set up.
     fn set_up(&mut self, _: &Setup) {}
@@ -125,8 +131,14 @@ impl<P: Port, S: LabelSensor> Station<P, S> {
         watch.begins();
         self.link.ask(Request::Ready(Accepted { capacity: *capacity, clock: self.clock }))?;
         let chip = self.sensor.as_mut().filter(|_| setup.labels == LabelSource::Chip);
-        let mut vehicle =
-            RemoteVehicle { link: &mut self.link, chip, last: None, took: Took::default() };
+        let mut vehicle = RemoteVehicle {
+            link: &mut self.link,
+            chip,
+            last: None,
+            passed: None,
+            is_blind: false,
+            took: Took::default(),
+        };
         let reason = mission(planner, &mut vehicle, setup, self.ticks, watch)?;
         let RemoteVehicle { last, mut took, .. } = vehicle;
         let estimates = timed(self.ticks, &mut took.estimate, || seam::estimates(planner));
@@ -137,12 +149,12 @@ impl<P: Port, S: LabelSensor> Station<P, S> {
 }
 
 /// As [`Agent`](crate::robot::Agent), against the clock: the vehicle is told what each call took.
-fn mission<L: Planner, P: Port, S: LabelSensor>(
+fn mission<L: Planner, P: Port, S: LabelSensor, W: Watch>(
     planner: &mut L,
     vehicle: &mut RemoteVehicle<'_, P, S>,
     setup: &Setup,
     ticks: fn() -> u32,
-    watch: &mut impl Watch,
+    watch: &mut W,
 ) -> Result<EndReason, LinkError> {
     let (mut pose, mut labels) = (setup.start, 0);
     for _ in 0..setup.steps {
@@ -153,14 +165,18 @@ fn mission<L: Planner, P: Port, S: LabelSensor>(
             Plan::Move(motion) => motion,
             Plan::Stop(reason) => return Ok(EndReason::Stopped(reason)),
         };
-        let reading = match vehicle.perform(&motion, &mut pose) {
+        let before = planner.alarm();
+        let (performed, refused) = perform::<W, _, _, _>(planner, vehicle, &motion, &mut pose);
+        let reading = match performed {
             Ok(reading) => reading,
             Err(NoArrival::Lost(lost)) => return Err(lost),
             Err(NoArrival::Failed) => return Ok(EndReason::Vehicle),
             Err(NoArrival::NoLabel) => return Ok(EndReason::Sensor),
         };
+        if let Some(refused) = refused {
+            return Ok(EndReason::Refused(refused));
+        }
         labels += u16::from(reading.is_some());
-        let before = planner.alarm();
         let observe = || seam::observe(planner, pose, reading);
         if let Err(refused) = timed(ticks, &mut vehicle.took.observe, observe) {
             return Ok(EndReason::Refused(refused));
@@ -169,6 +185,34 @@ fn mission<L: Planner, P: Port, S: LabelSensor>(
         watch.stepped(&Step { motion, pose, reading, alarm });
     }
     Ok(EndReason::Steps)
+}
+
+/// Has the vehicle make a motion. Returns what was sensed at its end, and why a label on its way was refused, if one was.
+#[inline]
+fn perform<W: Watch, L: Planner, P: Port, S: LabelSensor>(
+    planner: &mut L,
+    vehicle: &mut RemoteVehicle<'_, P, S>,
+    motion: &Motion,
+    pose: &mut Pose,
+) -> (Result<Option<Reading>, NoArrival>, Option<ObservationError>) {
+    if !W::READINGS {
+        return (vehicle.perform(motion, pose), None);
+    }
+    let mut hearing = Hearing::of(planner);
+    let mut is_under_way = false;
+    let performed = loop {
+        match vehicle.advance(motion, pose, is_under_way) {
+            Ok(Advance::OnTheWay(site, reading)) => {
+                if let Some(reading) = reading {
+                    seam::observe_on_the_way(&mut hearing, site, reading);
+                }
+                is_under_way = true;
+            }
+            Ok(Advance::Ended(reading)) => break Ok(reading),
+            Err(none) => break Err(none),
+        }
+    };
+    (performed, hearing.refused)
 }
 
 /// Does something, and takes down the ticks that it took.
@@ -186,6 +230,10 @@ struct RemoteVehicle<'a, P, S> {
     chip: Option<&'a mut S>,
     /// The last reading, if the last motion wanted one.
     last: Option<Reading>,
+    /// What was read last on the way of the motion.
+    passed: Option<Reading>,
+    /// Whether the chip's own sensor has failed there.
+    is_blind: bool,
     /// What the last plan and the last observation took.
     took: Took,
 }
@@ -199,21 +247,90 @@ enum NoArrival {
     NoLabel,
 }
 
+/// How far a motion has come.
+enum Advance {
+    /// To a place on its way, and what was read there, if anything was.
+    OnTheWay(Site, Option<Reading>),
+    /// To its end.
+    Ended(Option<Reading>),
+}
+
+/// What the vehicle says of a motion: where it is, and what it has read there.
+enum Answer {
+    OnTheWay(Site, Option<Reading>),
+    Arrived(Pose, Option<Reading>),
+}
+
 impl<P: Port, S: LabelSensor> Body for RemoteVehicle<'_, P, S> {
     type Error = NoArrival;
 
+    #[inline]
     fn perform(&mut self, motion: &Motion, pose: &mut Pose) -> Result<Option<Reading>, NoArrival> {
+        let answer = self.begin(motion)?;
+        self.end(motion, pose, &answer)
+    }
+}
+
+impl<P: Port, S: LabelSensor> RemoteVehicle<'_, P, S> {
+    /// Makes the next part of a motion: up to a label on its way, or up to its end. If a sensor of the chip's fails on the
+    /// way, the mission ends when the motion has ended.
+    ///
+    /// Labels go to the planner without a function pointer, so that tools can bound the stack.
+    #[inline(never)]
+    fn advance(
+        &mut self,
+        motion: &Motion,
+        pose: &mut Pose,
+        is_under_way: bool,
+    ) -> Result<Advance, NoArrival> {
+        let answer = if is_under_way {
+            self.ask(Request::Onward { last: self.passed })?
+        } else {
+            self.begin(motion)?
+        };
+        match (answer, &mut self.chip) {
+            (Answer::OnTheWay(site, told), chip) => {
+                self.passed = match (told, chip) {
+                    (None, Some(sensor)) => {
+                        let read = sensor.read().ok();
+                        self.is_blind |= read.is_none();
+                        read
+                    }
+                    _ => told,
+                };
+                Ok(Advance::OnTheWay(site, self.passed))
+            }
+            (Answer::Arrived(..), _) if self.is_blind => Err(NoArrival::NoLabel),
+            (answer, _) => self.end(motion, pose, &answer).map(Advance::Ended),
+        }
+    }
+
+    fn ask(&mut self, request: Request) -> Result<Answer, NoArrival> {
+        match self.link.ask(request) {
+            Ok(Reply::Arrived { pose, reading }) => Ok(Answer::Arrived(pose, reading)),
+            Ok(Reply::OnTheWay { site, reading }) => Ok(Answer::OnTheWay(site, reading)),
+            Ok(_) => Err(NoArrival::Failed),
+            Err(lost) => Err(NoArrival::Lost(lost)),
+        }
+    }
+
+    /// Asks for a motion.
+    fn begin(&mut self, motion: &Motion) -> Result<Answer, NoArrival> {
         let took = self.took;
         // What comes of this motion takes its place: nothing, if it has no end or no label.
         let last = self.last.take();
-        let reading = match self.link.ask(Request::Move(Move { motion: *motion, last, took })) {
-            Ok(Reply::Arrived { pose: arrived, reading }) => {
-                *pose = arrived;
-                reading
-            }
-            Ok(_) => return Err(NoArrival::Failed),
-            Err(lost) => return Err(NoArrival::Lost(lost)),
-        };
+        self.ask(Request::Move(Move { motion: *motion, last, took }))
+    }
+
+    /// What an answer says of a motion's end.
+    fn end(
+        &mut self,
+        motion: &Motion,
+        pose: &mut Pose,
+        answer: &Answer,
+    ) -> Result<Option<Reading>, NoArrival> {
+        let &Answer::Arrived(arrived, reading) = answer else { return Err(NoArrival::Failed) };
+        *pose = arrived;
         let label = match (reading, &mut self.chip) {
             _ if !motion.wants_label => None,
             // Of a motion that is told again this is what the chip's own sensor read then.

@@ -10,6 +10,7 @@ use crate::belief::predictions::NoisyBelief;
 use crate::belief::sample::Reading;
 use crate::belief::true_labels::{GivenError, VersionSpace};
 use crate::belief::weight::Prior;
+use crate::geometry::lattice::Site;
 use crate::geometry::workspace::Workspace;
 use crate::link::message::{Capacity, DeclinedError, PROTOCOL, Setup};
 use crate::link::station::terms::{Known, PlannerSetup};
@@ -21,6 +22,7 @@ use crate::planner::scc::{Policy, Scc};
 use crate::planner::setup::{Restart, SetupError, aimed_for};
 use crate::planner::sight::{AnySight, Sight};
 use crate::planner::{Plan, Planner};
+use crate::robot::Hearing;
 
 #[inline(never)]
 pub(super) fn plan<L: Planner>(planner: &mut L, pose: Pose) -> Plan {
@@ -34,6 +36,15 @@ pub(super) fn observe<L: Planner>(
     reading: Option<Reading>,
 ) -> Result<(), ObservationError> {
     planner.observe(pose, reading)
+}
+
+#[inline(never)]
+pub(super) fn observe_on_the_way<L: Planner>(
+    hearing: &mut Hearing<'_, L>,
+    site: Site,
+    reading: Reading,
+) {
+    hearing.hear(site, reading);
 }
 
 #[inline(never)]

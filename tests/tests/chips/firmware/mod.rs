@@ -34,7 +34,7 @@ use tempfile::NamedTempFile;
 use tests::budget::footprint::{self, Footprint};
 use tests::cases;
 use tests::debugger::{self, Debugger};
-use tests::missions::{by_turns, of_any_vehicle};
+use tests::missions::{by_turns, of_any_vehicle, reading};
 use tests::program::image::Image;
 
 use crate::firmware::chip::{Chip, firmware};
@@ -51,6 +51,11 @@ fn random(number: u64) -> Mission {
     by_turns(6, number, 10 + (number % 11) as u32)
 }
 
+/// The same with labels on the way.
+fn random_reading(number: u64) -> Mission {
+    reading(by_turns(6, number, 10))
+}
+
 fn here(mission: &Mission) -> String {
     trace::lines(&Recording::of(mission).expect("labels that are certain are true").results)
 }
@@ -64,8 +69,9 @@ fn the_closed_loop_makes_the_trace_of_this_machine_byte_for_byte() {
         mission.asking.price = is_priced.then_some(3.0);
         mission
     });
+    let readings = (0..cases(12, 48)).map(|number| reading(of_any_vehicle(number, 10)));
     let missions = examples.into_iter().chain((0..cases(100, 200)).map(random)).chain(vehicles);
-    let missions: Vec<_> = missions.collect();
+    let missions: Vec<_> = missions.chain(readings).collect();
     // Twenty missions in a row on a chip: one leaves nothing behind for the next.
     let flown: usize = missions
         .par_chunks(20)
@@ -118,7 +124,7 @@ fn a_bad_link_changes_nothing() {
     let faults: Faults = faults.parse().expect("faults");
     (0..16).into_par_iter().for_each(|number| {
         let Some(chip) = Chip::start(&[]) else { return };
-        let mission = random(number);
+        let mission = if number < 12 { random(number) } else { random_reading(number) };
         let played = chip.fly(&mission, faults).expect("it flies as here");
         assert_eq!(trace::lines(&played.recording.results), here(&mission), "mission {number}");
     });
@@ -363,6 +369,7 @@ fn the_stack_stays_within_its_bound() {
     let Some(chip) = Chip::start(&["-gdb", &format!("tcp:127.0.0.1:{port}")]) else { return };
     for number in 0..6 {
         chip.fly(&random(number), Faults::default()).expect("it flies");
+        chip.fly(&random_reading(number), Faults::default()).expect("it flies");
     }
     let image = Image::read(&fs::read(firmware().expect("it runs")).expect("cargo left an ELF"));
     let bound = Footprint::of(&image).expect("a graph").stack as usize;

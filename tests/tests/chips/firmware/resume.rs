@@ -12,7 +12,7 @@ use planner_core::link::message::LabelSource;
 use rayon::prelude::*;
 
 use crate::firmware::chip::Chip;
-use crate::firmware::{here, random};
+use crate::firmware::{here, random, random_reading};
 
 fn player(mission: &Mission, labels: LabelSource) -> Player {
     let player = Player::new(mission, labels, flight::start_number());
@@ -32,8 +32,8 @@ fn play_until(motions: usize, chip: &mut Chip, player: &mut Player) {
 
 #[test]
 fn a_chip_that_loses_its_power_goes_on() {
-    (0..3).into_par_iter().for_each(|number| {
-        let mission = random(number);
+    (0..6).into_par_iter().for_each(|number| {
+        let mission = if number < 3 { random(number) } else { random_reading(number) };
         let Some(mut chip) = Chip::start(&[]) else { return };
         let mut player = player(&mission, LabelSource::Vehicle);
         for motions in [2, 5] {
@@ -51,8 +51,8 @@ fn a_chip_that_loses_its_power_goes_on() {
 #[test]
 fn a_host_that_restarts_goes_on() {
     let folder = tempfile::tempdir().expect("a folder");
-    (0..3).into_par_iter().for_each(|number| {
-        let mission = random(number);
+    (0..6).into_par_iter().for_each(|number| {
+        let mission = if number < 3 { random(number) } else { random_reading(number) };
         let Some(mut chip) = Chip::start(&[]) else { return };
         let place = folder.path().join(format!("{number}.jsonl"));
         let start =
@@ -73,15 +73,17 @@ fn a_host_that_restarts_goes_on() {
 /// The pin is low, and reads as -1; what it read before the restart is told.
 #[test]
 fn labels_of_the_chips_own_are_told_again() {
-    let Some(mut chip) = Chip::start(&[]) else { return };
-    let mission = random(1);
-    let flown = |player: Player| trace::lines(&player.finish().expect("it ends").recording.results);
-    let mut whole = player(&mission, LabelSource::Chip);
-    chip.play(&mut whole, Faults::default(), 1).expect("it flies");
-    let mut cut = player(&mission, LabelSource::Chip);
-    play_until(4, &mut chip, &mut cut);
-    drop(chip);
-    let chip = Chip::start(&[]).expect("it started before");
-    chip.play(&mut cut, Faults::default(), 1).expect("it flies");
-    assert_eq!(flown(cut), flown(whole));
+    [random(1), random_reading(1)].into_par_iter().for_each(|mission| {
+        let Some(mut chip) = Chip::start(&[]) else { return };
+        let flown =
+            |player: Player| trace::lines(&player.finish().expect("it ends").recording.results);
+        let mut whole = player(&mission, LabelSource::Chip);
+        chip.play(&mut whole, Faults::default(), 1).expect("it flies");
+        let mut cut = player(&mission, LabelSource::Chip);
+        play_until(4, &mut chip, &mut cut);
+        drop(chip);
+        let chip = Chip::start(&[]).expect("it started before");
+        chip.play(&mut cut, Faults::default(), 1).expect("it flies");
+        assert_eq!(flown(cut), flown(whole));
+    });
 }

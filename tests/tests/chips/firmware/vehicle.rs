@@ -15,9 +15,10 @@ use host_sim::hil::faults::{Faults, Spoiler};
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::Mission;
 use host_sim::mission::scenario::{self, Overrides};
-use host_sim::world::robot::Ideal;
+use host_sim::world::on_the_way::Way;
+use host_sim::world::robot::{Glimpse, Ideal, Robot as _};
 use planner_core::robot::Body;
-use planner_core::{Agent, Estimates, Event, Motion, Pose, Reading};
+use planner_core::{Agent, Estimates, Event, Motion, Pose, Reading, Site};
 use rayon::prelude::*;
 use tests::is_long;
 use tests::program::build;
@@ -29,24 +30,28 @@ use crate::firmware::chip::Chip;
 struct Flight {
     algorithm: Algorithm,
     steps: u32,
+    /// Labels a motion.
+    readings: u32,
     p: f64,
     /// Which labels are read wrong.
     wrong: &'static [usize],
 }
 
-const FLIGHTS: [Flight; 4] = [
-    Flight { algorithm: Algorithm::Cfc, steps: 12, p: 1.0, wrong: &[] },
-    Flight { algorithm: Algorithm::Lookahead, steps: 12, p: 1.0, wrong: &[] },
-    Flight { algorithm: Algorithm::Lookahead, steps: 9, p: 0.9, wrong: &[3, 7] },
-    Flight { algorithm: Algorithm::Scc, steps: 9, p: 0.7, wrong: &[2, 5, 6] },
+const FLIGHTS: [Flight; 6] = [
+    Flight { algorithm: Algorithm::Cfc, steps: 12, readings: 1, p: 1.0, wrong: &[] },
+    Flight { algorithm: Algorithm::Lookahead, steps: 12, readings: 1, p: 1.0, wrong: &[] },
+    Flight { algorithm: Algorithm::Lookahead, steps: 9, readings: 1, p: 0.9, wrong: &[3, 7] },
+    Flight { algorithm: Algorithm::Scc, steps: 9, readings: 1, p: 0.7, wrong: &[2, 5, 6] },
+    Flight { algorithm: Algorithm::Lookahead, steps: 12, readings: 4, p: 1.0, wrong: &[] },
+    Flight { algorithm: Algorithm::Lookahead, steps: 8, readings: 3, p: 0.9, wrong: &[3, 7, 8] },
 ];
 
 impl Flight {
     fn flags(self) -> Vec<String> {
-        let Self { algorithm, steps, p, wrong } = self;
+        let Self { algorithm, steps, readings, p, wrong } = self;
         let mut flags =
             vec![format!("--algorithm={}", algorithm.name()), format!("--steps={steps}")];
-        flags.push(format!("--p={p}"));
+        flags.extend([format!("--p={p}"), format!("--readings={readings}")]);
         if !wrong.is_empty() {
             flags.push("--wrong".to_owned());
             flags.extend(wrong.iter().map(ToString::to_string));
@@ -56,14 +61,14 @@ impl Flight {
 
     /// The same mission here.
     fn mission(self) -> Mission {
-        let Self { algorithm, steps, p, .. } = self;
+        let Self { algorithm, steps, readings, p, .. } = self;
         let text = if p < 1.0 {
             scenario::PAPER_NOISY.replace("p = 0.7", &format!("p = {p}"))
         } else {
             scenario::PAPER_NOISELESS.to_owned()
         };
         // What planners differ in beside their name is theirs by default.
-        let text = text.replace("varrho = 0.1\n", "");
+        let text = text.replace("varrho = 0.1\n", &format!("readings = {readings}\n"));
         let overrides = Overrides { algorithm: Some(algorithm), steps: Some(steps), seed: None };
         scenario::parse("", &text, overrides).expect("a good scenario")
     }
@@ -72,6 +77,7 @@ impl Flight {
 /// An ideal robot that reads some labels wrong.
 struct Misread {
     ideal: Ideal,
+    way: Way,
     wrong: &'static [usize],
     labels: usize,
 }
@@ -80,13 +86,29 @@ impl Body for Misread {
     type Error = Infallible;
 
     fn perform(&mut self, motion: &Motion, pose: &mut Pose) -> Result<Option<Reading>, Infallible> {
-        let reading = self.ideal.perform(motion, pose)?;
-        self.labels += usize::from(reading.is_some());
-        let is_wrong = self.wrong.contains(&self.labels);
-        Ok(reading.map(|reading| match reading {
-            Reading::Side(label) if is_wrong => Reading::Side(-label),
-            reading => reading,
-        }))
+        self.perform_reading(motion, pose, &mut |_, _| ())
+    }
+
+    fn perform_reading(
+        &mut self,
+        motion: &Motion,
+        pose: &mut Pose,
+        tell: &mut dyn FnMut(Site, Reading),
+    ) -> Result<Option<Reading>, Infallible> {
+        let Self { ideal, way, wrong, labels } = self;
+        let mut misread = |reading| {
+            *labels += 1;
+            match reading {
+                Reading::Side(label) if wrong.contains(labels) => Reading::Side(-label),
+                reading => reading,
+            }
+        };
+        let reading = ideal.travel(motion, pose, *way, &mut |it: Glimpse| {
+            if let Some(reading) = it.reading {
+                tell(it.reported, misread(reading));
+            }
+        });
+        Ok(reading.map(misread))
     }
 }
 
@@ -100,8 +122,8 @@ type Lines = BTreeMap<String, ([i64; 4], [f32; 2])>;
 fn here(flight: Flight) -> (Vec<Step>, Lines) {
     let mission = flight.mission();
     let mut planner = mission.planner();
-    let body =
-        Misread { ideal: Ideal { world: mission.world.clone() }, wrong: flight.wrong, labels: 0 };
+    let ideal = Ideal { world: mission.world.clone() };
+    let body = Misread { ideal, way: mission.way(), wrong: flight.wrong, labels: 0 };
     let mut agent = Agent::new(&mut *planner, body, mission.start);
     let mut steps = Vec::new();
     for _ in 0..flight.steps {
@@ -260,8 +282,10 @@ fn over_a_bad_link_too() {
 
 #[test]
 fn where_the_chip_restarts_it_goes_on() {
-    let ends: [(Flight, &[usize]); 2] = [(FLIGHTS[2], &[5, 9]), (FLIGHTS[1], &[7])];
-    let ends = &ends[..if is_long() { 2 } else { 1 }];
+    // Of those with labels on the way some restarts are in the middle of a motion.
+    let ends: [(Flight, &[usize]); 3] =
+        [(FLIGHTS[5], &[6, 10]), (FLIGHTS[2], &[5, 9]), (FLIGHTS[1], &[7])];
+    let ends = &ends[..if is_long() { 3 } else { 2 }];
     ends.into_par_iter().for_each(|&(flight, powers)| {
         if let Some(said) = fly(flight, Faults::default(), powers) {
             agrees(flight, &said);
