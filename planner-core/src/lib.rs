@@ -69,6 +69,7 @@
 //! | labels that are true | [`VersionSpace`], with a tolerance if positions err |
 //! | labels that are sometimes wrong | [`NoisyBelief`], made with a [`Noise`]: how often labels are right |
 //! | a boundary that bends or moves a little | a tolerance from a [`Deviation`] |
+//! | to begin with a slope or an intercept instead of points | [`bounds`] |
 //! | to stop when the line is known well enough | [`Goal`] |
 //! | a large area, few labels | [`Far`] sight: [`Lookahead::seeing`] |
 //! | no label that hardly tells | [`AnySight::with_least_bits`]: [`Lookahead::seeing`] |
@@ -161,6 +162,7 @@ pub mod watch;
 pub use nalgebra;
 
 pub use crate::belief::Belief;
+pub use crate::belief::bounds;
 pub use crate::belief::cells::Certainty;
 pub use crate::belief::deviation::Deviation;
 pub use crate::belief::doubtful_labels::CellPosterior;

@@ -9,7 +9,7 @@ use host_sim::world::World;
 use host_sim::world::errors::Errors;
 use host_sim::world::noise::{Extent, NoiseModel, limit};
 use nalgebra::{Point2, Vector2};
-use planner_core::belief::bounds::slope_within_degrees;
+use planner_core::bounds::slope_within_degrees;
 use planner_core::dynamics::ActionGrid;
 use planner_core::geometry::lattice::UNITS_PER_METRE;
 use planner_core::link::message::{MOST_CORNERS, MissionArea};

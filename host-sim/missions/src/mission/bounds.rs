@@ -2,7 +2,7 @@
 
 use anyhow::{Result, anyhow};
 use planner_core::Sample;
-use planner_core::belief::bounds::{intercept_within, slope_within_degrees};
+use planner_core::bounds::{intercept_within, slope_within_degrees};
 use planner_core::link::message::MissionArea;
 use serde::{Deserialize, Serialize};
 
