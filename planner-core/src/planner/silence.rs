@@ -155,13 +155,12 @@ impl Silence {
 
     /// Records that the motion was made, and whether a label was read.
     pub(crate) fn observe(&mut self, has_label: bool) {
-        let dull = match self.next_is_dull {
-            true => self.dull.saturating_add(1),
-            false if has_label => 0,
-            false => self.dull,
+        let dull = self.dull.saturating_add(u8::from(self.next_is_dull));
+        *self = match has_label {
+            true if self.next_is_dull => Self { dull, ..Self::NONE },
+            true => Self::NONE,
+            false => Self { dull, ..self.after(self.next) },
         };
-        let next = if has_label { Self::NONE } else { self.after(self.next) };
-        *self = Self { dull, ..next };
     }
 
     /// Records that a label was read on the way of the motion that was planned last.

@@ -125,6 +125,9 @@ fn attempt(rng: &mut ChaCha8Rng, seed: u64) -> Option<Mission> {
         let most = mission.noise.map_or(1.0, |noise| limit(noise.p));
         mission.asking.worth = most * rng.random_range(0.0..1.0);
     }
+    if algorithm == Algorithm::Lookahead && rng.random_range(0..4) == 0 {
+        mission.readings = rng.random_range(2..=50);
+    }
     inset.encloses(given[0].site).then_some(mission)
 }
 

@@ -6,8 +6,6 @@
 //!
 //! At most four places stand for all readings. An arc is taken for its chord.
 
-use heapless::Vec;
-
 use crate::belief::predictions::predictor::{Prediction, Predictor, entropy, log2};
 use crate::belief::sample::Label;
 use crate::geometry::lattice::{Site, Vector};
@@ -40,30 +38,35 @@ impl<P: Prediction> OnTheWay<P> {
         Self { prediction, from, places }
     }
 
-    /// The places on the way to one, without that one.
-    fn on_the_way(&self, to: Site) -> impl Iterator<Item = Site> {
-        let (from, by, places) = (self.from, to - self.from, i64::from(self.places));
-        let part = move |units: i32, k: i64| (i64::from(units) * k / places) as i32;
-        (1..places)
-            .map_while(move |k| from.step(Vector { x: part(by.x, k), z: part(by.z, k) }).ok())
-    }
-
     /// How much more all labels on the way to a place tell than the one at its end, in labels that tell the most.
+    #[inline(never)]
     fn more(&self, to: Site, share: f32) -> f32 {
         let p = self.prediction.reliability(to);
-        let before = self.on_the_way(to).map(|site| (site, self.prediction.share_above(site)));
-        if p < FAINT {
-            return before.map(|(site, share)| self.prediction.information(site, share)).sum();
+        let (by, places) = (to - self.from, i32::from(self.places));
+        let (mut above, mut faint) = ([share; PLACES], 0.0);
+        for (k, above) in (1..places).zip(&mut above) {
+            // Wide enough: a way is shorter than 2^30 lattice units.
+            let part = |units: i32| (i64::from(units) * i64::from(k) / i64::from(places)) as i32;
+            let Ok(site) = self.from.step(Vector { x: part(by.x), z: part(by.z) }) else {
+                continue;
+            };
+            *above = self.prediction.share_above(site);
+            if p < FAINT {
+                faint += self.prediction.information(site, *above);
+            }
         }
-        let above: Vec<f32, PLACES, u8> =
-            before.map(|(_, share)| share).chain([share]).map(|it| it.clamp(0.0, 1.0)).collect();
-        let end = above.last().copied().unwrap_or_default();
-        (told(&above, p) - told(&[end], p)) / (1.0 - entropy(p))
+        if p < FAINT {
+            return faint;
+        }
+        let above = above.map(|it| it.clamp(0.0, 1.0));
+        let along = above.get(..usize::from(self.places)).unwrap_or_default();
+        (told(along, p) - told(&[share.clamp(0.0, 1.0)], p)) / (1.0 - entropy(p))
     }
 }
 
 /// The information of labels along a way, bits. The shares of lines above each place are given, and how often labels are
 /// true.
+#[inline(never)] // one for all beliefs
 fn told(above: &[f32], p: f32) -> f32 {
     let (mut least, mut most, mut sum) = (1.0_f32, 0.0_f32, 0.0_f32);
     for (k, &share) in above.iter().enumerate() {
@@ -153,6 +156,8 @@ impl<P: Predictor> Predictor for OnTheWay<P> {
 
 #[cfg(test)]
 mod tests {
+    use heapless::Vec;
+
     use super::*;
 
     /// The same by definition, in double precision: the entropy of the labels, less what is left of it where it is known
