@@ -116,7 +116,7 @@ pub(crate) fn declined(declined: DeclinedError, setup: &Setup, readings: u32) ->
             if readings > 1 {
                 return anyhow!(
                     "readings: found {readings} in each of {} steps, expected at most {most} in all: the board has \
-                     room for {samples} samples and {hypotheses} hypotheses, {} of the samples the oracle's",
+                     room for {samples} samples and {hypotheses} hypotheses, {} of the samples given",
                     setup.steps,
                     setup.given.len(),
                 );
@@ -127,7 +127,7 @@ pub(crate) fn declined(declined: DeclinedError, setup: &Setup, readings: u32) ->
             };
             anyhow!(
                 "{key}: found {found}, expected at most {most}: the board has room for {samples} samples \
-                 and {hypotheses} hypotheses, {} of the samples the oracle's",
+                 and {hypotheses} hypotheses, {} of the samples given",
                 setup.given.len(),
             )
         }
