@@ -200,6 +200,7 @@ pub use crate::planner::scc::{Policy, Scc};
 pub use crate::planner::setup::{Restart, aimed_for};
 pub use crate::planner::sight::{Near, Sight};
 pub use crate::planner::snapshot::{Persist, SNAPSHOT_VERSION, Snapshot};
+pub use crate::planner::track::Track;
 pub use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
 pub use crate::robot::{Agent, Event, PinSensor, Step, ThresholdSensor, Vehicle};
 pub use crate::search::objective::EffortWeight;

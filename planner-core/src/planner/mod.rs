@@ -15,6 +15,7 @@ pub mod audit;
 pub mod cfc;
 mod decision;
 pub mod far;
+mod lap;
 pub mod lookahead;
 pub mod options;
 pub mod scc;
@@ -22,6 +23,7 @@ pub mod setup;
 pub mod sight;
 pub mod silence;
 pub mod snapshot;
+pub mod track;
 mod vote;
 pub mod watched;
 

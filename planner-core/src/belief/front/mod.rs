@@ -34,6 +34,7 @@ mod settings;
 mod tracker;
 mod waist;
 
+pub(crate) use grid::Unit;
 pub use memory::FrontMemory;
 pub use settings::Front;
 pub use tracker::Tracker;

@@ -11,6 +11,7 @@ use crate::belief::front::waist::Waist;
 use crate::belief::goal::{Criterion, Goal};
 use crate::belief::noise::Noise;
 use crate::belief::observation_log::{FromLog, ReplayError};
+use crate::belief::predictions::{entropy, information};
 use crate::belief::sample::{Label, Reading, Sample};
 use crate::belief::tolerance::Tolerance;
 use crate::belief::trust::{AnyReliability, Trust as _};
@@ -263,6 +264,13 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
     /// The evidence of the labels against what was told of the front and of the sensor.
     pub const fn evidence(&self) -> &Evidence {
         &self.evidence
+    }
+
+    /// The expected information of a label at a place with this share of the curves above, as a share of the most that
+    /// a label can carry.
+    pub(crate) fn tells(&self, share: f32) -> f32 {
+        let p = self.counted();
+        information(share, p, (p, 1.0 - entropy(p)))
     }
 
     /// What was told of the front.

@@ -1,5 +1,7 @@
 //! Where a front is known best.
 
+use crate::belief::front::grid::{Unit, angle, metres};
+use crate::geometry::approximate::sqrt;
 use crate::geometry::heading::Heading;
 use crate::geometry::lattice::Site;
 
@@ -26,7 +28,23 @@ impl Waist {
     pub fn half_width(&self, probability: f64) -> f64 {
         f64::from(self.deviation) * deviations(probability)
     }
+
+    /// The direction of the front beside a site, by its curvature.
+    pub(crate) fn heading_beside(&self, site: Site) -> Heading {
+        let [ahead, _] = Unit::of(self.heading).seen(metres(site - self.site));
+        self.heading.turned(angle((self.curvature * ahead).clamp(-MOST_TURN, MOST_TURN)))
+    }
+
+    /// The standard deviation of the front beside a site, metres: that of its direction counts by the distance.
+    pub(crate) fn deviation_beside(&self, site: Site) -> f32 {
+        let [x, z] = metres(site - self.site);
+        let square = (x * x + z * z) * self.turn_deviation * self.turn_deviation;
+        sqrt(self.deviation * self.deviation + square)
+    }
 }
+
+/// A front is not followed round further than this by its curvature alone, radians.
+const MOST_TURN: f32 = 1.5;
 
 /// Within so many deviations of its mean a Gaussian has a probability, to 2 10^-3: by Winitzki's inverse of the error
 /// function.
