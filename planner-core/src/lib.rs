@@ -68,6 +68,7 @@
 //! | a planner | [`Lookahead`]. [`Cfc`] and [`Scc`] are the paper's Algorithms 1 and 2 |
 //! | labels that are true | [`VersionSpace`], with a tolerance if positions err |
 //! | labels that are sometimes wrong | [`NoisyBelief`], made with a [`Noise`]: how often labels are right |
+//! | a boundary that bends or moves, to go along it | [`Track`] with a [`Tracker`] |
 //! | a boundary that bends or moves a little | a tolerance from a [`Deviation`] |
 //! | to stop when the line is known well enough | [`Goal`] |
 //! | a large area, few labels | [`Far`] sight: [`Lookahead::seeing`] |
@@ -126,7 +127,7 @@
 //!   [`ObservationError`](error::ObservationError), and the planner stays as it was.
 //! - Positions lie within 8,192 m of the origin, one motion is shorter than 3,000 m, and a buffer holds
 //!   3 to 128 samples.
-//! - The boundary is one straight, still line. Wrap the planner in [`Watched`](watch::Watched): then
+//! - The boundary is one straight, still line, but for [`Track`]. Wrap the planner in [`Watched`](watch::Watched): then
 //!   [`Step::alarm`] says when the labels speak against it.
 //! - [`Cfc`] and [`Scc`] look one step ahead, [`Lookahead`] two.
 

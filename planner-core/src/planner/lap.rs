@@ -5,7 +5,6 @@ use crate::geometry::approximate::distance;
 use crate::geometry::heading::Heading;
 use crate::geometry::lattice::Site;
 use crate::motion::dynamics::Pose;
-use crate::planner::track::agree;
 
 /// A front is closed when it has turned by this, three quarters of a turn, and is back; in units of 2^-32 turns.
 const TURNED: i64 = 3 << 30;
@@ -34,6 +33,11 @@ impl Lap {
         self.begun.map(|(_, sense, _)| sense)
     }
 
+    /// The robot goes on in the other direction.
+    pub(crate) fn turn(&mut self) {
+        self.begun = self.begun.map(|(site, sense, heading)| (site, !sense, heading));
+    }
+
     /// Whether the robot has been all around.
     pub(crate) const fn is_closed(&self) -> bool {
         self.is_closed
@@ -43,7 +47,7 @@ impl Lap {
     pub(crate) fn observe(&mut self, found: Option<Waist>, pose: Pose, reach: f32) {
         let Some(Waist { site, heading, .. }) = found else { return };
         let Some((start, sense, last)) = self.begun else {
-            self.begun = Some((site, agree(pose.heading, heading), heading));
+            self.begun = Some((site, pose.heading.agrees(heading), heading));
             return;
         };
         self.turned += i64::from(heading.since(last).0 as i32);

@@ -3,6 +3,7 @@
 //! | module | planner |
 //! | --- | --- |
 //! | [`lookahead`] | goes where labels are expected to tell the most, whether they are true or sometimes wrong |
+//! | [`track`] | finds a front that bends and moves, and goes along it |
 //! | [`cfc`] | the paper's Algorithm 1, for labels that are true |
 //! | [`scc`] | the paper's Algorithm 2, for labels that are sometimes wrong |
 //!

@@ -7,6 +7,8 @@
 //! - **Follow**: once the front is found, an end of the next motion is worth the information of its label, and the
 //!   progress along the front as a share of the reach. Where the front is not known well, progress counts less. So the
 //!   robot stops to look where it must.
+//! - **Go round**: where a keep-out lies on the front, the robot goes to the first place beyond it. Where the front leaves the
+//!   area, it goes back in the other direction.
 //! - **Come home**: where no label in reach would tell anything, the robot goes back to where the front is known best.
 //! - **Begin again**: an alarm of the tracker's evidence says that the front bends more tightly than was told, or is lost.
 //!   Then it is sought anew nearby.
@@ -22,7 +24,6 @@ use crate::belief::tolerance::Tolerance;
 use crate::belief::{Belief as _, ObservationError};
 use crate::geometry::approximate::{METRE, distance};
 use crate::geometry::area::Area;
-use crate::geometry::heading::Heading;
 use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose};
@@ -78,6 +79,9 @@ const AGAIN: f32 = 6.0;
 
 /// An errand ends within this share of the reach.
 const NEAR: f32 = 0.25;
+
+/// A keep-out on the front is passed if it is no longer than so many reaches.
+const BEYOND: u16 = 10;
 
 /// A planner that finds a front and goes along it: `D` is the vehicle, `G` the area; the rest are the
 /// [`Tracker`]'s.
@@ -219,6 +223,32 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         best
     }
 
+    /// The first place on the front in the area, from so many reaches ahead of a pose on.
+    fn first_free(&self, aim: &Aim, pose: Pose, from: u16) -> Option<Site> {
+        let reach = self.reach() * METRE;
+        let reach = if aim.is_along { reach } else { -reach };
+        let beside = aim.waist.ahead(pose.site);
+        let place = |k: u16| aim.waist.place_at(beside + f32::from(k) * reach);
+        (from..=BEYOND).map_while(place).find(|site| self.area.contains(*site))
+    }
+
+    /// How the front goes on from a pose.
+    fn onward(&self, aim: &Aim, pose: Pose) -> Onward {
+        let (next, beyond) = (self.first_free(aim, pose, 1), self.first_free(aim, pose, 2));
+        match beyond {
+            _ if next != beyond => Onward::Free,
+            Some(site) => Onward::Beyond(site),
+            None => Onward::Over,
+        }
+    }
+
+    /// Which way to go along the front, if it is found.
+    fn aim(&self, pose: Pose) -> Option<Aim> {
+        let waist = self.found()?;
+        let is_along = self.lap.sense().unwrap_or_else(|| pose.heading.agrees(waist.heading));
+        Some(Aim::new(waist, pose, is_along))
+    }
+
     /// The motion to an end, if a label is to be read there.
     fn motion(&mut self, pose: Pose, leg: Leg, wants_label: bool, effort: Effort) -> Plan {
         let found = Found::of(None, leg);
@@ -228,17 +258,29 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
     }
 }
 
+/// How the front goes on.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Onward {
+    /// The robot may go on along it.
+    Free,
+    /// A keep-out lies on it, and here it is free again.
+    Beyond(Site),
+    /// It leaves the area.
+    Over,
+}
+
 /// Which way the robot goes along the front.
 struct Aim {
     waist: Waist,
+    is_along: bool,
     along: Unit,
 }
 
 impl Aim {
     fn new(waist: Waist, pose: Pose, is_along: bool) -> Self {
-        let Unit { x, z } = Unit::of(waist.heading_beside(pose.site));
+        let Unit { x, z } = Unit::of(waist.heading_at(waist.ahead(pose.site)));
         let sign = if is_along { 1.0 } else { -1.0 };
-        Self { waist, along: Unit { x: sign * x, z: sign * z } }
+        Self { waist, is_along, along: Unit { x: sign * x, z: sign * z } }
     }
 
     /// The progress of a way that ends at a site, as a share of the reach. It counts less where the front is not known well.
@@ -251,33 +293,30 @@ impl Aim {
     }
 }
 
-/// Whether two headings are less than a quarter turn apart.
-pub(crate) fn agree(a: Heading, b: Heading) -> bool {
-    (a.since(b).0 as i32).unsigned_abs() < 1 << 30
-}
-
 impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> Planner
     for Track<D, K, M, L, G>
 {
     type Belief = Tracker<K, M, L>;
 
     fn plan(&mut self, pose: Pose) -> Plan {
-        let found = self.found();
-        let aim = found.map(|waist| {
-            let is_along = self.lap.sense().unwrap_or_else(|| agree(pose.heading, waist.heading));
-            Aim::new(waist, pose, is_along)
-        });
+        let aim = self.aim(pose);
         let is_inside = self.area.contains(pose.site);
         let (best, examined) = self.best_end(pose, aim.as_ref());
-        let place = match found {
-            _ if !is_inside => pose.site.step(self.area.way_home(pose.site)).ok(),
-            Some(waist) => best.is_none().then_some(waist.site),
-            None => self.far_place(pose, best.map_or(0.0, |best| best.worth)),
+        // In this order: the first to which there is a way.
+        let places = match &aim {
+            _ if !is_inside => [pose.site.step(self.area.way_home(pose.site)).ok(), None],
+            Some(aim) => match self.onward(aim, pose) {
+                Onward::Beyond(site) => [Some(site), None],
+                _ if best.is_some() => [None; 2],
+                _ => [self.first_free(aim, pose, 0), Some(aim.waist.site)],
+            },
+            None => [self.far_place(pose, best.map_or(0.0, |best| best.worth)), None],
         };
         let mut effort = Effort { looks: LOOKS, examined };
         let near = NEAR * self.reach();
         let with = (&self.dynamics, &self.area);
-        let on_the_way = place.and_then(|site| errand(with, pose, (site, near), &mut effort));
+        let mut places = places.into_iter().flatten();
+        let on_the_way = places.find_map(|site| errand(with, pose, (site, near), &mut effort));
         match (on_the_way, best) {
             (Some(Errand { leg, .. }), _) => {
                 let told = self.tracker.tells(self.tracker.share_above(leg.1.site));
@@ -308,6 +347,9 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
         }
         let (found, reach) = (self.found(), self.reach());
         self.lap.observe(found, pose, reach);
+        if self.aim(pose).is_some_and(|aim| self.onward(&aim, pose) == Onward::Over) {
+            self.lap.turn();
+        }
         Ok(())
     }
 

@@ -3,7 +3,7 @@
 use crate::belief::front::grid::{Unit, angle, metres};
 use crate::geometry::approximate::sqrt;
 use crate::geometry::heading::Heading;
-use crate::geometry::lattice::Site;
+use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
 
 /// The place where a front is known best, and how well it is known there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,10 +29,23 @@ impl Waist {
         f64::from(self.deviation) * deviations(probability)
     }
 
-    /// The direction of the front beside a site, by its curvature.
-    pub(crate) fn heading_beside(&self, site: Site) -> Heading {
+    /// How far along the front a site lies, metres.
+    pub(crate) fn ahead(&self, site: Site) -> f32 {
         let [ahead, _] = Unit::of(self.heading).seen(metres(site - self.site));
+        ahead
+    }
+
+    /// The direction of the front so many metres ahead, by its curvature.
+    pub(crate) fn heading_at(&self, ahead: f32) -> Heading {
         self.heading.turned(angle((self.curvature * ahead).clamp(-MOST_TURN, MOST_TURN)))
+    }
+
+    /// The place on the front so many metres ahead, by its curvature. `None` off the lattice.
+    pub(crate) fn place_at(&self, ahead: f32) -> Option<Site> {
+        // A chord has the direction of the middle of its arc.
+        let Unit { x, z } = Unit::of(self.heading_at(0.5 * ahead));
+        let [x, z] = [x, z].map(|it| (it * ahead * UNITS_PER_METRE as f32) as i32);
+        self.site.step(Vector::new(x, z)?).ok()
     }
 
     /// The standard deviation of the front beside a site, metres: that of its direction counts by the distance.
@@ -60,6 +73,23 @@ fn deviations(probability: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_place_ahead_lies_on_the_arc() {
+        let waist = Waist {
+            site: Site::metres([20.0, 0.0]).unwrap(),
+            heading: Heading(1 << 30),
+            curvature: 0.05,
+            deviation: 0.0,
+            turn_deviation: 0.0,
+        };
+        for ahead in [-20.0, -5.0, 1.0, 8.0, 15.0_f32] {
+            let site = waist.place_at(ahead).unwrap();
+            let [x, z] = [site.x(), site.z()].map(|it| f64::from(it) / 65_536.0);
+            let off = libm::hypot(x, z) - 20.0;
+            assert!(off.abs() < 0.05 * f64::from(ahead.abs()), "{ahead}: {off}");
+        }
+    }
 
     #[test]
     fn widths_are_those_of_a_gaussian() {
