@@ -248,8 +248,8 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
         }
     }
 
-    /// Lets offsets diffuse by a variance in squares of the cells' height, by a box with ends in parts of a cell. It
-    /// is as good as a Gaussian.
+    /// Lets offsets diffuse by a variance in squares of the cells' height, by a box with ends in parts of a cell. It is as
+    /// good as a Gaussian.
     pub(crate) fn blur_offsets(&mut self, variance: f32) {
         // So many whole cells to either side, whose variance is less, and a part of the next.
         let whole = (sqrt(3.0 * variance + 0.25) - 0.5) as u16;
@@ -258,27 +258,43 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
         let more = if more > 0.0 { more } else { 0.0 };
         let part = (n + 0.5) * more / ((n + 1.0) * (n + 1.0) - variance);
         let half = n + 0.5 + part;
-        let per_width = 0.5 / half;
         for column in self.mass.iter_mut().flatten() {
-            let sums = Sums::of(column);
-            let (first, last) = (column.first().copied(), column.last().copied());
-            let [first, last] = [first, last].map(|it| it.unwrap_or(0.0));
-            let (mut cell, mut kept) = (0.5, 0.0);
-            for mass in column.iter_mut() {
-                *mass = (sums.below(cell + half) - sums.below(cell - half)) * per_width;
-                kept += *mass;
-                cell += 1.0;
+            if whole == 0 {
+                mix_neighbours(column, 0.5 * part / half);
+            } else {
+                blur(column, half);
             }
-            // What would lie beyond stays in the edge cells.
-            let beyond = sums.total() - kept;
-            let beyond = if beyond > 0.0 { beyond } else { 0.0 };
-            let share = if first + last > 0.0 { first / (first + last) } else { 0.5 };
-            if let Some(mass) = column.first_mut() {
-                *mass += beyond * share;
-            }
-            if let Some(mass) = column.last_mut() {
-                *mass += beyond * (1.0 - share);
-            }
+        }
+    }
+}
+
+/// Lets a share of each cell's mass pass to each neighbour. None passes beyond the edges.
+fn mix_neighbours(column: &mut [f32], share: f32) {
+    let mut rest = column;
+    let mut from_before = 0.0;
+    while let Some((mass, after)) = rest.split_first_mut() {
+        let flow = after.first().map_or(0.0, |next| share * (*next - *mass));
+        *mass += from_before + flow;
+        (from_before, rest) = (-flow, after);
+    }
+}
+
+/// Blurs a column by a box of so many cells to either side. What would lie beyond stays in the edge cells.
+fn blur<const M: usize>(column: &mut [f32; M], half: f32) {
+    let (sums, per_width) = (Sums::of(column), 0.5 / half);
+    let [first, last] = [column.first(), column.last()].map(|it| it.copied().unwrap_or(0.0));
+    let (mut cell, mut kept) = (0.5, 0.0);
+    for mass in column.iter_mut() {
+        *mass = (sums.below(cell + half) - sums.below(cell - half)) * per_width;
+        kept += *mass;
+        cell += 1.0;
+    }
+    let beyond = sums.total() - kept;
+    let beyond = if beyond > 0.0 { beyond } else { 0.0 };
+    let share = if first + last > 0.0 { first / (first + last) } else { 0.5 };
+    for (edge, share) in [(0, share), (M.saturating_sub(1), 1.0 - share)] {
+        if let Some(mass) = column.get_mut(edge) {
+            *mass += beyond * share;
         }
     }
 }

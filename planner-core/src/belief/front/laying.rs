@@ -78,24 +78,31 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
         }
     }
 
-    /// Moves the pivot along the front to where a robot is, but not so far from the waist that most cells would be
-    /// wasted.
-    pub(crate) fn follow(&mut self, robot: Site, tail: f32) {
+    /// Makes room for offsets that will diffuse by a margin, metres. If the front bends, it also moves the pivot along it to
+    /// where a robot is, but not so far from the waist that most cells would be wasted.
+    pub(crate) fn follow(&mut self, robot: Site, margin: f32, tail: f32) {
+        let lay = self.lay;
         let moments = Moments::of(self);
-        if self.lay.is_whole::<K>() || moments.total <= 0.0 {
+        if moments.total <= 0.0 {
             return;
         }
-        let [ahead, _] = Unit::of(moments.heading(self)).seen(metres(robot - self.lay.pivot));
-        let waist = self.waist_ahead(&moments);
-        let narrow =
-            moments.variance[1] - moments.covariance * moments.covariance / moments.variance[0];
-        let most = FOLLOWS
-            * sqrt(if narrow > 0.0 { narrow } else { 0.0 } / moments.variance[0])
-            * self.lay.step
-            / self.lay.turn;
-        let from_waist = (ahead - waist).clamp(-most, most);
-        let by = self.towards(&moments, from_waist);
-        if let Some(lay) = self.wanted(&moments, by, tail) {
+        let by = if lay.bend > 0.0 && !lay.is_whole::<K>() {
+            let [ahead, _] = Unit::of(moments.heading(self)).seen(metres(robot - lay.pivot));
+            let waist = self.waist_ahead(&moments);
+            let [turns, offsets] = moments.variance;
+            let narrow = offsets - moments.covariance * moments.covariance / turns;
+            let narrow = if narrow > 0.0 { narrow } else { 0.0 };
+            let most = FOLLOWS * sqrt(narrow / turns) * lay.step / lay.turn;
+            self.towards(&moments, (ahead - waist).clamp(-most, most))
+        } else {
+            None
+        };
+        let wanted = self.wanted(&moments, by, tail);
+        if margin > 0.0 {
+            let Lay { low, step, .. } = wanted.unwrap_or(lay);
+            let wider = step + 2.0 * margin / M as f32;
+            self.lay_anew(Lay { low: low - margin, step: wider, ..wanted.unwrap_or(lay) });
+        } else if let Some(lay) = wanted {
             self.lay_anew(lay);
         }
     }
@@ -202,14 +209,17 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
         }
         let high = lay.step * M as f32;
         let (from, place) = (lay.low + least, (most - least + high) / PLACES as f32);
+        let (per_place, stride) = (1.0 / place, lay.step / place);
         let mut places = [0.0; PLACES];
         for (l, layer) in self.mass.iter().enumerate() {
             for (k, column) in layer.iter().enumerate() {
-                let mut at = (lay.low + shifts(l, k) - from) / place;
+                // A cell counts where its middle is: places are about as wide.
+                let mut at = (lay.low + shifts(l, k) + 0.5 * lay.step - from) * per_place;
                 for mass in column {
-                    let next = at + lay.step / place;
-                    spread(&mut places, [at, next], *mass);
-                    at = next;
+                    if let Some(sum) = places.get_mut(at as usize) {
+                        *sum += mass;
+                    }
+                    at += stride;
                 }
             }
         }

@@ -188,11 +188,8 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
         let elapsed = if elapsed < 16.0 { elapsed } else { 16.0 };
         let deviation = pace * sqrt(elapsed);
         let lay = self.grid.lay;
-        if deviation > 0.5 * lay.step {
-            let (more, range) = (3.0 * deviation, lay.step * M as f32);
-            let step = (range + 2.0 * more) / M as f32;
-            self.grid.lay_anew(Lay { low: lay.low - more, step, ..lay });
-        }
+        let margin = if deviation > 0.5 * lay.step { 3.0 * deviation } else { 0.0 };
+        self.grid.follow(to, margin, TAIL);
         let lay = self.grid.lay;
         if pace > 0.0 {
             let (offset, turn) = (deviation / lay.step, deviation / (LEVER * lay.turn));
@@ -200,14 +197,12 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
             self.grid.mix_columns(turn * turn);
         }
         if bends {
-            self.grid.follow(to, TAIL);
             let share = 0.5 * BENDS * elapsed;
             self.grid.mix_layers(if share < 0.25 { share } else { 0.25 });
         }
         let even = EVEN * elapsed;
         let more = even * (1.0 - self.share_nowhere()) / (K * M * L) as f32;
         self.grid.cells().for_each(|mass| *mass = *mass * (1.0 - even) + more);
-        self.grid.lay_around(TAIL);
     }
 
     fn take(&mut self, site: Site, label: Label, tolerance: Tolerance) {
