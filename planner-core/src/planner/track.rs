@@ -7,14 +7,14 @@
 //! - **Follow**: once the front is found, an end of the next motion is worth the information of its label, and the
 //!   progress along the front as a share of the reach. Where the front is not known well, progress counts less. So the
 //!   robot stops to look where it must.
-//! - **Go round**: where a keep-out lies on the front, the robot goes to the first place beyond it. Where the front leaves the
-//!   area, it goes back in the other direction.
-//! - **Come home**: where no label in reach would tell anything, the robot goes back to where the front is known best.
-//! - **Begin again**: an alarm of the tracker's evidence says that the front bends more tightly than was told, or is lost.
-//!   Then it is sought anew nearby.
+//! - **Go round**: where a keep-out lies on the front, the robot goes to the first place beyond it. Where the front
+//!   leaves the area, it goes back in the other direction.
+//! - **Come home**: where no label in reach would tell anything, the robot goes back to the front.
+//! - **Begin again**: an alarm of the tracker's evidence says that the front bends more tightly than was told, or is
+//!   lost. Then it is sought anew nearby.
 //!
-//! A plan looks at [`LOOKED_AT`] places at most. It does not end by itself, unless there is no way on. The user ends it, for
-//! example when the front [is closed](Track::is_closed).
+//! A plan looks at [`LOOKED_AT`] ends at most, and at 53 places where the front is sought. It does not end by itself,
+//! unless there is no way on. The user ends it, for example when the front [is closed](Track::is_closed).
 
 use crate::belief::evidence::Alarm;
 use crate::belief::front::{FrontMemory, Tracker, Unit, Waist};
@@ -43,8 +43,9 @@ use crate::search::recovery::Found;
 /// Ends of motions that a plan looks at, at most.
 pub const LOOKED_AT: u32 = 112;
 
-/// Circles on which a motion may end.
+/// Circles on which a motion may end, along a front, and where it is sought.
 const CIRCLES: u16 = 4;
+const SEEKING: u16 = 2;
 
 /// Places along the mean line, a reach apart, and others all over the area.
 const ALONG: u16 = 17;
@@ -59,8 +60,8 @@ const SHORT: f32 = 0.125;
 /// Of a Gaussian 90 % lie within so many deviations.
 const DEVIATIONS: f32 = 1.645;
 
-/// A front is found where its half-width is below so many reaches and its direction has a deviation below this, radians;
-/// and if there is one, with a probability of 1 less this.
+/// A front is found where its half-width is below so many reaches and its direction has a deviation below this,
+/// radians; and if there is one, with a probability of 1 less this.
 const FOUND: f32 = 1.5;
 const DIRECTED: f32 = 0.5;
 const NOWHERE: f32 = 0.05;
@@ -133,8 +134,8 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
 {
     /// A planner with what is known so far.
     ///
-    /// Motions end where the tracker's tolerance cannot bring the robot out of the area. They are no longer than an eighth
-    /// of the tightest bend's radius.
+    /// Motions end where the tracker's tolerance cannot bring the robot out of the area. They are no longer than an
+    /// eighth of the tightest bend's radius.
     ///
     /// # Errors
     /// [`SetupError`].
@@ -170,7 +171,8 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         f32::from(self.fastest) * self.dynamics.grid().step_units()
     }
 
-    /// What an end of a motion is worth that has this share of the curves above it; `None` if its label tells too little.
+    /// What an end of a motion is worth that has this share of the curves above it; `None` if its label tells too
+    /// little.
     fn worth(&self, from: Pose, to: Site, share: f32, aim: Option<&Aim>) -> Option<f32> {
         let told = self.tracker.tells(share);
         let (way, reach) = (to - from.site, self.reach());
@@ -193,8 +195,9 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         let (dynamics, area) = (&self.dynamics, &self.area);
         let share = |site: Site| self.tracker.share_above(site);
         let mut places = Places { dynamics, area, pose, share, find, examined: 0, most: LOOKED_AT };
-        for k in (1..=CIRCLES).rev() {
-            let speed = u32::from(self.fastest) * u32::from(k) / u32::from(CIRCLES);
+        let circles = if aim.is_some() { CIRCLES } else { SEEKING };
+        for k in (1..=circles).rev() {
+            let speed = u32::from(self.fastest) * u32::from(k) / u32::from(circles);
             if speed > 0 {
                 let _ = places.circle(speed as u16); // the outer ones count most
             }
@@ -283,7 +286,8 @@ impl Aim {
         Self { waist, is_along, along: Unit { x: sign * x, z: sign * z } }
     }
 
-    /// The progress of a way that ends at a site, as a share of the reach. It counts less where the front is not known well.
+    /// The progress of a way that ends at a site, as a share of the reach. It counts less where the front is not known
+    /// well.
     fn progress(&self, way: Vector, to: Site, reach: f32) -> f32 {
         let half = DEVIATIONS * self.waist.deviation_beside(to) * UNITS_PER_METRE as f32;
         let most = WIDTH * reach;

@@ -1,7 +1,8 @@
 //! The ends of motions at which a front is as likely to lie on one side as on the other.
 //!
-//! On each of some circles the search looks at a few rays of the fan. Where the share of the curves above crosses one half
-//! between two of them, false position comes near to it. Each end that the vehicle may go to is handed on with its share.
+//! On each of some circles the search looks at a few rays of the fan. Where the share of the curves above crosses one
+//! half between two of them, false position comes near to it. Each end that the vehicle may go to is handed on with
+//! its share.
 
 use crate::geometry::lattice::Site;
 use crate::geometry::workspace::Workspace;
@@ -37,7 +38,8 @@ pub(crate) struct Places<'a, D, G, S, F> {
 }
 
 impl<D: Dynamics, G: Workspace, S: Fn(Site) -> f32, F: FnMut(Leg, f32)> Places<'_, D, G, S, F> {
-    /// Looks at the ends of one speed. `None` if that ends early: no more may be looked at, or one lies off the lattice.
+    /// Looks at the ends of one speed. `None` if that ends early: no more may be looked at, or one lies off the
+    /// lattice.
     pub(crate) fn circle(&mut self, speed: u16) -> Option<()> {
         let fan = self.dynamics.fan();
         let [left, right] = self.dynamics.rays_at(speed).unwrap_or([fan.left, fan.right]);

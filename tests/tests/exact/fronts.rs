@@ -5,7 +5,8 @@ use std::f64::consts::TAU;
 
 use nalgebra::{Point2, Vector2};
 use planner_core::{
-    Area, Belief as _, FromLog as _, Front, Heading, Label, Noise, Reading, Site, Tracker,
+    AnyReliability, Area, Belief as _, FromLog as _, Front, Heading, Label, Noise, Reading, Site,
+    Tolerance, Tracker,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -150,7 +151,7 @@ fn a_straight_front_is_known_as_by_a_dense_grid() {
     let [share, offset] = [&shares, &offsets].map(|it| Summary::of(it));
     println!("shares {share:.3?}, offsets {offset:.2?}, widths {widths:.2?}");
     assert!(share.mean < 0.02 && share.p95 < 0.08, "{share:?}");
-    assert!(widths.len() >= 4 && offset.mean < 0.3 && offset.p95 < 0.8, "{offset:?}");
+    assert!(widths.len() >= 4 && offset.mean < 0.35 && offset.p95 < 1.1, "{offset:?}");
     // Tails that few lines have make some of them much larger or smaller.
     let alike = widths.iter().filter(|it| (0.7..2.0).contains(*it)).count();
     assert!(alike * 10 >= widths.len() * 8, "{widths:?}");
@@ -172,22 +173,32 @@ impl Summary {
     }
 }
 
-/// The stated widths hold the truth as often as they say, or more often.
+/// The stated widths hold the truth as often as they say, or more often: of exact positions, of such that err, and of a
+/// reliability that follows its prior.
 #[test]
 fn stated_widths_of_straight_fronts_hold_the_truth() {
-    for (p, labels, least, most) in
-        [(1.0, 20, 0.95, 0.2), (1.0, 40, 0.93, 0.04), (0.9, 60, 0.9, 0.12)]
-    {
+    let known = |p: f64| Noise::<AnyReliability>::from(Noise::new(p).expect("a probability"));
+    let erring = Noise { tolerance: Tolerance::new(0.9).expect("a length"), ..known(0.9) };
+    let unknown = Noise::beta(8.0, 2.0).expect("a prior").into();
+    for (name, p, noise, labels, least, most) in [
+        ("true labels", Some(1.0), known(1.0), 20, 0.95, 0.1),
+        ("true labels", Some(1.0), known(1.0), 40, 0.95, 0.02),
+        ("p = 0.9", Some(0.9), known(0.9), 60, 0.93, 0.04),
+        ("positions that err", Some(0.9), erring, 60, 0.9, 0.15),
+        ("a reliability by its prior", None, unknown, 60, 0.86, 0.5),
+    ] {
         let mut rng = ChaCha8Rng::seed_from_u64(32);
         let fields = cases(80, 300);
         let (mut holds, mut errors) = (0, Vec::new());
         for _ in 0..fields {
             let (through, angle) = line(&mut rng);
-            let noise = Noise::new(p).expect("a probability");
+            let deviation = noise.tolerance.metres() / 3.0;
+            let p = p.unwrap_or_else(|| beta_8_2(&mut rng));
             let mut tracker = Tracker::<16, 16, 1>::new(area(), Front::STRAIGHT, noise);
             for _ in 0..labels {
                 let at = open_place(&tracker, &mut rng);
-                let is_above = (left(at, through, angle) > 0.0) == rng.random_bool(p);
+                let error = Vector2::new(gauss(&mut rng), gauss(&mut rng)) * deviation;
+                let is_above = (left(at + error, through, angle) > 0.0) == rng.random_bool(p);
                 tracker.observe(site(at), label(is_above).into()).expect("a label");
             }
             let waist = tracker.waist();
@@ -197,10 +208,18 @@ fn stated_widths_of_straight_fronts_hold_the_truth() {
         }
         errors.sort_by(f64::total_cmp);
         let (share, median) = (holds as f64 / fields as f64, errors[errors.len() / 2]);
-        println!("p {p}, {labels} labels: {share:.3} hold, {median:.4} m off");
+        println!("{name}, {labels} labels: {share:.3} hold, {median:.4} m off");
         let slack = if is_long() { 0.0 } else { 0.03 };
-        assert!(share >= least - slack && median < most, "{p}, {labels}: {share}, {median}");
+        let fits = share >= least - slack && median < most;
+        assert!(fits, "{name}, {labels} labels, seed 32: {share}, {median}");
     }
+}
+
+/// A number that is drawn from Beta(8, 2): the second largest of nine.
+fn beta_8_2(rng: &mut ChaCha8Rng) -> f64 {
+    let mut drawn: Vec<f64> = (0..9).map(|_| rng.random_range(0.0..1.0)).collect();
+    drawn.sort_by(f64::total_cmp);
+    drawn[7]
 }
 
 /// A curve at the robot's foot: a place, a direction and a curvature.
@@ -360,5 +379,5 @@ fn a_tracker_has_the_same_bytes_on_every_machine() {
     let hash = bytes.iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
         (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3)
     });
-    assert_eq!((bytes.len(), hash), (3128, 0x458f_814f_88ab_06e5), "{hash:#x}");
+    assert_eq!((bytes.len(), hash), (3128, 0x0dcc_8303_2fbd_36c1), "{hash:#x}");
 }

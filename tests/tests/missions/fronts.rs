@@ -1,7 +1,7 @@
 //! Fronts that bend and move: a robot finds one and goes along it.
 //!
-//! Each mission has 2 m motions with a label at the end of each, and begins with four given points about its start. The map
-//! is the waist after each motion. It is compared with the front as it is then.
+//! Each mission has 2 m motions with a label at the end of each, and begins with four given points about its start.
+//! The map is the waist after each motion. It is compared with the front as it is then.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -307,12 +307,12 @@ fn check(p: f64, bounds: [Bounds; 6]) {
 #[test]
 fn true_labels_map_a_front() {
     let bounds = [
-        [0.12, 0.31, 1.03, 0.0],
-        [0.02, 0.13, 1.02, 0.0],
-        [0.12, 0.30, 1.05, 0.0],
-        [0.25, 0.75, 1.12, 0.0],
-        [0.12, 0.42, 1.05, 0.01],
-        [0.05, 0.20, 1.05, 0.0],
+        [0.02, 0.17, 1.02, 0.0],
+        [0.01, 0.10, 1.02, 0.0],
+        [0.08, 0.23, 1.05, 0.0],
+        [0.22, 0.65, 1.12, 0.0],
+        [0.10, 0.40, 1.05, 0.01],
+        [0.04, 0.15, 1.03, 0.0],
     ];
     check(1.0, bounds);
 }
@@ -320,18 +320,18 @@ fn true_labels_map_a_front() {
 #[test]
 fn labels_that_are_sometimes_wrong_map_a_front() {
     let bounds = [
-        [0.41, 1.7, 1.12, 0.0],
-        [0.14, 0.75, 1.05, 0.0],
-        [0.40, 1.4, 1.16, 0.01],
-        [0.65, 2.1, 1.42, 0.02],
-        [0.52, 1.8, 1.22, 0.01],
-        [0.15, 0.77, 1.06, 0.0],
+        [0.20, 0.90, 1.07, 0.0],
+        [0.08, 0.65, 1.03, 0.0],
+        [0.30, 1.2, 1.12, 0.01],
+        [0.50, 1.9, 1.38, 0.02],
+        [0.44, 1.7, 1.17, 0.02],
+        [0.12, 0.64, 1.04, 0.0],
     ];
     check(0.9, bounds);
 }
 
-/// Any vehicle goes along a front in a polygon with keep-outs: it stays inside, keeps out, and its plans are bounded and the
-/// same each time, also after a sleep.
+/// Any vehicle goes along a front in a polygon with keep-outs: it stays inside, keeps out, and its plans are bounded
+/// and the same each time, also after a sleep.
 #[test]
 fn any_vehicle_goes_along_a_front_and_keeps_out() {
     let car = Car::new(car::Shape {
@@ -388,7 +388,7 @@ fn go_along<D: Dynamics + Clone>(dynamics: D, p: f64, number: u64) {
     let followed = flown.followed;
     println!("vehicle {number}, p {p}: {followed:.0} m of 251 in {MOTIONS} motions, {most} looks");
     assert!(!flown.is_lost && most <= LOOKED_AT, "{number}, {p}");
-    assert!(followed > 170.0, "vehicle {number}, p {p}: {followed}");
+    assert!(followed > 140.0, "vehicle {number}, p {p}: {followed}");
 }
 
 #[test]
@@ -492,5 +492,5 @@ fn a_front_is_found_from_nothing() {
         lost += u64::from(flown.is_lost || flown.followed < 60.0);
     }
     println!("{lost} of {missions} are not found, or lost");
-    assert!(lost * 10 <= missions, "{lost} of {missions}");
+    assert!(lost * 20 <= missions, "{lost} of {missions}");
 }

@@ -14,10 +14,10 @@ const SINES: u32 = 60;
 /// Points of the coast in its length scale.
 const FINE: f64 = 40.0;
 
-/// The points of a coast from `-half` to `half` in x, for a [`Polyline`](crate::world::polyline::Polyline). Its heights have
-/// the standard deviation `height` and the correlation `exp(-d^2 / (2 length^2))` at a distance `d`; metres. They are a sum of
-/// sines with random phases and with the wave numbers of that correlation. Most of its bends have a radius above
-/// `length^2 / (3 height)`.
+/// The points of a coast from `-half` to `half` in x, for a [`Polyline`](crate::world::polyline::Polyline). Its
+/// heights have the standard deviation `height` and the correlation `exp(-d^2 / (2 length^2))` at a distance `d`;
+/// metres. They are a sum of sines with random phases and with the wave numbers of that correlation. Most of its bends
+/// have a radius above `length^2 / (3 height)`.
 pub fn coast(rng: &mut ChaCha8Rng, [height, length]: [f64; 2], half: f64) -> Way {
     let sines: Vec<_> = (0..SINES)
         .map(|_| {

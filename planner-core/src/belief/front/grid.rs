@@ -107,6 +107,7 @@ impl Lay {
 #[derive(Clone, Copy)]
 struct Ramp {
     place: f32,
+    width: f32,
     per_width: f32,
 }
 
@@ -156,7 +157,7 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
         let tilt = ahead * lay.turn * per_cell;
         let width = sqrt(1.0 + tilt * tilt) + 2.0 * blur * per_cell;
         // A cell's number is that of its lower edge, and its curves lie about its middle.
-        Ramp { place: off - 0.5 + 0.5 * width, per_width: 1.0 / width }
+        Ramp { place: off - 0.5 + 0.5 * width, width, per_width: 1.0 / width }
     }
 
     /// The mass of the curves that have a site on their +1 side, if positions err by `blur` either way, metres.
@@ -169,8 +170,12 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
         for (layer, bend) in self.mass.iter().zip(self.lay.bends::<L>()) {
             for (column, along) in layer.iter().zip(&self.along) {
                 let ramp = Self::ramp(self.lay, *along, bend, place, blur);
-                let mut cell = 0.0;
-                for mass in column {
+                // Cells that lie below all of the ramp, and those on it.
+                let whole = (ramp.place - ramp.width) as usize;
+                let below = column.get(..whole.min(M)).unwrap_or_default();
+                sum += below.iter().sum::<f32>();
+                let mut cell = whole as f32;
+                for mass in column.get(whole..).unwrap_or_default() {
                     let share = ramp.at(cell);
                     if share <= 0.0 {
                         break;
@@ -248,8 +253,8 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
         }
     }
 
-    /// Lets offsets diffuse by a variance in squares of the cells' height, by a box with ends in parts of a cell. It is as
-    /// good as a Gaussian.
+    /// Lets offsets diffuse by a variance in squares of the cells' height, by a box with ends in parts of a cell. It
+    /// is as good as a Gaussian.
     pub(crate) fn blur_offsets(&mut self, variance: f32) {
         // So many whole cells to either side, whose variance is less, and a part of the next.
         let whole = (sqrt(3.0 * variance + 0.25) - 0.5) as u16;

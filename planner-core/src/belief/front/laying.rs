@@ -78,8 +78,8 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
         }
     }
 
-    /// Makes room for offsets that will diffuse by a margin, metres. If the front bends, it also moves the pivot along it to
-    /// where a robot is, but not so far from the waist that most cells would be wasted.
+    /// Makes room for offsets that will diffuse by a margin, metres. If the front bends, it also moves the pivot along
+    /// it to where a robot is, but not so far from the waist that most cells would be wasted.
     pub(crate) fn follow(&mut self, robot: Site, margin: f32, tail: f32) {
         let lay = self.lay;
         let moments = Moments::of(self);
@@ -261,7 +261,13 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
                 if sums.total() <= 0.0 || until <= from {
                     continue;
                 }
-                for (k, masses) in masses.iter_mut().enumerate() {
+                // The new columns that it reaches.
+                let per_column = K as f32 / (end - begin);
+                let number =
+                    |at: f32| ((at - begin) * per_column).clamp(0.0, K as f32 - 1.0) as usize;
+                let (k_first, k_last) = (number(from), number(until));
+                let reached = masses.iter_mut().enumerate().skip(k_first);
+                for (k, masses) in reached.take(k_last + 1 - k_first) {
                     let low = if k == 0 && !is_whole { f32::MIN } else { edge(k as f32) };
                     let high =
                         if k + 1 == K && !is_whole { f32::MAX } else { edge(k as f32 + 1.0) };
