@@ -61,43 +61,47 @@ impl Lap {
 mod tests {
     use super::*;
 
-    /// Waists on a circle, and on an eight that comes back without a full turn.
-    #[test]
-    fn a_circle_closes_and_an_eight_does_not() {
-        let waist = |x: f64, z: f64, angle: f64| Waist {
+    fn waist(x: f64, z: f64, angle: f64) -> Waist {
+        Waist {
             site: Site::metres([x, z]).unwrap(),
             heading: Heading::from_radians(angle).unwrap(),
             curvature: 0.0,
             deviation: 0.1,
             turn_deviation: 0.01,
-        };
-        let reach = 2.0 * 65_536.0;
-        for is_circle in [true, false] {
-            let mut lap = Lap::NONE;
-            for step in 0..=72_u32 {
-                let angle = f64::from(step) * core::f64::consts::PI / 36.0;
-                let (sin, cos) = libm::sincos(angle);
-                let it = if is_circle {
-                    waist(20.0 * sin, -20.0 * cos, angle)
-                } else {
-                    waist(
-                        20.0 * sin,
-                        10.0 * libm::sin(2.0 * angle),
-                        libm::atan2(libm::cos(2.0 * angle), cos),
-                    )
-                };
-                assert!(!lap.is_closed(), "{step}");
-                lap.observe(Some(it), Pose { site: it.site, heading: Heading(1 << 31) }, reach);
-                if step == 68 {
-                    lap.observe(None, Pose { site: it.site, heading: it.heading }, reach);
-                }
-                if lap.is_closed() {
-                    assert!(is_circle && step > 70, "{step}");
-                    break;
-                }
-            }
-            assert_eq!(lap.is_closed(), is_circle);
-            assert_eq!(lap.sense(), Some(false));
         }
+    }
+
+    const REACH: f32 = 2.0 * 65_536.0;
+
+    /// Against the front's direction, and lost for a while.
+    #[test]
+    fn a_circle_closes_when_the_robot_is_back() {
+        let mut lap = Lap::NONE;
+        assert_eq!(lap.sense(), None);
+        let closed = (0..=72_u32).find(|step| {
+            let angle = -f64::from(*step) * core::f64::consts::PI / 36.0;
+            let (sin, cos) = libm::sincos(angle);
+            let it = waist(20.0 * sin, -20.0 * cos, angle);
+            let pose = Pose { site: it.site, heading: Heading(1 << 31) };
+            lap.observe((*step != 30).then_some(it), pose, REACH);
+            lap.is_closed()
+        });
+        assert_eq!((closed, lap.sense()), (Some(71), Some(false)));
+        lap.turn();
+        assert_eq!((lap.is_closed(), lap.sense()), (true, Some(true)));
+    }
+
+    /// The front goes out, turns round and comes back beside itself.
+    #[test]
+    fn a_bay_does_not_close() {
+        let mut lap = Lap::NONE;
+        let out = (0..10).map(|k| waist(2.0 * f64::from(k), 0.0, 0.0));
+        let back =
+            (0..12).map(|k| waist(20.0 - 2.0 * f64::from(k), 1.5, core::f64::consts::PI - 0.01));
+        for it in out.chain([waist(20.0, 0.7, 1.5)]).chain(back) {
+            lap.observe(Some(it), Pose { site: it.site, heading: it.heading }, REACH);
+            assert!(!lap.is_closed());
+        }
+        assert_eq!(lap.sense(), Some(true));
     }
 }
