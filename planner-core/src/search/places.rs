@@ -87,7 +87,7 @@ impl<D: Dynamics, G: Workspace, S: Fn(Site) -> f32, F: FnMut(Leg, f32)> Places<'
             }
             let part = (off_a / (off_a - off_b)).clamp(0.02, 0.98);
             let ahead = (part * (b.ray - a.ray) as u32 as f32) as u32;
-            let middle = (a.ray + i64::from(ahead)).clamp(a.ray + 1, b.ray - 1);
+            let middle = (a.ray + i64::from(ahead)).max(a.ray + 1).min(b.ray - 1);
             let probe = self.ask(middle, speed)?;
             if probe.off.abs() < NEAR_HALF {
                 break;

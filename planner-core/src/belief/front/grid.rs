@@ -50,6 +50,15 @@ pub(crate) fn radians(Angle(units): Angle) -> f32 {
     units as i32 as f32 * UNIT
 }
 
+/// A number, or the nearest that is no larger than `most` in size. Unlike `clamp` it cannot panic.
+pub(crate) fn limited(value: f32, most: f32) -> f32 {
+    match () {
+        () if value > most => most,
+        () if value < -most => -most,
+        () => value,
+    }
+}
+
 /// Where the cells of a grid lie.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

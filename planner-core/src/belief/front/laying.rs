@@ -4,7 +4,7 @@
 //! The pivot goes to the *waist*, the place where offset and direction are uncorrelated. There the columns have their
 //! mass at the same offsets, so that none is wasted.
 
-use crate::belief::front::grid::{Grid, Lay, Sums, Unit, angle, metres, radians};
+use crate::belief::front::grid::{Grid, Lay, Sums, Unit, angle, limited, metres, radians};
 use crate::belief::front::moments::Moments;
 use crate::geometry::approximate::sqrt;
 use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
@@ -93,7 +93,7 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
             let narrow = offsets - moments.covariance * moments.covariance / turns;
             let narrow = if narrow > 0.0 { narrow } else { 0.0 };
             let most = FOLLOWS * sqrt(narrow / turns) * lay.step / lay.turn;
-            self.towards(&moments, (ahead - waist).clamp(-most, most))
+            self.towards(&moments, limited(ahead - waist, most))
         } else {
             None
         };
@@ -121,7 +121,11 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
         if was_whole {
             let mean = radians(moments.heading(self).since(from)) / lay.turn;
             let first = (mean + 1.5 * K as f32) as usize % K;
-            columns.rotate_left(first);
+            let after = moments.columns.iter().skip(first);
+            let turned = after.chain(moments.columns.iter().take(first));
+            for (column, mass) in columns.iter_mut().zip(turned) {
+                *column = *mass;
+            }
             from = from.turned(angle(radians(angle(first as f32 * lay.turn))));
         }
         let [first, last] = match moved {
@@ -160,7 +164,7 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
     fn towards(&self, moments: &Moments<K, M>, from_waist: f32) -> Option<Vector> {
         let lay = self.lay;
         let most = if lay.bend > 0.0 { 0.5 / lay.bend } else { 2_048.0 };
-        let ahead = (self.waist_ahead(moments) + from_waist).clamp(-most, most);
+        let ahead = limited(self.waist_ahead(moments) + from_waist, most);
         let along = Unit::of(moments.heading(self));
         let left = lay.low + lay.step * (moments.mean[1] + 0.5 * M as f32);
         let left = (left + lay.bulge(moments.bend, ahead)).clamp(-2_048.0, 2_048.0);
@@ -267,7 +271,7 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
                     |at: f32| ((at - begin) * per_column).clamp(0.0, K as f32 - 1.0) as usize;
                 let (k_first, k_last) = (number(from), number(until));
                 let reached = masses.iter_mut().enumerate().skip(k_first);
-                for (k, masses) in reached.take(k_last + 1 - k_first) {
+                for (k, masses) in reached.take(k_last.wrapping_sub(k_first).wrapping_add(1)) {
                     let low = if k == 0 && !is_whole { f32::MIN } else { edge(k as f32) };
                     let high =
                         if k + 1 == K && !is_whole { f32::MAX } else { edge(k as f32 + 1.0) };

@@ -2,7 +2,7 @@
 
 use crate::belief::estimate::Estimates;
 use crate::belief::evidence::Evidence;
-use crate::belief::front::grid::{Grid, Lay, Unit, angle};
+use crate::belief::front::grid::{Grid, Lay, Unit, angle, limited};
 use crate::belief::front::learnt::Learnt;
 use crate::belief::front::memory::{FrontMemory, Masses};
 use crate::belief::front::moments::Moments;
@@ -238,7 +238,7 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
         let [turns, offsets] = moments.variance;
         let slope = moments.covariance / turns;
         let most = if lay.bend > 0.0 { 0.5 / lay.bend } else { 2_048.0 };
-        let ahead = (-slope * lay.step / lay.turn).clamp(-most, most);
+        let ahead = limited(-slope * lay.step / lay.turn, most);
         let left = lay.low + lay.step * (moments.mean[1] + 0.5 * M as f32);
         let left = left + lay.bulge(moments.bend, ahead);
         let along = Unit::of(heading);
