@@ -171,7 +171,7 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
 
     /// The mass of the curves that have a site on their +1 side, if positions err by `blur` either way, metres.
     ///
-    /// `O(K M L)`: some 4,000 instructions for 16 x 16 x 3.
+    /// `O(K M L)`: some 10,000 instructions for 16 x 16 x 3.
     #[inline(never)]
     pub(crate) fn above(&self, site: Site, blur: f32) -> f32 {
         let place = metres(site - self.lay.pivot);

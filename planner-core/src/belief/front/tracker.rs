@@ -163,7 +163,7 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
 
     /// The share of the curves that have a site on their +1 side.
     ///
-    /// `O(K M L)`: some 5,000 instructions for 16 x 16 x 3.
+    /// `O(K M L)`: some 10,000 instructions for 16 x 16 x 3.
     pub fn share_above(&self, site: Site) -> f32 {
         self.nowhere[0] + self.grid.above(site, Self::blur(self.noise.tolerance))
     }
@@ -177,7 +177,7 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
     /// ahead of the robot it may bend otherwise. A straight front that does not move stays as it is known.
     ///
     /// Call it once a motion, before the label at its end is observed. The unit of time is the one of the front's
-    /// [`speed`](Front::speed), and one motion should take about one. Some 60,000 instructions for 16 x 16 x 3.
+    /// [`speed`](Front::speed), and one motion should take about one. Some 200,000 instructions for 16 x 16 x 3.
     pub fn moved(&mut self, to: Site, elapsed: f32) {
         let bends = self.grid.lay.bend > 0.0;
         let pace = self.front.pace();
