@@ -8,8 +8,8 @@
 //!   seen from the label, and by the error of positions. `p` is 0.98 at most, so that one false label does not rule
 //!   out the truth.
 //! - **Laid by quantiles** (`laying.rs`). The grid spans the mass but for a thousandth on either side, and is laid anew
-//!   as that moves and shrinks. What lies beyond stays in the edge cells. So 16 by 16 cells are enough from an area of
-//!   a kilometre down to millimetres.
+//!   as that moves and shrinks. What lies beyond stays in the edge cells. So the cells shrink with what
+//!   is known, from metres to millimetres.
 //! - **Layers of curvature**: to the right, straight, to the left. In a unit of time a twentieth of each changes to its
 //!   neighbours, where the robot is. That is how a front bends: a curve that was known behind the robot is less so
 //!   ahead.
