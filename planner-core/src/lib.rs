@@ -68,6 +68,7 @@
 //! | a planner | [`Lookahead`]. [`Cfc`] and [`Scc`] are the paper's Algorithms 1 and 2 |
 //! | labels that are true | [`VersionSpace`], with a tolerance if positions err |
 //! | labels that are sometimes wrong | [`NoisyBelief`], made with a [`Noise`]: how often labels are right |
+//! | a boundary that bends or moves, to go along it | [`Track`] with a [`Tracker`] |
 //! | a boundary that bends or moves a little | a tolerance from a [`Deviation`] |
 //! | to begin with a slope or an intercept instead of points | [`bounds`] |
 //! | to stop when the line is known well enough | [`Goal`] |
@@ -128,7 +129,7 @@
 //!   [`ObservationError`](error::ObservationError), and the planner stays as it was.
 //! - Positions lie within 8,192 m of the origin, one motion is shorter than 3,000 m, and a buffer holds
 //!   3 to 128 samples.
-//! - The boundary is one straight, still line. Wrap the planner in [`Watched`](watch::Watched): then
+//! - The boundary is one straight, still line, but for [`Track`]. Wrap the planner in [`Watched`](watch::Watched): then
 //!   [`Step::alarm`] says when the labels speak against it.
 //! - [`Cfc`] and [`Scc`] look one step ahead, [`Lookahead`] two.
 
@@ -168,6 +169,7 @@ pub use crate::belief::deviation::Deviation;
 pub use crate::belief::doubtful_labels::CellPosterior;
 pub use crate::belief::doubtful_labels::{PosteriorView, ReliabilityEstimate};
 pub use crate::belief::estimate::Estimates;
+pub use crate::belief::front::{Front, FrontMemory, Tracker, Waist};
 pub use crate::belief::goal::{Accuracy, Criterion, Goal, NoGoal, ShareWithin, SlopeWithin};
 pub use crate::belief::noise::Noise;
 pub use crate::belief::observation_log::{FromLog, ObservationLog};
@@ -202,6 +204,7 @@ pub use crate::planner::scc::{Policy, Scc};
 pub use crate::planner::setup::{Restart, aimed_for};
 pub use crate::planner::sight::{AnySight, Near, Sight};
 pub use crate::planner::snapshot::{Persist, SNAPSHOT_VERSION, Snapshot};
+pub use crate::planner::track::Track;
 pub use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
 pub use crate::robot::{Agent, Event, PinSensor, Step, ThresholdSensor, Vehicle};
 pub use crate::search::objective::EffortWeight;

@@ -11,6 +11,7 @@
 //! | [`cells`] | the lines that agree with some labels, and what can be read off them |
 //! | [`estimate`] | three estimates of the line |
 //! | [`evidence`] | what speaks against a straight, still line |
+//! | [`front`] | a front that bends and moves, by a grid over curves |
 //! | [`goal`] | decides when the line is known well enough |
 //! | [`true_labels`] | for labels that are true: the version space |
 //! | [`doubtful_labels`] | for labels that may be wrong: a table of weighted cells, and its distribution |
@@ -25,6 +26,7 @@ pub mod deviation;
 pub mod doubtful_labels;
 pub mod estimate;
 pub mod evidence;
+pub mod front;
 pub mod goal;
 pub(crate) mod list;
 pub mod noise;

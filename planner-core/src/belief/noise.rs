@@ -84,6 +84,12 @@ impl From<Noise> for Noise<AnyReliability> {
     }
 }
 
+impl From<Noise<UnknownReliability>> for Noise<AnyReliability> {
+    fn from(Noise { reliability, trusted_radius, tolerance }: Noise<UnknownReliability>) -> Self {
+        Self { reliability: reliability.into(), trusted_radius, tolerance }
+    }
+}
+
 /// A radius in metres as lattice units; `None` when it is negative, not finite, or 8,192 m or more.
 pub fn trusted_radius(metres: f64) -> Option<u32> {
     let inside = Site::try_from(nalgebra::Point2::new(metres, 0.0)).ok()?;

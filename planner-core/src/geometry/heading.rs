@@ -50,6 +50,11 @@ impl Heading {
         Angle(self.0.wrapping_sub(other.0))
     }
 
+    /// Whether another heading is less than a quarter turn away.
+    pub(crate) const fn agrees(self, other: Self) -> bool {
+        (self.since(other).0 as i32).unsigned_abs() < 1 << 30
+    }
+
     /// The unit vector of this heading, to 2^-29. Integers alone: some 60 instructions.
     pub const fn unit(self) -> SinCos {
         // Within an eighth of a turn of a multiple of a quarter, sine and cosine are short series.

@@ -3,6 +3,7 @@
 //! | module | planner |
 //! | --- | --- |
 //! | [`lookahead`] | goes where labels are expected to tell the most, whether they are true or sometimes wrong |
+//! | [`track`] | finds a front that bends and moves, and goes along it |
 //! | [`cfc`] | the paper's Algorithm 1, for labels that are true |
 //! | [`scc`] | the paper's Algorithm 2, for labels that are sometimes wrong |
 //!
@@ -15,6 +16,7 @@ pub mod audit;
 pub mod cfc;
 mod decision;
 pub mod far;
+mod lap;
 pub mod lookahead;
 pub mod options;
 pub mod scc;
@@ -22,6 +24,7 @@ pub mod setup;
 pub mod sight;
 pub mod silence;
 pub mod snapshot;
+pub mod track;
 mod vote;
 pub mod watched;
 

@@ -22,6 +22,7 @@ pub(crate) mod lookout;
 pub(crate) mod manoeuvre;
 pub(crate) mod motions;
 pub mod objective;
+pub(crate) mod places;
 pub mod problem;
 pub mod recovery;
 pub(crate) mod view;

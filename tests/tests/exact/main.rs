@@ -5,6 +5,7 @@ mod construction;
 mod dynamics;
 mod estimates;
 mod exact_geometry;
+mod fronts;
 mod goals;
 mod hypotheses;
 mod own_tolerances;

@@ -8,6 +8,7 @@ mod doubtful_audits;
 mod failures;
 mod far;
 mod fields;
+mod fronts;
 mod garden;
 mod honesty;
 mod lawnmower;

@@ -3,6 +3,7 @@
 
 pub mod boundary;
 pub mod circle;
+pub mod coast;
 pub mod errors;
 pub mod extent;
 pub mod faults;

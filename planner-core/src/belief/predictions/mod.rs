@@ -13,8 +13,10 @@ mod verdicts;
 
 #[cfg(feature = "internals")]
 pub use columns::Columns;
+pub(crate) use noisy_belief::information;
 pub use noisy_belief::{NoisyBelief, sequences_of};
 pub(crate) use on_the_way::OnTheWay;
+pub(crate) use predictor::entropy;
 pub use predictor::{Prediction, PredictiveBelief, Predictor};
 pub use spread::{Spread, Stretch};
 pub(crate) use verdicts::{Heard, PLACES};

@@ -271,7 +271,7 @@ fn usual<const N: usize, const H: usize, R: Trust>(
 /// The expected information of a label that is true with probability `p`, as a share of the most that a label can
 /// carry. `most` is the reliability of labels outside the trusted balls, and `capacity` the bits that one of them can
 /// carry.
-fn information(share: f32, p: f32, (most, capacity): (f32, f32)) -> f32 {
+pub(crate) fn information(share: f32, p: f32, (most, capacity): (f32, f32)) -> f32 {
     if most < FAINT {
         // `1 - entropy` by its series, as no digits of that are left.
         let told = |bias: f32| bias * bias * (1.0 + bias * bias / 6.0);

@@ -1,0 +1,485 @@
+//! A distribution over curves: a mass for each direction, offset and curvature, in a frame that can be laid anew.
+//!
+//! Column `k` is a direction, cell `m` of it an offset to the left of the pivot, and layer `l` a curvature. Within a
+//! cell the density is even. At the distance `s` along its direction a curve lies `offset + curvature s^2 / 2` to the
+//! left.
+//!
+//! Lengths are metres from the pivot and angles are radians from the frame's heading, all in single precision. So
+//! digits are lost neither far from the origin nor where the distribution is narrow.
+
+use crate::geometry::approximate::{METRE, sqrt};
+use crate::geometry::heading::{Angle, Heading};
+use crate::geometry::lattice::{Site, Vector};
+
+/// A direction as a unit vector.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Unit {
+    pub(crate) x: f32,
+    pub(crate) z: f32,
+}
+
+impl Unit {
+    pub(crate) const ZERO: Self = Self { x: 0.0, z: 0.0 };
+
+    pub(crate) fn of(heading: Heading) -> Self {
+        const ONE: i32 = (1 << 30) - 1;
+        let Vector { x, z } = heading.unit().scaled(ONE);
+        Self { x: x as f32 / ONE as f32, z: z as f32 / ONE as f32 }
+    }
+
+    /// How far a place lies ahead, and how far to the left.
+    pub(crate) fn seen(self, [x, z]: [f32; 2]) -> [f32; 2] {
+        [self.x * x + self.z * z, self.x * z - self.z * x]
+    }
+}
+
+/// A vector in metres.
+pub(crate) fn metres(v: Vector) -> [f32; 2] {
+    [v.x as f32 * METRE, v.z as f32 * METRE]
+}
+
+/// An angle of so many radians, less than a turn in size.
+pub(crate) fn angle(radians: f32) -> Angle {
+    const UNITS: f32 = (1_u32 << 31) as f32 / core::f32::consts::PI;
+    Angle((radians * UNITS) as i64 as u32)
+}
+
+/// An angle in radians, from -pi to below pi.
+pub(crate) fn radians(Angle(units): Angle) -> f32 {
+    const UNIT: f32 = core::f32::consts::PI / (1_u32 << 31) as f32;
+    units as i32 as f32 * UNIT
+}
+
+/// A number, or the nearest that is no larger than `most` in size. Unlike `clamp` it cannot panic.
+pub(crate) fn limited(value: f32, most: f32) -> f32 {
+    match () {
+        () if value > most => most,
+        () if value < -most => -most,
+        () => value,
+    }
+}
+
+/// Where the cells of a grid lie.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Lay {
+    pub(crate) pivot: Site,
+    /// The direction in the middle of all columns.
+    pub(crate) heading: Heading,
+    /// From one column to the next, radians.
+    pub(crate) turn: f32,
+    /// The offset at the lower edge of the first cell, metres.
+    pub(crate) low: f32,
+    /// The height of a cell, metres.
+    pub(crate) step: f32,
+    /// The curvature of the last layer, 1/m. The first has the opposite.
+    pub(crate) bend: f32,
+}
+
+impl Lay {
+    pub(crate) const NONE: Self = Self {
+        pivot: Site::ORIGIN,
+        heading: Heading(0),
+        turn: 0.0,
+        low: 0.0,
+        step: 1.0,
+        bend: 0.0,
+    };
+
+    /// The curvatures of the layers.
+    pub(crate) fn bends<const L: usize>(self) -> impl Iterator<Item = f32> {
+        let last = L.saturating_sub(1);
+        let each = if last > 0 { 2.0 / last as f32 } else { 0.0 };
+        (0..L).map(move |l| if last > 0 { self.bend * (l as f32 * each - 1.0) } else { 0.0 })
+    }
+
+    /// Whether its columns go all around.
+    pub(crate) fn is_whole<const K: usize>(self) -> bool {
+        self.turn * K as f32 > 6.2
+    }
+
+    /// The angle from its heading to a place on its columns, counted in columns from the first one's edge.
+    pub(crate) fn angle_at<const K: usize>(self, columns: f32) -> f32 {
+        (columns - 0.5 * K as f32) * self.turn
+    }
+
+    /// How far a curve of some curvature bulges at a distance along its direction. Beyond the radius it bulges no more:
+    /// a front does not go round for ever.
+    pub(crate) fn bulge(self, bend: f32, ahead: f32) -> f32 {
+        let far = if self.bend > 0.0 { 1.0 / (self.bend * self.bend) } else { f32::MAX };
+        let square = ahead * ahead;
+        0.5 * bend * (if square < far { square } else { far })
+    }
+}
+
+/// The share of a cell's curves that have a place on their +1 side, by the number of the cell.
+#[derive(Clone, Copy)]
+struct Ramp {
+    place: f32,
+    width: f32,
+    per_width: f32,
+}
+
+impl Ramp {
+    fn at(self, cell: f32) -> f32 {
+        let share = (self.place - cell) * self.per_width;
+        match () {
+            () if share >= 1.0 => 1.0,
+            () if share > 0.0 => share,
+            () => 0.0,
+        }
+    }
+}
+
+/// The masses of curves.
+#[derive(Clone, Debug)]
+pub(crate) struct Grid<const K: usize, const M: usize, const L: usize> {
+    pub(crate) lay: Lay,
+    pub(crate) along: [Unit; K],
+    pub(crate) mass: [[[f32; M]; K]; L],
+}
+
+impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
+    /// No mass.
+    pub(crate) const NONE: Self = {
+        assert!(
+            K >= 4 && M >= 4 && L >= 1,
+            "a grid has 4 directions, 4 offsets and a layer at least"
+        );
+        Self { lay: Lay::NONE, along: [Unit::ZERO; K], mass: [[[0.0; M]; K]; L] }
+    };
+
+    /// Takes another frame. The masses stay in their cells.
+    pub(crate) fn set(&mut self, lay: Lay) {
+        self.lay = lay;
+        for (k, along) in self.along.iter_mut().enumerate() {
+            let turned = lay.angle_at::<K>(k as f32 + 0.5);
+            *along = Unit::of(lay.heading.turned(angle(turned)));
+        }
+    }
+
+    /// The ramp of a column for a place that errs by `blur` either way, metres.
+    fn ramp(lay: Lay, along: Unit, bend: f32, place: [f32; 2], blur: f32) -> Ramp {
+        let [ahead, left] = along.seen(place);
+        let per_cell = 1.0 / lay.step;
+        let off = (left - lay.bulge(bend, ahead) - lay.low) * per_cell;
+        let tilt = ahead * lay.turn * per_cell;
+        let width = sqrt(1.0 + tilt * tilt) + 2.0 * blur * per_cell;
+        // A cell's number is that of its lower edge, and its curves lie about its middle.
+        Ramp { place: off - 0.5 + 0.5 * width, width, per_width: 1.0 / width }
+    }
+
+    /// The mass of the curves that have a site on their +1 side, if positions err by `blur` either way, metres.
+    ///
+    /// `O(K M L)`: some 10,000 instructions for 16 x 16 x 3.
+    #[inline(never)]
+    pub(crate) fn above(&self, site: Site, blur: f32) -> f32 {
+        let place = metres(site - self.lay.pivot);
+        let mut sum = 0.0;
+        for (layer, bend) in self.mass.iter().zip(self.lay.bends::<L>()) {
+            for (column, along) in layer.iter().zip(&self.along) {
+                let ramp = Self::ramp(self.lay, *along, bend, place, blur);
+                // Cells that lie below all of the ramp, and those on it.
+                let whole = (ramp.place - ramp.width) as usize;
+                let below = column.get(..whole.min(M)).unwrap_or_default();
+                sum += below.iter().sum::<f32>();
+                let mut cell = whole as f32;
+                for mass in column.get(whole..).unwrap_or_default() {
+                    let share = ramp.at(cell);
+                    if share <= 0.0 {
+                        break;
+                    }
+                    sum += mass * share;
+                    cell += 1.0;
+                }
+            }
+        }
+        sum
+    }
+
+    /// Multiplies the mass of the curves that have a site on their +1 side by one number, and that of the others by
+    /// another. Returns the mass that is left.
+    #[inline(never)]
+    pub(crate) fn weigh(&mut self, site: Site, blur: f32, [plus, minus]: [f32; 2]) -> f32 {
+        let (place, lay) = (metres(site - self.lay.pivot), self.lay);
+        let mut sum = 0.0;
+        for (layer, bend) in self.mass.iter_mut().zip(lay.bends::<L>()) {
+            for (column, along) in layer.iter_mut().zip(&self.along) {
+                let ramp = Self::ramp(lay, *along, bend, place, blur);
+                let mut cell = 0.0;
+                for mass in column {
+                    *mass *= minus + (plus - minus) * ramp.at(cell);
+                    sum += *mass;
+                    cell += 1.0;
+                }
+            }
+        }
+        sum
+    }
+
+    /// Multiplies all masses by a number.
+    pub(crate) fn scale(&mut self, by: f32) {
+        self.cells().for_each(|mass| *mass *= by);
+    }
+
+    pub(crate) fn cells(&mut self) -> impl Iterator<Item = &mut f32> {
+        self.mass.iter_mut().flatten().flatten()
+    }
+
+    /// Lets a share of each layer's mass pass to each neighbouring one.
+    pub(crate) fn mix_layers(&mut self, share: f32) {
+        let mut rest = self.mass.as_mut_slice();
+        while let Some((layer, after)) = rest.split_first_mut() {
+            if let Some(next) = after.first_mut() {
+                let pairs = layer.iter_mut().flatten().zip(next.iter_mut().flatten());
+                for (a, b) in pairs {
+                    let flow = share * (*a - *b);
+                    *a -= flow;
+                    *b += flow;
+                }
+            }
+            rest = after;
+        }
+    }
+
+    /// Lets directions diffuse by a variance in squares of the turn between columns, 0.5 at most.
+    pub(crate) fn mix_columns(&mut self, variance: f32) {
+        let share = if variance < 0.5 { 0.5 * variance } else { 0.25 };
+        for layer in &mut self.mass {
+            let mut before: Option<[f32; M]> = None;
+            let mut rest = layer.as_mut_slice();
+            while let Some((column, after)) = rest.split_first_mut() {
+                let old = *column;
+                for (m, mass) in column.iter_mut().enumerate() {
+                    let at = |it: Option<&[f32; M]>| it.and_then(|it| it.get(m)).copied();
+                    let own = *mass;
+                    let flow = |other: Option<f32>| other.map_or(0.0, |other| other - own);
+                    *mass += share * (flow(at(before.as_ref())) + flow(at(after.first())));
+                }
+                before = Some(old);
+                rest = after;
+            }
+        }
+    }
+
+    /// Lets offsets diffuse by a variance in squares of the cells' height, by a box with ends in parts of a cell. It
+    /// is as good as a Gaussian.
+    pub(crate) fn blur_offsets(&mut self, variance: f32) {
+        // So many whole cells to either side, whose variance is less, and a part of the next.
+        let whole = (sqrt(3.0 * variance + 0.25) - 0.5) as u16;
+        let n = f32::from(whole);
+        let more = variance - n * (n + 1.0) / 3.0;
+        let more = if more > 0.0 { more } else { 0.0 };
+        let part = (n + 0.5) * more / ((n + 1.0) * (n + 1.0) - variance);
+        let half = n + 0.5 + part;
+        for column in self.mass.iter_mut().flatten() {
+            if whole == 0 {
+                mix_neighbours(column, 0.5 * part / half);
+            } else {
+                blur(column, half);
+            }
+        }
+    }
+}
+
+/// Lets a share of each cell's mass pass to each neighbour. None passes beyond the edges.
+fn mix_neighbours(column: &mut [f32], share: f32) {
+    let mut rest = column;
+    let mut from_before = 0.0;
+    while let Some((mass, after)) = rest.split_first_mut() {
+        let flow = after.first().map_or(0.0, |next| share * (*next - *mass));
+        *mass += from_before + flow;
+        (from_before, rest) = (-flow, after);
+    }
+}
+
+/// Blurs a column by a box of so many cells to either side. What would lie beyond stays in the edge cells.
+fn blur<const M: usize>(column: &mut [f32; M], half: f32) {
+    let (sums, per_width) = (Sums::of(column), 0.5 / half);
+    let [first, last] = [column.first(), column.last()].map(|it| it.copied().unwrap_or(0.0));
+    let (mut cell, mut kept) = (0.5, 0.0);
+    for mass in column.iter_mut() {
+        *mass = (sums.below(cell + half) - sums.below(cell - half)) * per_width;
+        kept += *mass;
+        cell += 1.0;
+    }
+    let beyond = sums.total() - kept;
+    let beyond = if beyond > 0.0 { beyond } else { 0.0 };
+    let share = if first + last > 0.0 { first / (first + last) } else { 0.5 };
+    for (edge, share) in [(0, share), (M.saturating_sub(1), 1.0 - share)] {
+        if let Some(mass) = column.get_mut(edge) {
+            *mass += beyond * share;
+        }
+    }
+}
+
+/// Masses summed up from the first.
+#[derive(Clone, Copy)]
+pub(crate) struct Sums<const M: usize> {
+    until: [f32; M],
+}
+
+impl<const M: usize> Sums<M> {
+    pub(crate) fn of(masses: &[f32; M]) -> Self {
+        let mut sum = 0.0;
+        let until = masses.map(|mass| {
+            sum += mass;
+            sum
+        });
+        Self { until }
+    }
+
+    pub(crate) fn total(&self) -> f32 {
+        self.until.last().copied().unwrap_or(0.0)
+    }
+
+    /// The mass below a place, counted in cells from the first one's edge.
+    pub(crate) fn below(&self, place: f32) -> f32 {
+        if place <= 0.0 {
+            return 0.0;
+        }
+        let cell = place as usize;
+        let Some(until) = self.until.get(cell) else { return self.total() };
+        let before = cell.checked_sub(1).and_then(|it| self.until.get(it)).copied().unwrap_or(0.0);
+        before + (until - before) * (place - cell as f32)
+    }
+
+    /// The place below which so much mass lies, and half a cell's share of even density within a cell.
+    pub(crate) fn place_of(&self, mass: f32) -> f32 {
+        let (mut before, mut cell) = (0.0, 0.0);
+        for until in self.until {
+            if until >= mass && until > before {
+                return cell + (mass - before) / (until - before);
+            }
+            (before, cell) = (until, cell + 1.0);
+        }
+        M as f32
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grid() -> Grid<8, 12, 3> {
+        let mut grid = Grid::NONE;
+        let pivot = Site::new(3 << 16, -(5 << 16)).unwrap();
+        let heading = Heading(700_000_000);
+        grid.set(Lay { pivot, heading, turn: 0.05, low: -1.5, step: 0.25, bend: 0.05 });
+        let mut state = 1_u32;
+        for mass in grid.cells() {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            *mass = (state >> 8) as f32 * 1e-10;
+        }
+        grid
+    }
+
+    fn total(grid: &mut Grid<8, 12, 3>) -> f32 {
+        grid.cells().map(|it| *it).sum()
+    }
+
+    #[test]
+    fn diffusion_loses_no_mass_and_adds_its_variance() {
+        let mut grid = grid();
+        let whole = total(&mut grid);
+        for variance in [0.0, 0.3, 4.0, 400.0] {
+            grid.blur_offsets(variance);
+            grid.mix_columns(variance);
+            grid.mix_layers(0.1);
+            assert!((total(&mut grid) / whole - 1.0).abs() < 1e-4, "{variance}");
+        }
+        let mut column = Grid::<4, 64, 1>::NONE;
+        column.mass[0][1][32] = 1.0;
+        for variance in [0.1, 1.0, 9.0, 30.0] {
+            let mut after = column.clone();
+            after.blur_offsets(variance);
+            let got: f32 =
+                (0..64).map(|m| after.mass[0][1][m] * (m as f32 - 32.0) * (m as f32 - 32.0)).sum();
+            assert!((got - variance).abs() < 0.01 * variance + 0.004, "{variance}: {got}");
+        }
+    }
+
+    #[test]
+    fn a_label_cuts_what_lies_above_and_below() {
+        let grid = grid();
+        let mut state = 7_u32;
+        for _ in 0..200 {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            let by = Vector::new((state >> 8) as i32 % 200_000, (state >> 20) as i32 * 40).unwrap();
+            let site = grid.lay.pivot.step(by).unwrap();
+            let mut weighed = grid.clone();
+            let above = grid.above(site, 0.02);
+            let whole = total(&mut weighed);
+            let left = weighed.weigh(site, 0.02, [0.9, 0.2]);
+            let expected = 0.9 * above + 0.2 * (whole - above);
+            assert!((left / expected - 1.0).abs() < 1e-5, "{site:?}: {left} for {expected}");
+        }
+    }
+
+    /// The share above a place hardly changes as cells are laid anew, with the pivot or without it.
+    #[test]
+    fn laying_anew_keeps_what_is_known() {
+        let mut grid = grid();
+        // Smooth in the middle of the cells.
+        for layer in &mut grid.mass {
+            for (k, column) in layer.iter_mut().enumerate() {
+                for (m, mass) in column.iter_mut().enumerate() {
+                    let (x, y) = (k as f32 - 3.5, m as f32 - 5.5);
+                    *mass = libm::expf(-0.25 * x * x - 0.15 * y * y);
+                }
+            }
+        }
+        let by = Vector::new(1 << 15, 1 << 14).unwrap();
+        let moved = grid.lay.pivot.step(by).unwrap();
+        let old = grid.lay;
+        let lays = [
+            Lay { turn: 0.06, ..old },
+            Lay { step: 0.3, low: -1.9, ..old },
+            Lay { heading: old.heading.turned(angle(0.04)), turn: 0.07, ..old },
+            Lay { pivot: moved, low: -2.0, step: 0.3, turn: 0.06, ..old },
+        ];
+        let whole = total(&mut grid);
+        for lay in lays {
+            let mut laid = grid.clone();
+            laid.lay_anew(lay);
+            assert!((total(&mut laid) / whole - 1.0).abs() < 1e-4, "{lay:?}");
+            for (x, z) in [(0, 0), (1, 1), (-1, 2), (2, -1), (-2, -1)] {
+                let at = Vector::new(x << 15, z << 15).unwrap();
+                let site = old.pivot.step(at).unwrap();
+                let off = (laid.above(site, 0.0) - grid.above(site, 0.0)) / whole;
+                assert!(off.abs() < 0.02, "{lay:?} at {at:?}: {off}");
+            }
+        }
+    }
+
+    /// Columns that go all around, seen from other directions.
+    #[test]
+    fn a_whole_turn_is_laid_as_a_part_of_one() {
+        let mut grid = Grid::<16, 16, 1>::NONE;
+        let turn = core::f32::consts::TAU / 16.0;
+        for first in 0..16 {
+            let heading = Heading(first << 28);
+            let lay = Lay { turn, heading, low: -8.0, step: 1.0, ..Lay::NONE };
+            grid.set(lay);
+            let middle = Heading(1 << 30);
+            // Directions within a quarter turn of the middle.
+            for (k, column) in grid.mass[0].iter_mut().enumerate() {
+                let off = radians(
+                    heading.turned(angle(lay.angle_at::<16>(k as f32 + 0.5))).since(middle),
+                );
+                *column = [if off.abs() < 1.6 { 1.0 } else { 0.0 }; 16];
+            }
+            let before: f32 = grid.cells().map(|it| *it).sum();
+            grid.lay_around(1e-3);
+            let after: f32 = grid.cells().map(|it| *it).sum();
+            assert!((after / before - 1.0).abs() < 1e-5, "{first}");
+            assert!(!grid.lay.is_whole::<16>(), "{first}");
+            let off = radians(grid.lay.heading.since(middle));
+            assert!(
+                off.abs() < 0.21 && grid.lay.turn * 16.0 < 4.0,
+                "{first}: {off}, {:?}",
+                grid.lay
+            );
+        }
+    }
+}

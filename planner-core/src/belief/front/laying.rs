@@ -1,0 +1,345 @@
+//! Laying a grid anew around its mass.
+//!
+//! The columns and the cells span the mass but for a tail on either side. What lies beyond is kept in the edge cells.
+//! The pivot goes to the *waist*, the place where offset and direction are uncorrelated. There the columns have their
+//! mass at the same offsets, so that none is wasted.
+
+use crate::belief::front::grid::{Grid, Lay, Sums, Unit, angle, limited, metres, radians};
+use crate::belief::front::moments::Moments;
+use crate::geometry::approximate::sqrt;
+use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
+
+/// A correlation of offset and direction above this moves the pivot: its square, where the front is straight and where
+/// it bends.
+const CORRELATED: [f32; 2] = [0.35 * 0.35, 0.9 * 0.9];
+
+/// A pivot that follows a robot stays as near to the waist as this, in widths over turns.
+const FOLLOWS: f32 = 1.0;
+
+/// Cells that are smaller or larger than wanted by less than this stay.
+const SIZES: [f32; 2] = [0.65, 1.6];
+
+/// A mean that is off the middle by less than this share of the range stays.
+const OFF: f32 = 0.1;
+
+/// Cells and turns are no smaller, metres and radians.
+const LEAST: [f32; 2] = [2e-5, 1e-6];
+
+/// An edge cell heavier than its neighbour by this holds a tail that wants out.
+const HEAVY: f32 = 1.25;
+
+/// So much is added where a tail wants out, as a share of the range.
+const GROWTH: f32 = 0.25;
+
+/// Places of the histogram of offsets about another pivot.
+const PLACES: usize = 64;
+
+/// A grid that spans more than this share of a turn goes all around.
+const WIDE: f32 = 0.8;
+
+/// From where to where the mass lies but for a tail on either side, in cells from the first one's edge.
+fn range<const N: usize>(masses: &[f32; N], tail: f32) -> [f32; 2] {
+    let sums = Sums::of(masses);
+    let total = sums.total();
+    let [low, high] = [sums.place_of(tail * total), sums.place_of((1.0 - tail) * total)];
+    let wants_out = |edge: Option<&f32>, next: Option<&f32>| {
+        let [edge, next] = [edge, next].map(|it| it.copied().unwrap_or(0.0));
+        edge > HEAVY * next && edge > 2.0 * tail * total
+    };
+    let more = GROWTH * N as f32;
+    let low = if wants_out(masses.first(), masses.get(1)) { -more } else { low };
+    let last = masses.iter().rev().nth(1);
+    let high = if wants_out(masses.last(), last) { N as f32 + more } else { high };
+    [low, high]
+}
+
+fn is_off(size: f32, wanted: f32) -> bool {
+    size < SIZES[0] * wanted || size > SIZES[1] * wanted
+}
+
+fn larger(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
+    /// Lays the grid anew if its cells are of another size than its mass wants, or lie elsewhere.
+    ///
+    /// `O(K M L)`: some 90,000 instructions for 16 x 16 x 3 if it is laid anew, and 20,000 if not.
+    pub(crate) fn lay_around(&mut self, tail: f32) {
+        let moments = Moments::of(self);
+        let [straight, bent] = CORRELATED;
+        let most = if self.lay.bend > 0.0 { bent } else { straight };
+        let moves = !self.lay.is_whole::<K>() && moments.correlation_squared() > most;
+        let by = if moves { self.towards(&moments, 0.0) } else { None };
+        if moments.total > 0.0
+            && let Some(lay) = self.wanted(&moments, by, tail)
+        {
+            self.lay_anew(lay);
+        }
+    }
+
+    /// Makes room for offsets that will diffuse by a margin, metres. If the front bends, it also moves the pivot along
+    /// it to where a robot is, but not so far from the waist that most cells would be wasted.
+    pub(crate) fn follow(&mut self, robot: Site, margin: f32, tail: f32) {
+        let lay = self.lay;
+        let moments = Moments::of(self);
+        if moments.total <= 0.0 {
+            return;
+        }
+        let by = if lay.bend > 0.0 && !lay.is_whole::<K>() {
+            let [ahead, _] = Unit::of(moments.heading(self)).seen(metres(robot - lay.pivot));
+            let waist = self.waist_ahead(&moments);
+            let [turns, offsets] = moments.variance;
+            let narrow = offsets - moments.covariance * moments.covariance / turns;
+            let narrow = if narrow > 0.0 { narrow } else { 0.0 };
+            let most = FOLLOWS * sqrt(narrow / turns) * lay.step / lay.turn;
+            self.towards(&moments, limited(ahead - waist, most))
+        } else {
+            None
+        };
+        let wanted = self.wanted(&moments, by, tail);
+        if margin > 0.0 {
+            let Lay { low, step, .. } = wanted.unwrap_or(lay);
+            let wider = step + 2.0 * margin / M as f32;
+            self.lay_anew(Lay { low: low - margin, step: wider, ..wanted.unwrap_or(lay) });
+        } else if let Some(lay) = wanted {
+            self.lay_anew(lay);
+        }
+    }
+
+    /// How far ahead of the pivot the waist lies, metres.
+    fn waist_ahead(&self, moments: &Moments<K, M>) -> f32 {
+        -moments.covariance * self.lay.step / (moments.variance[0] * self.lay.turn)
+    }
+
+    /// Where the cells should lie; `None` if they lie well enough.
+    fn wanted(&self, moments: &Moments<K, M>, moved: Option<Vector>, tail: f32) -> Option<Lay> {
+        let (lay, was_whole) = (self.lay, self.lay.is_whole::<K>());
+        // Columns that go all around begin opposite to the mean direction.
+        let mut columns = moments.columns;
+        let mut from = lay.heading.turned(angle(lay.angle_at::<K>(0.0)));
+        if was_whole {
+            let mean = radians(moments.heading(self).since(from)) / lay.turn;
+            let first = (mean + 1.5 * K as f32) as usize % K;
+            let after = moments.columns.iter().skip(first);
+            let turned = after.chain(moments.columns.iter().take(first));
+            for (column, mass) in columns.iter_mut().zip(turned) {
+                *column = *mass;
+            }
+            from = from.turned(angle(radians(angle(first as f32 * lay.turn))));
+        }
+        let [first, last] = match moved {
+            Some(by) if L > 1 => self.turns_about(moments, by, tail),
+            _ => range(&columns, tail),
+        };
+        let turn = larger((last - first) * lay.turn / K as f32, LEAST[1]);
+        let is_whole = turn * K as f32 > WIDE * core::f32::consts::TAU;
+        let (turn, heading) = if is_whole {
+            (core::f32::consts::TAU / K as f32, lay.heading)
+        } else {
+            (turn, from.turned(angle(0.5 * (first + last) * lay.turn)))
+        };
+        let off = 0.5 * (first + last) - 0.5 * K as f32;
+        let turns = is_whole != was_whole
+            || !is_whole && (is_off(lay.turn, turn) || off.abs() > OFF * K as f32);
+        let (pivot, [low, high]) = match moved {
+            Some(by) => (lay.pivot.step(by).unwrap_or(lay.pivot), self.range_about(by, tail)),
+            None => (lay.pivot, range(&moments.rows, tail).map(|it| lay.low + it * lay.step)),
+        };
+        let step = larger((high - low) / M as f32, LEAST[0]);
+        let low = 0.5 * (low + high) - 0.5 * step * M as f32;
+        let off = low + 0.5 * step * M as f32 - lay.low - 0.5 * lay.step * M as f32;
+        let shifts = is_off(lay.step, step) || off.abs() > OFF * step * M as f32;
+        (turns || moved.is_some() || shifts).then_some(Lay {
+            pivot,
+            heading,
+            turn,
+            low,
+            step,
+            ..lay
+        })
+    }
+
+    /// From the pivot to a place so far ahead of the waist, no further than layers of curvature remain true.
+    fn towards(&self, moments: &Moments<K, M>, from_waist: f32) -> Option<Vector> {
+        let lay = self.lay;
+        let most = if lay.bend > 0.0 { 0.5 / lay.bend } else { 2_048.0 };
+        let ahead = limited(self.waist_ahead(moments) + from_waist, most);
+        let along = Unit::of(moments.heading(self));
+        let left = lay.low + lay.step * (moments.mean[1] + 0.5 * M as f32);
+        let left = (left + lay.bulge(moments.bend, ahead)).clamp(-2_048.0, 2_048.0);
+        let units = UNITS_PER_METRE as f32;
+        let x = (along.x * ahead - along.z * left) * units;
+        let z = (along.z * ahead + along.x * left) * units;
+        Vector::new(x as i32, z as i32).filter(|it| *it != Vector::default())
+    }
+
+    /// The range of directions about another pivot, in columns: each layer has turned by its own angle.
+    fn turns_about(&self, moments: &Moments<K, M>, by: Vector, tail: f32) -> [f32; 2] {
+        let lay = self.lay;
+        let [ahead, _] = Unit::of(moments.heading(self)).seen(metres(by));
+        let most = bent(lay.bend, ahead).abs() / lay.turn;
+        let place = (2.0 * most + K as f32) / PLACES as f32;
+        let mut places = [0.0; PLACES];
+        for (layer, bend) in self.mass.iter().zip(lay.bends::<L>()) {
+            let mut at = bent(bend, ahead) / lay.turn + most;
+            for column in layer {
+                spread(&mut places, [at / place, (at + 1.0) / place], column.iter().sum());
+                at += 1.0;
+            }
+        }
+        range(&places, tail).map(|it| it * place - most)
+    }
+
+    /// The range of offsets about another pivot.
+    fn range_about(&self, by: Vector, tail: f32) -> [f32; 2] {
+        let lay = self.lay;
+        let shifts = |l: usize, k: usize| {
+            let bend = lay.bends::<L>().nth(l).unwrap_or(0.0);
+            self.along.get(k).map_or(0.0, |along| {
+                let [ahead, left] = along.seen(metres(by));
+                lay.bulge(bend, ahead) - left
+            })
+        };
+        let (mut least, mut most) = (f32::MAX, f32::MIN);
+        for (l, layer) in self.mass.iter().enumerate() {
+            for (k, column) in layer.iter().enumerate() {
+                if column.iter().any(|mass| *mass > 0.0) {
+                    let shift = shifts(l, k);
+                    least = if shift < least { shift } else { least };
+                    most = larger(most, shift);
+                }
+            }
+        }
+        let high = lay.step * M as f32;
+        let (from, place) = (lay.low + least, (most - least + high) / PLACES as f32);
+        let (per_place, stride) = (1.0 / place, lay.step / place);
+        let mut places = [0.0; PLACES];
+        for (l, layer) in self.mass.iter().enumerate() {
+            for (k, column) in layer.iter().enumerate() {
+                // A cell counts where its middle is: places are about as wide.
+                let mut at = (lay.low + shifts(l, k) + 0.5 * lay.step - from) * per_place;
+                for mass in column {
+                    if let Some(sum) = places.get_mut(at as usize) {
+                        *sum += mass;
+                    }
+                    at += stride;
+                }
+            }
+        }
+        range(&places, tail).map(|it| from + it * place)
+    }
+
+    /// Puts the mass into other cells: what lies beyond goes into the edge cells.
+    #[inline(never)]
+    pub(crate) fn lay_anew(&mut self, lay: Lay) {
+        let old = self.lay;
+        let by = metres(lay.pivot - old.pivot);
+        let turned = radians(lay.heading.since(old.heading));
+        let was_whole = old.is_whole::<K>();
+        let is_whole = lay.is_whole::<K>();
+        let middle = Unit::of(lay.heading);
+        for (masses, bend) in self.mass.iter_mut().zip(old.bends::<L>()) {
+            let before = core::mem::replace(masses, [[0.0; M]; K]);
+            let [ahead, _] = middle.seen(by);
+            // A curve's direction turns on the way to the pivot.
+            let turned = turned - bent(bend, ahead);
+            let edge = |k: f32| (turned + lay.angle_at::<K>(k)) / old.turn + 0.5 * K as f32;
+            let [begin, end] = [edge(0.0), edge(K as f32)];
+            // Columns that go all around are taken from half a turn before the middle on.
+            let first = if was_whole { floor(0.5 * (begin + end) - 0.5 * K as f32) } else { 0 };
+            for n in 0..=K as i32 {
+                let number = first + n;
+                let wrapped = if was_whole { number.rem_euclid(K as i32) } else { number };
+                let Some(column) = before.get(wrapped as usize) else { continue };
+                let mut from = number as f32;
+                let mut until = from + 1.0;
+                if was_whole {
+                    // The first and the last are parts of the same column.
+                    let half = 0.5 * K as f32;
+                    let middle = 0.5 * (begin + end);
+                    from = larger(from, middle - half);
+                    until = if until < middle + half { until } else { middle + half };
+                }
+                let sums = Sums::of(column);
+                if sums.total() <= 0.0 || until <= from {
+                    continue;
+                }
+                // The new columns that it reaches.
+                let per_column = K as f32 / (end - begin);
+                let number =
+                    |at: f32| ((at - begin) * per_column).clamp(0.0, K as f32 - 1.0) as usize;
+                let (k_first, k_last) = (number(from), number(until));
+                let reached = masses.iter_mut().enumerate().skip(k_first);
+                for (k, masses) in reached.take(k_last.wrapping_sub(k_first).wrapping_add(1)) {
+                    let low = if k == 0 && !is_whole { f32::MIN } else { edge(k as f32) };
+                    let high =
+                        if k + 1 == K && !is_whole { f32::MAX } else { edge(k as f32 + 1.0) };
+                    let low = larger(low, from);
+                    let high = if high < until { high } else { until };
+                    if low >= high {
+                        continue;
+                    }
+                    let turn = old.angle_at::<K>(0.5 * (low + high));
+                    let shift = if lay.pivot == old.pivot {
+                        0.0
+                    } else {
+                        let along = Unit::of(old.heading.turned(angle(turn)));
+                        let [ahead, left] = along.seen(by);
+                        left - old.bulge(bend, ahead)
+                    };
+                    put(masses, &sums, high - low, (lay, old, shift));
+                }
+            }
+        }
+        self.set(lay);
+    }
+}
+
+/// By how much a curve of some curvature turns on the way to a place ahead.
+fn bent(bend: f32, ahead: f32) -> f32 {
+    (bend * ahead).clamp(-1.0, 1.0)
+}
+
+/// Spreads a mass over the places of a histogram, from one place to another.
+fn spread(places: &mut [f32; PLACES], [from, until]: [f32; 2], mass: f32) {
+    let each = mass / (until - from);
+    let mut at = from;
+    for _ in 0..PLACES {
+        let place = if at > 0.0 { at as usize } else { 0 }.min(PLACES - 1);
+        let next = place as f32 + 1.0;
+        let end = if next < until && place + 1 < PLACES { next } else { until };
+        if let Some(sum) = places.get_mut(place) {
+            *sum += each * (end - at);
+        }
+        at = end;
+        if at >= until {
+            return;
+        }
+    }
+}
+
+/// Adds a share of a column to another one. Offsets about the new pivot are less by a shift.
+fn put<const M: usize>(
+    masses: &mut [f32; M],
+    sums: &Sums<M>,
+    share: f32,
+    (lay, old, shift): (Lay, Lay, f32),
+) {
+    let per_cell = 1.0 / old.step;
+    let stride = lay.step * per_cell;
+    let from = (lay.low + shift - old.low) * per_cell;
+    let (mut before, mut cell) = (0.0, 1.0);
+    let last = M.saturating_sub(1);
+    for (m, mass) in masses.iter_mut().enumerate() {
+        let until = if m == last { sums.total() } else { sums.below(from + cell * stride) };
+        *mass += share * (until - before);
+        (before, cell) = (until, cell + 1.0);
+    }
+}
+
+/// The greatest integer that is no greater.
+fn floor(value: f32) -> i32 {
+    let near = value as i32;
+    if near as f32 > value { near - 1 } else { near }
+}

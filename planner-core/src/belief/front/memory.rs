@@ -1,0 +1,85 @@
+//! What a tracker has to remember over a sleep: its cells and their masses, as labels cannot be replayed.
+
+use crate::belief::evidence::Evidence;
+use crate::belief::front::grid::Lay;
+use crate::belief::front::learnt::Learnt;
+
+/// The masses of all cells.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Masses<const K: usize, const M: usize, const L: usize>(
+    pub(crate) [[[f32; M]; K]; L],
+);
+
+/// What a tracker knows, without what it was told. `4 K M L` bytes and some 100.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct FrontMemory<const K: usize, const M: usize, const L: usize> {
+    pub(crate) lay: Lay,
+    pub(crate) masses: Masses<K, M, L>,
+    pub(crate) nowhere: [f32; 2],
+    pub(crate) learnt: Option<Learnt>,
+    pub(crate) evidence: Evidence,
+}
+
+impl<const K: usize, const M: usize, const L: usize> FrontMemory<K, M, L> {
+    /// Whether a tracker can have stored it: masses that make 1 together, in cells that have a size.
+    pub(crate) fn is_valid(&self) -> bool {
+        let Lay { turn, low, step, bend, .. } = self.lay;
+        let masses = || self.masses.0.iter().flatten().flatten().chain(&self.nowhere);
+        let sum: f32 = masses().sum();
+        let has_size = |it: f32| it > 0.0 && it < 1e6;
+        masses().all(|it| (0.0..=1.0).contains(it))
+            && (sum - 1.0).abs() < 1e-2
+            && has_size(turn)
+            && turn * K as f32 <= 6.3
+            && has_size(step)
+            && low.abs() < 1e6
+            && (bend == 0.0 || has_size(bend))
+            && self.learnt.is_none_or(Learnt::is_valid)
+    }
+}
+
+#[cfg(feature = "serde")]
+mod bytes {
+    use core::fmt::{Formatter, Result as Written};
+
+    use serde::de::{Error, SeqAccess, Visitor};
+    use serde::ser::SerializeTuple as _;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    use super::Masses;
+
+    impl<const K: usize, const M: usize, const L: usize> Serialize for Masses<K, M, L> {
+        fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+            let mut tuple = serializer.serialize_tuple(K * M * L)?;
+            for mass in self.0.iter().flatten().flatten() {
+                tuple.serialize_element(mass)?;
+            }
+            tuple.end()
+        }
+    }
+
+    struct Reader<const K: usize, const M: usize, const L: usize>;
+
+    impl<'de, const K: usize, const M: usize, const L: usize> Visitor<'de> for Reader<K, M, L> {
+        type Value = Masses<K, M, L>;
+
+        fn expecting(&self, f: &mut Formatter<'_>) -> Written {
+            write!(f, "{} masses", K * M * L)
+        }
+
+        fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Self::Value, A::Error> {
+            let mut masses = [[[0.0; M]; K]; L];
+            for (k, mass) in masses.iter_mut().flatten().flatten().enumerate() {
+                *mass = seq.next_element()?.ok_or_else(|| Error::invalid_length(k, &self))?;
+            }
+            Ok(Masses(masses))
+        }
+    }
+
+    impl<'de, const K: usize, const M: usize, const L: usize> Deserialize<'de> for Masses<K, M, L> {
+        fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+            deserializer.deserialize_tuple(K * M * L, Reader)
+        }
+    }
+}

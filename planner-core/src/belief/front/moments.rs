@@ -1,0 +1,94 @@
+//! The first moments of a grid, and its sums over rows, columns and layers.
+
+use crate::belief::front::grid::{Grid, Unit, angle};
+use crate::geometry::approximate::heading;
+use crate::geometry::heading::Heading;
+
+/// Sums of the masses of a grid, and moments about the middle of its cells, in cells and columns.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moments<const K: usize, const M: usize> {
+    pub(crate) total: f32,
+    /// The mass of each direction, and of each offset.
+    pub(crate) columns: [f32; K],
+    pub(crate) rows: [f32; M],
+    /// The mean column and the mean row, from the middle.
+    pub(crate) mean: [f32; 2],
+    /// Their variances, the width of a cell included, and their covariance.
+    pub(crate) variance: [f32; 2],
+    pub(crate) covariance: f32,
+    /// The mean curvature, 1/m.
+    pub(crate) bend: f32,
+}
+
+impl<const K: usize, const M: usize> Moments<K, M> {
+    /// `O(K M L)`.
+    #[inline(never)]
+    pub(crate) fn of<const L: usize>(grid: &Grid<K, M, L>) -> Self {
+        let (mut columns, mut rows, mut bent) = ([0.0; K], [0.0; M], 0.0);
+        let (mut products, mut total) = (0.0, 0.0);
+        let middle = [0.5 * (K as f32 - 1.0), 0.5 * (M as f32 - 1.0)];
+        for (layer, bend) in grid.mass.iter().zip(grid.lay.bends::<L>()) {
+            let (mut in_layer, mut k) = (0.0, -middle[0]);
+            for (column, masses) in columns.iter_mut().zip(layer) {
+                let (mut sum, mut first, mut m) = (0.0, 0.0, -middle[1]);
+                for (row, mass) in rows.iter_mut().zip(masses) {
+                    *row += mass;
+                    sum += mass;
+                    first += mass * m;
+                    m += 1.0;
+                }
+                *column += sum;
+                products += first * k;
+                in_layer += sum;
+                k += 1.0;
+            }
+            bent += in_layer * bend;
+            total += in_layer;
+        }
+        let each = if total > 0.0 { 1.0 / total } else { 0.0 };
+        let [by_column, by_row] =
+            [of_masses(&columns, middle[0], each), of_masses(&rows, middle[1], each)];
+        Self {
+            total,
+            columns,
+            rows,
+            mean: [by_column[0], by_row[0]],
+            variance: [by_column[1], by_row[1]],
+            covariance: products * each - by_column[0] * by_row[0],
+            bend: bent * each,
+        }
+    }
+
+    /// Offset and direction are correlated by this, from -1 to 1.
+    pub(crate) fn correlation_squared(&self) -> f32 {
+        self.covariance * self.covariance / (self.variance[0] * self.variance[1])
+    }
+
+    /// The mean direction: where columns go all around, that of the mean vector.
+    pub(crate) fn heading<const L: usize>(&self, grid: &Grid<K, M, L>) -> Heading {
+        let lay = grid.lay;
+        if !lay.is_whole::<K>() {
+            return lay.heading.turned(angle(self.mean[0] * lay.turn));
+        }
+        let sum = self.columns.iter().zip(&grid.along).fold(Unit::ZERO, |sum, (mass, it)| Unit {
+            x: sum.x + mass * it.x,
+            z: sum.z + mass * it.z,
+        });
+        let has_one = sum.x.abs() + sum.z.abs() > 1e-6 * self.total;
+        if has_one { heading(sum.x, sum.z) } else { lay.heading }
+    }
+}
+
+/// The mean and the variance of some masses, numbered from `-middle`.
+fn of_masses(masses: &[f32], middle: f32, each: f32) -> [f32; 2] {
+    let (mut first, mut second, mut at) = (0.0, 0.0, -middle);
+    for mass in masses {
+        first += mass * at;
+        second += mass * at * at;
+        at += 1.0;
+    }
+    let mean = first * each;
+    let variance = second * each - mean * mean;
+    // A cell's own width.
+    [mean, (if variance > 0.0 { variance } else { 0.0 }) + 1.0 / 12.0]
+}

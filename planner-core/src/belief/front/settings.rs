@@ -1,0 +1,82 @@
+//! What a user says of a front: how tightly it bends, and how fast it moves.
+
+use crate::geometry::value::ValueError;
+
+/// How tightly a front bends, and how fast it moves.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Front {
+    /// The radius of the tightest bend, millimetres; 0 if it is straight.
+    radius_mm: u32,
+    /// How far it moves in a unit of time at most, micrometres.
+    speed_um: u32,
+}
+
+impl Front {
+    /// Straight and still.
+    pub const STRAIGHT: Self = Self { radius_mm: 0, speed_um: 0 };
+
+    /// The tightest bend has a radius of so many metres. If in doubt, name a smaller one.
+    ///
+    /// # Errors
+    /// [`ValueError`] unless it is from 0.1 to 1,000,000 m.
+    pub fn bending(metres: f64) -> Result<Self, ValueError> {
+        const RANGE: ValueError =
+            ValueError("the radius of the tightest bend is from 0.1 to 1000000 m");
+        let radius_mm = libm::round(metres * 1e3) as u32;
+        let is_radius = (0.1..=1e6).contains(&metres);
+        is_radius.then_some(Self { radius_mm, speed_um: 0 }).ok_or(RANGE)
+    }
+
+    /// The same, but it moves by so many metres in a unit of time. If in doubt, name a higher speed.
+    ///
+    /// # Errors
+    /// [`ValueError`] unless it is from 0 to 1,000 m.
+    pub fn moving(self, metres: f64) -> Result<Self, ValueError> {
+        const RANGE: ValueError =
+            ValueError("the speed of a front is from 0 to 1000 m in a unit of time");
+        let speed_um = libm::round(metres * 1e6) as u32;
+        let is_speed = (0.0..=1e3).contains(&metres);
+        is_speed.then_some(Self { speed_um, ..self }).ok_or(RANGE)
+    }
+
+    /// The radius of the tightest bend, metres; `None` if it is straight.
+    pub fn radius(self) -> Option<f64> {
+        (self.radius_mm > 0).then(|| f64::from(self.radius_mm) * 1e-3)
+    }
+
+    /// How far it moves in a unit of time, metres.
+    pub fn speed(self) -> f64 {
+        f64::from(self.speed_um) * 1e-6
+    }
+
+    /// The curvature of the tightest bend, 1/m.
+    pub(crate) fn bend(self) -> f32 {
+        if self.radius_mm > 0 { 1e3 / self.radius_mm as f32 } else { 0.0 }
+    }
+
+    /// The speed in single precision, metres in a unit of time.
+    pub(crate) fn pace(self) -> f32 {
+        self.speed_um as f32 * 1e-6
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_no_front_is_refused() {
+        for radius in [0.0, 0.09, -5.0, f64::NAN, f64::INFINITY, 2e6] {
+            assert!(Front::bending(radius).is_err(), "{radius}");
+        }
+        for speed in [-0.1, f64::NAN, 1_001.0] {
+            assert!(Front::STRAIGHT.moving(speed).is_err(), "{speed}");
+        }
+        let front = Front::bending(40.0).and_then(|it| it.moving(0.05)).unwrap();
+        assert_eq!(front.radius(), Some(40.0));
+        assert!((front.speed() - 0.05).abs() < 1e-9);
+        assert_eq!((Front::STRAIGHT.radius(), Front::STRAIGHT.bend()), (None, 0.0));
+    }
+}

@@ -1,0 +1,577 @@
+//! The tracker: takes in labels and time, and says what is known of a front.
+
+use crate::belief::estimate::Estimates;
+use crate::belief::evidence::Evidence;
+use crate::belief::front::grid::{Grid, Lay, Unit, angle, limited};
+use crate::belief::front::learnt::Learnt;
+use crate::belief::front::memory::{FrontMemory, Masses};
+use crate::belief::front::moments::Moments;
+use crate::belief::front::settings::Front;
+use crate::belief::front::waist::Waist;
+use crate::belief::goal::{Criterion, Goal};
+use crate::belief::noise::Noise;
+use crate::belief::observation_log::{FromLog, ReplayError};
+use crate::belief::predictions::{entropy, information};
+use crate::belief::sample::{Label, Reading, Sample};
+use crate::belief::tolerance::Tolerance;
+use crate::belief::trust::{AnyReliability, Trust as _};
+use crate::belief::{Belief, ObservationError};
+use crate::geometry::approximate::{METRE, sqrt};
+use crate::geometry::area::Area;
+use crate::geometry::heading::Heading;
+use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
+use crate::geometry::local_line::LocalLine;
+
+/// What there is besides a front: everywhere +1, and everywhere -1. Their share at the start, together.
+const NOWHERE: f32 = 0.1;
+
+/// Labels count as true no more often than this, so that one false label does not rule out the truth.
+const MOST: f32 = 0.98;
+
+/// The mass on either side that may lie beyond the cells.
+const TAIL: f32 = 1e-3;
+
+/// This share of the mass is spread over all cells in a unit of time, where the front diffuses.
+const EVEN: f32 = 1e-5;
+
+/// In a unit of time this share of a curvature changes.
+const BENDS: f32 = 0.05;
+
+/// A front that moves by so many metres may turn by a radian.
+const LEVER: f32 = 30.0;
+
+/// Positions that err by a deviation widen the edge of a label by so many of them, either way.
+const DEVIATIONS: f32 = 1.5;
+
+/// A tolerance is so many deviations.
+const TOLERANCE: f32 = 3.0;
+
+/// Given points are weighed so many times, each time among fewer curves.
+const GIVEN_ROUNDS: u32 = 4;
+
+/// A front may turn out to bend so many times as tightly as was told.
+const TIGHTEST: f32 = 8.0;
+
+/// On the way, labels count where so much of the curves disagree.
+const UNSURE: f32 = 1e-3;
+
+/// What is known of a front: `K` directions, `M` offsets and `L` layers of curvature.
+///
+/// `L` is 1 for a straight front, whatever its [`radius`](Front::radius), and 3 or 5 for one that bends. 16 x 16 x 3
+/// is good for fronts, 24 x 24 x 1 for lines. It takes `4 K M L + 8 K` bytes and some 150: 3.4 kB for 16 x 16 x 3.
+///
+/// ```
+/// # use planner_core::{Area, Belief as _, Front, Label, Noise, Site, Tracker};
+/// let area = Area::metres([0.0, 0.0], [40.0, 40.0])?;
+/// let mut tracker = Tracker::<16, 16, 3>::new(area, Front::bending(50.0)?, Noise::new(0.9)?);
+/// for k in 0..60 {
+///     // A robot that goes to and fro across a front at z = 20.
+///     let (x, z) = (f64::from(k) * 0.5, 20.0 + f64::from(k % 4) - 1.5);
+///     let label = if z > 20.0 { Label::Positive } else { Label::Negative };
+///     let site = Site::metres([x, z])?;
+///     tracker.moved(site, 1.0);
+///     tracker.observe(site, label.into())?;
+/// }
+/// let waist = tracker.waist();
+/// assert!((f64::from(waist.site.z()) / 65_536.0 - 20.0).abs() < waist.half_width(0.99));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Tracker<const K: usize, const M: usize, const L: usize> {
+    front: Front,
+    noise: Noise<AnyReliability>,
+    grid: Grid<K, M, L>,
+    /// Everywhere +1, everywhere -1.
+    nowhere: [f32; 2],
+    /// What labels have said of a reliability that nobody knows.
+    learnt: Option<Learnt>,
+    evidence: Evidence,
+    /// The logarithm to the base 2 of the measure of all curves at the start.
+    start: f32,
+}
+
+impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
+    /// Nothing is known but that a front may cross an area. With a probability of a tenth there is none: all of the
+    /// area is +1, or all of it is -1.
+    ///
+    /// The noise has the reliability of labels, or a prior for it, and the tolerance: three standard deviations of a
+    /// position. No ball is trusted.
+    pub fn new(area: Area, front: Front, noise: impl Into<Noise<AnyReliability>>) -> Self {
+        let noise = noise.into();
+        let prior = noise.reliability.unknown();
+        let learnt = prior.map(|it| Learnt::prior(it.parameters().map(|it| it as f32)));
+        let mut grid = Grid::NONE;
+        let [x, z] = area.half_sides().map(|it| it as f32 * METRE);
+        let far = sqrt(x * x + z * z);
+        grid.set(Lay {
+            pivot: area.middle(),
+            heading: Heading(0),
+            turn: core::f32::consts::TAU / K as f32,
+            low: -far,
+            step: 2.0 * far / M as f32,
+            bend: if L > 1 { front.bend() } else { 0.0 },
+        });
+        let mut tracker = Self {
+            front,
+            noise,
+            grid,
+            nowhere: [0.5 * NOWHERE; 2],
+            learnt,
+            evidence: Evidence::NONE,
+            start: 0.0,
+        };
+        tracker.fill_within([x, z]);
+        tracker
+    }
+
+    /// Spreads the mass evenly over the lines that cross a rectangle about the pivot.
+    fn fill_within(&mut self, [x, z]: [f32; 2]) {
+        let lay = self.grid.lay;
+        for layer in &mut self.grid.mass {
+            for (column, along) in layer.iter_mut().zip(&self.grid.along) {
+                let reach = along.z.abs() * x + along.x.abs() * z;
+                let mut low = lay.low;
+                for mass in column {
+                    let from = if low > -reach { low } else { -reach };
+                    let until = low + lay.step;
+                    let until = if until < reach { until } else { reach };
+                    *mass = if until > from { until - from } else { 0.0 };
+                    low += lay.step;
+                }
+            }
+        }
+        let whole: f32 = self.grid.cells().map(|it| *it).sum();
+        self.start = libm::log2f(whole * lay.turn / L as f32);
+        self.grid.scale((1.0 - NOWHERE) / whole);
+    }
+
+    /// How often a label is true, as far as that is known.
+    pub fn reliability(&self) -> f32 {
+        let known = || self.noise.reliability.nominal().single();
+        self.learnt.map_or_else(known, Learnt::mean)
+    }
+
+    /// How often a label counts as true.
+    pub(crate) fn counted(&self) -> f32 {
+        let p = self.reliability();
+        if p < MOST { p } else { MOST }
+    }
+
+    fn blur(tolerance: Tolerance) -> f32 {
+        DEVIATIONS / TOLERANCE * METRE * tolerance.units() as f32
+    }
+
+    /// The share of the curves that have a site on their +1 side.
+    ///
+    /// `O(K M L)`: some 10,000 instructions for 16 x 16 x 3.
+    pub fn share_above(&self, site: Site) -> f32 {
+        self.nowhere[0] + self.grid.above(site, Self::blur(self.noise.tolerance))
+    }
+
+    /// The probability that there is no front.
+    pub fn share_nowhere(&self) -> f32 {
+        self.nowhere[0] + self.nowhere[1]
+    }
+
+    /// Records that a robot has come to a site, and how much time has passed. By then the front may have moved, and
+    /// ahead of the robot it may bend otherwise. A straight front that does not move stays as it is known.
+    ///
+    /// Call it once a motion, before the label at its end is observed. The unit of time is the one of the front's
+    /// [`speed`](Front::speed), and one motion should take about one. Some 200,000 instructions for 16 x 16 x 3.
+    pub fn moved(&mut self, to: Site, elapsed: f32) {
+        let bends = self.grid.lay.bend > 0.0;
+        let pace = self.front.pace();
+        let passes = elapsed > 0.0;
+        if !passes || !bends && pace <= 0.0 {
+            return;
+        }
+        let elapsed = if elapsed < 16.0 { elapsed } else { 16.0 };
+        let deviation = pace * sqrt(elapsed);
+        let lay = self.grid.lay;
+        let margin = if deviation > 0.5 * lay.step { 3.0 * deviation } else { 0.0 };
+        self.grid.follow(to, margin, TAIL);
+        let lay = self.grid.lay;
+        if pace > 0.0 {
+            let (offset, turn) = (deviation / lay.step, deviation / (LEVER * lay.turn));
+            self.grid.blur_offsets(offset * offset);
+            self.grid.mix_columns(turn * turn);
+        }
+        if bends {
+            let share = 0.5 * BENDS * elapsed;
+            self.grid.mix_layers(if share < 0.25 { share } else { 0.25 });
+        }
+        let even = EVEN * elapsed;
+        let more = even * (1.0 - self.share_nowhere()) / (K * M * L) as f32;
+        self.grid.cells().for_each(|mass| *mass = *mass * (1.0 - even) + more);
+    }
+
+    fn take(&mut self, site: Site, label: Label, tolerance: Tolerance) {
+        let blur = Self::blur(tolerance);
+        let p = self.counted();
+        let (plus, minus) = if label == Label::Positive { (p, 1.0 - p) } else { (1.0 - p, p) };
+        let above = self.nowhere[0] + self.grid.above(site, blur);
+        let chance = plus * above + minus * (1.0 - above);
+        self.evidence.observe(label, chance);
+        if let Some(learnt) = &mut self.learnt {
+            learnt.count(if label == Label::Positive { above } else { 1.0 - above });
+        }
+        self.weigh(site, label, p, blur);
+        self.grid.lay_around(TAIL);
+    }
+
+    /// Weighs all by a label that is true with probability `p`.
+    fn weigh(&mut self, site: Site, label: Label, p: f32, blur: f32) {
+        let weights = if label == Label::Positive { [p, 1.0 - p] } else { [1.0 - p, p] };
+        let left = self.grid.weigh(site, blur, weights);
+        let [plus, minus] = self.nowhere;
+        let [plus, minus] = [plus * weights[0], minus * weights[1]];
+        let each = 1.0 / (left + plus + minus);
+        self.nowhere = [plus * each, minus * each];
+        self.grid.scale(each);
+    }
+
+    /// Where the front is known best. Of no meaning before it is found.
+    pub fn waist(&self) -> Waist {
+        let moments = Moments::of(&self.grid);
+        let lay = self.grid.lay;
+        let heading = moments.heading(&self.grid);
+        let [turns, offsets] = moments.variance;
+        let slope = moments.covariance / turns;
+        let most = if lay.bend > 0.0 { 0.5 / lay.bend } else { 2_048.0 };
+        let ahead = limited(-slope * lay.step / lay.turn, most);
+        let left = lay.low + lay.step * (moments.mean[1] + 0.5 * M as f32);
+        let left = left + lay.bulge(moments.bend, ahead);
+        let along = Unit::of(heading);
+        let units = UNITS_PER_METRE as f32;
+        let x = (along.x * ahead - along.z * left) * units;
+        let z = (along.z * ahead + along.x * left) * units;
+        let by = Vector::new(x as i32, z as i32).unwrap_or_default();
+        let variance = offsets - slope * moments.covariance;
+        Waist {
+            site: lay.pivot.step(by).unwrap_or(lay.pivot),
+            heading: heading.turned(angle((moments.bend * ahead).clamp(-1.0, 1.0))),
+            curvature: moments.bend,
+            deviation: lay.step * sqrt(if variance > 0.0 { variance } else { 0.0 }),
+            turn_deviation: lay.turn * sqrt(turns),
+        }
+    }
+
+    /// The evidence of the labels against what was told of the front and of the sensor.
+    pub const fn evidence(&self) -> &Evidence {
+        &self.evidence
+    }
+
+    /// The expected information of a label at a place with this share of the curves above, as a share of the most that
+    /// a label can carry.
+    pub(crate) fn tells(&self, share: f32) -> f32 {
+        let p = self.counted();
+        information(share, p, (p, 1.0 - entropy(p)))
+    }
+
+    /// What was told of the front.
+    pub const fn front(&self) -> Front {
+        self.front
+    }
+
+    /// Whether the front may have any direction.
+    pub fn is_open(&self) -> bool {
+        self.grid.lay.is_whole::<K>()
+    }
+
+    /// The same after some points whose labels are known: of the curves those that agree with them. Call it before
+    /// anything else. The order of the points counts little.
+    #[must_use]
+    pub fn given(mut self, given: &[Sample]) -> Self {
+        for round in 0..GIVEN_ROUNDS {
+            if round > 0 {
+                let each = (1.0 - self.share_nowhere()) / (K * M * L) as f32;
+                self.grid.cells().for_each(|mass| *mass = each);
+            }
+            for &Sample { site, label } in given {
+                self.weigh(site, label, MOST, 0.0);
+            }
+            self.grid.lay_around(TAIL);
+        }
+        self
+    }
+
+    /// Begins again near a site: the front lies within so many metres of it, and its direction has changed by less
+    /// than a quarter turn. It bends up to twice as tightly as was told so far.
+    pub fn seek_near(&mut self, site: Site, metres: f32) {
+        let (lay, heading) = (self.grid.lay, Moments::of(&self.grid).heading(&self.grid));
+        let tightest = TIGHTEST * self.front.bend();
+        let bend = if 2.0 * lay.bend < tightest { 2.0 * lay.bend } else { tightest };
+        self.grid.set(Lay {
+            pivot: site,
+            heading,
+            turn: core::f32::consts::PI / K as f32,
+            low: -metres,
+            step: 2.0 * metres / M as f32,
+            bend: if L > 1 { bend } else { 0.0 },
+        });
+        let each = (1.0 - NOWHERE) / (K * M * L) as f32;
+        self.grid.cells().for_each(|mass| *mass = each);
+        self.nowhere = [0.5 * NOWHERE; 2];
+        self.evidence = Evidence::NONE;
+    }
+}
+
+impl<const K: usize, const M: usize, const L: usize> Belief for Tracker<K, M, L> {
+    fn is_full(&self) -> bool {
+        false
+    }
+
+    fn observe_on_the_way(
+        &mut self,
+        site: Site,
+        reading: Reading,
+    ) -> Result<bool, ObservationError> {
+        let above = self.share_above(site);
+        let tells = above > UNSURE && above < 1.0 - UNSURE;
+        if tells {
+            self.observe(site, reading)?;
+        }
+        Ok(tells)
+    }
+
+    fn tolerance(&self) -> Tolerance {
+        self.noise.tolerance
+    }
+
+    fn observe_within(
+        &mut self,
+        site: Site,
+        reading: Reading,
+        tolerance: Tolerance,
+    ) -> Result<(), ObservationError> {
+        if tolerance > self.noise.tolerance {
+            return Err(ObservationError::Tolerance(tolerance));
+        }
+        // A reading on the boundary agrees with both sides.
+        if let Reading::Side(label) = reading {
+            self.take(site, label, tolerance);
+        }
+        Ok(())
+    }
+
+    fn estimates(&self) -> Estimates {
+        Estimates { bisector: None, centre: self.centre(), maximum_margin: None }
+    }
+
+    fn centre(&self) -> Option<LocalLine> {
+        let Waist { site, heading, .. } = self.waist();
+        let along = heading.unit().scaled(1 << 24);
+        let line = || LocalLine::new(site, along, 0.0, 0.0);
+        if self.is_open() { None } else { line() }
+    }
+
+    fn information(&self) -> f64 {
+        let lay = self.grid.lay;
+        let whole = 1.0 - self.share_nowhere();
+        let cell = libm::log2f(lay.turn * lay.step / L as f32) - self.start;
+        let each = 1.0 / whole;
+        let masses = self.grid.mass.iter().flatten().flatten().filter(|it| **it > 0.0);
+        let bits: f32 = masses.map(|it| it * each * (libm::log2f(it * each) - cell)).sum();
+        f64::from(bits)
+    }
+
+    /// Never: a front goes on.
+    fn meets<C: Criterion>(&self, _: Goal<C>, _: Area) -> bool {
+        false
+    }
+
+    fn chance(&self, site: Site) -> f64 {
+        let (above, p) = (f64::from(self.share_above(site)), f64::from(self.counted()));
+        p * above + (1.0 - p) * (1.0 - above)
+    }
+}
+
+impl<const K: usize, const M: usize, const L: usize> FromLog for Tracker<K, M, L> {
+    type ObservationLog = FrontMemory<K, M, L>;
+
+    fn log(&self) -> FrontMemory<K, M, L> {
+        let Self { nowhere, learnt, evidence, .. } = *self;
+        let (lay, masses) = (self.grid.lay, Masses(self.grid.mass));
+        FrontMemory { lay, masses, nowhere, learnt, evidence }
+    }
+
+    /// Goes on from there at once: nothing is replayed.
+    fn replay(&mut self, log: &FrontMemory<K, M, L>) -> Result<(), ReplayError> {
+        if !log.is_valid() {
+            return Err(ReplayError::Spoilt);
+        }
+        if log.learnt.is_some() != self.learnt.is_some() {
+            return Err(ReplayError::Kind);
+        }
+        self.grid.mass = log.masses.0;
+        self.grid.set(log.lay);
+        (self.nowhere, self.learnt, self.evidence) = (log.nowhere, log.learnt, log.evidence);
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::belief::evidence::Alarm;
+
+    fn at(x: f64, z: f64) -> Site {
+        Site::metres([x, z]).unwrap()
+    }
+
+    fn area() -> Area {
+        Area::metres([0.0, 0.0], [20.0, 20.0]).unwrap()
+    }
+
+    /// Goes to and fro across `z = 10 + 0.1 x`.
+    fn fly(tracker: &mut Tracker<16, 16, 3>, labels: u32) {
+        for k in 0..labels {
+            let (x, aside) = (0.3 * f64::from(k), 0.4 * f64::from(k % 5) - 0.7);
+            let site = at(x, 10.0 + 0.1 * x + aside);
+            tracker.moved(site, 1.0);
+            let label = if aside > 0.0 { Label::Positive } else { Label::Negative };
+            tracker.observe(site, label.into()).unwrap();
+        }
+    }
+
+    #[test]
+    fn it_holds_as_little_as_it_says() {
+        assert!(size_of::<Tracker<16, 16, 3>>() <= 4 * 768 + 8 * 16 + 150);
+        assert!(size_of::<Tracker<24, 24, 1>>() <= 4 * 576 + 8 * 24 + 150);
+    }
+
+    #[test]
+    fn at_the_start_any_line_of_the_area_is_as_likely() {
+        let tracker = Tracker::<16, 16, 1>::new(area(), Front::STRAIGHT, Noise::NONE);
+        assert!(tracker.is_open() && tracker.centre().is_none());
+        // The cells at the corners are not full.
+        assert!(tracker.information().abs() < 0.1, "{}", tracker.information());
+        for (x, z) in [(10.0, 10.0), (2.0, 3.0), (18.0, 1.0)] {
+            assert!((tracker.share_above(at(x, z)) - 0.5).abs() < 0.01);
+        }
+    }
+
+    #[test]
+    fn it_finds_a_front_and_says_how_well() {
+        let front = Front::bending(60.0).unwrap();
+        let mut tracker = Tracker::new(area(), front, Noise::new(0.9).unwrap());
+        fly(&mut tracker, 60);
+        let waist = tracker.waist();
+        let [x, z] = [waist.site.x(), waist.site.z()].map(|it| f64::from(it) / 65_536.0);
+        let off = (z - 10.0 - 0.1 * x).abs();
+        assert!(off < waist.half_width(0.95) && waist.half_width(0.9) < 0.5, "{waist:?}: {off}");
+        assert!((waist.heading.radians() - 0.0997).abs() < 0.1, "{waist:?}");
+        assert!(tracker.information() > 3.0 && tracker.share_nowhere() < 1e-3);
+        assert!(tracker.evidence().value() < Alarm::WARNING);
+        assert!(tracker.centre().is_some());
+    }
+
+    #[test]
+    fn given_points_say_where_to_begin() {
+        let places = [(4.0, 6.0), (15.0, 8.0), (5.0, 13.0), (16.0, 15.0)];
+        let given = places.map(|(x, z)| {
+            let label = if z > 10.0 { Label::Positive } else { Label::Negative };
+            Sample { site: at(x, z), label }
+        });
+        for labels in [&given[..], &given[..2]] {
+            let tracker =
+                Tracker::<16, 16, 3>::new(area(), Front::STRAIGHT, Noise::NONE).given(labels);
+            for Sample { site, label } in labels {
+                let above = tracker.share_above(*site);
+                let agree = if *label == Label::Positive { above } else { 1.0 - above };
+                assert!(agree > 0.9, "{agree}");
+            }
+            let is_known = labels.len() > 2;
+            assert_eq!(tracker.is_open(), !is_known);
+            assert!(!is_known || tracker.waist().turn_deviation < 0.6);
+        }
+    }
+
+    #[test]
+    fn all_of_one_label_says_that_there_is_no_front() {
+        let mut tracker = Tracker::<16, 16, 1>::new(area(), Front::STRAIGHT, Noise::NONE);
+        for k in 0..200 {
+            let site = at(1.0 + f64::from(k % 10) * 2.0, 1.0 + f64::from(k / 10 % 10) * 2.0);
+            tracker.observe(site, Label::Positive.into()).unwrap();
+        }
+        assert!(tracker.share_nowhere() > 0.5, "{}", tracker.share_nowhere());
+        assert!(tracker.share_above(at(10.0, 10.0)) > 0.9);
+    }
+
+    #[test]
+    fn a_sensor_that_is_stuck_raises_an_alarm() {
+        let front = Front::bending(60.0).unwrap();
+        let mut tracker = Tracker::new(area(), front, Noise::new(0.9).unwrap());
+        fly(&mut tracker, 40);
+        for labels in 0..40 {
+            let site = tracker.waist().site;
+            tracker.moved(site, 1.0);
+            tracker.observe(site, Label::Positive.into()).unwrap();
+            if tracker.evidence().value() >= Alarm::ALARM {
+                assert!(labels > 4, "{labels}");
+                tracker.seek_near(site, 12.0);
+                assert!(tracker.waist().deviation > 6.0 && tracker.evidence().value() < 2.0);
+                return;
+            }
+        }
+        panic!("no alarm");
+    }
+
+    #[test]
+    fn a_reliability_that_nobody_knows_is_learnt() {
+        let front = Front::bending(60.0).unwrap();
+        let noise = Noise::beta(8.0, 2.0).unwrap();
+        let mut tracker = Tracker::<16, 16, 3>::new(area(), front, noise);
+        assert!((tracker.reliability() - 0.8).abs() < 1e-6);
+        fly(&mut tracker, 40);
+        // Far from the front all labels are known, and nine of ten are true.
+        for k in 0..100 {
+            let z = if k % 2 == 0 { 3.0 } else { 17.0 };
+            let label = if (z > 10.0) == (k % 10 > 0) { Label::Positive } else { Label::Negative };
+            tracker.observe(at(6.0, z), label.into()).unwrap();
+        }
+        assert!((tracker.reliability() - 0.9).abs() < 0.03, "{}", tracker.reliability());
+    }
+
+    #[test]
+    fn what_it_was_goes_on_from_its_memory() {
+        let front = Front::bending(60.0).unwrap();
+        let noise = Noise::new(0.9).unwrap();
+        let mut awake = Tracker::<16, 16, 3>::new(area(), front, noise);
+        fly(&mut awake, 30);
+        let mut woken = Tracker::new(area(), front, noise);
+        let log = awake.log();
+        woken.replay(&log).unwrap();
+        for tracker in [&mut awake, &mut woken] {
+            fly(tracker, 10);
+        }
+        assert_eq!(awake.log(), woken.log());
+        let mut spoilt = log.clone();
+        spoilt.masses.0[1][3][4] = f32::NAN;
+        assert_eq!(woken.replay(&spoilt), Err(ReplayError::Spoilt));
+        assert_eq!(
+            woken.replay(&FrontMemory { nowhere: [0.9, 0.9], ..log.clone() }),
+            Err(ReplayError::Spoilt)
+        );
+        let learnt = Some(Learnt::prior([8.0, 2.0]));
+        assert_eq!(woken.replay(&FrontMemory { learnt, ..log }), Err(ReplayError::Kind));
+        assert_eq!(awake.log(), woken.log());
+    }
+
+    #[test]
+    fn a_position_may_not_be_worse_than_was_told() {
+        let noise = Noise::NONE.with_tolerance(0.3).unwrap();
+        let mut tracker = Tracker::<16, 16, 1>::new(area(), Front::STRAIGHT, noise);
+        let (site, reading) = (at(10.0, 10.0), Label::Positive.into());
+        let worse = Tolerance::new(0.4).unwrap();
+        assert_eq!(
+            tracker.observe_within(site, reading, worse),
+            Err(ObservationError::Tolerance(worse))
+        );
+        let before = tracker.log();
+        tracker.observe(site, Reading::Boundary).unwrap();
+        assert_eq!(tracker.log(), before);
+        tracker.observe_within(site, reading, Tolerance::NONE).unwrap();
+        assert_ne!(tracker.log(), before);
+    }
+}
