@@ -10,6 +10,7 @@ mod body;
 mod hal;
 mod threshold;
 
+#[cfg(feature = "link")]
 pub(crate) use agent::Hearing;
 pub use agent::{Agent, AgentError, Event, Step};
 pub use body::{Body, Vehicle, VehicleError};
