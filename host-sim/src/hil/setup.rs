@@ -2,12 +2,12 @@
 
 use anyhow::{Result, anyhow, bail};
 use heapless::Vec as BoundedVec;
-use planner_core::Workspace as _;
 use planner_core::link::message::Settings;
 use planner_core::link::message::{
     self, Capacity, DeclinedError, LabelSource, MissionArea, Outline, PROTOCOL, Setup,
 };
 use planner_core::planner::lookahead;
+use planner_core::{AnySight, Workspace as _};
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::{CAPACITY, Mission};
@@ -138,7 +138,15 @@ pub(crate) fn declined(declined: DeclinedError, setup: &Setup, readings: u32) ->
         DeclinedError::Tolerance => anyhow!("tolerance: declined by the board: {declined}"),
         DeclinedError::Goal => anyhow!("stop: declined by the board: {declined}"),
         DeclinedError::Price => {
-            anyhow!("price: declined by the board: {declined}; expected price = \"none\"")
+            let near =
+                AnySight::from(None).with_readings(u8::try_from(readings).unwrap_or(u8::MAX));
+            let is_near = matches!(setup.algorithm, message::Algorithm::Lookahead { sight, .. } if sight == near);
+            let (key, expected) = if is_near {
+                ("readings", "1 with lookahead")
+            } else {
+                ("price", "price = \"none\" and no ask.worth")
+            };
+            anyhow!("{key}: declined by the board: {declined}; expected {expected}")
         }
         DeclinedError::Labels => {
             anyhow!("--labels: found chip, but this board has no label sensor")

@@ -204,7 +204,9 @@ impl core::fmt::Display for DeclinedError {
             Self::Vehicle(why) => why.fmt(f),
             Self::Area => f.write_str("the chip cannot plan in this area"),
             Self::Goal => f.write_str("the chip cannot check this goal"),
-            Self::Price => f.write_str("the chip looks for labels within one motion"),
+            Self::Price => {
+                f.write_str("the chip looks for labels within one motion, and for one a motion")
+            }
         }
     }
 }

@@ -51,7 +51,7 @@ impl Sight for Near {
     type Journey = ();
 
     fn of(asked: AnySight) -> Option<Self> {
-        (asked.far.is_none() && asked.least == 0).then_some(Self)
+        (asked == AnySight::from(None)).then_some(Self)
     }
 
     fn looks(self) -> u32 {
@@ -75,7 +75,7 @@ impl Sight for Far {
     type Journey = Journey;
 
     fn of(asked: AnySight) -> Option<Self> {
-        asked.far.filter(|_| asked.least == 0)
+        asked.far.filter(|far| asked == AnySight::from(Some(*far)))
     }
 
     fn looks(self) -> u32 {

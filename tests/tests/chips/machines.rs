@@ -49,6 +49,12 @@ fn the_boards_take_in_labels_on_the_way() {
         for mission in &missions {
             let here = Recording::of(mission).expect("labels are true");
             let flown = machine.fly(mission);
+            // The micro:bit's look-ahead has near sight, which counts on one label a motion.
+            if kind.name == NRF51.name && mission.algorithm == Algorithm::Lookahead {
+                let refusal = flown.expect_err("it is declined").to_string();
+                assert!(refusal.contains("readings: declined"), "{refusal}");
+                continue;
+            }
             let flown = flown.unwrap_or_else(|e| panic!("{}: {e}: {mission:?}", kind.name));
             let there = trace::lines(&flown.recording.results);
             assert_eq!(there, trace::lines(&here.results), "{}: {mission:?}", kind.name);

@@ -12,7 +12,7 @@ use planner_core::link::delivery::{Link, LinkError};
 use planner_core::link::message::{ClockRate, DeclinedError, LabelSource, MissionArea};
 use planner_core::link::station::{AllLabels, Flown, Station};
 use planner_core::robot::LabelSensor;
-use planner_core::{AnyVehicle, Label, Reading};
+use planner_core::{AnySight, AnyVehicle, Label, Reading};
 use rayon::prelude::*;
 use tests::chip::{self, FarEnd, Hears, Off, Socket};
 use tests::missions::{mission, of_any_vehicle, reading, stopping};
@@ -100,7 +100,8 @@ fn by_sensor<S: LabelSensor>(
     let (link, sensor) = (Link::new(Socket(&network)), Some(sensor(&network)));
     let clock = ClockRate { per_second: 1, emulated: false };
     let mut board = Station { link, sensor, ticks: || 0, clock };
-    let flown = board.mission::<AllLabels<68, 36, 529>, AnyVehicle, MissionArea>(&mut Hears);
+    let flown =
+        board.mission::<AllLabels<68, 36, 529, AnySight>, AnyVehicle, MissionArea>(&mut Hears);
     drop(board);
     let network = network.into_inner();
     assert_eq!(network.failure, None, "{mission:?}");
@@ -175,7 +176,7 @@ fn a_chip_that_takes_in_no_labels_on_the_way_says_so() {
     let mission = reading(mission(0));
     let network = RefCell::new(Network::new(&mission, LabelSource::Vehicle, Faults::default()));
     let mut chip = chip::chip(&network, None);
-    let flown = chip.mission::<AllLabels<68, 36, 529>, AnyVehicle, MissionArea>(&mut ());
+    let flown = chip.mission::<AllLabels<68, 36, 529, AnySight>, AnyVehicle, MissionArea>(&mut ());
     assert!(matches!(flown, Ok(Flown::Ended(_))), "{flown:?}");
     drop(chip);
     let Network { player, failure, .. } = network.into_inner();
