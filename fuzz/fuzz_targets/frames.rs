@@ -11,7 +11,7 @@ use planner_core::link::delivery::{Heard, Responder};
 use planner_core::link::frame::{Decoder, Envelope, FRAME, Frame, Message};
 use planner_core::link::message::{Algorithm, MissionArea, Reply, Request, Setup};
 use planner_core::motion::contract;
-use planner_core::{Accuracy, AnyVehicle, Far, Label, Plan, Planner, Pose, Reading, sequences_of};
+use planner_core::{Accuracy, AnySight, AnyVehicle, Label, Plan, Planner, Pose, Reading, sequences_of};
 
 /// Steps that a mission is flown for.
 const STEPS: usize = 6;
@@ -93,20 +93,20 @@ fuzz_target!(|bytes: &[u8]| {
                         fly(prepared.planner_mut(), &setup);
                     }
                 }
-                Algorithm::Lookahead { evaluations, goal, noise: None, far } => {
-                    let asked = (evaluations, far);
+                Algorithm::Lookahead { evaluations, goal, noise: None, sight } => {
+                    let asked = (evaluations, sight);
                     if let Ok(mut prepared) = setup
-                        .lookahead::<_, _, Accuracy, Option<Far>, SAMPLES>(terms, asked, goal)
+                        .lookahead::<_, _, Accuracy, AnySight, SAMPLES>(terms, asked, goal)
                     {
                         fly(prepared.planner_mut(), &setup);
                     }
                 }
-                Algorithm::Lookahead { evaluations, goal, noise: Some((noise, prior)), far } => {
+                Algorithm::Lookahead { evaluations, goal, noise: Some((noise, prior)), sight } => {
                     let mut planner = setup.lookahead_in_noise::<_, _, _, SAMPLES, HYPOTHESES>(
                         terms,
                         evaluations,
                         goal,
-                        far,
+                        sight,
                     );
                     if let Ok(mut prepared) = setup.prepare(&mut planner, prior, noise) {
                         fly(prepared.planner_mut(), &setup);
