@@ -101,8 +101,8 @@ pub(crate) struct CampaignFlags {
     #[arg(long, value_name = "X,Z", value_delimiter = ',')]
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     area: Vec<f64>,
-    /// What a label costs, metres driven, so that labels are sought all over the area; or none (lookahead) [default: an
-    /// eighth of the mean of its sides where that is over 16 motions, else none]
+    /// What a label costs, metres driven; labels are then sought all over the area (lookahead) [default: an eighth of the
+    /// mean of its sides where that is over 16 motions, else none]
     #[arg(long, value_name = "METRES|none")]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     price: Option<Price>,

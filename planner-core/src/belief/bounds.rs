@@ -18,9 +18,9 @@ use crate::geometry::workspace::Workspace;
 /// Samples that say: the line through an area runs in a direction between these two, degrees from the axis of `x`.
 ///
 /// A direction of -10 to 50 degrees is a slope of tan(-10) to tan(50). Directions past 90 degrees are steeper than the
-/// vertical, with +1 to their left. Lines outside the bounds are excluded up to a few degrees: up to `d / r`, where `d` is
-/// half of the area's diagonal and `r` is how far the lattice goes, 8,192 m less the place of the area's middle. That is
-/// 0.1 degrees for a square of 20 m, and 3.5 degrees for 800 m x 500 m.
+/// vertical, with +1 to their left. Directions outside the bounds remain up to `d / r`. There `d` is half of the area's
+/// diagonal. `r` is how far the lattice goes: 8,192 m less the place of the area's middle. That is 0.1 degrees for a square
+/// of 20 m, and 3.5 degrees for 800 m x 500 m.
 ///
 /// # Errors
 /// [`ValueError`] unless the second direction is larger, by less than 180 degrees, and both are within 360 degrees of 0;

@@ -28,7 +28,7 @@ impl Bounds {
     /// Names the field, what was found and what was expected.
     pub(crate) fn samples(&self, area: &MissionArea) -> Result<Vec<Sample>> {
         let named = |field: &str, found: [f64; 2], error| {
-            anyhow!("bounds.{field}: found {found:?}, expected otherwise: {error}")
+            anyhow!("bounds.{field}: found {found:?}, but {error}")
         };
         let mut samples = Vec::new();
         if let Some(bounds) = self.slope {

@@ -106,8 +106,8 @@ pub trait Prediction {
     /// How often a label at a site is true.
     fn reliability(&self, site: Site) -> f32;
 
-    /// What a motion to a site brings, as a share of the most that one can bring: the `information` of the label there, and
-    /// of those on the way if there are any.
+    /// What a motion to a site brings, as a share of the most that one can bring. It is the `information` of the label there.
+    /// Labels on the way add theirs.
     fn brings(&self, _site: Site, _share: f32, information: f32) -> f32 {
         information
     }
