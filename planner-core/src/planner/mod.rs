@@ -56,6 +56,14 @@ pub enum Stage {
     P4,
     /// No problem of the paper: visit ground that is certain, before a goal counts as met.
     Audit,
+    /// Look for a [front](crate::planner::track) that is not found yet, or is lost.
+    Seek,
+    /// Go along a front.
+    Follow,
+    /// Go round a keep-out that lies on a front.
+    Pass,
+    /// Go back to a front, or into the area.
+    Return,
 }
 
 /// A motion to make.
@@ -142,6 +150,8 @@ pub enum StopReason {
     ///
     /// [least bits]: crate::planner::sight::AnySight::with_least_bits
     Worth,
+    /// The robot has gone along all of a closed [front](crate::planner::track), and is back where it found it.
+    Closed,
 }
 
 impl From<DeadEnd> for StopReason {

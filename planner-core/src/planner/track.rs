@@ -14,10 +14,10 @@
 //!   lost. Then it is sought anew nearby.
 //!
 //! A plan looks at [`LOOKED_AT`] ends at most, and at 53 places where the front is sought. It does not end by itself,
-//! unless there is no way on. The user ends it, for example when the front [is closed](Track::is_closed).
+//! unless there is no way on, or [a closed front](Track::until_closed) is to end it.
 
 use crate::belief::evidence::Alarm;
-use crate::belief::front::{FrontMemory, Tracker, Unit, Waist};
+use crate::belief::front::{FrontMemory, NINETY, Tracker, Unit, Waist};
 use crate::belief::observation_log::FromLog as _;
 use crate::belief::sample::Reading;
 use crate::belief::tolerance::Tolerance;
@@ -31,7 +31,7 @@ use crate::planner::lap::Lap;
 use crate::planner::setup::{SetupError, aimed_for_by};
 use crate::planner::silence::Silence;
 use crate::planner::snapshot::{Persist, RestoreError, Snapshot};
-use crate::planner::{Motion, Plan, Planner, StopReason};
+use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
 use crate::search::course::Course;
 use crate::search::dead_end::place;
 use crate::search::errand::{Errand, errand};
@@ -57,14 +57,8 @@ const PRICE: f32 = 0.5;
 /// The reach is at most this share of the tightest bend's radius, and of the mean of the area's sides.
 const SHORT: f32 = 0.125;
 
-/// Of a Gaussian 90 % lie within so many deviations.
-const DEVIATIONS: f32 = 1.645;
-
-/// A front is found where its half-width is below so many reaches and its direction has a deviation below this,
-/// radians; and if there is one, with a probability of 1 less this.
+/// A front is found where its half-width is below so many reaches.
 const FOUND: f32 = 1.5;
-const DIRECTED: f32 = 0.5;
-const NOWHERE: f32 = 0.05;
 
 /// Progress counts in full where the half-width is below this share of the reach: 0.5 m for 2 m.
 const WIDTH: f32 = 0.25;
@@ -120,6 +114,8 @@ pub struct Track<D, const K: usize, const M: usize, const L: usize, G = Area> {
     fastest: u16,
     silence: Silence,
     lap: Lap,
+    /// Whether it ends once the front is closed.
+    ends: bool,
 }
 
 /// The best end of a motion so far, its worth, and what its label tells.
@@ -148,17 +144,23 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         let longest = SHORT * if radius < side { radius } else { side };
         let most = (longest / grid.step_units()) as u16;
         let fastest = grid.speeds().saturating_sub(1).min(most).max(1);
-        Ok(Self { area, dynamics, tracker, fastest, silence: Silence::NONE, lap: Lap::NONE })
+        Ok(Self { area, dynamics, tracker, fastest, silence: Silence::NONE, lap: Lap::NONE, ends: false })
     }
 
     /// Where the front is known best; `None` as long as it is not found, and where it is lost.
     pub fn found(&self) -> Option<Waist> {
-        if self.tracker.is_open() || self.tracker.share_nowhere() > NOWHERE {
-            return None;
-        }
-        let waist = self.tracker.waist();
-        let half = DEVIATIONS * waist.deviation * UNITS_PER_METRE as f32;
-        (half < FOUND * self.reach() && waist.turn_deviation < DIRECTED).then_some(waist)
+        self.tracker.found(self.width())
+    }
+
+    /// The [half-width](Tracker::found) below which the front counts as found, metres: one and a half of the longest motion.
+    pub fn width(&self) -> f32 {
+        FOUND * METRE * self.reach()
+    }
+
+    /// The same, but it ends once the front [is closed](Self::is_closed).
+    #[must_use]
+    pub fn until_closed(self) -> Self {
+        Self { ends: true, ..self }
     }
 
     /// Whether the robot has gone along all of a closed front, and is back where it found it.
@@ -252,10 +254,10 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         Some(Aim::new(waist, pose, is_along))
     }
 
-    /// The motion to an end, if a label is to be read there.
-    fn motion(&mut self, pose: Pose, leg: Leg, wants_label: bool, effort: Effort) -> Plan {
-        let found = Found::of(None, leg);
-        let motion = Motion::of(None, pose, &found, &self.dynamics, effort);
+    /// The motion to an end, and whether a label is to be read there.
+    fn motion(&mut self, pose: Pose, doing: (Stage, Effort), (leg, wants_label): (Leg, bool)) -> Plan {
+        let (found, (stage, effort)) = (Found::of(None, leg), doing);
+        let motion = Motion::of(Some(stage), pose, &found, &self.dynamics, effort);
         let motion = Motion { wants_label, ..motion };
         self.silence.keep(pose, motion, Course::NONE, &self.dynamics)
     }
@@ -289,7 +291,7 @@ impl Aim {
     /// The progress of a way that ends at a site, as a share of the reach. It counts less where the front is not known
     /// well.
     fn progress(&self, way: Vector, to: Site, reach: f32) -> f32 {
-        let half = DEVIATIONS * self.waist.deviation_beside(to) * UNITS_PER_METRE as f32;
+        let half = NINETY * self.waist.deviation_beside(to) * UNITS_PER_METRE as f32;
         let most = WIDTH * reach;
         let counts = if half > most { most / half } else { 1.0 };
         let progress = way.x as f32 * self.along.x + way.z as f32 * self.along.z;
@@ -303,18 +305,25 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
     type Belief = Tracker<K, M, L>;
 
     fn plan(&mut self, pose: Pose) -> Plan {
+        if self.ends && self.lap.is_closed() {
+            return Plan::Stop(StopReason::Closed);
+        }
         let aim = self.aim(pose);
         let is_inside = self.area.contains(pose.site);
         let (best, examined) = self.best_end(pose, aim.as_ref());
         // In this order: the first to which there is a way.
-        let places = match &aim {
-            _ if !is_inside => [pose.site.step(self.area.way_home(pose.site)).ok(), None],
+        let (stage, places) = match &aim {
+            _ if !is_inside => {
+                (Stage::Return, [pose.site.step(self.area.way_home(pose.site)).ok(), None])
+            }
             Some(aim) => match self.onward(aim, pose) {
-                Onward::Beyond(site) => [Some(site), None],
-                _ if best.is_some() => [None; 2],
-                _ => [self.first_free(aim, pose, 0), Some(aim.waist.site)],
+                Onward::Beyond(site) => (Stage::Pass, [Some(site), None]),
+                _ if best.is_some() => (Stage::Follow, [None; 2]),
+                _ => (Stage::Return, [self.first_free(aim, pose, 0), Some(aim.waist.site)]),
             },
-            None => [self.far_place(pose, best.map_or(0.0, |best| best.worth)), None],
+            None => {
+                (Stage::Seek, [self.far_place(pose, best.map_or(0.0, |best| best.worth)), None])
+            }
         };
         let mut effort = Effort { looks: LOOKS, examined };
         let near = NEAR * self.reach();
@@ -324,9 +333,13 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
         match (on_the_way, best) {
             (Some(Errand { leg, .. }), _) => {
                 let told = self.tracker.tells(self.tracker.share_above(leg.1.site));
-                self.motion(pose, leg, leg.1.site != pose.site && told > FAINT, effort)
+                let wants_label = leg.1.site != pose.site && told > FAINT;
+                self.motion(pose, (stage, effort), (leg, wants_label))
             }
-            (None, Some(Best { leg, .. })) => self.motion(pose, leg, true, effort),
+            (None, Some(Best { leg, .. })) => {
+                let stage = if aim.is_some() { Stage::Follow } else { Stage::Seek };
+                self.motion(pose, (stage, effort), (leg, true))
+            }
             (None, None) if is_inside => Plan::Stop(StopReason::Cornered),
             (None, None) => Plan::Stop(StopReason::OutsideArea),
         }
