@@ -144,7 +144,15 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         let longest = SHORT * if radius < side { radius } else { side };
         let most = (longest / grid.step_units()) as u16;
         let fastest = grid.speeds().saturating_sub(1).min(most).max(1);
-        Ok(Self { area, dynamics, tracker, fastest, silence: Silence::NONE, lap: Lap::NONE, ends: false })
+        Ok(Self {
+            area,
+            dynamics,
+            tracker,
+            fastest,
+            silence: Silence::NONE,
+            lap: Lap::NONE,
+            ends: false,
+        })
     }
 
     /// Where the front is known best; `None` as long as it is not found, and where it is lost.
@@ -255,7 +263,12 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
     }
 
     /// The motion to an end, and whether a label is to be read there.
-    fn motion(&mut self, pose: Pose, doing: (Stage, Effort), (leg, wants_label): (Leg, bool)) -> Plan {
+    fn motion(
+        &mut self,
+        pose: Pose,
+        doing: (Stage, Effort),
+        (leg, wants_label): (Leg, bool),
+    ) -> Plan {
         let (found, (stage, effort)) = (Found::of(None, leg), doing);
         let motion = Motion::of(Some(stage), pose, &found, &self.dynamics, effort);
         let motion = Motion { wants_label, ..motion };
