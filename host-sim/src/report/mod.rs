@@ -9,6 +9,7 @@ mod diagnosis;
 pub mod examples;
 pub mod figure;
 pub mod flat;
+mod front;
 pub mod ground;
 pub mod log;
 mod look;
