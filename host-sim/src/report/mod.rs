@@ -20,6 +20,7 @@ pub mod paper;
 pub mod picture;
 mod placing;
 pub mod reference;
+pub mod ribbon;
 mod shapes;
 mod sheet;
 mod style;

@@ -33,7 +33,7 @@ pub fn range(intercept: Option<[f64; 2]>) -> String {
 }
 
 /// A number with this many decimal places. Zero has no sign.
-fn fixed(value: f64, places: usize) -> String {
+pub(crate) fn fixed(value: f64, places: usize) -> String {
     let text = format!("{value:.places$}");
     let is_nothing = text.bytes().all(|it| b"-0.".contains(&it));
     if is_nothing { text.replace('-', "") } else { text }
