@@ -13,7 +13,7 @@
 //! - **Begin again**: an alarm of the tracker's evidence says that the front bends more tightly than was told, or is
 //!   lost. Then it is sought anew nearby.
 //!
-//! A plan looks at [`LOOKED_AT`] ends at most, and at 53 places where the front is sought. It does not end by itself,
+//! A plan looks at [`LOOKED_AT`] places at most. Where the front is sought, 53 of them are places beyond one motion. It does not end by itself,
 //! unless there is no way on, or [a closed front](Track::until_closed) is to end it.
 
 use crate::belief::evidence::Alarm;
@@ -40,7 +40,7 @@ use crate::search::objective::{Effort, LOOKS};
 use crate::search::places::Places;
 use crate::search::recovery::Found;
 
-/// Ends of motions that a plan looks at, at most.
+/// Places that a plan looks at, at most: ends of motions, and places beyond them.
 pub const LOOKED_AT: u32 = 112;
 
 /// Circles on which a motion may end, along a front, and where it is sought.
@@ -204,8 +204,11 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         };
         let (dynamics, area) = (&self.dynamics, &self.area);
         let share = |site: Site| self.tracker.share_above(site);
-        let mut places = Places { dynamics, area, pose, share, find, examined: 0, most: LOOKED_AT };
-        let circles = if aim.is_some() { CIRCLES } else { SEEKING };
+        let (circles, most) = match aim {
+            Some(_) => (CIRCLES, LOOKED_AT),
+            None => (SEEKING, LOOKED_AT - PLACES - ALONG as u32),
+        };
+        let mut places = Places { dynamics, area, pose, share, find, examined: 0, most };
         for k in (1..=circles).rev() {
             let speed = u32::from(self.fastest) * u32::from(k) / u32::from(circles);
             if speed > 0 {
