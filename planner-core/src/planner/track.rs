@@ -50,6 +50,7 @@ const SEEKING: u16 = 2;
 /// Places along the mean line, a reach apart, and others all over the area.
 const ALONG: u16 = 17;
 const PLACES: u32 = 36;
+const FAR: u32 = 17 + PLACES;
 
 /// The price of a label, as a share of the reach: it keeps places that are near from being all that is considered.
 const PRICE: f32 = 0.5;
@@ -206,7 +207,7 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         let share = |site: Site| self.tracker.share_above(site);
         let (circles, most) = match aim {
             Some(_) => (CIRCLES, LOOKED_AT),
-            None => (SEEKING, LOOKED_AT - PLACES - ALONG as u32),
+            None => (SEEKING, LOOKED_AT - FAR),
         };
         let mut places = Places { dynamics, area, pose, share, find, examined: 0, most };
         for k in (1..=circles).rev() {
