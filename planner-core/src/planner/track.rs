@@ -52,6 +52,9 @@ const ALONG: u16 = 17;
 const PLACES: u32 = 36;
 const FAR: u32 = 17 + PLACES;
 
+/// Places beyond a motion that are asked at once.
+const AT_ONCE: usize = 18;
+
 /// The price of a label, as a share of the reach: it keeps places that are near from being all that is considered.
 const PRICE: f32 = 0.5;
 
@@ -230,14 +233,21 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
             waist.site.step(by).ok().filter(|it| self.area.contains(*it))
         };
         let anywhere = (0..PLACES).filter_map(|k| place(&self.area, k));
+        let mut sites = (0..ALONG).filter_map(along).chain(anywhere);
         let (mut most, mut best) = (least, None);
-        for site in (0..ALONG).filter_map(along).chain(anywhere) {
-            let share = self.tracker.share_above(site);
-            if let Some(worth) = self.worth(pose, site, share, None).filter(|it| *it > most) {
-                (most, best) = (worth, Some(site));
+        loop {
+            let some: heapless::Vec<Site, AT_ONCE> = sites.by_ref().take(AT_ONCE).collect();
+            if some.is_empty() {
+                return best;
+            }
+            let mut shares = [0.0; AT_ONCE];
+            self.tracker.shares_above(&some, &mut shares);
+            for (&site, share) in some.iter().zip(shares) {
+                if let Some(worth) = self.worth(pose, site, share, None).filter(|it| *it > most) {
+                    (most, best) = (worth, Some(site));
+                }
             }
         }
-        best
     }
 
     /// The first place on the front in the area, from so many reaches ahead of a pose on.
