@@ -13,8 +13,8 @@
 //! - **Begin again**: an alarm of the tracker's evidence says that the front bends more tightly than was told, or is
 //!   lost. Then it is sought anew nearby.
 //!
-//! A plan looks at [`LOOKED_AT`] places at most. Where the front is sought, 53 of them are places beyond one motion. It does not end by itself,
-//! unless there is no way on, or [a closed front](Track::until_closed) is to end it.
+//! A plan looks at [`LOOKED_AT`] places at most. Where the front is sought, 53 of them lie beyond one motion. A plan does
+//! not end by itself, unless there is no way on, or [a closed front](Track::until_closed) is to end it.
 
 use crate::belief::evidence::Alarm;
 use crate::belief::front::{FrontMemory, NINETY, Tracker, Unit, Waist};
