@@ -13,8 +13,8 @@
 //! - **Begin again**: an alarm of the tracker's evidence says that the front bends more tightly than was told, or is
 //!   lost. Then it is sought anew nearby.
 //!
-//! A plan looks at [`LOOKED_AT`] ends at most, and at 53 places where the front is sought. It does not end by itself,
-//! unless there is no way on, or [a closed front](Track::until_closed) is to end it.
+//! A plan looks at [`LOOKED_AT`] places at most. Where the front is sought, 53 of them lie beyond one motion. A plan does
+//! not end by itself, unless there is no way on, or [a closed front](Track::until_closed) is to end it.
 
 use crate::belief::evidence::Alarm;
 use crate::belief::front::{FrontMemory, NINETY, Tracker, Unit, Waist};
@@ -40,7 +40,7 @@ use crate::search::objective::{Effort, LOOKS};
 use crate::search::places::Places;
 use crate::search::recovery::Found;
 
-/// Ends of motions that a plan looks at, at most.
+/// Places that a plan looks at, at most: ends of motions, and places beyond them.
 pub const LOOKED_AT: u32 = 112;
 
 /// Circles on which a motion may end, along a front, and where it is sought.
@@ -50,6 +50,10 @@ const SEEKING: u16 = 2;
 /// Places along the mean line, a reach apart, and others all over the area.
 const ALONG: u16 = 17;
 const PLACES: u32 = 36;
+const FAR: u32 = 17 + PLACES;
+
+/// Places beyond a motion that are asked at once.
+const AT_ONCE: usize = 18;
 
 /// The price of a label, as a share of the reach: it keeps places that are near from being all that is considered.
 const PRICE: f32 = 0.5;
@@ -204,8 +208,11 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         };
         let (dynamics, area) = (&self.dynamics, &self.area);
         let share = |site: Site| self.tracker.share_above(site);
-        let mut places = Places { dynamics, area, pose, share, find, examined: 0, most: LOOKED_AT };
-        let circles = if aim.is_some() { CIRCLES } else { SEEKING };
+        let (circles, most) = match aim {
+            Some(_) => (CIRCLES, LOOKED_AT),
+            None => (SEEKING, LOOKED_AT - FAR),
+        };
+        let mut places = Places { dynamics, area, pose, share, find, examined: 0, most };
         for k in (1..=circles).rev() {
             let speed = u32::from(self.fastest) * u32::from(k) / u32::from(circles);
             if speed > 0 {
@@ -226,14 +233,21 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
             waist.site.step(by).ok().filter(|it| self.area.contains(*it))
         };
         let anywhere = (0..PLACES).filter_map(|k| place(&self.area, k));
+        let mut sites = (0..ALONG).filter_map(along).chain(anywhere);
         let (mut most, mut best) = (least, None);
-        for site in (0..ALONG).filter_map(along).chain(anywhere) {
-            let share = self.tracker.share_above(site);
-            if let Some(worth) = self.worth(pose, site, share, None).filter(|it| *it > most) {
-                (most, best) = (worth, Some(site));
+        loop {
+            let some: heapless::Vec<Site, AT_ONCE> = sites.by_ref().take(AT_ONCE).collect();
+            if some.is_empty() {
+                return best;
+            }
+            let mut shares = [0.0; AT_ONCE];
+            self.tracker.shares_above(&some, &mut shares);
+            for (&site, share) in some.iter().zip(shares) {
+                if let Some(worth) = self.worth(pose, site, share, None).filter(|it| *it > most) {
+                    (most, best) = (worth, Some(site));
+                }
             }
         }
-        best
     }
 
     /// The first place on the front in the area, from so many reaches ahead of a pose on.
