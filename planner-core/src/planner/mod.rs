@@ -20,6 +20,8 @@ mod lap;
 pub mod lookahead;
 pub mod options;
 pub mod scc;
+pub mod scout;
+pub mod seek;
 pub mod setup;
 pub mod sight;
 pub mod silence;
@@ -142,6 +144,9 @@ pub enum StopReason {
     ///
     /// [least bits]: crate::planner::sight::AnySight::with_least_bits
     Worth,
+    /// All of the area most likely has one label: nowhere in reach is a label expected to tell much more. A boundary
+    /// may still cut off a small piece at the border.
+    OneLabel,
 }
 
 impl From<DeadEnd> for StopReason {

@@ -173,6 +173,11 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
         self.nowhere[0] + self.nowhere[1]
     }
 
+    /// The probability that all is +1, and that all is -1.
+    pub(crate) const fn nowhere(&self) -> [f32; 2] {
+        self.nowhere
+    }
+
     /// Records that a robot has come to a site, and how much time has passed. By then the front may have moved, and
     /// ahead of the robot it may bend otherwise. A straight front that does not move stays as it is known.
     ///
@@ -282,7 +287,11 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
     /// anything else. The order of the points counts little.
     #[must_use]
     pub fn given(mut self, given: &[Sample]) -> Self {
-        for round in 0..GIVEN_ROUNDS {
+        let mut labels = given.iter().map(|it| it.label);
+        let first = labels.next();
+        // Points of one label do not bound the front.
+        let rounds = if labels.all(|it| Some(it) == first) { 1 } else { GIVEN_ROUNDS };
+        for round in 0..rounds {
             if round > 0 {
                 let each = (1.0 - self.share_nowhere()) / (K * M * L) as f32;
                 self.grid.cells().for_each(|mass| *mass = each);
