@@ -41,6 +41,17 @@ impl Area {
         Self::new(Site::metres(min)?, Site::metres(max)?)
     }
 
+    /// The least rectangle that holds some sites; `None` if it has no inside.
+    pub(crate) fn around(sites: impl Iterator<Item = Site>) -> Option<Self> {
+        let corners = sites.fold(None, |corners: Option<(Site, Site)>, site| {
+            let (min, max) = corners.unwrap_or((site, site));
+            let lower = Site::new(min.x().min(site.x()), min.z().min(site.z())).ok()?;
+            let upper = Site::new(max.x().max(site.x()), max.z().max(site.z())).ok()?;
+            Some((lower, upper))
+        });
+        corners.and_then(|(min, max)| Self::new(min, max).ok())
+    }
+
     /// The part that is at least so many lattice units away from the border: where to aim if motions end that
     /// far off. It remembers where the border is. `None` if that part has no inside.
     pub fn inset(&self, by: u32) -> Option<Self> {

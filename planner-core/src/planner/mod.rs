@@ -3,11 +3,12 @@
 //! | module | planner |
 //! | --- | --- |
 //! | [`lookahead`] | goes where labels are expected to tell the most, whether they are true or sometimes wrong |
+//! | [`seek`] | finds a straight boundary from nothing, for another planner to go on |
 //! | [`track`] | finds a front that bends and moves, and goes along it |
 //! | [`cfc`] | the paper's Algorithm 1, for labels that are true |
 //! | [`scc`] | the paper's Algorithm 2, for labels that are sometimes wrong |
 //!
-//! [`sight`] is how far look-ahead looks for labels, and [`far`] sight looks all over the area. [`audit`] is what
+//! [`scout`] is how both of these seek. [`sight`] is how far look-ahead looks for labels, and [`far`] sight looks all over the area. [`audit`] is what
 //! look-ahead does before it promises a goal. A [`watched`] planner says when no line explains its
 //! labels. [`options`] are what Algorithms 1 and 2 leave open. [`setup`] checks the parts that every planner is made of.
 //! A [`snapshot`] is what a planner has to remember over a sleep.
@@ -58,6 +59,14 @@ pub enum Stage {
     P4,
     /// No problem of the paper: visit ground that is certain, before a goal counts as met.
     Audit,
+    /// Look for a [front](crate::planner::track) that is not found yet, or is lost.
+    Seek,
+    /// Go along a front.
+    Follow,
+    /// Go round a keep-out that lies on a front.
+    Pass,
+    /// Go back to a front, or into the area.
+    Return,
 }
 
 /// A motion to make.
@@ -144,8 +153,10 @@ pub enum StopReason {
     ///
     /// [least bits]: crate::planner::sight::AnySight::with_least_bits
     Worth,
-    /// All of the area most likely has one label: nowhere in reach is a label expected to tell much more. A boundary
-    /// may still cut off a small piece at the border.
+    /// The robot has gone along all of a closed [front](crate::planner::track), and is back where it found it.
+    Closed,
+    /// All of the area most likely has one label: nowhere in reach is a label expected to tell much. A boundary may still
+    /// cut off a small piece at the border.
     OneLabel,
 }
 

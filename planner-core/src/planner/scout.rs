@@ -9,13 +9,13 @@ use crate::belief::ObservationError;
 use crate::belief::front::{Tracker, Unit, Waist};
 use crate::belief::sample::{Label, Reading};
 use crate::belief::tolerance::Tolerance;
-use crate::geometry::approximate::distance;
+use crate::geometry::approximate::{METRE, distance};
 use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose, Side};
 use crate::planner::setup::{SetupError, aimed_for_by};
 use crate::planner::silence::Silence;
-use crate::planner::{Motion, Plan, StopReason};
+use crate::planner::{Motion, Plan, Stage, StopReason};
 use crate::search::course::Course;
 use crate::search::dead_end::place;
 use crate::search::errand::{Errand, errand};
@@ -40,14 +40,8 @@ const PRICE: f32 = 0.5;
 /// The reach is at most this share of the tightest bend's radius, and of the mean of the area's sides.
 const SHORT: f32 = 0.125;
 
-/// Of a Gaussian 90 % lie within so many deviations.
-pub(crate) const DEVIATIONS: f32 = 1.645;
-
-/// A boundary is found where its half-width is below so many reaches and its direction has a deviation below this,
-/// radians; and if there is one, with a probability of 1 less this.
+/// A boundary is found where its half-width is below so many reaches.
 const FOUND: f32 = 1.5;
-const DIRECTED: f32 = 0.5;
-const NOWHERE: f32 = 0.05;
 
 /// A label that tells less than this share of what one can tell is not worth its way.
 const LEAST: f32 = 0.1;
@@ -72,6 +66,18 @@ pub(crate) struct Scout<D, const K: usize, const M: usize, const L: usize, G> {
     /// What a label costs, lattice units of driving.
     pub(crate) price: f32,
     pub(crate) silence: Silence,
+}
+
+/// All of an area has one label, most likely.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct OneLabel {
+    /// That label.
+    pub label: Label,
+    /// The share of the area that is expected to have the other label all the same, from 0 to 1. A boundary that is left
+    /// cuts off a piece at the border, or a corner.
+    pub other: f32,
 }
 
 /// The best end of a motion so far, and its worth.
@@ -99,12 +105,17 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
 
     /// Where the boundary is known best; `None` as long as it is not found, and where it is lost.
     pub(crate) fn found(&self) -> Option<Waist> {
-        if self.tracker.is_open() || self.tracker.share_nowhere() > NOWHERE {
-            return None;
-        }
-        let waist = self.tracker.waist();
-        let half = DEVIATIONS * waist.deviation * UNITS_PER_METRE as f32;
-        (half < FOUND * self.reach() && waist.turn_deviation < DIRECTED).then_some(waist)
+        self.tracker.found(self.width())
+    }
+
+    /// The half-width below which the boundary counts as found, metres.
+    pub(crate) fn width(&self) -> f32 {
+        FOUND * METRE * self.reach()
+    }
+
+    /// A place on the way back into the area.
+    pub(crate) fn home(&self, pose: Pose) -> Option<Site> {
+        pose.site.step(self.area.way_home(pose.site)).ok()
     }
 
     /// The longest motion that is considered, lattice units.
@@ -154,8 +165,8 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
     }
 
     /// The place beyond the ends of one motion that is worth the most, if that is more than the best of these, and its
-    /// worth. And the label that all places have that are looked at, if it is one.
-    fn far_place(&self, pose: Pose, least: f32) -> (Option<(Site, f32)>, Option<Label>) {
+    /// worth.
+    fn far_place(&self, pose: Pose, least: f32) -> Option<(Site, f32)> {
         let waist = self.tracker.waist();
         let unit = Unit::of(waist.heading);
         let along = |k: u16| {
@@ -166,29 +177,42 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
             let is_far = distance(site - pose.site) > 2.0 * NEAR * self.reach();
             (is_far && self.area.contains(site)).then_some(site)
         };
-        let anywhere = (0..PLACES).filter_map(|k| place(&self.area, k));
-        let (mut best, mut is_above, mut is_below) = (None, false, false);
-        let mut most = least;
-        for site in (0..ALONG).filter_map(along).chain(anywhere).chain(self.corners(pose)) {
+        let (mut most, mut best) = (least, None);
+        for site in (0..ALONG).filter_map(along).chain(self.anywhere()).chain(self.corners(pose)) {
             let share = self.tracker.share_above(site);
-            (is_above, is_below) = (is_above || share > 0.5, is_below || share <= 0.5);
             if let Some(worth) = self.worth(site - pose.site, share).filter(|it| *it > most) {
                 (most, best) = (worth, Some((site, worth)));
             }
         }
-        let label = match (is_above, is_below) {
-            (true, false) => Some(Label::Positive),
-            (false, true) => Some(Label::Negative),
+        best
+    }
+
+    /// Some places all over the area.
+    fn anywhere(&self) -> impl Iterator<Item = Site> {
+        (0..PLACES).filter_map(|k| place(&self.area, k))
+    }
+
+    /// The label that all of the area has, if the places all over it most likely have one.
+    pub(crate) fn one_label(&self) -> Option<OneLabel> {
+        let (mut sum, mut count, mut is_above, mut is_below) = (0.0, 0.0, false, false);
+        for site in self.anywhere() {
+            let share = self.tracker.share_above(site);
+            (is_above, is_below) = (is_above || share > 0.5, is_below || share <= 0.5);
+            (sum, count) = (sum + share, count + 1.0);
+        }
+        let share = sum / count;
+        match (is_above, is_below) {
+            (true, false) => Some(OneLabel { label: Label::Positive, other: 1.0 - share }),
+            (false, true) => Some(OneLabel { label: Label::Negative, other: share }),
             _ => None,
-        };
-        (best, label)
+        }
     }
 
     /// The corners of the area, or the places nearest to them, towards the middle, where the vehicle can be.
     fn corners(&self, pose: Pose) -> impl Iterator<Item = Site> {
         let area = &self.area;
         let circle = self.dynamics.turning_circle(pose, Side::Left);
-        let radius = circle.map_or(0, |it| it.radius as i32);
+        let radius = circle.map_or(0, |it| it.radius);
         let (min, max, middle) = (area.bounds().min(), area.bounds().max(), area.bounds().middle());
         let aside = [(max.x(), min.z()), (min.x(), max.z())];
         let [right, left] = aside.map(|(x, z)| Site::new(x, z).unwrap_or(middle));
@@ -218,8 +242,8 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
     pub(crate) fn go(
         &mut self,
         pose: Pose,
-        places: [Option<Site>; 2],
-        best: Option<Best>,
+        (stage, places): (Stage, [Option<Site>; 2]),
+        best: Option<(Best, Stage)>,
         (least, examined): (f32, u32),
     ) -> Option<Plan> {
         let mut effort = Effort { looks: LOOKS, examined };
@@ -227,16 +251,16 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         let with = (&self.dynamics, &self.area);
         let mut places = places.into_iter().flatten();
         let on_the_way = places.find_map(|site| errand(with, pose, (site, near), &mut effort));
-        let (leg, wants_label) = match (on_the_way, best) {
+        let (leg, stage, wants_label) = match (on_the_way, best) {
             (Some(Errand { leg, .. }), _) => {
                 let told = self.tracker.tells(self.tracker.share_above(leg.1.site));
-                (leg, leg.1.site != pose.site && told > least)
+                (leg, stage, leg.1.site != pose.site && told > least)
             }
-            (None, Some(Best { leg, .. })) => (leg, true),
+            (None, Some((Best { leg, .. }, stage))) => (leg, stage, true),
             (None, None) => return None,
         };
         let found = Found::of(None, leg);
-        let motion = Motion::of(None, pose, &found, &self.dynamics, effort);
+        let motion = Motion::of(Some(stage), pose, &found, &self.dynamics, effort);
         let motion = Motion { wants_label, ..motion };
         Some(self.silence.keep(pose, motion, Course::NONE, &self.dynamics))
     }
@@ -246,20 +270,24 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         let is_inside = self.area.contains(pose.site);
         let worth = |way: Vector, _: Site, share: f32| self.worth(way, share);
         let (best, examined) = self.best_end(pose, SEEKING, worth);
-        let (far, label) = self.far_place(pose, best.map_or(0.0, |best| best.worth));
-        let home = || pose.site.step(self.area.way_home(pose.site)).ok();
-        let place = if is_inside { far.map(|(site, _)| site) } else { home() };
+        let far = self.far_place(pose, best.map_or(0.0, |best| best.worth));
+        let to = if is_inside {
+            (Stage::Seek, [far.map(|(site, _)| site), None])
+        } else {
+            (Stage::Return, [self.home(pose), None])
+        };
         // On the way to a place a label is read where it is worth as much for its price.
         let least = far.map_or(0.0, |(_, worth)| worth * self.price);
         let least = if least > FAINT { least } else { FAINT };
-        self.go(pose, [place, None], best, (least, examined)).unwrap_or(Plan::Stop(match () {
+        let best = best.map(|best| (best, Stage::Seek));
+        self.go(pose, to, best, (least, examined)).unwrap_or(Plan::Stop(match () {
             () if !is_inside => StopReason::OutsideArea,
-            () if far.is_none() && label.is_some() => StopReason::OneLabel,
+            () if far.is_none() && self.one_label().is_some() => StopReason::OneLabel,
             () => StopReason::Cornered,
         }))
     }
 
-    /// Takes in the end of a motion, and whether the belief is new.
+    /// Takes in the end of a motion.
     pub(crate) fn observe(
         &mut self,
         pose: Pose,

@@ -13,12 +13,13 @@
 //! - **Begin again**: an alarm of the tracker's evidence says that the front bends more tightly than was told, or is
 //!   lost. Then it is sought anew nearby.
 //!
-//! A plan looks at [`LOOKED_AT`](crate::planner::scout::LOOKED_AT) ends at most, and at 53 places where the front is sought. It does not end by itself,
-//! unless there is no way on. The user ends it, for example when the front [is closed](Track::is_closed).
+//! A plan looks at [`LOOKED_AT`](crate::planner::scout::LOOKED_AT) ends at most, and at 53 places and the area's corners
+//! where the front is sought. It ends where no front is left to find, where there is no way on, or where
+//! [a closed front](Track::until_closed) is to end it.
 
 use crate::belief::ObservationError;
 use crate::belief::evidence::Alarm;
-use crate::belief::front::{FrontMemory, Tracker, Unit, Waist};
+use crate::belief::front::{FrontMemory, NINETY, Tracker, Unit, Waist};
 use crate::belief::observation_log::FromLog as _;
 use crate::belief::sample::Reading;
 use crate::belief::tolerance::Tolerance;
@@ -28,11 +29,11 @@ use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::lap::Lap;
-use crate::planner::scout::{DEVIATIONS, FAINT, Scout};
+use crate::planner::scout::{FAINT, OneLabel, Scout};
 use crate::planner::setup::SetupError;
 use crate::planner::silence::Silence;
 use crate::planner::snapshot::{Persist, RestoreError, Snapshot};
-use crate::planner::{Plan, Planner, StopReason};
+use crate::planner::{Plan, Planner, Stage, StopReason};
 
 /// Circles on which a motion along a front may end.
 const CIRCLES: u16 = 4;
@@ -77,6 +78,8 @@ const BEYOND: u16 = 10;
 pub struct Track<D, const K: usize, const M: usize, const L: usize, G = Area> {
     scout: Scout<D, K, M, L, G>,
     lap: Lap,
+    /// Whether it ends once the front is closed.
+    ends: bool,
 }
 
 impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
@@ -91,12 +94,29 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
     /// [`SetupError`].
     #[inline] // it is made where it stays, as it may be large
     pub fn new(area: G, dynamics: D, tracker: Tracker<K, M, L>) -> Result<Self, SetupError> {
-        Ok(Self { scout: Scout::new(area, dynamics, tracker)?, lap: Lap::NONE })
+        Ok(Self { scout: Scout::new(area, dynamics, tracker)?, lap: Lap::NONE, ends: false })
     }
 
     /// Where the front is known best; `None` as long as it is not found, and where it is lost.
     pub fn found(&self) -> Option<Waist> {
         self.scout.found()
+    }
+
+    /// The [half-width](Tracker::found) below which the front counts as found, metres: one and a half of the longest motion.
+    pub fn width(&self) -> f32 {
+        self.scout.width()
+    }
+
+    /// The same, but it ends once the front [is closed](Self::is_closed).
+    #[must_use]
+    pub fn until_closed(self) -> Self {
+        Self { ends: true, ..self }
+    }
+
+    /// The label that all of the area has, if it most likely has one; and how much of it may have the other one. The
+    /// planner ends with [`StopReason::OneLabel`] where no label in reach is expected to tell much.
+    pub fn one_label(&self) -> Option<OneLabel> {
+        self.scout.one_label()
     }
 
     /// Whether the robot has gone along all of a closed front, and is back where it found it.
@@ -159,7 +179,7 @@ impl Aim {
     /// The progress of a way that ends at a site, as a share of the reach. It counts less where the front is not known
     /// well.
     fn progress(&self, way: Vector, to: Site, reach: f32) -> f32 {
-        let half = DEVIATIONS * self.waist.deviation_beside(to) * UNITS_PER_METRE as f32;
+        let half = NINETY * self.waist.deviation_beside(to) * UNITS_PER_METRE as f32;
         let most = WIDTH * reach;
         let counts = if half > most { most / half } else { 1.0 };
         let progress = way.x as f32 * self.along.x + way.z as f32 * self.along.z;
@@ -173,6 +193,9 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
     type Belief = Tracker<K, M, L>;
 
     fn plan(&mut self, pose: Pose) -> Plan {
+        if self.ends && self.lap.is_closed() {
+            return Plan::Stop(StopReason::Closed);
+        }
         let Some(aim) = self.aim(pose) else { return self.scout.seek(pose) };
         let (scout, reach) = (&self.scout, self.scout.reach());
         let worth = |way: Vector, to: Site, share: f32| {
@@ -181,14 +204,16 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
         let (best, examined) = scout.best_end(pose, CIRCLES, worth);
         let is_inside = scout.area.contains(pose.site);
         // In this order: the first to which there is a way.
-        let places = match self.onward(&aim, pose) {
-            _ if !is_inside => [pose.site.step(scout.area.way_home(pose.site)).ok(), None],
-            Onward::Beyond(site) => [Some(site), None],
-            _ if best.is_some() => [None; 2],
-            _ => [self.first_free(&aim, pose, 0), Some(aim.waist.site)],
+        let (stage, places) = match self.onward(&aim, pose) {
+            _ if !is_inside => (Stage::Return, [scout.home(pose), None]),
+            Onward::Beyond(site) => (Stage::Pass, [Some(site), None]),
+            _ if best.is_some() => (Stage::Follow, [None; 2]),
+            _ => (Stage::Return, [self.first_free(&aim, pose, 0), Some(aim.waist.site)]),
         };
         let why = if is_inside { StopReason::Cornered } else { StopReason::OutsideArea };
-        self.scout.go(pose, places, best, (FAINT, examined)).unwrap_or(Plan::Stop(why))
+        let best = best.map(|best| (best, Stage::Follow));
+        let plan = self.scout.go(pose, (stage, places), best, (FAINT, examined));
+        plan.unwrap_or(Plan::Stop(why))
     }
 
     fn observe_within(

@@ -38,4 +38,5 @@ pub(crate) use grid::Unit;
 pub use memory::FrontMemory;
 pub use settings::Front;
 pub use tracker::Tracker;
+pub(crate) use waist::NINETY;
 pub use waist::Waist;

@@ -41,10 +41,15 @@ const BENDS: f32 = 0.05;
 const LEVER: f32 = 30.0;
 
 /// Positions that err by a deviation widen the edge of a label by so many of them, either way.
-const DEVIATIONS: f32 = 1.5;
+const WIDER: f32 = 1.5;
 
 /// A tolerance is so many deviations.
 const TOLERANCE: f32 = 3.0;
+
+/// A front is found where its direction has a deviation below this, radians; and where there is none with a probability
+/// of at most this.
+const DIRECTED: f32 = 0.5;
+const ABSENT: f32 = 0.05;
 
 /// Given points are weighed so many times, each time among fewer curves.
 const GIVEN_ROUNDS: u32 = 4;
@@ -100,32 +105,31 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
         let noise = noise.into();
         let prior = noise.reliability.unknown();
         let learnt = prior.map(|it| Learnt::prior(it.parameters().map(|it| it as f32)));
-        let mut grid = Grid::NONE;
-        let [x, z] = area.half_sides().map(|it| it as f32 * METRE);
-        let far = sqrt(x * x + z * z);
-        grid.set(Lay {
-            pivot: area.middle(),
-            heading: Heading(0),
-            turn: core::f32::consts::TAU / K as f32,
-            low: -far,
-            step: 2.0 * far / M as f32,
-            bend: if L > 1 { front.bend() } else { 0.0 },
-        });
         let mut tracker = Self {
             front,
             noise,
-            grid,
+            grid: Grid::NONE,
             nowhere: [0.5 * NOWHERE; 2],
             learnt,
             evidence: Evidence::NONE,
             start: 0.0,
         };
-        tracker.fill_within([x, z]);
+        tracker.fill_within(area);
         tracker
     }
 
-    /// Spreads the mass evenly over the lines that cross a rectangle about the pivot.
-    fn fill_within(&mut self, [x, z]: [f32; 2]) {
+    /// Spreads the mass evenly over the lines that cross a rectangle.
+    fn fill_within(&mut self, area: Area) {
+        let [x, z] = area.half_sides().map(|it| it as f32 * METRE);
+        let far = sqrt(x * x + z * z);
+        self.grid.set(Lay {
+            pivot: area.middle(),
+            heading: Heading(0),
+            turn: core::f32::consts::TAU / K as f32,
+            low: -far,
+            step: 2.0 * far / M as f32,
+            bend: if L > 1 { self.front.bend() } else { 0.0 },
+        });
         let lay = self.grid.lay;
         for layer in &mut self.grid.mass {
             for (column, along) in layer.iter_mut().zip(&self.grid.along) {
@@ -151,6 +155,11 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
         self.learnt.map_or_else(known, Learnt::mean)
     }
 
+    /// Whether all labels are true, as far as was told.
+    pub(crate) fn is_certain(&self) -> bool {
+        self.learnt.is_none() && self.reliability() >= 1.0
+    }
+
     /// How often a label counts as true.
     pub(crate) fn counted(&self) -> f32 {
         let p = self.reliability();
@@ -158,7 +167,7 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
     }
 
     fn blur(tolerance: Tolerance) -> f32 {
-        DEVIATIONS / TOLERANCE * METRE * tolerance.units() as f32
+        WIDER / TOLERANCE * METRE * tolerance.units() as f32
     }
 
     /// The share of the curves that have a site on their +1 side.
@@ -171,11 +180,6 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
     /// The probability that there is no front.
     pub fn share_nowhere(&self) -> f32 {
         self.nowhere[0] + self.nowhere[1]
-    }
-
-    /// The probability that all is +1, and that all is -1.
-    pub(crate) const fn nowhere(&self) -> [f32; 2] {
-        self.nowhere
     }
 
     /// Records that a robot has come to a site, and how much time has passed. By then the front may have moved, and
@@ -283,15 +287,18 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
         self.grid.lay.is_whole::<K>()
     }
 
-    /// The same after some points whose labels are known: of the curves those that agree with them. Call it before
-    /// anything else. The order of the points counts little.
+    /// The same after some points whose labels are known: of the curves those that agree with them. If they have both
+    /// labels, the front lies between them. Call it before anything else. The order of the points counts little, and the
+    /// information is measured from here.
     #[must_use]
     pub fn given(mut self, given: &[Sample]) -> Self {
-        let mut labels = given.iter().map(|it| it.label);
-        let first = labels.next();
-        // Points of one label do not bound the front.
-        let rounds = if labels.all(|it| Some(it) == first) { 1 } else { GIVEN_ROUNDS };
-        for round in 0..rounds {
+        let has = |label| given.iter().any(|it| it.label == label);
+        let is_between = has(Label::Positive) && has(Label::Negative);
+        if let Some(between) = Area::around(given.iter().map(|it| it.site)).filter(|_| is_between) {
+            self.fill_within(between);
+        }
+        // Points of one label do not bound the front, and count once.
+        for round in 0..if is_between { GIVEN_ROUNDS } else { 1 } {
             if round > 0 {
                 let each = (1.0 - self.share_nowhere()) / (K * M * L) as f32;
                 self.grid.cells().for_each(|mass| *mass = each);
@@ -301,7 +308,19 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
             }
             self.grid.lay_around(TAIL);
         }
+        self.start -= self.information() as f32;
         self
+    }
+
+    /// Where the front is known best, if it is found: 90 % of it lies within so many metres there, its direction has a
+    /// deviation below half a radian, and with 95 % there is a front.
+    pub fn found(&self, within: f32) -> Option<Waist> {
+        if self.is_open() || self.share_nowhere() > ABSENT {
+            return None;
+        }
+        let waist = self.waist();
+        let is_near = waist.ninety() <= within;
+        (is_near && waist.turn_deviation < DIRECTED).then_some(waist)
     }
 
     /// Begins again near a site: the front lies within so many metres of it, and its direction has changed by less

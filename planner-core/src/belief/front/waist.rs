@@ -29,6 +29,11 @@ impl Waist {
         f64::from(self.deviation) * deviations(probability)
     }
 
+    /// The half-width that holds the front with a probability of 0.9, metres.
+    pub(crate) fn ninety(&self) -> f32 {
+        NINETY * self.deviation
+    }
+
     /// How far along the front a site lies, metres.
     pub(crate) fn ahead(&self, site: Site) -> f32 {
         let [ahead, _] = Unit::of(self.heading).seen(metres(site - self.site));
@@ -55,6 +60,9 @@ impl Waist {
         sqrt(self.deviation * self.deviation + square)
     }
 }
+
+/// Of a Gaussian 90 % lie within so many deviations.
+pub(crate) const NINETY: f32 = 1.645;
 
 /// A front is not followed round further than this by its curvature alone, radians.
 const MOST_TURN: f32 = 1.5;
