@@ -80,6 +80,34 @@ pub struct OneLabel {
     pub other: f32,
 }
 
+impl OneLabel {
+    /// What a tracker says of an area; `None` where places all over it do not most likely have one label.
+    ///
+    /// Cost: 36 [questions](Tracker::share_above).
+    pub fn of<const K: usize, const M: usize, const L: usize>(
+        tracker: &Tracker<K, M, L>,
+        area: &impl Workspace,
+    ) -> Option<Self> {
+        let (mut sum, mut count, mut is_above, mut is_below) = (0.0, 0.0, false, false);
+        for site in anywhere(area) {
+            let share = tracker.share_above(site);
+            (is_above, is_below) = (is_above || share > 0.5, is_below || share <= 0.5);
+            (sum, count) = (sum + share, count + 1.0);
+        }
+        let share = sum / count;
+        match (is_above, is_below) {
+            (true, false) => Some(Self { label: Label::Positive, other: 1.0 - share }),
+            (false, true) => Some(Self { label: Label::Negative, other: share }),
+            _ => None,
+        }
+    }
+}
+
+/// Some places all over an area.
+fn anywhere(area: &impl Workspace) -> impl Iterator<Item = Site> {
+    (0..PLACES).filter_map(|k| place(area, k))
+}
+
 /// The best end of a motion so far, and its worth.
 #[derive(Clone, Copy)]
 pub(crate) struct Best {
@@ -178,7 +206,9 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
             (is_far && self.area.contains(site)).then_some(site)
         };
         let (mut most, mut best) = (least, None);
-        for site in (0..ALONG).filter_map(along).chain(self.anywhere()).chain(self.corners(pose)) {
+        for site in
+            (0..ALONG).filter_map(along).chain(anywhere(&self.area)).chain(self.corners(pose))
+        {
             let share = self.tracker.share_above(site);
             if let Some(worth) = self.worth(site - pose.site, share).filter(|it| *it > most) {
                 (most, best) = (worth, Some((site, worth)));
@@ -187,25 +217,9 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         best
     }
 
-    /// Some places all over the area.
-    fn anywhere(&self) -> impl Iterator<Item = Site> {
-        (0..PLACES).filter_map(|k| place(&self.area, k))
-    }
-
-    /// The label that all of the area has, if the places all over it most likely have one.
+    /// The label that all of the area has, if it most likely has one.
     pub(crate) fn one_label(&self) -> Option<OneLabel> {
-        let (mut sum, mut count, mut is_above, mut is_below) = (0.0, 0.0, false, false);
-        for site in self.anywhere() {
-            let share = self.tracker.share_above(site);
-            (is_above, is_below) = (is_above || share > 0.5, is_below || share <= 0.5);
-            (sum, count) = (sum + share, count + 1.0);
-        }
-        let share = sum / count;
-        match (is_above, is_below) {
-            (true, false) => Some(OneLabel { label: Label::Positive, other: 1.0 - share }),
-            (false, true) => Some(OneLabel { label: Label::Negative, other: share }),
-            _ => None,
-        }
+        OneLabel::of(&self.tracker, &self.area)
     }
 
     /// The corners of the area, or the places nearest to them, towards the middle, where the vehicle can be.

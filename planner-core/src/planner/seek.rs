@@ -179,7 +179,7 @@ impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Seek<D, K, M, G>
         } else {
             let samples: Vec<_, GIVEN, u8> =
                 self.samples.iter().map(|it| (*it, tolerance)).collect();
-            VersionSpace::of_uncertain(&samples)
+            VersionSpace::of_uncertain(&samples).and_then(|it| it.with_tolerance(tolerance))
         };
         self.is = match made.map(|_| ()) {
             Ok(()) => State::Found,
