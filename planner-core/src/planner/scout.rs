@@ -192,9 +192,9 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         (best, examined)
     }
 
-    /// The place beyond the ends of one motion that is worth the most, if that is more than the best of these, and its
-    /// worth.
-    fn far_place(&self, pose: Pose, least: f32) -> Option<(Site, f32)> {
+    /// The two places beyond the ends of one motion that are worth the most, if that is more than the best of these, the
+    /// best first. And its worth.
+    fn far_places(&self, pose: Pose, least: f32) -> ([Option<Site>; 2], f32) {
         let waist = self.tracker.waist();
         let unit = Unit::of(waist.heading);
         let along = |k: u16| {
@@ -205,16 +205,19 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
             let is_far = distance(site - pose.site) > 2.0 * NEAR * self.reach();
             (is_far && self.area.contains(site)).then_some(site)
         };
-        let (mut most, mut best) = (least, None);
+        let [mut first, mut second] = [(None, least); 2];
         for site in
             (0..ALONG).filter_map(along).chain(anywhere(&self.area)).chain(self.corners(pose))
         {
             let share = self.tracker.share_above(site);
-            if let Some(worth) = self.worth(site - pose.site, share).filter(|it| *it > most) {
-                (most, best) = (worth, Some((site, worth)));
+            let Some(worth) = self.worth(site - pose.site, share) else { continue };
+            if worth > first.1 {
+                (first, second) = ((Some(site), worth), first);
+            } else if worth > second.1 {
+                second = (Some(site), worth);
             }
         }
-        best
+        ([first.0, second.0], first.1)
     }
 
     /// The label that all of the area has, if it most likely has one.
@@ -284,19 +287,22 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         let is_inside = self.area.contains(pose.site);
         let worth = |way: Vector, _: Site, share: f32| self.worth(way, share);
         let (best, examined) = self.best_end(pose, SEEKING, worth);
-        let far = self.far_place(pose, best.map_or(0.0, |best| best.worth));
+        let (far, worth) = self.far_places(pose, best.map_or(0.0, |best| best.worth));
+        let is_open = best.is_some() || far != [None; 2];
+        // It has gone round about a place without a label.
+        let is_vain = best.is_some() && self.silence.is_long();
         let to = if is_inside {
-            (Stage::Seek, [far.map(|(site, _)| site), None])
+            (Stage::Seek, if is_vain { [None; 2] } else { far })
         } else {
             (Stage::Return, [self.home(pose), None])
         };
         // On the way to a place a label is read where it is worth as much for its price.
-        let least = far.map_or(0.0, |(_, worth)| worth * self.price);
+        let least = worth * self.price;
         let least = if least > FAINT { least } else { FAINT };
         let best = best.map(|best| (best, Stage::Seek));
         self.go(pose, to, best, (least, examined)).unwrap_or(Plan::Stop(match () {
             () if !is_inside => StopReason::OutsideArea,
-            () if far.is_none() && self.one_label().is_some() => StopReason::OneLabel,
+            () if !is_open && self.one_label().is_some() => StopReason::OneLabel,
             () => StopReason::Cornered,
         }))
     }

@@ -110,18 +110,15 @@ pub struct SeekMemory {
 }
 
 impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Seek<D, K, M, G> {
-    /// A planner with what is known so far. Where the area is large for the vehicle, a label has the
-    /// [usual price](Far::usual) of far sight. Elsewhere its price is half of the longest motion.
+    /// A planner with what is known so far. A label has the [usual price](Far::across) of far sight.
     ///
     /// # Errors
     /// [`SetupError`].
     #[inline] // it is made where it stays, as it may be large
     pub fn new(area: G, dynamics: D, tracker: Tracker<K, M, 1>) -> Result<Self, SetupError> {
-        let far = Far::usual(&area, &dynamics);
+        let price = Far::across(&area).price();
         let mut scout = Scout::new(area, dynamics, tracker)?;
-        if let Some(far) = far {
-            scout.price = units(far.price() as f32);
-        }
+        scout.price = units(price as f32);
         Ok(Self { scout, samples: Vec::new(), is: State::Sought })
     }
 
@@ -315,5 +312,54 @@ impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Persist for Seek
         self.scout.silence = memory.silence;
         (self.samples, self.is) = (memory.samples.clone(), memory.is);
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::belief::noise::Noise;
+    use crate::geometry::heading::Heading;
+    use crate::motion::unicycle::Unicycle;
+
+    fn seek() -> Seek<Unicycle, 16, 16> {
+        let area = Area::metres([0.0, 0.0], [20.0, 20.0]).unwrap();
+        let tracker = Tracker::new(area, crate::Front::STRAIGHT, Noise::NONE);
+        Seek::new(area, Unicycle::default(), tracker).unwrap()
+    }
+
+    fn after(labels: &[(f64, f64, Label)]) -> Seek<Unicycle, 16, 16> {
+        let mut seek = seek();
+        for &(x, z, label) in labels {
+            let pose = Pose::at([x, z], Heading::default()).unwrap();
+            seek.observe(pose, Some(label.into())).unwrap();
+        }
+        seek
+    }
+
+    #[test]
+    fn a_label_amid_those_of_the_other_kind_leaves_no_line() {
+        use Label::{Negative, Positive};
+        let corners = [(1.0, 1.0, Positive), (19.0, 1.0, Positive), (10.0, 19.0, Positive)];
+        let amid = after(&[&corners[..], &[(10.0, 8.0, Negative)]].concat());
+        let beside = after(&[&corners[..], &[(1.0, 19.0, Negative)]].concat());
+        assert_eq!((amid.is, beside.is), (State::Bent, State::Found));
+        assert!(amid.given().is_empty() && beside.given().len() == 4);
+        // Labels in a row say nothing of the direction.
+        let row = after(&[(1.0, 1.0, Positive), (2.0, 2.0, Positive), (3.0, 3.0, Negative)]);
+        assert_eq!(row.is, State::Sought);
+    }
+
+    #[test]
+    fn of_many_labels_those_far_apart_are_kept() {
+        let mut labels = [(0.0, 0.0, Label::Positive); 62];
+        labels[1].0 = 20.0;
+        for (label, k) in labels.iter_mut().skip(2).zip(0..) {
+            *label = (10.0, 0.1 * f64::from(k), Label::Positive);
+        }
+        let seek = after(&labels);
+        assert_eq!(seek.samples.len(), GIVEN);
+        let has = |x, z| seek.samples.iter().any(|it| it.site == Site::metres([x, z]).unwrap());
+        assert!(has(0.0, 0.0) && has(20.0, 0.0) && has(10.0, 5.9), "{:?}", seek.samples);
     }
 }
