@@ -24,7 +24,7 @@ use crate::search::objective::{Effort, LOOKS};
 use crate::search::places::Places;
 use crate::search::recovery::Found;
 
-/// Ends of motions that a plan looks at, at most.
+/// Places that a plan looks at, at most: ends of motions, and places beyond them.
 pub const LOOKED_AT: u32 = 112;
 
 /// Circles on which a motion may end where the boundary is sought.
@@ -33,6 +33,10 @@ const SEEKING: u16 = 2;
 /// Places along the mean line, a reach apart, and others all over the area.
 const ALONG: u16 = 17;
 const PLACES: u32 = 36;
+
+/// Corners of the area, at most, and all these places together.
+const CORNERS: u32 = 12;
+const FAR: u32 = 17 + PLACES + CORNERS;
 
 /// The usual price of a label, as a share of the reach: it keeps places that are near from being all that is considered.
 const PRICE: f32 = 0.5;
@@ -163,12 +167,12 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         Some(told / (self.price + distance(way)))
     }
 
-    /// The best end of the next motion on so many circles, by what a way to a site is worth that has a share of the
+    /// The best end of the next motion on so many circles, of so many ends at most, by what a way to a site is worth that has a share of the
     /// curves above it. And how many ends were looked at.
     pub(crate) fn best_end(
         &self,
         pose: Pose,
-        circles: u16,
+        (circles, most): (u16, u32),
         worth: impl Fn(Vector, Site, f32) -> Option<f32>,
     ) -> (Option<Best>, u32) {
         let mut best: Option<Best> = None;
@@ -181,7 +185,7 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         };
         let (dynamics, area) = (&self.dynamics, &self.area);
         let share = |site: Site| self.tracker.share_above(site);
-        let mut places = Places { dynamics, area, pose, share, find, examined: 0, most: LOOKED_AT };
+        let mut places = Places { dynamics, area, pose, share, find, examined: 0, most };
         for k in (1..=circles).rev() {
             let speed = u32::from(self.fastest) * u32::from(k) / u32::from(circles);
             if speed > 0 {
@@ -233,8 +237,13 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         let (min, max, middle) = (area.bounds().min(), area.bounds().max(), area.bounds().middle());
         let aside = [(max.x(), min.z()), (min.x(), max.z())];
         let [right, left] = aside.map(|(x, z)| Site::new(x, z).unwrap_or(middle));
-        let of_sides = area.sides().flat_map(|it| [Some(it.from), it.from.step(it.along).ok()]);
-        let all = [min, right, max, left].into_iter().chain(of_sides.flatten());
+        // Each side's end, and its beginning where no other side ends.
+        let of_sides = area.sides().scan(None, |before, side| {
+            let end = side.from.step(side.along).ok();
+            let begin = Some(side.from).filter(|from| before.replace(end) != Some(Some(*from)));
+            Some([begin, end])
+        });
+        let all = [min, right, max, left].into_iter().chain(of_sides.flatten().flatten());
         all.filter_map(move |corner| {
             let way = corner - middle;
             let at = |n: u32| {
@@ -253,6 +262,7 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
             }
             at(inside).filter(|it| area.contains(*it))
         })
+        .take(CORNERS as usize)
     }
 
     /// The motion to the first of some places to which there is a way, or to the best end of one.
@@ -286,7 +296,7 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
     pub(crate) fn seek(&mut self, pose: Pose) -> Plan {
         let is_inside = self.area.contains(pose.site);
         let worth = |way: Vector, _: Site, share: f32| self.worth(way, share);
-        let (best, examined) = self.best_end(pose, SEEKING, worth);
+        let (best, examined) = self.best_end(pose, (SEEKING, LOOKED_AT - FAR), worth);
         let (far, worth) = self.far_places(pose, best.map_or(0.0, |best| best.worth));
         let is_open = best.is_some() || far != [None; 2];
         // It has gone round about a place without a label.

@@ -13,9 +13,8 @@
 //! - **Begin again**: an alarm of the tracker's evidence says that the front bends more tightly than was told, or is
 //!   lost. Then it is sought anew nearby.
 //!
-//! A plan looks at [`LOOKED_AT`](crate::planner::scout::LOOKED_AT) ends at most, and at 53 places and the area's corners
-//! where the front is sought. It ends where no front is left to find, where there is no way on, or where
-//! [a closed front](Track::until_closed) is to end it.
+//! A plan looks at [`LOOKED_AT`](crate::planner::scout::LOOKED_AT) places at most. It ends where no front is left to find,
+//! where there is no way on, or where [a closed front](Track::until_closed) is to end it.
 
 use crate::belief::ObservationError;
 use crate::belief::evidence::Alarm;
@@ -29,7 +28,7 @@ use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::lap::Lap;
-use crate::planner::scout::{FAINT, OneLabel, Scout};
+use crate::planner::scout::{FAINT, LOOKED_AT, OneLabel, Scout};
 use crate::planner::setup::SetupError;
 use crate::planner::silence::Silence;
 use crate::planner::snapshot::{Persist, RestoreError, Snapshot};
@@ -201,7 +200,7 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
         let worth = |way: Vector, to: Site, share: f32| {
             scout.tells(share).map(|told| told + aim.progress(way, to, reach))
         };
-        let (best, examined) = scout.best_end(pose, CIRCLES, worth);
+        let (best, examined) = scout.best_end(pose, (CIRCLES, LOOKED_AT), worth);
         let is_inside = scout.area.contains(pose.site);
         // In this order: the first to which there is a way.
         let (stage, places) = match self.onward(&aim, pose) {
