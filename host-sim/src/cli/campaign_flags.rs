@@ -101,6 +101,10 @@ pub(crate) struct CampaignFlags {
     #[arg(long, value_name = "X,Z", value_delimiter = ',')]
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     area: Vec<f64>,
+    /// Planners are given no points: they first seek the line
+    #[arg(long, conflicts_with = "trusted_radius")]
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    from_nothing: bool,
     /// What a label costs, metres driven; labels are then sought all over the area (lookahead) [default: an eighth of the
     /// mean of its sides where that is over 16 motions, else none]
     #[arg(long, value_name = "METRES|none")]
@@ -228,6 +232,7 @@ impl CampaignFlags {
                 policy: self.policy.unwrap_or_default().into(),
                 prior: self.prior.unwrap_or_default().into(),
                 sides,
+                from_nothing: self.from_nothing,
                 asking,
                 ..Campaign::of(algorithm, self.steps)
             })

@@ -38,6 +38,13 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
     if mission.goal.is_some() && !mission.audits {
         bail!("stop.audit: found false, expected true: a board always audits");
     }
+    if mission.begins_from_nothing() {
+        return wrong(
+            "oracle",
+            "no points of both labels",
+            "some with hil: a board does not seek them",
+        );
+    }
     check_sensor(mission, labels)?;
     let Some(noise) = mission.noise_known() else {
         let expected = "a number with hil: a board is told how often labels are true";

@@ -233,8 +233,8 @@ impl Picture {
         };
         // Those of bounds lie far outside of the picture.
         let (given, first) = (mission.oracle().len(), mission.given.samples().len());
-        let heard: Vec<_>; // a belief in a front keeps no samples
-        let (oracle, read) = if belief.front().is_some() {
+        let heard: Vec<_>; // a belief in a front keeps no samples, and one that was handed over only some
+        let (oracle, read) = if belief.front().is_some() || mission.begins_from_nothing() {
             let heard_of = |(_, (site, reading)): &(usize, (Site, Reading))| match *reading {
                 Reading::Side(label) => Some(Sample { site: *site, label }),
                 Reading::Boundary => None,

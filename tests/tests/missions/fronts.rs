@@ -13,7 +13,7 @@ use host_sim::world::sine::Sine;
 use nalgebra::{Point2, Vector2};
 use planner_core::dynamics::Dynamics;
 use planner_core::motion::car;
-use planner_core::planner::track::LOOKED_AT;
+use planner_core::planner::scout::LOOKED_AT;
 use planner_core::{
     AnyReliability, AnyVehicle, Area, Boat, Car, Front, Heading, Holonomic, Hull, KeepOut, Label,
     Line, Noise, Persist as _, Plan, Planner as _, PolygonArea, Pose, Reading, Sample, Site, Track,

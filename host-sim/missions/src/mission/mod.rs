@@ -10,6 +10,7 @@ pub mod definition;
 mod diagnosing;
 pub mod diagnosis;
 pub mod flight;
+pub mod from_nothing;
 pub mod front;
 pub mod given;
 pub mod lawnmower;

@@ -12,6 +12,7 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::{CAPACITY, DoubtfulBelief, HYPOTHESES, Lines, Mission};
+use crate::mission::from_nothing::FromNothing;
 use crate::mission::lawnmower::Lawnmower;
 use crate::mission::margin::Margin;
 use crate::mission::random_walk::RandomWalk;
@@ -79,6 +80,7 @@ impl Mission {
     pub fn belief(&self) -> Box<dyn ReadOut> {
         match () {
             () if !self.algorithm.seeks_line() => Box::new(self.tracker()),
+            () if self.begins_from_nothing() => Box::new(self.sought()),
             () if self.is_noisy() => Box::new(self.table()),
             () => Box::new(self.lines()),
         }
@@ -87,6 +89,10 @@ impl Mission {
     fn planner_of(&self, dynamics: impl Dynamics + 'static) -> AnyPlanner {
         let (area, rng) = (self.config.area, ChaCha8Rng::seed_from_u64(self.seed));
         match self.algorithm {
+            Algorithm::Lawnmower if self.begins_from_nothing() => {
+                erased(self.lawnmower((area, dynamics, self.sought())))
+            }
+            _ if self.begins_from_nothing() => Box::new(FromNothing::new(self, dynamics)),
             Algorithm::Cfc => erased(self.cfc(area, dynamics)),
             Algorithm::Scc => erased(self.scc(area, dynamics)),
             Algorithm::Lookahead if self.is_noisy() => erased(self.doubtful(area, dynamics)),

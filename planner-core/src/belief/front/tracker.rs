@@ -155,6 +155,11 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
         self.learnt.map_or_else(known, Learnt::mean)
     }
 
+    /// Whether all labels are true, as far as was told.
+    pub(crate) fn is_certain(&self) -> bool {
+        self.learnt.is_none() && self.reliability() >= 1.0
+    }
+
     /// How often a label counts as true.
     pub(crate) fn counted(&self) -> f32 {
         let p = self.reliability();
@@ -300,7 +305,8 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
         if let Some(between) = Area::around(given.iter().map(|it| it.site)).filter(|_| is_between) {
             self.fill_within(between);
         }
-        for round in 0..GIVEN_ROUNDS {
+        // Points of one label do not bound the front, and count once.
+        for round in 0..if is_between { GIVEN_ROUNDS } else { 1 } {
             if round > 0 {
                 let each = (1.0 - self.share_nowhere()) / (K * M * L) as f32;
                 self.grid.cells().for_each(|mass| *mass = each);
