@@ -3,6 +3,7 @@
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
+use crate::belief::front::Front;
 use crate::belief::goal::Goal;
 use crate::belief::noise::Noise;
 use crate::belief::sample::Sample;
@@ -103,6 +104,15 @@ pub enum Algorithm {
         noise: Option<(Noise, Prior)>,
         /// How far labels are sought, at which price, and what they must carry.
         sight: AnySight,
+    },
+    /// The follower of fronts. It needs no given samples.
+    Track {
+        /// How tightly the front bends, and how fast it moves in the time of a motion.
+        front: Front,
+        /// What is known of the noise. No ball is trusted.
+        noise: Noise,
+        /// Whether the mission ends once the front is closed.
+        ends: bool,
     },
 }
 

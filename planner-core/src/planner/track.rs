@@ -27,6 +27,7 @@ use crate::geometry::area::Area;
 use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose};
+use crate::planner::front_state::FrontState;
 use crate::planner::lap::Lap;
 use crate::planner::setup::{SetupError, aimed_for_by};
 use crate::planner::silence::Silence;
@@ -138,13 +139,27 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
     #[inline] // it is made where it stays, as it may be large
     pub fn new(area: G, dynamics: D, tracker: Tracker<K, M, L>) -> Result<Self, SetupError> {
         let area = aimed_for_by(area, &dynamics, &tracker)?;
+        Ok(Self::of((area, dynamics), tracker))
+    }
+
+    /// The same in the part of an area that motions [aim for](crate::planner::setup::aimed_for).
+    #[inline]
+    pub(crate) fn of((area, dynamics): (G, D), tracker: Tracker<K, M, L>) -> Self {
         let (grid, side) = (dynamics.grid(), area.bounds().mean_side());
         let bend = tracker.front().bend();
         let radius = if bend > 0.0 { UNITS_PER_METRE as f32 / bend } else { side };
         let longest = SHORT * if radius < side { radius } else { side };
         let most = (longest / grid.step_units()) as u16;
         let fastest = grid.speeds().saturating_sub(1).min(most).max(1);
-        Ok(Self { area, dynamics, tracker, fastest, silence: Silence::NONE, lap: Lap::NONE, ends: false })
+        Self {
+            area,
+            dynamics,
+            tracker,
+            fastest,
+            silence: Silence::NONE,
+            lap: Lap::NONE,
+            ends: false,
+        }
     }
 
     /// Where the front is known best; `None` as long as it is not found, and where it is lost.
@@ -255,7 +270,12 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
     }
 
     /// The motion to an end, and whether a label is to be read there.
-    fn motion(&mut self, pose: Pose, doing: (Stage, Effort), (leg, wants_label): (Leg, bool)) -> Plan {
+    fn motion(
+        &mut self,
+        pose: Pose,
+        doing: (Stage, Effort),
+        (leg, wants_label): (Leg, bool),
+    ) -> Plan {
         let (found, (stage, effort)) = (Found::of(None, leg), doing);
         let motion = Motion::of(Some(stage), pose, &found, &self.dynamics, effort);
         let motion = Motion { wants_label, ..motion };
@@ -388,6 +408,10 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
 
     fn alarm(&self) -> Option<Alarm> {
         self.tracker.evidence().alarm()
+    }
+
+    fn front(&self) -> Option<FrontState> {
+        Some(FrontState { waist: self.found(), is_closed: self.is_closed() })
     }
 }
 

@@ -4,6 +4,7 @@
 use crate::belief::ObservationError;
 use crate::belief::doubtful_labels::CellPosterior;
 use crate::belief::estimate::Estimates;
+use crate::belief::front::{Front, Tracker};
 use crate::belief::goal::{Accuracy, Criterion, Goal};
 use crate::belief::noise::Noise;
 use crate::belief::predictions::NoisyBelief;
@@ -21,6 +22,7 @@ use crate::planner::lookahead::Lookahead;
 use crate::planner::scc::{Policy, Scc};
 use crate::planner::setup::{Restart, SetupError, aimed_for};
 use crate::planner::sight::{AnySight, Sight};
+use crate::planner::track::Track;
 use crate::planner::{Plan, Planner};
 use crate::robot::Hearing;
 
@@ -173,6 +175,26 @@ impl Setup {
     ) -> Lookahead<D, NoisyBelief<N, H>, G, Accuracy, S> {
         let price = options.weight.into();
         Lookahead::of((area, dynamics), NoisyBelief::NONE, price, evaluations, goal).seeing(sight)
+    }
+
+    /// The follower of fronts for this mission.
+    ///
+    /// # Errors
+    /// [`DeclinedError`].
+    #[inline(never)]
+    pub fn track<D: Dynamics, G: Workspace, const K: usize, const M: usize, const L: usize>(
+        &self,
+        PlannerSetup { dynamics, area, .. }: PlannerSetup<D, G>,
+        front: Front,
+        (noise, ends): (Noise, bool),
+    ) -> Result<Prepared<Track<D, K, M, L, G>>, DeclinedError> {
+        // It stores no samples, so there is room for any number.
+        let capacity = Capacity { samples: u16::MAX, hypotheses: 1 };
+        self.check(capacity)?;
+        let tracker = Tracker::new(self.config.area, front, noise).given(&self.given);
+        let planner = Track::of((area, dynamics), tracker);
+        let planner = if ends { planner.until_closed() } else { planner };
+        Ok(Prepared { planner, capacity })
     }
 
     /// Begins the mission in this memory, so that there is never a second planner beside it.
