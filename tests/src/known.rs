@@ -31,7 +31,7 @@ pub fn labelled(number: u64, t: usize, mixed: bool) -> (Vec<Sample>, Vec<Seen>, 
     while seen.len() < t {
         let mut metres = || rng.random_range(0.0..standard_field::SIDE_M);
         let site = Site::try_from(Point2::new(metres(), metres())).expect("near");
-        let dull = field.given.certainty(site) != Certainty::Uncertain;
+        let dull = field.lines().certainty(site) != Certainty::Uncertain;
         if dull && rng.random_range(0..4) > 0 {
             continue; // three in four of those that could tell nothing
         }

@@ -97,7 +97,7 @@ fn attempt(rng: &mut ChaCha8Rng, seed: u64) -> Option<Mission> {
     mission.vehicle = vehicle;
     aimed_for(area, &vehicle, tolerance_told).ok()?;
     mission.start = Pose { site: start, heading: Heading(rng.random()) };
-    (mission.world, mission.given) = (World::divided_by(truth), lines);
+    (mission.world, mission.given) = (World::divided_by(truth), lines.into());
     if is_noisy {
         let p = rng.random_range(0.55..0.999);
         let radius = if rng.random() { 0.0 } else { 0.02 * side };

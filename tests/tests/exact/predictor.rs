@@ -148,7 +148,7 @@ fn noisy_beliefs_are_those_of_the_table_and_of_how_far_labels_can_be_believed() 
         let posterior = PosteriorView::new(&table);
         for _ in 0..12 {
             let [site, next] = [(); 2].map(|()| any_site(&mut rng, &mission));
-            assert_eq!(noisy.ground().certainty(site), mission.given.certainty(site));
+            assert_eq!(noisy.ground().certainty(site), mission.lines().certainty(site));
             let is_trusted = table.reliability(site) == Reliability::CERTAIN;
             let p_here = if is_trusted { 1.0 } else { p };
             let share = predictor.share_above(site);

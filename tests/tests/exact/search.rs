@@ -63,7 +63,7 @@ fn equals_exhaustive_search_along_missions() {
         let mut rng = ChaCha8Rng::seed_from_u64(number);
         let (area, unicycle) = (mission.config.area, Unicycle::paper());
         let mut from = mission.start;
-        let mut space_before = mission.given.clone();
+        let mut space_before = mission.lines();
         let mut step = 0;
         let flown = mission.fly(|taken, belief| {
             let space = belief.version_space().expect("labels are true");
@@ -221,7 +221,8 @@ fn a_search_among_2_to_the_31_rays_comes_to_an_end() {
     let most = Holonomic::new(1 << 31, 2, 2_000).expect("a grid");
     for number in 0..40 {
         let mission = standard_field::standard(14, number, Algorithm::Cfc, 1);
-        let (lines, area) = (mission.given.lines(), mission.config.area);
+        let space = mission.lines();
+        let (lines, area) = (space.lines(), mission.config.area);
         let problem =
             Problem { lines, area, weight: EffortWeight::PAPER, rule: ArcRule::default() };
         let solution = problem.solve_within(LOOKS, &most, mission.start);

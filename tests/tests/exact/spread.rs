@@ -185,7 +185,7 @@ fn doubtful_labels_remove_as_much_of_the_variance_as_is_expected() {
         }
         belief.prepare();
         let about = About::of(&Line::from(belief.belief().centre().expect("an estimate")));
-        let lines = weighed(&about, &mission.given, &labels, p);
+        let lines = weighed(&about, &mission.lines(), &labels, p);
         off.extend(compare(&belief, &about, &lines, p, &mut rng));
     }
     check(&off, 0.03, 0.15);

@@ -81,9 +81,9 @@ fn lines_in_the_corners_of_the_start_raise_few_alarms() {
         for (part, most) in [(0.02, 20.0), (0.1, 1.0)] {
             let fly = |number: u64| {
                 let mut mission = of_labels(number, algorithm, noise);
-                let corners: Vec<_> = mission.given.bounds().map(Line::from).collect();
+                let corners: Vec<_> = mission.lines().bounds().map(Line::from).collect();
                 let corner = corners[number as usize % corners.len()].coefficients();
-                let centre = mission.given.centre().map(Line::from)?.coefficients();
+                let centre = mission.lines().centre().map(Line::from)?.coefficients();
                 let [a, b, c] = [0, 1, 2].map(|k| (1.0 - part) * corner[k] + part * centre[k]);
                 mission.world = World::divided_by(Line::from_coefficients(a, b, c)?);
                 Some(most_evidence(&mission))

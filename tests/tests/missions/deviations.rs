@@ -229,7 +229,7 @@ fn mission(
         return None;
     }
     mission.config.tolerance = told.tolerance().expect("a distance");
-    mission.given.clone().with_tolerance(mission.config.tolerance).ok()?;
+    mission.given.lines()?.clone().with_tolerance(mission.config.tolerance).ok()?;
     let (area, fan) = (mission.config.area, Unicycle::from(algorithm.grid()));
     Some(if planner == PLANNERS[0] {
         fly(mission.cfc(area, fan), &mission, &boundary, &mut rng)

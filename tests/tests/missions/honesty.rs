@@ -112,7 +112,7 @@ impl<'a> Field<'a> {
         let samples = mission.given.samples().to_vec();
         let mut field = Self { mission: mission.clone(), line, case };
         let seen = samples.iter().map(|it| Sample { label: field.label(it.site, 0), ..*it });
-        mission.given = VersionSpace::new(&seen.collect::<Vec<_>>()).ok()?;
+        mission.given = VersionSpace::new(&seen.collect::<Vec<_>>()).ok()?.into();
         field.mission = mission;
         Some(field)
     }

@@ -175,7 +175,7 @@ fn a_reading_on_the_way_leaves_room_for_the_label_at_the_end() {
     assert!(table.is_full());
     // Of true labels as well.
     let mut space = VersionSpace::<5>::new(given).expect("four");
-    let site = open(&mission.given).expect("something is open");
+    let site = open(&mission.lines()).expect("something is open");
     let label = truth(&mission, site).into();
     assert_eq!(space.observe_on_the_way(site, label), Ok(false));
     space.observe(site, label).expect("there is room");

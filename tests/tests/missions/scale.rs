@@ -33,7 +33,7 @@ fn scaled(number: u64, factor: f64) -> Mission {
         .iter()
         .map(|sample| Sample { site: at(sample.site), label: sample.label })
         .collect();
-    mission.given = VersionSpace::new(&given).expect("as before");
+    mission.given = VersionSpace::new(&given).expect("as before").into();
     mission.start = Pose { site: at(mission.start.site), ..mission.start };
     let [a, b, c] = mission.world.line().expect("a line").coefficients();
     let normal = Vector2::new(a, b);

@@ -102,6 +102,7 @@ fn asleep_as_asked(mission: &Mission) -> Result<String, String> {
             asleep(mission, || mission.doubtful(area, vehicle))
         }
         Algorithm::Lookahead => asleep(mission, || mission.lookahead(area, vehicle)),
+        Algorithm::Track => asleep(mission, || mission.track(area, vehicle)),
         Algorithm::Margin | Algorithm::Random | Algorithm::Lawnmower => {
             panic!("no planner of planner-core")
         }

@@ -55,7 +55,7 @@ impl View {
         let seen = |it: &Sample| Sample { site: self.site(it.site), label: self.label(it.label) };
         let given: Vec<_> = mission.given.samples().iter().map(seen).collect();
         let mut other = mission.clone();
-        other.given = Lines::new(&given).expect("lines are left as before");
+        other.given = Lines::new(&given).expect("lines are left as before").into();
         other.config.area = self.area(mission.config.area.bounds()).into();
         other.start = self.pose(mission.start);
         other

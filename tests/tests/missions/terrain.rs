@@ -232,7 +232,7 @@ fn it_goes_round_what_is_in_the_way() {
                 site: at(x, z),
                 label: if sign > 0 { Label::Positive } else { Label::Negative },
             });
-            mission.given = Lines::new(&given).expect("lines are left");
+            mission.given = Lines::new(&given).expect("lines are left").into();
             let truth = Line::from_slope(0.02, 9.9).expect("a line");
             (mission.world, mission.vehicle) = (World::divided_by(truth), vehicle);
             let wall = Hull::new(&[at(2.5, 5.0), at(17.0, 5.2)]).expect("a wall");

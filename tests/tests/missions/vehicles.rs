@@ -44,7 +44,7 @@ fn site(p: Point2<f64>) -> Site {
 fn pool(number: u64) -> Field {
     let mission = standard_field::standard(31, number, Algorithm::Cfc, 1);
     let truth = *mission.world.line().expect("a line");
-    let (area, start, given) = (mission.config.area.bounds(), mission.start, mission.given);
+    let (area, start, given) = (mission.config.area.bounds(), mission.start, mission.lines());
     Field { area, size: [standard_field::SIDE_M; 2], start, given, truth }
 }
 

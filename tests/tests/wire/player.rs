@@ -108,7 +108,7 @@ fn a_player_finds_out_a_chip_that_took_in_another_reading_on_the_way() {
 #[test]
 fn a_player_compares_every_estimate_to_the_last_bit() {
     let mission = mission(0);
-    let right = mission.given.estimates();
+    let right = mission.lines().estimates();
     let end = |estimates| {
         let (last, took) = (None, message::Took::default());
         Request::End(message::MissionEnd {
@@ -155,7 +155,7 @@ fn a_player_keeps_what_was_flown_until_a_contradiction() {
         reason: message::EndReason::Steps,
         last: Some((-known.label).into()),
         took,
-        estimates: mission.given.estimates(),
+        estimates: mission.lines().estimates(),
     };
     assert!(matches!(chip.says(Request::End(end)), Ok(Reply::Noted)));
     let (played, failure) = chip.player.finish_as_far_as_flown().expect("it has begun");

@@ -249,7 +249,7 @@ impl Campaign {
         let mission = self.mission(number);
         let (tolerance, area) = (mission.config.tolerance, mission.config.area);
         let words = || format!("{} m", tolerance.metres());
-        scenario::check_tolerance("--tolerance", tolerance, words, &mission.given, &area)?;
+        scenario::check_tolerance("--tolerance", tolerance, words, mission.given.lines(), &area)?;
         let (mut rows, mut course) = (Vec::new(), Course::default());
         let mut now = Progress { field: number, ..Progress::default() };
         let mut stages = self.stages(measure).into_iter().peekable();

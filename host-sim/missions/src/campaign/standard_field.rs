@@ -10,8 +10,8 @@
 use nalgebra::{Point2, Vector2};
 use planner_core::link::message::Settings;
 use planner_core::{
-    Area, Crossing, Heading, Label, Line, Policy, Pose, Prior, Reading, Sample, Site, Tolerance,
-    VersionSpace,
+    Area, Crossing, Front, Heading, Label, Line, Policy, Pose, Prior, Reading, Sample, Site,
+    Tolerance, VersionSpace,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -120,7 +120,7 @@ pub fn stretched(
         vehicle: algorithm.grid().into(),
         start: Pose { site: oracle[0].site, heading },
         world: World::divided_by(truth),
-        given,
+        given: given.into(),
         noise: None,
         p_told: None,
         errors: Errors::default(),
@@ -131,5 +131,7 @@ pub fn stretched(
         audits: true,
         asking: Asking::USUAL,
         bounds: Bounds::NONE,
+        front: Front::STRAIGHT,
+        until_closed: true,
     }
 }

@@ -22,6 +22,8 @@ pub enum Algorithm {
     Random,
     /// Parallel tracks over all of the area.
     Lawnmower,
+    /// Finds a front that bends and moves, and goes along it.
+    Track,
 }
 
 impl Algorithm {
@@ -34,16 +36,15 @@ impl Algorithm {
             Self::Margin => "margin sampling",
             Self::Random => "random walk",
             Self::Lawnmower => "lawnmower",
+            Self::Track => "front tracking",
         }
     }
 
     /// The default direction of P2: the one from which the algorithm learns the most.
     pub fn following(self) -> Following {
         match self {
-            Self::Cfc | Self::Lookahead | Self::Margin | Self::Random | Self::Lawnmower => {
-                Options::CFC.following
-            }
             Self::Scc => Options::SCC.following,
+            _ => Options::CFC.following,
         }
     }
 
@@ -51,17 +52,15 @@ impl Algorithm {
     pub fn weight(self) -> EffortWeight {
         match self {
             Self::Lookahead => DrivingPrice::USUAL.into(),
-            Self::Cfc | Self::Scc | Self::Margin | Self::Random | Self::Lawnmower => {
-                EffortWeight::PAPER
-            }
+            _ => EffortWeight::PAPER,
         }
     }
 
     /// The default fan of the unicycle. Look-ahead takes the fine one, as more rays cost it no more looks.
     pub fn grid(self) -> Grid {
         match self {
-            Self::Lookahead => Grid::Fine,
-            Self::Cfc | Self::Scc | Self::Margin | Self::Random | Self::Lawnmower => Grid::Paper,
+            Self::Lookahead | Self::Track => Grid::Fine,
+            _ => Grid::Paper,
         }
     }
 
@@ -73,7 +72,7 @@ impl Algorithm {
     /// Whether its belief is a distribution over hypotheses. If not, it is a version space.
     pub fn weighs(self, labels_err: bool) -> bool {
         match self {
-            Self::Cfc => false,
+            Self::Cfc | Self::Track => false,
             Self::Scc => true,
             Self::Lookahead | Self::Margin | Self::Random | Self::Lawnmower => labels_err,
         }
@@ -81,10 +80,12 @@ impl Algorithm {
 
     /// Whether it poses the paper's one-step problems. If not, options for P1 and P2 have no effect.
     pub fn poses_problems(self) -> bool {
-        match self {
-            Self::Cfc | Self::Scc => true,
-            Self::Lookahead | Self::Margin | Self::Random | Self::Lawnmower => false,
-        }
+        matches!(self, Self::Cfc | Self::Scc)
+    }
+
+    /// Whether it takes the boundary to be a straight, still line. If not, it maps a front.
+    pub fn seeks_line(self) -> bool {
+        self != Self::Track
     }
 
     /// What flags and files call it.

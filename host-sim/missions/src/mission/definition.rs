@@ -3,8 +3,9 @@
 use planner_core::link::message::MissionArea;
 use planner_core::link::message::Settings;
 use planner_core::{
-    AnyReliability, AnySight, AnyVehicle, CellPosterior, Crossing, Following, Goal, Noise,
-    NoisyBelief, Policy, Pose, Prior, Sample, UnknownReliability, VersionSpace,
+    AnyReliability, AnySight, AnyVehicle, CellPosterior, Crossing, Following, Front, Goal, Noise,
+    NoisyBelief, Policy, Pose, Prior, Sample, Tracker, UnknownReliability, VersionSpace,
+    Workspace as _,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -13,6 +14,7 @@ use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::{Allowance, ToleranceRecord, tidy};
 use crate::mission::asking::Asking;
 use crate::mission::bounds::Bounds;
+use crate::mission::given::Given;
 use crate::world::World;
 use crate::world::errors::{CUT, Erring, Errors};
 use crate::world::faults::{Failing, Fault};
@@ -31,6 +33,9 @@ pub type Lines = VersionSpace<CAPACITY>;
 
 /// The hypothesis table of simulated planners.
 pub type Table = CellPosterior<CAPACITY, HYPOTHESES, 15, AnyReliability>;
+
+/// The belief of simulated planners of fronts.
+pub type FrontBelief = Tracker<16, 16, 3>;
 
 /// The belief of simulated look-ahead in noise.
 pub type DoubtfulBelief = NoisyBelief<CAPACITY, HYPOTHESES, AnyReliability>;
@@ -56,8 +61,8 @@ pub struct Mission {
     pub start: Pose,
     /// What is really there.
     pub world: World,
-    /// The lines that the oracle's points and the bounds leave.
-    pub given: Lines,
+    /// What the oracle's points and the bounds say.
+    pub given: Given,
     /// What is known of the line beside the oracle's points. Its samples are the last ones that are given.
     pub bounds: Bounds,
     /// How labels are flipped; `None` when they are true.
@@ -78,6 +83,10 @@ pub struct Mission {
     pub audits: bool,
     /// What labels cost, what they are to bring, and how many there may be.
     pub asking: Asking,
+    /// What a planner of fronts is told of the front.
+    pub front: Front,
+    /// Whether it ends once it has gone round a closed front.
+    pub until_closed: bool,
 }
 
 impl Mission {
@@ -173,7 +182,7 @@ impl Mission {
     /// positions' part of the tolerance is smaller than the robot's errors, or an oracle's point is so near to the
     /// boundary that its label may be untrue of the straight line.
     pub fn warning(&self) -> Option<String> {
-        if self.is_noisy() {
+        if self.is_noisy() || !self.algorithm.seeks_line() {
             return None;
         }
         let (needs, told) = (CUT * self.errors.position, self.position_tolerance());
@@ -204,10 +213,18 @@ impl Mission {
     /// What the oracle's points leave open, for samples whose positions err by the tolerance at most.
     ///
     /// # Panics
-    /// When the tolerance is too much for them. Reading a scenario file refuses that.
+    /// When they bound no lines, or the tolerance is too much for them. Reading a scenario file refuses that.
     pub fn lines(&self) -> Lines {
-        let lines = self.given.clone().with_tolerance(self.config.tolerance);
+        let lines = self.given.lines().expect("given points that bound the line");
+        let lines = lines.clone().with_tolerance(self.config.tolerance);
         lines.expect("the tolerance leaves something to find")
+    }
+
+    /// What is known of a front before the first label. If the given points have both labels, it lies between them;
+    /// otherwise it may be anywhere in the area.
+    pub fn tracker(&self) -> FrontBelief {
+        let tracker = Tracker::new(self.config.area.bounds(), self.front, self.noise_told());
+        tracker.given(self.given.samples())
     }
 
     /// How far look-ahead looks for labels, what they must carry, and how many there are a motion.

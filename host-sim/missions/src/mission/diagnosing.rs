@@ -55,7 +55,7 @@ impl DiagnosisRecord {
         if !is_refuted && alarm.is_none() {
             return None;
         }
-        let given = mission.given.given();
+        let given = mission.given.samples();
         let read = steps.iter().zip(results).flat_map(|(step, result)| {
             let taken = |site, reading| {
                 let Reading::Side(label) = reading else { return None };
@@ -110,7 +110,7 @@ impl DiagnosisRecord {
 fn of_true(mission: &Mission, read: &[Taken], near: &Line) -> Explanation {
     let read: Vec<_> = read.iter().map(|it| (it.sample, it.step as u32)).collect();
     let tolerance = mission.config.tolerance;
-    Explanation::of(&Told { given: mission.given.given(), read: &read, tolerance, near })
+    Explanation::of(&Told { given: mission.given.samples(), read: &read, tolerance, near })
 }
 
 /// What explains labels that may be wrong, by the tests for recordings; else by what the evidence suspects. Also the

@@ -24,6 +24,54 @@ pub(crate) struct SampleTable {
     label: i64,
 }
 
+/// What is known at the start: some samples, and the lines that they leave if they bound any.
+#[derive(Clone, Debug)]
+pub struct Given {
+    samples: Vec<Sample>,
+    lines: Option<Lines>,
+}
+
+impl Given {
+    /// The samples.
+    pub fn samples(&self) -> &[Sample] {
+        &self.samples
+    }
+
+    /// The lines that they leave. `None` where they do not bound them: there are none, they have one label, or no line
+    /// separates them.
+    pub const fn lines(&self) -> Option<&Lines> {
+        self.lines.as_ref()
+    }
+
+    /// Samples of a front, which no line need separate.
+    pub fn of_front(samples: Vec<Sample>) -> Self {
+        let lines = VersionSpace::new(&samples).ok();
+        Self { samples, lines }
+    }
+}
+
+impl From<Lines> for Given {
+    fn from(lines: Lines) -> Self {
+        Self { samples: lines.samples().to_vec(), lines: Some(lines) }
+    }
+}
+
+/// What is known of a front at the start: the oracle's points. A front has no bounds.
+///
+/// # Errors
+/// Names the field, what was found and what was expected.
+pub(crate) fn given_of_front(
+    oracle: &[Table<SampleTable>],
+    bounds: &Bounds,
+    area: &MissionArea,
+    world: &World,
+) -> Result<Given> {
+    if !bounds.is_empty() {
+        return wrong("bounds", "some with algorithm track", "none, as they are those of a line");
+    }
+    points(oracle, area, world).map(Given::of_front)
+}
+
 /// The lines that the oracle's points and the bounds leave. The points come first. If they do not say on which side of
 /// the line +1 lies, it lies above.
 ///
@@ -34,7 +82,7 @@ pub(crate) fn given(
     bounds: &Bounds,
     area: &MissionArea,
     world: &World,
-) -> Result<Lines> {
+) -> Result<Given> {
     let oracle = points(oracle, area, world)?;
     let above = bounds.samples(area)?;
     let below: Vec<_> =
@@ -56,7 +104,7 @@ pub(crate) fn given(
         let found = format!("{bounding} points that bound the line");
         return wrong("oracle", found, format!("at most {MOST_BOUNDING} that do"));
     }
-    Ok(lines)
+    Ok(lines.into())
 }
 
 /// The oracle's points.

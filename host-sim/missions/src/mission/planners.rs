@@ -5,7 +5,7 @@ use planner_core::error::ObservationError;
 use planner_core::link::message::MissionArea;
 use planner_core::{
     Accuracy, AnyReliability, AnySight, AnyVehicle, Belief, Cfc, Lookahead, Plan, Planner, Pose,
-    PredictiveBelief, Reading, Scc, Site, Tolerance, Workspace,
+    PredictiveBelief, Reading, Scc, Site, Tolerance, Track, Workspace,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -77,7 +77,11 @@ impl Mission {
     /// # Panics
     /// As [`planner`](Self::planner).
     pub fn belief(&self) -> Box<dyn ReadOut> {
-        if self.is_noisy() { Box::new(self.table()) } else { Box::new(self.lines()) }
+        match () {
+            () if !self.algorithm.seeks_line() => Box::new(self.tracker()),
+            () if self.is_noisy() => Box::new(self.table()),
+            () => Box::new(self.lines()),
+        }
     }
 
     fn planner_of(&self, dynamics: impl Dynamics + 'static) -> AnyPlanner {
@@ -99,11 +103,27 @@ impl Mission {
                 erased(self.lawnmower((area, dynamics, self.table())))
             }
             Algorithm::Lawnmower => erased(self.lawnmower((area, dynamics, self.lines()))),
+            Algorithm::Track => erased(self.track(area, dynamics)),
         }
     }
 
     fn lawnmower<D: Dynamics, B: Belief>(&self, of: (MissionArea, D, B)) -> Lawnmower<D, B> {
         Lawnmower::new(of, self.start, self.steps, self.asking.labels)
+    }
+
+    /// The follower of fronts with the mission's settings.
+    ///
+    /// # Panics
+    /// When settings contradict each other.
+    pub fn track<D: Dynamics, G: Workspace>(&self, area: G, dynamics: D) -> Track<D, 16, 16, 3, G> {
+        let planner = Track::new(area, dynamics, self.tracker()).expect(FITS);
+        if self.until_closed { planner.until_closed() } else { planner }
+    }
+
+    /// The half-width below which the front counts as found, metres; `None` if the planner seeks a line.
+    pub fn found_width(&self) -> Option<f32> {
+        let of = |dynamics: AnyVehicle| self.track(self.config.area, dynamics).width();
+        (!self.algorithm.seeks_line()).then(|| of(self.vehicle))
     }
 
     /// Algorithm 1 with the mission's settings, in an area and with a vehicle that may be others than its own.

@@ -2,15 +2,19 @@
 
 use std::fmt::Debug;
 
+use planner_core::belief::front::Waist;
 use planner_core::{
     AnyReliability, Area, Belief, Goal, Label, PosteriorView, Reliability, Sample, Site, Tolerance,
 };
 
-use crate::mission::definition::{Lines, Table};
+use crate::mission::definition::{FrontBelief, Lines, Table};
 use crate::world::noise::limit;
 
 /// The level of the credible sets that are reported.
 pub const LEVEL: f64 = 0.9;
+
+/// Of a Gaussian [`LEVEL`] lies within so many deviations.
+const DEVIATIONS: f64 = 1.645;
 
 /// What is known after some step, in figures.
 #[derive(Clone, Debug)]
@@ -57,11 +61,16 @@ pub trait ReadOut: Belief + Debug + Send {
     /// Whether it [meets](Belief::meets) a goal.
     fn reaches(&self, goal: Goal, area: Area) -> bool;
 
-    /// All samples with the labels that were taken in, the given ones first.
+    /// All samples that it keeps, with the labels that were taken in, the given ones first.
     fn samples(&self) -> &[Sample];
 
     /// The lines that agree with every label, where these are true.
     fn version_space(&self) -> Option<&Lines> {
+        None
+    }
+
+    /// The front, where one is followed.
+    fn front(&self) -> Option<&FrontBelief> {
         None
     }
 
@@ -106,6 +115,55 @@ impl ReadOut for Lines {
 
     fn boxed(&self) -> Box<dyn ReadOut> {
         Box::new(self.clone())
+    }
+}
+
+impl ReadOut for FrontBelief {
+    fn knowledge(&self) -> Knowledge {
+        let slopes = || {
+            let Waist { heading, turn_deviation, .. } = self.waist();
+            let half = DEVIATIONS * f64::from(turn_deviation).to_degrees();
+            slopes_about(heading.radians().to_degrees(), half)
+        };
+        let slope_arcs = if self.is_open() { vec![[-90.0, 90.0]] } else { slopes() };
+        Knowledge { slope_arcs, intercept: None, bits: self.information(), doubt: None }
+    }
+
+    fn expects(&self, site: Site) -> Expectation {
+        let chance = self.chance(site);
+        Expectation { chance, bits: limit(self.reliability().into()) - limit(chance) }
+    }
+
+    /// Never: a front goes on.
+    fn reaches(&self, _: Goal, _: Area) -> bool {
+        false
+    }
+
+    /// None: it keeps no samples.
+    fn samples(&self) -> &[Sample] {
+        &[]
+    }
+
+    fn front(&self) -> Option<&FrontBelief> {
+        Some(self)
+    }
+
+    fn boxed(&self) -> Box<dyn ReadOut> {
+        Box::new(self.clone())
+    }
+}
+
+/// Directions within so many degrees of one, as intervals of slopes.
+fn slopes_about(angle: f64, half: f64) -> Vec<[f64; 2]> {
+    if half >= 90.0 {
+        return vec![[-90.0, 90.0]];
+    }
+    let middle = angle - (angle / 180.0).round() * 180.0;
+    let (from, to) = (middle - half, middle + half);
+    match () {
+        () if from < -90.0 => vec![[-90.0, to], [from + 180.0, 90.0]],
+        () if to > 90.0 => vec![[-90.0, to - 180.0], [from, 90.0]],
+        () => vec![[from, to]],
     }
 }
 

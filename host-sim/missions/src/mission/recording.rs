@@ -15,7 +15,9 @@ use planner_core::{
 use crate::mission::definition::{Mission, Table};
 use crate::mission::diagnosis::DiagnosisRecord;
 use crate::mission::flight::Flown;
+use crate::mission::front::VertexRecord;
 use crate::mission::legs::{Leg, Legs};
+use crate::mission::map::MapRecord;
 use crate::mission::read_out::{Knowledge, LEVEL, ReadOut, is_unknown};
 use crate::mission::results::{
     AlarmRecord, BestRecord, CredibleRecord, End, Ending, EstimateRecords, FitRecord,
@@ -55,6 +57,8 @@ pub struct Recorder {
     evidence: Evidence,
     /// The most of it that was an alarm.
     alarm: Option<AlarmRecord>,
+    /// A front is found where its half-width is below this, metres.
+    width: Option<f32>,
 }
 
 impl Recorder {
@@ -63,8 +67,8 @@ impl Recorder {
         let belief = mission.belief();
         let (steps, results, before) = (Vec::new(), Vec::new(), Vec::new());
         let evidence = Evidence::NONE;
-        let passed = Vec::new();
-        Self { mission, steps, results, before, belief, passed, evidence, alarm: None }
+        let (passed, width) = (Vec::new(), mission.found_width());
+        Self { mission, steps, results, before, belief, passed, evidence, alarm: None, width }
     }
 
     /// Takes down what was read on the way of the step that comes next.
@@ -87,6 +91,10 @@ impl Recorder {
         if let Some(Alarm { evidence, suspect }) = alarm.filter(|it| it.evidence > most) {
             self.alarm = Some(AlarmRecord { step: number, evidence, suspect });
         }
+        // A front is sought anew then.
+        if self.width.is_some() && alarm.is_some_and(|it| it.evidence >= Alarm::ALARM) {
+            self.evidence = Evidence::NONE;
+        }
         self.results.push(StepResult {
             step: self.steps.len(),
             problem: motion.stage.map(|stage| stage_name(stage).into()),
@@ -102,6 +110,7 @@ impl Recorder {
             bits,
             examined: motion.examined,
             proven: (!motion.proven).then_some(false),
+            front: self.vertex(belief),
             trusted: reliability.map(|it| it == Reliability::CERTAIN),
             hypotheses: doubt.map(|doubt| doubt.hypotheses),
             pruned_mass: doubt.map(|doubt| doubt.pruned_mass),
@@ -147,6 +156,11 @@ impl Recorder {
             readings.push(ReadingRecord::of(step.pose.site, reading, cuts));
         }
         readings
+    }
+
+    /// Where the front is known best, if it is found.
+    fn vertex(&self, belief: &dyn ReadOut) -> Option<VertexRecord> {
+        belief.front()?.found(self.width?).map(Into::into)
     }
 
     /// What a perfect sensor reads at a pose at the end of the current step, if the boundary is known.
@@ -200,20 +214,29 @@ impl Recorder {
         let doubted = belief.hypotheses().and_then(|table| doubted(table, &mission.world));
         let (best, credible) = doubted.unzip();
         let world = mission.world.after(steps.len());
-        let estimates = beside_truth(&mission, &world, belief.estimates());
-        let fit = world.fit().filter(|_| world.line().is_none());
-        let diagnosis =
-            DiagnosisRecord::of(&mission, (&steps, &results), (ending, alarm.as_ref()), &*belief);
+        let estimates = match belief.front() {
+            Some(_) => EstimateRecords::default(), // its map says it
+            None => beside_truth(&mission, &world, belief.estimates()),
+        };
+        let seeks_line = mission.algorithm.seeks_line();
+        let fit = || world.fit().filter(|_| world.line().is_none());
+        let diagnosis = || {
+            DiagnosisRecord::of(&mission, (&steps, &results), (ending, alarm.as_ref()), &*belief)
+        };
         let end = End {
             reason: ending.name().into(),
             estimates,
-            fit: fit.map(|fit| Box::new(FitRecord::beside(fit, &estimates))),
+            fit: seeks_line
+                .then(fit)
+                .flatten()
+                .map(|fit| Box::new(FitRecord::beside(fit, &estimates))),
             best,
             credible,
             reliability: belief.hypotheses().filter(|it| is_unknown(it)).map(learnt),
+            front: (!seeks_line).then(|| MapRecord::of(&results, &mission.world, ending)),
             goal: GoalRecord::of(&mission, &*belief, audit((&steps, &results), &before, ending)),
             alarm,
-            diagnosis: diagnosis.map(Box::new),
+            diagnosis: seeks_line.then(diagnosis).flatten().map(Box::new),
             flown: Legs::of(&results.iter().filter_map(|step| step.flown).collect::<Vec<_>>()),
         };
         let results = Results { start: start(&mission), steps: results, end };
@@ -285,7 +308,11 @@ fn start(mission: &Mission) -> Start {
         labels_err: mission.noise.is_some(),
         readings: (mission.readings > 1).then_some(mission.readings),
         steps: mission.steps,
-        slope_arcs: mission.given.slope_arc().intervals_deg().to_vec(),
+        front: (!mission.algorithm.seeks_line()).then(|| mission.front.into()),
+        slope_arcs: mission
+            .given
+            .lines()
+            .map_or(vec![[-90.0, 90.0]], |lines| lines.slope_arc().intervals_deg().to_vec()),
     }
 }
 

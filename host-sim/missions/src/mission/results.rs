@@ -23,8 +23,10 @@ use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::ToleranceRecord;
 use crate::mission::bounds::Bounds;
 use crate::mission::diagnosis::DiagnosisRecord;
+use crate::mission::front::{FrontTable, VertexRecord};
 use crate::mission::legs::{Leg, Legs};
 pub use crate::mission::line_record::{LineError, LineRecord};
+use crate::mission::map::MapRecord;
 use crate::mission::read_out::Expectation;
 use crate::mission::sensor::FaultTable;
 use crate::mission::stop::GoalRecord;
@@ -103,6 +105,9 @@ pub struct Start {
     /// Bits that a label must be expected to carry.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub worth: Option<f64>,
+    /// What is told of the front, if one is followed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub front: Option<FrontTable>,
     /// Readings a motion, if there are several.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub readings: Option<u32>,
@@ -157,6 +162,9 @@ pub struct StepResult {
     /// `Some(false)` if it is not known to be the best.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub proven: Option<bool>,
+    /// Where the front is known best, if one is followed and found.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub front: Option<VertexRecord>,
     /// Where labels may err: whether the sample lies in a trusted ball.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub trusted: Option<bool>,
@@ -212,6 +220,9 @@ pub struct End {
     /// What labels have shown of a reliability that nobody knows.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reliability: Option<ReliabilityRecord>,
+    /// The map of the front, if one was followed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub front: Option<MapRecord>,
     /// Its goal, if it had one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub goal: Option<GoalRecord>,
@@ -539,6 +550,10 @@ pub fn stage_name(stage: Stage) -> &'static str {
         Stage::P3 => "P3",
         Stage::P4 => "P4",
         Stage::Audit => AUDIT,
+        Stage::Seek => "seek",
+        Stage::Follow => "follow",
+        Stage::Pass => "pass",
+        Stage::Return => "return",
     }
 }
 
@@ -580,6 +595,7 @@ impl Ending {
             Self::Stopped(StopReason::Tolerance) => "tolerance",
             Self::Stopped(StopReason::NoLine) => "no line",
             Self::Stopped(StopReason::Worth) => "worth",
+            Self::Stopped(StopReason::Closed) => "closed",
             Self::Stopped(_) => "stopped",
         }
     }

@@ -19,7 +19,8 @@ use crate::mission::allowance::{self, Allowance};
 use crate::mission::asking::{AskTable, Asking, Price};
 use crate::mission::bounds::Bounds;
 use crate::mission::definition::{CAPACITY, Lines, Mission};
-use crate::mission::given::{SampleTable, given};
+use crate::mission::front::{self, FrontTable};
+use crate::mission::given::{SampleTable, given, given_of_front};
 use crate::mission::lawnmower;
 use crate::mission::names::{CrossingName, FanName, FollowingName, PolicyName, PriorName};
 use crate::mission::sensor::{self, FaultTable};
@@ -82,6 +83,7 @@ struct File {
     oracle: Vec<Table<SampleTable>>,
     #[serde(default)]
     bounds: Table<Bounds>,
+    front: Option<Table<FrontTable>>,
 }
 
 mod defaults {
@@ -330,7 +332,9 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
     check_steps(steps_name, steps, given_count, room)?;
     let truth = file.truth.as_ref().map(|table| table.0.world(&area, folder)).transpose()?;
     let world = truth.unwrap_or(World::UNKNOWN);
+    let given = if algorithm.seeks_line() { given } else { given_of_front };
     let given = given(&file.oracle, &bounds, &area, &world)?;
+    let front = front::front(file.front.as_ref(), algorithm, &vehicle)?;
     let first = file.oracle.first().map(|_| given.samples()[0].site);
     let start = start(&file.start.0, first, &area)?;
     let errors = errors(&file.errors.0)?;
@@ -339,7 +343,8 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
     let position = position("tolerance", file.tolerance, errors)?;
     let tolerance = allowance.tolerance("tolerance", position)?;
     let words = || allowance::sum(position, &allowance);
-    check_tolerance("tolerance", tolerance, words, &given, &area)?;
+    let lines = given.lines().filter(|_| algorithm.seeks_line());
+    check_tolerance("tolerance", tolerance, words, lines, &area)?;
     if matches!(p_told, Some(AnyReliability::Unknown(_))) {
         check_unknown("noise.p", tolerance, algorithm)?;
     }
@@ -347,7 +352,12 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
     let crossing = file.crossing.into();
     let config = Settings { area, weight, crossing, following, tolerance };
     vehicle::check_room(Source::File, &vehicle, &config)?;
-    let goal = file.stop.as_ref().map(|table| table.0.goal(algorithm, noise.is_some()));
+    let stop = file.stop.as_ref().map(|table| &table.0);
+    let (goal, until_closed) = if algorithm.seeks_line() {
+        (stop.map(|it| it.goal(algorithm, noise.is_some())).transpose()?, false)
+    } else {
+        (None, stop.map_or(Ok(true), StopTable::until_closed)?)
+    };
     Ok(Mission {
         algorithm,
         steps,
@@ -366,9 +376,11 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
         sensor: sensor::faults(file.sensor.iter().map(|table| &table.0))?,
         policy: file.policy.into(),
         prior: file.prior.into(),
-        goal: goal.transpose()?,
+        goal,
         audits: file.stop.as_ref().is_none_or(|table| table.0.audits()),
         asking,
+        front,
+        until_closed,
     })
 }
 
@@ -431,13 +443,14 @@ pub fn check_tolerance(
     field: &str,
     tolerance: Tolerance,
     words: impl Fn() -> String,
-    given: &Lines,
+    given: Option<&Lines>,
     area: &MissionArea,
 ) -> Result<()> {
     let found = words;
     if !terrain::leaves_any(area, tolerance.metres()) {
         return wrong(field, found(), "less than half the breadth of the area");
     }
+    let Some(given) = given else { return Ok(()) };
     let of = |label| {
         given
             .samples()
@@ -502,6 +515,9 @@ pub fn p_prior(field: &str, [a, b]: [f64; 2]) -> Result<UnknownReliability> {
 /// # Errors
 /// Names `field`, and what it does not go with.
 pub fn check_unknown(field: &str, tolerance: Tolerance, algorithm: Algorithm) -> Result<()> {
+    if !algorithm.seeks_line() {
+        return Ok(());
+    }
     if tolerance != Tolerance::NONE {
         let found = format!("a prior, and a tolerance of {:.3} m", tolerance.metres());
         return wrong(field, found, "a number where positions err, or exact positions");

@@ -33,12 +33,31 @@ pub(crate) struct StopTable {
     misclassified: Option<f64>,
     level: Option<f64>,
     audit: Option<bool>,
+    closed: Option<bool>,
 }
 
 impl StopTable {
     /// Whether an audit comes before the promise.
     pub(crate) fn audits(&self) -> bool {
         self.audit.unwrap_or(true)
+    }
+
+    /// Whether a mission along a front ends once it has gone round it.
+    ///
+    /// # Errors
+    /// Names a key that means nothing there.
+    pub(crate) fn until_closed(&self) -> Result<bool> {
+        let Self { slope_arc_deg, misclassified, level, audit, closed } = self;
+        let keys = [
+            ("slope_arc_deg", slope_arc_deg.is_some()),
+            ("misclassified", misclassified.is_some()),
+            ("level", level.is_some()),
+            ("audit", audit.is_some()),
+        ];
+        let key = keys.iter().find(|(_, is_there)| *is_there);
+        key.map_or(Ok(closed.unwrap_or(true)), |(name, _)| {
+            wrong(&format!("stop.{name}"), "one with algorithm track", "closed alone")
+        })
     }
 
     /// The goal that it asks for.
@@ -49,6 +68,9 @@ impl StopTable {
         if algorithm != Algorithm::Lookahead {
             let found = format!("with algorithm {}", algorithm.name());
             return wrong("stop", found, "with algorithm lookahead");
+        }
+        if self.closed.is_some() {
+            return wrong("stop.closed", "one without a front", "one with algorithm track");
         }
         let accuracy = match (self.slope_arc_deg, self.misclassified) {
             (Some(degrees), None) if (1e-5..90.0).contains(&degrees) => {

@@ -8,9 +8,9 @@ use planner_core::Line;
 use planner_core::link::message::MissionArea;
 use serde::Deserialize;
 
-use crate::mission::strict::{Numbers, wrong};
+use crate::mission::strict::{Numbers, Table, wrong};
 use crate::world::World;
-use crate::world::boundary::Curve;
+use crate::world::boundary::{CoastRecord, Curve};
 use crate::world::circle::Circle;
 use crate::world::extent::around;
 use crate::world::moving::Moving;
@@ -23,6 +23,9 @@ use crate::world::sine::Sine;
 /// Lengths are up to so many metres, so that no sum of theirs overflows.
 const FURTHEST: f64 = 1e6;
 
+/// The part of a coast that is drawn is so many of its lengths to either side, at most.
+const MOST_LENGTHS: f64 = 1_000.0;
+
 /// The boundary: a straight line, or another kind by its key.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -33,6 +36,7 @@ pub(crate) struct TruthTable {
     circle: Option<Numbers<3>>,
     sine: Option<Numbers<3>>,
     polyline: Option<Vec<Numbers<2>>>,
+    coast: Option<Table<CoastRecord>>,
     raster: Option<String>,
     threshold: Option<f64>,
     drift: Option<Numbers<2>>,
@@ -53,6 +57,8 @@ impl TruthTable {
             Box::new(self.sine(wave)?)
         } else if let Some(points) = &self.polyline {
             Box::new(polyline(points)?)
+        } else if let Some(Table(coast)) = &self.coast {
+            Box::new(self::coast(*coast, rectangle)?)
         } else if let (Some(name), Some(threshold)) = (&self.raster, self.threshold) {
             if !threshold.is_finite() {
                 return wrong("truth.threshold", threshold, "a number");
@@ -73,7 +79,12 @@ impl TruthTable {
             let about = nalgebra::center(&min, &max);
             return Ok(World::divided_by_moving(Moving { start, offset, turn, about }));
         };
-        Ok(World::divided_by_curve(curve, &area))
+        let drift = self.drift.as_ref().map_or([0.0; 2], |Numbers(drift)| *drift);
+        if !drift.iter().all(|it| it.abs() <= FURTHEST) {
+            let expected = "metres along x and z for each motion, up to 1e6";
+            return wrong("truth.drift", format!("{drift:?}"), expected);
+        }
+        Ok(World::divided_by_moving_curve(curve, &area, drift.into()))
     }
 
     /// Whether the keys describe one boundary.
@@ -84,9 +95,9 @@ impl TruthTable {
             ("circle", self.circle.is_some()),
             ("sine", self.sine.is_some()),
             ("polyline", self.polyline.is_some()),
+            ("coast", self.coast.is_some()),
             ("raster", has_raster),
-            ("drift", self.drift.is_some()),
-            ("a line", has_base && self.sine.is_none() && self.drift.is_none()),
+            ("a line", has_base && self.sine.is_none()),
         ];
         let found: Vec<_> =
             kinds.iter().filter(|(_, is_found)| *is_found).map(|(name, _)| *name).collect();
@@ -144,6 +155,7 @@ impl TruthTable {
         circle: None,
         sine: None,
         polyline: None,
+        coast: None,
         raster: None,
         threshold: None,
         drift: None,
@@ -156,6 +168,22 @@ fn circle([x, z]: [f64; 2], radius: f64) -> Result<Circle> {
         return wrong("truth.circle", format!("[{x}, {z}, {radius}]"), expected);
     }
     Ok(Circle { middle: Point2::new(x, z), radius })
+}
+
+fn coast(record: CoastRecord, [min, max]: [Point2<f64>; 2]) -> Result<Polyline> {
+    let CoastRecord { height, length, .. } = record;
+    let half = 0.75 * (max - min).norm();
+    for (name, value) in [("height", height), ("length", length)] {
+        if !(value > 0.0 && value <= FURTHEST) {
+            return wrong(&format!("truth.coast.{name}"), value, "metres, above 0 and up to 1e6");
+        }
+    }
+    if half / length > MOST_LENGTHS {
+        let least = half / MOST_LENGTHS;
+        return wrong("truth.coast.length", length, format!("{least:.3} m at least in this area"));
+    }
+    let coast = Polyline::coast(record, nalgebra::center(&min, &max), half);
+    coast.map_or_else(|| wrong("truth.coast", "none", "a coast"), Ok)
 }
 
 fn polyline(points: &[Numbers<2>]) -> Result<Polyline> {

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::world::way::Way;
 
-/// A boundary that is no straight line. It does not change.
+/// A boundary that is no straight line. It keeps its shape.
 pub trait Curve: Debug + Send + Sync + RefUnwindSafe {
     /// The side that a place is on.
     fn side(&self, at: Point2<f64>) -> Reading;
@@ -31,7 +31,7 @@ pub struct BoundaryRecord {
     /// `a x + b z + c = 0` with `a^2 + b^2 = 1`, for a sine and for a line that moves.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub line: Option<[f64; 3]>,
-    /// By so many metres and degrees the line moves in each motion.
+    /// By so much the boundary moves in each motion: a line by metres and degrees, any other by metres along x and z.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub drift: Option<[f64; 2]>,
     /// The middle and the radius.
@@ -43,12 +43,28 @@ pub struct BoundaryRecord {
     /// The points.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub polyline: Option<Vec<[f64; 2]>>,
+    /// A random coast: the deviation of its heights, its length scale, its seed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub coast: Option<CoastRecord>,
     /// The file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub raster: Option<String>,
     /// From this value up the label is +1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub threshold: Option<f64>,
+}
+
+/// A coast that is drawn at random, metres.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CoastRecord {
+    /// The standard deviation of its heights.
+    pub height: f64,
+    /// The distance over which they are alike.
+    pub length: f64,
+    /// The seed.
+    #[serde(default)]
+    pub seed: u64,
 }
 
 /// The side of a place by a number that is positive on the +1 side.

@@ -25,9 +25,10 @@ pub mod way;
 #[cfg(test)]
 mod tests;
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
-use nalgebra::Point2;
+use nalgebra::{Point2, Vector2};
 use planner_core::belief::cells::CellView;
 use planner_core::{Label, Line, Reading, Site};
 
@@ -57,7 +58,33 @@ enum Boundary {
 #[derive(Debug)]
 struct Curved {
     curve: Box<dyn Curve>,
+    /// The area, and what the boundary makes of it at the start.
+    area: Polygon,
     survey: Survey,
+    /// By so many metres the boundary moves in each motion.
+    drift: Vector2<f64>,
+}
+
+/// A curve after some motions: the same, moved.
+#[derive(Clone, Copy)]
+struct Moved<'a> {
+    curve: &'a dyn Curve,
+    by: Vector2<f64>,
+}
+
+impl Moved<'_> {
+    fn side(&self, at: Point2<f64>) -> Reading {
+        self.curve.side(at - self.by)
+    }
+
+    fn distance(&self, at: Point2<f64>) -> f64 {
+        self.curve.distance(at - self.by)
+    }
+
+    fn ways(&self, rectangle: [Point2<f64>; 2]) -> Vec<Way> {
+        let ways = self.curve.ways(rectangle.map(|at| at - self.by)).into_iter();
+        ways.map(|way| way.into_iter().map(|at| at + self.by).collect()).collect()
+    }
 }
 
 impl World {
@@ -73,8 +100,18 @@ impl World {
 
     /// A world that a curve divides, for missions in an area.
     pub fn divided_by_curve(curve: Box<dyn Curve>, area: &Polygon) -> Self {
-        let survey = Survey::of(area, &*curve);
-        Self { boundary: Boundary::Curved(Arc::new(Curved { curve, survey })), motions: 0 }
+        Self::divided_by_moving_curve(curve, area, Vector2::zeros())
+    }
+
+    /// A world that a curve divides which moves by so many metres in each motion.
+    pub fn divided_by_moving_curve(
+        curve: Box<dyn Curve>,
+        area: &Polygon,
+        drift: Vector2<f64>,
+    ) -> Self {
+        let survey = Survey::of(area, |at| curve.side(at));
+        let curved = Curved { curve, area: area.clone(), survey, drift };
+        Self { boundary: Boundary::Curved(Arc::new(curved)), motions: 0 }
     }
 
     /// A world of which nobody knows what divides it: no simulated robot senses anything there.
@@ -86,8 +123,26 @@ impl World {
     }
 
     /// Whether its boundary moves.
-    pub const fn moves(&self) -> bool {
-        matches!(self.boundary, Boundary::Moving(_))
+    pub fn moves(&self) -> bool {
+        match &self.boundary {
+            Boundary::Moving(_) => true,
+            Boundary::Curved(it) => it.drift != Vector2::zeros(),
+            Boundary::Unknown | Boundary::Line(_) => false,
+        }
+    }
+
+    /// The curve that divides it as it is now.
+    fn curve_now<'a>(&self, Curved { curve, drift, .. }: &'a Curved) -> Moved<'a> {
+        Moved { curve: &**curve, by: drift * f64::from(self.motions) }
+    }
+
+    /// What the curve makes of its area now.
+    fn survey_now<'a>(&self, curved: &'a Curved) -> Cow<'a, Survey> {
+        if !self.moves() || self.motions == 0 {
+            return Cow::Borrowed(&curved.survey);
+        }
+        let curve = self.curve_now(curved);
+        Cow::Owned(Survey::of(&curved.area, |at| curve.side(at)))
     }
 
     /// The line that divides it, if that is known and stays the same.
@@ -122,7 +177,10 @@ impl World {
     pub fn distance(&self, site: Site) -> f64 {
         let at = Point2::from(site);
         match &self.boundary {
-            Boundary::Curved(it) => it.curve.distance(at) * f64::from(it.curve.side(at).sign()),
+            Boundary::Curved(it) => {
+                let curve = self.curve_now(it);
+                curve.distance(at) * f64::from(curve.side(at).sign())
+            }
             _ => self.line_now().map_or(f64::NAN, |line| line.distance(at)),
         }
     }
@@ -130,7 +188,7 @@ impl World {
     /// The reading of a perfect sensor at a site: neither side if the world is not known.
     pub fn reading(&self, site: Site) -> Reading {
         match &self.boundary {
-            Boundary::Curved(it) => it.curve.side(Point2::from(site)),
+            Boundary::Curved(it) => self.curve_now(it).side(Point2::from(site)),
             _ => side(self.distance(site)),
         }
     }
@@ -149,7 +207,7 @@ impl World {
     /// own area.
     pub fn misclassified(&self, area: impl Into<Polygon>, line: &Line) -> Option<f64> {
         match &self.boundary {
-            Boundary::Curved(it) => Some(it.survey.misclassified(line)),
+            Boundary::Curved(it) => Some(self.survey_now(it).misclassified(line)),
             _ => self.line_now().map(|truth| polygon::misclassified(area, &truth, line)),
         }
     }
@@ -157,7 +215,7 @@ impl World {
     /// The straight line that misclassifies least now; `None` if the boundary is not known.
     pub fn fit(&self) -> Option<Fit> {
         match &self.boundary {
-            Boundary::Curved(it) => Some(it.survey.fit),
+            Boundary::Curved(it) => Some(self.survey_now(it).fit),
             _ => self.line_now().map(|line| Fit { line, misclassified: 0.0 }),
         }
     }
@@ -166,7 +224,8 @@ impl World {
     pub fn ways(&self, area: &Polygon) -> Vec<Way> {
         if let Boundary::Curved(it) = &self.boundary {
             let rectangle = extent::around(area.0.iter().copied()).unwrap_or_default();
-            return it.curve.ways(rectangle).iter().flat_map(|way| parts(way, area)).collect();
+            let ways = self.curve_now(it).ways(rectangle);
+            return ways.iter().flat_map(|way| parts(way, area)).collect();
         }
         let chord = self.line_now().and_then(|line| area.chord(&line));
         chord.into_iter().map(Vec::from).collect()
@@ -177,7 +236,10 @@ impl World {
         match &self.boundary {
             Boundary::Unknown | Boundary::Line(_) => None,
             Boundary::Moving(moving) => Some(moving.record()),
-            Boundary::Curved(it) => Some(it.curve.record()),
+            Boundary::Curved(it) => {
+                let drift = self.moves().then(|| it.drift.into());
+                Some(BoundaryRecord { drift, ..it.curve.record() })
+            }
         }
     }
 }

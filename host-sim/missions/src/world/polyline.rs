@@ -2,8 +2,11 @@
 
 use nalgebra::Point2;
 use planner_core::Reading;
+use rand::SeedableRng as _;
+use rand_chacha::ChaCha8Rng;
 
-use crate::world::boundary::{BoundaryRecord, Curve, side};
+use crate::world::boundary::{BoundaryRecord, CoastRecord, Curve, side};
+use crate::world::coast::coast;
 use crate::world::way::{self, Way};
 
 /// How far its ends go on, metres: beyond every place of the lattice and its reach.
@@ -15,6 +18,8 @@ pub struct Polyline {
     points: Way,
     /// The same with ends that go on.
     whole: Way,
+    /// The coast that was drawn, if it is one.
+    coast: Option<CoastRecord>,
 }
 
 impl Polyline {
@@ -34,7 +39,18 @@ impl Polyline {
         let middle = points.iter().copied();
         let ends = [beyond(first, second), beyond(last, before)];
         let whole = [ends[0]].into_iter().chain(middle).chain([ends[1]]).collect();
-        Some(Self { points, whole })
+        Some(Self { points, whole, coast: None })
+    }
+}
+
+impl Polyline {
+    /// A random coast, whose heights have a deviation of `height` about `z = middle.y` and are alike over `length`. Its
+    /// drawn part goes `half` to either side of the middle; beyond that it goes on straight.
+    pub fn coast(record: CoastRecord, middle: Point2<f64>, half: f64) -> Option<Self> {
+        let CoastRecord { height, length, seed } = record;
+        let way = coast(&mut ChaCha8Rng::seed_from_u64(seed), [height, length], half);
+        let whole = Self::through(way.iter().map(|at| at + middle.coords).collect())?;
+        Some(Self { coast: Some(record), ..whole })
     }
 }
 
@@ -56,7 +72,8 @@ impl Curve for Polyline {
     }
 
     fn record(&self) -> BoundaryRecord {
-        let points = self.points.iter().map(|at| (*at).into()).collect();
-        BoundaryRecord { polyline: Some(points), ..BoundaryRecord::default() }
+        let points = || self.points.iter().map(|at| (*at).into()).collect();
+        let polyline = self.coast.is_none().then(points);
+        BoundaryRecord { polyline, coast: self.coast, ..BoundaryRecord::default() }
     }
 }

@@ -8,7 +8,6 @@ use std::f64::consts::PI;
 use nalgebra::{Point2, Vector2};
 use planner_core::{Label, Line, Reading};
 
-use crate::world::boundary::Curve;
 use crate::world::extent::around;
 use crate::world::polygon::Polygon;
 
@@ -55,8 +54,8 @@ impl Survey {
     ///
     /// # Panics
     /// Never: its lines have finite coefficients.
-    pub fn of(area: &Polygon, curve: &dyn Curve) -> Self {
-        let is_positive = |at| curve.side(at) == Reading::Side(Label::Positive);
+    pub fn of(area: &Polygon, side: impl Fn(Point2<f64>) -> Reading) -> Self {
+        let is_positive = |at| side(at) == Reading::Side(Label::Positive);
         let [columns, rows] = [0, 1].map(|axis| strips(area, axis, &is_positive));
         let line = Line::from_slope(0.0, 0.0).expect("finite");
         let mut survey = Self { columns, rows, fit: Fit { line, misclassified: 1.0 } };

@@ -1,0 +1,126 @@
+//! The map of a front: what following it came to.
+
+use planner_core::StopReason;
+use serde::{Deserialize, Serialize};
+
+use crate::mission::front::VertexRecord;
+use crate::mission::results::{Ending, StepResult};
+use crate::world::World;
+
+/// What following a front came to.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub struct MapRecord {
+    /// How it stands in the end.
+    pub state: State,
+    /// The step after which the front was found first.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub found: Option<usize>,
+    /// Where it was known best when it was found last, if it is lost, and after which step.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lost: Option<LostRecord>,
+    /// Vertices of the map: steps after which the front was found.
+    pub vertices: usize,
+    /// Metres of front that they go along, to and fro.
+    pub metres: f64,
+    /// Metres driven since it was found.
+    pub driven: f64,
+    /// The half-widths (90 %), metres: their median and the largest. Null without vertices.
+    pub half_width: Option<[f64; 2]>,
+    /// Beside the true front, if that is known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub off: Option<OffRecord>,
+}
+
+/// How a front stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum State {
+    /// It is found, and the robot goes along it.
+    Followed,
+    /// The robot has gone all round it.
+    Closed,
+    /// It was found, and is lost.
+    Lost,
+    /// It was not found.
+    Sought,
+}
+
+/// Where a front was lost.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub struct LostRecord {
+    /// The last step after which it was found.
+    pub step: usize,
+    /// Metres.
+    pub x: f64,
+    /// Metres.
+    pub z: f64,
+}
+
+/// How far the vertices lie from the true front.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub struct OffRecord {
+    /// The median, metres.
+    pub median: f64,
+    /// 95 % of them lie within this, metres.
+    pub most: f64,
+    /// The share of them whose half-width covers it.
+    pub covered: f64,
+}
+
+impl MapRecord {
+    /// Of a mission's steps in a world, which ended so.
+    pub fn of(steps: &[StepResult], world: &World, ending: Ending) -> Self {
+        let vertices: Vec<_> = steps.iter().filter_map(|it| Some((it.step, it.front?))).collect();
+        let last = vertices.last();
+        let is_found = steps.last().is_some_and(|it| it.front.is_some());
+        let state = match last {
+            Some(_) if ending == Ending::Stopped(StopReason::Closed) => State::Closed,
+            Some(_) if is_found => State::Followed,
+            Some(_) => State::Lost,
+            None => State::Sought,
+        };
+        let lost = last.filter(|_| state == State::Lost);
+        let found = vertices.first().map(|(step, _)| *step);
+        let before = found.and_then(|step| steps.iter().find(|it| it.step == step));
+        let whole = steps.last().map_or(0.0, |it| it.metres);
+        Self {
+            state,
+            found,
+            lost: lost.map(|&(step, it)| LostRecord { step, x: it.x, z: it.z }),
+            vertices: vertices.len(),
+            metres: vertices.windows(2).map(along).sum(),
+            driven: before.map_or(0.0, |it| whole - it.metres),
+            half_width: median_and_most(vertices.iter().map(|(_, it)| it.half_width), 1.0),
+            off: OffRecord::of(&vertices, world),
+        }
+    }
+}
+
+/// Metres along the front between two vertices of one piece of the map.
+fn along(pair: &[(usize, VertexRecord)]) -> f64 {
+    let [(step, from), (next, to)] = pair else { return 0.0 };
+    let (sin, cos) = libm::sincos(from.heading);
+    let way = to.at() - from.at();
+    if *next == step + 1 { (way.x * cos + way.y * sin).abs() } else { 0.0 }
+}
+
+/// The median, and the number below which so large a share lies.
+fn median_and_most(numbers: impl Iterator<Item = f64>, share: f64) -> Option<[f64; 2]> {
+    let mut sorted: Vec<_> = numbers.collect();
+    sorted.sort_by(f64::total_cmp);
+    let last = sorted.len().checked_sub(1)?;
+    Some([0.5, share].map(|share| sorted[(last as f64 * share).round() as usize]))
+}
+
+impl OffRecord {
+    fn of(vertices: &[(usize, VertexRecord)], world: &World) -> Option<Self> {
+        let off = |(step, it): &(usize, VertexRecord)| {
+            let site = it.at().try_into().ok()?;
+            world.is_known().then(|| (world.after(*step).distance(site).abs(), it.half_width))
+        };
+        let off: Vec<_> = vertices.iter().filter_map(off).collect();
+        let [median, most] = median_and_most(off.iter().map(|it| it.0), 0.95)?;
+        let covered = off.iter().filter(|(off, half)| off <= half).count();
+        Some(Self { median, most, covered: covered as f64 / off.len() as f64 })
+    }
+}
