@@ -18,9 +18,11 @@
 
 use crate::belief::evidence::Alarm;
 use crate::belief::front::{FrontMemory, NINETY, Tracker, Unit, Waist};
+use crate::belief::noise::Noise;
 use crate::belief::observation_log::FromLog as _;
-use crate::belief::sample::Reading;
+use crate::belief::sample::{Reading, Sample};
 use crate::belief::tolerance::Tolerance;
+use crate::belief::weight::Prior;
 use crate::belief::{Belief as _, ObservationError};
 use crate::geometry::approximate::{METRE, distance};
 use crate::geometry::area::Area;
@@ -29,7 +31,7 @@ use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::front_state::FrontState;
 use crate::planner::lap::Lap;
-use crate::planner::setup::{SetupError, aimed_for_by};
+use crate::planner::setup::{Restart, SetupError, aimed_for, aimed_for_by};
 use crate::planner::silence::Silence;
 use crate::planner::snapshot::{Persist, RestoreError, Snapshot};
 use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
@@ -412,6 +414,21 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
 
     fn front(&self) -> Option<FrontState> {
         Some(FrontState { waist: self.found(), is_closed: self.is_closed() })
+    }
+}
+
+impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> Restart
+    for Track<D, K, M, L, G>
+{
+    /// It stores no samples.
+    const ROOM: [usize; 2] = [u16::MAX as usize, 1];
+
+    /// Begins again in the rectangle around its area. A tracker has one prior: see [`Tracker::new`].
+    fn restart(&mut self, given: &[Sample], _: Prior, noise: Noise) -> Result<(), SetupError> {
+        self.area = aimed_for(self.area, &self.dynamics, noise.tolerance)?;
+        self.tracker.restart(self.area.whole().bounds(), noise.into(), given);
+        (self.silence, self.lap) = (Silence::NONE, Lap::NONE);
+        Ok(())
     }
 }
 

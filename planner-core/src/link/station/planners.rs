@@ -15,6 +15,7 @@ use crate::belief::evidence::Alarm;
 use crate::belief::goal::{Accuracy, Criterion};
 use crate::belief::sample::Reading;
 use crate::belief::tolerance::Tolerance;
+use crate::belief::weight::Prior;
 use crate::belief::{Belief as _, ObservationError};
 use crate::geometry::lattice::Site;
 use crate::geometry::workspace::Workspace;
@@ -225,8 +226,8 @@ impl<const K: usize, const M: usize, const L: usize, A: Planners> Planners for T
         match setup.algorithm {
             Algorithm::Track { front, noise, ends } => {
                 // It watches its labels itself: they speak of a front, not of a line.
-                let mut planner = setup.track::<_, _, K, M, L>(terms, front, (noise, ends));
-                station.fly(setup, &mut planner, watch)
+                let mut planner = setup.track::<_, _, K, M, L>(terms, front, ends);
+                station.fly(setup, &mut setup.prepare(&mut planner, Prior::Area, noise), watch)
             }
             _ => A::fly(Mission { station, setup, watch }, terms),
         }

@@ -177,24 +177,16 @@ impl Setup {
         Lookahead::of((area, dynamics), NoisyBelief::NONE, price, evaluations, goal).seeing(sight)
     }
 
-    /// The follower of fronts for this mission.
-    ///
-    /// # Errors
-    /// [`DeclinedError`].
-    #[inline(never)]
+    /// The follower of fronts for this mission, with none of its samples yet: the memory for
+    /// [`prepare`](Self::prepare).
     pub fn track<D: Dynamics, G: Workspace, const K: usize, const M: usize, const L: usize>(
         &self,
         PlannerSetup { dynamics, area, .. }: PlannerSetup<D, G>,
         front: Front,
-        (noise, ends): (Noise, bool),
-    ) -> Result<Prepared<Track<D, K, M, L, G>>, DeclinedError> {
-        // It stores no samples, so there is room for any number.
-        let capacity = Capacity { samples: u16::MAX, hypotheses: 1 };
-        self.check(capacity)?;
-        let tracker = Tracker::new(self.config.area, front, noise).given(&self.given);
-        let planner = Track::of((area, dynamics), tracker);
-        let planner = if ends { planner.until_closed() } else { planner };
-        Ok(Prepared { planner, capacity })
+        ends: bool,
+    ) -> Track<D, K, M, L, G> {
+        let planner = Track::of((area, dynamics), Tracker::blank(front));
+        if ends { planner.until_closed() } else { planner }
     }
 
     /// Begins the mission in this memory, so that there is never a second planner beside it.
