@@ -6,6 +6,7 @@ use planner_core::Sample;
 use crate::replay::answer::Answer;
 use crate::replay::record::Replay;
 use crate::report::picture::{Dot, Ground, Kind, Named, Picture, Ring, area_around};
+use crate::report::ribbon::Ribbon;
 
 /// Samples that a figure shows beside those that bound the line.
 const MOST_OTHERS: usize = 2_000;
@@ -71,6 +72,7 @@ impl Replay {
             path: None,
             truth: None,
             lines: centre.into_iter().collect(),
+            front: Ribbon::default(),
         }
         .svg();
         Ok(svg)

@@ -4,7 +4,7 @@ use nalgebra::Point2;
 
 use crate::report::map::Map;
 use crate::report::picture::{Picture, Truth};
-use crate::report::style::{self, PAST_TRUTH, TRUTH};
+use crate::report::style::{self, FRONT, PAST_TRUTH, TRUTH};
 
 impl Picture {
     /// The picture as an SVG document.
@@ -12,6 +12,7 @@ impl Picture {
         let stops = self.path.as_ref().map_or(&[][..], |(_, stops)| stops);
         let mut map = Map::new(&self.title, self.note.as_deref(), &self.area, &self.places());
         map.ground(&self.ground, self.is_refuted);
+        map.front_ground(&self.front);
         map.limits();
         if let Some(truth) = self.truth.as_ref().and_then(Truth::line) {
             map.line(&truth, TRUTH, "true line", None);
@@ -21,6 +22,9 @@ impl Picture {
             for way in &it.ways {
                 map.stretch(way, stroke, it.name);
             }
+        }
+        for way in self.front.ways() {
+            map.stretch(&way, FRONT, "the front as it is mapped");
         }
         for it in &self.lines {
             map.line(&it.line, style::of_line(it.kind), &it.name, it.beside.as_deref());

@@ -11,6 +11,7 @@ use crate::report::look::Look;
 use crate::report::numbers;
 use crate::report::picture::{Dot, Ring, Stop};
 use crate::report::placing::{Placing, foot};
+use crate::report::ribbon::Ribbon;
 use crate::report::shapes::{Anchor, Spot, width};
 use crate::report::sheet::Sheet;
 use crate::report::style::{BORDER, Fill, HEADING, INK, PATH, Stroke};
@@ -137,6 +138,18 @@ impl Map {
         if !rings.is_empty() {
             self.sheet.ground(fill, &rings);
             self.sheet.name(Look::Ground(fill), meaning);
+        }
+    }
+
+    /// The ground where a mapped front lies with a probability of 0.9, and where it was lost last if it is lost.
+    pub(crate) fn front_ground(&mut self, front: &Ribbon) {
+        for quad in front.ground() {
+            let ring = self.spots(&quad);
+            self.sheet.ground(Fill::Front, &[ring]);
+        }
+        if !front.is_empty() {
+            self.sheet
+                .name(Look::Ground(Fill::Front), "the front lies here with a probability of 90 %");
         }
     }
 

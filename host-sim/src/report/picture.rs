@@ -10,9 +10,11 @@ use planner_core::{
 };
 
 use crate::mission::definition::{Mission, Table};
+use crate::mission::map::State;
 use crate::mission::read_out::LEVEL;
 use crate::mission::recording::Recording;
 pub use crate::report::ground::Ground;
+use crate::report::ribbon::Ribbon;
 use crate::world::extent::around;
 use crate::world::polygon::Polygon;
 use crate::world::reading;
@@ -41,6 +43,8 @@ pub struct Picture {
     pub truth: Option<Truth>,
     /// Other lines, with their names.
     pub lines: Vec<Named>,
+    /// The map of a front, if one was followed.
+    pub front: Ribbon,
 }
 
 /// A sample.
@@ -100,7 +104,11 @@ impl Truth {
             Outline { name, is_past, ways }
         };
         let outlines = if world.moves() {
-            vec![at(0, "true line at the start", true), at(motions, "true line at the end", false)]
+            let names = match world.is_line() {
+                true => ["true line at the start", "true line at the end"],
+                false => ["true boundary at the start", "true boundary at the end"],
+            };
+            vec![at(0, names[0], true), at(motions, names[1], false)]
         } else {
             vec![at(0, "true boundary", false)]
         };
@@ -225,7 +233,17 @@ impl Picture {
         };
         // Those of bounds lie far outside of the picture.
         let (given, first) = (mission.oracle().len(), mission.given.samples().len());
-        let (oracle, read) = (&belief.samples()[..given], &belief.samples()[first..]);
+        let heard: Vec<_>; // a belief in a front keeps no samples
+        let (oracle, read) = if belief.front().is_some() {
+            let heard_of = |(_, (site, reading)): &(usize, (Site, Reading))| match *reading {
+                Reading::Side(label) => Some(Sample { site: *site, label }),
+                Reading::Boundary => None,
+            };
+            heard = taken.iter().filter_map(heard_of).collect();
+            (&mission.given.samples()[..given], &heard[..])
+        } else {
+            (&belief.samples()[..given], &belief.samples()[first..])
+        };
         let samples = oracle.iter().chain(read);
         let numbers: Vec<usize> = if mission.world.moves() {
             let of_steps = samples.clone().skip(given).map(number);
@@ -280,6 +298,7 @@ impl Picture {
             path: Some((Point2::from(mission.start.site), stops.collect())),
             truth: Truth::of(mission, recording.steps.len()),
             lines,
+            front: Ribbon::of(&results.steps),
         }
     }
 
@@ -348,6 +367,15 @@ fn note(Recording { mission, results, .. }: &Recording) -> String {
         Some(_) => "; labels raise a warning",
         None => "",
     };
+    if let Some(map) = &results.end.front {
+        let what = match map.state {
+            State::Followed => "follows a front",
+            State::Closed => "has gone round a closed front",
+            State::Lost => "has lost a front",
+            State::Sought => "looks for a front",
+        };
+        return format!("A robot {what}{labels}: {steps} step{plural}, {:.0} m mapped", map.metres);
+    }
     format!(
         "A robot looks for the straight boundary of +1 and -1{labels}: {planner}, {steps} step{plural}{ending}"
     )

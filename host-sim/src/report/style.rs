@@ -32,6 +32,9 @@ pub(crate) struct Stroke {
 pub(crate) const TRUTH: Stroke = solid("truth", "#000000", 2.2);
 pub(crate) const PAST_TRUTH: Stroke =
     Stroke { class: "past-truth", colour: "#000000", width: 2.2, dashes: "2 5" };
+/// The front as it is mapped.
+pub(crate) const FRONT: Stroke =
+    Stroke { class: "front", colour: "#00784f", width: 2.2, dashes: "9 5" };
 pub(crate) const PATH: Stroke = solid("path", "#4a4a4a", 1.1);
 pub(crate) const HEADING: Stroke = solid("heading", "#4a4a4a", 2.6);
 pub(crate) const BORDER: Stroke = solid("border", INK, 0.8);
@@ -53,6 +56,8 @@ pub(crate) enum Fill {
     KeepOut,
     /// Not of the area.
     Outside,
+    /// Where a front lies.
+    Front,
     /// A band, by its number.
     Shade(usize),
 }
@@ -66,6 +71,7 @@ impl Fill {
             Self::Doubtful => "ground-doubtful",
             Self::KeepOut => "keep-out",
             Self::Outside => "outside",
+            Self::Front => "front-band",
             Self::Shade(_) => "shading",
         }
     }
@@ -75,6 +81,7 @@ impl Fill {
         match self {
             Self::Blank => "#ffffff".to_owned(),
             Self::Outside => "#e4e4e4".to_owned(),
+            Self::Front => SHADES[1].to_owned(),
             Self::Shade(k) => SHADES[k.min(SHADES.len() - 1)].to_owned(),
             hatched => format!("url(#{})", hatched.class()),
         }

@@ -14,9 +14,9 @@ use crate::mission::results::{
 };
 use crate::mission::stop::{AuditRecord, GoalRecord};
 use crate::output::plain;
-use crate::report::diagnosis;
 use crate::report::table::{Cells, Column, Table};
-use crate::world::boundary::BoundaryRecord;
+use crate::report::{diagnosis, front};
+use crate::world::boundary::{BoundaryRecord, CoastRecord};
 use crate::world::noise::limit;
 
 /// Slope intervals as text.
@@ -33,7 +33,7 @@ pub fn range(intercept: Option<[f64; 2]>) -> String {
 }
 
 /// A number with this many decimal places. Zero has no sign.
-fn fixed(value: f64, places: usize) -> String {
+pub(crate) fn fixed(value: f64, places: usize) -> String {
     let text = format!("{value:.places$}");
     let is_nothing = text.bytes().all(|it| b"-0.".contains(&it));
     if is_nothing { text.replace('-', "") } else { text }
@@ -130,6 +130,9 @@ fn end(results: &Results, estimates: &[(&str, Option<LineRecord>); 3]) -> String
         text += &readings;
         text.push('\n');
     }
+    if let Some(map) = &results.end.front {
+        text += &front::map(map);
+    }
     if let Some(goal) = &results.end.goal {
         text += &promise(goal, &results.end.reason);
         if let Some(told) = results.start.tolerance.filter(|_| goal.is_met && goal.level.is_none())
@@ -150,6 +153,9 @@ fn end(results: &Results, estimates: &[(&str, Option<LineRecord>); 3]) -> String
     if let Some(remedy) = remedy(results) {
         text += remedy;
         text.push('\n');
+    }
+    if results.end.front.is_some() {
+        return text;
     }
     text.push('\n');
     text + &outcome(&results.end) + &errors(results, estimates)
@@ -177,6 +183,7 @@ pub(crate) fn why(reason: &str) -> &str {
         "known" => "what was asked for is known",
         "resolution" => "what is uncertain is thinner than the action grid can hit",
         "no line" => "no straight, still line explains the labels",
+        "closed" => "the robot has gone all round the front",
         "worth" => "no label in sight was expected to carry the bits asked for",
         "tolerance" => {
             "what is uncertain is so thin that no label tells more, as positions err by the tolerance"
@@ -215,7 +222,7 @@ fn remedy(results: &Results) -> Option<&'static str> {
             "To go on, turn or move the robot by hand, allow sharper turns, or enlarge the area."
         }
         "undecided" => "To go on, allow shorter motions or finer turns, or move the robot by hand.",
-        _ => return None,
+        _ => return results.end.front.as_ref().and_then(front::remedy),
     })
 }
 
@@ -309,11 +316,11 @@ fn beginning(title: &str, start: &Start) -> String {
     }
     let _ = writeln!(
         text,
-        "It starts at ({}, {}), heading {} deg; slopes {} deg are possible.\n",
+        "It starts at ({}, {}), heading {} deg{}\n",
         start.pose.x,
         start.pose.z,
         fixed(start.pose.heading.to_degrees(), 1),
-        arcs(&start.slope_arcs),
+        possible(start),
     );
     if let Some(price) = start.price {
         let _ = writeln!(text, "A label costs as much as {price} m of driving.\n");
@@ -338,6 +345,12 @@ fn beginning(title: &str, start: &Start) -> String {
         }
     }
     text
+}
+
+/// What is possible at the start, at the end of a sentence.
+fn possible(start: &Start) -> String {
+    let slopes = || format!("; slopes {} deg are possible.", arcs(&start.slope_arcs));
+    start.front.as_ref().map_or_else(slopes, |told| format!(".\n{}", front::told(told)))
 }
 
 /// The oracle's points, and what is known of the line beside them: a line of text each.
@@ -398,7 +411,11 @@ pub(crate) fn boundary(record: &BoundaryRecord) -> String {
         let words = self::line(&line.into());
         words.split_whitespace().collect::<Vec<_>>().join(" ")
     });
-    match record {
+    let drift = record.drift.filter(|_| record.line.is_none() || record.sine.is_some());
+    let moves = drift.map_or(String::new(), |[x, z]| {
+        format!("; each motion moves it by {x} m along x and {z} m along z")
+    });
+    let what = match record {
         BoundaryRecord { circle: Some([x, z, radius]), .. } => {
             format!("a circle about ({x}, {z}) with a radius of {radius} m, +1 inside")
         }
@@ -416,8 +433,12 @@ pub(crate) fn boundary(record: &BoundaryRecord) -> String {
                 "{base} at the start; each motion moves it by {offset} m and turns it by {turn} deg"
             )
         }
+        BoundaryRecord { coast: Some(CoastRecord { height, length, seed }), .. } => format!(
+            "a random coast (seed {seed}), its heights {height} m and alike over {length} m, +1 above"
+        ),
         _ => "not known".to_owned(),
-    }
+    };
+    what + &moves
 }
 
 /// How the sensor fails, if it does.
@@ -448,6 +469,12 @@ pub(crate) fn signed(label: Option<i8>) -> String {
 
 /// The steps of a mission with true labels, and what these leave.
 fn steps(steps: &[StepResult], start: &Start) -> Table {
+    if start.front.is_some() {
+        let label: [Cells<StepResult>; 1] = [(Column::right("label", 5), &|it| {
+            signed(it.label) + if it.is_wrong() { " !" } else { "  " }
+        })];
+        return Table::of(steps, &[&MOTION[..], &label, &front::KNOWN].concat());
+    }
     let notes = notes(steps, start);
     let left: [Cells<StepResult>; 5] = [
         (Column::right("label", 5), &|it| signed(it.label)),

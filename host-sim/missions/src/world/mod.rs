@@ -122,6 +122,11 @@ impl World {
         !matches!(self.boundary, Boundary::Unknown)
     }
 
+    /// Whether its boundary is a straight line, which may move.
+    pub const fn is_line(&self) -> bool {
+        matches!(self.boundary, Boundary::Line(_) | Boundary::Moving(_))
+    }
+
     /// Whether its boundary moves.
     pub fn moves(&self) -> bool {
         match &self.boundary {

@@ -7,7 +7,7 @@ use foxglove::messages::{
 use planner_core::Label;
 
 use crate::report::log::messages::{FRAME, ROBOT, point, pose, time};
-use crate::report::page::scene::{BandRecord, Flight, GroundRecord, Mark, Place, Scene};
+use crate::report::page::scene::{BandRecord, Flight, GroundRecord, Mark, Place, Scene, SeenFront};
 use crate::report::picture::Kind;
 use crate::report::style;
 
@@ -43,6 +43,9 @@ pub(super) fn begin(flight: &Flight) -> SceneUpdate {
         let lines = it.ways.iter().map(|way| line(way, false, THICK, opaque(TRUTH)));
         entities.push(SceneEntity { lines: lines.collect(), ..entity(it.name, 0) });
     }
+    if flight.scenes.iter().any(|it| it.front.is_some()) {
+        entities.push(entity("front", 0));
+    }
     if let Some(scene) = flight.scenes.first() {
         entities.extend(known(scene, 0));
     }
@@ -62,6 +65,8 @@ pub(super) fn steps(flight: &Flight) -> impl Iterator<Item = SceneUpdate> {
     let size = SAMPLE * flight.size();
     let mut path: Vec<Place> = flight.scenes.iter().take(1).map(|scene| scene.at).collect();
     let mut read = Vec::new();
+    let mut pieces: Vec<Vec<[Place; 3]>> = Vec::new();
+    let mut was_found = false;
     (1..).zip(flight.scenes.iter().skip(1)).map(move |(second, scene)| {
         if let Some(moved) = &scene.motion {
             path.extend(&moved.way);
@@ -72,9 +77,32 @@ pub(super) fn steps(flight: &Flight) -> impl Iterator<Item = SceneUpdate> {
             SceneEntity { lines: vec![way], ..entity("path", second) },
             samples("samples", second, read.iter().copied(), size),
         ];
+        if let Some(SeenFront { at, ends: [left, right], .. }) = &scene.front {
+            if !was_found {
+                pieces.push(Vec::new());
+            }
+            pieces.last_mut().expect("it was begun").push([*at, *left, *right]);
+        }
+        was_found = scene.front.is_some();
+        if flight.scenes.iter().any(|it| it.front.is_some()) {
+            entities.push(front(&pieces, second));
+        }
         entities.extend(known(scene, second));
         SceneUpdate { entities, ..SceneUpdate::default() }
     })
+}
+
+/// The map of a front: each piece with the borders of its 90 % band.
+fn front(pieces: &[Vec<[Place; 3]>], second: u32) -> SceneEntity {
+    let colour = style::FRONT.colour;
+    let strokes = [(THICK, opaque(colour)), (THIN, opaque(SHADE)), (THIN, opaque(SHADE))];
+    let lines = pieces.iter().flat_map(|piece| {
+        strokes.into_iter().enumerate().map(|(k, (thickness, color))| {
+            let way: Vec<_> = piece.iter().map(|rung| rung[k]).collect();
+            line(&way, false, thickness, color)
+        })
+    });
+    SceneEntity { lines: lines.collect(), ..entity("front", second) }
 }
 
 /// What is known: the ground and the estimate.

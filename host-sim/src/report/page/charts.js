@@ -2,9 +2,18 @@
 
 const CHART = { height: 118, left: 46, right: 8, top: 8, bottom: 20 };
 
-/** What is charted of missions, each with the text that tells its value at a step. */
+/** What is charted of missions, each with the text that tells its value at a step; `of` a front, of a line, or of both. */
 const CHARTS = [
   {
+    of: true,
+    title: () => 'Half-width of the front (90 %); dashed: how far off it is, m',
+    isLogarithmic: true,
+    line: (scene) => scene.front?.half_width,
+    dashed: (scene) => scene.front?.off,
+    told: ({ front }) => (front ? [front.half_width, front.off].filter((it) => it != null).map(small).join('; ') : 'not found'),
+  },
+  {
+    of: false,
     title: (flight) => (flight.labels_err ? 'Slopes of the 90 % set, deg' : 'Slopes left, deg'),
     bars: (scene) => scene.slopes,
     rule: (flight) => flight.truth?.angle,
@@ -12,6 +21,7 @@ const CHARTS = [
     told: (scene) => scene.slopes.map(([low, high]) => `${figure(low, 2)} to ${figure(high, 2)}`).join(' or '),
   },
   {
+    of: false,
     title: (flight) => (flight.labels_err ? 'Intercepts of the 90 % set, m' : 'Intercepts left, m'),
     bars: (scene) => (scene.intercepts ? [scene.intercepts] : [[-Infinity, Infinity]]),
     rule: (flight) => flight.truth?.intercept,
@@ -19,18 +29,21 @@ const CHARTS = [
     told: (scene) => (scene.intercepts ? `${figure(scene.intercepts[0], 2)} to ${figure(scene.intercepts[1], 2)}` : 'unbounded'),
   },
   {
+    of: false,
     title: (flight) => `Estimate off the ${flight.boundary ? 'best line' : 'truth'}, deg`,
     isLogarithmic: true,
     line: (scene) => scene.estimate?.off_deg,
     told: (scene) => (scene.estimate?.off_deg == null ? 'none' : small(scene.estimate.off_deg)),
   },
   {
+    of: false,
     title: () => 'Area misjudged, %',
     isLogarithmic: true,
     line: (scene) => (scene.estimate?.misclassified == null ? null : 100 * scene.estimate.misclassified),
     told: (scene) => (scene.estimate?.misclassified == null ? 'none' : small(100 * scene.estimate.misclassified)),
   },
   {
+    of: false,
     title: () => 'Bits told; dashed: expected',
     line: (scene) => scene.bits,
     dashed: (scene) => scene.expected_bits,

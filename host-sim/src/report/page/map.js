@@ -30,6 +30,7 @@ function drawMap(svg, flight, step, width, from) {
 
   add(svg, 'path', { class: 'area', d: ring(flight.area) });
   drawGround(svg, scene.ground, at);
+  drawFront(svg, past, at);
   drawAxes(svg, view, width);
   for (const keepOut of flight.keep_outs) add(svg, 'path', { class: 'keep-out', d: ring(keepOut) });
   add(svg, 'path', { class: 'border', d: ring(flight.area) });
@@ -38,6 +39,7 @@ function drawMap(svg, flight, step, width, from) {
     for (const way of ways) add(svg, 'path', { class: is_past ? 'truth past' : 'truth', d: through(way.map(at)) });
   }
   if (scene.estimate) add(svg, 'path', { class: 'estimate', d: through(scene.estimate.ends.map(at)) });
+  for (const piece of fronts(past)) add(svg, 'path', { class: 'estimate', d: through(piece.map((it) => at(it.at))) });
 
   const way = past.flatMap((it) => (it.motion ? it.motion.way : [it.at]));
   add(svg, 'path', { class: 'path', d: through(way.map(at)) });
@@ -64,6 +66,28 @@ function drawMap(svg, flight, step, width, from) {
     if (motion.is_wrong) add(svg, 'circle', { class: 'wrong', cx: spot[0], cy: spot[1], r: 9 });
   }
   drawRobot(svg, flight, step, at, from);
+}
+
+/** The map of a front by its pieces: a new one begins where the front was not known. */
+function fronts(scenes) {
+  const pieces = [];
+  let last = null;
+  for (const { front } of scenes) {
+    if (front) last ? pieces.at(-1).push(front) : pieces.push([front]);
+    last = front;
+  }
+  return pieces;
+}
+
+/** Where a front lies with a probability of 90 %, from each place of its map to the next. */
+function drawFront(svg, scenes, at) {
+  for (const piece of fronts(scenes)) {
+    const [first] = piece;
+    for (const [k, { ends }] of piece.entries()) {
+      const { ends: before } = k > 0 ? piece[k - 1] : first;
+      add(svg, 'path', { class: 'front', d: through([before[0], ends[0], ends[1], before[1]].map(at), true) });
+    }
+  }
 }
 
 /** Places of `x, z, x, z` and so on. */

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use crate::report::page::contents::{Chapter, Page};
 use crate::report::page::scene::{Flight, Moved, Scene};
 use crate::report::page::words::{arcs, range, signed, small};
+use crate::report::text::fixed;
 
 const TEMPLATE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
@@ -147,7 +148,7 @@ fn cells(scene: &Scene) -> [String; 11] {
         expected(|it| it.chance).map_or_else(none, |it| format!("{:.0} %", 100.0 * it)),
         expected(|it| it.expected).map_or_else(none, |bits| format!("{bits:.3}")),
         motion.and_then(label).unwrap_or_else(none),
-        format!("{:.2}", scene.bits),
+        fixed(scene.bits, 2),
         arcs(&scene.slopes),
         range(scene.intercepts),
         off.map_or_else(none, small),

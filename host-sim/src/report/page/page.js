@@ -18,7 +18,9 @@ function stage({ flights }, section) {
   place.classList.toggle('solo', flights.length === 1);
   const table = flights.length > 1 ? sideBySide(place, flights) : null;
   const row = add(place, 'div', { class: 'flights' });
-  const ranges = CHARTS.map((chart) => domain(chart, flights));
+  const follows = flights.every((flight) => flight.follows);
+  const charted = CHARTS.filter((chart) => (chart.of ?? follows) === follows);
+  const ranges = charted.map((chart) => [chart, domain(chart, flights)]);
   const views = flights.map((flight, k) => panel(row, flight, ranges, steps, `${section.id}-flight-${k}`));
   const rows = [...section.querySelectorAll('table.told')];
   let shown = null;
@@ -45,14 +47,14 @@ function panel(row, flight, ranges, steps, id) {
   const told = add(side, 'div', { class: 'words', role: 'status', 'aria-live': 'polite' });
   const grid = add(side, 'div', { class: 'charts' });
   add(grid, 'p', {}, 'By step. Bars: what is left; across: the truth; dots: the estimate. Click to go there.');
-  const charts = CHARTS.map((chart, k) => {
+  const charts = ranges.map(([chart, range]) => {
     const frame = add(grid, 'figure');
     const caption = add(frame, 'figcaption');
     add(caption, 'span', {}, chart.title(flight));
     const value = add(caption, 'output', { 'aria-live': 'off' });
     const svg = add(frame, 'svg', { 'aria-hidden': 'true' });
     svg.addEventListener('click', (event) => go(stepAt(svg, event.clientX, steps)));
-    return { chart, range: ranges[k], svg, value };
+    return { chart, range, svg, value };
   });
   let now = 0;
   const draw = (from) => {
@@ -125,7 +127,10 @@ function legend(figure, flight) {
   }
   if (flight.truth) item('the true line', stroke('truth'));
   for (const { name, is_past } of flight.boundary ?? []) item(`the ${name}`, stroke(is_past ? 'truth past' : 'truth'));
-  item(flight.estimate, stroke('estimate'));
+  if (flight.follows) {
+    item('the front as it is mapped', stroke('estimate'));
+    item('it lies here with a probability of 90 %', box('front'));
+  } else item(flight.estimate, stroke('estimate'));
   item('path, and the last motion', (svg) => { add(svg, 'path', { class: 'path', d: 'M1 9H12' }); add(svg, 'path', { class: 'leg', d: 'M12 9H25' }); });
   item('robot and its heading', (svg) => { add(svg, 'circle', { class: 'halo', cx: 8, cy: 9, r: 7 }); add(svg, 'path', { class: 'bow', d: 'M16 5L24 9L16 13Z' }); });
   if (motions.some((it) => it.truly)) item('where it truly was', (svg) => cross(svg, [13, 9], 'truly'));

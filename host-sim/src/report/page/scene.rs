@@ -3,7 +3,7 @@
 use std::iter;
 
 use nalgebra::Point2;
-use planner_core::{Line, Sample, Step};
+use planner_core::{Line, Sample, Site, Step};
 use serde::Serialize;
 
 use crate::mission::read_out::ReadOut;
@@ -14,7 +14,9 @@ use crate::report::examples::bits;
 use crate::report::ground::Ground;
 use crate::report::page::words::{self, Told};
 use crate::report::picture::{Outline, Picture, Stop, Truth};
+use crate::report::ribbon::Rung;
 use crate::report::text;
+use crate::world::World;
 use crate::world::extent::{around, span};
 use crate::world::polygon::Polygon;
 
@@ -30,6 +32,8 @@ pub(crate) struct Flight {
     pub(crate) estimate: &'static str,
     /// Whether labels may be wrong.
     labels_err: bool,
+    /// Whether a front is followed, and not a straight line sought.
+    follows: bool,
     /// The border of the area.
     pub(crate) area: Ring,
     /// What is kept out of.
@@ -100,6 +104,9 @@ pub(crate) struct Scene {
     pub(crate) ground: GroundRecord,
     /// The recommended estimate.
     pub(crate) estimate: Option<SeenLine>,
+    /// Where the front is known best, if one is followed and found.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) front: Option<SeenFront>,
     /// The slopes left, as intervals of degrees.
     pub(crate) slopes: Vec<[f64; 2]>,
     /// The intercepts left, metres; `None` when unbounded.
@@ -114,6 +121,18 @@ pub(crate) struct Scene {
     metres: f64,
     /// The same in words.
     pub(crate) told: Vec<Told>,
+}
+
+/// A front where it is known best.
+#[derive(Debug, Serialize)]
+pub(crate) struct SeenFront {
+    /// The place, and the ends of its 90 % interval.
+    pub(crate) at: Place,
+    pub(crate) ends: [Place; 2],
+    /// The half-width, metres.
+    half_width: f64,
+    /// The distance of the place from the true front, metres.
+    off: Option<f64>,
 }
 
 /// A motion, and what was read at its end.
@@ -191,6 +210,19 @@ impl Rounding {
         SeenBoundary { name, is_past, ways: ways.iter().map(|way| self.corners(way)).collect() }
     }
 
+    fn front(self, step: &StepResult, world: &World) -> Option<SeenFront> {
+        let vertex = step.front.as_ref()?;
+        let Rung { at, ends } = Rung::from(vertex);
+        let site = || Site::try_from(at).ok();
+        let off = || site().map(|site| world.distance(site).abs());
+        Some(SeenFront {
+            at: self.place(at),
+            ends: ends.map(|at| self.place(at)),
+            half_width: vertex.half_width,
+            off: world.is_known().then(off).flatten(),
+        })
+    }
+
     fn corners(self, places: &[Point2<f64>]) -> Ring {
         let mut corners: Ring = places.iter().map(|at| self.place(*at)).collect();
         corners.dedup();
@@ -239,6 +271,7 @@ impl Flight {
             planner: planner.to_owned(),
             estimate,
             labels_err: mission.is_noisy(),
+            follows: !mission.algorithm.seeks_line(),
             area: rounding.ring(&border),
             keep_outs: area.hulls().map(|hull| rounding.ring(&Polygon::from(hull))).collect(),
             given: mission.oracle().iter().map(mark).collect(),
@@ -287,7 +320,9 @@ impl Stage<'_> {
         let area = mission.config.area;
         let knowledge = belief.knowledge();
         let world = mission.world.after(taken.map_or(0, |it| it.result.step));
-        let centre = beside_truth(mission, &world, belief.estimates()).centre;
+        // A front has no straight estimate.
+        let centre = || beside_truth(mission, &world, belief.estimates()).centre;
+        let centre = belief.front().is_none().then(centre).flatten();
         let Sums { bits, rise, expected_bits } = sums;
         let step = taken.map(|it| it.result);
         let read = step.map(|step| (step, rise));
@@ -300,6 +335,7 @@ impl Stage<'_> {
             heading,
             ground: GroundRecord::of(&Ground::of(belief, area), rounding),
             estimate: centre.map(|line| seen(&line, &area.into(), rounding)),
+            front: step.and_then(|step| rounding.front(step, &world)),
             slopes: knowledge.slope_arcs,
             intercepts: knowledge.intercept,
             bits,

@@ -5,10 +5,11 @@ use serde::Serialize;
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::Mission;
+use crate::mission::front::VertexRecord;
 use crate::mission::read_out::{Expectation, Knowledge};
 use crate::mission::recording::Recording;
 use crate::mission::results::{AUDIT, LineRecord, Results, StepResult};
-use crate::report::text;
+use crate::report::{front, text};
 use crate::world::noise::limit;
 
 /// A sentence under its heading.
@@ -44,9 +45,28 @@ pub(crate) fn stage(
     } else {
         vec![Told::new("Given", given(results))]
     };
+    if results.end.front.is_some() {
+        let found = step.and_then(|(step, _)| step.front);
+        told.push(Told::new("Front", found.map_or("not found.".into(), |it| on_front(&it))));
+        return told;
+    }
     told.push(Told::new("Known", known(knowledge, bits)));
     told.push(Told::new("Estimate", estimated(name, estimate, results)));
     told
+}
+
+/// Where a front is known best.
+fn on_front(vertex: &VertexRecord) -> String {
+    let &VertexRecord { x, z, heading, curvature, half_width, .. } = vertex;
+    let bends = match curvature {
+        bend if bend.abs() < 1e-4 => "straight".to_owned(),
+        bend if bend > 0.0 => format!("bends left, radius {:.0} m", 1.0 / bend),
+        bend => format!("bends right, radius {:.0} m", -1.0 / bend),
+    };
+    minus(&format!(
+        "at ({x:.2}, {z:.2}) within {half_width:.2} m (90 %), direction {:.1} deg, {bends}.",
+        heading.to_degrees()
+    ))
 }
 
 /// Why a mission ended, and what is promised of what it found.
@@ -57,6 +77,10 @@ pub(crate) fn ended(results: &Results) -> Vec<Told> {
     let promise = promise.map_or(String::new(), |promise| format!(" {promise}"));
     let mut ended = vec![Told::new("Ended", format!("{}.{promise}", sentence(why)))];
     ended.extend(text::readings(results).map(|words| Told::new("Readings", words)));
+    if let Some(map) = &results.end.front {
+        ended.push(Told::new("Map", front::map(map).trim_end().to_owned()));
+        ended.extend(front::remedy(map).map(|it| Told::new("To do", it)));
+    }
     let shown = results.end.reliability.as_ref();
     ended.extend(shown.map(|it| Told::new("Sensor", text::shown(it).trim_end().to_owned())));
     let alarm = results.end.alarm.as_ref();
@@ -95,6 +119,7 @@ pub(crate) fn about(recording: &Recording) -> Vec<String> {
     } else {
         about.push("Labels are true, so each tells one bit at most on average.".to_owned());
     }
+    about.extend(start.front.as_ref().map(front::told));
     let tolerance = mission.config.tolerance.metres();
     if let Some(tolerance) = &start.tolerance {
         about.push(format!("{}.", text::tolerance(tolerance)));
@@ -121,6 +146,10 @@ fn given(results: &Results) -> String {
 /// The planner's choice, and the likely reason for it.
 fn planned(mission: &Mission, step: &StepResult) -> String {
     let why = match (step.problem.as_deref(), step.recovery.as_deref()) {
+        (Some("seek"), _) => "The front is not known, so it is sought",
+        (Some("follow"), _) => "Along the front, as far as it is known",
+        (Some("pass"), _) => "Round a keep-out on the front",
+        (Some("return"), _) => "Back to the front",
         (_, Some("reorient")) => "Nothing uncertain ahead, so it turns in place",
         (_, Some("transit")) => "Nothing uncertain in reach, so it drives on",
         (Some("P1"), None) => "P1, look for the opposite label",

@@ -1,0 +1,79 @@
+//! What following a front came to, in words.
+
+use crate::mission::front::FrontTable;
+use crate::mission::map::{LostRecord, MapRecord, OffRecord, State};
+use crate::mission::results::StepResult;
+use crate::report::table::{Cells, Column};
+
+/// What the planner is told of the front.
+pub(crate) fn told(&FrontTable { radius, speed }: &FrontTable) -> String {
+    let bends = radius.map_or("is straight".to_owned(), |radius| {
+        format!("bends with a radius of {radius} m or more")
+    });
+    let moves = if speed > 0.0 {
+        format!("moves by up to {speed} m a step")
+    } else {
+        "does not move".to_owned()
+    };
+    format!("The planner is told that the front {bends}, and {moves}.")
+}
+
+/// What is known of the front after each step: where it was known best, and within how much it lies there.
+pub(crate) const KNOWN: [Cells<'static, StepResult>; 4] = [
+    (Column::left("front at m", 18).apart(), &|it| {
+        it.front.map_or("not found".into(), |it| format!("({:.2}, {:.2})", it.x, it.z))
+    }),
+    (Column::right("within m", 8), &|it| {
+        it.front.map_or(String::new(), |it| format!("{:.2}", it.half_width))
+    }),
+    (Column::right("deg", 7), &|it| {
+        it.front.map_or(String::new(), |it| format!("{:.1}", it.heading.to_degrees()))
+    }),
+    (Column::right("bits", 5), &|it| format!("{:.2}", it.bits)),
+];
+
+/// The map in words: sentences, a line each.
+pub(crate) fn map(record: &MapRecord) -> String {
+    let &MapRecord { state, found, lost, vertices, metres, driven, half_width, off } = record;
+    let Some(found) = found else {
+        return "The front was not found.\n".to_owned();
+    };
+    let mut text = match (state, lost) {
+        (State::Closed, _) => {
+            format!(
+                "The front is closed: it was found at step {found}, and the robot went all round it.\n"
+            )
+        }
+        (_, Some(LostRecord { step, x, z })) => format!(
+            "The front was found at step {found}, and is lost since step {step}. It was last at ({x:.2}, {z:.2}).\n"
+        ),
+        _ => format!("The front was found at step {found}, and is known in the end.\n"),
+    };
+    text += &format!(
+        "The map has {vertices} places along {metres:.1} m of front; {driven:.1} m were driven for it.\n"
+    );
+    if let Some([median, most]) = half_width {
+        text += &format!(
+            "With probability 0.9 the front lies within {median:.2} m of such a place (median; {most:.2} m at most).\n"
+        );
+    }
+    if let Some(OffRecord { median, most, covered }) = off {
+        let percent = 100.0 * covered;
+        text += &format!(
+            "In truth it lies {median:.2} m off (median), 95 % within {most:.2} m; the stated widths hold for {percent:.0} %.\n"
+        );
+    }
+    text
+}
+
+/// What to change if a front was not found, or is lost.
+pub(crate) fn remedy(record: &MapRecord) -> Option<&'static str> {
+    match record.state {
+        State::Lost => Some(
+            "A front is lost if it bends more tightly or moves faster than was told: a smaller front.radius or a higher \
+             front.speed may keep it.",
+        ),
+        State::Sought => Some("To find it, allow more steps, or give points of both labels."),
+        State::Followed | State::Closed => None,
+    }
+}
