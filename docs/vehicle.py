@@ -24,6 +24,7 @@ def setup(args):
     looks_ahead, taken = args.algorithm == "lookahead", args.steps * args.readings
     if args.p == 1:
         taken = min(taken, 64)
+    is_fine = looks_ahead or args.algorithm == "track"
     if args.algorithm == "track":
         taken = 0  # it stores none
     doubt = {"noise": noise, "prior": ("Area", None)}
@@ -46,7 +47,7 @@ def setup(args):
             "tolerance": 0,
         },
         "keep_outs": None,
-        "vehicle": ("Unicycle", {"turn_step_urad": 1 if looks_ahead else 10_000,
+        "vehicle": ("Unicycle", {"turn_step_urad": 1 if is_fine else 10_000,
                                  "sharpest": 1 << 30, "speeds": 21, "speed_step_mm": 100}),
         "capacity": {"samples": 4 + taken,
                      "hypotheses": 1 + taken + taken * (taken - 1) // 2 if args.p < 1 else 1},
