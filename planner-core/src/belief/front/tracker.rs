@@ -172,8 +172,11 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
 
     /// How often a label is true, as far as that is known.
     pub fn reliability(&self) -> f32 {
-        let known = || self.noise.reliability.nominal().single();
-        self.learnt.map_or_else(known, Learnt::mean)
+        match (self.learnt, self.noise.reliability) {
+            (Some(learnt), _) => learnt.mean(),
+            (None, AnyReliability::Known(known)) => known.single(),
+            (None, AnyReliability::Unknown(_)) => 0.5, // it is learnt
+        }
     }
 
     /// How often a label counts as true.
