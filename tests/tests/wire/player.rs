@@ -132,10 +132,10 @@ fn a_player_compares_the_front_after_every_motion_to_the_last_bit() {
                 let mut last = None;
                 let mut planner = mission.planner();
                 let mut pose = mission.start;
-                for k in 0..=n {
+                for (k, step) in steps.iter().enumerate().take(n + 1) {
                     let _ = planner.plan(pose);
                     assert!(liar.says(moves(k, last)).is_ok());
-                    (pose, last) = (steps[k].pose, steps[k].reading);
+                    (pose, last) = (step.pose, step.reading);
                     planner.observe(pose, last).expect("no label contradicts a front");
                     let said = if k == n { wrong } else { planner.front().expect("a front") };
                     assert!(matches!(liar.says(Request::Front(said)), Ok(Reply::Noted)));
