@@ -17,6 +17,7 @@ pub mod audit;
 pub mod cfc;
 mod decision;
 pub mod far;
+pub mod front_state;
 mod lap;
 pub mod lookahead;
 pub mod options;
@@ -40,6 +41,7 @@ use crate::geometry::lattice::Site;
 use crate::geometry::line::Line;
 use crate::motion::action::{Action, Control};
 use crate::motion::dynamics::{Dynamics, Pose};
+use crate::planner::front_state::FrontState;
 use crate::search::dead_end::DeadEnd;
 use crate::search::objective::Effort;
 use crate::search::recovery::{Found, Recovery};
@@ -242,6 +244,11 @@ pub trait Planner {
         None
     }
 
+    /// Where the front is known best. Only a [follower](crate::Track) of fronts says so: any other has `None`.
+    fn front(&self) -> Option<FrontState> {
+        None
+    }
+
     /// The line as far as it is known: all three estimates.
     fn estimates(&self) -> Estimates {
         self.belief().estimates()
@@ -284,6 +291,10 @@ impl<T: Planner + ?Sized> Planner for &mut T {
 
     fn alarm(&self) -> Option<Alarm> {
         T::alarm(self)
+    }
+
+    fn front(&self) -> Option<FrontState> {
+        T::front(self)
     }
 
     fn estimates(&self) -> Estimates {

@@ -7,13 +7,14 @@
 use crate::belief::Belief as _;
 use crate::belief::ObservationError;
 use crate::belief::front::{Tracker, Unit, Waist};
-use crate::belief::sample::{Label, Reading};
+use crate::belief::noise::Noise;
+use crate::belief::sample::{Label, Reading, Sample};
 use crate::belief::tolerance::Tolerance;
 use crate::geometry::approximate::{METRE, distance};
 use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose, Side};
-use crate::planner::setup::{SetupError, aimed_for_by};
+use crate::planner::setup::{SetupError, aimed_for, aimed_for_by};
 use crate::planner::silence::Silence;
 use crate::planner::{Motion, Plan, Stage, StopReason};
 use crate::search::course::Course;
@@ -128,6 +129,12 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
     #[inline] // it is made where it stays, as it may be large
     pub(crate) fn new(area: G, dynamics: D, tracker: Tracker<K, M, L>) -> Result<Self, SetupError> {
         let area = aimed_for_by(area, &dynamics, &tracker)?;
+        Ok(Self::of((area, dynamics), tracker))
+    }
+
+    /// The same in the part of an area that motions [aim for](crate::planner::setup::aimed_for).
+    #[inline]
+    pub(crate) fn of((area, dynamics): (G, D), tracker: Tracker<K, M, L>) -> Self {
         let (grid, side) = (dynamics.grid(), area.bounds().mean_side());
         let bend = tracker.front().bend();
         let radius = if bend > 0.0 { UNITS_PER_METRE as f32 / bend } else { side };
@@ -135,7 +142,15 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         let most = (longest / grid.step_units()) as u16;
         let fastest = grid.speeds().saturating_sub(1).min(most).max(1);
         let price = PRICE * f32::from(fastest) * grid.step_units();
-        Ok(Self { area, dynamics, tracker, fastest, price, silence: Silence::NONE })
+        Self { area, dynamics, tracker, fastest, price, silence: Silence::NONE }
+    }
+
+    /// Begins again in the rectangle around its area.
+    pub(crate) fn restart(&mut self, noise: Noise, given: &[Sample]) -> Result<(), SetupError> {
+        self.area = aimed_for(self.area, &self.dynamics, noise.tolerance)?;
+        self.tracker.restart(self.area.whole().bounds(), noise.into(), given);
+        self.silence = Silence::NONE;
+        Ok(())
     }
 
     /// Where the boundary is known best; `None` as long as it is not found, and where it is lost.

@@ -19,17 +19,20 @@
 use crate::belief::ObservationError;
 use crate::belief::evidence::Alarm;
 use crate::belief::front::{FrontMemory, NINETY, Tracker, Unit, Waist};
+use crate::belief::noise::Noise;
 use crate::belief::observation_log::FromLog as _;
-use crate::belief::sample::Reading;
+use crate::belief::sample::{Reading, Sample};
 use crate::belief::tolerance::Tolerance;
+use crate::belief::weight::Prior;
 use crate::geometry::approximate::METRE;
 use crate::geometry::area::Area;
 use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose};
+use crate::planner::front_state::FrontState;
 use crate::planner::lap::Lap;
 use crate::planner::scout::{FAINT, LOOKED_AT, OneLabel, Scout};
-use crate::planner::setup::SetupError;
+use crate::planner::setup::{Restart, SetupError};
 use crate::planner::silence::Silence;
 use crate::planner::snapshot::{Persist, RestoreError, Snapshot};
 use crate::planner::{Plan, Planner, Stage, StopReason};
@@ -93,7 +96,18 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
     /// [`SetupError`].
     #[inline] // it is made where it stays, as it may be large
     pub fn new(area: G, dynamics: D, tracker: Tracker<K, M, L>) -> Result<Self, SetupError> {
-        Ok(Self { scout: Scout::new(area, dynamics, tracker)?, lap: Lap::NONE, ends: false })
+        Ok(Self::with(Scout::new(area, dynamics, tracker)?))
+    }
+
+    /// The same in the part of an area that motions [aim for](crate::planner::setup::aimed_for).
+    #[inline]
+    pub(crate) fn of((area, dynamics): (G, D), tracker: Tracker<K, M, L>) -> Self {
+        Self::with(Scout::of((area, dynamics), tracker))
+    }
+
+    #[inline]
+    fn with(scout: Scout<D, K, M, L, G>) -> Self {
+        Self { scout, lap: Lap::NONE, ends: false }
     }
 
     /// Where the front is known best; `None` as long as it is not found, and where it is lost.
@@ -248,6 +262,23 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
 
     fn alarm(&self) -> Option<Alarm> {
         self.scout.tracker.evidence().alarm()
+    }
+
+    fn front(&self) -> Option<FrontState> {
+        Some(FrontState { waist: self.found(), is_closed: self.is_closed() })
+    }
+}
+
+impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> Restart
+    for Track<D, K, M, L, G>
+{
+    /// It stores no samples.
+    const ROOM: [usize; 2] = [u16::MAX as usize, 1];
+
+    /// Begins again in the rectangle around its area. A tracker has one prior: see [`Tracker::new`].
+    fn restart(&mut self, given: &[Sample], _: Prior, noise: Noise) -> Result<(), SetupError> {
+        self.lap = Lap::NONE;
+        self.scout.restart(noise, given)
     }
 }
 

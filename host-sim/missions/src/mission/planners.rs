@@ -4,8 +4,8 @@ use planner_core::dynamics::Dynamics;
 use planner_core::error::ObservationError;
 use planner_core::link::message::MissionArea;
 use planner_core::{
-    Accuracy, AnyReliability, AnySight, AnyVehicle, Belief, Cfc, Lookahead, Plan, Planner, Pose,
-    PredictiveBelief, Reading, Scc, Site, Tolerance, Track, Workspace,
+    Accuracy, AnyReliability, AnySight, AnyVehicle, Belief, Cfc, FrontState, Lookahead, Plan,
+    Planner, Pose, PredictiveBelief, Reading, Scc, Site, Tolerance, Track, Workspace,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -53,6 +53,10 @@ impl<P: Planner<Belief: ReadOut + Sized + 'static>> Planner for Erased<P> {
 
     fn belief(&self) -> &(dyn ReadOut + 'static) {
         self.0.belief()
+    }
+
+    fn front(&self) -> Option<FrontState> {
+        self.0.front()
     }
 }
 
