@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::asking::Asking;
+use host_sim::mission::bounds::Bounds;
 use host_sim::mission::definition::Mission;
 use host_sim::mission::given::Given;
 use host_sim::world::World;
@@ -22,6 +23,9 @@ use rand_chacha::ChaCha8Rng;
 use super::draw::{draw, scale};
 
 /// The mission with this number. Area, vehicle, start, tolerance and errors are those of a random mission.
+///
+/// # Panics
+/// Never: what it draws is in range.
 pub fn draw_front(seed: u64, number: u64) -> Mission {
     let mission = draw(seed, number);
     let mut rng = ChaCha8Rng::seed_from_u64(seed ^ 0x00f2_0713);
@@ -61,7 +65,7 @@ pub fn draw_front(seed: u64, number: u64) -> Mission {
         p_told,
         goal: None,
         asking: Asking::USUAL,
-        bounds: Default::default(),
+        bounds: Bounds::default(),
         readings: if rng.random_range(0..4) == 0 { rng.random_range(2..=20) } else { 1 },
         ..mission
     }
