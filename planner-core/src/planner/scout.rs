@@ -279,7 +279,8 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         let mut places = places.into_iter().flatten();
         let on_the_way = places.find_map(|site| errand(with, pose, (site, near), &mut effort));
         let (leg, stage, wants_label) = match (on_the_way, best) {
-            (Some(Errand { leg, .. }), _) => {
+            (Some(Errand { leg, arrives, .. }), _) => {
+                let least = if arrives { FAINT } else { least };
                 let told = self.tracker.tells(self.tracker.share_above(leg.1.site));
                 (leg, stage, leg.1.site != pose.site && told > least)
             }
