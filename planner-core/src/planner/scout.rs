@@ -38,6 +38,9 @@ const PLACES: u32 = 36;
 const CORNERS: u32 = 12;
 const FAR: u32 = 17 + PLACES + CORNERS;
 
+/// Places beyond a motion that are asked at once.
+const AT_ONCE: usize = 18;
+
 /// The usual price of a label, as a share of the reach: it keeps places that are near from being all that is considered.
 const PRICE: f32 = 0.5;
 
@@ -210,15 +213,22 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
             (is_far && self.area.contains(site)).then_some(site)
         };
         let [mut first, mut second] = [(None, least); 2];
-        for site in
-            (0..ALONG).filter_map(along).chain(anywhere(&self.area)).chain(self.corners(pose))
-        {
-            let share = self.tracker.share_above(site);
-            let Some(worth) = self.worth(site - pose.site, share) else { continue };
-            if worth > first.1 {
-                (first, second) = ((Some(site), worth), first);
-            } else if worth > second.1 {
-                second = (Some(site), worth);
+        let of_area = anywhere(&self.area).chain(self.corners(pose));
+        let mut sites = (0..ALONG).filter_map(along).chain(of_area);
+        loop {
+            let some: heapless::Vec<Site, AT_ONCE> = sites.by_ref().take(AT_ONCE).collect();
+            if some.is_empty() {
+                break;
+            }
+            let mut shares = [0.0; AT_ONCE];
+            self.tracker.shares_above(&some, &mut shares);
+            for (&site, share) in some.iter().zip(shares) {
+                let Some(worth) = self.worth(site - pose.site, share) else { continue };
+                if worth > first.1 {
+                    (first, second) = ((Some(site), worth), first);
+                } else if worth > second.1 {
+                    second = (Some(site), worth);
+                }
             }
         }
         ([first.0, second.0], first.1)

@@ -177,6 +177,14 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
         self.nowhere[0] + self.grid.above(site, Self::blur(self.noise.tolerance))
     }
 
+    /// [`share_above`](Self::share_above) for several sites, into as many places. Each costs less than one alone.
+    pub(crate) fn shares_above(&self, sites: &[Site], shares: &mut [f32]) {
+        self.grid.above_each(sites, Self::blur(self.noise.tolerance), shares);
+        for share in shares.iter_mut() {
+            *share += self.nowhere[0];
+        }
+    }
+
     /// The probability that there is no front.
     pub fn share_nowhere(&self) -> f32 {
         self.nowhere[0] + self.nowhere[1]
