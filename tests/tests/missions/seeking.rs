@@ -439,6 +439,33 @@ fn points_of_one_label_are_taken_as_known() {
     assert_eq!((seek.given().len(), seek.plan(pose)), (3, Plan::Stop(StopReason::Known)));
 }
 
+/// Labels that may be wrong: the labels that are lent are hardly ever.
+#[test]
+fn what_is_lent_is_true() {
+    for p in [0.9, 0.7] {
+        let fields = cases(40, 1_000);
+        let is_true = |number: u64| {
+            let mission = from_nothing(FIELD, number, Algorithm::Lookahead, p);
+            let mut rng = ChaCha8Rng::seed_from_u64(SEED);
+            rng.set_stream(number);
+            let line = *mission.world.line().expect("a line");
+            let mut seek = mission.seek(Unicycle::default());
+            let mut pose = mission.start;
+            while let Plan::Move(motion) = seek.plan(pose) {
+                pose = motion.target;
+                let reading = motion.wants_label.then(|| read(&line, pose.site, p, &mut rng));
+                seek.observe(pose, reading).expect("any label is taken in");
+            }
+            let given = seek.given();
+            assert!(matches!(given.len(), 0 | 4), "p {p}, field {number}, seed {SEED}");
+            given.iter().all(|it| reading(&line, it.site) == it.label.into())
+        };
+        let wrong = (0..fields).into_par_iter().filter(|number| !is_true(*number)).count() as u64;
+        println!("p {p}: {wrong} of {fields} lend a label that is wrong");
+        assert!(wrong * 100 <= fields, "p {p}, seed {SEED}: {wrong} of {fields}");
+    }
+}
+
 /// Positions that err: what is lent makes a version space with that tolerance, and the true line is in it.
 #[test]
 fn with_a_tolerance_it_lends_enough() {
