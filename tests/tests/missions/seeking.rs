@@ -137,7 +137,9 @@ fn spread(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
 /// Labels and metres of a row, and how many missions never get there.
 fn told(name: &str, flown: &[Flown]) -> [f64; 3] {
     let mut ends = BTreeMap::<&str, u32>::new();
-    flown.iter().for_each(|it| *ends.entry(it.ending.name()).or_default() += 1);
+    for it in flown {
+        *ends.entry(it.ending.name()).or_default() += 1;
+    }
     let of = |k: usize, is: fn(&Flown) -> Option<[f64; 2]>| {
         spread(flown.iter().filter_map(|it| is(it).map(|of| of[k])))
     };
