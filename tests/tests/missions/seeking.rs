@@ -137,7 +137,9 @@ fn spread(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
 /// Labels and metres of a row, and how many missions never get there.
 fn told(name: &str, flown: &[Flown]) -> [f64; 3] {
     let mut ends = BTreeMap::<&str, u32>::new();
-    flown.iter().for_each(|it| *ends.entry(it.ending.name()).or_default() += 1);
+    for it in flown {
+        *ends.entry(it.ending.name()).or_default() += 1;
+    }
     let of = |k: usize, is: fn(&Flown) -> Option<[f64; 2]>| {
         spread(flown.iter().filter_map(|it| is(it).map(|of| of[k])))
     };
@@ -437,6 +439,33 @@ fn points_of_one_label_are_taken_as_known() {
     let pose = Pose::at([10.0, 19.0], Heading::default()).expect("a pose");
     seek.observe(pose, Some(Label::Negative.into())).expect("a label");
     assert_eq!((seek.given().len(), seek.plan(pose)), (3, Plan::Stop(StopReason::Known)));
+}
+
+/// Labels that may be wrong: the labels that are lent are hardly ever.
+#[test]
+fn what_is_lent_is_true() {
+    for p in [0.9, 0.7] {
+        let fields = cases(40, 1_000);
+        let is_true = |number: u64| {
+            let mission = from_nothing(FIELD, number, Algorithm::Lookahead, p);
+            let mut rng = ChaCha8Rng::seed_from_u64(SEED);
+            rng.set_stream(number);
+            let line = *mission.world.line().expect("a line");
+            let mut seek = mission.seek(Unicycle::default());
+            let mut pose = mission.start;
+            while let Plan::Move(motion) = seek.plan(pose) {
+                pose = motion.target;
+                let reading = motion.wants_label.then(|| read(&line, pose.site, p, &mut rng));
+                seek.observe(pose, reading).expect("any label is taken in");
+            }
+            let given = seek.given();
+            assert!(matches!(given.len(), 0 | 4), "p {p}, field {number}, seed {SEED}");
+            given.iter().all(|it| reading(&line, it.site) == it.label.into())
+        };
+        let wrong = (0..fields).into_par_iter().filter(|number| !is_true(*number)).count() as u64;
+        println!("p {p}: {wrong} of {fields} lend a label that is wrong");
+        assert!(wrong * 100 <= fields, "p {p}, seed {SEED}: {wrong} of {fields}");
+    }
 }
 
 /// Positions that err: what is lent makes a version space with that tolerance, and the true line is in it.
