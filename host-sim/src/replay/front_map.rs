@@ -1,12 +1,11 @@
 //! The map of a front along a recorded track.
 //!
-//! A tracker takes in row after row: that time has passed, and the label. After each row at which the front is found
-//! the map has a vertex. Where the labels raise an alarm, the front is sought anew nearby, as a follower does.
+//! A tracker takes in row after row: that time has passed, and the label. After each of them at which the front is found
+//! the map has a vertex. Of rows close together it takes in some. Where the labels raise an alarm, the front is sought anew nearby, as a follower does.
 
 use std::path::Path;
 
 use anyhow::Result;
-use nalgebra::Point2;
 use planner_core::belief::evidence::Alarm;
 use planner_core::{Belief as _, Front, Label};
 
@@ -39,6 +38,9 @@ pub struct FrontMap {
     pub(crate) tolerance: f64,
     /// The front counts as found where its half-width is below this, metres.
     pub(crate) width: f64,
+    /// Rows that were taken in, and how far apart they are at least, metres.
+    pub(crate) taken: usize,
+    pub(crate) apart: f64,
     pub(crate) pieces: Pieces,
     /// What it came to. Its numbers are those of rows.
     pub(crate) map: MapRecord,
@@ -66,16 +68,15 @@ impl FrontMap {
     }
 
     fn of(file: SampleFile, front: Front, trust: Trust) -> Result<Self> {
-        let RecordedTrack { rows, mut tracker, width, p, is_closed } =
+        let RecordedTrack { rows, apart, mut tracker, width, p, is_closed } =
             RecordedTrack::of(&file, front, trust)?;
         let bar = progress(rows.len() as u64, "rows")?;
         let (mut alarms, mut after) = (Vec::new(), Vec::with_capacity(rows.len()));
-        let (mut driven, mut last) = (0.0, None);
-        for (k, Row { number, site, label, passed }) in rows.iter().enumerate() {
+        for (k, Row { number, site, label, passed, elapsed, driven }) in rows.iter().enumerate() {
             for (site, reading) in passed {
                 tracker.observe_on_the_way(*site, *reading)?;
             }
-            tracker.moved(*site, 1.0);
+            tracker.moved(*site, *elapsed);
             if let Some(label) = label {
                 tracker.observe(*site, (*label).into())?;
             }
@@ -83,9 +84,7 @@ impl FrontMap {
                 tracker.seek_near(*site, AGAIN * width);
                 alarms.push(*number);
             }
-            let at = Point2::<f64>::from(*site);
-            driven += last.replace(at).map_or(0.0, |last: Point2<f64>| (at - last).norm());
-            after.push((driven, tracker.found(width).map(VertexRecord::from)));
+            after.push((*driven, tracker.found(width).map(VertexRecord::from)));
             if k % ROWS == 0 {
                 bar.set_position(k as u64);
             }
@@ -111,6 +110,8 @@ impl FrontMap {
             p,
             tolerance: trust.tolerance,
             width: width.into(),
+            apart,
+            taken: rows.len(),
             pieces,
             map,
             alarms,

@@ -19,6 +19,10 @@ pub struct FrontRecord {
     tolerance: Option<f64>,
     /// The front counts as found where its half-width is below this, metres.
     found_within: f64,
+    /// Rows that were taken in.
+    taken: usize,
+    /// They are at least so far apart, metres.
+    apart: f64,
     /// What its numbers are: `row` (the line of the file, or its feature) or `step`.
     numbers: &'static str,
     map: MapRecord,
@@ -70,6 +74,8 @@ impl FrontMap {
             p: self.p,
             tolerance: (self.tolerance > 0.0).then_some(self.tolerance),
             found_within: self.width,
+            taken: self.taken,
+            apart: self.apart,
             numbers: self.number(),
             map: self.map,
             one_label: self

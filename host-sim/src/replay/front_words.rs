@@ -43,7 +43,7 @@ impl FrontMap {
             let more = if self.alarms.len() > MOST_NAMED { " and others" } else { "" };
             let _ = writeln!(
                 text,
-                "The labels contradicted the map at {unit}{s} {}{more}. There the front was sought anew.",
+                "At {unit}{s} {}{more} the labels contradicted what was known, and the front was sought anew nearby.",
                 named.join(", ")
             );
         }
@@ -97,10 +97,19 @@ impl FrontMap {
             speed if speed > 0.0 => format!("moves by up to {speed} m a {}", self.number()),
             _ => "does not move".to_owned(),
         };
+        let (count, apart) = (self.file.samples.len(), self.apart);
+        let taken = if self.is_of_trace() || self.taken == count {
+            String::new()
+        } else {
+            let taken = self.taken;
+            format!(
+                "Of the samples {taken} were taken in: each is at least {apart:.2} m from the one before.\n"
+            )
+        };
         format!(
             "Told: the front {bends}, and {moves}. It counts as found where its half-width is below {:.2} m.\n",
             self.width
-        )
+        ) + &taken
     }
 
     fn one_label_in_words(&self) -> Option<String> {

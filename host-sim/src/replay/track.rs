@@ -22,6 +22,17 @@ const SHORT: f64 = 0.125;
 /// A front counts as found where its half-width is below so many of these motions.
 const FOUND: f64 = 1.5;
 
+/// Rows of a table are taken in where they are so many of these motions apart. A tracker is made for labels that are
+/// about one apart: of many more it learns too much, since it does not keep where in a cell they were read.
+const APART: f64 = 0.2;
+
+/// The time that passes with a row of a table is within these, in units of the tracker.
+const LEAST: f64 = 1e-3;
+const MOST: f64 = 4.0;
+
+/// The greatest speed of a front, metres in a unit of time.
+const FASTEST: f64 = 1e3;
+
 /// A row of a track: where the robot came, and what it read there and on the way there.
 pub(crate) struct Row {
     /// The line of the file, its feature, or the step of a trace.
@@ -29,11 +40,18 @@ pub(crate) struct Row {
     pub(crate) site: Site,
     pub(crate) label: Option<Label>,
     pub(crate) passed: Vec<(Site, Reading)>,
+    /// The time since the row before, in units of the tracker: one motion of a follower takes about one.
+    pub(crate) elapsed: f32,
+    /// The whole way to here, metres.
+    pub(crate) driven: f64,
 }
 
 /// A recorded track.
 pub(crate) struct RecordedTrack {
+    /// The rows that are taken in.
     pub(crate) rows: Vec<Row>,
+    /// They are at least so far apart, metres.
+    pub(crate) apart: f64,
     /// What is known of the front before the first row.
     pub(crate) tracker: FrontBelief,
     /// The front counts as found where its half-width is below this, metres.
@@ -68,17 +86,27 @@ impl RecordedTrack {
         };
         let [x, z] = <[f64; 2]>::from(Point2::from(area.max()) - Point2::<f64>::from(area.min()));
         let radius = front.radius().unwrap_or(f64::INFINITY);
-        let width = FOUND * SHORT * radius.min(0.5 * (x + z));
-        let row = |(k, &Sample { site, label }): (usize, &Sample)| Row {
-            number: file.line(k),
-            site,
-            label: Some(label),
-            passed: Vec::new(),
-        };
+        let reach = SHORT * radius.min(0.5 * (x + z));
+        let ways = ways(file.samples.iter().map(|it| it.site));
+        // A unit of time is that of a motion, so the speed is told in another unit than that of a row.
+        let whole = ways.last().copied().unwrap_or_default();
+        let each = (whole / file.samples.len() as f64 / reach).clamp(LEAST, MOST);
+        let front = front.moving((front.speed() / each).min(FASTEST))?;
+        let (mut rows, mut last) = (Vec::<Row>::new(), (0, Point2::origin()));
+        for (k, (&Sample { site, label }, driven)) in file.samples.iter().zip(ways).enumerate() {
+            let at = Point2::<f64>::from(site);
+            if rows.is_empty() || (at - last.1).norm() >= APART * reach {
+                let elapsed = (each * (k - last.0) as f64) as f32;
+                let (number, label, passed) = (file.line(k), Some(label), Vec::new());
+                rows.push(Row { number, site, label, passed, elapsed, driven });
+                last = (k, at);
+            }
+        }
         Ok(Self {
-            rows: file.samples.iter().enumerate().map(row).collect(),
+            rows,
+            apart: APART * reach,
             tracker: FrontBelief::new(area, front, noise),
-            width: width as f32,
+            width: (FOUND * reach) as f32,
             p,
             is_closed: false,
         })
@@ -87,17 +115,20 @@ impl RecordedTrack {
     fn of_mission(file: &SampleFile, mission: &Traced, (front, p, noise): Told) -> Result<Self> {
         let Traced { start, steps, reason } = mission;
         let at = |x, z| file.frame.site([x, z]);
-        let row = |step: &StepResult| {
-            Ok(Row {
-                number: step.step,
-                site: at(step.pose.x, step.pose.z)?,
-                label: match step.label {
-                    Some(1) => Some(Label::Positive),
-                    Some(-1) => Some(Label::Negative),
-                    _ => None, // on the front itself there is no side
-                },
-                passed: step.passed().collect(),
-            })
+        let sites = steps.iter().map(|step| at(step.pose.x, step.pose.z));
+        let sites = sites.collect::<Result<Vec<_>>>()?;
+        let ways = ways(sites.iter().copied());
+        let row = |((step, site), driven): ((&StepResult, Site), f64)| Row {
+            number: step.step,
+            site,
+            label: match step.label {
+                Some(1) => Some(Label::Positive),
+                Some(-1) => Some(Label::Negative),
+                _ => None, // on the front itself there is no side
+            },
+            passed: step.passed().collect(),
+            elapsed: 1.0,
+            driven,
         };
         let area = || -> Result<Area> {
             let Start { area, .. } = start;
@@ -114,13 +145,25 @@ impl RecordedTrack {
         // How wide a front that is found may be is for the follower itself to say.
         let follower = Track::new(area, vehicle.with_context(named)?, tracker.clone());
         Ok(Self {
-            rows: steps.iter().map(row).collect::<Result<_>>().with_context(named)?,
+            rows: steps.iter().zip(sites).zip(ways).map(row).collect(),
+            apart: 0.0,
             tracker,
             width: follower.with_context(named)?.width(),
             p,
             is_closed: reason.as_deref() == Some("closed"),
         })
     }
+}
+
+/// The whole way to each site, metres.
+fn ways(sites: impl Iterator<Item = Site>) -> Vec<f64> {
+    let mut last = None;
+    let to = |whole: &mut f64, site: Site| {
+        let at = Point2::<f64>::from(site);
+        *whole += last.replace(at).map_or(0.0, |last: Point2<f64>| (at - last).norm());
+        Some(*whole)
+    };
+    sites.scan(0.0, to).collect()
 }
 
 /// What is told: of the front, and of the labels.

@@ -59,7 +59,8 @@ impl Pieces {
         for (piece, number, it) in self.vertices() {
             let &VertexRecord { x, z, heading, curvature, half_width, turn_deviation } = it;
             let row = (number, x, z, heading, curvature, half_width, turn_deviation, piece);
-            writer.serialize((row, own.map(|(_, at)| at(it))))?;
+            let own: Vec<_> = own.iter().flat_map(|(_, at)| at(it)).collect();
+            writer.serialize((row, own))?;
         }
         Ok(String::from_utf8(writer.into_inner()?)?)
     }
