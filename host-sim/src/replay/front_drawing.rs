@@ -12,8 +12,8 @@ use crate::replay::geojson::{collection, feature};
 use crate::report::picture::{Dot, Ground, Picture, area_of};
 use crate::report::ribbon::Ribbon;
 
-/// Samples that a figure shows.
-const MOST: usize = 2_000;
+/// Samples that a figure shows at most, so that they do not hide the front.
+const MOST: usize = 150;
 
 impl FrontMap {
     /// The samples and the front that they map, as an SVG document. Of very many samples it shows some.

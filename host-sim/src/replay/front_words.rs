@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use nalgebra::Point2;
+
 use crate::mission::map::State;
 use crate::mission::results::PTold;
 use crate::replay::front_map::FrontMap;
@@ -22,7 +24,10 @@ impl FrontMap {
             Some(says) => {
                 let _ = writeln!(text, "{says}");
             }
-            None => text += &front::map(&self.map, unit),
+            None => {
+                text += &front::map(&self.map, unit);
+                text += &self.end_in_words();
+            }
         }
         let pieces: Vec<_> = self.pieces.iter().collect();
         if pieces.len() > 1 {
@@ -110,6 +115,17 @@ impl FrontMap {
             "Told: the front {bends}, and {moves}. It counts as found where its half-width is below {:.2} m.\n",
             self.width
         ) + &taken
+    }
+
+    /// Where the map ends, and how far from the end of the track: a line, if it has vertices.
+    fn end_in_words(&self) -> String {
+        let (last, end) = (self.pieces.vertices().last(), self.file.samples.last());
+        let (Some((_, _, last)), Some(end)) = (last, end) else { return String::new() };
+        let off = (last.at() - Point2::<f64>::from(end.site)).norm();
+        format!(
+            "It ends at ({:.2}, {:.2}), {off:.1} m from the end of the track.\n",
+            last.x, last.z
+        )
     }
 
     fn one_label_in_words(&self) -> Option<String> {

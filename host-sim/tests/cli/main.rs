@@ -20,6 +20,7 @@ mod flying;
 mod hostile;
 mod imports;
 mod interruption;
+mod mapped_tracks;
 mod maps;
 mod missions;
 mod outliers;
