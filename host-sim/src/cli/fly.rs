@@ -39,7 +39,7 @@ pub(crate) struct FlyArgs {
     #[arg(long, value_name = "ADDRESS")]
     mavlink: Option<String>,
     /// Print what an ideal vehicle would be sent, and send nothing
-    #[arg(long, conflicts_with_all = ["trace", "figure", "candidates", "report", "mcap", "format"])]
+    #[arg(long, conflicts_with_all = ["trace", "figure", "candidates", "report", "mcap", "map", "format"])]
     dry_run: bool,
     /// Who tells labels: the name of a named value, or channel:N of the remote control
     #[arg(long, value_name = "NAME|channel:N")]

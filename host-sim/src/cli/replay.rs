@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use anyhow::{Context as _, Result, anyhow, bail};
 use clap::Args;
-use planner_core::Tolerance;
+use planner_core::{Front, Tolerance};
 
 use crate::cli::done::Done;
 use crate::cli::format::Format;
@@ -16,6 +16,7 @@ use crate::replay::answer::Trust;
 use crate::replay::columns::Columns;
 use crate::replay::crs::Crs;
 use crate::replay::delimiter::Delimiter;
+use crate::replay::front_map::FrontMap;
 use crate::replay::record::Replay;
 use crate::replay::rows::Layout;
 
@@ -36,7 +37,8 @@ pub(crate) struct ReplayArgs {
     #[arg(long, value_name = "V", value_parser = threshold, allow_hyphen_values = true)]
     pub(crate) threshold: Option<f64>,
     /// Refuse a row without a position or a label; else such rows are skipped and counted. Also end with exit status 1
-    /// if no straight line explains the labels, or --p is too high for them; else a warning says so
+    /// if no straight line explains the labels, or --p is too high for them, or with --front if the front is not known in
+    /// the end; else a warning says so
     #[arg(long)]
     pub(crate) strict: bool,
     /// The coordinate system of positions in metres, such as EPSG:25832 (UTM zone 32), to place them on a map
@@ -51,12 +53,19 @@ pub(crate) struct ReplayArgs {
     /// Positions may be off by so many metres
     #[arg(long, value_name = "METRES", value_parser = tolerance, allow_hyphen_values = true)]
     pub(crate) tolerance: Option<f64>,
+    /// Map a front that bends and moves along the rows, as a recorded track: the radius of its tightest bend, metres
+    /// (inf: straight), and how far it may move from one row to the next, metres
+    #[arg(long, value_name = "RADIUS[,SPEED]", value_parser = front, allow_hyphen_values = true)]
+    pub(crate) front: Option<Front>,
     /// Write a figure here
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) figure: Option<PathBuf>,
     /// Write the answer for a map here; positions are to be latitude and longitude, or metres with --crs
     #[arg(long, value_name = "FILE.geojson")]
     pub(crate) geojson: Option<PathBuf>,
+    /// Write the map of the front here, a row for each place on it
+    #[arg(long, value_name = "FILE.csv", requires = "front")]
+    pub(crate) map: Option<PathBuf>,
     /// What to print
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: Format,
@@ -85,13 +94,37 @@ fn tolerance(text: &str) -> Result<f64> {
     metres.context("expected metres, 0 to 1024")
 }
 
-/// The exit status if no straight line explains the labels and `--strict` asks for one.
-const NO_LINE: u8 = 1;
+fn front(text: &str) -> Result<Front> {
+    let (radius, speed) = text.split_once(',').unwrap_or((text, "0"));
+    let number = |what, part: &str| {
+        let number = part.trim().parse::<f64>();
+        number.map_err(|_| anyhow!("{what}: found {part:?}, expected metres, as 40 or 40,0.02"))
+    };
+    let (radius, speed) = (number("the radius", radius)?, number("the speed", speed)?);
+    let front = if radius == f64::INFINITY { Ok(Front::STRAIGHT) } else { Front::bending(radius) };
+    Ok(front?.moving(speed)?)
+}
+
+/// The exit status if no straight line explains the labels, or no front is known, and `--strict` asks for one.
+const UNEXPLAINED: u8 = 1;
+
+/// What a file says: the content of each output, what to print, and why not to rely on it.
+struct Said {
+    figure: Option<String>,
+    geojson: Option<String>,
+    map: Option<String>,
+    text: String,
+    warning: Option<String>,
+}
 
 /// Reads them, and what to print.
 pub(crate) fn replay(args: &ReplayArgs) -> Result<Done> {
-    let asked = [("--figure", args.figure.as_deref()), ("--geojson", args.geojson.as_deref())];
-    let [figure, geojson] = prepare(&[("the samples", &args.samples)], asked)?;
+    let asked = [
+        ("--figure", args.figure.as_deref()),
+        ("--geojson", args.geojson.as_deref()),
+        ("--map", args.map.as_deref()),
+    ];
+    let outputs = prepare(&[("the samples", &args.samples)], asked)?;
     let layout = Layout {
         columns: args.columns.clone(),
         delimiter: args.delimiter,
@@ -101,26 +134,57 @@ pub(crate) fn replay(args: &ReplayArgs) -> Result<Done> {
         strict: args.strict,
     };
     let trust = Trust { p: args.p, tolerance: args.tolerance.unwrap_or(0.0) };
-    let replay = Replay::read(&args.samples, &layout, trust)?;
-    // Both are made before either is written.
-    let map = geojson.as_ref().map(|_| replay.geojson()).transpose()?;
-    let drawn = figure.as_ref().map(|_| replay.figure()).transpose()?;
-    for (output, content) in [(figure, drawn), (geojson, map)] {
+    let wants = outputs.each_ref().map(Option::is_some);
+    // All is made before anything is written.
+    let (name, said) = match args.front {
+        Some(front) => {
+            let map = FrontMap::read(&args.samples, &layout, front, trust)?;
+            (map.name().to_owned(), front_said(&map, wants, args.format)?)
+        }
+        None => {
+            let replay = Replay::read(&args.samples, &layout, trust)?;
+            (replay.name().to_owned(), line_said(&replay, wants, args.format)?)
+        }
+    };
+    let Said { figure, geojson, map, text, warning } = said;
+    for (output, content) in outputs.into_iter().zip([figure, geojson, map]) {
         if let (Some(output), Some(content)) = (output, content) {
             output.write(content)?;
         }
     }
-    let text = match args.format {
-        Format::Text => replay.report(),
-        Format::Json => json(&replay.record()),
-    };
-    let failure = match replay.warning() {
-        Some(why) if args.strict => Some((anyhow!("{}: {why}", replay.name()), NO_LINE)),
+    let failure = match warning {
+        Some(why) if args.strict => Some((anyhow!("{name}: {why}"), UNEXPLAINED)),
         Some(why) => {
-            warn(replay.name(), why);
+            warn(name, why);
             None
         }
         None => None,
     };
     Ok(Done { text, failure })
+}
+
+fn line_said(replay: &Replay, [figure, geojson, _]: [bool; 3], format: Format) -> Result<Said> {
+    Ok(Said {
+        geojson: geojson.then(|| replay.geojson()).transpose()?,
+        figure: figure.then(|| replay.figure()).transpose()?,
+        map: None,
+        text: match format {
+            Format::Text => replay.report(),
+            Format::Json => json(&replay.record()),
+        },
+        warning: replay.warning(),
+    })
+}
+
+fn front_said(it: &FrontMap, [figure, geojson, map]: [bool; 3], format: Format) -> Result<Said> {
+    Ok(Said {
+        geojson: geojson.then(|| it.geojson()).transpose()?,
+        figure: figure.then(|| it.figure()).transpose()?,
+        map: map.then(|| it.csv()).transpose()?,
+        text: match format {
+            Format::Text => it.report(),
+            Format::Json => json(&it.record()),
+        },
+        warning: it.warning(),
+    })
 }

@@ -18,6 +18,7 @@ use crate::output::plain;
 use crate::report::examples::{Flown, side_by_side};
 use crate::report::page::{Chapter, Page};
 use crate::report::picture::Picture;
+use crate::report::pieces::Pieces;
 use crate::report::{flat, log, text, trace};
 
 #[derive(Debug, Args)]
@@ -48,6 +49,9 @@ pub(crate) struct Run {
     /// Write a log for Foxglove, Rerun or `PlotJuggler` here
     #[arg(long, value_name = "FILE.mcap")]
     pub(crate) mcap: Option<PathBuf>,
+    /// Write the map of the front here, a row for each place on it (track)
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) map: Option<PathBuf>,
     /// What to print
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: Format,
@@ -76,7 +80,7 @@ pub(crate) struct RunArgs {
         value_name = "PLANNER,...",
         value_delimiter = ',',
         requires = "report",
-        conflicts_with_all = ["algorithm", "trace", "figure", "candidates", "mcap"]
+        conflicts_with_all = ["algorithm", "trace", "figure", "candidates", "mcap", "map"]
     )]
     compare: Vec<Algorithm>,
 }
@@ -126,6 +130,10 @@ impl Run {
         let mission = read(&self.scenario, Overrides { algorithm, steps, seed })?;
         if self.candidates.is_some() && !mission.is_noisy() {
             bail!("--candidates: found a mission without noise, expected one with noisy labels");
+        }
+        if self.map.is_some() && mission.algorithm.seeks_line() {
+            let planner = mission.algorithm.name();
+            bail!("--map: found algorithm {planner}, expected track, which maps a front");
         }
         if let Some(warning) = mission.warning() {
             warn(self.name(), warning);
@@ -184,23 +192,24 @@ impl Run {
         ("the scenario", &self.scenario)
     }
 
-    pub(crate) fn outputs(&self) -> [(&'static str, Option<&Path>); 5] {
+    pub(crate) fn outputs(&self) -> [(&'static str, Option<&Path>); 6] {
         [
             ("--trace", self.trace.as_deref()),
             ("--figure", self.figure.as_deref()),
             ("--candidates", self.candidates.as_deref()),
             ("--report", self.report.as_deref()),
             ("--mcap", self.mcap.as_deref()),
+            ("--map", self.map.as_deref()),
         ]
     }
 
     /// Writes the trace, the figures and the page that were asked for; what to print.
     pub(crate) fn tell(
         &self,
-        outputs: [Option<Output>; 5],
+        outputs: [Option<Output>; 6],
         recording: &Recording,
     ) -> Result<String> {
-        let [trace, figure, candidates, report, mcap] = outputs;
+        let [trace, figure, candidates, report, mcap, map] = outputs;
         let name = self.name();
         let title = self.title();
         let lines = trace::lines(&recording.results);
@@ -210,12 +219,15 @@ impl Run {
         let fewest = fewest.map(|picture| picture.svg());
         let page = report.as_ref().map(|_| page(&title, &[recording]));
         let log = mcap.as_ref().map(|_| log::mcap(recording)).transpose()?;
+        let pieces = || Pieces::of_steps(&recording.results.steps);
+        let vertices = map.as_ref().map(|_| pieces().csv("step", None)).transpose()?;
         for (output, content) in [
             (trace, Some(lines.as_bytes())),
             (figure, svg.as_ref().map(String::as_bytes)),
             (candidates, fewest.as_ref().map(String::as_bytes)),
             (report, page.as_ref().map(String::as_bytes)),
             (mcap, log.as_deref()),
+            (map, vertices.as_ref().map(String::as_bytes)),
         ] {
             if let (Some(output), Some(content)) = (output, content) {
                 output.write(content)?;

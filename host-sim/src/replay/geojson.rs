@@ -3,9 +3,11 @@
 use anyhow::{Context as _, Result, bail};
 use geojson::{Feature, FeatureCollection, Geometry, GeometryValue};
 use nalgebra::Point2;
+use planner_core::{Area, Sample};
 use serde_json::{Value, json};
 
 use crate::replay::record::Replay;
+use crate::replay::sample_file::SampleFile;
 use crate::report::picture::area_around;
 use crate::world::polygon::Polygon;
 
@@ -17,19 +19,12 @@ impl Replay {
     /// For a file whose positions are in metres, as these have no place on a map by themselves. Also for positions on
     /// both sides of the 180th meridian.
     pub fn geojson(&self) -> Result<String> {
-        let name = &self.file.name;
-        if !self.file.frame.is_on_globe() {
-            bail!(
-                "--geojson: found positions in metres in {name}, expected latitude and longitude \
-                 (--columns lat=TITLE,lon=TITLE), or the system of the metres (--crs EPSG:...)"
-            );
-        }
-        let area = area_around(&self.file.samples)
-            .with_context(|| format!("{name}: no area around the samples"))?;
+        let area = self.file.area_on_globe()?;
         let mut features = Vec::new();
         for (polygon, label) in self.answer.ground(area).into_iter().zip([1, -1]) {
             if polygon.0.len() >= 3 {
-                let ring = polygon.0.iter().chain(polygon.0.first()).map(|at| self.degrees(*at));
+                let ring =
+                    polygon.0.iter().chain(polygon.0.first()).map(|at| self.file.degrees(*at));
                 let ring = ring.collect::<Result<Vec<_>>>()?;
                 let level = self.answer.doubt.as_ref().map(|doubt| doubt.probability);
                 features.push(feature(
@@ -45,7 +40,7 @@ impl Replay {
             ("most_likely", most_likely),
         ] {
             if let Some([from, to]) = line.and_then(|line| self.ends(&line)) {
-                let ends = [self.degrees(from)?, self.degrees(to)?];
+                let ends = [self.file.degrees(from)?, self.file.degrees(to)?];
                 features
                     .push(feature(GeometryValue::new_line_string(ends), json!({ "kind": kind })));
             }
@@ -53,29 +48,56 @@ impl Replay {
         let disagreeing = self.answer.doubt.as_ref().map(|doubt| &doubt.disagreeing);
         for (index, sample) in self.file.samples.iter().enumerate() {
             let disagrees = disagreeing.map(|them| them.binary_search(&index).is_ok());
-            let mut told = json!({
-                "kind": "sample",
-                "label": sample.label.sign(),
-                "line": self.file.line(index),
-            });
-            if let Some(disagrees) = disagrees {
-                told["disagrees"] = disagrees.into();
-            }
-            let at = self.degrees(sample.site.into())?;
-            features.push(feature(GeometryValue::new_point(at), told));
+            features.push(self.file.point(index, sample, disagrees)?);
         }
+        Ok(collection(features))
+    }
+}
+
+impl SampleFile {
+    /// The area around the samples, if it has a place on the globe.
+    ///
+    /// # Errors
+    /// Names the file, what was found and what was expected.
+    pub(crate) fn area_on_globe(&self) -> Result<Area> {
+        let name = &self.name;
+        if !self.frame.is_on_globe() {
+            bail!(
+                "--geojson: found positions in metres in {name}, expected latitude and longitude \
+                 (--columns lat=TITLE,lon=TITLE), or the system of the metres (--crs EPSG:...)"
+            );
+        }
+        let area = area_around(&self.samples)
+            .with_context(|| format!("{name}: no area around the samples"))?;
         if self.crosses_meridian(&Polygon::from(area))? {
             bail!(
                 "--geojson: {name} lies on both sides of the 180th meridian, expected positions on one"
             );
         }
-        let all = FeatureCollection { features, ..FeatureCollection::default() };
-        Ok(json!(all).to_string() + "\n")
+        Ok(area)
+    }
+
+    /// A sample as a point.
+    pub(crate) fn point(
+        &self,
+        index: usize,
+        sample: &Sample,
+        disagrees: Option<bool>,
+    ) -> Result<Feature> {
+        let mut told = json!({
+            "kind": "sample",
+            "label": sample.label.sign(),
+            "line": self.line(index),
+        });
+        if let Some(disagrees) = disagrees {
+            told["disagrees"] = disagrees.into();
+        }
+        Ok(feature(GeometryValue::new_point(self.degrees(sample.site.into())?), told))
     }
 
     /// Longitude and latitude.
-    fn degrees(&self, at: Point2<f64>) -> Result<[f64; 2]> {
-        let [lat, lon] = self.file.frame.degrees(at)?;
+    pub(crate) fn degrees(&self, at: Point2<f64>) -> Result<[f64; 2]> {
+        let [lat, lon] = self.frame.degrees(at)?;
         Ok([lon, lat])
     }
 
@@ -86,7 +108,13 @@ impl Replay {
     }
 }
 
-fn feature(geometry: GeometryValue, properties: Value) -> Feature {
+pub(crate) fn feature(geometry: GeometryValue, properties: Value) -> Feature {
     let properties = if let Value::Object(map) = properties { Some(map) } else { None };
     Feature { geometry: Some(Geometry::new(geometry)), properties, ..Feature::default() }
+}
+
+/// The text of a file of features.
+pub(crate) fn collection(features: Vec<Feature>) -> String {
+    let all = FeatureCollection { features, ..FeatureCollection::default() };
+    json!(all).to_string() + "\n"
 }

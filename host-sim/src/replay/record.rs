@@ -11,7 +11,7 @@ use crate::mission::read_out::LEVEL;
 use crate::mission::results::{CredibleRecord, EstimateRecords, LineRecord};
 use crate::replay::answer::{Answer, Trust};
 use crate::replay::fit_record::FitRecord;
-use crate::replay::rows::Layout;
+use crate::replay::rows::{Layout, Skipped};
 use crate::replay::sample_file::SampleFile;
 use crate::report::picture::area_around;
 use crate::world::polygon::Polygon;
@@ -48,11 +48,17 @@ pub struct Record {
 
 /// Rows that lack a value.
 #[derive(Serialize)]
-struct SkippedRecord {
+pub(crate) struct SkippedRecord {
     rows: usize,
     /// The line of the first, or its feature.
     #[serde(skip_serializing_if = "Option::is_none")]
     first: Option<usize>,
+}
+
+impl From<&Skipped> for SkippedRecord {
+    fn from(skipped: &Skipped) -> Self {
+        Self { rows: skipped.count, first: skipped.first.as_ref().map(|first| first.0) }
+    }
 }
 
 /// A line in a file's own coordinates.
@@ -140,10 +146,7 @@ impl Replay {
             |indices: &[usize]| indices.iter().map(|it| self.file.line(*it)).collect();
         Record {
             samples: self.file.samples.len(),
-            skipped: SkippedRecord {
-                rows: self.file.skipped.count,
-                first: self.file.skipped.first.as_ref().map(|first| first.0),
-            },
+            skipped: (&self.file.skipped).into(),
             matter: doubt.is_none().then_some(bounding.len()),
             slope_arcs: slope_arcs.clone(),
             intercept: *intercept,

@@ -3,6 +3,7 @@
 use anyhow::{Result, bail};
 use planner_core::Label;
 
+use crate::mission::results::{Name, Start, StepResult};
 use crate::replay::columns::Columns;
 use crate::replay::crs::Crs;
 use crate::replay::delimiter::Delimiter;
@@ -85,6 +86,17 @@ pub(crate) struct Rows {
     pub(crate) is_geographic: bool,
     /// The titles of the columns of positions, of a table that has titles.
     pub(crate) titles: Option<[String; 2]>,
+    /// The mission, of a trace.
+    pub(crate) mission: Option<Box<Traced>>,
+}
+
+/// The mission of a trace: also its steps without a label.
+#[derive(Debug)]
+pub(crate) struct Traced {
+    pub(crate) start: Start,
+    pub(crate) steps: Vec<StepResult>,
+    /// Why it ended, if the trace has its end.
+    pub(crate) reason: Option<Name>,
 }
 
 impl Rows {

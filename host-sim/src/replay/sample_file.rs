@@ -8,7 +8,7 @@ use planner_core::{Label, Sample};
 
 use crate::output::plain;
 use crate::replay::frame::{Frame, check_degrees};
-use crate::replay::rows::{Layout, Rows, Skipped, Unit};
+use crate::replay::rows::{Layout, Rows, Skipped, Traced, Unit};
 use crate::replay::{geojson_file, gpx_file, swapped, table_file, trace_file};
 
 /// Samples in the order in which they were recorded.
@@ -26,6 +26,8 @@ pub(crate) struct SampleFile {
     /// Rows that are no samples.
     pub(crate) skipped: Skipped,
     pub(crate) unit: Unit,
+    /// The mission, of a trace.
+    pub(crate) mission: Option<Box<Traced>>,
     /// The line of the file on which each begins, or the number of its feature.
     lines: Vec<usize>,
 }
@@ -97,8 +99,9 @@ impl SampleFile {
         };
         let both = rows.positions.iter().zip(&rows.labels);
         let samples = both.enumerate().map(sample).collect::<Result<_>>()?;
-        let Rows { certain, p, lines, skipped, .. } = rows;
-        Ok(Self { name: name.to_owned(), samples, frame, certain, p, skipped, unit, lines })
+        let Rows { certain, p, lines, skipped, mission, .. } = rows;
+        let name = name.to_owned();
+        Ok(Self { name, samples, frame, certain, p, skipped, unit, mission, lines })
     }
 
     /// The line on which a sample begins, or the number of its feature.

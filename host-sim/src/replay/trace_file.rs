@@ -3,7 +3,7 @@
 use anyhow::{Result, anyhow, bail};
 use planner_core::Label;
 
-use crate::replay::rows::{Layout, Rows};
+use crate::replay::rows::{Layout, Rows, Traced};
 use crate::report::trace::Record;
 
 /// The rows of a trace. A reading on the boundary itself has no side, and is left out.
@@ -33,13 +33,15 @@ pub(crate) fn parse(name: &str, text: &[u8], layout: &Layout) -> Result<Rows> {
 }
 
 fn take(rows: &mut Rows, record: Record<'_>, line: usize) -> Result<()> {
-    match (record, rows.p) {
+    match (record, rows.mission.as_mut()) {
         (Record::Start(start), None) => {
             rows.p = Some(start.p);
             rows.certain = (0..start.oracle.len()).collect();
             for given in &start.oracle {
                 rows.push([given.x, given.z], label(given.label)?, line);
             }
+            let start = start.into_owned();
+            rows.mission = Some(Box::new(Traced { start, steps: Vec::new(), reason: None }));
         }
         (Record::Start(_), Some(_)) => {
             bail!("found a second start, expected the trace of one mission")
@@ -52,13 +54,17 @@ fn take(rows: &mut Rows, record: Record<'_>, line: usize) -> Result<()> {
                     rows.push([it.x, it.z], label(it.label)?, line);
                 }
             }
-            let Some(read) = step.label.filter(|read| *read != 0) else { return Ok(()) };
-            if step.trusted == Some(true) {
-                rows.certain.push(rows.labels.len());
+            if let Some(read) = step.label.filter(|read| *read != 0) {
+                if step.trusted == Some(true) {
+                    rows.certain.push(rows.labels.len());
+                }
+                rows.push([step.pose.x, step.pose.z], label(read)?, line);
             }
-            rows.push([step.pose.x, step.pose.z], label(read)?, line);
+            if let Some(mission) = &mut rows.mission {
+                mission.steps.push(step.into_owned());
+            }
         }
-        (Record::End(_), Some(_)) => {}
+        (Record::End(end), Some(mission)) => mission.reason = Some(end.into_owned().reason),
     }
     Ok(())
 }

@@ -8,6 +8,7 @@ use crate::replay::answer::{Answer, Doubted};
 use crate::replay::fit_words::Words;
 use crate::replay::record::{LineInFile, Replay};
 use crate::replay::rows::Skipped;
+use crate::replay::sample_file::SampleFile;
 use crate::report::text;
 
 /// Lines of a file that are named in words; the record has all.
@@ -16,7 +17,7 @@ const MOST_NAMED: usize = 20;
 impl Replay {
     /// What the samples determine, in words.
     pub fn report(&self) -> String {
-        let (skipped, about) = (self.skipped(), self.about());
+        let (skipped, about) = (self.file.skipped_in_words(), self.file.about());
         let mut text = format!("{}: {}.\n{skipped}{about}\n", self.file.name, self.headline());
         // Writing to a string cannot fail.
         let mut row = |name: &str, value: &str| {
@@ -80,29 +81,6 @@ impl Replay {
         }
     }
 
-    /// Rows that are no samples.
-    fn skipped(&self) -> String {
-        let (Skipped { count, first }, unit) = (&self.file.skipped, self.file.unit);
-        let Some((line, lacks)) = first else { return String::new() };
-        let (row, name) = (unit.row(), unit.name());
-        let s = if *count == 1 { "" } else { "s" };
-        format!("Skipped {count} {row}{s} without a value, the first on {name} {line} ({lacks}).\n")
-    }
-
-    /// The origin of positions, in words.
-    fn about(&self) -> String {
-        match self.file.frame.origin() {
-            None => String::new(),
-            Some([lat, lon]) if self.file.frame.is_geographic() => format!(
-                "Metres to the east (x) and the north (z) of latitude {lat}, longitude {lon}.\n"
-            ),
-            Some([x, z]) => {
-                let of = self.file.frame.crs().map_or(String::new(), |crs| format!(" of {crs}"));
-                format!("Metres{of} about the origin ({x}, {z}).\n")
-            }
-        }
-    }
-
     /// The lines to report, the recommended one first.
     pub(crate) fn named(&self) -> Vec<(&'static str, Option<Line>)> {
         let Answer { centre, maximum_margin, bisector, tolerance, doubt, .. } = &self.answer;
@@ -144,6 +122,31 @@ impl Replay {
             self.file.samples.len()
         );
         text
+    }
+}
+
+impl SampleFile {
+    /// Rows that are no samples, in words: a line, if there are any.
+    pub(crate) fn skipped_in_words(&self) -> String {
+        let (Skipped { count, first }, unit) = (&self.skipped, self.unit);
+        let Some((line, lacks)) = first else { return String::new() };
+        let (row, name) = (unit.row(), unit.name());
+        let s = if *count == 1 { "" } else { "s" };
+        format!("Skipped {count} {row}{s} without a value, the first on {name} {line} ({lacks}).\n")
+    }
+
+    /// The origin of positions, in words: a line, if there is one.
+    pub(crate) fn about(&self) -> String {
+        match self.frame.origin() {
+            None => String::new(),
+            Some([lat, lon]) if self.frame.is_geographic() => format!(
+                "Metres to the east (x) and the north (z) of latitude {lat}, longitude {lon}.\n"
+            ),
+            Some([x, z]) => {
+                let of = self.frame.crs().map_or(String::new(), |crs| format!(" of {crs}"));
+                format!("Metres{of} about the origin ({x}, {z}).\n")
+            }
+        }
     }
 }
 

@@ -34,8 +34,8 @@ pub(crate) const KNOWN: [Cells<'static, StepResult>; 4] = [
     (Column::right("bits", 5), &|it| format!("{:.2}", it.bits)),
 ];
 
-/// The map in words: sentences, a line each.
-pub(crate) fn map(record: &MapRecord) -> String {
+/// The map in words: sentences, a line each. `unit` is what the record numbers.
+pub(crate) fn map(record: &MapRecord, unit: &str) -> String {
     let &MapRecord { state, found, lost, vertices, metres, driven, half_width, off } = record;
     let Some(found) = found else {
         return "The front was not found.\n".to_owned();
@@ -43,13 +43,13 @@ pub(crate) fn map(record: &MapRecord) -> String {
     let mut text = match (state, lost) {
         (State::Closed, _) => {
             format!(
-                "The front is closed: it was found at step {found}, and the robot went all round it.\n"
+                "The front is closed: it was found at {unit} {found}, and the robot went all round it.\n"
             )
         }
         (_, Some(LostRecord { step, x, z })) => format!(
-            "The front was found at step {found}, and is lost since step {step}. It was last at ({x:.2}, {z:.2}).\n"
+            "The front was found at {unit} {found}, and is lost since {unit} {step}. It was last at ({x:.2}, {z:.2}).\n"
         ),
-        _ => format!("The front was found at step {found}, and is known in the end.\n"),
+        _ => format!("The front was found at {unit} {found}, and is known in the end.\n"),
     };
     // Writing to a string cannot fail.
     let _ = writeln!(

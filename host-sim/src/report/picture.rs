@@ -419,8 +419,13 @@ fn bounding(table: &Table) -> Vec<Named> {
 /// The smallest area that shows all samples with a margin, for samples without a mission. Where the lattice
 /// ends there is no margin.
 pub fn area_around(samples: &[Sample]) -> Option<Area> {
+    area_of(samples.iter().map(|s| s.site.into()))
+}
+
+/// The same of any places.
+pub(crate) fn area_of(places: impl Iterator<Item = Point2<f64>>) -> Option<Area> {
     const END: f64 = (LIMIT - 1) as f64 / UNITS_PER_METRE as f64;
-    let [min, max] = around(samples.iter().map(|s| s.site.into()))?;
+    let [min, max] = around(places)?;
     let margin = Vector2::repeat(0.1 * (max - min).amax());
     let corner = |at: Point2<f64>| Site::try_from(at.map(|m| m.clamp(-END, END))).ok();
     Area::new(corner(min - margin)?, corner(max + margin)?).ok()

@@ -4,6 +4,7 @@ use nalgebra::{Point2, Vector2};
 
 use crate::mission::front::VertexRecord;
 use crate::mission::results::StepResult;
+use crate::report::pieces::Pieces;
 
 /// A place of the map: where it is, and the two ends of its 90 % interval, to the left and to the right.
 #[derive(Clone, Copy, Debug)]
@@ -29,11 +30,7 @@ pub struct Ribbon(pub(crate) Vec<Vec<Rung>>);
 impl Ribbon {
     /// That of a mission's steps.
     pub(crate) fn of(steps: &[StepResult]) -> Self {
-        let pieces = steps.split(|step| step.front.is_none());
-        let rungs = |piece: &[StepResult]| {
-            piece.iter().filter_map(|it| it.front.as_ref().map(Rung::from)).collect()
-        };
-        Self(pieces.filter(|piece| !piece.is_empty()).map(rungs).collect())
+        Self::from(&Pieces::of_steps(steps))
     }
 
     /// Whether there is none.
@@ -53,5 +50,13 @@ impl Ribbon {
             [from[0], to[0], to[1], from[1]]
         };
         self.0.iter().flat_map(move |piece| piece.chunks(1).chain(piece.windows(2)).map(between))
+    }
+}
+
+impl From<&Pieces> for Ribbon {
+    fn from(pieces: &Pieces) -> Self {
+        let rungs =
+            |piece: &[(usize, VertexRecord)]| piece.iter().map(|(_, it)| it.into()).collect();
+        Self(pieces.iter().map(rungs).collect())
     }
 }

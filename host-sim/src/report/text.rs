@@ -135,7 +135,7 @@ fn end(results: &Results, estimates: &[(&str, Option<LineRecord>); 3]) -> String
         text += &sought(seek);
     }
     if let Some(map) = &results.end.front {
-        text += &front::map(map);
+        text += &front::map(map, "step");
     }
     if let Some(goal) = &results.end.goal {
         text += &promise(goal, &results.end.reason);

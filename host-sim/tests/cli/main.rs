@@ -21,6 +21,7 @@ mod fronts;
 mod hostile;
 mod imports;
 mod interruption;
+mod mapped_tracks;
 mod maps;
 mod missions;
 mod outliers;

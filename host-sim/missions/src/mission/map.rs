@@ -71,27 +71,44 @@ impl MapRecord {
     /// Of a mission's steps in a world, which ended so.
     pub fn of(steps: &[StepResult], world: &World, ending: Ending) -> Self {
         let vertices: Vec<_> = steps.iter().filter_map(|it| Some((it.step, it.front?))).collect();
+        let off = OffRecord::of(&vertices, world);
+        let is_closed = ending == Ending::Stopped(StopReason::Closed);
+        let after = steps.iter().map(|it| (it.metres, it.front));
+        Self { off, ..Self::after(after, is_closed) }
+    }
+
+    /// Of the steps or rows of a track, counted from 1: after each how far the robot had driven, and where the front was
+    /// known best, if it was found. `is_closed` says whether the robot went all round it.
+    pub fn after(
+        steps: impl IntoIterator<Item = (f64, Option<VertexRecord>)>,
+        is_closed: bool,
+    ) -> Self {
+        let (mut vertices, mut begin) = (Vec::new(), None);
+        let (mut whole, mut is_found) = (0.0, false);
+        for (step, (metres, vertex)) in (1..).zip(steps) {
+            (whole, is_found) = (metres, vertex.is_some());
+            if let Some(vertex) = vertex {
+                begin.get_or_insert(metres);
+                vertices.push((step, vertex));
+            }
+        }
         let last = vertices.last();
-        let is_found = steps.last().is_some_and(|it| it.front.is_some());
         let state = match last {
-            Some(_) if ending == Ending::Stopped(StopReason::Closed) => State::Closed,
+            Some(_) if is_closed => State::Closed,
             Some(_) if is_found => State::Followed,
             Some(_) => State::Lost,
             None => State::Sought,
         };
         let lost = last.filter(|_| state == State::Lost);
-        let found = vertices.first().map(|(step, _)| *step);
-        let before = found.and_then(|step| steps.iter().find(|it| it.step == step));
-        let whole = steps.last().map_or(0.0, |it| it.metres);
         Self {
             state,
-            found,
+            found: vertices.first().map(|(step, _)| *step),
             lost: lost.map(|&(step, it)| LostRecord { step, x: it.x, z: it.z }),
             vertices: vertices.len(),
             metres: vertices.windows(2).map(along).sum(),
-            driven: before.map_or(0.0, |it| whole - it.metres),
+            driven: begin.map_or(0.0, |begin| whole - begin),
             half_width: median_and_most(vertices.iter().map(|(_, it)| it.half_width), 1.0),
-            off: OffRecord::of(&vertices, world),
+            off: None,
         }
     }
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use anyhow::{Result, bail};
 
 /// What is written, by its flag, and the endings that stand for it, the usual one first.
-const WRITTEN: [(&str, &[&str]); 9] = [
+const WRITTEN: [(&str, &[&str]); 10] = [
     ("--figure", &["svg"]),
     ("--candidates", &["svg"]),
     ("--report", &["html", "htm"]),
@@ -13,6 +13,7 @@ const WRITTEN: [(&str, &[&str]); 9] = [
     ("--mcap", &["mcap"]),
     ("--geojson", &["geojson", "json"]),
     ("--csv", &["csv"]),
+    ("--map", &["csv"]),
     ("--fields-csv", &["csv"]),
     ("--timing", &["csv"]),
 ];

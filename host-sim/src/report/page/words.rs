@@ -78,7 +78,7 @@ pub(crate) fn ended(results: &Results) -> Vec<Told> {
     let mut ended = vec![Told::new("Ended", format!("{}.{promise}", sentence(why)))];
     ended.extend(text::readings(results).map(|words| Told::new("Readings", words)));
     if let Some(map) = &results.end.front {
-        ended.push(Told::new("Map", front::map(map).trim_end().to_owned()));
+        ended.push(Told::new("Map", front::map(map, "step").trim_end().to_owned()));
         ended.extend(front::remedy(map).map(|it| Told::new("To do", it)));
     }
     let shown = results.end.reliability.as_ref();

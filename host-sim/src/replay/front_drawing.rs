@@ -1,0 +1,150 @@
+//! The front along a recorded track: drawn, and for a map (`GeoJSON`).
+
+use anyhow::{Context as _, Result};
+use geojson::GeometryValue;
+use nalgebra::Point2;
+use planner_core::Sample;
+use serde_json::json;
+
+use crate::mission::map::State;
+use crate::replay::front_map::FrontMap;
+use crate::replay::geojson::{collection, feature};
+use crate::report::picture::{Dot, Ground, Picture, area_of};
+use crate::report::ribbon::Ribbon;
+
+/// Samples that a figure shows at most, so that they do not hide the front.
+const MOST: usize = 150;
+
+impl FrontMap {
+    /// The samples and the front that they map, as an SVG document. Of very many samples it shows some.
+    ///
+    /// # Errors
+    /// When it could not be drawn.
+    pub fn figure(&self) -> Result<String> {
+        let samples = &self.file.samples;
+        let front = Ribbon::from(&self.pieces);
+        let places = samples.iter().map(|it| it.site.into()).chain(front.ways().flatten());
+        let area = area_of(places).context("no area around the samples")?;
+        let count = samples.len();
+        let every = count.div_ceil(MOST).max(1);
+        let dot = |s: &Sample| Dot { at: s.site.into(), label: s.label, ring: None };
+        let sparse =
+            if every > 1 { format!("; one label in {every} shown") } else { String::new() };
+        let metres = self.map.metres;
+        let what = match self.map.state {
+            _ if self.one_label.is_some() => "No front: the ground has one label".to_owned(),
+            State::Sought => "A front that was not found".to_owned(),
+            State::Lost => format!("A front that is lost: {metres:.0} m mapped"),
+            State::Closed => format!("A closed front: {metres:.0} m mapped"),
+            State::Followed => format!("A front: {metres:.0} m mapped"),
+        };
+        let svg = Picture {
+            title: self.file.name.clone(),
+            note: Some(format!("{what} along a track of {count} labels{sparse}")),
+            area: area.into(),
+            ground: Ground::Plain,
+            is_refuted: false,
+            samples: samples.iter().step_by(every).map(dot).collect(),
+            given: 0,
+            path: None,
+            truth: None,
+            lines: Vec::new(),
+            front,
+        };
+        Ok(svg.svg())
+    }
+
+    /// The front by its pieces: the ground where it lies with a probability of 0.9, the mean front, and each vertex.
+    /// Also all samples.
+    ///
+    /// # Errors
+    /// For a file whose positions are in metres, as these have no place on a map by themselves. Also for positions on
+    /// both sides of the 180th meridian.
+    pub fn geojson(&self) -> Result<String> {
+        let file = &self.file;
+        file.area_on_globe()?;
+        let ribbon = Ribbon::from(&self.pieces);
+        let mut features = Vec::new();
+        for (piece, rungs) in (1..).zip(&ribbon.0) {
+            let quads = rungs.windows(2).map(|pair| ring([pair[0].ends, pair[1].ends]));
+            let ring = |corners: [Point2<f64>; 4]| {
+                let closed = corners.iter().chain(corners.first());
+                Ok([closed.map(|at| file.degrees(*at)).collect::<Result<Vec<_>>>()?])
+            };
+            let quads = quads.map(ring).collect::<Result<Vec<_>>>()?;
+            if !quads.is_empty() {
+                features.push(feature(
+                    GeometryValue::new_multi_polygon(quads),
+                    json!({ "kind": "band", "piece": piece, "probability": 0.9 }),
+                ));
+            }
+        }
+        for (piece, rungs) in (1..).zip(&ribbon.0) {
+            let way = rungs.iter().map(|it| file.degrees(it.at)).collect::<Result<Vec<_>>>()?;
+            if way.len() > 1 {
+                features.push(feature(
+                    GeometryValue::new_line_string(way),
+                    json!({ "kind": "front", "piece": piece }),
+                ));
+            }
+        }
+        for (piece, number, it) in self.pieces.vertices() {
+            let mut told = json!({
+                "kind": "vertex",
+                "piece": piece,
+                "heading": it.heading,
+                "curvature": it.curvature,
+                "half_width": it.half_width,
+                "turn_deviation": it.turn_deviation,
+            });
+            told[self.number()] = number.into();
+            features.push(feature(GeometryValue::new_point(file.degrees(it.at())?), told));
+        }
+        for (index, sample) in file.samples.iter().enumerate() {
+            features.push(file.point(index, sample, None)?);
+        }
+        Ok(collection(features))
+    }
+}
+
+/// The four ends of two intervals as a ring, counter-clockwise. Of the three orders the one with the most area does not
+/// cross itself.
+fn ring([[a, b], [c, d]]: [[Point2<f64>; 2]; 2]) -> [Point2<f64>; 4] {
+    let area = |[p, q, r, s]: &[Point2<f64>; 4]| (r - p).perp(&(s - q));
+    let orders = [[a, b, d, c], [a, b, c, d], [a, c, b, d]];
+    let [p, q, r, s] = orders
+        .into_iter()
+        .max_by(|one, other| area(one).abs().total_cmp(&area(other).abs()))
+        .unwrap_or([a, b, d, c]);
+    if area(&[p, q, r, s]) < 0.0 { [s, r, q, p] } else { [p, q, r, s] }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whether two stretches cross each other.
+    fn cross([a, b]: [Point2<f64>; 2], [c, d]: [Point2<f64>; 2]) -> bool {
+        let side = |p: Point2<f64>, q: Point2<f64>, r: Point2<f64>| (q - p).perp(&(r - p));
+        side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
+    }
+
+    #[test]
+    fn a_ring_of_four_places_does_not_cross_itself() {
+        let mut state = 5_u64;
+        let mut number = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (state >> 40) as f64
+        };
+        for trial in 0..10_000 {
+            let mut end = || Point2::new(number(), number());
+            let ends = [[end(), end()], [end(), end()]];
+            let [p, q, r, s] = ring(ends);
+            let crosses = cross([p, q], [r, s]) || cross([q, r], [s, p]);
+            assert!(!crosses, "trial {trial} of seed 5: {ends:?}");
+            assert!((r - p).perp(&(s - q)) >= 0.0, "trial {trial} of seed 5: clockwise");
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! The front along a recorded track, as a record.
+
+use serde::Serialize;
+
+use crate::mission::front::{FrontTable, VertexRecord};
+use crate::mission::map::MapRecord;
+use crate::mission::results::PTold;
+use crate::replay::front_map::FrontMap;
+use crate::replay::record::SkippedRecord;
+
+/// The front along a track.
+#[derive(Serialize)]
+pub struct FrontRecord {
+    samples: usize,
+    skipped: SkippedRecord,
+    front: FrontTable,
+    p: PTold,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tolerance: Option<f64>,
+    /// The front counts as found where its half-width is below this, metres.
+    found_within: f64,
+    /// Rows that were taken in.
+    taken: usize,
+    /// They are at least so far apart, metres.
+    apart: f64,
+    /// What its numbers are: `row` (the line of the file, or its feature) or `step`.
+    numbers: &'static str,
+    map: MapRecord,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    one_label: Option<OneLabelRecord>,
+    /// After which the front was sought anew.
+    alarms: Vec<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    origin: Option<[f64; 2]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    crs: Option<String>,
+    vertices: Vec<MappedRecord>,
+}
+
+/// The label of all ground.
+#[derive(Serialize)]
+struct OneLabelRecord {
+    label: i8,
+    /// That there is no front.
+    probability: f64,
+}
+
+/// A vertex.
+#[derive(Serialize)]
+struct MappedRecord {
+    number: usize,
+    piece: usize,
+    #[serde(flatten)]
+    vertex: VertexRecord,
+    /// In the coordinates of the file, if these are others.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    in_file: Option<[f64; 2]>,
+}
+
+impl FrontMap {
+    /// What the track maps, as a record.
+    pub fn record(&self) -> FrontRecord {
+        let frame = &self.file.frame;
+        let mapped = |(piece, number, vertex): (usize, usize, &VertexRecord)| MappedRecord {
+            number,
+            piece,
+            vertex: *vertex,
+            in_file: frame.origin().map(|_| frame.recorded(vertex.at())),
+        };
+        FrontRecord {
+            samples: self.file.samples.len(),
+            skipped: (&self.file.skipped).into(),
+            front: self.front.into(),
+            p: self.p,
+            tolerance: (self.tolerance > 0.0).then_some(self.tolerance),
+            found_within: self.width,
+            taken: self.taken,
+            apart: self.apart,
+            numbers: self.number(),
+            map: self.map,
+            one_label: self
+                .one_label
+                .map(|(label, probability)| OneLabelRecord { label: label.sign(), probability }),
+            alarms: self.alarms.clone(),
+            origin: frame.origin(),
+            crs: frame.crs().map(ToString::to_string),
+            vertices: self.pieces.vertices().map(mapped).collect(),
+        }
+    }
+}

@@ -1,0 +1,112 @@
+//! The map of a front by its pieces, and as a file of vertices.
+
+use anyhow::Result;
+
+use crate::mission::front::VertexRecord;
+use crate::mission::results::StepResult;
+
+/// The vertices of a map by its pieces, each vertex with the number of its step or row. A new piece begins where the
+/// front was not known after a step or a row.
+#[derive(Clone, Debug, Default)]
+pub struct Pieces(Vec<Vec<(usize, VertexRecord)>>);
+
+/// More columns of a map file: their titles, and what a vertex has there.
+pub(crate) type Own<'a> = ([&'static str; 2], &'a dyn Fn(&VertexRecord) -> [f64; 2]);
+
+impl Pieces {
+    /// Those of steps or rows, each with its number.
+    pub(crate) fn of(after: impl IntoIterator<Item = (usize, Option<VertexRecord>)>) -> Self {
+        let (mut pieces, mut is_known) = (Vec::<Vec<_>>::new(), false);
+        for (number, vertex) in after {
+            if let Some(vertex) = vertex {
+                match pieces.last_mut() {
+                    Some(piece) if is_known => piece.push((number, vertex)),
+                    _ => pieces.push(vec![(number, vertex)]),
+                }
+            }
+            is_known = vertex.is_some();
+        }
+        Self(pieces)
+    }
+
+    /// Those of a mission's steps.
+    pub fn of_steps(steps: &[StepResult]) -> Self {
+        Self::of(steps.iter().map(|it| (it.step, it.front)))
+    }
+
+    /// The pieces in their order. None is empty.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = &[(usize, VertexRecord)]> {
+        self.0.iter().map(Vec::as_slice)
+    }
+
+    /// All vertices, each with the number of its piece, from 1, and that of its step or row.
+    pub(crate) fn vertices(&self) -> impl Iterator<Item = (usize, usize, &VertexRecord)> {
+        let numbered = (1..).zip(&self.0);
+        numbered.flat_map(|(piece, them)| them.iter().map(move |(number, it)| (piece, *number, it)))
+    }
+
+    /// A map file: a row for each vertex, under a header. `number` is the title of the first column, and `own` are
+    /// columns at the end.
+    ///
+    /// # Errors
+    /// When a row could not be written.
+    pub fn csv(&self, number: &str, own: Option<Own<'_>>) -> Result<String> {
+        const TITLES: [&str; 7] =
+            ["x", "z", "heading", "curvature", "half_width", "turn_deviation", "piece"];
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        let titles = own.iter().flat_map(|(titles, _)| titles);
+        writer.write_record([number].iter().chain(&TITLES).chain(titles))?;
+        for (piece, number, it) in self.vertices() {
+            let &VertexRecord { x, z, heading, curvature, half_width, turn_deviation } = it;
+            let row = (number, x, z, heading, curvature, half_width, turn_deviation, piece);
+            let own: Vec<_> = own.iter().flat_map(|(_, at)| at(it)).collect();
+            writer.serialize((row, own))?;
+        }
+        Ok(String::from_utf8(writer.into_inner()?)?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn vertex(x: f64) -> VertexRecord {
+        let (curvature, turn_deviation) = (0.0, 0.25);
+        VertexRecord { x, z: 2.0, heading: -0.5, curvature, half_width: 0.75, turn_deviation }
+    }
+
+    fn map(known: &str) -> Pieces {
+        let known = known.bytes().map(|it| it == b'#').enumerate();
+        Pieces::of(known.map(|(k, is)| (k + 1, is.then(|| vertex(k as f64)))))
+    }
+
+    #[test]
+    fn a_piece_begins_where_the_front_was_lost() {
+        for (known, lengths) in [
+            ("", &[][..]),
+            ("...", &[]),
+            ("###", &[3]),
+            (".##..#.", &[2, 1]),
+            ("#.#.#", &[1, 1, 1]),
+        ] {
+            let lengths_found: Vec<_> = map(known).iter().map(<[_]>::len).collect();
+            assert_eq!(lengths_found, lengths, "{known}");
+        }
+    }
+
+    #[test]
+    fn a_map_file_has_a_row_for_each_vertex() {
+        let file = map("#.#").csv("step", None).unwrap();
+        assert_eq!(
+            file,
+            "step,x,z,heading,curvature,half_width,turn_deviation,piece\n\
+             1,0.0,2.0,-0.5,0.0,0.75,0.25,1\n\
+             3,2.0,2.0,-0.5,0.0,0.75,0.25,2\n"
+        );
+        let degrees = |it: &VertexRecord| [it.x + 50.0, 10.0];
+        let file = map("#").csv("row", Some((["lat", "lon"], &degrees))).unwrap();
+        assert!(file.ends_with(",piece,lat,lon\n1,0.0,2.0,-0.5,0.0,0.75,0.25,1,50.0,10.0\n"));
+        // A map without vertices is a header alone.
+        assert_eq!(map("..").csv("row", None).unwrap().lines().count(), 1);
+    }
+}
