@@ -24,6 +24,9 @@ def setup(args):
     looks_ahead, taken = args.algorithm == "lookahead", args.steps * args.readings
     if args.p == 1:
         taken = min(taken, 64)
+    is_fine = looks_ahead or args.algorithm == "track"
+    if args.algorithm == "track":
+        taken = 0  # it stores none
     doubt = {"noise": noise, "prior": ("Area", None)}
     return {
         "protocol": PROTOCOL,
@@ -33,6 +36,8 @@ def setup(args):
             "lookahead": ("Lookahead", {"evaluations": 512, "goal": None,
                                         "noise": doubt if args.p < 1 else None,
                                         "sight": {"far": None, "least": 0, "readings": args.readings}}),
+            "track": ("Track", {"front": {"radius_mm": args.radius * 1000, "speed_um": 0},
+                                "noise": noise, "ends": False}),
         }[args.algorithm],
         "config": {
             "area": {"min": site(0, 0), "max": site(20, 20)},
@@ -42,7 +47,7 @@ def setup(args):
             "tolerance": 0,
         },
         "keep_outs": None,
-        "vehicle": ("Unicycle", {"turn_step_urad": 1 if looks_ahead else 10_000,
+        "vehicle": ("Unicycle", {"turn_step_urad": 1 if is_fine else 10_000,
                                  "sharpest": 1 << 30, "speeds": 21, "speed_step_mm": 100}),
         "capacity": {"samples": 4 + taken,
                      "hypotheses": 1 + taken + taken * (taken - 1) // 2 if args.p < 1 else 1},
@@ -62,7 +67,7 @@ class Vehicle:
         self.setup, self.args = setup(args), args
         self.made, self.asked, self.begun, self.labels, self.told = [], 0, 0, 0, 0
         self.site = self.setup["start"]["site"]
-        self.end, self.is_dismissed = None, False
+        self.end, self.is_dismissed, self.fronts = None, False, {}
 
     def read(self, site):
         slope, intercept = self.args.line
@@ -79,6 +84,9 @@ class Vehicle:
             return "Noted", None
         if request == "Declined":
             sys.exit(f"the chip declines: {said}")
+        if request == "Front" and self.asked and not self.told:
+            self.fronts[self.asked - 1] = said
+            return "Noted", None
         if request in ("Move", "End") and self.asked:
             if said["last"] != self.made[self.asked - 1][3]:
                 sys.exit(f"step {self.asked}: the chip took in {said['last']}, which was not read")
@@ -199,12 +207,22 @@ def tell(end):
             print(f"{name}: z = {slope:.4f} x + {z - slope * x:.4f}, exactly", *exact)
 
 
+def tell_map(fronts):
+    """The map of a front: where it was known best after each step."""
+    for step, front in fronts.items():
+        if waist := front["waist"]:
+            x, z = waist["site"]["x"] / METRE, waist["site"]["z"] / METRE
+            exact = [*waist["site"].values(), *list(waist.values())[1:]]
+            print(f"vertex {step + 1}: x {x:.4f}, z {z:.4f}, deviation {waist['deviation']:.3f}, exactly", *exact)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("address", help="HOST:PORT, or a serial device")
-    parser.add_argument("--algorithm", choices=["cfc", "scc", "lookahead"], default="lookahead")
+    parser.add_argument("--algorithm", choices=["cfc", "scc", "lookahead", "track"], default="lookahead")
     parser.add_argument("--steps", type=int, default=10)
     parser.add_argument("--readings", type=int, default=1, help="labels a motion, the last at its end")
+    parser.add_argument("--radius", type=int, default=40, help="of track: the tightest bend, metres")
     parser.add_argument("--p", type=float, default=1.0, help="how often labels are said to be right")
     parser.add_argument("--line", type=float, nargs=2, default=[0.41, 3.5], metavar=("SLOPE", "INTERCEPT"))
     parser.add_argument("--wrong", type=int, nargs="*", default=[], help="which labels are read wrong")
@@ -220,6 +238,7 @@ def main():
     except (OSError, ValueError) as error:
         sys.exit(f"{args.address}: {error}")
     tell(vehicle.end)
+    tell_map(vehicle.fronts)
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ import struct
 import sys
 import zlib
 
-PROTOCOL = 8
+PROTOCOL = 9
 METRE = 1 << 16
 
 
@@ -136,7 +136,8 @@ SAMPLE = {"site": SITE, "label": LABEL}
 CAPACITY = {"samples": "u16", "hypotheses": "u16"}
 TOOK = {"observe": "u32", "plan": "u32", "estimate": "u32"}
 MOTION = {
-    "stage": Optional(Choice(P1=None, P2=None, P3=None, P4=None, Audit=None)),
+    "stage": Optional(Choice(P1=None, P2=None, P3=None, P4=None, Audit=None, Seek=None, Follow=None,
+                             Pass=None, Return=None)),
     "recovery": Optional(Choice(Undirected=None, Reorient=None, Transit=None)),
     "action": "u32",
     "control": {"v": "f32", "w": "f32"},
@@ -146,6 +147,8 @@ MOTION = {
     "proven": "bool",
 }
 LINE = {"about": SITE, "along": SITE, "slope": "f32", "intercept": "f32"}
+WAIST = {"site": SITE, "heading": "u32", "curvature": "f32", "deviation": "f32",
+         "turn_deviation": "f32"}
 NO_SPACE = Choice(
     Collinear=None, OneLabel=None, NotSeparable="u32", TooMany=None, TooVague=None, Tolerance=None,
 )
@@ -153,7 +156,7 @@ BAD_GRID = Choice(Actions=None, Reach=None, Turn=None, Circle=None)
 NO_VEHICLE = Choice(Kind=None, Grid=BAD_GRID, Room={"across_mm": "u32"})
 STOP = Choice(
     Resolution=None, SamplesFull=None, OutsideArea=None, Cornered=None, Known=None, Undecided=None,
-    Tolerance=None, NoLine=None, Worth=None,
+    Tolerance=None, NoLine=None, Worth=None, Closed=None,
 )
 REFUSED = Choice(Contradiction=SAMPLE, Full=SAMPLE, Tolerance="u32", Reliability=None)
 REQUEST = Choice(
@@ -173,8 +176,10 @@ REQUEST = Choice(
         "estimates": {name: Optional(LINE) for name in ("bisector", "centre", "maximum_margin")},
     },
     Onward={"last": Optional(READING)},
+    Front={"waist": Optional(WAIST), "is_closed": "bool"},
 )
 NOISE = {"reliability": "i64", "trusted_radius": "u32", "tolerance": "u32"}
+FRONT = {"radius_mm": "u32", "speed_um": "u32"}
 POLICY = Choice(Joint=None, MixtureOfStart=None, MixtureOfOwn=None)
 PRIOR = Choice(Area=None, Sequences=None)
 FAR = {"price_mm": "u32", "seeks": Choice(Accuracy=None, Bits=None)}
@@ -190,6 +195,7 @@ SETUP = {
         Scc={"noise": NOISE, "policy": POLICY, "prior": PRIOR},
         Lookahead={"evaluations": "u32", "goal": Optional(GOAL),
                    "noise": Optional({"noise": NOISE, "prior": PRIOR}), "sight": SIGHT},
+        Track={"front": FRONT, "noise": NOISE, "ends": "bool"},
     ),
     "config": {
         "area": {"min": SITE, "max": SITE},

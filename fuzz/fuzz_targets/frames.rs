@@ -11,7 +11,7 @@ use planner_core::link::delivery::{Heard, Responder};
 use planner_core::link::frame::{Decoder, Envelope, FRAME, Frame, Message};
 use planner_core::link::message::{Algorithm, MissionArea, Reply, Request, Setup};
 use planner_core::motion::contract;
-use planner_core::{Accuracy, AnySight, AnyVehicle, Label, Plan, Planner, Pose, Reading, sequences_of};
+use planner_core::{Accuracy, AnySight, AnyVehicle, Label, Plan, Planner, Pose, Prior, Reading, sequences_of};
 
 /// Steps that a mission is flown for.
 const STEPS: usize = 6;
@@ -109,6 +109,12 @@ fuzz_target!(|bytes: &[u8]| {
                         sight,
                     );
                     if let Ok(mut prepared) = setup.prepare(&mut planner, prior, noise) {
+                        fly(prepared.planner_mut(), &setup);
+                    }
+                }
+                Algorithm::Track { front, noise, ends } => {
+                    let mut planner = setup.track::<_, _, 16, 16, 3>(terms, front, ends);
+                    if let Ok(mut prepared) = setup.prepare(&mut planner, Prior::Area, noise) {
                         fly(prepared.planner_mut(), &setup);
                     }
                 }

@@ -71,6 +71,7 @@
 //! | a boundary that bends or moves, to go along it | [`Track`] with a [`Tracker`] |
 //! | a boundary that bends or moves a little | a tolerance from a [`Deviation`] |
 //! | to begin with a slope or an intercept instead of points | [`bounds`] |
+//! | to begin with nothing, or with points of one label | [`Seek`], and then one of these |
 //! | to stop when the line is known well enough | [`Goal`] |
 //! | a large area, few labels | [`Far`] sight: [`Lookahead::seeing`] |
 //! | no label that hardly tells | [`AnySight::with_least_bits`]: [`Lookahead::seeing`] |
@@ -198,9 +199,12 @@ pub use crate::motion::holonomic::Holonomic;
 pub use crate::motion::unicycle::Unicycle;
 pub use crate::planner::cfc::Cfc;
 pub use crate::planner::far::{Far, Seeks};
+pub use crate::planner::front_state::FrontState;
 pub use crate::planner::lookahead::{DrivingPrice, Lookahead};
 pub use crate::planner::options::{Crossing, Following, Options};
 pub use crate::planner::scc::{Policy, Scc};
+pub use crate::planner::scout::OneLabel;
+pub use crate::planner::seek::Seek;
 pub use crate::planner::setup::{Restart, aimed_for};
 pub use crate::planner::sight::{AnySight, Near, Sight};
 pub use crate::planner::snapshot::{Persist, SNAPSHOT_VERSION, Snapshot};

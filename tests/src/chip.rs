@@ -7,7 +7,7 @@ use std::panic::{self, AssertUnwindSafe};
 use planner_core::AnySight;
 use planner_core::link::delivery::{Link, LinkError, Port};
 use planner_core::link::message::{self, ClockRate, MissionArea};
-use planner_core::link::station::{AllLabels, Flown, Station, Watch};
+use planner_core::link::station::{AllLabels, Flown, Station, Tracks, Watch};
 use planner_core::motion::any_vehicle::AnyVehicle;
 use planner_core::robot::LabelSensor;
 
@@ -91,5 +91,6 @@ impl Watch for Hears {
 /// # Errors
 /// As [`Station::fly`].
 pub fn fly(chip: &mut Chip<'_>, setup: &message::Setup) -> Result<Flown, LinkError> {
-    chip.fly_with::<AllLabels<68, 36, 529, AnySight>, AnyVehicle, MissionArea>(setup, &mut Hears)
+    type Planners = Tracks<16, 16, 3, AllLabels<68, 36, 529, AnySight>>;
+    chip.fly_with::<Planners, AnyVehicle, MissionArea>(setup, &mut Hears)
 }

@@ -4,6 +4,7 @@
 //! - Programs for a chip ([`program`]), a core to run them on ([`emulator`]), and their limits ([`budget`]).
 //! - Missions as a chip may be asked to fly them ([`missions`]), and such in which everything is drawn at random
 //!   ([`anything`]).
+//! - Missions that follow a front ([`fronts`]).
 //! - A chip in the test's own thread ([`chip`]), and a wire that spoils frames ([`wire`]).
 //! - A rover in a garden, as a porter would simulate it ([`garden`]).
 //! - QEMU's machines ([`machines`]) and a debugger for them ([`debugger`]).
@@ -22,6 +23,7 @@ pub mod budget;
 pub mod chip;
 pub mod debugger;
 pub mod emulator;
+pub mod fronts;
 pub mod garden;
 pub mod known;
 pub mod machines;

@@ -16,6 +16,7 @@ use crate::campaign::shard::Shard;
 use crate::cli::campaign_flags::CampaignFlags;
 use crate::cli::campaign_record::CampaignRecord;
 use crate::cli::format::Format;
+use crate::cli::fronts::FrontsFlags;
 use crate::cli::help;
 use crate::cli::merge::{MergeArgs, merge};
 use crate::cli::passage::{Destination, Passage, ToFly};
@@ -31,6 +32,8 @@ pub(crate) struct CampaignArgs {
     pub(crate) command: Option<CampaignCommand>,
     #[command(flatten)]
     pub(crate) flags: CampaignFlags,
+    #[command(flatten)]
+    pub(crate) fronts: FrontsFlags,
     /// Write a row for each field and stage here, as they are finished
     #[arg(long, value_name = "FILE")]
     pub(crate) csv: Option<PathBuf>,
@@ -59,10 +62,22 @@ pub(crate) enum CampaignCommand {
 
 /// Flies them, and what to print.
 pub(crate) fn campaign(args: CampaignArgs) -> Result<String> {
-    let CampaignArgs { command, flags, csv, resume, shard: part, fields_csv, figure, format } =
-        args;
+    let CampaignArgs {
+        command,
+        flags,
+        fronts,
+        csv,
+        resume,
+        shard: part,
+        fields_csv,
+        figure,
+        format,
+    } = args;
     if let Some(CampaignCommand::Merge(args)) = command {
         return merge(&args);
+    }
+    if fronts.fronts {
+        return fronts.tell(&flags, format);
     }
     let mut campaigns = flags.campaigns()?;
     let shard = part.unwrap_or(Shard::WHOLE);

@@ -3,7 +3,8 @@
 use std::slice;
 
 use anyhow::{Error, Result, bail};
-use clap::Args;
+use clap::builder::ArgPredicate;
+use clap::{Args, ValueEnum};
 use planner_core::motion::unicycle::Grid;
 use planner_core::{AnyReliability, AnyVehicle, Area, Reliability, UnknownReliability};
 use serde::{Deserialize, Serialize};
@@ -11,6 +12,7 @@ use serde::{Deserialize, Serialize};
 use crate::campaign::ensemble::Campaign;
 use crate::campaign::rows::Planners;
 use crate::campaign::standard_field::SIDE_M;
+use crate::cli::campaign_planner::{CampaignPlanner, of_lines};
 use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::Allowance;
 use crate::mission::asking::{Asked, Asking, Price};
@@ -29,8 +31,13 @@ const ORACLE: usize = 4;
 #[derive(Debug, Args, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) struct CampaignFlags {
-    /// Number of standard fields
-    #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..))]
+    /// Number of standard fields; with --fronts missions for each kind of front, 300 by default and at most 10000
+    #[arg(
+        long,
+        default_value_t = 1000,
+        default_value_if("fronts", ArgPredicate::IsPresent, "300"),
+        value_parser = clap::value_parser!(u64).range(1..)
+    )]
     pub(crate) fields: u64,
     /// Steps in each, 1 to 64; where labels are true, or with --labels or --price, 1 to 10000
     #[arg(long, default_value_t = 20)]
@@ -44,10 +51,15 @@ pub(crate) struct CampaignFlags {
     every: bool,
     /// Seed of the ensemble
     #[arg(long, default_value_t = 1)]
-    seed: u64,
-    /// Who plans
-    #[arg(long, value_enum, default_value_t = Algorithm::Cfc)]
-    algorithm: Algorithm,
+    pub(crate) seed: u64,
+    /// Who plans [with --fronts: track]
+    #[arg(
+        long,
+        value_enum,
+        default_value_t = CampaignPlanner::Line(Algorithm::Cfc),
+        default_value_if("fronts", ArgPredicate::IsPresent, "track")
+    )]
+    algorithm: CampaignPlanner,
     /// Who plans, one after the other on the same fields: one table shows them side by side
     #[arg(
         long,
@@ -56,21 +68,22 @@ pub(crate) struct CampaignFlags {
         value_delimiter = ',',
         conflicts_with = "algorithm"
     )]
-    compare: Vec<Algorithm>,
+    compare: Vec<CampaignPlanner>,
     /// How finely the vehicle turns [default: paper; for lookahead fine]
     #[arg(long, value_enum)]
     fan: Option<FanName>,
     #[command(flatten)]
-    vehicle: VehicleTable,
+    pub(crate) vehicle: VehicleTable,
     /// How P1 looks for the opposite label (cfc, scc) [default: anyhow]
     #[arg(long, value_enum)]
     crossing: Option<CrossingName>,
     /// How P2 follows the boundary (cfc, scc) [default: along-bisector; for scc anyhow]
     #[arg(long, value_enum)]
     following: Option<FollowingName>,
-    /// Labels are true with this probability (all but cfc) [default: 0.7 for scc, 1 else]
+    /// Labels are true with this probability (all but cfc) [default: 0.7 for scc, 1 else; with --fronts both 1
+    /// and 0.9]
     #[arg(long)]
-    p: Option<f64>,
+    pub(crate) p: Option<f64>,
     /// Nobody knows that probability: planners are told the prior Beta(A, B), and each field's is drawn from it
     #[arg(long, value_name = "A,B", conflicts_with = "p")]
     p_prior: Option<String>,
@@ -101,6 +114,10 @@ pub(crate) struct CampaignFlags {
     #[arg(long, value_name = "X,Z", value_delimiter = ',')]
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     area: Vec<f64>,
+    /// Planners are given no points: they first seek the line
+    #[arg(long, conflicts_with = "trusted_radius")]
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    from_nothing: bool,
     /// What a label costs, metres driven; labels are then sought all over the area (lookahead) [default: an eighth of the
     /// mean of its sides where that is over 16 motions, else none]
     #[arg(long, value_name = "METRES|none")]
@@ -169,8 +186,9 @@ impl CampaignFlags {
     pub(crate) fn campaigns(&self) -> Result<Campaigns> {
         scenario::check_readings("--readings", self.readings)?;
         let sides = sides(&self.area)?;
-        check_once(&self.compare)?;
-        let planners = self.planners();
+        let (flag, planners) = self.planners();
+        check_once(planners)?;
+        let planners = &of_lines(flag, planners)?[..];
         let p = self.p.unwrap_or(if planners.contains(&Algorithm::Scc) { 0.7 } else { 1.0 });
         let p = scenario::probability("--p", p)?;
         let prior = self.p_prior.as_deref().map(prior).transpose()?;
@@ -228,6 +246,7 @@ impl CampaignFlags {
                 policy: self.policy.unwrap_or_default().into(),
                 prior: self.prior.unwrap_or_default().into(),
                 sides,
+                from_nothing: self.from_nothing,
                 asking,
                 ..Campaign::of(algorithm, self.steps)
             })
@@ -254,9 +273,13 @@ impl CampaignFlags {
         Ok(prior.map(AnyReliability::from).or_else(known))
     }
 
-    /// Who plans.
-    fn planners(&self) -> &[Algorithm] {
-        if self.compare.is_empty() { slice::from_ref(&self.algorithm) } else { &self.compare }
+    /// Who plans, and the flag that says so.
+    pub(crate) fn planners(&self) -> (&'static str, &[CampaignPlanner]) {
+        if self.compare.is_empty() {
+            ("--algorithm", slice::from_ref(&self.algorithm))
+        } else {
+            ("--compare", &self.compare)
+        }
     }
 
     /// The vehicle of this planner.
@@ -271,7 +294,7 @@ impl CampaignFlags {
 
     /// Whether every flag that was given has a meaning for a planner. `p` is how often labels are true.
     fn check_meanings(&self, planner: Algorithm, p: f64) -> Result<()> {
-        let flag = if self.compare.is_empty() { "--algorithm" } else { "--compare" };
+        let (flag, _) = self.planners();
         let name = planner.name();
         if p < 1.0 && !planner.weighs(true) {
             if let Some(prior) = &self.p_prior {
@@ -342,10 +365,11 @@ fn sides(flag: &[f64]) -> Result<[f64; 2]> {
 ///
 /// # Errors
 /// Names the one that is there twice.
-pub(crate) fn check_once(planners: &[Algorithm]) -> Result<()> {
+pub(crate) fn check_once<T: ValueEnum + PartialEq>(planners: &[T]) -> Result<()> {
     for (k, planner) in planners.iter().enumerate() {
         if planners[..k].contains(planner) {
-            bail!("--compare: found {} twice, expected once", planner.name());
+            let name = planner.to_possible_value().map(|it| it.get_name().to_owned());
+            bail!("--compare: found {} twice, expected once", name.unwrap_or_default());
         }
     }
     Ok(())

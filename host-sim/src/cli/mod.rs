@@ -3,6 +3,7 @@
 pub mod arguments;
 mod campaign;
 mod campaign_flags;
+mod campaign_planner;
 mod campaign_record;
 mod completions;
 pub mod done;
@@ -13,6 +14,7 @@ mod fly;
 #[path = "no_fly.rs"]
 mod fly;
 mod format;
+mod fronts;
 mod help;
 mod hil;
 mod init;

@@ -16,7 +16,7 @@ use planner_core::link::message::{
     self, ClockRate, EndReason, LabelSource, MissionArea, PROTOCOL, Reply, Request, Setup, Took,
 };
 use planner_core::planner::Stage;
-use planner_core::{Estimates, Motion, Plan, Pose, Reading, Site, Step};
+use planner_core::{Estimates, FrontState, Motion, Plan, Pose, Reading, Site, Step};
 
 use crate::hil::logbook::{Logbook, Sensed};
 use crate::hil::setup;
@@ -55,6 +55,10 @@ pub struct Player {
     pending: Option<Made>,
     /// What was read on the way of each step.
     passed: Vec<Vec<Passed>>,
+    /// What is known here of the front after each step, if one is followed; and what the chip says of it after the last
+    /// motion.
+    fronts: Vec<Option<FrontState>>,
+    claimed: Option<FrontState>,
     /// How many labels on its way the chip was told of the motion under way; `None` if none is.
     told: Option<usize>,
     /// Ticks of the motions that the chip has asked for since it began.
@@ -118,6 +122,8 @@ impl Player {
             way: mission.way(),
             pending: None,
             passed: Vec::new(),
+            fronts: Vec::new(),
+            claimed: None,
             told: None,
             took: Vec::new(),
             resumes: false,
@@ -247,7 +253,17 @@ impl Player {
                     bail!("the board restarts again and again after step {}", self.steps());
                 }
                 self.took.clear();
-                self.told = None;
+                (self.told, self.claimed) = (None, None);
+                Ok(Reply::Noted)
+            }
+            Request::Front(front) => {
+                if self.motions() == 0 || self.told.is_some() || self.claimed.is_some() {
+                    bail!(
+                        "step {}: the board reports a front, but no motion has ended",
+                        self.motions()
+                    );
+                }
+                self.claimed = Some(front);
                 Ok(Reply::Noted)
             }
             Request::Move(message::Move { motion, last, took }) => {
@@ -393,7 +409,21 @@ impl Player {
         if let Some(told) = told.filter(|told| *told != last) {
             bail!("step {}: sensed {told:?}, the board took in {last:?}", self.motions());
         }
-        if self.steps() < self.motions() { self.take_in(last) } else { Ok(()) }
+        if self.steps() < self.motions() {
+            self.take_in(last)?;
+        }
+        self.compare_front()
+    }
+
+    /// Checks that the chip knows of the front after its last motion what is known here, to the last bit.
+    fn compare_front(&mut self) -> Result<()> {
+        let step = self.motions();
+        let here = step.checked_sub(1).and_then(|at| *self.fronts.get(at)?);
+        let chip = self.claimed.take();
+        if chip != here {
+            bail!("step {step}: the front: found {chip:?} on the board, expected {here:?} as here");
+        }
+        Ok(())
     }
 
     /// Takes in what was read on the way of the last motion, and the reading at its end.
@@ -413,6 +443,7 @@ impl Player {
         self.recorder.pass(&read);
         self.recorder.take(&step, self.robot.true_pose(), self.planner.belief());
         self.passed.push(passed);
+        self.fronts.push(self.planner.front());
         match (&mut self.logbook, self.recorder.last()) {
             (Some(logbook), Some(step)) => logbook.take(step),
             _ => Ok(()),

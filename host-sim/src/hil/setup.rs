@@ -38,6 +38,13 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
     if mission.goal.is_some() && !mission.audits {
         bail!("stop.audit: found false, expected true: a board always audits");
     }
+    if mission.begins_from_nothing() {
+        return wrong(
+            "oracle",
+            "no points of both labels",
+            "some with hil: a board does not seek them",
+        );
+    }
     check_sensor(mission, labels)?;
     let Some(noise) = mission.noise_known() else {
         let expected = "a number with hil: a board is told how often labels are true";
@@ -54,14 +61,17 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
             noise: mission.noise.map(|_| (noise, mission.prior)),
             sight: mission.sight(),
         },
-        other => bail!("algorithm: found {}, expected cfc, scc or lookahead", other.name()),
+        Algorithm::Track => {
+            message::Algorithm::Track { front: mission.front, noise, ends: mission.until_closed }
+        }
+        other => bail!("algorithm: found {}, expected cfc, scc, lookahead or track", other.name()),
     };
     let samples = mission.given.samples();
     let given = BoundedVec::from_slice(samples).map_err(|_| {
         let most = message::MOST_GIVEN;
         anyhow!("oracle: found {} points, expected at most {most} on a board", samples.len())
     })?;
-    // True labels leave one hypothesis. `t` labels that may be wrong leave at most `1 + t + t (t - 1) / 2`.
+    // A tracker stores no samples. True labels leave one hypothesis. `t` labels that may be wrong leave at most `1 + t + t (t - 1) / 2`.
     // Labels of an audit take no room, and true labels no more than the planner here has. A reading on the way may take
     // as much as the label at the end.
     let room = (CAPACITY - samples.len()) as u32;
@@ -69,7 +79,8 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
     let most = if is_apart { room } else { u32::MAX };
     let at_ends = mission.asking.labels.unwrap_or(most).min(most).min(mission.steps);
     let on_the_way = mission.steps * (mission.readings - 1);
-    let taken = (at_ends + on_the_way).min(at_ends.max(room));
+    let is_stored = mission.algorithm.seeks_line();
+    let taken = if is_stored { (at_ends + on_the_way).min(at_ends.max(room)) } else { 0 };
     let hypotheses = match mission.algorithm {
         _ if mission.is_noisy() => 1 + taken + taken * taken.saturating_sub(1) / 2,
         _ => 1,
@@ -104,6 +115,17 @@ pub fn outlines(area: &MissionArea) -> impl Iterator<Item = Outline> {
     [border].into_iter().chain(area.hulls().map(Outline::from))
 }
 
+/// What flags and files call an algorithm.
+fn name(algorithm: &message::Algorithm) -> String {
+    let algorithm = match algorithm {
+        message::Algorithm::Cfc => Algorithm::Cfc,
+        message::Algorithm::Scc { .. } => Algorithm::Scc,
+        message::Algorithm::Lookahead { .. } => Algorithm::Lookahead,
+        message::Algorithm::Track { .. } => Algorithm::Track,
+    };
+    algorithm.name()
+}
+
 /// The error for a setup that a chip declined, with so many readings a motion. It names the key of the scenario that asks
 /// too much.
 pub(crate) fn declined(declined: DeclinedError, setup: &Setup, readings: u32) -> anyhow::Error {
@@ -131,7 +153,10 @@ pub(crate) fn declined(declined: DeclinedError, setup: &Setup, readings: u32) ->
                 setup.given.len(),
             )
         }
-        DeclinedError::Algorithm => anyhow!("algorithm: declined by the board, which has another"),
+        DeclinedError::Algorithm => anyhow!(
+            "algorithm: found {}, declined by the board, whose program does not have it",
+            name(&setup.algorithm)
+        ),
         DeclinedError::Given(error) => anyhow!("oracle: declined by the board: {error}"),
         DeclinedError::Vehicle(why) => anyhow!("vehicle: declined by the board: expected {why}"),
         DeclinedError::Area => anyhow!("area: declined by the board: {declined}"),

@@ -1,5 +1,7 @@
 //! What following a front came to, in words.
 
+use std::fmt::Write as _;
+
 use crate::mission::front::FrontTable;
 use crate::mission::map::{LostRecord, MapRecord, OffRecord, State};
 use crate::mission::results::StepResult;
@@ -49,18 +51,22 @@ pub(crate) fn map(record: &MapRecord, unit: &str) -> String {
         ),
         _ => format!("The front was found at {unit} {found}, and is known in the end.\n"),
     };
-    text += &format!(
-        "The map has {vertices} places along {metres:.1} m of front; {driven:.1} m were driven for it.\n"
+    // Writing to a string cannot fail.
+    let _ = writeln!(
+        text,
+        "The map has {vertices} places along {metres:.1} m of front; {driven:.1} m were driven for it."
     );
     if let Some([median, most]) = half_width {
-        text += &format!(
-            "With probability 0.9 the front lies within {median:.2} m of such a place (median; {most:.2} m at most).\n"
+        let _ = writeln!(
+            text,
+            "With probability 0.9 the front lies within {median:.2} m of such a place (median; {most:.2} m at most)."
         );
     }
     if let Some(OffRecord { median, most, covered }) = off {
         let percent = 100.0 * covered;
-        text += &format!(
-            "In truth it lies {median:.2} m off (median), 95 % within {most:.2} m; the stated widths hold for {percent:.0} %.\n"
+        let _ = writeln!(
+            text,
+            "In truth it lies {median:.2} m off (median), 95 % within {most:.2} m; the stated widths hold for {percent:.0} %."
         );
     }
     text

@@ -10,6 +10,7 @@ pub mod examples;
 pub mod figure;
 pub mod flat;
 pub(crate) mod front;
+pub mod fronts;
 pub mod ground;
 pub mod log;
 mod look;

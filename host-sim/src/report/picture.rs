@@ -104,9 +104,10 @@ impl Truth {
             Outline { name, is_past, ways }
         };
         let outlines = if world.moves() {
-            let names = match world.is_line() {
-                true => ["true line at the start", "true line at the end"],
-                false => ["true boundary at the start", "true boundary at the end"],
+            let names = if world.is_line() {
+                ["true line at the start", "true line at the end"]
+            } else {
+                ["true boundary at the start", "true boundary at the end"]
             };
             vec![at(0, names[0], true), at(motions, names[1], false)]
         } else {
@@ -204,10 +205,7 @@ impl Picture {
             lines.extend(bounding(table));
         }
         let diagnosis = results.end.diagnosis.as_deref();
-        let fewest = diagnosis.and_then(|it| {
-            let [a, b, c] = it.line.coefficients;
-            Line::from_coefficients(a, b, c)
-        });
+        let fewest = diagnosis.and_then(|it| as_line(it.line.coefficients));
         lines.extend(fewest.map(|line| Named {
             name: "line that the fewest labels disagree with".to_owned(),
             line,
@@ -235,11 +233,7 @@ impl Picture {
         let (given, first) = (mission.oracle().len(), mission.given.samples().len());
         let heard: Vec<_>; // a belief in a front keeps no samples
         let (oracle, read) = if belief.front().is_some() {
-            let heard_of = |(_, (site, reading)): &(usize, (Site, Reading))| match *reading {
-                Reading::Side(label) => Some(Sample { site: *site, label }),
-                Reading::Boundary => None,
-            };
-            heard = taken.iter().filter_map(heard_of).collect();
+            heard = taken.iter().filter_map(|(_, label)| sample(*label)).collect();
             (&mission.given.samples()[..given], &heard[..])
         } else {
             (&belief.samples()[..given], &belief.samples()[first..])
@@ -352,6 +346,15 @@ impl Picture {
         let all = Self::of(title, recording);
         Some(Self { note: Some(note), ground: Ground::Plain, path: None, lines, ..all })
     }
+}
+
+fn as_line([a, b, c]: [f64; 3]) -> Option<Line> {
+    Line::from_coefficients(a, b, c)
+}
+
+/// A reading as a sample, if it is of one side.
+fn sample((site, reading): (Site, Reading)) -> Option<Sample> {
+    if let Reading::Side(label) = reading { Some(Sample { site, label }) } else { None }
 }
 
 /// The caption of a mission's figure, in one line.

@@ -8,6 +8,7 @@ use planner_core::belief::evidence::Alarm;
 use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::ToleranceRecord;
 use crate::mission::diagnosis::DiagnosisRecord;
+use crate::mission::from_nothing::SeekRecord;
 use crate::mission::results::{
     AUDIT, AlarmRecord, End, EstimateRecords, FitRecord, LineRecord, PTold, ReliabilityRecord,
     Results, Start, StepResult,
@@ -130,6 +131,9 @@ fn end(results: &Results, estimates: &[(&str, Option<LineRecord>); 3]) -> String
         text += &readings;
         text.push('\n');
     }
+    if let Some(seek) = &results.end.seek {
+        text += &sought(seek);
+    }
     if let Some(map) = &results.end.front {
         text += &front::map(map, "step");
     }
@@ -175,6 +179,21 @@ pub(crate) fn diagnosed(record: &DiagnosisRecord) -> Vec<(&'static str, String)>
     diagnosis::told(record, &line(&record.line))
 }
 
+/// What seeking the boundary from nothing came to, in words.
+pub(crate) fn sought(record: &SeekRecord) -> String {
+    let &SeekRecord { found, labels, metres, label, other } = record;
+    let took = format!("{labels} labels and {metres:.1} m");
+    match (found, label, other) {
+        (Some(step), _, _) => format!("The boundary was found at step {step}, with {took}.\n"),
+        (None, Some(label), Some(other)) => format!(
+            "All of the area most likely has the label {label}: it took {took}.\n\
+             A boundary may still cut off a piece at the border: {:.2} % of the area is expected to have the other label.\n",
+            100.0 * other
+        ),
+        _ => format!("The boundary was not found with {took}.\n"),
+    }
+}
+
 /// Why a mission ended, in words.
 pub(crate) fn why(reason: &str) -> &str {
     match reason {
@@ -183,6 +202,7 @@ pub(crate) fn why(reason: &str) -> &str {
         "known" => "what was asked for is known",
         "resolution" => "what is uncertain is thinner than the action grid can hit",
         "no line" => "no straight, still line explains the labels",
+        "one label" => "no label in reach is expected to tell much",
         "closed" => "the robot has gone all round the front",
         "worth" => "no label in sight was expected to carry the bits asked for",
         "tolerance" => {

@@ -101,7 +101,7 @@ fn bad_bounds_are_refused() {
         (POINTS, "bounds = { slop = [5.0, 8.0] }", &["m.toml:7:", "slop"]),
         (POINTS, "bounds = [5.0, 8.0]", &["m.toml:7:", "a table"]),
         (POINTS, &format!("{BOTH}\n{noise}"), &["m.toml: bounds:", "trusted_radius = 0"]),
-        ("", "", &["m.toml: oracle:"]),
+        ("", noise, &["m.toml: oracle:", "trusted_radius = 0"]),
     ] {
         fs::write(folder.path().join("m.toml"), field(oracle, settings)).expect("a file");
         refuses(folder.path(), &["run", "m.toml"], parts);

@@ -17,6 +17,7 @@ mod faults;
 mod figures;
 mod flags;
 mod flying;
+mod fronts;
 mod hostile;
 mod imports;
 mod interruption;

@@ -231,21 +231,41 @@ fn bad_oracles_are_refused() {
             points.iter().map(|(x, z, label)| format!("{{ x = {x}, z = {z}, label = {label} }}"));
         format!("{before}oracle = [{}]\n", each.collect::<Vec<_>>().join(", "))
     };
-    let cases: [(Points, &[&str]); 4] = [
-        (
-            &[(2.0, 8.0, 1), (3.0, 9.0, 1), (4.0, 8.0, 1)],
-            &["oracle", "only the label 1", "both labels"],
-        ),
+    let cases: [(Points, &[&str]); 2] = [
         (
             &[(2.0, 2.0, -1), (2.0, 3.0, -1), (2.0, 8.0, 1)],
             &["oracle", "one line", "not collinear"],
         ),
-        (&[], &["oracle", "not collinear"]),
         (&[(2.0, 1.0, -1), (2.0, 8.0, 1)], &["oracle", "not collinear"]),
     ];
     for (oracle, parts) in cases {
         fs::write(folder.path().join("bad.toml"), points(oracle)).expect("a file");
         refuses(folder.path(), &["run", "bad.toml"], &[&["bad.toml"], parts].concat());
+    }
+}
+
+/// Without points, or with points of one label, the robot first seeks the line.
+#[test]
+fn a_mission_may_begin_from_nothing() {
+    let folder = folder();
+    let scenario =
+        include_str!("../../scenarios/from-nothing.toml").replace("steps = 60", "steps = 200");
+    let begins = |oracle: &str, intercept: &str| {
+        let text = scenario.replace("oracle = []", &format!("oracle = [{oracle}]"));
+        let text = text.replace("intercept = 9.5", &format!("intercept = {intercept}"));
+        fs::write(folder.path().join("m.toml"), text).expect("a file");
+    };
+    let one = "{ x = 2.0, z = 1.0, label = -1 }, { x = 9.0, z = 1.0, label = -1 }";
+    for oracle in ["", one] {
+        begins(oracle, "9.5");
+        let text = prints(folder.path(), &["run", "m.toml", "--algorithm", "lookahead"]);
+        assert!(text.contains("The boundary was found at step"), "{text}");
+        begins(oracle, "90.0");
+        let text = prints(folder.path(), &["run", "m.toml", "--format", "json"]);
+        let end: Value =
+            serde_json::from_str(text.lines().last().expect("an end")).expect("a record");
+        assert_eq!((&end["reason"], &end["seek"]["label"]), (&"one label".into(), &(-1).into()));
+        assert!(end["seek"]["other"].as_f64().is_some_and(|it| it < 0.01), "{end}");
     }
 }
 

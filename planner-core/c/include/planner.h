@@ -4,7 +4,8 @@
  * it would refuse. Ask `planner_plan` for a motion, make it, and tell `planner_observe` where it ended and what was read.
  * An observation can bring a tolerance or a reliability of its own. `planner_estimate`, `planner_chance` and
  * `planner_bits` read out what is known. `planner_save` and `planner_restore` carry a planner over a sleep: it makes the
- * same plans as if it had stayed awake. Nothing is allocated, and all capacities are fixed. A call that is refused says
+ * same plans as if it had stayed awake. `planner_follow` makes a planner of another kind: it goes along a front that bends
+ * and moves. Nothing is allocated, and all capacities are fixed. A call that is refused says
  * why and changes nothing. Names and meanings stay as they are; more may be added.
  */
 
@@ -166,6 +167,11 @@ typedef int32_t planner_reading;
  A planner, in memory of the caller.
  */
 typedef struct planner_t planner_t;
+
+/*
+ A planner that goes along a front, in memory of the caller.
+ */
+typedef struct planner_follower_t planner_follower_t;
 
 /*
  A place.
@@ -390,6 +396,46 @@ typedef struct {
   uint8_t bytes[PLANNER_SNAPSHOT_BYTES];
 } planner_snapshot;
 
+/*
+ How tightly a front bends, and how fast it moves.
+ */
+typedef struct {
+  /*
+   The radius of the tightest bend, metres, from 0.1; 0 for a straight line. If in doubt, name a smaller one.
+   */
+  double radius;
+  /*
+   How far the front may move in the time of a motion, metres. If in doubt, name a higher speed.
+   */
+  double speed;
+} planner_front_settings;
+
+/*
+ Where a front is known best.
+ */
+typedef struct {
+  /*
+   On the mean front. The heading is the front's direction; the side of +1 is to the left.
+   */
+  planner_pose pose;
+  /*
+   1/m, positive where the front bends to the left.
+   */
+  double curvature;
+  /*
+   The standard deviation of the front across its direction, metres.
+   */
+  double deviation;
+  /*
+   The standard deviation of the direction, radians.
+   */
+  double turn_deviation;
+  /*
+   Whether the robot has gone along all of a closed front.
+   */
+  bool is_closed;
+} planner_front_place;
+
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
@@ -525,6 +571,79 @@ planner_status planner_save(planner_t *finder, planner_snapshot *snapshot);
  */
 planner_status planner_restore(planner_t *finder,
                                const planner_snapshot *snapshot);
+
+/*
+ How much memory a planner of fronts takes, bytes.
+ */
+size_t planner_follower_bytes(void);
+
+/*
+ Makes a planner of fronts in so many bytes of memory that is aligned to 8, from 0 to 16 given samples, and writes where
+ it is. It is that memory's beginning: there is nothing to free. Of the mission `slopes` and `level` must be 0. A call
+ that is refused writes nothing.
+
+ # Safety
+ `memory` must be null or writable for so many bytes, `given` readable for so many samples or null if there are none,
+ the mission's area null or readable, and none of them in that memory.
+ */
+planner_status planner_follow(planner_follower_t **made,
+                              void *memory,
+                              size_t bytes,
+                              const planner_mission *mission,
+                              planner_front_settings front,
+                              const planner_sample *given,
+                              size_t count);
+
+/*
+ Plans the next motion from where the robot is. `Ok`, or why there is none.
+
+ # Safety
+ `follower` must be null or from `planner_follow`.
+ */
+planner_status planner_follower_plan(planner_follower_t *follower,
+                                     planner_pose pose,
+                                     planner_motion *motion);
+
+/*
+ Takes in where a motion ended, and what was read there: one of `planner_reading`.
+
+ # Safety
+ `follower` must be null or from `planner_follow`.
+ */
+planner_status planner_follower_observe(planner_follower_t *follower,
+                                        planner_pose pose,
+                                        int32_t reading);
+
+/*
+ Where the front is known best. `PLANNER_STATUS_UNDECIDED` as long as it is not found, and where it is lost.
+
+ # Safety
+ `follower` must be null or from `planner_follow`.
+ */
+planner_status planner_front(planner_follower_t *follower,
+                             planner_front_place *front);
+
+/*
+ Writes what a planner of fronts has to remember over a sleep. Returns how many bytes that takes; 0 if there is not so
+ much room. `planner_follower_bytes` are always enough.
+
+ # Safety
+ `follower` must be null or from `planner_follow`, and `bytes` null or writable for so many bytes.
+ */
+size_t planner_follower_save(planner_follower_t *follower,
+                             uint8_t *bytes,
+                             size_t room);
+
+/*
+ Lets a planner of fronts go on from where another was, that was begun with the same mission. A planner that refuses
+ the bytes stays as it was.
+
+ # Safety
+ `follower` must be null or from `planner_follow`, and `bytes` null or readable for so many bytes.
+ */
+planner_status planner_follower_restore(planner_follower_t *follower,
+                                        const uint8_t *bytes,
+                                        size_t count);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -7,6 +7,7 @@ use core::ops::{Index, IndexMut};
 
 use crc::{CRC_32_ISO_HDLC, Crc};
 use heapless::Vec;
+use postcard::Deserializer;
 use postcard::ser_flavors::crc::CrcModifier;
 use postcard::ser_flavors::{Cobs, Flavor};
 use serde::de::DeserializeOwned;
@@ -181,6 +182,35 @@ fn checked(content: &[u8]) -> Option<&[u8]> {
 }
 
 fn open<M: Message>(content: &[u8]) -> Option<Envelope<M>> {
-    let (envelope, rest) = postcard::take_from_bytes(content).ok()?;
-    rest.is_empty().then_some(envelope)
+    let mut reader = Deserializer::from_flavor(Unread(content));
+    let envelope = Envelope::deserialize(&mut reader).ok()?;
+    reader.finalize().ok()?.is_empty().then_some(envelope)
+}
+
+/// A reader of bytes that is compiled once. Otherwise every field of every message would have a copy of it.
+struct Unread<'a>(&'a [u8]);
+
+impl<'a> postcard::de_flavors::Flavor<'a> for Unread<'a> {
+    type Remainder = &'a [u8];
+    type Source = &'a [u8];
+
+    #[inline(never)]
+    fn pop(&mut self) -> postcard::Result<u8> {
+        let (first, rest) =
+            self.0.split_first().ok_or(postcard::Error::DeserializeUnexpectedEnd)?;
+        self.0 = rest;
+        Ok(*first)
+    }
+
+    #[inline(never)]
+    fn try_take_n(&mut self, count: usize) -> postcard::Result<&'a [u8]> {
+        let (taken, rest) =
+            self.0.split_at_checked(count).ok_or(postcard::Error::DeserializeUnexpectedEnd)?;
+        self.0 = rest;
+        Ok(taken)
+    }
+
+    fn finalize(self) -> postcard::Result<&'a [u8]> {
+        Ok(self.0)
+    }
 }

@@ -14,6 +14,8 @@
 //!  | <----------- OnTheWay { site, reading } --  |  at each label on the way
 //!  | -- Onward { last } ---------------------->  |
 //!  | <------------- Arrived { pose, reading } --  |  as often as the mission takes
+//!  | -- Front(FrontState) ------------------->  |  after each motion, of a planner that follows fronts
+//!  | <-------------------------------- Noted --  |
 //!  | -- End { reason, estimates } ------------>  |
 //!  | <-------------------------------- Noted --  |
 //! ```
@@ -38,13 +40,14 @@ use crate::geometry::polygon_area::{KeepOut, PolygonArea};
 use crate::link::frame::Message;
 use crate::motion::any_vehicle::ShapeError;
 use crate::motion::dynamics::Pose;
+use crate::planner::front_state::FrontState;
 use crate::planner::{Motion, StopReason};
 
 pub use crate::link::setup::{Algorithm, Capacity, LabelSource, MOST_GIVEN, Settings, Setup};
 
 /// The version of this protocol. The layout of [`Request::Hello`] and of its frame is that of every
 /// version from 2 on.
-pub const PROTOCOL: u16 = 8;
+pub const PROTOCOL: u16 = 9;
 
 /// Corners that an area can have, and each keep-out in it.
 pub const MOST_CORNERS: usize = 8;
@@ -104,6 +107,8 @@ pub enum Request {
         /// What was read there, as far as the chip knows. `None` if nothing was.
         last: Option<Reading>,
     },
+    /// To take note of what is known of the front after a motion. Only a planner that follows fronts asks this.
+    Front(FrontState),
 }
 
 /// What the vehicle answers.
@@ -280,6 +285,7 @@ impl Message for Reply {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::belief::front::{Front, Waist};
     use crate::belief::noise::{Noise, Reliability};
     use crate::belief::sample::{Label, Sample};
     use crate::belief::tolerance::Tolerance;
@@ -391,12 +397,20 @@ mod tests {
         let line = LocalLine::new(far(-1, -1), along, -1.0 / 3.0, f32::MAX);
         assert!(line.is_some());
         let estimates = Estimates { bisector: line, centre: line, maximum_margin: line };
+        let waist = Waist {
+            site: far(-1, -1),
+            heading: Heading(u32::MAX),
+            curvature: -1.0 / 3.0,
+            deviation: f32::MAX,
+            turn_deviation: f32::MIN_POSITIVE,
+        };
         let sample = Sample { site: far(-1, -1), label: Label::Positive };
         let reason = EndReason::Refused(ObservationError::Contradiction(sample));
         for request in [
             Request::Move(Move { motion, last, took }),
             Request::End(MissionEnd { reason, last, took, estimates }),
             Request::Onward { last },
+            Request::Front(FrontState { waist: Some(waist), is_closed: true }),
         ] {
             let frame = Frame::of(&Envelope::new(u32::MAX, u32::MAX, request.clone()));
             let arrived = received::<Request>(&frame).unwrap();
@@ -414,6 +428,10 @@ mod tests {
         assert!(postcard::from_bytes::<Site>(&bytes).is_err());
         postcard::to_slice(&1_000_000_u32, &mut bytes).unwrap();
         assert!(postcard::from_bytes::<EffortWeight>(&bytes).is_err());
+        for front in [[99, 0_u32], [1_000_000_001, 0], [40_000, 1_000_000_001]] {
+            postcard::to_slice(&front, &mut bytes).unwrap();
+            assert!(postcard::from_bytes::<Front>(&bytes).is_err(), "{front:?}");
+        }
         postcard::to_slice(&i64::MAX, &mut bytes).unwrap();
         assert!(postcard::from_bytes::<Reliability>(&bytes).is_err());
         for (along, slope, intercept) in [

@@ -1,8 +1,9 @@
 //! What a vehicle sets up: a mission, and who plans it.
 
 use heapless::Vec;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
+use crate::belief::front::Front;
 use crate::belief::goal::Goal;
 use crate::belief::noise::Noise;
 use crate::belief::sample::Sample;
@@ -87,6 +88,7 @@ pub enum Algorithm {
     /// Algorithm 2, noisy labels.
     Scc {
         /// What is known of the noise.
+        #[serde(deserialize_with = "once")]
         noise: Noise,
         /// How hypotheses choose an action together.
         policy: Policy,
@@ -100,10 +102,36 @@ pub enum Algorithm {
         /// The goal at which the mission ends, if it has one.
         goal: Option<Goal>,
         /// What is known of the noise, and how hypotheses are weighed, if labels may be wrong.
+        #[serde(deserialize_with = "maybe")]
         noise: Option<(Noise, Prior)>,
         /// How far labels are sought, at which price, and what they must carry.
         sight: AnySight,
     },
+    /// The follower of fronts. It needs no given samples.
+    Track {
+        /// How tightly the front bends, and how fast it moves in the time of a motion.
+        front: Front,
+        /// What is known of the noise. No ball is trusted.
+        #[serde(deserialize_with = "once")]
+        noise: Noise,
+        /// Whether the mission ends once the front is closed.
+        ends: bool,
+    },
+}
+
+/// Reads a value by a function that is compiled once, not with each field that has it.
+#[inline(never)]
+fn once<'de, D: Deserializer<'de>, T: Deserialize<'de>>(reader: D) -> Result<T, D::Error> {
+    T::deserialize(reader)
+}
+
+/// Reads the noise of labels that may be wrong, with the prior.
+fn maybe<'de, D: Deserializer<'de>>(reader: D) -> Result<Option<(Noise, Prior)>, D::Error> {
+    /// Read by the same function.
+    #[derive(Deserialize)]
+    struct Known(#[serde(deserialize_with = "once")] Noise);
+    let known = Option::<(Known, Prior)>::deserialize(reader)?;
+    Ok(known.map(|(Known(noise), prior)| (noise, prior)))
 }
 
 /// Capacity for a mission's memory.

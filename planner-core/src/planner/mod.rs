@@ -3,11 +3,12 @@
 //! | module | planner |
 //! | --- | --- |
 //! | [`lookahead`] | goes where labels are expected to tell the most, whether they are true or sometimes wrong |
+//! | [`seek`] | finds a straight boundary from nothing, for another planner to go on |
 //! | [`track`] | finds a front that bends and moves, and goes along it |
 //! | [`cfc`] | the paper's Algorithm 1, for labels that are true |
 //! | [`scc`] | the paper's Algorithm 2, for labels that are sometimes wrong |
 //!
-//! [`sight`] is how far look-ahead looks for labels, and [`far`] sight looks all over the area. [`audit`] is what
+//! [`scout`] is how both of these seek. [`sight`] is how far look-ahead looks for labels, and [`far`] sight looks all over the area. [`audit`] is what
 //! look-ahead does before it promises a goal. A [`watched`] planner says when no line explains its
 //! labels. [`options`] are what Algorithms 1 and 2 leave open. [`setup`] checks the parts that every planner is made of.
 //! A [`snapshot`] is what a planner has to remember over a sleep.
@@ -16,10 +17,13 @@ pub mod audit;
 pub mod cfc;
 mod decision;
 pub mod far;
+pub mod front_state;
 mod lap;
 pub mod lookahead;
 pub mod options;
 pub mod scc;
+pub mod scout;
+pub mod seek;
 pub mod setup;
 pub mod sight;
 pub mod silence;
@@ -37,6 +41,7 @@ use crate::geometry::lattice::Site;
 use crate::geometry::line::Line;
 use crate::motion::action::{Action, Control};
 use crate::motion::dynamics::{Dynamics, Pose};
+use crate::planner::front_state::FrontState;
 use crate::search::dead_end::DeadEnd;
 use crate::search::objective::Effort;
 use crate::search::recovery::{Found, Recovery};
@@ -152,6 +157,9 @@ pub enum StopReason {
     Worth,
     /// The robot has gone along all of a closed [front](crate::planner::track), and is back where it found it.
     Closed,
+    /// All of the area most likely has one label: nowhere in reach is a label expected to tell much. A boundary may still
+    /// cut off a small piece at the border.
+    OneLabel,
 }
 
 impl From<DeadEnd> for StopReason {
@@ -236,6 +244,11 @@ pub trait Planner {
         None
     }
 
+    /// Where the front is known best. Only a [follower](crate::Track) of fronts says so: any other has `None`.
+    fn front(&self) -> Option<FrontState> {
+        None
+    }
+
     /// The line as far as it is known: all three estimates.
     fn estimates(&self) -> Estimates {
         self.belief().estimates()
@@ -278,6 +291,10 @@ impl<T: Planner + ?Sized> Planner for &mut T {
 
     fn alarm(&self) -> Option<Alarm> {
         T::alarm(self)
+    }
+
+    fn front(&self) -> Option<FrontState> {
+        T::front(self)
     }
 
     fn estimates(&self) -> Estimates {

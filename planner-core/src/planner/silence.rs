@@ -99,6 +99,11 @@ impl Silence {
         !is_dull || self.dull < MOST_DULL
     }
 
+    /// Whether the vehicle has turned all round since the last label.
+    pub(crate) const fn is_long(&self) -> bool {
+        self.turned > FULL_TURN
+    }
+
     /// Whether the last label, or the next one, is not expected to tell much.
     pub(crate) const fn is_dull(&self) -> bool {
         self.dull > 0 || self.next_is_dull

@@ -6,6 +6,7 @@ use crate::belief::tolerance::Tolerance;
 use crate::belief::{Belief as _, ObservationError};
 use crate::geometry::lattice::Site;
 use crate::motion::dynamics::Pose;
+use crate::planner::front_state::FrontState;
 use crate::planner::{Plan, Planner};
 
 /// A planner, and the evidence of its labels against a straight, still line and a sensor as described.
@@ -85,5 +86,9 @@ impl<P: Planner> Planner for Watched<P> {
 
     fn alarm(&self) -> Option<Alarm> {
         self.evidence.alarm()
+    }
+
+    fn front(&self) -> Option<FrontState> {
+        self.planner.front()
     }
 }

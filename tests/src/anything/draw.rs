@@ -39,7 +39,7 @@ pub fn draw(seed: u64, number: u64) -> Mission {
 }
 
 /// A number between two, its logarithm uniform.
-fn scale(rng: &mut ChaCha8Rng, least: f64, most: f64) -> f64 {
+pub(super) fn scale(rng: &mut ChaCha8Rng, least: f64, most: f64) -> f64 {
     rng.random_range(least.ln()..most.ln()).exp()
 }
 

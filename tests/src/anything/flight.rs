@@ -61,6 +61,7 @@ pub fn fly(mission: &Mission, most_asked: u64) -> Flight {
     match (mission.algorithm, mission.is_noisy()) {
         (Algorithm::Cfc, _) => fly.with(mission.cfc(area, vehicle)),
         (Algorithm::Scc, _) => fly.with(mission.scc(area, vehicle)),
+        (Algorithm::Track, _) => fly.with(mission.track(area, vehicle)),
         (_, true) => fly.with(mission.doubtful(area, vehicle)),
         (_, false) => fly.with(mission.lookahead(area, vehicle)),
     }

@@ -6,6 +6,7 @@
 pub mod counted;
 pub mod draw;
 pub mod flight;
+pub mod fronts;
 pub mod plain;
 pub mod reason;
 

@@ -8,7 +8,8 @@
 //! - those that end because no action is left;
 //! - those with the most hypotheses.
 //!
-//! Every other of these starts in a corner of the area, facing out of it. Any other run flies the hardest missions that
+//! Every other of these starts in a corner of the area, facing out of it. Missions of fronts are of the kinds of
+//! [`fronts`]. Any other run flies the hardest missions that
 //! are known.
 
 use std::cmp::Reverse;
@@ -23,6 +24,8 @@ use host_sim::world::noise::{Extent, NoiseModel};
 use nalgebra::Point2;
 use planner_core::{AnyVehicle, Heading, Policy, Pose, Site, Tolerance};
 use rayon::prelude::*;
+
+use crate::fronts;
 
 const SEED: u64 = 9;
 
@@ -86,6 +89,9 @@ impl Workload {
     /// # Panics
     /// When positions err by more than a tolerance can be.
     pub fn mission(&self, number: u64) -> Mission {
+        if !self.algorithm.seeks_line() {
+            return fronts::following(SEED, number, self.steps);
+        }
         let mut mission = standard_field::standard(SEED, number, self.algorithm, self.steps);
         (mission.policy, mission.vehicle) = (self.policy, self.vehicle);
         mission.noise = self.noise;

@@ -28,10 +28,10 @@ use tests::program::image::Image;
 const OTHERS: [&str; 2] = ["thumbv6m-none-eabi", "riscv32imac-unknown-none-elf"];
 
 /// The programs. All but a long run leave out the last.
-const PROGRAMS: [&str; 6] = ["alone", "small", "medium", "standard", "vehicles", "large"];
+const PROGRAMS: [&str; 7] = ["alone", "small", "medium", "standard", "vehicles", "track", "large"];
 
 fn looked_at() -> &'static [&'static str] {
-    &PROGRAMS[..if is_long() { 6 } else { 5 }]
+    &PROGRAMS[..if is_long() { 7 } else { 6 }]
 }
 
 const MEMORY_X: &str = include_str!("../../../memory.x");
@@ -62,6 +62,7 @@ fn every_figure_keeps_its_budget() {
                 "alone" | "medium" | "vehicles" => 0, // what they do is measured in `small` and `standard`
                 "small" => time_small(&mut books, &elf),
                 "standard" => time_standard(&mut books, &elf),
+                "track" => time_track(&mut books, &elf),
                 _ => time_large(&mut books, &elf, fits),
             };
             books.budgets.note(&format!("{name}: {stack} bytes of stack in the emulator"));
@@ -215,6 +216,21 @@ fn time_small(books: &mut Books, elf: &[u8]) -> u32 {
         stack = stack.max(flown.stack());
     }
     stack
+}
+
+/// Missions of fronts: a plan takes about as long in all of them.
+fn time_track(books: &mut Books, elf: &[u8]) -> u32 {
+    let track = Workload {
+        algorithm: Algorithm::Track,
+        steps: 80,
+        random: 40,
+        searched: 0,
+        sought: 0,
+        ..CFC
+    };
+    let flown = Flown::of(books, elf, "track", track);
+    flown.record_all(books, "track", "");
+    flown.stack()
 }
 
 fn time_standard(books: &mut Books, elf: &[u8]) -> u32 {

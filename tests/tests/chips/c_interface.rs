@@ -8,9 +8,9 @@ use std::process::Command;
 use planner_core::geometry::lattice::UNITS_PER_METRE;
 use planner_core::nalgebra::Point2;
 use planner_core::{
-    Angle, Area, Belief as _, Goal, Heading, Hull, KeepOut, Label, Line, Lookahead, Noise,
+    Angle, Area, Belief as _, Front, Goal, Heading, Hull, KeepOut, Label, Line, Lookahead, Noise,
     NoisyBelief, Plan, Planner, PolygonArea, Pose, PredictiveBelief, Reliability, Sample, Site,
-    SlopeWithin, StopReason, Tolerance, Unicycle, VersionSpace,
+    SlopeWithin, StopReason, Tolerance, Track, Tracker, Unicycle, VersionSpace,
 };
 use tests::program::build::{build, has_tool, scratch, skip};
 
@@ -206,6 +206,45 @@ fn awake<B: PredictiveBelief<Belief: Sized>>(
     said + &status.to_string()
 }
 
+/// What `following.c` prints, by a planner that stays awake.
+fn followed() -> String {
+    let area = Area::metres([0.0, 0.0], [120.0, 120.0]).expect("an area");
+    let front = Front::bending(30.0).and_then(|it| it.moving(0.01)).expect("a front");
+    let noise = Noise::new(0.9).expect("a probability");
+    let given = [(60.0, 10.0, Label::Negative), (60.0, 50.0, Label::Positive)];
+    let given = given.map(|(x, z, label)| Sample { site: at(x, z), label });
+    let tracker = Tracker::<16, 16, 3>::new(area, front, noise).given(&given);
+    let unicycle = Unicycle::new(10_000, 1.57, 21, 100).expect("a grid");
+    let mut planner = Track::new(area, unicycle, tracker).expect("settings that agree");
+    let mut pose = Pose { site: at(60.0, 28.0), heading: Heading(0) };
+    let (mut labels, mut said) = (0, String::new());
+    for _ in 0..130 {
+        let Plan::Move(motion) = planner.plan(pose) else { break };
+        pose = motion.target;
+        let here = Point2::<f64>::from(pose.site);
+        let reading = motion.wants_label.then(|| {
+            labels += 1;
+            let (x, z) = (here.x - 60.0, here.y - 60.0);
+            let is_inside = x * x + z * z < 900.0;
+            if is_inside == (labels % 11 == 3) { Label::Negative } else { Label::Positive }
+        });
+        planner.observe(pose, reading.map(Into::into)).expect("any label goes");
+        let mut numbers = vec![here.x, here.y];
+        if let Some(it) = planner.found() {
+            let at = Point2::<f64>::from(it.site);
+            let rest = [it.curvature, it.deviation, it.turn_deviation].map(f64::from);
+            numbers.extend([at.x, at.y, it.heading.radians()].into_iter().chain(rest));
+            numbers.push(f64::from(u8::from(planner.is_closed())));
+        }
+        for number in numbers {
+            let _ = write!(said, "{:016x} ", number.to_bits());
+        }
+        said.push('\n');
+    }
+    assert!(planner.found().is_some() && said.lines().count() == 130);
+    said
+}
+
 /// What `asleep.c` prints in one of its modes.
 fn awake_in(mode: &str) -> String {
     let noise = |tolerance| Noise { reliability: reliability(0.85), tolerance, ..Noise::NONE };
@@ -264,6 +303,9 @@ fn a_c_program_flies_the_same_missions() {
         println!("{argument}: {} lines, {bytes}", flight.lines().count());
     }
     print!("{}", said(&program(&library, &here("misuse.c")), ""));
+    let map = said(&program(&library, &here("following.c")), "");
+    assert_eq!(map, followed());
+    println!("following: {} lines", map.lines().count());
     let asleep = program(&library, &here("asleep.c"));
     for mode in ["true", "doubtful", "blurred"] {
         let said = said(&asleep, mode);

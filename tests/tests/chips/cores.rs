@@ -1,5 +1,5 @@
 //! Flash, RAM, stack and instructions on every core, held to the committed figures of `cores.toml`. With
-//! `CORES=all` the micro:bit's firmware is measured, in a long run also the small and the standard program on three cores.
+//! `CORES=all` the micro:bit's firmware is measured, in a long run also the small and the standard program on three cores, and that of fronts.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -67,6 +67,10 @@ fn flown(program: &str) -> Vec<Flown> {
     };
     let flown = |figure, all, hardest, workload| Flown { figure, all, hardest, workload };
     let (cfc, lookahead) = (Algorithm::Cfc, Algorithm::Lookahead);
+    if program == "track" {
+        let track = Workload { random: 4, ..of(Algorithm::Track, Grid::Fine, 40, None) };
+        return vec![flown("", true, "track", track)];
+    }
     if program == "small" {
         return vec![
             flown("", true, "small", of(cfc, Grid::Paper, 12, None)),
@@ -213,14 +217,17 @@ fn microbit() -> Option<Figures> {
 
 /// The committed figures, as the readme has them.
 fn table(document: &DocumentMut) -> String {
-    const COLUMNS: [(&str, &str, &str); 7] = [
+    const COLUMNS: [(&str, &str, &str); 10] = [
         ("M0, micro:bit", "cortex-m0", "microbit"),
         ("M0, *small*", "cortex-m0", "small"),
         ("M0, *standard*", "cortex-m0", "standard"),
+        ("M0, *track*", "cortex-m0", "track"),
         ("M4F, *small*", "cortex-m4f", "small"),
         ("M4F, *standard*", "cortex-m4f", "standard"),
+        ("M4F, *track*", "cortex-m4f", "track"),
         ("RISC-V, *small*", "riscv32imac", "small"),
         ("RISC-V, *standard*", "riscv32imac", "standard"),
+        ("RISC-V, *track*", "riscv32imac", "track"),
     ];
     let sizes = ["flash", "static_ram", "stack"].map(str::to_owned);
     let calls = ["plan", "observe", "estimate", "lookahead_plan", "noisy_plan"];
@@ -242,7 +249,7 @@ fn every_core_takes_what_is_committed() {
     let text = fs::read_to_string(&path).expect("tests/cores.toml");
     let mut document: DocumentMut = text.parse().expect("TOML");
     let mut measured = vec![(["cortex-m0", "microbit"], microbit())];
-    for program in ["small", "standard"].iter().filter(|_| is_long()) {
+    for program in ["small", "standard", "track"].iter().filter(|_| is_long()) {
         let m0 = cortex(Core::M0, "thumbv6m-none-eabi", program);
         let m4f = cortex(Core::M4F, CHIP, program);
         measured.push((["cortex-m0", program], m0));

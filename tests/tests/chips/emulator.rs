@@ -23,6 +23,7 @@ use tests::budget::workload::Workload;
 use tests::cases;
 use tests::emulator::missions::{self, CORES};
 use tests::emulator::{Core, Emulator};
+use tests::fronts::following;
 use tests::missions::of_any_vehicle;
 use tests::program::build;
 
@@ -100,6 +101,12 @@ fn every_machine_makes_the_same_traces() {
 #[test]
 fn every_machine_makes_the_same_traces_of_every_vehicle_and_of_robots_that_err() {
     compare("vehicles", &vehicles());
+}
+
+#[test]
+fn every_machine_makes_the_same_traces_and_maps_of_fronts() {
+    let missions: Vec<_> = (0..cases(8, 24)).map(|number| following(5, number, 60)).collect();
+    compare("track", &missions);
 }
 
 /// Flies missions here and with a program on each core; how many of them end when enough is known.

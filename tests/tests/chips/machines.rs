@@ -13,6 +13,7 @@ use planner_core::motion::unicycle::Grid;
 use planner_core::{Accuracy, Goal};
 use rayon::prelude::*;
 use tests::cases;
+use tests::fronts::following;
 use tests::machines::{Kind, Machine, NRF51, STM32, riscv};
 use tests::missions::{of_any_vehicle, reading};
 
@@ -64,13 +65,28 @@ fn the_boards_take_in_labels_on_the_way() {
 
 #[test]
 fn four_machines_make_the_same_traces_byte_for_byte() {
-    let missions = missions();
+    compare(&missions(), &MACHINES);
+}
+
+/// Every pose, and every vertex of the map. The micro:bit has no room for the follower of fronts.
+#[test]
+fn three_machines_make_the_same_maps_of_fronts_byte_for_byte() {
+    let missions: Vec<_> = (0..cases(8, 40)).map(|number| following(SEED, number, 60)).collect();
+    compare(&missions, &[STM32, riscv("track")]);
+    if let Some(mut small) = Machine::start(NRF51, &[]) {
+        let refusal = small.fly(&missions[0]).expect_err("it is declined").to_string();
+        assert!(refusal.contains("algorithm: found track, declined"), "{refusal}");
+    }
+}
+
+/// Flies missions here and on machines, and compares the traces.
+fn compare(missions: &[Mission], kinds: &[Kind]) {
     let here: Vec<String> = missions
         .par_iter()
         .map(|it| trace::lines(&Recording::of(it).expect("labels are true").results))
         .collect();
     let mut machines = vec!["this machine"];
-    for kind in MACHINES {
+    for &kind in kinds {
         let Some(mut machine) = Machine::start(kind, &[]) else {
             continue;
         };

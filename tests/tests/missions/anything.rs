@@ -7,12 +7,14 @@
 //! ```
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::panic::catch_unwind;
 
 use host_sim::mission::definition::Mission;
 use rayon::prelude::*;
 use tests::anything::draw::draw;
 use tests::anything::flight::{Finding, Flight, fly};
+use tests::anything::fronts::draw_front;
 use tests::anything::plain::Ground;
 use tests::anything::{asked_for, kind};
 use tests::cases;
@@ -27,7 +29,16 @@ const FALSE_REASONS: usize = 15;
 
 #[test]
 fn random_missions_keep_every_invariant() {
-    let numbers = asked_for(cases(400, 20_000));
+    check(draw, asked_for(cases(400, 20_000)));
+}
+
+/// Along fronts of every kind, also where there is none.
+#[test]
+fn random_missions_along_fronts_keep_every_invariant() {
+    check(draw_front, asked_for(cases(100, 5_000)));
+}
+
+fn check(draw: impl Fn(u64, u64) -> Mission + Sync, numbers: Range<u64>) {
     let flown: Vec<_> = numbers
         .clone()
         .into_par_iter()

@@ -17,6 +17,7 @@ mod margin;
 mod readings;
 mod recovery;
 mod scale;
+mod seeking;
 mod sleep;
 mod symmetry;
 mod terrain;

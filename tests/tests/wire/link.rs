@@ -21,7 +21,7 @@ use planner_core::link::message::{
     Capacity, ClockRate, DeclinedError, EndReason, LabelSource, MissionArea, Outline, PROTOCOL,
     Reply, Request, Settings, Setup,
 };
-use planner_core::link::station::{Flown, NoTerms};
+use planner_core::link::station::{AllLabels, Flown, NoTerms};
 use planner_core::motion::any_vehicle::Shape;
 use planner_core::motion::car;
 use planner_core::{AnyVehicle, Area, KeepOut, Site, StopReason, Unicycle};
@@ -30,6 +30,7 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use tests::chip::{self, Chip, FarEnd, Off, Socket, fly};
+use tests::fronts::following;
 use tests::missions::{SEED, mission, of_any_vehicle, reading, stopping};
 use tests::wire::{WAIT, Way, Wire};
 
@@ -103,6 +104,48 @@ fn a_thousand_missions_over_a_bad_link_end_as_over_a_good_one() {
         .sum();
     println!("1000 missions end as without faults; requests were repeated {asked} times");
     assert!(asked > 1000, "the link was not bad");
+}
+
+/// Missions of fronts too: no label counts twice, and no vertex of the map is lost.
+#[test]
+fn a_front_is_followed_over_a_bad_link_as_over_a_good_one() {
+    let faults: Faults =
+        "drop=0.1,cut=0.02,corrupt=0.05,duplicate=0.1,delay=20ms".parse().expect("faults");
+    let vertices: usize = (0..40)
+        .into_par_iter()
+        .map(|number| {
+            let mission = following(9, number, 40);
+            let mission = if number / 4 % 2 == 0 { mission } else { reading(mission) };
+            let network = RefCell::new(Network::new(&mission, faults));
+            let mut chip = chip(&network);
+            let setup = chip.await_setup();
+            let flown = fly(&mut chip, &setup);
+            assert!(matches!(flown, Ok(Flown::Ended(_))), "mission {number}: {flown:?}");
+            drop(chip);
+            let Network { player, failure, .. } = network.into_inner();
+            assert!(failure.is_none(), "mission {number}: {failure:?}");
+            let there = player.finish().expect("the mission is over").recording.results;
+            let here = Recording::of(&mission).expect("no label contradicts a front").results;
+            assert_eq!(trace::lines(&there), trace::lines(&here), "mission {number}");
+            here.steps.iter().filter(|it| it.front.is_some()).count()
+        })
+        .sum();
+    println!("{vertices} vertices in 40 missions");
+    assert!(vertices > 800);
+}
+
+/// A chip without the follower declines it, and the message names it.
+#[test]
+fn a_chip_without_a_follower_of_fronts_says_so() {
+    let mission = following(9, 0, 10);
+    let network = RefCell::new(Network::new(&mission, Faults::default()));
+    let mut chip = chip(&network);
+    let setup = chip.await_setup();
+    let flown = chip.fly_with::<AllLabels<68, 36, 529>, Unicycle, Area>(&setup, &mut ());
+    assert!(matches!(flown, Ok(Flown::Declined(DeclinedError::Algorithm))), "{flown:?}");
+    drop(chip);
+    let error = network.into_inner().player.finish().expect_err("it was declined").to_string();
+    assert!(error.contains("algorithm: found track") && error.contains("declined"), "{error}");
 }
 
 /// What errs is the vehicle, so a chip is told what it would be told here.
@@ -304,6 +347,7 @@ fn corpus() -> Vec<Vec<u8>> {
     }
     let mut frames = Vec::new();
     let missions = (0..20).map(mission).chain((0..6).map(|number| of_any_vehicle(number, 6)));
+    let missions = missions.chain((0..4).map(|number| following(8, number, 30)));
     for mission in missions.chain([mission(0), mission(3)].map(reading)) {
         let tap = RefCell::new(Tap(Network::new(&mission, Faults::default()), Vec::new()));
         let clock = ClockRate { per_second: 168_000_000, emulated: true };
@@ -369,7 +413,9 @@ fn a_decoder_takes_what_was_sent_and_nothing_else() {
     let corpus = corpus();
     let [requests, replies] = kinds(&corpus);
     assert!(
-        requests.iter().eq(["Declined", "End", "Hello", "Move", "Onward", "Outline", "Ready"]),
+        requests
+            .iter()
+            .eq(["Declined", "End", "Front", "Hello", "Move", "Onward", "Outline", "Ready"]),
         "{requests:?}"
     );
     let all = ["Arrived", "Busy", "Failed", "Noted", "OnTheWay", "Outline", "Setup", "Stale"];

@@ -7,7 +7,8 @@ use planner_core::link::frame::{Decoder, Envelope, Frame};
 use planner_core::link::message::{
     self, Capacity, ClockRate, LabelSource, PROTOCOL, Reply, Request,
 };
-use planner_core::{Belief as _, Estimates, LocalLine, Motion, Pose, Reading};
+use planner_core::{Belief as _, Estimates, FrontState, LocalLine, Motion, Pose, Reading, Waist};
+use tests::fronts::following;
 use tests::missions::{mission, reading};
 
 /// A player and what a chip of our own says to it.
@@ -103,6 +104,58 @@ fn a_player_finds_out_a_chip_that_took_in_another_reading_on_the_way() {
     assert!(matches!(reply, Ok(Reply::Arrived { .. })), "{reply:?}");
     let late = error(&mut liar, Request::Onward { last });
     assert!(late.starts_with("after step 1: the board goes on with a motion"), "{late}");
+}
+
+/// A chip that knows another front, none, or one before its motion has ended.
+#[test]
+fn a_player_compares_the_front_after_every_motion_to_the_last_bit() {
+    let mission = following(3, 0, 40);
+    let took = message::Took::default();
+    let steps = Recording::of(&mission).expect("no label contradicts a front").steps;
+    let moves =
+        |n: usize, last| Request::Move(message::Move { motion: steps[n].motion, last, took });
+    let mut planner = mission.planner();
+    let mut liar = Liar::new(&mission);
+    let (mut pose, mut compared, mut last) = (mission.start, 0, None);
+    for n in 0..steps.len() - 1 {
+        let _ = planner.plan(pose);
+        assert!(liar.says(moves(n, last)).is_ok());
+        (pose, last) = (steps[n].pose, steps[n].reading);
+        planner.observe(pose, last).expect("no label contradicts a front");
+        let right = planner.front().expect("it follows a front");
+        if let Some(waist) = right.waist.filter(|_| n > 20) {
+            let near = f32::from_bits(waist.curvature.to_bits() ^ 1);
+            let other = FrontState { waist: Some(Waist { curvature: near, ..waist }), ..right };
+            let closed = FrontState { is_closed: !right.is_closed, ..right };
+            for wrong in [other, closed, FrontState { waist: None, ..right }] {
+                let mut liar = Liar::new(&mission);
+                let mut last = None;
+                let mut planner = mission.planner();
+                let mut pose = mission.start;
+                for (k, step) in steps.iter().enumerate().take(n + 1) {
+                    let _ = planner.plan(pose);
+                    assert!(liar.says(moves(k, last)).is_ok());
+                    (pose, last) = (step.pose, step.reading);
+                    planner.observe(pose, last).expect("no label contradicts a front");
+                    let said = if k == n { wrong } else { planner.front().expect("a front") };
+                    assert!(matches!(liar.says(Request::Front(said)), Ok(Reply::Noted)));
+                }
+                let error = liar.says(moves(n + 1, last)).expect_err("it was found out");
+                assert!(
+                    error.to_string().contains(&format!("step {}: the front", n + 1)),
+                    "{error}"
+                );
+                compared += 1;
+            }
+            let none = liar.says(moves(n + 1, last)).expect_err("it says nothing").to_string();
+            assert!(none.contains("the front: found None"), "{none}");
+            break;
+        }
+        assert!(matches!(liar.says(Request::Front(right)), Ok(Reply::Noted)));
+    }
+    assert_eq!(compared, 3);
+    let early = Liar::new(&mission).says(Request::Front(FrontState::default()));
+    assert!(early.expect_err("no motion yet").to_string().contains("no motion has ended"));
 }
 
 #[test]

@@ -21,7 +21,10 @@ use planner_core::link::message::{
 use planner_core::motion::any_vehicle::Shape;
 use planner_core::planner::Stage;
 use planner_core::search::recovery::Recovery;
-use planner_core::{Accuracy, Crossing, Following, Label, Policy, Prior, Reading, StopReason};
+use planner_core::{
+    Accuracy, Crossing, Following, FrontState, Heading, Label, Policy, Prior, Reading, Site,
+    StopReason, Waist,
+};
 use serde::de::DeserializeOwned;
 use tests::program::build;
 
@@ -138,6 +141,21 @@ oracle = [
 ]
 "#;
 
+const ALONG_FRONT: &str = r#"
+algorithm = "track"
+steps = 90
+area = { x = [0.0, 160.0], z = [0.0, 60.0] }
+front = { radius = 20.0, speed = 0.02 }
+truth = { sine = [3.0, 60.0, 0.0], intercept = 30.0 }
+noise = { p = 0.9 }
+stop = { closed = true }
+start = { x = 8.0, z = 30.0 }
+oracle = [
+  { x = 4.0, z = 20.0, label = -1 },
+  { x = 4.0, z = 40.0, label = 1 },
+]
+"#;
+
 fn read(text: &str, overrides: Overrides) -> Mission {
     scenario::parse("", text, overrides).expect("a good scenario")
 }
@@ -203,6 +221,20 @@ fn the_examples_are_what_is_sent() {
     let mut outline = || Reply::Outline(outlines.next().expect("one more"));
     said.is("Outline, the border", 11, 2, outline());
     said.is("Outline, a disc", 11, 3, outline());
+
+    let along_front = read(ALONG_FRONT, plain);
+    let by_tracker = setup(&along_front, LabelSource::Vehicle);
+    said.is("Setup of a follower of fronts", 13, 1, Reply::Setup(by_tracker));
+    let waist = Waist {
+        site: Site::metres([8.25, 30.5]).expect("near"),
+        heading: Heading::from_radians(0.25).expect("an angle"),
+        curvature: -0.03125,
+        deviation: 0.375,
+        turn_deviation: 0.125,
+    };
+    let found = FrontState { waist: Some(waist), is_closed: false };
+    said.is("Front", 13, 6, Request::Front(found));
+    said.is("Front, not found", 13, 4, Request::Front(FrontState::default()));
 
     let Said { examples, checked, wrong, .. } = said;
     assert!(wrong.is_empty(), "docs/protocol.md:\n{}", wrong.join("\n"));

@@ -20,6 +20,7 @@ use crate::mission::algorithm::Algorithm;
 use crate::mission::asking::Asking;
 use crate::mission::definition::Mission;
 use crate::mission::flight::Flown;
+use crate::mission::given::Given;
 use crate::mission::read_out::ReadOut;
 use crate::mission::results::cost;
 use crate::mission::scenario;
@@ -68,6 +69,8 @@ pub struct Campaign {
     pub prior: Prior,
     /// The sides of the fields, metres.
     pub sides: [f64; 2],
+    /// Whether planners are given no points: they first seek the line.
+    pub from_nothing: bool,
     /// What labels cost, what they are to bring, and how many there may be.
     pub asking: Asking,
 }
@@ -163,6 +166,7 @@ impl Campaign {
             policy: Policy::default(),
             prior: Prior::default(),
             sides: [SIDE_M; 2],
+            from_nothing: false,
             asking: Asking::USUAL,
         }
     }
@@ -217,6 +221,9 @@ impl Campaign {
         let (seed, algorithm, steps) = (self.seed, self.algorithm, self.steps);
         let mut mission = standard_field::stretched(self.sides, seed, number, algorithm, steps);
         mission.asking = self.asking;
+        if self.from_nothing {
+            mission.given = Given::open(Vec::new());
+        }
         (mission.config.crossing, mission.config.following) = (self.crossing, self.following);
         (mission.vehicle, mission.errors) = (self.vehicle, self.errors);
         mission.config.tolerance = self.tolerance;

@@ -8,6 +8,7 @@ pub mod course;
 pub mod drawn;
 pub mod ensemble;
 pub mod field_record;
+pub mod fronts;
 pub mod order;
 pub mod rows;
 pub mod shard;

@@ -37,6 +37,9 @@ pub type Table = CellPosterior<CAPACITY, HYPOTHESES, 15, AnyReliability>;
 /// The belief of simulated planners of fronts.
 pub type FrontBelief = Tracker<16, 16, 3>;
 
+/// The belief of simulated planners that seek a line from nothing.
+pub type SoughtLine = Tracker<16, 16, 1>;
+
 /// The belief of simulated look-ahead in noise.
 pub type DoubtfulBelief = NoisyBelief<CAPACITY, HYPOTHESES, AnyReliability>;
 

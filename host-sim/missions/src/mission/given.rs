@@ -43,6 +43,11 @@ impl Given {
         self.lines.as_ref()
     }
 
+    /// Samples that do not bound the line.
+    pub const fn open(samples: Vec<Sample>) -> Self {
+        Self { samples, lines: None }
+    }
+
     /// Samples of a front, which no line need separate.
     pub fn of_front(samples: Vec<Sample>) -> Self {
         let lines = VersionSpace::new(&samples).ok();
@@ -72,7 +77,7 @@ pub(crate) fn given_of_front(
     points(oracle, area, world).map(Given::of_front)
 }
 
-/// The lines that the oracle's points and the bounds leave. The points come first. If they do not say on which side of
+/// The lines that the oracle's points and the bounds leave, if they bound any. The points come first. If they do not say on which side of
 /// the line +1 lies, it lies above.
 ///
 /// # Errors
@@ -84,6 +89,10 @@ pub(crate) fn given(
     world: &World,
 ) -> Result<Given> {
     let oracle = points(oracle, area, world)?;
+    let is_of_one = oracle.windows(2).all(|pair| pair[0].label == pair[1].label);
+    if is_of_one && bounds.is_empty() {
+        return Ok(Given::open(oracle));
+    }
     let above = bounds.samples(area)?;
     let below: Vec<_> =
         above.iter().map(|&Sample { site, label }| Sample { site, label: -label }).collect();

@@ -4,14 +4,15 @@ use planner_core::dynamics::Dynamics;
 use planner_core::error::ObservationError;
 use planner_core::link::message::MissionArea;
 use planner_core::{
-    Accuracy, AnyReliability, AnySight, AnyVehicle, Belief, Cfc, Lookahead, Plan, Planner, Pose,
-    PredictiveBelief, Reading, Scc, Site, Tolerance, Track, Workspace,
+    Accuracy, AnyReliability, AnySight, AnyVehicle, Belief, Cfc, FrontState, Lookahead, Plan,
+    Planner, Pose, PredictiveBelief, Reading, Scc, Site, Tolerance, Track, Workspace,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::{CAPACITY, DoubtfulBelief, HYPOTHESES, Lines, Mission};
+use crate::mission::from_nothing::FromNothing;
 use crate::mission::lawnmower::Lawnmower;
 use crate::mission::margin::Margin;
 use crate::mission::random_walk::RandomWalk;
@@ -53,6 +54,10 @@ impl<P: Planner<Belief: ReadOut + Sized + 'static>> Planner for Erased<P> {
     fn belief(&self) -> &(dyn ReadOut + 'static) {
         self.0.belief()
     }
+
+    fn front(&self) -> Option<FrontState> {
+        self.0.front()
+    }
 }
 
 fn erased(planner: impl Planner<Belief: ReadOut + Sized + 'static> + 'static) -> AnyPlanner {
@@ -79,6 +84,7 @@ impl Mission {
     pub fn belief(&self) -> Box<dyn ReadOut> {
         match () {
             () if !self.algorithm.seeks_line() => Box::new(self.tracker()),
+            () if self.begins_from_nothing() => Box::new(self.sought()),
             () if self.is_noisy() => Box::new(self.table()),
             () => Box::new(self.lines()),
         }
@@ -87,6 +93,10 @@ impl Mission {
     fn planner_of(&self, dynamics: impl Dynamics + 'static) -> AnyPlanner {
         let (area, rng) = (self.config.area, ChaCha8Rng::seed_from_u64(self.seed));
         match self.algorithm {
+            Algorithm::Lawnmower if self.begins_from_nothing() => {
+                erased(self.lawnmower((area, dynamics, self.sought())))
+            }
+            _ if self.begins_from_nothing() => Box::new(FromNothing::new(self, dynamics)),
             Algorithm::Cfc => erased(self.cfc(area, dynamics)),
             Algorithm::Scc => erased(self.scc(area, dynamics)),
             Algorithm::Lookahead if self.is_noisy() => erased(self.doubtful(area, dynamics)),

@@ -1,13 +1,15 @@
 //! What reports and campaigns read of a belief, beside what every planner asks of it.
 
+use std::any::Any;
 use std::fmt::Debug;
 
 use planner_core::belief::front::Waist;
 use planner_core::{
     AnyReliability, Area, Belief, Goal, Label, PosteriorView, Reliability, Sample, Site, Tolerance,
+    Tracker,
 };
 
-use crate::mission::definition::{FrontBelief, Lines, Table};
+use crate::mission::definition::{FrontBelief, Lines, SoughtLine, Table};
 use crate::world::noise::limit;
 
 /// The level of the credible sets that are reported.
@@ -74,6 +76,11 @@ pub trait ReadOut: Belief + Debug + Send {
         None
     }
 
+    /// The line, where it is sought from nothing and not yet found.
+    fn sought(&self) -> Option<&SoughtLine> {
+        None
+    }
+
     /// The hypotheses, where labels may err.
     fn hypotheses(&self) -> Option<&Table> {
         None
@@ -118,7 +125,7 @@ impl ReadOut for Lines {
     }
 }
 
-impl ReadOut for FrontBelief {
+impl<const L: usize> ReadOut for Tracker<16, 16, L> {
     fn knowledge(&self) -> Knowledge {
         let slopes = || {
             let Waist { heading, turn_deviation, .. } = self.waist();
@@ -145,7 +152,11 @@ impl ReadOut for FrontBelief {
     }
 
     fn front(&self) -> Option<&FrontBelief> {
-        Some(self)
+        (self as &dyn Any).downcast_ref()
+    }
+
+    fn sought(&self) -> Option<&SoughtLine> {
+        (self as &dyn Any).downcast_ref()
     }
 
     fn boxed(&self) -> Box<dyn ReadOut> {

@@ -15,6 +15,7 @@ use planner_core::{
 use crate::mission::definition::{Mission, Table};
 use crate::mission::diagnosis::DiagnosisRecord;
 use crate::mission::flight::Flown;
+use crate::mission::from_nothing::SeekRecord;
 use crate::mission::front::VertexRecord;
 use crate::mission::legs::{Leg, Legs};
 use crate::mission::map::MapRecord;
@@ -219,6 +220,7 @@ impl Recorder {
             None => beside_truth(&mission, &world, belief.estimates()),
         };
         let seeks_line = mission.algorithm.seeks_line();
+        let after: Vec<_> = before.iter().skip(1).chain([&belief]).map(|it| &**it).collect();
         let fit = || world.fit().filter(|_| world.line().is_none());
         let diagnosis = || {
             DiagnosisRecord::of(&mission, (&steps, &results), (ending, alarm.as_ref()), &*belief)
@@ -234,6 +236,7 @@ impl Recorder {
             credible,
             reliability: belief.hypotheses().filter(|it| is_unknown(it)).map(learnt),
             front: (!seeks_line).then(|| MapRecord::of(&results, &mission.world, ending)),
+            seek: SeekRecord::of(&mission, &results, &after, ending),
             goal: GoalRecord::of(&mission, &*belief, audit((&steps, &results), &before, ending)),
             alarm,
             diagnosis: seeks_line.then(diagnosis).flatten().map(Box::new),

@@ -23,6 +23,7 @@ use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::ToleranceRecord;
 use crate::mission::bounds::Bounds;
 use crate::mission::diagnosis::DiagnosisRecord;
+use crate::mission::from_nothing::SeekRecord;
 use crate::mission::front::{FrontTable, VertexRecord};
 use crate::mission::legs::{Leg, Legs};
 pub use crate::mission::line_record::{LineError, LineRecord};
@@ -223,6 +224,9 @@ pub struct End {
     /// The map of the front, if one was followed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub front: Option<MapRecord>,
+    /// What seeking the boundary came to, if the mission began from nothing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub seek: Option<SeekRecord>,
     /// Its goal, if it had one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub goal: Option<GoalRecord>,
@@ -596,6 +600,7 @@ impl Ending {
             Self::Stopped(StopReason::NoLine) => "no line",
             Self::Stopped(StopReason::Worth) => "worth",
             Self::Stopped(StopReason::Closed) => "closed",
+            Self::Stopped(StopReason::OneLabel) => "one label",
             Self::Stopped(_) => "stopped",
         }
     }

@@ -319,7 +319,7 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
     let names = ["price", "labels", "ask.seek", "ask.worth"];
     let noise = file.noise.as_ref().map(|table| noise(&table.0)).transpose()?;
     let (noise, p_told) = noise.map_or((None, None), |(noise, p_told)| (Some(noise), p_told));
-    check_trust(noise, &file.bounds.0)?;
+    let trusts = check_trust(noise, &file.bounds.0)?;
     // Nobody knows what a label can carry if nobody knows how often it is true.
     let bits = noise.filter(|_| p_told.is_none()).map_or(1.0, |noise| limit(noise.p));
     let weighs = algorithm.weighs(file.noise.is_some());
@@ -334,6 +334,11 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
     let world = truth.unwrap_or(World::UNKNOWN);
     let given = if algorithm.seeks_line() { given } else { given_of_front };
     let given = given(&file.oracle, &bounds, &area, &world)?;
+    if trusts && algorithm.seeks_line() && given.lines().is_none() {
+        let expected =
+            "points of both labels, as labels are trusted around them, or trusted_radius = 0.0";
+        return wrong("oracle", "no points of both labels", expected);
+    }
     let front = front::front(file.front.as_ref(), algorithm, &vehicle)?;
     let first = file.oracle.first().map(|_| given.samples()[0].site);
     let start = start(&file.start.0, first, &area)?;
@@ -384,15 +389,15 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
     })
 }
 
-/// Labels are trusted around what the oracle has seen. A bound was seen by nobody.
-fn check_trust(noise: Option<NoiseModel>, bounds: &Bounds) -> Result<()> {
+/// Whether labels are trusted around what the oracle has seen. A bound was seen by nobody.
+fn check_trust(noise: Option<NoiseModel>, bounds: &Bounds) -> Result<bool> {
     let trusts =
         noise.is_some_and(|it| !matches!(it.extent, Extent::OutsideBalls(radius) if radius <= 0.0));
     if trusts && !bounds.is_empty() {
         let expected = "none, as labels are trusted around given points: trusted_radius = 0.0";
         return wrong("bounds", "some with a trusted radius or a band", expected);
     }
-    Ok(())
+    Ok(trusts)
 }
 
 fn weight(weight: f64) -> Result<EffortWeight> {

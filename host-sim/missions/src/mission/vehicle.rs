@@ -89,6 +89,11 @@ impl Source {
 }
 
 impl VehicleTable {
+    /// The longest motion, if one was asked for; metres.
+    pub const fn reach(&self) -> Option<f64> {
+        self.reach
+    }
+
     /// The vehicle. `has_fan` tells whether a fan was asked for, `grid` what is flown with unless the table says
     /// otherwise.
     ///

@@ -240,7 +240,8 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
         let is_whole = lay.is_whole::<K>();
         let middle = Unit::of(lay.heading);
         for (masses, bend) in self.mass.iter_mut().zip(old.bends::<L>()) {
-            let before = core::mem::replace(masses, [[0.0; M]; K]);
+            let before = *masses;
+            masses.iter_mut().flatten().for_each(|mass| *mass = 0.0);
             let [ahead, _] = middle.seen(by);
             // A curve's direction turns on the way to the pivot.
             let turned = turned - bent(bend, ahead);

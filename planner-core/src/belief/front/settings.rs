@@ -6,6 +6,7 @@ use crate::geometry::value::ValueError;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "[u32; 2]", into = "[u32; 2]"))]
 pub struct Front {
     /// The radius of the tightest bend, millimetres; 0 if it is straight.
     radius_mm: u32,
@@ -59,6 +60,25 @@ impl Front {
     /// The speed in single precision, metres in a unit of time.
     pub(crate) fn pace(self) -> f32 {
         self.speed_um as f32 * 1e-6
+    }
+}
+
+impl From<Front> for [u32; 2] {
+    /// Millimetres and micrometres.
+    fn from(front: Front) -> Self {
+        [front.radius_mm, front.speed_um]
+    }
+}
+
+impl TryFrom<[u32; 2]> for Front {
+    type Error = ValueError;
+
+    /// # Errors
+    /// As [`bending`](Front::bending) and [`moving`](Front::moving).
+    fn try_from([radius_mm, speed_um]: [u32; 2]) -> Result<Self, ValueError> {
+        const RANGE: ValueError = ValueError("a front bends and moves within bounds");
+        let is_front = matches!(radius_mm, 0 | 100..=1_000_000_000) && speed_um <= 1_000_000_000;
+        is_front.then_some(Self { radius_mm, speed_um }).ok_or(RANGE)
     }
 }
 

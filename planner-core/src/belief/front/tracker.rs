@@ -9,7 +9,7 @@ use crate::belief::front::moments::Moments;
 use crate::belief::front::settings::Front;
 use crate::belief::front::waist::Waist;
 use crate::belief::goal::{Criterion, Goal};
-use crate::belief::noise::Noise;
+use crate::belief::noise::{Noise, Reliability};
 use crate::belief::observation_log::{FromLog, ReplayError};
 use crate::belief::predictions::{entropy, information};
 use crate::belief::sample::{Label, Reading, Sample};
@@ -102,20 +102,41 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
     /// The noise has the reliability of labels, or a prior for it, and the tolerance: three standard deviations of a
     /// position. No ball is trusted.
     pub fn new(area: Area, front: Front, noise: impl Into<Noise<AnyReliability>>) -> Self {
-        let noise = noise.into();
-        let prior = noise.reliability.unknown();
-        let learnt = prior.map(|it| Learnt::prior(it.parameters().map(|it| it as f32)));
-        let mut tracker = Self {
+        let mut tracker = Self::blank(front);
+        tracker.begin(area, noise.into());
+        tracker
+    }
+
+    /// Memory to [`restart`](Self::restart) in.
+    pub(crate) const fn blank(front: Front) -> Self {
+        const NO_NOISE: Noise<AnyReliability> = Noise {
+            reliability: AnyReliability::Known(Reliability::CERTAIN),
+            trusted_radius: 0,
+            tolerance: Tolerance::NONE,
+        };
+        Self {
             front,
-            noise,
+            noise: NO_NOISE,
             grid: Grid::NONE,
-            nowhere: [0.5 * NOWHERE; 2],
-            learnt,
+            nowhere: [0.0; 2],
+            learnt: None,
             evidence: Evidence::NONE,
             start: 0.0,
-        };
-        tracker.fill_within(area);
-        tracker
+        }
+    }
+
+    /// Begins again, where it is, as [`new`](Self::new) and [`given`](Self::given) do.
+    pub(crate) fn restart(&mut self, area: Area, noise: Noise<AnyReliability>, given: &[Sample]) {
+        self.begin(area, noise);
+        self.give(given);
+    }
+
+    fn begin(&mut self, area: Area, noise: Noise<AnyReliability>) {
+        let prior = noise.reliability.unknown();
+        self.learnt = prior.map(|it| Learnt::prior(it.parameters().map(|it| it as f32)));
+        (self.noise, self.evidence) = (noise, Evidence::NONE);
+        self.nowhere = [0.5 * NOWHERE; 2];
+        self.fill_within(area);
     }
 
     /// Spreads the mass evenly over the lines that cross a rectangle.
@@ -151,8 +172,16 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
 
     /// How often a label is true, as far as that is known.
     pub fn reliability(&self) -> f32 {
-        let known = || self.noise.reliability.nominal().single();
-        self.learnt.map_or_else(known, Learnt::mean)
+        match (self.learnt, self.noise.reliability) {
+            (Some(learnt), _) => learnt.mean(),
+            (None, AnyReliability::Known(known)) => known.single(),
+            (None, AnyReliability::Unknown(_)) => 0.5, // it is learnt
+        }
+    }
+
+    /// Whether all labels are true, as far as was told.
+    pub(crate) fn is_certain(&self) -> bool {
+        self.learnt.is_none() && self.reliability() >= 1.0
     }
 
     /// How often a label counts as true.
@@ -170,6 +199,14 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
     /// `O(K M L)`: some 10,000 instructions for 16 x 16 x 3.
     pub fn share_above(&self, site: Site) -> f32 {
         self.nowhere[0] + self.grid.above(site, Self::blur(self.noise.tolerance))
+    }
+
+    /// [`share_above`](Self::share_above) for several sites, into as many places. Each costs less than one alone.
+    pub(crate) fn shares_above(&self, sites: &[Site], shares: &mut [f32]) {
+        self.grid.above_each(sites, Self::blur(self.noise.tolerance), shares);
+        for share in shares.iter_mut() {
+            *share += self.nowhere[0];
+        }
     }
 
     /// The probability that there is no front.
@@ -287,12 +324,19 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
     /// information is measured from here.
     #[must_use]
     pub fn given(mut self, given: &[Sample]) -> Self {
+        self.give(given);
+        self
+    }
+
+    /// The same, where it is.
+    fn give(&mut self, given: &[Sample]) {
         let has = |label| given.iter().any(|it| it.label == label);
         let is_between = has(Label::Positive) && has(Label::Negative);
         if let Some(between) = Area::around(given.iter().map(|it| it.site)).filter(|_| is_between) {
             self.fill_within(between);
         }
-        for round in 0..GIVEN_ROUNDS {
+        // Points of one label do not bound the front, and count once.
+        for round in 0..if is_between { GIVEN_ROUNDS } else { 1 } {
             if round > 0 {
                 let each = (1.0 - self.share_nowhere()) / (K * M * L) as f32;
                 self.grid.cells().for_each(|mass| *mass = each);
@@ -303,7 +347,6 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
             self.grid.lay_around(TAIL);
         }
         self.start -= self.information() as f32;
-        self
     }
 
     /// Where the front is known best, if it is found: 90 % of it lies within so many metres there, its direction has a

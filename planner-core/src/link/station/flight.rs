@@ -183,6 +183,9 @@ fn mission<L: Planner, P: Port, S: LabelSensor, W: Watch>(
         }
         let alarm = Alarm::risen(before, planner.alarm());
         watch.stepped(&Step { motion, pose, reading, alarm });
+        if let Some(front) = planner.front() {
+            vehicle.link.ask(Request::Front(front))?;
+        }
     }
     Ok(EndReason::Steps)
 }

@@ -15,6 +15,7 @@ use crate::belief::evidence::Alarm;
 use crate::belief::goal::{Accuracy, Criterion};
 use crate::belief::sample::Reading;
 use crate::belief::tolerance::Tolerance;
+use crate::belief::weight::Prior;
 use crate::belief::{Belief as _, ObservationError};
 use crate::geometry::lattice::Site;
 use crate::geometry::workspace::Workspace;
@@ -54,6 +55,15 @@ pub struct TrueLabels<const N: usize, C = Accuracy, S = Near>(PhantomData<(C, S)
 /// `H` hypotheses. Look-ahead has a [`Sight`]: [`AnySight`](crate::AnySight) takes all that a setup asks for.
 #[derive(Debug)]
 pub struct AllLabels<const T: usize, const N: usize, const H: usize, S = Near>(PhantomData<S>);
+
+/// The follower of fronts, by a [`Tracker`](crate::Tracker) of `K` directions, `M` offsets and `L` layers, and the
+/// planners of `A`: by default none.
+#[derive(Debug)]
+pub struct Tracks<const K: usize, const M: usize, const L: usize, A = NoOthers>(PhantomData<A>);
+
+/// No planner.
+#[derive(Debug)]
+pub enum NoOthers {}
 
 /// A mission that was set up.
 #[derive(Debug)]
@@ -204,5 +214,31 @@ impl<const T: usize, const N: usize, const H: usize, V: Sight> Planners for AllL
             }
             _ => TrueLabels::<T, Accuracy, V>::fly(mission, terms),
         }
+    }
+}
+
+impl<const K: usize, const M: usize, const L: usize, A: Planners> Planners for Tracks<K, M, L, A> {
+    fn fly<P: Port, S: LabelSensor, D: Dynamics, G: Workspace, W: Watch>(
+        mission: Mission<'_, P, S, W>,
+        terms: PlannerSetup<D, G>,
+    ) -> Result<Flown, LinkError> {
+        let Mission { station, setup, watch } = mission;
+        match setup.algorithm {
+            Algorithm::Track { front, noise, ends } => {
+                // It watches its labels itself: they speak of a front, not of a line.
+                let mut planner = setup.track::<_, _, K, M, L>(terms, front, ends);
+                station.fly(setup, &mut setup.prepare(&mut planner, Prior::Area, noise), watch)
+            }
+            _ => A::fly(Mission { station, setup, watch }, terms),
+        }
+    }
+}
+
+impl Planners for NoOthers {
+    fn fly<P: Port, S: LabelSensor, D: Dynamics, G: Workspace, W: Watch>(
+        mission: Mission<'_, P, S, W>,
+        _: PlannerSetup<D, G>,
+    ) -> Result<Flown, LinkError> {
+        mission.station.decline(DeclinedError::Algorithm)
     }
 }

@@ -4,6 +4,7 @@
 use crate::belief::ObservationError;
 use crate::belief::doubtful_labels::CellPosterior;
 use crate::belief::estimate::Estimates;
+use crate::belief::front::{Front, Tracker};
 use crate::belief::goal::{Accuracy, Criterion, Goal};
 use crate::belief::noise::Noise;
 use crate::belief::predictions::NoisyBelief;
@@ -21,6 +22,7 @@ use crate::planner::lookahead::Lookahead;
 use crate::planner::scc::{Policy, Scc};
 use crate::planner::setup::{Restart, SetupError, aimed_for};
 use crate::planner::sight::{AnySight, Sight};
+use crate::planner::track::Track;
 use crate::planner::{Plan, Planner};
 use crate::robot::Hearing;
 
@@ -173,6 +175,18 @@ impl Setup {
     ) -> Lookahead<D, NoisyBelief<N, H>, G, Accuracy, S> {
         let price = options.weight.into();
         Lookahead::of((area, dynamics), NoisyBelief::NONE, price, evaluations, goal).seeing(sight)
+    }
+
+    /// The follower of fronts for this mission, with none of its samples yet: the memory for
+    /// [`prepare`](Self::prepare).
+    pub fn track<D: Dynamics, G: Workspace, const K: usize, const M: usize, const L: usize>(
+        &self,
+        PlannerSetup { dynamics, area, .. }: PlannerSetup<D, G>,
+        front: Front,
+        ends: bool,
+    ) -> Track<D, K, M, L, G> {
+        let planner = Track::of((area, dynamics), Tracker::blank(front));
+        if ends { planner.until_closed() } else { planner }
     }
 
     /// Begins the mission in this memory, so that there is never a second planner beside it.

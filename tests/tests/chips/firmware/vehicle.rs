@@ -18,7 +18,7 @@ use host_sim::mission::scenario::{self, Overrides};
 use host_sim::world::on_the_way::Way;
 use host_sim::world::robot::{Glimpse, Ideal, Robot as _};
 use planner_core::robot::Body;
-use planner_core::{Agent, Estimates, Event, Motion, Pose, Reading, Site};
+use planner_core::{Agent, Estimates, Event, FrontState, Motion, Pose, Reading, Site};
 use rayon::prelude::*;
 use tests::is_long;
 use tests::program::build;
@@ -37,13 +37,14 @@ struct Flight {
     wrong: &'static [usize],
 }
 
-const FLIGHTS: [Flight; 6] = [
+const FLIGHTS: [Flight; 7] = [
     Flight { algorithm: Algorithm::Cfc, steps: 12, readings: 1, p: 1.0, wrong: &[] },
     Flight { algorithm: Algorithm::Lookahead, steps: 12, readings: 1, p: 1.0, wrong: &[] },
     Flight { algorithm: Algorithm::Lookahead, steps: 9, readings: 1, p: 0.9, wrong: &[3, 7] },
     Flight { algorithm: Algorithm::Scc, steps: 9, readings: 1, p: 0.7, wrong: &[2, 5, 6] },
     Flight { algorithm: Algorithm::Lookahead, steps: 12, readings: 4, p: 1.0, wrong: &[] },
     Flight { algorithm: Algorithm::Lookahead, steps: 8, readings: 3, p: 0.9, wrong: &[3, 7, 8] },
+    Flight { algorithm: Algorithm::Track, steps: 24, readings: 2, p: 0.9, wrong: &[9, 20] },
 ];
 
 impl Flight {
@@ -115,8 +116,9 @@ impl Body for Misread {
 /// A step: action, target, label.
 type Step = (u32, [i64; 3], i8);
 
-/// Lines by their names: site, direction, slope and intercept.
-type Lines = BTreeMap<String, ([i64; 4], [f32; 2])>;
+/// Lines by their names: site, direction, slope and intercept. Vertices of a map by their steps: site, heading, and
+/// curvature and deviations.
+type Lines = BTreeMap<String, (Vec<i64>, Vec<f32>)>;
 
 /// What the planner makes of a flight here.
 fn here(flight: Flight) -> (Vec<Step>, Lines) {
@@ -125,9 +127,14 @@ fn here(flight: Flight) -> (Vec<Step>, Lines) {
     let ideal = Ideal { world: mission.world.clone() };
     let body = Misread { ideal, way: mission.way(), wrong: flight.wrong, labels: 0 };
     let mut agent = Agent::new(&mut *planner, body, mission.start);
-    let mut steps = Vec::new();
-    for _ in 0..flight.steps {
+    let (mut steps, mut lines) = (Vec::new(), Lines::new());
+    for number in 1..=flight.steps {
         let Ok(Event::Step(step)) = agent.step() else { panic!("{flight:?} ends early") };
+        if let Some(FrontState { waist: Some(it), .. }) = agent.planner.front() {
+            let exact = vec![it.site.x().into(), it.site.z().into(), it.heading.0.into()];
+            let rest = vec![it.curvature, it.deviation, it.turn_deviation];
+            lines.insert(format!("vertex {number}"), (exact, rest));
+        }
         let Pose { site, heading } = step.motion.target;
         let target = [site.x().into(), site.z().into(), heading.0.into()];
         let label = step.reading.map_or(0, Reading::sign);
@@ -135,13 +142,13 @@ fn here(flight: Flight) -> (Vec<Step>, Lines) {
     }
     let Estimates { bisector, centre, maximum_margin } = planner.belief().estimates();
     let named = [("bisector", bisector), ("centre", centre), ("maximum_margin", maximum_margin)];
-    let lines = named.into_iter().filter_map(|(name, line)| {
+    lines.extend(named.into_iter().filter_map(|(name, line)| {
         let line = line?;
         let (about, along) = (line.about(), line.along());
         let exact = [about.x(), about.z(), along.x(), along.z()].map(i64::from);
-        Some((name.to_owned(), (exact, [line.slope(), line.intercept()])))
-    });
-    (steps, lines.collect())
+        Some((name.to_owned(), (exact.to_vec(), vec![line.slope(), line.intercept()])))
+    }));
+    (steps, lines)
 }
 
 /// What the vehicle printed.
@@ -159,10 +166,11 @@ fn told(output: &str) -> (Vec<Step>, Lines) {
         Some((action.parse().ok()?, target.try_into().ok()?, label))
     };
     let estimate = |line: &str| {
-        let (name, exact) = line.split_once(": z = ")?;
-        let exact = numbers(exact.split_once("exactly ")?.1);
-        let whole = exact[..4].iter().map(|it| *it as i64).collect::<Vec<_>>();
-        Some((name.to_owned(), (whole.try_into().ok()?, [exact[4], exact[5]].map(|it| it as f32))))
+        let (name, exact) = line.split_once(": ")?;
+        let exact = numbers(exact.split_once(", exactly ")?.1);
+        let (whole, rest) = exact.split_at(if name.starts_with("vertex") { 3 } else { 4 });
+        let rest = rest.iter().map(|it| *it as f32).collect();
+        Some((name.to_owned(), (whole.iter().map(|it| *it as i64).collect(), rest)))
     };
     (output.lines().filter_map(step).collect(), output.lines().filter_map(estimate).collect())
 }

@@ -1,0 +1,162 @@
+//! The planners that follow fronts, and the missions of a campaign, flown on all cores.
+
+use std::f64::consts::FRAC_PI_2;
+
+use anyhow::{Error, Result};
+use indicatif::ProgressBar;
+use planner_core::dynamics::Dynamics;
+use planner_core::{
+    AnyReliability, Area, Noise, Planner as _, Track, Tracker, Unicycle, Workspace,
+};
+use rand::SeedableRng as _;
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+
+use crate::campaign::fronts::following::{Course, Flown, Follower, REACH, Vertex, follow};
+use crate::campaign::fronts::kinds::{KINDS, Kind, Told};
+use crate::campaign::fronts::summary::{Row, Summary};
+use crate::campaign::fronts::true_front::TrueFront;
+use crate::campaign::fronts::who::Who;
+use crate::mission::crossings::Crossings;
+use crate::mission::steering::{BANG_BANG, Steered, ZIGZAG};
+use crate::output::notes::progress;
+
+/// How long a mission is, in steps: 400 m.
+pub const STEPS: f64 = 200.0;
+
+/// The front is known to lie within so many metres of the start along either axis.
+const AROUND: f64 = 10.0;
+
+/// Missions along each kind of front.
+#[derive(Clone, Debug)]
+pub struct Fronts {
+    /// Who follows.
+    pub who: Who,
+    /// Missions a kind.
+    pub missions: u64,
+    /// Seed of the ensemble. A mission has its own stream.
+    pub seed: u64,
+    /// Labels are true with these probabilities.
+    pub p: Vec<f64>,
+    /// The radius and the speed that a tracker is told are multiplied by these.
+    pub told: [f64; 2],
+    /// The longest motion, metres, if it is not the usual one.
+    pub reach: Option<f64>,
+}
+
+impl Fronts {
+    /// Flies the missions on all cores, with a progress bar on a terminal.
+    ///
+    /// # Errors
+    /// When a tracker cannot be told so.
+    pub fn run(&self) -> Result<Summary> {
+        let rows = KINDS.iter().flat_map(|kind| self.p.iter().map(move |p| (kind, *p)));
+        let rows: Vec<_> = rows.collect();
+        let bar = progress(self.missions * rows.len() as u64, "missions")?;
+        let bar = bar.with_message(self.who.title());
+        let rows: Result<_> = rows.into_iter().map(|(kind, p)| self.row(kind, p, &bar)).collect();
+        bar.finish_and_clear();
+        let told = (self.who == Who::Track).then_some(self.told);
+        Ok(Summary {
+            algorithm: self.who,
+            missions: self.missions,
+            seed: self.seed,
+            reach: self.reach(),
+            told_radius: told.map(|it| it[0]),
+            told_speed: told.map(|it| it[1]),
+            rows: rows?,
+        })
+    }
+
+    /// The missions along one kind of front.
+    fn row(&self, kind: &Kind, p: f64, bar: &ProgressBar) -> Result<Row> {
+        let mission = |number| {
+            let flown = self.mission(kind, p, number);
+            bar.inc(1);
+            flown
+        };
+        let flown = (0..self.missions).into_par_iter().map(mission).collect::<Result<Vec<_>>>()?;
+        Ok(Row::of(kind.name, p, &flown))
+    }
+
+    /// The longest motion, metres.
+    fn reach(&self) -> f64 {
+        self.reach.unwrap_or(self.who.usual_reach())
+    }
+
+    /// The mission with this number.
+    ///
+    /// # Errors
+    /// When a tracker cannot be told so.
+    pub fn mission(&self, kind: &Kind, p: f64, number: u64) -> Result<Flown> {
+        let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
+        rng.set_stream(number);
+        let front = (kind.draw)(&mut rng);
+        let pose = front.start(&mut rng);
+        let reach = self.reach();
+        let steps = reach / REACH;
+        let course = Course { motions: libm::round(STEPS / steps) as u32, steps, p };
+        let (sea, vehicle) = (sea()?, vehicle(reach)?);
+        let steered = |steering| {
+            Steered::new((sea, vehicle), Crossings::given(&front.given()), steering, reach)
+        };
+        Ok(match self.who {
+            Who::Track => {
+                let told = kind.told.times([self.told[0], self.told[1] * steps]);
+                let tracker = tracker(&front, told, Noise::new(p).map_err(Error::msg)?)?;
+                let planner = Track::new(sea, vehicle, tracker).map_err(Error::msg)?;
+                follow(&front, planner, (course, pose), &mut rng, |_, _, _| ())
+            }
+            Who::Zigzag => follow(&front, steered(ZIGZAG), (course, pose), &mut rng, |_, _, _| ()),
+            Who::BangBang => {
+                follow(&front, steered(BANG_BANG), (course, pose), &mut rng, |_, _, _| ())
+            }
+        })
+    }
+}
+
+impl<D: Dynamics, G: Workspace> Follower for Steered<D, G> {
+    fn vertex(&self) -> Option<Vertex> {
+        self.belief().crossing.map(|at| Vertex { at, half_width: None })
+    }
+
+    fn is_closed(&self) -> bool {
+        false
+    }
+
+    fn begins_again(&self) -> bool {
+        false
+    }
+}
+
+/// The usual tracker of a mission: four points are given, and the front lies within 10 m of its place.
+///
+/// # Errors
+/// When it cannot be told so.
+pub fn tracker(
+    front: &TrueFront,
+    told: Told,
+    noise: impl Into<Noise<AnyReliability>>,
+) -> Result<Tracker<16, 16, 3>> {
+    let [x, z] = front.place.into();
+    let near = Area::metres([x - AROUND, z - AROUND], [x + AROUND, z + AROUND]);
+    let tracker = Tracker::new(near.map_err(Error::msg)?, told.front()?, noise);
+    Ok(tracker.given(&front.given()))
+}
+
+/// A unicycle with motions of up to so many metres, in steps of 10 cm. It turns by up to a quarter turn.
+///
+/// # Errors
+/// When there is no such vehicle.
+pub fn vehicle(reach: f64) -> Result<Unicycle> {
+    let speeds = libm::round(reach * 10.0) as u16 + 1;
+    Unicycle::new(1_000, FRAC_PI_2, speeds, 100).map_err(Error::msg)
+}
+
+/// An area without a border that a mission could reach.
+///
+/// # Errors
+/// Never: it is an area.
+pub fn sea() -> Result<Area> {
+    Area::metres([-2_000.0, -2_000.0], [2_000.0, 2_000.0]).map_err(Error::msg)
+}

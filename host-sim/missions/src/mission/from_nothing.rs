@@ -1,0 +1,174 @@
+//! A mission that begins from nothing: it first seeks the boundary, then the planner that was asked for goes on.
+
+use planner_core::dynamics::Dynamics;
+use planner_core::error::ObservationError;
+use planner_core::link::message::MissionArea;
+use planner_core::{
+    Belief as _, Front, OneLabel, Plan, Planner, Pose, Reading, Seek, Site, StopReason, Tolerance,
+    Tracker, VersionSpace, Workspace as _,
+};
+use serde::{Deserialize, Serialize};
+
+use crate::mission::algorithm::Algorithm;
+use crate::mission::definition::{Mission, SoughtLine};
+use crate::mission::planners::AnyPlanner;
+use crate::mission::read_out::ReadOut;
+use crate::mission::results::{Ending, StepResult};
+
+/// Seeks the boundary, and hands over to the planner that a mission asks for.
+pub(crate) struct FromNothing<D> {
+    mission: Mission,
+    seek: Seek<D, 16, 16, MissionArea>,
+    next: Option<AnyPlanner>,
+}
+
+impl Mission {
+    /// Whether the given points do not bound the line that is sought: there are none, or they have one label.
+    pub fn begins_from_nothing(&self) -> bool {
+        self.algorithm.seeks_line() && self.given.lines().is_none()
+    }
+
+    /// What is known of a line that is sought from nothing, before the first label.
+    pub fn sought(&self) -> SoughtLine {
+        let bounds = self.config.area.bounds();
+        Tracker::new(bounds, Front::STRAIGHT, self.noise_told()).given(self.given.samples())
+    }
+
+    /// The planner that seeks the line.
+    ///
+    /// # Panics
+    /// When settings contradict each other.
+    pub fn seek<D: Dynamics>(&self, dynamics: D) -> Seek<D, 16, 16, MissionArea> {
+        let bounds = self.config.area.bounds();
+        let tracker = Tracker::new(bounds, Front::STRAIGHT, self.noise_told());
+        let seek = Seek::new(self.config.area, dynamics, tracker).expect("room for the vehicle");
+        let seek = match self.asking.price {
+            Some(price) => seek.at_price(price).expect("a price that was checked"),
+            None => seek,
+        };
+        seek.knowing(self.given.samples())
+    }
+}
+
+impl<D: Dynamics + 'static> FromNothing<D> {
+    pub(crate) fn new(mission: &Mission, dynamics: D) -> Self {
+        let seek = mission.seek(dynamics);
+        Self { mission: mission.clone(), seek, next: None }
+    }
+
+    /// Hands over, if the boundary is found.
+    fn go_on(&mut self) {
+        let given = self.seek.given();
+        if given.is_empty() || self.next.is_some() {
+            return;
+        }
+        let tolerance = self.seek.belief().tolerance();
+        let lines = if self.mission.noise.is_none() && tolerance != Tolerance::NONE {
+            let given: Vec<_> = given.iter().map(|it| (*it, tolerance)).collect();
+            VersionSpace::of_uncertain(&given)
+        } else {
+            VersionSpace::new(given)
+        };
+        let lines = lines.and_then(|it| it.clone().with_tolerance(tolerance).map(|_| it));
+        if let Ok(lines) = lines {
+            self.mission.given = lines.into();
+            self.next = Some(self.mission.planner());
+        }
+    }
+}
+
+impl<D: Dynamics + 'static> Planner for FromNothing<D> {
+    type Belief = dyn ReadOut;
+
+    fn plan(&mut self, pose: Pose) -> Plan {
+        match &mut self.next {
+            Some(next) => next.plan(pose),
+            None => match self.seek.plan(pose) {
+                // The samples that were found leave lines of too many directions for positions that err so much.
+                Plan::Stop(StopReason::Known) => Plan::Stop(StopReason::Tolerance),
+                plan => plan,
+            },
+        }
+    }
+
+    fn observe_within(
+        &mut self,
+        pose: Pose,
+        reading: Option<Reading>,
+        tolerance: Tolerance,
+    ) -> Result<(), ObservationError> {
+        if let Some(next) = &mut self.next {
+            return next.observe_within(pose, reading, tolerance);
+        }
+        self.seek.observe_within(pose, reading, tolerance)?;
+        self.go_on();
+        Ok(())
+    }
+
+    fn observe_on_the_way(
+        &mut self,
+        site: Site,
+        reading: Reading,
+    ) -> Result<bool, ObservationError> {
+        match &mut self.next {
+            Some(next) => next.observe_on_the_way(site, reading),
+            // It hands over at the end of a motion.
+            None => self.seek.observe_on_the_way(site, reading),
+        }
+    }
+
+    fn belief(&self) -> &(dyn ReadOut + 'static) {
+        self.next.as_ref().map_or(self.seek.belief(), |next| next.belief())
+    }
+}
+
+/// What seeking the boundary from nothing came to.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SeekRecord {
+    /// The step after which the boundary was found, if it was.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub found: Option<usize>,
+    /// Labels that were read until then, or until the end.
+    pub labels: usize,
+    /// Metres that were driven for them.
+    pub metres: f64,
+    /// The label that all of the area most likely has, where the boundary was not found.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub label: Option<i8>,
+    /// The share of the area that is expected to have the other label all the same.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub other: Option<f32>,
+}
+
+impl SeekRecord {
+    /// Of a mission that began from nothing and ended so, its steps, and what was known after each of them. Also of one
+    /// that looked for a front and found that all has one label.
+    pub(crate) fn of(
+        mission: &Mission,
+        steps: &[StepResult],
+        after: &[&dyn ReadOut],
+        ending: Ending,
+    ) -> Option<Self> {
+        let is_one = ending == Ending::Stopped(StopReason::OneLabel);
+        let hands_over = mission.begins_from_nothing() && mission.algorithm != Algorithm::Lawnmower;
+        if !hands_over && !is_one {
+            return None;
+        }
+        let is_found = |it: &&dyn ReadOut| it.sought().is_none() && it.front().is_none();
+        let found = after.iter().position(is_found).map(|k| k + 1);
+        let so_far = &steps[..found.unwrap_or(steps.len())];
+        let read = |it: &StepResult| it.passed().count() + usize::from(it.label.is_some());
+        let one = after.last().filter(|_| is_one).and_then(|belief| {
+            let area = &mission.config.area;
+            let of_line = belief.sought().and_then(|it| OneLabel::of(it, area));
+            of_line.or_else(|| belief.front().and_then(|it| OneLabel::of(it, area)))
+        });
+        Some(Self {
+            found,
+            labels: so_far.iter().map(read).sum(),
+            metres: so_far.last().map_or(0.0, |it| it.metres),
+            label: one.map(|it| it.label.sign()),
+            other: one.map(|it| it.other),
+        })
+    }
+}

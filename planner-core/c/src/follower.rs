@@ -1,0 +1,239 @@
+//! A planner that goes along a front, in the caller's memory.
+//!
+//! Unsafe code is here for the same reason as in `finder`: it reads and writes behind the pointers that C passes.
+
+use core::ffi::c_void;
+use core::mem::{MaybeUninit, align_of, size_of};
+
+use planner_core::{
+    Front, Noise, Plan, Planner as _, Prior, Restart as _, Site, Track, Tracker, Unicycle, Waist,
+};
+
+use crate::area::Ground;
+use crate::snapshot;
+use crate::types::{Mission, Motion, Pose, Reading, Sample, Status};
+
+/// Given samples at most.
+const MOST_GIVEN: usize = 16;
+
+/// A planner that goes along a front, in memory of the caller.
+#[repr(align(8))]
+pub struct Follower {
+    track: Track<Unicycle, 16, 16, 3, Ground>,
+}
+
+/// How tightly a front bends, and how fast it moves.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct FrontSettings {
+    /// The radius of the tightest bend, metres, from 0.1; 0 for a straight line. If in doubt, name a smaller one.
+    pub radius: f64,
+    /// How far the front may move in the time of a motion, metres. If in doubt, name a higher speed.
+    pub speed: f64,
+}
+
+/// Where a front is known best.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct FrontPlace {
+    /// On the mean front. The heading is the front's direction; the side of +1 is to the left.
+    pub pose: Pose,
+    /// 1/m, positive where the front bends to the left.
+    pub curvature: f64,
+    /// The standard deviation of the front across its direction, metres.
+    pub deviation: f64,
+    /// The standard deviation of the direction, radians.
+    pub turn_deviation: f64,
+    /// Whether the robot has gone along all of a closed front.
+    pub is_closed: bool,
+}
+
+impl FrontPlace {
+    fn new(waist: Waist, is_closed: bool) -> Self {
+        let Waist { site, heading, curvature, deviation, turn_deviation } = waist;
+        Self {
+            pose: planner_core::Pose { site, heading }.into(),
+            curvature: curvature.into(),
+            deviation: deviation.into(),
+            turn_deviation: turn_deviation.into(),
+            is_closed,
+        }
+    }
+}
+
+/// How much memory a planner of fronts takes, bytes.
+#[unsafe(export_name = "planner_follower_bytes")]
+pub extern "C" fn follower_bytes() -> usize {
+    size_of::<Follower>()
+}
+
+/// Makes a planner of fronts in so many bytes of memory that is aligned to 8, from 0 to 16 given samples, and writes where
+/// it is. It is that memory's beginning: there is nothing to free. Of the mission `slopes` and `level` must be 0. A call
+/// that is refused writes nothing.
+///
+/// # Safety
+/// `memory` must be null or writable for so many bytes, `given` readable for so many samples or null if there are none,
+/// the mission's area null or readable, and none of them in that memory.
+#[unsafe(export_name = "planner_follow")]
+pub unsafe extern "C" fn follow(
+    made: Option<&mut MaybeUninit<*mut Follower>>,
+    memory: *mut c_void,
+    bytes: usize,
+    mission: Option<&Mission<'_>>,
+    front: FrontSettings,
+    given: *const Sample,
+    count: usize,
+) -> Status {
+    let (Some(made), Some(mission)) = (made, mission) else { return Status::Memory };
+    let is_room = bytes >= size_of::<Follower>() && memory.addr().is_multiple_of(8);
+    let is_given = count == 0 || !given.is_null() && given.is_aligned();
+    if memory.is_null() || !is_room || !is_given {
+        return Status::Memory;
+    }
+    const { assert!(align_of::<Follower>() <= 8) };
+    // SAFETY: the caller promises so many samples.
+    let given = if count == 0 { &[] } else { unsafe { core::slice::from_raw_parts(given, count) } };
+    let begun = prepared(mission, front, given).and_then(|(track, noise, samples)| {
+        let place = memory.cast::<Follower>();
+        // SAFETY: there is room, and it is aligned.
+        let follower = unsafe {
+            place.write(Follower { track });
+            &mut *place
+        };
+        let samples = samples.get(..given.len()).unwrap_or_default();
+        let begun = follower.track.restart(samples, Prior::Area, noise);
+        begun.map(|()| place).map_err(|_| Status::ToleranceTooLarge)
+    });
+    match begun {
+        Ok(place) => {
+            made.write(place);
+            Status::Ok
+        }
+        Err(status) => status,
+    }
+}
+
+type Parts = (Track<Unicycle, 16, 16, 3, Ground>, Noise, [planner_core::Sample; MOST_GIVEN]);
+
+/// A planner of a mission, its noise and its given samples.
+fn prepared(
+    mission: &Mission<'_>,
+    FrontSettings { radius, speed }: FrontSettings,
+    given: &[Sample],
+) -> Result<Parts, Status> {
+    let label = planner_core::Label::Negative;
+    let mut samples = [planner_core::Sample { site: Site::ORIGIN, label }; MOST_GIVEN];
+    let places = samples.get_mut(..given.len()).ok_or(Status::Given)?;
+    for (place, sample) in places.iter_mut().zip(given) {
+        *place = sample.read()?;
+    }
+    let front = if radius == 0.0 { Ok(Front::STRAIGHT) } else { Front::bending(radius) };
+    let front = front.and_then(|it| it.moving(speed)).map_err(|_| Status::Mission)?;
+    let status = |refusal: crate::verdict::Refusal| refusal.status;
+    if mission.slopes != 0.0 || mission.level != 0.0 {
+        return Err(Status::Mission);
+    }
+    let (ground, unicycle) =
+        (mission.ground().map_err(status)?, mission.unicycle().map_err(status)?);
+    let tolerance = mission.tolerance().map_err(status)?;
+    let noise = mission.noise().map_err(status)?.unwrap_or(Noise { tolerance, ..Noise::NONE });
+    let tracker = Tracker::new(planner_core::Workspace::bounds(&ground), front, noise);
+    let track = Track::new(ground, unicycle, tracker).map_err(|_| Status::ToleranceTooLarge)?;
+    Ok((track, noise, samples))
+}
+
+/// Plans the next motion from where the robot is. `Ok`, or why there is none.
+///
+/// # Safety
+/// `follower` must be null or from `planner_follow`.
+#[unsafe(export_name = "planner_follower_plan")]
+pub unsafe extern "C" fn follower_plan(
+    follower: Option<&mut Follower>,
+    pose: Pose,
+    motion: Option<&mut MaybeUninit<Motion>>,
+) -> Status {
+    let (Some(follower), Some(place)) = (follower, motion) else { return Status::Memory };
+    let pose = match pose.read() {
+        Ok(pose) => pose,
+        Err(status) => return status,
+    };
+    match follower.track.plan(pose) {
+        Plan::Move(motion) => {
+            place.write(motion.into());
+            Status::Ok
+        }
+        Plan::Stop(reason) => reason.into(),
+    }
+}
+
+/// Takes in where a motion ended, and what was read there: one of `planner_reading`.
+///
+/// # Safety
+/// `follower` must be null or from `planner_follow`.
+#[unsafe(export_name = "planner_follower_observe")]
+pub unsafe extern "C" fn follower_observe(
+    follower: Option<&mut Follower>,
+    pose: Pose,
+    reading: i32,
+) -> Status {
+    let Some(follower) = follower else { return Status::Memory };
+    match (pose.read(), Reading::read(reading)) {
+        (Ok(pose), Ok(reading)) => {
+            let observed = follower.track.observe(pose, reading);
+            observed.map_or_else(Status::from, |()| Status::Ok)
+        }
+        (Err(status), _) | (_, Err(status)) => status,
+    }
+}
+
+/// Where the front is known best. `PLANNER_STATUS_UNDECIDED` as long as it is not found, and where it is lost.
+///
+/// # Safety
+/// `follower` must be null or from `planner_follow`.
+#[unsafe(export_name = "planner_front")]
+pub unsafe extern "C" fn front(
+    follower: Option<&mut Follower>,
+    front: Option<&mut MaybeUninit<FrontPlace>>,
+) -> Status {
+    let (Some(follower), Some(place)) = (follower, front) else { return Status::Memory };
+    let Some(waist) = follower.track.found() else { return Status::Undecided };
+    place.write(FrontPlace::new(waist, follower.track.is_closed()));
+    Status::Ok
+}
+
+/// Writes what a planner of fronts has to remember over a sleep. Returns how many bytes that takes; 0 if there is not so
+/// much room. `planner_follower_bytes` are always enough.
+///
+/// # Safety
+/// `follower` must be null or from `planner_follow`, and `bytes` null or writable for so many bytes.
+#[unsafe(export_name = "planner_follower_save")]
+pub unsafe extern "C" fn follower_save(
+    follower: Option<&mut Follower>,
+    bytes: *mut u8,
+    room: usize,
+) -> usize {
+    let Some(follower) = follower.filter(|_| !bytes.is_null()) else { return 0 };
+    // SAFETY: the caller promises so much room.
+    let bytes = unsafe {
+        bytes.write_bytes(0, room);
+        core::slice::from_raw_parts_mut(bytes, room)
+    };
+    snapshot::write(&follower.track, bytes).unwrap_or(0)
+}
+
+/// Lets a planner of fronts go on from where another was, that was begun with the same mission. A planner that refuses
+/// the bytes stays as it was.
+///
+/// # Safety
+/// `follower` must be null or from `planner_follow`, and `bytes` null or readable for so many bytes.
+#[unsafe(export_name = "planner_follower_restore")]
+pub unsafe extern "C" fn follower_restore(
+    follower: Option<&mut Follower>,
+    bytes: *const u8,
+    count: usize,
+) -> Status {
+    let Some(follower) = follower.filter(|_| !bytes.is_null()) else { return Status::Memory };
+    // SAFETY: the caller promises so many bytes.
+    let bytes = unsafe { core::slice::from_raw_parts(bytes, count) };
+    snapshot::wake(bytes, &mut follower.track).err().unwrap_or(Status::Ok)
+}

@@ -1,0 +1,70 @@
+/* Goes along a circle whose labels are sometimes wrong. In the middle it sleeps, and its memory is lost. */
+
+#include <stdio.h>
+#include <string.h>
+
+#include "planner.h"
+
+static uint64_t memory[600];
+static uint8_t kept[4800];
+
+static void print(double number) {
+    uint64_t bits;
+    memcpy(&bits, &number, sizeof bits);
+    printf("%08lx%08lx ", (unsigned long)(bits >> 32), (unsigned long)(bits & 0xffffffffu));
+}
+
+static planner_follower_t *begin(void) {
+    const planner_mission mission = {
+        .max_x = 120.0, .max_z = 120.0, .p = 0.9, .sharpest = 1.57, .turn_step_urad = 10000,
+        .step_mm = 100, .steps = 20,
+    };
+    const planner_front_settings front = {30.0, 0.01};
+    const planner_sample given[] = {{60.0, 10.0, false}, {60.0, 50.0, true}};
+    planner_follower_t *follower = NULL;
+    if (planner_follower_bytes() > sizeof memory) return NULL;
+    if (planner_follow(&follower, memory, sizeof memory, &mission, front, given, 2)) return NULL;
+    return follower;
+}
+
+int main(void) {
+    planner_pose pose = {60.0, 28.0, 0.0};
+    planner_follower_t *follower = begin();
+    unsigned labels = 0;
+    if (!follower) return 1;
+    for (int step = 0; step < 130; step++) {
+        planner_motion motion;
+        planner_front_place front;
+        int32_t reading = PLANNER_READING_NONE;
+        if (step == 65) {
+            size_t count = planner_follower_save(follower, kept, sizeof kept);
+            if (!count || planner_follower_save(follower, kept, count - 1)) return 2;
+            count = planner_follower_save(follower, kept, sizeof kept);
+            memset(memory, 0xa5, sizeof memory);
+            follower = begin();
+            kept[100] ^= 1;
+            if (planner_follower_restore(follower, kept, count) != PLANNER_STATUS_SNAPSHOT_SPOILT) return 3;
+            kept[100] ^= 1;
+            if (planner_follower_restore(follower, kept, count)) return 4;
+        }
+        if (planner_follower_plan(follower, pose, &motion)) return 5;
+        pose = motion.target;
+        if (motion.wants_label) {
+            double x = pose.x - 60.0, z = pose.z - 60.0;
+            bool is_wrong = ++labels % 11 == 3, is_inside = x * x + z * z < 900.0;
+            reading = is_inside == is_wrong ? PLANNER_READING_NEGATIVE : PLANNER_READING_POSITIVE;
+        }
+        if (planner_follower_observe(follower, pose, reading)) return 6;
+        print(pose.x);
+        print(pose.z);
+        if (!planner_front(follower, &front)) {
+            const double numbers[] = {
+                front.pose.x, front.pose.z, front.pose.heading, front.curvature, front.deviation,
+                front.turn_deviation, front.is_closed ? 1.0 : 0.0,
+            };
+            for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) print(numbers[k]);
+        }
+        printf("\n");
+    }
+    return 0;
+}
