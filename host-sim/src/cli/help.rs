@@ -61,6 +61,7 @@ Examples:
   host-sim replay utm.csv --crs EPSG:25832 --geojson line.geojson    metres of UTM zone 32
   host-sim replay track.gpx --columns label=name                     <name>yes</name> at each point
   host-sim replay boat.csv --p 0.95 --strict                         exit status 1 if no straight line fits
+  host-sim replay boat.csv --front 60 --p 0.95 --map front.csv       a front that bends, along the track of a boat
 
 The last lines say whether a straight line fits: a run of labels, a bend, a drift, a second boundary, or a --p that is too
 high for the file. Then a warning goes to standard error. On straight files a verdict is wrong at most once in a hundred.";

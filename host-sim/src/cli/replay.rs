@@ -136,15 +136,12 @@ pub(crate) fn replay(args: &ReplayArgs) -> Result<Done> {
     let trust = Trust { p: args.p, tolerance: args.tolerance.unwrap_or(0.0) };
     let wants = outputs.each_ref().map(Option::is_some);
     // All is made before anything is written.
-    let (name, said) = match args.front {
-        Some(front) => {
-            let map = FrontMap::read(&args.samples, &layout, front, trust)?;
-            (map.name().to_owned(), front_said(&map, wants, args.format)?)
-        }
-        None => {
-            let replay = Replay::read(&args.samples, &layout, trust)?;
-            (replay.name().to_owned(), line_said(&replay, wants, args.format)?)
-        }
+    let (name, said) = if let Some(front) = args.front {
+        let map = FrontMap::read(&args.samples, &layout, front, trust)?;
+        (map.name().to_owned(), front_said(&map, wants, args.format)?)
+    } else {
+        let replay = Replay::read(&args.samples, &layout, trust)?;
+        (replay.name().to_owned(), line_said(&replay, wants, args.format)?)
     };
     let Said { figure, geojson, map, text, warning } = said;
     for (output, content) in outputs.into_iter().zip([figure, geojson, map]) {

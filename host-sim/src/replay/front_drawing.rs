@@ -15,14 +15,22 @@ use crate::report::ribbon::Ribbon;
 /// Samples that a figure shows at most, so that they do not hide the front.
 const MOST: usize = 150;
 
+/// Vertices that a figure shows at most, and the last of each piece.
+const MOST_VERTICES: usize = 5_000;
+
 impl FrontMap {
-    /// The samples and the front that they map, as an SVG document. Of very many samples it shows some.
+    /// The samples and the front that they map, as an SVG document. Of very many samples and vertices it shows some.
     ///
     /// # Errors
     /// When it could not be drawn.
     pub fn figure(&self) -> Result<String> {
         let samples = &self.file.samples;
-        let front = Ribbon::from(&self.pieces);
+        let mut front = Ribbon::from(&self.pieces);
+        let each = front.0.iter().map(Vec::len).sum::<usize>().div_ceil(MOST_VERTICES).max(1);
+        for rungs in &mut front.0 {
+            let last = rungs.last().copied();
+            *rungs = rungs.iter().step_by(each).copied().chain(last.filter(|_| each > 1)).collect();
+        }
         let places = samples.iter().map(|it| it.site.into()).chain(front.ways().flatten());
         let area = area_of(places).context("no area around the samples")?;
         let count = samples.len();

@@ -59,14 +59,6 @@ impl FrontMap {
         Self::of(SampleFile::read(path, layout)?, front, trust)
     }
 
-    /// As [`read`](Self::read), from the text of the file called `name`.
-    ///
-    /// # Errors
-    /// As [`read`](Self::read).
-    pub fn parse(name: &str, text: &[u8], layout: &Layout, told: (Front, Trust)) -> Result<Self> {
-        Self::of(SampleFile::parse(name, text, layout)?, told.0, told.1)
-    }
-
     fn of(file: SampleFile, front: Front, trust: Trust) -> Result<Self> {
         let RecordedTrack { rows, apart, mut tracker, width, p, is_closed } =
             RecordedTrack::of(&file, front, trust)?;

@@ -20,14 +20,11 @@ impl FrontMap {
         let mut text =
             format!("{}: {}.\n{skipped}{about}{}\n", file.name, self.headline(), self.told());
         // Writing to a string cannot fail.
-        match self.one_label_in_words() {
-            Some(says) => {
-                let _ = writeln!(text, "{says}");
-            }
-            None => {
-                text += &front::map(&self.map, unit);
-                text += &self.end_in_words();
-            }
+        if let Some(says) = self.one_label_in_words() {
+            let _ = writeln!(text, "{says}");
+        } else {
+            text += &front::map(&self.map, unit);
+            text += &self.end_in_words();
         }
         let pieces: Vec<_> = self.pieces.iter().collect();
         if pieces.len() > 1 {

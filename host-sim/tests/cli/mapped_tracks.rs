@@ -16,9 +16,13 @@ const COAST: &str = include_str!("../../scenarios/coast.toml");
 fn a_trace_gives_the_map_of_its_mission() {
     let folder = folder();
     let with = |more: &str| format!("{more}\n{COAST}");
+    // It bends so tightly that there are alarms, and the front is found again.
+    let tight =
+        COAST.replace("radius = 20.0", "radius = 400.0").replace("steps = 90", "steps = 160");
+    let tight = tight.replace("height = 6.0, length = 25.0", "height = 8.0, length = 15.0");
     let noise = |with: &str| COAST.replace("noise = { p = 0.9 }", with);
     let cases: [(&str, String, &[&str]); 9] = [
-        ("a bend told too wide", COAST.replace("radius = 20.0", "radius = 400.0"), &["400"]),
+        ("a bend told too wide", tight, &["400"]),
         ("as it is", COAST.to_owned(), &["20"]),
         ("readings on the way", with("readings = 4"), &["20"]),
         (
@@ -52,19 +56,24 @@ fn a_trace_gives_the_map_of_its_mission() {
         let found: Value = serde_json::from_str(&replay).expect("a record");
         let map = |name: &str| fs::read_to_string(folder.path().join(name)).expect("a map");
         assert!(map("run.csv").lines().count() > 20, "{name}: {end}");
-        assert_eq!(map("run.csv"), map("replay.csv"), "{name}");
+        let [flown, mapped] = ["run.csv", "replay.csv"].map(map);
+        let other = flown.lines().zip(mapped.lines()).find(|(a, b)| a != b);
+        assert!(flown == mapped, "{name}: {other:?}");
         assert_eq!(found["numbers"], "step");
         for key in ["state", "found", "lost", "vertices", "metres", "half_width"] {
             assert_eq!(found["map"][key], end["front"][key], "{name}: {key}");
         }
-        alarms += found["alarms"].as_array().expect("a list").len();
+        let vertices = found["vertices"].as_array().expect("a list");
+        let last = vertices.last().and_then(|it| it["number"].as_u64()).expect("a step");
+        let again = |it: &&Value| it.as_u64().is_some_and(|it| it + 20 < last);
+        alarms += found["alarms"].as_array().expect("a list").iter().filter(again).count();
         // What is told decides.
         let told =
             prints(folder.path(), &["replay", "t.jsonl", "--front", "7", "--map", "other.csv"]);
         assert!(told.contains("radius of 7 m"), "{told}");
         assert_ne!(map("run.csv"), map("other.csv"), "{name}");
     }
-    assert!(alarms > 0, "no case has an alarm");
+    assert!(alarms > 0, "no case finds the front again after an alarm");
 }
 
 /// Samples of a boat that goes to and fro across a circle of this radius about the origin, about `apart` metres apart.
@@ -164,7 +173,7 @@ fn a_map_has_a_place_on_the_globe() {
     assert_eq!(lines.clone().count(), vertices.len());
     for (line, it) in lines.zip(vertices) {
         let fields: Vec<f64> = line.split(',').map(|it| it.parse().expect("a number")).collect();
-        assert_eq!(fields[0], number(&it["number"]));
+        assert_eq!(fields[..1], [number(&it["number"])]);
         assert_eq!(fields[1..3], [number(&it["x"]), number(&it["z"])]);
         assert_eq!(fields[8..], [0, 1].map(|k| number(&it["in_file"][k])));
     }
@@ -174,8 +183,9 @@ fn a_map_has_a_place_on_the_globe() {
     let of = |kind: &'static str| {
         features.iter().filter(move |it| it["properties"]["kind"] == kind).collect::<Vec<_>>()
     };
-    let pieces: Vec<_> = vertices.iter().map(|it| number(&it["piece"])).collect();
-    let lengths = (1..=pieces.len()).map(|k| pieces.iter().filter(|it| **it == k as f64).count());
+    let pieces: Vec<_> = vertices.iter().map(|it| it["piece"].as_u64()).collect();
+    let lengths =
+        (1..=pieces.len()).map(|k| pieces.iter().filter(|it| **it == Some(k as u64)).count());
     let long: Vec<_> = lengths.filter(|it| *it > 1).collect();
     for (kind, shape, less) in [("front", "LineString", 0), ("band", "MultiPolygon", 1)] {
         let lengths: Vec<_> = of(kind)
@@ -194,7 +204,8 @@ fn a_map_has_a_place_on_the_globe() {
         assert_eq!((&told["row"], &told["half_width"]), (&it["number"], &it["half_width"]));
     }
     // Rings are closed, and counter-clockwise.
-    for quad in of("band").iter().flat_map(|it| it["geometry"]["coordinates"].as_array()).flatten()
+    for quad in
+        of("band").iter().filter_map(|it| it["geometry"]["coordinates"].as_array()).flatten()
     {
         let ring: Vec<_> = quad[0].as_array().expect("a ring").iter().collect();
         assert_eq!((ring.len(), ring[0]), (5, ring[4]));
