@@ -2,7 +2,7 @@
 
 use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
-use host_sim::mission::definition::Lines;
+use host_sim::mission::given::Lines;
 use host_sim::world::World;
 use nalgebra::Point2;
 use planner_core::belief::cells::Certainty;

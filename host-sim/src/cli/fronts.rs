@@ -35,7 +35,7 @@ pub(crate) struct FrontsFlags {
 }
 
 /// Flags of the standard fields that have no meaning with `--fronts`.
-const MEANINGLESS: [&str; 32] = [
+const MEANINGLESS: [&str; 33] = [
     "steps",
     "readings",
     "every",
@@ -68,6 +68,7 @@ const MEANINGLESS: [&str; 32] = [
     "shard",
     "fields_csv",
     "figure",
+    "from_nothing",
 ];
 
 impl FrontsFlags {

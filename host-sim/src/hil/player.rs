@@ -22,7 +22,7 @@ use crate::hil::logbook::{Logbook, Sensed};
 use crate::hil::setup;
 use crate::mission::definition::Mission;
 use crate::mission::flight::Flown;
-use crate::mission::planners::AnyPlanner;
+use crate::mission::read_out::AnyPlanner;
 use crate::mission::recording::{Recorder, Recording};
 use crate::mission::results::{Ending, StepResult};
 use crate::report::trace;

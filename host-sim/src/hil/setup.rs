@@ -10,7 +10,8 @@ use planner_core::planner::lookahead;
 use planner_core::{AnySight, Workspace as _};
 
 use crate::mission::algorithm::Algorithm;
-use crate::mission::definition::{CAPACITY, Mission};
+use crate::mission::definition::Mission;
+use crate::mission::given::CAPACITY;
 use crate::mission::strict::wrong;
 use crate::world::faults::Fault;
 

@@ -3,7 +3,7 @@
 use planner_core::link::message::MissionArea;
 use planner_core::{Label, Sample};
 
-use crate::mission::definition::Lines;
+use crate::mission::given::Lines;
 use crate::mission::read_out::ReadOut;
 use crate::report::bands::{self, Band};
 use crate::world::polygon::Polygon;

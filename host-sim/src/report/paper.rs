@@ -5,7 +5,8 @@ use anyhow::{Context as _, Result, bail};
 use nalgebra::{Point2, Vector2};
 use planner_core::{Label, Line, Sample};
 
-use crate::mission::definition::{Lines, Mission};
+use crate::mission::definition::Mission;
+use crate::mission::given::Lines;
 use crate::mission::recording::Recording;
 use crate::mission::scenario::{self, Overrides, PAPER_NOISELESS, PAPER_NOISY};
 use crate::report::ground::Ground;

@@ -67,11 +67,11 @@ fn a_chip_that_cannot_be_is_refused() {
         (&["m.toml", "--emulator", "--fault", "delay=1s"], &["delay", "found 1s", "20ms"]),
         (
             &["m.toml", "--emulator", "--algorithm", "random"],
-            &["m.toml", "random", "scc or lookahead"],
+            &["m.toml", "random", "lookahead or track"],
         ),
         (
             &["m.toml", "--emulator", "--algorithm", "margin"],
-            &["m.toml", "margin", "scc or lookahead"],
+            &["m.toml", "margin", "lookahead or track"],
         ),
         (&["many.toml", "--emulator"], &["many.toml", "found 21 points", "at most 16"]),
     ];

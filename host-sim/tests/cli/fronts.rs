@@ -58,7 +58,7 @@ fn flags_choose_labels_motions_and_what_the_tracker_is_told() {
 #[test]
 fn flags_without_a_meaning_are_refused_by_name() {
     let folder = folder();
-    let lone = ["--every", "--resume"];
+    let lone = ["--every", "--resume", "--from-nothing"];
     let others = [
         ("--steps", "3"),
         ("--readings", "2"),

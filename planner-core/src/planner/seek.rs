@@ -318,13 +318,14 @@ impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Persist for Seek
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::belief::front::Front;
     use crate::belief::noise::Noise;
     use crate::geometry::heading::Heading;
     use crate::motion::unicycle::Unicycle;
 
     fn seek() -> Seek<Unicycle, 16, 16> {
         let area = Area::metres([0.0, 0.0], [20.0, 20.0]).unwrap();
-        let tracker = Tracker::new(area, crate::Front::STRAIGHT, Noise::NONE);
+        let tracker = Tracker::new(area, Front::STRAIGHT, Noise::NONE);
         Seek::new(area, Unicycle::default(), tracker).unwrap()
     }
 

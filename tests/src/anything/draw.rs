@@ -4,7 +4,8 @@ use std::f64::consts::{PI, TAU};
 
 use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
-use host_sim::mission::definition::{CAPACITY, Mission};
+use host_sim::mission::definition::Mission;
+use host_sim::mission::given::CAPACITY;
 use host_sim::world::World;
 use host_sim::world::errors::Errors;
 use host_sim::world::noise::{Extent, NoiseModel, limit};

@@ -2,7 +2,7 @@
 
 use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
-use host_sim::mission::definition::CAPACITY;
+use host_sim::mission::given::CAPACITY;
 use host_sim::world::noise::{Extent, NoiseModel};
 use nalgebra::{Point2, Rotation2, Vector2};
 use planner_core::belief::estimate::{area, bisector, centre, maximum_margin};

@@ -123,7 +123,7 @@ fn open_place<const K: usize, const M: usize, const L: usize>(
 fn a_straight_front_is_known_as_by_a_dense_grid() {
     let mut rng = ChaCha8Rng::seed_from_u64(31);
     let (mut shares, mut widths, mut offsets) = (Vec::new(), Vec::new(), Vec::new());
-    for case in 0..cases(12, 100) {
+    for case in 0..cases(30, 100) {
         let p = [1.0, 0.9, 0.7][case as usize % 3];
         let (through, angle) = line(&mut rng);
         let mut twin = Dense::new();
@@ -379,5 +379,5 @@ fn a_tracker_has_the_same_bytes_on_every_machine() {
     let hash = bytes.iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
         (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3)
     });
-    assert_eq!((bytes.len(), hash), (3128, 0x0dcc_8303_2fbd_36c1), "{hash:#x}");
+    assert_eq!((bytes.len(), hash), (3128, 0xb7dd_9dc4_2887_9446), "{hash:#x}");
 }

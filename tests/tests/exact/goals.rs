@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use host_sim::campaign::standard_field;
-use host_sim::mission::definition::Lines;
+use host_sim::mission::given::Lines;
 use host_sim::world::polygon::Polygon;
 use nalgebra::Point2;
 use planner_core::geometry::line::Bound;

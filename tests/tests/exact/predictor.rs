@@ -5,7 +5,8 @@ use std::f64::consts::PI;
 
 use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
-use host_sim::mission::definition::{DoubtfulBelief, Lines, Mission};
+use host_sim::mission::definition::{DoubtfulBelief, Mission};
+use host_sim::mission::given::Lines;
 use host_sim::world::noise::{Extent, NoiseModel};
 use nalgebra::Point2;
 use planner_core::belief::predictions::{Prediction as _, Predictor as _};

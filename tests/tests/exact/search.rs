@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
-use host_sim::mission::definition::CAPACITY;
+use host_sim::mission::given::CAPACITY;
 use planner_core::dynamics::Dynamics;
 use planner_core::geometry::arc::SlopeArc;
 use planner_core::geometry::lattice::Vector;

@@ -5,7 +5,7 @@ use std::sync::Mutex;
 
 use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
-use host_sim::mission::definition::CAPACITY;
+use host_sim::mission::given::CAPACITY;
 use nalgebra::Point2;
 use planner_core::dynamics::Dynamics;
 use planner_core::motion::contract;

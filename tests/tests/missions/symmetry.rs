@@ -3,7 +3,8 @@
 
 use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
-use host_sim::mission::definition::{Lines, Mission};
+use host_sim::mission::definition::Mission;
+use host_sim::mission::given::Lines;
 use host_sim::world::noise::{Extent, NoiseModel};
 use planner_core::geometry::lattice::UNITS_PER_METRE;
 use planner_core::motion::unicycle::Grid;

@@ -6,7 +6,7 @@ use std::fmt::Debug;
 
 use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
-use host_sim::mission::definition::CAPACITY;
+use host_sim::mission::given::CAPACITY;
 use host_sim::mission::results::Ending;
 use host_sim::world::noise::{Extent, NoiseModel};
 use host_sim::world::reading;

@@ -4,8 +4,7 @@ use planner_core::link::message::MissionArea;
 use planner_core::link::message::Settings;
 use planner_core::{
     AnyReliability, AnySight, AnyVehicle, CellPosterior, Crossing, Following, Front, Goal, Noise,
-    NoisyBelief, Policy, Pose, Prior, Sample, Tracker, UnknownReliability, VersionSpace,
-    Workspace as _,
+    NoisyBelief, Policy, Pose, Prior, Sample, Tracker, UnknownReliability, Workspace as _,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -14,7 +13,7 @@ use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::{Allowance, ToleranceRecord, tidy};
 use crate::mission::asking::Asking;
 use crate::mission::bounds::Bounds;
-use crate::mission::given::Given;
+use crate::mission::given::{CAPACITY, Given, Lines};
 use crate::world::World;
 use crate::world::errors::{CUT, Erring, Errors};
 use crate::world::faults::{Failing, Fault};
@@ -22,14 +21,8 @@ use crate::world::noise::{Flipped, NoiseModel};
 use crate::world::on_the_way::Way;
 use crate::world::robot::{Ideal, Robot};
 
-/// Samples that a simulated planner can hold, the oracle's included: 64 labels beside its four.
-pub const CAPACITY: usize = 68;
-
 /// Hypotheses that a simulated planner can hold: all that 64 labels can come to.
 pub const HYPOTHESES: usize = 2081;
-
-/// The version space of simulated planners.
-pub type Lines = VersionSpace<CAPACITY>;
 
 /// The hypothesis table of simulated planners.
 pub type Table = CellPosterior<CAPACITY, HYPOTHESES, 15, AnyReliability>;

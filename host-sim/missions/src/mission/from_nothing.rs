@@ -11,14 +11,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::{Mission, SoughtLine};
-use crate::mission::planners::AnyPlanner;
-use crate::mission::read_out::ReadOut;
-use crate::mission::results::{Ending, StepResult};
+use crate::mission::read_out::{AnyPlanner, ReadOut};
 
 /// Seeks the boundary, and hands over to the planner that a mission asks for.
 pub(crate) struct FromNothing<D> {
     mission: Mission,
     seek: Seek<D, 16, 16, MissionArea>,
+    /// The planner that goes on, of a mission with the points that were found.
+    on: fn(&Mission) -> AnyPlanner,
     next: Option<AnyPlanner>,
 }
 
@@ -51,9 +51,9 @@ impl Mission {
 }
 
 impl<D: Dynamics + 'static> FromNothing<D> {
-    pub(crate) fn new(mission: &Mission, dynamics: D) -> Self {
+    pub(crate) fn new(mission: &Mission, dynamics: D, on: fn(&Mission) -> AnyPlanner) -> Self {
         let seek = mission.seek(dynamics);
-        Self { mission: mission.clone(), seek, next: None }
+        Self { mission: mission.clone(), seek, on, next: None }
     }
 
     /// Hands over, if the boundary is found.
@@ -72,7 +72,7 @@ impl<D: Dynamics + 'static> FromNothing<D> {
         let lines = lines.and_then(|it| it.clone().with_tolerance(tolerance).map(|_| it));
         if let Ok(lines) = lines {
             self.mission.given = lines.into();
-            self.next = Some(self.mission.planner());
+            self.next = Some((self.on)(&self.mission));
         }
     }
 }
@@ -141,23 +141,22 @@ pub struct SeekRecord {
 }
 
 impl SeekRecord {
-    /// Of a mission that began from nothing and ended so, its steps, and what was known after each of them. Also of one
-    /// that looked for a front and found that all has one label.
+    /// Of a mission that began from nothing: the labels and the metres so far after each of its steps, and what was known
+    /// then. Also of one that looked for a front and found that all has one label, as `is_one` says.
     pub(crate) fn of(
         mission: &Mission,
-        steps: &[StepResult],
+        steps: &[(usize, f64)],
         after: &[&dyn ReadOut],
-        ending: Ending,
+        is_one: bool,
     ) -> Option<Self> {
-        let is_one = ending == Ending::Stopped(StopReason::OneLabel);
         let hands_over = mission.begins_from_nothing() && mission.algorithm != Algorithm::Lawnmower;
         if !hands_over && !is_one {
             return None;
         }
         let is_found = |it: &&dyn ReadOut| it.sought().is_none() && it.front().is_none();
         let found = after.iter().position(is_found).map(|k| k + 1);
-        let so_far = &steps[..found.unwrap_or(steps.len())];
-        let read = |it: &StepResult| it.passed().count() + usize::from(it.label.is_some());
+        let (labels, metres) =
+            steps[..found.unwrap_or(steps.len())].last().copied().unwrap_or_default();
         let one = after.last().filter(|_| is_one).and_then(|belief| {
             let area = &mission.config.area;
             let of_line = belief.sought().and_then(|it| OneLabel::of(it, area));
@@ -165,8 +164,8 @@ impl SeekRecord {
         });
         Some(Self {
             found,
-            labels: so_far.iter().map(read).sum(),
-            metres: so_far.last().map_or(0.0, |it| it.metres),
+            labels,
+            metres,
             label: one.map(|it| it.label.sign()),
             other: one.map(|it| it.other),
         })

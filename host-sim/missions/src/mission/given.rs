@@ -7,10 +7,15 @@ use planner_core::{Label, Sample, VersionSpace};
 use serde::Deserialize;
 
 use crate::mission::bounds::Bounds;
-use crate::mission::definition::{CAPACITY, Lines};
 use crate::mission::strict::{Table, wrong};
 use crate::mission::terrain::{self, site};
 use crate::world::World;
+
+/// Samples that a simulated planner can hold, the oracle's included: 64 labels beside its four.
+pub const CAPACITY: usize = 68;
+
+/// The version space of simulated planners.
+pub type Lines = VersionSpace<CAPACITY>;
 
 /// The most given samples that may bound the line. A hypothesis stores this many constraints.
 const MOST_BOUNDING: usize = 15;

@@ -1,10 +1,8 @@
 //! The map of a front: what following it came to.
 
-use planner_core::StopReason;
 use serde::{Deserialize, Serialize};
 
 use crate::mission::front::VertexRecord;
-use crate::mission::results::{Ending, StepResult};
 use crate::world::World;
 
 /// What following a front came to.
@@ -68,13 +66,12 @@ pub struct OffRecord {
 }
 
 impl MapRecord {
-    /// Of a mission's steps in a world, which ended so.
-    pub fn of(steps: &[StepResult], world: &World, ending: Ending) -> Self {
-        let vertices: Vec<_> = steps.iter().filter_map(|it| Some((it.step, it.front?))).collect();
+    /// Of a mission's steps in a world, as [`Self::after`] has them.
+    pub fn of(steps: &[(f64, Option<VertexRecord>)], world: &World, is_closed: bool) -> Self {
+        let vertices: Vec<_> =
+            (1..).zip(steps).filter_map(|(step, (_, vertex))| Some((step, (*vertex)?))).collect();
         let off = OffRecord::of(&vertices, world);
-        let is_closed = ending == Ending::Stopped(StopReason::Closed);
-        let after = steps.iter().map(|it| (it.metres, it.front));
-        Self { off, ..Self::after(after, is_closed) }
+        Self { off, ..Self::after(steps.iter().copied(), is_closed) }
     }
 
     /// Of the steps or rows of a track, counted from 1: after each how far the robot had driven, and where the front was

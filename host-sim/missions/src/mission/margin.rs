@@ -24,7 +24,8 @@ use planner_core::{
 };
 
 use crate::mission::baseline::{motion, take_in};
-use crate::mission::definition::{Lines, Table};
+use crate::mission::definition::Table;
+use crate::mission::given::Lines;
 use crate::mission::read_out::ReadOut;
 
 /// Takes the drive that ends nearest to the maximum-margin line, on uncertain ground.

@@ -11,18 +11,16 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use crate::mission::algorithm::Algorithm;
-use crate::mission::definition::{CAPACITY, DoubtfulBelief, HYPOTHESES, Lines, Mission};
+use crate::mission::definition::{DoubtfulBelief, HYPOTHESES, Mission};
 use crate::mission::from_nothing::FromNothing;
+use crate::mission::given::{CAPACITY, Lines};
 use crate::mission::lawnmower::Lawnmower;
 use crate::mission::margin::Margin;
 use crate::mission::random_walk::RandomWalk;
-use crate::mission::read_out::ReadOut;
+use crate::mission::read_out::{AnyPlanner, ReadOut};
 
 /// Why a constructor cannot refuse a mission's settings.
 const FITS: &str = "settings that contradict each other were refused";
-
-/// A planner whose belief can be read out.
-pub type AnyPlanner = Box<dyn Planner<Belief = dyn ReadOut>>;
 
 /// A planner, with the type of its belief forgotten.
 struct Erased<P>(P);
@@ -96,7 +94,9 @@ impl Mission {
             Algorithm::Lawnmower if self.begins_from_nothing() => {
                 erased(self.lawnmower((area, dynamics, self.sought())))
             }
-            _ if self.begins_from_nothing() => Box::new(FromNothing::new(self, dynamics)),
+            _ if self.begins_from_nothing() => {
+                Box::new(FromNothing::new(self, dynamics, Self::planner))
+            }
             Algorithm::Cfc => erased(self.cfc(area, dynamics)),
             Algorithm::Scc => erased(self.scc(area, dynamics)),
             Algorithm::Lookahead if self.is_noisy() => erased(self.doubtful(area, dynamics)),

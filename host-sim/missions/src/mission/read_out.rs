@@ -5,11 +5,12 @@ use std::fmt::Debug;
 
 use planner_core::belief::front::Waist;
 use planner_core::{
-    AnyReliability, Area, Belief, Goal, Label, PosteriorView, Reliability, Sample, Site, Tolerance,
-    Tracker,
+    AnyReliability, Area, Belief, Goal, Label, Planner, PosteriorView, Reliability, Sample, Site,
+    Tolerance, Tracker,
 };
 
-use crate::mission::definition::{FrontBelief, Lines, SoughtLine, Table};
+use crate::mission::definition::{FrontBelief, SoughtLine, Table};
+use crate::mission::given::Lines;
 use crate::world::noise::limit;
 
 /// The level of the credible sets that are reported.
@@ -51,6 +52,9 @@ pub struct Expectation {
     /// Bits, on average.
     pub bits: f64,
 }
+
+/// A planner whose belief can be read out.
+pub type AnyPlanner = Box<dyn Planner<Belief = dyn ReadOut>>;
 
 /// A belief that can be read out.
 pub trait ReadOut: Belief + Debug + Send {

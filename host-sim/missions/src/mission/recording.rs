@@ -225,6 +225,18 @@ impl Recorder {
         let diagnosis = || {
             DiagnosisRecord::of(&mission, (&steps, &results), (ending, alarm.as_ref()), &*belief)
         };
+        let has_ended = |reason| ending == Ending::Stopped(reason);
+        let map = || {
+            let steps: Vec<_> = results.iter().map(|it| (it.metres, it.front)).collect();
+            MapRecord::of(&steps, &mission.world, has_ended(StopReason::Closed))
+        };
+        let labels: Vec<_> = results
+            .iter()
+            .scan(0, |labels, it| {
+                *labels += it.passed().count() + usize::from(it.label.is_some());
+                Some((*labels, it.metres))
+            })
+            .collect();
         let end = End {
             reason: ending.name().into(),
             estimates,
@@ -235,8 +247,8 @@ impl Recorder {
             best,
             credible,
             reliability: belief.hypotheses().filter(|it| is_unknown(it)).map(learnt),
-            front: (!seeks_line).then(|| MapRecord::of(&results, &mission.world, ending)),
-            seek: SeekRecord::of(&mission, &results, &after, ending),
+            front: (!seeks_line).then(map),
+            seek: SeekRecord::of(&mission, &labels, &after, has_ended(StopReason::OneLabel)),
             goal: GoalRecord::of(&mission, &*belief, audit((&steps, &results), &before, ending)),
             alarm,
             diagnosis: seeks_line.then(diagnosis).flatten().map(Box::new),
