@@ -156,7 +156,7 @@ BAD_GRID = Choice(Actions=None, Reach=None, Turn=None, Circle=None)
 NO_VEHICLE = Choice(Kind=None, Grid=BAD_GRID, Room={"across_mm": "u32"})
 STOP = Choice(
     Resolution=None, SamplesFull=None, OutsideArea=None, Cornered=None, Known=None, Undecided=None,
-    Tolerance=None, NoLine=None, Worth=None, Closed=None,
+    Tolerance=None, NoLine=None, Worth=None, Closed=None, OneLabel=None,
 )
 REFUSED = Choice(Contradiction=SAMPLE, Full=SAMPLE, Tolerance="u32", Reliability=None)
 REQUEST = Choice(
