@@ -13,7 +13,7 @@
 //! - **Begin again**: an alarm of the tracker's evidence says that the front bends more tightly than was told, or is
 //!   lost. Then it is sought anew nearby.
 //!
-//! A plan looks at [`LOOKED_AT`](crate::planner::scout::LOOKED_AT) places at most. It ends where no front is left to find,
+//! A plan looks at [`LOOKED_AT`] places at most. It ends where no front is left to find,
 //! where there is no way on, or where [a closed front](Track::until_closed) is to end it.
 
 use crate::belief::ObservationError;
