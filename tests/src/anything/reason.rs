@@ -7,7 +7,7 @@ use planner_core::belief::cells::CellView;
 use planner_core::dynamics::{Dynamics as _, Side};
 use planner_core::geometry::lattice::Vector;
 use planner_core::link::message::MissionArea;
-use planner_core::{AnyVehicle, Certainty, Pose, Site, StopReason, Workspace as _};
+use planner_core::{AnyVehicle, Certainty, Label, Pose, Site, StopReason, Workspace as _};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -17,6 +17,9 @@ const LENGTH: u32 = 6;
 
 /// Places of the area that are asked.
 const PLACES: u32 = 4_000;
+
+/// 36 places are all missed by so large a share of the area in one of a hundred cases.
+const MISSED: f64 = 0.12;
 
 /// Open ground is thin if it is less than this share of the area.
 const THIN: f64 = 0.02;
@@ -45,6 +48,10 @@ pub fn refute(mission: &Mission, belief: &dyn ReadOut, pose: Pose, end: Ending) 
         StopReason::Resolution | StopReason::Tolerance => judge.open_ground(pose),
         StopReason::Cornered | StopReason::Undecided => judge.way_on(pose),
         StopReason::Worth => judge.worthy(pose),
+        StopReason::OneLabel => judge.two_labels(),
+        StopReason::Closed => {
+            (!mission.until_closed).then(|| "nobody asked to end at a closed front".to_owned())
+        }
         _ => Some("an unknown reason".to_owned()),
     }
 }
@@ -80,20 +87,30 @@ impl Judge<'_> {
         ChaCha8Rng::seed_from_u64(self.mission.seed)
     }
 
-    fn open_ground(&self, pose: Pose) -> Option<String> {
+    /// Places all over the area.
+    fn places(&self) -> Vec<Site> {
         let mut rng = self.rng();
         let (from, to) = (self.area.bounds().min(), self.area.bounds().max());
-        let mut inside = 0;
-        let open = (0..PLACES)
-            .filter(|_| {
-                let (x, z) =
-                    (rng.random_range(from.x()..=to.x()), rng.random_range(from.z()..=to.z()));
-                let site = Site::new(x, z).expect("inside");
-                inside += u32::from(self.area.contains(site));
-                self.is_open(site) && self.is_told_apart(site)
-            })
-            .count();
-        let share = open as f64 / f64::from(inside.max(1));
+        let drawn = (0..PLACES).map(|_| {
+            let (x, z) = (rng.random_range(from.x()..=to.x()), rng.random_range(from.z()..=to.z()));
+            Site::new(x, z).expect("inside")
+        });
+        drawn.filter(|it| self.area.contains(*it)).collect()
+    }
+
+    /// How large a share of the area most likely has the rarer label, if it is more than a few places can miss.
+    fn two_labels(&self) -> Option<String> {
+        let places = self.places();
+        let chance = |site| self.belief.chance_of(site, Label::Positive);
+        let above = places.iter().filter(|it| chance(**it) > 0.5).count();
+        let rarer = above.min(places.len() - above) as f64 / places.len().max(1) as f64;
+        (rarer > MISSED).then(|| format!("{:.1} % most likely has the other label", 100.0 * rarer))
+    }
+
+    fn open_ground(&self, pose: Pose) -> Option<String> {
+        let places = self.places();
+        let open = places.iter().filter(|it| self.is_open(**it) && self.is_told_apart(**it));
+        let share = open.count() as f64 / places.len().max(1) as f64;
         (share > THIN).then(|| format!("{:.2} % of the area is open, at {pose:?}", 100.0 * share))
     }
 
