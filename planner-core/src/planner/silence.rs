@@ -104,6 +104,11 @@ impl Silence {
         self.turned > FULL_TURN
     }
 
+    /// Whether the vehicle has turned half round since the last label.
+    pub(crate) const fn is_back(&self) -> bool {
+        self.turned > FULL_TURN / 2
+    }
+
     /// Whether the last label, or the next one, is not expected to tell much.
     pub(crate) const fn is_dull(&self) -> bool {
         self.dull > 0 || self.next_is_dull

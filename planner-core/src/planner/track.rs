@@ -80,6 +80,8 @@ const BEYOND: u16 = 10;
 pub struct Track<D, const K: usize, const M: usize, const L: usize, G = Area> {
     scout: Scout<D, K, M, L, G>,
     lap: Lap,
+    /// The pose at the last label.
+    heard: Option<Pose>,
     /// Whether it ends once the front is closed.
     ends: bool,
 }
@@ -107,7 +109,7 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
 
     #[inline]
     fn with(scout: Scout<D, K, M, L, G>) -> Self {
-        Self { scout, lap: Lap::NONE, ends: false }
+        Self { scout, lap: Lap::NONE, heard: None, ends: false }
     }
 
     /// Where the front is known best; `None` as long as it is not found, and where it is lost.
@@ -209,6 +211,10 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
         if self.ends && self.lap.is_closed() {
             return Plan::Stop(StopReason::Closed);
         }
+        // From each of two places the way to the other may look better: nothing has changed since it was here.
+        if self.heard == Some(pose) && self.scout.silence.is_back() {
+            return Plan::Stop(StopReason::Undecided);
+        }
         let Some(aim) = self.aim(pose) else { return self.scout.seek(pose) };
         let (scout, reach) = (&self.scout, self.scout.reach());
         let worth = |way: Vector, to: Site, share: f32| {
@@ -237,6 +243,9 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
     ) -> Result<(), ObservationError> {
         let scout = &mut self.scout;
         scout.observe(pose, reading, tolerance)?;
+        if reading.is_some() {
+            self.heard = Some(pose);
+        }
         let reach = scout.reach();
         if scout.tracker.evidence().value() >= Alarm::ALARM {
             scout.tracker.seek_near(pose.site, AGAIN * reach * METRE);
@@ -277,7 +286,7 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
 
     /// Begins again in the rectangle around its area. A tracker has one prior: see [`Tracker::new`].
     fn restart(&mut self, given: &[Sample], _: Prior, noise: Noise) -> Result<(), SetupError> {
-        self.lap = Lap::NONE;
+        (self.lap, self.heard) = (Lap::NONE, None);
         self.scout.restart(noise, given)
     }
 }
@@ -285,17 +294,17 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
 impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> Persist
     for Track<D, K, M, L, G>
 {
-    type Snapshot = Snapshot<FrontMemory<K, M, L>, (Silence, Lap)>;
+    type Snapshot = Snapshot<FrontMemory<K, M, L>, (Silence, Lap, Option<Pose>)>;
 
     fn snapshot(&self) -> Self::Snapshot {
         let Scout { tracker, silence, .. } = &self.scout;
-        Snapshot::new(tracker.log(), (*silence, self.lap))
+        Snapshot::new(tracker.log(), (*silence, self.lap, self.heard))
     }
 
     fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), RestoreError> {
-        let (log, &(silence, lap)) = snapshot.open()?;
+        let (log, &(silence, lap, heard)) = snapshot.open()?;
         self.scout.tracker.replay(log)?;
-        (self.scout.silence, self.lap) = (silence, lap);
+        (self.scout.silence, self.lap, self.heard) = (silence, lap, heard);
         Ok(())
     }
 }

@@ -112,7 +112,8 @@ impl Fly<'_> {
             // A way to a place that ends on certain ground leads back once: no other is begun before the next label.
             let times = been.entry((pose.site, pose.heading.0)).or_insert(0);
             *times += 1;
-            let most = 1 + u32::from(mission.asking.price.is_some());
+            let goes_far = mission.asking.price.is_some() || mission.algorithm == Algorithm::Track;
+            let most = 1 + u32::from(goes_far);
             // Where no label is worth it, sixteen motions without one may lead round.
             let most = if mission.asking.worth > 0.0 { most + 16 } else { most };
             if *times > most && mission.errors == Errors::default() {
