@@ -1,7 +1,8 @@
 //! The map of a front along a recorded track.
 //!
 //! A tracker takes in row after row: that time has passed, and the label. After each of them at which the front is found
-//! the map has a vertex. Of rows close together it takes in some. Where the labels raise an alarm, the front is sought anew nearby, as a follower does.
+//! the map has a vertex. Of rows close together it takes in some. Where the labels raise an alarm, the front is sought
+//! anew nearby, as a follower does.
 
 use std::path::Path;
 

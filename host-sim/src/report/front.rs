@@ -34,6 +34,10 @@ pub(crate) const KNOWN: [Cells<'static, StepResult>; 4] = [
     (Column::right("bits", 5), &|it| format!("{:.2}", it.bits)),
 ];
 
+/// What an alarm says of a front, where it says of a line that none explains the labels.
+pub(crate) const BENDS_MORE: &str = "labels do not follow the front: it bends more tightly or moves faster than was told, \
+                                     or the sensor reads at random";
+
 /// The map in words: sentences, a line each. `unit` is what the record numbers.
 pub(crate) fn map(record: &MapRecord, unit: &str) -> String {
     let &MapRecord { state, found, lost, vertices, metres, driven, half_width, off } = record;
@@ -51,10 +55,11 @@ pub(crate) fn map(record: &MapRecord, unit: &str) -> String {
         ),
         _ => format!("The front was found at {unit} {found}, and is known in the end.\n"),
     };
+    let places = if vertices == 1 { "place" } else { "places" };
     // Writing to a string cannot fail.
     let _ = writeln!(
         text,
-        "The map has {vertices} places along {metres:.1} m of front; {driven:.1} m were driven for it."
+        "The map has {vertices} {places} along {metres:.1} m of front; {driven:.1} m were driven for it."
     );
     if let Some([median, most]) = half_width {
         let _ = writeln!(

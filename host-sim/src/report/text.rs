@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use planner_core::Line;
-use planner_core::belief::evidence::Alarm;
+use planner_core::belief::evidence::{Alarm, Suspect};
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::ToleranceRecord;
@@ -147,9 +147,7 @@ fn end(results: &Results, estimates: &[(&str, Option<LineRecord>); 3]) -> String
     if let Some(reliability) = &results.end.reliability {
         text += &shown(reliability);
     }
-    if let Some(alarm) = &results.end.alarm {
-        text += &warning(alarm);
-    }
+    text.extend(warning(&results.end));
     for (of, words) in results.end.diagnosis.iter().flat_map(|it| diagnosed(it)) {
         // Writing to a string cannot fail.
         let _ = writeln!(text, "{of}: {words}");
@@ -309,12 +307,17 @@ fn audited(audit: &AuditRecord) -> String {
     }
 }
 
-/// What speaks against a straight, still line, in words.
-pub(crate) fn warning(&AlarmRecord { step, evidence, suspect }: &AlarmRecord) -> String {
-    let (alarm, level) = (Alarm { evidence, suspect }, Alarm::ALARM);
+/// What speaks against a straight, still line, or against a front as it was told, in words.
+pub(crate) fn warning(end: &End) -> Option<String> {
+    let AlarmRecord { step, evidence, suspect } = end.alarm?;
+    let level = Alarm::ALARM;
+    let alarm = match suspect {
+        Suspect::Coin if end.front.is_some() => front::BENDS_MORE.to_owned(),
+        _ => Alarm { evidence, suspect }.to_string(),
+    };
     let name = if evidence >= level { "Alarm" } else { "Warning" };
     let much = if evidence < 1e4 { format!("{evidence:.0}") } else { "over 10000".to_owned() };
-    format!("{name}: {alarm}. The evidence is {much} at step {step}; {level} is an alarm.\n")
+    Some(format!("{name}: {alarm}. The evidence is {much} at step {step}; {level} is an alarm.\n"))
 }
 
 fn beginning(title: &str, start: &Start) -> String {

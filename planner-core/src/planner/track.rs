@@ -13,8 +13,8 @@
 //! - **Begin again**: an alarm of the tracker's evidence says that the front bends more tightly than was told, or is
 //!   lost. Then it is sought anew nearby.
 //!
-//! A plan looks at [`LOOKED_AT`] places at most. It ends where no front is left to find,
-//! where there is no way on, or where [a closed front](Track::until_closed) is to end it.
+//! A plan looks at [`LOOKED_AT`] places at most. A mission ends where no front is left to find, where there is no way on,
+//! where the robot is back at its last label, or where [a closed front](Track::until_closed) is to end it.
 
 use crate::belief::ObservationError;
 use crate::belief::evidence::Alarm;
@@ -80,8 +80,8 @@ const BEYOND: u16 = 10;
 pub struct Track<D, const K: usize, const M: usize, const L: usize, G = Area> {
     scout: Scout<D, K, M, L, G>,
     lap: Lap,
-    /// The pose at the last label.
-    heard: Option<Pose>,
+    /// The pose at the last label that was read at the end of a motion.
+    heard_at: Option<Pose>,
     /// Whether it ends once the front is closed.
     ends: bool,
 }
@@ -109,7 +109,7 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
 
     #[inline]
     fn with(scout: Scout<D, K, M, L, G>) -> Self {
-        Self { scout, lap: Lap::NONE, heard: None, ends: false }
+        Self { scout, lap: Lap::NONE, heard_at: None, ends: false }
     }
 
     /// Where the front is known best; `None` as long as it is not found, and where it is lost.
@@ -212,7 +212,7 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
             return Plan::Stop(StopReason::Closed);
         }
         // From each of two places the way to the other may look better: nothing has changed since it was here.
-        if self.heard == Some(pose) && self.scout.silence.is_back() {
+        if self.heard_at == Some(pose) && self.scout.silence.is_back() {
             return Plan::Stop(StopReason::Undecided);
         }
         let Some(aim) = self.aim(pose) else { return self.scout.seek(pose) };
@@ -244,7 +244,7 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
         let scout = &mut self.scout;
         scout.observe(pose, reading, tolerance)?;
         if reading.is_some() {
-            self.heard = Some(pose);
+            self.heard_at = Some(pose);
         }
         let reach = scout.reach();
         if scout.tracker.evidence().value() >= Alarm::ALARM {
@@ -286,7 +286,7 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
 
     /// Begins again in the rectangle around its area. A tracker has one prior: see [`Tracker::new`].
     fn restart(&mut self, given: &[Sample], _: Prior, noise: Noise) -> Result<(), SetupError> {
-        (self.lap, self.heard) = (Lap::NONE, None);
+        (self.lap, self.heard_at) = (Lap::NONE, None);
         self.scout.restart(noise, given)
     }
 }
@@ -298,13 +298,13 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
 
     fn snapshot(&self) -> Self::Snapshot {
         let Scout { tracker, silence, .. } = &self.scout;
-        Snapshot::new(tracker.log(), (*silence, self.lap, self.heard))
+        Snapshot::new(tracker.log(), (*silence, self.lap, self.heard_at))
     }
 
     fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), RestoreError> {
-        let (log, &(silence, lap, heard)) = snapshot.open()?;
+        let (log, &(silence, lap, heard_at)) = snapshot.open()?;
         self.scout.tracker.replay(log)?;
-        (self.scout.silence, self.lap, self.heard) = (silence, lap, heard);
+        (self.scout.silence, self.lap, self.heard_at) = (silence, lap, heard_at);
         Ok(())
     }
 }

@@ -112,6 +112,7 @@ impl Fly<'_> {
             // A way to a place that ends on certain ground leads back once: no other is begun before the next label.
             let times = been.entry((pose.site, pose.heading.0)).or_insert(0);
             *times += 1;
+            // A follower of fronts goes to places far off too. One of 5,000 missions needs the second return.
             let goes_far = mission.asking.price.is_some() || mission.algorithm == Algorithm::Track;
             let most = 1 + u32::from(goes_far);
             // Where no label is worth it, sixteen motions without one may lead round.

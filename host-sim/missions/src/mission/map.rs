@@ -102,7 +102,8 @@ impl MapRecord {
             found: vertices.first().map(|(step, _)| *step),
             lost: lost.map(|&(step, it)| LostRecord { step, x: it.x, z: it.z }),
             vertices: vertices.len(),
-            metres: vertices.windows(2).map(along).sum(),
+            // The sum of nothing is -0.
+            metres: 0.0 + vertices.windows(2).map(along).sum::<f64>(),
             driven: begin.map_or(0.0, |begin| whole - begin),
             half_width: median_and_most(vertices.iter().map(|(_, it)| it.half_width), 1.0),
             off: None,

@@ -242,13 +242,28 @@ pub struct End {
 }
 
 /// How often labels are true, as planners are told: a number, or the parameters of a Beta prior.
+///
+/// It is read from a value, as an untagged enum cannot read a number where a program has `serde_json` keep all digits.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
+#[serde(untagged, try_from = "serde_json::Value")]
 pub enum PTold {
     /// They are told this.
     Number(f64),
     /// Nobody knows; this is the prior.
     Beta([f64; 2]),
+}
+
+impl TryFrom<serde_json::Value> for PTold {
+    type Error = &'static str;
+
+    fn try_from(told: serde_json::Value) -> Result<Self, Self::Error> {
+        let beta = || match told.as_array()?.as_slice() {
+            [a, b] => Some(Self::Beta([a.as_f64()?, b.as_f64()?])),
+            _ => None,
+        };
+        let number = told.as_f64().map(Self::Number);
+        number.or_else(beta).ok_or("expected a probability, or the [a, b] of a Beta prior")
+    }
 }
 
 impl From<AnyReliability> for PTold {

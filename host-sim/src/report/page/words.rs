@@ -83,8 +83,8 @@ pub(crate) fn ended(results: &Results) -> Vec<Told> {
     }
     let shown = results.end.reliability.as_ref();
     ended.extend(shown.map(|it| Told::new("Sensor", text::shown(it).trim_end().to_owned())));
-    let alarm = results.end.alarm.as_ref();
-    ended.extend(alarm.map(|it| Told::new("Warning", text::warning(it).trim_end().to_owned())));
+    let warning = text::warning(&results.end);
+    ended.extend(warning.map(|it| Told::new("Warning", it.trim_end().to_owned())));
     let diagnosis = results.end.diagnosis.iter().flat_map(|it| text::diagnosed(it));
     ended.extend(diagnosis.map(|(of, words)| Told::new(of, minus(&sentence(&words)))));
     ended
