@@ -116,3 +116,19 @@ fn bad_prices_are_refused() {
         refuses(folder.path(), &[&["campaign", "--fields", "1"], flags].concat(), parts);
     }
 }
+
+/// In a build of the whole workspace `serde_json` keeps all digits, which untagged enums cannot read.
+#[test]
+fn the_record_of_a_shard_has_its_price() {
+    let folder = folder();
+    for price in ["4", "none"] {
+        for shard in ["1/2", "2/2"] {
+            let csv = format!("{}.csv", &shard[..1]);
+            let args = "campaign --fields 2 --steps 3 --algorithm lookahead --quiet --price";
+            let args: Vec<_> =
+                args.split(' ').chain([price, "--shard", shard, "--csv", &csv]).collect();
+            prints(folder.path(), &args);
+        }
+        prints(folder.path(), &["campaign", "merge", "1.csv", "2.csv", "--quiet"]);
+    }
+}

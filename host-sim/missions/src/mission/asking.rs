@@ -38,8 +38,10 @@ pub struct Asked {
 }
 
 /// `price` of a scenario file and a flag.
+///
+/// Read from a value, as `results::PTold` is.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(untagged, expecting = "expected metres driven, or \"none\"")]
+#[serde(untagged, try_from = "serde_json::Value")]
 pub enum Price {
     /// Metres driven.
     Metres(f64),
@@ -53,6 +55,16 @@ pub enum Price {
 pub enum NoPrice {
     /// Near sight.
     None,
+}
+
+impl TryFrom<serde_json::Value> for Price {
+    type Error = &'static str;
+
+    fn try_from(price: serde_json::Value) -> Result<Self, Self::Error> {
+        let none = || (price.as_str()? == "none").then_some(Self::Word(NoPrice::None));
+        let metres = price.as_f64().map(Self::Metres);
+        metres.or_else(none).ok_or("expected metres driven, or \"none\"")
+    }
 }
 
 impl FromStr for Price {
