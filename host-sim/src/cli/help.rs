@@ -89,6 +89,7 @@ pub(crate) const SIZE: &str = "\
 Examples:
   host-sim size --samples 16
   host-sim size --samples 36 --hypotheses 529 --mhz 64
+  host-sim size --algorithm track
 
 A configuration is told the figures of the smallest program that was measured with room for it, so each is a bound.
 Instructions are exact, milliseconds an estimate by the manual's table, flash is that of a whole program with the link.";

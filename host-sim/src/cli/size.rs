@@ -16,12 +16,15 @@ pub(crate) struct SizeArgs {
     /// Who plans
     #[arg(long, value_enum, default_value_t = Planner::Lookahead)]
     algorithm: Planner,
-    /// Samples, the given ones included
-    #[arg(long, value_name = "N", default_value_t = 36, value_parser = clap::value_parser!(u16).range(3..))]
-    samples: u16,
+    /// Samples, the given ones included: 36 unless one says
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(3..))]
+    samples: Option<u16>,
     /// Hypotheses, if labels may be wrong: all that 32 labels can have are 529
     #[arg(long, value_name = "H", value_parser = clap::value_parser!(u16).range(2..))]
     hypotheses: Option<u16>,
+    /// Directions, offsets and layers of curvature of a tracker, which takes any number of labels [default: 16,16,3]
+    #[arg(long, value_name = "K,M,L", value_parser = cells)]
+    cells: Option<[u16; 3]>,
     /// Any vehicle among polygons and keep-outs, instead of a unicycle in a rectangle
     #[arg(long)]
     any_vehicle: bool,
@@ -40,6 +43,14 @@ fn clock(word: &str) -> Result<f64> {
     }
 }
 
+fn cells(word: &str) -> Result<[u16; 3]> {
+    let numbers: Option<Vec<u16>> = word.split(',').map(|it| it.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[k, m, l]) if k >= 4 && m >= 4 && l >= 1 => Ok([k, m, l]),
+        _ => bail!("expected 4 directions, 4 offsets and a layer at least, such as 16,16,3"),
+    }
+}
+
 /// What it takes, to print.
 pub(crate) fn size(args: &SizeArgs) -> Result<String> {
     let asked = configuration(args)?;
@@ -52,18 +63,32 @@ pub(crate) fn size(args: &SizeArgs) -> Result<String> {
 
 fn configuration(args: &SizeArgs) -> Result<Configuration> {
     let planner = args.algorithm;
-    let hypotheses = match (planner, args.hypotheses) {
+    if planner == Planner::Track {
+        for (flag, given) in
+            [("--samples", args.samples.is_some()), ("--hypotheses", args.hypotheses.is_some())]
+        {
+            if given {
+                bail!("{flag}: a follower of fronts stores no labels: say --cells instead");
+            }
+        }
+    } else if args.cells.is_some() {
+        bail!("--cells: only a follower of fronts has a tracker: say --algorithm track");
+    }
+    let (samples, hypotheses) = match (planner, args.hypotheses) {
+        (Planner::Track, _) => (0, 0),
         (Planner::Cfc, Some(_)) => bail!("--hypotheses: Algorithm 1 takes labels to be true"),
         (Planner::Scc, None) => {
             bail!("--hypotheses: Algorithm 2 needs some: 529 hold all of 32 labels")
         }
-        (_, hypotheses) => hypotheses.unwrap_or(1),
+        (_, hypotheses) => (args.samples.unwrap_or(36), hypotheses.unwrap_or(1)),
     };
-    Ok(Configuration { planner, samples: args.samples, hypotheses, roams: args.any_vehicle })
+    let cells = (planner == Planner::Track).then(|| args.cells.unwrap_or([16, 16, 3]));
+    Ok(Configuration { planner, samples, hypotheses, cells, roams: args.any_vehicle })
 }
 
 fn text(asked: Configuration, size: &Size, mhz: f64) -> String {
-    let Size { program, room, flash, flash_of_planner, stack, static_ram, calls, others } = size;
+    let Size { program, room, flash, flash_of_planner, stack, tracker, static_ram, calls, others } =
+        size;
     let mut text =
         format!("{asked}\nat most what `{program}` takes, which has room for {room}\n\n");
     for Flash { core, bytes } in flash {
@@ -72,6 +97,9 @@ fn text(asked: Configuration, size: &Size, mhz: f64) -> String {
     let name = M4F.name;
     let _ = writeln!(text, "flash of the planner, {name:<10}{flash_of_planner:>9} bytes");
     let _ = writeln!(text, "stack, {name:<24}{stack:>10} bytes, a bound; the planner is on it");
+    if let Some(tracker) = tracker {
+        let _ = writeln!(text, "the tracker as asked, alone{tracker:>14} bytes at most");
+    }
     let _ = writeln!(text, "other RAM{static_ram:>32} bytes");
     for Call { call, program, median, worst, worst_ms } in calls {
         let _ = writeln!(

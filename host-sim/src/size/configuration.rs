@@ -9,10 +9,15 @@ use serde::Serialize;
 pub struct Configuration {
     /// Who plans.
     pub planner: Planner,
-    /// Samples, the given ones included.
+    /// Samples, the given ones included; 0 of a follower of fronts, which stores none.
+    #[serde(skip_serializing_if = "is_zero")]
     pub samples: u16,
-    /// Hypotheses; 1 where labels are true.
+    /// Hypotheses; 1 where labels are true, 0 of a follower of fronts.
+    #[serde(skip_serializing_if = "is_zero")]
     pub hypotheses: u16,
+    /// Of a follower of fronts: the directions, offsets and layers of curvature of its tracker.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cells: Option<[u16; 3]>,
     /// Any vehicle in any area, instead of the unicycle in a rectangle.
     pub roams: bool,
 }
@@ -27,12 +32,28 @@ pub enum Planner {
     Scc,
     /// Look-ahead
     Lookahead,
+    /// The follower of fronts
+    Track,
 }
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks so")]
+const fn is_zero(count: &u16) -> bool {
+    *count == 0
+}
+
+/// Bytes of a tracker beside its cells and directions, at most.
+const TRACKER: u64 = 150;
 
 impl Configuration {
     /// Whether labels may be wrong.
     pub const fn is_noisy(self) -> bool {
         self.hypotheses > 1
+    }
+
+    /// Bytes of a follower's tracker, at most. They are part of the stack.
+    pub fn tracker(self) -> Option<u64> {
+        let [directions, offsets, layers] = self.cells?.map(u64::from);
+        Some(4 * directions * offsets * layers + 8 * directions + TRACKER)
     }
 }
 
@@ -42,16 +63,25 @@ impl fmt::Display for Configuration {
             Planner::Cfc => "Algorithm 1",
             Planner::Scc => "Algorithm 2",
             Planner::Lookahead => "look-ahead",
+            Planner::Track => "the follower of fronts",
         };
-        write!(f, "{planner}, {} samples", self.samples)?;
-        if self.is_noisy() {
-            write!(f, ", {} hypotheses", self.hypotheses)?;
-        }
+        write!(f, "{planner}, {}", holds(self.samples, self.hypotheses, self.cells))?;
         f.write_str(if self.roams {
             ", any vehicle in any area"
         } else {
             ", a unicycle in a rectangle"
         })
+    }
+}
+
+/// What there is room for, in words.
+fn holds(samples: u16, hypotheses: u16, cells: Option<[u16; 3]>) -> String {
+    match (cells, hypotheses) {
+        (Some([directions, offsets, layers]), _) => {
+            format!("{directions} x {offsets} x {layers} cells")
+        }
+        (None, 0 | 1) => format!("{samples} samples"),
+        (None, _) => format!("{samples} samples, {hypotheses} hypotheses"),
     }
 }
 
@@ -63,6 +93,7 @@ pub struct Program {
     planners: &'static [Planner],
     samples: u16,
     hypotheses: u16,
+    cells: Option<[u16; 3]>,
     roams: bool,
 }
 
@@ -70,13 +101,14 @@ const ALL: &[Planner] = &[Planner::Cfc, Planner::Scc, Planner::Lookahead];
 const TRUE: &[Planner] = &[Planner::Cfc, Planner::Lookahead];
 
 /// Those of `tests/bare-core`, the smaller before the larger.
-pub const PROGRAMS: [Program; 6] = [
+pub const PROGRAMS: [Program; 7] = [
     Program::new("alone", &[Planner::Cfc], 16, 1),
     Program::new("small", TRUE, 16, 1),
     Program::new("medium", TRUE, 68, 1),
     Program::new("standard", ALL, 36, 529),
     Program { roams: true, ..Program::new("vehicles", ALL, 36, 529) },
     Program::new("large", ALL, 68, 2_081),
+    Program { cells: Some([16, 16, 3]), ..Program::new("track", &[Planner::Track], 0, 0) },
 ];
 
 impl Program {
@@ -86,7 +118,7 @@ impl Program {
         samples: u16,
         hypotheses: u16,
     ) -> Self {
-        Self { name, planners, samples, hypotheses, roams: false }
+        Self { name, planners, samples, hypotheses, cells: None, roams: false }
     }
 
     /// Whether it has room for all that is asked.
@@ -94,16 +126,16 @@ impl Program {
         self.planners.contains(&asked.planner)
             && self.samples >= asked.samples
             && self.hypotheses >= asked.hypotheses
+            && asked.cells.is_none_or(|asked| {
+                self.cells
+                    .is_some_and(|cells| asked.iter().zip(cells).all(|(asked, it)| *asked <= it))
+            })
             && (self.roams || !asked.roams)
     }
 
     /// What it has room for.
     pub fn room(&self) -> String {
-        let hypotheses = match self.hypotheses {
-            1 => String::new(),
-            hypotheses => format!(", {hypotheses} hypotheses"),
-        };
         let roams = if self.roams { ", any vehicle in any area" } else { "" };
-        format!("{} samples{hypotheses}{roams}", self.samples)
+        holds(self.samples, self.hypotheses, self.cells) + roams
     }
 }

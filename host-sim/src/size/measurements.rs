@@ -49,6 +49,9 @@ pub struct Size {
     pub flash_of_planner: u64,
     /// Bytes of stack at most, the planner on it; a bound from the machine code of the Cortex-M4F.
     pub stack: u64,
+    /// Bytes of the tracker that was asked for, at most. The stack has the one that the program has room for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tracker: Option<u64>,
     /// Bytes of RAM that are not stack.
     pub static_ram: u64,
     /// What calls take.
@@ -123,6 +126,7 @@ pub fn size(asked: Configuration, mhz: f64) -> Result<Size> {
         flash: [first].into_iter().chain(OTHERS.iter().filter_map(flash_of)).collect(),
         flash_of_planner: of_program("flash_of_planner")?,
         stack: of_program("stack")?,
+        tracker: asked.tracker(),
         static_ram: of_program("static_ram")?,
         calls: calls
             .into_iter()
@@ -139,7 +143,7 @@ fn others(asked: Configuration) -> Result<Vec<Other>> {
     let plan = match asked.planner {
         Planner::Lookahead if asked.is_noisy() => "noisy_plan",
         Planner::Lookahead => "lookahead_plan",
-        Planner::Cfc | Planner::Scc => "plan",
+        Planner::Cfc | Planner::Scc | Planner::Track => "plan",
     };
     let of = |core: &Core| {
         let mhz = cores.get("clocks")?.get(core.key)?.as_integer()? as f64 / 1e6;
@@ -190,6 +194,7 @@ const fn plan(asked: Configuration) -> &'static [&'static str] {
         Planner::Scc => &["mixture_plan_at_10"],
         Planner::Lookahead if asked.is_noisy() => &["noisy_plan"],
         Planner::Lookahead => &["lookahead_fine_plan"],
+        Planner::Track => &["plan"],
     }
 }
 
@@ -203,8 +208,15 @@ const fn estimate(asked: Configuration) -> &'static [&'static str] {
 
 /// The largest that was measured for the same planner.
 fn largest(asked: Configuration) -> String {
-    let same = Configuration { samples: 0, hypotheses: asked.hypotheses.min(2), ..asked };
-    let last = PROGRAMS.iter().rfind(|it| it.covers(same));
+    let none = Configuration {
+        samples: 0,
+        hypotheses: asked.hypotheses.min(2),
+        cells: asked.cells.map(|_| [0; 3]),
+        ..asked
+    };
+    // Where no program knows other vehicles, the unicycle's is the largest.
+    let same = [none, Configuration { roams: false, ..none }];
+    let last = same.into_iter().find_map(|same| PROGRAMS.iter().rfind(|it| it.covers(same)));
     last.map_or_else(|| "none".to_owned(), Program::room)
 }
 
@@ -226,7 +238,8 @@ mod tests {
                 if planner == Planner::Cfc && hypotheses > 1 {
                     continue;
                 }
-                let asked = Configuration { planner, samples, hypotheses, roams: false };
+                let asked =
+                    Configuration { planner, samples, hypotheses, cells: None, roams: false };
                 let size = size(asked, 168.0).unwrap_or_else(|error| panic!("{asked}: {error}"));
                 assert_eq!(size.flash.len(), 3, "{asked}: {size:?}");
                 assert!(size.stack > 4_000 && size.flash_of_planner > 20_000, "{asked}: {size:?}");
@@ -248,10 +261,39 @@ mod tests {
     }
 
     #[test]
+    fn a_follower_has_figures_for_its_tracker_and_for_each_smaller_one() {
+        let asked = |cells| Configuration {
+            planner: Planner::Track,
+            samples: 0,
+            hypotheses: 0,
+            cells: Some(cells),
+            roams: false,
+        };
+        for cells in [[16, 16, 3], [4, 4, 1], [12, 16, 3]] {
+            let size = size(asked(cells), 168.0).expect("measured");
+            assert_eq!((size.program, size.flash.len()), ("track", 3), "{size:?}");
+            let calls: Vec<_> = size.calls.iter().map(|it| it.call).collect();
+            assert_eq!(calls, ["plan", "observe", "estimates"]);
+            assert!(size.others.iter().all(|it| it.calls.len() == 3), "{size:?}");
+            assert!(size.tracker.is_some_and(|it| it < size.stack), "{size:?}");
+        }
+        for cells in [[17, 16, 3], [16, 17, 3], [16, 16, 5], [24, 24, 1]] {
+            let refused = size(asked(cells), 168.0).expect_err("larger").to_string();
+            assert!(refused.contains("the largest is 16 x 16 x 3 cells"), "{refused}");
+        }
+        // Pointers and doubles are not smaller here than on a chip.
+        let bytes = |cells| asked(cells).tracker().expect("a tracker");
+        assert!(size_of::<planner_core::Tracker<16, 16, 3>>() as u64 <= bytes([16, 16, 3]));
+        assert!(size_of::<planner_core::Tracker<4, 4, 1>>() as u64 <= bytes([4, 4, 1]));
+        assert!(size_of::<planner_core::Tracker<24, 8, 5>>() as u64 <= bytes([24, 8, 5]));
+    }
+
+    #[test]
     fn more_never_takes_less() {
         let asked = |samples, hypotheses, roams| {
             let planner = Planner::Lookahead;
-            size(Configuration { planner, samples, hypotheses, roams }, 168.0).expect("measured")
+            let asked = Configuration { planner, samples, hypotheses, cells: None, roams };
+            size(asked, 168.0).expect("measured")
         };
         let sizes =
             [asked(4, 1, false), asked(17, 1, false), asked(36, 529, false), asked(37, 530, false)];
