@@ -44,12 +44,12 @@ impl Front {
 
     /// The radius of the tightest bend, metres; `None` if it is straight.
     pub fn radius(self) -> Option<f64> {
-        (self.radius_mm > 0).then(|| f64::from(self.radius_mm) * 1e-3)
+        (self.radius_mm > 0).then(|| f64::from(self.radius_mm) / 1e3)
     }
 
     /// How far it moves in a unit of time, metres.
     pub fn speed(self) -> f64 {
-        f64::from(self.speed_um) * 1e-6
+        f64::from(self.speed_um) / 1e6
     }
 
     /// The curvature of the tightest bend, 1/m.
@@ -96,7 +96,14 @@ mod tests {
         }
         let front = Front::bending(40.0).and_then(|it| it.moving(0.05)).unwrap();
         assert_eq!(front.radius(), Some(40.0));
-        assert!((front.speed() - 0.05).abs() < 1e-9);
+        // A quotient of integers is the number that is written so: no digit is added to what was told.
+        for count in (100..200_000).step_by(7) {
+            let (radius, speed) = (f64::from(count) / 1e3, f64::from(count) / 1e6);
+            let front = Front::bending(radius).and_then(|it| it.moving(speed)).unwrap();
+            let read = (front.radius().unwrap(), front.speed());
+            assert_eq!([read.0.to_bits(), read.1.to_bits()], [radius, speed].map(f64::to_bits));
+        }
+        assert_eq!(Front::STRAIGHT.moving(0.05).unwrap().speed().to_bits(), 0.05f64.to_bits());
         assert_eq!((Front::STRAIGHT.radius(), Front::STRAIGHT.bend()), (None, 0.0));
     }
 }
