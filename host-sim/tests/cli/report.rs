@@ -8,6 +8,7 @@ use serde_json::Value;
 use crate::{GOOD, folder, prints, refuses};
 
 const NOISY: &str = include_str!("../../scenarios/paper-noisy.toml");
+const MOVING: &str = include_str!("../../scenarios/moving-front.toml");
 const CAR: &str = include_str!("../../scenarios/car-among-keep-outs.toml");
 
 fn page(folder: &Path) -> String {
@@ -52,6 +53,32 @@ fn a_page_has_all_in_it_and_a_scene_for_each_step() {
         assert_eq!(flights[0]["scenes"].as_array().map(Vec::len), Some(steps + 1));
         assert_eq!(page.matches("<th scope=\"row\">").count(), steps + 1, "a row each");
     }
+}
+
+/// A front has no slope and no intercept: the table has where it is known best, as the trace has.
+#[test]
+fn the_table_of_a_front_has_its_places_and_none_of_a_line() {
+    let folder = folder();
+    let head = |page: &str| {
+        let table = page.split_once("<thead>").expect("a table").1;
+        table.split_once("</thead>").expect("an end").0.to_owned()
+    };
+    fs::write(folder.path().join("m.toml"), MOVING).expect("a file");
+    let run = ["run", "m.toml", "--steps", "12", "--report", "r.html", "--format", "json"];
+    let trace = prints(folder.path(), &run);
+    let html = page(folder.path());
+    let columns = ["front at, m", "half-width of the front, m", "front off, m", "cost so far"];
+    assert!(columns.iter().all(|it| head(&html).contains(it)), "{}", head(&html));
+    assert!(!head(&html).contains("slopes") && !head(&html).contains("intercept"), "{html}");
+    let last: Value = trace.lines().nth(12).map(serde_json::from_str).expect("a step").unwrap();
+    let half_width = last["front"]["half_width"].as_f64().expect("a front");
+    let row = html.split_once("<th scope=\"row\">12</th>").expect("a row").1;
+    let cells: Vec<&str> = row.split("<td>").skip(1).take(11).collect();
+    assert!(cells[8].starts_with(&format!("{half_width:.2}")), "{cells:?}, {half_width}");
+    assert!(cells[7].starts_with('(') && cells[10].contains("</tr>"), "{cells:?}");
+    fs::write(folder.path().join("m.toml"), GOOD).expect("a file");
+    prints(folder.path(), &["run", "m.toml", "--report", "r.html"]);
+    assert!(head(&page(folder.path())).contains("slopes left, deg"));
 }
 
 #[test]

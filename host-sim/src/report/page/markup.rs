@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::report::page::contents::{Chapter, Page};
-use crate::report::page::scene::{Flight, Moved, Scene};
+use crate::report::page::scene::{Flight, Moved, Place, Scene};
 use crate::report::page::words::{arcs, range, signed, small};
 use crate::report::text::fixed;
 
@@ -100,7 +100,7 @@ fn still(flight: &Flight) -> String {
 
 /// The steps as a table.
 fn steps(flight: &Flight) -> String {
-    const HEADS: [&str; 12] = [
+    const HEADS: [&str; 8] = [
         "step",
         "problem",
         "motion",
@@ -109,24 +109,23 @@ fn steps(flight: &Flight) -> String {
         "bits expected",
         "read",
         "bits so far",
-        "slopes left, deg",
-        "intercepts left, m",
-        "estimate off, deg",
-        "cost so far",
     ];
+    const OF_LINE: [&str; 3] = ["slopes left, deg", "intercepts left, m", "estimate off, deg"];
+    const OF_FRONT: [&str; 3] = ["front at, m", "half-width of the front, m", "front off, m"];
+    let known = if flight.follows { OF_FRONT } else { OF_LINE };
     let planner = escaped(&flight.planner);
     let mut html = format!(
         "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"Steps of {planner}\">\n\
          <table class=\"told\">\n<caption>{planner}</caption>\n<thead><tr>"
     );
-    for head in HEADS {
+    for head in HEADS.into_iter().chain(known).chain(["cost so far"]) {
         // Writing to a string cannot fail.
         let _ = write!(html, "<th scope=\"col\">{head}</th>");
     }
     html += "</tr></thead>\n<tbody>\n";
     for (number, scene) in flight.scenes.iter().enumerate() {
         let _ = write!(html, "<tr><th scope=\"row\">{number}</th>");
-        for cell in cells(scene) {
+        for cell in cells(scene, flight.follows) {
             let _ = write!(html, "<td>{}</td>", escaped(&cell));
         }
         html += "</tr>\n";
@@ -134,24 +133,34 @@ fn steps(flight: &Flight) -> String {
     html + "</tbody>\n</table>\n</div>\n"
 }
 
-fn cells(scene: &Scene) -> [String; 11] {
+/// What a step has beside its number. Of a front it is where the front is known best, and not a line.
+fn cells(scene: &Scene, follows: bool) -> [String; 11] {
     let none = || "\u{2013}".to_owned();
+    let place = |[x, z]: Place| format!("({x:.3}, {z:.3})").replace('-', "\u{2212}");
     let motion = scene.motion.as_ref();
     let expected = |of: fn(&Moved) -> Option<f64>| motion.and_then(of);
     let wrong = |motion: &Moved| if motion.is_wrong { ", wrong" } else { "" };
     let label = |motion: &Moved| Some(format!("{}{}", signed(motion.label?), wrong(motion)));
     let off = scene.estimate.as_ref().and_then(|line| line.off_deg);
+    let front = scene.front.as_ref();
+    let known = if follows {
+        let off = front.and_then(|it| it.off);
+        [front.map(|it| place(it.at)), front.map(|it| small(it.half_width)), off.map(small)]
+    } else {
+        [Some(arcs(&scene.slopes)), Some(range(scene.intercepts)), off.map(small)]
+    };
+    let [first, second, third] = known.map(|it| it.unwrap_or_else(none));
     [
         motion.map_or_else(none, |it| it.problem.clone()),
         motion.map_or_else(none, |it| it.motion.clone()),
-        format!("({:.3}, {:.3})", scene.at[0], scene.at[1]).replace('-', "\u{2212}"),
+        place(scene.at),
         expected(|it| it.chance).map_or_else(none, |it| format!("{:.0} %", 100.0 * it)),
         expected(|it| it.expected).map_or_else(none, |bits| format!("{bits:.3}")),
         motion.and_then(label).unwrap_or_else(none),
         fixed(scene.bits, 2),
-        arcs(&scene.slopes),
-        range(scene.intercepts),
-        off.map_or_else(none, small),
+        first,
+        second,
+        third,
         format!("{:.1}", scene.cost),
     ]
 }

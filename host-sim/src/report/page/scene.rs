@@ -33,7 +33,7 @@ pub(crate) struct Flight {
     /// Whether labels may be wrong.
     labels_err: bool,
     /// Whether a front is followed, and not a straight line sought.
-    follows: bool,
+    pub(crate) follows: bool,
     /// The border of the area.
     pub(crate) area: Ring,
     /// What is kept out of.
@@ -130,9 +130,9 @@ pub(crate) struct SeenFront {
     pub(crate) at: Place,
     pub(crate) ends: [Place; 2],
     /// The half-width, metres.
-    half_width: f64,
+    pub(crate) half_width: f64,
     /// The distance of the place from the true front, metres.
-    off: Option<f64>,
+    pub(crate) off: Option<f64>,
 }
 
 /// A motion, and what was read at its end.
