@@ -23,9 +23,6 @@ impl Picture {
                 map.stretch(way, stroke, it.name);
             }
         }
-        for way in self.front.ways() {
-            map.stretch(&way, FRONT, "the front as it is mapped");
-        }
         for it in &self.lines {
             map.line(&it.line, style::of_line(it.kind), &it.name, it.beside.as_deref());
         }
@@ -33,6 +30,12 @@ impl Picture {
             map.path(*start, stops);
         }
         map.samples(&self.samples, self.given);
+        // On top, as marks lie close together along a front.
+        let moves = self.truth.iter().flat_map(Truth::outlines).any(|it| it.is_past);
+        let mapped = if moves { "as it was when it was mapped" } else { "as it is mapped" };
+        for way in self.front.ways() {
+            map.stretch(&way, FRONT, &format!("the front {mapped}"));
+        }
         map.finish(stops)
     }
 

@@ -13,10 +13,14 @@ use crate::report::style::{self, Fill, INK, Stroke};
 pub(crate) enum Look {
     /// A label that was read: a disc for +1, a square for -1.
     Read(Label),
+    /// The same, small: there are many along a front, and they must not hide its map.
+    Small(Label),
     /// One that was given: larger, outlined.
     Given(Label),
     /// A ring about a label.
     Ringed(Ring),
+    /// A ring about a small one whose label is known to be false.
+    Wrong,
     /// A diamond where a robot starts.
     Start,
     /// A small circle where no label was read.
@@ -40,11 +44,11 @@ pub(crate) enum Look {
 impl Look {
     pub(crate) const fn class(self) -> &'static str {
         match self {
-            Self::Read(Label::Positive) => "read-positive",
-            Self::Read(Label::Negative) => "read-negative",
+            Self::Read(Label::Positive) | Self::Small(Label::Positive) => "read-positive",
+            Self::Read(Label::Negative) | Self::Small(Label::Negative) => "read-negative",
             Self::Given(Label::Positive) => "given-positive",
             Self::Given(Label::Negative) => "given-negative",
-            Self::Ringed(Ring::Wrong) => "wrong",
+            Self::Ringed(Ring::Wrong) | Self::Wrong => "wrong",
             Self::Ringed(Ring::Disagrees) => "disagrees",
             Self::Ringed(Ring::Against) => "against",
             Self::Ringed(Ring::Refutes) => "refutes",
@@ -67,14 +71,14 @@ impl Look {
             group.set("fill", "none").set("stroke", INK).set("stroke-width", width)
         };
         match self {
-            Self::Read(label) => group.set("fill", style::of_label(label)),
+            Self::Read(label) | Self::Small(label) => group.set("fill", style::of_label(label)),
             Self::Given(label) => {
                 let group = group.set("fill", style::of_label(label));
                 group.set("stroke", "#000000").set("stroke-width", 1.8)
             }
             Self::Ringed(Ring::Against) => outlined(group, 1.4).set("stroke-dasharray", "3 2"),
             Self::Ringed(_) | Self::Start => outlined(group, 1.4),
-            Self::Truly => outlined(group, 1.1),
+            Self::Truly | Self::Wrong => outlined(group, 1.1),
             Self::Unread | Self::Missing => outlined(group, 1.2).set("fill", "#ffffff"),
             Self::Number => group.set("fill", INK),
             Self::Line(Stroke { colour, width, dashes, .. }) => {
@@ -94,6 +98,9 @@ impl Look {
         match self {
             Self::Read(Label::Positive) => group.add(circle(at, 4.6)),
             Self::Read(Label::Negative) => group.add(square(at, 4.1)),
+            Self::Small(Label::Positive) => group.add(circle(at, 2.3)),
+            Self::Small(Label::Negative) => group.add(square(at, 2.0)),
+            Self::Wrong => group.add(circle(at, 5.0)),
             Self::Given(Label::Positive) => group.add(circle(at, 6.8)),
             Self::Given(Label::Negative) => group.add(square(at, 6.1)),
             Self::Ringed(Ring::Refutes) => group.add(circle(at, 8.5)).add(circle(at, 12.5)),

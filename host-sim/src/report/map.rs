@@ -26,6 +26,8 @@ pub(crate) struct Map {
     placing: Placing,
     /// Words that are placed after all marks: the text, its spot and its size.
     words: Vec<(String, Spot, f64)>,
+    /// Whether it has the map of a front.
+    follows: bool,
 }
 
 /// The greatest distance of a name from its spot, pixels.
@@ -64,7 +66,7 @@ impl Map {
             sheet.words(note, Spot::new(16.0, 48.0), 13.0, Anchor::Start);
         }
         let placing = Placing::new(axes.frame());
-        let mut map = Self { area: *area, axes, sheet, placing, words: Vec::new() };
+        let mut map = Self { area: *area, axes, sheet, placing, words: Vec::new(), follows: false };
         let mut border = map.spots(&Polygon::from(*area).0);
         border.extend(border.first().copied());
         map.placing.way(&border);
@@ -142,7 +144,9 @@ impl Map {
     }
 
     /// The ground where a mapped front lies with a probability of 0.9, and where it was lost last if it is lost.
+    /// From here on marks are small: there are many along a front, and they must not hide its map.
     pub(crate) fn front_ground(&mut self, front: &Ribbon) {
+        self.follows = !front.is_empty();
         for quad in front.ground() {
             let ring = self.spots(&quad);
             self.sheet.ground(Fill::Front, &[ring]);
@@ -212,7 +216,6 @@ impl Map {
 
     /// The path with the heading after each step, and where the robot truly was. Numbers of steps come last.
     pub(crate) fn path(&mut self, start: Point2<f64>, stops: &[Stop]) {
-        const TICK: f64 = 13.0;
         let places = stops.iter().flat_map(|stop| &stop.way);
         let way: Vec<_> =
             std::iter::once(&start).chain(places).map(|at| self.axes.at(*at)).collect();
@@ -225,17 +228,9 @@ impl Map {
         }
         self.sheet.ways(PATH, [&way[..]]);
         self.sheet.name(Look::Line(PATH), "path of the robot");
-        let ticks = stops.iter().map(|stop| {
-            let (sin, cos) = libm::sincos(stop.heading);
-            let at = self.axes.at(stop.at);
-            vec![at, at + Vector2::new(cos, -sin) * TICK]
-        });
-        let ticks: Vec<_> = ticks.collect();
-        for tick in &ticks {
-            self.placing.way(tick);
+        if !self.follows {
+            self.headings(stops);
         }
-        self.sheet.ways(HEADING, ticks.iter().map(Vec::as_slice));
-        self.sheet.name(Look::Line(HEADING), "heading after a step");
         for stop in stops {
             let at = self.axes.at(stop.at);
             if let Some(truly) = stop.truly.map(|truly| self.axes.at(truly)) {
@@ -257,7 +252,23 @@ impl Map {
         }
     }
 
-    /// Draws the samples, the first `given` of which were given.
+    /// The heading after each step.
+    fn headings(&mut self, stops: &[Stop]) {
+        const TICK: f64 = 13.0;
+        let ticks = stops.iter().map(|stop| {
+            let (sin, cos) = libm::sincos(stop.heading);
+            let at = self.axes.at(stop.at);
+            vec![at, at + Vector2::new(cos, -sin) * TICK]
+        });
+        let ticks: Vec<_> = ticks.collect();
+        for tick in &ticks {
+            self.placing.way(tick);
+        }
+        self.sheet.ways(HEADING, ticks.iter().map(Vec::as_slice));
+        self.sheet.name(Look::Line(HEADING), "heading after a step");
+    }
+
+    /// Draws the samples, the first `given` of which were given. Along a front the others are small.
     pub(crate) fn samples(&mut self, samples: &[Dot], given: usize) {
         for (k, dot) in samples.iter().enumerate() {
             let at = self.axes.at(dot.at);
@@ -266,7 +277,8 @@ impl Map {
                 self.beside(&format!("p{}", k + 1), at, 14.0);
                 (Look::Given(dot.label), format!("given beforehand, label {sign:+}"), 8.0)
             } else {
-                (Look::Read(dot.label), format!("label {sign:+} was read here"), 5.0)
+                let look = if self.follows { Look::Small } else { Look::Read };
+                (look(dot.label), format!("label {sign:+} was read here"), 5.0)
             };
             if let Some(ring) = dot.ring {
                 let meaning = match ring {
@@ -275,8 +287,10 @@ impl Map {
                     Ring::Against => "dashed ring: disagrees with the best line",
                     Ring::Refutes => "double ring: no line left has this label here",
                 };
-                self.sheet.mark(Look::Ringed(ring), at);
-                self.sheet.name(Look::Ringed(ring), meaning);
+                let is_small = self.follows && ring == Ring::Wrong;
+                let ring = if is_small { Look::Wrong } else { Look::Ringed(ring) };
+                self.sheet.mark(ring, at);
+                self.sheet.name(ring, meaning);
             }
             self.sheet.mark(look, at);
             self.sheet.name(look, meaning);

@@ -39,7 +39,6 @@ function drawMap(svg, flight, step, width, from) {
     for (const way of ways) add(svg, 'path', { class: is_past ? 'truth past' : 'truth', d: through(way.map(at)) });
   }
   if (scene.estimate) add(svg, 'path', { class: 'estimate', d: through(scene.estimate.ends.map(at)) });
-  for (const piece of fronts(past)) add(svg, 'path', { class: 'estimate', d: through(piece.map((it) => at(it.at))) });
 
   const way = past.flatMap((it) => (it.motion ? it.motion.way : [it.at]));
   add(svg, 'path', { class: 'path', d: through(way.map(at)) });
@@ -54,6 +53,8 @@ function drawMap(svg, flight, step, width, from) {
     const isRight = x > width - 40;
     add(svg, 'text', { class: 'name', x: x + (isRight ? -10 : 10), y: y + (y < 26 ? 16 : -7), 'text-anchor': isRight ? 'end' : 'start' }, `p${number + 1}`);
   }
+  // Along a front labels lie close together: small, and below its map, which they must not hide.
+  const [size, about] = flight.follows ? [2.4, 5] : [4.5, 9];
   for (const { motion, at: place } of past) {
     if (!motion) continue;
     const spot = at(place);
@@ -61,10 +62,11 @@ function drawMap(svg, flight, step, width, from) {
       add(svg, 'path', { class: 'slip', d: through([spot, at(motion.truly)]) });
       cross(svg, at(motion.truly), 'truly');
     }
-    if (motion.label === null) add(svg, 'circle', { class: 'unread', cx: spot[0], cy: spot[1], r: 3.5 });
-    else symbol(svg, spot, motion.label, 4.5);
-    if (motion.is_wrong) add(svg, 'circle', { class: 'wrong', cx: spot[0], cy: spot[1], r: 9 });
+    if (motion.label === null) add(svg, 'circle', { class: 'unread', cx: spot[0], cy: spot[1], r: size - 1 });
+    else symbol(svg, spot, motion.label, size);
+    if (motion.is_wrong) add(svg, 'circle', { class: 'wrong', cx: spot[0], cy: spot[1], r: about });
   }
+  for (const piece of fronts(past)) add(svg, 'path', { class: 'estimate', d: through(piece.map((it) => at(it.at))) });
   drawRobot(svg, flight, step, at, from);
 }
 

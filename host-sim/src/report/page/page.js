@@ -128,7 +128,8 @@ function legend(figure, flight) {
   if (flight.truth) item('the true line', stroke('truth'));
   for (const { name, is_past } of flight.boundary ?? []) item(`the ${name}`, stroke(is_past ? 'truth past' : 'truth'));
   if (flight.follows) {
-    item('the front as it is mapped', stroke('estimate'));
+    const moves = (flight.boundary ?? []).some((it) => it.is_past);
+    item(`the front as it ${moves ? 'was when it was' : 'is'} mapped`, stroke('estimate'));
     item('it lies here with a probability of 90 %', box('front'));
   } else item(flight.estimate, stroke('estimate'));
   item('path, and the last motion', (svg) => { add(svg, 'path', { class: 'path', d: 'M1 9H12' }); add(svg, 'path', { class: 'leg', d: 'M12 9H25' }); });
