@@ -25,6 +25,7 @@ use spoiled::{
 };
 
 mod endings;
+mod fronts;
 mod habits;
 mod on_the_way;
 mod spoiled;
