@@ -107,9 +107,9 @@ fn every_machine_makes_the_same_traces_of_every_vehicle_and_of_robots_that_err()
 fn every_machine_makes_the_same_traces_and_maps_of_fronts() {
     let missions = |count| (0..count).map(|number| following(5, number, 60)).collect::<Vec<_>>();
     compare_on(&CORES[..1], "track", &missions(cases(8, 24)));
-    // A Cortex-M0 needs thirty times as many instructions. It flies one mission, and a third of one of each other kind; in
-    // a long run all.
-    let few = (1..4).map(|number| following(5, number, 20));
+    // A Cortex-M0 needs thirty times as many instructions. It flies one mission, and a few steps of one of each other
+    // kind; in a long run all.
+    let few = (1..4).map(|number| following(5, number, 10));
     let few = missions(1).into_iter().chain(few).collect();
     compare_on(&CORES[1..], "track", &if is_long() { missions(24) } else { few });
 }
