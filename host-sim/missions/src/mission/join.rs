@@ -1,0 +1,239 @@
+//! The maps of several robots on one front, joined to one map.
+//!
+//! A vertex says where the front is and which way it goes there. So the joined map needs neither the order of the
+//! vertices nor whose they are. Of vertices at one place the one with the smallest half-width is kept. Then each vertex is
+//! linked to the next one ahead. The front is still: one that moves is mapped where it was at different times.
+
+use nalgebra::{Point2, Vector2};
+
+use crate::mission::front::VertexRecord;
+
+/// Vertices are at one place if they are closer along the front than this share of the usual distance of two of them.
+const ONE: f64 = 0.5;
+
+/// Ends are linked if they are no further apart than so many usual distances.
+const REACH: f64 = 3.0;
+
+/// The map of a robot by its pieces, each vertex with its number.
+pub type Pieces = Vec<Vec<(usize, VertexRecord)>>;
+
+/// A vertex of the joined map.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    /// Whose it is, from 1.
+    pub robot: usize,
+    /// Its number in the map of that robot.
+    pub number: usize,
+    /// The vertex.
+    pub vertex: VertexRecord,
+}
+
+/// The joined map.
+#[derive(Clone, Debug, Default)]
+pub struct Joined {
+    /// In the direction of the front, with +1 on the left, and the longest first. None is empty.
+    pub pieces: Vec<Vec<Place>>,
+    /// Whether the first piece goes all round: its last vertex is linked to its first.
+    pub is_closed: bool,
+}
+
+impl Joined {
+    /// Joins the maps of robots. It takes a time that grows with the square of the number of vertices.
+    pub fn of(robots: &[Pieces]) -> Self {
+        Self::until(robots, usize::MAX)
+    }
+
+    /// The same of the vertices up to a number.
+    pub fn until(robots: &[Pieces], most: usize) -> Self {
+        let reach = usual_distance(robots);
+        let kept = narrowest(places(robots, most), reach);
+        Self::linked(&kept, REACH * reach)
+    }
+
+    /// The first number up to which the map is closed, if all of it is; found by halving.
+    pub fn closes_at(robots: &[Pieces]) -> Option<usize> {
+        let is_closed = |most| Self::until(robots, most).is_closed;
+        let numbers = robots.iter().flatten().flatten().map(|it| it.0);
+        let (mut not, mut at) = (0, numbers.max().filter(|last| is_closed(*last))?);
+        while at - not > 1 {
+            let middle = not.midpoint(at);
+            *(if is_closed(middle) { &mut at } else { &mut not }) = middle;
+        }
+        Some(at)
+    }
+
+    /// Metres along the map. The way between two pieces is not counted.
+    pub fn metres(&self) -> f64 {
+        let way = |piece: &Vec<Place>| {
+            piece.windows(2).map(|it| (it[1].vertex.at() - it[0].vertex.at()).norm()).sum::<f64>()
+        };
+        let closing = match self.pieces.first().map(Vec::as_slice) {
+            Some([first, .., last]) if self.is_closed => {
+                (first.vertex.at() - last.vertex.at()).norm()
+            }
+            _ => 0.0,
+        };
+        closing + self.pieces.iter().map(way).sum::<f64>()
+    }
+
+    /// Links each vertex to the next one ahead, no further than `reach`.
+    fn linked(kept: &[Place], reach: f64) -> Self {
+        let nearest = |from: usize, sign: f64| {
+            let way = |to: &usize| kept[*to].vertex.at() - kept[from].vertex.at();
+            let is_ahead = |to: &usize| {
+                let way = sign * way(to);
+                let both = [from, *to].map(|it| direction(&kept[it].vertex));
+                both.iter().all(|it| it.dot(&way) > 0.0) && way.norm() <= reach
+            };
+            let ahead = (0..kept.len()).filter(is_ahead);
+            ahead.min_by(|a, b| way(a).norm_squared().total_cmp(&way(b).norm_squared()))
+        };
+        let after: Vec<_> = (0..kept.len()).map(|it| nearest(it, 1.0)).collect();
+        let before: Vec<_> = (0..kept.len()).map(|it| nearest(it, -1.0)).collect();
+        let next = |it: usize| after[it].filter(|next| before[*next] == Some(it));
+        let mut is_taken = vec![false; kept.len()];
+        let mut follow = |first: usize| {
+            let (mut piece, mut at) = (Vec::new(), Some(first));
+            while let Some(it) = at.filter(|it| !is_taken[*it]) {
+                is_taken[it] = true;
+                piece.push(kept[it]);
+                at = next(it);
+            }
+            (piece, at == Some(first))
+        };
+        let is_first = |it: &usize| before[*it].is_none_or(|last| after[last] != Some(*it));
+        let mut pieces: Vec<_> = (0..kept.len()).filter(is_first).map(|it| follow(it).0).collect();
+        // What is left goes round. It begins with the last vertex of the first robot: where they met.
+        let mut left: Vec<_> = (0..kept.len()).collect();
+        left.sort_by_key(|it| (kept[*it].robot, usize::MAX - kept[*it].number));
+        let mut is_closed = false;
+        for first in left {
+            let (piece, goes_round) = follow(first);
+            if goes_round && pieces.iter().all(|it| it.len() < piece.len()) {
+                is_closed = true;
+                pieces.insert(0, piece);
+            } else if !piece.is_empty() {
+                pieces.push(piece);
+            }
+        }
+        pieces.sort_by_key(|it| usize::MAX - it.len());
+        Self { pieces, is_closed }
+    }
+}
+
+/// All vertices up to a number.
+fn places(robots: &[Pieces], most: usize) -> Vec<Place> {
+    let of = |(robot, pieces): (usize, &Pieces)| {
+        let vertices = pieces.clone().into_iter().flatten();
+        let up_to = vertices.filter(move |it| it.0 <= most);
+        up_to.map(move |(number, vertex)| Place { robot, number, vertex })
+    };
+    (1..).zip(robots).flat_map(of).collect()
+}
+
+/// The median distance of a vertex from the one before in its piece, metres; 0 if no piece has two.
+fn usual_distance(robots: &[Pieces]) -> f64 {
+    let ways = robots.iter().flatten().flat_map(|piece| piece.windows(2));
+    let mut ways: Vec<_> = ways.map(|it| (it[1].1.at() - it[0].1.at()).norm()).collect();
+    ways.sort_by(f64::total_cmp);
+    ways.get(ways.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// Of vertices at one place the one with the smallest half-width, and of equals the first.
+fn narrowest(mut places: Vec<Place>, reach: f64) -> Vec<Place> {
+    places.sort_by(|a, b| a.vertex.half_width.total_cmp(&b.vertex.half_width));
+    let mut kept = Vec::<Place>::new();
+    for place in places {
+        if kept.iter().all(|it| !are_at_one_place(&it.vertex, &place.vertex, reach)) {
+            kept.push(place);
+        }
+    }
+    kept
+}
+
+/// Whether two vertices are the same place of the front. Where they are near and the front goes the other way, it is the
+/// other side of a narrow bay.
+fn are_at_one_place(one: &VertexRecord, other: &VertexRecord, reach: f64) -> bool {
+    let (ahead, way) = (direction(one), other.at() - one.at());
+    let (along, across) = (ahead.dot(&way).abs(), ahead.perp(&way).abs());
+    let within = reach.max(one.half_width + other.half_width);
+    direction(other).dot(&ahead) > 0.0 && along < ONE * reach && across <= within
+}
+
+fn direction(vertex: &VertexRecord) -> Vector2<f64> {
+    let (sin, cos) = libm::sincos(vertex.heading);
+    Vector2::new(cos, sin)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{PI, TAU};
+
+    use super::*;
+
+    /// A vertex of a circle of 20 m at an angle. The front goes counter-clockwise.
+    fn on_circle(angle: f64, half_width: f64) -> VertexRecord {
+        let (sin, cos) = libm::sincos(angle);
+        let Point2 { coords, .. } = Point2::new(20.0 * cos, 20.0 * sin);
+        let (heading, curvature, turn_deviation) = (angle + PI / 2.0, 0.05, 0.01);
+        VertexRecord { x: coords.x, z: coords.y, heading, curvature, half_width, turn_deviation }
+    }
+
+    /// A robot that goes by 0.1 radians (2 m) a step from an angle, one way or the other.
+    fn robot(from: f64, way: f64, steps: usize, half_width: f64) -> Pieces {
+        let vertex = |k: usize| (k, on_circle(from + way * 0.1 * k as f64, half_width));
+        vec![(1..=steps).map(vertex).collect()]
+    }
+
+    #[test]
+    fn two_robots_back_to_back_make_one_way() {
+        let robots = [robot(0.0, 1.0, 12, 0.5), robot(0.0, -1.0, 9, 0.5)];
+        let it = Joined::of(&robots);
+        let [piece] = &it.pieces[..] else { panic!("{it:?}") };
+        let numbers: Vec<_> = piece.iter().map(|it| (it.robot, it.number)).collect();
+        let far = (1..=9).rev().map(|k| (2, k)).chain((1..=12).map(|k| (1, k)));
+        assert_eq!(numbers, far.collect::<Vec<_>>());
+        assert!(!it.is_closed && Joined::closes_at(&robots).is_none());
+        assert!((it.metres() - 42.0).abs() < 0.1, "{}", it.metres());
+    }
+
+    #[test]
+    fn where_two_robots_meet_the_narrower_is_kept() {
+        let robots = [robot(0.0, 1.0, 40, 0.5), robot(0.02, -1.0, 40, 0.3)];
+        let it = Joined::of(&robots);
+        assert!(it.is_closed && it.pieces.len() == 1, "{it:?}");
+        // All of the second, and of the first what the second has not mapped.
+        let of = |robot: usize| it.pieces[0].iter().filter(move |it| it.robot == robot);
+        assert_eq!(of(2).count(), 40);
+        assert!(of(1).all(|it| it.number < 24), "{it:?}");
+        assert!((it.metres() - 40.0 * PI).abs() < 0.5, "{}", it.metres());
+        let met = Joined::closes_at(&robots).expect("closed");
+        assert!((29..=32).contains(&met), "{met}: half of {} steps", (TAU / 0.1) as u32);
+        // It begins where they met.
+        assert_eq!(it.pieces[0][0].robot, 1);
+    }
+
+    #[test]
+    fn the_sides_of_a_narrow_bay_are_two_places() {
+        let side = |z: f64, way: f64| {
+            let heading = if way > 0.0 { 0.0 } else { PI };
+            let vertex = |k: usize| {
+                let it = on_circle(0.0, 0.5);
+                (k, VertexRecord { x: 10.0 + way * 2.0 * k as f64, z, heading, ..it })
+            };
+            vec![(1..=5).map(vertex).collect()]
+        };
+        let it = Joined::of(&[side(0.0, 1.0), side(0.6, -1.0)]);
+        let lengths: Vec<_> = it.pieces.iter().map(Vec::len).collect();
+        assert_eq!((lengths, it.is_closed), (vec![5, 5], false));
+    }
+
+    #[test]
+    fn a_gap_stays_a_gap() {
+        let it = Joined::of(&[robot(0.0, 1.0, 5, 0.5), robot(3.0, 1.0, 7, 0.5)]);
+        let lengths: Vec<_> = it.pieces.iter().map(Vec::len).collect();
+        assert_eq!((lengths, it.is_closed), (vec![7, 5], false));
+        assert!(Joined::of(&[vec![], vec![]]).pieces.is_empty());
+        assert_eq!(Joined::of(&[robot(0.0, 1.0, 1, 0.5)]).pieces.len(), 1);
+    }
+}

@@ -1,0 +1,167 @@
+//! Two robots that start back to back on one front, and one map that is joined from theirs.
+//!
+//! The robots know nothing of each other: each has its own tracker and its own errors of the sensor. The fronts and the
+//! motions are those of `campaign --fronts`.
+
+use host_sim::campaign::fronts::flight::{sea, tracker, vehicle};
+use host_sim::campaign::fronts::following::{Course, REACH, follow};
+use host_sim::campaign::fronts::kinds::Told;
+use host_sim::campaign::fronts::true_front::{TrueFront, site};
+use host_sim::mission::front::VertexRecord;
+use host_sim::mission::join::{Joined, Pieces};
+use planner_core::{Heading, Noise, Pose, Track};
+use rand::SeedableRng as _;
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+use tests::cases;
+
+const SEED: u64 = 45;
+
+/// The map of one robot, and after how many motions it had gone all round.
+struct Flight {
+    map: Pieces,
+    closed: Option<usize>,
+}
+
+/// Follows a front from its place, in its direction or the other one.
+fn fly(
+    front: &TrueFront,
+    radius: f64,
+    p: f64,
+    (is_along, motions): (bool, u32),
+    rng: &mut ChaCha8Rng,
+) -> Flight {
+    let told = Told { radius, speed: 0.0 };
+    let tracker = tracker(front, told, Noise::new(p).expect("a probability")).expect("a front");
+    let planner = Track::new(sea().expect("an area"), vehicle(REACH).expect("a vehicle"), tracker);
+    let turned = if is_along { 0.0 } else { std::f64::consts::PI };
+    let heading = Heading::from_radians(front.angle + turned).expect("an angle");
+    let start = Pose { site: site(front.beside(0.0, 2.0)), heading };
+    // One motion more, as each is shown before it is observed.
+    let course = Course { motions: motions + 1, steps: 1.0, p };
+    let (mut found, mut closed, mut motion) = (Vec::new(), None, 0);
+    follow(front, planner.expect("room"), (course, start), rng, |planner, _, _| {
+        if motion > 0 {
+            found.push(planner.found().map(VertexRecord::from));
+        }
+        if closed.is_none() && planner.is_closed() {
+            closed = Some(motion);
+        }
+        motion += 1;
+    });
+    let (mut map, mut is_known) = (Pieces::new(), false);
+    for (number, vertex) in (1..).zip(found) {
+        if let Some(vertex) = vertex {
+            match map.last_mut() {
+                Some(piece) if is_known => piece.push((number, vertex)),
+                _ => map.push(vec![(number, vertex)]),
+            }
+        }
+        is_known = vertex.is_some();
+    }
+    Flight { map, closed }
+}
+
+/// What the missions of a row come to.
+struct Row {
+    /// Motions of the pair until its map is closed, and of one robot until its own is. Infinite if it never is.
+    motions: Vec<[f64; 2]>,
+    /// Distance from the front of each vertex, and its half-width.
+    off: Vec<[f64; 2]>,
+    /// Pieces of the joined map.
+    pieces: Vec<usize>,
+    /// The longest way between two vertices of the first piece, metres.
+    gaps: Vec<f64>,
+    /// Metres of front that are mapped twice, as a share.
+    twice: Vec<f64>,
+    /// Metres along the map of the pair, and of one robot with as many motions as both.
+    metres: Vec<[f64; 2]>,
+}
+
+fn median(mut numbers: Vec<f64>) -> f64 {
+    numbers.sort_by(f64::total_cmp);
+    numbers[numbers.len() / 2]
+}
+
+/// Flies pairs along a kind of front. An open one is followed for `motions` by each.
+fn row(
+    name: &str,
+    draw: fn(&mut ChaCha8Rng) -> TrueFront,
+    (radius, p, motions): (f64, f64, u32),
+    is_closed: bool,
+) -> Row {
+    let missions = cases(20, 100);
+    let mission = |number| {
+        let mut rng = ChaCha8Rng::seed_from_u64(SEED);
+        rng.set_stream(number);
+        let front = draw(&mut rng);
+        let one =
+            fly(&front, radius, p, (true, if is_closed { motions } else { 2 * motions }), &mut rng);
+        let pair = [true, false].map(|is| fly(&front, radius, p, (is, motions), &mut rng).map);
+        let met = Joined::closes_at(&pair);
+        let joined = Joined::until(&pair, met.unwrap_or(usize::MAX));
+        (front, one, met, joined)
+    };
+    let flown: Vec<_> = (0..missions).into_par_iter().map(mission).collect();
+    let mut row = Row {
+        motions: vec![],
+        off: vec![],
+        pieces: vec![],
+        gaps: vec![],
+        twice: vec![],
+        metres: vec![],
+    };
+    for (front, one, met, joined) in &flown {
+        let motions = |it: Option<usize>| it.map_or(f64::INFINITY, |it| it as f64);
+        row.motions.push([motions(*met), motions(one.closed)]);
+        row.pieces.push(joined.pieces.len());
+        let whole: Vec<_> = joined.pieces.iter().flatten().collect();
+        for it in &whole {
+            row.off.push([front.distance(it.vertex.at(), 0.0), it.vertex.half_width]);
+        }
+        let Some(first) = joined.pieces.first() else { continue };
+        let along: Vec<_> = first.iter().map(|it| front.along(it.vertex.at(), 0.0)).collect();
+        let ways: Vec<_> = along.windows(2).map(|it| front.way_between(it[0], it[1])).collect();
+        row.gaps.push(ways.iter().copied().fold(0.0, f64::max));
+        let [all, net] = [ways.iter().map(|it| it.abs()).sum::<f64>(), ways.iter().sum::<f64>()];
+        row.twice.push((all - net.abs()) / all);
+        row.metres.push([joined.metres(), Joined::of(&[one.map.clone()]).metres()]);
+    }
+    let pair = median(row.motions.iter().map(|it| it[0]).collect());
+    let alone = median(row.motions.iter().map(|it| it[1]).collect());
+    let share = |it: f64, of: usize| 100.0 * it / of as f64;
+    let covers = row.off.iter().filter(|[off, half]| off <= half).count() as f64;
+    let mut off: Vec<_> = row.off.iter().map(|it| it[0]).collect();
+    off.sort_by(f64::total_cmp);
+    println!(
+        "{name}, p = {p}, {missions} missions, seed {SEED}: {pair} motions ({alone} alone), closed {} of {}, {:.3} / {:.3} m \
+         off, covers {:.1} %, one piece {} (most {}), longest gap {:.2} m, twice {:.2} %, metres {:.1} ({:.1} alone)",
+        row.motions.iter().filter(|it| it[0].is_finite()).count(),
+        row.motions.iter().filter(|it| it[1].is_finite()).count(),
+        off[off.len() / 2],
+        off[off.len() * 95 / 100],
+        share(covers, off.len()),
+        row.pieces.iter().filter(|it| **it == 1).count(),
+        row.pieces.iter().max().unwrap_or(&0),
+        row.gaps.iter().copied().fold(0.0, f64::max),
+        100.0 * row.twice.iter().copied().fold(0.0, f64::max),
+        median(row.metres.iter().map(|it| it[0]).collect()),
+        median(row.metres.iter().map(|it| it[1]).collect()),
+    );
+    row
+}
+
+#[test]
+fn a_pair_maps_a_closed_front_in_half_the_time() {
+    for p in [1.0, 0.9] {
+        row("circle of 20 m", |rng| TrueFront::circle(20.0, rng), (20.0, p, 100), true);
+        row("circle of 60 m", |rng| TrueFront::circle(60.0, rng), (60.0, p, 240), true);
+    }
+}
+
+#[test]
+fn a_pair_maps_an_open_front_to_both_sides() {
+    for p in [1.0, 0.9] {
+        row("coast", |rng| TrueFront::coast([6.0, 25.0], rng), (40.0, p, 100), false);
+    }
+}
