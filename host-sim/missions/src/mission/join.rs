@@ -4,7 +4,7 @@
 //! vertices nor whose they are. Of vertices at one place the one with the smallest half-width is kept. Then each vertex is
 //! linked to the next one ahead. The front is still: one that moves is mapped where it was at different times.
 
-use nalgebra::{Point2, Vector2};
+use nalgebra::Vector2;
 
 use crate::mission::front::VertexRecord;
 
@@ -174,9 +174,8 @@ mod tests {
     /// A vertex of a circle of 20 m at an angle. The front goes counter-clockwise.
     fn on_circle(angle: f64, half_width: f64) -> VertexRecord {
         let (sin, cos) = libm::sincos(angle);
-        let Point2 { coords, .. } = Point2::new(20.0 * cos, 20.0 * sin);
         let (heading, curvature, turn_deviation) = (angle + PI / 2.0, 0.05, 0.01);
-        VertexRecord { x: coords.x, z: coords.y, heading, curvature, half_width, turn_deviation }
+        VertexRecord { x: 20.0 * cos, z: 20.0 * sin, heading, curvature, half_width, turn_deviation }
     }
 
     /// A robot that goes by 0.1 radians (2 m) a step from an angle, one way or the other.
