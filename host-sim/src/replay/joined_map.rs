@@ -62,7 +62,7 @@ impl JoinedMap {
         let frame = Frame::of(&positions, first.is_geographic, &layout)?;
         let robots = files.iter().map(|it| in_frame(it, &frame)).collect::<Result<Vec<_>>>()?;
         let joined = Joined::of(&robots);
-        let are_steps = files.iter().all(|it| it.numbers == "step");
+        let are_steps = files.iter().all(|it| it.numbers == "step" && !it.is_joined);
         let met = are_steps.then(|| Joined::closes_at(&robots)).flatten();
         let numbered =
             |piece: &Vec<Place>| piece.iter().map(|it| (it.number, it.vertex)).collect::<Vec<_>>();

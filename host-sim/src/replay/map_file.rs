@@ -9,6 +9,7 @@ use csv::StringRecord;
 
 use crate::mission::front::VertexRecord;
 use crate::output::plain;
+use crate::report::pieces::ROBOT;
 
 /// The columns of all map files, but for the number.
 const COLUMNS: [&str; 7] =
@@ -27,6 +28,8 @@ pub(crate) struct MapFile {
     pub(crate) is_geographic: bool,
     /// Whether its positions are those of the samples' file, and not metres about an origin that it does not name.
     pub(crate) is_own: bool,
+    /// Whether it is joined from others: then its numbers are those of several robots.
+    pub(crate) is_joined: bool,
     /// The vertices in their order.
     pub(crate) rows: Vec<MapRow>,
 }
@@ -87,7 +90,8 @@ impl MapFile {
             bail!("{name}: found a map without vertices, expected one whose robot found the front");
         }
         let (is_geographic, is_own) = (own.is_some_and(|it| it.0), own.is_some());
-        Ok(Self { name, numbers, is_geographic, is_own, rows })
+        let is_joined = at(ROBOT).is_some();
+        Ok(Self { name, numbers, is_geographic, is_own, is_joined, rows })
     }
 
     /// What its positions are.

@@ -11,7 +11,7 @@ use crate::mission::results::StepResult;
 pub struct Pieces(Vec<Vec<(usize, VertexRecord)>>);
 
 /// The title of the column that says whose a vertex is.
-const ROBOT: &str = "robot";
+pub(crate) const ROBOT: &str = "robot";
 
 /// More columns of a map file: their titles, and what a vertex has there.
 pub(crate) type Own<'a> = ([&'static str; 2], &'a dyn Fn(&VertexRecord) -> [f64; 2]);

@@ -175,7 +175,14 @@ mod tests {
     fn on_circle(angle: f64, half_width: f64) -> VertexRecord {
         let (sin, cos) = libm::sincos(angle);
         let (heading, curvature, turn_deviation) = (angle + PI / 2.0, 0.05, 0.01);
-        VertexRecord { x: 20.0 * cos, z: 20.0 * sin, heading, curvature, half_width, turn_deviation }
+        VertexRecord {
+            x: 20.0 * cos,
+            z: 20.0 * sin,
+            heading,
+            curvature,
+            half_width,
+            turn_deviation,
+        }
     }
 
     /// A robot that goes by 0.1 radians (2 m) a step from an angle, one way or the other.
