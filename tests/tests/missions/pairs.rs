@@ -68,8 +68,8 @@ struct Row {
     motions: Vec<[f64; 2]>,
     /// Distance from the front of each vertex, and its half-width.
     off: Vec<[f64; 2]>,
-    /// Pieces of the joined map.
-    pieces: Vec<usize>,
+    /// Pieces of the joined map, and whether each of the two maps has one alone.
+    pieces: Vec<(usize, bool)>,
     /// The longest way between two vertices of the first piece, metres.
     gaps: Vec<f64>,
     /// Metres of front that are mapped twice, as a share.
@@ -100,7 +100,8 @@ fn row(
         let pair = [true, false].map(|is| fly(&front, radius, p, (is, motions), &mut rng).map);
         let met = Joined::closes_at(&pair);
         let joined = Joined::until(&pair, met.unwrap_or(usize::MAX));
-        (front, one, met, joined)
+        let are_whole = pair.iter().all(|it| it.len() == 1);
+        (front, one, met, joined, are_whole)
     };
     let flown: Vec<_> = (0..missions).into_par_iter().map(mission).collect();
     let mut row = Row {
@@ -111,10 +112,10 @@ fn row(
         twice: vec![],
         metres: vec![],
     };
-    for (front, one, met, joined) in &flown {
+    for (front, one, met, joined, are_whole) in &flown {
         let motions = |it: Option<usize>| it.map_or(f64::INFINITY, |it| it as f64);
         row.motions.push([motions(*met), motions(one.closed)]);
-        row.pieces.push(joined.pieces.len());
+        row.pieces.push((joined.pieces.len(), *are_whole));
         let whole: Vec<_> = joined.pieces.iter().flatten().collect();
         for it in &whole {
             row.off.push([front.distance(it.vertex.at(), 0.0), it.vertex.half_width]);
@@ -141,8 +142,8 @@ fn row(
         off[off.len() / 2],
         off[off.len() * 95 / 100],
         share(covers, off.len()),
-        row.pieces.iter().filter(|it| **it == 1).count(),
-        row.pieces.iter().max().unwrap_or(&0),
+        row.pieces.iter().filter(|it| it.0 == 1).count(),
+        row.pieces.iter().map(|it| it.0).max().unwrap_or(0),
         row.gaps.iter().copied().fold(0.0, f64::max),
         100.0 * row.twice.iter().copied().fold(0.0, f64::max),
         median(row.metres.iter().map(|it| it[0]).collect()),
@@ -151,17 +152,48 @@ fn row(
     row
 }
 
+impl Row {
+    /// The joined map has no gap where those of the robots have none, goes along no place twice, and its half-widths hold.
+    fn check(&self) {
+        let covers = self.off.iter().filter(|[off, half]| off <= half).count();
+        assert!(covers * 100 >= 95 * self.off.len(), "{covers} of {}", self.off.len());
+        assert!(self.pieces.iter().all(|(pieces, are_whole)| *pieces == 1 || !are_whole));
+        assert!(self.gaps.iter().all(|it| *it < 6.0 * REACH), "{:?}", self.gaps);
+        assert!(self.twice.iter().all(|it| *it < 0.01), "{:?}", self.twice);
+    }
+}
+
 #[test]
 fn a_pair_maps_a_closed_front_in_half_the_time() {
     for p in [1.0, 0.9] {
-        row("circle of 20 m", |rng| TrueFront::circle(20.0, rng), (20.0, p, 100), true);
-        row("circle of 60 m", |rng| TrueFront::circle(60.0, rng), (60.0, p, 240), true);
+        let small = |rng: &mut ChaCha8Rng| TrueFront::circle(20.0, rng);
+        let large = |rng: &mut ChaCha8Rng| TrueFront::circle(60.0, rng);
+        let small = row("circle of 20 m", small, (20.0, p, 100), true);
+        let large = row("circle of 60 m", large, (60.0, p, 240), true);
+        for (it, radius) in [(small, 20.0), (large, 60.0)] {
+            it.check();
+            let [pair, alone] =
+                [0, 1].map(|k| median(it.motions.iter().map(|motions| motions[k]).collect()));
+            assert!(pair < 0.56 * alone, "{pair} against {alone} motions");
+            assert!(it.motions.iter().all(|it| it[0] < 0.75 * alone), "{:?}", it.motions);
+            // All of the circle, once: a polyline is shorter than it, and one that goes to and fro is longer.
+            let round = std::f64::consts::TAU * radius;
+            let is_round = |it: &[f64; 2]| (0.95..1.1).contains(&(it[0] / round));
+            assert!(it.metres.iter().all(is_round), "{:?}", it.metres);
+            assert!(it.pieces.iter().all(|it| it.0 == 1), "{:?}", it.pieces);
+        }
     }
 }
 
 #[test]
 fn a_pair_maps_an_open_front_to_both_sides() {
     for p in [1.0, 0.9] {
-        row("coast", |rng| TrueFront::coast([6.0, 25.0], rng), (40.0, p, 100), false);
+        let coast = |rng: &mut ChaCha8Rng| TrueFront::coast([6.0, 25.0], rng);
+        let it = row("coast", coast, (40.0, p, 100), false);
+        it.check();
+        assert!(it.motions.iter().all(|it| it[0].is_infinite()), "a coast is not closed");
+        let [pair, alone] =
+            [0, 1].map(|k| median(it.metres.iter().map(|metres| metres[k]).collect()));
+        assert!(pair > 0.95 * alone, "{pair} against {alone} m");
     }
 }

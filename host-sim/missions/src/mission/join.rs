@@ -11,8 +11,11 @@ use crate::mission::front::VertexRecord;
 /// Vertices are at one place if they are closer along the front than this share of the usual distance of two of them.
 const ONE: f64 = 0.5;
 
-/// Ends are linked if they are no further apart than so many usual distances.
+/// Vertices are linked if they are no further apart than so many usual distances.
 const REACH: f64 = 3.0;
+
+/// The same of two vertices of one piece of a robot's map: the front was known all the way between.
+const WHOLE: f64 = 2.0 * REACH;
 
 /// The map of a robot by its pieces, each vertex with its number.
 pub type Pieces = Vec<Vec<(usize, VertexRecord)>>;
@@ -22,6 +25,8 @@ pub type Pieces = Vec<Vec<(usize, VertexRecord)>>;
 pub struct Place {
     /// Whose it is, from 1.
     pub robot: usize,
+    /// The piece of its map, from 1.
+    pub piece: usize,
     /// Its number in the map of that robot.
     pub number: usize,
     /// The vertex.
@@ -45,9 +50,9 @@ impl Joined {
 
     /// The same of the vertices up to a number.
     pub fn until(robots: &[Pieces], most: usize) -> Self {
-        let reach = usual_distance(robots);
-        let kept = narrowest(places(robots, most), reach);
-        Self::linked(&kept, REACH * reach)
+        let usual = usual_distance(robots);
+        let kept = narrowest(places(robots, most), usual);
+        Self::linked(&kept, usual)
     }
 
     /// The first number up to which the map is closed, if all of it is; found by halving.
@@ -76,35 +81,34 @@ impl Joined {
         closing + self.pieces.iter().map(way).sum::<f64>()
     }
 
-    /// Links each vertex to the next one ahead, no further than `reach`.
-    fn linked(kept: &[Place], reach: f64) -> Self {
-        let nearest = |from: usize, sign: f64| {
-            let way = |to: &usize| kept[*to].vertex.at() - kept[from].vertex.at();
-            let is_ahead = |to: &usize| {
-                let way = sign * way(to);
-                let both = [from, *to].map(|it| direction(&kept[it].vertex));
-                both.iter().all(|it| it.dot(&way) > 0.0) && way.norm() <= reach
-            };
-            let ahead = (0..kept.len()).filter(is_ahead);
-            ahead.min_by(|a, b| way(a).norm_squared().total_cmp(&way(b).norm_squared()))
-        };
-        let after: Vec<_> = (0..kept.len()).map(|it| nearest(it, 1.0)).collect();
-        let before: Vec<_> = (0..kept.len()).map(|it| nearest(it, -1.0)).collect();
-        let next = |it: usize| after[it].filter(|next| before[*next] == Some(it));
+    /// Links each vertex to the next one ahead, and then ends that are left to each other: where vertices of two robots
+    /// lie side by side, the nearest one ahead may have another one behind it.
+    fn linked(kept: &[Place], usual: f64) -> Self {
+        let all: Vec<_> = (0..kept.len()).collect();
+        let mut next = vec![None; kept.len()];
+        for _ in 0..2 {
+            let is_end = |it: &usize| next[*it].is_none();
+            let is_begin = |it: &usize| !next.contains(&Some(*it));
+            let ends: Vec<_> = all.iter().copied().filter(is_end).collect();
+            let begins: Vec<_> = all.iter().copied().filter(is_begin).collect();
+            for (from, to) in links(kept, &ends, &begins, usual) {
+                next[from] = Some(to);
+            }
+        }
         let mut is_taken = vec![false; kept.len()];
         let mut follow = |first: usize| {
             let (mut piece, mut at) = (Vec::new(), Some(first));
             while let Some(it) = at.filter(|it| !is_taken[*it]) {
                 is_taken[it] = true;
                 piece.push(kept[it]);
-                at = next(it);
+                at = next[it];
             }
             (piece, at == Some(first))
         };
-        let is_first = |it: &usize| before[*it].is_none_or(|last| after[last] != Some(*it));
-        let mut pieces: Vec<_> = (0..kept.len()).filter(is_first).map(|it| follow(it).0).collect();
+        let begins = all.iter().copied().filter(|it| !next.contains(&Some(*it)));
+        let mut pieces: Vec<_> = begins.map(|it| follow(it).0).collect();
         // What is left goes round. It begins with the last vertex of the first robot: where they met.
-        let mut left: Vec<_> = (0..kept.len()).collect();
+        let mut left = all.clone();
         left.sort_by_key(|it| (kept[*it].robot, usize::MAX - kept[*it].number));
         let mut is_closed = false;
         for first in left {
@@ -117,18 +121,59 @@ impl Joined {
             }
         }
         pieces.sort_by_key(|it| usize::MAX - it.len());
+        let (mut lone, mut pieces): (Vec<_>, Vec<_>) =
+            pieces.into_iter().partition(|it| it.len() == 1);
+        lone.retain(|it| !is_passed(&it[0], &pieces, REACH * usual));
+        pieces.append(&mut lone);
         Self { pieces, is_closed }
     }
 }
 
+/// Links from ends to begins: each is the nearest one ahead of the other, and the nearest one behind.
+fn links(kept: &[Place], ends: &[usize], begins: &[usize], usual: f64) -> Vec<(usize, usize)> {
+    let nearest = |at: usize, others: &[usize], sign: f64| {
+        let way = |other: &usize| kept[*other].vertex.at() - kept[at].vertex.at();
+        let is_ahead = |other: &usize| {
+            let (way, [from, to]) = (sign * way(other), [at, *other].map(|it| &kept[it]));
+            let is_whole = (from.robot, from.piece) == (to.robot, to.piece);
+            let reach = if is_whole { WHOLE } else { REACH } * usual;
+            let is_along = |it: &Place| direction(&it.vertex).dot(&way) > 0.0;
+            way.norm() <= reach && is_along(from) && is_along(to)
+        };
+        let ahead = others.iter().copied().filter(is_ahead);
+        ahead.min_by(|a, b| way(a).norm_squared().total_cmp(&way(b).norm_squared()))
+    };
+    let link = |from: &usize| {
+        let to = nearest(*from, begins, 1.0)?;
+        (nearest(to, ends, -1.0) == Some(*from)).then_some((*from, to))
+    };
+    ends.iter().filter_map(link).collect()
+}
+
+/// Whether a vertex has a linked pair around it, one behind it and one ahead.
+fn is_passed(place: &Place, pieces: &[Vec<Place>], reach: f64) -> bool {
+    let ahead = direction(&place.vertex);
+    let along = |other: &Place| {
+        let way = other.vertex.at() - place.vertex.at();
+        let is_near = way.norm() <= reach && direction(&other.vertex).dot(&ahead) > 0.0;
+        is_near.then(|| way.dot(&ahead))
+    };
+    let goes_by = |pair: &[Place]| {
+        along(&pair[0]).is_some_and(|it| it <= 0.0) && along(&pair[1]).is_some_and(|it| it >= 0.0)
+    };
+    pieces.iter().any(|piece| piece.windows(2).any(goes_by))
+}
+
 /// All vertices up to a number.
 fn places(robots: &[Pieces], most: usize) -> Vec<Place> {
-    let of = |(robot, pieces): (usize, &Pieces)| {
-        let vertices = pieces.clone().into_iter().flatten();
-        let up_to = vertices.filter(move |it| it.0 <= most);
-        up_to.map(move |(number, vertex)| Place { robot, number, vertex })
-    };
-    (1..).zip(robots).flat_map(of).collect()
+    let mut places = Vec::new();
+    for (robot, pieces) in (1..).zip(robots) {
+        for (piece, vertices) in (1..).zip(pieces) {
+            let up_to = vertices.iter().filter(|it| it.0 <= most);
+            places.extend(up_to.map(|&(number, vertex)| Place { robot, piece, number, vertex }));
+        }
+    }
+    places
 }
 
 /// The median distance of a vertex from the one before in its piece, metres; 0 if no piece has two.
