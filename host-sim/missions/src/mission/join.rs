@@ -11,11 +11,13 @@ use crate::mission::front::VertexRecord;
 /// Vertices are at one place if they are closer along the front than this share of the usual distance of two of them.
 const ONE: f64 = 0.5;
 
-/// Vertices are linked if they are no further apart than so many usual distances.
-const REACH: f64 = 3.0;
+/// Vertices are at one place if they are closer across the front than so many times the sum of their half-widths: that is
+/// three standard deviations and more.
+const WIDE: f64 = 2.0;
 
-/// The same of two vertices of one piece of a robot's map: the front was known all the way between.
-const WHOLE: f64 = 2.0 * REACH;
+/// Vertices are linked if they are no further apart than so many usual distances, or if one robot knew the front all the
+/// way between.
+const REACH: f64 = 3.0;
 
 /// The map of a robot by its pieces, each vertex with its number.
 pub type Pieces = Vec<Vec<(usize, VertexRecord)>>;
@@ -131,14 +133,24 @@ impl Joined {
 
 /// Links from ends to begins: each is the nearest one ahead of the other, and the nearest one behind.
 fn links(kept: &[Place], ends: &[usize], begins: &[usize], usual: f64) -> Vec<(usize, usize)> {
+    // Of each robot's pieces the vertices that are left, in their order; and the place of each there.
+    let mut order: Vec<_> = (0..kept.len()).collect();
+    order.sort_by_key(|it| (kept[*it].robot, kept[*it].piece, kept[*it].number));
+    let mut rank = vec![0_usize; kept.len()];
+    for (place, it) in order.into_iter().enumerate() {
+        rank[it] = place;
+    }
+    let are_neighbours = |one: usize, other: usize| {
+        let of = |it: usize| (kept[it].robot, kept[it].piece);
+        of(one) == of(other) && rank[one].abs_diff(rank[other]) == 1
+    };
     let nearest = |at: usize, others: &[usize], sign: f64| {
         let way = |other: &usize| kept[*other].vertex.at() - kept[at].vertex.at();
         let is_ahead = |other: &usize| {
             let (way, [from, to]) = (sign * way(other), [at, *other].map(|it| &kept[it]));
-            let is_whole = (from.robot, from.piece) == (to.robot, to.piece);
-            let reach = if is_whole { WHOLE } else { REACH } * usual;
             let is_along = |it: &Place| direction(&it.vertex).dot(&way) > 0.0;
-            way.norm() <= reach && is_along(from) && is_along(to)
+            let is_near = way.norm() <= REACH * usual || are_neighbours(at, *other);
+            is_near && is_along(from) && is_along(to)
         };
         let ahead = others.iter().copied().filter(is_ahead);
         ahead.min_by(|a, b| way(a).norm_squared().total_cmp(&way(b).norm_squared()))
@@ -201,7 +213,7 @@ fn narrowest(mut places: Vec<Place>, reach: f64) -> Vec<Place> {
 fn are_at_one_place(one: &VertexRecord, other: &VertexRecord, reach: f64) -> bool {
     let (ahead, way) = (direction(one), other.at() - one.at());
     let (along, across) = (ahead.dot(&way).abs(), ahead.perp(&way).abs());
-    let within = reach.max(one.half_width + other.half_width);
+    let within = reach.max(WIDE * (one.half_width + other.half_width));
     direction(other).dot(&ahead) > 0.0 && along < ONE * reach && across <= within
 }
 
