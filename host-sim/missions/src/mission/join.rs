@@ -19,6 +19,10 @@ const WIDE: f64 = 2.0;
 /// way between.
 const REACH: f64 = 3.0;
 
+/// One robot knew the front between two vertices of a piece if of those that are left of it, one follows the other, or
+/// nearly so: where it stayed for some steps, its vertices lie to and fro.
+const NEIGHBOURS: usize = 4;
+
 /// The map of a robot by its pieces, each vertex with its number.
 pub type Pieces = Vec<Vec<(usize, VertexRecord)>>;
 
@@ -142,7 +146,7 @@ fn links(kept: &[Place], ends: &[usize], begins: &[usize], usual: f64) -> Vec<(u
     }
     let are_neighbours = |one: usize, other: usize| {
         let of = |it: usize| (kept[it].robot, kept[it].piece);
-        of(one) == of(other) && rank[one].abs_diff(rank[other]) == 1
+        of(one) == of(other) && rank[one].abs_diff(rank[other]) <= NEIGHBOURS
     };
     let nearest = |at: usize, others: &[usize], sign: f64| {
         let way = |other: &usize| kept[*other].vertex.at() - kept[at].vertex.at();
@@ -289,6 +293,38 @@ mod tests {
         let it = Joined::of(&[side(0.0, 1.0), side(0.6, -1.0)]);
         let lengths: Vec<_> = it.pieces.iter().map(Vec::len).collect();
         assert_eq!((lengths, it.is_closed), (vec![5, 5], false));
+    }
+
+    /// The robot stays for some steps where the front is not well known, and then knows it far ahead.
+    #[test]
+    fn a_robots_own_piece_has_no_gap() {
+        let angles = [0.0, 0.1, 0.2, 0.28, 0.24, 0.8, 0.9, 1.0];
+        let vertices = (1..).zip(angles.map(|it| on_circle(it, 0.5)));
+        let it = Joined::of(&[vec![vertices.collect()]]);
+        assert_eq!(it.pieces.len(), 1, "{it:?}");
+    }
+
+    /// Three quarters of a circle do not close, although a robot mapped them in one piece.
+    #[test]
+    fn an_arc_does_not_close() {
+        let it = Joined::of(&[robot(0.0, 1.0, 47, 0.5)]);
+        assert_eq!((it.pieces.len(), it.is_closed), (1, false), "{it:?}");
+    }
+
+    /// The joined map does not depend on the order of the maps, but for whose its vertices are.
+    #[test]
+    fn the_order_of_maps_does_not_matter() {
+        let [one, other] = [robot(0.0, 1.0, 40, 0.5), robot(0.02, -1.0, 40, 0.3)];
+        let places = |robots: &[Pieces]| {
+            let it = Joined::of(robots);
+            let mut bits: Vec<_> = it.pieces[0]
+                .iter()
+                .map(|it| [it.vertex.x, it.vertex.z].map(f64::to_bits))
+                .collect();
+            bits.sort_unstable();
+            bits
+        };
+        assert_eq!(places(&[one.clone(), other.clone()]), places(&[other, one]));
     }
 
     #[test]
