@@ -8,6 +8,8 @@ use serde_json::Value;
 use crate::recordings::{degrees, number};
 use crate::{folder, host_sim, prints, refuses, text};
 
+const TITLES: &str = "step,x,z,heading,curvature,half_width,turn_deviation,piece";
+
 const CLOSED: &str = include_str!("../../scenarios/closed-front.toml");
 
 /// Two maps of the closed front: of robots that start back to back, with labels that are sometimes wrong.
@@ -138,7 +140,6 @@ fn what_cannot_be_joined_is_refused() {
     let write = |name: &str, content: &str| {
         fs::write(folder.path().join(name), content).expect("a file");
     };
-    const TITLES: &str = "step,x,z,heading,curvature,half_width,turn_deviation,piece";
     let map = |row: &str| format!("{TITLES}\n{row}\n");
     write("a.csv", &map("1,0.0,2.0,-0.5,0.0,0.75,0.25,1"));
     write("none.csv", &format!("{TITLES}\n"));
@@ -154,8 +155,7 @@ fn what_cannot_be_joined_is_refused() {
         |lat: &str| format!("{TITLES},lat,lon\n1,0.0,2.0,-0.5,0.0,0.75,0.25,1,{lat},10.0\n");
     write("globe.csv", &globe("50.0"));
     write("pole.csv", &globe("95.0"));
-    let many: String =
-        (0..20_001).map(|k| format!("{k},{k}.0,2.0,0.0,0.0,0.75,0.25,1\n")).collect();
+    let many = "1,0.0,2.0,0.0,0.0,0.75,0.25,1\n".repeat(20_001);
     write("many.csv", &format!("{TITLES}\n{many}"));
     let cases: [(&[&str], &[&str]); 19] = [
         (&["a.csv"], &["MAP.csv", "2 values"]),

@@ -126,7 +126,7 @@ fn row(
         row.gaps.push(ways.iter().copied().fold(0.0, f64::max));
         let [all, net] = [ways.iter().map(|it| it.abs()).sum::<f64>(), ways.iter().sum::<f64>()];
         row.twice.push((all - net.abs()) / all);
-        row.metres.push([joined.metres(), Joined::of(&[one.map.clone()]).metres()]);
+        row.metres.push([joined.metres(), Joined::of(std::slice::from_ref(&one.map)).metres()]);
     }
     let pair = median(row.motions.iter().map(|it| it[0]).collect());
     let alone = median(row.motions.iter().map(|it| it[1]).collect());

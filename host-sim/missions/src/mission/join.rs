@@ -280,19 +280,32 @@ mod tests {
         assert_eq!(it.pieces[0][0].robot, 1);
     }
 
+    /// A vertex of a nearly straight front.
+    fn on_line(x: f64, z: f64, heading: f64) -> VertexRecord {
+        VertexRecord { x, z, heading, ..on_circle(0.0, 0.5) }
+    }
+
     #[test]
     fn the_sides_of_a_narrow_bay_are_two_places() {
-        let side = |z: f64, way: f64| {
-            let heading = if way > 0.0 { 0.0 } else { PI };
-            let vertex = |k: usize| {
-                let it = on_circle(0.0, 0.5);
-                (k, VertexRecord { x: 10.0 + way * 2.0 * k as f64, z, heading, ..it })
-            };
-            vec![(1..=5).map(vertex).collect()]
-        };
-        let it = Joined::of(&[side(0.0, 1.0), side(0.6, -1.0)]);
+        let out = (1..=5).map(|k| (k, on_line(2.0 * k as f64, 0.0, 0.0))).collect();
+        let back = (1..=5).map(|k| (k, on_line(12.0 - 2.0 * k as f64, 0.6, PI))).collect();
+        let it = Joined::of(&[vec![out], vec![back]]);
+        let count: usize = it.pieces.iter().map(Vec::len).sum();
+        assert_eq!((count, it.is_closed), (10, false), "{it:?}");
+        let is_one_way = |piece: &Vec<Place>| piece.iter().all(|it| it.robot == piece[0].robot);
+        assert!(it.pieces.iter().all(is_one_way), "{it:?}");
+    }
+
+    /// The nearest vertex ahead of the third has another one nearest behind it, which lies beside the way.
+    #[test]
+    fn vertices_side_by_side_do_not_break_the_map() {
+        let line = [-4.0, -2.0, 0.0].map(|x| on_line(x, 0.0, 0.0));
+        let bend = [(2.0, 0.0), (3.9, -0.6), (5.8, -1.2)].map(|(x, z)| on_line(x, z, -0.3));
+        let one = (1..).zip(line.into_iter().chain(bend)).collect();
+        let other = vec![vec![(1, on_line(1.2, 1.65, 0.0))]];
+        let it = Joined::of(&[vec![one], other]);
         let lengths: Vec<_> = it.pieces.iter().map(Vec::len).collect();
-        assert_eq!((lengths, it.is_closed), (vec![5, 5], false));
+        assert_eq!(lengths, [7], "{it:?}");
     }
 
     /// The robot stays for some steps where the front is not well known, and then knows it far ahead.
