@@ -10,6 +10,7 @@ use crate::cli::figure::{FigureArgs, figure};
 use crate::cli::fly::{FlyArgs, fly};
 use crate::cli::hil::{HilArgs, hil};
 use crate::cli::init::{Init, init};
+use crate::cli::join::{JoinArgs, join};
 use crate::cli::reference::{ReferenceArgs, reference};
 use crate::cli::replay::{ReplayArgs, replay};
 use crate::cli::run::{RunArgs, run};
@@ -40,6 +41,8 @@ pub(crate) enum Command {
     Run(RunArgs),
     /// Print what samples recorded elsewhere determine
     Replay(ReplayArgs),
+    /// Join the maps of several robots on one front
+    Join(JoinArgs),
     /// Run the standard fields and print tables
     Campaign(Box<CampaignArgs>),
     /// Draw the paper's figures from what is computed here
@@ -76,6 +79,7 @@ impl Cli {
             Some(Command::Hil(args)) => return hil(&args),
             None => paper::tell(),
             Some(Command::Campaign(args)) => campaign(*args),
+            Some(Command::Join(args)) => join(&args),
             Some(Command::Figure(args)) => figure(&args),
             Some(Command::Size(args)) => size(&args),
             Some(Command::Reference(args)) => reference(&args),

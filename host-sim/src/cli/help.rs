@@ -66,6 +66,14 @@ Examples:
 The last lines say whether a straight line fits: a run of labels, a bend, a drift, a second boundary, or a --p that is too
 high for the file. Then a warning goes to standard error. On straight files a verdict is wrong at most once in a hundred.";
 
+pub(crate) const JOIN: &str = "\
+Examples:
+  host-sim join one.csv other.csv
+  host-sim join one.csv other.csv --map both.csv --figure both.svg
+  host-sim join boat-1.csv boat-2.csv boat-3.csv --geojson front.geojson
+
+Of places that several maps have, the one with the smallest half-width is kept. The front does not move.";
+
 pub(crate) const CAMPAIGN: &str = "\
 Examples:
   host-sim campaign

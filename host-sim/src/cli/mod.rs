@@ -18,6 +18,7 @@ mod fronts;
 mod help;
 mod hil;
 mod init;
+mod join;
 mod merge;
 pub mod paper;
 mod passage;

@@ -1,15 +1,17 @@
 //! The front along a recorded track: drawn, and for a map (`GeoJSON`).
 
 use anyhow::{Context as _, Result};
-use geojson::GeometryValue;
+use geojson::{Feature, GeometryValue};
 use nalgebra::Point2;
 use planner_core::Sample;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::mission::map::State;
+use crate::replay::frame::Frame;
 use crate::replay::front_map::FrontMap;
 use crate::replay::geojson::{collection, feature};
 use crate::report::picture::{Dot, Ground, Picture, area_of};
+use crate::report::pieces::Pieces;
 use crate::report::ribbon::Ribbon;
 
 /// Samples that a figure shows at most, so that they do not hide the front.
@@ -25,12 +27,7 @@ impl FrontMap {
     /// When it could not be drawn.
     pub fn figure(&self) -> Result<String> {
         let samples = &self.file.samples;
-        let mut front = Ribbon::from(&self.pieces);
-        let each = front.0.iter().map(Vec::len).sum::<usize>().div_ceil(MOST_VERTICES).max(1);
-        for rungs in &mut front.0 {
-            let last = rungs.last().copied();
-            *rungs = rungs.iter().step_by(each).copied().chain(last.filter(|_| each > 1)).collect();
-        }
+        let front = some(Ribbon::from(&self.pieces));
         let places = samples.iter().map(|it| it.site.into()).chain(front.ways().flatten());
         let area = area_of(places).context("no area around the samples")?;
         let count = samples.len();
@@ -71,48 +68,82 @@ impl FrontMap {
     pub fn geojson(&self) -> Result<String> {
         let file = &self.file;
         file.area_on_globe()?;
-        let ribbon = Ribbon::from(&self.pieces);
-        let mut features = Vec::new();
-        for (piece, rungs) in (1..).zip(&ribbon.0) {
-            let quads = rungs.windows(2).map(|pair| ring([pair[0].ends, pair[1].ends]));
-            let ring = |corners: [Point2<f64>; 4]| {
-                let closed = corners.iter().chain(corners.first());
-                Ok([closed.map(|at| file.degrees(*at)).collect::<Result<Vec<_>>>()?])
-            };
-            let quads = quads.map(ring).collect::<Result<Vec<_>>>()?;
-            if !quads.is_empty() {
-                features.push(feature(
-                    GeometryValue::new_multi_polygon(quads),
-                    json!({ "kind": "band", "piece": piece, "probability": 0.9 }),
-                ));
-            }
-        }
-        for (piece, rungs) in (1..).zip(&ribbon.0) {
-            let way = rungs.iter().map(|it| file.degrees(it.at)).collect::<Result<Vec<_>>>()?;
-            if way.len() > 1 {
-                features.push(feature(
-                    GeometryValue::new_line_string(way),
-                    json!({ "kind": "front", "piece": piece }),
-                ));
-            }
-        }
-        for (piece, number, it) in self.pieces.vertices() {
-            let mut told = json!({
-                "kind": "vertex",
-                "piece": piece,
-                "heading": it.heading,
-                "curvature": it.curvature,
-                "half_width": it.half_width,
-                "turn_deviation": it.turn_deviation,
-            });
-            told[self.number()] = number.into();
-            features.push(feature(GeometryValue::new_point(file.degrees(it.at())?), told));
-        }
+        let number = |_, number: usize, told: &mut Value| told[self.number()] = number.into();
+        let mut features =
+            features(&self.pieces, &Ribbon::from(&self.pieces), &file.frame, &number)?;
         for (index, sample) in file.samples.iter().enumerate() {
             features.push(file.point(index, sample, None)?);
         }
         Ok(collection(features))
     }
+}
+
+/// Of very many vertices some, and the last of each piece.
+pub(crate) fn some(mut front: Ribbon) -> Ribbon {
+    let each = front.0.iter().map(Vec::len).sum::<usize>().div_ceil(MOST_VERTICES).max(1);
+    for rungs in &mut front.0 {
+        let last = rungs.last().copied();
+        *rungs = rungs.iter().step_by(each).copied().chain(last.filter(|_| each > 1)).collect();
+    }
+    front
+}
+
+/// Longitude and latitude.
+///
+/// # Errors
+/// Metres have none by themselves.
+pub(crate) fn degrees(frame: &Frame, at: Point2<f64>) -> Result<[f64; 2]> {
+    let [lat, lon] = frame.degrees(at)?;
+    Ok([lon, lat])
+}
+
+/// A front by its pieces: bands, lines and vertices. `number` adds what numbers a vertex, by its index and its number.
+///
+/// # Errors
+/// Metres have no place on a map by themselves.
+pub(crate) fn features(
+    pieces: &Pieces,
+    ribbon: &Ribbon,
+    frame: &Frame,
+    number: &dyn Fn(usize, usize, &mut Value),
+) -> Result<Vec<Feature>> {
+    let mut features = Vec::new();
+    for (piece, rungs) in (1..).zip(&ribbon.0) {
+        let quads = rungs.windows(2).map(|pair| ring([pair[0].ends, pair[1].ends]));
+        let ring = |corners: [Point2<f64>; 4]| {
+            let closed = corners.iter().chain(corners.first());
+            Ok([closed.map(|at| degrees(frame, *at)).collect::<Result<Vec<_>>>()?])
+        };
+        let quads = quads.map(ring).collect::<Result<Vec<_>>>()?;
+        if !quads.is_empty() {
+            features.push(feature(
+                GeometryValue::new_multi_polygon(quads),
+                json!({ "kind": "band", "piece": piece, "probability": 0.9 }),
+            ));
+        }
+    }
+    for (piece, rungs) in (1..).zip(&ribbon.0) {
+        let way = rungs.iter().map(|it| degrees(frame, it.at)).collect::<Result<Vec<_>>>()?;
+        if way.len() > 1 {
+            features.push(feature(
+                GeometryValue::new_line_string(way),
+                json!({ "kind": "front", "piece": piece }),
+            ));
+        }
+    }
+    for (index, (piece, of, it)) in pieces.vertices().enumerate() {
+        let mut told = json!({
+            "kind": "vertex",
+            "piece": piece,
+            "heading": it.heading,
+            "curvature": it.curvature,
+            "half_width": it.half_width,
+            "turn_deviation": it.turn_deviation,
+        });
+        number(index, of, &mut told);
+        features.push(feature(GeometryValue::new_point(degrees(frame, it.at())?), told));
+    }
+    Ok(features)
 }
 
 /// The four ends of two intervals as a ring, counter-clockwise. Of the three orders the one with the most area does not

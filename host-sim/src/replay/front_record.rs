@@ -47,14 +47,17 @@ struct OneLabelRecord {
 
 /// A vertex.
 #[derive(Serialize)]
-struct MappedRecord {
-    number: usize,
-    piece: usize,
+pub(crate) struct MappedRecord {
+    pub(crate) number: usize,
+    pub(crate) piece: usize,
     #[serde(flatten)]
-    vertex: VertexRecord,
+    pub(crate) vertex: VertexRecord,
     /// In the coordinates of the file, if these are others.
     #[serde(skip_serializing_if = "Option::is_none")]
-    in_file: Option<[f64; 2]>,
+    pub(crate) in_file: Option<[f64; 2]>,
+    /// Whose it is, if several robots made the map.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) robot: Option<usize>,
 }
 
 impl FrontMap {
@@ -66,6 +69,7 @@ impl FrontMap {
             piece,
             vertex: *vertex,
             in_file: frame.origin().map(|_| frame.recorded(vertex.at())),
+            robot: None,
         };
         FrontRecord {
             samples: self.file.samples.len(),

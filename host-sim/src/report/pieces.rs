@@ -10,6 +10,9 @@ use crate::mission::results::StepResult;
 #[derive(Clone, Debug, Default)]
 pub struct Pieces(Vec<Vec<(usize, VertexRecord)>>);
 
+/// The title of the column that says whose a vertex is.
+pub(crate) const ROBOT: &str = "robot";
+
 /// More columns of a map file: their titles, and what a vertex has there.
 pub(crate) type Own<'a> = ([&'static str; 2], &'a dyn Fn(&VertexRecord) -> [f64; 2]);
 
@@ -51,18 +54,39 @@ impl Pieces {
     /// # Errors
     /// When a row could not be written.
     pub fn csv(&self, number: &str, own: Option<Own<'_>>) -> Result<String> {
+        self.csv_of(number, own, &[])
+    }
+
+    /// The same with whose each vertex is, if several robots made the map.
+    ///
+    /// # Errors
+    /// When a row could not be written.
+    pub(crate) fn csv_of(
+        &self,
+        number: &str,
+        own: Option<Own<'_>>,
+        robots: &[usize],
+    ) -> Result<String> {
         const TITLES: [&str; 7] =
             ["x", "z", "heading", "curvature", "half_width", "turn_deviation", "piece"];
         let mut writer = csv::Writer::from_writer(Vec::new());
         let titles = own.iter().flat_map(|(titles, _)| titles);
+        let titles = titles.chain((!robots.is_empty()).then_some(&ROBOT));
         writer.write_record([number].iter().chain(&TITLES).chain(titles))?;
-        for (piece, number, it) in self.vertices() {
+        for (index, (piece, number, it)) in self.vertices().enumerate() {
             let &VertexRecord { x, z, heading, curvature, half_width, turn_deviation } = it;
             let row = (number, x, z, heading, curvature, half_width, turn_deviation, piece);
             let own: Vec<_> = own.iter().flat_map(|(_, at)| at(it)).collect();
-            writer.serialize((row, own))?;
+            let robot: Vec<_> = robots.get(index).into_iter().collect();
+            writer.serialize((row, own, robot))?;
         }
         Ok(String::from_utf8(writer.into_inner()?)?)
+    }
+}
+
+impl From<Vec<Vec<(usize, VertexRecord)>>> for Pieces {
+    fn from(pieces: Vec<Vec<(usize, VertexRecord)>>) -> Self {
+        Self(pieces)
     }
 }
 

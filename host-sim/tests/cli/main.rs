@@ -21,6 +21,7 @@ mod fronts;
 mod hostile;
 mod imports;
 mod interruption;
+mod joined_maps;
 mod mapped_tracks;
 mod maps;
 mod missions;

@@ -14,6 +14,7 @@ mod honesty;
 mod lawnmower;
 mod lookahead;
 mod margin;
+mod pairs;
 mod readings;
 mod recovery;
 mod scale;

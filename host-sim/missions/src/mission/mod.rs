@@ -14,6 +14,7 @@ pub mod flight;
 pub mod from_nothing;
 pub mod front;
 pub mod given;
+pub mod join;
 pub mod lawnmower;
 pub mod legs;
 mod line_record;

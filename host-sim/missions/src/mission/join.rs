@@ -1,0 +1,351 @@
+//! The maps of several robots on one front, joined to one map.
+//!
+//! A vertex says where the front is and which way it goes there. So the joined map needs neither the order of the
+//! vertices nor whose they are. Of vertices at one place the one with the smallest half-width is kept. Then each vertex is
+//! linked to the next one ahead. The front is still: one that moves is mapped where it was at different times.
+
+use nalgebra::Vector2;
+
+use crate::mission::front::VertexRecord;
+
+/// Vertices are at one place if they are closer along the front than this share of the usual distance of two of them.
+const ONE: f64 = 0.5;
+
+/// Vertices are at one place if they are closer across the front than so many times the sum of their half-widths: that is
+/// three standard deviations and more.
+const WIDE: f64 = 2.0;
+
+/// Vertices are linked if they are no further apart than so many usual distances, or if one robot knew the front all the
+/// way between.
+const REACH: f64 = 3.0;
+
+/// One robot knew the front between two vertices of a piece if of those that are left of it, one follows the other, or
+/// nearly so: where it stayed for some steps, its vertices lie to and fro.
+const NEIGHBOURS: usize = 4;
+
+/// The map of a robot by its pieces, each vertex with its number.
+pub type Pieces = Vec<Vec<(usize, VertexRecord)>>;
+
+/// A vertex of the joined map.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    /// Whose it is, from 1.
+    pub robot: usize,
+    /// The piece of its map, from 1.
+    pub piece: usize,
+    /// Its number in the map of that robot.
+    pub number: usize,
+    /// The vertex.
+    pub vertex: VertexRecord,
+}
+
+/// The joined map.
+#[derive(Clone, Debug, Default)]
+pub struct Joined {
+    /// In the direction of the front, with +1 on the left, and the longest first. None is empty.
+    pub pieces: Vec<Vec<Place>>,
+    /// Whether the first piece goes all round: its last vertex is linked to its first.
+    pub is_closed: bool,
+}
+
+impl Joined {
+    /// Joins the maps of robots. It takes a time that grows with the square of the number of vertices.
+    pub fn of(robots: &[Pieces]) -> Self {
+        Self::until(robots, usize::MAX)
+    }
+
+    /// The same of the vertices up to a number.
+    pub fn until(robots: &[Pieces], most: usize) -> Self {
+        let usual = usual_distance(robots);
+        let kept = narrowest(places(robots, most), usual);
+        Self::linked(&kept, usual)
+    }
+
+    /// The first number up to which the map is closed, if all of it is; found by halving.
+    pub fn closes_at(robots: &[Pieces]) -> Option<usize> {
+        let is_closed = |most| Self::until(robots, most).is_closed;
+        let numbers = robots.iter().flatten().flatten().map(|it| it.0);
+        let (mut not, mut at) = (0, numbers.max().filter(|last| is_closed(*last))?);
+        while at - not > 1 {
+            let middle = not.midpoint(at);
+            *(if is_closed(middle) { &mut at } else { &mut not }) = middle;
+        }
+        Some(at)
+    }
+
+    /// Metres along the map. The way between two pieces is not counted.
+    pub fn metres(&self) -> f64 {
+        let way = |piece: &Vec<Place>| {
+            piece.windows(2).map(|it| (it[1].vertex.at() - it[0].vertex.at()).norm()).sum::<f64>()
+        };
+        let closing = match self.pieces.first().map(Vec::as_slice) {
+            Some([first, .., last]) if self.is_closed => {
+                (first.vertex.at() - last.vertex.at()).norm()
+            }
+            _ => 0.0,
+        };
+        closing + self.pieces.iter().map(way).sum::<f64>()
+    }
+
+    /// Links each vertex to the next one ahead, and then ends that are left to each other: where vertices of two robots
+    /// lie side by side, the nearest one ahead may have another one behind it.
+    fn linked(kept: &[Place], usual: f64) -> Self {
+        let all: Vec<_> = (0..kept.len()).collect();
+        let mut next = vec![None; kept.len()];
+        for _ in 0..2 {
+            let is_end = |it: &usize| next[*it].is_none();
+            let is_begin = |it: &usize| !next.contains(&Some(*it));
+            let ends: Vec<_> = all.iter().copied().filter(is_end).collect();
+            let begins: Vec<_> = all.iter().copied().filter(is_begin).collect();
+            for (from, to) in links(kept, &ends, &begins, usual) {
+                next[from] = Some(to);
+            }
+        }
+        let mut is_taken = vec![false; kept.len()];
+        let mut follow = |first: usize| {
+            let (mut piece, mut at) = (Vec::new(), Some(first));
+            while let Some(it) = at.filter(|it| !is_taken[*it]) {
+                is_taken[it] = true;
+                piece.push(kept[it]);
+                at = next[it];
+            }
+            (piece, at == Some(first))
+        };
+        let begins = all.iter().copied().filter(|it| !next.contains(&Some(*it)));
+        let mut pieces: Vec<_> = begins.map(|it| follow(it).0).collect();
+        // What is left goes round. It begins with the last vertex of the first robot: where they met.
+        let mut left = all.clone();
+        left.sort_by_key(|it| (kept[*it].robot, usize::MAX - kept[*it].number));
+        let mut is_closed = false;
+        for first in left {
+            let (piece, goes_round) = follow(first);
+            if goes_round && pieces.iter().all(|it| it.len() < piece.len()) {
+                is_closed = true;
+                pieces.insert(0, piece);
+            } else if !piece.is_empty() {
+                pieces.push(piece);
+            }
+        }
+        pieces.sort_by_key(|it| usize::MAX - it.len());
+        let (mut lone, mut pieces): (Vec<_>, Vec<_>) =
+            pieces.into_iter().partition(|it| it.len() == 1);
+        lone.retain(|it| !is_passed(&it[0], &pieces, REACH * usual));
+        pieces.append(&mut lone);
+        Self { pieces, is_closed }
+    }
+}
+
+/// Links from ends to begins: each is the nearest one ahead of the other, and the nearest one behind.
+fn links(kept: &[Place], ends: &[usize], begins: &[usize], usual: f64) -> Vec<(usize, usize)> {
+    // Of each robot's pieces the vertices that are left, in their order; and the place of each there.
+    let mut order: Vec<_> = (0..kept.len()).collect();
+    order.sort_by_key(|it| (kept[*it].robot, kept[*it].piece, kept[*it].number));
+    let mut rank = vec![0_usize; kept.len()];
+    for (place, it) in order.into_iter().enumerate() {
+        rank[it] = place;
+    }
+    let are_neighbours = |one: usize, other: usize| {
+        let of = |it: usize| (kept[it].robot, kept[it].piece);
+        of(one) == of(other) && rank[one].abs_diff(rank[other]) <= NEIGHBOURS
+    };
+    let nearest = |at: usize, others: &[usize], sign: f64| {
+        let way = |other: &usize| kept[*other].vertex.at() - kept[at].vertex.at();
+        let is_ahead = |other: &usize| {
+            let (way, [from, to]) = (sign * way(other), [at, *other].map(|it| &kept[it]));
+            let is_along = |it: &Place| direction(&it.vertex).dot(&way) > 0.0;
+            let is_near = way.norm() <= REACH * usual || are_neighbours(at, *other);
+            is_near && is_along(from) && is_along(to)
+        };
+        let ahead = others.iter().copied().filter(is_ahead);
+        ahead.min_by(|a, b| way(a).norm_squared().total_cmp(&way(b).norm_squared()))
+    };
+    let link = |from: &usize| {
+        let to = nearest(*from, begins, 1.0)?;
+        (nearest(to, ends, -1.0) == Some(*from)).then_some((*from, to))
+    };
+    ends.iter().filter_map(link).collect()
+}
+
+/// Whether a vertex has a linked pair around it, one behind it and one ahead.
+fn is_passed(place: &Place, pieces: &[Vec<Place>], reach: f64) -> bool {
+    let ahead = direction(&place.vertex);
+    let along = |other: &Place| {
+        let way = other.vertex.at() - place.vertex.at();
+        let is_near = way.norm() <= reach && direction(&other.vertex).dot(&ahead) > 0.0;
+        is_near.then(|| way.dot(&ahead))
+    };
+    let goes_by = |pair: &[Place]| {
+        along(&pair[0]).is_some_and(|it| it <= 0.0) && along(&pair[1]).is_some_and(|it| it >= 0.0)
+    };
+    pieces.iter().any(|piece| piece.windows(2).any(goes_by))
+}
+
+/// All vertices up to a number.
+fn places(robots: &[Pieces], most: usize) -> Vec<Place> {
+    let mut places = Vec::new();
+    for (robot, pieces) in (1..).zip(robots) {
+        for (piece, vertices) in (1..).zip(pieces) {
+            let up_to = vertices.iter().filter(|it| it.0 <= most);
+            places.extend(up_to.map(|&(number, vertex)| Place { robot, piece, number, vertex }));
+        }
+    }
+    places
+}
+
+/// The median distance of a vertex from the one before in its piece, metres; 0 if no piece has two.
+fn usual_distance(robots: &[Pieces]) -> f64 {
+    let ways = robots.iter().flatten().flat_map(|piece| piece.windows(2));
+    let mut ways: Vec<_> = ways.map(|it| (it[1].1.at() - it[0].1.at()).norm()).collect();
+    ways.sort_by(f64::total_cmp);
+    ways.get(ways.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// Of vertices at one place the one with the smallest half-width, and of equals the first.
+fn narrowest(mut places: Vec<Place>, reach: f64) -> Vec<Place> {
+    places.sort_by(|a, b| a.vertex.half_width.total_cmp(&b.vertex.half_width));
+    let mut kept = Vec::<Place>::new();
+    for place in places {
+        if kept.iter().all(|it| !are_at_one_place(&it.vertex, &place.vertex, reach)) {
+            kept.push(place);
+        }
+    }
+    kept
+}
+
+/// Whether two vertices are the same place of the front. Where they are near and the front goes the other way, it is the
+/// other side of a narrow bay.
+fn are_at_one_place(one: &VertexRecord, other: &VertexRecord, reach: f64) -> bool {
+    let (ahead, way) = (direction(one), other.at() - one.at());
+    let (along, across) = (ahead.dot(&way).abs(), ahead.perp(&way).abs());
+    let within = reach.max(WIDE * (one.half_width + other.half_width));
+    direction(other).dot(&ahead) > 0.0 && along < ONE * reach && across <= within
+}
+
+fn direction(vertex: &VertexRecord) -> Vector2<f64> {
+    let (sin, cos) = libm::sincos(vertex.heading);
+    Vector2::new(cos, sin)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{PI, TAU};
+
+    use super::*;
+
+    /// A vertex of a circle of 20 m at an angle. The front goes counter-clockwise.
+    fn on_circle(angle: f64, half_width: f64) -> VertexRecord {
+        let (sin, cos) = libm::sincos(angle);
+        let (heading, curvature, turn_deviation) = (angle + PI / 2.0, 0.05, 0.01);
+        VertexRecord {
+            x: 20.0 * cos,
+            z: 20.0 * sin,
+            heading,
+            curvature,
+            half_width,
+            turn_deviation,
+        }
+    }
+
+    /// A robot that goes by 0.1 radians (2 m) a step from an angle, one way or the other.
+    fn robot(from: f64, way: f64, steps: usize, half_width: f64) -> Pieces {
+        let vertex = |k: usize| (k, on_circle(from + way * 0.1 * k as f64, half_width));
+        vec![(1..=steps).map(vertex).collect()]
+    }
+
+    #[test]
+    fn two_robots_back_to_back_make_one_way() {
+        let robots = [robot(0.0, 1.0, 12, 0.5), robot(0.0, -1.0, 9, 0.5)];
+        let it = Joined::of(&robots);
+        let [piece] = &it.pieces[..] else { panic!("{it:?}") };
+        let numbers: Vec<_> = piece.iter().map(|it| (it.robot, it.number)).collect();
+        let far = (1..=9).rev().map(|k| (2, k)).chain((1..=12).map(|k| (1, k)));
+        assert_eq!(numbers, far.collect::<Vec<_>>());
+        assert!(!it.is_closed && Joined::closes_at(&robots).is_none());
+        assert!((it.metres() - 42.0).abs() < 0.1, "{}", it.metres());
+    }
+
+    #[test]
+    fn where_two_robots_meet_the_narrower_is_kept() {
+        let robots = [robot(0.0, 1.0, 40, 0.5), robot(0.02, -1.0, 40, 0.3)];
+        let it = Joined::of(&robots);
+        assert!(it.is_closed && it.pieces.len() == 1, "{it:?}");
+        // All of the second, and of the first what the second has not mapped.
+        let of = |robot: usize| it.pieces[0].iter().filter(move |it| it.robot == robot);
+        assert_eq!(of(2).count(), 40);
+        assert!(of(1).all(|it| it.number < 24), "{it:?}");
+        assert!((it.metres() - 40.0 * PI).abs() < 0.5, "{}", it.metres());
+        let met = Joined::closes_at(&robots).expect("closed");
+        assert!((29..=32).contains(&met), "{met}: half of {} steps", (TAU / 0.1) as u32);
+        // It begins where they met.
+        assert_eq!(it.pieces[0][0].robot, 1);
+    }
+
+    /// A vertex of a nearly straight front.
+    fn on_line(x: f64, z: f64, heading: f64) -> VertexRecord {
+        VertexRecord { x, z, heading, ..on_circle(0.0, 0.5) }
+    }
+
+    #[test]
+    fn the_sides_of_a_narrow_bay_are_two_places() {
+        let out = (1..=5).map(|k| (k, on_line(2.0 * k as f64, 0.0, 0.0))).collect();
+        let back = (1..=5).map(|k| (k, on_line(12.0 - 2.0 * k as f64, 0.6, PI))).collect();
+        let it = Joined::of(&[vec![out], vec![back]]);
+        let count: usize = it.pieces.iter().map(Vec::len).sum();
+        assert_eq!((count, it.is_closed), (10, false), "{it:?}");
+        let is_one_way = |piece: &Vec<Place>| piece.iter().all(|it| it.robot == piece[0].robot);
+        assert!(it.pieces.iter().all(is_one_way), "{it:?}");
+    }
+
+    /// The nearest vertex ahead of the third has another one nearest behind it, which lies beside the way.
+    #[test]
+    fn vertices_side_by_side_do_not_break_the_map() {
+        let line = [-4.0, -2.0, 0.0].map(|x| on_line(x, 0.0, 0.0));
+        let bend = [(2.0, 0.0), (3.9, -0.6), (5.8, -1.2)].map(|(x, z)| on_line(x, z, -0.3));
+        let one = (1..).zip(line.into_iter().chain(bend)).collect();
+        let other = vec![vec![(1, on_line(1.2, 1.65, 0.0))]];
+        let it = Joined::of(&[vec![one], other]);
+        let lengths: Vec<_> = it.pieces.iter().map(Vec::len).collect();
+        assert_eq!(lengths, [7], "{it:?}");
+    }
+
+    /// The robot stays for some steps where the front is not well known, and then knows it far ahead.
+    #[test]
+    fn a_robots_own_piece_has_no_gap() {
+        let angles = [0.0, 0.1, 0.2, 0.28, 0.24, 0.8, 0.9, 1.0];
+        let vertices = (1..).zip(angles.map(|it| on_circle(it, 0.5)));
+        let it = Joined::of(&[vec![vertices.collect()]]);
+        assert_eq!(it.pieces.len(), 1, "{it:?}");
+    }
+
+    /// Three quarters of a circle do not close, although a robot mapped them in one piece.
+    #[test]
+    fn an_arc_does_not_close() {
+        let it = Joined::of(&[robot(0.0, 1.0, 47, 0.5)]);
+        assert_eq!((it.pieces.len(), it.is_closed), (1, false), "{it:?}");
+    }
+
+    /// The joined map does not depend on the order of the maps, but for whose its vertices are.
+    #[test]
+    fn the_order_of_maps_does_not_matter() {
+        let [one, other] = [robot(0.0, 1.0, 40, 0.5), robot(0.02, -1.0, 40, 0.3)];
+        let places = |robots: &[Pieces]| {
+            let it = Joined::of(robots);
+            let mut bits: Vec<_> = it.pieces[0]
+                .iter()
+                .map(|it| [it.vertex.x, it.vertex.z].map(f64::to_bits))
+                .collect();
+            bits.sort_unstable();
+            bits
+        };
+        assert_eq!(places(&[one.clone(), other.clone()]), places(&[other, one]));
+    }
+
+    #[test]
+    fn a_gap_stays_a_gap() {
+        let it = Joined::of(&[robot(0.0, 1.0, 5, 0.5), robot(3.0, 1.0, 7, 0.5)]);
+        let lengths: Vec<_> = it.pieces.iter().map(Vec::len).collect();
+        assert_eq!((lengths, it.is_closed), (vec![7, 5], false));
+        assert!(Joined::of(&[vec![], vec![]]).pieces.is_empty());
+        assert_eq!(Joined::of(&[robot(0.0, 1.0, 1, 0.5)]).pieces.len(), 1);
+    }
+}
