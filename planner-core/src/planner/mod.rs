@@ -30,6 +30,7 @@ pub mod silence;
 pub mod snapshot;
 pub mod track;
 mod vote;
+pub(crate) mod watch;
 pub mod watched;
 
 use crate::belief::estimate::Estimates;

@@ -27,6 +27,7 @@ use crate::belief::weight::Prior;
 use crate::geometry::approximate::METRE;
 use crate::geometry::area::Area;
 use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
+use crate::geometry::value::ValueError;
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::front_state::FrontState;
@@ -35,6 +36,7 @@ use crate::planner::scout::{FAINT, LOOKED_AT, OneLabel, Scout};
 use crate::planner::setup::{Restart, SetupError};
 use crate::planner::silence::Silence;
 use crate::planner::snapshot::{Persist, RestoreError, Snapshot};
+use crate::planner::watch::{self, Watch};
 use crate::planner::{Plan, Planner, Stage, StopReason};
 
 /// Circles on which a motion along a front may end.
@@ -84,6 +86,8 @@ pub struct Track<D, const K: usize, const M: usize, const L: usize, G = Area> {
     heard_at: Option<Pose>,
     /// Whether it ends once the front is closed.
     ends: bool,
+    /// The stretch that it stays with, if it does not go along all of the front.
+    watch: Option<Watch>,
 }
 
 impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
@@ -109,7 +113,7 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
 
     #[inline]
     fn with(scout: Scout<D, K, M, L, G>) -> Self {
-        Self { scout, lap: Lap::NONE, heard_at: None, ends: false }
+        Self { scout, lap: Lap::NONE, heard_at: None, ends: false, watch: None }
     }
 
     /// Where the front is known best; `None` as long as it is not found, and where it is lost.
@@ -126,6 +130,23 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
     #[must_use]
     pub fn until_closed(self) -> Self {
         Self { ends: true, ..self }
+    }
+
+    /// The same, but once the front is found it stays with so many metres of it, about the place where it was found,
+    /// and learns where the front is all along them. It does not end for [a closed front](Self::until_closed).
+    ///
+    /// # Errors
+    /// [`ValueError`] unless the length is from 0.1 to 10,000 m.
+    pub fn watching(self, metres: f64) -> Result<Self, ValueError> {
+        const RANGE: ValueError = ValueError("the length of a stretch is from 0.1 to 10000 m");
+        let watch =
+            (0.1..=1e4).contains(&metres).then_some(Watch::of(metres as f32)).ok_or(RANGE)?;
+        Ok(Self { ends: false, watch: Some(watch), ..self })
+    }
+
+    /// The middle of the stretch that is [watched](Self::watching), and its direction, once the front is found.
+    pub fn watched(&self) -> Option<Pose> {
+        self.watch.and_then(|it| it.middle)
     }
 
     /// The label that all of the area has, if it most likely has one; and how much of it may have the other one. The
@@ -217,15 +238,21 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
         }
         let Some(aim) = self.aim(pose) else { return self.scout.seek(pose) };
         let (scout, reach) = (&self.scout, self.scout.reach());
-        let worth = |way: Vector, to: Site, share: f32| {
-            scout.tells(share).map(|told| told + aim.progress(way, to, reach))
+        let asked = self.watch.and_then(|it| it.ask(scout, &aim.waist));
+        let worth = |way: Vector, to: Site, share: f32| match &asked {
+            Some(asked) => asked.worth(scout, (way, to), share),
+            None => scout.tells(share).map(|told| told + aim.progress(way, to, reach)),
         };
-        let (best, examined) = scout.best_end(pose, (CIRCLES, LOOKED_AT), worth);
+        let looks = if asked.is_some() { watch::LOOKS } else { (CIRCLES, LOOKED_AT) };
+        let (best, examined) = scout.best_end(pose, looks, worth);
+        let least = best.map_or(0.0, |best| best.worth);
+        let beyond = asked.as_ref().and_then(|it| it.best(scout, pose, least));
         let is_inside = scout.area.contains(pose.site);
         // In this order: the first to which there is a way.
         let (stage, places) = match self.onward(&aim, pose) {
             _ if !is_inside => (Stage::Return, [scout.home(pose), None]),
-            Onward::Beyond(site) => (Stage::Pass, [Some(site), None]),
+            _ if beyond.is_some() => (Stage::Follow, [beyond, None]),
+            Onward::Beyond(site) if asked.is_none() => (Stage::Pass, [Some(site), None]),
             _ if best.is_some() => (Stage::Follow, [None; 2]),
             _ => (Stage::Return, [self.first_free(&aim, pose, 0), Some(aim.waist.site)]),
         };
@@ -249,6 +276,10 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
         let reach = scout.reach();
         if scout.tracker.evidence().value() >= Alarm::ALARM {
             scout.tracker.seek_near(pose.site, AGAIN * reach * METRE);
+            self.watch = self.watch.map(Watch::again);
+        }
+        if let Some(watch) = &mut self.watch {
+            watch.observe(scout.found());
         }
         self.lap.observe(scout.found(), pose, reach);
         if self.aim(pose).is_some_and(|aim| self.onward(&aim, pose) == Onward::Over) {
@@ -287,6 +318,7 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
     /// Begins again in the rectangle around its area. A tracker has one prior: see [`Tracker::new`].
     fn restart(&mut self, given: &[Sample], _: Prior, noise: Noise) -> Result<(), SetupError> {
         (self.lap, self.heard_at) = (Lap::NONE, None);
+        self.watch = self.watch.map(Watch::again);
         self.scout.restart(noise, given)
     }
 }
@@ -294,16 +326,17 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
 impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> Persist
     for Track<D, K, M, L, G>
 {
-    type Snapshot = Snapshot<FrontMemory<K, M, L>, (Silence, Lap, Option<Pose>)>;
+    type Snapshot = Snapshot<FrontMemory<K, M, L>, (Silence, Lap, [Option<Pose>; 2])>;
 
     fn snapshot(&self) -> Self::Snapshot {
         let Scout { tracker, silence, .. } = &self.scout;
-        Snapshot::new(tracker.log(), (*silence, self.lap, self.heard_at))
+        Snapshot::new(tracker.log(), (*silence, self.lap, [self.heard_at, self.watched()]))
     }
 
     fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), RestoreError> {
-        let (log, &(silence, lap, heard_at)) = snapshot.open()?;
+        let (log, &(silence, lap, [heard_at, middle])) = snapshot.open()?;
         self.scout.tracker.replay(log)?;
+        self.watch = self.watch.map(|it| Watch { middle, ..it });
         (self.scout.silence, self.lap, self.heard_at) = (silence, lap, heard_at);
         Ok(())
     }

@@ -114,7 +114,7 @@ impl Lay {
 
 /// The share of a cell's curves that have a place on their +1 side, by the number of the cell.
 #[derive(Clone, Copy)]
-struct Ramp {
+pub(crate) struct Ramp {
     place: f32,
     width: f32,
     per_width: f32,
@@ -184,6 +184,33 @@ impl Ramp {
         let end = whole.len() as f32 + count as f32 - 1.0;
         sum + ((self.place - end) * until + more) * self.per_width
     }
+
+    /// The mass of a column that lies below, and the sum of it times the number of its cell.
+    pub(crate) fn moments(self, column: &[f32]) -> [f32; 2] {
+        let (mut sum, mut first, mut cell) = (0.0, 0.0, 0.0);
+        let whole = self.place - self.width;
+        let mut cells = column.iter();
+        for mass in cells.by_ref() {
+            if cell > whole {
+                let part = mass * self.at(cell);
+                (sum, first) = (sum + part, first + part * cell);
+                cell += 1.0;
+                break;
+            }
+            sum += mass;
+            first += mass * cell;
+            cell += 1.0;
+        }
+        for mass in cells {
+            if cell >= self.place {
+                break;
+            }
+            let part = mass * self.at(cell);
+            (sum, first) = (sum + part, first + part * cell);
+            cell += 1.0;
+        }
+        [sum, first]
+    }
 }
 
 /// Each cell's mass times its distance below a place, summed up: for a place at the end of each cell.
@@ -224,7 +251,7 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
     }
 
     /// The ramp of a column for a place that errs by `blur` either way, metres.
-    fn ramp(lay: Lay, along: Unit, bend: f32, place: [f32; 2], blur: f32) -> Ramp {
+    pub(crate) fn ramp(lay: Lay, along: Unit, bend: f32, place: [f32; 2], blur: f32) -> Ramp {
         let [ahead, left] = along.seen(place);
         let per_cell = 1.0 / lay.step;
         let off = (left - lay.bulge(bend, ahead) - lay.low) * per_cell;

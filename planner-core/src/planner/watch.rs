@@ -1,0 +1,137 @@
+//! Staying with a stretch of a front, to know at all times where the front is along it.
+//!
+//! The stretch is fixed once the front is found: its middle is the place where the front is known best then. A place is
+//! worth by how much its label is expected to reduce the variance of the front, over a price and the way there. The
+//! variance is the mean over five places of the stretch. Asked are ends of the next motion, and these places on the mean
+//! front. The robot leaves the stretch by no more than a reach.
+//!
+//! It never waits. Time makes the front less known, also where the robot stands, so a label at another place of the
+//! stretch tells more than one at the same place. Where no end of a motion tells enough, it goes to the place of the
+//! stretch that is worth the most.
+
+use crate::belief::front::{ASKED, Spread, Unit, Waist};
+use crate::geometry::approximate::distance;
+use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
+use crate::geometry::workspace::Workspace;
+use crate::motion::dynamics::{Dynamics, Pose};
+use crate::planner::scout::Scout;
+
+/// Circles on which a motion may end, and ends that are looked at, at most.
+pub(crate) const LOOKS: (u16, u32) = (2, 36);
+
+/// Which stretch is watched.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Watch {
+    /// Its length, metres.
+    pub(crate) metres: f32,
+    /// Its middle and direction, once the front is found.
+    pub(crate) middle: Option<Pose>,
+}
+
+impl Watch {
+    pub(crate) const fn of(metres: f32) -> Self {
+        Self { metres, middle: None }
+    }
+
+    /// The front is lost: the stretch lies where it is found again.
+    pub(crate) const fn again(self) -> Self {
+        Self { middle: None, ..self }
+    }
+
+    /// Takes in where the front is known best. If that is further away than the stretch is long, the front has left,
+    /// and the stretch lies there now.
+    pub(crate) fn observe(&mut self, found: Option<Waist>) {
+        let Some(Waist { site, heading, .. }) = found else { return };
+        let most = self.metres * UNITS_PER_METRE as f32;
+        if self.middle.is_none_or(|it| distance(site - it.site) > most) {
+            self.middle = Some(Pose { site, heading });
+        }
+    }
+
+    /// What a plan needs of it.
+    pub(crate) fn ask<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>(
+        &self,
+        scout: &Scout<D, K, M, L, G>,
+        waist: &Waist,
+    ) -> Option<Asked> {
+        let middle = self.middle?;
+        let along = Unit::of(middle.heading);
+        let half = 0.5 * self.metres * UNITS_PER_METRE as f32;
+        let mut share = -1.0;
+        let places = [(); ASKED].map(|()| {
+            let by = Vector::new((along.x * half * share) as i32, (along.z * half * share) as i32);
+            share += 2.0 / (ASKED as f32 - 1.0);
+            let site = by.and_then(|by| middle.site.step(by).ok()).unwrap_or(middle.site);
+            waist.place_at(waist.ahead(site)).unwrap_or(site)
+        });
+        let most = half + scout.reach();
+        Some(Asked {
+            middle: middle.site,
+            along,
+            most,
+            places,
+            spread: scout.tracker.spread_over(places),
+        })
+    }
+}
+
+/// A stretch as it is known before a motion.
+pub(crate) struct Asked {
+    middle: Site,
+    along: Unit,
+    /// The robot goes so far from its middle along it, lattice units.
+    most: f32,
+    places: [Site; ASKED],
+    spread: Spread,
+}
+
+impl Asked {
+    /// What a place so far away is worth that has this share of the curves above it, if it lies in the stretch.
+    pub(crate) fn worth<
+        D: Dynamics,
+        const K: usize,
+        const M: usize,
+        const L: usize,
+        G: Workspace,
+    >(
+        &self,
+        scout: &Scout<D, K, M, L, G>,
+        (way, to): (Vector, Site),
+        share: f32,
+    ) -> Option<f32> {
+        let off = to - self.middle;
+        let ahead = self.along.x * off.x as f32 + self.along.z * off.z as f32;
+        if ahead.abs() > self.most {
+            return None;
+        }
+        scout.tells(share)?;
+        Some(scout.tracker.reduces(&self.spread, to, share) / (scout.price + distance(way)))
+    }
+
+    /// The place of the stretch, beyond the ends of a motion, that is worth the most, if that is more than this.
+    pub(crate) fn best<
+        D: Dynamics,
+        const K: usize,
+        const M: usize,
+        const L: usize,
+        G: Workspace,
+    >(
+        &self,
+        scout: &Scout<D, K, M, L, G>,
+        pose: Pose,
+        least: f32,
+    ) -> Option<Site> {
+        let (mut best, mut most) = (None, least);
+        for to in self.places {
+            let way = to - pose.site;
+            if distance(way) > scout.reach() && scout.area.contains(to) {
+                let share = scout.tracker.share_above(to);
+                let worth = self.worth(scout, (way, to), share).unwrap_or(0.0);
+                if worth > most {
+                    (best, most) = (Some(to), worth);
+                }
+            }
+        }
+        best
+    }
+}
