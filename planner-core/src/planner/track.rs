@@ -276,7 +276,6 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
         let reach = scout.reach();
         if scout.tracker.evidence().value() >= Alarm::ALARM {
             scout.tracker.seek_near(pose.site, AGAIN * reach * METRE);
-            self.watch = self.watch.map(Watch::again);
         }
         if let Some(watch) = &mut self.watch {
             watch.observe(scout.found());

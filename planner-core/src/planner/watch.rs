@@ -1,13 +1,12 @@
 //! Staying with a stretch of a front, to know at all times where the front is along it.
 //!
 //! The stretch is fixed once the front is found: its middle is the place where the front is known best then. A place is
-//! worth by how much its label is expected to reduce the variance of the front, over a price and the way there. The
-//! variance is the mean over five places of the stretch. Asked are ends of the next motion, and these places on the mean
-//! front. The robot leaves the stretch by no more than a reach.
+//! worth by how much its label is expected to reduce the variance of the front, a motion on the way there. The variance is
+//! the mean over five places of the stretch. The planner looks at ends of the next motion, and at these places on the
+//! mean front. The robot leaves the stretch by no more than a reach, unless it has to seek the front.
 //!
-//! It never waits. Time makes the front less known, also where the robot stands, so a label at another place of the
-//! stretch tells more than one at the same place. Where no end of a motion tells enough, it goes to the place of the
-//! stretch that is worth the most.
+//! The robot never waits: the stretch is always known least where the robot has not been for long. If no end of the
+//! next motion tells enough, it goes to the best of these places.
 
 use crate::belief::front::{ASKED, Spread, Unit, Waist};
 use crate::geometry::approximate::distance;
@@ -17,7 +16,7 @@ use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::scout::Scout;
 
 /// Circles on which a motion may end, and ends that are looked at, at most.
-pub(crate) const LOOKS: (u16, u32) = (2, 36);
+pub(crate) const LOOKS: (u16, u32) = (3, 36);
 
 /// Which stretch is watched.
 #[derive(Clone, Copy, Debug)]
@@ -33,7 +32,7 @@ impl Watch {
         Self { metres, middle: None }
     }
 
-    /// The front is lost: the stretch lies where it is found again.
+    /// A mission begins again.
     pub(crate) const fn again(self) -> Self {
         Self { middle: None, ..self }
     }
@@ -86,7 +85,8 @@ pub(crate) struct Asked {
 }
 
 impl Asked {
-    /// What a place so far away is worth that has this share of the curves above it, if it lies in the stretch.
+    /// What a place so far away is worth that has this share of the curves above it, if it lies in the stretch: square
+    /// metres a motion.
     pub(crate) fn worth<
         D: Dynamics,
         const K: usize,
@@ -105,7 +105,9 @@ impl Asked {
             return None;
         }
         scout.tells(share)?;
-        Some(scout.tracker.reduces(&self.spread, to, share) / (scout.price + distance(way)))
+        let motions = distance(way) / scout.reach();
+        let reduces = scout.tracker.reduces(&self.spread, to, share);
+        Some(if motions > 1.0 { reduces / motions } else { reduces })
     }
 
     /// The place of the stretch, beyond the ends of a motion, that is worth the most, if that is more than this.

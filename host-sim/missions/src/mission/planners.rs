@@ -127,7 +127,11 @@ impl Mission {
     /// When settings contradict each other.
     pub fn track<D: Dynamics, G: Workspace>(&self, area: G, dynamics: D) -> Track<D, 16, 16, 3, G> {
         let planner = Track::new(area, dynamics, self.tracker()).expect(FITS);
-        if self.until_closed { planner.until_closed() } else { planner }
+        match self.watch {
+            Some(metres) => planner.watching(metres).expect(FITS),
+            None if self.until_closed => planner.until_closed(),
+            None => planner,
+        }
     }
 
     /// The half-width below which the front counts as found, metres; `None` if the planner seeks a line.
