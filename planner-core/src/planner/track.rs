@@ -36,7 +36,7 @@ use crate::planner::scout::{FAINT, LOOKED_AT, OneLabel, Scout};
 use crate::planner::setup::{Restart, SetupError};
 use crate::planner::silence::Silence;
 use crate::planner::snapshot::{Persist, RestoreError, Snapshot};
-use crate::planner::watch::{self, Watch};
+use crate::planner::watch::{LOOKS, Watch, Ways};
 use crate::planner::{Plan, Planner, Stage, StopReason};
 
 /// Circles on which a motion along a front may end.
@@ -87,7 +87,7 @@ pub struct Track<D, const K: usize, const M: usize, const L: usize, G = Area> {
     /// Whether it ends once the front is closed.
     ends: bool,
     /// The stretch that it stays with, if it does not go along all of the front.
-    watch: Option<Watch>,
+    watch: Option<(Watch, Ways<Scout<D, K, M, L, G>>)>,
 }
 
 impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
@@ -139,14 +139,14 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
     /// [`ValueError`] unless the length is from 0.1 to 10,000 m.
     pub fn watching(self, metres: f64) -> Result<Self, ValueError> {
         const RANGE: ValueError = ValueError("the length of a stretch is from 0.1 to 10000 m");
-        let watch =
-            (0.1..=1e4).contains(&metres).then_some(Watch::of(metres as f32)).ok_or(RANGE)?;
-        Ok(Self { ends: false, watch: Some(watch), ..self })
+        let watch = (Watch::of(metres as f32), Ways::ALL);
+        let watched = Self { ends: false, watch: Some(watch), ..self };
+        (0.1..=1e4).contains(&metres).then_some(watched).ok_or(RANGE)
     }
 
     /// The middle of the stretch that is [watched](Self::watching), and its direction, once the front is found.
     pub fn watched(&self) -> Option<Pose> {
-        self.watch.and_then(|it| it.middle)
+        self.watch.and_then(|(it, _)| it.middle)
     }
 
     /// The label that all of the area has, if it most likely has one; and how much of it may have the other one. The
@@ -238,15 +238,16 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
         }
         let Some(aim) = self.aim(pose) else { return self.scout.seek(pose) };
         let (scout, reach) = (&self.scout, self.scout.reach());
-        let asked = self.watch.and_then(|it| it.ask(scout, &aim.waist));
+        let watch = self.watch;
+        let asked = watch.and_then(|(it, ways)| Some(((ways.ask)(&it, scout, &aim.waist)?, ways)));
         let worth = |way: Vector, to: Site, share: f32| match &asked {
-            Some(asked) => asked.worth(scout, (way, to), share),
+            Some((asked, ways)) => (ways.worth)(asked, scout, (way, to), share),
             None => scout.tells(share).map(|told| told + aim.progress(way, to, reach)),
         };
-        let looks = if asked.is_some() { watch::LOOKS } else { (CIRCLES, LOOKED_AT) };
+        let looks = if asked.is_some() { LOOKS } else { (CIRCLES, LOOKED_AT) };
         let (best, examined) = scout.best_end(pose, looks, worth);
         let least = best.map_or(0.0, |best| best.worth);
-        let beyond = asked.as_ref().and_then(|it| it.best(scout, pose, least));
+        let beyond = asked.as_ref().and_then(|(it, ways)| (ways.best)(it, scout, pose, least));
         let is_inside = scout.area.contains(pose.site);
         // In this order: the first to which there is a way.
         let (stage, places) = match self.onward(&aim, pose) {
@@ -277,8 +278,8 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
         if scout.tracker.evidence().value() >= Alarm::ALARM {
             scout.tracker.seek_near(pose.site, AGAIN * reach * METRE);
         }
-        if let Some(watch) = &mut self.watch {
-            watch.observe(scout.found());
+        if let Some((watch, ways)) = &mut self.watch {
+            (ways.observe)(watch, scout);
         }
         self.lap.observe(scout.found(), pose, reach);
         if self.aim(pose).is_some_and(|aim| self.onward(&aim, pose) == Onward::Over) {
@@ -317,7 +318,9 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
     /// Begins again in the rectangle around its area. A tracker has one prior: see [`Tracker::new`].
     fn restart(&mut self, given: &[Sample], _: Prior, noise: Noise) -> Result<(), SetupError> {
         (self.lap, self.heard_at) = (Lap::NONE, None);
-        self.watch = self.watch.map(Watch::again);
+        if let Some((watch, _)) = &mut self.watch {
+            watch.middle = None;
+        }
         self.scout.restart(noise, given)
     }
 }
@@ -335,7 +338,9 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
     fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), RestoreError> {
         let (log, &(silence, lap, [heard_at, middle])) = snapshot.open()?;
         self.scout.tracker.replay(log)?;
-        self.watch = self.watch.map(|it| Watch { middle, ..it });
+        if let Some((watch, _)) = &mut self.watch {
+            watch.middle = middle;
+        }
         (self.scout.silence, self.lap, self.heard_at) = (silence, lap, heard_at);
         Ok(())
     }

@@ -22,7 +22,7 @@ pub(crate) const LOOKS: (u16, u32) = (3, 36);
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Watch {
     /// Its length, metres.
-    pub(crate) metres: f32,
+    metres: f32,
     /// Its middle and direction, once the front is found.
     pub(crate) middle: Option<Pose>,
 }
@@ -32,15 +32,13 @@ impl Watch {
         Self { metres, middle: None }
     }
 
-    /// A mission begins again.
-    pub(crate) const fn again(self) -> Self {
-        Self { middle: None, ..self }
-    }
-
     /// Takes in where the front is known best. If that is further away than the stretch is long, the front has left,
     /// and the stretch lies there now.
-    pub(crate) fn observe(&mut self, found: Option<Waist>) {
-        let Some(Waist { site, heading, .. }) = found else { return };
+    fn observe<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>(
+        &mut self,
+        scout: &Scout<D, K, M, L, G>,
+    ) {
+        let Some(Waist { site, heading, .. }) = scout.found() else { return };
         let most = self.metres * UNITS_PER_METRE as f32;
         if self.middle.is_none_or(|it| distance(site - it.site) > most) {
             self.middle = Some(Pose { site, heading });
@@ -48,7 +46,7 @@ impl Watch {
     }
 
     /// What a plan needs of it.
-    pub(crate) fn ask<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>(
+    fn ask<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>(
         &self,
         scout: &Scout<D, K, M, L, G>,
         waist: &Waist,
@@ -74,6 +72,31 @@ impl Watch {
     }
 }
 
+/// How a planner watches a stretch. A program that watches none does not contain these functions: only
+/// [`Track::watching`](crate::planner::track::Track::watching) names them.
+#[derive(Debug)]
+pub(crate) struct Ways<S> {
+    pub(crate) observe: fn(&mut Watch, &S),
+    pub(crate) ask: fn(&Watch, &S, &Waist) -> Option<Asked>,
+    pub(crate) worth: fn(&Asked, &S, (Vector, Site), f32) -> Option<f32>,
+    pub(crate) best: fn(&Asked, &S, Pose, f32) -> Option<Site>,
+}
+
+impl<S> Clone for Ways<S> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<S> Copy for Ways<S> {}
+
+impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
+    Ways<Scout<D, K, M, L, G>>
+{
+    pub(crate) const ALL: Self =
+        Self { observe: Watch::observe, ask: Watch::ask, worth: Asked::worth, best: Asked::best };
+}
+
 /// A stretch as it is known before a motion.
 pub(crate) struct Asked {
     middle: Site,
@@ -87,13 +110,7 @@ pub(crate) struct Asked {
 impl Asked {
     /// What a place so far away is worth that has this share of the curves above it, if it lies in the stretch: square
     /// metres a motion.
-    pub(crate) fn worth<
-        D: Dynamics,
-        const K: usize,
-        const M: usize,
-        const L: usize,
-        G: Workspace,
-    >(
+    fn worth<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>(
         &self,
         scout: &Scout<D, K, M, L, G>,
         (way, to): (Vector, Site),
@@ -111,13 +128,7 @@ impl Asked {
     }
 
     /// The place of the stretch, beyond the ends of a motion, that is worth the most, if that is more than this.
-    pub(crate) fn best<
-        D: Dynamics,
-        const K: usize,
-        const M: usize,
-        const L: usize,
-        G: Workspace,
-    >(
+    fn best<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>(
         &self,
         scout: &Scout<D, K, M, L, G>,
         pose: Pose,
