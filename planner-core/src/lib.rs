@@ -200,6 +200,7 @@ pub use crate::motion::unicycle::Unicycle;
 pub use crate::planner::cfc::Cfc;
 pub use crate::planner::far::{Far, Seeks};
 pub use crate::planner::front_state::FrontState;
+pub use crate::planner::guard::Guard;
 pub use crate::planner::lookahead::{DrivingPrice, Lookahead};
 pub use crate::planner::options::{Crossing, Following, Options};
 pub use crate::planner::scc::{Policy, Scc};

@@ -18,6 +18,7 @@ pub mod cfc;
 mod decision;
 pub mod far;
 pub mod front_state;
+pub(crate) mod guard;
 mod lap;
 pub mod lookahead;
 pub mod options;
@@ -30,7 +31,6 @@ pub mod silence;
 pub mod snapshot;
 pub mod track;
 mod vote;
-pub(crate) mod watch;
 pub mod watched;
 
 use crate::belief::estimate::Estimates;

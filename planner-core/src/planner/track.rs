@@ -31,12 +31,12 @@ use crate::geometry::value::ValueError;
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::front_state::FrontState;
+use crate::planner::guard::Guard;
 use crate::planner::lap::Lap;
 use crate::planner::scout::{FAINT, LOOKED_AT, OneLabel, Scout};
 use crate::planner::setup::{Restart, SetupError};
 use crate::planner::silence::Silence;
 use crate::planner::snapshot::{Persist, RestoreError, Snapshot};
-use crate::planner::watch::{LOOKS, Watch, Ways};
 use crate::planner::{Plan, Planner, Stage, StopReason};
 
 /// Circles on which a motion along a front may end.
@@ -46,7 +46,7 @@ const CIRCLES: u16 = 4;
 const WIDTH: f32 = 0.25;
 
 /// After an alarm the front is sought within so many reaches.
-const AGAIN: f32 = 6.0;
+pub(crate) const AGAIN: f32 = 6.0;
 
 /// A keep-out on the front is passed if it is no longer than so many reaches.
 const BEYOND: u16 = 10;
@@ -86,8 +86,6 @@ pub struct Track<D, const K: usize, const M: usize, const L: usize, G = Area> {
     heard_at: Option<Pose>,
     /// Whether it ends once the front is closed.
     ends: bool,
-    /// The stretch that it stays with, if it does not go along all of the front.
-    watch: Option<(Watch, Ways<Scout<D, K, M, L, G>>)>,
 }
 
 impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
@@ -113,7 +111,7 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
 
     #[inline]
     fn with(scout: Scout<D, K, M, L, G>) -> Self {
-        Self { scout, lap: Lap::NONE, heard_at: None, ends: false, watch: None }
+        Self { scout, lap: Lap::NONE, heard_at: None, ends: false }
     }
 
     /// Where the front is known best; `None` as long as it is not found, and where it is lost.
@@ -132,21 +130,13 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         Self { ends: true, ..self }
     }
 
-    /// The same, but once the front is found it stays with so many metres of it, about the place where it was found,
-    /// and learns where the front is all along them. It does not end for [a closed front](Self::until_closed).
+    /// The planner that does not go along the front, but stays with so many metres of it, about the place where it finds
+    /// it. It learns where the front is all along them, and does not end for a closed front.
     ///
     /// # Errors
     /// [`ValueError`] unless the length is from 0.1 to 10,000 m.
-    pub fn watching(self, metres: f64) -> Result<Self, ValueError> {
-        const RANGE: ValueError = ValueError("the length of a stretch is from 0.1 to 10000 m");
-        let watch = (Watch::of(metres as f32), Ways::ALL);
-        let watched = Self { ends: false, watch: Some(watch), ..self };
-        (0.1..=1e4).contains(&metres).then_some(watched).ok_or(RANGE)
-    }
-
-    /// The middle of the stretch that is [watched](Self::watching), and its direction, once the front is found.
-    pub fn watched(&self) -> Option<Pose> {
-        self.watch.and_then(|(it, _)| it.middle)
+    pub fn watching(self, metres: f64) -> Result<Guard<D, K, M, L, G>, ValueError> {
+        Guard::of(self.scout, metres)
     }
 
     /// The label that all of the area has, if it most likely has one; and how much of it may have the other one. The
@@ -238,22 +228,15 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
         }
         let Some(aim) = self.aim(pose) else { return self.scout.seek(pose) };
         let (scout, reach) = (&self.scout, self.scout.reach());
-        let watch = self.watch;
-        let asked = watch.and_then(|(it, ways)| Some(((ways.ask)(&it, scout, &aim.waist)?, ways)));
-        let worth = |way: Vector, to: Site, share: f32| match &asked {
-            Some((asked, ways)) => (ways.worth)(asked, scout, (way, to), share),
-            None => scout.tells(share).map(|told| told + aim.progress(way, to, reach)),
+        let worth = |way: Vector, to: Site, share: f32| {
+            scout.tells(share).map(|told| told + aim.progress(way, to, reach))
         };
-        let looks = if asked.is_some() { LOOKS } else { (CIRCLES, LOOKED_AT) };
-        let (best, examined) = scout.best_end(pose, looks, worth);
-        let least = best.map_or(0.0, |best| best.worth);
-        let beyond = asked.as_ref().and_then(|(it, ways)| (ways.best)(it, scout, pose, least));
+        let (best, examined) = scout.best_end(pose, (CIRCLES, LOOKED_AT), worth);
         let is_inside = scout.area.contains(pose.site);
         // In this order: the first to which there is a way.
         let (stage, places) = match self.onward(&aim, pose) {
             _ if !is_inside => (Stage::Return, [scout.home(pose), None]),
-            _ if beyond.is_some() => (Stage::Follow, [beyond, None]),
-            Onward::Beyond(site) if asked.is_none() => (Stage::Pass, [Some(site), None]),
+            Onward::Beyond(site) => (Stage::Pass, [Some(site), None]),
             _ if best.is_some() => (Stage::Follow, [None; 2]),
             _ => (Stage::Return, [self.first_free(&aim, pose, 0), Some(aim.waist.site)]),
         };
@@ -277,9 +260,6 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
         let reach = scout.reach();
         if scout.tracker.evidence().value() >= Alarm::ALARM {
             scout.tracker.seek_near(pose.site, AGAIN * reach * METRE);
-        }
-        if let Some((watch, ways)) = &mut self.watch {
-            (ways.observe)(watch, scout);
         }
         self.lap.observe(scout.found(), pose, reach);
         if self.aim(pose).is_some_and(|aim| self.onward(&aim, pose) == Onward::Over) {
@@ -318,9 +298,6 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
     /// Begins again in the rectangle around its area. A tracker has one prior: see [`Tracker::new`].
     fn restart(&mut self, given: &[Sample], _: Prior, noise: Noise) -> Result<(), SetupError> {
         (self.lap, self.heard_at) = (Lap::NONE, None);
-        if let Some((watch, _)) = &mut self.watch {
-            watch.middle = None;
-        }
         self.scout.restart(noise, given)
     }
 }
@@ -328,19 +305,16 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
 impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> Persist
     for Track<D, K, M, L, G>
 {
-    type Snapshot = Snapshot<FrontMemory<K, M, L>, (Silence, Lap, [Option<Pose>; 2])>;
+    type Snapshot = Snapshot<FrontMemory<K, M, L>, (Silence, Lap, Option<Pose>)>;
 
     fn snapshot(&self) -> Self::Snapshot {
         let Scout { tracker, silence, .. } = &self.scout;
-        Snapshot::new(tracker.log(), (*silence, self.lap, [self.heard_at, self.watched()]))
+        Snapshot::new(tracker.log(), (*silence, self.lap, self.heard_at))
     }
 
     fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), RestoreError> {
-        let (log, &(silence, lap, [heard_at, middle])) = snapshot.open()?;
+        let (log, &(silence, lap, heard_at)) = snapshot.open()?;
         self.scout.tracker.replay(log)?;
-        if let Some((watch, _)) = &mut self.watch {
-            watch.middle = middle;
-        }
         (self.scout.silence, self.lap, self.heard_at) = (silence, lap, heard_at);
         Ok(())
     }

@@ -11,8 +11,8 @@ use host_sim::campaign::fronts::true_front::{TrueFront, site};
 use nalgebra::{Point2, Vector2};
 use planner_core::planner::scout::LOOKED_AT;
 use planner_core::{
-    Hull, KeepOut, Label, Noise, Persist as _, Plan, Planner as _, PolygonArea, Pose, Track,
-    Tracker, Unicycle, Workspace,
+    Hull, KeepOut, Label, Noise, Persist as _, Plan, Planner, PolygonArea, Pose, Track, Tracker,
+    Unicycle, Workspace,
 };
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
@@ -122,9 +122,9 @@ fn found(front: &TrueFront, world: World, rng: &mut ChaCha8Rng) -> (Belief, Pose
     unreachable!()
 }
 
-fn fly<G: Workspace>(
+fn fly(
     (front, world, middle): (&TrueFront, World, Pose),
-    mut planner: Option<Track<Unicycle, 16, 16, 3, G>>,
+    mut planner: Option<impl Planner<Belief = Belief>>,
     (mut belief, mut pose, begun): (Belief, Pose, u32),
     rng: &mut ChaCha8Rng,
 ) -> Measured {
@@ -177,7 +177,7 @@ fn mission(who: Who, world: World, number: u64) -> Measured {
             let area = PolygonArea::<4, 2>::new(hull, &[] as &[KeepOut<4>]).expect("an area");
             fly(of, Some(Track::new(area, unicycle, belief).expect("room")), from, &mut rng)
         }
-        Who::Stays => fly::<planner_core::Area>(of, None, from, &mut rng),
+        Who::Stays => fly(of, None::<Track<Unicycle, 16, 16, 3>>, from, &mut rng),
     }
 }
 
@@ -247,19 +247,19 @@ fn a_robot_that_watches_stays_and_sleeps() {
         let (belief, mut pose, _, begun) = found(&front, world, &mut rng);
         let unicycle = vehicle(REACH).expect("a vehicle");
         let track = Track::new(sea().expect("an area"), unicycle, belief).expect("room");
-        let mut planner = track.until_closed().watching(12.0).expect("a length");
+        let mut planner = track.watching(12.0).expect("a length");
         let (mut woken, mut labels) = (planner.clone(), 0);
         for motion in begun + 1..=begun + MOTIONS {
             let plan = planner.plan(pose);
             woken.restore(&planner.snapshot()).expect("its own snapshot");
-            assert_eq!((plan, woken.watched()), (woken.plan(pose), planner.watched()), "{number}");
+            assert_eq!((plan, woken.stretch()), (woken.plan(pose), planner.stretch()), "{number}");
             let Plan::Move(next) = plan else { panic!("{number}: {plan:?}") };
             let was_found = planner.found().is_some();
             pose = next.target;
             let label = front.sensed(pose.site.into(), motion.into(), world.p, &mut rng);
             labels += u32::from(next.wants_label);
             planner.observe(pose, next.wants_label.then(|| label.into())).expect("any label");
-            if let Some(middle) = planner.watched().filter(|_| was_found) {
+            if let Some(middle) = planner.stretch().filter(|_| was_found) {
                 assert!(next.examined <= LOOKED_AT, "{number}: {}", next.examined);
                 let off = Point2::<f64>::from(pose.site) - Point2::<f64>::from(middle.site);
                 let (sin, cos) = libm::sincos(middle.heading.radians());
