@@ -12,7 +12,7 @@ use nalgebra::{Point2, Vector2};
 use planner_core::planner::scout::LOOKED_AT;
 use planner_core::{
     Hull, KeepOut, Label, Noise, Persist as _, Plan, Planner, PolygonArea, Pose, Track, Tracker,
-    Unicycle, Workspace,
+    Unicycle,
 };
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;

@@ -131,3 +131,86 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
         Beside { left, deviation: sqrt(variance) }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::belief::Belief as _;
+    use crate::belief::front::Front;
+    use crate::belief::noise::Noise;
+    use crate::belief::sample::Label;
+    use crate::geometry::area::Area;
+    use crate::geometry::heading::Heading;
+
+    fn at(x: f64, z: f64) -> Site {
+        Site::metres([x, z]).unwrap()
+    }
+
+    /// A tracker that has gone to and fro across `z = 10 + 0.1 x`.
+    fn flown(p: f64) -> Tracker<16, 16, 3> {
+        let area = Area::metres([0.0, 0.0], [20.0, 20.0]).unwrap();
+        let front = Front::bending(60.0).and_then(|it| it.moving(0.02)).unwrap();
+        let mut tracker = Tracker::new(area, front, Noise::new(p).unwrap());
+        for k in 0..40 {
+            let (x, aside) = (0.3 * f64::from(k), 0.4 * f64::from(k % 5) - 0.7);
+            let site = at(x, 10.0 + 0.1 * x + aside);
+            tracker.moved(site, 1.0);
+            let label = if aside > 0.0 { Label::Positive } else { Label::Negative };
+            tracker.observe(site, label.into()).unwrap();
+        }
+        tracker
+    }
+
+    const HEADING: f64 = 0.0997;
+
+    fn beside(tracker: &Tracker<16, 16, 3>, site: Site) -> Beside {
+        tracker.beside(Pose { site, heading: Heading::from_radians(HEADING).unwrap() })
+    }
+
+    #[test]
+    fn the_front_is_known_best_where_the_robot_is() {
+        let tracker = flown(0.9);
+        let waist = tracker.waist();
+        let there = tracker.beside(Pose { site: waist.site, heading: waist.heading });
+        assert!(there.left.abs() < 0.1 && (there.deviation / waist.deviation - 1.0).abs() < 0.3);
+        let known = [11.0, 5.0, 0.0, -6.0].map(|x| beside(&tracker, at(x, 10.0 + 0.1 * x)));
+        assert!(known.is_sorted_by(|a, b| a.deviation < b.deviation), "{known:?}");
+        assert!(known.iter().all(|it| it.left.abs() < 2.5 * it.deviation), "{known:?}");
+        // A place elsewhere on the same line across says the same.
+        let off = beside(&tracker, at(5.0 - 0.0995 * 2.0, 10.5 + 0.995 * 2.0));
+        assert!((off.left + 2.0 - known[1].left).abs() < 0.02, "{off:?} {known:?}");
+        assert!((off.deviation / known[1].deviation - 1.0).abs() < 0.05, "{off:?} {known:?}");
+    }
+
+    /// Against what either label leaves of the variance.
+    #[test]
+    fn a_label_is_expected_to_take_what_it_takes() {
+        for p in [1.0, 0.9, 0.7] {
+            let tracker = flown(p);
+            let places = [-3.0, 1.5, 6.0, 10.5, 15.0].map(|x| at(x, 10.0 + 0.1 * x));
+            let spread = tracker.spread_over(places);
+            let of = |tracker: &Tracker<16, 16, 3>| {
+                let variance = |site| beside(tracker, site).deviation.powi(2);
+                places.map(variance).iter().sum::<f32>() / places.len() as f32
+            };
+            let before = of(&tracker);
+            for (x, off) in [(-3.0, 0.0), (0.0, 0.3), (6.0, 0.1), (14.0, -0.3), (18.0, 0.2)] {
+                let site = at(x, 10.0 + 0.1 * x + off);
+                let share = tracker.share_above(site);
+                let chance = tracker.chance(site) as f32;
+                let [plus, minus] = [Label::Positive, Label::Negative].map(|label| {
+                    let mut after = tracker.clone();
+                    after.observe(site, label.into()).unwrap();
+                    of(&after)
+                });
+                let taken = before - chance * plus - (1.0 - chance) * minus;
+                let expected = tracker.reduces(&spread, site, share);
+                let error = (expected - taken).abs();
+                assert!(
+                    error < 0.15 * taken + 0.01 * before,
+                    "{p}, {x}: {expected}, {taken} of {before}"
+                );
+            }
+        }
+    }
+}
