@@ -28,10 +28,10 @@ use crate::planner::track::AGAIN;
 use crate::planner::{Plan, Planner, Stage, StopReason};
 
 /// Circles on which a motion may end.
-const CIRCLES: u16 = 3;
+const CIRCLES: u16 = 1;
 
 /// Ends of motions that a plan looks at, at most: a place costs more than along a front.
-const ENDS: u32 = 36;
+const ENDS: u32 = 24;
 
 /// A planner that finds a front and watches a stretch of it: what [`Track::watching`] returns.
 ///

@@ -121,6 +121,11 @@ pub(crate) struct Ramp {
 }
 
 impl Ramp {
+    /// The same for a place that lies so many cells lower.
+    pub(crate) fn lower(self, cells: f32) -> Self {
+        Self { place: self.place - cells, ..self }
+    }
+
     fn at(self, cell: f32) -> f32 {
         let share = (self.place - cell) * self.per_width;
         match () {
@@ -187,26 +192,33 @@ impl Ramp {
 
     /// The mass of a column that lies below, and the sum of it times the number of its cell.
     pub(crate) fn moments(self, column: &[f32]) -> [f32; 2] {
+        if self.place <= 0.0 {
+            return [0.0; 2];
+        }
+        let first = self.place - self.width;
+        let whole = if first >= 0.0 { (first as usize).saturating_add(1) } else { 0 };
+        let whole = whole.min(column.len());
+        let (whole, rest) = column.split_at_checked(whole).unwrap_or((column, &[]));
         let (mut sum, mut first, mut cell) = (0.0, 0.0, 0.0);
-        let whole = self.place - self.width;
-        let mut cells = column.iter();
-        for mass in cells.by_ref() {
-            if cell > whole {
-                let part = mass * self.at(cell);
-                (sum, first) = (sum + part, first + part * cell);
-                cell += 1.0;
-                break;
-            }
+        let (fours, others) = whole.as_chunks::<4>();
+        for [a, b, c, d] in fours {
+            let (two, three) = (a + b, c + d);
+            sum += two + three;
+            first += cell * (two + three) + (b + d + (three + three));
+            cell += 4.0;
+        }
+        for mass in others {
             sum += mass;
             first += mass * cell;
             cell += 1.0;
         }
-        for mass in cells {
+        for mass in rest {
             if cell >= self.place {
                 break;
             }
-            let part = mass * self.at(cell);
-            (sum, first) = (sum + part, first + part * cell);
+            let part = mass * ((self.place - cell) * self.per_width);
+            sum += part;
+            first += part * cell;
             cell += 1.0;
         }
         [sum, first]
@@ -605,6 +617,25 @@ mod tests {
                 "{first}: {off}, {:?}",
                 grid.lay
             );
+        }
+    }
+
+    /// Against each cell by its share, at places before, in and beyond a column.
+    #[test]
+    fn moments_below_are_those_of_the_cells() {
+        let column: [f32; 11] = core::array::from_fn(|m| 1.0 + (m * m % 7) as f32);
+        for n in -30..160 {
+            for width in [1.0, 1.3, 4.6, 20.0] {
+                let ramp = Ramp { place: n as f32 * 0.1, width, per_width: 1.0 / width };
+                let parts =
+                    column.iter().enumerate().map(|(m, mass)| (m, mass * ramp.at(m as f32)));
+                let (sum, first) = parts.fold((0.0, 0.0), |(sum, first), (m, part)| {
+                    (sum + part, first + part * m as f32)
+                });
+                let got = ramp.moments(&column);
+                assert!((got[0] - sum).abs() < 1e-4, "{n}, {width}: {got:?}, {sum}");
+                assert!((got[1] - first).abs() < 1e-3, "{n}, {width}: {got:?}, {first}");
+            }
         }
     }
 }

@@ -44,20 +44,25 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
     #[inline(never)]
     fn moments_above(&self, site: Site, blur: f32) -> [f32; 4] {
         let (place, lay) = (metres(site - self.lay.pivot), self.lay);
-        let middle = [0.5 * (K as f32 - 1.0), 0.5 * (M as f32 - 1.0)];
+        let per_cell = 1.0 / lay.step;
         let [mut sum, mut rows, mut columns, mut bends] = [0.0; 4];
-        for (layer, bend) in self.mass.iter().zip(lay.bends::<L>()) {
-            let (mut in_layer, mut k) = (0.0, -middle[0]);
-            for (column, along) in layer.iter().zip(&self.along) {
-                let [mass, row] = Self::ramp(lay, *along, bend, place, blur).moments(column);
-                in_layer += mass;
-                rows += row - middle[1] * mass;
-                columns += k * mass;
-                k += 1.0;
+        let mut k = -0.5 * (K as f32 - 1.0);
+        for (number, along) in self.along.iter().enumerate() {
+            let straight = Self::ramp(lay, *along, 0.0, place, blur);
+            let bulge = lay.bulge(per_cell, along.seen(place)[0]);
+            let mut in_column = 0.0;
+            for (layer, bend) in self.mass.iter().zip(lay.bends::<L>()) {
+                let ramp = straight.lower(bend * bulge);
+                let [mass, row] = layer.get(number).map_or([0.0; 2], |it| ramp.moments(it));
+                in_column += mass;
+                rows += row;
+                bends += bend * mass;
             }
-            sum += in_layer;
-            bends += bend * in_layer;
+            sum += in_column;
+            columns += k * in_column;
+            k += 1.0;
         }
+        rows -= 0.5 * (M as f32 - 1.0) * sum;
         [sum, rows, columns, bends]
     }
 }
