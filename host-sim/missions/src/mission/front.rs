@@ -16,6 +16,9 @@ const BENDS: f64 = 20.0;
 /// The shortest stretch that may be watched, metres.
 const SHORTEST: f64 = 0.1;
 
+/// And the longest.
+const LONGEST: f64 = 10_000.0;
+
 /// The level of the widths that are reported.
 const LEVEL: f64 = 0.9;
 
@@ -56,7 +59,7 @@ pub(crate) fn front(
         .moving(speed)
         .or_else(|why| wrong("front.speed", speed, format!("metres a step ({why})")))?;
     let [min, max] = [bounds.min(), bounds.max()].map(Point2::<f64>::from);
-    let longest = (max - min).norm();
+    let longest = (max - min).norm().min(LONGEST);
     match watch {
         Some(metres) if !(SHORTEST..=longest).contains(&metres) => {
             let expected = format!(
@@ -118,5 +121,29 @@ impl VertexRecord {
     /// Where it is.
     pub fn at(&self) -> Point2<f64> {
         Point2::new(self.x, self.z)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::mission::scenario::{Overrides, parse};
+
+    fn told(front: &str) -> Result<Option<f64>, String> {
+        let text = format!(
+            "algorithm = \"track\"\nsteps = 5\narea = {{ x = [0, 40], z = [0, 30] }}\n\
+             start = {{ x = 5, z = 5 }}\noracle = []\nfront = {front}\n"
+        );
+        parse("", &text, Overrides::default()).map(|it| it.watch).map_err(|it| format!("{it:#}"))
+    }
+
+    #[test]
+    fn a_stretch_to_watch_is_shorter_than_the_area() {
+        assert_eq!(told("{ radius = 40 }"), Ok(None));
+        assert_eq!(told("{ radius = 40, watch = 30 }"), Ok(Some(30.0)));
+        assert_eq!(told("{ watch = 50.0 }"), Ok(Some(50.0)));
+        for watch in ["0", "-3", "nan", "inf", "50.1", "1e300"] {
+            let why = told(&format!("{{ watch = {watch} }}")).expect_err(watch);
+            assert!(why.contains("front.watch") && why.contains("0.1 to 50.0"), "{why}");
+        }
     }
 }
