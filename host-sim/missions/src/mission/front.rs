@@ -131,7 +131,7 @@ mod tests {
     fn told(front: &str) -> Result<Option<f64>, String> {
         let text = format!(
             "algorithm = \"track\"\nsteps = 5\narea = {{ x = [0, 40], z = [0, 30] }}\n\
-             start = {{ x = 5, z = 5 }}\noracle = []\nfront = {front}\n"
+             start = {{ x = 5, z = 5 }}\noracle = []\ntruth = {{ slope = 0, intercept = 15 }}\nfront = {front}\n"
         );
         parse("", &text, Overrides::default()).map(|it| it.watch).map_err(|it| format!("{it:#}"))
     }
