@@ -51,6 +51,9 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
         let expected = "a number with hil: a board is told how often labels are true";
         return wrong("noise.p", "a prior", expected);
     };
+    if let Some(metres) = mission.watch {
+        return wrong("front.watch", metres, "none with hil: a board goes along all of a front");
+    }
     let algorithm = match mission.algorithm {
         Algorithm::Cfc => message::Algorithm::Cfc,
         Algorithm::Scc => {

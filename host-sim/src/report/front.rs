@@ -8,7 +8,7 @@ use crate::mission::results::StepResult;
 use crate::report::table::{Cells, Column};
 
 /// What the planner is told of the front.
-pub(crate) fn told(&FrontTable { radius, speed }: &FrontTable) -> String {
+pub(crate) fn told(&FrontTable { radius, speed, watch }: &FrontTable) -> String {
     let bends = radius.map_or("is straight".to_owned(), |radius| {
         format!("bends with a radius of {radius} m or more")
     });
@@ -17,7 +17,8 @@ pub(crate) fn told(&FrontTable { radius, speed }: &FrontTable) -> String {
     } else {
         "does not move".to_owned()
     };
-    format!("The planner is told that the front {bends}, and {moves}.")
+    let watches = watch.map_or(String::new(), |metres| format!(" It watches {metres} m of it."));
+    format!("The planner is told that the front {bends}, and {moves}.{watches}")
 }
 
 /// What is known of the front after each step: where it was known best, and within how much it lies there.

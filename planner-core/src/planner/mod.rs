@@ -18,6 +18,7 @@ pub mod cfc;
 mod decision;
 pub mod far;
 pub mod front_state;
+pub(crate) mod guard;
 mod lap;
 pub mod lookahead;
 pub mod options;

@@ -57,6 +57,9 @@ const LEAST: f32 = 0.1;
 /// One that tells less than this is not read on the way to a place.
 pub(crate) const FAINT: f32 = 0.05;
 
+/// After an alarm the front is sought within so many reaches.
+pub(crate) const AGAIN: f32 = 6.0;
+
 /// An errand ends within this share of the reach.
 const NEAR: f32 = 0.25;
 

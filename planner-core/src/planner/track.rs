@@ -27,11 +27,13 @@ use crate::belief::weight::Prior;
 use crate::geometry::approximate::METRE;
 use crate::geometry::area::Area;
 use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
+use crate::geometry::value::ValueError;
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::front_state::FrontState;
+use crate::planner::guard::Guard;
 use crate::planner::lap::Lap;
-use crate::planner::scout::{FAINT, LOOKED_AT, OneLabel, Scout};
+use crate::planner::scout::{AGAIN, FAINT, LOOKED_AT, OneLabel, Scout};
 use crate::planner::setup::{Restart, SetupError};
 use crate::planner::silence::Silence;
 use crate::planner::snapshot::{Persist, RestoreError, Snapshot};
@@ -42,9 +44,6 @@ const CIRCLES: u16 = 4;
 
 /// Progress counts in full where the half-width is below this share of the reach: 0.5 m for 2 m.
 const WIDTH: f32 = 0.25;
-
-/// After an alarm the front is sought within so many reaches.
-const AGAIN: f32 = 6.0;
 
 /// A keep-out on the front is passed if it is no longer than so many reaches.
 const BEYOND: u16 = 10;
@@ -126,6 +125,15 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
     #[must_use]
     pub fn until_closed(self) -> Self {
         Self { ends: true, ..self }
+    }
+
+    /// The planner that does not go along the front, but stays with so many metres of it, about the place where it finds
+    /// it. It learns where the front is all along them, and does not end for a closed front.
+    ///
+    /// # Errors
+    /// [`ValueError`] unless the length is from 0.1 to 10,000 m.
+    pub fn watching(self, metres: f64) -> Result<Guard<D, K, M, L, G>, ValueError> {
+        Guard::of(self.scout, metres)
     }
 
     /// The label that all of the area has, if it most likely has one; and how much of it may have the other one. The

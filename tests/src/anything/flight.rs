@@ -61,7 +61,10 @@ pub fn fly(mission: &Mission, most_asked: u64) -> Flight {
     match (mission.algorithm, mission.is_noisy()) {
         (Algorithm::Cfc, _) => fly.with(mission.cfc(area, vehicle)),
         (Algorithm::Scc, _) => fly.with(mission.scc(area, vehicle)),
-        (Algorithm::Track, _) => fly.with(mission.track(area, vehicle)),
+        (Algorithm::Track, _) => match mission.watch {
+            Some(metres) => fly.with(mission.guard(area, vehicle, metres)),
+            None => fly.with(mission.track(area, vehicle)),
+        },
         (_, true) => fly.with(mission.doubtful(area, vehicle)),
         (_, false) => fly.with(mission.lookahead(area, vehicle)),
     }

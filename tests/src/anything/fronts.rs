@@ -56,11 +56,15 @@ pub fn draw_front(seed: u64, number: u64) -> Mission {
         let prior = UnknownReliability::beta(8.0, 2.0).expect("a prior");
         AnyReliability::Unknown(prior)
     });
+    // Some watch a stretch. The other draws stay as they are.
+    let share = [0.02, 0.1, 0.5][(number / 4 % 3) as usize];
+    let watch = number.is_multiple_of(4).then(|| (share * side).max(0.1));
     Mission {
         algorithm: Algorithm::Track,
         world,
         given,
         front: told.moving(speed).expect("a speed"),
+        watch,
         until_closed: rng.random(),
         p_told,
         goal: None,

@@ -24,4 +24,5 @@ mod symmetry;
 mod terrain;
 mod unknown_p;
 mod vehicles;
+mod watching;
 mod worth;

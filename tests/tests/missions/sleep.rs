@@ -102,7 +102,10 @@ fn asleep_as_asked(mission: &Mission) -> Result<String, String> {
             asleep(mission, || mission.doubtful(area, vehicle))
         }
         Algorithm::Lookahead => asleep(mission, || mission.lookahead(area, vehicle)),
-        Algorithm::Track => asleep(mission, || mission.track(area, vehicle)),
+        Algorithm::Track => match mission.watch {
+            Some(metres) => asleep(mission, || mission.guard(area, vehicle, metres)),
+            None => asleep(mission, || mission.track(area, vehicle)),
+        },
         Algorithm::Margin | Algorithm::Random | Algorithm::Lawnmower => {
             panic!("no planner of planner-core")
         }

@@ -132,6 +132,7 @@ pub fn stretched(
         asking: Asking::USUAL,
         bounds: Bounds::NONE,
         front: Front::STRAIGHT,
+        watch: None,
         until_closed: true,
     }
 }

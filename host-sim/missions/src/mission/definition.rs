@@ -81,6 +81,8 @@ pub struct Mission {
     pub asking: Asking,
     /// What a planner of fronts is told of the front.
     pub front: Front,
+    /// Metres of front that it watches, if it does not go along all of it.
+    pub watch: Option<f64>,
     /// Whether it ends once it has gone round a closed front.
     pub until_closed: bool,
 }

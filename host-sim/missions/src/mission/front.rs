@@ -4,7 +4,7 @@ use anyhow::Result;
 use nalgebra::Point2;
 use planner_core::belief::front::Waist;
 use planner_core::dynamics::Dynamics as _;
-use planner_core::{AnyVehicle, Front};
+use planner_core::{AnyVehicle, Area, Front};
 use serde::{Deserialize, Serialize};
 
 use crate::mission::algorithm::Algorithm;
@@ -12,6 +12,12 @@ use crate::mission::strict::{Table, wrong};
 
 /// Of the tightest bend's radius, if the file does not name one: so many of the vehicle's longest motions.
 const BENDS: f64 = 20.0;
+
+/// The shortest stretch that may be watched, metres.
+const SHORTEST: f64 = 0.1;
+
+/// And the longest.
+const LONGEST: f64 = 10_000.0;
 
 /// The level of the widths that are reported.
 const LEVEL: f64 = 0.9;
@@ -25,28 +31,44 @@ pub struct FrontTable {
     /// How far it may move in a step, metres.
     #[serde(default)]
     pub speed: f64,
+    /// Metres of front to watch, if the robot is not to go along all of it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub watch: Option<f64>,
 }
 
-/// The front of a mission, as a planner of fronts is told.
+/// The front of a mission, as a planner of fronts is told, and the length of the stretch to watch.
 ///
 /// # Errors
 /// Names the field, what was found and what was expected.
 pub(crate) fn front(
     table: Option<&Table<FrontTable>>,
     algorithm: Algorithm,
-    vehicle: &AnyVehicle,
-) -> Result<Front> {
+    (vehicle, bounds): (&AnyVehicle, Area),
+) -> Result<(Front, Option<f64>)> {
     if table.is_some() && algorithm.seeks_line() {
         let found = format!("with algorithm {}", algorithm.name());
         return wrong("front", found, "with algorithm track");
     }
-    let FrontTable { radius, speed } = table.map(|table| table.0).unwrap_or_default();
+    let FrontTable { radius, speed, watch } = table.map(|table| table.0).unwrap_or_default();
     let radius = radius.unwrap_or_else(|| usual_radius(vehicle));
     let front = if radius == f64::INFINITY { Ok(Front::STRAIGHT) } else { Front::bending(radius) };
     let front = front.or_else(|why| {
         wrong("front.radius", radius, format!("inf for a line, or metres ({why})"))
     })?;
-    front.moving(speed).or_else(|why| wrong("front.speed", speed, format!("metres a step ({why})")))
+    let front = front
+        .moving(speed)
+        .or_else(|why| wrong("front.speed", speed, format!("metres a step ({why})")))?;
+    let [min, max] = [bounds.min(), bounds.max()].map(Point2::<f64>::from);
+    let longest = (max - min).norm().min(LONGEST);
+    match watch {
+        Some(metres) if !(SHORTEST..=longest).contains(&metres) => {
+            let expected = format!(
+                "metres of front to watch, from {SHORTEST} to {longest:.1} (across the area)"
+            );
+            wrong("front.watch", metres, expected)
+        }
+        _ => Ok((front, watch)),
+    }
 }
 
 /// The radius of the tightest bend that a planner is told if nobody names one.
@@ -56,9 +78,16 @@ fn usual_radius(vehicle: &AnyVehicle) -> f64 {
     BENDS * f64::from(longest_mm) * 1e-3
 }
 
+impl FrontTable {
+    /// What a planner is told.
+    pub fn told(front: Front, watch: Option<f64>) -> Self {
+        Self { radius: front.radius(), speed: front.speed(), watch }
+    }
+}
+
 impl From<Front> for FrontTable {
     fn from(front: Front) -> Self {
-        Self { radius: front.radius(), speed: front.speed() }
+        Self::told(front, None)
     }
 }
 
@@ -92,5 +121,29 @@ impl VertexRecord {
     /// Where it is.
     pub fn at(&self) -> Point2<f64> {
         Point2::new(self.x, self.z)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::mission::scenario::{Overrides, parse};
+
+    fn told(front: &str) -> Result<Option<f64>, String> {
+        let text = format!(
+            "algorithm = \"track\"\nsteps = 5\narea = {{ x = [0, 40], z = [0, 30] }}\n\
+             start = {{ x = 5, z = 5 }}\noracle = []\ntruth = {{ slope = 0, intercept = 15 }}\nfront = {front}\n"
+        );
+        parse("", &text, Overrides::default()).map(|it| it.watch).map_err(|it| format!("{it:#}"))
+    }
+
+    #[test]
+    fn a_stretch_to_watch_is_shorter_than_the_area() {
+        assert_eq!(told("{ radius = 40 }"), Ok(None));
+        assert_eq!(told("{ radius = 40, watch = 30 }"), Ok(Some(30.0)));
+        assert_eq!(told("{ watch = 50.0 }"), Ok(Some(50.0)));
+        for watch in ["0", "-3", "nan", "inf", "50.1", "1e300"] {
+            let why = told(&format!("{{ watch = {watch} }}")).expect_err(watch);
+            assert!(why.contains("front.watch") && why.contains("0.1 to 50.0"), "{why}");
+        }
     }
 }

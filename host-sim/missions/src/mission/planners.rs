@@ -4,8 +4,8 @@ use planner_core::dynamics::Dynamics;
 use planner_core::error::ObservationError;
 use planner_core::link::message::MissionArea;
 use planner_core::{
-    Accuracy, AnyReliability, AnySight, AnyVehicle, Belief, Cfc, FrontState, Lookahead, Plan,
-    Planner, Pose, PredictiveBelief, Reading, Scc, Site, Tolerance, Track, Workspace,
+    Accuracy, AnyReliability, AnySight, AnyVehicle, Belief, Cfc, FrontState, Guard, Lookahead,
+    Plan, Planner, Pose, PredictiveBelief, Reading, Scc, Site, Tolerance, Track, Workspace,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -113,7 +113,10 @@ impl Mission {
                 erased(self.lawnmower((area, dynamics, self.table())))
             }
             Algorithm::Lawnmower => erased(self.lawnmower((area, dynamics, self.lines()))),
-            Algorithm::Track => erased(self.track(area, dynamics)),
+            Algorithm::Track => match self.watch {
+                Some(metres) => erased(self.guard(area, dynamics, metres)),
+                None => erased(self.track(area, dynamics)),
+            },
         }
     }
 
@@ -128,6 +131,19 @@ impl Mission {
     pub fn track<D: Dynamics, G: Workspace>(&self, area: G, dynamics: D) -> Track<D, 16, 16, 3, G> {
         let planner = Track::new(area, dynamics, self.tracker()).expect(FITS);
         if self.until_closed { planner.until_closed() } else { planner }
+    }
+
+    /// The same, but it watches so many metres of the front.
+    ///
+    /// # Panics
+    /// When settings contradict each other.
+    pub fn guard<D: Dynamics, G: Workspace>(
+        &self,
+        area: G,
+        dynamics: D,
+        metres: f64,
+    ) -> Guard<D, 16, 16, 3, G> {
+        self.track(area, dynamics).watching(metres).expect(FITS)
     }
 
     /// The half-width below which the front counts as found, metres; `None` if the planner seeks a line.

@@ -16,7 +16,7 @@ use crate::mission::definition::{Mission, Table};
 use crate::mission::diagnosis::DiagnosisRecord;
 use crate::mission::flight::Flown;
 use crate::mission::from_nothing::SeekRecord;
-use crate::mission::front::VertexRecord;
+use crate::mission::front::{FrontTable, VertexRecord};
 use crate::mission::legs::{Leg, Legs};
 use crate::mission::map::MapRecord;
 use crate::mission::read_out::{Knowledge, LEVEL, ReadOut, is_unknown};
@@ -323,7 +323,8 @@ fn start(mission: &Mission) -> Start {
         labels_err: mission.noise.is_some(),
         readings: (mission.readings > 1).then_some(mission.readings),
         steps: mission.steps,
-        front: (!mission.algorithm.seeks_line()).then(|| mission.front.into()),
+        front: (!mission.algorithm.seeks_line())
+            .then(|| FrontTable::told(mission.front, mission.watch)),
         slope_arcs: mission
             .given
             .lines()

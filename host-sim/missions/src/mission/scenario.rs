@@ -10,7 +10,7 @@ use planner_core::link::message::Settings;
 use planner_core::motion::unicycle::Grid;
 use planner_core::{
     AnyReliability, EffortWeight, Following, Heading, Label, Pose, Reliability, Site, Tolerance,
-    UnknownReliability,
+    UnknownReliability, Workspace as _,
 };
 use serde::Deserialize;
 
@@ -340,7 +340,7 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
             "points of both labels, as labels are trusted around them, or trusted_radius = 0.0";
         return wrong("oracle", "no points of both labels", expected);
     }
-    let front = front::front(file.front.as_ref(), algorithm, &vehicle)?;
+    let (front, watch) = front::front(file.front.as_ref(), algorithm, (&vehicle, area.bounds()))?;
     let first = file.oracle.first().map(|_| given.samples()[0].site);
     let start = start(&file.start.0, first, &area)?;
     let errors = errors(&file.errors.0)?;
@@ -386,6 +386,7 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
         audits: file.stop.as_ref().is_none_or(|table| table.0.audits()),
         asking,
         front,
+        watch,
         until_closed,
     })
 }

@@ -114,13 +114,18 @@ impl Lay {
 
 /// The share of a cell's curves that have a place on their +1 side, by the number of the cell.
 #[derive(Clone, Copy)]
-struct Ramp {
+pub(crate) struct Ramp {
     place: f32,
     width: f32,
     per_width: f32,
 }
 
 impl Ramp {
+    /// The same for a place that lies so many cells lower.
+    pub(crate) fn lower(self, cells: f32) -> Self {
+        Self { place: self.place - cells, ..self }
+    }
+
     fn at(self, cell: f32) -> f32 {
         let share = (self.place - cell) * self.per_width;
         match () {
@@ -184,6 +189,40 @@ impl Ramp {
         let end = whole.len() as f32 + count as f32 - 1.0;
         sum + ((self.place - end) * until + more) * self.per_width
     }
+
+    /// The mass of a column that lies below, and the sum of it times the number of its cell.
+    pub(crate) fn moments(self, column: &[f32]) -> [f32; 2] {
+        if self.place <= 0.0 {
+            return [0.0; 2];
+        }
+        let first = self.place - self.width;
+        let whole = if first >= 0.0 { (first as usize).saturating_add(1) } else { 0 };
+        let whole = whole.min(column.len());
+        let (whole, rest) = column.split_at_checked(whole).unwrap_or((column, &[]));
+        let (mut sum, mut first, mut cell) = (0.0, 0.0, 0.0);
+        let (fours, others) = whole.as_chunks::<4>();
+        for [a, b, c, d] in fours {
+            let (two, three) = (a + b, c + d);
+            sum += two + three;
+            first += cell * (two + three) + (b + d + (three + three));
+            cell += 4.0;
+        }
+        for mass in others {
+            sum += mass;
+            first += mass * cell;
+            cell += 1.0;
+        }
+        for mass in rest {
+            if cell >= self.place {
+                break;
+            }
+            let part = mass * ((self.place - cell) * self.per_width);
+            sum += part;
+            first += part * cell;
+            cell += 1.0;
+        }
+        [sum, first]
+    }
 }
 
 /// Each cell's mass times its distance below a place, summed up: for a place at the end of each cell.
@@ -224,7 +263,7 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
     }
 
     /// The ramp of a column for a place that errs by `blur` either way, metres.
-    fn ramp(lay: Lay, along: Unit, bend: f32, place: [f32; 2], blur: f32) -> Ramp {
+    pub(crate) fn ramp(lay: Lay, along: Unit, bend: f32, place: [f32; 2], blur: f32) -> Ramp {
         let [ahead, left] = along.seen(place);
         let per_cell = 1.0 / lay.step;
         let off = (left - lay.bulge(bend, ahead) - lay.low) * per_cell;
@@ -578,6 +617,25 @@ mod tests {
                 "{first}: {off}, {:?}",
                 grid.lay
             );
+        }
+    }
+
+    /// Against each cell by its share, at places before, in and beyond a column.
+    #[test]
+    fn moments_below_are_those_of_the_cells() {
+        let column: [f32; 11] = core::array::from_fn(|m| 1.0 + (m * m % 7) as f32);
+        for n in -30..160 {
+            for width in [1.0, 1.3, 4.6, 20.0] {
+                let ramp = Ramp { place: n as f32 * 0.1, width, per_width: 1.0 / width };
+                let parts =
+                    column.iter().enumerate().map(|(m, mass)| (m, mass * ramp.at(m as f32)));
+                let (sum, first) = parts.fold((0.0, 0.0), |(sum, first), (m, part)| {
+                    (sum + part, first + part * m as f32)
+                });
+                let got = ramp.moments(&column);
+                assert!((got[0] - sum).abs() < 1e-4, "{n}, {width}: {got:?}, {sum}");
+                assert!((got[1] - first).abs() < 1e-3, "{n}, {width}: {got:?}, {first}");
+            }
         }
     }
 }

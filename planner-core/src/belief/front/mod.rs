@@ -31,12 +31,15 @@ mod learnt;
 mod memory;
 mod moments;
 mod settings;
+mod stretch;
 mod tracker;
 mod waist;
 
 pub(crate) use grid::Unit;
 pub use memory::FrontMemory;
 pub use settings::Front;
+pub use stretch::Beside;
+pub(crate) use stretch::{ASKED, Spread};
 pub use tracker::Tracker;
 pub(crate) use waist::NINETY;
 pub use waist::Waist;

@@ -85,7 +85,7 @@ const UNSURE: f32 = 1e-3;
 pub struct Tracker<const K: usize, const M: usize, const L: usize> {
     front: Front,
     noise: Noise<AnyReliability>,
-    grid: Grid<K, M, L>,
+    pub(super) grid: Grid<K, M, L>,
     /// Everywhere +1, everywhere -1.
     nowhere: [f32; 2],
     /// What labels have said of a reliability that nobody knows.
@@ -188,6 +188,11 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
     pub(crate) fn counted(&self) -> f32 {
         let p = self.reliability();
         if p < MOST { p } else { MOST }
+    }
+
+    /// By how much a position may err, metres.
+    pub(super) fn blurred(&self) -> f32 {
+        Self::blur(self.noise.tolerance)
     }
 
     fn blur(tolerance: Tolerance) -> f32 {

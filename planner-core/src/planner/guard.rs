@@ -1,0 +1,225 @@
+//! Staying with a stretch of a front, to know at all times where the front is along it.
+//!
+//! The stretch is fixed once the front is found: its middle is the place where the front is known best then. A place is
+//! worth by how much its label is expected to reduce the variance of the front, a motion on the way there. The variance is
+//! the mean over five places of the stretch. The planner looks at ends of the next motion, and at these places on the
+//! mean front. The robot leaves the stretch by no more than a reach, unless it has to seek the front.
+//!
+//! The robot never waits: the stretch is always known least where the robot has not been for long. If no end of the
+//! next motion tells enough, it goes to the best of these places.
+
+use crate::belief::ObservationError;
+use crate::belief::evidence::Alarm;
+use crate::belief::front::{ASKED, FrontMemory, Spread, Tracker, Unit, Waist};
+use crate::belief::observation_log::FromLog as _;
+use crate::belief::sample::Reading;
+use crate::belief::tolerance::Tolerance;
+use crate::geometry::approximate::{METRE, distance};
+use crate::geometry::area::Area;
+use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
+use crate::geometry::value::ValueError;
+use crate::geometry::workspace::Workspace;
+use crate::motion::dynamics::{Dynamics, Pose};
+use crate::planner::front_state::FrontState;
+use crate::planner::scout::{AGAIN, FAINT, Scout};
+use crate::planner::silence::Silence;
+use crate::planner::snapshot::{Persist, RestoreError, Snapshot};
+use crate::planner::{Plan, Planner, Stage, StopReason};
+
+/// Circles on which a motion may end.
+const CIRCLES: u16 = 1;
+
+/// Ends of motions that a plan looks at, at most: a place costs more than along a front.
+const ENDS: u32 = 24;
+
+/// A planner that finds a front and watches a stretch of it: what [`Track::watching`] returns.
+///
+/// [`Track::watching`]: crate::planner::track::Track::watching
+#[derive(Clone, Debug)]
+pub struct Guard<D, const K: usize, const M: usize, const L: usize, G = Area> {
+    scout: Scout<D, K, M, L, G>,
+    /// The length of the stretch, metres.
+    metres: f32,
+    /// Its middle and direction, once the front is found.
+    middle: Option<Pose>,
+}
+
+impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
+    Guard<D, K, M, L, G>
+{
+    /// # Errors
+    /// [`ValueError`] unless the length is from 0.1 to 10,000 m.
+    pub(crate) fn of(scout: Scout<D, K, M, L, G>, metres: f64) -> Result<Self, ValueError> {
+        const RANGE: ValueError = ValueError("the length of a stretch is from 0.1 to 10000 m");
+        let guard = Self { scout, metres: metres as f32, middle: None };
+        (0.1..=1e4).contains(&metres).then_some(guard).ok_or(RANGE)
+    }
+
+    /// Where the front is known best; `None` as long as it is not found, and where it is lost. The tracker says where it
+    /// lies [beside any place](Tracker::beside).
+    pub fn found(&self) -> Option<Waist> {
+        self.scout.found()
+    }
+
+    /// The middle of the stretch, and its direction. `None` before the front is found.
+    pub fn stretch(&self) -> Option<Pose> {
+        self.middle
+    }
+
+    /// Takes in where the front is known best. If that is further away than the stretch is long, the front has left,
+    /// and the stretch lies there now.
+    fn lie(&mut self) {
+        let Some(Waist { site, heading, .. }) = self.found() else { return };
+        let most = self.metres * UNITS_PER_METRE as f32;
+        if self.middle.is_none_or(|it| distance(site - it.site) > most) {
+            self.middle = Some(Pose { site, heading });
+        }
+    }
+
+    /// What a plan needs of the stretch, if the front is found.
+    fn ask(&self) -> Option<Asked> {
+        let (waist, middle) = (self.found()?, self.middle?);
+        let along = Unit::of(middle.heading);
+        let half = 0.5 * self.metres * UNITS_PER_METRE as f32;
+        let mut share = -1.0;
+        let places = [(); ASKED].map(|()| {
+            let by = Vector::new((along.x * half * share) as i32, (along.z * half * share) as i32);
+            share += 2.0 / (ASKED as f32 - 1.0);
+            let site = by.and_then(|by| middle.site.step(by).ok()).unwrap_or(middle.site);
+            waist.place_at(waist.ahead(site)).unwrap_or(site)
+        });
+        let (middle, most) = (middle.site, half + self.scout.reach());
+        let spread = self.scout.tracker.spread_over(places);
+        Some(Asked { waist, middle, along, most, places, spread })
+    }
+}
+
+impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> Planner
+    for Guard<D, K, M, L, G>
+{
+    type Belief = Tracker<K, M, L>;
+
+    fn plan(&mut self, pose: Pose) -> Plan {
+        let Some(asked) = self.ask() else { return self.scout.seek(pose) };
+        let scout = &self.scout;
+        let worth = |way, to, share| asked.worth(scout, (way, to), share);
+        let (best, examined) = scout.best_end(pose, (CIRCLES, ENDS), worth);
+        let beyond = asked.best(scout, pose, best.map_or(0.0, |best| best.worth));
+        let is_inside = scout.area.contains(pose.site);
+        let (stage, places) = match () {
+            () if !is_inside => (Stage::Return, [scout.home(pose), None]),
+            () if best.is_some() || beyond.is_some() => (Stage::Follow, [beyond, None]),
+            () => (Stage::Return, [Some(asked.waist.site), Some(asked.middle)]),
+        };
+        let why = if is_inside { StopReason::Cornered } else { StopReason::OutsideArea };
+        let best = best.map(|best| (best, Stage::Follow));
+        let plan = self.scout.go(pose, (stage, places), best, (FAINT, examined));
+        plan.unwrap_or(Plan::Stop(why))
+    }
+
+    fn observe_within(
+        &mut self,
+        pose: Pose,
+        reading: Option<Reading>,
+        tolerance: Tolerance,
+    ) -> Result<(), ObservationError> {
+        let scout = &mut self.scout;
+        scout.observe(pose, reading, tolerance)?;
+        if scout.tracker.evidence().value() >= Alarm::ALARM {
+            let near = AGAIN * scout.reach() * METRE;
+            scout.tracker.seek_near(pose.site, near);
+        }
+        self.lie();
+        Ok(())
+    }
+
+    fn observe_on_the_way(
+        &mut self,
+        site: Site,
+        reading: Reading,
+    ) -> Result<bool, ObservationError> {
+        self.scout.observe_on_the_way(site, reading)
+    }
+
+    fn belief(&self) -> &Tracker<K, M, L> {
+        &self.scout.tracker
+    }
+
+    fn alarm(&self) -> Option<Alarm> {
+        self.scout.tracker.evidence().alarm()
+    }
+
+    fn front(&self) -> Option<FrontState> {
+        Some(FrontState { waist: self.found(), is_closed: false })
+    }
+}
+
+impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> Persist
+    for Guard<D, K, M, L, G>
+{
+    type Snapshot = Snapshot<FrontMemory<K, M, L>, (Silence, Option<Pose>)>;
+
+    fn snapshot(&self) -> Self::Snapshot {
+        Snapshot::new(self.scout.tracker.log(), (self.scout.silence, self.middle))
+    }
+
+    fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), RestoreError> {
+        let (log, &(silence, middle)) = snapshot.open()?;
+        self.scout.tracker.replay(log)?;
+        (self.scout.silence, self.middle) = (silence, middle);
+        Ok(())
+    }
+}
+
+/// A stretch as it is known before a motion.
+struct Asked {
+    waist: Waist,
+    middle: Site,
+    along: Unit,
+    /// The robot goes so far from its middle along it, lattice units.
+    most: f32,
+    places: [Site; ASKED],
+    spread: Spread,
+}
+
+impl Asked {
+    /// What a place so far away is worth that has this share of the curves above it, if it lies in the stretch: square
+    /// metres a motion.
+    fn worth<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>(
+        &self,
+        scout: &Scout<D, K, M, L, G>,
+        (way, to): (Vector, Site),
+        share: f32,
+    ) -> Option<f32> {
+        let off = to - self.middle;
+        let ahead = self.along.x * off.x as f32 + self.along.z * off.z as f32;
+        if ahead.abs() > self.most {
+            return None;
+        }
+        scout.tells(share)?;
+        let motions = distance(way) / scout.reach();
+        let reduces = scout.tracker.reduces(&self.spread, to, share);
+        Some(if motions > 1.0 { reduces / motions } else { reduces })
+    }
+
+    /// The place of the stretch, beyond the ends of a motion, that is worth the most, if that is more than this.
+    fn best<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>(
+        &self,
+        scout: &Scout<D, K, M, L, G>,
+        pose: Pose,
+        least: f32,
+    ) -> Option<Site> {
+        let (mut best, mut most) = (None, least);
+        for to in self.places {
+            let way = to - pose.site;
+            if distance(way) > scout.reach() && scout.area.contains(to) {
+                let share = scout.tracker.share_above(to);
+                let worth = self.worth(scout, (way, to), share).unwrap_or(0.0);
+                if worth > most {
+                    (best, most) = (Some(to), worth);
+                }
+            }
+        }
+        best
+    }
+}
