@@ -123,27 +123,3 @@ impl VertexRecord {
         Point2::new(self.x, self.z)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use crate::mission::scenario::{Overrides, parse};
-
-    fn told(front: &str) -> Result<Option<f64>, String> {
-        let text = format!(
-            "algorithm = \"track\"\nsteps = 5\narea = {{ x = [0, 40], z = [0, 30] }}\n\
-             start = {{ x = 5, z = 5 }}\noracle = []\ntruth = {{ slope = 0, intercept = 15 }}\nfront = {front}\n"
-        );
-        parse("", &text, Overrides::default()).map(|it| it.watch).map_err(|it| format!("{it:#}"))
-    }
-
-    #[test]
-    fn a_stretch_to_watch_is_shorter_than_the_area() {
-        assert_eq!(told("{ radius = 40 }"), Ok(None));
-        assert_eq!(told("{ radius = 40, watch = 30 }"), Ok(Some(30.0)));
-        assert_eq!(told("{ watch = 50.0 }"), Ok(Some(50.0)));
-        for watch in ["0", "-3", "nan", "inf", "50.1", "1e300"] {
-            let why = told(&format!("{{ watch = {watch} }}")).expect_err(watch);
-            assert!(why.contains("front.watch") && why.contains("0.1 to 50.0"), "{why}");
-        }
-    }
-}

@@ -141,7 +141,7 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
 mod tests {
     use super::*;
     use crate::belief::Belief as _;
-    use crate::belief::front::Front;
+    use crate::belief::front::settings::Front;
     use crate::belief::noise::Noise;
     use crate::belief::sample::Label;
     use crate::geometry::area::Area;
