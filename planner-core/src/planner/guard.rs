@@ -6,7 +6,8 @@
 //! mean front. The robot leaves the stretch by no more than a reach, unless it has to seek the front.
 //!
 //! The robot never waits: the stretch is always known least where the robot has not been for long. If no end of the
-//! next motion tells enough, it goes to the best of these places.
+//! next motion tells enough, it goes to the best of these places. Once it has turned by half a turn without a label, it
+//! reads one wherever it arrives. So it is not silent for long, and does not go to and fro for nothing.
 
 use crate::belief::ObservationError;
 use crate::belief::evidence::Alarm;
@@ -24,7 +25,7 @@ use crate::planner::front_state::FrontState;
 use crate::planner::scout::{AGAIN, FAINT, Scout};
 use crate::planner::silence::Silence;
 use crate::planner::snapshot::{Persist, RestoreError, Snapshot};
-use crate::planner::{Plan, Planner, Stage, StopReason};
+use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
 
 /// Circles on which a motion may end.
 const CIRCLES: u16 = 1;
@@ -113,8 +114,14 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
         };
         let why = if is_inside { StopReason::Cornered } else { StopReason::OutsideArea };
         let best = best.map(|best| (best, Stage::Follow));
+        let is_silent = self.scout.silence.is_back();
         let plan = self.scout.go(pose, (stage, places), best, (FAINT, examined));
-        plan.unwrap_or(Plan::Stop(why))
+        match plan.unwrap_or(Plan::Stop(why)) {
+            Plan::Move(motion) if is_silent && motion.target.site != pose.site => {
+                Plan::Move(Motion { wants_label: true, ..motion })
+            }
+            plan => plan,
+        }
     }
 
     fn observe_within(

@@ -35,7 +35,7 @@ fn random_missions_keep_every_invariant() {
 /// Along fronts of every kind, also where there is none.
 #[test]
 fn random_missions_along_fronts_keep_every_invariant() {
-    check(draw_front, asked_for(cases(100, 2_000)));
+    check(draw_front, asked_for(cases(100, 5_000)));
 }
 
 fn check(draw: impl Fn(u64, u64) -> Mission + Sync, numbers: Range<u64>) {
