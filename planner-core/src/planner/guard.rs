@@ -1,7 +1,7 @@
 //! Staying with a stretch of a front, to know at all times where the front is along it.
 //!
 //! The stretch is fixed once the front is found: its middle is the place where the front is known best then. A place is
-//! worth by how much its label is expected to reduce the variance of the front, a motion on the way there. The variance is
+//! worth what its label is expected to take of the front's variance, divided by the motions that lead there. The variance is
 //! the mean over five places of the stretch. The planner looks at ends of the next motion, and at these places on the
 //! mean front. The robot leaves the stretch by no more than a reach, unless it has to seek the front.
 //!

@@ -19,8 +19,8 @@ const WIDE: f64 = 2.0;
 /// way between.
 const REACH: f64 = 3.0;
 
-/// One robot knew the front between two vertices of a piece if of those that are left of it, one follows the other, or
-/// nearly so: where it stayed for some steps, its vertices lie to and fro.
+/// One robot knew the front between two vertices of a piece if one nearly follows the other among those that are kept.
+/// They need not be next to each other: where a robot stayed for some steps, its vertices lie to and fro.
 const NEIGHBOURS: usize = 4;
 
 /// The map of a robot by its pieces, each vertex with its number.
@@ -87,8 +87,8 @@ impl Joined {
         closing + self.pieces.iter().map(way).sum::<f64>()
     }
 
-    /// Links each vertex to the next one ahead, and then ends that are left to each other: where vertices of two robots
-    /// lie side by side, the nearest one ahead may have another one behind it.
+    /// Links each vertex to the next one ahead, and then links the ends that are left. There are such ends where vertices
+    /// of two robots lie side by side: the nearest one ahead may have another one behind it.
     fn linked(kept: &[Place], usual: f64) -> Self {
         let all: Vec<_> = (0..kept.len()).collect();
         let mut next = vec![None; kept.len()];

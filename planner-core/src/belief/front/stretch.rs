@@ -1,8 +1,8 @@
 //! What is known of a front over a stretch of it, and how much a label is expected to narrow that.
 //!
 //! About the mean, a curve of the grid has at the distance `s` ahead of the pivot the offset
-//! `offset + s turn + curvature s^2 / 2`. So its variance at each place of a stretch, and what a label takes from it,
-//! follow from three moments of the mass that lies below the place of the label.
+//! `offset + s turn + curvature s^2 / 2`. So three moments say its variance at each place of a stretch. Those of the mass
+//! below the place of a label say what the label takes from it.
 
 use crate::belief::front::grid::{Grid, Unit, metres};
 use crate::belief::front::moments::Moments;
@@ -80,8 +80,8 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
         Spread { levers, mean: [row, column, moments.bend] }
     }
 
-    /// By how much a label at a site, that has this share of the curves above it, is expected to reduce the variance of
-    /// the front, square metres: the mean over the places of the stretch. `O(K M L)`.
+    /// What a label at a site is expected to take of the front's variance, square metres: the mean over the places of the
+    /// stretch. The site has this share of the curves above it. `O(K M L)`.
     pub(crate) fn reduces(&self, spread: &Spread, site: Site, share: f32) -> f32 {
         let [mass, rows, columns, bends] = self.grid.moments_above(site, self.blurred());
         let [row, column, bend] = spread.mean;
