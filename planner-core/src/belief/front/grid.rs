@@ -459,17 +459,40 @@ impl<const M: usize> Sums<M> {
         before + (until - before) * (place - cell as f32)
     }
 
-    /// The place below which so much mass lies, and half a cell's share of even density within a cell.
-    pub(crate) fn place_of(&self, mass: f32) -> f32 {
-        let (mut before, mut cell) = (0.0, 0.0);
-        for until in self.until {
-            if until >= mass && until > before {
-                return cell + (mass - before) / (until - before);
+    /// The masses in cells elsewhere, by where the first one begins and how wide each is. Whether these had ends, and
+    /// those have: cells at an end hold what lies beyond, and others go all around.
+    pub(crate) fn take(&self, [from, each]: [f32; 2], ends: [bool; 2], masses: &mut [f32; M]) {
+        let all = M as f32;
+        let until = |place: f32| {
+            if ends[0] {
+                return self.below(place);
             }
-            (before, cell) = (until, cell + 1.0);
+            let rounds = floor(place / all) as f32;
+            rounds * self.total() + self.below(place - rounds * all)
+        };
+        // What goes all around is cut opposite to the middle.
+        let middle = from + 0.5 * each * all;
+        let [first, last] = match ends {
+            [true, _] => [0.0, all],
+            [false, true] => [middle - 0.5 * all, middle + 0.5 * all],
+            [false, false] => [from, from + each * all],
         }
-        M as f32
+        .map(until);
+        let (mut before, mut number) = (first, 1.0);
+        let end = M.saturating_sub(1);
+        for (m, mass) in masses.iter_mut().enumerate() {
+            let next = if m == end { last } else { until(from + number * each) };
+            let next = if next > before { next } else { before };
+            *mass = next - before;
+            (before, number) = (next, number + 1.0);
+        }
     }
+}
+
+/// The greatest integer that is no greater.
+fn floor(value: f32) -> i32 {
+    let near = value as i32;
+    if near as f32 > value { near - 1 } else { near }
 }
 
 #[cfg(test)]

@@ -39,18 +39,37 @@ const WIDE: f32 = 0.8;
 
 /// From where to where the mass lies but for a tail on either side, in cells from the first one's edge.
 fn range<const N: usize>(masses: &[f32; N], tail: f32) -> [f32; 2] {
-    let sums = Sums::of(masses);
-    let total = sums.total();
-    let [low, high] = [sums.place_of(tail * total), sums.place_of((1.0 - tail) * total)];
+    let total: f32 = masses.iter().sum();
+    let tail = tail * total;
     let wants_out = |edge: Option<&f32>, next: Option<&f32>| {
         let [edge, next] = [edge, next].map(|it| it.copied().unwrap_or(0.0));
-        edge > HEAVY * next && edge > 2.0 * tail * total
+        edge > HEAVY * next && edge > 2.0 * tail
     };
     let more = GROWTH * N as f32;
-    let low = if wants_out(masses.first(), masses.get(1)) { -more } else { low };
-    let last = masses.iter().rev().nth(1);
-    let high = if wants_out(masses.last(), last) { N as f32 + more } else { high };
-    [low, high]
+    let low = if wants_out(masses.first(), masses.get(1)) {
+        -more
+    } else {
+        place_of(masses.iter(), tail)
+    };
+    let high = if wants_out(masses.last(), masses.iter().rev().nth(1)) {
+        -more
+    } else {
+        place_of(masses.iter().rev(), tail)
+    };
+    [low, N as f32 - high]
+}
+
+/// Up to where so much mass lies, counted in cells.
+fn place_of<'a>(masses: impl Iterator<Item = &'a f32>, mass: f32) -> f32 {
+    let (mut before, mut cell) = (0.0, 0.0);
+    for it in masses {
+        let until = before + it;
+        if until >= mass && until > before {
+            return cell + (mass - before) / (until - before);
+        }
+        (before, cell) = (until, cell + 1.0);
+    }
+    cell
 }
 
 fn is_off(size: f32, wanted: f32) -> bool {
@@ -231,65 +250,35 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
     }
 
     /// Puts the mass into other cells: what lies beyond goes into the edge cells.
+    ///
+    /// Each column is shifted as its middle is; then each row is shared out among the new columns.
     #[inline(never)]
     pub(crate) fn lay_anew(&mut self, lay: Lay) {
         let old = self.lay;
         let by = metres(lay.pivot - old.pivot);
+        let [ahead, _] = Unit::of(lay.heading).seen(by);
         let turned = radians(lay.heading.since(old.heading));
-        let was_whole = old.is_whole::<K>();
-        let is_whole = lay.is_whole::<K>();
-        let middle = Unit::of(lay.heading);
-        for (masses, bend) in self.mass.iter_mut().zip(old.bends::<L>()) {
-            let before = *masses;
-            masses.iter_mut().flatten().for_each(|mass| *mass = 0.0);
-            let [ahead, _] = middle.seen(by);
+        let ends = [!old.is_whole::<K>(), !lay.is_whole::<K>()];
+        let (per_cell, per_column) = (1.0 / old.step, 1.0 / old.turn);
+        for (columns, bend) in self.mass.iter_mut().zip(old.bends::<L>()) {
+            for (column, along) in columns.iter_mut().zip(&self.along) {
+                let [ahead, left] = along.seen(by);
+                let low = lay.low - old.low + left - old.bulge(bend, ahead);
+                Sums::of(column).take([low, lay.step].map(|it| it * per_cell), [true; 2], column);
+            }
             // A curve's direction turns on the way to the pivot.
-            let turned = turned - bent(bend, ahead);
-            let edge = |k: f32| (turned + lay.angle_at::<K>(k)) / old.turn + 0.5 * K as f32;
-            let [begin, end] = [edge(0.0), edge(K as f32)];
-            // Columns that go all around are taken from half a turn before the middle on.
-            let first = if was_whole { floor(0.5 * (begin + end) - 0.5 * K as f32) } else { 0 };
-            for n in 0..=K as i32 {
-                let number = first + n;
-                let wrapped = if was_whole { number.rem_euclid(K as i32) } else { number };
-                let Some(column) = before.get(wrapped as usize) else { continue };
-                let mut from = number as f32;
-                let mut until = from + 1.0;
-                if was_whole {
-                    // The first and the last are parts of the same column.
-                    let half = 0.5 * K as f32;
-                    let middle = 0.5 * (begin + end);
-                    from = larger(from, middle - half);
-                    until = if until < middle + half { until } else { middle + half };
+            let turned = turned - bent(bend, ahead) + lay.angle_at::<K>(0.0);
+            let from = turned * per_column + 0.5 * K as f32;
+            for m in 0..M {
+                let mut row = [0.0; K];
+                for (mass, column) in row.iter_mut().zip(&*columns) {
+                    *mass = column.get(m).copied().unwrap_or(0.0);
                 }
-                let sums = Sums::of(column);
-                if sums.total() <= 0.0 || until <= from {
-                    continue;
-                }
-                // The new columns that it reaches.
-                let per_column = K as f32 / (end - begin);
-                let number =
-                    |at: f32| ((at - begin) * per_column).clamp(0.0, K as f32 - 1.0) as usize;
-                let (k_first, k_last) = (number(from), number(until));
-                let reached = masses.iter_mut().enumerate().skip(k_first);
-                for (k, masses) in reached.take(k_last.wrapping_sub(k_first).wrapping_add(1)) {
-                    let low = if k == 0 && !is_whole { f32::MIN } else { edge(k as f32) };
-                    let high =
-                        if k + 1 == K && !is_whole { f32::MAX } else { edge(k as f32 + 1.0) };
-                    let low = larger(low, from);
-                    let high = if high < until { high } else { until };
-                    if low >= high {
-                        continue;
+                Sums::of(&row).take([from, lay.turn * per_column], ends, &mut row);
+                for (mass, column) in row.iter().zip(&mut *columns) {
+                    if let Some(place) = column.get_mut(m) {
+                        *place = *mass;
                     }
-                    let turn = old.angle_at::<K>(0.5 * (low + high));
-                    let shift = if lay.pivot == old.pivot {
-                        0.0
-                    } else {
-                        let along = Unit::of(old.heading.turned(angle(turn)));
-                        let [ahead, left] = along.seen(by);
-                        left - old.bulge(bend, ahead)
-                    };
-                    put(masses, &sums, high - low, (lay, old, shift));
                 }
             }
         }
@@ -318,29 +307,4 @@ fn spread(places: &mut [f32; PLACES], [from, until]: [f32; 2], mass: f32) {
             return;
         }
     }
-}
-
-/// Adds a share of a column to another one. Offsets about the new pivot are less by a shift.
-fn put<const M: usize>(
-    masses: &mut [f32; M],
-    sums: &Sums<M>,
-    share: f32,
-    (lay, old, shift): (Lay, Lay, f32),
-) {
-    let per_cell = 1.0 / old.step;
-    let stride = lay.step * per_cell;
-    let from = (lay.low + shift - old.low) * per_cell;
-    let (mut before, mut cell) = (0.0, 1.0);
-    let last = M.saturating_sub(1);
-    for (m, mass) in masses.iter_mut().enumerate() {
-        let until = if m == last { sums.total() } else { sums.below(from + cell * stride) };
-        *mass += share * (until - before);
-        (before, cell) = (until, cell + 1.0);
-    }
-}
-
-/// The greatest integer that is no greater.
-fn floor(value: f32) -> i32 {
-    let near = value as i32;
-    if near as f32 > value { near - 1 } else { near }
 }
