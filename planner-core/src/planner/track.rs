@@ -166,11 +166,10 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         }
     }
 
-    /// Which way to go along the front, if it is found.
-    fn aim(&self, pose: Pose) -> Option<Aim> {
-        let waist = self.found()?;
+    /// Which way to go along a front that is found.
+    fn aim(&self, waist: Waist, pose: Pose) -> Aim {
         let is_along = self.lap.sense().unwrap_or_else(|| pose.heading.agrees(waist.heading));
-        Some(Aim::new(waist, pose, is_along))
+        Aim::new(waist, pose, is_along)
     }
 }
 
@@ -223,7 +222,8 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
         if self.heard_at == Some(pose) && self.scout.silence.is_back() {
             return Plan::Stop(StopReason::Undecided);
         }
-        let Some(aim) = self.aim(pose) else { return self.scout.seek(pose) };
+        let Some(waist) = self.found() else { return self.scout.seek(pose) };
+        let aim = self.aim(waist, pose);
         let (scout, reach) = (&self.scout, self.scout.reach());
         let worth = |way: Vector, to: Site, share: f32| {
             scout.tells(share).map(|told| told + aim.progress(way, to, reach))
@@ -258,8 +258,10 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
         if scout.tracker.evidence().value() >= Alarm::ALARM {
             scout.tracker.seek_near(pose.site, AGAIN * reach * METRE);
         }
-        self.lap.observe(scout.found(), pose, reach);
-        if self.aim(pose).is_some_and(|aim| self.onward(&aim, pose) == Onward::Over) {
+        let found = scout.found();
+        self.lap.observe(found, pose, reach);
+        let aim = found.map(|waist| self.aim(waist, pose));
+        if aim.is_some_and(|aim| self.onward(&aim, pose) == Onward::Over) {
             self.lap.turn();
         }
         Ok(())

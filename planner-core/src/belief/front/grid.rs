@@ -7,6 +7,7 @@
 //! Lengths are metres from the pivot and angles are radians from the frame's heading, all in single precision. So
 //! digits are lost neither far from the origin nor where the distribution is narrow.
 
+use crate::belief::front::walk::Walk;
 use crate::geometry::approximate::{METRE, sqrt};
 use crate::geometry::heading::{Angle, Heading};
 use crate::geometry::lattice::{Site, Vector};
@@ -126,13 +127,18 @@ impl Ramp {
         Self { place: self.place - cells, ..self }
     }
 
+    /// The share of a cell that counts in part.
     fn at(self, cell: f32) -> f32 {
-        let share = (self.place - cell) * self.per_width;
-        match () {
-            () if share >= 1.0 => 1.0,
-            () if share > 0.0 => share,
-            () => 0.0,
-        }
+        (self.place - cell) * self.per_width
+    }
+
+    /// So many of a column's first cells lie below in full, and so many more in part.
+    fn counts(self, cells: usize) -> [usize; 2] {
+        // Conversions are saturating.
+        let until = |place: f32| if place >= 0.0 { (place as usize).saturating_add(1) } else { 0 };
+        let whole = until(self.place - self.width).min(cells);
+        let any = if self.place > 0.0 { until(self.place).min(cells) } else { 0 };
+        [whole, any.saturating_sub(whole)]
     }
 
     /// As [`below`](Self::below), of a column's [`slopes`].
@@ -155,14 +161,7 @@ impl Ramp {
 
     /// The mass of a column that lies below: that of each cell, by its share.
     fn below(self, column: &[f32]) -> f32 {
-        if self.place <= 0.0 {
-            return 0.0;
-        }
-        // The first cells count in full, and those up to the last in part. Conversions are saturating.
-        let first = self.place - self.width;
-        let whole = if first >= 0.0 { (first as usize).saturating_add(1) } else { 0 };
-        let whole = whole.min(column.len());
-        let last = self.place as usize;
+        let [whole, part] = self.counts(column.len());
         let (whole, rest) = column.split_at_checked(whole).unwrap_or((column, &[]));
         let mut sum = 0.0;
         let (fours, others) = whole.as_chunks::<4>();
@@ -174,8 +173,7 @@ impl Ramp {
         }
         // A cell counts once more for each cell that follows it.
         let (mut until, mut more) = (0.0, 0.0);
-        let count = last.saturating_add(1).saturating_sub(whole.len()).min(rest.len());
-        let (fours, others) = rest.get(..count).unwrap_or_default().as_chunks::<4>();
+        let (fours, others) = rest.get(..part).unwrap_or_default().as_chunks::<4>();
         for [a, b, c, d] in fours {
             let two = a + b;
             let three = two + c;
@@ -186,18 +184,13 @@ impl Ramp {
             more += until;
             until += mass;
         }
-        let end = whole.len() as f32 + count as f32 - 1.0;
+        let end = whole.len() as f32 + part as f32 - 1.0;
         sum + ((self.place - end) * until + more) * self.per_width
     }
 
     /// The mass of a column that lies below, and the sum of it times the number of its cell.
     pub(crate) fn moments(self, column: &[f32]) -> [f32; 2] {
-        if self.place <= 0.0 {
-            return [0.0; 2];
-        }
-        let first = self.place - self.width;
-        let whole = if first >= 0.0 { (first as usize).saturating_add(1) } else { 0 };
-        let whole = whole.min(column.len());
+        let [whole, part] = self.counts(column.len());
         let (whole, rest) = column.split_at_checked(whole).unwrap_or((column, &[]));
         let (mut sum, mut first, mut cell) = (0.0, 0.0, 0.0);
         let (fours, others) = whole.as_chunks::<4>();
@@ -212,13 +205,10 @@ impl Ramp {
             first += mass * cell;
             cell += 1.0;
         }
-        for mass in rest {
-            if cell >= self.place {
-                break;
-            }
-            let part = mass * ((self.place - cell) * self.per_width);
-            sum += part;
-            first += part * cell;
+        for mass in rest.get(..part).unwrap_or_default() {
+            let mass = mass * self.at(cell);
+            sum += mass;
+            first += mass * cell;
             cell += 1.0;
         }
         [sum, first]
@@ -321,11 +311,22 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
         for (layer, bend) in self.mass.iter_mut().zip(lay.bends::<L>()) {
             for (column, along) in layer.iter_mut().zip(&self.along) {
                 let ramp = Self::ramp(lay, *along, bend, place, blur);
-                let mut cell = 0.0;
-                for mass in column {
+                let [whole, part] = ramp.counts(M);
+                let (whole, rest) = column.split_at_mut_checked(whole).unwrap_or_default();
+                let mut cell = whole.len() as f32;
+                for mass in whole {
+                    *mass *= plus;
+                    sum += *mass;
+                }
+                let (part, rest) = rest.split_at_mut_checked(part).unwrap_or_default();
+                for mass in part {
                     *mass *= minus + (plus - minus) * ramp.at(cell);
                     sum += *mass;
                     cell += 1.0;
+                }
+                for mass in rest {
+                    *mass *= minus;
+                    sum += *mass;
                 }
             }
         }
@@ -338,7 +339,7 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
     }
 
     pub(crate) fn cells(&mut self) -> impl Iterator<Item = &mut f32> {
-        self.mass.iter_mut().flatten().flatten()
+        self.mass.as_flattened_mut().as_flattened_mut().iter_mut()
     }
 
     /// Lets a share of each layer's mass pass to each neighbouring one.
@@ -410,15 +411,16 @@ fn mix_neighbours(column: &mut [f32], share: f32) {
 
 /// Blurs a column by a box of so many cells to either side. What would lie beyond stays in the edge cells.
 fn blur<const M: usize>(column: &mut [f32; M], half: f32) {
-    let (sums, per_width) = (Sums::of(column), 0.5 / half);
-    let [first, last] = [column.first(), column.last()].map(|it| it.copied().unwrap_or(0.0));
+    let (old, per_width) = (*column, 0.5 / half);
+    let [first, last] = [old.first(), old.last()].map(|it| it.copied().unwrap_or(0.0));
+    let [mut behind, mut ahead] = [Walk::along(&old); 2];
     let (mut cell, mut kept) = (0.5, 0.0);
     for mass in column.iter_mut() {
-        *mass = (sums.below(cell + half) - sums.below(cell - half)) * per_width;
+        *mass = (ahead.until(cell + half) - behind.until(cell - half)) * per_width;
         kept += *mass;
         cell += 1.0;
     }
-    let beyond = sums.total() - kept;
+    let beyond = old.iter().sum::<f32>() - kept;
     let beyond = if beyond > 0.0 { beyond } else { 0.0 };
     let share = if first + last > 0.0 { first / (first + last) } else { 0.5 };
     for (edge, share) in [(0, share), (M.saturating_sub(1), 1.0 - share)] {
@@ -426,73 +428,6 @@ fn blur<const M: usize>(column: &mut [f32; M], half: f32) {
             *mass += beyond * share;
         }
     }
-}
-
-/// Masses summed up from the first.
-#[derive(Clone, Copy)]
-pub(crate) struct Sums<const M: usize> {
-    until: [f32; M],
-}
-
-impl<const M: usize> Sums<M> {
-    pub(crate) fn of(masses: &[f32; M]) -> Self {
-        let mut sum = 0.0;
-        let until = masses.map(|mass| {
-            sum += mass;
-            sum
-        });
-        Self { until }
-    }
-
-    pub(crate) fn total(&self) -> f32 {
-        self.until.last().copied().unwrap_or(0.0)
-    }
-
-    /// The mass below a place, counted in cells from the first one's edge.
-    pub(crate) fn below(&self, place: f32) -> f32 {
-        if place <= 0.0 {
-            return 0.0;
-        }
-        let cell = place as usize;
-        let Some(until) = self.until.get(cell) else { return self.total() };
-        let before = cell.checked_sub(1).and_then(|it| self.until.get(it)).copied().unwrap_or(0.0);
-        before + (until - before) * (place - cell as f32)
-    }
-
-    /// The masses in cells elsewhere, by where the first one begins and how wide each is. Whether these had ends, and
-    /// those have: cells at an end hold what lies beyond, and others go all around.
-    pub(crate) fn take(&self, [from, each]: [f32; 2], ends: [bool; 2], masses: &mut [f32; M]) {
-        let all = M as f32;
-        let until = |place: f32| {
-            if ends[0] {
-                return self.below(place);
-            }
-            let rounds = floor(place / all) as f32;
-            rounds * self.total() + self.below(place - rounds * all)
-        };
-        // What goes all around is cut opposite to the middle.
-        let middle = from + 0.5 * each * all;
-        let [first, last] = match ends {
-            [true, _] => [0.0, all],
-            [false, true] => [middle - 0.5 * all, middle + 0.5 * all],
-            [false, false] => [from, from + each * all],
-        }
-        .map(until);
-        let (mut before, mut number) = (first, 1.0);
-        let end = M.saturating_sub(1);
-        for (m, mass) in masses.iter_mut().enumerate() {
-            let next = if m == end { last } else { until(from + number * each) };
-            let next = if next > before { next } else { before };
-            *mass = next - before;
-            (before, number) = (next, number + 1.0);
-        }
-    }
-}
-
-/// The greatest integer that is no greater.
-fn floor(value: f32) -> i32 {
-    let near = value as i32;
-    if near as f32 > value { near - 1 } else { near }
 }
 
 #[cfg(test)]
@@ -651,7 +586,7 @@ mod tests {
             for width in [1.0, 1.3, 4.6, 20.0] {
                 let ramp = Ramp { place: n as f32 * 0.1, width, per_width: 1.0 / width };
                 let parts =
-                    column.iter().enumerate().map(|(m, mass)| (m, mass * ramp.at(m as f32)));
+                    column.iter().enumerate().map(|(m, mass)| (m, mass * ramp.at(m as f32).clamp(0.0, 1.0)));
                 let (sum, first) = parts.fold((0.0, 0.0), |(sum, first), (m, part)| {
                     (sum + part, first + part * m as f32)
                 });

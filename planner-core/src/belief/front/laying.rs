@@ -4,8 +4,9 @@
 //! The pivot goes to the *waist*, the place where offset and direction are uncorrelated. There the columns have their
 //! mass at the same offsets, so that none is wasted.
 
-use crate::belief::front::grid::{Grid, Lay, Sums, Unit, angle, limited, metres, radians};
+use crate::belief::front::grid::{Grid, Lay, Unit, angle, limited, metres, radians};
 use crate::belief::front::moments::Moments;
+use crate::belief::front::walk::{Ends, take};
 use crate::geometry::approximate::sqrt;
 use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
 
@@ -127,12 +128,12 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
     }
 
     /// How far ahead of the pivot the waist lies, metres.
-    fn waist_ahead(&self, moments: &Moments<K, M>) -> f32 {
+    fn waist_ahead(&self, moments: &Moments<K, M, L>) -> f32 {
         -moments.covariance * self.lay.step / (moments.variance[0] * self.lay.turn)
     }
 
     /// Where the cells should lie; `None` if they lie well enough.
-    fn wanted(&self, moments: &Moments<K, M>, moved: Option<Vector>, tail: f32) -> Option<Lay> {
+    fn wanted(&self, moments: &Moments<K, M, L>, moved: Option<Vector>, tail: f32) -> Option<Lay> {
         let (lay, was_whole) = (self.lay, self.lay.is_whole::<K>());
         // Columns that go all around begin opposite to the mean direction.
         let mut columns = moments.columns;
@@ -180,7 +181,7 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
     }
 
     /// From the pivot to a place so far ahead of the waist, no further than layers of curvature remain true.
-    fn towards(&self, moments: &Moments<K, M>, from_waist: f32) -> Option<Vector> {
+    fn towards(&self, moments: &Moments<K, M, L>, from_waist: f32) -> Option<Vector> {
         let lay = self.lay;
         let most = if lay.bend > 0.0 { 0.5 / lay.bend } else { 2_048.0 };
         let ahead = limited(self.waist_ahead(moments) + from_waist, most);
@@ -194,17 +195,18 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
     }
 
     /// The range of directions about another pivot, in columns: each layer has turned by its own angle.
-    fn turns_about(&self, moments: &Moments<K, M>, by: Vector, tail: f32) -> [f32; 2] {
+    fn turns_about(&self, moments: &Moments<K, M, L>, by: Vector, tail: f32) -> [f32; 2] {
         let lay = self.lay;
         let [ahead, _] = Unit::of(moments.heading(self)).seen(metres(by));
         let most = bent(lay.bend, ahead).abs() / lay.turn;
         let place = (2.0 * most + K as f32) / PLACES as f32;
         let mut places = [0.0; PLACES];
-        for (layer, bend) in self.mass.iter().zip(lay.bends::<L>()) {
-            let mut at = bent(bend, ahead) / lay.turn + most;
-            for column in layer {
-                spread(&mut places, [at / place, (at + 1.0) / place], column.iter().sum());
-                at += 1.0;
+        let per_place = 1.0 / place;
+        for (columns, bend) in moments.layers.iter().zip(lay.bends::<L>()) {
+            let mut at = (bent(bend, ahead) / lay.turn + most) * per_place;
+            for mass in columns {
+                spread(&mut places, [at, at + per_place], *mass);
+                at += per_place;
             }
         }
         range(&places, tail).map(|it| it * place - most)
@@ -258,24 +260,22 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
         let by = metres(lay.pivot - old.pivot);
         let [ahead, _] = Unit::of(lay.heading).seen(by);
         let turned = radians(lay.heading.since(old.heading));
-        let ends = [!old.is_whole::<K>(), !lay.is_whole::<K>()];
+        let ends = [old.is_whole::<K>(), lay.is_whole::<K>()]
+            .map(|it| if it { Ends::None } else { Ends::Some });
         let (per_cell, per_column) = (1.0 / old.step, 1.0 / old.turn);
         for (columns, bend) in self.mass.iter_mut().zip(old.bends::<L>()) {
             for (column, along) in columns.iter_mut().zip(&self.along) {
                 let [ahead, left] = along.seen(by);
                 let low = lay.low - old.low + left - old.bulge(bend, ahead);
-                Sums::of(column).take([low, lay.step].map(|it| it * per_cell), [true; 2], column);
+                take(column, [low, lay.step].map(|it| it * per_cell), [Ends::Some; 2]);
             }
             // A curve's direction turns on the way to the pivot.
             let turned = turned - bent(bend, ahead) + lay.angle_at::<K>(0.0);
             let from = turned * per_column + 0.5 * K as f32;
             for m in 0..M {
-                let mut row = [0.0; K];
-                for (mass, column) in row.iter_mut().zip(&*columns) {
-                    *mass = column.get(m).copied().unwrap_or(0.0);
-                }
-                Sums::of(&row).take([from, lay.turn * per_column], ends, &mut row);
-                for (mass, column) in row.iter().zip(&mut *columns) {
+                let mut row = columns.each_ref().map(|it| it.get(m).copied().unwrap_or(0.0));
+                take(&mut row, [from, lay.turn * per_column], ends);
+                for (mass, column) in row.iter().zip(columns.iter_mut()) {
                     if let Some(place) = column.get_mut(m) {
                         *place = *mass;
                     }

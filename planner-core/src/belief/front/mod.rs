@@ -34,6 +34,7 @@ mod settings;
 mod stretch;
 mod tracker;
 mod waist;
+mod walk;
 
 pub(crate) use grid::Unit;
 pub use memory::FrontMemory;

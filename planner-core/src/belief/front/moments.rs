@@ -6,8 +6,10 @@ use crate::geometry::heading::Heading;
 
 /// Sums of the masses of a grid, and moments about the middle of its cells, in cells and columns.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Moments<const K: usize, const M: usize> {
+pub(crate) struct Moments<const K: usize, const M: usize, const L: usize> {
     pub(crate) total: f32,
+    /// The mass of each direction in each layer.
+    pub(crate) layers: [[f32; K]; L],
     /// The mass of each direction, and of each offset.
     pub(crate) columns: [f32; K],
     pub(crate) rows: [f32; M],
@@ -20,36 +22,37 @@ pub(crate) struct Moments<const K: usize, const M: usize> {
     pub(crate) bend: f32,
 }
 
-impl<const K: usize, const M: usize> Moments<K, M> {
+impl<const K: usize, const M: usize, const L: usize> Moments<K, M, L> {
     /// `O(K M L)`.
     #[inline(never)]
-    pub(crate) fn of<const L: usize>(grid: &Grid<K, M, L>) -> Self {
-        let (mut columns, mut rows, mut bent) = ([0.0; K], [0.0; M], 0.0);
-        let (mut products, mut total) = (0.0, 0.0);
-        let middle = [0.5 * (K as f32 - 1.0), 0.5 * (M as f32 - 1.0)];
-        for (layer, bend) in grid.mass.iter().zip(grid.lay.bends::<L>()) {
-            let (mut in_layer, mut k) = (0.0, -middle[0]);
-            for (column, masses) in columns.iter_mut().zip(layer) {
-                let (mut sum, mut first, mut m) = (0.0, 0.0, -middle[1]);
-                for (row, mass) in rows.iter_mut().zip(masses) {
-                    *row += mass;
-                    sum += mass;
-                    first += mass * m;
-                    m += 1.0;
-                }
-                *column += sum;
-                products += first * k;
-                in_layer += sum;
-                k += 1.0;
+    pub(crate) fn of(grid: &Grid<K, M, L>) -> Self {
+        let layers = grid.mass.each_ref().map(|it| it.each_ref().map(|it| it.iter().sum::<f32>()));
+        let (mut columns, mut rows) = ([0.0; K], [0.0; M]);
+        let (mut products, mut k) = (0.0, -0.5 * (K as f32 - 1.0));
+        for (number, column) in columns.iter_mut().enumerate() {
+            *column = layers.iter().filter_map(|it| it.get(number)).sum();
+            // A cell counts once more for each that comes after it.
+            let (mut sum, mut more) = (0.0, 0.0);
+            for (m, row) in rows.iter_mut().enumerate() {
+                let cell = |it: &[[f32; M]; K]| it.get(number).and_then(|it| it.get(m)).copied();
+                let mass: f32 = grid.mass.iter().filter_map(cell).sum();
+                *row += mass;
+                sum += mass;
+                more += sum;
             }
-            bent += in_layer * bend;
-            total += in_layer;
+            products += k * (0.5 * (M as f32 + 1.0) * sum - more);
+            k += 1.0;
+        }
+        let (mut total, mut bent) = (0.0, 0.0);
+        for (layer, bend) in layers.iter().zip(grid.lay.bends::<L>()) {
+            let mass: f32 = layer.iter().sum();
+            (total, bent) = (total + mass, bent + bend * mass);
         }
         let each = if total > 0.0 { 1.0 / total } else { 0.0 };
-        let [by_column, by_row] =
-            [of_masses(&columns, middle[0], each), of_masses(&rows, middle[1], each)];
+        let [by_column, by_row] = [of_masses(&columns, each), of_masses(&rows, each)];
         Self {
             total,
+            layers,
             columns,
             rows,
             mean: [by_column[0], by_row[0]],
@@ -65,7 +68,7 @@ impl<const K: usize, const M: usize> Moments<K, M> {
     }
 
     /// The mean direction: where columns go all around, that of the mean vector.
-    pub(crate) fn heading<const L: usize>(&self, grid: &Grid<K, M, L>) -> Heading {
+    pub(crate) fn heading(&self, grid: &Grid<K, M, L>) -> Heading {
         let lay = grid.lay;
         if !lay.is_whole::<K>() {
             return lay.heading.turned(angle(self.mean[0] * lay.turn));
@@ -79,9 +82,9 @@ impl<const K: usize, const M: usize> Moments<K, M> {
     }
 }
 
-/// The mean and the variance of some masses, numbered from `-middle`.
-fn of_masses(masses: &[f32], middle: f32, each: f32) -> [f32; 2] {
-    let (mut first, mut second, mut at) = (0.0, 0.0, -middle);
+/// The mean and the variance of some masses, numbered from the middle.
+fn of_masses(masses: &[f32], each: f32) -> [f32; 2] {
+    let (mut first, mut second, mut at) = (0.0, 0.0, -0.5 * (masses.len() as f32 - 1.0));
     for mass in masses {
         first += mass * at;
         second += mass * at * at;

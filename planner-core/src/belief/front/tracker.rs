@@ -57,6 +57,9 @@ const GIVEN_ROUNDS: u32 = 4;
 /// A front may turn out to bend so many times as tightly as was told.
 const TIGHTEST: f32 = 8.0;
 
+/// A label says nothing of its reliability where that is nearer to a half than this, doubled.
+const SHARP: f32 = 1e-3;
+
 /// On the way, labels count where so much of the curves disagree.
 const UNSURE: f32 = 1e-3;
 
@@ -252,28 +255,29 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
     }
 
     fn take(&mut self, site: Site, label: Label, tolerance: Tolerance) {
-        let blur = Self::blur(tolerance);
         let p = self.counted();
-        let (plus, minus) = if label == Label::Positive { (p, 1.0 - p) } else { (1.0 - p, p) };
-        let above = self.nowhere[0] + self.grid.above(site, blur);
-        let chance = plus * above + minus * (1.0 - above);
+        let chance = self.weigh(site, label, p, Self::blur(tolerance));
         self.evidence.observe(label, chance);
         if let Some(learnt) = &mut self.learnt {
-            learnt.count(if label == Label::Positive { above } else { 1.0 - above });
+            // The share of the curves that agree makes the label as likely as it was.
+            let sharp = 2.0 * p - 1.0;
+            let agree = (chance - (1.0 - p)) / sharp;
+            learnt.count(if sharp.abs() > SHARP { agree.clamp(0.0, 1.0) } else { 0.5 });
         }
-        self.weigh(site, label, p, blur);
         self.grid.lay_around(TAIL);
     }
 
-    /// Weighs all by a label that is true with probability `p`.
-    fn weigh(&mut self, site: Site, label: Label, p: f32, blur: f32) {
+    /// Weighs all by a label that is true with probability `p`. Returns how likely the label was.
+    fn weigh(&mut self, site: Site, label: Label, p: f32, blur: f32) -> f32 {
         let weights = if label == Label::Positive { [p, 1.0 - p] } else { [1.0 - p, p] };
         let left = self.grid.weigh(site, blur, weights);
         let [plus, minus] = self.nowhere;
         let [plus, minus] = [plus * weights[0], minus * weights[1]];
-        let each = 1.0 / (left + plus + minus);
+        let chance = left + plus + minus;
+        let each = 1.0 / chance;
         self.nowhere = [plus * each, minus * each];
         self.grid.scale(each);
+        chance
     }
 
     /// Where the front is known best. Of no meaning before it is found.
