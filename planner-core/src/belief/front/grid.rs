@@ -7,7 +7,7 @@
 //! Lengths are metres from the pivot and angles are radians from the frame's heading, all in single precision. So
 //! digits are lost neither far from the origin nor where the distribution is narrow.
 
-use crate::belief::front::walk::Walk;
+use crate::belief::front::walk::blur;
 use crate::geometry::approximate::{METRE, sqrt};
 use crate::geometry::heading::{Angle, Heading};
 use crate::geometry::lattice::{Site, Vector};
@@ -159,6 +159,29 @@ impl Ramp {
         (until(self.place) - until(first)) * self.per_width
     }
 
+    /// Multiplies the mass of a column that lies below by one number, and the rest by another. Returns what is left.
+    #[inline(never)]
+    fn weigh(self, column: &mut [f32], [plus, minus]: [f32; 2]) -> f32 {
+        let [whole, part] = self.counts(column.len());
+        let (whole, rest) = column.split_at_mut_checked(whole).unwrap_or_default();
+        let (part, rest) = rest.split_at_mut_checked(part).unwrap_or_default();
+        let (mut sum, mut cell) = (0.0, whole.len() as f32);
+        for mass in whole {
+            *mass *= plus;
+            sum += *mass;
+        }
+        for mass in part {
+            *mass *= minus + (plus - minus) * self.at(cell);
+            sum += *mass;
+            cell += 1.0;
+        }
+        for mass in rest {
+            *mass *= minus;
+            sum += *mass;
+        }
+        sum
+    }
+
     /// The mass of a column that lies below: that of each cell, by its share.
     fn below(self, column: &[f32]) -> f32 {
         let [whole, part] = self.counts(column.len());
@@ -305,37 +328,20 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
     /// Multiplies the mass of the curves that have a site on their +1 side by one number, and that of the others by
     /// another. Returns the mass that is left.
     #[inline(never)]
-    pub(crate) fn weigh(&mut self, site: Site, blur: f32, [plus, minus]: [f32; 2]) -> f32 {
+    pub(crate) fn weigh(&mut self, site: Site, blur: f32, weights: [f32; 2]) -> f32 {
         let (place, lay) = (metres(site - self.lay.pivot), self.lay);
         let mut sum = 0.0;
         for (layer, bend) in self.mass.iter_mut().zip(lay.bends::<L>()) {
             for (column, along) in layer.iter_mut().zip(&self.along) {
-                let ramp = Self::ramp(lay, *along, bend, place, blur);
-                let [whole, part] = ramp.counts(M);
-                let (whole, rest) = column.split_at_mut_checked(whole).unwrap_or_default();
-                let mut cell = whole.len() as f32;
-                for mass in whole {
-                    *mass *= plus;
-                    sum += *mass;
-                }
-                let (part, rest) = rest.split_at_mut_checked(part).unwrap_or_default();
-                for mass in part {
-                    *mass *= minus + (plus - minus) * ramp.at(cell);
-                    sum += *mass;
-                    cell += 1.0;
-                }
-                for mass in rest {
-                    *mass *= minus;
-                    sum += *mass;
-                }
+                sum += Self::ramp(lay, *along, bend, place, blur).weigh(column, weights);
             }
         }
         sum
     }
 
-    /// Multiplies all masses by a number.
-    pub(crate) fn scale(&mut self, by: f32) {
-        self.cells().for_each(|mass| *mass *= by);
+    /// Multiplies all masses by a number, and adds another one.
+    pub(crate) fn scale(&mut self, by: f32, more: f32) {
+        scale(self.mass.as_flattened_mut().as_flattened_mut(), by, more);
     }
 
     pub(crate) fn cells(&mut self) -> impl Iterator<Item = &mut f32> {
@@ -347,12 +353,7 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
         let mut rest = self.mass.as_mut_slice();
         while let Some((layer, after)) = rest.split_first_mut() {
             if let Some(next) = after.first_mut() {
-                let pairs = layer.iter_mut().flatten().zip(next.iter_mut().flatten());
-                for (a, b) in pairs {
-                    let flow = share * (*a - *b);
-                    *a -= flow;
-                    *b += flow;
-                }
+                mix(layer.as_flattened_mut(), next.as_flattened_mut(), share);
             }
             rest = after;
         }
@@ -361,20 +362,9 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
     /// Lets directions diffuse by a variance in squares of the turn between columns, 0.5 at most.
     pub(crate) fn mix_columns(&mut self, variance: f32) {
         let share = if variance < 0.5 { 0.5 * variance } else { 0.25 };
+        let mut flows = [0.0; M];
         for layer in &mut self.mass {
-            let mut before: Option<[f32; M]> = None;
-            let mut rest = layer.as_mut_slice();
-            while let Some((column, after)) = rest.split_first_mut() {
-                let old = *column;
-                for (m, mass) in column.iter_mut().enumerate() {
-                    let at = |it: Option<&[f32; M]>| it.and_then(|it| it.get(m)).copied();
-                    let own = *mass;
-                    let flow = |other: Option<f32>| other.map_or(0.0, |other| other - own);
-                    *mass += share * (flow(at(before.as_ref())) + flow(at(after.first())));
-                }
-                before = Some(old);
-                rest = after;
-            }
+            mix_columns(layer.as_flattened_mut(), &mut flows, share);
         }
     }
 
@@ -388,17 +378,64 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
         let more = if more > 0.0 { more } else { 0.0 };
         let part = (n + 0.5) * more / ((n + 1.0) * (n + 1.0) - variance);
         let half = n + 0.5 + part;
-        for column in self.mass.iter_mut().flatten() {
+        for column in self.mass.as_flattened_mut() {
             if whole == 0 {
                 mix_neighbours(column, 0.5 * part / half);
             } else {
-                blur(column, half);
+                blur(&column.clone(), column, half);
             }
         }
     }
 }
 
+#[inline(never)]
+fn scale(masses: &mut [f32], by: f32, more: f32) {
+    let (fours, others) = masses.as_chunks_mut::<4>();
+    for four in fours {
+        *four = four.map(|mass| mass * by + more);
+    }
+    others.iter_mut().for_each(|mass| *mass = *mass * by + more);
+}
+
+/// Lets a share of each cell's mass pass to the other's.
+#[inline(never)]
+fn mix(layer: &mut [f32], next: &mut [f32], share: f32) {
+    let pass = |(a, b): (&mut f32, &mut f32)| {
+        let flow = share * (*a - *b);
+        *a -= flow;
+        *b += flow;
+    };
+    let (fours, others) = layer.as_chunks_mut::<4>();
+    let (next_fours, next_others) = next.as_chunks_mut::<4>();
+    for (a, b) in fours.iter_mut().zip(next_fours) {
+        a.iter_mut().zip(b).for_each(pass);
+    }
+    others.iter_mut().zip(next_others).for_each(pass);
+}
+
+/// Lets a share of each column's mass pass to each neighbour, cell by cell. `flows` is room for a column.
+#[inline(never)]
+fn mix_columns(layer: &mut [f32], flows: &mut [f32], share: f32) {
+    let size = flows.len();
+    flows.fill(0.0);
+    let mut rest = layer;
+    while let Some((column, after)) = rest.split_at_mut_checked(size).filter(|_| size > 0) {
+        // What has come from the column before, and what comes from the next one.
+        for ((mass, next), flow) in column.iter_mut().zip(&*after).zip(flows.iter_mut()) {
+            let own = *mass;
+            *mass += *flow;
+            *flow = share * (own - next);
+            *mass -= *flow;
+        }
+        if after.is_empty() {
+            column.iter_mut().zip(&*flows).for_each(|(mass, flow)| *mass += flow);
+        }
+        rest = after;
+    }
+}
+
 /// Lets a share of each cell's mass pass to each neighbour. None passes beyond the edges.
+#[inline(never)]
 fn mix_neighbours(column: &mut [f32], share: f32) {
     let mut rest = column;
     let mut from_before = 0.0;
@@ -406,27 +443,6 @@ fn mix_neighbours(column: &mut [f32], share: f32) {
         let flow = after.first().map_or(0.0, |next| share * (*next - *mass));
         *mass += from_before + flow;
         (from_before, rest) = (-flow, after);
-    }
-}
-
-/// Blurs a column by a box of so many cells to either side. What would lie beyond stays in the edge cells.
-fn blur<const M: usize>(column: &mut [f32; M], half: f32) {
-    let (old, per_width) = (*column, 0.5 / half);
-    let [first, last] = [old.first(), old.last()].map(|it| it.copied().unwrap_or(0.0));
-    let [mut behind, mut ahead] = [Walk::along(&old); 2];
-    let (mut cell, mut kept) = (0.5, 0.0);
-    for mass in column.iter_mut() {
-        *mass = (ahead.until(cell + half) - behind.until(cell - half)) * per_width;
-        kept += *mass;
-        cell += 1.0;
-    }
-    let beyond = old.iter().sum::<f32>() - kept;
-    let beyond = if beyond > 0.0 { beyond } else { 0.0 };
-    let share = if first + last > 0.0 { first / (first + last) } else { 0.5 };
-    for (edge, share) in [(0, share), (M.saturating_sub(1), 1.0 - share)] {
-        if let Some(mass) = column.get_mut(edge) {
-            *mass += beyond * share;
-        }
     }
 }
 

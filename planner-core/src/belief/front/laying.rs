@@ -6,7 +6,7 @@
 
 use crate::belief::front::grid::{Grid, Lay, Unit, angle, limited, metres, radians};
 use crate::belief::front::moments::Moments;
-use crate::belief::front::walk::{Ends, take};
+use crate::belief::front::walk::take;
 use crate::geometry::approximate::sqrt;
 use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
 
@@ -163,7 +163,7 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
         let turns = is_whole != was_whole
             || !is_whole && (is_off(lay.turn, turn) || off.abs() > OFF * K as f32);
         let (pivot, [low, high]) = match moved {
-            Some(by) => (lay.pivot.step(by).unwrap_or(lay.pivot), self.range_about(by, tail)),
+            Some(by) => (lay.pivot.step(by).unwrap_or(lay.pivot), self.range_about(moments, by, tail)),
             None => (lay.pivot, range(&moments.rows, tail).map(|it| lay.low + it * lay.step)),
         };
         let step = larger((high - low) / M as f32, LEAST[0]);
@@ -213,42 +213,32 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
     }
 
     /// The range of offsets about another pivot.
-    fn range_about(&self, by: Vector, tail: f32) -> [f32; 2] {
-        let lay = self.lay;
-        let shifts = |l: usize, k: usize| {
-            let bend = lay.bends::<L>().nth(l).unwrap_or(0.0);
-            self.along.get(k).map_or(0.0, |along| {
-                let [ahead, left] = along.seen(metres(by));
-                lay.bulge(bend, ahead) - left
-            })
-        };
+    fn range_about(&self, moments: &Moments<K, M, L>, by: Vector, tail: f32) -> [f32; 2] {
+        let (lay, by) = (self.lay, metres(by));
+        let mut lows = moments.layers;
         let (mut least, mut most) = (f32::MAX, f32::MIN);
-        for (l, layer) in self.mass.iter().enumerate() {
-            for (k, column) in layer.iter().enumerate() {
-                if column.iter().any(|mass| *mass > 0.0) {
-                    let shift = shifts(l, k);
-                    least = if shift < least { shift } else { least };
-                    most = larger(most, shift);
+        for (layer, bend) in lows.iter_mut().zip(lay.bends::<L>()) {
+            for (low, along) in layer.iter_mut().zip(&self.along) {
+                let [ahead, left] = along.seen(by);
+                let has_mass = *low > 0.0;
+                *low = lay.low + lay.bulge(bend, ahead) - left;
+                if has_mass {
+                    least = if *low < least { *low } else { least };
+                    most = larger(most, *low);
                 }
             }
         }
-        let high = lay.step * M as f32;
-        let (from, place) = (lay.low + least, (most - least + high) / PLACES as f32);
+        let place = (most - least + lay.step * M as f32) / PLACES as f32;
         let (per_place, stride) = (1.0 / place, lay.step / place);
         let mut places = [0.0; PLACES];
-        for (l, layer) in self.mass.iter().enumerate() {
-            for (k, column) in layer.iter().enumerate() {
+        for (layer, lows) in self.mass.iter().zip(&lows) {
+            for (column, low) in layer.iter().zip(lows) {
                 // A cell counts where its middle is: places are about as wide.
-                let mut at = (lay.low + shifts(l, k) + 0.5 * lay.step - from) * per_place;
-                for mass in column {
-                    if let Some(sum) = places.get_mut(at as usize) {
-                        *sum += mass;
-                    }
-                    at += stride;
-                }
+                let at = (low + 0.5 * lay.step - least) * per_place;
+                count(&mut places, column, [at, stride]);
             }
         }
-        range(&places, tail).map(|it| from + it * place)
+        range(&places, tail).map(|it| least + it * place)
     }
 
     /// Puts the mass into other cells: what lies beyond goes into the edge cells.
@@ -260,35 +250,86 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
         let by = metres(lay.pivot - old.pivot);
         let [ahead, _] = Unit::of(lay.heading).seen(by);
         let turned = radians(lay.heading.since(old.heading));
-        let ends = [old.is_whole::<K>(), lay.is_whole::<K>()]
-            .map(|it| if it { Ends::None } else { Ends::Some });
         let (per_cell, per_column) = (1.0 / old.step, 1.0 / old.turn);
+        let goes_round = [old, lay].map(Lay::is_whole::<K>);
         for (columns, bend) in self.mass.iter_mut().zip(old.bends::<L>()) {
             for (column, along) in columns.iter_mut().zip(&self.along) {
                 let [ahead, left] = along.seen(by);
                 let low = lay.low - old.low + left - old.bulge(bend, ahead);
-                take(column, [low, lay.step].map(|it| it * per_cell), [Ends::Some; 2]);
+                take(&column.clone(), column, [low, lay.step].map(|it| it * per_cell));
             }
             // A curve's direction turns on the way to the pivot.
             let turned = turned - bent(bend, ahead) + lay.angle_at::<K>(0.0);
-            let from = turned * per_column + 0.5 * K as f32;
-            for m in 0..M {
-                let mut row = columns.each_ref().map(|it| it.get(m).copied().unwrap_or(0.0));
-                take(&mut row, [from, lay.turn * per_column], ends);
-                for (mass, column) in row.iter().zip(columns.iter_mut()) {
-                    if let Some(place) = column.get_mut(m) {
-                        *place = *mass;
-                    }
-                }
-            }
+            let places = [turned * per_column + 0.5 * K as f32, lay.turn * per_column];
+            let before = *columns;
+            share(before.as_flattened(), columns.as_flattened_mut(), M, places, goes_round);
         }
         self.set(lay);
     }
 }
 
+/// Shares out columns of so many masses among others, by where the first of these begins and how wide each is, counted
+/// in the old ones. Whether these went all around, and those do. Others have ends, which take what lies beyond.
+#[inline(never)]
+fn share(old: &[f32], new: &mut [f32], size: usize, [from, each]: [f32; 2], round: [bool; 2]) {
+    let count = old.len() / size.max(1);
+    let all = count as f32;
+    // What goes all around is cut opposite to the middle.
+    let middle = from + 0.5 * each * all;
+    let [start, end] = match round {
+        [false, _] => [0.0, all],
+        [true, false] => [middle - 0.5 * all, middle + 0.5 * all],
+        [true, true] => [from, from + each * all],
+    };
+    let (mut place, last) = (start, count.wrapping_sub(1));
+    let mut next = from;
+    for (number, column) in new.chunks_mut(size.max(1)).enumerate() {
+        next += each;
+        let until = if number == last || next > end { end } else { next };
+        column.fill(0.0);
+        while place < until {
+            let cell = floor(place);
+            let edge = cell.wrapping_add(1) as f32;
+            let edge = if edge < until { edge } else { until };
+            let wrapped = cell.rem_euclid(count as i32) as usize;
+            let part = edge - place;
+            if let Some(masses) = old.get(wrapped.wrapping_mul(size)..) {
+                add(column, part, masses);
+            }
+            place = edge;
+        }
+    }
+}
+
+/// Adds a share of each mass.
+fn add(column: &mut [f32], part: f32, masses: &[f32]) {
+    let (fours, others) = column.as_chunks_mut::<4>();
+    let (of_fours, of_others) = masses.as_chunks::<4>();
+    for (four, masses) in fours.iter_mut().zip(of_fours) {
+        four.iter_mut().zip(masses).for_each(|(to, mass)| *to += part * mass);
+    }
+    others.iter_mut().zip(of_others).for_each(|(to, mass)| *to += part * mass);
+}
+
+/// The greatest integer that is no greater.
+fn floor(value: f32) -> i32 {
+    let near = value as i32;
+    if near as f32 > value { near.wrapping_sub(1) } else { near }
+}
+
 /// By how much a curve of some curvature turns on the way to a place ahead.
 fn bent(bend: f32, ahead: f32) -> f32 {
     (bend * ahead).clamp(-1.0, 1.0)
+}
+
+/// Adds each mass to the place of a histogram where it is, from one place on.
+fn count(places: &mut [f32; PLACES], masses: &[f32], [mut at, stride]: [f32; 2]) {
+    for mass in masses {
+        if let Some(sum) = places.get_mut(at as usize) {
+            *sum += mass;
+        }
+        at += stride;
+    }
 }
 
 /// Spreads a mass over the places of a histogram, from one place to another.

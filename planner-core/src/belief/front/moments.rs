@@ -26,22 +26,11 @@ impl<const K: usize, const M: usize, const L: usize> Moments<K, M, L> {
     /// `O(K M L)`.
     #[inline(never)]
     pub(crate) fn of(grid: &Grid<K, M, L>) -> Self {
-        let layers = grid.mass.each_ref().map(|it| it.each_ref().map(|it| it.iter().sum::<f32>()));
-        let (mut columns, mut rows) = ([0.0; K], [0.0; M]);
-        let (mut products, mut k) = (0.0, -0.5 * (K as f32 - 1.0));
-        for (number, column) in columns.iter_mut().enumerate() {
-            *column = layers.iter().filter_map(|it| it.get(number)).sum();
-            // A cell counts once more for each that comes after it.
-            let (mut sum, mut more) = (0.0, 0.0);
-            for (m, row) in rows.iter_mut().enumerate() {
-                let cell = |it: &[[f32; M]; K]| it.get(number).and_then(|it| it.get(m)).copied();
-                let mass: f32 = grid.mass.iter().filter_map(cell).sum();
-                *row += mass;
-                sum += mass;
-                more += sum;
-            }
-            products += k * (0.5 * (M as f32 + 1.0) * sum - more);
-            k += 1.0;
+        let mut layers = [[0.0; K]; L];
+        let (mut columns, mut rows, mut products) = ([0.0; K], [0.0; M], 0.0);
+        for (layer, sums) in grid.mass.iter().zip(&mut layers) {
+            products += sum_up(layer.as_flattened(), sums, &mut rows);
+            columns.iter_mut().zip(&*sums).for_each(|(column, sum)| *column += sum);
         }
         let (mut total, mut bent) = (0.0, 0.0);
         for (layer, bend) in layers.iter().zip(grid.lay.bends::<L>()) {
@@ -80,6 +69,33 @@ impl<const K: usize, const M: usize, const L: usize> Moments<K, M, L> {
         let has_one = sum.x.abs() + sum.z.abs() > 1e-6 * self.total;
         if has_one { heading(sum.x, sum.z) } else { lay.heading }
     }
+}
+
+/// Takes the sum of each column of a layer, and adds the masses to the rows. Returns the sum of the masses times the
+/// numbers of their column and row, counted from the middle.
+#[inline(never)]
+fn sum_up(layer: &[f32], columns: &mut [f32], rows: &mut [f32]) -> f32 {
+    let (mut products, mut k) = (0.0, -0.5 * (columns.len() as f32 - 1.0));
+    let half = 0.5 * (rows.len() as f32 + 1.0);
+    for (column, masses) in columns.iter_mut().zip(layer.chunks(rows.len().max(1))) {
+        // A cell counts once more for each that comes after it.
+        let (mut sum, mut more) = (0.0, 0.0);
+        let mut add = |(row, mass): (&mut f32, &f32)| {
+            *row += mass;
+            sum += mass;
+            more += sum;
+        };
+        let (row_fours, row_others) = rows.as_chunks_mut::<4>();
+        let (fours, others) = masses.as_chunks::<4>();
+        for (row, four) in row_fours.iter_mut().zip(fours) {
+            row.iter_mut().zip(four).for_each(&mut add);
+        }
+        row_others.iter_mut().zip(others).for_each(add);
+        *column = sum;
+        products += k * (half * sum - more);
+        k += 1.0;
+    }
+    products
 }
 
 /// The mean and the variance of some masses, numbered from the middle.

@@ -170,7 +170,7 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
         }
         let whole: f32 = self.grid.cells().map(|it| *it).sum();
         self.start = libm::log2f(whole * lay.turn / L as f32);
-        self.grid.scale((1.0 - NOWHERE) / whole);
+        self.grid.scale((1.0 - NOWHERE) / whole, 0.0);
     }
 
     /// How often a label is true, as far as that is known.
@@ -251,7 +251,7 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
         }
         let even = EVEN * elapsed;
         let more = even * (1.0 - self.share_nowhere()) / (K * M * L) as f32;
-        self.grid.cells().for_each(|mass| *mass = *mass * (1.0 - even) + more);
+        self.grid.scale(1.0 - even, more);
     }
 
     fn take(&mut self, site: Site, label: Label, tolerance: Tolerance) {
@@ -276,7 +276,7 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
         let chance = left + plus + minus;
         let each = 1.0 / chance;
         self.nowhere = [plus * each, minus * each];
-        self.grid.scale(each);
+        self.grid.scale(each, 0.0);
         chance
     }
 
