@@ -219,8 +219,8 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
 
     /// The two places beyond the ends of one motion that are worth the most, if that is more than the best of these, the
     /// best first. And its worth.
-    fn far_places(&self, pose: Pose, least: f32) -> ([Option<Site>; 2], f32) {
-        let waist = self.tracker.waist();
+    #[inline(never)] // what it needs is not on the stack while a motion is sought
+    fn far_places(&self, pose: Pose, waist: Waist, least: f32) -> ([Option<Site>; 2], f32) {
         let unit = Unit::of(waist.heading);
         let along = |k: u16| {
             let ahead = (f32::from(k) - 0.5 * f32::from(ALONG - 1)) * self.reach();
@@ -326,7 +326,8 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         let is_inside = self.area.contains(pose.site);
         let worth = |way: Vector, _: Site, share: f32| self.worth(way, share);
         let (best, examined) = self.best_end(pose, (SEEKING, LOOKED_AT - FAR), worth);
-        let (far, worth) = self.far_places(pose, best.map_or(0.0, |best| best.worth));
+        let waist = self.tracker.waist();
+        let (far, worth) = self.far_places(pose, waist, best.map_or(0.0, |best| best.worth));
         let is_open = best.is_some() || far != [None; 2];
         // It has gone round about a place without a label.
         let is_vain = best.is_some() && self.silence.is_long();

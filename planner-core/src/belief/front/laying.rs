@@ -84,27 +84,43 @@ fn larger(a: f32, b: f32) -> f32 {
 impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
     /// Lays the grid anew if its cells are of another size than its mass wants, or lie elsewhere.
     ///
-    /// `O(K M L)`: some 90,000 instructions for 16 x 16 x 3 if it is laid anew, and 20,000 if not.
+    /// `O(K M L)`: some 60,000 instructions for 16 x 16 x 3 if it is laid anew, and 10,000 if not.
     pub(crate) fn lay_around(&mut self, tail: f32) {
+        if let Some(lay) = self.around(tail) {
+            self.lay_anew(lay);
+        }
+    }
+
+    #[inline(never)] // what it needs is not on the stack while cells are laid
+    fn around(&self, tail: f32) -> Option<Lay> {
         let moments = Moments::of(self);
         let [straight, bent] = CORRELATED;
         let most = if self.lay.bend > 0.0 { bent } else { straight };
         let moves = !self.lay.is_whole::<K>() && moments.correlation_squared() > most;
         let by = if moves { self.towards(&moments, 0.0) } else { None };
-        if moments.total > 0.0
-            && let Some(lay) = self.wanted(&moments, by, tail)
-        {
-            self.lay_anew(lay);
-        }
+        let has_mass = moments.total > 0.0;
+        if has_mass { self.wanted(&moments, by, tail) } else { None }
     }
 
     /// Makes room for offsets that will diffuse by a margin, metres. If the front bends, it also moves the pivot along
     /// it to where a robot is, but not so far from the waist that most cells would be wasted.
     pub(crate) fn follow(&mut self, robot: Site, margin: f32, tail: f32) {
+        let wanted = self.around_robot(robot, tail);
+        if margin > 0.0 {
+            let lay = wanted.unwrap_or(self.lay);
+            let step = lay.step + 2.0 * margin / M as f32;
+            self.lay_anew(Lay { low: lay.low - margin, step, ..lay });
+        } else if let Some(lay) = wanted {
+            self.lay_anew(lay);
+        }
+    }
+
+    #[inline(never)] // as above
+    fn around_robot(&self, robot: Site, tail: f32) -> Option<Lay> {
         let lay = self.lay;
         let moments = Moments::of(self);
         if moments.total <= 0.0 {
-            return;
+            return None;
         }
         let by = if lay.bend > 0.0 && !lay.is_whole::<K>() {
             let [ahead, _] = Unit::of(moments.heading(self)).seen(metres(robot - lay.pivot));
@@ -117,14 +133,7 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
         } else {
             None
         };
-        let wanted = self.wanted(&moments, by, tail);
-        if margin > 0.0 {
-            let Lay { low, step, .. } = wanted.unwrap_or(lay);
-            let wider = step + 2.0 * margin / M as f32;
-            self.lay_anew(Lay { low: low - margin, step: wider, ..wanted.unwrap_or(lay) });
-        } else if let Some(lay) = wanted {
-            self.lay_anew(lay);
-        }
+        self.wanted(&moments, by, tail)
     }
 
     /// How far ahead of the pivot the waist lies, metres.
@@ -195,6 +204,7 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
     }
 
     /// The range of directions about another pivot, in columns: each layer has turned by its own angle.
+    #[inline(never)]
     fn turns_about(&self, moments: &Moments<K, M, L>, by: Vector, tail: f32) -> [f32; 2] {
         let lay = self.lay;
         let [ahead, _] = Unit::of(moments.heading(self)).seen(metres(by));
@@ -213,6 +223,7 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
     }
 
     /// The range of offsets about another pivot.
+    #[inline(never)]
     fn range_about(&self, moments: &Moments<K, M, L>, by: Vector, tail: f32) -> [f32; 2] {
         let (lay, by) = (self.lay, metres(by));
         let mut lows = moments.layers;

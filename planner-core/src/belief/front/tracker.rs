@@ -226,7 +226,7 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
     /// ahead of the robot it may bend otherwise. A straight front that does not move stays as it is known.
     ///
     /// Call it once a motion, before the label at its end is observed. The unit of time is the one of the front's
-    /// [`speed`](Front::speed), and one motion should take about one. Some 200,000 instructions for 16 x 16 x 3.
+    /// [`speed`](Front::speed), and one motion should take about one. Some 90,000 instructions for 16 x 16 x 3.
     pub fn moved(&mut self, to: Site, elapsed: f32) {
         let bends = self.grid.lay.bend > 0.0;
         let pace = self.front.pace();
