@@ -1,4 +1,6 @@
 //! A lap round a closed front: which way the robot goes along it, and whether it is back where it began.
+//!
+//! It goes along the front as it faced at the start. So two robots that start back to back part.
 
 use crate::belief::front::Waist;
 use crate::geometry::approximate::distance;
@@ -17,6 +19,8 @@ const BACK: f32 = 1.0;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Lap {
+    /// Where the robot faced at the start: that way it goes along the front.
+    faced: Option<Heading>,
     /// Where it was found, whether the robot goes along its direction, and the direction it had last.
     begun: Option<(Site, bool, Heading)>,
     /// How far it has turned since, to the left.
@@ -26,11 +30,22 @@ pub struct Lap {
 
 impl Lap {
     /// No front is found.
-    pub(crate) const NONE: Self = Self { begun: None, turned: 0, is_closed: false };
+    pub(crate) const NONE: Self = Self { faced: None, begun: None, turned: 0, is_closed: false };
+
+    /// Takes in where the robot faces; what comes after the first time does not count.
+    pub(crate) fn face(&mut self, heading: Heading) {
+        self.faced.get_or_insert(heading);
+    }
 
     /// Whether the robot goes along the front's direction; `None` before it is found.
     pub(crate) fn sense(&self) -> Option<bool> {
         self.begun.map(|(_, sense, _)| sense)
+    }
+
+    /// The same as soon as it is found.
+    pub(crate) fn sense_along(&self, waist: Waist, pose: Pose) -> bool {
+        let faced = self.faced.unwrap_or(pose.heading);
+        self.sense().unwrap_or_else(|| faced.agrees(waist.heading))
     }
 
     /// The robot goes on in the other direction.
@@ -45,9 +60,9 @@ impl Lap {
 
     /// Takes in where the front is known best, if it is found.
     pub(crate) fn observe(&mut self, found: Option<Waist>, pose: Pose, reach: f32) {
-        let Some(Waist { site, heading, .. }) = found else { return };
+        let Some(waist @ Waist { site, heading, .. }) = found else { return };
         let Some((start, sense, last)) = self.begun else {
-            self.begun = Some((site, pose.heading.agrees(heading), heading));
+            self.begun = Some((site, self.sense_along(waist, pose), heading));
             return;
         };
         self.turned += i64::from(heading.since(last).0 as i32);
@@ -89,6 +104,20 @@ mod tests {
         assert_eq!((closed, lap.sense()), (Some(71), Some(false)));
         lap.turn();
         assert_eq!((lap.is_closed(), lap.sense()), (true, Some(true)));
+    }
+
+    /// Before it finds the front it may turn any way.
+    #[test]
+    fn it_goes_the_way_that_it_faced_at_the_start() {
+        for (angle, sense) in [(0.3, true), (3.3, false)] {
+            let mut lap = Lap::NONE;
+            for faced in [angle, 1.0, 4.0] {
+                lap.face(Heading::from_radians(faced).unwrap());
+            }
+            let it = waist(0.0, 0.0, 0.0);
+            lap.observe(Some(it), Pose { site: it.site, heading: it.heading }, REACH);
+            assert_eq!(lap.sense(), Some(sense), "{angle}");
+        }
     }
 
     /// The front goes out, turns round and comes back beside itself.

@@ -168,7 +168,7 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
 
     /// Which way to go along a front that is found.
     fn aim(&self, waist: Waist, pose: Pose) -> Aim {
-        let is_along = self.lap.sense().unwrap_or_else(|| pose.heading.agrees(waist.heading));
+        let is_along = self.lap.sense_along(waist, pose);
         Aim::new(waist, pose, is_along)
     }
 }
@@ -222,6 +222,7 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
         if self.heard_at == Some(pose) && self.scout.silence.is_back() {
             return Plan::Stop(StopReason::Undecided);
         }
+        self.lap.face(pose.heading);
         let Some(waist) = self.found() else { return self.scout.seek(pose) };
         let aim = self.aim(waist, pose);
         let (scout, reach) = (&self.scout, self.scout.reach());
