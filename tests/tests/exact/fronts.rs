@@ -188,7 +188,7 @@ fn stated_widths_of_straight_fronts_hold_the_truth() {
         ("a reliability by its prior", None, unknown, 60, 0.86, 0.5),
     ] {
         let mut rng = ChaCha8Rng::seed_from_u64(32);
-        let fields = cases(80, 300);
+        let fields = cases(200, 3_000);
         let (mut holds, mut errors) = (0, Vec::new());
         for _ in 0..fields {
             let (through, angle) = line(&mut rng);
@@ -379,5 +379,5 @@ fn a_tracker_has_the_same_bytes_on_every_machine() {
     let hash = bytes.iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
         (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3)
     });
-    assert_eq!((bytes.len(), hash), (3128, 0xb7dd_9dc4_2887_9446), "{hash:#x}");
+    assert_eq!((bytes.len(), hash), (3128, 0xf306_c778_3453_8e02), "{hash:#x}");
 }

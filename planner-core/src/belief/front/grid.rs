@@ -137,8 +137,7 @@ impl Ramp {
         // Conversions are saturating.
         let until = |place: f32| if place >= 0.0 { (place as usize).saturating_add(1) } else { 0 };
         let whole = until(self.place - self.width).min(cells);
-        let any = if self.place > 0.0 { until(self.place).min(cells) } else { 0 };
-        [whole, any.saturating_sub(whole)]
+        [whole, until(self.place).min(cells).saturating_sub(whole)]
     }
 
     /// As [`below`](Self::below), of a column's [`slopes`].
@@ -184,7 +183,14 @@ impl Ramp {
 
     /// The mass of a column that lies below: that of each cell, by its share.
     fn below(self, column: &[f32]) -> f32 {
-        let [whole, part] = self.counts(column.len());
+        if self.place <= 0.0 {
+            return 0.0;
+        }
+        // The first cells count in full, and those up to the last in part. Conversions are saturating.
+        let first = self.place - self.width;
+        let whole = if first >= 0.0 { (first as usize).saturating_add(1) } else { 0 };
+        let whole = whole.min(column.len());
+        let last = self.place as usize;
         let (whole, rest) = column.split_at_checked(whole).unwrap_or((column, &[]));
         let mut sum = 0.0;
         let (fours, others) = whole.as_chunks::<4>();
@@ -196,7 +202,8 @@ impl Ramp {
         }
         // A cell counts once more for each cell that follows it.
         let (mut until, mut more) = (0.0, 0.0);
-        let (fours, others) = rest.get(..part).unwrap_or_default().as_chunks::<4>();
+        let count = last.saturating_add(1).saturating_sub(whole.len()).min(rest.len());
+        let (fours, others) = rest.get(..count).unwrap_or_default().as_chunks::<4>();
         for [a, b, c, d] in fours {
             let two = a + b;
             let three = two + c;
@@ -207,7 +214,7 @@ impl Ramp {
             more += until;
             until += mass;
         }
-        let end = whole.len() as f32 + part as f32 - 1.0;
+        let end = whole.len() as f32 + count as f32 - 1.0;
         sum + ((self.place - end) * until + more) * self.per_width
     }
 
