@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use anyhow::Result;
+use anyhow::{Result, bail};
 use clap::Args;
 
 use crate::cli::format::Format;
@@ -45,6 +45,13 @@ pub(crate) fn join(args: &JoinArgs) -> Result<String> {
         ("--geojson", args.geojson.as_deref()),
     ];
     let [map, figure, geojson] = prepare(&inputs, asked)?;
+    let real = |it: &PathBuf| it.canonicalize().unwrap_or_else(|_| it.clone());
+    let files: Vec<PathBuf> = args.maps.iter().map(real).collect();
+    for (number, (map, file)) in args.maps.iter().zip(&files).enumerate() {
+        if files[..number].contains(file) {
+            bail!("{}: found twice, expected a map of another robot", map.display());
+        }
+    }
     let joined = JoinedMap::read(&args.maps, args.crs.as_ref())?;
     // All is made before anything is written.
     let contents = [

@@ -145,6 +145,7 @@ fn what_cannot_be_joined_is_refused() {
     };
     let map = |row: &str| format!("{TITLES}\n{row}\n");
     write("a.csv", &map("1,0.0,2.0,-0.5,0.0,0.75,0.25,1"));
+    write("b.csv", &map("1,0.0,2.0,-0.5,0.0,0.75,0.25,1"));
     write("none.csv", &format!("{TITLES}\n"));
     write("samples.csv", "x,z,label\n1,1,1\n");
     write("empty.csv", "");
@@ -157,10 +158,12 @@ fn what_cannot_be_joined_is_refused() {
     let globe =
         |lat: &str| format!("{TITLES},lat,lon\n1,0.0,2.0,-0.5,0.0,0.75,0.25,1,{lat},10.0\n");
     write("globe.csv", &globe("50.0"));
+    write("earth.csv", &globe("50.0"));
     write("pole.csv", &globe("95.0"));
     let many = "1,0.0,2.0,0.0,0.0,0.75,0.25,1\n".repeat(20_001);
     write("many.csv", &format!("{TITLES}\n{many}"));
-    let cases: [(&[&str], &[&str]); 19] = [
+    let cases: [(&[&str], &[&str]); 20] = [
+        (&["a.csv", "b.csv", "./a.csv"], &["./a.csv", "twice", "another robot"]),
         (&["a.csv"], &["MAP.csv", "2 values"]),
         (&["a.csv", "gone.csv"], &["gone.csv", "readable"]),
         (&["a.csv", "none.csv"], &["none.csv", "without vertices"]),
@@ -175,11 +178,11 @@ fn what_cannot_be_joined_is_refused() {
         (&["a.csv", "globe.csv"], &["globe.csv: found latitude and longitude", "metres", "a.csv"]),
         (&["globe.csv", "pole.csv"], &["pole.csv:2", "lat: found 95"]),
         (&["a.csv", "many.csv"], &["found 20002 vertices", "20000 at most"]),
-        (&["a.csv", "a.csv", "--map", "a.csv"], &["a.csv", "a map", "--map"]),
-        (&["a.csv", "a.csv", "--map", "m.svg"], &["m.svg", ".csv", "--map"]),
-        (&["a.csv", "a.csv", "--geojson", "m.geojson"], &["--geojson", "metres in a.csv", "--crs"]),
-        (&["globe.csv", "globe.csv", "--crs", "EPSG:25832"], &["--crs", "latitude", "globe.csv"]),
-        (&["a.csv", "a.csv", "--figure", "no/m.svg"], &["no/m.svg", "expected a place"]),
+        (&["a.csv", "b.csv", "--map", "a.csv"], &["a.csv", "a map", "--map"]),
+        (&["a.csv", "b.csv", "--map", "m.svg"], &["m.svg", ".csv", "--map"]),
+        (&["a.csv", "b.csv", "--geojson", "m.geojson"], &["--geojson", "metres in a.csv", "--crs"]),
+        (&["globe.csv", "earth.csv", "--crs", "EPSG:25832"], &["--crs", "latitude", "globe.csv"]),
+        (&["a.csv", "b.csv", "--figure", "no/m.svg"], &["no/m.svg", "expected a place"]),
     ];
     for (args, parts) in cases {
         refuses(folder.path(), &[&["join"], args].concat(), parts);

@@ -5,8 +5,8 @@
 //! - **Seek**: as long as the front is not found, a place is worth the information of its label over a price and the
 //!   way there. The places are ends of the next motion, some along the mean line, and some all over the area.
 //! - **Follow**: once the front is found, an end of the next motion is worth the information of its label, and the
-//!   progress along the front as a share of the reach. Where the front is not known well, progress counts less. So the
-//!   robot stops to look where it must.
+//!   progress along the front as a share of the reach, the way that the robot faced at the start. Where the front is not
+//!   known well, progress counts less. So the robot stops to look where it must.
 //! - **Go round**: where a keep-out lies on the front, the robot goes to the first place beyond it. Where the front
 //!   leaves the area, it goes back in the other direction.
 //! - **Come home**: where no label in reach would tell anything, the robot goes back to the front.
