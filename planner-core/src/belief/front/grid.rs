@@ -401,7 +401,9 @@ fn scale(masses: &mut [f32], by: f32, more: f32) {
     for four in fours {
         *four = four.map(|mass| mass * by + more);
     }
-    others.iter_mut().for_each(|mass| *mass = *mass * by + more);
+    for mass in others {
+        *mass = *mass * by + more;
+    }
 }
 
 /// Lets a share of each cell's mass pass to the other's.
@@ -608,8 +610,10 @@ mod tests {
         for n in -30..160 {
             for width in [1.0, 1.3, 4.6, 20.0] {
                 let ramp = Ramp { place: n as f32 * 0.1, width, per_width: 1.0 / width };
-                let parts =
-                    column.iter().enumerate().map(|(m, mass)| (m, mass * ramp.at(m as f32).clamp(0.0, 1.0)));
+                let parts = column
+                    .iter()
+                    .enumerate()
+                    .map(|(m, mass)| (m, mass * ramp.at(m as f32).clamp(0.0, 1.0)));
                 let (sum, first) = parts.fold((0.0, 0.0), |(sum, first), (m, part)| {
                     (sum + part, first + part * m as f32)
                 });

@@ -172,7 +172,9 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
         let turns = is_whole != was_whole
             || !is_whole && (is_off(lay.turn, turn) || off.abs() > OFF * K as f32);
         let (pivot, [low, high]) = match moved {
-            Some(by) => (lay.pivot.step(by).unwrap_or(lay.pivot), self.range_about(moments, by, tail)),
+            Some(by) => {
+                (lay.pivot.step(by).unwrap_or(lay.pivot), self.range_about(moments, by, tail))
+            }
             None => (lay.pivot, range(&moments.rows, tail).map(|it| lay.low + it * lay.step)),
         };
         let step = larger((high - low) / M as f32, LEAST[0]);
