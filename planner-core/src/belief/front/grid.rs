@@ -182,6 +182,8 @@ impl Ramp {
     }
 
     /// The mass of a column that lies below: that of each cell, by its share.
+    ///
+    /// A plan asks it some 4,000 times. By [`counts`](Self::counts) it would take 6 % more instructions.
     fn below(self, column: &[f32]) -> f32 {
         if self.place <= 0.0 {
             return 0.0;
@@ -394,6 +396,9 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
         }
     }
 }
+
+// What follows is not generic, nor inlined into what is: so it is compiled once, for speed, where programs for chips are
+// compiled for size.
 
 #[inline(never)]
 fn scale(masses: &mut [f32], by: f32, more: f32) {

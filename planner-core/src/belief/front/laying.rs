@@ -256,7 +256,7 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
 
     /// Puts the mass into other cells: what lies beyond goes into the edge cells.
     ///
-    /// Each column is shifted as its middle is; then each row is shared out among the new columns.
+    /// Each column is shifted as its middle is. Then it is shared out among the new columns.
     #[inline(never)]
     pub(crate) fn lay_anew(&mut self, lay: Lay) {
         let old = self.lay;
