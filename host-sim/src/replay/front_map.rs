@@ -70,8 +70,9 @@ impl FrontMap {
                 tracker.observe_on_the_way(*site, *reading)?;
             }
             tracker.moved(*site, *elapsed);
-            if let Some(label) = label {
-                tracker.observe(*site, (*label).into())?;
+            match label {
+                Some(label) => tracker.observe(*site, (*label).into())?,
+                None => tracker.settle(*site),
             }
             if tracker.evidence().value() >= Alarm::ALARM {
                 tracker.seek_near(*site, AGAIN * width);

@@ -360,6 +360,8 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         self.tracker.moved(pose.site, 1.0);
         if let Some(reading) = reading {
             self.tracker.observe_within(pose.site, reading, tolerance)?;
+        } else {
+            self.tracker.settle(pose.site);
         }
         self.silence.observe(reading.is_some());
         Ok(())

@@ -301,14 +301,17 @@ fn a_front_that_bends_and_moves_is_known_as_by_a_cloud_of_curves() {
                 let normal = Vector2::new(-curve.angle.sin(), curve.angle.cos());
                 curve.at += normal * (speed * gauss(&mut rng));
                 curve.angle += speed / 30.0 * gauss(&mut rng);
-                if rng.random_bool(0.025) {
+                let strays = 0.2 * tightest * way;
+                curve.at += normal * (0.5 * strays * way * gauss(&mut rng));
+                curve.angle += strays * gauss(&mut rng);
+                if rng.random_bool(0.05) {
                     curve.bend = if curve.bend == 0.0 {
-                        [-1.0, 1.0][rng.random_range(0..2)] / radius
+                        [-1.0, 1.0][rng.random_range(0..2)] * tightest
                     } else {
                         0.0
                     };
-                } else if curve.bend == 0.0 && rng.random_bool(0.025) {
-                    curve.bend = [-1.0, 1.0][rng.random_range(0..2)] / radius;
+                } else if curve.bend == 0.0 && rng.random_bool(0.05) {
+                    curve.bend = [-1.0, 1.0][rng.random_range(0..2)] * tightest;
                 }
                 let agrees = (curve.left(at) > 0.0) == is_above;
                 weights.push(if agrees { told } else { 1.0 - told });

@@ -10,9 +10,8 @@ use crate::belief::front::walk::take;
 use crate::geometry::approximate::sqrt;
 use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
 
-/// A correlation of offset and direction above this moves the pivot: its square, where the front is straight and where
-/// it bends.
-const CORRELATED: [f32; 2] = [0.35 * 0.35, 0.9 * 0.9];
+/// A correlation of offset and direction above this moves the pivot of a straight front: its square.
+const CORRELATED: f32 = 0.35 * 0.35;
 
 /// A pivot that follows a robot stays as near to the waist as this, in widths over turns.
 const FOLLOWS: f32 = 1.0;
@@ -82,30 +81,13 @@ fn larger(a: f32, b: f32) -> f32 {
 }
 
 impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
-    /// Lays the grid anew if its cells are of another size than its mass wants, or lie elsewhere.
+    /// Lays the grid anew if its cells are of another size than its mass wants, or lie elsewhere. Makes room for offsets
+    /// that will diffuse by a margin, metres. If the front bends, the pivot moves along it to where a robot is, but not
+    /// so far from the waist that most cells would be wasted.
     ///
     /// `O(K M L)`: some 60,000 instructions for 16 x 16 x 3 if it is laid anew, and 10,000 if not.
-    pub(crate) fn lay_around(&mut self, tail: f32) {
-        if let Some(lay) = self.around(tail) {
-            self.lay_anew(lay);
-        }
-    }
-
-    #[inline(never)] // what it needs is not on the stack while cells are laid
-    fn around(&self, tail: f32) -> Option<Lay> {
-        let moments = Moments::of(self);
-        let [straight, bent] = CORRELATED;
-        let most = if self.lay.bend > 0.0 { bent } else { straight };
-        let moves = !self.lay.is_whole::<K>() && moments.correlation_squared() > most;
-        let by = if moves { self.towards(&moments, 0.0) } else { None };
-        let has_mass = moments.total > 0.0;
-        if has_mass { self.wanted(&moments, by, tail) } else { None }
-    }
-
-    /// Makes room for offsets that will diffuse by a margin, metres. If the front bends, it also moves the pivot along
-    /// it to where a robot is, but not so far from the waist that most cells would be wasted.
-    pub(crate) fn follow(&mut self, robot: Site, margin: f32, tail: f32) {
-        let wanted = self.around_robot(robot, tail);
+    pub(crate) fn lay_around(&mut self, robot: Option<Site>, margin: f32, tail: f32) {
+        let wanted = self.around(robot, tail);
         if margin > 0.0 {
             let lay = wanted.unwrap_or(self.lay);
             let step = lay.step + 2.0 * margin / M as f32;
@@ -115,23 +97,25 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
         }
     }
 
-    #[inline(never)] // as above
-    fn around_robot(&self, robot: Site, tail: f32) -> Option<Lay> {
-        let lay = self.lay;
-        let moments = Moments::of(self);
+    #[inline(never)] // what it needs is not on the stack while cells are laid
+    fn around(&self, robot: Option<Site>, tail: f32) -> Option<Lay> {
+        let (lay, moments) = (self.lay, Moments::of(self));
         if moments.total <= 0.0 {
             return None;
         }
-        let by = if lay.bend > 0.0 && !lay.is_whole::<K>() {
-            let [ahead, _] = Unit::of(moments.heading(self)).seen(metres(robot - lay.pivot));
-            let waist = self.waist_ahead(&moments);
-            let [turns, offsets] = moments.variance;
-            let narrow = offsets - moments.covariance * moments.covariance / turns;
-            let narrow = if narrow > 0.0 { narrow } else { 0.0 };
-            let most = FOLLOWS * sqrt(narrow / turns) * lay.step / lay.turn;
-            self.towards(&moments, limited(ahead - waist, most))
-        } else {
-            None
+        let by = match robot {
+            _ if lay.is_whole::<K>() => None,
+            Some(robot) if lay.bend > 0.0 => {
+                let [ahead, _] = Unit::of(moments.heading(self)).seen(metres(robot - lay.pivot));
+                let waist = self.waist_ahead(&moments);
+                let [turns, offsets] = moments.variance;
+                let narrow = offsets - moments.covariance * moments.covariance / turns;
+                let narrow = if narrow > 0.0 { narrow } else { 0.0 };
+                let most = FOLLOWS * sqrt(narrow / turns) * lay.step / lay.turn;
+                self.towards(&moments, limited(ahead - waist, most))
+            }
+            _ if moments.correlation_squared() > CORRELATED => self.towards(&moments, 0.0),
+            _ => None,
         };
         self.wanted(&moments, by, tail)
     }

@@ -7,12 +7,12 @@
 //! - **Labels** multiply the masses on either side by `p` and `1 - p`. A cell is cut by a ramp as wide as the cell is
 //!   seen from the label, and by the error of positions. `p` is 0.98 at most, so that one false label does not rule
 //!   out the truth.
-//! - **Laid by quantiles** (`laying.rs`). The grid spans the mass but for a thousandth on either side, and is laid anew
-//!   as that moves and shrinks. What lies beyond stays in the edge cells. So the cells shrink with what
-//!   is known, from metres to millimetres.
-//! - **Layers of curvature**: to the right, straight, to the left. In a unit of time a twentieth of each changes to its
+//! - **Laid by quantiles** (`laying.rs`). The grid spans the mass but for a thousandth on either side. After each label it
+//!   is laid anew. What lies beyond stays in the edge cells. So the cells shrink with what is known, from metres to
+//!   millimetres.
+//! - **Layers of curvature**: to the right, straight, to the left. In a unit of time a tenth of each changes to its
 //!   neighbours, where the robot is. That is how a front bends: a curve that was known behind the robot is less so
-//!   ahead.
+//!   ahead. A layer stands for the curvatures near its own, so its curves also spread on the way (`drift.rs`).
 //! - **Drift**: offsets diffuse by the front's speed, and directions by a radian for each 30 m.
 //! - **No front at all**: two masses, everywhere +1 and everywhere -1.
 //! - **A reliability that nobody knows**: two counters (`learnt.rs`).
@@ -25,6 +25,7 @@
 //! The tracker does not replace the exact beliefs. Of up to some 30 true labels of a straight line it loses up to a
 //! fifth of the bits.
 
+mod drift;
 mod grid;
 mod laying;
 mod learnt;

@@ -187,7 +187,7 @@ mod tests {
         assert!((off.deviation / known[1].deviation - 1.0).abs() < 0.05, "{off:?} {known:?}");
     }
 
-    /// Against what either label leaves of the variance.
+    /// Against what either label leaves of the variance, in cells that are laid at the same place.
     #[test]
     fn a_label_is_expected_to_take_what_it_takes() {
         for p in [1.0, 0.9, 0.7] {
@@ -198,11 +198,13 @@ mod tests {
                 let variance = |site| beside(tracker, site).deviation.powi(2);
                 places.map(variance).iter().sum::<f32>() / places.len() as f32
             };
-            let before = of(&tracker);
             for (x, off) in [(-3.0, 0.0), (0.0, 0.3), (6.0, 0.1), (14.0, -0.3), (18.0, 0.2)] {
                 let site = at(x, 10.0 + 0.1 * x + off);
                 let share = tracker.share_above(site);
                 let chance = tracker.chance(site) as f32;
+                let mut laid = tracker.clone();
+                laid.settle(site);
+                let before = of(&laid);
                 let [plus, minus] = [Label::Positive, Label::Negative].map(|label| {
                     let mut after = tracker.clone();
                     after.observe(site, label.into()).unwrap();

@@ -2,6 +2,7 @@
 
 use crate::belief::estimate::Estimates;
 use crate::belief::evidence::Evidence;
+use crate::belief::front::drift::TAIL;
 use crate::belief::front::grid::{Grid, Lay, Unit, angle, limited};
 use crate::belief::front::learnt::Learnt;
 use crate::belief::front::memory::{FrontMemory, Masses};
@@ -28,17 +29,9 @@ const NOWHERE: f32 = 0.1;
 /// Labels count as true no more often than this, so that one false label does not rule out the truth.
 const MOST: f32 = 0.98;
 
-/// The mass on either side that may lie beyond the cells.
-const TAIL: f32 = 1e-3;
-
-/// This share of the mass is spread over all cells in a unit of time, where the front diffuses.
-const EVEN: f32 = 1e-5;
-
-/// In a unit of time this share of a curvature changes.
-const BENDS: f32 = 0.05;
-
-/// A front that moves by so many metres may turn by a radian.
-const LEVER: f32 = 30.0;
+/// The outer layers bend so many times as tightly as was told. At their edge, a front that bends as told would look
+/// unlikely.
+const OUTER: f32 = 1.05;
 
 /// Positions that err by a deviation widen the edge of a label by so many of them, either way.
 const WIDER: f32 = 1.5;
@@ -86,7 +79,7 @@ const UNSURE: f32 = 1e-3;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Tracker<const K: usize, const M: usize, const L: usize> {
-    front: Front,
+    pub(super) front: Front,
     noise: Noise<AnyReliability>,
     pub(super) grid: Grid<K, M, L>,
     /// Everywhere +1, everywhere -1.
@@ -152,7 +145,7 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
             turn: core::f32::consts::TAU / K as f32,
             low: -far,
             step: 2.0 * far / M as f32,
-            bend: if L > 1 { self.front.bend() } else { 0.0 },
+            bend: if L > 1 { OUTER * self.front.bend() } else { 0.0 },
         });
         let lay = self.grid.lay;
         for layer in &mut self.grid.mass {
@@ -222,38 +215,6 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
         self.nowhere[0] + self.nowhere[1]
     }
 
-    /// Records that a robot has come to a site, and how much time has passed. By then the front may have moved, and
-    /// ahead of the robot it may bend otherwise. A straight front that does not move stays as it is known.
-    ///
-    /// Call it once a motion, before the label at its end is observed. The unit of time is the one of the front's
-    /// [`speed`](Front::speed), and one motion should take about one. Some 90,000 instructions for 16 x 16 x 3.
-    pub fn moved(&mut self, to: Site, elapsed: f32) {
-        let bends = self.grid.lay.bend > 0.0;
-        let pace = self.front.pace();
-        let passes = elapsed > 0.0;
-        if !passes || !bends && pace <= 0.0 {
-            return;
-        }
-        let elapsed = if elapsed < 16.0 { elapsed } else { 16.0 };
-        let deviation = pace * sqrt(elapsed);
-        let lay = self.grid.lay;
-        let margin = if deviation > 0.5 * lay.step { 3.0 * deviation } else { 0.0 };
-        self.grid.follow(to, margin, TAIL);
-        let lay = self.grid.lay;
-        if pace > 0.0 {
-            let (offset, turn) = (deviation / lay.step, deviation / (LEVER * lay.turn));
-            self.grid.blur_offsets(offset * offset);
-            self.grid.mix_columns(turn * turn);
-        }
-        if bends {
-            let share = 0.5 * BENDS * elapsed;
-            self.grid.mix_layers(if share < 0.25 { share } else { 0.25 });
-        }
-        let even = EVEN * elapsed;
-        let more = even * (1.0 - self.share_nowhere()) / (K * M * L) as f32;
-        self.grid.scale(1.0 - even, more);
-    }
-
     fn take(&mut self, site: Site, label: Label, tolerance: Tolerance) {
         let p = self.counted();
         let chance = self.weigh(site, label, p, Self::blur(tolerance));
@@ -264,7 +225,7 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
             let agree = (chance - (1.0 - p)) / sharp;
             learnt.count(if sharp.abs() > SHARP { agree.clamp(0.0, 1.0) } else { 0.5 });
         }
-        self.grid.lay_around(TAIL);
+        self.settle(site);
     }
 
     /// Weighs all by a label that is true with probability `p`. Returns how likely the label was.
@@ -353,7 +314,7 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
             for &Sample { site, label } in given {
                 self.weigh(site, label, MOST, 0.0);
             }
-            self.grid.lay_around(TAIL);
+            self.grid.lay_around(None, 0.0, TAIL);
         }
         self.start -= self.information() as f32;
     }
@@ -422,8 +383,9 @@ impl<const K: usize, const M: usize, const L: usize> Belief for Tracker<K, M, L>
             return Err(ObservationError::Tolerance(tolerance));
         }
         // A reading on the boundary agrees with both sides.
-        if let Reading::Side(label) = reading {
-            self.take(site, label, tolerance);
+        match reading {
+            Reading::Side(label) => self.take(site, label, tolerance),
+            Reading::Boundary => self.settle(site),
         }
         Ok(())
     }
