@@ -11,7 +11,7 @@ use crate::geometry::lattice::Site;
 /// The mass on either side that may lie beyond the cells.
 pub(super) const TAIL: f32 = 1e-3;
 
-/// This share of the mass is spread over all cells in a unit of time, where the front diffuses.
+/// This share of the mass is spread over all cells with each label, where the front diffuses.
 const EVEN: f32 = 1e-5;
 
 /// In a unit of time this share of a curvature changes.
@@ -37,7 +37,7 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
     pub fn moved(&mut self, to: Site, elapsed: f32) {
         let (bend, pace) = (self.grid.lay.bend, self.front.pace());
         let passes = elapsed > 0.0;
-        if !passes || bend <= 0.0 && pace <= 0.0 {
+        if !passes || !self.forgets() {
             return;
         }
         let elapsed = if elapsed < 16.0 { elapsed } else { 16.0 };
@@ -57,9 +57,16 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
             let share = 0.5 * BENDS * elapsed;
             self.grid.mix_layers(if share < 0.25 { share } else { 0.25 });
         }
-        let even = EVEN * elapsed;
-        let more = even * (1.0 - self.share_nowhere()) / (K * M * L) as f32;
-        self.grid.scale(1.0 - even, more);
+    }
+
+    /// Whether the front may move or bend.
+    fn forgets(&self) -> bool {
+        self.grid.lay.bend > 0.0 || self.front.pace() > 0.0
+    }
+
+    /// The share of the mass that is spread over all cells with a label.
+    pub(super) fn spreads(&self) -> f32 {
+        if self.forgets() { EVEN } else { 0.0 }
     }
 
     /// Lays the cells anew where a robot is, after a motion without a label. Some 75,000 instructions for 16 x 16 x 3.

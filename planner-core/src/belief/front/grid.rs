@@ -7,7 +7,7 @@
 //! Lengths are metres from the pivot and angles are radians from the frame's heading, all in single precision. So
 //! digits are lost neither far from the origin nor where the distribution is narrow.
 
-use crate::belief::front::walk::blur;
+use crate::belief::front::walk;
 use crate::geometry::approximate::{METRE, sqrt};
 use crate::geometry::heading::{Angle, Heading};
 use crate::geometry::lattice::{Site, Vector};
@@ -386,12 +386,13 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
         let more = variance - n * (n + 1.0) / 3.0;
         let more = if more > 0.0 { more } else { 0.0 };
         let part = (n + 0.5) * more / ((n + 1.0) * (n + 1.0) - variance);
-        let half = n + 0.5 + part;
+        let mut sums = [0.0; M];
         for column in self.mass.as_flattened_mut() {
+            let old = *column;
             if whole == 0 {
-                mix_neighbours(column, 0.5 * part / half);
+                walk::mix(&old, column, part / (2.0 * part + 1.0));
             } else {
-                blur(&column.clone(), column, half);
+                walk::blur(&old, column, &mut sums, whole.into(), part);
             }
         }
     }
@@ -435,28 +436,23 @@ fn mix_columns(layer: &mut [f32], flows: &mut [f32], share: f32) {
     let mut rest = layer;
     while let Some((column, after)) = rest.split_at_mut_checked(size).filter(|_| size > 0) {
         // What has come from the column before, and what comes from the next one.
-        for ((mass, next), flow) in column.iter_mut().zip(&*after).zip(flows.iter_mut()) {
+        let pass = |((mass, next), flow): ((&mut f32, &f32), &mut f32)| {
             let own = *mass;
             *mass += *flow;
             *flow = share * (own - next);
             *mass -= *flow;
+        };
+        let (fours, others) = column.as_chunks_mut::<4>();
+        let (next_fours, next_others) = after.get(..size).unwrap_or_default().as_chunks::<4>();
+        let (flow_fours, flow_others) = flows.as_chunks_mut::<4>();
+        for ((four, next), flow) in fours.iter_mut().zip(next_fours).zip(flow_fours) {
+            four.iter_mut().zip(next).zip(flow).for_each(pass);
         }
+        others.iter_mut().zip(next_others).zip(flow_others).for_each(pass);
         if after.is_empty() {
             column.iter_mut().zip(&*flows).for_each(|(mass, flow)| *mass += flow);
         }
         rest = after;
-    }
-}
-
-/// Lets a share of each cell's mass pass to each neighbour. None passes beyond the edges.
-#[inline(never)]
-fn mix_neighbours(column: &mut [f32], share: f32) {
-    let mut rest = column;
-    let mut from_before = 0.0;
-    while let Some((mass, after)) = rest.split_first_mut() {
-        let flow = after.first().map_or(0.0, |next| share * (*next - *mass));
-        *mass += from_before + flow;
-        (from_before, rest) = (-flow, after);
     }
 }
 

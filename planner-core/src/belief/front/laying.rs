@@ -6,7 +6,7 @@
 
 use crate::belief::front::grid::{Grid, Lay, Unit, angle, limited, metres, radians};
 use crate::belief::front::moments::Moments;
-use crate::belief::front::walk::take;
+use crate::belief::front::walk::{pairs, take};
 use crate::geometry::approximate::sqrt;
 use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
 
@@ -249,11 +249,13 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
         let turned = radians(lay.heading.since(old.heading));
         let (per_cell, per_column) = (1.0 / old.step, 1.0 / old.turn);
         let goes_round = [old, lay].map(Lay::is_whole::<K>);
+        let mut sums = [0.0; M];
         for (columns, bend) in self.mass.iter_mut().zip(old.bends::<L>()) {
             for (column, along) in columns.iter_mut().zip(&self.along) {
                 let [ahead, left] = along.seen(by);
                 let low = lay.low - old.low + left - old.bulge(bend, ahead);
-                take(&column.clone(), column, [low, lay.step].map(|it| it * per_cell));
+                let places = [low, lay.step].map(|it| it * per_cell);
+                take(&column.clone(), column, &mut sums, places);
             }
             // A curve's direction turns on the way to the pivot.
             let turned = turned - bent(bend, ahead) + lay.angle_at::<K>(0.0);
@@ -291,21 +293,11 @@ fn share(old: &[f32], new: &mut [f32], size: usize, [from, each]: [f32; 2], roun
             let wrapped = cell.rem_euclid(count as i32) as usize;
             let part = edge - place;
             if let Some(masses) = old.get(wrapped.wrapping_mul(size)..) {
-                add(column, part, masses);
+                pairs(column, masses, |to, mass| *to += part * mass);
             }
             place = edge;
         }
     }
-}
-
-/// Adds a share of each mass.
-fn add(column: &mut [f32], part: f32, masses: &[f32]) {
-    let (fours, others) = column.as_chunks_mut::<4>();
-    let (of_fours, of_others) = masses.as_chunks::<4>();
-    for (four, masses) in fours.iter_mut().zip(of_fours) {
-        four.iter_mut().zip(masses).for_each(|(to, mass)| *to += part * mass);
-    }
-    others.iter_mut().zip(of_others).for_each(|(to, mass)| *to += part * mass);
 }
 
 /// The greatest integer that is no greater.

@@ -235,9 +235,10 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
         let [plus, minus] = self.nowhere;
         let [plus, minus] = [plus * weights[0], minus * weights[1]];
         let chance = left + plus + minus;
-        let each = 1.0 / chance;
+        let (each, even) = (1.0 / chance, self.spreads());
         self.nowhere = [plus * each, minus * each];
-        self.grid.scale(each, 0.0);
+        let more = even * (1.0 - self.share_nowhere()) / (K * M * L) as f32;
+        self.grid.scale(each * (1.0 - even), more);
         chance
     }
 

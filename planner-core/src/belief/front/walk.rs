@@ -2,90 +2,88 @@
 //!
 //! The density within a cell is even. Places are counted in cells from the first one's edge.
 
-/// A walk along some cells. Each place that it is asked for lies no further back than the one before.
-#[derive(Clone, Copy)]
-struct Walk<'a> {
-    /// The cells that are still to come.
-    rest: &'a [f32],
-    /// Where the present cell ends, its mass, and the mass before it.
-    end: f32,
-    mass: f32,
-    before: f32,
+/// Goes along two rows of cells, four at a time.
+#[inline(always)]
+pub(super) fn pairs(row: &mut [f32], other: &[f32], mut each: impl FnMut(&mut f32, f32)) {
+    let count = row.len().min(other.len());
+    let (fours, rest) = row.get_mut(..count).unwrap_or_default().as_chunks_mut::<4>();
+    let (other_fours, other_rest) = other.get(..count).unwrap_or_default().as_chunks::<4>();
+    for (four, other) in fours.iter_mut().zip(other_fours) {
+        four.iter_mut().zip(other).for_each(|(cell, other)| each(cell, *other));
+    }
+    rest.iter_mut().zip(other_rest).for_each(|(cell, other)| each(cell, *other));
 }
 
-impl<'a> Walk<'a> {
-    /// Along all cells, from the first to the last.
-    fn along(masses: &'a [f32]) -> Self {
-        Self { rest: masses, end: 0.0, mass: 0.0, before: 0.0 }
-    }
-
-    /// The mass up to a place, which may lie before the first cell.
-    #[inline]
-    fn until(&mut self, place: f32) -> f32 {
-        while place > self.end {
-            let Some((mass, rest)) = self.rest.split_first() else {
-                return self.before + self.mass;
-            };
-            self.before += self.mass;
-            (self.mass, self.rest) = (*mass, rest);
-            self.end += 1.0;
-        }
-        self.before + self.mass * (place - self.end + 1.0)
-    }
+/// The mass before each cell, and the whole mass, as multiples of a unit: `by` is one over it.
+#[inline(always)]
+fn sum_up(masses: &[f32], before: &mut [f32], by: f32) -> f32 {
+    let mut sum = 0.0;
+    pairs(before, masses, |before, mass| {
+        *before = sum;
+        sum += by * mass;
+    });
+    sum
 }
 
 /// The masses of some cells in cells elsewhere, by where the first begins and how wide each is, counted in the old ones.
-/// The cells at the ends hold what lies beyond.
+/// The cells at the ends hold what lies beyond. `sums` is room for as many numbers as there are old cells.
 #[inline(never)]
-pub(crate) fn take(old: &[f32], new: &mut [f32], [from, each]: [f32; 2]) {
-    let mut rest = old.iter();
-    let mut mass = rest.next().copied().unwrap_or(0.0);
-    let (mut place, mut edge, mut end) = (0.0, 1.0, from);
-    let Some((last, but_last)) = new.split_last_mut() else { return };
-    let mut until = |end: f32| {
-        let mut sum = 0.0;
-        if end <= place {
-            return sum;
-        }
-        while edge < end {
-            sum += mass * (edge - place);
-            place = edge;
-            let Some(next) = rest.next() else {
-                (mass, edge) = (0.0, f32::MAX);
-                break;
-            };
-            (mass, edge) = (*next, edge + 1.0);
-        }
-        sum += mass * (end - place);
-        place = end;
-        sum
+pub(crate) fn take(old: &[f32], new: &mut [f32], sums: &mut [f32], [from, each]: [f32; 2]) {
+    let total = sum_up(old, sums, 1.0);
+    let until = |place: f32| {
+        let cell = place as usize;
+        let of_cell = sums.get(cell).zip(old.get(cell));
+        let within = |(before, mass): (&f32, &f32)| before + mass * (place - cell as f32);
+        if place > 0.0 { of_cell.map_or(total, within) } else { 0.0 }
     };
+    let Some((last, but_last)) = new.split_last_mut() else { return };
+    let (mut place, mut before) = (from, 0.0);
     for cell in but_last {
-        end += each;
-        *cell = until(end);
+        place += each;
+        let until = until(place);
+        *cell = until - before;
+        before = until;
     }
-    *last = until(f32::MAX);
+    *last = total - before;
 }
 
-/// Blurs masses by a box of so many cells to either side. What would lie beyond stays in the edge cells.
+/// Blurs masses by a box of so many whole cells to either side of each, and a part of the next. What would lie beyond
+/// stays in the edge cells. `sums` is room for as many numbers as there are masses.
 #[inline(never)]
-pub(crate) fn blur(old: &[f32], new: &mut [f32], half: f32) {
-    let per_width = 0.5 / half;
+pub(crate) fn blur(old: &[f32], masses: &mut [f32], sums: &mut [f32], whole: usize, part: f32) {
+    let by = 1.0 / (2.0 * (whole as f32 + part) + 1.0);
+    let (total, part) = (sum_up(old, sums, by), by * part);
+    // What lies below the upper end of each box, less what lies below its lower end.
+    let upper = whole.saturating_add(1);
+    let ends = old.get(upper..).unwrap_or_default();
+    let (below, beyond) = masses.split_at_mut_checked(ends.len()).unwrap_or_default();
+    pairs(below, sums.get(upper..).unwrap_or_default(), |mass, sum| *mass = sum);
+    pairs(below, ends, |mass, next| *mass += part * next);
+    beyond.fill(total);
+    let above = masses.get_mut(upper..).unwrap_or_default();
+    pairs(above, sums.get(1..).unwrap_or_default(), |mass, sum| *mass -= sum);
+    pairs(above, old, |mass, last| *mass += part * last);
+    let (total, kept) = (total / by, masses.iter().sum::<f32>());
     let [first, last] = [old.first(), old.last()].map(|it| it.copied().unwrap_or(0.0));
-    let [mut behind, mut ahead] = [Walk::along(old); 2];
-    let (mut cell, mut kept) = (0.5, 0.0);
-    for mass in new.iter_mut() {
-        *mass = (ahead.until(cell + half) - behind.until(cell - half)) * per_width;
-        kept += *mass;
-        cell += 1.0;
-    }
-    let beyond = old.iter().sum::<f32>() - kept;
-    let beyond = if beyond > 0.0 { beyond } else { 0.0 };
+    let beyond = if total > kept { total - kept } else { 0.0 };
     let share = if first + last > 0.0 { first / (first + last) } else { 0.5 };
-    if let Some(mass) = new.first_mut() {
+    if let Some(mass) = masses.first_mut() {
         *mass += beyond * share;
     }
-    if let Some(mass) = new.last_mut() {
+    if let Some(mass) = masses.last_mut() {
         *mass += beyond * (1.0 - share);
     }
+}
+
+/// Lets a share of each cell's mass pass to each neighbour. None passes beyond the edges.
+#[inline(never)]
+pub(crate) fn mix(old: &[f32], masses: &mut [f32], share: f32) {
+    let Some((last, but_last)) = masses.split_last_mut() else { return };
+    let mut come = 0.0;
+    pairs(but_last, old.get(1..).unwrap_or_default(), |mass, next| {
+        let flow = share * (next - *mass);
+        *mass += come + flow;
+        come = -flow;
+    });
+    *last += come;
 }
