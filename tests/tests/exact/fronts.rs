@@ -267,6 +267,8 @@ fn a_front_that_bends_and_moves_is_known_as_by_a_cloud_of_curves() {
         let (radius, speed) =
             [(30.0, 0.0), (60.0, 0.05), (20.0, 0.02), (100.0, 0.1)][case as usize % 4];
         let p = [1.0, 0.9][case as usize / 2 % 2];
+        // As the tracker assumes: its outer layers bend a little more than was told, and curves stray on the way.
+        let tightest = 1.05 / radius;
         let front = Front::bending(radius).and_then(|it| it.moving(speed)).expect("a front");
         let near = Area::metres([-6.0, -6.0], [6.0, 6.0]).expect("an area");
         let noise = Noise::new(p).expect("a probability");
@@ -276,7 +278,7 @@ fn a_front_that_bends_and_moves_is_known_as_by_a_cloud_of_curves() {
                 let angle = rng.random_range(0.0..TAU);
                 let offset = rng.random_range(-8.5..8.5);
                 let normal = Vector2::new(-angle.sin(), angle.cos());
-                let bend = f64::from(rng.random_range(-1..=1)) / radius;
+                let bend = f64::from(rng.random_range(-1..=1)) * tightest;
                 Curve { at: Point2::origin() + normal * offset, angle, bend }
             })
             .filter(|it| {
@@ -285,12 +287,15 @@ fn a_front_that_bends_and_moves_is_known_as_by_a_cloud_of_curves() {
             })
             .collect();
         let truth = Curve { at: Point2::origin(), angle: 0.0, bend: 1.0 / radius };
+        let mut from = Point2::origin();
         for step in 0..40 {
             let foot = truth.on(0.5 * f64::from(step));
             let normal = Vector2::new(-foot.angle.sin(), foot.angle.cos());
             let aside = [0.8, -0.3, 0.2, -1.0, 0.5, -0.6][step as usize % 6];
             let at = foot.at + normal * aside;
             let is_above = (truth.left(at) > 0.0) == rng.random_bool(p);
+            let way = (at - from).norm().min(0.5 / tightest);
+            from = at;
             tracker.moved(site(at), 1.0);
             tracker.observe(site(at), label(is_above).into()).expect("a label");
             let told = p.min(MOST);
@@ -342,8 +347,8 @@ fn a_front_that_bends_and_moves_is_known_as_by_a_cloud_of_curves() {
         "{} places: shares {share:.3?}, offsets {offset:.2?}, widths {width:.2?}",
         shares.len()
     );
-    assert!(shares.len() > 150 && share.mean < 0.05 && share.p95 < 0.2, "{share:?}");
-    assert!(offset.mean < 0.5 && (0.8..1.6).contains(&width.mean), "{offset:?}, {width:?}");
+    assert!(shares.len() > 150 && share.mean < 0.02 && share.p95 < 0.1, "{share:?}");
+    assert!(offset.mean < 0.2 && (0.9..1.3).contains(&width.mean), "{offset:?}, {width:?}");
 }
 
 /// Curves drawn by their weights, evenly.
@@ -382,5 +387,5 @@ fn a_tracker_has_the_same_bytes_on_every_machine() {
     let hash = bytes.iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
         (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3)
     });
-    assert_eq!((bytes.len(), hash), (3128, 0xf306_c778_3453_8e02), "{hash:#x}");
+    assert_eq!((bytes.len(), hash), (3126, 0xd99a_39da_cf0c_0f8b), "{hash:#x}");
 }
