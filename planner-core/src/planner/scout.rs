@@ -49,7 +49,7 @@ const PRICE: f32 = 0.5;
 const SHORT: f32 = 0.125;
 
 /// A boundary is found where its half-width is below so many reaches.
-const FOUND: f32 = 1.5;
+pub(crate) const FOUND: f32 = 1.5;
 
 /// A label that tells less than this share of what one can tell is not worth its way.
 const LEAST: f32 = 0.1;

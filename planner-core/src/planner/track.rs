@@ -33,7 +33,7 @@ use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::front_state::FrontState;
 use crate::planner::guard::Guard;
 use crate::planner::lap::Lap;
-use crate::planner::scout::{AGAIN, FAINT, LOOKED_AT, OneLabel, Scout};
+use crate::planner::scout::{AGAIN, FAINT, FOUND, LOOKED_AT, OneLabel, Scout};
 use crate::planner::setup::{Restart, SetupError};
 use crate::planner::silence::Silence;
 use crate::planner::snapshot::{Persist, RestoreError, Snapshot};
@@ -42,8 +42,12 @@ use crate::planner::{Plan, Planner, Stage, StopReason};
 /// Circles on which a motion along a front may end.
 const CIRCLES: u16 = 4;
 
-/// Progress counts in full where the half-width is below this share of the reach: 0.5 m for 2 m.
-const WIDTH: f32 = 0.25;
+/// Progress counts in full where the half-width is below this share of the reach, 0.5 m for 2 m, and not at all where it
+/// is above that one.
+const WIDTHS: [f32; 2] = [0.25, 1.25];
+
+/// Where the front would not count as found, progress counts so much the other way: the robot rather goes back.
+const BACK: f32 = 0.02;
 
 /// A keep-out on the front is passed if it is no longer than so many reaches.
 const BEYOND: u16 = 10;
@@ -199,11 +203,16 @@ impl Aim {
     }
 
     /// The progress of a way that ends at a site, as a share of the reach. It counts less where the front is not known
-    /// well.
+    /// well, and not at all where it is hardly known. A robot with poor labels would otherwise run ahead of what it knows.
     fn progress(&self, way: Vector, to: Site, reach: f32) -> f32 {
         let half = NINETY * self.waist.deviation_beside(to) * UNITS_PER_METRE as f32;
-        let most = WIDTH * reach;
-        let counts = if half > most { most / half } else { 1.0 };
+        let [full, none] = WIDTHS;
+        let counts = match half / reach {
+            width if width <= full => 1.0,
+            width if width <= none => (none / width - 1.0) / (none / full - 1.0),
+            width if width <= FOUND => 0.0,
+            _ => -BACK,
+        };
         let progress = way.x as f32 * self.along.x + way.z as f32 * self.along.z;
         counts * progress / reach
     }
