@@ -8,9 +8,6 @@ use crate::belief::front::tracker::Tracker;
 use crate::geometry::approximate::sqrt;
 use crate::geometry::lattice::Site;
 
-/// The mass on either side that may lie beyond the cells.
-pub(super) const TAIL: f32 = 1e-3;
-
 /// This share of the mass is spread over all cells with each label, where the front diffuses.
 const EVEN: f32 = 1e-5;
 
@@ -77,6 +74,6 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
     /// Lays the cells anew, with room for offsets that will diffuse by a deviation, metres.
     fn make_room(&mut self, robot: Site, deviation: f32) {
         let margin = if deviation > 0.5 * self.grid.lay.step { ROOM * deviation } else { 0.0 };
-        self.grid.lay_around(Some(robot), margin, TAIL);
+        self.grid.lay_around(Some(robot), margin);
     }
 }

@@ -591,7 +591,7 @@ mod tests {
                 *column = [if off.abs() < 1.6 { 1.0 } else { 0.0 }; 16];
             }
             let before: f32 = grid.cells().map(|it| *it).sum();
-            grid.lay_around(None, 0.0, 1e-3);
+            grid.lay_around(None, 0.0);
             let after: f32 = grid.cells().map(|it| *it).sum();
             assert!((after / before - 1.0).abs() < 1e-5, "{first}");
             assert!(!grid.lay.is_whole::<16>(), "{first}");

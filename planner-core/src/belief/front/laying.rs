@@ -10,6 +10,9 @@ use crate::belief::front::walk::{pairs, take};
 use crate::geometry::approximate::sqrt;
 use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
 
+/// The mass on either side that may lie beyond the cells.
+const TAIL: f32 = 1e-3;
+
 /// A correlation of offset and direction above this moves the pivot of a straight front: its square.
 const CORRELATED: f32 = 0.35 * 0.35;
 
@@ -38,9 +41,9 @@ const PLACES: usize = 64;
 const WIDE: f32 = 0.8;
 
 /// From where to where the mass lies but for a tail on either side, in cells from the first one's edge.
-fn range<const N: usize>(masses: &[f32; N], tail: f32) -> [f32; 2] {
+fn range<const N: usize>(masses: &[f32; N]) -> [f32; 2] {
     let total: f32 = masses.iter().sum();
-    let tail = tail * total;
+    let tail = TAIL * total;
     let wants_out = |edge: Option<&f32>, next: Option<&f32>| {
         let [edge, next] = [edge, next].map(|it| it.copied().unwrap_or(0.0));
         edge > HEAVY * next && edge > 2.0 * tail
@@ -86,8 +89,8 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
     /// so far from the waist that most cells would be wasted.
     ///
     /// `O(K M L)`: some 60,000 instructions for 16 x 16 x 3 if it is laid anew, and 10,000 if not.
-    pub(crate) fn lay_around(&mut self, robot: Option<Site>, margin: f32, tail: f32) {
-        let wanted = self.around(robot, tail);
+    pub(crate) fn lay_around(&mut self, robot: Option<Site>, margin: f32) {
+        let wanted = self.around(robot);
         if margin > 0.0 {
             let lay = wanted.unwrap_or(self.lay);
             let step = lay.step + 2.0 * margin / M as f32;
@@ -98,7 +101,7 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
     }
 
     #[inline(never)] // what it needs is not on the stack while cells are laid
-    fn around(&self, robot: Option<Site>, tail: f32) -> Option<Lay> {
+    fn around(&self, robot: Option<Site>) -> Option<Lay> {
         let (lay, moments) = (self.lay, Moments::of(self));
         if moments.total <= 0.0 {
             return None;
@@ -117,7 +120,7 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
             _ if moments.correlation_squared() > CORRELATED => self.towards(&moments, 0.0),
             _ => None,
         };
-        self.wanted(&moments, by, tail)
+        self.wanted(&moments, by)
     }
 
     /// How far ahead of the pivot the waist lies, metres.
@@ -126,7 +129,7 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
     }
 
     /// Where the cells should lie; `None` if they lie well enough.
-    fn wanted(&self, moments: &Moments<K, M, L>, moved: Option<Vector>, tail: f32) -> Option<Lay> {
+    fn wanted(&self, moments: &Moments<K, M, L>, moved: Option<Vector>) -> Option<Lay> {
         let (lay, was_whole) = (self.lay, self.lay.is_whole::<K>());
         // Columns that go all around begin opposite to the mean direction.
         let mut columns = moments.columns;
@@ -142,8 +145,8 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
             from = from.turned(angle(radians(angle(first as f32 * lay.turn))));
         }
         let [first, last] = match moved {
-            Some(by) if L > 1 => self.turns_about(moments, by, tail),
-            _ => range(&columns, tail),
+            Some(by) if L > 1 => self.turns_about(moments, by),
+            _ => range(&columns),
         };
         let turn = larger((last - first) * lay.turn / K as f32, LEAST[1]);
         let is_whole = turn * K as f32 > WIDE * core::f32::consts::TAU;
@@ -156,10 +159,8 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
         let turns = is_whole != was_whole
             || !is_whole && (is_off(lay.turn, turn) || off.abs() > OFF * K as f32);
         let (pivot, [low, high]) = match moved {
-            Some(by) => {
-                (lay.pivot.step(by).unwrap_or(lay.pivot), self.range_about(moments, by, tail))
-            }
-            None => (lay.pivot, range(&moments.rows, tail).map(|it| lay.low + it * lay.step)),
+            Some(by) => (lay.pivot.step(by).unwrap_or(lay.pivot), self.range_about(moments, by)),
+            None => (lay.pivot, range(&moments.rows).map(|it| lay.low + it * lay.step)),
         };
         let step = larger((high - low) / M as f32, LEAST[0]);
         let low = 0.5 * (low + high) - 0.5 * step * M as f32;
@@ -191,7 +192,7 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
 
     /// The range of directions about another pivot, in columns: each layer has turned by its own angle.
     #[inline(never)]
-    fn turns_about(&self, moments: &Moments<K, M, L>, by: Vector, tail: f32) -> [f32; 2] {
+    fn turns_about(&self, moments: &Moments<K, M, L>, by: Vector) -> [f32; 2] {
         let lay = self.lay;
         let [ahead, _] = Unit::of(moments.heading(self)).seen(metres(by));
         let most = bent(lay.bend, ahead).abs() / lay.turn;
@@ -205,12 +206,12 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
                 at += per_place;
             }
         }
-        range(&places, tail).map(|it| it * place - most)
+        range(&places).map(|it| it * place - most)
     }
 
     /// The range of offsets about another pivot.
     #[inline(never)]
-    fn range_about(&self, moments: &Moments<K, M, L>, by: Vector, tail: f32) -> [f32; 2] {
+    fn range_about(&self, moments: &Moments<K, M, L>, by: Vector) -> [f32; 2] {
         let (lay, by) = (self.lay, metres(by));
         let mut lows = moments.layers;
         let (mut least, mut most) = (f32::MAX, f32::MIN);
@@ -235,7 +236,7 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
                 count(&mut places, column, [at, stride]);
             }
         }
-        range(&places, tail).map(|it| least + it * place)
+        range(&places).map(|it| least + it * place)
     }
 
     /// Puts the mass into other cells: what lies beyond goes into the edge cells.

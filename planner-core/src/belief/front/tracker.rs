@@ -2,7 +2,6 @@
 
 use crate::belief::estimate::Estimates;
 use crate::belief::evidence::Evidence;
-use crate::belief::front::drift::TAIL;
 use crate::belief::front::grid::{Grid, Lay, Unit, angle, limited};
 use crate::belief::front::learnt::Learnt;
 use crate::belief::front::memory::{FrontMemory, Masses};
@@ -315,7 +314,7 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
             for &Sample { site, label } in given {
                 self.weigh(site, label, MOST, 0.0);
             }
-            self.grid.lay_around(None, 0.0, TAIL);
+            self.grid.lay_around(None, 0.0);
         }
         self.start -= self.information() as f32;
     }
