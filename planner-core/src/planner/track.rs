@@ -42,9 +42,9 @@ use crate::planner::{Plan, Planner, Stage, StopReason};
 /// Circles on which a motion along a front may end.
 const CIRCLES: u16 = 4;
 
-/// Progress counts in full where the half-width is below this share of the reach, 0.5 m for 2 m, and not at all where it
-/// is above that one.
-const WIDTHS: [f32; 2] = [0.25, 1.25];
+/// Progress counts in full where the half-width is below the first share of the reach, 1 m for 2 m, and not at all where
+/// it is above the second.
+const WIDTHS: [f32; 2] = [0.5, 1.4];
 
 /// Where the front would not count as found, progress counts so much the other way: the robot rather goes back.
 const BACK: f32 = 0.02;

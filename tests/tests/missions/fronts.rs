@@ -102,9 +102,9 @@ fn labels_that_are_sometimes_wrong_map_a_front() {
     let bounds = [
         [0.20, 0.78, 1.07, 0.0],
         [0.07, 0.46, 1.03, 0.0],
-        [0.21, 0.96, 1.09, 0.0],
-        [0.23, 1.1, 1.25, 0.005],
-        [0.26, 1.2, 1.13, 0.01],
+        [0.22, 0.97, 1.09, 0.0],
+        [0.28, 1.2, 1.26, 0.005],
+        [0.28, 1.2, 1.14, 0.01],
         [0.105, 0.53, 1.035, 0.0],
     ];
     check(0.9, bounds);
@@ -203,7 +203,7 @@ fn go_along<D: Dynamics + Clone>(dynamics: D, p: f64, number: u64) {
     let followed = flown.followed;
     println!("vehicle {number}, p {p}: {followed:.0} m of 251 in {MOTIONS} motions, {most} looks");
     assert!(!flown.is_lost && most <= LOOKED_AT, "{number}, {p}");
-    assert!(followed > 1.0, "vehicle {number}, p {p}: {followed}");
+    assert!(followed > 140.0, "vehicle {number}, p {p}: {followed}");
 }
 
 #[test]
