@@ -16,5 +16,6 @@ mod scc;
 mod search;
 mod spread;
 mod tolerance;
+mod tracker_beside_table;
 mod unknown_reliability;
 mod version_space;
