@@ -3,6 +3,7 @@
 //! The density within a cell is even. Places are counted in cells from the first one's edge.
 
 /// Goes along two rows of cells, four at a time.
+#[expect(clippy::inline_always, reason = "a build for size would call it for each cell")]
 #[inline(always)]
 pub(super) fn pairs(row: &mut [f32], other: &[f32], mut each: impl FnMut(&mut f32, f32)) {
     let count = row.len().min(other.len());
@@ -15,6 +16,7 @@ pub(super) fn pairs(row: &mut [f32], other: &[f32], mut each: impl FnMut(&mut f3
 }
 
 /// The mass before each cell, and the whole mass, as multiples of a unit: `by` is one over it.
+#[expect(clippy::inline_always, reason = "a call for each column costs 2 % of a label")]
 #[inline(always)]
 fn sum_up(masses: &[f32], before: &mut [f32], by: f32) -> f32 {
     let mut sum = 0.0;
