@@ -310,7 +310,9 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
             (Some(Errand { leg, arrives, .. }), _) => {
                 let least = if arrives { FAINT } else { least };
                 let told = self.tracker.tells(self.tracker.share_above(leg.1.site));
-                (leg, stage, leg.1.site != pose.site && told > least)
+                // It has gone round without a label: any one may change where it goes.
+                let tells = told > least || self.silence.is_long();
+                (leg, stage, leg.1.site != pose.site && tells)
             }
             (None, Some((Best { leg, .. }, stage))) => (leg, stage, true),
             (None, None) => return None,
