@@ -158,7 +158,7 @@ impl Row {
         let covers = self.off.iter().filter(|[off, half]| off <= half).count();
         assert!(covers * 100 >= 95 * self.off.len(), "{covers} of {}", self.off.len());
         assert!(self.pieces.iter().all(|(pieces, are_whole)| *pieces == 1 || !are_whole));
-        assert!(self.gaps.iter().all(|it| *it < 9.0 * REACH), "{:?}", self.gaps);
+        assert!(self.gaps.iter().all(|it| *it < 7.0 * REACH), "{:?}", self.gaps);
         assert!(self.twice.iter().all(|it| *it < 0.01), "{:?}", self.twice);
     }
 }
