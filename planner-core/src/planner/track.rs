@@ -6,10 +6,11 @@
 //!   way there. The places are ends of the next motion, some along the mean line, and some all over the area.
 //! - **Follow**: once the front is found, an end of the next motion is worth the information of its label, and the
 //!   progress along the front as a share of the reach, the way that the robot faced at the start. Where the front is not
-//!   known well, progress counts less. So the robot stops to look where it must.
+//!   known well, progress counts less, and in the end not at all. So the robot stops to look where it must.
 //! - **Go round**: where a keep-out lies on the front, the robot goes to the first place beyond it. Where the front
 //!   leaves the area, it goes back in the other direction.
-//! - **Come home**: where no label in reach would tell anything, the robot goes back to the front.
+//! - **Come home**: where no label in reach would tell anything, the robot goes back to the front. If it has turned all
+//!   round on such ways without a label, it reads one where it arrives.
 //! - **Begin again**: an alarm of the tracker's evidence says that the front bends more tightly than was told, or is
 //!   lost. Then it is sought anew nearby.
 //!
@@ -42,8 +43,8 @@ use crate::planner::{Plan, Planner, Stage, StopReason};
 /// Circles on which a motion along a front may end.
 const CIRCLES: u16 = 4;
 
-/// Progress counts in full where the half-width is below the first share of the reach, 1 m for 2 m, and not at all where
-/// it is above the second.
+/// Progress counts in full where the half-width is below the first share of the reach: 1 m for 2 m. It does not count
+/// where it is above the second.
 const WIDTHS: [f32; 2] = [0.5, 1.4];
 
 /// Where the front would not count as found, progress counts so much the other way: the robot rather goes back.

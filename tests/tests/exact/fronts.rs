@@ -17,7 +17,7 @@ const SIDE: f64 = 20.0;
 /// The reliability that a label is told to have at most.
 const MOST: f64 = 0.98;
 
-fn site(at: Point2<f64>) -> Site {
+pub(crate) fn site(at: Point2<f64>) -> Site {
     Site::try_from(at).expect("on the lattice")
 }
 
@@ -25,12 +25,12 @@ fn area() -> Area {
     Area::metres([0.0, 0.0], [SIDE, SIDE]).expect("an area")
 }
 
-fn label(is_above: bool) -> Label {
+pub(crate) fn label(is_above: bool) -> Label {
     if is_above { Label::Positive } else { Label::Negative }
 }
 
 /// How far to the left of a line through a place a point lies.
-fn left(at: Point2<f64>, through: Point2<f64>, angle: f64) -> f64 {
+pub(crate) fn left(at: Point2<f64>, through: Point2<f64>, angle: f64) -> f64 {
     let off = at - through;
     off.y * angle.cos() - off.x * angle.sin()
 }

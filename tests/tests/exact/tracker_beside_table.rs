@@ -7,13 +7,14 @@ use std::f64::consts::TAU;
 use nalgebra::{Point2, Vector2};
 use planner_core::geometry::lattice::Vector;
 use planner_core::{
-    Area, Belief, CellPosterior, Front, Label, Line, Noise, PosteriorView, Prior, Sample, Site,
-    Tracker,
+    Area, Belief, CellPosterior, Front, Line, Noise, PosteriorView, Prior, Sample, Tracker,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use tests::cases;
+
+use crate::fronts::{label, left, site};
 
 const SIDE: f64 = 20.0;
 
@@ -32,10 +33,8 @@ struct Truth {
 }
 
 impl Truth {
-    fn label(&self, at: Point2<f64>) -> Label {
-        let off = at - self.through;
-        let is_above = off.y * self.angle.cos() - off.x * self.angle.sin() > 0.0;
-        if is_above { Label::Positive } else { Label::Negative }
+    fn sample(&self, at: Point2<f64>) -> Sample {
+        Sample { site: site(at), label: label(left(at, self.through, self.angle) > 0.0) }
     }
 
     /// The mean distance of a line from five places of the true one.
@@ -44,10 +43,6 @@ impl Truth {
         let places = [-4.0, -2.0, 0.0, 2.0, 4.0].map(|by| self.through + along * by);
         places.map(|at| line.distance(at).abs()).iter().sum::<f64>() / 5.0
     }
-}
-
-fn sample(truth: &Truth, at: Point2<f64>) -> Sample {
-    Sample { site: Site::try_from(at).expect("near"), label: truth.label(at) }
 }
 
 /// The tracker and the table after each number of labels.
@@ -60,7 +55,7 @@ fn mission(number: u64, p: f64) -> Vec<[Option<Known>; 2]> {
     let place = |rng: &mut ChaCha8Rng| Point2::from([0, 1].map(|_| rng.random_range(0.0..SIDE)));
     let mut given: Vec<Sample> = Vec::new();
     while given.len() < 4 {
-        let next = sample(&truth, place(&mut rng));
+        let next = truth.sample(place(&mut rng));
         if given.iter().filter(|it| it.label == next.label).count() < 2 {
             given.push(next);
         }
@@ -72,11 +67,9 @@ fn mission(number: u64, p: f64) -> Vec<[Option<Known>; 2]> {
     let mut known = Vec::new();
     for labels in 1..=200 {
         let places: Vec<_> = (0..40).map(|_| place(&mut rng)).collect();
-        let open = |at: &Point2<f64>| {
-            (tracker.share_above(Site::try_from(*at).expect("near")) - 0.5).abs()
-        };
+        let open = |at: &Point2<f64>| (tracker.share_above(site(*at)) - 0.5).abs();
         let at = places.into_iter().min_by(|a, b| open(a).total_cmp(&open(b))).expect("a place");
-        let Sample { site, label } = sample(&truth, at);
+        let Sample { site, label } = truth.sample(at);
         let label = if rng.random_bool(p) { label } else { -label };
         tracker.observe(site, label.into()).expect("any label");
         if labels <= STORED {
@@ -92,8 +85,7 @@ fn mission(number: u64, p: f64) -> Vec<[Option<Known>; 2]> {
 
 fn of_tracker(tracker: &Tracker<24, 24, 1>, truth: &Truth) -> Known {
     let waist = tracker.waist();
-    let off = Point2::<f64>::from(waist.site) - truth.through;
-    let aside = (off.y * truth.angle.cos() - off.x * truth.angle.sin()).abs();
+    let aside = left(waist.site.into(), truth.through, truth.angle).abs();
     let bits = tracker.information();
     // As long as it may have any direction, nothing is stated.
     let Some(line) = tracker.centre() else { return (bits, f64::INFINITY, true) };

@@ -210,8 +210,8 @@ fn row(who: Who, world: World) -> Row {
     Row { mean, median: middle, covers, stopped }
 }
 
-/// In every world the median of the mean deviation is smaller than that of going to and fro, or about the same where the
-/// front is a line that stays and labels err. The mean of all worlds is much smaller.
+/// In every world the median of the mean deviation is smaller than that of going to and fro. About the same is enough where
+/// the front is a line that stays, and labels err. The mean of all worlds is much smaller.
 #[test]
 fn a_watched_stretch_is_known_better_than_by_other_ways() {
     let (mut watches, mut faults) = (0.0, Vec::new());

@@ -1,17 +1,17 @@
 //! What becomes of a belief as time passes and a robot goes on.
 //!
-//! A front that moves diffuses. Ahead of a robot, a front that bends may bend otherwise. Then the cells are laid anew, once
-//! for a motion: after the label at its end.
+//! A front that moves diffuses. Ahead of a robot, a front that bends may bend otherwise. The cells are laid anew once a
+//! motion, after the label at its end. If more than a unit of time has passed, room is made before as well.
 
 use crate::belief::front::grid::{limited, metres};
 use crate::belief::front::tracker::Tracker;
 use crate::geometry::approximate::sqrt;
 use crate::geometry::lattice::Site;
 
-/// This share of the mass is spread over all cells with each label, where the front diffuses.
+/// This share of the mass is spread over all cells with each label, unless the front is straight and still.
 const EVEN: f32 = 1e-5;
 
-/// In a unit of time this share of a curvature changes.
+/// In a unit of time half of this share of a layer's mass passes to each neighbouring layer.
 const BENDS: f32 = 0.1;
 
 /// A layer stands for all curvatures near its own. On its way, a curve strays from it by this share of what the tightest
@@ -29,8 +29,9 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
     /// ahead of the robot it may bend otherwise. A straight front that does not move stays as it is known.
     ///
     /// Call it once a motion. Then [observe](crate::Belief::observe) the label at its end, or [`settle`](Self::settle) if
-    /// there is none. The unit of time is the one of the front's
-    /// [`speed`](crate::Front::speed), and one motion should take about one. Some 25,000 instructions for 16 x 16 x 3.
+    /// there is none. The unit of time is the one of the front's [`speed`](crate::Front::speed), and one motion should take
+    /// about one. Of more than 16 units, 16 count. Some 25,000 instructions for 16 x 16 x 3, and 45,000 where the front moves
+    /// by more than a cell.
     pub fn moved(&mut self, to: Site, elapsed: f32) {
         let (bend, pace) = (self.grid.lay.bend, self.front.pace());
         let passes = elapsed > 0.0;
@@ -66,7 +67,8 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
         if self.forgets() { EVEN } else { 0.0 }
     }
 
-    /// Lays the cells anew where a robot is, after a motion without a label. Some 75,000 instructions for 16 x 16 x 3.
+    /// Lays the cells anew where a robot is. A label does so by itself: call it after a motion without one. Some 75,000
+    /// instructions for 16 x 16 x 3.
     pub fn settle(&mut self, site: Site) {
         self.make_room(site, self.front.pace());
     }

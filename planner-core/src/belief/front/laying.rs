@@ -85,10 +85,10 @@ fn larger(a: f32, b: f32) -> f32 {
 
 impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
     /// Lays the grid anew if its cells are of another size than its mass wants, or lie elsewhere. Makes room for offsets
-    /// that will diffuse by a margin, metres. If the front bends, the pivot moves along it to where a robot is, but not
-    /// so far from the waist that most cells would be wasted.
+    /// that will diffuse by a margin, metres. If the front bends, the pivot moves along it to where a robot is. It stays
+    /// so near to the waist that few cells are wasted.
     ///
-    /// `O(K M L)`: some 60,000 instructions for 16 x 16 x 3 if it is laid anew, and 10,000 if not.
+    /// `O(K M L)`: some 75,000 instructions for 16 x 16 x 3 if it is laid anew, and 10,000 if not.
     pub(crate) fn lay_around(&mut self, robot: Option<Site>, margin: f32) {
         let wanted = self.around(robot);
         if margin > 0.0 {

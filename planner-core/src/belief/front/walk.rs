@@ -27,8 +27,8 @@ fn sum_up(masses: &[f32], before: &mut [f32], by: f32) -> f32 {
     sum
 }
 
-/// The masses of some cells in cells elsewhere, by where the first begins and how wide each is, counted in the old ones.
-/// The cells at the ends hold what lies beyond. `sums` is room for as many numbers as there are old cells.
+/// Puts the masses of some cells into others: by where the first of these begins and how wide each is, counted in the old
+/// ones. The cells at the ends hold what lies beyond. `sums` is room for as many numbers as there are old cells.
 #[inline(never)]
 pub(crate) fn take(old: &[f32], new: &mut [f32], sums: &mut [f32], [from, each]: [f32; 2]) {
     let total = sum_up(old, sums, 1.0);
@@ -50,7 +50,7 @@ pub(crate) fn take(old: &[f32], new: &mut [f32], sums: &mut [f32], [from, each]:
 }
 
 /// Blurs masses by a box of so many whole cells to either side of each, and a part of the next. What would lie beyond
-/// stays in the edge cells. `sums` is room for as many numbers as there are masses.
+/// stays in the edge cells, shared out by what they held. `sums` is room for as many numbers as there are masses.
 #[inline(never)]
 pub(crate) fn blur(old: &[f32], masses: &mut [f32], sums: &mut [f32], whole: usize, part: f32) {
     let by = 1.0 / (2.0 * (whole as f32 + part) + 1.0);
@@ -77,7 +77,8 @@ pub(crate) fn blur(old: &[f32], masses: &mut [f32], sums: &mut [f32], whole: usi
     }
 }
 
-/// Lets a share of each cell's mass pass to each neighbour. None passes beyond the edges.
+/// Lets a share of each cell's mass pass to each neighbour. None passes beyond the edges. At first `masses` are the old
+/// ones.
 #[inline(never)]
 pub(crate) fn mix(old: &[f32], masses: &mut [f32], share: f32) {
     let Some((last, but_last)) = masses.split_last_mut() else { return };
