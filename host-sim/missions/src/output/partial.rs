@@ -229,5 +229,8 @@ impl Drop for Partial {
             let _ = fs::remove_file(&self.path);
             let _ = self.record.as_ref().map_or(Ok(()), fs::remove_file);
         }
+        // Closing is not enough: a child that another thread starts holds the file until it executes. If this fails,
+        // the lock ends then.
+        let _ = self.file.unlock();
     }
 }
