@@ -246,13 +246,21 @@ fn at_the_border_it_turns_round() {
 /// Readings on the way and positions that err: what is stated still holds.
 #[test]
 fn readings_on_the_way_help_and_positions_that_err_are_allowed_for() {
-    for (readings, deviation) in [(1, 0.0), (4, 0.0), (1, 0.3)] {
+    for (readings, p, deviation) in [
+        (1, 0.9, 0.0),
+        (4, 0.9, 0.0),
+        (10, 0.9, 0.0),
+        (50, 0.9, 0.0),
+        (10, 1.0, 0.0),
+        (50, 1.0, 0.0),
+        (1, 0.9, 0.3),
+    ] {
         let (mut errors, mut covered, mut lost) = (Vec::new(), 0, 0);
         for number in 0..cases(8, 100) {
             let mut rng = ChaCha8Rng::seed_from_u64(46);
             rng.set_stream(number);
             let world = TrueFront::circle(60.0, &mut rng);
-            let noise = noise(0.9).with_tolerance(3.0 * deviation).expect("a tolerance");
+            let noise = noise(p).with_tolerance(3.0 * deviation).expect("a tolerance");
             let tracker = told(&world, 60.0, noise);
             let mut planner = Track::new(open_sea(), unicycle(), tracker).expect("room");
             let mut pose = world.start(&mut rng);
@@ -262,14 +270,14 @@ fn readings_on_the_way_help_and_positions_that_err_are_allowed_for() {
                 let [from, to] = [pose, next.target].map(|it| Point2::<f64>::from(it.site));
                 for k in 1..readings {
                     let at = from + (to - from) * (f64::from(k) / f64::from(readings));
-                    let label = world.sensed(at, motion.into(), 0.9, &mut rng);
+                    let label = world.sensed(at, motion.into(), p, &mut rng);
                     let kept = planner.observe_on_the_way(site(at), label.into());
                     kept.expect("any label is taken in");
                 }
                 let mut error = || deviation * (1.5 * rng.random_range(-1.0..1.0_f64));
                 let truth = to + Vector2::new(error(), error());
                 pose = next.target;
-                let label = world.sensed(truth, motion.into(), 0.9, &mut rng);
+                let label = world.sensed(truth, motion.into(), p, &mut rng);
                 let reading = next.wants_label.then(|| label.into());
                 planner.observe(pose, reading).expect("any label is taken in");
                 if let Some(waist) = planner.found() {
@@ -283,10 +291,11 @@ fn readings_on_the_way_help_and_positions_that_err_are_allowed_for() {
         }
         errors.sort_by(f64::total_cmp);
         let (median, covers) = (errors[errors.len() / 2], covered as f64 / errors.len() as f64);
-        println!("{readings} readings, {deviation} m: {median:.3} m off, {covers:.3}, {lost} lost");
-        assert!(lost == 0 && covers > 0.9, "{readings}, {deviation}");
+        let what = format!("{readings} readings, p {p}, {deviation} m");
+        println!("{what}: {median:.3} m off, {covers:.3}, {lost} lost");
+        assert!(lost == 0 && covers > 0.9, "{what}");
         let most = if readings > 1 { 0.13 } else { 0.35 };
-        assert!(median < most, "{readings}, {deviation}: {median}");
+        assert!(median < most, "{what}: {median}");
     }
 }
 

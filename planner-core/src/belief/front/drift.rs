@@ -71,6 +71,7 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
     /// instructions for 16 x 16 x 3.
     pub fn settle(&mut self, site: Site) {
         self.make_room(site, self.front.pace());
+        self.heard = site;
     }
 
     /// Lays the cells anew, with room for offsets that will diffuse by a deviation, metres.

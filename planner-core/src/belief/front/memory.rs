@@ -3,6 +3,7 @@
 use crate::belief::evidence::Evidence;
 use crate::belief::front::grid::Lay;
 use crate::belief::front::learnt::Learnt;
+use crate::geometry::lattice::Site;
 
 /// The masses of all cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,6 +20,7 @@ pub struct FrontMemory<const K: usize, const M: usize, const L: usize> {
     pub(crate) nowhere: [f32; 2],
     pub(crate) learnt: Option<Learnt>,
     pub(crate) evidence: Evidence,
+    pub(crate) heard: Site,
 }
 
 impl<const K: usize, const M: usize, const L: usize> FrontMemory<K, M, L> {

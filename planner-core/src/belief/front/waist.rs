@@ -40,6 +40,12 @@ impl Waist {
         ahead
     }
 
+    /// How far to the left of the mean front a site lies, metres.
+    pub(crate) fn aside(&self, site: Site) -> f32 {
+        let [ahead, left] = Unit::of(self.heading).seen(metres(site - self.site));
+        left - 0.5 * self.curvature * ahead * ahead
+    }
+
     /// The direction of the front so many metres ahead, by its curvature.
     pub(crate) fn heading_at(&self, ahead: f32) -> Heading {
         self.heading.turned(angle((self.curvature * ahead).clamp(-MOST_TURN, MOST_TURN)))
