@@ -103,8 +103,8 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
     fn plan(&mut self, pose: Pose) -> Plan {
         let Some(asked) = self.ask() else { return self.scout.seek(pose) };
         let scout = &self.scout;
-        let worth = |way, to, share| asked.worth(scout, (way, to), share);
-        let (best, examined) = scout.best_end(pose, (CIRCLES, ENDS), worth);
+        let worth = |Pose { site, .. }, share| asked.worth(scout, (site - pose.site, site), share);
+        let (best, examined) = scout.best_end(pose, (CIRCLES, ENDS), |end| end.site, worth);
         let beyond = asked.best(scout, pose, best.map_or(0.0, |best| best.worth));
         let is_inside = scout.area.contains(pose.site);
         let (stage, places) = match () {

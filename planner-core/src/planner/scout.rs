@@ -11,6 +11,7 @@ use crate::belief::noise::Noise;
 use crate::belief::sample::{Label, Reading, Sample};
 use crate::belief::tolerance::Tolerance;
 use crate::geometry::approximate::{METRE, distance};
+use crate::geometry::heading::Heading;
 use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose, Side};
@@ -48,7 +49,7 @@ const PRICE: f32 = 0.5;
 /// The reach is at most this share of the tightest bend's radius, and of the mean of the area's sides.
 const SHORT: f32 = 0.125;
 
-/// A boundary is found where its half-width is below so many reaches.
+/// A boundary is found where its half-width is below so many [spans](Scout::span).
 pub(crate) const FOUND: f32 = 1.5;
 
 /// A label that tells less than this share of what one can tell is not worth its way.
@@ -163,7 +164,21 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
 
     /// The half-width below which the boundary counts as found, metres.
     pub(crate) fn width(&self) -> f32 {
-        FOUND * METRE * self.reach()
+        FOUND * METRE * self.span()
+    }
+
+    /// The radius of the smallest circle that the vehicle goes round; 0 if it needs none. Lattice units.
+    pub(crate) fn radius(&self) -> f32 {
+        let pose = Pose { site: self.area.bounds().middle(), heading: Heading(0) };
+        let circle = self.dynamics.turning_circle(pose, Side::Left);
+        circle.map_or(0.0, |it| it.radius as f32)
+    }
+
+    /// The reach, or this radius if it is longer: a vehicle cannot follow a front that it knows much less well. Lattice
+    /// units.
+    pub(crate) fn span(&self) -> f32 {
+        let (reach, radius) = (self.reach(), self.radius());
+        if radius > reach { radius } else { reach }
     }
 
     /// A place on the way back into the area.
@@ -188,24 +203,24 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         Some(told / (self.price + distance(way)))
     }
 
-    /// The best end of the next motion on so many circles, of so many ends at most, by what a way to a site is worth that has a share of the
-    /// curves above it. And how many ends were looked at.
+    /// The best end of the next motion on so many circles, of so many ends at most. An end is judged by a place: it is worth
+    /// what the end and the share of the curves above that place say. And how many ends were looked at.
     pub(crate) fn best_end(
         &self,
         pose: Pose,
         (circles, most): (u16, u32),
-        worth: impl Fn(Vector, Site, f32) -> Option<f32>,
+        place: impl Fn(Pose) -> Site,
+        worth: impl Fn(Pose, f32) -> Option<f32>,
     ) -> (Option<Best>, u32) {
         let mut best: Option<Best> = None;
         let find = |leg: Leg, share: f32| {
-            let site = leg.1.site;
-            let worth = worth(site - pose.site, site, share);
+            let worth = worth(leg.1, share);
             if let Some(worth) = worth.filter(|it| best.is_none_or(|best| *it > best.worth)) {
                 best = Some(Best { leg, worth });
             }
         };
         let (dynamics, area) = (&self.dynamics, &self.area);
-        let share = |site: Site| self.tracker.share_above(site);
+        let share = |end: Pose| self.tracker.share_above(place(end));
         let mut places = Places { dynamics, area, pose, share, find, examined: 0, most };
         for k in (1..=circles).rev() {
             let speed = u32::from(self.fastest) * u32::from(k) / u32::from(circles);
@@ -231,7 +246,7 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
             (is_far && self.area.contains(site)).then_some(site)
         };
         let [mut first, mut second] = [(None, least); 2];
-        let of_area = anywhere(&self.area).chain(self.corners(pose));
+        let of_area = anywhere(&self.area).chain(self.corners());
         let mut sites = (0..ALONG).filter_map(along).chain(of_area);
         loop {
             let some: heapless::Vec<Site, AT_ONCE> = sites.by_ref().take(AT_ONCE).collect();
@@ -258,10 +273,9 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
     }
 
     /// The corners of the area, or the places nearest to them, towards the middle, where the vehicle can be.
-    fn corners(&self, pose: Pose) -> impl Iterator<Item = Site> {
+    fn corners(&self) -> impl Iterator<Item = Site> {
         let area = &self.area;
-        let circle = self.dynamics.turning_circle(pose, Side::Left);
-        let radius = circle.map_or(0, |it| it.radius);
+        let radius = self.radius() as i32;
         let (min, max, middle) = (area.bounds().min(), area.bounds().max(), area.bounds().middle());
         let aside = [(max.x(), min.z()), (min.x(), max.z())];
         let [right, left] = aside.map(|(x, z)| Site::new(x, z).unwrap_or(middle));
@@ -326,8 +340,9 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
     /// The next motion of a planner that seeks the boundary.
     pub(crate) fn seek(&mut self, pose: Pose) -> Plan {
         let is_inside = self.area.contains(pose.site);
-        let worth = |way: Vector, _: Site, share: f32| self.worth(way, share);
-        let (best, examined) = self.best_end(pose, (SEEKING, LOOKED_AT - FAR), worth);
+        let worth = |end: Pose, share: f32| self.worth(end.site - pose.site, share);
+        let circles = (SEEKING, LOOKED_AT - FAR);
+        let (best, examined) = self.best_end(pose, circles, |end| end.site, worth);
         let waist = self.tracker.waist();
         let (far, worth) = self.far_places(pose, waist, best.map_or(0.0, |best| best.worth));
         let is_open = best.is_some() || far != [None; 2];

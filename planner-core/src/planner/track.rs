@@ -6,7 +6,8 @@
 //!   way there. The places are ends of the next motion, some along the mean line, and some all over the area.
 //! - **Follow**: once the front is found, an end of the next motion is worth the information of its label, and the
 //!   progress along the front as a share of the reach, the way that the robot faced at the start. Where the front is not
-//!   known well, progress counts less, and in the end not at all. So the robot stops to look where it must.
+//!   known well, progress counts less, and in the end not at all. So the robot stops to look where it must. A vehicle that
+//!   cannot turn on the spot is judged by the place where it would have turned along the front again.
 //! - **Go round**: where a keep-out lies on the front, the robot goes to the first place beyond it. Where the front
 //!   leaves the area, it goes back in the other direction.
 //! - **Come home**: where no label in reach would tell anything, the robot goes back to the front. If it has turned all
@@ -25,8 +26,9 @@ use crate::belief::observation_log::FromLog as _;
 use crate::belief::sample::{Reading, Sample};
 use crate::belief::tolerance::Tolerance;
 use crate::belief::weight::Prior;
-use crate::geometry::approximate::METRE;
+use crate::geometry::approximate::{METRE, sqrt};
 use crate::geometry::area::Area;
+use crate::geometry::heading::{Angle, Heading};
 use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
 use crate::geometry::value::ValueError;
 use crate::geometry::workspace::Workspace;
@@ -43,15 +45,21 @@ use crate::planner::{Plan, Planner, Stage, StopReason};
 /// Circles on which a motion along a front may end.
 const CIRCLES: u16 = 4;
 
-/// Progress counts in full where the half-width is below the first share of the reach: 1 m for 2 m. It does not count
-/// where it is above the second.
+/// Progress counts in full where the half-width is below the first share of the [span](Scout::span): 1 m for motions of 2
+/// m. It does not count where it is above the second.
 const WIDTHS: [f32; 2] = [0.5, 1.4];
 
 /// Where the front would not count as found, progress counts so much the other way: the robot rather goes back.
 const BACK: f32 = 0.02;
 
+/// A vehicle that goes along the front is to stay within this share of its half-width.
+const LANE: f32 = 0.5;
+
 /// A keep-out on the front is passed if it is no longer than so many reaches.
 const BEYOND: u16 = 10;
+
+/// Radians in a unit of an angle.
+const RADIAN: f32 = core::f32::consts::PI / (1_u32 << 31) as f32;
 
 /// A planner that finds a front and goes along it: `D` is the vehicle, `G` the area; the rest are the
 /// [`Tracker`]'s.
@@ -121,7 +129,8 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         self.scout.found()
     }
 
-    /// The [half-width](Tracker::found) below which the front counts as found, metres: one and a half of the longest motion.
+    /// The [half-width](Tracker::found) below which the front counts as found, metres: one and a half of the longest
+    /// motion, or of the radius of the turning circle if that is longer.
     pub fn width(&self) -> f32 {
         self.scout.width()
     }
@@ -193,29 +202,60 @@ enum Onward {
 struct Aim {
     waist: Waist,
     is_along: bool,
+    heading: Heading,
     along: Unit,
+}
+
+/// Where a vehicle faces along the front again, if it turns from a pose as tightly as it can; and its way there.
+struct Turned {
+    site: Site,
+    way: f32,
 }
 
 impl Aim {
     fn new(waist: Waist, pose: Pose, is_along: bool) -> Self {
-        let Unit { x, z } = Unit::of(waist.heading_at(waist.ahead(pose.site)));
-        let sign = if is_along { 1.0 } else { -1.0 };
-        Self { waist, is_along, along: Unit { x: sign * x, z: sign * z } }
+        let forwards = waist.heading_at(waist.ahead(pose.site));
+        let heading = if is_along { forwards } else { forwards.turned(Angle::HALF_TURN) };
+        Self { waist, is_along, heading, along: Unit::of(heading) }
     }
 
-    /// The progress of a way that ends at a site, as a share of the reach. It counts less where the front is not known
-    /// well, and not at all where it is hardly known. A robot with poor labels would otherwise run ahead of what it knows.
-    fn progress(&self, way: Vector, to: Site, reach: f32) -> f32 {
-        let half = NINETY * self.waist.deviation_beside(to) * UNITS_PER_METRE as f32;
+    /// Where a vehicle that is at a pose will have turned, on a circle of this radius: for one that turns on the spot, where
+    /// it is.
+    fn turned(&self, pose: Pose, radius: f32) -> Turned {
+        let off = pose.heading.since(self.heading);
+        let Unit { x: cos, z: sin } = Unit::of(Heading(off.0));
+        let (ahead, aside) = (radius * sin.abs(), radius * (1.0 - cos));
+        let aside = if sin < 0.0 { -aside } else { aside };
+        let Unit { x, z } = self.along;
+        let by = Vector::new((ahead * x - aside * z) as i32, (ahead * z + aside * x) as i32);
+        let site = by.and_then(|by| pose.site.step(by).ok()).unwrap_or(pose.site);
+        Turned { site, way: radius * (off.0 as i32).unsigned_abs() as f32 * RADIAN }
+    }
+
+    /// The way on which a vehicle shifts back to the front from a place, where that lies too far aside: two arcs of a
+    /// circle of this radius, lattice units. `half` is the front's half-width there, metres.
+    fn shift(&self, site: Site, half: f32, radius: f32) -> f32 {
+        if radius == 0.0 {
+            return 0.0;
+        }
+        let aside = self.waist.aside(site).abs() - LANE * half;
+        // Two arcs that turn by an angle t go aside by 2 R (1 - cos t), and are 2 R t long.
+        2.0 * sqrt(if aside > 0.0 { radius * aside * UNITS_PER_METRE as f32 } else { 0.0 })
+    }
+
+    /// The progress of a way that ends where the front has this half-width, lattice units. It counts less where the front
+    /// is not known well, and not at all where it is hardly known. A robot with poor labels would otherwise run ahead of
+    /// what it knows.
+    fn progress(&self, way: Vector, half: f32, span: f32) -> f32 {
         let [full, none] = WIDTHS;
-        let counts = match half / reach {
+        let counts = match half * UNITS_PER_METRE as f32 / span {
             width if width <= full => 1.0,
             width if width <= none => (none / width - 1.0) / (none / full - 1.0),
             width if width <= FOUND => 0.0,
             _ => -BACK,
         };
         let progress = way.x as f32 * self.along.x + way.z as f32 * self.along.z;
-        counts * progress / reach
+        counts * progress
     }
 }
 
@@ -235,18 +275,27 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
         self.lap.face(pose.heading);
         let Some(waist) = self.found() else { return self.scout.seek(pose) };
         let aim = self.aim(waist, pose);
-        let (scout, reach) = (&self.scout, self.scout.reach());
-        let worth = |way: Vector, to: Site, share: f32| {
-            scout.tells(share).map(|told| told + aim.progress(way, to, reach))
+        let scout = &self.scout;
+        let (reach, span, radius) = (scout.reach(), scout.span(), scout.radius());
+        let turned = |end: Pose| aim.turned(end, radius);
+        let worth = |end: Pose, share: f32| {
+            let told = scout.tells(share)?;
+            let Turned { site, way } = turned(end);
+            let half = NINETY * aim.waist.deviation_beside(site);
+            let lost = way + aim.shift(site, half, radius);
+            Some(told + (aim.progress(site - pose.site, half, span) - lost) / reach)
         };
-        let (best, examined) = scout.best_end(pose, (CIRCLES, LOOKED_AT), worth);
+        let place = |end: Pose| turned(end).site;
+        let (best, examined) = scout.best_end(pose, (CIRCLES, LOOKED_AT), place, worth);
         let is_inside = scout.area.contains(pose.site);
+        // A vehicle goes round before it comes to a place that is nearer than this.
+        let about = (radius / reach) as u16;
         // In this order: the first to which there is a way.
         let (stage, places) = match self.onward(&aim, pose) {
             _ if !is_inside => (Stage::Return, [scout.home(pose), None]),
             Onward::Beyond(site) => (Stage::Pass, [Some(site), None]),
             _ if best.is_some() => (Stage::Follow, [None; 2]),
-            _ => (Stage::Return, [self.first_free(&aim, pose, 0), Some(aim.waist.site)]),
+            _ => (Stage::Return, [self.first_free(&aim, pose, about), Some(aim.waist.site)]),
         };
         let why = if is_inside { StopReason::Cornered } else { StopReason::OutsideArea };
         let best = best.map(|best| (best, Stage::Follow));

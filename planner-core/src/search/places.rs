@@ -4,7 +4,6 @@
 //! half between two of them, false position comes near to it. Each end that the vehicle may go to is handed on with
 //! its share.
 
-use crate::geometry::lattice::Site;
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose, Ray, Side, room_for_errors};
 use crate::search::motions::Leg;
@@ -37,7 +36,7 @@ pub(crate) struct Places<'a, D, G, S, F> {
     pub(crate) most: u32,
 }
 
-impl<D: Dynamics, G: Workspace, S: Fn(Site) -> f32, F: FnMut(Leg, f32)> Places<'_, D, G, S, F> {
+impl<D: Dynamics, G: Workspace, S: Fn(Pose) -> f32, F: FnMut(Leg, f32)> Places<'_, D, G, S, F> {
     /// Looks at the ends of one speed. `None` if that ends early: no more may be looked at, or one lies off the
     /// lattice.
     pub(crate) fn circle(&mut self, speed: u16) -> Option<()> {
@@ -68,7 +67,7 @@ impl<D: Dynamics, G: Workspace, S: Fn(Site) -> f32, F: FnMut(Leg, f32)> Places<'
         }
         let ray = self.ray(number);
         let target = self.dynamics.arrive(self.pose, &ray, speed).ok()?;
-        let share = (self.share)(target.site);
+        let share = (self.share)(target);
         self.examined += 1;
         let room = room_for_errors(self.area);
         if self.area.contains(target.site)

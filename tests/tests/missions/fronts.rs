@@ -149,18 +149,23 @@ fn missions_along_fronts_depend_on_seed_and_number_alone() {
 /// and the same each time, also after a sleep.
 #[test]
 fn any_vehicle_goes_along_a_front_and_keeps_out() {
-    let car = Car::new(car::Shape {
-        radius_mm: 3_000,
-        shortest_mm: 500,
-        turn_step_urad: 7_000,
-        speeds: 21,
-        speed_step_mm: 100,
-    });
+    let car = |radius_mm| {
+        let shape = car::Shape {
+            radius_mm,
+            shortest_mm: 500,
+            turn_step_urad: 7_000,
+            speeds: 21,
+            speed_step_mm: 100,
+        };
+        AnyVehicle::Car(Car::new(shape).expect("a car"))
+    };
     let boat = Unicycle::new(7_000, 0.5, 21, 100).and_then(Boat::new);
     let vehicles = [
         AnyVehicle::Unicycle(unicycle()),
         AnyVehicle::Boat(boat.expect("a boat")),
-        AnyVehicle::Car(car.expect("a car")),
+        car(3_000),
+        car(5_000),
+        car(8_000),
     ];
     for (number, vehicle) in (0..).zip(vehicles) {
         for p in [1.0, 0.9] {
@@ -168,7 +173,7 @@ fn any_vehicle_goes_along_a_front_and_keeps_out() {
         }
     }
     let holonomic = Holonomic::new(720, 21, 100).expect("a vehicle");
-    go_along(holonomic, 0.9, 3);
+    go_along(holonomic, 0.9, 5);
 }
 
 fn go_along<D: Dynamics + Clone>(dynamics: D, p: f64, number: u64) {
