@@ -367,6 +367,42 @@ fn drawn(cloud: &[Curve], weights: &[f64], rng: &mut ChaCha8Rng, count: usize) -
 }
 
 /// The bytes after a fixed mission: the same on every machine.
+/// A robot that hears no label knows the front no better as time passes: it stays at a place, or about one. A front that
+/// moves becomes as unsure as it moves.
+#[test]
+fn nothing_is_learnt_without_labels() {
+    for number in 0..cases(40, 1_000) {
+        let mut rng = ChaCha8Rng::seed_from_u64(37);
+        rng.set_stream(number);
+        let speed = if number % 3 == 0 { 0.0 } else { rng.random_range(0.005..0.1) };
+        let front = Front::bending(rng.random_range(8.0..200.0)).and_then(|it| it.moving(speed));
+        let noise = Noise::new(if number % 2 == 0 { 0.9 } else { 1.0 }).expect("a probability");
+        let mut tracker = Tracker::<16, 16, 3>::new(area(), front.expect("a front"), noise);
+        for k in 0..rng.random_range(40..100) {
+            let at = Point2::new(0.3 * f64::from(k), rng.random_range(9.0..11.0));
+            tracker.moved(site(at), 1.0);
+            let above = label(at.y > 10.0);
+            tracker.observe(site(at), above.into()).expect("a label");
+        }
+        let near = Point2::<f64>::from(tracker.waist().site);
+        let (aside, wanders) = (rng.random_range(0.0..4.0), f64::from(u8::from(number % 4 < 2)));
+        let (mut widest, mut narrowest) = (0.0_f64, 1.0_f64);
+        for _ in 0..300 {
+            let mut by = || wanders * rng.random_range(-1.0..1.0);
+            let at = site(near + Vector2::new(by(), aside + by()));
+            tracker.moved(at, 1.0);
+            tracker.settle(at);
+            let width = tracker.waist().half_width(0.9);
+            widest = widest.max(width);
+            narrowest = narrowest.min(width / widest);
+        }
+        assert!(narrowest > 0.95, "{number}, {speed} m: {narrowest} of {widest} m");
+        // What moves at random by so much a motion.
+        let moves = 1.645 * speed * 300.0_f64.sqrt();
+        assert!(widest > 0.85 * moves, "{number}, {speed} m: {widest} m, not {moves} m");
+    }
+}
+
 #[test]
 fn a_tracker_has_the_same_bytes_on_every_machine() {
     let front = Front::bending(25.0).and_then(|it| it.moving(0.03)).expect("a front");
@@ -387,5 +423,5 @@ fn a_tracker_has_the_same_bytes_on_every_machine() {
     let hash = bytes.iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
         (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3)
     });
-    assert_eq!((bytes.len(), hash), (3126, 0xd99a_39da_cf0c_0f8b), "{hash:#x}");
+    assert_eq!((bytes.len(), hash), (3134, 0x6590_4bfd_8922_5d57), "{hash:#x}");
 }

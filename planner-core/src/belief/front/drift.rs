@@ -24,6 +24,9 @@ const LEVER: f32 = 30.0;
 /// Room for diffusion, in its deviations.
 const ROOM: f32 = 3.0;
 
+/// Offsets have no room to diffuse where this share of the mass is in the cells at their ends.
+const FULL: f32 = 0.05;
+
 impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
     /// Records that a robot has come to a site, and how much time has passed. By then the front may have moved, and
     /// ahead of the robot it may bend otherwise. A straight front that does not move stays as it is known.
@@ -74,9 +77,12 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
         self.heard = site;
     }
 
-    /// Lays the cells anew, with room for offsets that will diffuse by a deviation, metres.
+    /// Lays the cells anew, with room for offsets that will diffuse by a deviation, metres. Tails that end within the cells
+    /// have room for a small one.
     fn make_room(&mut self, robot: Site, deviation: f32) {
-        let margin = if deviation > 0.5 * self.grid.lay.step { ROOM * deviation } else { 0.0 };
+        let is_full = || self.grid.at_edges() > FULL * (1.0 - self.share_nowhere());
+        let wants = deviation > 0.0 && (deviation > 0.5 * self.grid.lay.step || is_full());
+        let margin = if wants { ROOM * deviation } else { 0.0 };
         self.grid.lay_around(Some(robot), margin);
     }
 }

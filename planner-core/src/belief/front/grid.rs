@@ -357,6 +357,13 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
         self.mass.as_flattened_mut().as_flattened_mut().iter_mut()
     }
 
+    /// The mass in the first and the last cells of all columns.
+    pub(crate) fn at_edges(&self) -> f32 {
+        let ends =
+            |it: &[f32; M]| it.first().zip(it.last()).map_or(0.0, |(first, last)| first + last);
+        self.mass.as_flattened().iter().map(ends).sum()
+    }
+
     /// Lets a share of each layer's mass pass to each neighbouring one.
     pub(crate) fn mix_layers(&mut self, share: f32) {
         let mut rest = self.mass.as_mut_slice();

@@ -7,7 +7,7 @@
 use crate::belief::front::grid::{Grid, Lay, Unit, angle, limited, metres, radians};
 use crate::belief::front::moments::Moments;
 use crate::belief::front::walk::{pairs, take};
-use crate::geometry::approximate::sqrt;
+use crate::geometry::approximate::{distance, sqrt};
 use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
 
 /// The mass on either side that may lie beyond the cells.
@@ -18,6 +18,9 @@ const CORRELATED: f32 = 0.35 * 0.35;
 
 /// A pivot that follows a robot stays as near to the waist as this, in widths over turns.
 const FOLLOWS: f32 = 1.0;
+
+/// A pivot that would move by less than this stays, in heights of a cell over turns of a column.
+const STAYS: f32 = 0.05;
 
 /// Cells that are smaller or larger than wanted by less than this stay.
 const SIZES: [f32; 2] = [0.65, 1.6];
@@ -187,7 +190,8 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
         let units = UNITS_PER_METRE as f32;
         let x = (along.x * ahead - along.z * left) * units;
         let z = (along.z * ahead + along.x * left) * units;
-        Vector::new(x as i32, z as i32).filter(|it| *it != Vector::default())
+        let least = STAYS * units * lay.step / lay.turn;
+        Vector::new(x as i32, z as i32).filter(|it| distance(*it) > least)
     }
 
     /// The range of directions about another pivot, in columns: each layer has turned by its own angle.

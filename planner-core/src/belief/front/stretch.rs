@@ -187,7 +187,7 @@ mod tests {
         assert!((off.deviation / known[1].deviation - 1.0).abs() < 0.05, "{off:?} {known:?}");
     }
 
-    /// Against what either label leaves of the variance, in cells that are laid at the same place.
+    /// Against what either label leaves of the variance, in the same cells.
     #[test]
     fn a_label_is_expected_to_take_what_it_takes() {
         for p in [1.0, 0.9, 0.7] {
@@ -202,12 +202,10 @@ mod tests {
                 let site = at(x, 10.0 + 0.1 * x + off);
                 let share = tracker.share_above(site);
                 let chance = tracker.chance(site) as f32;
-                let mut laid = tracker.clone();
-                laid.settle(site);
-                let before = of(&laid);
+                let before = of(&tracker);
                 let [plus, minus] = [Label::Positive, Label::Negative].map(|label| {
                     let mut after = tracker.clone();
-                    after.observe(site, label.into()).unwrap();
+                    assert_eq!(after.observe_on_the_way(site, label.into()), Ok(true));
                     of(&after)
                 });
                 let taken = before - chance * plus - (1.0 - chance) * minus;
