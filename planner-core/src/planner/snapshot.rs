@@ -29,7 +29,8 @@ use crate::planner::Planner;
 /// | 4 | the audit of look-ahead |
 /// | 5 | its odds |
 /// | 6 | how many motions its way should take, and of Algorithm 2 whether the readings on the way are odd in number |
-pub const SNAPSHOT_VERSION: u16 = 6;
+/// | 7 | of a tracker, where it last counted a label |
+pub const SNAPSHOT_VERSION: u16 = 7;
 
 /// What a planner has to remember over a sleep: the log of its belief (`T`), and what else it plans by (`M`).
 #[derive(Clone, Debug, PartialEq, Eq)]
