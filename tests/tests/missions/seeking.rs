@@ -464,7 +464,7 @@ fn what_is_lent_is_true() {
         };
         let wrong = (0..fields).into_par_iter().filter(|number| !is_true(*number)).count() as u64;
         println!("p {p}: {wrong} of {fields} lend a label that is wrong");
-        assert!(wrong * 100 <= fields, "p {p}, seed {SEED}: {wrong} of {fields}");
+        assert!(wrong * 100 <= fields.max(100), "p {p}, seed {SEED}: {wrong} of {fields}");
     }
 }
 

@@ -34,8 +34,8 @@ const LEAST: [f32; 2] = [2e-5, 1e-6];
 /// An edge cell heavier than its neighbour by this holds a tail that wants out.
 const HEAVY: f32 = 1.25;
 
-/// So much is added where a tail wants out, as a share of the range.
-const GROWTH: f32 = 0.25;
+/// So much is added where a tail wants out, as a share of the range: enough for cells to be of another size then.
+const GROWTH: f32 = 0.3;
 
 /// Places of the histogram of offsets about another pivot.
 const PLACES: usize = 64;
