@@ -4,7 +4,7 @@
 //! `.rodata` that these point to. The entries are those of `station::seam`: plan, observe, estimates, and what makes a
 //! planner of a `Setup`. They are kept as functions of their own. So code that the planner shares with the link (`memcpy`)
 //! counts as the planner's, and so does its code from libm, nalgebra, heapless and compiler-builtins. A mission's loop,
-//! messages, frames and start-up do not count.
+//! messages, frames and start-up do not count. **The planner's stack** is the deepest chain from one of the entries.
 //!
 //! **The stack** is an upper bound: the deepest chain of calls from the reset, plus every handler in the vectors once,
 //! each with the frame that the core stacks. A panic ends the program. The panic handler may itself panic once while it
@@ -41,6 +41,8 @@ pub struct Footprint {
     pub statics: u32,
     /// Bytes of stack at most.
     pub stack: u32,
+    /// Bytes of it at most for the planner.
+    pub planner_stack: u32,
     /// The chain of calls from the reset that takes the most of it.
     pub chain: Vec<String>,
     /// Functions that can panic, each with how.
@@ -68,11 +70,17 @@ impl Footprint {
         for panic in graph.named(|it| it == PANIC) {
             stack += 2 * deepest(&graph, Some(panic))?.stack;
         }
+        let entries = graph.named(is_planner_s);
+        let mut planner_stack = 0;
+        for entry in &entries {
+            planner_stack = planner_stack.max(deepest(&graph, Some(*entry))?.stack);
+        }
         Ok(Self {
             flash: image.flash(),
-            planner: graph.flash(&graph.closure(&graph.named(is_planner_s))),
+            planner: graph.flash(&graph.closure(&entries)),
             statics: image.statics(),
             stack,
+            planner_stack,
             chain: from_reset.functions.iter().map(|it| graph.name(*it).to_owned()).collect(),
             panics: panics(&graph),
             doubles_of_plan: doubles(&graph, "plan"),
