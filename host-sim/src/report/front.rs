@@ -82,8 +82,8 @@ pub(crate) fn map(record: &MapRecord, unit: &str) -> String {
 pub(crate) fn remedy(record: &MapRecord) -> Option<&'static str> {
     match record.state {
         State::Lost => Some(
-            "A front is lost if it bends more tightly or moves faster than was told: a smaller front.radius or a higher \
-             front.speed may keep it.",
+            "A front is lost if it leaves the area, or bends more tightly or moves faster than was told. A larger area, a \
+             smaller front.radius or a higher front.speed may keep it.",
         ),
         State::Sought => Some("To find it, allow more steps, or give points of both labels."),
         State::Followed | State::Closed => None,
