@@ -369,7 +369,7 @@ impl<const K: usize, const M: usize, const L: usize> Belief for Tracker<K, M, L>
         false
     }
 
-    /// The cells stay where they are up to the end of the motion: `O(K M L)`, some 45,000 instructions for 16 x 16 x 3. A
+    /// The cells stay where they are up to the end of the motion: `O(K M L)`, some 35,000 instructions for 16 x 16 x 3. A
     /// label that lies close to the last one does not count, nor one that is certain.
     fn observe_on_the_way(
         &mut self,
