@@ -43,6 +43,7 @@ impl Picture {
     fn places(&self) -> Vec<Point2<f64>> {
         let stops = self.path.iter().flat_map(|(_, stops)| stops);
         let of_path = stops.flat_map(|stop| stop.way.iter().copied().chain(stop.truly));
-        of_path.chain(self.samples.iter().map(|dot| dot.at)).collect()
+        let of_front = self.front.ground().flatten();
+        of_path.chain(self.samples.iter().map(|dot| dot.at)).chain(of_front).collect()
     }
 }
