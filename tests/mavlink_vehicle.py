@@ -94,6 +94,7 @@ class Vehicle:
         self.stops = []  # when, since the last setpoint that is none
         self.track = []  # (when, metres)
         self.text_at = None  # when it says why
+        self.overtaken, self.newest = 0, 0  # setpoints that a newer one has overtaken, and when that was sent
         self.restarted = 0  # setpoints that began a leg anew without need
         self.habits = dict.fromkeys(["coasted", "crawled", "swayed", "pivots"], 0)
         self.orders_after = 0  # setpoints that came when the link knew of the failure
@@ -176,6 +177,8 @@ class Vehicle:
             self.illicit.append("a setpoint that is not taken")
             return
         self.stops = self.stops + [self.clock] if is_stop else []
+        self.overtaken += it.time_boot_ms < self.newest
+        self.newest = max(self.newest, it.time_boot_ms)
         if is_stop and self.fault() is not None:
             self.first_stop = self.first_stop or self.now
         if has["position"]:
@@ -384,7 +387,7 @@ class Vehicle:
             "places": len(self.places), "happened": self.fault_at is not None,
             "was_stopped": stopped is not None, "moved_after": moved_after,
             "orders_after": self.orders_after, "reacted": reacted, "late": self.late,
-            "restarted": self.restarted, "habits": self.habits,
+            "restarted": self.restarted, "overtaken": self.overtaken, "habits": self.habits,
             "table": self.table if self.mission.get("table") else None,
         })
         self.socket.close()
