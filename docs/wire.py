@@ -11,7 +11,7 @@ import struct
 import sys
 import zlib
 
-PROTOCOL = 9
+PROTOCOL = 10
 METRE = 1 << 16
 
 
@@ -196,6 +196,7 @@ SETUP = {
         Lookahead={"evaluations": "u32", "goal": Optional(GOAL),
                    "noise": Optional({"noise": NOISE, "prior": PRIOR}), "sight": SIGHT},
         Track={"front": FRONT, "noise": NOISE, "ends": "bool"},
+        Watch={"front": FRONT, "noise": NOISE, "stretch_mm": "u32"},
     ),
     "config": {
         "area": {"min": SITE, "max": SITE},

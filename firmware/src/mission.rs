@@ -2,7 +2,7 @@
 
 use planner_core::link::delivery::LinkError;
 use planner_core::link::message::{MissionArea, MissionEnd, Setup};
-use planner_core::link::station::{AllLabels, Flown, Station, Tracks, Watch};
+use planner_core::link::station::{AllLabels, Flown, Guards, Station, Tracks, Watch};
 use planner_core::watch::Alarm;
 use planner_core::{AnySight, AnyVehicle, LocalLine, PinSensor, Reading, Step};
 use stm32f4xx_hal::gpio::{Input, PB1};
@@ -29,7 +29,7 @@ impl Board {
     /// Flies missions of any vehicle in any area.
     pub(crate) fn run(&mut self) -> ! {
         type OfLines = AllLabels<TRUE_SAMPLES, DOUBTFUL_SAMPLES, HYPOTHESES, AnySight>;
-        type Planners = Tracks<16, 16, 3, OfLines>;
+        type Planners = Tracks<16, 16, 3, Guards<16, 16, 3, OfLines>>;
         loop {
             // How it ended is in the log.
             let _ = self.station.mission::<Planners, AnyVehicle, MissionArea>(&mut self.deck);

@@ -118,6 +118,12 @@ fuzz_target!(|bytes: &[u8]| {
                         fly(prepared.planner_mut(), &setup);
                     }
                 }
+                Algorithm::Watch { front, noise, stretch } => {
+                    let mut planner = setup.guard::<_, _, 16, 16, 3>(terms, front, stretch);
+                    if let Ok(mut prepared) = setup.prepare(&mut planner, Prior::Area, noise) {
+                        fly(prepared.planner_mut(), &setup);
+                    }
+                }
                 Algorithm::Scc { noise, policy, prior } => {
                     let mut planner = setup.scc::<_, _, SAMPLES, HYPOTHESES>(terms, policy);
                     if let Ok(mut prepared) = setup.prepare(&mut planner, prior, noise) {

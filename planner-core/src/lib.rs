@@ -170,7 +170,7 @@ pub use crate::belief::deviation::Deviation;
 pub use crate::belief::doubtful_labels::CellPosterior;
 pub use crate::belief::doubtful_labels::{PosteriorView, ReliabilityEstimate};
 pub use crate::belief::estimate::Estimates;
-pub use crate::belief::front::{Beside, Front, FrontMemory, Tracker, Waist};
+pub use crate::belief::front::{Beside, Front, FrontMemory, FrontStretch, Tracker, Waist};
 pub use crate::belief::goal::{Accuracy, Criterion, Goal, NoGoal, ShareWithin, SlopeWithin};
 pub use crate::belief::noise::Noise;
 pub use crate::belief::observation_log::{FromLog, ObservationLog};

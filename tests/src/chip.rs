@@ -7,7 +7,7 @@ use std::panic::{self, AssertUnwindSafe};
 use planner_core::AnySight;
 use planner_core::link::delivery::{Link, LinkError, Port};
 use planner_core::link::message::{self, ClockRate, MissionArea};
-use planner_core::link::station::{AllLabels, Flown, Station, Tracks, Watch};
+use planner_core::link::station::{AllLabels, Flown, Guards, Station, Tracks, Watch};
 use planner_core::motion::any_vehicle::AnyVehicle;
 use planner_core::robot::LabelSensor;
 
@@ -91,6 +91,7 @@ impl Watch for Hears {
 /// # Errors
 /// As [`Station::fly`].
 pub fn fly(chip: &mut Chip<'_>, setup: &message::Setup) -> Result<Flown, LinkError> {
-    type Planners = Tracks<16, 16, 3, AllLabels<68, 36, 529, AnySight>>;
+    type OfLines = AllLabels<68, 36, 529, AnySight>;
+    type Planners = Tracks<16, 16, 3, Guards<16, 16, 3, OfLines>>;
     chip.fly_with::<Planners, AnyVehicle, MissionArea>(setup, &mut Hears)
 }

@@ -7,7 +7,7 @@ use planner_core::link::message::{
     self, Capacity, DeclinedError, LabelSource, MissionArea, Outline, PROTOCOL, Setup,
 };
 use planner_core::planner::lookahead;
-use planner_core::{AnySight, Workspace as _};
+use planner_core::{AnySight, FrontStretch, Workspace as _};
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::Mission;
@@ -51,9 +51,6 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
         let expected = "a number with hil: a board is told how often labels are true";
         return wrong("noise.p", "a prior", expected);
     };
-    if let Some(metres) = mission.watch {
-        return wrong("front.watch", metres, "none with hil: a board goes along all of a front");
-    }
     let algorithm = match mission.algorithm {
         Algorithm::Cfc => message::Algorithm::Cfc,
         Algorithm::Scc => {
@@ -66,7 +63,11 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
             sight: mission.sight(),
         },
         Algorithm::Track => {
-            message::Algorithm::Track { front: mission.front, noise, ends: mission.until_closed }
+            let front = mission.front;
+            match mission.watch.map(FrontStretch::metres).transpose()? {
+                Some(stretch) => message::Algorithm::Watch { front, noise, stretch },
+                None => message::Algorithm::Track { front, noise, ends: mission.until_closed },
+            }
         }
         other => bail!("algorithm: found {}, expected cfc, scc, lookahead or track", other.name()),
     };
@@ -125,7 +126,7 @@ fn name(algorithm: &message::Algorithm) -> String {
         message::Algorithm::Cfc => Algorithm::Cfc,
         message::Algorithm::Scc { .. } => Algorithm::Scc,
         message::Algorithm::Lookahead { .. } => Algorithm::Lookahead,
-        message::Algorithm::Track { .. } => Algorithm::Track,
+        message::Algorithm::Track { .. } | message::Algorithm::Watch { .. } => Algorithm::Track,
     };
     algorithm.name()
 }
@@ -157,10 +158,16 @@ pub(crate) fn declined(declined: DeclinedError, setup: &Setup, readings: u32) ->
                 setup.given.len(),
             )
         }
-        DeclinedError::Algorithm => anyhow!(
-            "algorithm: found {}, declined by the board, whose program does not have it",
-            name(&setup.algorithm)
-        ),
+        DeclinedError::Algorithm => match setup.algorithm {
+            message::Algorithm::Watch { stretch, .. } => anyhow!(
+                "front.watch: found {} m, declined by the board, whose program does not watch a stretch",
+                f64::from(u32::from(stretch)) / 1e3
+            ),
+            other => anyhow!(
+                "algorithm: found {}, declined by the board, whose program does not have it",
+                name(&other)
+            ),
+        },
         DeclinedError::Given(error) => anyhow!("oracle: declined by the board: {error}"),
         DeclinedError::Vehicle(why) => anyhow!("vehicle: declined by the board: expected {why}"),
         DeclinedError::Area => anyhow!("area: declined by the board: {declined}"),

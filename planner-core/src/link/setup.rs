@@ -3,7 +3,7 @@
 use heapless::Vec;
 use serde::{Deserialize, Deserializer, Serialize};
 
-use crate::belief::front::Front;
+use crate::belief::front::{Front, FrontStretch};
 use crate::belief::goal::Goal;
 use crate::belief::noise::Noise;
 use crate::belief::sample::Sample;
@@ -110,12 +110,24 @@ pub enum Algorithm {
     /// The follower of fronts. It needs no given samples.
     Track {
         /// How tightly the front bends, and how fast it moves in the time of a motion.
+        #[serde(deserialize_with = "once")]
         front: Front,
         /// What is known of the noise. No ball is trusted.
         #[serde(deserialize_with = "once")]
         noise: Noise,
         /// Whether the mission ends once the front is closed.
         ends: bool,
+    },
+    /// The guard of a stretch of a front. It needs no given samples.
+    Watch {
+        /// As [`Track`](Self::Track) has it.
+        #[serde(deserialize_with = "once")]
+        front: Front,
+        /// As [`Track`](Self::Track) has it.
+        #[serde(deserialize_with = "once")]
+        noise: Noise,
+        /// How much of the front is watched.
+        stretch: FrontStretch,
     },
 }
 

@@ -11,18 +11,20 @@
 
 use crate::belief::ObservationError;
 use crate::belief::evidence::Alarm;
-use crate::belief::front::{ASKED, FrontMemory, Spread, Tracker, Unit, Waist};
+use crate::belief::front::{ASKED, FrontMemory, FrontStretch, Spread, Tracker, Unit, Waist};
+use crate::belief::noise::Noise;
 use crate::belief::observation_log::FromLog as _;
-use crate::belief::sample::Reading;
+use crate::belief::sample::{Reading, Sample};
 use crate::belief::tolerance::Tolerance;
+use crate::belief::weight::Prior;
 use crate::geometry::approximate::{METRE, distance};
 use crate::geometry::area::Area;
 use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
-use crate::geometry::value::ValueError;
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::front_state::FrontState;
 use crate::planner::scout::{AGAIN, FAINT, Scout};
+use crate::planner::setup::{Restart, SetupError};
 use crate::planner::silence::Silence;
 use crate::planner::snapshot::{Persist, RestoreError, Snapshot};
 use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
@@ -39,8 +41,7 @@ const ENDS: u32 = 24;
 #[derive(Clone, Debug)]
 pub struct Guard<D, const K: usize, const M: usize, const L: usize, G = Area> {
     scout: Scout<D, K, M, L, G>,
-    /// The length of the stretch, metres.
-    metres: f32,
+    stretch: FrontStretch,
     /// Its middle and direction, once the front is found.
     middle: Option<Pose>,
 }
@@ -48,12 +49,9 @@ pub struct Guard<D, const K: usize, const M: usize, const L: usize, G = Area> {
 impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
     Guard<D, K, M, L, G>
 {
-    /// # Errors
-    /// [`ValueError`] unless the length is from 0.1 to 10,000 m.
-    pub(crate) fn of(scout: Scout<D, K, M, L, G>, metres: f64) -> Result<Self, ValueError> {
-        const RANGE: ValueError = ValueError("the length of a stretch is from 0.1 to 10000 m");
-        let guard = Self { scout, metres: metres as f32, middle: None };
-        (0.1..=1e4).contains(&metres).then_some(guard).ok_or(RANGE)
+    #[inline] // it is made where it stays, as it may be large
+    pub(crate) fn of(scout: Scout<D, K, M, L, G>, stretch: FrontStretch) -> Self {
+        Self { scout, stretch, middle: None }
     }
 
     /// Where the front is known best; `None` as long as it is not found, and where it is lost. The tracker says where it
@@ -71,7 +69,7 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
     /// and the stretch lies there now.
     fn lie(&mut self) {
         let Some(Waist { site, heading, .. }) = self.found() else { return };
-        let most = self.metres * UNITS_PER_METRE as f32;
+        let most = self.stretch.length() * UNITS_PER_METRE as f32;
         if self.middle.is_none_or(|it| distance(site - it.site) > most) {
             self.middle = Some(Pose { site, heading });
         }
@@ -81,7 +79,7 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
     fn ask(&self) -> Option<Asked> {
         let (waist, middle) = (self.found()?, self.middle?);
         let along = Unit::of(middle.heading);
-        let half = 0.5 * self.metres * UNITS_PER_METRE as f32;
+        let half = 0.5 * self.stretch.length() * UNITS_PER_METRE as f32;
         let mut share = -1.0;
         let places = [(); ASKED].map(|()| {
             let by = Vector::new((along.x * half * share) as i32, (along.z * half * share) as i32);
@@ -158,6 +156,19 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
 
     fn front(&self) -> Option<FrontState> {
         Some(FrontState { waist: self.found(), is_closed: false })
+    }
+}
+
+impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> Restart
+    for Guard<D, K, M, L, G>
+{
+    /// It stores no samples.
+    const ROOM: [usize; 2] = [u16::MAX as usize, 1];
+
+    /// Begins again in the rectangle around its area. A tracker has one prior: see [`Tracker::new`].
+    fn restart(&mut self, given: &[Sample], _: Prior, noise: Noise) -> Result<(), SetupError> {
+        self.middle = None;
+        self.scout.restart(noise, given)
     }
 }
 

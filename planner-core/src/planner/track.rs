@@ -20,7 +20,7 @@
 
 use crate::belief::ObservationError;
 use crate::belief::evidence::Alarm;
-use crate::belief::front::{FrontMemory, NINETY, Tracker, Unit, Waist};
+use crate::belief::front::{FrontMemory, FrontStretch, NINETY, Tracker, Unit, Waist};
 use crate::belief::noise::Noise;
 use crate::belief::observation_log::FromLog as _;
 use crate::belief::sample::{Reading, Sample};
@@ -147,7 +147,7 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
     /// # Errors
     /// [`ValueError`] unless the length is from 0.1 to 10,000 m.
     pub fn watching(self, metres: f64) -> Result<Guard<D, K, M, L, G>, ValueError> {
-        Guard::of(self.scout, metres)
+        Ok(Guard::of(self.scout, FrontStretch::metres(metres)?))
     }
 
     /// The label that all of the area has, if it most likely has one; and how much of it may have the other one. The

@@ -73,6 +73,10 @@ fn four_machines_make_the_same_traces_byte_for_byte() {
 fn three_machines_make_the_same_maps_of_fronts_byte_for_byte() {
     let missions: Vec<_> = (0..cases(8, 40)).map(|number| following(SEED, number, 60)).collect();
     compare(&missions, &[STM32, riscv("track")]);
+    // The program of the RISC-V core watches no stretch.
+    let watch = |it: Mission| Mission { watch: Some(12.3), until_closed: false, ..it };
+    let watching: Vec<_> = missions.iter().step_by(2).cloned().map(watch).collect();
+    compare(&watching, &[STM32]);
     if let Some(mut small) = Machine::start(NRF51, &[]) {
         let refusal = small.fly(&missions[0]).expect_err("it is declined").to_string();
         assert!(refusal.contains("algorithm: found track, declined"), "{refusal}");

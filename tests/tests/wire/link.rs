@@ -21,7 +21,7 @@ use planner_core::link::message::{
     Capacity, ClockRate, DeclinedError, EndReason, LabelSource, MissionArea, Outline, PROTOCOL,
     Reply, Request, Settings, Setup,
 };
-use planner_core::link::station::{AllLabels, Flown, NoTerms};
+use planner_core::link::station::{AllLabels, Flown, NoTerms, Tracks};
 use planner_core::motion::any_vehicle::Shape;
 use planner_core::motion::car;
 use planner_core::{AnyVehicle, Area, KeepOut, Site, StopReason, Unicycle};
@@ -115,7 +115,9 @@ fn a_front_is_followed_over_a_bad_link_as_over_a_good_one() {
         .into_par_iter()
         .map(|number| {
             let mission = following(9, number, 40);
-            let mission = if number / 4 % 2 == 0 { mission } else { reading(mission) };
+            let mut mission = if number / 4 % 2 == 0 { mission } else { reading(mission) };
+            // Some watch a stretch.
+            mission.watch = number.is_multiple_of(5).then_some(12.3);
             let network = RefCell::new(Network::new(&mission, faults));
             let mut chip = chip(&network);
             let setup = chip.await_setup();
@@ -146,6 +148,16 @@ fn a_chip_without_a_follower_of_fronts_says_so() {
     drop(chip);
     let error = network.into_inner().player.finish().expect_err("it was declined").to_string();
     assert!(error.contains("algorithm: found track") && error.contains("declined"), "{error}");
+
+    let network =
+        RefCell::new(Network::new(&Mission { watch: Some(12.3), ..mission }, Faults::default()));
+    let mut chip = self::chip(&network);
+    let setup = chip.await_setup();
+    let flown = chip.fly_with::<Tracks<16, 16, 3>, Unicycle, Area>(&setup, &mut ());
+    assert!(matches!(flown, Ok(Flown::Declined(DeclinedError::Algorithm))), "{flown:?}");
+    drop(chip);
+    let error = network.into_inner().player.finish().expect_err("it was declined").to_string();
+    assert!(error.contains("front.watch: found 12.3 m, declined"), "{error}");
 }
 
 /// What errs is the vehicle, so a chip is told what it would be told here.

@@ -225,6 +225,10 @@ fn the_examples_are_what_is_sent() {
     let along_front = read(ALONG_FRONT, plain);
     let by_tracker = setup(&along_front, LabelSource::Vehicle);
     said.is("Setup of a follower of fronts", 13, 1, Reply::Setup(by_tracker));
+    let watched = ALONG_FRONT.replace("speed = 0.02", "speed = 0.02, watch = 30.0");
+    let watched = read(&watched.replace("stop = { closed = true }\n", ""), plain);
+    let by_guard = setup(&watched, LabelSource::Vehicle);
+    said.is("Setup of a guard of a front", 14, 1, Reply::Setup(by_guard));
     let waist = Waist {
         site: Site::metres([8.25, 30.5]).expect("near"),
         heading: Heading::from_radians(0.25).expect("an angle"),
@@ -291,7 +295,9 @@ fn the_tables_have_every_variant() {
     };
     check("Request", variants::<Request>(&[zeros]));
     check("Reply", variants::<Reply>(replies));
-    check("Algorithm", variants::<Algorithm>(&[zeros]));
+    // A stretch of no length is refused. This one has 200 mm.
+    let watch: &[u8] = &[0, 0, 0, 0, 0, 200, 1];
+    check("Algorithm", variants::<Algorithm>(&[zeros, watch]));
     check("Policy", variants::<Policy>(&[zeros]));
     check("Prior", variants::<Prior>(&[zeros]));
     check("Accuracy", variants::<Accuracy>(&[zeros]));

@@ -39,7 +39,7 @@ mod walk;
 
 pub(crate) use grid::Unit;
 pub use memory::FrontMemory;
-pub use settings::Front;
+pub use settings::{Front, FrontStretch};
 pub use stretch::Beside;
 pub(crate) use stretch::{ASKED, Spread};
 pub use tracker::Tracker;

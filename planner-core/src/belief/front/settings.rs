@@ -1,4 +1,4 @@
-//! What a user says of a front: how tightly it bends, and how fast it moves.
+//! What a user says of a front: how tightly it bends, how fast it moves, and how much of it is to be watched.
 
 use crate::geometry::value::ValueError;
 
@@ -82,9 +82,63 @@ impl TryFrom<[u32; 2]> for Front {
     }
 }
 
+/// How much of a front is to be watched.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "u32", into = "u32"))]
+pub struct FrontStretch {
+    length_mm: u32,
+}
+
+impl FrontStretch {
+    /// A stretch of so many metres.
+    ///
+    /// # Errors
+    /// [`ValueError`] unless it is from 0.1 to 10,000 m.
+    pub fn metres(metres: f64) -> Result<Self, ValueError> {
+        // A cast takes what is no number to 0, and what is too large to the largest number.
+        Self::try_from(libm::round(metres * 1e3) as u32)
+    }
+
+    /// Its length in single precision, metres.
+    pub(crate) fn length(self) -> f32 {
+        self.length_mm as f32 / 1e3
+    }
+}
+
+impl From<FrontStretch> for u32 {
+    /// Millimetres.
+    fn from(stretch: FrontStretch) -> Self {
+        stretch.length_mm
+    }
+}
+
+impl TryFrom<u32> for FrontStretch {
+    type Error = ValueError;
+
+    /// # Errors
+    /// As [`metres`](FrontStretch::metres).
+    fn try_from(length_mm: u32) -> Result<Self, ValueError> {
+        const RANGE: ValueError = ValueError("the length of a stretch is from 0.1 to 10000 m");
+        (100..=10_000_000).contains(&length_mm).then_some(Self { length_mm }).ok_or(RANGE)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_no_stretch_is_refused() {
+        for metres in [0.0, 0.09, -5.0, f64::NAN, f64::INFINITY, 1e4 + 0.1, 5e6, 1e300] {
+            assert!(FrontStretch::metres(metres).is_err(), "{metres}");
+        }
+        for metres in [0.1, 12.3, 30.0, 1e4] {
+            let length = FrontStretch::metres(metres).map(FrontStretch::length);
+            assert_eq!(length, Ok(metres as f32));
+        }
+    }
 
     #[test]
     fn what_is_no_front_is_refused() {

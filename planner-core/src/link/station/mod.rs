@@ -6,7 +6,7 @@ mod seam;
 mod terms;
 
 pub use flight::{Flown, Station, Watch};
-pub use planners::{AllLabels, CfcAlone, Mission, NoOthers, Planners, Tracks, TrueLabels};
+pub use planners::{AllLabels, CfcAlone, Guards, Mission, NoOthers, Planners, Tracks, TrueLabels};
 pub use seam::Prepared;
 pub use terms::{FromOutlines, Known, NoTerms, PlannerSetup};
 

@@ -61,6 +61,11 @@ pub struct AllLabels<const T: usize, const N: usize, const H: usize, S = Near>(P
 #[derive(Debug)]
 pub struct Tracks<const K: usize, const M: usize, const L: usize, A = NoOthers>(PhantomData<A>);
 
+/// The guard of a stretch of a front, by a [`Tracker`](crate::Tracker) of `K` directions, `M` offsets and `L` layers, and
+/// the planners of `A`: by default none.
+#[derive(Debug)]
+pub struct Guards<const K: usize, const M: usize, const L: usize, A = NoOthers>(PhantomData<A>);
+
 /// No planner.
 #[derive(Debug)]
 pub enum NoOthers {}
@@ -227,6 +232,22 @@ impl<const K: usize, const M: usize, const L: usize, A: Planners> Planners for T
             Algorithm::Track { front, noise, ends } => {
                 // It watches its labels itself: they speak of a front, not of a line.
                 let mut planner = setup.track::<_, _, K, M, L>(terms, front, ends);
+                station.fly(setup, &mut setup.prepare(&mut planner, Prior::Area, noise), watch)
+            }
+            _ => A::fly(Mission { station, setup, watch }, terms),
+        }
+    }
+}
+
+impl<const K: usize, const M: usize, const L: usize, A: Planners> Planners for Guards<K, M, L, A> {
+    fn fly<P: Port, S: LabelSensor, D: Dynamics, G: Workspace, W: Watch>(
+        mission: Mission<'_, P, S, W>,
+        terms: PlannerSetup<D, G>,
+    ) -> Result<Flown, LinkError> {
+        let Mission { station, setup, watch } = mission;
+        match setup.algorithm {
+            Algorithm::Watch { front, noise, stretch } => {
+                let mut planner = setup.guard::<_, _, K, M, L>(terms, front, stretch);
                 station.fly(setup, &mut setup.prepare(&mut planner, Prior::Area, noise), watch)
             }
             _ => A::fly(Mission { station, setup, watch }, terms),
