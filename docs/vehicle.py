@@ -27,6 +27,7 @@ def setup(args):
     is_fine = looks_ahead or args.algorithm == "track"
     if args.algorithm == "track":
         taken = 0  # it stores none
+    front = {"front": {"radius_mm": args.radius * 1000, "speed_um": 0}, "noise": noise}
     doubt = {"noise": noise, "prior": ("Area", None)}
     return {
         "protocol": PROTOCOL,
@@ -36,8 +37,8 @@ def setup(args):
             "lookahead": ("Lookahead", {"evaluations": 512, "goal": None,
                                         "noise": doubt if args.p < 1 else None,
                                         "sight": {"far": None, "least": 0, "readings": args.readings}}),
-            "track": ("Track", {"front": {"radius_mm": args.radius * 1000, "speed_um": 0},
-                                "noise": noise, "ends": False}),
+            "track": ("Watch", {**front, "stretch_mm": args.watch * 1000}) if args.watch
+                     else ("Track", {**front, "ends": False}),
         }[args.algorithm],
         "config": {
             "area": {"min": site(0, 0), "max": site(20, 20)},
@@ -223,6 +224,7 @@ def main():
     parser.add_argument("--steps", type=int, default=10)
     parser.add_argument("--readings", type=int, default=1, help="labels a motion, the last at its end")
     parser.add_argument("--radius", type=int, default=40, help="of track: the tightest bend, metres")
+    parser.add_argument("--watch", type=int, help="of track: metres of front to watch, instead of all of it")
     parser.add_argument("--p", type=float, default=1.0, help="how often labels are said to be right")
     parser.add_argument("--line", type=float, nargs=2, default=[0.41, 3.5], metavar=("SLOPE", "INTERCEPT"))
     parser.add_argument("--wrong", type=int, nargs="*", default=[], help="which labels are read wrong")
@@ -231,6 +233,8 @@ def main():
         parser.error(f"--p: found {args.p}, expected a probability, and 1 with --algorithm cfc")
     if args.readings < 1:
         parser.error(f"--readings: found {args.readings}, expected 1 or more")
+    if args.watch is not None and not 1 <= args.watch <= 10_000:
+        parser.error(f"--watch: found {args.watch}, expected from 1 to 10000 m")
     sys.stdout.reconfigure(line_buffering=True)
     vehicle = Vehicle(args)
     try:

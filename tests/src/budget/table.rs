@@ -208,7 +208,7 @@ fn array(lines: &[String]) -> Array {
 
 /// The committed figures as a table: a column for each program, cycles as time beside instructions.
 fn table(document: &DocumentMut) -> String {
-    let programs = ["alone", "small", "medium", "standard", "large", "track", "firmware"];
+    let programs = ["alone", "small", "medium", "standard", "large", "track", "watch", "firmware"];
     let read = |program: &str, name: &str| {
         document.get(program)?.get(name)?.get("committed")?.as_integer()
     };

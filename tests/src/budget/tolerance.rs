@@ -43,6 +43,7 @@ impl Costs {
             vehicle: AnyVehicle::Unicycle(Unicycle::paper()),
             noise: if doubtful { DOUBT } else { None },
             position,
+            watch: None,
         };
         let numbers: Vec<u64> = (0..missions).map(|number| 2 * number).collect();
         let flights = timing::fly_on(core, elf, &workload, &numbers);

@@ -52,6 +52,8 @@ pub struct Workload {
     pub noise: Option<NoiseModel>,
     /// Standard deviation of a reported position, metres; the planner is told a tolerance of three.
     pub position: f64,
+    /// Metres of front that are watched, if it is not gone along.
+    pub watch: Option<f64>,
 }
 
 /// Seven labels in ten are true, and all near the oracle's points.
@@ -90,7 +92,8 @@ impl Workload {
     /// When positions err by more than a tolerance can be.
     pub fn mission(&self, number: u64) -> Mission {
         if !self.algorithm.seeks_line() {
-            return fronts::following(SEED, number, self.steps);
+            let following = fronts::following(SEED, number, self.steps);
+            return Mission { watch: self.watch, ..following };
         }
         let mut mission = standard_field::standard(SEED, number, self.algorithm, self.steps);
         (mission.policy, mission.vehicle) = (self.policy, self.vehicle);

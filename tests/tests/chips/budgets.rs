@@ -28,7 +28,8 @@ use tests::program::image::Image;
 const OTHERS: [&str; 2] = ["thumbv6m-none-eabi", "riscv32imac-unknown-none-elf"];
 
 /// The programs. All but a long run leave out the last.
-const PROGRAMS: [&str; 7] = ["alone", "small", "medium", "standard", "vehicles", "track", "large"];
+const PROGRAMS: [&str; 8] =
+    ["alone", "small", "medium", "standard", "vehicles", "track", "watch", "large"];
 
 fn looked_at() -> &'static [&'static str] {
     &PROGRAMS[..if is_long() { 7 } else { 6 }]
@@ -68,8 +69,9 @@ fn every_figure_keeps_its_budget() {
                 "track" => {
                     let ram = size_of::<Follower>() as u64 + u64::from(needs.planner_stack);
                     books.budgets.figure(name, "ram_of_planner", ram);
-                    time_track(&mut books, &elf)
+                    time_track(&mut books, &elf, "track", None)
                 }
+                "watch" => time_track(&mut books, &elf, "watch", Some(20.0)),
                 _ => time_large(&mut books, &elf, fits),
             };
             books.budgets.note(&format!("{name}: {stack} bytes of stack in the emulator"));
@@ -206,6 +208,7 @@ const CFC: Workload = Workload {
     vehicle: AnyVehicle::Unicycle(Unicycle::paper()),
     noise: None,
     position: 0.0,
+    watch: None,
 };
 
 const LOOKAHEAD: Workload =
@@ -227,17 +230,18 @@ fn time_small(books: &mut Books, elf: &[u8]) -> u32 {
 }
 
 /// Missions of fronts: a plan takes about as long in all of them.
-fn time_track(books: &mut Books, elf: &[u8]) -> u32 {
+fn time_track(books: &mut Books, elf: &[u8], program: &'static str, watch: Option<f64>) -> u32 {
     let track = Workload {
         algorithm: Algorithm::Track,
         steps: 80,
         random: 40,
         searched: 0,
         sought: 0,
+        watch,
         ..CFC
     };
-    let flown = Flown::of(books, elf, "track", track);
-    flown.record_all(books, "track", "");
+    let flown = Flown::of(books, elf, program, track);
+    flown.record_all(books, program, "");
     flown.stack()
 }
 

@@ -64,6 +64,7 @@ fn flown(program: &str) -> Vec<Flown> {
         vehicle: AnyVehicle::from(grid),
         noise,
         position: 0.0,
+        watch: None,
     };
     let flown = |figure, all, hardest, workload| Flown { figure, all, hardest, workload };
     let (cfc, lookahead) = (Algorithm::Cfc, Algorithm::Lookahead);

@@ -217,6 +217,7 @@ fn qemu_executes_as_many_instructions() {
         vehicle: Grid::Paper.into(),
         noise: None,
         position: 0.0,
+        watch: None,
     };
     let (_, told) = missions::fly_and_record(&mut Emulator::load(&elf, core), &workload.mission(3))
         .expect("it flies as the host");

@@ -35,24 +35,46 @@ struct Flight {
     p: f64,
     /// Which labels are read wrong.
     wrong: &'static [usize],
+    /// Metres of front that are watched.
+    watch: Option<u32>,
 }
 
-const FLIGHTS: [Flight; 7] = [
-    Flight { algorithm: Algorithm::Cfc, steps: 12, readings: 1, p: 1.0, wrong: &[] },
-    Flight { algorithm: Algorithm::Lookahead, steps: 12, readings: 1, p: 1.0, wrong: &[] },
-    Flight { algorithm: Algorithm::Lookahead, steps: 9, readings: 1, p: 0.9, wrong: &[3, 7] },
-    Flight { algorithm: Algorithm::Scc, steps: 9, readings: 1, p: 0.7, wrong: &[2, 5, 6] },
-    Flight { algorithm: Algorithm::Lookahead, steps: 12, readings: 4, p: 1.0, wrong: &[] },
-    Flight { algorithm: Algorithm::Lookahead, steps: 8, readings: 3, p: 0.9, wrong: &[3, 7, 8] },
-    Flight { algorithm: Algorithm::Track, steps: 24, readings: 2, p: 0.9, wrong: &[9, 20] },
+const USUAL: Flight = Flight {
+    algorithm: Algorithm::Lookahead,
+    steps: 12,
+    readings: 1,
+    p: 1.0,
+    wrong: &[],
+    watch: None,
+};
+
+const ALONG_FRONT: Flight = Flight {
+    algorithm: Algorithm::Track,
+    steps: 24,
+    readings: 2,
+    p: 0.9,
+    wrong: &[9, 20],
+    ..USUAL
+};
+
+const FLIGHTS: [Flight; 8] = [
+    Flight { algorithm: Algorithm::Cfc, ..USUAL },
+    USUAL,
+    Flight { steps: 9, p: 0.9, wrong: &[3, 7], ..USUAL },
+    Flight { algorithm: Algorithm::Scc, steps: 9, p: 0.7, wrong: &[2, 5, 6], ..USUAL },
+    Flight { readings: 4, ..USUAL },
+    Flight { steps: 8, readings: 3, p: 0.9, wrong: &[3, 7, 8], ..USUAL },
+    ALONG_FRONT,
+    Flight { watch: Some(6), ..ALONG_FRONT },
 ];
 
 impl Flight {
     fn flags(self) -> Vec<String> {
-        let Self { algorithm, steps, readings, p, wrong } = self;
+        let Self { algorithm, steps, readings, p, wrong, watch } = self;
         let mut flags =
             vec![format!("--algorithm={}", algorithm.name()), format!("--steps={steps}")];
         flags.extend([format!("--p={p}"), format!("--readings={readings}")]);
+        flags.extend(watch.map(|metres| format!("--watch={metres}")));
         if !wrong.is_empty() {
             flags.push("--wrong".to_owned());
             flags.extend(wrong.iter().map(ToString::to_string));
@@ -71,7 +93,8 @@ impl Flight {
         // What planners differ in beside their name is theirs by default.
         let text = text.replace("varrho = 0.1\n", &format!("readings = {readings}\n"));
         let overrides = Overrides { algorithm: Some(algorithm), steps: Some(steps), seed: None };
-        scenario::parse("", &text, overrides).expect("a good scenario")
+        let mission = scenario::parse("", &text, overrides).expect("a good scenario");
+        Mission { watch: self.watch.map(f64::from), ..mission }
     }
 }
 
