@@ -1,11 +1,12 @@
 //! Missions that a vehicle flies over `MAVLink`: one simulated with pymavlink, which is not ours, at the end of a bad link.
-//! Those that finish have the trace of `run`, byte for byte; those to which something happens end with what it was, and
-//! the vehicle is at rest from when it could be.
+//! Those that finish have the trace of `run`, byte for byte. Those to which something happens name it at their end, and the
+//! vehicle comes to rest as soon as it can.
 //!
-//! The vehicle takes any setpoint as `ArduPilot` does: also one that a newer one has overtaken on the link. Such a one
-//! may undo the end of a motion. Then the flight goes on from where the vehicle says it is, and differs from `run`.
+//! There is one exception. The vehicle takes any setpoint as `ArduPilot` does: also one that a newer one has overtaken on
+//! the link. Such a setpoint may undo the end of a motion. Then the flight goes on from where the vehicle says it is. From
+//! there on its trace differs from that of `run`.
 //!
-//! This builds host-sim with another feature, so only the long run has it.
+//! This test builds host-sim with another feature, so only the long run has it.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -227,7 +228,8 @@ impl Flown {
         self.told["late"].as_f64().unwrap_or(0.0)
     }
 
-    /// Whether its steps are the first of `run`, up to one that an overtaken setpoint undid, if there was one.
+    /// Whether its steps are those of `run` from the first one on. Where it [is undone](Self::is_undone), they may differ
+    /// from a step on that ended apart from its target.
     fn is_as_run(&self) -> bool {
         let mut pairs = self.written.lines().zip(self.expected.lines());
         let ends = |it: &str| it.starts_with("{\"record\":\"end\"");
@@ -235,9 +237,9 @@ impl Flown {
         other.is_none_or(|(a, _)| self.is_undone() && a.contains("\"target\":"))
     }
 
-    /// Whether a setpoint that a newer one had overtaken undid a motion.
+    /// Whether a newer setpoint overtook one, and a motion ended apart from its target.
     fn is_undone(&self) -> bool {
-        self.told["overtaken"] != 0 && self.written.contains("\"target\":")
+        self.told["overtaken"].as_u64() > Some(0) && self.written.contains("\"target\":")
     }
 
     /// What is wrong with it.

@@ -92,10 +92,10 @@ pub struct FrontStretch {
 }
 
 impl FrontStretch {
-    /// A stretch of so many metres.
+    /// A stretch of so many metres, rounded to millimetres.
     ///
     /// # Errors
-    /// [`ValueError`] unless it is from 0.1 to 10,000 m.
+    /// [`ValueError`] unless that is from 0.1 to 10,000 m.
     pub fn metres(metres: f64) -> Result<Self, ValueError> {
         // A cast takes what is no number to 0, and what is too large to the largest number.
         Self::try_from(libm::round(metres * 1e3) as u32)
