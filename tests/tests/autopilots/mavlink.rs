@@ -1,6 +1,6 @@
 //! Missions that a vehicle flies over `MAVLink`: one simulated with pymavlink, which is not ours, at the end of a bad link.
-//! Those that finish have the trace of `run`, byte for byte. Those to which something happens name it at their end, and the
-//! vehicle comes to rest as soon as it can.
+//! Those that finish have the trace of `run`, byte for byte. Those to which something happens name it at their end, and
+//! the vehicle comes to rest as soon as it can.
 //!
 //! There is one exception. The vehicle takes any setpoint as `ArduPilot` does: also one that a newer one has overtaken on
 //! the link. Such a setpoint may undo the end of a motion. Then the flight goes on from where the vehicle says it is. From
