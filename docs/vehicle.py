@@ -233,8 +233,8 @@ def main():
         parser.error(f"--p: found {args.p}, expected a probability, and 1 with --algorithm cfc")
     if args.readings < 1:
         parser.error(f"--readings: found {args.readings}, expected 1 or more")
-    if args.watch is not None and not 1 <= args.watch <= 10_000:
-        parser.error(f"--watch: found {args.watch}, expected from 1 to 10000 m")
+    if args.watch is not None and not (args.algorithm == "track" and 1 <= args.watch <= 10_000):
+        parser.error(f"--watch: found {args.watch}, expected from 1 to 10000 m, with --algorithm track")
     sys.stdout.reconfigure(line_buffering=True)
     vehicle = Vehicle(args)
     try:
