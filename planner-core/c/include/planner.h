@@ -5,8 +5,8 @@
  * An observation can bring a tolerance or a reliability of its own. `planner_estimate`, `planner_chance` and
  * `planner_bits` read out what is known. `planner_save` and `planner_restore` carry a planner over a sleep: it makes the
  * same plans as if it had stayed awake. `planner_follow` makes a planner of another kind: it goes along a front that bends
- * and moves. Nothing is allocated, and all capacities are fixed. A call that is refused says
- * why and changes nothing. Names and meanings stay as they are; more may be added.
+ * and moves. The one that `planner_watch` makes stays with a stretch of it. Nothing is allocated, and all capacities are
+ * fixed. A call that is refused says why and changes nothing. Names and meanings stay as they are; more may be added.
  */
 
 
@@ -169,7 +169,7 @@ typedef int32_t planner_reading;
 typedef struct planner_t planner_t;
 
 /*
- A planner that goes along a front, in memory of the caller.
+ A planner that goes along a front or watches a stretch of it, in memory of the caller.
  */
 typedef struct planner_follower_t planner_follower_t;
 
@@ -436,6 +436,20 @@ typedef struct {
   bool is_closed;
 } planner_front_place;
 
+/*
+ Where a front crosses the line through a place that is square to a heading.
+ */
+typedef struct {
+  /*
+   How far to the left of the place, on average, metres.
+   */
+  double left;
+  /*
+   The standard deviation, metres.
+   */
+  double deviation;
+} planner_front_crossing;
+
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
@@ -595,10 +609,26 @@ planner_status planner_follow(planner_follower_t **made,
                               size_t count);
 
 /*
+ As `planner_follow`, but the planner stays with so many metres of the front, from 0.1 to 10000, about the place where it
+ finds it. It learns where the front is all along them.
+
+ # Safety
+ As for `planner_follow`.
+ */
+planner_status planner_watch(planner_follower_t **made,
+                             void *memory,
+                             size_t bytes,
+                             const planner_mission *mission,
+                             planner_front_settings front,
+                             double stretch,
+                             const planner_sample *given,
+                             size_t count);
+
+/*
  Plans the next motion from where the robot is. `Ok`, or why there is none.
 
  # Safety
- `follower` must be null or from `planner_follow`.
+ `follower` must be null or from `planner_follow` or `planner_watch`.
  */
 planner_status planner_follower_plan(planner_follower_t *follower,
                                      planner_pose pose,
@@ -608,7 +638,7 @@ planner_status planner_follower_plan(planner_follower_t *follower,
  Takes in where a motion ended, and what was read there: one of `planner_reading`.
 
  # Safety
- `follower` must be null or from `planner_follow`.
+ `follower` must be null or from `planner_follow` or `planner_watch`.
  */
 planner_status planner_follower_observe(planner_follower_t *follower,
                                         planner_pose pose,
@@ -618,17 +648,28 @@ planner_status planner_follower_observe(planner_follower_t *follower,
  Where the front is known best. `PLANNER_STATUS_UNDECIDED` as long as it is not found, and where it is lost.
 
  # Safety
- `follower` must be null or from `planner_follow`.
+ `follower` must be null or from `planner_follow` or `planner_watch`.
  */
 planner_status planner_front(planner_follower_t *follower,
                              planner_front_place *front);
+
+/*
+ Where the front crosses the line through the pose that is square to its heading. Ask it of places all along a stretch
+ that is watched. `PLANNER_STATUS_UNDECIDED` as long as the front is not found, and where it is lost.
+
+ # Safety
+ `follower` must be null or from `planner_follow` or `planner_watch`.
+ */
+planner_status planner_front_beside(planner_follower_t *follower,
+                                    planner_pose pose,
+                                    planner_front_crossing *beside);
 
 /*
  Writes what a planner of fronts has to remember over a sleep. Returns how many bytes that takes; 0 if there is not so
  much room. `planner_follower_bytes` are always enough.
 
  # Safety
- `follower` must be null or from `planner_follow`, and `bytes` null or writable for so many bytes.
+ `follower` must be null or from `planner_follow` or `planner_watch`, `bytes` null or writable for so many bytes.
  */
 size_t planner_follower_save(planner_follower_t *follower,
                              uint8_t *bytes,
@@ -639,7 +680,7 @@ size_t planner_follower_save(planner_follower_t *follower,
  the bytes stays as it was.
 
  # Safety
- `follower` must be null or from `planner_follow`, and `bytes` null or readable for so many bytes.
+ `follower` must be null or from `planner_follow` or `planner_watch`, `bytes` null or readable for so many bytes.
  */
 planner_status planner_follower_restore(planner_follower_t *follower,
                                         const uint8_t *bytes,

@@ -1,4 +1,4 @@
-//! A planner that goes along a front, in the caller's memory.
+//! A planner that goes along a front or watches a stretch of it, in the caller's memory.
 //!
 //! Unsafe code is here for the same reason as in `finder`: it reads and writes behind the pointers that C passes.
 
@@ -6,7 +6,8 @@ use core::ffi::c_void;
 use core::mem::{MaybeUninit, align_of, size_of};
 
 use planner_core::{
-    Front, Noise, Plan, Planner as _, Prior, Restart as _, Site, Track, Tracker, Unicycle, Waist,
+    Beside, Front, FrontState, Guard, Noise, Plan, Planner as _, Prior, Restart as _, Site, Track,
+    Tracker, Unicycle, Waist,
 };
 
 use crate::area::Ground;
@@ -16,10 +17,29 @@ use crate::types::{Mission, Motion, Pose, Reading, Sample, Status};
 /// Given samples at most.
 const MOST_GIVEN: usize = 16;
 
-/// A planner that goes along a front, in memory of the caller.
+type Tracks = Track<Unicycle, 16, 16, 3, Ground>;
+type Guards = Guard<Unicycle, 16, 16, 3, Ground>;
+
+/// A planner that goes along a front or watches a stretch of it, in memory of the caller.
 #[repr(align(8))]
 pub struct Follower {
-    track: Track<Unicycle, 16, 16, 3, Ground>,
+    planner: Either,
+}
+
+/// What the planner does with the front.
+enum Either {
+    Track(Tracks),
+    Guard(Guards),
+}
+
+/// Asks either planner the same.
+macro_rules! ask {
+    ($follower:expr, $planner:ident => $asked:expr) => {
+        match &mut $follower.planner {
+            Either::Track($planner) => $asked,
+            Either::Guard($planner) => $asked,
+        }
+    };
 }
 
 /// How tightly a front bends, and how fast it moves.
@@ -61,6 +81,16 @@ impl FrontPlace {
     }
 }
 
+/// Where a front crosses the line through a place that is square to a heading.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct FrontCrossing {
+    /// How far to the left of the place, on average, metres.
+    pub left: f64,
+    /// The standard deviation, metres.
+    pub deviation: f64,
+}
+
 /// How much memory a planner of fronts takes, bytes.
 #[unsafe(export_name = "planner_follower_bytes")]
 pub extern "C" fn follower_bytes() -> usize {
@@ -84,6 +114,41 @@ pub unsafe extern "C" fn follow(
     given: *const Sample,
     count: usize,
 ) -> Status {
+    // SAFETY: the caller promises the same.
+    unsafe { begin(made, (memory, bytes), mission, (front, None), (given, count)) }
+}
+
+/// As `planner_follow`, but the planner stays with so many metres of the front, from 0.1 to 10000, about the place where it
+/// finds it. It learns where the front is all along them.
+///
+/// # Safety
+/// As for `planner_follow`.
+#[unsafe(export_name = "planner_watch")]
+pub unsafe extern "C" fn watch(
+    made: Option<&mut MaybeUninit<*mut Follower>>,
+    memory: *mut c_void,
+    bytes: usize,
+    mission: Option<&Mission<'_>>,
+    front: FrontSettings,
+    stretch: f64,
+    given: *const Sample,
+    count: usize,
+) -> Status {
+    // SAFETY: the caller promises the same.
+    unsafe { begin(made, (memory, bytes), mission, (front, Some(stretch)), (given, count)) }
+}
+
+/// Makes a planner of a front, and of a stretch to watch if there is one.
+///
+/// # Safety
+/// As for [`follow`].
+unsafe fn begin(
+    made: Option<&mut MaybeUninit<*mut Follower>>,
+    (memory, bytes): (*mut c_void, usize),
+    mission: Option<&Mission<'_>>,
+    (front, stretch): (FrontSettings, Option<f64>),
+    (given, count): (*const Sample, usize),
+) -> Status {
     let (Some(made), Some(mission)) = (made, mission) else { return Status::Memory };
     let is_room = bytes >= size_of::<Follower>() && memory.addr().is_multiple_of(8);
     let is_given = count == 0 || !given.is_null() && given.is_aligned();
@@ -94,14 +159,18 @@ pub unsafe extern "C" fn follow(
     // SAFETY: the caller promises so many samples.
     let given = if count == 0 { &[] } else { unsafe { core::slice::from_raw_parts(given, count) } };
     let begun = prepared(mission, front, given).and_then(|(track, noise, samples)| {
+        let planner = match stretch {
+            None => Either::Track(track),
+            Some(metres) => Either::Guard(track.watching(metres).map_err(|_| Status::Mission)?),
+        };
         let place = memory.cast::<Follower>();
         // SAFETY: there is room, and it is aligned.
         let follower = unsafe {
-            place.write(Follower { track });
+            place.write(Follower { planner });
             &mut *place
         };
         let samples = samples.get(..given.len()).unwrap_or_default();
-        let begun = follower.track.restart(samples, Prior::Area, noise);
+        let begun = ask!(follower, it => it.restart(samples, Prior::Area, noise));
         begun.map(|()| place).map_err(|_| Status::ToleranceTooLarge)
     });
     match begun {
@@ -113,7 +182,7 @@ pub unsafe extern "C" fn follow(
     }
 }
 
-type Parts = (Track<Unicycle, 16, 16, 3, Ground>, Noise, [planner_core::Sample; MOST_GIVEN]);
+type Parts = (Tracks, Noise, [planner_core::Sample; MOST_GIVEN]);
 
 /// A planner of a mission, its noise and its given samples.
 fn prepared(
@@ -145,7 +214,7 @@ fn prepared(
 /// Plans the next motion from where the robot is. `Ok`, or why there is none.
 ///
 /// # Safety
-/// `follower` must be null or from `planner_follow`.
+/// `follower` must be null or from `planner_follow` or `planner_watch`.
 #[unsafe(export_name = "planner_follower_plan")]
 pub unsafe extern "C" fn follower_plan(
     follower: Option<&mut Follower>,
@@ -157,7 +226,7 @@ pub unsafe extern "C" fn follower_plan(
         Ok(pose) => pose,
         Err(status) => return status,
     };
-    match follower.track.plan(pose) {
+    match ask!(follower, it => it.plan(pose)) {
         Plan::Move(motion) => {
             place.write(motion.into());
             Status::Ok
@@ -169,7 +238,7 @@ pub unsafe extern "C" fn follower_plan(
 /// Takes in where a motion ended, and what was read there: one of `planner_reading`.
 ///
 /// # Safety
-/// `follower` must be null or from `planner_follow`.
+/// `follower` must be null or from `planner_follow` or `planner_watch`.
 #[unsafe(export_name = "planner_follower_observe")]
 pub unsafe extern "C" fn follower_observe(
     follower: Option<&mut Follower>,
@@ -179,7 +248,7 @@ pub unsafe extern "C" fn follower_observe(
     let Some(follower) = follower else { return Status::Memory };
     match (pose.read(), Reading::read(reading)) {
         (Ok(pose), Ok(reading)) => {
-            let observed = follower.track.observe(pose, reading);
+            let observed = ask!(follower, it => it.observe(pose, reading));
             observed.map_or_else(Status::from, |()| Status::Ok)
         }
         (Err(status), _) | (_, Err(status)) => status,
@@ -189,15 +258,40 @@ pub unsafe extern "C" fn follower_observe(
 /// Where the front is known best. `PLANNER_STATUS_UNDECIDED` as long as it is not found, and where it is lost.
 ///
 /// # Safety
-/// `follower` must be null or from `planner_follow`.
+/// `follower` must be null or from `planner_follow` or `planner_watch`.
 #[unsafe(export_name = "planner_front")]
 pub unsafe extern "C" fn front(
     follower: Option<&mut Follower>,
     front: Option<&mut MaybeUninit<FrontPlace>>,
 ) -> Status {
     let (Some(follower), Some(place)) = (follower, front) else { return Status::Memory };
-    let Some(waist) = follower.track.found() else { return Status::Undecided };
-    place.write(FrontPlace::new(waist, follower.track.is_closed()));
+    let Some(FrontState { waist: Some(waist), is_closed }) = ask!(follower, it => it.front())
+    else {
+        return Status::Undecided;
+    };
+    place.write(FrontPlace::new(waist, is_closed));
+    Status::Ok
+}
+
+/// Where the front crosses the line through the pose that is square to its heading. Ask it of places all along a stretch
+/// that is watched. `PLANNER_STATUS_UNDECIDED` as long as the front is not found, and where it is lost.
+///
+/// # Safety
+/// `follower` must be null or from `planner_follow` or `planner_watch`.
+#[unsafe(export_name = "planner_front_beside")]
+pub unsafe extern "C" fn front_beside(
+    follower: Option<&mut Follower>,
+    pose: Pose,
+    beside: Option<&mut MaybeUninit<FrontCrossing>>,
+) -> Status {
+    let (Some(follower), Some(place)) = (follower, beside) else { return Status::Memory };
+    let planner_core::Pose { site, heading } = match pose.read() {
+        Ok(pose) => pose,
+        Err(status) => return status,
+    };
+    let beside = ask!(follower, it => it.found().map(|_| it.belief().beside(site, heading)));
+    let Some(Beside { left, deviation }) = beside else { return Status::Undecided };
+    place.write(FrontCrossing { left: left.into(), deviation: deviation.into() });
     Status::Ok
 }
 
@@ -205,7 +299,7 @@ pub unsafe extern "C" fn front(
 /// much room. `planner_follower_bytes` are always enough.
 ///
 /// # Safety
-/// `follower` must be null or from `planner_follow`, and `bytes` null or writable for so many bytes.
+/// `follower` must be null or from `planner_follow` or `planner_watch`, `bytes` null or writable for so many bytes.
 #[unsafe(export_name = "planner_follower_save")]
 pub unsafe extern "C" fn follower_save(
     follower: Option<&mut Follower>,
@@ -218,14 +312,14 @@ pub unsafe extern "C" fn follower_save(
         bytes.write_bytes(0, room);
         core::slice::from_raw_parts_mut(bytes, room)
     };
-    snapshot::write(&follower.track, bytes).unwrap_or(0)
+    ask!(follower, it => snapshot::write(it, bytes)).unwrap_or(0)
 }
 
 /// Lets a planner of fronts go on from where another was, that was begun with the same mission. A planner that refuses
 /// the bytes stays as it was.
 ///
 /// # Safety
-/// `follower` must be null or from `planner_follow`, and `bytes` null or readable for so many bytes.
+/// `follower` must be null or from `planner_follow` or `planner_watch`, `bytes` null or readable for so many bytes.
 #[unsafe(export_name = "planner_follower_restore")]
 pub unsafe extern "C" fn follower_restore(
     follower: Option<&mut Follower>,
@@ -235,5 +329,5 @@ pub unsafe extern "C" fn follower_restore(
     let Some(follower) = follower.filter(|_| !bytes.is_null()) else { return Status::Memory };
     // SAFETY: the caller promises so many bytes.
     let bytes = unsafe { core::slice::from_raw_parts(bytes, count) };
-    snapshot::wake(bytes, &mut follower.track).err().unwrap_or(Status::Ok)
+    ask!(follower, it => snapshot::wake(bytes, it)).err().unwrap_or(Status::Ok)
 }

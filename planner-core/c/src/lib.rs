@@ -1,7 +1,7 @@
 #![cfg_attr(target_os = "none", no_std)]
 
 //! `planner-core` behind a C interface: look-ahead for a unicycle in a rectangle or a convex polygon with keep-outs, with
-//! labels that are true or sometimes wrong; and the follower of fronts.
+//! labels that are true or sometimes wrong; and the follower and the guard of fronts.
 //!
 //! `include/planner.h` is made from these sources, `example.c` is a program that uses it. There is no allocation: a
 //! planner lives in memory of the caller, which may be moved. Nothing is global, so there may be many.
@@ -26,8 +26,8 @@ pub use finder::{
     observe_within, plan, restore, save,
 };
 pub use follower::{
-    Follower, FrontPlace, FrontSettings, follow, follower_bytes, follower_observe, follower_plan,
-    follower_restore, follower_save, front,
+    Follower, FrontCrossing, FrontPlace, FrontSettings, follow, follower_bytes, follower_observe,
+    follower_plan, follower_restore, follower_save, front, front_beside, watch,
 };
 pub use snapshot::{SNAPSHOT_BYTES, Snapshot};
 pub use types::{Line, Mission, Motion, Point, Pose, Reading, Sample, Status};

@@ -206,8 +206,8 @@ fn awake<B: PredictiveBelief<Belief: Sized>>(
     said + &status.to_string()
 }
 
-/// What `following.c` prints, by a planner that stays awake.
-fn followed() -> String {
+/// What `following.c` prints, by planners that stay awake: one that goes along, one that watches.
+fn followed() -> [String; 2] {
     let area = Area::metres([0.0, 0.0], [120.0, 120.0]).expect("an area");
     let front = Front::bending(30.0).and_then(|it| it.moving(0.01)).expect("a front");
     let noise = Noise::new(0.9).expect("a probability");
@@ -215,7 +215,11 @@ fn followed() -> String {
     let given = given.map(|(x, z, label)| Sample { site: at(x, z), label });
     let tracker = Tracker::<16, 16, 3>::new(area, front, noise).given(&given);
     let unicycle = Unicycle::new(10_000, 1.57, 21, 100).expect("a grid");
-    let mut planner = Track::new(area, unicycle, tracker).expect("settings that agree");
+    let planner = Track::new(area, unicycle, tracker).expect("settings that agree");
+    [along(planner.clone()), along(planner.watching(20.0).expect("a stretch"))]
+}
+
+fn along<P: Planner<Belief = Tracker<16, 16, 3>>>(mut planner: P) -> String {
     let mut pose = Pose { site: at(60.0, 28.0), heading: Heading(0) };
     let (mut labels, mut said) = (0, String::new());
     for _ in 0..130 {
@@ -230,18 +234,21 @@ fn followed() -> String {
         });
         planner.observe(pose, reading.map(Into::into)).expect("any label goes");
         let mut numbers = vec![here.x, here.y];
-        if let Some(it) = planner.found() {
+        let front = planner.front().expect("it follows one");
+        if let Some(it) = front.waist {
             let at = Point2::<f64>::from(it.site);
             let rest = [it.curvature, it.deviation, it.turn_deviation].map(f64::from);
             numbers.extend([at.x, at.y, it.heading.radians()].into_iter().chain(rest));
-            numbers.push(f64::from(u8::from(planner.is_closed())));
+            numbers.push(f64::from(u8::from(front.is_closed)));
+            let beside = planner.belief().beside(pose.site, pose.heading);
+            numbers.extend([beside.left, beside.deviation].map(f64::from));
         }
         for number in numbers {
             let _ = write!(said, "{:016x} ", number.to_bits());
         }
         said.push('\n');
     }
-    assert!(planner.found().is_some() && said.lines().count() == 130);
+    assert!(planner.front().is_some_and(|it| it.waist.is_some()) && said.lines().count() == 130);
     said
 }
 
@@ -303,9 +310,10 @@ fn a_c_program_flies_the_same_missions() {
         println!("{argument}: {} lines, {bytes}", flight.lines().count());
     }
     print!("{}", said(&program(&library, &here("misuse.c")), ""));
-    let map = said(&program(&library, &here("following.c")), "");
-    assert_eq!(map, followed());
-    println!("following: {} lines", map.lines().count());
+    let following = program(&library, &here("following.c"));
+    for (mode, here) in ["", "watch"].into_iter().zip(followed()) {
+        assert_eq!(said(&following, mode), here, "{mode}");
+    }
     let asleep = program(&library, &here("asleep.c"));
     for mode in ["true", "doubtful", "blurred"] {
         let said = said(&asleep, mode);
