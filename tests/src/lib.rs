@@ -33,16 +33,28 @@ pub mod terrain;
 pub mod twins;
 pub mod wire;
 
-/// Whether this is a long run: thousands of random missions, searches for hard ones, all cores. `LONG=1` in the
-/// environment asks for it.
+/// One in how many cases of a long run is run, if this is one: thousands of random missions, searches for hard ones, all
+/// cores. `LONG=1` in the environment asks for all, `LONG=10` for one in ten.
+fn long() -> Option<u64> {
+    static LONG: LazyLock<Option<u64>> = LazyLock::new(|| {
+        let long = env::var("LONG").ok()?;
+        let share = long.parse().ok().filter(|it| *it > 0);
+        Some(
+            share
+                .unwrap_or_else(|| panic!("LONG={long}: it is 1 for all cases, 10 for one in ten")),
+        )
+    });
+    *LONG
+}
+
+/// Whether this is a long run.
 pub fn is_long() -> bool {
-    static IS_LONG: LazyLock<bool> = LazyLock::new(|| env::var("LONG").is_ok_and(|it| it == "1"));
-    *IS_LONG
+    long().is_some()
 }
 
 /// The number of cases: few by default, more in a long run.
 pub fn cases(few: u64, many: u64) -> u64 {
-    if is_long() { many } else { few }
+    long().map_or(few, |share| few.max(many / share))
 }
 
 /// A site whose coordinates are clamped into the lattice.

@@ -42,9 +42,13 @@ pub fn build(package: &str, target: &str) -> Result<PathBuf, String> {
     Ok(directory.join(target).join(profile))
 }
 
-/// The target of the chip that budgets are for. Any run builds for it; `CORES=all` in the environment asks for
-/// other cores too, as does a long run.
+/// The target of the chip that budgets are for. Any run builds for it.
 pub const CHIP: &str = "thumbv7em-none-eabihf";
+
+/// Whether the other cores are asked for too: by `CORES=all` in the environment, or by a long run.
+pub fn all_cores() -> bool {
+    crate::is_long() || env::var("CORES").is_ok_and(|it| it == "all")
+}
 
 /// The folder with the programs of a package for a target, built; `None`, and a visible line, where nobody asks for
 /// its core, or where that cannot be done.
@@ -53,8 +57,7 @@ pub const CHIP: &str = "thumbv7em-none-eabihf";
 /// When they fail to build, or with `CI` set where they cannot be built.
 pub fn folder(package: &str, target: &str) -> Option<PathBuf> {
     let what = format!("{package} for {target}");
-    let is_asked_for = crate::is_long() || env::var("CORES").is_ok_and(|it| it == "all");
-    if target != CHIP && !is_asked_for {
+    if target != CHIP && !all_cores() {
         leave_out(&what, "CORES=all cargo test has it");
         return None;
     }

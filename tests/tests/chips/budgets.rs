@@ -1,7 +1,7 @@
 //! Budgets that fail the build: flash, RAM, stack, time, panics and `f64`, of the planner on a bare core
 //! and of the firmware. `budgets.toml` has them. A plain run looks at the programs that people build and
-//! flies the hardest missions that are known; a long one, `LONG=1`, measures all, finds the
-//! hardest anew, and commits:
+//! flies the hardest missions that are known. With `CORES=all` it looks at all programs. A long one, `LONG=1`, also finds
+//! the hardest anew, and commits:
 //!
 //! ```sh
 //! UPDATE_EXPECT=1 LONG=1 cargo test -p tests budgets::
@@ -21,19 +21,19 @@ use tests::budget::tolerance::Costs;
 use tests::budget::workload::{DOUBT, Workload};
 use tests::emulator::{Call, Core};
 use tests::is_long;
-use tests::program::build::{CHIP, programs};
+use tests::program::build::{CHIP, all_cores, programs};
 use tests::program::image::Image;
 
 /// The cores whose sizes alone are compared.
 const OTHERS: [&str; 2] = ["thumbv6m-none-eabi", "riscv32imac-unknown-none-elf"];
 
-/// The programs. All but a long run leave out the last.
+/// The programs. A run for one core leaves out the last.
 const PROGRAMS: [&str; 8] =
     ["alone", "small", "medium", "standard", "vehicles", "track", "watch", "large"];
 
 fn looked_at() -> &'static [&'static str] {
     // The last takes long.
-    &PROGRAMS[..PROGRAMS.len() - usize::from(!is_long())]
+    &PROGRAMS[..PROGRAMS.len() - usize::from(!all_cores())]
 }
 
 const MEMORY_X: &str = include_str!("../../../memory.x");
@@ -85,7 +85,7 @@ fn every_figure_keeps_its_budget() {
     } else {
         skipped.extend(["firmware"].into_iter().chain(PROGRAMS));
     }
-    for target in OTHERS.into_iter().filter(|_| is_long()) {
+    for target in OTHERS.into_iter().filter(|_| all_cores()) {
         let Some(program) = programs("bare-core", target) else {
             skipped.push(target);
             continue;
