@@ -26,6 +26,7 @@ use planner_core::{
     StopReason, Waist,
 };
 use serde::de::DeserializeOwned;
+use tests::budget::readme;
 use tests::program::build;
 
 fn page() -> String {
@@ -349,4 +350,19 @@ fn python_reads_the_page_so_too() {
     let [said, complaint] = [&output.stdout, &output.stderr].map(|it| String::from_utf8_lossy(it));
     assert!(output.status.success(), "{said}{complaint}");
     assert_eq!(said, format!("{} examples agree\n", examples(&page()).len()));
+}
+
+/// The seeds of the fuzz target `frames` are the examples without their check sums. `UPDATE_EXPECT` writes them.
+#[test]
+fn fuzzing_begins_from_the_examples() {
+    let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fuzz/corpus/frames");
+    for (name, Example { content, .. }) in examples(&page()) {
+        let words = name.split(|it: char| !it.is_alphanumeric()).filter(|it| !it.is_empty());
+        let file = corpus.join(words.collect::<Vec<_>>().join("-").to_lowercase());
+        let (content, _) = content.split_last_chunk::<4>().expect("a check sum");
+        if readme::is_updating() {
+            fs::write(&file, content).expect("writes a seed");
+        }
+        assert_eq!(fs::read(&file).ok().as_deref(), Some(content), "{}", file.display());
+    }
 }
