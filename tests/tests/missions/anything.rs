@@ -7,7 +7,6 @@
 //! ```
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 use std::panic::catch_unwind;
 
 use host_sim::mission::definition::Mission;
@@ -29,18 +28,18 @@ const FALSE_REASONS: usize = 15;
 
 #[test]
 fn random_missions_keep_every_invariant() {
-    check(draw, asked_for(cases(400, 20_000)));
+    check(draw, [400, 20_000]);
 }
 
 /// Along fronts of every kind, also where there is none.
 #[test]
 fn random_missions_along_fronts_keep_every_invariant() {
-    check(draw_front, asked_for(cases(100, 5_000)));
+    check(draw_front, [100, 5_000]);
 }
 
-fn check(draw: impl Fn(u64, u64) -> Mission + Sync, numbers: Range<u64>) {
+fn check(draw: impl Fn(u64, u64) -> Mission + Sync, [few, many]: [u64; 2]) {
+    let numbers = asked_for(cases(few, many));
     let flown: Vec<_> = numbers
-        .clone()
         .into_par_iter()
         .map(|number| {
             let mission = draw(SEED, number);
@@ -71,7 +70,10 @@ fn check(draw: impl Fn(u64, u64) -> Mission + Sync, numbers: Range<u64>) {
     let (refuted, broken): (Vec<_>, Vec<_>) =
         findings.into_iter().partition(|(finding, _)| *finding == Finding::FalseReason);
     assert!(broken.is_empty(), "{broken:?}");
-    let most = (flown.len() * FALSE_REASONS).div_ceil(1_000);
+    let share = (flown.len() * FALSE_REASONS) as f64 / 1_000.0;
+    // A part of the long run may by chance have more than its share, by two standard deviations.
+    let is_part = (few + 1..many).contains(&(flown.len() as u64));
+    let most = (share + if is_part { 2.0 * share.sqrt() } else { 0.0 }).ceil() as usize;
     println!("{} of {} end for a reason that is refuted", refuted.len(), flown.len());
     assert!(refuted.len() <= most, "{refuted:?}");
 }
