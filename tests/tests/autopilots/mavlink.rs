@@ -166,7 +166,6 @@ impl Case {
         let host = format!("127.0.{}.{}", 1 + number / 250, 1 + number % 250);
         let socket = UdpSocket::bind((&*host, 0)).expect("a port");
         let port = socket.local_addr().expect("bound").port();
-        drop(socket);
         vehicle.tell(&json!({
             "host": host,
             "port": if listens { json!(port) } else { Value::Null },
@@ -181,6 +180,8 @@ impl Case {
             "table": number == 0,
         }));
         let theirs = vehicle.hear()["port"].as_u64().expect("a port");
+        // Not before the vehicle has a port: it could get this one.
+        drop(socket);
         let address =
             if listens { format!("udp:{host}:{port}") } else { format!("udpout:{host}:{theirs}") };
         let (file, written) = (folder.join("m.toml"), folder.join("t.jsonl"));
