@@ -265,6 +265,8 @@ fn every_core_takes_what_is_committed() {
         measured.push((["cortex-m4f", program], m4f));
         measured.push((["riscv32imac", program], risc_v(program)));
     }
+    // All figures of a program or none: new sizes would hide that the others are old.
+    let is_committing = readme::is_updating() && is_long();
     let mut changes = Vec::new();
     for ([core, program], figures) in measured {
         let Some(figures) = figures else { continue };
@@ -277,16 +279,19 @@ fn every_core_takes_what_is_committed() {
             let is_held = |held: i64| figure.abs_diff(held as u64) <= leeway(program, &name);
             if !committed.is_some_and(is_held) {
                 changes.push(format!("{core}.{program}.{name}: {figure}, committed {committed:?}"));
-                table[&name] = value(figure as i64);
+                if is_committing {
+                    table[&name] = value(figure as i64);
+                }
             }
         }
     }
     if !readme::write_or_compare("cores", &table(&document)) {
         changes.push(format!("the readme's table is not that of {FILE}"));
     }
-    if readme::is_updating() {
+    if is_committing {
         fs::write(path, document.to_string()).expect("writes the figures");
     } else {
-        assert!(changes.is_empty(), "{}", changes.join("\n"));
+        let remedy = "UPDATE_EXPECT=1 LONG=1 commits all figures";
+        assert!(changes.is_empty(), "{}\n{remedy}", changes.join("\n"));
     }
 }
