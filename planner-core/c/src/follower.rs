@@ -11,11 +11,9 @@ use planner_core::{
 };
 
 use crate::area::Ground;
+use crate::possible::MOST_GIVEN;
 use crate::snapshot;
 use crate::types::{Mission, Motion, Pose, Reading, Sample, Status};
-
-/// Given samples at most.
-const MOST_GIVEN: usize = 16;
 
 type Tracks = Track<Unicycle, 16, 16, 3, Ground>;
 type Guards = Guard<Unicycle, 16, 16, 3, Ground>;
