@@ -50,7 +50,8 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
     Guard<D, K, M, L, G>
 {
     #[inline] // it is made where it stays, as it may be large
-    pub(crate) fn of(scout: Scout<D, K, M, L, G>, stretch: FrontStretch) -> Self {
+    pub(crate) fn of(mut scout: Scout<D, K, M, L, G>, stretch: FrontStretch) -> Self {
+        scout.tracker.stay();
         Self { scout, stretch, middle: None }
     }
 

@@ -368,7 +368,7 @@ fn drawn(cloud: &[Curve], weights: &[f64], rng: &mut ChaCha8Rng, count: usize) -
 
 /// The bytes after a fixed mission: the same on every machine.
 /// A robot that hears no label knows the front no better as time passes: it stays at a place, or about one. A front that
-/// moves becomes as unsure as it moves.
+/// moves becomes as unsure as it moves across itself.
 #[test]
 fn nothing_is_learnt_without_labels() {
     for number in 0..cases(40, 1_000) {
@@ -397,8 +397,8 @@ fn nothing_is_learnt_without_labels() {
             narrowest = narrowest.min(width / widest);
         }
         assert!(narrowest > 0.95, "{number}, {speed} m: {narrowest} of {widest} m");
-        // What moves at random by so much a motion.
-        let moves = 1.645 * speed * 300.0_f64.sqrt();
+        // Across itself it moves at random by half as much a motion.
+        let moves = 1.645 * 0.5 * speed * 300.0_f64.sqrt();
         assert!(widest > 0.85 * moves, "{number}, {speed} m: {widest} m, not {moves} m");
     }
 }
@@ -423,5 +423,5 @@ fn a_tracker_has_the_same_bytes_on_every_machine() {
     let hash = bytes.iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
         (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3)
     });
-    assert_eq!((bytes.len(), hash), (3134, 0x899d_ea8c_149e_ed7f), "{hash:#x}");
+    assert_eq!((bytes.len(), hash), (3134, 0x7a91_00eb_17b6_5073), "{hash:#x}");
 }

@@ -304,6 +304,38 @@ fn readings_on_the_way_help_and_positions_that_err_are_allowed_for() {
     }
 }
 
+/// From nothing, in an area of 250 reaches, beside a front: the middle of the area is no place to lay a grid about.
+#[test]
+fn a_front_beside_the_start_is_found_in_a_large_area() {
+    let area = Area::metres([-200.0, -200.0], [300.0, 300.0]).expect("an area");
+    for (p, most) in [(1.0, 30), (0.9, 70)] {
+        let mut steps = Vec::new();
+        for number in 0..20 {
+            let mut rng = ChaCha8Rng::seed_from_u64(61);
+            rng.set_stream(number);
+            let world = TrueFront::circle(120.0, &mut rng);
+            let tracker = Tracker::<16, 16, 3>::new(area, front(100.0), noise(p));
+            let mut planner = Track::new(area, unicycle(), tracker).expect("room");
+            let mut pose = Pose { site: site(world.beside(0.0, 2.0)), heading: Heading(0) };
+            let mut found = None;
+            for step in 1..=120 {
+                let Plan::Move(next) = planner.plan(pose) else { break };
+                pose = next.target;
+                let label = world.sensed(Point2::from(pose.site), 0.0, p, &mut rng);
+                planner.observe(pose, next.wants_label.then(|| label.into())).expect("a label");
+                if planner.found().is_some() {
+                    found = Some(step);
+                    break;
+                }
+            }
+            steps.push(found.unwrap_or(u32::MAX));
+        }
+        steps.sort_unstable();
+        println!("p {p}: found after {steps:?}");
+        assert!(steps[10] < most, "{p}: {steps:?}");
+    }
+}
+
 /// From nothing but a box that the front crosses.
 #[test]
 fn a_front_is_found_from_nothing() {

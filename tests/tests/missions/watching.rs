@@ -161,6 +161,8 @@ fn mission(who: Who, world: World, number: u64) -> Measured {
     rng.set_stream(number);
     let front = world.draw(&mut rng);
     let (belief, pose, middle, begun) = found(&front, world, &mut rng);
+    // What is known gets old in the same way, whoever asks.
+    let belief = belief.staying();
     let of = (&front, world, middle);
     let from = (belief.clone(), pose, begun);
     let unicycle = vehicle(REACH).expect("a vehicle");
@@ -210,8 +212,8 @@ fn row(who: Who, world: World) -> Row {
     Row { mean, median: middle, covers, stopped }
 }
 
-/// In every world the median of the mean deviation is smaller than that of going to and fro. About the same is enough where
-/// the front is a line that stays, and labels err. The mean of all worlds is much smaller.
+/// In every world the median of the mean deviation is smaller than that of going to and fro. The mean of all worlds is much
+/// smaller.
 #[test]
 fn a_watched_stretch_is_known_better_than_by_other_ways() {
     let (mut watches, mut faults) = (0.0, Vec::new());
@@ -222,9 +224,8 @@ fn a_watched_stretch_is_known_better_than_by_other_ways() {
                 let [watch, to_and_fro, stays] =
                     [Who::Watch, Who::ToAndFro, Who::Stays].map(|who| row(who, world));
                 watches += watch.mean / to_and_fro.mean / 8.0;
-                let is_alike = !is_circle && speed == 0.0 && p < 1.0;
-                let most = if is_alike { 1.1 } else { 1.0 } * to_and_fro.median;
-                let is_better = watch.median < most && watch.median < 0.2 * stays.median;
+                let is_better =
+                    watch.median < to_and_fro.median && watch.median < 0.2 * stays.median;
                 let is_honest = watch.covers > 0.9 && watch.stopped == 0;
                 if !is_better || !is_honest {
                     faults.push((world, watch, to_and_fro));
@@ -234,7 +235,7 @@ fn a_watched_stretch_is_known_better_than_by_other_ways() {
     }
     println!("the mean deviation is {watches:.2} of that of going to and fro");
     assert!(faults.is_empty(), "{faults:?}");
-    assert!(watches < 0.87, "{watches}");
+    assert!(watches < 0.82, "{watches}");
 }
 
 /// The robot leaves the stretch by no more than a reach, but where it lost the front; a plan is the same after a sleep;

@@ -222,7 +222,8 @@ impl Mission {
     /// otherwise it may be anywhere in the area.
     pub fn tracker(&self) -> FrontBelief {
         let tracker = Tracker::new(self.config.area.bounds(), self.front, self.noise_told());
-        tracker.given(self.given.samples())
+        let tracker = tracker.given(self.given.samples());
+        if self.watch.is_some() { tracker.staying() } else { tracker }
     }
 
     /// How far look-ahead looks for labels, what they must carry, and how many there are a motion.

@@ -12,7 +12,7 @@ use planner_core::{
     ReliabilityEstimate, Site, Stage, Step, StopReason,
 };
 
-use crate::mission::definition::{Mission, Table};
+use crate::mission::definition::{FrontBelief, Mission, SoughtLine, Table};
 use crate::mission::diagnosis::DiagnosisRecord;
 use crate::mission::flight::Flown;
 use crate::mission::from_nothing::SeekRecord;
@@ -139,16 +139,14 @@ impl Recorder {
         let mut readings = Vec::new();
         for (site, reading) in passed {
             let Some(known) = &mut known else { break };
-            if let Reading::Side(label) = reading {
-                self.evidence.observe(label, known.chance_of(site, label));
-            }
+            self.hear(&**known, site, reading);
             // The planner took it in, so this belief does.
             let cuts = known.observe_on_the_way(site, reading).unwrap_or(false);
             readings.push(ReadingRecord::of(site, reading, cuts));
         }
         let known = known.as_deref().unwrap_or(before);
-        if let Some(Reading::Side(label)) = step.reading {
-            self.evidence.observe(label, known.chance_of(step.pose.site, label));
+        if let Some(reading) = step.reading {
+            self.hear(known, step.pose.site, reading);
         }
         if let Some(reading) = step.reading.filter(|_| !readings.is_empty()) {
             let support =
@@ -157,6 +155,15 @@ impl Recorder {
             readings.push(ReadingRecord::of(step.pose.site, reading, cuts));
         }
         readings
+    }
+
+    /// Takes down what a label says against the model, where it says anything.
+    fn hear(&mut self, known: &dyn ReadOut, site: Site, reading: Reading) {
+        let front = known.front().map(FrontBelief::may_be_nowhere);
+        let may_be_nowhere = front.or_else(|| known.sought().map(SoughtLine::may_be_nowhere));
+        if let (Reading::Side(label), None | Some(false)) = (reading, may_be_nowhere) {
+            self.evidence.observe(label, known.chance_of(site, label));
+        }
     }
 
     /// Where the front is known best, if it is found.

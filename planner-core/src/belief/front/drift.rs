@@ -11,12 +11,19 @@ use crate::geometry::lattice::Site;
 /// This share of the mass is spread over all cells with each label, unless the front is straight and still.
 const EVEN: f32 = 1e-5;
 
-/// In a unit of time half of this share of a layer's mass passes to each neighbouring layer.
-const BENDS: f32 = 0.1;
+/// In a unit of time half of this share of a layer's mass passes to each neighbouring layer. The first is for a robot that
+/// goes along the front, the second for one that [stays](Tracker::staying).
+const BENDS: [f32; 2] = [0.1, 0.05];
 
 /// A layer stands for all curvatures near its own. On its way, a curve strays from it by this share of what the tightest
 /// bend turns.
 const STRAYS: f32 = 0.2;
+
+/// The deviation of what a front moves across itself in a unit of time, as a share of its speed: for the same two.
+///
+/// A front moves in any direction, so across itself by some half of that: 0.71 where it always moves so fast, 0.41 where
+/// all speeds up to it are as likely. It goes on in its direction, so it has moved more where a robot returns to a place.
+const ACROSS: [f32; 2] = [0.5, 1.0];
 
 /// A front that moves by so many metres may turn by a radian.
 const LEVER: f32 = 30.0;
@@ -42,7 +49,7 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
             return;
         }
         let elapsed = if elapsed < 16.0 { elapsed } else { 16.0 };
-        let deviation = pace * sqrt(elapsed);
+        let deviation = self.drifts(ACROSS) * pace * sqrt(elapsed);
         if elapsed > 1.0 {
             self.make_room(to, deviation);
         }
@@ -55,9 +62,13 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
         self.grid.blur_offsets((aside * aside + deviation * deviation) / (lay.step * lay.step));
         self.grid.mix_columns((strays * strays + per_lever * per_lever) / (lay.turn * lay.turn));
         if bend > 0.0 {
-            let share = 0.5 * BENDS * elapsed;
+            let share = 0.5 * self.drifts(BENDS) * elapsed;
             self.grid.mix_layers(if share < 0.25 { share } else { 0.25 });
         }
+    }
+
+    fn drifts(&self, [along, stays]: [f32; 2]) -> f32 {
+        if self.stays { stays } else { along }
     }
 
     /// Whether the front may move or bend.

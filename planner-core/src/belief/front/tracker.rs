@@ -94,6 +94,8 @@ pub struct Tracker<const K: usize, const M: usize, const L: usize> {
     pub(super) heard: Site,
     /// The logarithm to the base 2 of the measure of all curves at the start.
     start: f32,
+    /// Whether the robot [stays](Self::staying).
+    pub(super) stays: bool,
 }
 
 impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
@@ -124,7 +126,20 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
             evidence: Evidence::NONE,
             heard: Site::ORIGIN,
             start: 0.0,
+            stays: false,
         }
+    }
+
+    /// The same for a robot that does not go along the front, but stays with a stretch of it. It returns to places where
+    /// the front bends as before, and where it has moved in the meantime.
+    #[must_use]
+    pub fn staying(mut self) -> Self {
+        self.stay();
+        self
+    }
+
+    pub(crate) const fn stay(&mut self) {
+        self.stays = true;
     }
 
     /// Begins again, where it is, as [`new`](Self::new) and [`given`](Self::given) do.
@@ -221,10 +236,19 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
         self.nowhere[0] + self.nowhere[1]
     }
 
+    /// Whether there may be no front at all: it may have any direction, and there is none with more than 5 %.
+    pub fn may_be_nowhere(&self) -> bool {
+        self.is_open() && self.share_nowhere() > ABSENT
+    }
+
     fn take(&mut self, site: Site, label: Label, tolerance: Tolerance) {
         let p = self.counted();
+        let may_be_nowhere = self.may_be_nowhere();
         let chance = self.weigh(site, label, p, Self::blur(tolerance));
-        self.evidence.observe(label, chance);
+        // Labels that are all the same do not tell a sensor that is stuck from an area without a front.
+        if !may_be_nowhere {
+            self.evidence.observe(label, chance);
+        }
         if let Some(learnt) = &mut self.learnt {
             // The share of the curves that agree makes the label as likely as it was.
             let sharp = 2.0 * p - 1.0;
@@ -280,7 +304,8 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
         }
     }
 
-    /// The evidence of the labels against what was told of the front and of the sensor.
+    /// The evidence of the labels against what was told of the front and of the sensor. Labels count
+    /// unless there [may be no front](Self::may_be_nowhere).
     pub const fn evidence(&self) -> &Evidence {
         &self.evidence
     }
@@ -376,9 +401,10 @@ impl<const K: usize, const M: usize, const L: usize> Belief for Tracker<K, M, L>
         site: Site,
         reading: Reading,
     ) -> Result<bool, ObservationError> {
+        let Reading::Side(label) = reading else { return Ok(false) };
         let is_unsure = || (UNSURE..1.0 - UNSURE).contains(&self.share_above(site));
         let tells = self.is_apart(site) && is_unsure();
-        if let (true, Reading::Side(label)) = (tells, reading) {
+        if tells {
             self.take(site, label, self.noise.tolerance);
         }
         Ok(tells)
@@ -548,6 +574,8 @@ mod tests {
         }
         assert!(tracker.share_nowhere() > 0.5, "{}", tracker.share_nowhere());
         assert!(tracker.share_above(at(10.0, 10.0)) > 0.9);
+        // Nor does it say that the sensor is stuck.
+        assert_eq!(tracker.evidence().alarm(), None);
     }
 
     #[test]

@@ -124,7 +124,7 @@ impl<D: Dynamics, G: Workspace> Follower for Steered<D, G> {
         false
     }
 
-    fn begins_again(&self) -> bool {
+    fn has_evidence(&self) -> bool {
         false
     }
 }

@@ -25,8 +25,8 @@ pub trait Follower: Planner {
     /// Whether it has gone along all of a closed front.
     fn is_closed(&self) -> bool;
 
-    /// Whether the label that it took in last made it begin again, as it spoke against what was known.
-    fn begins_again(&self) -> bool;
+    /// Whether labels have spoken for or against what was told, since it began. It forgets them where it begins again.
+    fn has_evidence(&self) -> bool;
 }
 
 /// A vertex of the map.
@@ -50,9 +50,8 @@ impl<D: Dynamics, G: Workspace, const K: usize, const M: usize, const L: usize> 
         Self::is_closed(self)
     }
 
-    /// Only then its evidence is none.
-    fn begins_again(&self) -> bool {
-        *self.belief().evidence() == Evidence::NONE
+    fn has_evidence(&self) -> bool {
+        *self.belief().evidence() != Evidence::NONE
     }
 }
 
@@ -119,9 +118,10 @@ pub fn follow<P: Follower>(
         let at = Point2::<f64>::from(pose.site);
         let label = front.sensed(at, steps, course.p, rng);
         let reading = next.wants_label.then(|| label.into());
+        let had_evidence = planner.has_evidence();
         planner.observe(pose, reading).expect("any label is taken in");
         flown.labels += u32::from(reading.is_some());
-        flown.restarts += u32::from(reading.is_some() && planner.begins_again());
+        flown.restarts += u32::from(had_evidence && !planner.has_evidence());
         flown.driven += if last.is_some() { (at - from).norm() } else { 0.0 };
         if let Some(vertex) = planner.vertex() {
             let off = front.distance(vertex.at, steps);
