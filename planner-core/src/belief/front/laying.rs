@@ -90,7 +90,7 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
     /// Lays the grid anew if its cells are of another size than its mass wants, or lie elsewhere. Makes room for offsets
     /// that will diffuse by a margin, metres. If the front bends, the pivot moves along it to where a robot is. It stays
     /// so near to the waist that few cells are wasted. While the front may have any direction, the pivot moves to the
-    /// robot if that is much nearer to it.
+    /// robot if the robot is much nearer to the front.
     ///
     /// `O(K M L)`: some 75,000 instructions for 16 x 16 x 3 if it is laid anew, and 10,000 if not.
     pub(crate) fn lay_around(&mut self, robot: Option<Site>, margin: f32) {
@@ -127,7 +127,7 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
         self.wanted(&moments, by)
     }
 
-    /// From the pivot to a robot, if the offsets about the robot span much less: it is nearer to the front.
+    /// From the pivot to a robot, if the offsets about the robot span much less. Then it is nearer to the front.
     fn nearer(&self, moments: &Moments<K, M, L>, robot: Site) -> Option<Vector> {
         let by = robot - self.lay.pivot;
         let [low, high] = self.range_about(moments, by);

@@ -131,7 +131,7 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
     }
 
     /// The same for a robot that does not go along the front, but stays with a stretch of it. It returns to places where
-    /// the front bends as before, and where it has moved in the meantime.
+    /// the front bends as before, and where it has moved in the meantime. [`Guard`](crate::Guard) sets it by itself.
     #[must_use]
     pub fn staying(mut self) -> Self {
         self.stay();
@@ -236,7 +236,7 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
         self.nowhere[0] + self.nowhere[1]
     }
 
-    /// Whether there may be no front at all: it may have any direction, and there is none with more than 5 %.
+    /// Whether there may be no front: with more than 5 % there is none, and one may have any direction.
     pub fn may_be_nowhere(&self) -> bool {
         self.is_open() && self.share_nowhere() > ABSENT
     }
@@ -304,8 +304,8 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
         }
     }
 
-    /// The evidence of the labels against what was told of the front and of the sensor. Labels count
-    /// unless there [may be no front](Self::may_be_nowhere).
+    /// The evidence of the labels against what was told of the front and of the sensor. Labels count unless
+    /// there [may be no front](Self::may_be_nowhere).
     pub const fn evidence(&self) -> &Evidence {
         &self.evidence
     }
