@@ -5,9 +5,10 @@
 //! - **Seek**: as long as the front is not found, a place is worth the information of its label over a price and the
 //!   way there. The places are ends of the next motion, some along the mean line, and some all over the area.
 //! - **Follow**: once the front is found, an end of the next motion is worth the information of its label, and the
-//!   progress along the front as a share of the reach, the way that the robot faced at the start. Where the front is not
-//!   known well, progress counts less, and in the end not at all. So the robot stops to look where it must. A vehicle that
-//!   cannot turn on the spot is judged by the place where it would have turned along the front again.
+//!   progress along the front as a share of the reach, the way that the robot faced at the start. What else it drives
+//!   costs half as much. Where the front is not known well, progress counts less, and in the end not at all. So the robot
+//!   stops to look where it must. A vehicle that cannot turn on the spot is judged by the place where it would have turned
+//!   along the front again, and pays for its way there instead.
 //! - **Go round**: where a keep-out lies on the front, the robot goes to the first place beyond it. Where the front
 //!   leaves the area, it goes back in the other direction.
 //! - **Come home**: where no label in reach would tell anything, the robot goes back to the front. If it has turned all
@@ -26,7 +27,7 @@ use crate::belief::observation_log::FromLog as _;
 use crate::belief::sample::{Reading, Sample};
 use crate::belief::tolerance::Tolerance;
 use crate::belief::weight::Prior;
-use crate::geometry::approximate::{METRE, sqrt};
+use crate::geometry::approximate::{METRE, distance, sqrt};
 use crate::geometry::area::Area;
 use crate::geometry::heading::{Angle, Heading};
 use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
@@ -45,12 +46,16 @@ use crate::planner::{Plan, Planner, Stage, StopReason};
 /// Circles on which a motion along a front may end.
 const CIRCLES: u16 = 4;
 
-/// Progress counts in full where the half-width is below the first share of the [span](Scout::span): 1 m for motions of 2
-/// m. It does not count where it is above the second.
-const WIDTHS: [f32; 2] = [0.5, 1.4];
+/// Progress counts in full where the half-width is below this share of the [span](Scout::span): 2 m for motions of 2 m.
+/// It does not count where the front would not count as found.
+const FULL: f32 = 1.0;
 
-/// Where the front would not count as found, progress counts so much the other way: the robot rather goes back.
+/// There it counts so much the other way: the robot rather goes back.
 const BACK: f32 = 0.02;
+
+/// To a vehicle that turns on the spot, a metre that is driven without progress costs so many metres of progress. For
+/// others it is the way back that costs.
+const DETOUR: f32 = 0.5;
 
 /// A vehicle that goes along the front is to stay within this share of its half-width.
 const LANE: f32 = 0.5;
@@ -235,9 +240,6 @@ impl Aim {
     /// The way on which a vehicle shifts back to the front from a place, where that lies too far aside: two arcs of a
     /// circle of this radius, lattice units. `half` is the front's half-width there, metres.
     fn shift(&self, site: Site, half: f32, radius: f32) -> f32 {
-        if radius == 0.0 {
-            return 0.0;
-        }
         let aside = self.waist.aside(site).abs() - LANE * half;
         // Two arcs that turn by an angle t go aside by 2 R (1 - cos t), and are 2 R t long.
         2.0 * sqrt(if aside > 0.0 { radius * aside * UNITS_PER_METRE as f32 } else { 0.0 })
@@ -247,11 +249,9 @@ impl Aim {
     /// is not known well, and not at all where it is hardly known. A robot with poor labels would otherwise run ahead of
     /// what it knows.
     fn progress(&self, way: Vector, half: f32, span: f32) -> f32 {
-        let [full, none] = WIDTHS;
         let counts = match half * UNITS_PER_METRE as f32 / span {
-            width if width <= full => 1.0,
-            width if width <= none => (none / width - 1.0) / (none / full - 1.0),
-            width if width <= FOUND => 0.0,
+            width if width <= FULL => 1.0,
+            width if width <= FOUND => (FOUND / width - 1.0) / (FOUND / FULL - 1.0),
             _ => -BACK,
         };
         let progress = way.x as f32 * self.along.x + way.z as f32 * self.along.z;
@@ -282,8 +282,13 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
             let told = scout.tells(share)?;
             let Turned { site, way } = turned(end);
             let half = NINETY * aim.waist.deviation_beside(site);
-            let lost = way + aim.shift(site, half, radius);
-            Some(told + (aim.progress(site - pose.site, half, span) - lost) / reach)
+            let progress = aim.progress(site - pose.site, half, span);
+            let lost = if radius > 0.0 {
+                way + aim.shift(site, half, radius)
+            } else {
+                DETOUR * (distance(end.site - pose.site) - progress)
+            };
+            Some(told + (progress - lost) / reach)
         };
         let place = |end: Pose| turned(end).site;
         let (best, examined) = scout.best_end(pose, (CIRCLES, LOOKED_AT), place, worth);

@@ -13,18 +13,18 @@ const EVEN: f32 = 1e-5;
 
 /// In a unit of time half of this share of a layer's mass passes to each neighbouring layer. The first share is for a
 /// robot that goes along the front, the second for one that [stays](Tracker::staying).
-const BENDS: [f32; 2] = [0.1, 0.05];
+const BENDS: [f32; 2] = [0.12, 0.05];
 
 /// A layer stands for all curvatures near its own. On its way, a curve strays from it by this share of what the tightest
 /// bend turns.
-const STRAYS: f32 = 0.2;
+const STRAYS: f32 = 0.15;
 
 /// The deviation of what a front moves across itself in a unit of time, as a share of its speed: for the same two.
 ///
 /// A front moves in any direction, so across itself by some half of that. The share is 0.71 where it always moves so
 /// fast, and 0.41 where all speeds up to it are as likely. It goes on in its direction. So it has moved more where a robot
 /// returns to a place.
-const ACROSS: [f32; 2] = [0.5, 1.0];
+const ACROSS: [f32; 2] = [0.5, 1.2];
 
 /// A front that moves by so many metres may turn by a radian.
 const LEVER: f32 = 30.0;

@@ -327,12 +327,17 @@ fn bent(bend: f32, ahead: f32) -> f32 {
 
 /// Adds each mass to the place of a histogram where it is, from one place on.
 fn count(places: &mut [f32; PLACES], masses: &[f32], [mut at, stride]: [f32; 2]) {
-    for mass in masses {
+    let mut count = |mass: f32| {
         if let Some(sum) = places.get_mut(at as usize) {
             *sum += mass;
         }
         at += stride;
+    };
+    let (fours, rest) = masses.as_chunks::<4>();
+    for four in fours {
+        four.iter().for_each(|mass| count(*mass));
     }
+    rest.iter().for_each(|mass| count(*mass));
 }
 
 /// Spreads a mass over the places of a histogram, from one place to another.
