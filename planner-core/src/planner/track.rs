@@ -6,9 +6,9 @@
 //!   way there. The places are ends of the next motion, some along the mean line, and some all over the area.
 //! - **Follow**: once the front is found, an end of the next motion is worth the information of its label, and the
 //!   progress along the front as a share of the reach, the way that the robot faced at the start. What else it drives
-//!   costs half as much. Where the front is not known well, progress counts less, and in the end not at all. So the robot
-//!   stops to look where it must. A vehicle that cannot turn on the spot is judged by the place where it would have turned
-//!   along the front again, and pays for its way there instead.
+//!   costs a fifth of that. Where the front is not known well, progress counts less, and in the end not at all. So the
+//!   robot stops to look where it must. A vehicle that cannot turn on the spot is judged by the place where it would have
+//!   turned along the front again, and pays for its way there instead.
 //! - **Go round**: where a keep-out lies on the front, the robot goes to the first place beyond it. Where the front
 //!   leaves the area, it goes back in the other direction.
 //! - **Come home**: where no label in reach would tell anything, the robot goes back to the front. If it has turned all
@@ -46,16 +46,16 @@ use crate::planner::{Plan, Planner, Stage, StopReason};
 /// Circles on which a motion along a front may end.
 const CIRCLES: u16 = 4;
 
-/// Progress counts in full where the half-width is below this share of the [span](Scout::span): 2 m for motions of 2 m.
-/// It does not count where the front would not count as found.
-const FULL: f32 = 1.0;
+/// Progress counts in full where the half-width is below this share of the [span](Scout::span): 1 m for motions of
+/// 2 m. It does not count where the front would not count as found.
+const FULL: f32 = 0.5;
 
 /// There it counts so much the other way: the robot rather goes back.
 const BACK: f32 = 0.02;
 
 /// To a vehicle that turns on the spot, a metre that is driven without progress costs so many metres of progress. For
 /// others it is the way back that costs.
-const DETOUR: f32 = 0.5;
+const DETOUR: f32 = 0.2;
 
 /// A vehicle that goes along the front is to stay within this share of its half-width.
 const LANE: f32 = 0.5;

@@ -309,7 +309,7 @@ fn readings_on_the_way_help_and_positions_that_err_are_allowed_for() {
 fn a_front_beside_the_start_is_found_in_a_large_area() {
     let area = Area::metres([-200.0, -200.0], [300.0, 300.0]).expect("an area");
     for (p, most) in [(1.0, 30), (0.9, 70)] {
-        let mut steps = Vec::new();
+        let (mut steps, mut alarms) = (Vec::new(), 0);
         for number in 0..20 {
             let mut rng = ChaCha8Rng::seed_from_u64(61);
             rng.set_stream(number);
@@ -317,21 +317,23 @@ fn a_front_beside_the_start_is_found_in_a_large_area() {
             let tracker = Tracker::<16, 16, 3>::new(area, front(100.0), noise(p));
             let mut planner = Track::new(area, unicycle(), tracker).expect("room");
             let mut pose = Pose { site: site(world.beside(0.0, 2.0)), heading: Heading(0) };
-            let mut found = None;
+            let (mut found, mut is_alarmed) = (None, false);
             for step in 1..=120 {
                 let Plan::Move(next) = planner.plan(pose) else { break };
                 pose = next.target;
                 let label = world.sensed(Point2::from(pose.site), 0.0, p, &mut rng);
                 planner.observe(pose, next.wants_label.then(|| label.into())).expect("a label");
+                is_alarmed |= planner.alarm().is_some();
                 if planner.found().is_some() {
                     found = Some(step);
                     break;
                 }
             }
             steps.push(found.unwrap_or(u32::MAX));
+            alarms += u32::from(is_alarmed);
         }
         steps.sort_unstable();
-        println!("p {p}: found after {steps:?}");
+        println!("p {p}: found after {steps:?}, {alarms} alarms");
         assert!(steps[10] < most, "{p}: {steps:?}");
     }
 }

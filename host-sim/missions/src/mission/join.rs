@@ -87,12 +87,12 @@ impl Joined {
         closing + self.pieces.iter().map(way).sum::<f64>()
     }
 
-    /// Links each vertex to the next one ahead, and then links the ends that are left. There are such ends where vertices
-    /// of two robots lie side by side: the nearest one ahead may have another one behind it.
+    /// Links each vertex to the next one ahead, and then the ends that are left, three times. There are such ends where
+    /// vertices of two robots lie side by side: the nearest one ahead may have another one behind it.
     fn linked(kept: &[Place], usual: f64) -> Self {
         let all: Vec<_> = (0..kept.len()).collect();
         let mut next = vec![None; kept.len()];
-        for _ in 0..2 {
+        for _ in 0..4 {
             let is_end = |it: &usize| next[*it].is_none();
             let is_begin = |it: &usize| !next.contains(&Some(*it));
             let ends: Vec<_> = all.iter().copied().filter(is_end).collect();

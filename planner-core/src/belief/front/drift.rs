@@ -17,7 +17,7 @@ const BENDS: [f32; 2] = [0.12, 0.05];
 
 /// A layer stands for all curvatures near its own. On its way, a curve strays from it by this share of what the tightest
 /// bend turns.
-const STRAYS: f32 = 0.15;
+const STRAYS: f32 = 0.2;
 
 /// The deviation of what a front moves across itself in a unit of time, as a share of its speed: for the same two.
 ///
