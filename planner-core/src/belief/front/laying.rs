@@ -335,9 +335,13 @@ fn count(places: &mut [f32; PLACES], masses: &[f32], [mut at, stride]: [f32; 2])
     };
     let (fours, rest) = masses.as_chunks::<4>();
     for four in fours {
-        four.iter().for_each(|mass| count(*mass));
+        for mass in four {
+            count(*mass);
+        }
     }
-    rest.iter().for_each(|mass| count(*mass));
+    for mass in rest {
+        count(*mass);
+    }
 }
 
 /// Spreads a mass over the places of a histogram, from one place to another.
