@@ -327,7 +327,7 @@ fn bent(bend: f32, ahead: f32) -> f32 {
 
 /// Adds each mass to the place of a histogram where it is, from one place on.
 fn count(places: &mut [f32; PLACES], masses: &[f32], [mut at, stride]: [f32; 2]) {
-    let mut count = |mass: f32| {
+    let mut add = |mass: f32| {
         if let Some(sum) = places.get_mut(at as usize) {
             *sum += mass;
         }
@@ -336,11 +336,11 @@ fn count(places: &mut [f32; PLACES], masses: &[f32], [mut at, stride]: [f32; 2])
     let (fours, rest) = masses.as_chunks::<4>();
     for four in fours {
         for mass in four {
-            count(*mass);
+            add(*mass);
         }
     }
     for mass in rest {
-        count(*mass);
+        add(*mass);
     }
 }
 
