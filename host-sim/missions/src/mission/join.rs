@@ -87,17 +87,21 @@ impl Joined {
         closing + self.pieces.iter().map(way).sum::<f64>()
     }
 
-    /// Links each vertex to the next one ahead, and then the ends that are left, three times. There are such ends where
-    /// vertices of two robots lie side by side: the nearest one ahead may have another one behind it.
+    /// Links each vertex to the next one ahead, and then the ends that are left, as long as some can be linked. There are
+    /// such ends where vertices of two robots lie side by side: the nearest one ahead may have another one behind it.
     fn linked(kept: &[Place], usual: f64) -> Self {
         let all: Vec<_> = (0..kept.len()).collect();
         let mut next = vec![None; kept.len()];
-        for _ in 0..4 {
+        loop {
             let is_end = |it: &usize| next[*it].is_none();
             let is_begin = |it: &usize| !next.contains(&Some(*it));
             let ends: Vec<_> = all.iter().copied().filter(is_end).collect();
             let begins: Vec<_> = all.iter().copied().filter(is_begin).collect();
-            for (from, to) in links(kept, &ends, &begins, usual) {
+            let found = links(kept, &ends, &begins, usual);
+            if found.is_empty() {
+                break;
+            }
+            for (from, to) in found {
                 next[from] = Some(to);
             }
         }
