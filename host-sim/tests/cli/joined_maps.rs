@@ -64,10 +64,15 @@ fn two_robots_make_one_closed_map() {
         format!("The front is closed: the maps together go all round it, from step {}", map["met"]);
     assert!(words.contains(&says), "{words}");
     assert!(read("j.svg").contains("the front as it is mapped"));
-    // What is joined again stays as it is, and has no step at which it was closed.
+    // Joined again it is the same front with all of its vertices but one or two, and has no step at which it was closed.
+    // Its vertices lie closer together, so some of the first robot's are now places of their own.
     let again = record(folder, &["j.csv", "a.csv"]);
-    assert_eq!(again["map"]["vertices"], map["vertices"]);
-    assert!(again["map"]["met"].is_null(), "{again}");
+    let [map, again] = [map, &again["map"]];
+    assert_eq!((&again["state"], &again["pieces"]), (&map["state"], &map["pieces"]), "{again}");
+    let more = number(&again["vertices"]) - number(&map["vertices"]);
+    assert!((-2.0..=0.05 * number(&map["vertices"])).contains(&more), "{again}");
+    assert!((number(&again["metres"]) - number(&map["metres"])).abs() < 1.0, "{again}");
+    assert!(again["met"].is_null(), "{again}");
 }
 
 /// Maps of which each has an origin of its own become one, by the coordinates of their files.

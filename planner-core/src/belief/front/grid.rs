@@ -1,8 +1,8 @@
 //! A distribution over curves: a mass for each direction, offset and curvature, in a frame that can be laid anew.
 //!
 //! Column `k` is a direction, cell `m` of it an offset to the left of the pivot, and layer `l` a curvature. Within a
-//! cell the density is even. Only where cells are laid anew it has a slope. At the distance `s` along its direction a
-//! curve lies `offset + curvature s^2 / 2` to the left.
+//! cell the density is even. Where cells of a front that bends are laid anew, it has a slope. At the distance `s` along
+//! its direction a curve lies `offset + curvature s^2 / 2` to the left.
 //!
 //! Lengths are metres from the pivot and angles are radians from the frame's heading, all in single precision. So
 //! digits are lost neither far from the origin nor where the distribution is narrow.

@@ -6,7 +6,7 @@
 
 use crate::belief::front::grid::{Grid, Lay, Unit, angle, limited, metres, radians};
 use crate::belief::front::moments::Moments;
-use crate::belief::front::walk::{pairs, take};
+use crate::belief::front::walk::{Density, pairs, take};
 use crate::geometry::approximate::{distance, sqrt};
 use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
 
@@ -254,7 +254,8 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
 
     /// Puts the mass into other cells: what lies beyond goes into the edge cells.
     ///
-    /// Each column is shifted as its middle is. Then it is shared out among the new columns.
+    /// Each column is shifted as its middle is. Then it is shared out among the new columns. Densities have slopes if the
+    /// front bends. That of a straight line has no other blur, and needs the one of even densities.
     #[inline(never)]
     pub(crate) fn lay_anew(&mut self, lay: Lay) {
         let old = self.lay;
@@ -263,13 +264,14 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
         let turned = radians(lay.heading.since(old.heading));
         let (per_cell, per_column) = (1.0 / old.step, 1.0 / old.turn);
         let goes_round = [old, lay].map(Lay::is_whole::<K>);
+        let density = if old.bend > 0.0 { Density::SLOPED } else { Density::EVEN };
         let mut sums = [0.0; M];
         for (columns, bend) in self.mass.iter_mut().zip(old.bends::<L>()) {
             for (column, along) in columns.iter_mut().zip(&self.along) {
                 let [ahead, left] = along.seen(by);
                 let low = lay.low - old.low + left - old.bulge(bend, ahead);
                 let places = [low, lay.step].map(|it| it * per_cell);
-                take(&column.clone(), column, &mut sums, places);
+                take(&column.clone(), column, &mut sums, density, places);
             }
             // A curve's direction turns on the way to the pivot.
             let turned = turned - bent(bend, ahead) + lay.angle_at::<K>(0.0);

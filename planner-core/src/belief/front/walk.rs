@@ -28,28 +28,47 @@ fn sum_up(masses: &[f32], before: &mut [f32], by: f32, place: impl Fn(f32, f32) 
     sum
 }
 
-/// Half of what the density rises by within a cell, from its mass and those beside it.
-///
-/// It is limited, so that no density is negative and no new peak arises (van Leer 1974): half of the harmonic mean of both
-/// differences, or nothing at a peak.
-fn half_rise([before, mass, after]: [f32; 3]) -> f32 {
-    let (rise, next) = (mass - before, after - mass);
-    let product = rise * next;
-    if product > 0.0 { product / (rise + next) } else { 0.0 }
+/// The density within a cell.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Density {
+    /// It has a slope where the product of the differences to both neighbours is more than this.
+    least: f32,
+}
+
+impl Density {
+    /// The same all over the cell. It blurs the masses most.
+    pub(crate) const EVEN: Self = Self { least: f32::MAX };
+
+    /// It rises or falls as the masses beside it do.
+    pub(crate) const SLOPED: Self = Self { least: 0.0 };
+
+    /// Half of what it rises by within a cell, from the mass and those beside it.
+    ///
+    /// It is limited, so that no density is negative and no new peak arises (van Leer 1974): half of the harmonic mean of
+    /// both differences, or nothing at a peak.
+    fn half_rise(self, [before, mass, after]: [f32; 3]) -> f32 {
+        let (rise, next) = (mass - before, after - mass);
+        let product = rise * next;
+        if product > self.least { product / (rise + next) } else { 0.0 }
+    }
 }
 
 /// Puts the masses of some cells into others: by where the first of these begins and how wide each is, counted in the old
-/// ones. Within an old cell the density has a slope: with an even one, each laying would blur it more. The cells at the
-/// ends hold what lies beyond. `sums` is room for as many numbers as there are old cells.
+/// ones. The cells at the ends hold what lies beyond. `sums` is room for as many numbers as there are old cells.
 #[inline(never)]
-pub(crate) fn take(old: &[f32], new: &mut [f32], sums: &mut [f32], [from, each]: [f32; 2]) {
+pub(crate) fn take(
+    old: &[f32],
+    new: &mut [f32],
+    sums: &mut [f32],
+    density: Density,
+    [from, each]: [f32; 2],
+) {
     let total = sum_up(old, sums, 1.0, |sum, _| sum);
     let until = |place: f32| {
         let cell = place as usize;
         let (Some(before), Some(mass)) = (sums.get(cell), old.get(cell)) else { return total };
-        let beside = (old.get(cell.wrapping_sub(1)), old.get(cell + 1));
-        let half = match beside {
-            (Some(left), Some(right)) => half_rise([*left, *mass, *right]),
+        let half = match (old.get(cell.wrapping_sub(1)), old.get(cell + 1)) {
+            (Some(left), Some(right)) => density.half_rise([*left, *mass, *right]),
             _ => 0.0,
         };
         let part = place - cell as f32;
@@ -172,7 +191,7 @@ mod tests {
                 }
             }
             let mut new = [0.0; CELLS];
-            take(&old, &mut new, &mut [0.0; CELLS], [from, each]);
+            take(&old, &mut new, &mut [0.0; CELLS], Density::SLOPED, [from, each]);
             for (mass, twin) in new.iter().zip(twin) {
                 assert!(*mass >= 0.0 && (f64::from(*mass) - twin).abs() < 2e-3, "seed {seed}");
             }
@@ -193,7 +212,8 @@ mod tests {
         let before = variance(&masses);
         for shift in 0..20 {
             let from = if shift % 2 == 0 { 0.5 } else { -0.5 };
-            take(&masses.clone(), &mut masses, &mut [0.0; 32], [from, 1.0]);
+            let old = masses;
+            take(&old, &mut masses, &mut [0.0; 32], Density::SLOPED, [from, 1.0]);
         }
         let more = variance(&masses) - before;
         assert!((-0.05..0.25 * 20.0 * 0.25).contains(&more), "{more}");
