@@ -23,17 +23,14 @@ use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::front_state::FrontState;
-use crate::planner::scout::{AGAIN, FAINT, Scout};
+use crate::planner::scout::{AGAIN, Ends, FAINT, Scout};
 use crate::planner::setup::{Restart, SetupError};
 use crate::planner::silence::Silence;
 use crate::planner::snapshot::{Persist, RestoreError, Snapshot};
 use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
 
-/// Circles on which a motion may end.
-const CIRCLES: u16 = 1;
-
-/// Ends of motions that a plan looks at, at most: a place costs more than along a front.
-const ENDS: u32 = 24;
+/// The ends of motions that a plan looks at: a place costs more than along a front.
+const ENDS: Ends = Ends { circles: 1, beside: 0, most: 24 };
 
 /// A planner that finds a front and watches a stretch of it: what [`Track::watching`] returns.
 ///
@@ -103,7 +100,7 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
         let Some(asked) = self.ask() else { return self.scout.seek(pose) };
         let scout = &self.scout;
         let worth = |Pose { site, .. }, share| asked.worth(scout, (site - pose.site, site), share);
-        let (best, examined) = scout.best_end(pose, (CIRCLES, ENDS), |end| end.site, worth);
+        let (best, examined) = scout.best_end(pose, ENDS, |end| end.site, worth);
         let beyond = asked.best(scout, pose, best.map_or(0.0, |best| best.worth));
         let is_inside = scout.area.contains(pose.site);
         let (stage, places) = match () {

@@ -120,6 +120,17 @@ fn anywhere(area: &impl Workspace) -> impl Iterator<Item = Site> {
     (0..PLACES).filter_map(|k| place(area, k))
 }
 
+/// Which ends of the next motion to look at.
+#[derive(Clone, Copy)]
+pub(crate) struct Ends {
+    /// On so many circles.
+    pub(crate) circles: u16,
+    /// And so many times on either side of the best one.
+    pub(crate) beside: u32,
+    /// At most so many.
+    pub(crate) most: u32,
+}
+
 /// The best end of a motion so far, and its worth.
 #[derive(Clone, Copy)]
 pub(crate) struct Best {
@@ -203,31 +214,35 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         Some(told / (self.price + distance(way)))
     }
 
-    /// The best end of the next motion on so many circles, of so many ends at most. An end is judged by a place: it is worth
-    /// what the end and the share of the curves above that place say. And how many ends were looked at.
+    /// The best end of the next motion, and how many ends were looked at. An end is judged by a place: it is worth what the
+    /// end and the share of the curves above that place say.
     pub(crate) fn best_end(
         &self,
         pose: Pose,
-        (circles, most): (u16, u32),
+        Ends { circles, beside, most }: Ends,
         place: impl Fn(Pose) -> Site,
         worth: impl Fn(Pose, f32) -> Option<f32>,
     ) -> (Option<Best>, u32) {
         let mut best: Option<Best> = None;
         let find = |leg: Leg, share: f32| {
             let worth = worth(leg.1, share);
-            if let Some(worth) = worth.filter(|it| best.is_none_or(|best| *it > best.worth)) {
+            let better = worth.filter(|it| best.is_none_or(|best| *it > best.worth));
+            if let Some(worth) = better {
                 best = Some(Best { leg, worth });
             }
+            better.is_some()
         };
         let (dynamics, area) = (&self.dynamics, &self.area);
         let share = |end: Pose| self.tracker.share_above(place(end));
-        let mut places = Places { dynamics, area, pose, share, find, examined: 0, most };
+        let mut places =
+            Places { dynamics, area, pose, share, find, best: None, examined: 0, most };
         for k in (1..=circles).rev() {
             let speed = u32::from(self.fastest) * u32::from(k) / u32::from(circles);
             if speed > 0 {
                 let _ = places.circle(speed as u16); // the outer ones count most
             }
         }
+        let _ = places.beside_best(beside);
         let examined = places.examined;
         (best, examined)
     }
@@ -341,8 +356,8 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
     pub(crate) fn seek(&mut self, pose: Pose) -> Plan {
         let is_inside = self.area.contains(pose.site);
         let worth = |end: Pose, share: f32| self.worth(end.site - pose.site, share);
-        let circles = (SEEKING, LOOKED_AT - FAR);
-        let (best, examined) = self.best_end(pose, circles, |end| end.site, worth);
+        let ends = Ends { circles: SEEKING, beside: 0, most: LOOKED_AT - FAR };
+        let (best, examined) = self.best_end(pose, ends, |end| end.site, worth);
         let waist = self.tracker.waist();
         let (far, worth) = self.far_places(pose, waist, best.map_or(0.0, |best| best.worth));
         let is_open = best.is_some() || far != [None; 2];

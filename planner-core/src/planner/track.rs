@@ -6,7 +6,7 @@
 //!   way there. The places are ends of the next motion, some along the mean line, and some all over the area.
 //! - **Follow**: once the front is found, an end of the next motion is worth the information of its label, and the
 //!   progress along the front as a share of the reach, the way that the robot faced at the start. What else it drives
-//!   costs a fifth of that. Where the front is not known well, progress counts less, and in the end not at all. So the
+//!   costs as much as that. Where the front is not known well, progress counts less, and in the end not at all. So the
 //!   robot stops to look where it must. A vehicle that cannot turn on the spot is judged by the place where it would have
 //!   turned along the front again, and pays for its way there instead.
 //! - **Go round**: where a keep-out lies on the front, the robot goes to the first place beyond it. Where the front
@@ -37,25 +37,21 @@ use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::front_state::FrontState;
 use crate::planner::guard::Guard;
 use crate::planner::lap::Lap;
-use crate::planner::scout::{AGAIN, FAINT, FOUND, LOOKED_AT, OneLabel, Scout};
+use crate::planner::scout::{AGAIN, Ends, FAINT, FOUND, LOOKED_AT, OneLabel, Scout};
 use crate::planner::setup::{Restart, SetupError};
 use crate::planner::silence::Silence;
 use crate::planner::snapshot::{Persist, RestoreError, Snapshot};
 use crate::planner::{Plan, Planner, Stage, StopReason};
 
-/// Circles on which a motion along a front may end.
-const CIRCLES: u16 = 4;
+/// The ends of motions along a front that a plan looks at.
+const ENDS: Ends = Ends { circles: 3, beside: 4, most: LOOKED_AT };
 
-/// Progress counts in full where the half-width is below this share of the [span](Scout::span): 1 m for motions of
+/// Progress counts in full where the half-width is below this share of the [span](Scout::span): 1.5 m for motions of
 /// 2 m. It does not count where the front would not count as found.
-const FULL: f32 = 0.5;
+const FULL: f32 = 0.75;
 
 /// There it counts so much the other way: the robot rather goes back.
 const BACK: f32 = 0.02;
-
-/// To a vehicle that turns on the spot, a metre that is driven without progress costs so many metres of progress. For
-/// others it is the way back that costs.
-const DETOUR: f32 = 0.2;
 
 /// A vehicle that goes along the front is to stay within this share of its half-width.
 const LANE: f32 = 0.5;
@@ -283,15 +279,17 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
             let Turned { site, way } = turned(end);
             let half = NINETY * aim.waist.deviation_beside(site);
             let progress = aim.progress(site - pose.site, half, span);
+            // To a vehicle that turns on the spot, a metre without progress costs a metre of it. For others it is the way
+            // back that costs.
             let lost = if radius > 0.0 {
                 way + aim.shift(site, half, radius)
             } else {
-                DETOUR * (distance(end.site - pose.site) - progress)
+                distance(end.site - pose.site) - progress
             };
             Some(told + (progress - lost) / reach)
         };
         let place = |end: Pose| turned(end).site;
-        let (best, examined) = scout.best_end(pose, (CIRCLES, LOOKED_AT), place, worth);
+        let (best, examined) = scout.best_end(pose, ENDS, place, worth);
         let is_inside = scout.area.contains(pose.site);
         // A vehicle goes round before it comes to a place that is nearer than this.
         let about = (radius / reach) as u16;

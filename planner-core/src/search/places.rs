@@ -2,7 +2,7 @@
 //!
 //! On each of some circles the search looks at a few rays of the fan. Where the share of the curves above crosses one
 //! half between two of them, false position comes near to it. Each end that the vehicle may go to is handed on with
-//! its share.
+//! its share. Where less is learnt an end may still be worth more. So the search may look beside the best one at last.
 
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose, Ray, Side, room_for_errors};
@@ -17,6 +17,9 @@ const CLOSER: u32 = 5;
 /// A share is as good as one half when it is this near to it.
 const NEAR_HALF: f32 = 0.03;
 
+/// The search looks so far to either side of the best end first, as an angle between rays: 12 degrees.
+const BESIDE: u32 = 0x0888_8889;
+
 /// A ray, numbered from the right to the left with 0 straight ahead, and the share above its end, less one half.
 #[derive(Clone, Copy)]
 struct Probe {
@@ -24,25 +27,35 @@ struct Probe {
     off: f32,
 }
 
-/// What looks at ends: the vehicle, the area, the share above a place, and what each end is handed to.
+/// What looks at ends: the vehicle, the area, the share above a place, and what each end is handed to. That says whether
+/// it is the best so far.
 pub(crate) struct Places<'a, D, G, S, F> {
     pub(crate) dynamics: &'a D,
     pub(crate) area: &'a G,
     pub(crate) pose: Pose,
     pub(crate) share: S,
     pub(crate) find: F,
+    /// The ray and the speed of the best end.
+    pub(crate) best: Option<(i64, u16)>,
     /// The ends looked at, and how many may be.
     pub(crate) examined: u32,
     pub(crate) most: u32,
 }
 
-impl<D: Dynamics, G: Workspace, S: Fn(Pose) -> f32, F: FnMut(Leg, f32)> Places<'_, D, G, S, F> {
+impl<D: Dynamics, G: Workspace, S: Fn(Pose) -> f32, F: FnMut(Leg, f32) -> bool>
+    Places<'_, D, G, S, F>
+{
+    /// The first ray of a speed, and how many others it has.
+    fn rays(&self, speed: u16) -> Option<(i64, u32)> {
+        let fan = self.dynamics.fan();
+        let [left, right] = self.dynamics.rays_at(speed).unwrap_or([fan.left, fan.right]);
+        Some((-i64::from(right), left.checked_sub(1)?.saturating_add(right)))
+    }
+
     /// Looks at the ends of one speed. `None` if that ends early: no more may be looked at, or one lies off the
     /// lattice.
     pub(crate) fn circle(&mut self, speed: u16) -> Option<()> {
-        let fan = self.dynamics.fan();
-        let [left, right] = self.dynamics.rays_at(speed).unwrap_or([fan.left, fan.right]);
-        let (first, count) = (-i64::from(right), left.checked_sub(1)?.saturating_add(right));
+        let (first, count) = self.rays(speed)?;
         let gaps = if count < GAPS { count } else { GAPS };
         let mut before = self.ask(first, speed)?;
         for gap in 1..=gaps {
@@ -52,6 +65,19 @@ impl<D: Dynamics, G: Workspace, S: Fn(Pose) -> f32, F: FnMut(Leg, f32)> Places<'
                 self.close_in(speed, [before, after])?;
             }
             before = after;
+        }
+        Some(())
+    }
+
+    /// Looks on either side of the best end so many times, each half as far away. `None` if that ends early.
+    pub(crate) fn beside_best(&mut self, times: u32) -> Option<()> {
+        let mut by = i64::from(BESIDE.checked_div(self.dynamics.fan().spacing.0)?);
+        for _ in 0..times {
+            let (ray, speed) = self.best.filter(|_| by > 0)?;
+            let (first, count) = self.rays(speed)?;
+            self.ask((ray - by).max(first), speed)?;
+            self.ask((ray + by).min(first + i64::from(count)), speed)?;
+            by /= 2;
         }
         Some(())
     }
@@ -73,7 +99,10 @@ impl<D: Dynamics, G: Workspace, S: Fn(Pose) -> f32, F: FnMut(Leg, f32)> Places<'
         if self.area.contains(target.site)
             && self.dynamics.keeps_inside(self.pose, target, self.area, room)
         {
-            (self.find)((self.dynamics.grid().action(ray.index, speed), target), share);
+            let leg = (self.dynamics.grid().action(ray.index, speed), target);
+            if (self.find)(leg, share) {
+                self.best = Some((number, speed));
+            }
         }
         Some(Probe { ray: number, off: share - 0.5 })
     }

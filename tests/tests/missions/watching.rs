@@ -212,30 +212,34 @@ fn row(who: Who, world: World) -> Row {
     Row { mean, median: middle, covers, stopped }
 }
 
-/// In every world the median of the mean deviation is smaller than that of going to and fro. The mean of all worlds is much
-/// smaller.
+/// What the medians of the mean deviation may be, metres: for fronts that move and that do not, in each for a line and a
+/// circle, in each for p = 1 and 0.9.
+const MEDIANS: [f64; 8] = [0.104, 0.235, 0.091, 0.205, 0.039, 0.104, 0.03, 0.088];
+
+/// In every world the median of the mean deviation is small, and no larger than that of going to and fro, or by 2 % at
+/// most. The mean of all worlds is much smaller.
 #[test]
 fn a_watched_stretch_is_known_better_than_by_other_ways() {
-    let (mut watches, mut faults) = (0.0, Vec::new());
-    for speed in [0.05, 0.0] {
-        for is_circle in [false, true] {
-            for p in [1.0, 0.9] {
-                let world = World { is_circle, speed, p };
-                let [watch, to_and_fro, stays] =
-                    [Who::Watch, Who::ToAndFro, Who::Stays].map(|who| row(who, world));
-                watches += watch.mean / to_and_fro.mean / 8.0;
-                let is_better =
-                    watch.median < to_and_fro.median && watch.median < 0.2 * stays.median;
-                let is_honest = watch.covers > 0.9 && watch.stopped == 0;
-                if !is_better || !is_honest {
-                    faults.push((world, watch, to_and_fro));
-                }
-            }
+    let (mut watches, mut mean, mut faults) = (0.0, 0.0, Vec::new());
+    let speeds = [0.05, 0.0].into_iter();
+    let shapes = speeds.flat_map(|speed| [false, true].map(|is_circle| (speed, is_circle)));
+    let worlds =
+        shapes.flat_map(|(speed, is_circle)| [1.0, 0.9].map(|p| World { is_circle, speed, p }));
+    for (world, most) in worlds.zip(MEDIANS) {
+        let [watch, to_and_fro, stays] =
+            [Who::Watch, Who::ToAndFro, Who::Stays].map(|who| row(who, world));
+        watches += watch.mean / to_and_fro.mean / 8.0;
+        mean += watch.mean / 8.0;
+        let is_better =
+            watch.median < 1.02 * to_and_fro.median && watch.median < 0.2 * stays.median;
+        let is_honest = watch.covers > 0.9 && watch.stopped == 0;
+        if !is_better || !is_honest || watch.median > most {
+            faults.push((world, watch, to_and_fro));
         }
     }
-    println!("the mean deviation is {watches:.2} of that of going to and fro");
+    println!("the mean deviation is {mean:.3} m, {watches:.2} of that of going to and fro");
     assert!(faults.is_empty(), "{faults:?}");
-    assert!(watches < 0.82, "{watches}");
+    assert!(mean < 0.12 && watches < 0.84, "{mean}, {watches}");
 }
 
 /// The robot leaves the stretch by no more than a reach, but where it lost the front; a plan is the same after a sleep;

@@ -13,11 +13,11 @@ const EVEN: f32 = 1e-5;
 
 /// In a unit of time half of this share of a layer's mass passes to each neighbouring layer. The first share is for a
 /// robot that goes along the front, the second for one that [stays](Tracker::staying).
-const BENDS: [f32; 2] = [0.12, 0.05];
+const BENDS: [f32; 2] = [0.18, 0.025];
 
 /// A layer stands for all curvatures near its own. On its way, a curve strays from it by this share of what the tightest
 /// bend turns.
-const STRAYS: f32 = 0.2;
+const STRAYS: f32 = 0.1;
 
 /// The deviation of what a front moves across itself in a unit of time, as a share of its speed: for the same two.
 ///

@@ -30,7 +30,11 @@ const MOST: f32 = 0.98;
 
 /// The outer layers bend so many times as tightly as was told. At their edge, a front that bends as told would look
 /// unlikely.
-const OUTER: f32 = 1.05;
+const OUTER: f32 = 1.035;
+
+/// The chance of a label where a front bends is off by so much at most: three layers stand for all curvatures. Without it,
+/// small errors of one sign add up to evidence against a front that bends as told.
+const OFF: f32 = 0.015;
 
 /// Positions that err by a deviation widen the edge of a label by so many of them, either way.
 const WIDER: f32 = 1.5;
@@ -247,7 +251,8 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
         let chance = self.weigh(site, label, p, Self::blur(tolerance));
         // Labels that are all the same do not tell a sensor that is stuck from an area without a front.
         if !may_be_nowhere {
-            self.evidence.observe(label, chance);
+            let off = if self.grid.lay.bend > 0.0 { OFF } else { 0.0 };
+            self.evidence.observe(label, chance + off);
         }
         if let Some(learnt) = &mut self.learnt {
             // The share of the curves that agree makes the label as likely as it was.
