@@ -43,12 +43,14 @@ use crate::planner::silence::Silence;
 use crate::planner::snapshot::{Persist, RestoreError, Snapshot};
 use crate::planner::{Plan, Planner, Stage, StopReason};
 
-/// The ends of motions along a front that a plan looks at.
+/// The ends of motions along a front that a plan looks at. Beside the best one, where a label tells less, a vehicle looks
+/// that can turn on the spot.
 const ENDS: Ends = Ends { circles: 3, beside: 4, most: LOOKED_AT };
 
-/// Progress counts in full where the half-width is below this share of the [span](Scout::span): 1.5 m for motions of
-/// 2 m. It does not count where the front would not count as found.
-const FULL: f32 = 0.75;
+/// Progress counts in full where the half-width is below this share of the [span](Scout::span): 1.4 m for motions of
+/// 2 m. It does not count where the front would not count as found. The second is for vehicles that cannot turn on the
+/// spot, and cannot come back as soon.
+const FULL: [f32; 2] = [0.7, 0.5];
 
 /// There it counts so much the other way: the robot rather goes back.
 const BACK: f32 = 0.02;
@@ -244,10 +246,12 @@ impl Aim {
     /// The progress of a way that ends where the front has this half-width, lattice units. It counts less where the front
     /// is not known well, and not at all where it is hardly known. A robot with poor labels would otherwise run ahead of
     /// what it knows.
-    fn progress(&self, way: Vector, half: f32, span: f32) -> f32 {
+    fn progress(&self, way: Vector, half: f32, [span, radius]: [f32; 2]) -> f32 {
+        let [on_the_spot, in_circles] = FULL;
+        let full = if radius > 0.0 { in_circles } else { on_the_spot };
         let counts = match half * UNITS_PER_METRE as f32 / span {
-            width if width <= FULL => 1.0,
-            width if width <= FOUND => (FOUND / width - 1.0) / (FOUND / FULL - 1.0),
+            width if width <= full => 1.0,
+            width if width <= FOUND => (FOUND / width - 1.0) / (FOUND / full - 1.0),
             _ => -BACK,
         };
         let progress = way.x as f32 * self.along.x + way.z as f32 * self.along.z;
@@ -278,7 +282,7 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
             let told = scout.tells(share)?;
             let Turned { site, way } = turned(end);
             let half = NINETY * aim.waist.deviation_beside(site);
-            let progress = aim.progress(site - pose.site, half, span);
+            let progress = aim.progress(site - pose.site, half, [span, radius]);
             // To a vehicle that turns on the spot, a metre without progress costs a metre of it. For others it is the way
             // back that costs.
             let lost = if radius > 0.0 {
@@ -289,7 +293,8 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
             Some(told + (progress - lost) / reach)
         };
         let place = |end: Pose| turned(end).site;
-        let (best, examined) = scout.best_end(pose, ENDS, place, worth);
+        let ends = if radius > 0.0 { Ends { beside: 0, ..ENDS } } else { ENDS };
+        let (best, examined) = scout.best_end(pose, ends, place, worth);
         let is_inside = scout.area.contains(pose.site);
         // A vehicle goes round before it comes to a place that is nearer than this.
         let about = (radius / reach) as u16;
