@@ -64,8 +64,8 @@ fn two_robots_make_one_closed_map() {
         format!("The front is closed: the maps together go all round it, from step {}", map["met"]);
     assert!(words.contains(&says), "{words}");
     assert!(read("j.svg").contains("the front as it is mapped"));
-    // Joined again it is the same front with all of its vertices but one or two, and has no step at which it was closed.
-    // Its vertices lie closer together, so some of the first robot's are now places of their own.
+    // Joined again it is the same front, and has no step at which it was closed. Its vertices lie closer together, so some
+    // that were left out are places of their own.
     let again = record(folder, &["j.csv", "a.csv"]);
     let [map, again] = [map, &again["map"]];
     assert_eq!((&again["state"], &again["pieces"]), (&map["state"], &map["pieces"]), "{again}");

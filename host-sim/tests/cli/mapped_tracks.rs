@@ -19,8 +19,10 @@ fn a_trace_gives_the_map_of_its_mission() {
     // It bends so tightly that there are alarms, and the front is found again.
     let tight =
         COAST.replace("radius = 20.0", "radius = 400.0").replace("steps = 90", "steps = 160");
-    let tight = tight.replace("height = 6.0, length = 25.0", "height = 8.0, length = 15.0");
-    let tight = tight.replace("seed = 3", "seed = 4");
+    // After its alarm the front is found again.
+    let tight = tight
+        .replace("height = 6.0, length = 25.0", "height = 8.0, length = 15.0")
+        .replace("seed = 3", "seed = 4");
     let noise = |with: &str| COAST.replace("noise = { p = 0.9 }", with);
     let cases: [(&str, String, &[&str]); 9] = [
         ("a bend told too wide", tight, &["400"]),

@@ -43,13 +43,13 @@ use crate::planner::silence::Silence;
 use crate::planner::snapshot::{Persist, RestoreError, Snapshot};
 use crate::planner::{Plan, Planner, Stage, StopReason};
 
-/// The ends of motions along a front that a plan looks at. Beside the best one, where a label tells less, a vehicle looks
-/// that can turn on the spot.
+/// The ends of motions along a front that a plan looks at. Only a vehicle that turns on the spot looks beside the best
+/// one, where a label tells less.
 const ENDS: Ends = Ends { circles: 3, beside: 4, most: LOOKED_AT };
 
 /// Progress counts in full where the half-width is below this share of the [span](Scout::span): 1.4 m for motions of
-/// 2 m. It does not count where the front would not count as found. The second is for vehicles that cannot turn on the
-/// spot, and cannot come back as soon.
+/// 2 m. It does not count where the front would not count as found. The second share is for vehicles that cannot turn on
+/// the spot: they do not come back as soon.
 const FULL: [f32; 2] = [0.7, 0.5];
 
 /// There it counts so much the other way: the robot rather goes back.
@@ -283,8 +283,8 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
             let Turned { site, way } = turned(end);
             let half = NINETY * aim.waist.deviation_beside(site);
             let progress = aim.progress(site - pose.site, half, [span, radius]);
-            // To a vehicle that turns on the spot, a metre without progress costs a metre of it. For others it is the way
-            // back that costs.
+            // A vehicle that turns on the spot loses what it drives besides its progress. Others lose their way back to the
+            // front.
             let lost = if radius > 0.0 {
                 way + aim.shift(site, half, radius)
             } else {

@@ -27,8 +27,8 @@ struct Probe {
     off: f32,
 }
 
-/// What looks at ends: the vehicle, the area, the share above a place, and what each end is handed to. That says whether
-/// it is the best so far.
+/// What looks at ends: the vehicle, the area, the share above a place, and what each end is handed to. It says whether the
+/// end is the best so far.
 pub(crate) struct Places<'a, D, G, S, F> {
     pub(crate) dynamics: &'a D,
     pub(crate) area: &'a G,

@@ -255,7 +255,7 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
     /// Puts the mass into other cells: what lies beyond goes into the edge cells.
     ///
     /// Each column is shifted as its middle is. Then it is shared out among the new columns. Densities have slopes if the
-    /// front bends. That of a straight line has no other blur, and needs the one of even densities.
+    /// front bends. With even ones each laying blurs the masses. A straight line has no other blur, and needs it.
     #[inline(never)]
     pub(crate) fn lay_anew(&mut self, lay: Lay) {
         let old = self.lay;

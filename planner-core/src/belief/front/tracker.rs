@@ -32,9 +32,9 @@ const MOST: f32 = 0.98;
 /// unlikely.
 const OUTER: f32 = 1.035;
 
-/// The chance of a label where a front bends is off by so much at most: three layers stand for all curvatures. Without it,
-/// small errors of one sign add up to evidence against a front that bends as told.
-const OFF: f32 = 0.015;
+/// Where a front bends, evidence takes a label as so much likelier than the belief says. A few layers stand for all
+/// curvatures, so the chance of a label is a little off. Small errors of one sign would add up to an alarm.
+const MISFIT: f32 = 0.015;
 
 /// Positions that err by a deviation widen the edge of a label by so many of them, either way.
 const WIDER: f32 = 1.5;
@@ -251,8 +251,8 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
         let chance = self.weigh(site, label, p, Self::blur(tolerance));
         // Labels that are all the same do not tell a sensor that is stuck from an area without a front.
         if !may_be_nowhere {
-            let off = if self.grid.lay.bend > 0.0 { OFF } else { 0.0 };
-            self.evidence.observe(label, chance + off);
+            let misfit = if self.grid.lay.bend > 0.0 { MISFIT } else { 0.0 };
+            self.evidence.observe(label, chance + misfit);
         }
         if let Some(learnt) = &mut self.learnt {
             // The share of the curves that agree makes the label as likely as it was.
