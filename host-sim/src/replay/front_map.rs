@@ -7,7 +7,6 @@
 use std::path::Path;
 
 use anyhow::Result;
-use planner_core::belief::evidence::Alarm;
 use planner_core::{Belief as _, Front, Label};
 
 use crate::mission::front::VertexRecord;
@@ -19,9 +18,6 @@ use crate::replay::rows::Layout;
 use crate::replay::sample_file::SampleFile;
 use crate::replay::track::{RecordedTrack, Row};
 use crate::report::pieces::Pieces;
-
-/// After an alarm the front is sought within so many widths: six of a follower's longest motions.
-const AGAIN: f32 = 4.0;
 
 /// There is no front if that has a higher probability.
 const ABSENT: f32 = 0.5;
@@ -61,7 +57,7 @@ impl FrontMap {
     }
 
     fn of(file: SampleFile, front: Front, trust: Trust) -> Result<Self> {
-        let RecordedTrack { rows, apart, mut tracker, width, p, is_closed } =
+        let RecordedTrack { rows, apart, mut tracker, width, near, area, p, is_closed } =
             RecordedTrack::of(&file, front, trust)?;
         let bar = progress(rows.len() as u64, "rows")?;
         let (mut alarms, mut after) = (Vec::new(), Vec::with_capacity(rows.len()));
@@ -74,8 +70,7 @@ impl FrontMap {
                 Some(label) => tracker.observe(*site, (*label).into())?,
                 None => tracker.settle(*site),
             }
-            if tracker.evidence().value() >= Alarm::ALARM {
-                tracker.seek_near(*site, AGAIN * width);
+            if tracker.seek_anew((*site, near), area) {
                 alarms.push(*number);
             }
             after.push((*driven, tracker.found(width).map(VertexRecord::from)));

@@ -22,6 +22,9 @@ const SHORT: f64 = 0.125;
 /// A front counts as found where its half-width is below so many of these motions.
 const FOUND: f64 = 1.5;
 
+/// After an alarm it is sought within so many of them.
+const AGAIN: f64 = 6.0;
+
 /// Rows of a table are taken in where they are so many of these motions apart. A tracker is made for labels that are
 /// about one apart: of many more it learns too much, since it does not keep where in a cell they were read.
 const APART: f64 = 0.2;
@@ -56,6 +59,9 @@ pub(crate) struct RecordedTrack {
     pub(crate) tracker: FrontBelief,
     /// The front counts as found where its half-width is below this, metres.
     pub(crate) width: f32,
+    /// After an alarm it is sought within so many metres, and then in this area.
+    pub(crate) near: f32,
+    pub(crate) area: Area,
     /// How often labels are true.
     pub(crate) p: PTold,
     /// Whether it ends back where the front was found, after all the way round it.
@@ -107,6 +113,8 @@ impl RecordedTrack {
             apart: APART * reach,
             tracker: FrontBelief::new(area, front, noise),
             width: (FOUND * reach) as f32,
+            near: (AGAIN * reach) as f32,
+            area,
             p,
             is_closed: false,
         })
@@ -142,13 +150,18 @@ impl RecordedTrack {
         };
         let tracker = FrontBelief::new(area, front, noise);
         let tracker = tracker.given(&file.samples[..start.oracle.len()]);
-        // How wide a front that is found may be is for the follower itself to say.
+        let watches = start.front.is_some_and(|it| it.watch.is_some());
+        let tracker = if watches { tracker.staying() } else { tracker };
+        // How wide a front that is found may be, and how near one that is lost, is for the follower itself to say.
         let follower = Track::new(area, vehicle.with_context(named)?, tracker.clone());
+        let follower = follower.with_context(named)?;
         Ok(Self {
             rows: steps.iter().zip(sites).zip(ways).map(row).collect(),
             apart: 0.0,
             tracker,
-            width: follower.with_context(named)?.width(),
+            width: follower.width(),
+            near: follower.near(),
+            area,
             p,
             is_closed: reason.as_deref() == Some("closed"),
         })

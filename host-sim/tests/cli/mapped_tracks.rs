@@ -23,8 +23,16 @@ fn a_trace_gives_the_map_of_its_mission() {
     let tight = tight
         .replace("height = 6.0, length = 25.0", "height = 8.0, length = 15.0")
         .replace("seed = 3", "seed = 4");
+    // Where it is lost, it is sought all over the area.
+    let straight = tight.replace("radius = 400.0", "radius = 1e6").replace("= 160", "= 300");
     let noise = |with: &str| COAST.replace("noise = { p = 0.9 }", with);
-    let cases: [(&str, String, &[&str]); 9] = [
+    let cases: [(&str, String, &[&str]); 11] = [
+        ("a bend told much too wide", straight, &["1e6"]),
+        (
+            "a stretch that is watched",
+            COAST.replace("radius = 20.0", "radius = 20.0, watch = 30.0"),
+            &["20"],
+        ),
         ("a bend told too wide", tight, &["400"]),
         ("as it is", COAST.to_owned(), &["20"]),
         ("readings on the way", with("readings = 4"), &["20"]),

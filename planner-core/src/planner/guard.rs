@@ -17,13 +17,13 @@ use crate::belief::observation_log::FromLog as _;
 use crate::belief::sample::{Reading, Sample};
 use crate::belief::tolerance::Tolerance;
 use crate::belief::weight::Prior;
-use crate::geometry::approximate::{METRE, distance};
+use crate::geometry::approximate::distance;
 use crate::geometry::area::Area;
 use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::front_state::FrontState;
-use crate::planner::scout::{AGAIN, Ends, FAINT, Scout};
+use crate::planner::scout::{Ends, FAINT, Scout};
 use crate::planner::setup::{Restart, SetupError};
 use crate::planner::silence::Silence;
 use crate::planner::snapshot::{Persist, RestoreError, Snapshot};
@@ -126,12 +126,8 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
         reading: Option<Reading>,
         tolerance: Tolerance,
     ) -> Result<(), ObservationError> {
-        let scout = &mut self.scout;
-        scout.observe(pose, reading, tolerance)?;
-        if scout.tracker.evidence().value() >= Alarm::ALARM {
-            let near = AGAIN * scout.reach() * METRE;
-            scout.tracker.seek_near(pose.site, near);
-        }
+        self.scout.observe(pose, reading, tolerance)?;
+        self.scout.seek_anew(pose.site);
         self.lie();
         Ok(())
     }

@@ -58,8 +58,8 @@ const LEAST: f32 = 0.1;
 /// One that tells less than this is not read on the way to a place.
 pub(crate) const FAINT: f32 = 0.05;
 
-/// After an alarm the front is sought within so many reaches.
-pub(crate) const AGAIN: f32 = 6.0;
+/// After an alarm the boundary is sought within so many reaches.
+const AGAIN: f32 = 6.0;
 
 /// An errand ends within this share of the reach.
 const NEAR: f32 = 0.25;
@@ -176,6 +176,11 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
     /// The half-width below which the boundary counts as found, metres.
     pub(crate) fn width(&self) -> f32 {
         FOUND * METRE * self.span()
+    }
+
+    /// After an alarm the boundary is sought within so many metres.
+    pub(crate) fn near(&self) -> f32 {
+        AGAIN * METRE * self.reach()
     }
 
     /// The radius of the smallest circle that the vehicle goes round; 0 if it needs none. Lattice units.
@@ -397,6 +402,12 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         }
         self.silence.observe(reading.is_some());
         Ok(())
+    }
+
+    /// Begins again where labels speak against what is known of the boundary.
+    pub(crate) fn seek_anew(&mut self, site: Site) {
+        let near = (site, self.near());
+        self.tracker.seek_anew(near, self.area.whole().bounds());
     }
 
     pub(crate) fn observe_on_the_way(

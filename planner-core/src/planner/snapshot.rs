@@ -30,7 +30,8 @@ use crate::planner::Planner;
 /// | 5 | its odds |
 /// | 6 | how many motions its way should take, and of Algorithm 2 whether the readings on the way are odd in number |
 /// | 7 | of a tracker, where it last counted a label |
-pub const SNAPSHOT_VERSION: u16 = 7;
+/// | 8 | and whether it knew a front |
+pub const SNAPSHOT_VERSION: u16 = 8;
 
 /// What a planner has to remember over a sleep: the log of its belief (`T`), and what else it plans by (`M`).
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -11,10 +11,10 @@
 //!   turned along the front again, and pays for its way there instead.
 //! - **Go round**: where a keep-out lies on the front, the robot goes to the first place beyond it. Where the front
 //!   leaves the area, it goes back in the other direction.
-//! - **Come home**: where no label in reach would tell anything, the robot goes back to the front. If it has turned all
-//!   round on such ways without a label, it reads one where it arrives.
+//! - **Come home**: where no label in reach would tell anything, the robot goes to the front, a reach ahead. If it has
+//!   turned all round on such ways without a label, it reads one where it arrives.
 //! - **Begin again**: an alarm of the tracker's evidence says that the front bends more tightly than was told, or is
-//!   lost. Then it is sought anew nearby.
+//!   lost. Then it is sought anew nearby. It is sought all over the area if it is most likely not where it was.
 //!
 //! A plan looks at [`LOOKED_AT`] places at most. A mission ends where no front is left to find, where there is no way on,
 //! where the robot is back at its last label, or where [a closed front](Track::until_closed) is to end it.
@@ -37,20 +37,30 @@ use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::front_state::FrontState;
 use crate::planner::guard::Guard;
 use crate::planner::lap::Lap;
-use crate::planner::scout::{AGAIN, Ends, FAINT, FOUND, LOOKED_AT, OneLabel, Scout};
+use crate::planner::scout::{Ends, FAINT, FOUND, LOOKED_AT, OneLabel, Scout};
 use crate::planner::setup::{Restart, SetupError};
 use crate::planner::silence::Silence;
 use crate::planner::snapshot::{Persist, RestoreError, Snapshot};
 use crate::planner::{Plan, Planner, Stage, StopReason};
 
-/// The ends of motions along a front that a plan looks at. Only a vehicle that turns on the spot looks beside the best
-/// one, where a label tells less.
-const ENDS: Ends = Ends { circles: 3, beside: 4, most: LOOKED_AT };
+/// How a vehicle goes along a front.
+struct Gait {
+    /// The ends of motions that a plan looks at.
+    ends: Ends,
+    /// Progress counts in full where the half-width is below this share of the [span](Scout::span). It does not count
+    /// where the front would not count as found.
+    full: f32,
+    /// What it drives besides its progress costs so many times as much as that.
+    besides: f32,
+}
 
-/// Progress counts in full where the half-width is below this share of the [span](Scout::span): 1.4 m for motions of
-/// 2 m. It does not count where the front would not count as found. The second share is for vehicles that cannot turn on
-/// the spot: they do not come back as soon.
-const FULL: [f32; 2] = [0.7, 0.5];
+/// It turns on the spot: it looks beside the best end, where a label tells less, and comes back soon.
+const ON_THE_SPOT: Gait =
+    Gait { ends: Ends { circles: 3, beside: 4, most: LOOKED_AT }, full: 0.7, besides: 1.0 };
+
+/// It needs a turning circle, and pays for its way back to the front.
+const IN_CIRCLES: Gait =
+    Gait { ends: Ends { circles: 3, beside: 0, most: LOOKED_AT }, full: 0.5, besides: 0.0 };
 
 /// There it counts so much the other way: the robot rather goes back.
 const BACK: f32 = 0.02;
@@ -136,6 +146,11 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
     /// motion, or of the radius of the turning circle if that is longer.
     pub fn width(&self) -> f32 {
         self.scout.width()
+    }
+
+    /// After an alarm the front is sought within so many metres: six of the longest motions.
+    pub fn near(&self) -> f32 {
+        self.scout.near()
     }
 
     /// The same, but it ends once the front [is closed](Self::is_closed).
@@ -246,9 +261,7 @@ impl Aim {
     /// The progress of a way that ends where the front has this half-width, lattice units. It counts less where the front
     /// is not known well, and not at all where it is hardly known. A robot with poor labels would otherwise run ahead of
     /// what it knows.
-    fn progress(&self, way: Vector, half: f32, [span, radius]: [f32; 2]) -> f32 {
-        let [on_the_spot, in_circles] = FULL;
-        let full = if radius > 0.0 { in_circles } else { on_the_spot };
+    fn progress(&self, way: Vector, half: f32, (span, full): (f32, f32)) -> f32 {
         let counts = match half * UNITS_PER_METRE as f32 / span {
             width if width <= full => 1.0,
             width if width <= FOUND => (FOUND / width - 1.0) / (FOUND / full - 1.0),
@@ -277,27 +290,23 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
         let aim = self.aim(waist, pose);
         let scout = &self.scout;
         let (reach, span, radius) = (scout.reach(), scout.span(), scout.radius());
+        let gait = if radius > 0.0 { &IN_CIRCLES } else { &ON_THE_SPOT };
         let turned = |end: Pose| aim.turned(end, radius);
         let worth = |end: Pose, share: f32| {
             let told = scout.tells(share)?;
             let Turned { site, way } = turned(end);
             let half = NINETY * aim.waist.deviation_beside(site);
-            let progress = aim.progress(site - pose.site, half, [span, radius]);
-            // A vehicle that turns on the spot loses what it drives besides its progress. Others lose their way back to the
-            // front.
-            let lost = if radius > 0.0 {
-                way + aim.shift(site, half, radius)
-            } else {
-                distance(end.site - pose.site) - progress
-            };
+            let on = site - pose.site;
+            let progress = aim.progress(on, half, (span, gait.full));
+            let back = way + aim.shift(site, half, radius);
+            let lost = back + gait.besides * (distance(on) - progress);
             Some(told + (progress - lost) / reach)
         };
         let place = |end: Pose| turned(end).site;
-        let ends = if radius > 0.0 { Ends { beside: 0, ..ENDS } } else { ENDS };
-        let (best, examined) = scout.best_end(pose, ends, place, worth);
+        let (best, examined) = scout.best_end(pose, gait.ends, place, worth);
         let is_inside = scout.area.contains(pose.site);
-        // A vehicle goes round before it comes to a place that is nearer than this.
-        let about = (radius / reach) as u16;
+        // Where no label tells anything it goes on along the front, no nearer than it can turn.
+        let about = ((radius / reach) as u16).max(1);
         // In this order: the first to which there is a way.
         let (stage, places) = match self.onward(&aim, pose) {
             _ if !is_inside => (Stage::Return, [scout.home(pose), None]),
@@ -322,11 +331,8 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
         if reading.is_some() {
             self.heard_at = Some(pose);
         }
-        let reach = scout.reach();
-        if scout.tracker.evidence().value() >= Alarm::ALARM {
-            scout.tracker.seek_near(pose.site, AGAIN * reach * METRE);
-        }
-        let found = scout.found();
+        scout.seek_anew(pose.site);
+        let (reach, found) = (scout.reach(), scout.found());
         self.lap.observe(found, pose, reach);
         let aim = found.map(|waist| self.aim(waist, pose));
         if aim.is_some_and(|aim| self.onward(&aim, pose) == Onward::Over) {

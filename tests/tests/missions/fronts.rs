@@ -248,6 +248,43 @@ fn at_the_border_it_turns_round() {
     }
 }
 
+/// A straight front is soon known so exactly that no label tells more. The robot goes on along it all the same, up to the
+/// border and back.
+#[test]
+fn a_front_that_is_known_exactly_is_followed_on() {
+    let area = Area::metres([-8.0, -30.0], [152.0, 30.0]).expect("an area");
+    for (number, p) in (0..cases(6, 60)).zip([1.0, 0.9].into_iter().cycle()) {
+        let mut rng = ChaCha8Rng::seed_from_u64(47);
+        rng.set_stream(number);
+        let world = TrueFront::sine(0.0, 60.0, &mut rng);
+        let tracker = Tracker::new(area, Front::STRAIGHT, noise(p)).given(&world.given());
+        let planner: Track<_, 16, 16, 3> = Track::new(area, unicycle(), tracker).expect("room");
+        let start = world.start(&mut rng);
+        let flown = follow(&world, planner, (course(p), start), &mut rng, |_, _, _| ());
+        // Most motions are of 2 m.
+        assert!(!flown.is_lost && flown.driven > 1.5 * f64::from(MOTIONS), "{number}: {flown:?}");
+    }
+}
+
+/// Told that a coast is straight, the robot loses it again and again. It seeks it all over the area then: where a front
+/// was known, it does not end with "there is none".
+#[test]
+fn a_front_that_was_known_is_sought_until_the_end() {
+    for number in 0..cases(15, 100) {
+        let mut rng = ChaCha8Rng::seed_from_u64(48);
+        rng.set_stream(number);
+        let world = TrueFront::coast([6.0, 25.0], &mut rng);
+        let area = Area::metres([-80.0, -30.0], [80.0, 30.0]).expect("an area");
+        let tracker = Tracker::new(area, Front::bending(1e6).expect("a front"), noise(0.9));
+        let tracker = tracker.given(&world.given());
+        let planner: Track<_, 16, 16, 3> = Track::new(area, unicycle(), tracker).expect("room");
+        let (start, course) = (world.start(&mut rng), Course { motions: 300, ..course(0.9) });
+        let mut motions = 0;
+        follow(&world, planner, (course, start), &mut rng, |_, _, _| motions += 1);
+        assert_eq!(motions, 300, "{number}");
+    }
+}
+
 /// Readings on the way and positions that err: what is stated still holds.
 #[test]
 fn readings_on_the_way_help_and_positions_that_err_are_allowed_for() {

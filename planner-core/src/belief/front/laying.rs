@@ -44,14 +44,14 @@ const PLACES: usize = 64;
 const WIDE: f32 = 0.8;
 
 /// From where to where the mass lies but for a tail on either side, in cells from the first one's edge.
-fn range<const N: usize>(masses: &[f32; N]) -> [f32; 2] {
-    let total: f32 = masses.iter().sum();
+fn range(masses: &[f32]) -> [f32; 2] {
+    let (total, cells): (f32, _) = (masses.iter().sum(), masses.len() as f32);
     let tail = TAIL * total;
     let wants_out = |edge: Option<&f32>, next: Option<&f32>| {
         let [edge, next] = [edge, next].map(|it| it.copied().unwrap_or(0.0));
         edge > HEAVY * next && edge > 2.0 * tail
     };
-    let more = GROWTH * N as f32;
+    let more = GROWTH * cells;
     let low = if wants_out(masses.first(), masses.get(1)) {
         -more
     } else {
@@ -62,7 +62,7 @@ fn range<const N: usize>(masses: &[f32; N]) -> [f32; 2] {
     } else {
         place_of(masses.iter().rev(), tail)
     };
-    [low, N as f32 - high]
+    [low, cells - high]
 }
 
 /// Up to where so much mass lies, counted in cells.

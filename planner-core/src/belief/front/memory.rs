@@ -21,6 +21,7 @@ pub struct FrontMemory<const K: usize, const M: usize, const L: usize> {
     pub(crate) learnt: Option<Learnt>,
     pub(crate) evidence: Evidence,
     pub(crate) heard: Site,
+    pub(crate) was_known: bool,
 }
 
 impl<const K: usize, const M: usize, const L: usize> FrontMemory<K, M, L> {

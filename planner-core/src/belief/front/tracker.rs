@@ -1,7 +1,7 @@
 //! The tracker: takes in labels and time, and says what is known of a front.
 
 use crate::belief::estimate::Estimates;
-use crate::belief::evidence::Evidence;
+use crate::belief::evidence::{Alarm, Evidence};
 use crate::belief::front::grid::{Grid, Lay, Unit, angle, limited};
 use crate::belief::front::learnt::Learnt;
 use crate::belief::front::memory::{FrontMemory, Masses};
@@ -46,6 +46,10 @@ const TOLERANCE: f32 = 3.0;
 /// of at most this.
 const DIRECTED: f32 = 0.5;
 const ABSENT: f32 = 0.05;
+
+/// A front that was known is elsewhere where "there is none" has more than this probability. A label would hardly tell
+/// anything.
+const ELSEWHERE: f32 = 0.97;
 
 /// Given points are weighed so many times, each time among fewer curves.
 const GIVEN_ROUNDS: u32 = 4;
@@ -100,6 +104,8 @@ pub struct Tracker<const K: usize, const M: usize, const L: usize> {
     start: f32,
     /// Whether the robot [stays](Self::staying).
     pub(super) stays: bool,
+    /// Whether a front was known, or sought near a place, since one was sought all over an area.
+    was_known: bool,
 }
 
 impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
@@ -131,6 +137,7 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
             heard: Site::ORIGIN,
             start: 0.0,
             stays: false,
+            was_known: false,
         }
     }
 
@@ -155,13 +162,14 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
     fn begin(&mut self, area: Area, noise: Noise<AnyReliability>) {
         let prior = noise.reliability.unknown();
         self.learnt = prior.map(|it| Learnt::prior(it.parameters().map(|it| it as f32)));
-        (self.noise, self.evidence) = (noise, Evidence::NONE);
-        self.nowhere = [0.5 * NOWHERE; 2];
-        self.fill_within(area);
+        self.noise = noise;
+        self.start = self.fill_within(area);
     }
 
-    /// Spreads the mass evenly over the lines that cross a rectangle.
-    fn fill_within(&mut self, area: Area) {
+    /// Spreads the mass evenly over the lines that cross a rectangle. Returns the logarithm of their measure to the base 2.
+    fn fill_within(&mut self, area: Area) -> f32 {
+        (self.evidence, self.was_known) = (Evidence::NONE, false);
+        self.nowhere = [0.5 * NOWHERE; 2];
         let [x, z] = area.half_sides().map(|it| it as f32 * METRE);
         let far = sqrt(x * x + z * z);
         self.grid.set(Lay {
@@ -187,8 +195,8 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
             }
         }
         let whole: f32 = self.grid.cells().map(|it| *it).sum();
-        self.start = libm::log2f(whole * lay.turn / L as f32);
         self.grid.scale((1.0 - NOWHERE) / whole, 0.0);
+        libm::log2f(whole * lay.turn / L as f32)
     }
 
     /// How often a label is true, as far as that is known.
@@ -346,7 +354,7 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
         let has = |label| given.iter().any(|it| it.label == label);
         let is_between = has(Label::Positive) && has(Label::Negative);
         if let Some(between) = Area::around(given.iter().map(|it| it.site)).filter(|_| is_between) {
-            self.fill_within(between);
+            self.start = self.fill_within(between);
         }
         // Points of one label do not bound the front, and count once.
         for round in 0..if is_between { GIVEN_ROUNDS } else { 1 } {
@@ -369,8 +377,8 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
             return None;
         }
         let waist = self.waist();
-        let is_near = waist.ninety() <= within;
-        (is_near && waist.turn_deviation < DIRECTED).then_some(waist)
+        let was_known = waist.ninety() <= within;
+        (was_known && waist.turn_deviation < DIRECTED).then_some(waist)
     }
 
     /// Begins again near a site: the front lies within so many metres of it, and its direction has changed by less
@@ -390,7 +398,23 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
         let each = (1.0 - NOWHERE) / (K * M * L) as f32;
         self.grid.cells().for_each(|mass| *mass = each);
         self.nowhere = [0.5 * NOWHERE; 2];
-        self.evidence = Evidence::NONE;
+        (self.evidence, self.was_known) = (Evidence::NONE, true);
+    }
+
+    /// Begins again where labels speak against what is known, and says so. After an alarm the front is sought
+    /// [near](Self::seek_near) a site, within so many metres. A front that was known may most likely not be where it was.
+    /// Then one is sought all over an area, as at the start.
+    pub fn seek_anew(&mut self, (site, metres): (Site, f32), area: Area) -> bool {
+        let absent = self.share_nowhere();
+        self.was_known |= !self.is_open() && absent <= ABSENT;
+        let is_alarmed = self.evidence.value() >= Alarm::ALARM;
+        let is_elsewhere = self.was_known && absent > ELSEWHERE;
+        if is_alarmed {
+            self.seek_near(site, metres);
+        } else if is_elsewhere {
+            self.fill_within(area);
+        }
+        is_alarmed || is_elsewhere
     }
 }
 
@@ -472,9 +496,9 @@ impl<const K: usize, const M: usize, const L: usize> FromLog for Tracker<K, M, L
     type ObservationLog = FrontMemory<K, M, L>;
 
     fn log(&self) -> FrontMemory<K, M, L> {
-        let Self { nowhere, learnt, evidence, heard, .. } = *self;
+        let Self { nowhere, learnt, evidence, heard, was_known, .. } = *self;
         let (lay, masses) = (self.grid.lay, Masses(self.grid.mass));
-        FrontMemory { lay, masses, nowhere, learnt, evidence, heard }
+        FrontMemory { lay, masses, nowhere, learnt, evidence, heard, was_known }
     }
 
     /// Goes on from there at once: nothing is replayed.
@@ -488,7 +512,7 @@ impl<const K: usize, const M: usize, const L: usize> FromLog for Tracker<K, M, L
         self.grid.mass = log.masses.0;
         self.grid.set(log.lay);
         (self.nowhere, self.learnt, self.evidence) = (log.nowhere, log.learnt, log.evidence);
-        self.heard = log.heard;
+        (self.heard, self.was_known) = (log.heard, log.was_known);
         Ok(())
     }
 }
@@ -496,7 +520,6 @@ impl<const K: usize, const M: usize, const L: usize> FromLog for Tracker<K, M, L
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::belief::evidence::Alarm;
 
     fn at(x: f64, z: f64) -> Site {
         Site::metres([x, z]).unwrap()
