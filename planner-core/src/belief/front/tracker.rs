@@ -65,7 +65,7 @@ const UNSURE: f32 = 1e-3;
 
 /// The most bits that labels on the way may carry for each width of a cell. Closer labels would seem to part a cell, and
 /// rule out the part that the front is in.
-const DENSEST: f32 = 0.43;
+const DENSEST: f32 = 0.25;
 
 /// What is known of a front: `K` directions, `M` offsets and `L` layers of curvature.
 ///
