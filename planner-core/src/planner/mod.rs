@@ -21,6 +21,7 @@ pub mod front_state;
 pub(crate) mod guard;
 mod lap;
 pub mod lookahead;
+pub(crate) mod one_label;
 pub mod options;
 pub mod scc;
 pub mod scout;

@@ -8,18 +8,18 @@ use crate::belief::Belief as _;
 use crate::belief::ObservationError;
 use crate::belief::front::{Tracker, Unit, Waist};
 use crate::belief::noise::Noise;
-use crate::belief::sample::{Label, Reading, Sample};
+use crate::belief::sample::{Reading, Sample};
 use crate::belief::tolerance::Tolerance;
 use crate::geometry::approximate::{METRE, distance};
 use crate::geometry::heading::Heading;
 use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose, Side};
+use crate::planner::one_label::{OneLabel, PLACES, anywhere};
 use crate::planner::setup::{SetupError, aimed_for, aimed_for_by};
 use crate::planner::silence::Silence;
 use crate::planner::{Motion, Plan, Stage, StopReason};
 use crate::search::course::Course;
-use crate::search::dead_end::place;
 use crate::search::errand::{Errand, errand};
 use crate::search::motions::Leg;
 use crate::search::objective::{Effort, LOOKS};
@@ -32,11 +32,10 @@ pub const LOOKED_AT: u32 = 112;
 /// Circles on which a motion may end where the boundary is sought.
 const SEEKING: u16 = 2;
 
-/// Places along the mean line, a reach apart, and others all over the area.
+/// Places along the mean line, a reach apart.
 const ALONG: u16 = 17;
-const PLACES: u32 = 36;
 
-/// Corners of the area, at most, and all these places together.
+/// Corners of the area, at most; and all these places together, with those all over it.
 const CORNERS: u32 = 12;
 const FAR: u32 = 17 + PLACES + CORNERS;
 
@@ -78,46 +77,6 @@ pub(crate) struct Scout<D, const K: usize, const M: usize, const L: usize, G> {
     /// What a label costs, lattice units of driving.
     pub(crate) price: f32,
     pub(crate) silence: Silence,
-}
-
-/// All of an area has one label, most likely.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct OneLabel {
-    /// That label.
-    pub label: Label,
-    /// The share of the area that is expected to have the other label all the same, from 0 to 1. A boundary that is left
-    /// cuts off a piece at the border, or a corner.
-    pub other: f32,
-}
-
-impl OneLabel {
-    /// What a tracker says of an area; `None` where places all over it do not most likely have one label.
-    ///
-    /// Cost: 36 [questions](Tracker::share_above).
-    pub fn of<const K: usize, const M: usize, const L: usize>(
-        tracker: &Tracker<K, M, L>,
-        area: &impl Workspace,
-    ) -> Option<Self> {
-        let (mut sum, mut count, mut is_above, mut is_below) = (0.0, 0.0, false, false);
-        for site in anywhere(area) {
-            let share = tracker.share_above(site);
-            (is_above, is_below) = (is_above || share > 0.5, is_below || share <= 0.5);
-            (sum, count) = (sum + share, count + 1.0);
-        }
-        let share = sum / count;
-        match (is_above, is_below) {
-            (true, false) => Some(Self { label: Label::Positive, other: 1.0 - share }),
-            (false, true) => Some(Self { label: Label::Negative, other: share }),
-            _ => None,
-        }
-    }
-}
-
-/// Some places all over an area.
-fn anywhere(area: &impl Workspace) -> impl Iterator<Item = Site> {
-    (0..PLACES).filter_map(|k| place(area, k))
 }
 
 /// Which ends of the next motion to look at.

@@ -37,7 +37,8 @@ use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::front_state::FrontState;
 use crate::planner::guard::Guard;
 use crate::planner::lap::Lap;
-use crate::planner::scout::{Ends, FAINT, FOUND, LOOKED_AT, OneLabel, Scout};
+use crate::planner::one_label::OneLabel;
+use crate::planner::scout::{Ends, FAINT, FOUND, LOOKED_AT, Scout};
 use crate::planner::setup::{Restart, SetupError};
 use crate::planner::silence::Silence;
 use crate::planner::snapshot::{Persist, RestoreError, Snapshot};
@@ -62,7 +63,7 @@ const ON_THE_SPOT: Gait =
 const IN_CIRCLES: Gait =
     Gait { ends: Ends { circles: 3, beside: 0, most: LOOKED_AT }, full: 0.5, besides: 0.0 };
 
-/// There it counts so much the other way: the robot rather goes back.
+/// Where the front would not count as found, progress counts so much the other way: the robot rather goes back.
 const BACK: f32 = 0.02;
 
 /// A vehicle that goes along the front is to stay within this share of its half-width.

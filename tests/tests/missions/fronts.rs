@@ -266,8 +266,8 @@ fn a_front_that_is_known_exactly_is_followed_on() {
     }
 }
 
-/// Told that a coast is straight, the robot loses it again and again. It seeks it all over the area then: where a front
-/// was known, it does not end with "there is none".
+/// Told that a coast is straight, the robot loses it again and again. It seeks it all over the area before it ends with
+/// "all of one label", and finds it.
 #[test]
 fn a_front_that_was_known_is_sought_until_the_end() {
     for number in 0..cases(15, 100) {

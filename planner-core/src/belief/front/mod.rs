@@ -8,10 +8,10 @@
 //!   seen from the label, and by the error of positions. `p` is 0.98 at most, so that one false label does not rule
 //!   out the truth.
 //! - **Laid by quantiles** (`laying.rs`). The grid spans the mass but for a thousandth on either side. It is laid
-//!   anew after each label. What lies beyond stays in the edge cells. So the cells shrink with what is known, from
-//!   metres to millimetres.
-//! - **Layers of curvature**: to the right, straight, to the left. In a unit of time a twentieth of each passes to
-//!   each neighbour, where the robot is. That is how a front bends: a curve that was known behind the robot is less so
+//!   anew once a motion. What lies beyond stays in the edge cells. So the cells shrink with what is known, from metres
+//!   to millimetres.
+//! - **Layers of curvature**: to the right, straight, to the left. In a unit of time a part of each passes to each
+//!   neighbour, where the robot is. That is how a front bends: a curve that was known behind the robot is less so
 //!   ahead. A layer stands for the curvatures near its own, so its curves also spread on the way (`drift.rs`).
 //! - **Drift**: offsets diffuse by the front's speed, and directions by a radian for each 30 m.
 //! - **No front at all**: two masses, everywhere +1 and everywhere -1.
@@ -31,6 +31,7 @@ mod laying;
 mod learnt;
 mod memory;
 mod moments;
+mod prior;
 mod settings;
 mod stretch;
 mod tracker;

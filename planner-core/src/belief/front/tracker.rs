@@ -1,8 +1,8 @@
 //! The tracker: takes in labels and time, and says what is known of a front.
 
 use crate::belief::estimate::Estimates;
-use crate::belief::evidence::{Alarm, Evidence};
-use crate::belief::front::grid::{Grid, Lay, Unit, angle, limited};
+use crate::belief::evidence::Evidence;
+use crate::belief::front::grid::{Grid, Unit, angle, limited};
 use crate::belief::front::learnt::Learnt;
 use crate::belief::front::memory::{FrontMemory, Masses};
 use crate::belief::front::moments::Moments;
@@ -14,23 +14,15 @@ use crate::belief::observation_log::{FromLog, ReplayError};
 use crate::belief::predictions::{entropy, information};
 use crate::belief::sample::{Label, Reading, Sample};
 use crate::belief::tolerance::Tolerance;
-use crate::belief::trust::{AnyReliability, Trust as _};
+use crate::belief::trust::AnyReliability;
 use crate::belief::{Belief, ObservationError};
 use crate::geometry::approximate::{METRE, distance, sqrt};
 use crate::geometry::area::Area;
-use crate::geometry::heading::Heading;
 use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
 use crate::geometry::local_line::LocalLine;
 
-/// What there is besides a front: everywhere +1, and everywhere -1. Their share at the start, together.
-const NOWHERE: f32 = 0.1;
-
 /// Labels count as true no more often than this, so that one false label does not rule out the truth.
-const MOST: f32 = 0.98;
-
-/// The outer layers bend so many times as tightly as was told. At their edge, a front that bends as told would look
-/// unlikely.
-const OUTER: f32 = 1.035;
+pub(super) const MOST: f32 = 0.98;
 
 /// Where a front bends, evidence takes a label as so much likelier than the belief says. A few layers stand for all
 /// curvatures, so the chance of a label is a little off. Small errors of one sign would add up to an alarm.
@@ -45,17 +37,7 @@ const TOLERANCE: f32 = 3.0;
 /// A front is found where its direction has a deviation below this, radians; and where there is none with a probability
 /// of at most this.
 const DIRECTED: f32 = 0.5;
-const ABSENT: f32 = 0.05;
-
-/// A front that was known is elsewhere where "there is none" has more than this probability. A label would hardly tell
-/// anything.
-const ELSEWHERE: f32 = 0.97;
-
-/// Given points are weighed so many times, each time among fewer curves.
-const GIVEN_ROUNDS: u32 = 4;
-
-/// A front may turn out to bend so many times as tightly as was told.
-const TIGHTEST: f32 = 8.0;
+pub(super) const ABSENT: f32 = 0.05;
 
 /// A label says nothing of its reliability where that is nearer to a half than this, doubled.
 const SHARP: f32 = 1e-3;
@@ -91,21 +73,21 @@ const DENSEST: f32 = 0.25;
 #[derive(Clone, Debug)]
 pub struct Tracker<const K: usize, const M: usize, const L: usize> {
     pub(super) front: Front,
-    noise: Noise<AnyReliability>,
+    pub(super) noise: Noise<AnyReliability>,
     pub(super) grid: Grid<K, M, L>,
     /// Everywhere +1, everywhere -1.
-    nowhere: [f32; 2],
+    pub(super) nowhere: [f32; 2],
     /// What labels have said of a reliability that nobody knows.
-    learnt: Option<Learnt>,
-    evidence: Evidence,
+    pub(super) learnt: Option<Learnt>,
+    pub(super) evidence: Evidence,
     /// Where the cells were laid last, or where a later label on the way counted.
     pub(super) heard: Site,
     /// The logarithm to the base 2 of the measure of all curves at the start.
-    start: f32,
+    pub(super) start: f32,
     /// Whether the robot [stays](Self::staying).
     pub(super) stays: bool,
     /// Whether a front was known, or sought near a place, since one was sought all over an area.
-    was_known: bool,
+    pub(super) was_known: bool,
 }
 
 impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
@@ -157,46 +139,6 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
     pub(crate) fn restart(&mut self, area: Area, noise: Noise<AnyReliability>, given: &[Sample]) {
         self.begin(area, noise);
         self.give(given);
-    }
-
-    fn begin(&mut self, area: Area, noise: Noise<AnyReliability>) {
-        let prior = noise.reliability.unknown();
-        self.learnt = prior.map(|it| Learnt::prior(it.parameters().map(|it| it as f32)));
-        self.noise = noise;
-        self.start = self.fill_within(area);
-    }
-
-    /// Spreads the mass evenly over the lines that cross a rectangle. Returns the logarithm of their measure to the base 2.
-    fn fill_within(&mut self, area: Area) -> f32 {
-        (self.evidence, self.was_known) = (Evidence::NONE, false);
-        self.nowhere = [0.5 * NOWHERE; 2];
-        let [x, z] = area.half_sides().map(|it| it as f32 * METRE);
-        let far = sqrt(x * x + z * z);
-        self.grid.set(Lay {
-            pivot: area.middle(),
-            heading: Heading(0),
-            turn: core::f32::consts::TAU / K as f32,
-            low: -far,
-            step: 2.0 * far / M as f32,
-            bend: if L > 1 { OUTER * self.front.bend() } else { 0.0 },
-        });
-        let lay = self.grid.lay;
-        for layer in &mut self.grid.mass {
-            for (column, along) in layer.iter_mut().zip(&self.grid.along) {
-                let reach = along.z.abs() * x + along.x.abs() * z;
-                let mut low = lay.low;
-                for mass in column {
-                    let from = if low > -reach { low } else { -reach };
-                    let until = low + lay.step;
-                    let until = if until < reach { until } else { reach };
-                    *mass = if until > from { until - from } else { 0.0 };
-                    low += lay.step;
-                }
-            }
-        }
-        let whole: f32 = self.grid.cells().map(|it| *it).sum();
-        self.grid.scale((1.0 - NOWHERE) / whole, 0.0);
-        libm::log2f(whole * lay.turn / L as f32)
     }
 
     /// How often a label is true, as far as that is known.
@@ -278,7 +220,7 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
     }
 
     /// Weighs all by a label that is true with probability `p`. Returns how likely the label was.
-    fn weigh(&mut self, site: Site, label: Label, p: f32, blur: f32) -> f32 {
+    pub(super) fn weigh(&mut self, site: Site, label: Label, p: f32, blur: f32) -> f32 {
         let weights = if label == Label::Positive { [p, 1.0 - p] } else { [1.0 - p, p] };
         let left = self.grid.weigh(site, blur, weights);
         let [plus, minus] = self.nowhere;
@@ -340,36 +282,6 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
         self.grid.lay.is_whole::<K>()
     }
 
-    /// The same after some points whose labels are known: of the curves those that agree with them. If they have both
-    /// labels, the front lies between them. Call it before anything else. The order of the points counts little, and the
-    /// information is measured from here.
-    #[must_use]
-    pub fn given(mut self, given: &[Sample]) -> Self {
-        self.give(given);
-        self
-    }
-
-    /// The same, where it is.
-    fn give(&mut self, given: &[Sample]) {
-        let has = |label| given.iter().any(|it| it.label == label);
-        let is_between = has(Label::Positive) && has(Label::Negative);
-        if let Some(between) = Area::around(given.iter().map(|it| it.site)).filter(|_| is_between) {
-            self.start = self.fill_within(between);
-        }
-        // Points of one label do not bound the front, and count once.
-        for round in 0..if is_between { GIVEN_ROUNDS } else { 1 } {
-            if round > 0 {
-                let each = (1.0 - self.share_nowhere()) / (K * M * L) as f32;
-                self.grid.cells().for_each(|mass| *mass = each);
-            }
-            for &Sample { site, label } in given {
-                self.weigh(site, label, MOST, 0.0);
-            }
-            self.grid.lay_around(None, 0.0);
-        }
-        self.start -= self.information() as f32;
-    }
-
     /// Where the front is known best, if it is found: 90 % of it lies within so many metres there, its direction has a
     /// deviation below half a radian, and with 95 % there is a front.
     pub fn found(&self, within: f32) -> Option<Waist> {
@@ -377,44 +289,8 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
             return None;
         }
         let waist = self.waist();
-        let was_known = waist.ninety() <= within;
-        (was_known && waist.turn_deviation < DIRECTED).then_some(waist)
-    }
-
-    /// Begins again near a site: the front lies within so many metres of it, and its direction has changed by less
-    /// than a quarter turn. It bends up to twice as tightly as was told so far.
-    pub fn seek_near(&mut self, site: Site, metres: f32) {
-        let (lay, heading) = (self.grid.lay, Moments::of(&self.grid).heading(&self.grid));
-        let tightest = TIGHTEST * self.front.bend();
-        let bend = if 2.0 * lay.bend < tightest { 2.0 * lay.bend } else { tightest };
-        self.grid.set(Lay {
-            pivot: site,
-            heading,
-            turn: core::f32::consts::PI / K as f32,
-            low: -metres,
-            step: 2.0 * metres / M as f32,
-            bend: if L > 1 { bend } else { 0.0 },
-        });
-        let each = (1.0 - NOWHERE) / (K * M * L) as f32;
-        self.grid.cells().for_each(|mass| *mass = each);
-        self.nowhere = [0.5 * NOWHERE; 2];
-        (self.evidence, self.was_known) = (Evidence::NONE, true);
-    }
-
-    /// Begins again where labels speak against what is known, and says so. After an alarm the front is sought
-    /// [near](Self::seek_near) a site, within so many metres. A front that was known may most likely not be where it was.
-    /// Then one is sought all over an area, as at the start.
-    pub fn seek_anew(&mut self, (site, metres): (Site, f32), area: Area) -> bool {
-        let absent = self.share_nowhere();
-        self.was_known |= !self.is_open() && absent <= ABSENT;
-        let is_alarmed = self.evidence.value() >= Alarm::ALARM;
-        let is_elsewhere = self.was_known && absent > ELSEWHERE;
-        if is_alarmed {
-            self.seek_near(site, metres);
-        } else if is_elsewhere {
-            self.fill_within(area);
-        }
-        is_alarmed || is_elsewhere
+        let is_near = waist.ninety() <= within;
+        (is_near && waist.turn_deviation < DIRECTED).then_some(waist)
     }
 }
 
@@ -520,6 +396,7 @@ impl<const K: usize, const M: usize, const L: usize> FromLog for Tracker<K, M, L
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::belief::evidence::Alarm;
 
     fn at(x: f64, z: f64) -> Site {
         Site::metres([x, z]).unwrap()
@@ -547,17 +424,6 @@ mod tests {
     }
 
     #[test]
-    fn at_the_start_any_line_of_the_area_is_as_likely() {
-        let tracker = Tracker::<16, 16, 1>::new(area(), Front::STRAIGHT, Noise::NONE);
-        assert!(tracker.is_open() && tracker.centre().is_none());
-        // The cells at the corners are not full.
-        assert!(tracker.information().abs() < 0.1, "{}", tracker.information());
-        for (x, z) in [(10.0, 10.0), (2.0, 3.0), (18.0, 1.0)] {
-            assert!((tracker.share_above(at(x, z)) - 0.5).abs() < 0.01);
-        }
-    }
-
-    #[test]
     fn it_finds_a_front_and_says_how_well() {
         let front = Front::bending(60.0).unwrap();
         let mut tracker = Tracker::new(area(), front, Noise::new(0.9).unwrap());
@@ -570,27 +436,6 @@ mod tests {
         assert!(tracker.information() > 3.0 && tracker.share_nowhere() < 1e-3);
         assert!(tracker.evidence().value() < Alarm::WARNING);
         assert!(tracker.centre().is_some());
-    }
-
-    #[test]
-    fn given_points_say_where_to_begin() {
-        let places = [(4.0, 6.0), (15.0, 8.0), (5.0, 13.0), (16.0, 15.0)];
-        let given = places.map(|(x, z)| {
-            let label = if z > 10.0 { Label::Positive } else { Label::Negative };
-            Sample { site: at(x, z), label }
-        });
-        for labels in [&given[..], &given[..2]] {
-            let tracker =
-                Tracker::<16, 16, 3>::new(area(), Front::STRAIGHT, Noise::NONE).given(labels);
-            for Sample { site, label } in labels {
-                let above = tracker.share_above(*site);
-                let agree = if *label == Label::Positive { above } else { 1.0 - above };
-                assert!(agree > 0.9, "{agree}");
-            }
-            let is_known = labels.len() > 2;
-            assert_eq!(tracker.is_open(), !is_known);
-            assert!(!is_known || tracker.waist().turn_deviation < 0.6);
-        }
     }
 
     #[test]
