@@ -92,6 +92,8 @@ class Vehicle:
         self.reported = collections.deque(maxlen=400)  # places that it has said it is at
         self.first_stop = None  # after the failure
         self.stops = []  # when, since the last setpoint that is none
+        self.ears = mavlink.MAVLink(None)  # hears what we are sent before the link loses any
+        self.sent_stops = 0  # of those that are sent, since the last setpoint that is none
         self.track = []  # (when, metres)
         self.text_at = None  # when it says why
         self.overtaken, self.newest = 0, 0  # setpoints that a newer one has overtaken, and when that was sent
@@ -155,6 +157,19 @@ class Vehicle:
         else:
             self.illicit.append(kind)
 
+    def is_stop(self, it):
+        """Whether a setpoint is one that stops."""
+        if self.mission["craft"] == "sub" and not it.type_mask & POSITION:
+            # Velocities of zero do not stop Sub: the place where it is does.
+            return (it.x, it.y) in self.reported
+        return not it.type_mask & (VELOCITY | YAW_RATE) and (it.vx, it.vy, it.vz, it.yaw_rate) == (0, 0, 0, 0)
+
+    def count_stops(self, data):
+        """Counts the stops that are sent, also those that the link loses: one alone is too few."""
+        for message in self.ears.parse_buffer(data) or []:
+            if message.get_type() == "SET_POSITION_TARGET_LOCAL_NED":
+                self.sent_stops = self.sent_stops + 1 if self.is_stop(message) else 0
+
     def steer(self, it):
         """As ArduPilot takes a setpoint."""
         if (it.target_system, it.target_component) != (1, 1):
@@ -163,10 +178,7 @@ class Vehicle:
         has = {name: not it.type_mask & mask for name, mask in [
             ("position", POSITION), ("velocity", VELOCITY), ("acceleration", ACCELERATION),
             ("yaw", YAW), ("rate", YAW_RATE)]}
-        is_stop = has["velocity"] and has["rate"] and (it.vx, it.vy, it.vz, it.yaw_rate) == (0, 0, 0, 0)
-        if self.mission["craft"] == "sub" and has["position"]:
-            # Velocities of zero do not stop Sub: the place where it is does.
-            is_stop = (it.x, it.y) in self.reported
+        is_stop = self.is_stop(it)
         if self.told_at is not None and self.now > self.told_at + LATE + 0.05:
             if not is_stop or self.mission["fault"] in LEFT_ALONE:
                 self.orders_after += 1
@@ -362,6 +374,7 @@ class Vehicle:
                 if data[7:10] == bytes(3):
                     self.late = max(self.late, self.now - (self.beat or self.now) - 1.0)
                     self.beat = self.now
+                self.count_stops(data)
                 self.launch(True, data)
             if sys.stdin in ready:
                 sys.stdin.readline()
@@ -377,7 +390,7 @@ class Vehicle:
                 self.drive(TICK * self.haste)
                 self.speak()
         # From the last of its setpoints on there were stops alone: what may be late has come by then.
-        stopped = self.stops[0] + (LATE + 0.1) * HASTE if len(self.stops) > 1 else None
+        stopped = self.stops[0] + (LATE + 0.1) * HASTE if self.stops and self.sent_stops > 1 else None
         moved_after = sum(way for when, way in self.track if stopped is not None and when > stopped)
         reacted = None
         if self.told_at is not None and self.first_stop is not None:
@@ -388,6 +401,7 @@ class Vehicle:
             "was_stopped": stopped is not None, "moved_after": moved_after,
             "orders_after": self.orders_after, "reacted": reacted, "late": self.late,
             "restarted": self.restarted, "overtaken": self.overtaken, "habits": self.habits,
+            "last": [str(it) for it in self.table[-6:]],
             "table": self.table if self.mission.get("table") else None,
         })
         self.socket.close()

@@ -265,7 +265,10 @@ impl Flown {
             check(status == Some(0), format!("status {status:?}: {message}"));
             let is_whole = self.written == self.expected || self.is_undone();
             check(is_whole && self.is_as_run(), "another trace than run's".to_owned());
-            check(told["was_stopped"] == true, "it was not stopped in the end".to_owned());
+            check(
+                told["was_stopped"] == true,
+                format!("it was not stopped in the end; it took {}", told["last"]),
+            );
             return faults;
         };
         check(told["happened"] == true, "nothing happened".to_owned());
