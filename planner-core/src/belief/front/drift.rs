@@ -3,7 +3,7 @@
 //! A front that moves diffuses. Ahead of a robot, a front that bends may bend otherwise. The cells are laid anew once a
 //! motion, after the label at its end. If more than a unit of time has passed, room is made before as well.
 
-use crate::belief::front::grid::{limited, metres};
+use crate::belief::front::lay::{limited, metres};
 use crate::belief::front::tracker::Tracker;
 use crate::geometry::approximate::sqrt;
 use crate::geometry::lattice::Site;

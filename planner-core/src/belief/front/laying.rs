@@ -4,7 +4,8 @@
 //! The pivot goes to the *waist*, the place where offset and direction are uncorrelated. There the columns have their
 //! mass at the same offsets, so that none is wasted.
 
-use crate::belief::front::grid::{Grid, Lay, Unit, angle, limited, metres, radians};
+use crate::belief::front::grid::Grid;
+use crate::belief::front::lay::{Lay, Unit, angle, limited, metres, radians};
 use crate::belief::front::moments::Moments;
 use crate::belief::front::walk::{Density, pairs, take};
 use crate::geometry::approximate::{distance, sqrt};

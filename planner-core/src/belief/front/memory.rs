@@ -1,8 +1,10 @@
 //! What a tracker has to remember over a sleep: its cells and their masses, as labels cannot be replayed.
 
 use crate::belief::evidence::Evidence;
-use crate::belief::front::grid::Lay;
+use crate::belief::front::lay::Lay;
 use crate::belief::front::learnt::Learnt;
+use crate::belief::front::tracker::Tracker;
+use crate::belief::observation_log::{FromLog, ReplayError};
 use crate::geometry::lattice::Site;
 
 /// The masses of all cells.
@@ -39,6 +41,31 @@ impl<const K: usize, const M: usize, const L: usize> FrontMemory<K, M, L> {
             && low.abs() < 1e6
             && (bend == 0.0 || has_size(bend))
             && self.learnt.is_none_or(Learnt::is_valid)
+    }
+}
+
+impl<const K: usize, const M: usize, const L: usize> FromLog for Tracker<K, M, L> {
+    type ObservationLog = FrontMemory<K, M, L>;
+
+    fn log(&self) -> FrontMemory<K, M, L> {
+        let Self { nowhere, learnt, evidence, heard, was_known, .. } = *self;
+        let (lay, masses) = (self.grid.lay, Masses(self.grid.mass));
+        FrontMemory { lay, masses, nowhere, learnt, evidence, heard, was_known }
+    }
+
+    /// Goes on from there at once: nothing is replayed.
+    fn replay(&mut self, log: &FrontMemory<K, M, L>) -> Result<(), ReplayError> {
+        if !log.is_valid() {
+            return Err(ReplayError::Spoilt);
+        }
+        if log.learnt.is_some() != self.learnt.is_some() {
+            return Err(ReplayError::Kind);
+        }
+        self.grid.mass = log.masses.0;
+        self.grid.set(log.lay);
+        (self.nowhere, self.learnt, self.evidence) = (log.nowhere, log.learnt, log.evidence);
+        (self.heard, self.was_known) = (log.heard, log.was_known);
+        Ok(())
     }
 }
 
@@ -84,5 +111,38 @@ mod bytes {
         fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
             deserializer.deserialize_tuple(K * M * L, Reader)
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::belief::front::settings::Front;
+    use crate::belief::front::tracker::tests::{area, fly};
+    use crate::belief::noise::Noise;
+
+    #[test]
+    fn what_it_was_goes_on_from_its_memory() {
+        let front = Front::bending(60.0).unwrap();
+        let noise = Noise::new(0.9).unwrap();
+        let mut awake = Tracker::<16, 16, 3>::new(area(), front, noise);
+        fly(&mut awake, 30);
+        let mut woken = Tracker::new(area(), front, noise);
+        let log = awake.log();
+        woken.replay(&log).unwrap();
+        for tracker in [&mut awake, &mut woken] {
+            fly(tracker, 10);
+        }
+        assert_eq!(awake.log(), woken.log());
+        let mut spoilt = log.clone();
+        spoilt.masses.0[1][3][4] = f32::NAN;
+        assert_eq!(woken.replay(&spoilt), Err(ReplayError::Spoilt));
+        assert_eq!(
+            woken.replay(&FrontMemory { nowhere: [0.9, 0.9], ..log.clone() }),
+            Err(ReplayError::Spoilt)
+        );
+        let learnt = Some(Learnt::prior([8.0, 2.0]));
+        assert_eq!(woken.replay(&FrontMemory { learnt, ..log }), Err(ReplayError::Kind));
+        assert_eq!(awake.log(), woken.log());
     }
 }

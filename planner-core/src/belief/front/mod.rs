@@ -27,18 +27,21 @@
 
 mod drift;
 mod grid;
+mod lay;
 mod laying;
 mod learnt;
 mod memory;
+mod mixing;
 mod moments;
 mod prior;
+mod ramp;
 mod settings;
 mod stretch;
 mod tracker;
 mod waist;
 mod walk;
 
-pub(crate) use grid::Unit;
+pub(crate) use lay::Unit;
 pub use memory::FrontMemory;
 pub use settings::{Front, FrontStretch};
 pub use stretch::Beside;

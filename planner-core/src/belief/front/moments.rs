@@ -1,6 +1,7 @@
 //! The first moments of a grid, and its sums over rows, columns and layers.
 
-use crate::belief::front::grid::{Grid, Unit, angle};
+use crate::belief::front::grid::Grid;
+use crate::belief::front::lay::{Unit, angle};
 use crate::geometry::approximate::heading;
 use crate::geometry::heading::Heading;
 

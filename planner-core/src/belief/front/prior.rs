@@ -4,7 +4,7 @@
 
 use crate::belief::Belief as _;
 use crate::belief::evidence::{Alarm, Evidence};
-use crate::belief::front::grid::Lay;
+use crate::belief::front::lay::Lay;
 use crate::belief::front::learnt::Learnt;
 use crate::belief::front::moments::Moments;
 use crate::belief::front::tracker::{ABSENT, MOST, Tracker};

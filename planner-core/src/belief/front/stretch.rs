@@ -4,7 +4,8 @@
 //! `offset + s turn + curvature s^2 / 2`. So three moments say its variance at each place of a stretch. Those of the mass
 //! below the place of a label say what the label takes from it.
 
-use crate::belief::front::grid::{Grid, Unit, metres};
+use crate::belief::front::grid::Grid;
+use crate::belief::front::lay::{Unit, metres};
 use crate::belief::front::moments::Moments;
 use crate::belief::front::tracker::Tracker;
 use crate::geometry::approximate::sqrt;
@@ -48,7 +49,7 @@ impl<const K: usize, const M: usize, const L: usize> Grid<K, M, L> {
         let [mut sum, mut rows, mut columns, mut bends] = [0.0; 4];
         let mut k = -0.5 * (K as f32 - 1.0);
         for (number, along) in self.along.iter().enumerate() {
-            let straight = Self::ramp(lay, *along, 0.0, place, blur);
+            let straight = lay.ramp(*along, 0.0, place, blur);
             let bulge = lay.bulge(per_cell, along.seen(place)[0]);
             let mut in_column = 0.0;
             for (layer, bend) in self.mass.iter().zip(lay.bends::<L>()) {

@@ -2,23 +2,19 @@
 
 use crate::belief::estimate::Estimates;
 use crate::belief::evidence::Evidence;
-use crate::belief::front::grid::{Grid, Unit, angle, limited};
+use crate::belief::front::grid::Grid;
 use crate::belief::front::learnt::Learnt;
-use crate::belief::front::memory::{FrontMemory, Masses};
-use crate::belief::front::moments::Moments;
 use crate::belief::front::settings::Front;
-use crate::belief::front::waist::Waist;
 use crate::belief::goal::{Criterion, Goal};
 use crate::belief::noise::{Noise, Reliability};
-use crate::belief::observation_log::{FromLog, ReplayError};
 use crate::belief::predictions::{entropy, information};
 use crate::belief::sample::{Label, Reading, Sample};
 use crate::belief::tolerance::Tolerance;
 use crate::belief::trust::AnyReliability;
 use crate::belief::{Belief, ObservationError};
-use crate::geometry::approximate::{METRE, distance, sqrt};
+use crate::geometry::approximate::{METRE, distance};
 use crate::geometry::area::Area;
-use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
+use crate::geometry::lattice::Site;
 use crate::geometry::local_line::LocalLine;
 
 /// Labels count as true no more often than this, so that one false label does not rule out the truth.
@@ -34,9 +30,7 @@ const WIDER: f32 = 1.5;
 /// A tolerance is so many deviations.
 const TOLERANCE: f32 = 3.0;
 
-/// A front is found where its direction has a deviation below this, radians; and where there is none with a probability
-/// of at most this.
-const DIRECTED: f32 = 0.5;
+/// A front is found where there is none with a probability of at most this.
 pub(super) const ABSENT: f32 = 0.05;
 
 /// A label says nothing of its reliability where that is nearer to a half than this, doubled.
@@ -233,32 +227,6 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
         chance
     }
 
-    /// Where the front is known best. Of no meaning before it is found.
-    pub fn waist(&self) -> Waist {
-        let moments = Moments::of(&self.grid);
-        let lay = self.grid.lay;
-        let heading = moments.heading(&self.grid);
-        let [turns, offsets] = moments.variance;
-        let slope = moments.covariance / turns;
-        let most = if lay.bend > 0.0 { 0.5 / lay.bend } else { 2_048.0 };
-        let ahead = limited(-slope * lay.step / lay.turn, most);
-        let left = lay.low + lay.step * (moments.mean[1] + 0.5 * M as f32);
-        let left = left + lay.bulge(moments.bend, ahead);
-        let along = Unit::of(heading);
-        let units = UNITS_PER_METRE as f32;
-        let x = (along.x * ahead - along.z * left) * units;
-        let z = (along.z * ahead + along.x * left) * units;
-        let by = Vector::new(x as i32, z as i32).unwrap_or_default();
-        let variance = offsets - slope * moments.covariance;
-        Waist {
-            site: lay.pivot.step(by).unwrap_or(lay.pivot),
-            heading: heading.turned(angle((moments.bend * ahead).clamp(-1.0, 1.0))),
-            curvature: moments.bend,
-            deviation: lay.step * sqrt(if variance > 0.0 { variance } else { 0.0 }),
-            turn_deviation: lay.turn * sqrt(turns),
-        }
-    }
-
     /// The evidence of the labels against what was told of the front and of the sensor. Labels count unless
     /// there [may be no front](Self::may_be_nowhere).
     pub const fn evidence(&self) -> &Evidence {
@@ -280,17 +248,6 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
     /// Whether the front may have any direction.
     pub fn is_open(&self) -> bool {
         self.grid.lay.is_whole::<K>()
-    }
-
-    /// Where the front is known best, if it is found: 90 % of it lies within so many metres there, its direction has a
-    /// deviation below half a radian, and with 95 % there is a front.
-    pub fn found(&self, within: f32) -> Option<Waist> {
-        if self.is_open() || self.share_nowhere() > ABSENT {
-            return None;
-        }
-        let waist = self.waist();
-        let is_near = waist.ninety() <= within;
-        (is_near && waist.turn_deviation < DIRECTED).then_some(waist)
     }
 }
 
@@ -341,9 +298,9 @@ impl<const K: usize, const M: usize, const L: usize> Belief for Tracker<K, M, L>
     }
 
     fn centre(&self) -> Option<LocalLine> {
-        let Waist { site, heading, .. } = self.waist();
-        let along = heading.unit().scaled(1 << 24);
-        let line = || LocalLine::new(site, along, 0.0, 0.0);
+        let waist = self.waist();
+        let along = waist.heading.unit().scaled(1 << 24);
+        let line = || LocalLine::new(waist.site, along, 0.0, 0.0);
         if self.is_open() { None } else { line() }
     }
 
@@ -368,46 +325,22 @@ impl<const K: usize, const M: usize, const L: usize> Belief for Tracker<K, M, L>
     }
 }
 
-impl<const K: usize, const M: usize, const L: usize> FromLog for Tracker<K, M, L> {
-    type ObservationLog = FrontMemory<K, M, L>;
-
-    fn log(&self) -> FrontMemory<K, M, L> {
-        let Self { nowhere, learnt, evidence, heard, was_known, .. } = *self;
-        let (lay, masses) = (self.grid.lay, Masses(self.grid.mass));
-        FrontMemory { lay, masses, nowhere, learnt, evidence, heard, was_known }
-    }
-
-    /// Goes on from there at once: nothing is replayed.
-    fn replay(&mut self, log: &FrontMemory<K, M, L>) -> Result<(), ReplayError> {
-        if !log.is_valid() {
-            return Err(ReplayError::Spoilt);
-        }
-        if log.learnt.is_some() != self.learnt.is_some() {
-            return Err(ReplayError::Kind);
-        }
-        self.grid.mass = log.masses.0;
-        self.grid.set(log.lay);
-        (self.nowhere, self.learnt, self.evidence) = (log.nowhere, log.learnt, log.evidence);
-        (self.heard, self.was_known) = (log.heard, log.was_known);
-        Ok(())
-    }
-}
-
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::belief::evidence::Alarm;
+    use crate::belief::observation_log::FromLog as _;
 
-    fn at(x: f64, z: f64) -> Site {
+    pub(crate) fn at(x: f64, z: f64) -> Site {
         Site::metres([x, z]).unwrap()
     }
 
-    fn area() -> Area {
+    pub(crate) fn area() -> Area {
         Area::metres([0.0, 0.0], [20.0, 20.0]).unwrap()
     }
 
     /// Goes to and fro across `z = 10 + 0.1 x`.
-    fn fly(tracker: &mut Tracker<16, 16, 3>, labels: u32) {
+    pub(crate) fn fly(tracker: &mut Tracker<16, 16, 3>, labels: u32) {
         for k in 0..labels {
             let (x, aside) = (0.3 * f64::from(k), 0.4 * f64::from(k % 5) - 0.7);
             let site = at(x, 10.0 + 0.1 * x + aside);
@@ -484,31 +417,6 @@ mod tests {
             tracker.observe(at(6.0, z), label.into()).unwrap();
         }
         assert!((tracker.reliability() - 0.9).abs() < 0.03, "{}", tracker.reliability());
-    }
-
-    #[test]
-    fn what_it_was_goes_on_from_its_memory() {
-        let front = Front::bending(60.0).unwrap();
-        let noise = Noise::new(0.9).unwrap();
-        let mut awake = Tracker::<16, 16, 3>::new(area(), front, noise);
-        fly(&mut awake, 30);
-        let mut woken = Tracker::new(area(), front, noise);
-        let log = awake.log();
-        woken.replay(&log).unwrap();
-        for tracker in [&mut awake, &mut woken] {
-            fly(tracker, 10);
-        }
-        assert_eq!(awake.log(), woken.log());
-        let mut spoilt = log.clone();
-        spoilt.masses.0[1][3][4] = f32::NAN;
-        assert_eq!(woken.replay(&spoilt), Err(ReplayError::Spoilt));
-        assert_eq!(
-            woken.replay(&FrontMemory { nowhere: [0.9, 0.9], ..log.clone() }),
-            Err(ReplayError::Spoilt)
-        );
-        let learnt = Some(Learnt::prior([8.0, 2.0]));
-        assert_eq!(woken.replay(&FrontMemory { learnt, ..log }), Err(ReplayError::Kind));
-        assert_eq!(awake.log(), woken.log());
     }
 
     #[test]

@@ -1,6 +1,8 @@
 //! Where a front is known best.
 
-use crate::belief::front::grid::{Unit, angle, metres};
+use crate::belief::front::lay::{Unit, angle, limited, metres};
+use crate::belief::front::moments::Moments;
+use crate::belief::front::tracker::{ABSENT, Tracker};
 use crate::geometry::approximate::sqrt;
 use crate::geometry::heading::Heading;
 use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
@@ -64,6 +66,48 @@ impl Waist {
         let [x, z] = metres(site - self.site);
         let square = (x * x + z * z) * self.turn_deviation * self.turn_deviation;
         sqrt(self.deviation * self.deviation + square)
+    }
+}
+
+/// A front is found where its direction has a deviation below this, radians.
+const DIRECTED: f32 = 0.5;
+
+impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
+    /// Where the front is known best. Of no meaning before it is found.
+    pub fn waist(&self) -> Waist {
+        let moments = Moments::of(&self.grid);
+        let lay = self.grid.lay;
+        let heading = moments.heading(&self.grid);
+        let [turns, offsets] = moments.variance;
+        let slope = moments.covariance / turns;
+        let most = if lay.bend > 0.0 { 0.5 / lay.bend } else { 2_048.0 };
+        let ahead = limited(-slope * lay.step / lay.turn, most);
+        let left = lay.low + lay.step * (moments.mean[1] + 0.5 * M as f32);
+        let left = left + lay.bulge(moments.bend, ahead);
+        let along = Unit::of(heading);
+        let units = UNITS_PER_METRE as f32;
+        let x = (along.x * ahead - along.z * left) * units;
+        let z = (along.z * ahead + along.x * left) * units;
+        let by = Vector::new(x as i32, z as i32).unwrap_or_default();
+        let variance = offsets - slope * moments.covariance;
+        Waist {
+            site: lay.pivot.step(by).unwrap_or(lay.pivot),
+            heading: heading.turned(angle((moments.bend * ahead).clamp(-1.0, 1.0))),
+            curvature: moments.bend,
+            deviation: lay.step * sqrt(if variance > 0.0 { variance } else { 0.0 }),
+            turn_deviation: lay.turn * sqrt(turns),
+        }
+    }
+
+    /// Where the front is known best, if it is found: 90 % of it lies within so many metres there, its direction has a
+    /// deviation below half a radian, and with 95 % there is a front.
+    pub fn found(&self, within: f32) -> Option<Waist> {
+        if self.is_open() || self.share_nowhere() > ABSENT {
+            return None;
+        }
+        let waist = self.waist();
+        let is_near = waist.ninety() <= within;
+        (is_near && waist.turn_deviation < DIRECTED).then_some(waist)
     }
 }
 
