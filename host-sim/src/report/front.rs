@@ -85,7 +85,10 @@ pub(crate) fn remedy(record: &MapRecord) -> Option<&'static str> {
             "A front is lost if it leaves the area, or bends more tightly or moves faster than was told. A larger area, a \
              smaller front.radius or a higher front.speed may keep it.",
         ),
-        State::Sought => Some("To find it, allow more steps, or give points of both labels."),
+        State::Sought => Some(
+            "To find it, allow more steps, or give points of both labels. A front that is closed within the area is easily \
+             missed without a point inside it.",
+        ),
         State::Followed | State::Closed => None,
     }
 }

@@ -132,7 +132,7 @@ fn end(results: &Results, estimates: &[(&str, Option<LineRecord>); 3]) -> String
         text.push('\n');
     }
     if let Some(seek) = &results.end.seek {
-        text += &sought(seek);
+        text += &sought(seek, results.end.front.is_some());
     }
     if let Some(map) = &results.end.front {
         text += &front::map(map, "step");
@@ -177,14 +177,15 @@ pub(crate) fn diagnosed(record: &DiagnosisRecord) -> Vec<(&'static str, String)>
     diagnosis::told(record, &line(&record.line))
 }
 
-/// What seeking the boundary from nothing came to, in words.
-pub(crate) fn sought(record: &SeekRecord) -> String {
+/// What seeking the boundary from nothing came to, in words. A front that bends is sought where it would cross the area.
+pub(crate) fn sought(record: &SeekRecord, bends: bool) -> String {
     let &SeekRecord { found, labels, metres, label, other } = record;
     let took = format!("{labels} labels and {metres:.1} m");
+    let unless = if bends { ", unless a front is closed within it" } else { "" };
     match (found, label, other) {
         (Some(step), _, _) => format!("The boundary was found at step {step}, with {took}.\n"),
         (None, Some(label), Some(other)) => format!(
-            "All of the area most likely has the label {label}: it took {took}.\n\
+            "All of the area most likely has the label {label}{unless}: it took {took}.\n\
              A boundary may still cut off a piece at the border: {:.2} % of the area is expected to have the other label.\n",
             100.0 * other
         ),

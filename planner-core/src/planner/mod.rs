@@ -160,7 +160,7 @@ pub enum StopReason {
     /// The robot has gone along all of a closed [front](crate::planner::track), and is back where it found it.
     Closed,
     /// All of the area most likely has one label: nowhere in reach is a label expected to tell much. A boundary may still
-    /// cut off a small piece at the border.
+    /// cut off a small piece at the border. A closed [front](crate::planner::track) inside the area is not meant.
     OneLabel,
 }
 

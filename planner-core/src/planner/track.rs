@@ -170,7 +170,8 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
     }
 
     /// The label that all of the area has, if it most likely has one; and how much of it may have the other one. The
-    /// planner ends with [`StopReason::OneLabel`] where no label in reach is expected to tell much.
+    /// planner ends with [`StopReason::OneLabel`] where no label in reach is expected to tell much. Fronts that cross the
+    /// area are meant: a closed one inside may be missed, unless a point inside it is [given](Tracker::given).
     pub fn one_label(&self) -> Option<OneLabel> {
         self.scout.one_label()
     }

@@ -14,8 +14,9 @@ use planner_core::dynamics::Dynamics;
 use planner_core::motion::car;
 use planner_core::planner::scout::LOOKED_AT;
 use planner_core::{
-    AnyReliability, AnyVehicle, Area, Boat, Car, Front, Heading, Holonomic, Hull, KeepOut, Noise,
-    Persist as _, Plan, Planner as _, PolygonArea, Pose, Track, Tracker, Unicycle, Workspace as _,
+    AnyReliability, AnyVehicle, Area, Boat, Car, Front, Heading, Holonomic, Hull, KeepOut, Label,
+    Noise, Persist as _, Plan, Planner as _, PolygonArea, Pose, Sample, Site, Track, Tracker,
+    Unicycle, Workspace as _,
 };
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
@@ -389,6 +390,32 @@ fn a_front_is_found_from_nothing() {
         let field = Area::metres([-60.0, -60.0], [60.0, 60.0]).expect("an area");
         let planner = Track::new(field, unicycle(), tracker).expect("room");
         let start = world.start(&mut rng);
+        let flown = follow(&world, planner, (course(p), start), &mut rng, |_, _, _| ());
+        lost += u64::from(flown.is_lost || flown.followed < 60.0);
+    }
+    println!("{lost} of {missions} are not found, or lost");
+    assert!(lost * 20 <= missions, "{lost} of {missions}");
+}
+
+/// A spill somewhere in an area, and a robot outside it: one point inside is all that is known.
+#[test]
+fn a_spill_is_found_by_a_point_inside() {
+    let mut rng = ChaCha8Rng::seed_from_u64(47);
+    let (mut lost, missions) = (0, cases(20, 200));
+    for number in 0..missions {
+        let p = [1.0, 0.9][number as usize % 2];
+        let world = TrueFront::circle(40.0, &mut rng);
+        let [x, z] = [0; 2].map(|_| rng.random_range(-155.0..-45.0));
+        let area = Area::metres([x, z], [x + 200.0, z + 200.0]).expect("an area");
+        let inside = Sample { site: Site::ORIGIN, label: Label::Positive };
+        let tracker = Tracker::<16, 16, 3>::new(area, front(40.0), noise(p)).given(&[inside]);
+        let planner = Track::new(area, unicycle(), tracker).expect("room");
+        let mut place = || [x, z].map(|it| it + rng.random_range(1.0..199.0));
+        let mut outside = place();
+        while libm::hypot(outside[0], outside[1]) < 42.0 {
+            outside = place();
+        }
+        let start = Pose::at(outside, Heading(0)).expect("a pose");
         let flown = follow(&world, planner, (course(p), start), &mut rng, |_, _, _| ());
         lost += u64::from(flown.is_lost || flown.followed < 60.0);
     }
