@@ -216,3 +216,17 @@ fn nothing_is_not_printed_as_less_than_nothing() {
         }
     }
 }
+
+/// A robot that seeks a front goes where one would cross the area. It may miss a spill in the middle, and says so.
+#[test]
+fn one_label_does_not_rule_out_a_closed_front() {
+    let folder = folder();
+    let spill = "algorithm = \"track\"\nsteps = 3000\narea = { x = [0.0, 200.0], z = [0.0, 200.0] }\n\
+                 front = { radius = 40.0 }\ntruth = { circle = [60.0, 138.0, 40.0] }\noracle = []\n\
+                 start = { x = 152.0, z = 51.0 }\n";
+    fs::write(folder.path().join("spill.toml"), spill).expect("a file");
+    let told = prints(folder.path(), &["run", "spill.toml"]);
+    let says = "has the label -1, unless a front is closed within it";
+    assert!(told.contains(says), "{told}");
+    assert!(told.contains("easily missed without a point inside it"), "{told}");
+}
