@@ -99,8 +99,8 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
         }
     }
 
-    /// Where the front is known best, if it is found: 90 % of it lies within so many metres there, its direction has a
-    /// deviation below half a radian, and with 95 % there is a front.
+    /// Where the front is known best, if it is found. There it lies within so many metres with 90 %, and its direction
+    /// has a deviation below half a radian. With 95 % there is a front.
     pub fn found(&self, within: f32) -> Option<Waist> {
         if self.is_open() || self.share_nowhere() > ABSENT {
             return None;
