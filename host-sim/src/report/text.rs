@@ -132,7 +132,8 @@ fn end(results: &Results, estimates: &[(&str, Option<LineRecord>); 3]) -> String
         text.push('\n');
     }
     if let Some(seek) = &results.end.seek {
-        text += &sought(seek, results.end.front.is_some());
+        let radius = results.start.front.as_ref().and_then(|it| it.radius);
+        text += &sought(seek, radius.is_some_and(f64::is_finite));
     }
     if let Some(map) = &results.end.front {
         text += &front::map(map, "step");
