@@ -68,11 +68,7 @@ impl Mission {
     /// # Panics
     /// When settings contradict each other. Reading scenario files and flags refuses such settings.
     pub fn planner(&self) -> AnyPlanner {
-        match self.vehicle {
-            AnyVehicle::Unicycle(unicycle) => self.planner_of(unicycle),
-            AnyVehicle::Boat(boat) => self.planner_of(boat),
-            AnyVehicle::Car(car) => self.planner_of(car),
-        }
+        self.planner_of(self.vehicle)
     }
 
     /// What is known before the first label.
@@ -88,7 +84,7 @@ impl Mission {
         }
     }
 
-    fn planner_of(&self, dynamics: impl Dynamics + 'static) -> AnyPlanner {
+    fn planner_of(&self, dynamics: AnyVehicle) -> AnyPlanner {
         let (area, rng) = (self.config.area, ChaCha8Rng::seed_from_u64(self.seed));
         match self.algorithm {
             Algorithm::Lawnmower if self.begins_from_nothing() => {
