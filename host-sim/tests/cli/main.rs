@@ -6,18 +6,11 @@ use std::process::{Command, Output};
 
 use tempfile::TempDir;
 
-mod allowances;
-mod bounds;
 mod campaigns;
 mod comfort;
-mod contradictions;
 mod edited;
-mod endings;
-mod faults;
 mod figures;
-mod flags;
 mod flying;
-mod fronts;
 mod hostile;
 mod imports;
 mod interruption;
