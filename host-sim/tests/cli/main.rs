@@ -6,13 +6,7 @@ use std::process::{Command, Output};
 
 use tempfile::TempDir;
 
-mod campaigns;
-mod comfort;
-mod edited;
-mod figures;
 mod flying;
-mod hostile;
-mod imports;
 mod interruption;
 mod joined_maps;
 mod mapped_tracks;
