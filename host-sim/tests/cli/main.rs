@@ -7,17 +7,6 @@ use std::process::{Command, Output};
 use tempfile::TempDir;
 
 mod flying;
-mod interruption;
-mod joined_maps;
-mod mapped_tracks;
-mod maps;
-mod outliers;
-mod recordings;
-mod report;
-mod resuming;
-mod samples;
-mod verdicts;
-mod worlds;
 
 const GOOD: &str = include_str!("../../scenarios/paper-noiseless.toml");
 
