@@ -22,8 +22,8 @@ fn rows_and_record(flags: &str) -> (Rows, Value) {
 }
 
 /// The values of a column in the rows of a stage. A word of truth is 1, or 0.
-fn numbers(rows: &Rows, stage: (&str, &Value), name: &str) -> Vec<f64> {
-    let of_stage = rows.iter().filter(|row| row[stage.0] == stage.1.to_string());
+fn numbers(rows: &Rows, (column, stage): (&str, &str), name: &str) -> Vec<f64> {
+    let of_stage = rows.iter().filter(|row| row[column] == stage);
     let number = |text: &str| match text {
         "true" => 1.0,
         "false" => 0.0,
@@ -49,16 +49,17 @@ fn rows_hold_what_tables_tell() {
     let table = record["rows"].as_array().expect("rows");
     assert!(table.iter().map(|row| row["step"].as_u64()).eq((1..=40).map(Some)));
     for row in table {
-        let of = |name| numbers(&rows, ("step", &row["step"]), name);
+        let step = row["step"].to_string();
+        let of = |name| numbers(&rows, ("step", &step), name);
         for name in ["centre_deg", "bisector_deg", "maximum_margin_misclassified"] {
-            assert_eq!(row[name], spread(of(name)), "{name} at {}", row["step"]);
+            assert_eq!(row[name], spread(of(name)), "{name} at {step}");
         }
         let steps = row["step"].as_f64().expect("a step");
         assert_eq!(row["bits_per_step"], mean(&of("bits")) / steps, "{steps}");
         assert_eq!(row["metres"], mean(&of("metres")), "{steps}");
     }
     // What a mission came to in all is in its last row.
-    let last = |name| numbers(&rows, ("step", &json!(40)), name);
+    let last = |name| numbers(&rows, ("step", "40"), name);
     let count = |name| last(name).iter().sum::<f64>();
     assert_eq!(record["plans"].as_f64(), Some(count("plans")));
     assert_eq!(record["mean_examined"], count("examined") / count("plans"));
@@ -79,7 +80,8 @@ fn rows_in_noise_hold_what_tables_tell() {
     let table = record["rows"].as_array().expect("rows");
     assert!(table.len() >= 10, "{record}");
     for row in table {
-        let of = |name: &str| numbers(&rows, ("labels", &row["labels"]), name);
+        let labels = row["labels"].to_string();
+        let of = |name: &str| numbers(&rows, ("labels", &labels), name);
         assert_eq!(row["missions"].as_u64(), Some(of("bits").len() as u64));
         assert_eq!(row["bits"], mean(&of("bits")));
         assert_eq!(row["expected_bits"], mean(&of("expected_bits")));
@@ -96,7 +98,7 @@ fn rows_in_noise_hold_what_tables_tell() {
                 let (stated, holds): (Vec<_>, Vec<_>) = bin.iter().copied().unzip();
                 json!([bin.len(), mean(&stated), mean(&holds)])
             });
-            assert_eq!(calibration["best"], bins.collect::<Value>(), "{name}: {row}");
+            assert_eq!(calibration["best"], bins.collect::<Value>(), "{name} after {labels}");
         }
     }
 }
