@@ -1,0 +1,183 @@
+//! Runs the cases in `cases/`: each is a page that shows commands and what they print. `cases/README.md` describes
+//! the pages.
+
+use std::collections::BTreeSet;
+use std::ffi::OsString;
+use std::fs::{self, File};
+use std::io::{self, Read as _, Seek as _};
+use std::os::unix::process::CommandExt as _;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitCode, ExitStatus};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use libtest_mimic::{Arguments, Failed, Trial};
+use snapbox::Data;
+use snapbox::assert::{Assert, DEFAULT_ACTION_ENV};
+use snapbox::filter::NormalizeToExpected;
+
+const HOST_SIM: &str = env!("CARGO_BIN_EXE_host-sim");
+const PACKAGE: &str = env!("CARGO_MANIFEST_DIR");
+/// A command that takes longer hangs. All take seconds, but a machine may be busy.
+const PATIENCE: Duration = Duration::from_mins(10);
+
+fn main() -> io::Result<ExitCode> {
+    let arguments = Arguments::from_args();
+    let all = Path::new(PACKAGE).join("tests/cases");
+    let mut trials = Vec::new();
+    for topic in entries(&all)?.into_iter().filter(|it| it.is_dir()) {
+        let pages = entries(&topic)?.into_iter();
+        for page in pages.filter(|it| it.extension().is_some_and(|it| it == "md")) {
+            let name = page.strip_prefix(&all).expect("it is below").with_extension("");
+            let page_text = fs::read_to_string(&page)?;
+            let is_wanted = page_text.lines().filter_map(|it| it.strip_prefix("Needs: ")).all(has);
+            let trial =
+                Trial::test(name.to_string_lossy(), move || check(&page).map_err(Failed::from));
+            trials.push(trial.with_ignored_flag(!is_wanted));
+        }
+    }
+    Ok(libtest_mimic::run(&arguments, trials).exit_code())
+}
+
+fn entries(folder: &Path) -> io::Result<BTreeSet<PathBuf>> {
+    fs::read_dir(folder)?.map(|it| it.map(|it| it.path())).collect()
+}
+
+/// What a page may need: a feature of the build, its absence, or an environment variable.
+fn has(need: &str) -> bool {
+    match need {
+        "mavlink" => cfg!(feature = "mavlink"),
+        "no mavlink" => !cfg!(feature = "mavlink"),
+        variable => std::env::var_os(variable).is_some(),
+    }
+}
+
+/// Compares the page with the same page that has the outputs of now, or writes the latter.
+fn check(page: &Path) -> Result<(), String> {
+    let folder = Folder::new(page.parent().expect("a topic")).map_err(|it| it.to_string())?;
+    let expected = Data::read_from(page, None);
+    let text = fs::read_to_string(page).map_err(|it| it.to_string())?;
+    let actual = Data::text(page_of_now(&text, &folder)?);
+    Assert::new()
+        .action_env(DEFAULT_ACTION_ENV)
+        .try_eq(Some(&"now"), actual.raw(), expected.raw())
+        .map_err(|it| it.to_string())
+}
+
+/// The page with the outputs of now. An output that fits the page's elisions keeps them.
+fn page_of_now(text: &str, folder: &Folder) -> Result<String, String> {
+    let mut now = String::new();
+    let mut lines = text.split_inclusive('\n').peekable();
+    let mut is_console = false;
+    while let Some(line) = lines.next() {
+        now += line;
+        if let Some(kind) = line.strip_prefix("```") {
+            is_console = !is_console && kind.trim_end() == "console";
+        } else if is_console {
+            let command = line.strip_prefix("$ ").ok_or_else(|| format!("no command: {line}"))?;
+            let mut command = command.to_owned();
+            while let Some(more) = lines.next_if(|it| it.starts_with("> ") || *it == ">\n") {
+                now += more;
+                command += more[1..].strip_prefix(' ').unwrap_or(&more[1..]);
+            }
+            let mut expected = String::new();
+            while let Some(line) = lines.next_if(|it| !it.starts_with("$ ") && *it != "```\n") {
+                expected += line;
+            }
+            let actual = folder.run(&command).map_err(|it| format!("{it}: {command}"))?;
+            let filter = NormalizeToExpected::new().redact();
+            now += &filter.normalize(Data::text(actual), &Data::text(expected)).to_string();
+        }
+    }
+    Ok(now)
+}
+
+/// The folder of a page's commands.
+struct Folder {
+    place: tempfile::TempDir,
+    path: OsString,
+}
+
+impl Folder {
+    /// A folder that has `m.toml`, a mission that can be flown, and the topic's files.
+    fn new(topic: &Path) -> io::Result<Self> {
+        let place = tempfile::tempdir()?;
+        fs::copy(format!("{PACKAGE}/scenarios/paper-noiseless.toml"), place.path().join("m.toml"))?;
+        let shared = topic.join("in");
+        for file in if shared.is_dir() { entries(&shared)? } else { BTreeSet::new() } {
+            fs::copy(&file, place.path().join(file.file_name().expect("a name")))?;
+        }
+        let helpers = PathBuf::from(format!("{PACKAGE}/tests/cases/bin"));
+        let program = Path::new(HOST_SIM).parent().expect("a folder").to_owned();
+        let usual = std::env::var_os("PATH").unwrap_or_default();
+        let path = [program, helpers].into_iter().chain(std::env::split_paths(&usual));
+        let path = std::env::join_paths(path).map_err(io::Error::other)?;
+        Ok(Self { place, path })
+    }
+
+    /// What the command prints: standard output, then standard error, then `? N` if its status N is not 0.
+    fn run(&self, command: &str) -> io::Result<String> {
+        let before = entries(self.place.path())?;
+        let (mut output, mut errors) = (tempfile::tempfile()?, tempfile::tempfile()?);
+        let child = Command::new("sh")
+            .args(["-c", command])
+            .current_dir(self.place.path())
+            .env("PATH", &self.path)
+            .env("SCENARIOS", format!("{PACKAGE}/scenarios"))
+            .env("RECORDINGS", format!("{PACKAGE}/recordings"))
+            .envs([("NO_COLOR", "1"), ("TERM", "dumb"), ("COLUMNS", "100"), ("LC_ALL", "C")])
+            .env_remove("RUST_BACKTRACE")
+            .stdin(File::open("/dev/null")?)
+            .stdout(output.try_clone()?)
+            .stderr(errors.try_clone()?)
+            .process_group(0)
+            .spawn()?;
+        let status = await_end(child)?;
+        let [printed, said] = [&mut output, &mut errors].map(written);
+        let (printed, said) = (printed?, said?);
+        if status.code() == Some(2) {
+            // A command that refuses does nothing else.
+            if !printed.is_empty() {
+                return Err(io::Error::other(format!("status 2, but it prints {printed:?}")));
+            }
+            if entries(self.place.path())? != before {
+                return Err(io::Error::other(
+                    "status 2, but the folder has other files than before",
+                ));
+            }
+        }
+        let status = match status.code() {
+            Some(0) => String::new(),
+            Some(code) => format!("? {code}\n"),
+            None => format!("? {status}\n"),
+        };
+        let place = self.place.path().to_string_lossy();
+        Ok((printed + &said + &status).replace(&*place, "$PWD").replace(PACKAGE, "$PACKAGE"))
+    }
+}
+
+fn written(file: &mut File) -> io::Result<String> {
+    file.rewind()?;
+    let mut bytes = Vec::new();
+    file.read_to_end(&mut bytes)?;
+    let mut text = String::from_utf8_lossy(&bytes).into_owned();
+    if !text.is_empty() && !text.ends_with('\n') {
+        text.push('\n');
+    }
+    Ok(text)
+}
+
+fn await_end(mut child: Child) -> io::Result<ExitStatus> {
+    let start = Instant::now();
+    loop {
+        if let Some(status) = child.try_wait()? {
+            return Ok(status);
+        }
+        if start.elapsed() > PATIENCE {
+            Command::new("kill").args(["-KILL", "--", &format!("-{}", child.id())]).status()?;
+            child.wait()?;
+            return Err(io::Error::other(format!("no end within {PATIENCE:?}")));
+        }
+        thread::sleep(Duration::from_millis(2));
+    }
+}
