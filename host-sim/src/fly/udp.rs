@@ -26,7 +26,7 @@ const MOST_STRANGERS: usize = 8;
 const LONGEST: usize = 65_536;
 
 /// The bytes of an address, in which messages may be cut anywhere.
-type Bytes = MavlinkReader<VecDeque<u8>>;
+pub(crate) type Bytes = MavlinkReader<VecDeque<u8>>;
 
 /// The address that we speak to.
 #[derive(Clone, Debug, Default)]
@@ -134,7 +134,7 @@ impl Receiver {
 }
 
 /// The messages that end in these bytes.
-fn messages(stream: &mut Bytes, bytes: &[u8]) -> Vec<(MavHeader, MavMessage)> {
+pub(crate) fn messages(stream: &mut Bytes, bytes: &[u8]) -> Vec<(MavHeader, MavMessage)> {
     stream.get_mut().extend(bytes);
     let mut messages = Vec::new();
     loop {
