@@ -4,9 +4,10 @@
 //!
 //! The vehicle and the link have one clock, which passes when the pilot waits. So a mission depends on its number alone.
 //!
-//! There is one exception. The vehicle takes any setpoint as `ArduPilot` does: also one that a newer one has overtaken on
-//! the link. Such a setpoint may undo the end of a motion. Then the flight goes on from where the vehicle says it is. From
-//! there on its trace differs from that of `run`.
+//! There are two exceptions, which are rare. The vehicle takes any setpoint as `ArduPilot` does: also one that a newer one has
+//! overtaken on the link. Such a setpoint may undo the end of a motion. Then the flight goes on from where the vehicle says
+//! it is. From there on its trace differs from that of `run`. And positions that slide may go unnoticed where some of them
+//! are lost, as the vehicle could have driven so far in between. Then the motion does not end in time.
 
 use std::cell::Cell;
 use std::collections::{BTreeMap, VecDeque};
@@ -194,8 +195,8 @@ impl Case {
         (Flown { flight, sent: Vec::new(), gone: [0; 2] }, vehicle.hear())
     }
 
-    /// What is wrong with it.
-    fn faults(&self, flown: &Flown, told: &Value) -> Vec<String> {
+    /// What is wrong with it, and whether it is one of the exceptions.
+    fn judge(&self, flown: &Flown, told: &Value) -> (Vec<String>, bool) {
         let mut faults = Vec::new();
         let mut check = |holds: bool, what: String| {
             if !holds {
@@ -209,14 +210,14 @@ impl Case {
         check(told["restarted"] == 0, format!("{} legs begun anew", told["restarted"]));
         let Ok(flight) = &flown.flight else {
             check(false, format!("{:?}", flown.failure()));
-            return faults;
+            return (faults, false);
         };
         let expected = Recording::of(&self.mission).expect("labels are true").results;
         let (expected, trace) = (trace::lines(&expected), flown.trace());
         let (mut pairs, ends) = (trace.lines().zip(expected.lines()), "{\"record\":\"end\"");
         let other = pairs.find(|(a, b)| a != b && !a.starts_with(ends) && !b.starts_with(ends));
-        // From a step on that ended apart from its target.
-        let is_undone = is_undone(flown, told);
+        // A newer setpoint overtook one, and a motion ended apart from its target: from there on it may differ.
+        let is_undone = told["overtaken"].as_u64() > Some(0) && trace.contains("\"target\":");
         let is_as_run = other.is_none_or(|(a, _)| is_undone && a.contains("\"target\":"));
         let ending =
             flight.failure.as_ref().map(|(failure, farewell)| format!("{failure}; {farewell}"));
@@ -228,11 +229,12 @@ impl Case {
             check(is_whole && is_as_run, "another trace than run's".to_owned());
             let stopped = told["was_stopped"] == true;
             check(stopped, format!("it was not stopped in the end; it took {}", told["last"]));
-            return faults;
+            return (faults, is_undone);
         };
         let ending = ending.unwrap_or_default();
         check(told["happened"] == true, "nothing happened".to_owned());
-        check(ending.contains(part), format!("expected {part:?} in: {ending}"));
+        let is_unnoticed = name == "slide" && ending.contains("not there within 8 s");
+        check(is_unnoticed || ending.contains(part), format!("expected {part:?} in: {ending}"));
         // What is disarmed or held takes no setpoint, and a stop is one.
         let hears = !["mode", "ekf", "restart", "disarm"].contains(&name);
         check(told["was_stopped"] == hears, format!("was_stopped {}", told["was_stopped"]));
@@ -242,13 +244,8 @@ impl Case {
         check(is_as_run || name == "lie", "another trace than run's so far".to_owned());
         let end = trace.lines().last().unwrap_or_default();
         check(end.contains("\"reason\":\"broken off\""), format!("it ends {end}"));
-        faults
+        (faults, is_undone || is_unnoticed)
     }
-}
-
-/// Whether a newer setpoint overtook one, and a motion ended apart from its target.
-fn is_undone(flown: &Flown, told: &Value) -> bool {
-    told["overtaken"].as_u64() > Some(0) && flown.trace().contains("\"target\":")
 }
 
 /// Whether Python has pymavlink. With `CI` set it must.
@@ -281,9 +278,8 @@ fn missions_over_a_bad_link_are_those_of_run_or_end_at_rest() {
                     }
                     let case = Case::new(number);
                     let (flown, told) = case.fly(&mut vehicle);
-                    let faults = case.faults(&flown, &told);
-                    let is_undone = faults.is_empty() && is_undone(&flown, &told);
-                    all.lock().expect("no panic").insert(number, (faults, is_undone, told));
+                    let (faults, is_exception) = case.judge(&flown, &told);
+                    all.lock().expect("no panic").insert(number, (faults, is_exception, told));
                 }
             });
         }
@@ -296,9 +292,8 @@ fn missions_over_a_bad_link_are_those_of_run_or_end_at_rest() {
         .map(|(number, it)| format!("mission {number} of seed {SEED}, {}: {it}", name(number)))
         .collect();
     assert!(faults.is_empty(), "{}", faults.join("\n"));
-    let undone = all.values().filter(|it| it.1).count() as u64;
-    eprintln!("STAT {undone} undone of {missions}");
-    assert!(undone <= missions / 20, "{undone} were undone by overtaken setpoints");
+    let exceptions: Vec<_> = all.iter().filter(|it| it.1.1).map(|it| it.0).collect();
+    assert!(exceptions.len() as u64 <= missions / 200, "{exceptions:?} are exceptions");
     // Vehicles did what real ones do: metres coasted and crawled, positions while they swayed, turns on the spot that were
     // passed over.
     for habit in ["coasted", "crawled", "swayed", "pivots"] {
