@@ -75,8 +75,8 @@ const fn fails(
 
 /// Rover and Sub first, which any long run flies. `LONG=1` flies all.
 const CASES: [Case; 11] = [
-    finishes("sub", "udp", 0.0, 10.0),
-    finishes("skid", "udp", 0.0, 10.0),
+    finishes("sub", "udp", 0.0, 20.0),
+    finishes("skid", "udp", 0.0, 20.0),
     finishes("boat", "serial", 5.0, 10.0),
     finishes("car", "tcp", 0.0, 10.0),
     finishes_by_truth("skid", "udp"),
