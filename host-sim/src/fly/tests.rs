@@ -37,6 +37,11 @@ fn an_ideal_vehicle_flies_what_run_flies_and_is_stopped_in_the_end() {
     assert_eq!(flown.failure(), None);
     assert_eq!(flown.trace(), of_run());
     assert!(flown.sent.last().is_some_and(|(_, it)| is_stop(it)));
+    // Failsafes of the vehicle wait for a heartbeat a second.
+    let beats = flown.sent.iter().filter(|(_, it)| matches!(it, MavMessage::HEARTBEAT(_)));
+    let beats: Vec<_> = beats.map(|it| it.0).collect();
+    let most = Duration::from_millis(1100);
+    assert!(beats.windows(2).all(|pair| pair[1].saturating_sub(pair[0]) <= most), "{beats:?}");
     for (_, message) in &flown.sent {
         match message {
             MavMessage::HEARTBEAT(it) => assert_eq!(it.mavtype, MavType::MAV_TYPE_GCS),

@@ -180,6 +180,17 @@ fn each_habit_ends_as_it_should() {
     }
 }
 
+/// One that rests beyond the acceptance, 0.02 m, is waited for five seconds of its clock. It may yet come nearer.
+#[test]
+fn a_vehicle_that_rests_beyond_the_acceptance_is_given_time() {
+    for (off, is_waited_for) in [(0.01, false), (0.03, true)] {
+        let flown = fly(move |_, _, message| vec![nearer_the_middle(message, off)], as_it_is);
+        let Ok(flight) = &flown.flight else { panic!("it flew") };
+        let mut legs = flight.recording.results.steps.iter().filter_map(|step| step.flown);
+        assert!(legs.all(|leg| (leg.ended - leg.began > 5.0) == is_waited_for), "{off}");
+    }
+}
+
 /// The trace tells where a vehicle came to rest, with times, and what would cover it.
 #[test]
 fn the_trace_tells_how_near_a_vehicle_came() {
