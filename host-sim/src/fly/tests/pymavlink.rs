@@ -112,7 +112,9 @@ impl Link for &mut Vehicle {
         self.sequence = self.sequence.wrapping_add(1);
         let mut bytes = Vec::new();
         write_versioned_msg(&mut bytes, MavlinkVersion::V2, header, message).expect("it fits");
-        let hex: String = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
+        let digits = bytes.iter().flat_map(|byte| [byte >> 4, byte & 15]);
+        let hex: Option<String> = digits.map(|it| char::from_digit(it.into(), 16)).collect();
+        let hex = hex.expect("digits");
         writeln!(self.to, "send {hex}").expect("it listens");
     }
 
