@@ -9,8 +9,8 @@ SIMULATORS has `ardurover`, `ardusub` and `params/` with ArduPilot's parameters 
 `m.toml`; logs and the trace `t.jsonl` go there. Keys: `craft` (skid, car, boat, sub), `link` (udp, tcp, serial), `number`
 (below 256, apart from others that run beside it), `speedup`, `wind` (metres a second), `line` (slope and intercept: a Lua script on the
 vehicle tells its side as `WET`, by the position that it estimates), `is_true` (channel 7 of the remote control tells it instead, by
-the true position), `params`, `event` (see `happen`), `at` (metres from where it began) and `after` (seconds). What
-came of it is a line of JSON.
+the true position), `params`, `event` (see `happen`), `at` (metres from where it began) and `after` (seconds of the
+vehicle's clock). What came of it is a line of JSON.
 """
 
 import json
@@ -38,17 +38,6 @@ CRAFTS = {
     "boat": ("ardurover", "motorboat", ["rover", "motorboat"], 15, 4),
     "sub": ("ardusub", "vectored", ["sub"], 4, 16),
 }
-# How long the machine let something wait at most, seconds: a serial line or the operator's link for the simulation, which
-# says something each tenth of a second at least, or the flight's own loop.
-STALLS = {}
-
-
-def alive(what, times={}):
-    """It goes on: how long it had not."""
-    now = time.time()
-    STALLS[what] = max(STALLS.get(what, 0.0), now - times.get(what, now))
-    times[what] = now
-
 
 LABEL = """
 local function update()
@@ -84,7 +73,6 @@ def bridge(port, name):
                     if not data:
                         return
                     os.write(ours, data)
-                    alive("serial")
             except OSError:
                 return
 
@@ -105,7 +93,7 @@ class Operator:
                 time.sleep(0.25)
         if self.link is None:
             raise SystemExit("the simulation does not open its second port")
-        self.is_over = False
+        self.is_over, self.heard = False, set()
         # Where it truly began is the origin of its numbers, give or take what its receiver errs by.
         self.line, self.remote, self.home = line, remote, (-35.363261, 149.165230)
         self.thread = threading.Thread(target=self.hear, daemon=True)
@@ -121,10 +109,10 @@ class Operator:
             if it is None or it.get_srcSystem() != 1:
                 continue
             kind, state = it.get_type(), self.state
+            self.heard.add(kind)
             if kind == "HEARTBEAT" and it.get_srcComponent() == 1:
                 state.update(mode=mavutil.mode_string_v10(it), armed=bool(it.base_mode & 128))
             elif kind == "LOCAL_POSITION_NED":
-                alive("operator")
                 state.update(n=it.x, e=it.y, v=math.hypot(it.vx, it.vy), ms=it.time_boot_ms)
             elif kind == "SIMSTATE" and self.remote:
                 north = (it.lat / 1e7 - self.home[0]) * 111319.5
@@ -137,6 +125,13 @@ class Operator:
             elif kind == "STATUSTEXT":
                 state["texts"].append(it.text)
 
+    def wait(self, condition, seconds):
+        """Waits for something, so long at most. Returns whether it is so."""
+        until = time.time() + seconds
+        while not condition() and time.time() < until:
+            time.sleep(0.01)
+        return condition()
+
     def command(self, number, *values):
         self.link.mav.command_long_send(1, 1, number, 0, *(list(values) + [0] * 7)[:7])
 
@@ -145,13 +140,13 @@ class Operator:
 
     def ready(self, guided):
         until = time.time() + 60
-        while not self.state["ekf"] & 0x10 and time.time() < until:
-            time.sleep(0.2)
-        while not (self.state["armed"] and self.state["mode"] == "GUIDED") and time.time() < until:
+        self.wait(lambda: self.state["ekf"] & 0x10, 60)
+        is_armed = lambda: self.state["armed"] and self.state["mode"] == "GUIDED"
+        while not is_armed() and time.time() < until:
             self.link.set_mode(guided)
-            time.sleep(0.3)
+            self.wait(lambda: self.state["mode"] == "GUIDED", 0.3)
             self.command(400, 1)
-            time.sleep(0.7)
+            self.wait(is_armed, 0.7)
 
     def happen(self, event, vehicle, program, hold):
         kind, _, argument = event.partition(":")
@@ -198,41 +193,38 @@ def main():
     try:
         remote = ("127.0.0.1", 5501 + 10 * number) if flight.get("is_true") else None
         operator = Operator(base + 2, flight["line"], remote)
-        for message in (32, 193, 162) + ((164,) if remote else ()):
-            operator.command(511, message, 1e5)
-            time.sleep(0.1)
+        # Until it has heard of each: a position, the estimator's state, and where the vehicle truly is.
+        needs = {"LOCAL_POSITION_NED": 32, "EKF_STATUS_REPORT": 193, **({"SIMSTATE": 164} if remote else {})}
+        until = time.time() + 60
+        while not needs.keys() <= operator.heard and time.time() < until:
+            for kind in needs.keys() - operator.heard:
+                operator.command(511, needs[kind], 1e5)
+            operator.wait(lambda: needs.keys() <= operator.heard, 0.5)
         fly = subprocess.Popen(
             [program, "fly", "m.toml", "--mavlink", address, "--label", "channel:7" if remote else "WET", "--trace", "t.jsonl", "--wait", "90"],
             cwd=folder, stdout=open(folder + "/out.txt", "w"), stderr=open(folder + "/said.txt", "w"))
         operator.ready(guided)
         state, began, event = operator.state, time.time(), flight.get("event")
-        from_there, from_then = (state["n"], state["e"]), state["ms"]
-        # How late the machine was at most, and how much of its speed-up the simulation made: both say whether it was too busy.
-        stalls, pace = {}, None
-        STALLS.clear()
+        from_there = (state["n"], state["e"])
         while fly.poll() is None and time.time() < began + flight.get("limit", 200):
-            alive("flight")
-            if (event or not flight.get("event")) and time.time() > began + 1:
-                pace = (state["ms"] - from_then) / 1e3 / (time.time() - began) / flight["speedup"]
-                stalls = dict(STALLS)
             way = math.hypot(state["n"] - from_there[0], state["e"] - from_there[1])
             if event and way > flight.get("at", 0) and state["v"] > 0.3:
                 operator.happen(event, vehicle, fly, hold)
                 event = None
-            time.sleep(0.02)
+            time.sleep(0.01)
         if fly.poll() is None:
             fly.send_signal(signal.SIGINT)
             fly.wait(20)
-        ended = (state["n"], state["e"])
-        time.sleep(flight.get("after", 2))
+        ended, then = (state["n"], state["e"]), state["ms"]
+        # A vehicle that is frozen, or was started anew, has no such time.
+        operator.wait(lambda: state["ms"] > then + 1e3 * flight.get("after", 4), 3)
         operator.is_over = True
         with open(folder + "/said.txt") as said:
             text = said.read()
         print(json.dumps({
-            "status": fly.returncode, "said": text, "seconds": round(time.time() - began, 1),
+            "status": fly.returncode, "said": text,
             "moved_after": round(math.hypot(state["n"] - ended[0], state["e"] - ended[1]), 2),
-            "mode": state["mode"], "armed": state["armed"], "happened": event is None, "texts": state["texts"][-6:],
-            "late": round(max(stalls.values(), default=0.0), 2), "stalls": stalls, "pace": pace and round(pace, 2)}))
+            "mode": state["mode"], "armed": state["armed"], "happened": event is None, "texts": state["texts"][-6:]}))
     finally:
         vehicle.send_signal(signal.SIGCONT)
         vehicle.kill()

@@ -5,11 +5,17 @@ things happen.
     python3 -m pip install pymavlink==2.4.50
     python3 tests/mavlink_vehicle.py
 
-Reads a mission a line (JSON, see `Vehicle`), says by a line that it is there, flies until it reads another line, and says by
-one more what it was sent and whether it moved when it should not have. What it takes in guided mode, and how, is what
-`Rover/GCS_MAVLink_Rover.cpp` and `ArduSub/GCS_MAVLink_Sub.cpp` of ArduPilot take. Its clock counts its ticks, of which each
-is a fifth of a second to it and a fiftieth of one to the wall: on a busy machine it is slow, and no less smooth. The link and
-heartbeats keep to the wall.
+Reads a mission a line (JSON, see `Vehicle`). It answers each mission with a line when it is there, flies until it is told
+`over`, and then prints what it was sent and whether it moved when it should not have. What it takes in guided mode, and how,
+is what `Rover/GCS_MAVLink_Rover.cpp` and `ArduSub/GCS_MAVLink_Sub.cpp` of ArduPilot take.
+
+The clock of the link is virtual, unless the mission names a `host`. Then messages come and go by standard input and output:
+
+    send HEX        bytes for the vehicle; no answer
+    until SECONDS   time passes until then, or until the vehicle's next bytes; the answer has the time and the bytes
+
+So a mission is the same each time, however busy the machine is. With a `host` messages come and go by UDP in real time. The
+vehicle's own clock counts its ticks. Each is a fifth of a second to the vehicle, and a fiftieth to the link.
 """
 
 import collections
@@ -27,14 +33,14 @@ import time
 os.environ["MAVLINK20"] = "1"
 from pymavlink.dialects.v20 import common as mavlink  # noqa: E402
 
-HASTE = 10.0  # seconds of its clock in a second
+HASTE = 10.0  # seconds of its clock in a second of the link
 CRAWL_HASTE = 3.0  # while it crawls
-TICK = 0.02  # seconds from one position to the next
+TICK = 0.02  # seconds of the link from one position to the next
 SPEED = 3.0  # metres in a second of its clock
 BRAKES = {"rover": 2.0, "boat": 2.0, "sub": 0.05}  # what it slows down by when it is to stop, as it coasts
 CRAWL, CRAWL_GAIN = 0.3, 0.15  # of a leg with an S-curve, which each setpoint begins anew
 SWAY = 0.3  # of a boat that holds its place in waves
-LATE = 0.3  # seconds that the link delays at most
+LATE = 0.3  # seconds of the link that it delays at most
 GUID_TIMEOUT = 3.0  # seconds of its clock after which a velocity is let go of
 
 CRAFTS = {
@@ -58,24 +64,26 @@ def f32(number):
 
 
 class Vehicle:
-    """Keys of a mission: `host`, an address of its own, and the `port` there to speak to, or null to be spoken to; `seed`, `craft`, `line` ([a, b, c], positive on
-    the +1 side of a east + b north + c), `start` ([north, east, yaw]), `label` (a name, or "channel:N"); `drop`, `late`,
-    `double`, probabilities of a message each way; `fault` and, for which setpoint of a new place it comes, `at`."""
+    """Keys of a mission: `seed`, `craft`, `line` ([a, b, c], positive on the +1 side of a east + b north + c), `start`
+    ([north, east, yaw]), `label` (a name, or "channel:N"); `drop`, `late`, `double`, probabilities of a message each way;
+    `fault` and, for which setpoint of a new place it comes, `at`. For UDP `host`, an address of its own, and the `port`
+    there to speak to, or null to be spoken to."""
 
     def __init__(self, mission):
         self.mission = mission
         self.random = random.Random(mission["seed"])
-        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self.socket.bind((mission["host"], 0))
-        self.peer = (mission["host"], mission["port"]) if mission["port"] else None
+        self.socket, self.peer = None, None
+        if mission["host"]:
+            self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+            self.socket.bind((mission["host"], 0))
+            self.peer = (mission["host"], mission["port"]) if mission["port"] else None
         self.mav = mavlink.MAVLink(None, srcSystem=1, srcComponent=mavlink.MAV_COMP_ID_AUTOPILOT1)
         self.type, self.guided, self.hold = CRAFTS[mission["craft"]]
-        self.began = time.monotonic()
-        self.now = self.began
+        self.began = time.monotonic() if self.socket else 0.0
+        self.now = self.next_tick = self.began  # of the link, seconds
         self.clock = 0.0  # its own, seconds
-        self.late = 0.0  # how late a tick, or a heartbeat of ours, came at most, seconds of the wall
-        self.beat = None  # when the last of those came
         self.under_way = []  # (when, number, is it for us, bytes)
+        self.arrived = b""  # what came out of the link at its other end
         self.number = 0
         self.north, self.east, self.yaw = mission["start"]
         self.mode, self.armed, self.status = self.hold, False, mavlink.MAV_STATE_STANDBY
@@ -85,8 +93,7 @@ class Vehicle:
         self.due = {}
         self.haste, self.crawl = HASTE, None  # (place, time in its first setpoint, when it was last begun anew)
         # What is told in the end.
-        self.received = {}
-        self.table = []
+        self.last = collections.deque(maxlen=6)  # what it took
         self.illicit = []  # what may never be sent
         self.early = 0  # setpoints before it was armed in guided mode
         self.reported = collections.deque(maxlen=400)  # places that it has said it is at
@@ -120,7 +127,7 @@ class Vehicle:
         if self.fault() == "silent":
             return
         arrival = self.launch(False, message.pack(self.mav))
-        if tells and arrival is not None and self.told_at is None and self.peer:
+        if tells and arrival is not None and self.told_at is None:
             self.told_at = arrival
 
     def deliver(self):
@@ -129,19 +136,14 @@ class Vehicle:
             if incoming:
                 for message in self.mav.parse_buffer(data) or []:
                     self.take(message)
-            elif self.peer:
-                try:
-                    self.socket.sendto(data, self.peer)
-                except ConnectionRefusedError:
-                    pass
+            else:
+                self.arrived += data
 
     # What it is sent.
 
     def take(self, message):
         kind = message.get_type()
-        self.received[kind] = self.received.get(kind, 0) + 1
-        fields = {k: v for k, v in message.to_dict().items() if k != "mavpackettype"}
-        self.table.append([round(self.now - self.began, 3), kind, fields])
+        self.last.append(f"{self.now - self.began:.3f}: {message}")
         if kind == "HEARTBEAT":
             if (message.get_srcSystem(), message.type) != (255, mavlink.MAV_TYPE_GCS):
                 self.illicit.append("a heartbeat of another")
@@ -359,36 +361,76 @@ class Vehicle:
     def tell(self, what):
         print(json.dumps(what), flush=True)
 
-    def fly(self):
+    def next_event(self):
+        return min([self.next_tick] + [it[0] for it in self.under_way[:1]])
+
+    def go_on(self, now):
+        """What happens at a time of the link."""
+        self.now = now
+        self.deliver()
+        if now >= self.next_tick:
+            self.next_tick = max(self.next_tick + TICK, now)
+            if self.crawl and (self.north, self.east) == self.crawl[0]:
+                self.haste = HASTE
+            self.clock += TICK * self.haste
+            self.happen()
+            self.drive(TICK * self.haste)
+            self.speak()
+            self.deliver()
+
+    def hear(self, data):
+        self.count_stops(data)
+        self.launch(True, data)
+
+    def advance(self, until):
+        """Time passes until then, or until something arrives at the other end of the link."""
+        while not self.arrived and self.next_event() <= until:
+            self.go_on(max(self.now, self.next_event()))
+        self.now = self.now if self.arrived else until
+
+    def fly_in_virtual_time(self):
+        self.tell({"there": True})
+        for line in iter(sys.stdin.readline, ""):
+            order, _, argument = line.strip().partition(" ")
+            if order == "over":
+                break
+            if order == "send":
+                self.hear(bytes.fromhex(argument))
+                continue
+            self.advance(float(argument))
+            self.tell([self.now, self.arrived.hex()])
+            self.arrived = b""
+
+    def fly_in_real_time(self):
         self.tell({"port": self.socket.getsockname()[1]})
-        next_tick, ends_at = self.now, None
-        while ends_at is None or self.now < ends_at:
-            wait = max(0.0, next_tick - time.monotonic())
-            if self.under_way:
-                wait = min(wait, max(0.0, self.under_way[0][0] - time.monotonic()))
-            ready, _, _ = select.select([self.socket] + ([] if ends_at else [sys.stdin]), [], [], wait)
+        is_over = False
+        while not is_over:
+            wait = max(0.0, self.next_event() - time.monotonic())
+            ready, _, _ = select.select([self.socket, sys.stdin], [], [], wait)
             self.now = time.monotonic()
             if self.socket in ready:
                 data, peer = self.socket.recvfrom(2048)
                 self.peer = self.peer or peer
-                if data[7:10] == bytes(3):
-                    self.late = max(self.late, self.now - (self.beat or self.now) - 1.0)
-                    self.beat = self.now
-                self.count_stops(data)
-                self.launch(True, data)
-            if sys.stdin in ready:
-                sys.stdin.readline()
-                ends_at = self.now + 2 * LATE
-            self.deliver()
-            if self.now >= next_tick:
-                self.late = max(self.late, self.now - next_tick)
-                next_tick = max(next_tick + TICK, self.now)
-                if self.crawl and (self.north, self.east) == self.crawl[0]:
-                    self.haste = HASTE
-                self.clock += TICK * self.haste
-                self.happen()
-                self.drive(TICK * self.haste)
-                self.speak()
+                self.hear(data)
+            is_over = sys.stdin in ready and sys.stdin.readline() != ""
+            self.go_on(self.now)
+            if self.peer and self.arrived:
+                try:
+                    self.socket.sendto(self.arrived, self.peer)
+                except ConnectionRefusedError:
+                    pass
+            self.arrived = b""
+        self.socket.close()
+
+    def fly(self):
+        if self.socket:
+            self.fly_in_real_time()
+        else:
+            self.fly_in_virtual_time()
+        # What is under way arrives yet.
+        ends_at = self.now + 2 * LATE
+        while self.next_event() <= ends_at:
+            self.go_on(max(self.now, self.next_event()))
         # From the last of its setpoints on there were stops alone: what may be late has come by then.
         stopped = self.stops[0] + (LATE + 0.1) * HASTE if self.stops and self.sent_stops > 1 else None
         moved_after = sum(way for when, way in self.track if stopped is not None and when > stopped)
@@ -396,15 +438,12 @@ class Vehicle:
         if self.told_at is not None and self.first_stop is not None:
             reacted = self.first_stop - self.told_at
         self.tell({
-            "received": self.received, "illicit": self.illicit, "early": self.early,
-            "places": len(self.places), "happened": self.fault_at is not None,
+            "illicit": self.illicit, "early": self.early, "happened": self.fault_at is not None,
             "was_stopped": stopped is not None, "moved_after": moved_after,
-            "orders_after": self.orders_after, "reacted": reacted, "late": self.late,
+            "orders_after": self.orders_after, "reacted": reacted,
             "restarted": self.restarted, "overtaken": self.overtaken, "habits": self.habits,
-            "last": [str(it) for it in self.table[-6:]],
-            "table": self.table if self.mission.get("table") else None,
+            "last": list(self.last),
         })
-        self.socket.close()
 
 
 for line in iter(sys.stdin.readline, ""):

@@ -139,5 +139,10 @@ mod tests {
         }
         assert_eq!(asked, [(0, 32, 0), (8, 30, 0), (13, 162, 0)]);
         assert_eq!(requests.missing(), None);
+        // What does not arrive all the same is asked for anew, after a while.
+        requests.renew(requests.completed + 3 * REPEAT);
+        assert_eq!(requests.missing(), None);
+        requests.renew(requests.completed + 4 * REPEAT);
+        assert_eq!(requests.missing(), Some("LOCAL_POSITION_NED"));
     }
 }

@@ -26,7 +26,7 @@ const MOST_STRANGERS: usize = 8;
 const LONGEST: usize = 65_536;
 
 /// The bytes of an address, in which messages may be cut anywhere.
-type Bytes = MavlinkReader<VecDeque<u8>>;
+pub(crate) type Bytes = MavlinkReader<VecDeque<u8>>;
 
 /// The address that we speak to.
 #[derive(Clone, Debug, Default)]
@@ -134,7 +134,7 @@ impl Receiver {
 }
 
 /// The messages that end in these bytes.
-fn messages(stream: &mut Bytes, bytes: &[u8]) -> Vec<(MavHeader, MavMessage)> {
+pub(crate) fn messages(stream: &mut Bytes, bytes: &[u8]) -> Vec<(MavHeader, MavMessage)> {
     stream.get_mut().extend(bytes);
     let mut messages = Vec::new();
     loop {
@@ -144,5 +144,59 @@ fn messages(stream: &mut Bytes, bytes: &[u8]) -> Vec<(MavHeader, MavMessage)> {
             Err(MessageReadError::Parse(_)) => {}
             Err(_) => return messages,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fly::orders::heartbeat;
+
+    /// Sends bytes, which the receiver takes in. Returns how many messages it hands on.
+    fn say(from: &UdpSocket, to: &mut Receiver, bytes: &[u8]) -> usize {
+        from.send(bytes).expect("it listens");
+        to.receive().expect("a datagram").len()
+    }
+
+    fn beat(system_id: u32) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        let header = MavHeader { system_id, component_id: AUTOPILOT, sequence: 0 };
+        write_versioned_msg(&mut bytes, MavlinkVersion::V2, header, &heartbeat()).expect("it fits");
+        bytes
+    }
+
+    /// Who is answered is the vehicle, whoever speaks last.
+    #[test]
+    fn strangers_do_not_take_a_vehicle_s_messages_away() {
+        let (mut sender, mut receiver) = open("127.0.0.1:0", true, 7).expect("a port");
+        let address = receiver.socket.local_addr().expect("bound");
+        let [vehicle, stranger, second] = [0; 3].map(|_| {
+            let socket = UdpSocket::bind("127.0.0.1:0").expect("a port");
+            socket.connect(address).expect("it is local");
+            socket.set_nonblocking(true).expect("a socket");
+            socket
+        });
+        // Who hears a message of ours. On the loopback it is there when the call to send it returns.
+        let mut heard = || {
+            sender.send(MavHeader::default(), &heartbeat());
+            [&vehicle, &stranger, &second].map(|socket| socket.recv(&mut [0; 300]).is_ok())
+        };
+        // A byte is no vehicle, and another system is not this one.
+        assert_eq!(say(&stranger, &mut receiver, &[0xFD]), 0);
+        assert_eq!(say(&second, &mut receiver, &beat(8)), 0);
+        assert_eq!(heard(), [false; 3]);
+        // A message may come in parts.
+        assert_eq!(say(&vehicle, &mut receiver, &beat(7)[..5]), 0);
+        assert_eq!(say(&stranger, &mut receiver, &[0xFD]), 0);
+        assert_eq!(say(&vehicle, &mut receiver, &beat(7)[5..]), 1);
+        assert_eq!(heard(), [true, false, false]);
+        assert_eq!(say(&second, &mut receiver, &beat(7)), 0);
+        assert_eq!(heard(), [true, false, false]);
+        // After a long silence it may speak from elsewhere.
+        receiver.heard = Instant::now().checked_sub(2 * FORGOTTEN).expect("this runs for long");
+        assert_eq!(say(&second, &mut receiver, &[0xFD]), 0);
+        assert_eq!(heard(), [true, false, false]);
+        assert_eq!(say(&second, &mut receiver, &beat(7)), 1);
+        assert_eq!(heard(), [false, false, true]);
     }
 }
