@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use crate::fitting::fit::{TESTS, Verdict};
+use crate::fitting::fit::Verdict;
 use crate::replay::answer::Trust;
 use crate::replay::record::Replay;
 use crate::replay::rows::Layout;
@@ -47,30 +47,19 @@ fn straight(rng: &mut ChaCha8Rng, q: f64, sigma: f64) -> String {
 #[test]
 fn false_alarms() {
     let is_long = env::var("LONG").is_ok_and(|it| it == "1");
-    let files = if is_long { 2_000 } else { 60 };
+    let files = if is_long { 2_000 } else { 24 };
     let mut rng = ChaCha8Rng::seed_from_u64(7);
-    let (mut bad, mut low, mut least) = (Vec::new(), 0, [1.0_f64; TESTS.len()]);
-    let mut rare = [0; TESTS.len()];
+    let mut refused = Vec::new();
     for file in 0..files {
         let q = [0.01, 0.05, 0.1, 0.2][file % 4];
         let sigma = if file % 8 < 4 { 0.0 } else { 0.15 };
         let text = straight(&mut rng, q, sigma);
         let trust = Trust { p: Some(1.0 - q), tolerance: 3.0 * sigma };
         let replay = Replay::parse("made up", text.as_bytes(), &Layout::default(), trust);
-        let fit = replay.expect("a result").answer.fit;
-        for (k, p_value) in fit.p_values.into_iter().enumerate() {
-            least[k] = least[k].min(p_value);
-            rare[k] += usize::from(p_value <= 0.02);
-        }
-        match fit.verdict {
+        match replay.expect("a result").answer.fit.verdict {
             Verdict::Fits => {}
-            Verdict::TooLow => low += 1,
-            verdict => bad.push((file, q, sigma, verdict)),
+            verdict => refused.push((file, q, sigma, verdict)),
         }
     }
-    println!("{files} straight files: {} refused, {low} with too low a p", bad.len());
-    println!("p-values of 0.02 or less: {:?}", TESTS.iter().zip(rare).collect::<Vec<_>>());
-    println!("least p-values: {:?}", TESTS.iter().zip(least).collect::<Vec<_>>());
-    println!("{bad:#?}");
-    assert!(100 * (bad.len() + low) <= files, "{bad:?}");
+    assert!(100 * refused.len() <= files, "{refused:#?}");
 }

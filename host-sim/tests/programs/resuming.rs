@@ -68,9 +68,11 @@ fn a_campaign_goes_on() {
             }
         };
         resume("killed");
-        let anywhere = [0; 3].map(|_| rng.random_range(0..rows.len()));
-        let ends = [0, 10, rows.len() - 1, rows.len()].into_iter().chain(anywhere);
-        let mut cases: Vec<_> = ends.map(|bytes| rows[..bytes].to_vec()).collect();
+        let mut ends = vec![rng.random_range(0..rows.len())];
+        if flags == "--fields 1500" {
+            ends.extend([0, 10, rows.len() - 1, rows.len()]);
+        }
+        let mut cases: Vec<_> = ends.into_iter().map(|bytes| rows[..bytes].to_vec()).collect();
         // After a loss of power a file may end with zeros that nobody wrote.
         cases.push([&rows[..rows.len() / 2], &[0; 600]].concat());
         for partial in cases {
