@@ -8,6 +8,7 @@ use host_sim::hil::setup;
 use host_sim::mission::definition::Mission;
 use host_sim::mission::recording::Recording;
 use planner_core::link::delivery::{Heard, Link, Responder};
+use planner_core::link::frame::{Decoder, Envelope, Frame};
 use planner_core::link::message::{
     DeclinedError, EndReason, LabelSource, MissionEnd, PROTOCOL, Reply, Request, Setup,
 };
@@ -38,6 +39,14 @@ impl<F: FnMut(&Request) -> Option<Reply>> Vehicle<F> {
 
 impl<F: FnMut(&Request) -> Option<Reply>> FarEnd for Vehicle<F> {
     fn send(&mut self, frame: &[u8]) -> Result<(), Off> {
+        // What is late from another session is none of the chip's.
+        let mut decoder = Decoder::default();
+        let asked = frame.iter().find_map(|byte| decoder.feed::<Request>(*byte));
+        let Envelope { session, number, message, .. } = asked.expect("a whole frame");
+        if !matches!(message, Request::Hello { .. }) {
+            let late = Frame::of(&Envelope::new(session + 9, number, Reply::Stale));
+            self.arrived.extend(late.bytes());
+        }
         for byte in frame {
             match self.responder.hear(*byte) {
                 Some(Heard::Hello(hello)) => {
