@@ -138,6 +138,8 @@
 mod belief;
 #[cfg(feature = "internals")]
 pub mod belief;
+#[cfg(test)]
+mod draws;
 pub mod dynamics;
 pub mod error;
 #[cfg(not(feature = "internals"))]

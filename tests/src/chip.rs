@@ -1,15 +1,19 @@
 //! A chip within the test's own thread: what it flies, what its port leads to, and its power, which may fail.
 
 use std::cell::RefCell;
-use std::convert::Infallible;
 use std::panic::{self, AssertUnwindSafe};
 
-use planner_core::AnySight;
+use host_sim::hil::faults::Faults;
+use host_sim::hil::player::Player;
+use host_sim::mission::definition::Mission;
 use planner_core::link::delivery::{Link, LinkError, Port};
-use planner_core::link::message::{self, ClockRate, MissionArea};
+use planner_core::link::message::{self, ClockRate, LabelSource, MissionArea};
 use planner_core::link::station::{AllLabels, Flown, Guards, Station, Tracks, Watch};
 use planner_core::motion::any_vehicle::AnyVehicle;
 use planner_core::robot::LabelSensor;
+use planner_core::{AnySight, Reading};
+
+use crate::wire::Wire;
 
 /// A chip's power failed.
 #[derive(Clone, Copy, Debug)]
@@ -43,8 +47,19 @@ impl Port for Socket<'_> {
     }
 }
 
-/// A chip's label sensor.
-pub type Sensor<'a> = &'a mut (dyn LabelSensor<Error = Infallible> + 'a);
+/// A chip's label sensor. It may say why it has no reading.
+pub type Sensor<'a> = &'a mut (dyn LabelSensor<Error = &'static str> + 'a);
+
+/// A label sensor that is a function.
+pub struct Reads<F>(pub F);
+
+impl<F: FnMut() -> Result<Reading, &'static str>> LabelSensor for Reads<F> {
+    type Error = &'static str;
+
+    fn read(&mut self) -> Result<Reading, &'static str> {
+        self.0()
+    }
+}
 
 /// A chip. It is one type wherever its port leads, so that its planners are compiled once.
 pub type Chip<'a> = Station<Socket<'a>, Sensor<'a>>;
@@ -94,4 +109,56 @@ pub fn fly(chip: &mut Chip<'_>, setup: &message::Setup) -> Result<Flown, LinkErr
     type OfLines = AllLabels<68, 36, 529, AnySight>;
     type Planners = Tracks<16, 16, 3, Guards<16, 16, 3, OfLines>>;
     chip.fly_with::<Planners, AnyVehicle, MissionArea>(setup, &mut Hears)
+}
+
+/// A wire with a player at its end.
+pub struct Network {
+    /// The wire.
+    pub wire: Wire,
+    /// The player.
+    pub player: Player,
+    /// What the player complained of.
+    pub failure: Option<String>,
+    /// Frames that the chip has sent.
+    pub frames_of_chip: u64,
+}
+
+impl Network {
+    /// A network that offers a mission; the mission's seed gives the faults their order.
+    ///
+    /// # Panics
+    /// When no chip can fly it.
+    pub fn new(mission: &Mission, labels: LabelSource, faults: Faults) -> RefCell<Self> {
+        let player = Player::new(mission, labels, 1).expect("a mission for a chip");
+        let wire = Wire::new(faults, mission.seed);
+        RefCell::new(Self { wire, player, failure: None, frames_of_chip: 0 })
+    }
+}
+
+impl FarEnd for Network {
+    fn send(&mut self, frame: &[u8]) -> Result<(), Off> {
+        self.frames_of_chip += 1;
+        self.wire.ask(frame);
+        Ok(())
+    }
+
+    fn receive(&mut self) -> Option<u8> {
+        let Self { wire, player, failure, .. } = self;
+        wire.answer(|byte| {
+            player.hear(byte).unwrap_or_else(|error| {
+                *failure = Some(error.to_string());
+                None
+            })
+        })
+    }
+}
+
+/// What a chip without a sensor makes of the mission that it is offered.
+pub fn offered<T>(
+    end: &RefCell<dyn FarEnd + '_>,
+    fly: impl FnOnce(&mut Chip<'_>, &message::Setup) -> T,
+) -> T {
+    let mut chip = chip(end, None);
+    let setup = chip.await_setup();
+    fly(&mut chip, &setup)
 }

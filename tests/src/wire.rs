@@ -94,3 +94,11 @@ impl Wire {
         self.arrived.clear();
     }
 }
+
+/// The faults of a bad link: it loses, cuts, spoils, doubles and delays frames.
+///
+/// # Panics
+/// Never.
+pub fn bad() -> Faults {
+    "drop=0.1,cut=0.02,corrupt=0.05,duplicate=0.1,delay=20ms".parse().expect("faults")
+}

@@ -19,8 +19,8 @@ use crate::geometry::workspace::Workspace;
 ///
 /// A direction of -10 to 50 degrees is a slope of tan(-10) to tan(50). Directions past 90 degrees are steeper than the
 /// vertical, with +1 to their left. Directions outside the bounds remain up to `d / r`. There `d` is half of the area's
-/// diagonal. `r` is how far the lattice goes: 8,192 m less the place of the area's middle. That is 0.1 degrees for a square
-/// of 20 m, and 3.5 degrees for 800 m x 500 m.
+/// diagonal. `r` is how far the lattice goes: 8,192 m less the place of the area's middle, and less `d`. That is 0.1
+/// degrees for a square of 20 m, and 3.5 degrees for 800 m x 500 m.
 ///
 /// # Errors
 /// [`ValueError`] unless the second direction is larger, by less than 180 degrees, and both are within 360 degrees of 0;
@@ -97,6 +97,7 @@ pub fn intercept_within(metres: [f64; 2]) -> Result<[Sample; 2], ValueError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::draws::Draws;
     use crate::geometry::area::Area;
 
     /// The label of a site by the line through a place in a direction, in double precision.
@@ -106,35 +107,30 @@ mod tests {
         if by[1] * cos - by[0] * sin > 0.0 { Label::Positive } else { Label::Negative }
     }
 
-    fn random(state: &mut u64) -> f64 {
-        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-        (*state >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
     #[test]
     fn slopes_within_pass_and_slopes_far_outside_do_not() {
-        let mut state = 7;
+        let mut draws = Draws::new(7);
         for case in 0..400 {
-            let [x, z] = [(); 2].map(|()| 4_000.0 * (random(&mut state) - 0.5));
-            let [width, height] = [(); 2].map(|()| 1.0 + 1_000.0 * random(&mut state));
+            let [x, z] = [(); 2].map(|()| 4_000.0 * (draws.unit() - 0.5));
+            let [width, height] = [(); 2].map(|()| 1.0 + 1_000.0 * draws.unit());
             let area = Area::metres([x, z], [x + width, z + height]).unwrap();
-            let from = 360.0 * (random(&mut state) - 0.5);
-            let to = from + 150.0 * random(&mut state) + 0.01;
+            let from = 360.0 * (draws.unit() - 0.5);
+            let to = from + 150.0 * draws.unit() + 0.01;
             let samples = slope_within_degrees(&area, [from, to]).unwrap();
             for _ in 0..50 {
                 let units = f64::from(UNITS_PER_METRE);
-                let through = [
-                    (x + width * random(&mut state)) * units,
-                    (z + height * random(&mut state)) * units,
-                ];
+                let through =
+                    [(x + width * draws.unit()) * units, (z + height * draws.unit()) * units];
                 let agrees = |degrees: f64| {
                     let direction = degrees.to_radians();
                     samples.iter().all(|s| label(s.site, through, direction) == s.label)
                 };
-                let inside = from + (to - from) * random(&mut state);
+                let inside = from + (to - from) * draws.unit();
                 assert!(agrees(inside), "case {case}: {inside} of {from} to {to}");
                 // As the page says, a little wider.
-                let slack = (0.5 * width.hypot(height) / (8_190.0 - 3_000.0)).to_degrees() + 0.01;
+                let half = 0.5 * width.hypot(height);
+                let off = (x + 0.5 * width).abs().max((z + 0.5 * height).abs());
+                let slack = (half / (8_191.0 - off - half)).to_degrees() + 0.01;
                 for outside in [from - slack, to + slack] {
                     assert!(!agrees(outside), "case {case}: {outside} of {from} to {to}");
                 }
@@ -144,12 +140,12 @@ mod tests {
 
     #[test]
     fn intercepts_within_pass_and_others_do_not() {
-        let mut state = 8;
+        let mut draws = Draws::new(8);
         for _ in 0..400 {
-            let from = 16_000.0 * (random(&mut state) - 0.5);
-            let to = from + 100.0 * random(&mut state) + 1e-3;
+            let from = 16_000.0 * (draws.unit() - 0.5);
+            let to = from + 100.0 * draws.unit() + 1e-3;
             let Ok(samples) = intercept_within([from, to]) else { continue };
-            let direction = 3.0 * (random(&mut state) - 0.5);
+            let direction = 3.0 * (draws.unit() - 0.5);
             let units = f64::from(UNITS_PER_METRE);
             for (share, is_inside) in
                 [(0.0, true), (0.4, true), (1.0, true), (-1.0, false), (2.0, false)]

@@ -142,24 +142,21 @@ impl From<Tolerance> for u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::draws::Draws;
 
     /// Whatever normal of the arc a line has, the shift is at least the tolerance along it, and hardly more along
     /// the outermost.
     #[test]
     fn a_shift_is_enough_for_every_line_of_the_arc_and_no_more() {
-        let mut state = 7_u64;
-        let mut random = |most: u64| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            (state >> 33) % most
-        };
+        let mut draws = Draws::new(7);
         for round in 0..20_000 {
-            let (angle, half) = (random(6_283) as f64 / 1e3, random(1_500) as f64 / 1e3);
+            let (angle, half) = (6.283 * draws.unit(), 1.5 * draws.unit());
             let unit = |at: f64| {
                 let (sin, cos) = libm::sincos(at);
                 Vector { x: (cos * 1e9) as i32, z: (sin * 1e9) as i32 }
             };
             let slopes = SlopeArc::new(unit(angle - half), unit(angle + half));
-            let tolerance = Tolerance { units: 1 + random(1 << 20) as u32 };
+            let tolerance = Tolerance { units: 1 + draws.below(1 << 20) };
             let shift = tolerance.shift(slopes).unwrap();
             let along = |at: f64| {
                 let (sin, cos) = libm::sincos(at);

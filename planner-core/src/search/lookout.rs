@@ -270,6 +270,7 @@ mod tests {
     use crate::belief::cells::Certainty;
     use crate::belief::sample::{Label, Sample};
     use crate::belief::true_labels::VersionSpace;
+    use crate::draws::Draws;
     use crate::geometry::heading::Heading;
     use crate::geometry::lattice::Site;
 
@@ -288,17 +289,14 @@ mod tests {
                 Sample { site: at(x * metre, z * metre), label }
             });
         let space = VersionSpace::<4>::new(&given).unwrap();
-        let mut state = 1_u64;
-        let mut random = |below: u64| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            ((state >> 33) % below) as i32
-        };
+        let mut draws = Draws::new(1);
+        let mut random = |below: u32| draws.below(below) as i32;
         let mut full = 0;
         for case in 0..500 {
             let mut prospects = Prospects::new();
             let mut offered = Vec::<Prospect, 24>::new();
             // Within 20 cm, so that all are near each other, up to 5 m.
-            let breadth = metre as u64 * [1, 3, 10, 25][case % 4] / 5;
+            let breadth = metre as u32 * [1, 3, 10, 25][case % 4] / 5;
             for _ in 0..24 {
                 let site = at(3 * metre + random(breadth), metre + random(breadth));
                 let target = Pose { site, heading: Heading(0) };

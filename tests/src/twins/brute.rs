@@ -44,33 +44,3 @@ pub fn measure(samples: &[Sample]) -> f64 {
     }
     sum
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use planner_core::Site;
-
-    #[test]
-    fn a_strip_between_two_walls() {
-        // Lines between z = -1 and z = 1, from x = -h to h: d(angle) d(offset) by hand, for the lines
-        // through the gap of two pairs is twice the difference of the diagonals and the sides.
-        let at = |x: f64, z: f64| Site::try_from(Point2::new(x, z)).expect("near");
-        let sample = |x, z, label| Sample { site: at(x, z), label };
-        for h in [1.0, 4.0] {
-            let samples = [
-                sample(-h, -1.0, Label::Negative),
-                sample(h, -1.0, Label::Negative),
-                sample(-h, 1.0, Label::Positive),
-                sample(h, 1.0, Label::Positive),
-            ];
-            let exact = 2.0 * (f64::hypot(2.0 * h, 2.0) - 2.0 * h);
-            assert!((measure(&samples) - exact).abs() < 1e-9, "{h}");
-        }
-        let mixed = [
-            sample(0.0, 0.0, Label::Positive),
-            sample(2.0, 0.0, Label::Positive),
-            sample(1.0, 0.0, Label::Negative),
-        ];
-        assert!(measure(&mixed) < 1e-12);
-    }
-}

@@ -2,6 +2,6 @@
 
 pub mod brute;
 pub mod exact_mean;
+pub mod joint;
 pub mod ladder;
 pub mod probit;
-pub mod unknown_p;

@@ -5,8 +5,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::{Point2, Vector2};
 use planner_core::{
-    AnyReliability, Area, Belief as _, FromLog as _, Front, Heading, Label, Noise, Reading, Site,
-    Tolerance, Tracker,
+    AnyReliability, Area, Belief as _, Front, Label, Noise, Site, Tolerance, Tracker,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -17,7 +16,7 @@ const SIDE: f64 = 20.0;
 /// The reliability that a label is told to have at most.
 const MOST: f64 = 0.98;
 
-pub(crate) fn site(at: Point2<f64>) -> Site {
+fn site(at: Point2<f64>) -> Site {
     Site::try_from(at).expect("on the lattice")
 }
 
@@ -25,78 +24,96 @@ fn area() -> Area {
     Area::metres([0.0, 0.0], [SIDE, SIDE]).expect("an area")
 }
 
-pub(crate) fn label(is_above: bool) -> Label {
+fn label(is_above: bool) -> Label {
     if is_above { Label::Positive } else { Label::Negative }
 }
 
 /// How far to the left of a line through a place a point lies.
-pub(crate) fn left(at: Point2<f64>, through: Point2<f64>, angle: f64) -> f64 {
+fn left(at: Point2<f64>, through: Point2<f64>, angle: f64) -> f64 {
     let off = at - through;
     off.y * angle.cos() - off.x * angle.sin()
 }
 
-/// Lines by direction and offset from the middle, and their weights.
+/// A line by its direction, its normal, how far it passes the middle along that, and how probable it is.
+struct Line {
+    angle: f64,
+    normal: [f64; 2],
+    offset: f64,
+    mass: f64,
+}
+
+impl Line {
+    /// How far along the normal of the line through the middle a place lies.
+    fn along(&self, at: Point2<f64>) -> f64 {
+        let [x, z] = self.normal;
+        x * (at.x - SIDE / 2.0) + z * (at.y - SIDE / 2.0)
+    }
+
+    fn is_below(&self, at: Point2<f64>) -> bool {
+        self.along(at) > self.offset
+    }
+}
+
+/// Lines of a grid.
 struct Dense {
-    lines: Vec<([f64; 2], f64)>,
+    lines: Vec<Line>,
+    count: f64,
     nowhere: [f64; 2],
+    /// What all comes to.
+    whole: f64,
 }
 
 impl Dense {
-    const MIDDLE: Point2<f64> = Point2::new(SIDE / 2.0, SIDE / 2.0);
-
     fn new() -> Self {
         let (turns, offsets, far) = (720, 600, SIDE / std::f64::consts::SQRT_2);
         let mut lines = Vec::new();
         for k in 0..turns {
             let angle = TAU * (f64::from(k) + 0.5) / f64::from(turns);
-            let reach = SIDE / 2.0 * (angle.cos().abs() + angle.sin().abs());
+            let normal = [-angle.sin(), angle.cos()];
+            let reach = SIDE / 2.0 * (normal[0].abs() + normal[1].abs());
             for m in 0..offsets {
                 let offset = far * ((f64::from(m) + 0.5) / f64::from(offsets) * 2.0 - 1.0);
                 if offset.abs() < reach {
-                    lines.push(([angle, offset], 1.0));
+                    lines.push(Line { angle, normal, offset, mass: 0.9 });
                 }
             }
         }
-        let each = 0.9 / lines.len() as f64;
-        for line in &mut lines {
-            line.1 = each;
-        }
-        Self { lines, nowhere: [0.05; 2] }
-    }
-
-    fn above([angle, offset]: [f64; 2], at: Point2<f64>) -> bool {
-        left(at, Self::MIDDLE, angle) > offset
+        let count = lines.len() as f64;
+        lines.iter_mut().for_each(|it| it.mass /= count);
+        Self { lines, count, nowhere: [0.05; 2], whole: 1.0 }
     }
 
     fn share(&self, at: Point2<f64>) -> f64 {
-        let lines = self.lines.iter().filter(|(line, _)| Self::above(*line, at));
-        self.nowhere[0] + lines.map(|it| it.1).sum::<f64>()
+        let lines = self.lines.iter().filter(|it| it.is_below(at));
+        (self.nowhere[0] + lines.map(|it| it.mass).sum::<f64>()) / self.whole
     }
 
     fn take(&mut self, at: Point2<f64>, is_above: bool, p: f64) {
         let weight = |above: bool| if above == is_above { p } else { 1.0 - p };
-        for (line, mass) in &mut self.lines {
-            *mass *= weight(Self::above(*line, at));
-        }
-        self.nowhere[0] *= weight(true);
-        self.nowhere[1] *= weight(false);
-        let whole =
-            self.nowhere.iter().sum::<f64>() + self.lines.iter().map(|it| it.1).sum::<f64>();
-        self.nowhere = self.nowhere.map(|it| it / whole);
-        for line in &mut self.lines {
-            line.1 /= whole;
-        }
+        self.nowhere = [self.nowhere[0] * weight(true), self.nowhere[1] * weight(false)];
+        // Half a million of these are next to nothing.
+        let (least, mut sum) = (1e-12 * self.whole, 0.0);
+        self.lines.retain_mut(|it| {
+            it.mass *= weight(it.is_below(at));
+            sum += it.mass;
+            it.mass > least
+        });
+        self.whole = self.nowhere.iter().sum::<f64>() + sum;
+    }
+
+    /// How much is known beyond that there is a line, bits.
+    fn bits(&self) -> f64 {
+        let whole = self.whole - self.nowhere.iter().sum::<f64>();
+        let share = self.lines.iter().map(|it| it.mass / whole);
+        share.map(|it| it * (it * self.count).log2()).sum()
     }
 
     /// The mean and the deviation of how far the lines pass to the left of a place, against a direction.
     fn offsets(&self, at: Point2<f64>, along: f64) -> [f64; 2] {
-        let of = |[angle, offset]: [f64; 2]| {
-            (offset - left(at, Self::MIDDLE, angle)) / (angle - along).cos()
-        };
-        let near = self.lines.iter().filter(|(line, _)| (line[0] - along).cos() > 0.2);
-        let sums = near.fold([0.0; 3], |[mass, first, second], (line, it)| {
-            let off = of(*line);
-            [mass + it, first + it * off, second + it * off * off]
+        let near = self.lines.iter().filter(|it| (it.angle - along).cos() > 0.2);
+        let sums = near.fold([0.0; 3], |[mass, first, second], it| {
+            let off = (it.offset - it.along(at)) / (it.angle - along).cos();
+            [mass + it.mass, first + it.mass * off, second + it.mass * off * off]
         });
         let mean = sums[1] / sums[0];
         [mean, (sums[2] / sums[0] - mean * mean).sqrt()]
@@ -123,7 +140,8 @@ fn open_place<const K: usize, const M: usize, const L: usize>(
 fn a_straight_front_is_known_as_by_a_dense_grid() {
     let mut rng = ChaCha8Rng::seed_from_u64(31);
     let (mut shares, mut widths, mut offsets) = (Vec::new(), Vec::new(), Vec::new());
-    for case in 0..cases(30, 100) {
+    let mut bits: [Vec<[f64; 2]>; 3] = Default::default();
+    for case in 0..cases(20, 100) {
         let p = [1.0, 0.9, 0.7][case as usize % 3];
         let (through, angle) = line(&mut rng);
         let mut twin = Dense::new();
@@ -135,6 +153,10 @@ fn a_straight_front_is_known_as_by_a_dense_grid() {
             tracker.observe(site(at), label(is_above).into()).expect("a label");
             twin.take(at, is_above, p.min(MOST));
         }
+        let told = [tracker.information(), twin.bits()];
+        // Beyond that the grid is too coarse.
+        assert!(told[0] < told[1] + 0.1 || told[1] > 12.0, "{p}: {told:?} bits");
+        bits[case as usize % 3].extend([told]);
         for _ in 0..60 {
             let at = [0, 1].map(|_| rng.random_range(0.0..SIDE)).into();
             let (got, is) = (f64::from(tracker.share_above(site(at))), twin.share(at));
@@ -148,8 +170,12 @@ fn a_straight_front_is_known_as_by_a_dense_grid() {
             offsets.push(mean.abs() / width);
         }
     }
+    // It keeps most of what can be known.
+    for (told, least) in bits.into_iter().zip([0.65, 0.65, 0.5]) {
+        let [got, most] = [0, 1].map(|k| told.iter().map(|it| it[k]).sum::<f64>());
+        assert!(got > least * most, "{told:?} bits");
+    }
     let [share, offset] = [&shares, &offsets].map(|it| Summary::of(it));
-    println!("shares {share:.3?}, offsets {offset:.2?}, widths {widths:.2?}");
     assert!(share.mean < 0.02 && share.p95 < 0.08, "{share:?}");
     assert!(widths.len() >= 4 && offset.mean < 0.35 && offset.p95 < 1.1, "{offset:?}");
     // Tails that few lines have make some of them much larger or smaller.
@@ -188,7 +214,7 @@ fn stated_widths_of_straight_fronts_hold_the_truth() {
         ("a reliability by its prior", None, unknown, 60, 0.86, 0.5),
     ] {
         let mut rng = ChaCha8Rng::seed_from_u64(32);
-        let fields = cases(200, 3_000);
+        let fields = cases(100, 3_000);
         let (mut holds, mut errors) = (0, Vec::new());
         for _ in 0..fields {
             let (through, angle) = line(&mut rng);
@@ -197,7 +223,7 @@ fn stated_widths_of_straight_fronts_hold_the_truth() {
             let mut tracker = Tracker::<16, 16, 1>::new(area(), Front::STRAIGHT, noise);
             for _ in 0..labels {
                 let at = open_place(&tracker, &mut rng);
-                let error = Vector2::new(gauss(&mut rng), gauss(&mut rng)) * deviation;
+                let error = Vector2::from(gauss(&mut rng)) * deviation;
                 let is_above = (left(at + error, through, angle) > 0.0) == rng.random_bool(p);
                 tracker.observe(site(at), label(is_above).into()).expect("a label");
             }
@@ -251,19 +277,21 @@ impl Curve {
     }
 }
 
-fn gauss(rng: &mut ChaCha8Rng) -> f64 {
+/// Two numbers of the normal distribution.
+fn gauss(rng: &mut ChaCha8Rng) -> [f64; 2] {
     let radius = (-2.0 * (1.0 - rng.random_range(0.0..1.0_f64)).ln()).sqrt();
-    radius * (TAU * rng.random_range(0.0..1.0)).cos()
+    let (sin, cos) = (TAU * rng.random_range(0.0..1.0)).sin_cos();
+    [radius * cos, radius * sin]
 }
 
 /// A robot goes to and fro along a front that bends or moves. The cloud begins as the tracker does, and forgets in the
 /// same way.
 #[test]
 fn a_front_that_bends_and_moves_is_known_as_by_a_cloud_of_curves() {
-    const CURVES: usize = 60_000;
+    let curves = cases(25_000, 60_000) as usize;
     let mut rng = ChaCha8Rng::seed_from_u64(33);
     let (mut shares, mut offsets, mut widths) = (Vec::new(), Vec::new(), Vec::new());
-    for case in 0..cases(4, 24) {
+    for case in 0..cases(3, 24) {
         let (radius, speed) =
             [(30.0, 0.0), (60.0, 0.05), (20.0, 0.02), (100.0, 0.1)][case as usize % 4];
         let p = [1.0, 0.9][case as usize / 2 % 2];
@@ -273,7 +301,7 @@ fn a_front_that_bends_and_moves_is_known_as_by_a_cloud_of_curves() {
         let near = Area::metres([-6.0, -6.0], [6.0, 6.0]).expect("an area");
         let noise = Noise::new(p).expect("a probability");
         let mut tracker = Tracker::<24, 24, 3>::new(near, front, noise);
-        let mut cloud: Vec<_> = (0..CURVES)
+        let mut cloud: Vec<_> = (0..curves)
             .map(|_| {
                 let angle = rng.random_range(0.0..TAU);
                 let offset = rng.random_range(-8.5..8.5);
@@ -304,11 +332,10 @@ fn a_front_that_bends_and_moves_is_known_as_by_a_cloud_of_curves() {
                 let unit = Vector2::new(curve.angle.cos(), curve.angle.sin());
                 *curve = curve.on((at - curve.at).dot(&unit).clamp(-radius / 2.0, radius / 2.0));
                 let normal = Vector2::new(-curve.angle.sin(), curve.angle.cos());
-                curve.at += normal * (0.5 * speed * gauss(&mut rng));
-                curve.angle += 0.5 * speed / 30.0 * gauss(&mut rng);
                 let strays = 0.1 * tightest * way;
-                curve.at += normal * (0.5 * strays * way * gauss(&mut rng));
-                curve.angle += strays * gauss(&mut rng);
+                let ([by, turn], [strayed, bent]) = (gauss(&mut rng), gauss(&mut rng));
+                curve.at += normal * (0.5 * (speed * by + strays * way * strayed));
+                curve.angle += 0.5 * speed / 30.0 * turn + strays * bent;
                 if rng.random_bool(0.09) {
                     curve.bend = if curve.bend == 0.0 {
                         [-1.0, 1.0][rng.random_range(0..2)] * tightest
@@ -321,7 +348,7 @@ fn a_front_that_bends_and_moves_is_known_as_by_a_cloud_of_curves() {
                 let agrees = (curve.left(at) > 0.0) == is_above;
                 weights.push(if agrees { told } else { 1.0 - told });
             }
-            cloud = drawn(&cloud, &weights, &mut rng, CURVES);
+            cloud = drawn(&cloud, &weights, &mut rng, curves);
             // As soon as both are of one direction.
             if step % 5 == 4 && tracker.waist().turn_deviation < 0.25 {
                 for _ in 0..12 {
@@ -343,11 +370,7 @@ fn a_front_that_bends_and_moves_is_known_as_by_a_cloud_of_curves() {
         }
     }
     let [share, offset, width] = [&shares, &offsets, &widths].map(|it| Summary::of(it));
-    println!(
-        "{} places: shares {share:.3?}, offsets {offset:.2?}, widths {width:.2?}",
-        shares.len()
-    );
-    assert!(shares.len() > 150 && share.mean < 0.02 && share.p95 < 0.1, "{share:?}");
+    assert!(shares.len() > 100 && share.mean < 0.02 && share.p95 < 0.1, "{share:?}");
     assert!(offset.mean < 0.2 && (0.9..1.3).contains(&width.mean), "{offset:?}, {width:?}");
 }
 
@@ -370,7 +393,7 @@ fn drawn(cloud: &[Curve], weights: &[f64], rng: &mut ChaCha8Rng, count: usize) -
 /// moves becomes as unsure as it moves across itself: by half of its speed, or by all of it for a robot that stays.
 #[test]
 fn nothing_is_learnt_without_labels() {
-    for number in 0..cases(40, 1_000) {
+    for number in 0..cases(12, 1_000) {
         let mut rng = ChaCha8Rng::seed_from_u64(37);
         rng.set_stream(number);
         let speed = if number % 3 == 0 { 0.0 } else { rng.random_range(0.005..0.1) };
@@ -402,28 +425,4 @@ fn nothing_is_learnt_without_labels() {
         let moves = 1.645 * across * 300.0_f64.sqrt();
         assert!(widest > 0.85 * moves, "{number}, {speed} m: {widest} m, not {moves} m");
     }
-}
-
-/// The bytes after a fixed mission: the same on every machine.
-#[test]
-fn a_tracker_has_the_same_bytes_on_every_machine() {
-    let front = Front::bending(25.0).and_then(|it| it.moving(0.03)).expect("a front");
-    let noise = Noise::new(0.9).and_then(|it| it.with_tolerance(0.3)).expect("noise");
-    let near = Area::metres([-8.0, -8.0], [8.0, 8.0]).expect("an area");
-    let mut tracker = Tracker::<16, 16, 3>::new(near, front, noise);
-    for step in 0..120 {
-        let angle = Heading(0x0400_0000_u32.wrapping_mul(step)).radians();
-        let radius = 25.0 + f64::from(step * 7 % 11) * 0.2 - 1.0;
-        let at = Point2::new(radius * libm::sin(angle), 25.0 - radius * libm::cos(angle));
-        tracker.moved(site(at), 1.0);
-        let is_above = (radius < 25.0) != (step % 9 == 4);
-        tracker.observe(site(at), Reading::Side(label(is_above))).expect("a label");
-    }
-    let mut room = vec![0; 8_192];
-    let bytes = postcard::to_slice(&tracker.log(), &mut room).expect("room");
-    // FNV-1a.
-    let hash = bytes.iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
-        (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3)
-    });
-    assert_eq!((bytes.len(), hash), (3136, 0xea59_cba6_74b8_c432), "{hash:#x}");
 }

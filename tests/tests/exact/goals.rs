@@ -36,7 +36,7 @@ fn the_share_of_a_strip_is_not_promised_too_small() {
     let mut rng = ChaCha8Rng::seed_from_u64(15);
     let at = |x: f64, z: f64| Site::try_from(Point2::new(x, z)).expect("on the lattice");
     let (mut inside, mut all, mut none) = (0, 0, 0);
-    for number in 0..cases(3_000, 30_000) {
+    for number in 0..cases(1_500, 30_000) {
         let [x, z] = [(); 2].map(|()| rng.random_range(4.0..20.0));
         let area = Area::new(at(-x, -z), at(x, z)).expect("it has an inside");
         // Every other is in line with a side, so that nothing is cut off.
@@ -70,8 +70,7 @@ fn the_share_of_a_strip_is_not_promised_too_small() {
             none += 1;
         }
     }
-    println!("{inside} strips through the area, {all} over all of it, {none} beside it");
-    assert!(inside > 300 && all > 10 && none > 300);
+    assert!(inside > 150 && all > 5 && none > 150, "{inside}, {all}, {none}");
 }
 
 /// Of two directions, from some ten millionths of a degree to 80 degrees: never a heading's unit too little, and a
@@ -81,7 +80,7 @@ fn slopes_are_promised_to_the_last_digit() {
     let mut rng = ChaCha8Rng::seed_from_u64(16);
     let (through, area) = (Site::ORIGIN, standard_field::area());
     let site = |x: i32, z: i32| Site::new(x, z).expect("on the lattice");
-    for number in 0..cases(20_000, 200_000) {
+    for number in 0..cases(5_000, 200_000) {
         let length = rng.random_range(1 << 27..1 << 28);
         let rise = 10_f64.powf(rng.random_range(1.5..9.0)) as i32;
         let (x, z) =
@@ -101,8 +100,8 @@ fn slopes_are_promised_to_the_last_digit() {
 }
 
 #[test]
-fn goals_are_met_when_they_are_and_not_before() {
-    let (mut met, mut beyond) = (0, 0);
+fn shares_are_met_when_they_are_and_not_before() {
+    let mut met = 0;
     for steps in [2, 5, 8, 12, 16, 20] {
         for (number, space, _) in spaces(steps) {
             let area = standard_field::area();
@@ -118,19 +117,9 @@ fn goals_are_met_when_they_are_and_not_before() {
                 assert!(is_met || factor < 1.4 || !is_sharp, "field {number}: {share}, {factor}");
                 met += u32::from(is_met);
             }
-            let width = space.slope_arc().width_deg().to_radians();
-            for (factor, is_right) in [(0.9, false), (0.9999, false), (1.001, true), (2.0, true)] {
-                let Ok(most) = Angle::from_radians(width * factor) else { continue };
-                if width * factor > 1.5 || most.0 < 10_000 {
-                    continue;
-                }
-                let is_met = SlopeWithin(most).is_met(&space.bounds(), area);
-                assert_eq!(is_met, is_right, "field {number}, {steps} steps, {factor}");
-                beyond += u32::from(!is_met);
-            }
         }
     }
-    assert!(met > 50 && beyond > 50, "{met}, {beyond}");
+    assert!(met > 50, "{met}");
 }
 
 /// The narrowest slope arc that a table promises with a level in millionths, radians; `None` if it promises none
@@ -170,9 +159,9 @@ fn spanned<const N: usize, const H: usize>(table: &CellPosterior<N, H>, least: f
 /// that is lighter than its lightest by more than a band of weights. What was given up is in no set.
 #[test]
 fn a_goal_is_met_by_the_heaviest_that_hold_its_level() {
-    /// Of a table; how many promises there were, sharp ones, and levels that nothing holds.
-    fn check<const H: usize>(number: u64, table: &CellPosterior<20, H>) -> [u32; 3] {
-        let mut counts = [0; 3];
+    /// Of a table; how many sharp promises there were, and levels that nothing holds.
+    fn check<const H: usize>(number: u64, table: &CellPosterior<20, H>) -> [u32; 2] {
+        let mut counts = [0; 2];
         let mut weights: Vec<_> = table.iter().map(|h| h.weight().value()).collect();
         weights.sort_by(|a, b| b.total_cmp(a));
         let held: f64 = weights.iter().map(|log| log.exp()).sum();
@@ -194,20 +183,19 @@ fn a_goal_is_met_by_the_heaviest_that_hold_its_level() {
             let (Some(few), Some(got)) = (few, got) else {
                 let is_right = got.is_none() && (many.is_none() || spanned(table, -1e9) > 1.5);
                 assert!(is_right, "{case}");
-                counts[2] += u32::from(few.is_none());
+                counts[1] += u32::from(few.is_none());
                 continue;
             };
             let least = spanned(table, *few);
             let most = many.map_or(f64::INFINITY, |many| spanned(table, many - 0.5));
             let slack = 1e-8 + 2e-4 * most;
             assert!(least - 1e-8 <= got && got <= most + slack, "{case}, {least} to {most}");
-            counts[0] += 1;
-            counts[1] += u32::from(most - least <= slack && most < spanned(table, -1e9) - slack);
+            counts[0] += u32::from(most - least <= slack && most < spanned(table, -1e9) - slack);
         }
         counts
     }
-    let sum = |a: [u32; 3], b: [u32; 3]| [0, 1, 2].map(|k| a[k] + b[k]);
-    let [promises, sharp, none] = (0..cases(100, 1_000))
+    let sum = |a: [u32; 2], b: [u32; 2]| [a[0] + b[0], a[1] + b[1]];
+    let [sharp, none] = (0..cases(40, 1_000))
         .into_par_iter()
         .map(|number| {
             let (given, seen, _) = labelled(number, 16, number % 2 == 0);
@@ -219,7 +207,6 @@ fn a_goal_is_met_by_the_heaviest_that_hold_its_level() {
             });
             sum(both[0], both[1])
         })
-        .reduce(|| [0; 3], sum);
-    println!("{promises} promises, {sharp} of one set alone; {none} levels that were given up");
-    assert!(sharp > 500 && none > 100);
+        .reduce(|| [0; 2], sum);
+    assert!(sharp > 200 && none > 40, "{sharp}, {none}");
 }

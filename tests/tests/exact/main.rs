@@ -1,6 +1,5 @@
 //! What the planner computes, beside slow twins and exact arithmetic.
 
-mod columns;
 mod construction;
 mod dynamics;
 mod estimates;
@@ -16,6 +15,4 @@ mod scc;
 mod search;
 mod spread;
 mod tolerance;
-mod tracker_beside_table;
-mod unknown_reliability;
 mod version_space;

@@ -155,7 +155,7 @@ fn true_labels_remove_as_much_of_the_variance_as_is_expected() {
     let mut rng = ChaCha8Rng::seed_from_u64(21);
     let mut off = Vec::new();
     for steps in [2, 5, 9, 14] {
-        for (_, space, _) in spaces(steps).take(cases(6, 60) as usize) {
+        for (_, space, _) in spaces(steps).take(cases(3, 60) as usize) {
             let about = About::of(&Line::from(space.centre().expect("an estimate")));
             let lines = weighed(&about, &space, &[], 1.0);
             off.extend(compare(&space, &about, &lines, 1.0, &mut rng));
@@ -168,7 +168,7 @@ fn true_labels_remove_as_much_of_the_variance_as_is_expected() {
 fn doubtful_labels_remove_as_much_of_the_variance_as_is_expected() {
     let mut rng = ChaCha8Rng::seed_from_u64(22);
     let mut off = Vec::new();
-    for number in 0..cases(12, 120) {
+    for number in 0..cases(8, 120) {
         let p = [0.7, 0.9][number as usize % 2];
         let mut mission = standard_field::standard(23, number, Algorithm::Lookahead, 1);
         mission.noise = Some(NoiseModel { p, extent: Extent::OutsideBalls(0.0) });
@@ -196,6 +196,5 @@ fn check(off: &[f64], mean: f64, worst: f64) {
     let sizes: Vec<_> = off.iter().map(|it| it.abs()).collect();
     let average = sizes.iter().sum::<f64>() / sizes.len() as f64;
     let most = sizes.iter().fold(0.0, |most: f64, it| most.max(*it));
-    println!("{} places: {average:.4} off on average, {most:.3} at worst", sizes.len());
-    assert!(sizes.len() > 40 && average < mean && most < worst);
+    assert!(sizes.len() > 30 && average < mean && most < worst, "{average}, {most}");
 }

@@ -3,17 +3,15 @@
 use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::{Mission, Table};
-use host_sim::mission::read_out::{LEVEL, ReadOut};
+use host_sim::mission::read_out::LEVEL;
 use host_sim::mission::results::Ending;
 use host_sim::mission::scenario::{self, Overrides};
 use host_sim::world::errors::{CUT, Errors};
 use host_sim::world::noise::{Extent, NoiseModel};
 use nalgebra::Point2;
-use planner_core::belief::doubtful_labels::Hypothesis;
-use planner_core::planner::Stage;
 use planner_core::{
-    AnyReliability, Belief as _, Label, Line, Noise, PosteriorView, Prior, Reading, Reliability,
-    Sample, Site, StopReason, Tolerance, Workspace as _,
+    Belief as _, Label, Line, Noise, PosteriorView, Prior, Reading, Reliability, Sample, Site,
+    StopReason, Tolerance, Workspace as _,
 };
 use rayon::prelude::*;
 use tests::cases;
@@ -28,60 +26,39 @@ fn erring(number: u64, algorithm: Algorithm, errors: Errors) -> Mission {
     mission
 }
 
-/// How missions ended that did not come to their last step, and the slope errors of all, in order, degrees.
-fn fly(algorithm: Algorithm, errors: Errors, count: u64) -> (Vec<String>, Vec<f64>) {
-    let each = |number| {
-        let mission = erring(number, algorithm, errors);
-        let flown = mission.fly(|_, _| {});
-        let flown = flown.unwrap_or_else(|refused| panic!("field {number}: {refused}"));
-        let space = flown.belief.version_space().expect("true labels");
-        let holds = mission.world.is_among(space.lines()) == Some(true);
-        assert!(holds, "field {number}: {algorithm:?} lost the truth");
-        let centre = flown.belief.estimates().centre.expect("a line");
-        let truth = mission.world.line().expect("a line divides it");
-        let early =
-            (flown.ending != Ending::Steps).then(|| format!("{number}: {:?}", flown.ending));
-        (early, Line::from(centre).angle_to_deg(truth))
-    };
-    let all: Vec<_> = (0..count).into_par_iter().map(each).collect();
-    let mut degrees: Vec<f64> = all.iter().map(|(_, degrees)| *degrees).collect();
-    degrees.sort_by(f64::total_cmp);
-    (all.into_iter().filter_map(|(early, _)| early).collect(), degrees)
-}
-
+/// The truth is kept, and missions end by their steps; but look-ahead ends where no label is worth its way.
 #[test]
 fn the_truth_is_kept_and_missions_end_by_their_steps() {
+    let of_position = [0.01, 0.05, 0.3].map(|position| Errors { position, ..Errors::default() });
+    let of_motion = [0.01, 0.05, 0.3].map(|motion| Errors {
+        motion,
+        turn: 0.02,
+        heading: 0.01,
+        ..Errors::default()
+    });
+    let count = cases(60, 2_000);
     for algorithm in [Algorithm::Cfc, Algorithm::Lookahead] {
-        for position in [0.01, 0.05, 0.3] {
-            let errors = Errors { position, ..Errors::default() };
-            let (early, degrees) = fly(algorithm, errors, cases(200, 10_000));
-            let median = degrees[degrees.len() / 2];
-            println!("{algorithm:?}, {position} m: {median:.3} deg; early {early:?}");
-            // Look-ahead ends where no label is worth its way.
-            let is_told = |end: &String| {
-                algorithm == Algorithm::Lookahead && end.ends_with("Stopped(Tolerance)")
+        for errors in of_position.into_iter().chain(of_motion) {
+            let each = |number| {
+                let mission = erring(number, algorithm, errors);
+                let flown = mission.fly(|_, _| {});
+                let flown = flown.unwrap_or_else(|refused| panic!("field {number}: {refused}"));
+                let space = flown.belief.version_space().expect("true labels");
+                let holds = mission.world.is_among(space.lines()) == Some(true);
+                assert!(holds, "field {number}: {algorithm:?} lost the truth");
+                (flown.ending != Ending::Steps).then_some(flown.ending)
             };
-            let others: Vec<_> = early.iter().filter(|end| !is_told(end)).collect();
+            let early: Vec<_> = (0..count).into_par_iter().filter_map(each).collect();
+            let errs = errors.position > 0.0;
+            let is_told = |end: &Ending| {
+                algorithm == Algorithm::Lookahead && *end == Ending::Stopped(StopReason::Tolerance)
+            };
+            let others = early.iter().filter(|end| !is_told(end)).count() as u64;
             // In one mission of Algorithm 1 in 2,000 at 30 cm no place is left where either label would tell something.
             let share = if algorithm == Algorithm::Lookahead { 50 } else { 2_000 };
-            let most = cases(200, 10_000) / share;
-            assert!(others.len() as u64 <= most, "{algorithm:?}, {position} m: {others:?}");
-            assert!(early.len() as u64 <= cases(200, 10_000) / 2, "{position} m: {early:?}");
-        }
-    }
-}
-
-#[test]
-fn motions_that_err_change_little() {
-    for algorithm in [Algorithm::Cfc, Algorithm::Lookahead] {
-        for motion in [0.01, 0.05, 0.3] {
-            let errors = Errors { motion, turn: 0.02, heading: 0.01, ..Errors::default() };
-            let (early, degrees) = fly(algorithm, errors, cases(100, 1_000));
-            println!(
-                "{algorithm:?}, {motion} m: {:.3} deg; early {early:?}",
-                degrees[degrees.len() / 2]
-            );
-            assert!(early.is_empty(), "{algorithm:?}, {motion} m: {early:?}");
+            let most = if errs { [count / share, count / 2] } else { [0, 0] };
+            let is_right = others <= most[0] && early.len() as u64 <= most[1];
+            assert!(is_right, "{algorithm:?}, {errors:?}: {early:?}");
         }
     }
 }
@@ -91,7 +68,7 @@ fn motions_that_err_change_little() {
 fn baselines_come_back() {
     for algorithm in [Algorithm::Margin, Algorithm::Random, Algorithm::Lawnmower] {
         let (mut left, mut came_back) = (0, 0);
-        for number in 0..cases(40, 400) {
+        for number in 0..cases(12, 400) {
             let mission = erring(number, algorithm, Errors { motion: 1.0, ..Errors::default() });
             let area = mission.config.area;
             let mut was_outside = false;
@@ -105,25 +82,9 @@ fn baselines_come_back() {
             let flown = flown.unwrap_or_else(|refused| panic!("field {number}: {refused}"));
             assert_eq!(flown.ending, Ending::Steps, "{algorithm:?}, field {number}");
         }
-        println!("{algorithm:?}: left {left} times, came back {came_back}");
         // The others were outside at their last step.
         assert!(left > 0 && 10 * came_back > 7 * left, "{algorithm:?}: {came_back} of {left}");
     }
-}
-
-/// What the tolerance is for: without it true labels are refused, or cut the truth off.
-#[test]
-fn without_a_tolerance_the_truth_is_lost() {
-    let errors = Errors { position: 0.05, ..Errors::default() };
-    let lost = |number: &u64| {
-        let mut mission = erring(*number, Algorithm::Cfc, errors);
-        mission.config.tolerance = Tolerance::NONE;
-        let Ok(flown) = mission.fly(|_, _| {}) else { return true };
-        let space = flown.belief.version_space().expect("true labels");
-        mission.world.is_among(space.lines()) == Some(false)
-    };
-    let lost = (0..100).filter(lost).count();
-    assert!(lost > 20, "{lost} of 100");
 }
 
 /// Labels that are true with this probability.
@@ -136,38 +97,35 @@ fn doubtful(number: u64, algorithm: Algorithm, errors: Errors) -> Mission {
     mission
 }
 
-/// What the credible set of some hypotheses states, and whether it holds the truth.
-fn stated(mission: &Mission, belief: &dyn ReadOut) -> (f64, bool) {
-    let table = belief.hypotheses().expect("doubtful labels");
-    let posterior = PosteriorView::new(table);
-    let set = posterior.credible(LEVEL);
-    let holds =
-        |h: &Hypothesis<15, AnyReliability>| mission.world.is_among(table.lines(h)) == Some(true);
-    (set.probability, posterior.members(&set).any(holds))
-}
-
 /// Credible sets hold the truth as often as they state, to two points and a half, and three deviations of so many
-/// missions. Hard steps in the place of the likelihood hold it 9 to 13 points less often.
+/// missions. Hard steps in the place of the likelihood hold it 9 to 13 points less often. A label is one sample.
 #[test]
 fn credible_sets_cover_what_they_state() {
-    let count = cases(400, 10_000);
+    let count = cases(150, 10_000);
     for algorithm in [Algorithm::Scc, Algorithm::Lookahead] {
         for position in [0.01, 0.05, 0.3] {
             let each = |number| {
                 let mission = doubtful(number, algorithm, Errors { position, ..Errors::default() });
-                let flown = mission.fly(|_, _| {}).expect("doubtful labels are never refused");
+                let mut labels = 0;
+                let flown = mission.fly(|step, belief| {
+                    labels += usize::from(matches!(step.reading, Some(Reading::Side(_))));
+                    assert_eq!(belief.samples().len(), 4 + labels, "field {number}");
+                });
+                let flown = flown.expect("doubtful labels are never refused");
                 assert_eq!(flown.ending, Ending::Steps, "field {number}");
-                stated(&mission, &*flown.belief)
+                let table = flown.belief.hypotheses().expect("doubtful labels");
+                let posterior = PosteriorView::new(table);
+                let set = posterior.credible(LEVEL);
+                let mut members = posterior.members(&set).map(|h| table.lines(h));
+                let holds = members.any(|lines| mission.world.is_among(lines) == Some(true));
+                (set.probability, holds)
             };
             let all: Vec<_> = (0..count).into_par_iter().map(each).collect();
             let states = all.iter().map(|(states, _)| states).sum::<f64>() / count as f64;
             let covers = all.iter().filter(|(_, holds)| *holds).count() as f64 / count as f64;
             let most = 0.025 + 3.0 * (0.9_f64 * 0.1 / count as f64).sqrt();
-            println!("{algorithm:?}, {position} m: {covers:.3} of {states:.3} stated");
-            assert!(
-                (covers - states).abs() < most,
-                "{algorithm:?}, {position} m: {covers} of {states}"
-            );
+            let is_right = (covers - states).abs() < most;
+            assert!(is_right, "{algorithm:?}, {position} m: {covers} of {states}");
         }
     }
 }
@@ -179,7 +137,7 @@ fn weights_are_those_of_the_likelihood() {
         |site: Site| [f64::from(site.x()), f64::from(site.z())].map(|units| units / 65_536.0);
     let told = |sample: &Sample| -> Told { (metres(sample.site), f64::from(sample.label.sign())) };
     let (mut sum, mut most, mut count) = (0.0, 0.0_f64, 0);
-    for number in 0..cases(12, 200) {
+    for number in 0..cases(6, 200) {
         let position = [0.05, 0.3][number as usize % 2];
         let mission =
             doubtful(number, Algorithm::Lookahead, Errors { position, ..Errors::default() });
@@ -200,25 +158,6 @@ fn weights_are_those_of_the_likelihood() {
     assert!(mean < 0.006 && most < cases(200, 300) as f64 / 1_000.0, "{mean}, {most}");
 }
 
-/// A label is one sample: a mission has as many as without errors, and Algorithm 2 asks by P1 and P2 in turn.
-#[test]
-fn a_label_is_one_sample() {
-    let errors = Errors { position: 0.05, ..Errors::default() };
-    for algorithm in [Algorithm::Scc, Algorithm::Lookahead] {
-        let mut mission = doubtful(1, algorithm, errors);
-        mission.steps = 64;
-        let mut labels = 0;
-        let flown = mission.fly(|step, belief| {
-            let stage = if labels % 2 == 0 { Stage::P1 } else { Stage::P2 };
-            assert!(algorithm != Algorithm::Scc || step.motion.stage == Some(stage));
-            labels += usize::from(matches!(step.reading, Some(Reading::Side(_))));
-            assert_eq!(belief.samples().len(), 4 + labels);
-        });
-        assert_eq!(flown.expect("doubtful labels are never refused").ending, Ending::Steps);
-        assert!(labels > 40, "{labels}");
-    }
-}
-
 /// Trusted balls are smaller by the tolerance: a label from within may be read outside.
 #[test]
 fn certain_labels_are_told_within_the_ball_alone() {
@@ -227,12 +166,12 @@ fn certain_labels_are_told_within_the_ball_alone() {
         trusted_radius: 2 << 16,
         tolerance: Tolerance::new(0.5).expect("a distance"),
     };
-    let at = |x: f64, z: f64| Site::try_from(Point2::new(x, z)).expect("on the lattice");
-    let given =
-        [(2.0, 1.0, Label::Negative), (2.0, 8.0, Label::Positive), (18.0, 16.0, Label::Positive)];
-    let given = given.map(|(x, z, label)| Sample { site: at(x, z), label });
-    let given =
-        [given[0], given[1], given[2], Sample { site: at(18.0, 5.0), label: Label::Negative }];
+    let at = |x: f64, z: f64| Site::metres([x, z]).expect("on the lattice");
+    let given = [(2.0, 1.0, -1), (2.0, 8.0, 1), (18.0, 16.0, 1), (18.0, 5.0, -1)];
+    let given = given.map(|(x, z, sign)| {
+        let label = if sign > 0 { Label::Positive } else { Label::Negative };
+        Sample { site: at(x, z), label }
+    });
     let mut table = Table::new(&given, Prior::Area, noise.into()).expect("they are separable");
     assert_eq!(table.reliability(at(3.4, 1.0)), Reliability::CERTAIN);
     assert_eq!(table.reliability(at(3.6, 1.0)), noise.reliability);
@@ -275,7 +214,7 @@ fn paper(algorithm: Algorithm, errors: Errors) -> Vec<f64> {
             .or(last)
             .unwrap_or_else(|| panic!("seed {seed}: {labels} labels, then {:?}", flown.ending))
     };
-    let mut degrees: Vec<f64> = (0..cases(60, 300)).into_par_iter().map(each).collect();
+    let mut degrees: Vec<f64> = (0..cases(20, 300)).into_par_iter().map(each).collect();
     degrees.sort_by(f64::total_cmp);
     degrees
 }
@@ -288,8 +227,8 @@ fn the_papers_example_is_as_near_as_positions_allow() {
         for (errors, most) in [(position, most), (motion, 0.35)] {
             for algorithm in [Algorithm::Cfc, Algorithm::Lookahead] {
                 let degrees = paper(algorithm, errors);
-                let [median, nine_tenths] =
-                    [5, 9].map(|tenths| degrees[degrees.len() * tenths / 10]);
+                let median = degrees[degrees.len() / 2];
+                let nine_tenths = degrees[degrees.len() * 9 / 10];
                 println!("{algorithm:?}, {errors:?}: {median:.4}, 90 % {nine_tenths:.4} deg");
                 assert!(median <= most, "{algorithm:?}, {errors:?}: {median} deg");
             }

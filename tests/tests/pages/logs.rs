@@ -3,6 +3,7 @@
 
 #![allow(clippy::float_cmp)] // what is said is said to the last bit
 
+use std::f64::consts::TAU;
 use std::path::Path;
 use std::process::Command;
 use std::{env, fs};
@@ -83,7 +84,7 @@ fn a_reader_of_others_finds_in_a_log_what_the_trace_says() {
     if !build::has_module("mcap_protobuf", "mcap-protobuf-support", "the log's reader") {
         return;
     }
-    for (name, recording) in recordings() {
+    for (name, recording) in recordings().step_by(3) {
         let messages = read_by("read_log.py", &recording);
         let of = |topic: &str| {
             let of = messages.iter().filter(|message| message["topic"] == topic);
@@ -117,7 +118,7 @@ fn a_reader_of_others_finds_in_a_log_what_the_trace_says() {
             assert_eq!((&place["x"], &place["y"]), (&row["x"], &row["z"]), "{name}");
             let [z, w] = ["z", "w"].map(|part| number(&pose["pose"]["orientation"][part]));
             let heading = 2.0 * libm::atan2(z, w);
-            let off = libm::remainder(heading - number(&row["heading"]), std::f64::consts::TAU);
+            let off = libm::remainder(heading - number(&row["heading"]), TAU);
             assert!(off.abs() < 1e-9, "{name}: {off}");
         }
         let scenes = of("/scene");
@@ -139,26 +140,32 @@ fn a_reader_of_others_finds_in_a_log_what_the_trace_says() {
 }
 
 /// What Rerun sees of a log.
-struct InRerun {
-    name: String,
-    lines: Vec<Map<String, Value>>,
-}
+struct InRerun(Vec<Map<String, Value>>);
 
 impl InRerun {
     /// The values of a component over time. Rerun holds a list for each component and time.
     fn of(&self, entity: &str, component: &str) -> Vec<(f64, Value)> {
-        let of = self.lines.iter().filter(|line| line["entity"] == entity);
+        let of = self.0.iter().filter(|line| line["entity"] == entity);
         of.filter_map(|line| {
             Some((number(&line["time"]), line["components"].get(component)?.clone()))
         })
         .collect()
     }
 
-    /// Rerun has single precision.
-    fn near(&self, found: &Value, wanted: f64) {
-        let name = &self.name;
-        assert!((number(found) - wanted).abs() < 1e-3, "{name}: {found} is not {wanted}");
+    /// Where the points of a cloud lie, at each of its times.
+    fn clouds(&self, entity: &str) -> Vec<(f64, Vec<[f64; 3]>)> {
+        let points = |cloud: Value| {
+            let points = cloud.as_array().expect("points").iter();
+            points.map(|at| [0, 1, 2].map(|k| number(&at[k]))).collect()
+        };
+        let clouds = self.of(entity, "Points3D:positions").into_iter();
+        clouds.map(|(time, cloud)| (time, points(cloud))).collect()
     }
+}
+
+/// Rerun has single precision.
+fn near(found: f64, wanted: &Value, name: &str) {
+    assert!((found - number(wanted)).abs() < 1e-3, "{name}: {found} is not {wanted}");
 }
 
 #[test]
@@ -166,128 +173,92 @@ fn rerun_shows_the_robot_the_map_and_the_curves_of_a_log() {
     if !build::has_module("rerun.chunk", "rerun-sdk", "the log in Rerun") {
         return;
     }
-    for (name, recording) in recordings() {
-        let lines = read_by("read_log_in_rerun.py", &recording);
-        let seen = InRerun { name, lines };
+    for (name, recording) in recordings().step_by(3) {
+        let seen = InRerun(read_by("read_log_in_rerun.py", &recording));
         let rows = records(&flat::lines(&recording.results));
-        the_robot_is_seen(&seen, &rows);
-        the_map_is_seen(&seen, &rows, &records(&trace::lines(&recording.results)));
-        the_curves_are_seen(&seen, &rows);
+        // The robot is a cloud of points in a frame of its own, which moves about the field.
+        let moves = seen.of("/tf", "Transform3D:translation");
+        let turns = seen.of("/tf", "Transform3D:quaternion");
+        // What /step has can be plotted by a selector such as .bits.
+        let steps = seen.of("/step", "host_sim.Step:message");
+        let counts = [moves.len(), turns.len(), steps.len() + 1];
+        assert_eq!(counts, [rows.len() + 1; 3], "{name}");
+        for (k, row) in rows.iter().enumerate() {
+            let ((time, place), (_, turn), (at, step)) = (&moves[k + 1], &turns[k + 1], &steps[k]);
+            assert_eq!([*time, *at], [number(&row["step"]); 2], "{name}");
+            near(number(&place[0][0]), &row["x"], &name);
+            near(number(&place[0][1]), &row["z"], &name);
+            let heading = 2.0 * libm::atan2(number(&turn[0][2]), number(&turn[0][3]));
+            let off = libm::remainder(heading - number(&row["heading"]), TAU);
+            assert!(off.abs() < 1e-5, "{name}: {off}");
+            for key in ["bits", "control_cost", "metres", "label", "slope_from", "intercept_to"] {
+                assert_eq!(step[0][key].as_f64(), row[key].as_f64(), "{name}: {key}");
+            }
+        }
+        let frames = seen.of("/tf", "Transform3D:child_frame");
+        assert!(frames.iter().all(|(_, it)| it[0] == "robot"), "{name}");
+        assert_eq!(seen.of("/robot", "CoordinateFrame:frame")[0].1[0], "robot", "{name}");
+        assert!(seen.clouds("/robot")[0].1.len() > 3, "{name}");
+        the_map_is_seen(&name, &seen, &rows, &records(&trace::lines(&recording.results)));
     }
 }
 
 type Records = [Map<String, Value>];
 
-fn the_robot_is_seen(seen: &InRerun, rows: &Records) {
-    let name = &seen.name;
-    // The robot is a cloud of points in a frame of its own, which moves about the field.
-    let moves = seen.of("/tf", "Transform3D:translation");
-    let turns = seen.of("/tf", "Transform3D:quaternion");
-    assert_eq!((moves.len(), turns.len()), (rows.len() + 1, rows.len() + 1), "{name}");
-    for (((time, place), (_, turn)), row) in moves.iter().zip(&turns).skip(1).zip(rows) {
-        assert_eq!(*time, number(&row["step"]), "{name}");
-        seen.near(&place[0][0], number(&row["x"]));
-        seen.near(&place[0][1], number(&row["z"]));
-        let heading = 2.0 * libm::atan2(number(&turn[0][2]), number(&turn[0][3]));
-        let off = libm::remainder(heading - number(&row["heading"]), std::f64::consts::TAU);
-        assert!(off.abs() < 1e-5, "{name}: {off}");
-    }
-    let frames = |child: &str| seen.of("/tf", child).iter().all(|(_, it)| it[0] == "robot");
-    assert!(frames("Transform3D:child_frame"), "{name}");
-    assert_eq!(seen.of("/robot", "CoordinateFrame:frame")[0].1[0], "robot", "{name}");
-    assert!(points(&seen.of("/robot", "Points3D:positions")[0].1).len() > 3, "{name}");
-}
-
-fn the_map_is_seen(seen: &InRerun, rows: &Records, trace: &Records) {
-    let name = &seen.name;
-    // The map: all of it is in the field's frame, lies in the plane and has a colour for each point.
-    let [start, end] = [&trace[0], &trace[trace.len() - 1]];
-    let last_step = rows.len() as f64;
-    for (entity, until) in [
-        ("/map/area", 0.0),
-        ("/map/true_line", 0.0),
-        ("/map/given", 0.0),
-        ("/map/ground", last_step),
-        ("/map/estimate", last_step),
-        ("/map/path", last_step),
-        ("/map/samples", last_step),
+fn the_map_is_seen(name: &str, seen: &InRerun, rows: &Records, trace: &Records) {
+    // All of it is in the field's frame, lies in the plane and has a colour for each point.
+    for (entity, changes) in [
+        ("/map/area", false),
+        ("/map/true_line", false),
+        ("/map/given", false),
+        ("/map/ground", true),
+        ("/map/estimate", true),
+        ("/map/path", true),
+        ("/map/samples", true),
     ] {
-        let clouds = seen.of(entity, "Points3D:positions");
+        let clouds = seen.clouds(entity);
+        let until = if changes { rows.len() as f64 } else { 0.0 };
         assert_eq!(clouds.last().map(|it| it.0), Some(until), "{name}: {entity}");
         let frames = seen.of(entity, "CoordinateFrame:frame");
         assert!(frames.iter().all(|(_, it)| it[0] == "field"), "{name}: {entity}");
         // Rerun reports an error for as long as an entity has no frame.
         assert_eq!(frames[0].0, 0.0, "{name}: {entity}");
         for ((_, cloud), (_, colors)) in clouds.iter().zip(&seen.of(entity, "Points3D:colors")) {
-            let cloud = points(cloud);
             assert_eq!(colors.as_array().map(Vec::len), Some(cloud.len()), "{name}: {entity}");
             assert!(cloud.iter().all(|at| at[2] == 0.0), "{name}: {entity}");
         }
     }
-    let last = |entity: &str| {
-        let clouds = seen.of(entity, "Points3D:positions");
-        points(&clouds.last().expect("a cloud").1)
-    };
+    let [start, end] = [&trace[0], &trace[trace.len() - 1]];
+    let last = |entity: &str| seen.clouds(entity).pop().expect("a cloud").1;
     // The border has the area's extent, lines are where the trace has them.
     for (k, axis) in ["x", "z"].into_iter().enumerate() {
         let along = last("/map/area").into_iter().map(|at| at[k]);
-        let [least, most] =
-            [along.clone().fold(f64::MAX, f64::min), along.fold(f64::MIN, f64::max)];
-        seen.near(&start["area"][axis][0], least);
-        seen.near(&start["area"][axis][1], most);
+        near(along.clone().fold(f64::MAX, f64::min), &start["area"][axis][0], name);
+        near(along.fold(f64::MIN, f64::max), &start["area"][axis][1], name);
     }
     for (entity, line) in
         [("/map/true_line", &start["truth"]), ("/map/estimate", &end["estimates"]["centre"])]
     {
         let cloud = last(entity);
         assert!(cloud.len() > 100, "{name}: {entity} has {} points", cloud.len());
-        let angle = number(&line["angle"]).to_radians();
-        let off = |at: &[f64; 3]| {
-            let [x, z] = [at[0] - cloud[0][0], at[1] - cloud[0][1]];
-            (z * angle.cos() - x * angle.sin()).abs()
-        };
+        let (sin, cos) = number(&line["angle"]).to_radians().sin_cos();
+        let off = |at: &[f64; 3]| ((at[1] - cloud[0][1]) * cos - (at[0] - cloud[0][0]) * sin).abs();
         assert!(cloud.iter().all(|at| off(at) < 5e-3), "{name}: {entity}");
         if let Some(intercept) = line["intercept"].as_f64() {
-            let [x, z, _] = cloud[0];
-            let above = z - number(&line["slope"]) * x - intercept;
-            assert!((above * angle.cos()).abs() < 5e-3, "{name}: {entity}: {above}");
+            let above = cloud[0][1] - number(&line["slope"]) * cloud[0][0] - intercept;
+            assert!((above * cos).abs() < 5e-3, "{name}: {entity}: {above}");
         }
     }
-    // A +1 is a cross of more points than a -1, which is a bar; in the middle of each is its sample.
+    // A +1 is a cross of 17 points, a -1 a bar of 9; in the middle of each is its sample.
     let mut marks = last("/map/samples").into_iter();
     let of_label = |label: i64| rows.iter().filter(move |row| row["label"] == label);
     for row in of_label(-1).chain(of_label(1)) {
-        let count = if row["label"] == 1 { CROSS } else { BAR };
-        let mark: Vec<_> = marks.by_ref().take(count).collect();
+        let mark: Vec<_> = marks.by_ref().take(if row["label"] == 1 { 17 } else { 9 }).collect();
         for (k, axis) in ["x", "z"].into_iter().enumerate() {
-            let middle = mark.iter().map(|at| at[k]).sum::<f64>() / count as f64;
-            seen.near(&row[axis], middle);
+            near(mark.iter().map(|at| at[k]).sum::<f64>() / mark.len() as f64, &row[axis], name);
         }
     }
     assert_eq!(marks.count(), 0, "{name}");
-}
-
-fn the_curves_are_seen(seen: &InRerun, rows: &Records) {
-    let name = &seen.name;
-    // The curves: what /step has can be plotted by a selector such as .bits.
-    let steps = seen.of("/step", "host_sim.Step:message");
-    assert_eq!(steps.len(), rows.len(), "{name}");
-    for ((time, step), row) in steps.iter().zip(rows) {
-        assert_eq!(*time, number(&row["step"]), "{name}");
-        for key in ["bits", "control_cost", "metres", "label", "slope_from", "intercept_to"] {
-            assert_eq!(step[0][key].as_f64(), row[key].as_f64(), "{name}: {key}");
-        }
-    }
-}
-
-/// Points of a mark on the map of a log.
-const BAR: usize = 9;
-const CROSS: usize = 17;
-
-/// Positions of a cloud.
-fn points(cloud: &Value) -> Vec<[f64; 3]> {
-    let points = cloud.as_array().expect("points");
-    points.iter().map(|at| [0, 1, 2].map(|k| number(&at[k]))).collect()
 }
 
 fn number(value: &Value) -> f64 {

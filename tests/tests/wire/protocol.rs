@@ -294,29 +294,25 @@ fn the_tables_have_every_variant() {
             wrong.push(format!("{title}: found {found:?}, expected {expected:?}"));
         }
     };
-    check("Request", variants::<Request>(&[zeros]));
+    macro_rules! check {
+        ($($name:ident),*) => { $(check(stringify!($name), variants::<$name>(&[zeros]));)* };
+    }
+    check!(Request, Policy, Prior, Accuracy, Crossing, Following, Label, Reading, Stage, Recovery);
+    check!(
+        EndReason,
+        StopReason,
+        ObservationError,
+        DeclinedError,
+        GivenError,
+        ShapeError,
+        GridError
+    );
     check("Reply", variants::<Reply>(replies));
     // A stretch of no length is refused. This one has 200 mm.
     let watch: &[u8] = &[0, 0, 0, 0, 0, 200, 1];
     check("Algorithm", variants::<Algorithm>(&[zeros, watch]));
-    check("Policy", variants::<Policy>(&[zeros]));
-    check("Prior", variants::<Prior>(&[zeros]));
-    check("Accuracy", variants::<Accuracy>(&[zeros]));
-    check("Crossing", variants::<Crossing>(&[zeros]));
-    check("Following", variants::<Following>(&[zeros]));
     check("Vehicle", variants::<Shape>(&[zeros]));
     check("Labels", variants::<LabelSource>(&[zeros]));
-    check("Label", variants::<Label>(&[zeros]));
-    check("Reading", variants::<Reading>(&[zeros]));
-    check("Stage", variants::<Stage>(&[zeros]));
-    check("Recovery", variants::<Recovery>(&[zeros]));
-    check("EndReason", variants::<EndReason>(&[zeros]));
-    check("StopReason", variants::<StopReason>(&[zeros]));
-    check("ObservationError", variants::<ObservationError>(&[zeros]));
-    check("DeclinedError", variants::<DeclinedError>(&[zeros]));
-    check("GivenError", variants::<GivenError>(&[zeros]));
-    check("ShapeError", variants::<ShapeError>(&[zeros]));
-    check("GridError", variants::<GridError>(&[zeros]));
     assert!(wrong.is_empty(), "docs/protocol.md:\n{}", wrong.join("\n"));
 }
 

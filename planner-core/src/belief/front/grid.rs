@@ -124,6 +124,7 @@ fn scale(masses: &mut [f32], by: f32, more: f32) {
 pub(super) mod tests {
     use super::*;
     use crate::belief::front::lay::radians;
+    use crate::draws::Draws;
     use crate::geometry::heading::Heading;
     use crate::geometry::lattice::Vector;
 
@@ -132,10 +133,9 @@ pub(super) mod tests {
         let pivot = Site::new(3 << 16, -(5 << 16)).unwrap();
         let heading = Heading(700_000_000);
         grid.set(Lay { pivot, heading, turn: 0.05, low: -1.5, step: 0.25, bend: 0.05 });
-        let mut state = 1_u32;
+        let mut draws = Draws::new(1);
         for mass in grid.cells() {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            *mass = (state >> 8) as f32 * 1e-10;
+            *mass = (draws.bits() >> 8) as f32 * 1e-10;
         }
         grid
     }
@@ -147,10 +147,9 @@ pub(super) mod tests {
     #[test]
     fn a_label_cuts_what_lies_above_and_below() {
         let grid = grid();
-        let mut state = 7_u32;
+        let mut draws = Draws::new(7);
         for _ in 0..200 {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            let by = Vector::new((state >> 8) as i32 % 200_000, (state >> 20) as i32 * 40).unwrap();
+            let by = Vector::new(draws.below(200_000) as i32, draws.below(163_840) as i32).unwrap();
             let site = grid.lay.pivot.step(by).unwrap();
             let mut weighed = grid.clone();
             let above = grid.above(site, 0.02);
@@ -165,13 +164,10 @@ pub(super) mod tests {
     fn several_places_are_asked_as_one_is() {
         let grid = grid();
         let whole = total(&mut grid.clone());
-        let mut state = 3_u32;
+        let mut draws = Draws::new(3);
         for far in [14, 18, 22, 26] {
             let sites: [Site; 40] = core::array::from_fn(|_| {
-                let mut part = || {
-                    state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                    state as i32 >> (31 - far)
-                };
+                let mut part = || draws.bits() as i32 >> (31 - far);
                 grid.lay.pivot.step(Vector::new(part(), part()).unwrap()).unwrap()
             });
             let mut sums = [7.0; 40];

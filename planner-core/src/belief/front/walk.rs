@@ -152,15 +152,15 @@ pub(crate) fn mix(old: &[f32], masses: &mut [f32], share: f32) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::draws::Draws;
 
     const CELLS: usize = 14;
 
     /// Random masses, some of them nothing, from a seed.
     fn drawn(seed: u32) -> [f32; CELLS] {
-        let mut state = seed;
+        let mut draws = Draws::new(seed.into());
         core::array::from_fn(|_| {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            let mass = (state >> 8) as f32 / (1 << 24) as f32;
+            let mass = draws.unit() as f32;
             if mass < 0.2 { 0.0 } else { mass * mass * mass }
         })
     }

@@ -159,6 +159,7 @@ mod tests {
     use heapless::Vec;
 
     use super::*;
+    use crate::draws::Draws;
 
     /// The same by definition, in double precision: the entropy of the labels, less what is left of it where it is known
     /// which places lie above.
@@ -177,16 +178,12 @@ mod tests {
 
     #[test]
     fn labels_on_a_way_tell_what_they_tell_by_definition() {
-        let mut state = 3_u64;
-        let mut random = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            (state >> 40) as f64 / f64::from(1 << 24)
-        };
+        let mut draws = Draws::new(3);
         for case in 0..2_000 {
             let count = 1 + case % PLACES;
             let grows = case % 2 == 0;
             // Below all, crossed before each place but the first, above all.
-            let mut masses: [f64; PLACES + 1] = [(); PLACES + 1].map(|()| random());
+            let mut masses: [f64; PLACES + 1] = [(); PLACES + 1].map(|()| draws.unit());
             masses.iter_mut().skip(count + 1).for_each(|it| *it = 0.0);
             let sum: f64 = masses.iter().sum();
             let groups: Vec<_, 5, u8> = (0..=count)
