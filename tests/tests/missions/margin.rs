@@ -6,7 +6,6 @@
 use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::Mission;
-use host_sim::world::noise::{Extent, NoiseModel};
 use nalgebra::{Point2, Vector2};
 use planner_core::dynamics::{Action, Dynamics as _};
 use planner_core::search::recovery::Recovery;
@@ -14,6 +13,7 @@ use planner_core::{
     Belief as _, Label, Line, Pose, Reading, Sample, Site, Step, Unicycle, Workspace as _,
 };
 use tests::cases;
+use tests::ensemble::noisy;
 
 /// A line in lattice units: where `normal . q` is `offset`, with the normal of length 1.
 #[derive(Clone, Copy)]
@@ -168,8 +168,8 @@ fn of_true_labels_it_asks_nearest_to_the_widest_strip_s_middle() {
 #[test]
 fn of_labels_that_err_it_asks_where_the_start_leaves_doubt() {
     for number in 0..4 {
-        let mut mission = standard_field::standard(4, number, Algorithm::Margin, 12);
-        mission.noise = Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.0) });
+        let mission = standard_field::standard(4, number, Algorithm::Margin, 12);
+        let mission = noisy(mission, 0.7, 0.0);
         let given = mission.given.samples().to_vec();
         let mut line: Line = mission.table().estimates().maximum_margin.expect("a line").into();
         let (mut pose, mut steps) = (mission.start, 0);
