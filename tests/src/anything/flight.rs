@@ -62,9 +62,6 @@ pub struct Flight {
     pub labels: u32,
     /// The most that a plan asked of the area.
     pub asked: u64,
-    /// Labels of missions that ask for a least worth, and those of them that were expected to carry less. Where labels
-    /// may be wrong, a plan predicts by a limited number of directions.
-    pub worth: [u32; 2],
     /// What it broke, once each.
     pub findings: Vec<(Finding, String)>,
 }
@@ -79,7 +76,8 @@ impl<P: Persist<Snapshot: Serialize + DeserializeOwned>> Sleeper for P {}
 /// # Panics
 /// When it is more than a page of 64 kB.
 pub fn bytes_of(value: &impl Serialize) -> Vec<u8> {
-    postcard::to_slice(value, &mut [0; 1 << 16]).expect("room").to_vec()
+    let mut page = vec![0; 1 << 16];
+    postcard::to_slice(value, &mut page).expect("room").to_vec()
 }
 
 /// Saves a planner to bytes, and restores it as another one.
@@ -140,14 +138,15 @@ impl<D: Dynamics> Fly<'_, D> {
         flight
     }
 
-    /// Flies it with two planners, one of which sleeps after every plan and every label.
+    /// Flies it. In every third mission a second planner sleeps after every fourth plan and every motion.
     fn flown<P>(&self, make: impl Fn() -> P) -> (Flight, P, Pose)
     where
         P: Sleeper<Belief: ReadOut + Sized>,
     {
         let mission = self.mission;
         let (mut robot, mut rng) = (mission.robot(), ensemble::rng(mission.seed, 1));
-        let (mut planner, mut sleeper, mut pose) = (make(), make(), mission.start);
+        let (mut planner, mut pose) = (make(), mission.start);
+        let mut sleeper = mission.seed.is_multiple_of(3).then(&make);
         let mut flight = Flight::at_start();
         let (mut been, mut fruitless, mut before) = (HashMap::new(), 0, None::<(Pose, Motion)>);
         while flight.motions < mission.steps {
@@ -158,12 +157,13 @@ impl<D: Dynamics> Fly<'_, D> {
             if asked > self.most_asked {
                 flight.note(Finding::TooLong, format!("{asked} asked at {pose:?}"));
             }
-            for _ in 0..=u32::from(flight.motions.is_multiple_of(4)) {
-                if sleeper.plan(pose) != plan {
-                    flight.note(Finding::Fickle, format!("another plan at {pose:?}"));
-                }
-                sleeper = sleep(sleeper, &make);
+            let is_fourth = flight.motions.is_multiple_of(4);
+            let again = is_fourth.then(|| planner.plan(pose));
+            let asleep = sleeper.as_mut().map(|it| it.plan(pose));
+            if again.is_some_and(|it| it != plan) || asleep.is_some_and(|it| it != plan) {
+                flight.note(Finding::Fickle, format!("{again:?} or {asleep:?} at {pose:?}"));
             }
+            sleeper = sleeper.map(|it| if is_fourth { sleep(it, &make) } else { it });
             let motion = match plan {
                 Plan::Move(motion) => motion,
                 Plan::Stop(reason) => {
@@ -171,44 +171,12 @@ impl<D: Dynamics> Fly<'_, D> {
                     break;
                 }
             };
-            if let Some(wrong) = self.leaves(pose, &motion) {
-                flight.note(Finding::Unsafe, wrong);
-            }
-            let is_safe = |pose| self.vehicle.is_safe(pose, &mission.config.area);
-            let gives_up = is_safe(pose) && !is_safe(motion.target);
-            let is_strict = mission.config.tolerance == Tolerance::NONE;
-            if gives_up && is_strict
-                || self.vehicle.target(pose, motion.action) != Some(motion.target)
-            {
-                flight.note(Finding::Unsafe, format!("{motion:?} from {pose:?}"));
-            }
-            let looks = mission.algorithm == Algorithm::Track || mission.begins_from_nothing();
-            if looks && motion.examined > LOOKED_AT {
-                flight.note(Finding::TooLong, format!("{motion:?}"));
-            }
-            if motion.wants_label
-                && motion.stage != Some(Stage::Audit)
-                && mission.asking.worth > 0.0
-            {
-                let bits = planner.belief().expects(motion.target.site).bits;
-                let is_short = bits < mission.asking.worth - OFF;
-                flight.worth = [flight.worth[0] + 1, flight.worth[1] + u32::from(is_short)];
-                if is_short && mission.noise.is_none() {
-                    flight.note(Finding::Worthless, format!("{bits} bits by {motion:?}"));
-                }
-            }
-            if let Some((from, last)) = before
-                && !last.wants_label
-                && !motion.wants_label
-                && is_same(from, motion.target)
-            {
-                flight.note(Finding::Undone, format!("{last:?}, then {motion:?}"));
-            }
+            self.check(&mut flight, (pose, &motion), before, planner.belief());
             // A way to a place that ends on certain ground leads back once: no other is begun before the next label.
             let times = been.entry((pose.site, pose.heading.0)).or_insert(0);
             *times += 1;
             // A follower of fronts goes to places far off too. One of 5,000 missions needs the second return.
-            let goes_far = mission.asking.price.is_some() || looks;
+            let goes_far = mission.asking.price.is_some() || self.looks();
             let most = 1 + u32::from(goes_far);
             // Where no label is worth it, sixteen motions without one may lead round.
             let most = if mission.asking.worth > 0.0 { most + 16 } else { most };
@@ -235,14 +203,18 @@ impl<D: Dynamics> Fly<'_, D> {
             let mut observed = Ok(());
             for (site, read) in passed {
                 let heard = planner.observe_on_the_way(site, read);
-                assert_eq!(heard, sleeper.observe_on_the_way(site, read));
+                if let Some(it) = &mut sleeper {
+                    assert_eq!(heard, it.observe_on_the_way(site, read));
+                }
                 if heard == Ok(true) {
                     been.clear();
                 }
                 observed = observed.and(heard.map(|_| ()));
             }
             let heard = planner.observe(pose, reading);
-            assert_eq!(heard, sleeper.observe(pose, reading));
+            if let Some(it) = &mut sleeper {
+                assert_eq!(heard, it.observe(pose, reading));
+            }
             if let Err(refused) = observed.and(heard) {
                 if self.errs_within_tolerance()
                     || !matches!(refused, ObservationError::Contradiction(_))
@@ -251,7 +223,7 @@ impl<D: Dynamics> Fly<'_, D> {
                 }
                 break;
             }
-            sleeper = sleep(sleeper, &make);
+            sleeper = sleeper.map(|it| sleep(it, &make));
             if let Some(space) = planner.belief().version_space()
                 && let Some(wrong) = self.denies_truth(space, &mut rng)
             {
@@ -259,6 +231,44 @@ impl<D: Dynamics> Fly<'_, D> {
             }
         }
         (flight, planner, pose)
+    }
+
+    /// Whether a motion from a pose, after the one before, is as it should be.
+    fn check(
+        &self,
+        flight: &mut Flight,
+        (pose, motion): (Pose, &Motion),
+        before: Option<(Pose, Motion)>,
+        belief: &dyn ReadOut,
+    ) {
+        if let Some(wrong) = self.leaves(pose, motion) {
+            flight.note(Finding::Unsafe, wrong);
+        }
+        let is_safe = |pose| self.vehicle.is_safe(pose, &self.mission.config.area);
+        let gives_up = is_safe(pose) && !is_safe(motion.target);
+        let is_strict = self.mission.config.tolerance == Tolerance::NONE;
+        if gives_up && is_strict || self.vehicle.target(pose, motion.action) != Some(motion.target)
+        {
+            flight.note(Finding::Unsafe, format!("{motion:?} from {pose:?}"));
+        }
+        if self.looks() && motion.examined > LOOKED_AT {
+            flight.note(Finding::TooLong, format!("{motion:?}"));
+        }
+        // What is read on the way may make up for a place that tells little.
+        let is_certain = self.mission.noise.is_none() && self.mission.readings == 1;
+        if motion.wants_label && motion.stage != Some(Stage::Audit) && is_certain {
+            let bits = belief.expects(motion.target.site).bits;
+            if bits < self.mission.asking.worth - OFF {
+                flight.note(Finding::Worthless, format!("{bits} bits by {motion:?}"));
+            }
+        }
+        if let Some((from, last)) = before
+            && !last.wants_label
+            && !motion.wants_label
+            && is_same(from, motion.target)
+        {
+            flight.note(Finding::Undone, format!("{last:?}, then {motion:?}"));
+        }
     }
 
     /// What a version space says that is false, if anything.
@@ -319,6 +329,11 @@ impl<D: Dynamics> Fly<'_, D> {
         }
     }
 
+    /// Whether its planner looks at places all over the area.
+    fn looks(&self) -> bool {
+        self.mission.algorithm == Algorithm::Track || self.mission.begins_from_nothing()
+    }
+
     fn errs_within_tolerance(&self) -> bool {
         CUT * self.mission.errors.position <= self.mission.config.tolerance.metres() + 1e-9
     }
@@ -342,7 +357,7 @@ impl<D: Dynamics> Fly<'_, D> {
 impl Flight {
     fn at_start() -> Self {
         let (ending, findings) = (Ending::Steps, Vec::new());
-        Self { ending, motions: 0, labels: 0, asked: 0, worth: [0; 2], findings }
+        Self { ending, motions: 0, labels: 0, asked: 0, findings }
     }
 
     fn note(&mut self, finding: Finding, text: String) {

@@ -233,7 +233,7 @@ fn part(rng: &mut ChaCha8Rng, most: f64) -> f64 {
 
 #[test]
 fn what_is_allowed_for_refutes_no_line_and_cuts_off_none() {
-    let fields = cases(150, 6_000);
+    let fields = cases(100, 6_000);
     for algorithm in [Algorithm::Cfc, Algorithm::Lookahead] {
         let fly = |share: f64| {
             ensemble::fly_some(fields, |number| {

@@ -158,7 +158,7 @@ fn sight_is_far_by_default_where_the_area_is_large() {
     assert_eq!(Far::usual(&square(32.0), &vehicle), None);
     let lake = Area::metres([0.0, 0.0], [800.0, 500.0]).expect("an area");
     let usual = Far::usual(&lake, &vehicle).expect("a lake is large");
-    expect("price", f64::from(usual.price()), 81.249..81.251);
+    expect("price", usual.price(), 81.249..81.251);
 }
 
 /// More motions than a number of 16 bits holds lead to the places of a large area, where motions are of millimetres.

@@ -1,14 +1,10 @@
 //! Every plan of Algorithm 1 over the standard fields, beside one that tries all actions.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::sync::Mutex;
 
 use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
-use host_sim::mission::recording::Recording;
-use host_sim::mission::results::StepResult;
-use host_sim::mission::scenario::{self, Overrides};
 use host_sim::world::robot::Ideal;
 use planner_core::link::message::MissionArea;
 use planner_core::robot::Body as _;
@@ -22,7 +18,7 @@ use tests::twins::ladder::{Ladder, Rung};
 fn every_plan_is_what_trying_all_actions_would_make_it() {
     let unicycle = Unicycle::paper();
     let rungs = Mutex::new(BTreeMap::new());
-    (0..cases(100, 2_000)).into_par_iter().for_each(|number| {
+    (0..cases(70, 2_000)).into_par_iter().for_each(|number| {
         let mission = standard_field::standard(12, number, Algorithm::Cfc, 60);
         let mut robot = Ideal { world: mission.world.clone() };
         let mut planner = mission.cfc(mission.config.area, unicycle);
@@ -75,18 +71,4 @@ fn climb(ladder: &Ladder<Unicycle, MissionArea>, pose: Pose, plan: Plan, place: 
         }
         _ => panic!("{place}: {plan:?}, expected {rung:?}"),
     }
-}
-
-#[test]
-fn a_seed_changes_the_random_walk_and_nothing_else() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../host-sim/scenarios");
-    let run = |algorithm, seed| {
-        let overrides = Overrides { algorithm: Some(algorithm), steps: None, seed: Some(seed) };
-        let mission = scenario::read(&folder.join("paper-noiseless.toml"), overrides);
-        let recording = Recording::of(&mission.expect("a good file")).expect("noiseless");
-        let at = |it: &StepResult| [it.pose.x, it.pose.z, it.pose.heading].map(f64::to_bits);
-        recording.results.steps.iter().map(at).collect::<Vec<_>>()
-    };
-    assert_eq!(run(Algorithm::Cfc, 1), run(Algorithm::Cfc, 2));
-    assert_ne!(run(Algorithm::Random, 1), run(Algorithm::Random, 2));
 }

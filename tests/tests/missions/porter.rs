@@ -9,7 +9,7 @@ use host_sim::mission::algorithm::Algorithm;
 use host_sim::world::World;
 use nalgebra::{Point2, Vector2};
 use planner_core::geometry::lattice::Vector;
-use planner_core::robot::{AgentError, Body, Drive, LabelSensor, VehicleError};
+use planner_core::robot::{AgentError, Body, DriveFn, SensorFn, VehicleError};
 use planner_core::{
     Agent, Belief as _, CellPosterior, Event, Goal, KeepOut, Line, Lookahead, Motion, Noise,
     NoisyBelief, Planner, PolygonArea, Pose, Prior, Reading, Scc, Site, StopReason, Unicycle,
@@ -24,46 +24,27 @@ use tests::ensemble;
 #[derive(Debug)]
 struct Stuck;
 
-/// Every third drive or so ends on the way, or a metre beside it.
-struct Failing<'a> {
-    place: &'a Cell<Pose>,
-    rng: ChaCha8Rng,
-}
-
-impl Drive for Failing<'_> {
-    type Error = Stuck;
-
-    fn drive(&mut self, motion: &Motion) -> Result<Pose, Stuck> {
-        let (from, way) = (self.place.get(), motion.target.site - self.place.get().site);
-        self.place.set(motion.target);
-        if self.rng.random_range(0..3) > 0 {
-            return Ok(motion.target);
-        }
-        let mut aside = || self.rng.random_range(-1 << 16..1 << 16);
-        let by = [way.x() / 2 + aside(), way.z() / 2 + aside()];
-        let by = Vector::new(by[0], by[1]).expect("short");
-        self.place.set(Pose { site: from.site.step(by).expect("near"), ..motion.target });
-        Err(Stuck)
-    }
-}
-
-struct Sensor<'a>(World, &'a Cell<Pose>);
-
-impl LabelSensor for Sensor<'_> {
-    type Error = Infallible;
-
-    fn read(&mut self) -> Result<Reading, Infallible> {
-        Ok(self.0.reading(self.1.get().site))
-    }
-}
-
-/// Flies until a planner has its labels; how many drives failed, and how often it was outside then.
+/// Flies until a planner has its labels; how many drives failed, and how often it was outside then. Every third drive or
+/// so ends on the way, or a metre beside it.
 fn fly_failing(number: u64, planner: impl Planner) -> [u32; 2] {
     let mission = standard_field::standard(8, number, Algorithm::Cfc, 20);
     let place = Cell::new(mission.start);
-    let drive = Failing { place: &place, rng: ChaCha8Rng::seed_from_u64(number) };
-    let sensor = Sensor(mission.world.clone(), &place);
-    let mut agent = Agent::new(planner, Vehicle { drive, sensor }, mission.start);
+    let mut rng = ChaCha8Rng::seed_from_u64(number);
+    let drive = |motion: &Motion| {
+        let (from, way) = (place.get(), motion.target.site - place.get().site);
+        place.set(motion.target);
+        if rng.random_range(0..3) > 0 {
+            return Ok(motion.target);
+        }
+        let mut aside = || rng.random_range(-1 << 16..1 << 16);
+        let by = [way.x() / 2 + aside(), way.z() / 2 + aside()];
+        let by = Vector::new(by[0], by[1]).expect("short");
+        place.set(Pose { site: from.site.step(by).expect("near"), ..motion.target });
+        Err(Stuck)
+    };
+    let sense = || Ok::<_, Infallible>(mission.world.reading(place.get().site));
+    let vehicle = Vehicle { drive: DriveFn(drive), sensor: SensorFn(sense) };
+    let mut agent = Agent::new(planner, vehicle, mission.start);
     let (mut labels, mut failed, mut outside) = (0, 0, 0);
     while labels < 20 {
         match agent.step() {

@@ -56,22 +56,6 @@ fn more_readings_tell_more() {
     }
 }
 
-/// A mission of thousands of steps runs in the memory of any other, and its lines agree with all labels.
-#[test]
-fn a_mission_has_thousands_of_steps() {
-    ensemble::fly(cases(4, 40), |number| {
-        let mission = Mission { readings: 3, ..standard(number, Algorithm::Random, 2_000) };
-        let recording = Recording::of(&mission).expect("labels are true");
-        assert_eq!(recording.steps.len(), 2_000, "{number}");
-        let space = recording.belief.version_space().expect("labels are true");
-        assert_eq!(mission.world.is_among(space.lines()), Some(true), "{number}");
-        for step in &recording.steps {
-            let Some(Reading::Side(label)) = step.reading else { continue };
-            assert_eq!(space.certainty(step.pose.site), Certainty::Certain(label), "{number}");
-        }
-    });
-}
-
 /// A reading on the way changes what Algorithm 1 knows, and not where it stands.
 #[test]
 fn algorithm_1_stays_in_its_phase() {

@@ -15,8 +15,8 @@ use planner_core::{
 };
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
-use tests::cases;
 use tests::ensemble::{self, expect, mean, median};
+use tests::{cases, is_long};
 
 const SEED: u64 = 51;
 const MOTIONS: u32 = 150;
@@ -139,12 +139,14 @@ const WORLDS: [(bool, f64, f64, f64, f64); 8] = [
 ];
 
 /// In every world the median of the mean deviation is small. As a mean over all worlds the deviation is smaller by 13 %
-/// and more than that of going to and fro.
+/// and more than that of going to and fro. A quick run flies half of the worlds.
 #[test]
 fn a_watched_stretch_is_known_better_than_by_other_ways() {
-    let means = WORLDS.map(|(is_circle, speed, p, most, to_and_fro)| {
+    let worlds =
+        if is_long() { &WORLDS[..] } else { &[WORLDS[1], WORLDS[3], WORLDS[4], WORLDS[6]] };
+    let means = worlds.iter().map(|&(is_circle, speed, p, most, to_and_fro)| {
         let world = World { is_circle, speed, p };
-        let of_each = ensemble::fly(cases(100, 300), |number| {
+        let of_each = ensemble::fly(cases(50, 100), |number| {
             let mut it = Watching::begin(SEED, number, world, STRETCH);
             let (begun, mut measured) = (it.motion, Vec::new());
             while it.motion < begun + MOTIONS {
@@ -161,8 +163,11 @@ fn a_watched_stretch_is_known_better_than_by_other_ways() {
         let off = mean(of_each.iter().map(|it| it.0));
         (off, off / to_and_fro)
     });
-    expect("mean", mean(means.map(|it| it.0)), ..0.12);
-    expect("of that of going to and fro", mean(means.map(|it| it.1)), ..0.87);
+    let means: Vec<_> = means.collect();
+    if is_long() {
+        expect("mean", mean(means.iter().map(|it| it.0)), ..0.12);
+        expect("of that of going to and fro", mean(means.iter().map(|it| it.1)), ..0.87);
+    }
 }
 
 /// The robot leaves the stretch by no more than a reach, but where it lost the front; a plan is the same after a sleep;

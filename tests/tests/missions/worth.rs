@@ -1,9 +1,11 @@
-//! A label that must be expected to carry so many bits. The random missions of `anything` check that others are not read.
+//! A label that must be expected to carry so many bits. The random missions of `anything` check that of true labels.
 
 use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::Mission;
 use host_sim::mission::recording::Recording;
+use host_sim::world::noise::limit;
+use planner_core::Stage;
 use tests::cases;
 use tests::ensemble::{self, expect, noisy, percent};
 
@@ -13,6 +15,29 @@ fn fly(number: u64, p: f64, worth: f64) -> Recording {
     mission.asking.worth = worth;
     mission.asking.price = (number % 2 == 1).then_some(3.0);
     Recording::of(&mission).expect("labels agree")
+}
+
+/// Where labels may be wrong, a plan predicts by a limited number of directions. So two labels in a hundred may carry less
+/// than asked, by more than the rounding of a prediction.
+#[test]
+fn labels_that_may_be_wrong_carry_what_is_asked() {
+    for p in [0.9, 0.7] {
+        for share in [0.2, 0.6, 0.9] {
+            let worth = (1e3 * share * limit(p)).round() * 1e-3;
+            let bits = ensemble::fly(cases(24, 300), |number| {
+                let Recording { results, steps, .. } = fly(number, p, worth);
+                let asked = steps.iter().zip(&results.steps).filter(|(step, _)| {
+                    step.motion.wants_label && step.motion.stage != Some(Stage::Audit)
+                });
+                let bits = asked.map(|(_, result)| result.expected.expect("a label").bits);
+                bits.collect::<Vec<_>>()
+            });
+            let bits = bits.concat();
+            assert!(bits.len() as u64 > 4 * cases(24, 300), "{p:?}, {worth}: {}", bits.len());
+            let short = percent(&bits, |it| *it < worth - 0.03);
+            expect(format!("p = {p}, short of {worth}"), short, ..=2.0);
+        }
+    }
 }
 
 /// Where nothing is worth asking, a mission ends after sixteen motions and says so.
