@@ -5,7 +5,7 @@
 
 use host_sim::campaign::fronts::flight::{Fronts, STEPS, sea, tracker, vehicle};
 use host_sim::campaign::fronts::following::{Course, Flown, REACH, follow};
-use host_sim::campaign::fronts::kinds::Told;
+use host_sim::campaign::fronts::kinds::{KINDS, Told};
 use host_sim::campaign::fronts::summary::Row;
 use host_sim::campaign::fronts::true_front::{TrueFront, site};
 use host_sim::campaign::fronts::who::Who;
@@ -28,10 +28,6 @@ type Belief = Tracker<16, 16, 3>;
 
 fn unicycle() -> Unicycle {
     vehicle(REACH).expect("a vehicle")
-}
-
-fn square(half: f64) -> Area {
-    Area::metres([-half; 2], [half; 2]).expect("an area")
 }
 
 fn noise(p: f64) -> Noise {
@@ -330,7 +326,8 @@ fn a_front_is_found_from_nothing_and_by_a_point_inside() {
                 let [x, z] = world.beside(3.0, 4.0).into();
                 let around = Area::metres([x - 10.0, z - 10.0], [x + 10.0, z + 10.0]);
                 let belief = sought(around.expect("an area"), 30.0, p, &[]);
-                (square(60.0), belief, world.start(&mut rng))
+                let area = Area::metres([-60.0; 2], [60.0; 2]).expect("an area");
+                (area, belief, world.start(&mut rng))
             };
             let of = (area, unicycle(), belief);
             let flown = go((&world, p), of, (start, MOTIONS), &mut rng, |_| ());
@@ -338,4 +335,16 @@ fn a_front_is_found_from_nothing_and_by_a_point_inside() {
         });
         expect(format!("lost, by a point {by_a_point}"), percent(&lost, |it| *it), ..=5.0);
     }
+}
+
+/// A mission depends on its number and the seed alone.
+#[test]
+fn missions_along_fronts_depend_on_seed_and_number_alone() {
+    let of = |seed, missions, number| {
+        let (who, p, told) = (Who::Track, vec![0.9], [1.0; 2]);
+        let fronts = Fronts { who, missions, seed, p, told, reach: None };
+        fronts.mission(&KINDS[4], 0.9, number).expect("a mission")
+    };
+    assert_eq!(of(7, 3, 1), of(7, 2, 1));
+    assert!(of(7, 3, 0) != of(7, 3, 1) && of(7, 1, 0) != of(8, 1, 0));
 }

@@ -11,9 +11,8 @@ use nalgebra::{Point2, Vector2};
 use planner_core::geometry::lattice::Vector;
 use planner_core::robot::{AgentError, Body, DriveFn, SensorFn, VehicleError};
 use planner_core::{
-    Agent, Belief as _, CellPosterior, Event, Goal, KeepOut, Line, Lookahead, Motion, Noise,
-    NoisyBelief, Planner, PolygonArea, Pose, Prior, Reading, Scc, Site, StopReason, Unicycle,
-    Vehicle, Workspace as _, sequences_of,
+    Agent, Belief as _, Event, Goal, KeepOut, Line, Lookahead, Motion, Noise, NoisyBelief, Planner,
+    PolygonArea, Pose, Reading, Site, StopReason, Unicycle, Vehicle, Workspace as _, sequences_of,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -133,27 +132,18 @@ fn a_rover_that_errs_within_the_clearance_touches_nothing() {
         let noise = Noise::new(0.97).and_then(|it| it.with_tolerance(0.3)).expect("a tolerance");
         let truth = mission.start.site.into();
         let rover = Rover { world: mission.world.clone(), lawn, truth, rng };
-        let is_ended = if number % 2 == 0 {
-            let belief = NoisyBelief::<40, { sequences_of(36) }>::new(given, noise);
-            let planner = Lookahead::new(area, Unicycle::paper(), belief.expect("four places"));
-            let goal = Goal::slope_within_degrees(2.0).expect("an angle");
-            ends(planner.expect("room").until(goal), rover, mission.start)
-        } else {
-            let table = CellPosterior::<24, { sequences_of(20) }>::new(given, Prior::Area, noise);
-            let planner = Scc::new(area, Unicycle::paper(), table.expect("four places"));
-            ends(planner.expect("room"), rover, mission.start)
-        };
-        Some(is_ended)
+        let belief = NoisyBelief::<40, { sequences_of(36) }>::new(given, noise);
+        let planner = Lookahead::new(area, Unicycle::paper(), belief.expect("four places"));
+        let goal = Goal::slope_within_degrees(2.0).expect("an angle");
+        let mut agent = Agent::new(planner.expect("room").until(goal), rover, mission.start);
+        let reason = (0..200).find_map(|_| match agent.step().expect("labels may be wrong") {
+            Event::Stopped(reason) => Some(reason),
+            Event::Step(_) => None,
+        });
+        Some(matches!(
+            reason,
+            Some(StopReason::Known | StopReason::SamplesFull | StopReason::NoLine)
+        ))
     });
     assert!(ended.len() as u64 * 4 > cases(40, 400) && ended.iter().all(|it| *it));
-}
-
-/// Whether a mission ends by itself, for a reason that a porter can trust.
-fn ends(planner: impl Planner, rover: Rover, start: Pose) -> bool {
-    let mut agent = Agent::new(planner, rover, start);
-    let reason = (0..200).find_map(|_| match agent.step().expect("labels may be wrong") {
-        Event::Stopped(reason) => Some(reason),
-        Event::Step(_) => None,
-    });
-    matches!(reason, Some(StopReason::Known | StopReason::SamplesFull | StopReason::NoLine))
 }
