@@ -6,7 +6,7 @@
 //!   ([`anything`]).
 //! - Missions that follow a front ([`fronts`]).
 //! - A chip in the test's own thread ([`chip`]), and a wire that spoils frames ([`wire`]).
-//! - A rover in a garden, as a porter would simulate it ([`garden`]).
+//! - Ensembles of missions and their figures ([`ensemble`]), and vehicles ([`vehicles`]).
 //! - QEMU's machines ([`machines`]) and a debugger for them ([`debugger`]).
 //! - Beliefs to ask ([`known`]), and areas with keep-outs ([`terrain`]).
 
@@ -23,14 +23,15 @@ pub mod budget;
 pub mod chip;
 pub mod debugger;
 pub mod emulator;
+pub mod ensemble;
 pub mod fronts;
-pub mod garden;
 pub mod known;
 pub mod machines;
 pub mod missions;
 pub mod program;
 pub mod terrain;
 pub mod twins;
+pub mod vehicles;
 pub mod wire;
 
 /// One in how many cases of a long run is run, if this is one: thousands of random missions, searches for hard ones, all

@@ -8,10 +8,8 @@ use host_sim::world::noise::{Extent, NoiseModel};
 use planner_core::motion::car::{self};
 use planner_core::motion::unicycle::Grid;
 use planner_core::{Accuracy, Angle, AnyVehicle, Boat, Car, Goal, Tolerance, Unicycle};
-use rand::SeedableRng as _;
-use rand_chacha::ChaCha8Rng;
 
-use crate::terrain;
+use crate::{ensemble, terrain};
 
 /// The seed of missions, faults and noise.
 pub const SEED: u64 = 4;
@@ -97,9 +95,7 @@ pub fn of_any_vehicle(number: u64, steps: u32) -> Mission {
         mission.noise = Some(NoiseModel { p: 0.8, extent: Extent::OutsideBalls(0.5) });
     }
     if number % 5 < 2 {
-        let mut rng = ChaCha8Rng::seed_from_u64(SEED + 4);
-        rng.set_stream(number);
-        mission.config.area = terrain::around(&mission, &mut rng);
+        mission.config.area = terrain::around(&mission, &mut ensemble::rng(SEED + 4, number));
     }
     if number / 4 % 2 == 1 {
         mission.errors = Errors { motion: 0.05, turn: 0.02, position: 0.05, heading: 0.01 };

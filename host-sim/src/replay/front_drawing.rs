@@ -160,6 +160,9 @@ fn ring([[a, b], [c, d]]: [[Point2<f64>; 2]; 2]) -> [Point2<f64>; 4] {
 
 #[cfg(test)]
 mod tests {
+    use rand::{RngExt as _, SeedableRng as _};
+    use rand_chacha::ChaCha8Rng;
+
     use super::*;
 
     /// Whether two stretches cross each other.
@@ -170,15 +173,9 @@ mod tests {
 
     #[test]
     fn a_ring_of_four_places_does_not_cross_itself() {
-        let mut state = 5_u64;
-        let mut number = || {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            (state >> 40) as f64
-        };
+        let mut rng = ChaCha8Rng::seed_from_u64(5);
         for trial in 0..10_000 {
-            let mut end = || Point2::new(number(), number());
+            let mut end = || Point2::from(rng.random::<[f64; 2]>());
             let ends = [[end(), end()], [end(), end()]];
             let [p, q, r, s] = ring(ends);
             let crosses = cross([p, q], [r, s]) || cross([q, r], [s, p]);

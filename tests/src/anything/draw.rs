@@ -19,10 +19,11 @@ use planner_core::{
     Accuracy, Angle, AnyVehicle, Boat, Car, Goal, Heading, Hull, KeepOut, Label, Line, Pose,
     Sample, Seeks, Site, Tolerance, Unicycle, VersionSpace, Workspace as _, aimed_for,
 };
-use rand::{RngExt, SeedableRng};
+use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use super::plain::{Ground, metres};
+use crate::ensemble;
 use crate::terrain::on_circle;
 
 /// Motions of a mission at most.
@@ -30,8 +31,7 @@ pub const MOTIONS: u32 = 200;
 
 /// The mission with this number. It depends on nothing but seed and number.
 pub fn draw(seed: u64, number: u64) -> Mission {
-    let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    rng.set_stream(number);
+    let mut rng = ensemble::rng(seed, number);
     loop {
         if let Some(mission) = attempt(&mut rng, seed ^ number.rotate_left(32)) {
             return mission;

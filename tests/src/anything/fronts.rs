@@ -17,10 +17,11 @@ use nalgebra::{Point2, Vector2};
 use planner_core::{
     AnyReliability, Front, Line, Reading, Sample, UnknownReliability, Workspace as _,
 };
-use rand::{RngExt, SeedableRng};
+use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use super::draw::{draw, scale};
+use crate::ensemble;
 
 /// The mission with this number. Area, vehicle, start, tolerance and errors are those of a random mission.
 ///
@@ -28,9 +29,7 @@ use super::draw::{draw, scale};
 /// Never: what it draws is in range.
 pub fn draw_front(seed: u64, number: u64) -> Mission {
     let mission = draw(seed, number);
-    let mut rng = ChaCha8Rng::seed_from_u64(seed ^ 0x00f2_0713);
-    rng.set_stream(number);
-    let rng = &mut rng;
+    let rng = &mut ensemble::rng(seed ^ 0x00f2_0713, number);
     let area = mission.config.area;
     let bounds = area.bounds();
     let [min, max] = [bounds.min(), bounds.max()].map(Point2::<f64>::from);

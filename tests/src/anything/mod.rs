@@ -1,10 +1,11 @@
 //! The random-mission harness: it draws every setting of a mission at random and checks what must hold of any mission.
 //!
-//! [`draw`] makes a mission of a seed and a number. [`flight`] flies it and returns what it found wrong. [`plain`] has
+//! [`draw`] makes a mission of a seed and a number; [`fronts`] and [`fields`] make special ones. [`flight`] flies it and returns what it found wrong. [`plain`] has
 //! the harness's own geometry in double precision, and [`reason`] confirms by brute force why a mission ended.
 
 pub mod counted;
 pub mod draw;
+pub mod fields;
 pub mod flight;
 pub mod fronts;
 pub mod plain;

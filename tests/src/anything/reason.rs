@@ -4,10 +4,10 @@ use host_sim::mission::definition::Mission;
 use host_sim::mission::read_out::ReadOut;
 use host_sim::mission::results::Ending;
 use planner_core::belief::cells::CellView;
-use planner_core::dynamics::{Dynamics as _, Side};
+use planner_core::dynamics::{Dynamics, Side};
 use planner_core::geometry::lattice::Vector;
 use planner_core::link::message::MissionArea;
-use planner_core::{AnyVehicle, Certainty, Label, Pose, Site, StopReason, Workspace as _};
+use planner_core::{Area, Certainty, Label, Pose, Site, StopReason, Workspace as _};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -28,13 +28,19 @@ const THIN: f64 = 0.02;
 ///
 /// # Panics
 /// When the tolerance leaves nothing of the area.
-pub fn refute(mission: &Mission, belief: &dyn ReadOut, pose: Pose, end: Ending) -> Option<String> {
+pub fn refute<D: Dynamics>(
+    mission: &Mission,
+    dynamics: &D,
+    belief: &dyn ReadOut,
+    pose: Pose,
+    end: Ending,
+) -> Option<String> {
     let Ending::Stopped(reason) = end else { return None };
     let area = mission.config.area.inset(mission.config.tolerance.units()).expect("an area");
     // A vehicle that is not safe may use the margin to become safe.
-    let is_safe = area.contains(pose.site) && mission.vehicle.is_safe(pose, &area);
+    let is_safe = area.contains(pose.site) && dynamics.is_safe(pose, &area);
     let ground = if is_safe { area } else { mission.config.area };
-    let judge = Judge { mission, belief, area, ground };
+    let judge = Judge { mission, dynamics, belief, area, ground };
     match reason {
         StopReason::SamplesFull => (!belief.is_full()).then(|| "there is room".to_owned()),
         StopReason::Known => {
@@ -56,8 +62,9 @@ pub fn refute(mission: &Mission, belief: &dyn ReadOut, pose: Pose, end: Ending) 
     }
 }
 
-struct Judge<'a> {
+struct Judge<'a, D> {
     mission: &'a Mission,
+    dynamics: &'a D,
     belief: &'a dyn ReadOut,
     /// Where motions aim.
     area: MissionArea,
@@ -65,7 +72,7 @@ struct Judge<'a> {
     ground: MissionArea,
 }
 
-impl Judge<'_> {
+impl<D: Dynamics> Judge<'_, D> {
     /// Whether a label at a place inside the area can tell something.
     fn is_open(&self, site: Site) -> bool {
         if !self.area.contains(site) {
@@ -90,11 +97,7 @@ impl Judge<'_> {
     /// Places all over the area.
     fn places(&self) -> Vec<Site> {
         let mut rng = self.rng();
-        let (from, to) = (self.area.bounds().min(), self.area.bounds().max());
-        let drawn = (0..PLACES).map(|_| {
-            let (x, z) = (rng.random_range(from.x()..=to.x()), rng.random_range(from.z()..=to.z()));
-            Site::new(x, z).expect("inside")
-        });
+        let drawn = (0..PLACES).map(|_| place(self.area.bounds(), &mut rng));
         drawn.filter(|it| self.area.contains(*it)).collect()
     }
 
@@ -118,7 +121,7 @@ impl Judge<'_> {
     /// found.
     fn way_on(&self, pose: Pose) -> Option<String> {
         let mut rng = self.rng();
-        let vehicle = &self.mission.vehicle;
+        let vehicle = self.dynamics;
         for _ in 0..SEQUENCES {
             let mut at = pose;
             for motions in 1..=LENGTH {
@@ -143,7 +146,7 @@ impl Judge<'_> {
         let mut rng = self.rng();
         let least = 1.5 * self.mission.asking.worth + 0.05;
         (0..SEQUENCES).find_map(|_| {
-            let next = random_motion(&self.mission.vehicle, pose, &mut rng)?;
+            let next = random_motion(self.dynamics, pose, &mut rng)?;
             let is_open = next.site != pose.site && self.is_open(next.site);
             let bits = self.belief.expects(next.site).bits;
             let is_told = is_open && bits > least && self.may_go(pose, next);
@@ -152,8 +155,15 @@ impl Judge<'_> {
     }
 
     fn may_go(&self, from: Pose, to: Pose) -> bool {
-        self.ground.contains(to.site) && self.mission.vehicle.stays_inside(from, to, &self.ground)
+        self.ground.contains(to.site) && self.dynamics.stays_inside(from, to, &self.ground)
     }
+}
+
+/// A place of a rectangle.
+pub(super) fn place(area: Area, rng: &mut ChaCha8Rng) -> Site {
+    let (from, to) = (area.min(), area.max());
+    let (x, z) = (rng.random_range(from.x()..=to.x()), rng.random_range(from.z()..=to.z()));
+    Site::new(x, z).expect("inside")
 }
 
 fn can_cut_either_way(lines: CellView<'_>, site: Site) -> bool {
@@ -164,7 +174,7 @@ fn can_cut_either_way(lines: CellView<'_>, site: Site) -> bool {
     is_open(none) && (is_open(lines.shift) || is_open(lines.shift.reversed()))
 }
 
-fn random_motion(vehicle: &AnyVehicle, pose: Pose, rng: &mut ChaCha8Rng) -> Option<Pose> {
+fn random_motion<D: Dynamics>(vehicle: &D, pose: Pose, rng: &mut ChaCha8Rng) -> Option<Pose> {
     let side = if rng.random() { Side::Left } else { Side::Right };
     if rng.random_range(0..3) == 0
         && let Some((_, turned)) = vehicle.turn_in_place(pose, side)

@@ -4,222 +4,169 @@ use host_sim::campaign::accuracy::{Accuracy, Row, Summary};
 use host_sim::campaign::ensemble::Campaign;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::asking::Asking;
-use host_sim::report::campaign as tables;
-use nalgebra::Point2;
-use planner_core::geometry::lattice::UNITS_PER_METRE;
 use planner_core::{
     AnySight, AnyVehicle, Area, Far, Heading, Label, Lookahead, Near, NoGoal, Persist as _, Plan,
     Planner as _, Pose, Sample, Seeks, Sight, Site, Unicycle, VersionSpace,
 };
-use tests::{cases, is_long};
+use tests::cases;
+use tests::ensemble::expect;
+use tests::vehicles::unicycle;
 
-/// Motions without a goal end here.
-const MOTIONS: u32 = 400;
-
-/// The ensemble at the labels of each row.
-fn flown(sides: [f64; 2], vehicle: AnyVehicle, asking: Asking, fields: u64) -> Summary {
-    let usual = Campaign::of(Algorithm::Lookahead, MOTIONS);
-    let campaign = Campaign { fields, sides, vehicle, asking, ..usual };
+/// The ensemble after its last labels. Motions without a goal end after 400.
+fn flown(sides: [f64; 2], vehicle: Unicycle, asking: Asking, readings: u32, fields: u64) -> Row {
+    let usual = Campaign::of(Algorithm::Lookahead, 400);
+    let vehicle = AnyVehicle::Unicycle(vehicle);
+    let campaign = Campaign { fields, sides, vehicle, asking, readings, ..usual };
     let rows = campaign.run(&Accuracy { by_label: true }).expect("there is room");
     let summary = Summary::of(&campaign, rows).expect("labels are true");
-    println!("{sides:?}, {asking:?}\n{}", tables::accuracy(&summary));
-    summary
+    assert_eq!(summary.ends.get("labels"), Some(&summary.fields), "{:?}", summary.ends);
+    let row = summary.rows.into_iter().find(|row| Some(row.step) == asking.labels);
+    row.expect("a mark")
 }
 
-fn at(summary: &Summary, labels: u32) -> &Row {
-    summary.rows.iter().find(|row| row.step == labels).expect("a stage")
-}
-
-/// A unicycle whose longest motion is so many metres, as finely as the usual one turns.
-fn unicycle(reach: f64) -> AnyVehicle {
-    let step_mm = (reach * 50.0) as u32;
-    let unicycle = Unicycle::new(1, std::f64::consts::FRAC_PI_2, 21, step_mm);
-    AnyVehicle::Unicycle(unicycle.expect("a vehicle"))
+/// 800 m by 500 m.
+fn lake(reach_mm: u32, asking: Asking, readings: u32, fields: u64) -> Row {
+    flown([800.0, 500.0], unicycle(1, reach_mm), asking, readings, fields)
 }
 
 fn priced(price: f64, labels: u32) -> Asking {
     Asking { price: Some(price), labels: Some(labels), ..Asking::USUAL }
 }
 
-/// 800 m by 500 m with motions of 5 and 20 m, 24 labels: without a price the median is 2 degrees.
+/// With motions of 5 and 20 m, 24 labels: without a price the median is 2 degrees.
 #[test]
 fn twenty_four_labels_are_enough_for_a_lake() {
-    for reach in [5.0, 20.0] {
-        let summary = flown([800.0, 500.0], unicycle(reach), priced(81.25, 24), cases(100, 1_000));
-        let Row { centre_deg, centre_misclassified, .. } = at(&summary, 24);
-        assert!(centre_deg.median <= 0.1 && centre_deg.p90 <= 0.3, "{reach} m: {centre_deg:?}");
-        assert!(centre_deg.worst <= 0.5, "{reach} m: {centre_deg:?}");
-        assert!(centre_misclassified.worst <= 0.01, "{reach} m: {centre_misclassified:?}");
-        assert_eq!(summary.ends.get("labels"), Some(&summary.fields), "{:?}", summary.ends);
+    for reach_mm in [5_000, 20_000] {
+        let row = lake(reach_mm, priced(81.25, 24), 1, cases(100, 1_000));
+        expect("degrees, median", row.centre_deg.median, ..=0.1);
+        expect("degrees, 90 %", row.centre_deg.p90, ..=0.3);
+        expect("degrees, worst", row.centre_deg.worst, ..=0.5);
+        expect("misclassified, worst", row.centre_misclassified.worst, ..=0.01);
     }
 }
 
 /// On standard fields, a few metres more for each label misclassify less with as many labels.
 #[test]
 fn a_price_makes_labels_worth_more() {
-    let usual = AnyVehicle::from(Algorithm::Lookahead.grid());
-    let chance = if is_long() { 1.0 } else { 1.15 };
-    let summary = flown([20.0; 2], usual, priced(2.5, 20), cases(200, 1_000));
+    let usual = Unicycle::from(Algorithm::Lookahead.grid());
+    let fields = cases(200, 1_000);
+    let chance = if fields < 1_000 { 1.15 } else { 1.0 };
     for (labels, most) in [(10, 0.0045), (20, 0.0002)] {
-        let row = at(&summary, labels);
-        assert!(row.centre_misclassified.median <= most * chance, "{row:?}");
-        assert!(row.bits_per_step >= 0.95, "{row:?}");
+        let row = flown([20.0; 2], usual, priced(2.5, labels), 1, fields);
+        let misclassified = row.centre_misclassified.median;
+        expect(format!("{labels} labels"), misclassified, ..=most * chance);
+        expect(format!("bits, {labels} labels"), row.bits_per_step, 0.95..);
     }
 }
 
 /// What is read on the way to a place counts: another place may be worth more by then.
 #[test]
 fn readings_on_the_way_to_a_place_pay() {
-    let campaign = |readings| Campaign {
-        fields: cases(60, 300),
-        sides: [800.0, 500.0],
-        vehicle: unicycle(5.0),
-        asking: priced(50.0, 10),
-        readings,
-        ..Campaign::of(Algorithm::Lookahead, MOTIONS)
-    };
-    let [one, five] = [1, 5].map(|readings| {
-        let campaign = campaign(readings);
-        let rows = campaign.run(&Accuracy { by_label: true }).expect("there is room");
-        let summary = Summary::of(&campaign, rows).expect("labels are true");
-        at(&summary, 10).clone()
-    });
-    println!("{one:?}\n{five:?}");
-    assert!(five.centre_deg.median < 0.01 && five.centre_deg.p90 < 0.1, "{five:?}");
-    assert!(one.centre_deg.median > 0.3 && five.metres < one.metres, "{one:?}, {five:?}");
+    let [one, five] =
+        [1, 5].map(|readings| lake(5_000, priced(50.0, 10), readings, cases(60, 300)));
+    expect("degrees, five readings", five.centre_deg.median, ..0.01);
+    expect("degrees, 90 %, five readings", five.centre_deg.p90, ..0.1);
+    expect("degrees, one reading", one.centre_deg.median, 0.3..);
+    expect("metres, of those with one reading", five.metres / one.metres, ..1.0);
 }
 
 /// The price says what a user wants: the higher it is, the farther the robot drives, and the more it learns from as many
 /// labels. Bits save driving, accuracy saves labels.
 #[test]
 fn a_higher_price_drives_farther_for_more() {
-    let fields = cases(60, 300);
-    let flown = |asking| flown([800.0, 500.0], unicycle(5.0), asking, fields);
-    let mut before = (0.0, f64::INFINITY);
-    for price in [0.0, 5.0, 50.0, 200.0] {
-        let summary = flown(priced(price, 16));
-        let row = at(&summary, 16);
-        assert!(row.metres > before.0 && row.centre_deg.median < before.1, "{price}: {row:?}");
-        before = (row.metres, row.centre_deg.median);
-    }
-    let [accuracy, bits] =
-        [Seeks::Accuracy, Seeks::Bits].map(|seeks| flown(Asking { seeks, ..priced(50.0, 16) }));
-    let (accuracy, bits) = (at(&accuracy, 16), at(&bits, 16));
-    assert!(bits.metres < 0.6 * accuracy.metres, "{} m, {} m", bits.metres, accuracy.metres);
-    assert!(accuracy.centre_deg.median < bits.centre_deg.median, "{accuracy:?}, {bits:?}");
+    let flown = |asking| lake(5_000, asking, 1, cases(60, 300));
+    let rows = [0.0, 5.0, 50.0, 200.0].map(|price| flown(priced(price, 16)));
+    assert!(rows.is_sorted_by(|before, after| before.metres < after.metres));
+    assert!(rows.is_sorted_by(|before, after| before.centre_deg.median > after.centre_deg.median));
+    let bits = flown(Asking { seeks: Seeks::Bits, ..priced(50.0, 16) });
+    expect("metres for bits", bits.metres / rows[2].metres, ..0.6);
+    expect("degrees for bits", bits.centre_deg.median, rows[2].centre_deg.median..);
 }
 
 type Seeing<S> = Lookahead<Unicycle, VersionSpace<32>, Area, NoGoal, S>;
 
-fn site(x: f64, z: f64) -> Site {
-    Site::try_from(Point2::new(x, z)).expect("as it should")
+fn square(side: f64) -> Area {
+    Area::metres([0.0; 2], [side; 2]).expect("an area")
 }
 
-/// The line is `z = 250`, 500 m x 500 m large.
-fn label(site: Site) -> Label {
-    if site.z() >= 250 * UNITS_PER_METRE { Label::Positive } else { Label::Negative }
+/// The line is half-way up.
+fn label(area: &Area, site: Site) -> Label {
+    if 2 * site.z() >= area.max().z() { Label::Positive } else { Label::Negative }
 }
 
-fn area() -> Area {
-    Area::metres([0.0, 0.0], [500.0, 500.0]).expect("as it should")
+/// A planner in a square whose given places are these shares of its side.
+fn planner<S: Sight>(side: f64, vehicle: Unicycle, sight: S) -> (Seeing<S>, Pose) {
+    let area = square(side);
+    let given = [[0.4, 0.3], [0.42, 0.66], [0.6, 0.72], [0.62, 0.38]].map(|at| {
+        let site = Site::metres(at.map(|it| side * it)).expect("inside");
+        Sample { site, label: label(&area, site) }
+    });
+    let space = VersionSpace::new(&given).expect("an oracle");
+    let planner = Lookahead::new(area, vehicle, space).expect("room").seeing(sight);
+    (planner, Pose { site: given[0].site, heading: Heading::default() })
 }
 
-fn planner<S: Sight>(sight: S) -> Seeing<S> {
-    let places = [(200.0, 150.0), (210.0, 330.0), (300.0, 360.0), (310.0, 190.0)];
-    let given = places.map(|(x, z)| site(x, z)).map(|site| Sample { site, label: label(site) });
-    let space = VersionSpace::new(&given).expect("as it should");
-    Lookahead::new(area(), Unicycle::default(), space).expect("as it should").seeing(sight)
-}
-
-fn start() -> Pose {
-    Pose { site: site(200.0, 150.0), heading: Heading::default() }
-}
-
-/// Flies so many motions, has each looked at before it is made, and returns the labels.
-fn fly<S: Sight>(sight: S, motions: u32, mut look: impl FnMut(&mut Seeing<S>, Pose)) -> u32 {
-    let (mut planner, mut pose, mut labels) = (planner(sight), start(), 0);
+/// Flies so many motions in a square of 500 m, has each looked at before it is made, and returns the labels and the poses.
+fn fly<S: Sight>(
+    sight: S,
+    motions: u32,
+    mut look: impl FnMut(&mut Seeing<S>, Pose),
+) -> (u32, Vec<Pose>) {
+    let (mut planner, mut pose) = planner(500.0, Unicycle::default(), sight);
+    let (mut labels, mut poses) = (0, Vec::new());
     for _ in 0..motions {
         look(&mut planner, pose);
         let Plan::Move(motion) = planner.plan(pose) else { break };
         pose = motion.target;
-        let reading = motion.wants_label.then(|| label(pose.site).into());
+        let reading = motion.wants_label.then(|| label(&square(500.0), pose.site).into());
         labels += u32::from(reading.is_some());
-        planner.observe(pose, reading).expect("as it should");
+        planner.observe(pose, reading).expect("a true label");
+        poses.push(pose);
     }
-    labels
+    (labels, poses)
 }
 
 #[test]
 fn a_price_buys_driving_for_fewer_labels() {
     let [none, some, high] = [0.0, 50.0, 16_384.0]
-        .map(|price| fly(Far::at_price(price).expect("as it should"), 400, |_, _| ()));
+        .map(|price| fly(Far::at_price(price).expect("a price"), 400, |_, _| ()).0);
     assert!(none >= 28 && high < some && high >= 2, "{none}, {some}, {high} labels");
     assert!(Far::at_price(-1.0).is_err() && Far::at_price(f64::NAN).is_err());
 }
 
-/// A plan asked twice, and by a planner that was asleep on the way, is the same.
+/// A plan by a planner that was asleep on the way is the same, and so is that of a planner whose sight is chosen at run
+/// time.
 #[test]
 fn a_way_goes_on_after_a_sleep() {
-    let far = Far::across(&area());
+    let far = Far::across(&square(500.0)).seeking(Seeks::Bits);
     let mut silent = 0;
     fly(far, 150, |awake, pose| {
         let plan = awake.plan(pose);
-        assert_eq!(plan, awake.plan(pose));
-        let mut woken = planner(far);
-        woken.restore(&awake.snapshot()).expect("as it should");
+        let (mut woken, _) = planner(500.0, Unicycle::default(), AnySight::from(Some(far)));
+        woken.restore(&awake.snapshot()).expect("its own snapshot");
         assert_eq!(woken.plan(pose), plan);
         silent += u32::from(matches!(plan, Plan::Move(motion) if !motion.wants_label));
     });
     assert!(silent > 50, "{silent}");
-}
-
-#[test]
-fn what_is_told_at_run_time_sees_as_far() {
-    let far = Far::at_price(20.0).expect("as it should").seeking(Seeks::Bits);
-    for told in [None, Some(far)] {
-        let (mut near, mut distant, mut either) =
-            (planner(Near), planner(far), planner(AnySight::from(told)));
-        let mut pose = start();
-        for _ in 0..60 {
-            let plan = either.plan(pose);
-            let same = if told.is_some() { distant.plan(pose) } else { near.plan(pose) };
-            assert_eq!(plan, same);
-            let Plan::Move(motion) = plan else { break };
-            pose = motion.target;
-            let reading = motion.wants_label.then(|| label(pose.site).into());
-            near.observe(pose, reading).expect("as it should");
-            distant.observe(pose, reading).expect("as it should");
-            either.observe(pose, reading).expect("as it should");
-        }
-    }
+    assert_eq!(fly(Near, 60, |_, _| ()), fly(AnySight::from(None), 60, |_, _| ()));
 }
 
 #[test]
 fn sight_is_far_by_default_where_the_area_is_large() {
     let vehicle = Unicycle::default();
-    let square = |side: f64| Area::metres([0.0, 0.0], [side, side]).expect("as it should");
     assert_eq!(Far::usual(&square(20.0), &vehicle), None);
     assert_eq!(Far::usual(&square(32.0), &vehicle), None);
-    let lake = Area::metres([0.0, 0.0], [800.0, 500.0]).expect("as it should");
-    let usual = Far::usual(&lake, &vehicle).expect("as it should");
-    assert!((usual.price() - 81.25).abs() < 1e-3, "{}", usual.price());
+    let lake = Area::metres([0.0, 0.0], [800.0, 500.0]).expect("an area");
+    let usual = Far::usual(&lake, &vehicle).expect("a lake is large");
+    expect("price", usual.price(), 81.249..81.251);
 }
 
 /// More motions than a number of 16 bits holds lead to the places of a large area, where motions are of millimetres.
 #[test]
 fn a_way_may_be_of_any_length() {
-    let area = Area::metres([0.0, 0.0], [8_000.0, 8_000.0]).expect("an area");
-    let places = [(800.0, 400.0), (800.0, 7_200.0), (4_800.0, 7_600.0), (7_200.0, 800.0)];
-    let given = places.map(|(x, z)| site(x, z)).map(|site| {
-        let label =
-            if site.z() > 4_000 * UNITS_PER_METRE { Label::Positive } else { Label::Negative };
-        Sample { site, label }
-    });
-    let space = VersionSpace::<32>::new(&given).expect("an oracle");
     let vehicle = Unicycle::new(1, std::f64::consts::FRAC_PI_2, 3, 1).expect("a vehicle");
-    let far = Far::at_price(16_384.0).expect("a price");
-    let mut planner = Lookahead::new(area, vehicle, space).expect("room").seeing(far);
-    let mut pose = Pose { site: given[0].site, heading: Heading::default() };
+    let (mut planner, mut pose) =
+        planner(8_000.0, vehicle, Far::at_price(16_384.0).expect("a price"));
     for motion in 0..100 {
         let Plan::Move(next) = planner.plan(pose) else { panic!("it ends after {motion}") };
         assert!(!next.wants_label, "it gives up after {motion}");

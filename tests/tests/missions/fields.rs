@@ -1,79 +1,24 @@
-//! Whole missions over the standard fields, and traces that come out the same again.
+//! Every plan of Algorithm 1 over the standard fields, beside one that tries all actions.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::sync::Mutex;
 
 use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
-use host_sim::mission::recording::Recording;
-use host_sim::mission::results::StepResult;
-use host_sim::mission::scenario::{self, Overrides};
-use host_sim::report::trace;
 use host_sim::world::robot::Ideal;
-use nalgebra::Point2;
 use planner_core::link::message::MissionArea;
 use planner_core::robot::Body as _;
 use planner_core::search::recovery::Recovery;
-use planner_core::{Certainty, Plan, Planner as _, Pose, Site, Unicycle, Workspace as _};
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use planner_core::{Plan, Planner as _, Pose, Unicycle};
 use rayon::prelude::*;
 use tests::cases;
 use tests::twins::ladder::{Ladder, Rung};
 
 #[test]
-fn fields_never_contradict_themselves_or_the_truth() {
-    let fields = cases(2_000, 10_000);
-    let certain: u64 = (0..fields)
-        .into_par_iter()
-        .map(|number| {
-            let mission = standard_field::standard(2, number, Algorithm::Cfc, 40);
-            let mut rng = ChaCha8Rng::seed_from_u64(number);
-            let world = mission.world.clone();
-            let truth = *world.line().expect("a line");
-            let mut certain = 0;
-            let flown = mission.fly(|step, belief| {
-                let space = belief.version_space().expect("labels are true");
-                let place = format!("field {number} at {:?}", step.pose);
-                assert!(mission.config.area.contains(step.pose.site), "{place}: outside the area");
-                // What is certain is true.
-                for _ in 0..4 {
-                    let mut metres = || rng.random_range(0.0..standard_field::SIDE_M);
-                    let q = Site::try_from(Point2::new(metres(), metres())).expect("near");
-                    if let Certainty::Certain(label) = space.certainty(q) {
-                        assert!(world.agrees(q, label), "{place}: certain of {q:?}");
-                        certain += 1;
-                    }
-                }
-                // The truth is among the candidates: its slope and its intercept.
-                let angle = truth.angle_deg();
-                let arcs = space.slope_arc().intervals_deg();
-                let inside = |[from, to]: &[f64; 2]| from - 1e-9 <= angle && angle <= to + 1e-9;
-                assert!(arcs.iter().any(inside), "{place}: {angle} not in {arcs:?}");
-                if let Some([low, high]) = space.intercepts() {
-                    let c = truth.intercept().expect("no vertical line is left");
-                    let slack = 1e-9 * (1.0 + c.abs());
-                    assert!(low - slack <= c && c <= high + slack, "{place}: {c}");
-                }
-                // So no label can contradict it.
-                for sample in space.samples() {
-                    assert!(world.agrees(sample.site, sample.label));
-                }
-            });
-            assert!(flown.is_ok(), "field {number}: {:?}", flown.err());
-            certain
-        })
-        .sum();
-    println!("{fields} fields of 40 steps; {certain} certain positions, all of them true");
-    assert!(certain > 100 * fields);
-}
-
-#[test]
 fn every_plan_is_what_trying_all_actions_would_make_it() {
     let unicycle = Unicycle::paper();
     let rungs = Mutex::new(BTreeMap::new());
-    (0..cases(100, 2_000)).into_par_iter().for_each(|number| {
+    (0..cases(70, 2_000)).into_par_iter().for_each(|number| {
         let mission = standard_field::standard(12, number, Algorithm::Cfc, 60);
         let mut robot = Ideal { world: mission.world.clone() };
         let mut planner = mission.cfc(mission.config.area, unicycle);
@@ -107,7 +52,6 @@ fn every_plan_is_what_trying_all_actions_would_make_it() {
         }
     });
     let rungs = rungs.into_inner().expect("no panic");
-    println!("{rungs:?}");
     assert!(rungs.len() == 4 && rungs.values().all(|count| *count >= 20), "{rungs:?}");
 }
 
@@ -127,31 +71,4 @@ fn climb(ladder: &Ladder<Unicycle, MissionArea>, pose: Pose, plan: Plan, place: 
         }
         _ => panic!("{place}: {plan:?}, expected {rung:?}"),
     }
-}
-
-#[test]
-fn a_mission_comes_out_the_same_again_byte_for_byte() {
-    for algorithm in [Algorithm::Cfc, Algorithm::Random] {
-        for number in 0..50 {
-            let trace = || {
-                let mission = standard_field::standard(3, number, algorithm, 40);
-                trace::lines(&Recording::of(&mission).expect("noiseless").results)
-            };
-            assert_eq!(trace(), trace(), "field {number}");
-        }
-    }
-}
-
-#[test]
-fn a_seed_changes_the_random_walk_and_nothing_else() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../host-sim/scenarios");
-    let run = |algorithm, seed| {
-        let overrides = Overrides { algorithm: Some(algorithm), steps: None, seed: Some(seed) };
-        let mission = scenario::read(&folder.join("paper-noiseless.toml"), overrides);
-        let recording = Recording::of(&mission.expect("a good file")).expect("noiseless");
-        let at = |it: &StepResult| [it.pose.x, it.pose.z, it.pose.heading].map(f64::to_bits);
-        recording.results.steps.iter().map(at).collect::<Vec<_>>()
-    };
-    assert_eq!(run(Algorithm::Cfc, 1), run(Algorithm::Cfc, 2));
-    assert_ne!(run(Algorithm::Random, 1), run(Algorithm::Random, 2));
 }

@@ -4,54 +4,60 @@
 //! four given points about its start. The map is the waist after each motion. It is compared with the front as it is then.
 
 use host_sim::campaign::fronts::flight::{Fronts, STEPS, sea, tracker, vehicle};
-use host_sim::campaign::fronts::following::{Course, REACH, follow};
+use host_sim::campaign::fronts::following::{Course, Flown, REACH, follow};
 use host_sim::campaign::fronts::kinds::{KINDS, Told};
 use host_sim::campaign::fronts::summary::Row;
 use host_sim::campaign::fronts::true_front::{TrueFront, site};
 use host_sim::campaign::fronts::who::Who;
 use nalgebra::{Point2, Vector2};
 use planner_core::dynamics::Dynamics;
-use planner_core::motion::car;
-use planner_core::planner::scout::LOOKED_AT;
 use planner_core::{
-    AnyReliability, AnyVehicle, Area, Boat, Car, Front, Heading, Holonomic, Hull, KeepOut, Label,
-    Noise, Persist as _, Plan, Planner as _, PolygonArea, Pose, Sample, Site, Track, Tracker,
-    Unicycle, Workspace as _,
+    AnyVehicle, Area, Front, Heading, Holonomic, Hull, KeepOut, Label, Noise, Plan, Planner as _,
+    PolygonArea, Pose, Sample, Site, Track, Tracker, Unicycle, Workspace,
 };
-use rand::{RngExt as _, SeedableRng as _};
+use rand::RngExt as _;
 use rand_chacha::ChaCha8Rng;
+use tests::ensemble::{self, expect, median, percent};
+use tests::vehicles::{boat, car};
 use tests::{cases, is_long};
 
 /// The length of a mission, in motions and in steps.
 const MOTIONS: u32 = STEPS as u32;
 
-fn course(p: f64) -> Course {
-    Course { motions: MOTIONS, steps: 1.0, p }
-}
-
-fn front(radius: f64) -> Front {
-    Front::bending(radius).expect("a front")
-}
+type Belief = Tracker<16, 16, 3>;
 
 fn unicycle() -> Unicycle {
     vehicle(REACH).expect("a vehicle")
-}
-
-fn open_sea() -> Area {
-    sea().expect("an area")
 }
 
 fn noise(p: f64) -> Noise {
     Noise::new(p).expect("a probability")
 }
 
+/// A front that bends by no smaller radius than this, crosses an area, and is known by some samples.
+fn sought(area: Area, radius: f64, p: f64, given: &[Sample]) -> Belief {
+    Tracker::new(area, Front::bending(radius).expect("a front"), noise(p)).given(given)
+}
+
 /// The usual tracker, told of a still front.
-fn told(
-    front: &TrueFront,
-    radius: f64,
-    noise: impl Into<Noise<AnyReliability>>,
-) -> Tracker<16, 16, 3> {
-    tracker(front, Told { radius, speed: 0.0 }, noise).expect("a front")
+fn told(front: &TrueFront, radius: f64, p: f64) -> Belief {
+    tracker(front, Told { radius, speed: 0.0 }, noise(p)).expect("a front")
+}
+
+/// Follows a front for so many motions, inside an area; each pose is shown to `look`.
+fn go<D: Dynamics, G: Workspace + Copy>(
+    (world, p): (&TrueFront, f64),
+    (area, dynamics, tracker): (G, D, Belief),
+    (start, motions): (Pose, u32),
+    rng: &mut ChaCha8Rng,
+    mut look: impl FnMut(Pose),
+) -> Flown {
+    let planner = Track::new(area, dynamics, tracker).expect("room");
+    let course = Course { motions, steps: 1.0, p };
+    follow(world, planner, (course, start), rng, |_, from, to| {
+        assert!(area.contains(to.site) && area.lets_pass(&[from.site, to.site]));
+        look(to);
+    })
 }
 
 /// The distance of the map from the front: median and 95 %, metres; metres driven a metre of front; the share lost.
@@ -59,13 +65,10 @@ type Bounds = [f64; 4];
 
 /// The missions of a planner along all kinds of fronts, with its usual motions or shorter ones.
 fn fly(who: Who, p: f64, reach: Option<f64>) -> Vec<Row> {
-    let (missions, seed) = (cases(10, 300), 41);
-    let fronts = Fronts { who, missions, seed, p: vec![p], told: [1.0; 2], reach };
-    let rows = fronts.run().expect("settings of a tracker").rows;
-    for row in &rows {
-        println!("{who:?}, {missions} missions, seed {seed}: {row:.3?}");
-    }
-    rows
+    // Short motions are compared by fewer missions.
+    let missions = cases(if reach.is_some() { 3 } else { 6 }, 300);
+    let fronts = Fronts { who, missions, seed: 41, p: vec![p], told: [1.0; 2], reach };
+    fronts.run().expect("settings of a tracker").rows
 }
 
 /// With the bounds of a long run; of a quick one they are loose.
@@ -131,159 +134,96 @@ fn steering_without_a_belief_maps_a_front_less_well() {
     }
 }
 
-/// A mission depends on its number and the seed alone.
-#[test]
-fn missions_along_fronts_depend_on_seed_and_number_alone() {
-    let kind = &KINDS[4];
-    let of = |seed, missions| {
-        let told = [1.0; 2];
-        let fronts = Fronts { who: Who::Track, missions, seed, p: vec![0.9], told, reach: None };
-        (0..missions).map(|n| fronts.mission(kind, 0.9, n).expect("a mission")).collect::<Vec<_>>()
-    };
-    let whole = of(7, 3);
-    assert_eq!(whole[..2], of(7, 2)[..]);
-    assert_ne!(whole[0], whole[1]);
-    assert_ne!(whole[0], of(8, 1)[0]);
-}
-
-/// Any vehicle goes along a front in a polygon with keep-outs: it stays inside, keeps out, and its plans are bounded
-/// and the same each time, also after a sleep.
+/// Any vehicle goes along a front in a polygon with keep-outs, one of them on the front.
 #[test]
 fn any_vehicle_goes_along_a_front_and_keeps_out() {
-    let car = |radius_mm| {
-        let shape = car::Shape {
-            radius_mm,
-            shortest_mm: 500,
-            turn_step_urad: 7_000,
-            speeds: 21,
-            speed_step_mm: 100,
-        };
-        AnyVehicle::Car(Car::new(shape).expect("a car"))
-    };
-    let boat = Unicycle::new(7_000, 0.5, 21, 100).and_then(Boat::new);
-    let vehicles = [
+    for (number, vehicle) in (0..).zip([
         AnyVehicle::Unicycle(unicycle()),
-        AnyVehicle::Boat(boat.expect("a boat")),
-        car(3_000),
-        car(5_000),
-        car(8_000),
-    ];
-    for (number, vehicle) in (0..).zip(vehicles) {
-        for p in [1.0, 0.9] {
-            go_along(vehicle, p, number);
-        }
+        AnyVehicle::Boat(boat(7_000, 0.5, 2_000)),
+        AnyVehicle::Car(car(7_000, 3_000, 2_000)),
+        AnyVehicle::Car(car(7_000, 5_000, 2_000)),
+        AnyVehicle::Car(car(7_000, 8_000, 2_000)),
+    ]) {
+        go_along(vehicle, 1.0, number);
+        go_along(vehicle, 0.9, number);
     }
-    let holonomic = Holonomic::new(720, 21, 100).expect("a vehicle");
-    go_along(holonomic, 0.9, 5);
+    go_along(Holonomic::new(720, 21, 100).expect("a vehicle"), 0.9, 5);
 }
 
-fn go_along<D: Dynamics + Clone>(dynamics: D, p: f64, number: u64) {
-    let mut rng = ChaCha8Rng::seed_from_u64(42);
-    rng.set_stream(number);
+fn go_along<D: Dynamics>(dynamics: D, p: f64, number: u64) {
+    let mut rng = ensemble::rng(42, number);
     let world = TrueFront::circle(40.0, &mut rng);
-    // One keep-out on the front, one beside it.
     let across = -world.place.coords;
     let beside = Vector2::new(-world.place.y, world.place.x) * 1.15;
-    let outs = [across, beside].map(|at| {
-        let middle = Hull::metres(&[Point2::from(at)]).expect("a point");
-        KeepOut::new(middle, 4.0).expect("a disc")
-    });
+    let outs = [across, beside].map(|at| KeepOut::disc([at.x, at.y], 4.0).expect("a disc"));
     let corners = [[-60.0, -52.0], [52.0, -60.0], [60.0, 52.0], [-52.0, 60.0]];
     let hull = Hull::metres(&corners).expect("a polygon");
     let area = PolygonArea::<4, 2>::new(hull, &outs).expect("an area");
-    let tracker = told(&world, 40.0, noise(p));
-    let planner = Track::new(area, dynamics, tracker).expect("room");
-    let mut fresh = planner.clone();
     let heading = Heading::from_radians(world.angle).expect("an angle");
     let start = Pose { site: site(world.beside(0.0, 2.0)), heading };
-    let mut most = 0;
-    let flown = follow(&world, planner, (course(p), start), &mut rng, |planner, from, to| {
-        let plan = planner.plan(from);
-        assert_eq!(plan, planner.plan(from), "{number}");
-        fresh.restore(&planner.snapshot()).expect("its own snapshot");
-        assert_eq!(plan, fresh.plan(from), "{number}");
-        let Plan::Move(motion) = plan else { panic!("a motion") };
-        most = most.max(motion.examined);
-        assert!(area.contains(to.site) && area.lets_pass(&[from.site, to.site]), "{number}");
-    });
-    let followed = flown.followed;
-    println!("vehicle {number}, p {p}: {followed:.0} m of 251 in {MOTIONS} motions, {most} looks");
-    assert!(!flown.is_lost && most <= LOOKED_AT, "{number}, {p}");
-    assert!(followed > 140.0, "vehicle {number}, p {p}: {followed}");
+    let of = (area, dynamics, told(&world, 40.0, p));
+    let flown = go((&world, p), of, (start, MOTIONS), &mut rng, |_| ());
+    assert!(!flown.is_lost, "{number}, {p}");
+    expect(format!("followed by vehicle {number}, p = {p}"), flown.followed, 140.0..);
 }
 
 #[test]
 fn a_closed_front_is_noticed() {
-    let mut rng = ChaCha8Rng::seed_from_u64(43);
-    for number in 0..cases(8, 60) {
+    ensemble::fly(cases(8, 60), |number| {
+        let mut rng = ensemble::rng(43, number);
         let world = TrueFront::circle(20.0, &mut rng);
-        let planner = Track::new(open_sea(), unicycle(), told(&world, 20.0, noise(1.0)));
+        let of = (sea().expect("an area"), unicycle(), told(&world, 20.0, 1.0));
         let start = world.start(&mut rng);
-        let flown =
-            follow(&world, planner.expect("room"), (course(1.0), start), &mut rng, |_, _, _| ());
-        let after = flown.closed_after.expect("a whole round");
+        let flown = go((&world, 1.0), of, (start, MOTIONS), &mut rng, |_| ());
         // The circle is 126 m long.
-        assert!((110.0..160.0).contains(&after), "{number}: {after}");
-    }
+        expect("closed after", flown.closed_after.expect("a whole round"), 110.0..160.0);
+    });
 }
 
-/// Where a front leaves the area, the robot goes back along it.
+/// Where a front leaves the area, the robot goes back along it. A straight front is soon known so exactly that no label
+/// tells more, and is followed on all the same.
 #[test]
 fn at_the_border_it_turns_round() {
-    let mut rng = ChaCha8Rng::seed_from_u64(45);
-    for number in 0..cases(6, 60) {
+    ensemble::fly(cases(6, 60), |number| {
         let p = [1.0, 0.9][number as usize % 2];
-        let world = TrueFront::sine(2.0, 60.0, &mut rng);
-        let area = Area::metres([-30.0, -20.0], [30.0, 20.0]).expect("an area");
-        let tracker = told(&world, 30.0, noise(p));
-        let planner = Track::new(area, unicycle(), tracker).expect("room");
-        let start = world.start(&mut rng);
-        let (mut least, mut most) = (0, 0);
-        let flown = follow(&world, planner, (course(p), start), &mut rng, |_, _, to| {
-            assert!(area.contains(to.site));
-            (least, most) = (least.min(to.site.x()), most.max(to.site.x()));
-        });
-        let [least, most] = [least, most].map(|it| f64::from(it) / 65_536.0);
-        assert!(!flown.is_lost && flown.driven > 150.0, "{number}: {} m", flown.driven);
-        assert!(least < -24.0 && most > 24.0, "{number}: from {least} to {most}");
-    }
-}
-
-/// A straight front is soon known so exactly that no label tells more. The robot goes on along it all the same, up to the
-/// border and back.
-#[test]
-fn a_front_that_is_known_exactly_is_followed_on() {
-    let area = Area::metres([-8.0, -30.0], [152.0, 30.0]).expect("an area");
-    for (number, p) in (0..cases(6, 60)).zip([1.0, 0.9].into_iter().cycle()) {
-        let mut rng = ChaCha8Rng::seed_from_u64(47);
-        rng.set_stream(number);
-        let world = TrueFront::sine(0.0, 60.0, &mut rng);
-        let tracker = Tracker::new(area, Front::STRAIGHT, noise(p)).given(&world.given());
-        let planner: Track<_, 16, 16, 3> = Track::new(area, unicycle(), tracker).expect("room");
-        let start = world.start(&mut rng);
-        let flown = follow(&world, planner, (course(p), start), &mut rng, |_, _, _| ());
-        // Most motions are of 2 m.
-        assert!(!flown.is_lost && flown.driven > 1.5 * f64::from(MOTIONS), "{number}: {flown:?}");
-    }
+        for (height, length, side) in [(2.0, 60.0, 30.0), (0.0, 60.0, 80.0)] {
+            let mut rng = ensemble::rng(45, number);
+            let world = TrueFront::sine(height, length, &mut rng);
+            let area = Area::metres([-side, -20.0], [side, 20.0]).expect("an area");
+            let tracker = if height > 0.0 {
+                told(&world, 30.0, p)
+            } else {
+                Tracker::new(area, Front::STRAIGHT, noise(p)).given(&world.given())
+            };
+            let start = world.start(&mut rng);
+            let (mut least, mut most) = (0.0_f64, 0.0_f64);
+            let of = (area, unicycle(), tracker);
+            let flown = go((&world, p), of, (start, MOTIONS), &mut rng, |to| {
+                let x = Point2::<f64>::from(to.site).x;
+                (least, most) = (least.min(x), most.max(x));
+            });
+            assert!(!flown.is_lost, "{number}, {height}");
+            // Most motions are of 2 m, and along the straight front nearly all.
+            let least_driven = if height > 0.0 { 150.0 } else { 1.5 * f64::from(MOTIONS) };
+            expect(format!("{number}, driven"), flown.driven, least_driven..);
+            assert!(height == 0.0 || least < -24.0 && most > 24.0, "{number}: {least} to {most}");
+        }
+    });
 }
 
 /// Told that a coast is straight, the robot loses it again and again. It seeks it all over the area before it ends with
 /// "all of one label", and finds it.
 #[test]
 fn a_front_that_was_known_is_sought_until_the_end() {
-    for number in 0..cases(15, 100) {
-        let mut rng = ChaCha8Rng::seed_from_u64(48);
-        rng.set_stream(number);
+    ensemble::fly(cases(15, 100), |number| {
+        let mut rng = ensemble::rng(48, number);
         let world = TrueFront::coast([6.0, 25.0], &mut rng);
         let area = Area::metres([-80.0, -30.0], [80.0, 30.0]).expect("an area");
-        let tracker = Tracker::new(area, Front::bending(1e6).expect("a front"), noise(0.9));
-        let tracker = tracker.given(&world.given());
-        let planner: Track<_, 16, 16, 3> = Track::new(area, unicycle(), tracker).expect("room");
-        let (start, course) = (world.start(&mut rng), Course { motions: 300, ..course(0.9) });
-        let mut motions = 0;
-        follow(&world, planner, (course, start), &mut rng, |_, _, _| motions += 1);
+        let of = (area, unicycle(), sought(area, 1e6, 0.9, &world.given()));
+        let (start, mut motions) = (world.start(&mut rng), 0);
+        go((&world, 0.9), of, (start, 300), &mut rng, |_| motions += 1);
         assert_eq!(motions, 300, "{number}");
-    }
+    });
 }
 
 /// Readings on the way and positions that err: what is stated still holds.
@@ -298,16 +238,14 @@ fn readings_on_the_way_help_and_positions_that_err_are_allowed_for() {
         (50, 1.0, 0.0),
         (1, 0.9, 0.3),
     ] {
-        let (mut errors, mut covered, mut lost) = (Vec::new(), 0, 0);
-        for number in 0..cases(8, 100) {
-            let mut rng = ChaCha8Rng::seed_from_u64(46);
-            rng.set_stream(number);
+        let flown = ensemble::fly(cases(8, 100), |number| {
+            let mut rng = ensemble::rng(46, number);
             let world = TrueFront::circle(60.0, &mut rng);
             let noise = noise(p).with_tolerance(3.0 * deviation).expect("a tolerance");
-            let tracker = told(&world, 60.0, noise);
-            let mut planner = Track::new(open_sea(), unicycle(), tracker).expect("room");
-            let mut pose = world.start(&mut rng);
-            let mut away = 0;
+            let belief = tracker(&world, Told { radius: 60.0, speed: 0.0 }, noise);
+            let area = sea().expect("an area");
+            let mut planner = Track::new(area, unicycle(), belief.expect("a front")).expect("room");
+            let (mut pose, mut away, mut found) = (world.start(&mut rng), 0, Vec::new());
             for motion in 1..=100 {
                 let Plan::Move(next) = planner.plan(pose) else { panic!("a motion") };
                 let [from, to] = [pose, next.target].map(|it| Point2::<f64>::from(it.site));
@@ -325,20 +263,18 @@ fn readings_on_the_way_help_and_positions_that_err_are_allowed_for() {
                 planner.observe(pose, reading).expect("any label is taken in");
                 if let Some(waist) = planner.found() {
                     let off = world.distance(Point2::from(waist.site), motion.into());
-                    covered += usize::from(off <= waist.half_width(0.9));
-                    errors.push(off);
+                    found.push((off, off <= waist.half_width(0.9)));
                 }
                 away = if world.distance(to, motion.into()) > 3.0 * REACH { away + 1 } else { 0 };
             }
-            lost += u32::from(away > 10);
-        }
-        errors.sort_by(f64::total_cmp);
-        let (median, covers) = (errors[errors.len() / 2], covered as f64 / errors.len() as f64);
+            assert!(away <= 10, "{number} is lost");
+            found
+        });
+        let found = flown.concat();
         let what = format!("{readings} readings, p {p}, {deviation} m");
-        println!("{what}: {median:.3} m off, {covers:.3}, {lost} lost");
-        assert!(lost == 0 && covers > 0.9, "{what}");
+        expect(format!("{what}, covered"), percent(&found, |it| it.1), 90.0..);
         let most = if readings > 1 { 0.13 } else { 0.35 };
-        assert!(median < most, "{what}: {median}");
+        expect(format!("{what}, off"), median(found.iter().map(|it| it.0)), ..most);
     }
 }
 
@@ -346,79 +282,69 @@ fn readings_on_the_way_help_and_positions_that_err_are_allowed_for() {
 #[test]
 fn a_front_beside_the_start_is_found_in_a_large_area() {
     let area = Area::metres([-200.0, -200.0], [300.0, 300.0]).expect("an area");
-    for (p, most) in [(1.0, 30), (0.9, 70)] {
-        let (mut steps, mut alarms) = (Vec::new(), 0);
-        for number in 0..20 {
-            let mut rng = ChaCha8Rng::seed_from_u64(61);
-            rng.set_stream(number);
+    for (p, most) in [(1.0, 30.0), (0.9, 70.0)] {
+        let steps = ensemble::fly(20, |number| {
+            let mut rng = ensemble::rng(61, number);
             let world = TrueFront::circle(120.0, &mut rng);
-            let tracker = Tracker::<16, 16, 3>::new(area, front(100.0), noise(p));
-            let mut planner = Track::new(area, unicycle(), tracker).expect("room");
+            let belief = sought(area, 100.0, p, &[]);
+            let mut planner = Track::new(area, unicycle(), belief).expect("room");
             let mut pose = Pose { site: site(world.beside(0.0, 2.0)), heading: Heading(0) };
-            let (mut found, mut is_alarmed) = (None, false);
-            for step in 1..=120 {
-                let Plan::Move(next) = planner.plan(pose) else { break };
+            let found = (1..=120).find(|_| {
+                let Plan::Move(next) = planner.plan(pose) else { return false };
                 pose = next.target;
                 let label = world.sensed(Point2::from(pose.site), 0.0, p, &mut rng);
                 planner.observe(pose, next.wants_label.then(|| label.into())).expect("a label");
-                is_alarmed |= planner.alarm().is_some();
-                if planner.found().is_some() {
-                    found = Some(step);
-                    break;
+                planner.found().is_some()
+            });
+            found.map_or(f64::INFINITY, f64::from)
+        });
+        expect(format!("found after, p = {p}"), median(steps), ..most);
+    }
+}
+
+/// From nothing but a box that the front crosses; and a spill somewhere in an area, of which one point inside is known to
+/// a robot outside. One in twenty may be missed, or lost.
+#[test]
+fn a_front_is_found_from_nothing_and_by_a_point_inside() {
+    for by_a_point in [false, true] {
+        let lost = ensemble::fly(cases(20, 200), |number| {
+            let mut rng = ensemble::rng(44, number);
+            let p = [1.0, 0.9][number as usize % 2];
+            let world = TrueFront::circle(40.0, &mut rng);
+            let (area, belief, start) = if by_a_point {
+                let [x, z] = [0; 2].map(|_| rng.random_range(-155.0..-45.0));
+                let area = Area::metres([x, z], [x + 200.0, z + 200.0]).expect("an area");
+                let inside = Sample { site: Site::ORIGIN, label: Label::Positive };
+                let mut place = || [x, z].map(|it| it + rng.random_range(1.0..199.0));
+                let mut outside = place();
+                while libm::hypot(outside[0], outside[1]) < 42.0 {
+                    outside = place();
                 }
-            }
-            steps.push(found.unwrap_or(u32::MAX));
-            alarms += u32::from(is_alarmed);
-        }
-        steps.sort_unstable();
-        println!("p {p}: found after {steps:?}, {alarms} alarms");
-        assert!(steps[10] < most, "{p}: {steps:?}");
+                let start = Pose::at(outside, Heading(0)).expect("a pose");
+                (area, sought(area, 40.0, p, &[inside]), start)
+            } else {
+                let [x, z] = world.beside(3.0, 4.0).into();
+                let around = Area::metres([x - 10.0, z - 10.0], [x + 10.0, z + 10.0]);
+                let belief = sought(around.expect("an area"), 30.0, p, &[]);
+                let area = Area::metres([-60.0; 2], [60.0; 2]).expect("an area");
+                (area, belief, world.start(&mut rng))
+            };
+            let of = (area, unicycle(), belief);
+            let flown = go((&world, p), of, (start, MOTIONS), &mut rng, |_| ());
+            flown.is_lost || flown.followed < 60.0
+        });
+        expect(format!("lost, by a point {by_a_point}"), percent(&lost, |it| *it), ..=5.0);
     }
 }
 
-/// From nothing but a box that the front crosses.
+/// A mission depends on its number and the seed alone.
 #[test]
-fn a_front_is_found_from_nothing() {
-    let mut rng = ChaCha8Rng::seed_from_u64(44);
-    let (mut lost, missions) = (0, cases(16, 200));
-    for number in 0..missions {
-        let p = [1.0, 0.9][number as usize % 2];
-        let world = TrueFront::circle(40.0, &mut rng);
-        let [x, z] = world.beside(3.0, 4.0).into();
-        let around = Area::metres([x - 10.0, z - 10.0], [x + 10.0, z + 10.0]).expect("an area");
-        let tracker = Tracker::<16, 16, 3>::new(around, front(30.0), noise(p));
-        let field = Area::metres([-60.0, -60.0], [60.0, 60.0]).expect("an area");
-        let planner = Track::new(field, unicycle(), tracker).expect("room");
-        let start = world.start(&mut rng);
-        let flown = follow(&world, planner, (course(p), start), &mut rng, |_, _, _| ());
-        lost += u64::from(flown.is_lost || flown.followed < 60.0);
-    }
-    println!("{lost} of {missions} are not found, or lost");
-    assert!(lost * 20 <= missions, "{lost} of {missions}");
-}
-
-/// A spill somewhere in an area, and a robot outside it: one point inside is all that is known.
-#[test]
-fn a_spill_is_found_by_a_point_inside() {
-    let mut rng = ChaCha8Rng::seed_from_u64(47);
-    let (mut lost, missions) = (0, cases(20, 200));
-    for number in 0..missions {
-        let p = [1.0, 0.9][number as usize % 2];
-        let world = TrueFront::circle(40.0, &mut rng);
-        let [x, z] = [0; 2].map(|_| rng.random_range(-155.0..-45.0));
-        let area = Area::metres([x, z], [x + 200.0, z + 200.0]).expect("an area");
-        let inside = Sample { site: Site::ORIGIN, label: Label::Positive };
-        let tracker = Tracker::<16, 16, 3>::new(area, front(40.0), noise(p)).given(&[inside]);
-        let planner = Track::new(area, unicycle(), tracker).expect("room");
-        let mut place = || [x, z].map(|it| it + rng.random_range(1.0..199.0));
-        let mut outside = place();
-        while libm::hypot(outside[0], outside[1]) < 42.0 {
-            outside = place();
-        }
-        let start = Pose::at(outside, Heading(0)).expect("a pose");
-        let flown = follow(&world, planner, (course(p), start), &mut rng, |_, _, _| ());
-        lost += u64::from(flown.is_lost || flown.followed < 60.0);
-    }
-    println!("{lost} of {missions} are not found, or lost");
-    assert!(lost * 20 <= missions, "{lost} of {missions}");
+fn missions_along_fronts_depend_on_seed_and_number_alone() {
+    let of = |seed, missions, number| {
+        let (who, p, told) = (Who::Track, vec![0.9], [1.0; 2]);
+        let fronts = Fronts { who, missions, seed, p, told, reach: None };
+        fronts.mission(&KINDS[4], 0.9, number).expect("a mission")
+    };
+    assert_eq!(of(7, 3, 1), of(7, 2, 1));
+    assert!(of(7, 3, 0) != of(7, 3, 1) && of(7, 1, 0) != of(8, 1, 0));
 }

@@ -6,18 +6,17 @@ use host_sim::campaign::ensemble::Campaign;
 use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::{Mission, Table};
-use host_sim::mission::read_out::ReadOut;
-use host_sim::report::campaign as tables;
+use host_sim::mission::results::Ending;
 use host_sim::world::noise::{Extent, NoiseModel, limit};
 use host_sim::world::polygon::misclassified;
 use planner_core::motion::unicycle::Grid;
 use planner_core::{
     Accuracy, Angle, Goal, Label, Line, Plan, Planner as _, PosteriorView, Reliability, Sample,
-    Unicycle,
+    StopReason, Unicycle,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use rayon::prelude::*;
+use tests::ensemble::{self, expect, noisy, percent};
 use tests::{cases, is_long};
 
 /// The half degree, and the thousandth of the area, that missions are to come to.
@@ -29,17 +28,6 @@ const LEVEL: u32 = 900_000;
 
 fn slope_arc() -> Accuracy {
     Accuracy::SlopeArc(Angle::from_degrees(SLOPE_ARC_DEG).expect("an angle"))
-}
-
-/// Labels that may be wrong everywhere: near the oracle's points they would tell more.
-fn noise(p: f64) -> NoiseModel {
-    NoiseModel { p, extent: Extent::OutsideBalls(0.0) }
-}
-
-/// How a mission to a goal ended, and what is known then.
-fn flown(mission: &Mission) -> (&'static str, Box<dyn ReadOut>) {
-    let flown = mission.fly(|_, _| {}).expect("labels that are certain are true");
-    (flown.ending.name(), flown.belief)
 }
 
 fn mission(number: u64, steps: u32, accuracy: Accuracy) -> Mission {
@@ -54,35 +42,30 @@ fn mission(number: u64, steps: u32, accuracy: Accuracy) -> Mission {
 #[test]
 fn true_labels_keep_every_promise() {
     for accuracy in [slope_arc(), Accuracy::Misclassified((MISCLASSIFIED * 1e6) as u32)] {
-        let known: usize = (0..cases(100, 1_000))
-            .into_par_iter()
-            .map(|number| {
-                let mission = mission(number, 60, accuracy);
-                let (ending, belief) = flown(&mission);
-                if ending != "known" {
-                    return 0;
+        let known = ensemble::fly(cases(100, 1_000), |number| {
+            let mission = mission(number, 60, accuracy);
+            let flown = mission.fly(|_, _| {}).expect("labels are true");
+            if flown.ending != Ending::Stopped(StopReason::Known) {
+                return false;
+            }
+            let centre = Line::from(flown.belief.estimates().centre.expect("lines are left"));
+            let left = flown.belief.version_space().expect("labels are true");
+            let mut lines: Vec<_> = left.bounds().map(Line::from).collect();
+            lines.extend([*mission.world.line().expect("a line"), centre]);
+            for (k, one) in lines.iter().enumerate() {
+                for other in &lines[..k] {
+                    let (off, promised) = match accuracy {
+                        Accuracy::SlopeArc(_) => (one.angle_to_deg(other), SLOPE_ARC_DEG),
+                        Accuracy::Misclassified(_) => {
+                            (misclassified(mission.config.area, one, other), MISCLASSIFIED)
+                        }
+                    };
+                    assert!(off <= promised, "field {number}: {off} of {accuracy:?}");
                 }
-                let truth = mission.world.line().expect("a line");
-                let centre = Line::from(belief.estimates().centre.expect("lines are left"));
-                let left = belief.version_space().expect("labels are true");
-                let mut lines: Vec<_> = left.bounds().map(Line::from).collect();
-                lines.extend([*truth, centre]);
-                for (k, one) in lines.iter().enumerate() {
-                    for other in &lines[..k] {
-                        let (off, promised) = match accuracy {
-                            Accuracy::SlopeArc(_) => (one.angle_to_deg(other), SLOPE_ARC_DEG),
-                            Accuracy::Misclassified(_) => {
-                                (misclassified(mission.config.area, one, other), MISCLASSIFIED)
-                            }
-                        };
-                        assert!(off <= promised, "field {number}: {off} of {accuracy:?}");
-                    }
-                }
-                1
-            })
-            .sum();
-        println!("{accuracy:?}: {known} missions ended as the line was known, all kept it");
-        assert!(known as u64 * 10 >= cases(100, 1_000) * 9, "{known}");
+            }
+            true
+        });
+        expect(format!("known, {accuracy:?}"), percent(&known, |it| *it), 90.0..);
     }
 }
 
@@ -92,50 +75,39 @@ fn true_labels_keep_every_promise() {
 #[test]
 fn labels_that_may_be_wrong_keep_promises_as_often_as_stated() {
     for p in [0.8, 0.9] {
-        let kept: Vec<bool> = (0..cases(60, 1_000))
-            .into_par_iter()
-            .filter_map(|number| {
-                let mut mission = mission(number, 400, slope_arc());
-                mission.noise = Some(noise(p));
-                let (ending, belief) = flown(&mission);
-                if ending != "known" {
-                    return None;
-                }
-                let table = belief.hypotheses().expect("labels may be wrong");
-                let truth = mission.world.line().expect("a line");
-                let posterior = PosteriorView::new(table);
-                let set = posterior.credible(f64::from(LEVEL) / 1e6);
-                let lines = || posterior.members(&set).flat_map(|it| table.lines(it).bounds());
-                assert!(set.slope_arc.width_deg() <= SLOPE_ARC_DEG, "field {number}");
-                let is_near = |line: Line| line.angle_to_deg(truth) <= SLOPE_ARC_DEG;
-                Some(lines().map(Line::from).all(is_near))
-            })
-            .collect();
+        let kept = ensemble::fly_some(cases(60, 1_000), |number| {
+            let mission = noisy(mission(number, 400, slope_arc()), p, 0.0);
+            let flown = mission.fly(|_, _| {}).expect("doubtful labels");
+            if flown.ending != Ending::Stopped(StopReason::Known) {
+                return None;
+            }
+            let table = flown.belief.hypotheses().expect("labels may be wrong");
+            let truth = mission.world.line().expect("a line");
+            let posterior = PosteriorView::new(table);
+            let set = posterior.credible(f64::from(LEVEL) / 1e6);
+            let mut lines = posterior.members(&set).flat_map(|it| table.lines(it).bounds());
+            assert!(set.slope_arc.width_deg() <= SLOPE_ARC_DEG, "field {number}");
+            Some(lines.all(|line| Line::from(line).angle_to_deg(truth) <= SLOPE_ARC_DEG))
+        });
         let (count, level) = (kept.len() as f64, f64::from(LEVEL) / 1e6);
-        let share = kept.iter().filter(|kept| **kept).count() as f64 / count;
-        println!("p = {p}: {count} missions ended as the line was known, {share:.3} kept it");
         assert!(count * 4.0 >= cases(60, 1_000) as f64, "{count}");
         // Three standard deviations of so many draws at the level.
         let allowance = 3.0 * (level * (1.0 - level) / count).sqrt();
-        assert!(share >= level - allowance, "p = {p}: {share}");
+        let share = percent(&kept, |kept| *kept);
+        expect(format!("kept, p = {p}"), share, 100.0 * (level - allowance)..);
     }
 }
 
-/// Numbers of labels at which what they were expected to tell is compared.
-const MARKS: [usize; 3] = [10, 20, 30];
-
-/// What 10, 20 and 30 labels, each true with a probability of its own, were expected to tell and could have.
+/// What 30 labels, each true with a probability of its own, were expected to tell and could have: after 10, 20 and 30.
 fn mixed(number: u64) -> [[f64; 2]; 3] {
     let mut rng = ChaCha8Rng::seed_from_u64(number);
-    let mut mission = standard_field::standard(32, number, Algorithm::Lookahead, 40);
+    let mission = standard_field::standard(32, number, Algorithm::Lookahead, 40);
     // What the planner believes of labels that nobody tells it about.
-    mission.noise = Some(noise(0.8));
+    let mission = noisy(mission, 0.8, 0.0);
     let mut known: Table = mission.table();
-    let dynamics = Unicycle::from(Grid::Paper);
-    let mut planner = mission.doubtful(mission.config.area, dynamics);
+    let mut planner = mission.doubtful(mission.config.area, Unicycle::from(Grid::Paper));
     let (mut pose, mut told, mut marks) = (mission.start, [0.0; 2], Vec::new());
-    let mut labels = 0;
-    while labels < 30 {
+    while marks.len() < 30 {
         let Plan::Move(motion) = planner.plan(pose) else { panic!("field {number}: no motion") };
         pose = motion.target;
         if !motion.wants_label {
@@ -151,29 +123,22 @@ fn mixed(number: u64) -> [[f64; 2]; 3] {
         told[1] += limit(p);
         known.take(sample, reliability).expect("room");
         planner.belief_mut().take(sample, reliability).expect("room");
-        labels += 1;
-        if MARKS.contains(&labels) {
-            marks.push(told);
-        }
+        marks.push(told);
     }
-    marks.try_into().expect("so many marks")
+    [marks[9], marks[19], marks[29]]
 }
 
 #[test]
 fn labels_of_reliabilities_of_their_own_tell_nearly_what_they_can() {
-    let of_each: Vec<_> = (0..cases(100, 1_000)).into_par_iter().map(mixed).collect();
-    for (k, labels) in MARKS.iter().enumerate() {
+    let of_each = ensemble::fly(cases(100, 1_000), mixed);
+    for k in 0..3 {
         let [told, most] = [0, 1].map(|part| of_each.iter().map(|it| it[k][part]).sum::<f64>());
-        println!(
-            "{labels} labels of mixed reliabilities: {:.4} of what they can tell",
-            told / most
-        );
-        assert!(told / most >= 0.94, "{labels} labels: {}", told / most);
+        expect(format!("{} labels, of what they can tell", 10 * (k + 1)), told / most, 0.94..);
     }
 }
 
-fn campaign(seed: u64, steps: u32, grid: Grid, noise: Option<NoiseModel>) -> Campaign {
-    let (fields, vehicle) = (cases(100, 1_000), grid.into());
+fn campaign(seed: u64, steps: u32, noise: Option<NoiseModel>) -> Campaign {
+    let (fields, vehicle) = (cases(100, 1_000), Grid::Fine.into());
     Campaign { fields, seed, vehicle, noise, ..Campaign::of(Algorithm::Lookahead, steps) }
 }
 
@@ -185,24 +150,21 @@ fn chance() -> f64 {
 #[test]
 fn true_labels_teach_what_they_should() {
     for seed in [1, 2] {
-        let campaign = campaign(seed, 40, Grid::Fine, None);
+        let campaign = campaign(seed, 40, None);
         let rows = campaign.run(&Accurate { by_label: false }).expect("there is room");
         let summary = accuracy::Summary::of(&campaign, rows).expect("labels are true");
-        println!("{}", tables::accuracy(&summary));
         let at = |step| summary.rows.iter().find(|row| row.step == step).expect("a mark");
         for (step, bits) in [(10, 0.955), (20, 0.97), (30, 0.95), (40, 0.94)] {
-            assert!(at(step).bits_per_step >= bits * chance(), "seed {seed}, {step} steps");
             // A noiseless label tells one bit at most, on average.
-            assert!(at(step).bits_per_step <= 1.0);
+            expect(format!("bits, {step}"), at(step).bits_per_step, bits * chance()..=1.0);
         }
         let slack = if is_long() { 1.0 } else { 1.5 };
         for (step, degrees) in [(10, 1.2), (20, 0.04), (40, 1e-3)] {
-            assert!(at(step).centre_deg.median <= degrees * slack, "seed {seed}, {step} steps");
+            expect(format!("degrees, {step}"), at(step).centre_deg.median, ..=degrees * slack);
         }
-        assert!(at(20).control_cost <= if is_long() { 25.0 } else { 28.0 }, "seed {seed}");
+        expect("control cost", at(20).control_cost, ..=if is_long() { 25.0 } else { 28.0 });
         // A search that closes in more slowly finds as good places, but asks more of them.
-        println!("seed {seed}: {:.1} places asked a plan", summary.mean_examined);
-        assert!(summary.mean_examined <= 120.0, "seed {seed}: {}", summary.mean_examined);
+        expect("places asked a plan", summary.mean_examined, ..=120.0);
         // Where no label is in reach the ladder looks for a way on.
         assert!(summary.most_examined <= planner_core::search::objective::LOOKS);
     }
@@ -213,20 +175,19 @@ fn labels_that_may_be_wrong_teach_what_they_should() {
     let reliabilities: &[f64] = if is_long() { &[0.6, 0.7, 0.8, 0.9, 0.99] } else { &[0.7, 0.9] };
     for seed in if is_long() { 1..=2 } else { 1..=1 } {
         for &p in reliabilities {
-            let campaign = campaign(seed, 36, Grid::Fine, Some(noise(p)));
+            let noise = NoiseModel { p, extent: Extent::OutsideBalls(0.0) };
+            let campaign = campaign(seed, 36, Some(noise));
             let rows = campaign.run(&Calibrated).expect("there is room");
-            let summary = calibration::Summary::of(&campaign, rows)
-                .expect("labels that are certain are true");
-            println!("{}", tables::calibration(&summary));
+            let summary = calibration::Summary::of(&campaign, rows).expect("no field is refused");
             let at = |labels| summary.rows.iter().find(|row| row.labels == labels).expect("a mark");
             let shares = if p > 0.85 { [0.94; 3] } else { [0.96, 0.97, 0.97] };
             for (labels, share) in [10, 20, 30].into_iter().zip(shares) {
                 let told = at(labels).expected_share.expect("labels tell something");
-                println!("seed {seed}, p = {p}, {labels} labels: {told:.4} of what they can tell");
-                assert!(told >= share * chance(), "seed {seed}, p = {p}, {labels}: {told}");
+                expect(format!("of what {labels} can tell, p = {p}"), told, share * chance()..);
             }
             if is_long() && (0.65..0.75).contains(&p) {
-                assert!(at(30).bits >= 3.4 && at(30).control_cost <= 45.0, "seed {seed}");
+                expect("bits", at(30).bits, 3.4..);
+                expect("control cost", at(30).control_cost, ..=45.0);
             }
         }
     }

@@ -6,21 +6,16 @@ use host_sim::mission::algorithm::Algorithm;
 use host_sim::world::noise::{Extent, NoiseModel};
 use planner_core::{AnyReliability, Reliability, UnknownReliability};
 use tests::cases;
+use tests::ensemble::expect;
 
 const LABELS: u32 = 30;
 
-/// What planners are told: a number, or Beta(8, 2).
-#[derive(Clone, Copy, Debug)]
-enum Told {
-    Number(f64),
-    Beta,
-}
-
-/// The ensemble after 30 labels. Without a real `p`, each field's is drawn from Beta(8, 2).
-fn flown(told: Told, real: Option<f64>, algorithm: Algorithm, fields: u64) -> Row {
+/// The ensemble after 30 labels, by a planner that is told a number or Beta(8, 2). Without a real `p`, each field's is
+/// drawn from Beta(8, 2).
+fn flown(told: Option<f64>, real: Option<f64>, algorithm: Algorithm, fields: u64) -> Row {
     let told: AnyReliability = match told {
-        Told::Number(p) => Reliability::new(p).expect("a probability").into(),
-        Told::Beta => UnknownReliability::beta(8.0, 2.0).expect("a prior").into(),
+        Some(p) => Reliability::new(p).expect("a probability").into(),
+        None => UnknownReliability::beta(8.0, 2.0).expect("a prior").into(),
     };
     let extent = Extent::OutsideBalls(0.0);
     let campaign = Campaign {
@@ -38,43 +33,28 @@ fn flown(told: Told, real: Option<f64>, algorithm: Algorithm, fields: u64) -> Ro
 /// The 90 % set holds the line as often as it says, however often labels are true in each field.
 #[test]
 fn on_average_over_the_prior_stated_probabilities_are_right() {
-    let fields = cases(400, 10_000);
     for algorithm in [Algorithm::Lookahead, Algorithm::Scc] {
-        let row = flown(Told::Beta, None, algorithm, fields);
+        let row = flown(None, None, algorithm, cases(200, 10_000));
         let by_area = &row.calibration[0];
-        println!(
-            "{algorithm:?}, {} fields: holds {:.4}, states {:.4}, {:.2} bits",
-            row.missions, by_area.coverage, by_area.stated, row.bits
-        );
         // Three standard deviations of a share, and at most a point in the long run.
         let most = 3.0 * (0.09 / row.missions as f64).sqrt();
-        assert!((by_area.coverage - by_area.stated).abs() < most, "{algorithm:?}: {by_area:?}");
+        expect(format!("{algorithm:?}"), by_area.coverage - by_area.stated, -most..=most);
     }
 }
 
 /// A prior costs little where its mean is right, and keeps much of the coverage that a wrong number loses.
 #[test]
 fn a_prior_bears_a_sensor_that_is_worse_than_stated() {
-    let fields = cases(100, 4_000);
-    for real in [0.55, 0.6, 0.7, 0.8, 0.9, 0.99] {
-        let of = |told| flown(told, Some(real), Algorithm::Lookahead, fields);
-        let [right, wrong, prior] = [Told::Number(real), Told::Number(0.8), Told::Beta].map(of);
-        let coverage = |row: &Row| 100.0 * row.calibration[0].coverage;
-        println!(
-            "real {real}: told it {:.1} ({:.2} bits), told 0.8 {:.1} ({:.2}), Beta(8, 2) {:.1} (states {:.1}, {:.2})",
-            coverage(&right),
-            right.bits,
-            coverage(&wrong),
-            wrong.bits,
-            coverage(&prior),
-            100.0 * prior.calibration[0].stated,
-            prior.bits,
-        );
+    for real in [0.55, 0.6, 0.8, 0.9, 0.99] {
+        let coverage = |told| {
+            let row = flown(told, Some(real), Algorithm::Lookahead, cases(60, 4_000));
+            100.0 * row.calibration[0].coverage
+        };
+        let prior = coverage(None);
         if real < 0.7 {
-            assert!(coverage(&prior) > coverage(&wrong) + 15.0, "real {real}");
-        }
-        if real >= 0.8 {
-            assert!(coverage(&prior) > 85.0, "real {real}");
+            expect(format!("real {real}: more covered"), prior - coverage(Some(0.8)), 15.0..);
+        } else {
+            expect(format!("real {real}: covered"), prior, 85.0..);
         }
     }
 }
