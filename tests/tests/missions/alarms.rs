@@ -49,14 +49,14 @@ fn an_alarm_is_rare_while_the_model_is_true() {
     use Algorithm::{Cfc, Lookahead, Scc};
     let parts = [(None, 1.0), (Some(0.02), 20.0), (Some(0.1), 1.0)];
     for (algorithm, noise, few) in [
-        (Cfc, None, 100),
-        (Lookahead, None, 100),
+        (Cfc, None, 60),
+        (Lookahead, None, 60),
         (Scc, Some(0.7), 8),
         (Lookahead, Some(0.7), 8),
         (Lookahead, Some(0.9), 8),
     ] {
         for (part, most) in parts {
-            let fields = if part.is_none() { cases(few, 10_000) } else { cases(50, 2_000) };
+            let fields = if part.is_none() { cases(few, 10_000) } else { cases(20, 2_000) };
             let reached = ensemble::fly_some(fields, |number| {
                 let mission = of_labels(number, algorithm, noise);
                 Some(most_evidence(&match part {

@@ -20,7 +20,7 @@ fn more_reach_never_hurts() {
             let reach_mm = (10.0 * side * percent).min(f64::from(ActionGrid::LONGEST_MM) - 1e3);
             let unicycle = Unicycle::new(1, FRAC_PI_2, 101, (reach_mm / 100.0) as u32);
             let vehicle = AnyVehicle::Unicycle(unicycle.expect("a grid"));
-            let bits = ensemble::fly(cases(48, 120), |number| {
+            let bits = ensemble::fly(cases(24, 120), |number| {
                 let mission = stretched([side; 2], 41, number, Algorithm::Lookahead, STEPS);
                 let mission = Mission { vehicle, ..mission };
                 let mut motions = 0;
