@@ -58,6 +58,17 @@ pub fn cases(few: u64, many: u64) -> u64 {
     long().map_or(few, |share| few.max(many / share))
 }
 
+/// The seed of a test's random numbers: its own, or another with `SEED=N` in the environment. A failure under `SEED=N`
+/// becomes a case of its own, with the seed that this returns.
+///
+/// # Panics
+/// When `SEED` is no whole number.
+pub fn seed(own: u64) -> u64 {
+    let told: u64 = env::var("SEED").map_or(0, |it| it.parse().expect("SEED is a whole number"));
+    // Any two differ in about half of their bits, so seeds do not meet those of other tests.
+    own ^ told.wrapping_mul(0x9e37_79b9_7f4a_7c15)
+}
+
 /// A site whose coordinates are clamped into the lattice.
 ///
 /// # Panics

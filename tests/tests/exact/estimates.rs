@@ -113,7 +113,7 @@ fn the_centre_is_the_exact_mean_to_single_precision_of_the_cell() {
 #[test]
 fn the_centre_is_as_good_for_adversarial_samples() {
     let errors = (0..cases(700, 100_000)).into_par_iter().filter_map(|seed| {
-        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let mut rng = ChaCha8Rng::seed_from_u64(tests::seed(seed));
         let mut sites: Vec<Site> = Vec::new();
         while sites.len() < 3 + seed as usize % 12 {
             sites.push(adversarial(&mut rng, &sites[sites.len().saturating_sub(4)..]));
@@ -205,7 +205,7 @@ fn the_bisector_is_that_of_the_two_shortest_pairs() {
 fn chances_are_shares_of_what_is_left() {
     let mut split = 0;
     for (number, space) in spaces(60, 6) {
-        let mut rng = ChaCha8Rng::seed_from_u64(number);
+        let mut rng = ChaCha8Rng::seed_from_u64(tests::seed(number));
         for _ in 0..20 {
             let mut metres = || rng.random_range(0.0..standard_field::SIDE_M);
             let site = Site::try_from(Point2::new(metres(), metres())).expect("near");

@@ -26,7 +26,9 @@ fn dot([a, b, c]: Wide, [d, e, f]: Wide) -> i128 {
 
 /// Random numbers for each of many blocks, on all cores.
 fn blocks(count: u64, test: impl Fn(&mut ChaCha8Rng, u64) + Sync) {
-    (0..count).into_par_iter().for_each(|seed| test(&mut ChaCha8Rng::seed_from_u64(seed), seed));
+    (0..count)
+        .into_par_iter()
+        .for_each(|seed| test(&mut ChaCha8Rng::seed_from_u64(tests::seed(seed)), seed));
 }
 
 #[test]

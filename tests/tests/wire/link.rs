@@ -359,7 +359,7 @@ fn a_decoder_takes_what_was_sent_and_nothing_else() {
         assert_eq!(accepted(frame), std::slice::from_ref(frame), "a frame is one message, one way");
     }
     let sent: BTreeSet<_> = corpus.iter().cloned().collect();
-    let mut rng = ChaCha8Rng::seed_from_u64(SEED);
+    let mut rng = ChaCha8Rng::seed_from_u64(tests::seed(SEED));
     let (mut fed, mut taken) = (0, 0);
     while fed < cases(1_000_000, 20_000_000) as usize {
         let mut bytes: Vec<u8> = Vec::new();
