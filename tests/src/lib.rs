@@ -1,13 +1,12 @@
 //! What the cross-crate tests share.
 //!
 //! - Adversarial sites, and slow twins: the version space's here, others in [`twins`].
-//! - Programs for a chip ([`program`]), a core to run them on ([`emulator`]), and their limits ([`budget`]).
 //! - Missions as a chip may be asked to fly them ([`missions`]), and such in which everything is drawn at random
 //!   ([`anything`]).
 //! - Missions that follow a front ([`fronts`]).
 //! - A chip in the test's own thread ([`chip`]), and a wire that spoils frames ([`wire`]).
 //! - A rover in a garden, as a porter would simulate it ([`garden`]).
-//! - QEMU's machines ([`machines`]) and a debugger for them ([`debugger`]).
+//! - What tests build and need besides ([`build`]).
 //! - Beliefs to ask ([`known`]), and areas with keep-outs ([`terrain`]).
 
 use std::env;
@@ -19,16 +18,12 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 pub mod anything;
-pub mod budget;
+pub mod build;
 pub mod chip;
-pub mod debugger;
-pub mod emulator;
 pub mod fronts;
 pub mod garden;
 pub mod known;
-pub mod machines;
 pub mod missions;
-pub mod program;
 pub mod terrain;
 pub mod twins;
 pub mod wire;
@@ -55,6 +50,11 @@ pub fn is_long() -> bool {
 /// The number of cases: few by default, more in a long run.
 pub fn cases(few: u64, many: u64) -> u64 {
     long().map_or(few, |share| few.max(many / share))
+}
+
+/// Whether files that hold what is expected, or what was measured, are to be written anew (`UPDATE_EXPECT`).
+pub fn is_updating() -> bool {
+    env::var_os("UPDATE_EXPECT").is_some()
 }
 
 /// A site whose coordinates are clamped into the lattice.

@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::{env, fs, io, process, thread};
 
 use serde_json::{Value, json};
-use tests::program::build;
+use tests::build;
 
 /// So many at a time.
 const AT_ONCE: usize = 3;

@@ -27,7 +27,7 @@ use host_sim::report::trace;
 use nalgebra::Point2;
 use planner_core::Label;
 use serde_json::{Value, json};
-use tests::program::build;
+use tests::build;
 
 const SEED: u64 = 14;
 const MISSIONS: u64 = 200;
