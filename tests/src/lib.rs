@@ -1,13 +1,12 @@
 //! What the cross-crate tests share.
 //!
 //! - Adversarial sites, and slow twins: the version space's here, others in [`twins`].
-//! - Programs for a chip ([`program`]), a core to run them on ([`emulator`]), and their limits ([`budget`]).
 //! - Missions as a chip may be asked to fly them ([`missions`]), and such in which everything is drawn at random
 //!   ([`anything`]).
 //! - Missions that follow a front ([`fronts`]).
 //! - A chip in the test's own thread ([`chip`]), and a wire that spoils frames ([`wire`]).
 //! - Ensembles of missions and their figures ([`ensemble`]), and vehicles ([`vehicles`]).
-//! - QEMU's machines ([`machines`]) and a debugger for them ([`debugger`]).
+//! - What tests build and need besides ([`build`]).
 //! - Beliefs to ask ([`known`]), and areas with keep-outs ([`terrain`]).
 
 use std::env;
@@ -19,16 +18,12 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 pub mod anything;
-pub mod budget;
+pub mod build;
 pub mod chip;
-pub mod debugger;
-pub mod emulator;
 pub mod ensemble;
 pub mod fronts;
 pub mod known;
-pub mod machines;
 pub mod missions;
-pub mod program;
 pub mod terrain;
 pub mod twins;
 pub mod vehicles;
@@ -67,6 +62,11 @@ pub fn seed(own: u64) -> u64 {
     let told: u64 = env::var("SEED").map_or(0, |it| it.parse().expect("SEED is a whole number"));
     // Any two differ in about half of their bits, so seeds do not meet those of other tests.
     own ^ told.wrapping_mul(0x9e37_79b9_7f4a_7c15)
+}
+
+/// Whether files that hold what is expected, or what was measured, are to be written anew (`UPDATE_EXPECT`).
+pub fn is_updating() -> bool {
+    env::var_os("UPDATE_EXPECT").is_some()
 }
 
 /// A site whose coordinates are clamped into the lattice.

@@ -2,7 +2,7 @@
 //!
 //! Without libtest's harness, so that its line is the last of the integration tests.
 
-use tests::program::build;
+use tests::build;
 
 fn main() {
     if std::env::args().any(|it| it == "--list") {

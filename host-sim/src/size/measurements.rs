@@ -9,31 +9,25 @@ use toml::Table;
 
 use crate::size::configuration::{Configuration, PROGRAMS, Planner, Program};
 
-/// The figures to which `cargo test -p tests budgets::` holds the code.
-const BUDGETS: &str = include_str!("../../../tests/budgets.toml");
-
-/// The figures to which `cores::` holds it on the other cores.
-const CORES: &str = include_str!("../../../tests/cores.toml");
+/// The figures, and the budgets to which `cargo test -p chips` holds the code.
+const FOOTPRINT: &str = include_str!("../../../tests/chips/footprint.toml");
 
 /// A core that was measured.
 #[derive(Clone, Copy, Debug)]
 pub struct Core {
     /// What people call it.
     pub name: &'static str,
-    /// Its Rust target.
-    pub target: &'static str,
-    /// What it is called in `tests/cores.toml`.
+    /// What it is called in `footprint.toml`.
     key: &'static str,
 }
 
 /// A Cortex-M4 with single precision: all was measured on it.
-pub const M4F: Core =
-    Core { name: "Cortex-M4F", target: "thumbv7em-none-eabihf", key: "cortex-m4f" };
+pub const M4F: Core = Core { name: "Cortex-M4F", key: "cortex-m4f" };
 
 /// Those that were measured besides, in fewer programs.
 pub const OTHERS: [Core; 2] = [
-    Core { name: "Cortex-M0", target: "thumbv6m-none-eabi", key: "cortex-m0" },
-    Core { name: "RISC-V RV32IMAC", target: "riscv32imac-unknown-none-elf", key: "riscv32imac" },
+    Core { name: "Cortex-M0", key: "cortex-m0" },
+    Core { name: "RISC-V RV32IMAC", key: "riscv32imac" },
 ];
 
 /// What a configuration takes, at most.
@@ -104,87 +98,59 @@ pub struct Other {
 /// # Errors
 /// When nothing as large was measured.
 pub fn size(asked: Configuration, mhz: f64) -> Result<Size> {
-    let budgets: Table = BUDGETS.parse().context("tests/budgets.toml")?;
+    let footprint: Table = FOOTPRINT.parse().context("tests/chips/footprint.toml")?;
     let mut covering = PROGRAMS.iter().filter(|it| it.covers(asked));
     let Some(program) = covering.next() else {
         bail!("nothing as large was measured as {asked}: the largest is {}", largest(asked));
     };
-    let flash_of = |core: &Core| {
-        let bytes = committed(&budgets, core.target, program.name)?;
+    let flash_of = |core: Core| {
+        let bytes = read(&footprint, core, program.name, "flash")?;
         Some(Flash { core: core.name, bytes })
     };
     let of_program = |figure: &str| {
-        let value = committed(&budgets, program.name, figure);
-        value.with_context(|| format!("tests/budgets.toml: [{}] has no {figure}", program.name))
+        let value = read(&footprint, M4F, program.name, figure);
+        value.with_context(|| format!("footprint.toml: {} has no {figure}", program.name))
     };
-    let first = Flash { core: M4F.name, bytes: of_program("flash")? };
-    let calls =
-        [("plan", plan(asked)), ("observe", observe(asked)), ("estimates", estimate(asked))];
+    let other = |core: Core| {
+        let mhz = footprint.get("clocks")?.get(core.key)?.as_integer()? as f64 / 1e6;
+        let calls = calls(&footprint, core, asked, mhz);
+        let program = calls.first()?.program;
+        let stack_seen = read(&footprint, core, program, "stack_seen")?;
+        Some(Other { core: core.name, program, stack_seen, mhz, calls })
+    };
     Ok(Size {
         program: program.name,
         room: program.room(),
-        flash: [first].into_iter().chain(OTHERS.iter().filter_map(flash_of)).collect(),
+        flash: [M4F].into_iter().chain(OTHERS).filter_map(flash_of).collect(),
         flash_of_planner: of_program("flash_of_planner")?,
         stack: of_program("stack")?,
         tracker: asked.tracker(),
         static_ram: of_program("static_ram")?,
-        calls: calls
-            .into_iter()
-            .filter_map(|(call, figures)| timed(&budgets, asked, call, figures, mhz))
-            .collect(),
-        others: others(asked)?,
+        calls: calls(&footprint, M4F, asked, mhz),
+        others: OTHERS.into_iter().filter_map(other).collect(),
     })
 }
 
-/// What the first program that has room takes of each other core.
-fn others(asked: Configuration) -> Result<Vec<Other>> {
-    let cores: Table = CORES.parse().context("tests/cores.toml")?;
-    let asked = Configuration { roams: false, ..asked };
-    let plan = match asked.planner {
-        Planner::Lookahead if asked.is_noisy() => "noisy_plan",
-        Planner::Lookahead => "lookahead_plan",
-        Planner::Cfc | Planner::Scc | Planner::Track => "plan",
-    };
-    let of = |core: &Core| {
-        let mhz = cores.get("clocks")?.get(core.key)?.as_integer()? as f64 / 1e6;
-        let figures = |program: &Program| cores.get(core.key)?.get(program.name)?.as_table();
-        let (program, figures) = PROGRAMS
-            .iter()
-            .filter(|it| it.covers(asked))
-            .find_map(|it| Some((it.name, figures(it)?)))?;
-        let read = |name: &str| u64::try_from(figures.get(name)?.as_integer()?).ok();
-        let call = |(call, figure): (&'static str, &str)| {
-            let (median, worst) =
-                (read(&format!("{figure}_median"))?, read(&format!("{figure}_worst"))?);
-            let worst_ms = worst as f64 / (mhz * 1_000.0);
-            Some(Call { call, program, median, worst, worst_ms })
-        };
-        let calls = [("plan", plan), ("observe", "observe"), ("estimates", "estimate")];
-        let calls = calls.into_iter().filter_map(call).collect();
-        Some(Other { core: core.name, program, stack_seen: read("stack")?, mhz, calls })
-    };
-    Ok(OTHERS.iter().filter_map(of).collect())
-}
-
-/// The figures of the first program that has room and was timed.
-fn timed(
-    budgets: &Table,
-    asked: Configuration,
-    call: &'static str,
-    figures: &[&str],
-    mhz: f64,
-) -> Option<Call> {
+/// What calls take of a core: of each the figures of the first program that has room and was timed.
+fn calls(footprint: &Table, core: Core, asked: Configuration, mhz: f64) -> Vec<Call> {
     // What a call takes does not depend on which vehicles the program knows besides.
     let asked = Configuration { roams: false, ..asked };
-    let with_room = PROGRAMS.iter().filter(|it| it.covers(asked));
-    with_room.flat_map(|program| figures.iter().map(move |figure| (program, figure))).find_map(
-        |(Program { name, .. }, figure)| {
-            let read = |of: &str| committed(budgets, name, &format!("{figure}_{of}"));
-            let (median, worst) = (read("median")?, read("worst")?);
-            let worst_ms = read("worst_cycles")? as f64 / (mhz * 1_000.0);
-            Some(Call { call, program: name, median, worst, worst_ms })
-        },
-    )
+    let with_room: Vec<_> = PROGRAMS.iter().filter(|it| it.covers(asked)).collect();
+    let timed = |program: &'static str, call, figure: &str| {
+        let read = |of: &str| read(footprint, core, program, &format!("{figure}_{of}"));
+        let (median, worst) = (read("median")?, read("worst")?);
+        let cycles = number(footprint, core, program, &format!("{figure}_worst"), "cycles");
+        let worst_ms = cycles.unwrap_or(worst) as f64 / (mhz * 1_000.0);
+        Some(Call { call, program, median, worst, worst_ms })
+    };
+    let first = |(call, figures): (&'static str, &[&str])| {
+        let programs =
+            with_room.iter().flat_map(|it| figures.iter().map(|figure| (it.name, *figure)));
+        programs.into_iter().find_map(|(program, figure)| timed(program, call, figure))
+    };
+    let calls =
+        [("plan", plan(asked)), ("observe", observe(asked)), ("estimates", estimate(asked))];
+    calls.into_iter().filter_map(first).collect()
 }
 
 /// What plans are called among the measurements.
@@ -220,9 +186,14 @@ fn largest(asked: Configuration) -> String {
     last.map_or_else(|| "none".to_owned(), Program::room)
 }
 
-fn committed(budgets: &Table, section: &str, figure: &str) -> Option<u64> {
-    let value = budgets.get(section)?.get(figure)?.get("committed")?.as_integer()?;
-    u64::try_from(value).ok()
+/// A figure that was measured.
+fn read(footprint: &Table, core: Core, program: &str, figure: &str) -> Option<u64> {
+    number(footprint, core, program, figure, "measured")
+}
+
+fn number(footprint: &Table, core: Core, program: &str, figure: &str, of: &str) -> Option<u64> {
+    let row = footprint.get(core.key)?.get(program)?.get(figure)?;
+    u64::try_from(row.get(of)?.as_integer()?).ok()
 }
 
 #[cfg(test)]

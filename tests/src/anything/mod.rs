@@ -16,9 +16,6 @@ use std::ops::Range;
 
 use planner_core::AnyVehicle;
 
-/// The section of `budgets.toml` with the worst plans of such missions.
-pub const SECTION: &str = "random_missions";
-
 /// What people call a vehicle.
 pub const fn kind(vehicle: &AnyVehicle) -> &'static str {
     match vehicle {

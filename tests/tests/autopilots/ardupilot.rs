@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::{env, fs, process, thread};
 
 use serde_json::{Value, json};
-use tests::program::build;
+use tests::build;
 
 use crate::is_starved;
 

@@ -14,7 +14,7 @@ use host_sim::mission::scenario::{self, Overrides, PAPER_NOISELESS};
 use host_sim::report::trace;
 use nalgebra::Point2;
 use serde_json::{Value, json};
-use tests::program::build;
+use tests::build;
 
 use crate::is_starved;
 

@@ -13,7 +13,7 @@ use host_sim::mission::recording::Recording;
 use host_sim::mission::scenario::{self, Overrides};
 use host_sim::report::{flat, log, trace};
 use serde_json::{Map, Value};
-use tests::program::build;
+use tests::build;
 
 const SCENARIOS: [&str; 5] =
     ["paper-noiseless", "paper-noisy", "vertical", "car-among-keep-outs", "kilometres-away"];

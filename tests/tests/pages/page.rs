@@ -10,7 +10,7 @@ use host_sim::cli::paper::{self, FLIGHTS, Flight};
 use host_sim::mission::recording::Recording;
 use host_sim::mission::scenario::{self, Overrides};
 use host_sim::report::page::{Chapter, Page};
-use tests::program::build;
+use tests::build;
 
 const CAR: &str = include_str!("../../../host-sim/scenarios/car-among-keep-outs.toml");
 

@@ -26,8 +26,7 @@ use planner_core::{
     StopReason, Waist,
 };
 use serde::de::DeserializeOwned;
-use tests::budget::readme;
-use tests::program::build;
+use tests::build;
 
 fn page() -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/protocol.md");
@@ -356,7 +355,7 @@ fn fuzzing_begins_from_the_examples() {
         let words = name.split(|it: char| !it.is_alphanumeric()).filter(|it| !it.is_empty());
         let file = corpus.join(words.collect::<Vec<_>>().join("-").to_lowercase());
         let (content, _) = content.split_last_chunk::<4>().expect("a check sum");
-        if readme::is_updating() {
+        if tests::is_updating() {
             fs::write(&file, content).expect("writes a seed");
         }
         assert_eq!(fs::read(&file).ok().as_deref(), Some(content), "{}", file.display());

@@ -1,0 +1,84 @@
+//! Programs for a chip: how they are built, what their ELF holds, who calls whom in it.
+
+mod body;
+pub mod graph;
+pub mod image;
+mod thumb;
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::{Mutex, PoisonError};
+use std::{env, fs};
+
+use tests::build::{scratch, skip};
+
+/// The target of the chip that any run builds for.
+pub const CHIP: &str = "thumbv7em-none-eabihf";
+
+/// A package that is a workspace of its own, and its folder. Its release profile is for chips.
+const ALONE: (&str, &str) = ("microbit", "firmware/microbit");
+
+/// A program of `tests/bare-core` for a target; `None`, and a visible line, where it cannot be built.
+///
+/// # Panics
+/// As [`folder`].
+pub fn bare(target: &str, program: &str) -> Option<Vec<u8>> {
+    Some(fs::read(folder("bare-core", target, program)?.join(program)).expect("cargo left an ELF"))
+}
+
+/// The folder with the programs of a package for a target; `None`, and a visible line, where they cannot be built. All
+/// are built at once, or with one core in view the program alone that is asked for.
+///
+/// # Panics
+/// When they fail to build, or with `CI` set where they cannot be built.
+pub fn folder(package: &str, target: &str, program: &str) -> Option<PathBuf> {
+    static BUILT: Mutex<BTreeMap<[String; 3], Option<PathBuf>>> = Mutex::new(BTreeMap::new());
+    let one = if cfg!(feature = "all") { "" } else { program };
+    let mut built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);
+    let made = built.entry([package, target, one].map(str::to_owned)).or_insert_with(|| {
+        if has_library(target) {
+            return Some(build(package, target, one));
+        }
+        skip(&format!("{package} for {target}"), "the target is not installed");
+        None
+    });
+    made.clone()
+}
+
+/// Builds in a target folder for such programs, in their profile.
+fn build(package: &str, target: &str, program: &str) -> PathBuf {
+    let directory = scratch().with_file_name("elf");
+    let (workspace, profile) = if package == ALONE.0 { (ALONE.1, "release") } else { ("", "chip") };
+    let mut cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    cargo
+        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(workspace))
+        .args(["build", "--quiet", "--profile", profile, "--package", package, "--target", target])
+        .arg("--target-dir")
+        .arg(&directory)
+        .env("DEFMT_LOG", "info");
+    if !program.is_empty() {
+        cargo.args(["--bin", program]);
+    }
+    // Flags and wrappers of the host's build (coverage, for one) are not the chip's.
+    for host in ["RUSTFLAGS", "CARGO_ENCODED_RUSTFLAGS", "RUSTC_WRAPPER", "RUSTC_WORKSPACE_WRAPPER"]
+    {
+        cargo.env_remove(host);
+    }
+    let built = cargo.output().expect("cargo starts");
+    let errors = String::from_utf8_lossy(&built.stderr);
+    assert!(built.status.success(), "{package} fails to build for {target}:\n{errors}");
+    directory.join(target).join(profile)
+}
+
+/// Whether the standard library for a target is installed; where it is missing, rustup is asked to add it.
+fn has_library(target: &str) -> bool {
+    let is_there = || {
+        let library =
+            Command::new("rustc").args(["--print", "target-libdir", "--target", target]).output();
+        library.is_ok_and(|it| Path::new(String::from_utf8_lossy(&it.stdout).trim()).is_dir())
+    };
+    // Whether that worked shows when one looks again.
+    is_there()
+        || Command::new("rustup").args(["target", "add", target]).output().is_ok() && is_there()
+}

@@ -1,0 +1,131 @@
+//! A board that QEMU emulates, with its firmware: its link, its log, and missions flown over the one.
+
+use std::fs;
+use std::io::{Read as _, Write as _};
+use std::net::TcpStream;
+use std::path::{Path, PathBuf};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use anyhow::Result;
+use defmt_decoder::{DecodeError, Table};
+use host_sim::hil::cable::Cable;
+use host_sim::hil::faults::Faults;
+use host_sim::hil::flight;
+use host_sim::hil::player::{Played, Player};
+use host_sim::hil::qemu::Emulator;
+use host_sim::mission::definition::Mission;
+use planner_core::link::frame::Frame;
+use planner_core::link::message::LabelSource;
+use tempfile::{NamedTempFile, TempPath};
+
+use crate::debugger::{Debugger, free_port};
+use crate::machines::Kind;
+
+/// For anything that a board does within five seconds of its own, where a busy machine gives it few.
+pub(crate) const PATIENCE: Duration = Duration::from_mins(1);
+
+/// A board that runs.
+pub(crate) struct Board {
+    _emulator: Emulator,
+    pub(crate) link: TcpStream,
+    elf: PathBuf,
+    log: TempPath,
+}
+
+impl Board {
+    /// Starts one, with further arguments for QEMU; `None` where that cannot be.
+    pub(crate) fn start(kind: Kind, more: &[&str]) -> Option<Self> {
+        let elf = kind.elf()?;
+        let log = NamedTempFile::new().expect("a temporary file").into_temp_path();
+        let started = Emulator::start(&elf, kind.machine, Some(&log), more);
+        let (emulator, link) = started.expect("QEMU runs it");
+        Some(Self { _emulator: emulator, link, elf, log })
+    }
+
+    /// As [`start`](Self::start), with a debugger, which has it halted.
+    pub(crate) fn with_debugger(kind: Kind, more: &[&str]) -> Option<(Self, Debugger)> {
+        let port = free_port();
+        let gdb = format!("tcp:127.0.0.1:{port}");
+        let board = Self::start(kind, &[more, &["-gdb", &gdb]].concat())?;
+        Some((board, Debugger::connect(port)))
+    }
+
+    pub(crate) fn play(&self, player: &mut Player, faults: Faults, seed: u64) -> Result<()> {
+        let cable = Cable::new(self.link.try_clone()?, self.link.try_clone()?, faults, seed);
+        flight::play(player, cable).map(drop)
+    }
+
+    /// Lets it fly a mission, over a link with faults.
+    pub(crate) fn fly(&self, mission: &Mission, faults: Faults) -> Result<Played> {
+        let mut player = player(mission, LabelSource::Vehicle);
+        self.play(&mut player, faults, mission.seed)?;
+        player.finish()
+    }
+
+    /// The log so far, each message after the chip's time of it in milliseconds.
+    pub(crate) fn log(&self) -> Vec<(u32, String)> {
+        let elf = fs::read(&self.elf).expect("cargo left an ELF");
+        let table = Table::parse(&elf).expect("the ELF is sound").expect("it logs");
+        let mut decoder = table.new_stream_decoder();
+        decoder.received(&fs::read(&self.log).expect("QEMU writes it"));
+        let mut messages = Vec::new();
+        loop {
+            match decoder.decode() {
+                Ok(frame) => {
+                    let time = frame.display_timestamp().expect("all have one").to_string();
+                    let at = time.replace('.', "").parse().expect("seconds, three decimals");
+                    messages.push((at, frame.display_message().to_string()));
+                }
+                Err(DecodeError::UnexpectedEof) => return messages,
+                Err(DecodeError::Malformed) => messages.push((0, "(malformed)".to_owned())),
+            }
+        }
+    }
+
+    /// The messages, without the times, up to the `n`-th that begins so.
+    pub(crate) fn messages_until(&self, n: usize, beginning: &str) -> Vec<String> {
+        let since = Instant::now();
+        loop {
+            let messages: Vec<_> = self.log().into_iter().map(|(_, message)| message).collect();
+            if messages.iter().filter(|it| it.starts_with(beginning)).count() >= n {
+                return messages;
+            }
+            assert!(since.elapsed() < PATIENCE, "no {beginning:?} in {messages:#?}");
+            thread::sleep(Duration::from_millis(10));
+        }
+    }
+}
+
+/// The world of a mission, for a board.
+pub(crate) fn player(mission: &Mission, labels: LabelSource) -> Player {
+    Player::new(mission, labels, flight::start_number()).expect("a mission for a chip")
+}
+
+/// The answer to what a board asks next.
+pub(crate) fn answer(link: &mut TcpStream, player: &mut Player) -> Result<Frame> {
+    loop {
+        let mut byte = [0];
+        link.read_exact(&mut byte)?;
+        if let Some(frame) = player.hear(byte[0])? {
+            return Ok(frame);
+        }
+    }
+}
+
+/// Answers a board until it has asked for so many motions.
+pub(crate) fn play_until(motions: usize, link: &mut TcpStream, player: &mut Player) -> Result<()> {
+    while player.motions() < motions {
+        let mut byte = [0];
+        link.read_exact(&mut byte)?;
+        if let Some(frame) = player.hear(byte[0])? {
+            link.write_all(frame.bytes())?;
+        }
+    }
+    Ok(())
+}
+
+/// Arguments that have QEMU log writes to what it does not emulate.
+pub(crate) fn writes_to(file: &Path) -> [&str; 4] {
+    ["-d", "unimp", "-D", file.to_str().expect("the path is UTF-8")]
+}

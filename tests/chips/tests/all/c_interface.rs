@@ -1,0 +1,358 @@
+//! The planner behind its C interface. The header matches the sources, and a C program flies the same missions as this
+//! crate.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use chips::program;
+use planner_core::geometry::lattice::UNITS_PER_METRE;
+use planner_core::nalgebra::Point2;
+use planner_core::{
+    Angle, Area, Belief as _, Front, Goal, Heading, Hull, KeepOut, Label, Line, Lookahead, Noise,
+    NoisyBelief, Plan, Planner, PolygonArea, Pose, PredictiveBelief, Reliability, Sample, Site,
+    SlopeWithin, StopReason, Tolerance, Track, Tracker, Unicycle, VersionSpace,
+};
+use tests::build::{has_tool, scratch, skip};
+use tests::is_updating;
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../planner-core/c")
+}
+
+#[test]
+fn the_header_is_that_of_the_sources() {
+    let config = cbindgen::Config::from_file(folder().join("cbindgen.toml")).expect("a config");
+    let sources = folder().join("src/lib.rs");
+    let made = cbindgen::Builder::new().with_config(config).with_src(sources);
+    let mut header = Vec::new();
+    made.generate().expect("bindings").write(&mut header);
+    let place = folder().join("include/planner.h");
+    if is_updating() {
+        fs::write(&place, &header).expect("writes the header");
+    }
+    assert!(fs::read(place).expect("a header") == header, "UPDATE_EXPECT=1 writes the header anew");
+}
+
+/// What `example.c` prints, by a planner.
+fn flown<P: Planner<Belief: Sized>>(mut planner: P, start: Pose, is_doubtful: bool) -> String {
+    let (mut pose, mut labels, mut lines) = (start, 0, String::new());
+    loop {
+        let motion = match planner.plan(pose) {
+            Plan::Move(motion) => motion,
+            Plan::Stop(reason) => break assert_eq!(reason, StopReason::Known),
+        };
+        pose = motion.target;
+        let at = Point2::<f64>::from(pose.site);
+        let label = motion.wants_label.then(|| {
+            labels += 1;
+            let is_above = at.y > 0.41 * at.x + 3.5;
+            if is_above == (is_doubtful && labels % 7 == 3) {
+                Label::Negative
+            } else {
+                Label::Positive
+            }
+        });
+        let number = label.map_or(2, Label::sign);
+        let heading = pose.heading.radians();
+        let _ = writeln!(lines, "{:.9} {:.9} {heading:.9} {number}", at.x, at.y);
+        planner.observe(pose, label.map(Into::into)).expect("a possible label");
+    }
+    let [a, b, c] = Line::from(planner.estimates().centre.expect("a line")).coefficients();
+    let bits = planner.belief().information();
+    lines + &format!("line {a:.9} {b:.9} {c:.9}, {bits:.6} bits")
+}
+
+fn at(x: f64, z: f64) -> Site {
+    Site::try_from(Point2::new(x, z)).expect("near")
+}
+
+fn given() -> [Sample; 4] {
+    let given = [(2.0, 1.0, -1), (2.0, 8.0, 1), (18.0, 16.0, 1), (18.0, 5.0, -1)];
+    given.map(|(x, z, sign)| {
+        let label = if sign > 0 { Label::Positive } else { Label::Negative };
+        Sample { site: at(x, z), label }
+    })
+}
+
+fn start() -> Pose {
+    Pose { site: at(2.0, 1.0), heading: Heading(0) }
+}
+
+fn slopes(radians: f64, level: u32) -> Goal<SlopeWithin> {
+    let goal = Angle::from_radians(radians).and_then(Goal::slope_within).expect("acute");
+    Goal { level, ..goal }
+}
+
+fn reliability(p: f64) -> Reliability {
+    Reliability::new(p).expect("a probability")
+}
+
+fn flown_here(is_doubtful: bool) -> String {
+    let area = Area::metres([0.0, 0.0], [20.0, 20.0]).expect("an area");
+    let unicycle = Unicycle::new(10_000, 1.57, 21, 50).expect("a grid");
+    let goal = slopes(if is_doubtful { 0.21 } else { 0.0035 }, 900_000);
+    if is_doubtful {
+        let noise = Noise::new(0.85).expect("a probability");
+        let noisy = NoisyBelief::<36, 529>::new(&given(), noise).expect("four points");
+        let planner = Lookahead::new(area, unicycle, noisy).expect("settings that agree");
+        flown(planner.until(Some(goal)), start(), true)
+    } else {
+        let space = VersionSpace::<68>::new(&given()).expect("four points");
+        let planner = Lookahead::new(area, unicycle, space).expect("settings that agree");
+        flown(planner.until(Some(goal)), start(), false)
+    }
+}
+
+type Ground = PolygonArea<8, 8>;
+
+/// The area of `asleep.c`.
+fn ground() -> Ground {
+    let hull = |corners: &[(f64, f64)]| {
+        let corners: Vec<Site> = corners.iter().map(|&(x, z)| at(x, z)).collect();
+        Hull::new(&corners).expect("a convex polygon")
+    };
+    let border = hull(&[(0.0, 0.0), (20.0, 0.0), (20.0, 17.0), (8.0, 20.0), (0.0, 20.0)]);
+    let keep_outs = [
+        (hull(&[(5.0, 6.0)]), UNITS_PER_METRE),
+        (hull(&[(9.0, 7.0), (11.0, 7.0), (10.0, 9.0)]), 0),
+        (hull(&[(13.0, 9.0), (16.0, 9.5)]), UNITS_PER_METRE / 4),
+    ];
+    let rounded = |(hull, radius): (_, i32)| KeepOut { hull, radius: radius.unsigned_abs() };
+    PolygonArea::new(border, &keep_outs.map(rounded)).expect("an area")
+}
+
+type Finder<B> = Lookahead<Unicycle, B, Ground, SlopeWithin>;
+
+/// An observation as `asleep.c` makes it: the planner, where it is, what was read, which label it is, and whether that is
+/// wrong.
+type Observe<B> = fn(&mut Finder<B>, Pose, Option<Label>, u32, bool);
+
+fn observe_within<B: PredictiveBelief>(
+    planner: &mut Finder<B>,
+    pose: Pose,
+    label: Option<Label>,
+    number: u32,
+    _: bool,
+) {
+    let tolerance = Tolerance::new(0.02 * f64::from(number % 5 + 1)).expect("a tolerance");
+    let observed = planner.observe_within(pose, label.map(Into::into), tolerance);
+    observed.expect("a possible label");
+}
+
+fn observe_believed(
+    planner: &mut Finder<NoisyBelief<36, 529>>,
+    pose: Pose,
+    label: Option<Label>,
+    _: u32,
+    is_wrong: bool,
+) {
+    let Some(label) = label else { return planner.observe(pose, None).expect("no label") };
+    let reliability = reliability(if is_wrong { 0.6 } else { 0.95 });
+    let sample = Sample { site: pose.site, label };
+    planner.belief_mut().take(sample, reliability).expect("room");
+}
+
+/// What `asleep.c` prints, by a planner that stays awake.
+fn awake<B: PredictiveBelief<Belief: Sized>>(
+    belief: B,
+    goal: Goal<SlopeWithin>,
+    observe: Observe<B>,
+) -> String {
+    let unicycle = Unicycle::new(10_000, 1.57, 41, 50).expect("a grid");
+    let planner = Lookahead::new(ground(), unicycle, belief);
+    let mut planner = planner.expect("settings that agree").until(Some(goal));
+    let is_doubtful = goal.level < 900_000;
+    let (mut pose, mut labels, mut said, mut status) = (start(), 0, String::new(), 0);
+    let print = |said: &mut String, number: f64| {
+        let _ = write!(said, "{:016x} ", number.to_bits());
+    };
+    for _ in 0..80 {
+        let motion = match planner.plan(pose) {
+            Plan::Move(motion) => motion,
+            Plan::Stop(reason) => {
+                status = match reason {
+                    StopReason::Known => 1,
+                    StopReason::SamplesFull => 3,
+                    StopReason::Undecided => 11,
+                    StopReason::Tolerance => 13,
+                    other => panic!("{other:?}"),
+                };
+                break;
+            }
+        };
+        if !is_doubtful {
+            let [from, to] = [pose, motion.target].map(|it| Point2::<f64>::from(it.site));
+            let (x, z) = (f64::midpoint(from.x, to.x), f64::midpoint(from.y, to.y));
+            let is_above = z > 0.41 * x + 3.5;
+            let label = if is_above { Label::Positive } else { Label::Negative };
+            planner.observe_on_the_way(at(x, z), label.into()).expect("a possible label");
+        }
+        pose = motion.target;
+        let here = Point2::<f64>::from(pose.site);
+        let label = motion.wants_label.then(|| {
+            labels += 1;
+            let is_wrong = is_doubtful && labels % 7 == 3;
+            let is_above = here.y > 0.41 * here.x + 3.5;
+            (if is_above == is_wrong { Label::Negative } else { Label::Positive }, is_wrong)
+        });
+        let chance = planner.belief().chance(pose.site);
+        for number in [here.x, here.y, pose.heading.radians(), chance] {
+            print(&mut said, number);
+        }
+        let _ = writeln!(said, "{}", label.map_or(2, |(label, _)| label.sign()));
+        let is_wrong = label.is_some_and(|(_, is_wrong)| is_wrong);
+        observe(&mut planner, pose, label.map(|(label, _)| label), labels, is_wrong);
+    }
+    let line = Line::from(planner.estimates().centre.expect("a line")).coefficients();
+    for number in line.into_iter().chain([planner.belief().information()]) {
+        print(&mut said, number);
+    }
+    said + &status.to_string()
+}
+
+/// What `following.c` prints, by planners that stay awake: one that goes along, one that watches.
+fn followed() -> [String; 2] {
+    let area = Area::metres([0.0, 0.0], [120.0, 120.0]).expect("an area");
+    let front = Front::bending(30.0).and_then(|it| it.moving(0.01)).expect("a front");
+    let noise = Noise::new(0.9).expect("a probability");
+    let given = [(60.0, 10.0, Label::Negative), (60.0, 50.0, Label::Positive)];
+    let given = given.map(|(x, z, label)| Sample { site: at(x, z), label });
+    let tracker = Tracker::<16, 16, 3>::new(area, front, noise).given(&given);
+    let unicycle = Unicycle::new(10_000, 1.57, 21, 100).expect("a grid");
+    let planner = Track::new(area, unicycle, tracker).expect("settings that agree");
+    [along(planner.clone()), along(planner.watching(20.0).expect("a stretch"))]
+}
+
+fn along<P: Planner<Belief = Tracker<16, 16, 3>>>(mut planner: P) -> String {
+    let mut pose = Pose { site: at(60.0, 28.0), heading: Heading(0) };
+    let (mut labels, mut said) = (0, String::new());
+    for _ in 0..130 {
+        let Plan::Move(motion) = planner.plan(pose) else { break };
+        pose = motion.target;
+        let here = Point2::<f64>::from(pose.site);
+        let reading = motion.wants_label.then(|| {
+            labels += 1;
+            let (x, z) = (here.x - 60.0, here.y - 60.0);
+            let is_inside = x * x + z * z < 900.0;
+            if is_inside == (labels % 11 == 3) { Label::Negative } else { Label::Positive }
+        });
+        planner.observe(pose, reading.map(Into::into)).expect("any label goes");
+        let mut numbers = vec![here.x, here.y];
+        let front = planner.front().expect("it follows one");
+        if let Some(it) = front.waist {
+            let at = Point2::<f64>::from(it.site);
+            let rest = [it.curvature, it.deviation, it.turn_deviation].map(f64::from);
+            numbers.extend([at.x, at.y, it.heading.radians()].into_iter().chain(rest));
+            numbers.push(f64::from(u8::from(front.is_closed)));
+            let beside = planner.belief().beside(pose.site, pose.heading);
+            numbers.extend([beside.left, beside.deviation].map(f64::from));
+        }
+        for number in numbers {
+            let _ = write!(said, "{:016x} ", number.to_bits());
+        }
+        said.push('\n');
+    }
+    assert!(planner.front().is_some_and(|it| it.waist.is_some()) && said.lines().count() == 130);
+    said
+}
+
+/// What `asleep.c` prints in one of its modes.
+fn awake_in(mode: &str) -> String {
+    let noise = |tolerance| Noise { reliability: reliability(0.85), tolerance, ..Noise::NONE };
+    let noisy =
+        |tolerance| NoisyBelief::<36, 529>::new(&given(), noise(tolerance)).expect("four points");
+    let tolerance = Tolerance::new(0.1).expect("a tolerance");
+    match mode {
+        "true" => {
+            let space =
+                VersionSpace::<68>::new(&given()).and_then(|it| it.with_tolerance(tolerance));
+            let space = space.expect("four points");
+            awake(space, slopes(0.02, 900_000), observe_within)
+        }
+        "doubtful" => awake(noisy(Tolerance::NONE), slopes(0.15, 600_000), observe_believed),
+        _ => awake(noisy(tolerance), slopes(0.15, 600_000), observe_within),
+    }
+}
+
+/// A C program, built against the library; `None` without a compiler.
+fn program(library: &Path, source: &Path) -> PathBuf {
+    let name = source.file_name().expect("a name");
+    let program = scratch().join(name).with_extension("program");
+    let built = Command::new("cc")
+        .args(["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-I"])
+        .arg(folder().join("include"))
+        .arg(source)
+        .arg(library.join("libplanner_c.a"))
+        .args(["-lm", "-lpthread", "-ldl", "-o"])
+        .arg(&program)
+        .output()
+        .expect("cc starts");
+    assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
+    program
+}
+
+/// What a program prints, which ends well.
+fn said(program: &Path, argument: &str) -> String {
+    let run = Command::new(program).arg(argument).output().expect("it starts");
+    let (said, errors) = (run.stdout, String::from_utf8_lossy(&run.stderr).into_owned());
+    assert!(run.status.success(), "{} {argument}: {errors}", program.display());
+    String::from_utf8(said).expect("text")
+}
+
+#[test]
+fn a_c_program_flies_the_same_missions() {
+    if !has_tool("cc") {
+        skip("the C programs", "there is no C compiler `cc`");
+        return;
+    }
+    let library = program::folder("planner-c", host(), "").expect("it is installed");
+    let example = program(&library, &folder().join("example.c"));
+    for (argument, is_doubtful) in [("", false), ("doubtful", true)] {
+        let said = said(&example, argument);
+        let (flight, _) = said.trim_end().rsplit_once(", ").expect("bytes at the end");
+        assert_eq!(flight, flown_here(is_doubtful), "{argument}");
+    }
+    said(&program(&library, &here("misuse.c")), "");
+    let following = program(&library, &here("following.c"));
+    for (mode, here) in ["", "watch"].into_iter().zip(followed()) {
+        assert_eq!(said(&following, mode), here, "{mode}");
+    }
+    let asleep = program(&library, &here("asleep.c"));
+    for mode in ["true", "doubtful", "blurred"] {
+        assert_eq!(said(&asleep, mode), awake_in(mode), "{mode}");
+    }
+}
+
+/// The header alone, in the oldest dialects that it is for.
+#[test]
+fn the_header_compiles_as_c99_and_as_cpp11() {
+    for (compiler, standard, language) in [("cc", "c99", "c"), ("c++", "c++11", "c++")] {
+        if !has_tool(compiler) {
+            skip("the C header", &format!("there is no compiler `{compiler}`"));
+            continue;
+        }
+        let built = Command::new(compiler)
+            .arg(format!("-std={standard}"))
+            .args(["-pedantic", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "-x", language])
+            .arg(folder().join("include/planner.h"))
+            .output()
+            .expect("it starts");
+        let errors = String::from_utf8_lossy(&built.stderr).into_owned();
+        assert!(built.status.success(), "{standard}: {errors}");
+    }
+}
+
+/// A program of the tests' own: one that calls wrongly and checks what it is told, and one that sleeps.
+fn here(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("c").join(name)
+}
+
+/// The target that these tests run on.
+fn host() -> &'static str {
+    let version = Command::new("rustc").arg("-vV").output().expect("rustc starts");
+    let version = String::from_utf8(version.stdout).expect("text");
+    let host = version.lines().find_map(|line| line.strip_prefix("host: ")).expect("a host");
+    Box::leak(host.to_owned().into_boxed_str())
+}
