@@ -150,7 +150,7 @@ mod tests {
     fn a_shift_is_enough_for_every_line_of_the_arc_and_no_more() {
         let mut draws = Draws::new(7);
         for round in 0..20_000 {
-            let (angle, half) = (6.283 * draws.unit(), 1.5 * draws.unit());
+            let (angle, half) = (core::f64::consts::TAU * draws.unit(), 1.5 * draws.unit());
             let unit = |at: f64| {
                 let (sin, cos) = libm::sincos(at);
                 Vector { x: (cos * 1e9) as i32, z: (sin * 1e9) as i32 }

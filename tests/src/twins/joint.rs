@@ -88,7 +88,9 @@ impl Joint {
         }
         assert!(total > 0.0, "no line is left");
         let cells = sequences.into_iter().map(|(bits, samples, _, mut weights)| {
-            weights.iter_mut().for_each(|it| *it /= total);
+            for it in &mut weights {
+                *it /= total;
+            }
             (bits, (samples, weights))
         });
         Self { grid, cells: cells.collect() }

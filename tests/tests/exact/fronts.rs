@@ -79,7 +79,9 @@ impl Dense {
             }
         }
         let count = lines.len() as f64;
-        lines.iter_mut().for_each(|it| it.mass /= count);
+        for line in &mut lines {
+            line.mass /= count;
+        }
         Self { lines, count, nowhere: [0.05; 2], whole: 1.0 }
     }
 

@@ -222,9 +222,9 @@ fn own_tolerances_tell_more_than_the_most() {
         (Algorithm::Scc, false, 0.1),
         (Algorithm::Lookahead, false, 0.3),
     ] {
-        let mission = |number| match is_true {
-            true => mission(52, number, algorithm),
-            false => doubtful(52, number, algorithm, 0.95),
+        let mission = |number| {
+            let mission = mission(52, number, algorithm);
+            if is_true { mission } else { doubtful(52, number, algorithm, 0.95) }
         };
         let [own, most] = [bits(mission, |err| err), bits(mission, |_| MOST)];
         println!("{algorithm:?}: {own:.2} bits with own tolerances, {most:.2} with the most");
