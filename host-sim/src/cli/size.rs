@@ -117,7 +117,7 @@ fn text(asked: Configuration, size: &Size, mhz: f64) -> String {
             );
         }
     }
-    if calls.len() < 3 || others.len() < 2 {
+    if calls.len() < 3 || others.len() < 2 || others.iter().any(|it| it.calls.len() < 3) {
         text += "\nWhat is missing was not timed with as much room.\n";
     }
     text

@@ -303,23 +303,4 @@ mod tests {
     fn an_m0_faults_off_alignment() {
         emulator(&UNALIGNED, Core::M0).run();
     }
-
-    #[test]
-    fn input_is_handed_over_and_comes_to_an_end() {
-        // sub sp, #16; mov r1, sp; movs r0, #1; str r0, [r1]; add r2, sp, #12; str r2, [r1, #4];
-        // movs r0, #4; str r0, [r1, #8]; 2: movs r0, #6; bkpt 0xab; cmp r0, #4; bne 2b;
-        // movs r0, #0x18; ldr r1, 3f; bkpt 0xab; nop; 3: .word 0x20026
-        let program = [
-            0xb084, 0x4669, 0x2001, 0x6008, 0xaa03, 0x604a, 0x2004, 0x6088, 0x2006, 0xbeab, 0x2804,
-            0xd1fb, 0x2018, 0x4901, 0xbeab, 0x0000, 0x0026, 0x0002,
-        ];
-        let mut emulator = emulator(&program, Core::M0);
-        assert_eq!(emulator.run(), Event::Read);
-        emulator.supply(b"a frame");
-        // The first four bytes answer the read that waits, the other three the next.
-        assert_eq!(emulator.run(), Event::Read);
-        assert_eq!(emulator.instructions(), 8 + 3 * 4 - 2);
-        assert_eq!(emulator.run(), Event::Exit(0));
-        assert_eq!(emulator.lowest_stack(), 0x2002_0000 - 16);
-    }
 }
