@@ -12,8 +12,8 @@ use planner_core::dynamics::Dynamics;
 use planner_core::error::ObservationError;
 use planner_core::planner::scout::LOOKED_AT;
 use planner_core::{
-    AnyVehicle, Belief as _, Certainty, Motion, Persist, Plan, Planner, Pose, Sample, Stage,
-    StopReason, Tolerance, VersionSpace, Workspace as _,
+    AnyVehicle, Belief as _, Certainty, Motion, Persist, Plan, Planner, Pose, Sample, StopReason,
+    Tolerance, VersionSpace, Workspace as _,
 };
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
@@ -44,12 +44,7 @@ pub enum Finding {
     TooLong,
     /// A planner that was asked twice gave two plans, or another plan after a sleep.
     Fickle,
-    /// A label was expected to carry less than the mission asks for.
-    Worthless,
 }
-
-/// Bits by which a plan's prediction differs from the exact one: it is in single precision.
-const OFF: f64 = 0.03;
 
 /// How a mission went.
 #[derive(Debug)]
@@ -171,7 +166,7 @@ impl<D: Dynamics> Fly<'_, D> {
                     break;
                 }
             };
-            self.check(&mut flight, (pose, &motion), before, planner.belief());
+            self.check(&mut flight, (pose, &motion), before);
             // A way to a place that ends on certain ground leads back once: no other is begun before the next label.
             let times = been.entry((pose.site, pose.heading.0)).or_insert(0);
             *times += 1;
@@ -239,7 +234,6 @@ impl<D: Dynamics> Fly<'_, D> {
         flight: &mut Flight,
         (pose, motion): (Pose, &Motion),
         before: Option<(Pose, Motion)>,
-        belief: &dyn ReadOut,
     ) {
         if let Some(wrong) = self.leaves(pose, motion) {
             flight.note(Finding::Unsafe, wrong);
@@ -253,14 +247,6 @@ impl<D: Dynamics> Fly<'_, D> {
         }
         if self.looks() && motion.examined > LOOKED_AT {
             flight.note(Finding::TooLong, format!("{motion:?}"));
-        }
-        // What is read on the way may make up for a place that tells little.
-        let is_certain = self.mission.noise.is_none() && self.mission.readings == 1;
-        if motion.wants_label && motion.stage != Some(Stage::Audit) && is_certain {
-            let bits = belief.expects(motion.target.site).bits;
-            if bits < self.mission.asking.worth - OFF {
-                flight.note(Finding::Worthless, format!("{bits} bits by {motion:?}"));
-            }
         }
         if let Some((from, last)) = before
             && !last.wants_label

@@ -1,6 +1,6 @@
 //! Missions with random settings satisfy every property that any mission must have.
 //!
-//! `cargo test` flies 80 of the first kind, a long run 20,000. A finding names its mission, which flies again by
+//! `cargo test` flies 100 of the first kind, a long run 20,000. A finding names its mission, which flies again by
 //!
 //! ```sh
 //! FROM=17 COUNT=1 cargo test -p tests anything:: -- --nocapture
@@ -21,6 +21,7 @@ use tests::anything::fields::{draw_coarse, draw_nothing, draw_vehicle};
 use tests::anything::flight::{Finding, Flight, fly};
 use tests::anything::fronts::draw_front;
 use tests::anything::plain::Ground;
+use tests::missions::of_any_vehicle;
 use tests::{cases, seed};
 
 const SEED: u64 = 21;
@@ -41,7 +42,7 @@ fn random_missions_keep_every_invariant() {
         let policy = policies[number as usize % 3];
         (Mission { policy, ..draw(seed(SEED), number) }, None)
     };
-    check(draw, [80, 20_000], FALSE_REASONS);
+    check(draw, [100, 20_000], FALSE_REASONS);
 }
 
 /// Along fronts of every kind, also where there is none. A sixth of the vehicles can drive anywhere.
@@ -61,6 +62,13 @@ fn random_searches_from_nothing_keep_every_invariant() {
     // Some cars and boats are cornered where they start.
     let open = flown.iter().filter(|it| it.1.motions > 0 && !is_settled(it.1.ending)).count();
     assert!(open <= 1 + flown.len() / 5, "{open} are not settled");
+}
+
+/// Robots that err, whatever they drive, read where they truly are.
+#[test]
+fn missions_with_readings_on_the_way_keep_every_invariant() {
+    let draw = |number| (Mission { readings: 6, ..of_any_vehicle(number, 16) }, None);
+    check(draw, [60, 2_000], FALSE_REASONS);
 }
 
 #[test]
