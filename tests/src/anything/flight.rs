@@ -24,7 +24,8 @@ use super::plain::{Ground, metres, path};
 use super::reason::{place, refute};
 use crate::ensemble;
 
-/// Motions without a label, one after the other, after which a mission counts as endless.
+/// Motions without a label, one after the other, after which a mission counts as endless, besides those that it takes
+/// to go round the area.
 const FRUITLESS: u32 = 150;
 
 /// What a mission broke.
@@ -191,7 +192,7 @@ impl<D: Dynamics> Fly<'_, D> {
                 (fruitless, flight.labels) = (0, flight.labels + 1);
                 been.clear();
             }
-            if fruitless > FRUITLESS {
+            if fruitless > self.fruitless() {
                 flight.note(Finding::Endless, format!("{fruitless} motions without a label"));
                 break;
             }
@@ -202,6 +203,7 @@ impl<D: Dynamics> Fly<'_, D> {
                     assert_eq!(heard, it.observe_on_the_way(site, read));
                 }
                 if heard == Ok(true) {
+                    fruitless = 0;
                     been.clear();
                 }
                 observed = observed.and(heard.map(|_| ()));
@@ -226,6 +228,15 @@ impl<D: Dynamics> Fly<'_, D> {
             }
         }
         (flight, planner, pose)
+    }
+
+    /// Motions without a label, one after the other, that a mission may make.
+    fn fruitless(&self) -> u32 {
+        let bounds = self.mission.config.area.bounds();
+        let [from, to] = [bounds.min(), bounds.max()].map(metres);
+        let grid = self.vehicle.grid();
+        let round = 2.0 * (to[0] - from[0] + to[1] - from[1]);
+        FRUITLESS + (round / f64::from(grid.reach_m(grid.speeds() - 1))) as u32
     }
 
     /// Whether a motion from a pose, after the one before, is as it should be.
@@ -301,7 +312,7 @@ impl<D: Dynamics> Fly<'_, D> {
             flight.note(Finding::FalseReason, format!("{:?} with {given:?}", flight.ending));
         } else if !given.is_empty() {
             let uncertain: Vec<_> = given.iter().map(|it| (*it, tolerance)).collect();
-            let lines = if self.mission.noise.is_none() {
+            let lines = if self.mission.noise.is_none() && tolerance != Tolerance::NONE {
                 VersionSpace::<32>::of_uncertain(&uncertain)
             } else {
                 VersionSpace::new(given)
