@@ -227,7 +227,8 @@ impl CampaignFlags {
             let names = ["--price", "--labels", "--seek", "--worth"];
             let weighs = algorithm.weighs(p < 1.0);
             let most = scenario::most_labels(ORACLE, weighs)?;
-            let asking = Asking::of(names, asked, (algorithm, &area, &vehicle), (most, limit(p)))?;
+            let bounds = (self.steps, most, limit(p));
+            let asking = Asking::of(names, asked, (algorithm, &area, &vehicle), bounds)?;
             let room = Room::of(weighs, &asking, false);
             scenario::check_steps("--steps", self.steps, ORACLE, room)?;
             Ok::<_, Error>(Campaign {

@@ -91,9 +91,10 @@ impl Asking {
     /// Labels are sought within one motion, and there may be as many as there is room for.
     pub const USUAL: Self = Self { price: None, seeks: Seeks::Accuracy, labels: None, worth: 0.0 };
 
-    /// What a file or flags ask for. Without a price labels have the usual one where the area is large for the vehicle.
-    /// `names` are those of price, limit, choice and worth. There is room for `most` labels, of which each carries so many
-    /// `bits` at most.
+    /// What a file or flags ask of a mission of so many `steps`. Labels have the usual price without being given one where
+    /// they are scarce, which is where there are to be fewer than steps, and the area is large for the vehicle. Anybody
+    /// else is better served by a label after each motion. `names` are those of price, limit, choice and worth. There is
+    /// room for `most` labels, of which each carries so many `bits` at most.
     ///
     /// # Errors
     /// Names the field, what was found and what was expected.
@@ -101,14 +102,14 @@ impl Asking {
         [price_name, labels_name, seek_name, worth_name]: [&str; 4],
         Asked { price, labels, seek, worth }: Asked,
         (algorithm, area, vehicle): (Algorithm, &MissionArea, &AnyVehicle),
-        (most, bits): (u32, f64),
+        (steps, most, bits): (u32, u32, f64),
     ) -> Result<Self> {
         let looks_ahead = algorithm == Algorithm::Lookahead;
-        let usual = if looks_ahead { Far::usual(area, vehicle).map(Far::price) } else { None };
+        let are_scarce = looks_ahead && labels.is_some_and(|most| most < steps);
         let sought = match price {
             Some(Price::Metres(metres)) => Some(metres),
-            Some(Price::Word(NoPrice::None)) => None,
-            None => usual,
+            None if are_scarce => Far::usual(area, vehicle).map(Far::price),
+            None | Some(Price::Word(NoPrice::None)) => None,
         };
         let of_lookahead = [
             (price_name, price.is_some()),
