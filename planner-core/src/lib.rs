@@ -1,5 +1,6 @@
 #![no_std]
 #![forbid(unsafe_code)]
+#![cfg_attr(not(feature = "internals"), deny(unnameable_types))]
 #![deny(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing)]
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::panic, clippy::indexing_slicing))]
 // Some of it serves the simulator and the tests of this repository alone.
@@ -152,6 +153,7 @@ pub mod link;
 mod motion;
 #[cfg(feature = "internals")]
 pub mod motion;
+pub mod parts;
 #[cfg(not(feature = "internals"))]
 mod planner;
 #[cfg(feature = "internals")]
@@ -167,7 +169,7 @@ pub use nalgebra;
 
 pub use crate::belief::Belief;
 pub use crate::belief::bounds;
-pub use crate::belief::cells::Certainty;
+pub use crate::belief::cells::{CellView, Certainty};
 pub use crate::belief::deviation::Deviation;
 pub use crate::belief::doubtful_labels::CellPosterior;
 pub use crate::belief::doubtful_labels::{PosteriorView, ReliabilityEstimate};
@@ -185,20 +187,21 @@ pub use crate::belief::true_labels::VersionSpace;
 pub use crate::belief::trust::{AnyReliability, Trust};
 pub use crate::belief::unknown_reliability::UnknownReliability;
 pub use crate::belief::weight::Prior;
+pub use crate::geometry::arc::SlopeArc;
 pub use crate::geometry::area::Area;
 pub use crate::geometry::heading::{Angle, Heading};
 pub use crate::geometry::hull::Hull;
-pub use crate::geometry::lattice::Site;
+pub use crate::geometry::lattice::{Site, Vector};
 pub use crate::geometry::line::Line;
 pub use crate::geometry::local_line::LocalLine;
 pub use crate::geometry::polygon_area::{KeepOut, PolygonArea};
-pub use crate::geometry::workspace::Workspace;
-pub use crate::motion::any_vehicle::AnyVehicle;
+pub use crate::geometry::workspace::{HalfPlane, Obstacle, Workspace};
+pub use crate::motion::any_vehicle::{AnyVehicle, Shape as VehicleShape};
 pub use crate::motion::boat::Boat;
-pub use crate::motion::car::Car;
+pub use crate::motion::car::{Car, Shape as CarShape};
 pub use crate::motion::dynamics::Pose;
 pub use crate::motion::holonomic::Holonomic;
-pub use crate::motion::unicycle::Unicycle;
+pub use crate::motion::unicycle::{Shape as UnicycleShape, Unicycle};
 pub use crate::planner::cfc::Cfc;
 pub use crate::planner::far::{Far, Seeks};
 pub use crate::planner::front_state::FrontState;
@@ -215,3 +218,4 @@ pub use crate::planner::track::Track;
 pub use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
 pub use crate::robot::{Agent, Event, PinSensor, Step, ThresholdSensor, Vehicle};
 pub use crate::search::objective::EffortWeight;
+pub use crate::search::recovery::Recovery;

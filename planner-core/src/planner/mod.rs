@@ -15,11 +15,11 @@
 
 pub mod audit;
 pub mod cfc;
-mod decision;
+pub mod decision;
 pub mod far;
 pub mod front_state;
 pub(crate) mod guard;
-mod lap;
+pub mod lap;
 pub mod lookahead;
 pub(crate) mod one_label;
 pub mod options;

@@ -13,11 +13,14 @@ mod verdicts;
 
 #[cfg(feature = "internals")]
 pub use columns::Columns;
+pub use dual_polygon::{DualPolygon, PolygonSpread};
 pub(crate) use noisy_belief::information;
-pub use noisy_belief::{NoisyBelief, sequences_of};
+pub use noisy_belief::{
+    NoisyBelief, TablePredictor, TablePredictorAfter, TableSpread, sequences_of,
+};
 pub(crate) use on_the_way::OnTheWay;
 pub(crate) use predictor::entropy;
 pub use predictor::{Prediction, PredictiveBelief, Predictor};
 pub use spread::{Spread, Stretch};
-pub(crate) use verdicts::{Heard, PLACES};
-pub use verdicts::{Verdict, Verdicts};
+pub(crate) use verdicts::PLACES;
+pub use verdicts::{Decisive, Heard, Odds, Verdict, Verdicts};

@@ -1,0 +1,29 @@
+//! What signatures name and programs seldom do: parts of beliefs, of searches and of snapshots.
+//!
+//! A program that is generic over beliefs, or that keeps such a part in a structure of its own, finds its type here.
+
+pub use crate::belief::cells::Constraint;
+pub use crate::belief::cells::{Cut, CutError, DualCell};
+pub use crate::belief::doubtful_labels::Hypothesis;
+pub use crate::belief::doubtful_labels::{Best, Credible};
+pub use crate::belief::goal::Bounds;
+pub use crate::belief::predictions::{Decisive, Heard, Odds, Verdict, Verdicts};
+pub use crate::belief::predictions::{DualPolygon, PolygonSpread};
+pub use crate::belief::predictions::{Prediction, Predictor};
+pub use crate::belief::predictions::{Spread, Stretch};
+pub use crate::belief::predictions::{TablePredictor, TablePredictorAfter, TableSpread};
+pub use crate::belief::trust::{Count, Mean, Tallies, Tally};
+pub use crate::belief::weight::LogWeight;
+pub use crate::geometry::heading::SinCos;
+pub use crate::geometry::line::Bound;
+pub use crate::motion::unicycle::Grid;
+pub use crate::planner::cfc::Phase;
+pub use crate::planner::decision::Decision;
+pub use crate::planner::far::Journey;
+pub use crate::planner::lap::Lap;
+pub use crate::planner::seek::SeekMemory;
+pub use crate::planner::silence::Silence;
+pub use crate::search::direction_rule::{ArcRule, DirectionRule};
+pub use crate::search::lookout::Lookout;
+pub use crate::search::objective::Choice;
+pub use crate::search::problem::{Problem, Solution};
