@@ -16,7 +16,8 @@ impl FrontMap {
     /// What the track maps, in words.
     pub fn report(&self) -> String {
         let (file, unit) = (&self.file, self.unit());
-        let (skipped, about) = (file.skipped_in_words(), file.about());
+        let skipped = file.skipped_in_words() + &file.odd_in_words();
+        let about = file.about();
         let mut text =
             format!("{}: {}.\n{skipped}{about}{}\n", file.name, self.headline(), self.told());
         // Writing to a string cannot fail.

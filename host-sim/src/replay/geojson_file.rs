@@ -1,10 +1,12 @@
 //! The samples of a `GeoJSON` file: points with a property that is their label.
 
+use std::slice;
+
 use anyhow::{Result, anyhow, bail};
-use geojson::{Feature, GeometryValue};
+use geojson::{Feature, GeometryValue, Position};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
-use serde_json::{Deserializer, Value};
+use serde_json::{Deserializer, Error, Value};
 
 use crate::replay::label_name::LabelName;
 use crate::replay::missing::is_missing;
@@ -39,8 +41,10 @@ pub(crate) fn parse(name: &str, text: &[u8], layout: &Layout) -> Result<Rows> {
 fn pass(reading: &mut Reading, text: &[u8]) -> Result<()> {
     let (name, layout) = (reading.name, reading.layout);
     let mut label = LabelName::of(name, "GeoJSON", layout)?;
-    let mut file: Value = serde_json::from_slice(text)
-        .map_err(|error| anyhow!("{name}:{}: expected GeoJSON: {error}", error.line()))?;
+    let parsed =
+        serde_json::from_slice(text).or_else(|_| serde_json::from_slice(&with_nulls(text)));
+    let mut file: Value = parsed
+        .map_err(|error: Error| anyhow!("{name}:{}: expected GeoJSON: {error}", error.line()))?;
     let kind = &file["type"];
     if kind != "FeatureCollection" {
         bail!("{name}: found GeoJSON of the type {kind}, expected a FeatureCollection of points");
@@ -65,10 +69,9 @@ fn read(
 ) -> Result<Row> {
     let feature: Feature = serde_json::from_value(feature)
         .map_err(|error| anyhow!("expected a feature of GeoJSON: {error}"))?;
-    let [x, z] = match feature.geometry.as_ref().map(|geometry| &geometry.value) {
-        Some(GeometryValue::Point { coordinates }) if coordinates.len() >= 2 => {
-            [coordinates[0], coordinates[1]]
-        }
+    let points = match feature.geometry.as_ref().map(|geometry| &geometry.value) {
+        Some(GeometryValue::Point { coordinates }) => slice::from_ref(coordinates),
+        Some(GeometryValue::MultiPoint { coordinates }) => &coordinates[..],
         Some(other) => {
             return Ok(Row::Gap(format!("found a {}, which is no point", other.type_name())));
         }
@@ -86,8 +89,40 @@ fn read(
     if is_missing(&text) {
         return Ok(Row::Gap(format!("label: found {text:?} in {}", label.wanted)));
     }
-    let position = if reading.rows.is_geographic { [z, x] } else { [x, z] };
-    Ok(Row::Sample(position, reading.label(&text, number)?))
+    let is_geographic = reading.rows.is_geographic;
+    let position = |at: &Position| match at.as_slice() {
+        [x, z, ..] => Some(if is_geographic { [*z, *x] } else { [*x, *z] }),
+        _ => None,
+    };
+    let Some(positions) = points.iter().map(position).collect() else {
+        return Ok(Row::Gap("found a point with less than two coordinates".to_owned()));
+    };
+    reading.samples(positions, &text, number)
+}
+
+/// A text that some programs write for `GeoJSON`: with NaN and Infinity, which JSON lacks, as null.
+fn with_nulls(text: &[u8]) -> Vec<u8> {
+    let mut out = Vec::with_capacity(text.len());
+    let (mut rest, mut is_quoted) = (text, false);
+    while let [first, others @ ..] = rest {
+        let word = [&b"NaN"[..], b"-Infinity", b"Infinity", b"-inf", b"inf", b"nan"];
+        let word = word.into_iter().find(|word| !is_quoted && rest.starts_with(word));
+        (rest, is_quoted) = match (word, *first) {
+            (Some(word), _) => {
+                out.extend(b"null");
+                (&rest[word.len()..], false)
+            }
+            (None, b'\\') if is_quoted => {
+                out.extend(&rest[..rest.len().min(2)]);
+                (&rest[rest.len().min(2)..], true)
+            }
+            (None, byte) => {
+                out.push(byte);
+                (others, is_quoted ^ (byte == b'"'))
+            }
+        };
+    }
+    out
 }
 
 /// Coordinates are degrees, unless the file says otherwise. `GeoJSON` from before RFC 7946 may do so.

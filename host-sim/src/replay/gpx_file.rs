@@ -70,7 +70,7 @@ fn read(reading: &mut Reading, label: &mut LabelName, point: Node, line: usize) 
     }
     match lacks {
         Some(lacks) => Ok(Row::Gap(lacks)),
-        None => Ok(Row::Sample(position, reading.label(told, line)?)),
+        None => reading.samples(vec![position], told, line),
     }
 }
 

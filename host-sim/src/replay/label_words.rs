@@ -37,7 +37,8 @@ impl LabelWords {
         Self { threshold, ..Self::default() }
     }
 
-    /// The label in a field on some line.
+    /// The label in a field on some line, and the value that it was measured as. `None` if the field says only that the
+    /// value is below a limit above the threshold, or above a limit below it.
     ///
     /// # Errors
     /// What was found and what was expected.
@@ -46,13 +47,24 @@ impl LabelWords {
         field: &str,
         numbers: &mut Numbers,
         line: usize,
-    ) -> Result<Label> {
-        if let Some(threshold) = self.threshold {
-            let value = numbers.read(field, line).with_context(|| {
-                format!("label: found {field:?}, expected a finite number, as --threshold says")
-            })?;
-            return Ok(if value > threshold { Label::Positive } else { Label::Negative });
-        }
+    ) -> Result<Option<(Label, Option<f64>)>> {
+        let Some(threshold) = self.threshold else {
+            return Ok(Some((self.word(field, line)?, None)));
+        };
+        let (is_below, is_above) =
+            (field.starts_with(['<', '\u{2264}']), field.starts_with(['>', '\u{2265}']));
+        let number = field.trim_start_matches(['<', '>', '=', '\u{2264}', '\u{2265}']).trim_start();
+        let value = numbers.read(number, line).with_context(|| {
+            format!("label: found {field:?}, expected a finite number, as --threshold says")
+        })?;
+        let is_positive = value > threshold;
+        let is_open = is_below && is_positive || is_above && value < threshold;
+        let label = if is_positive || is_above { Label::Positive } else { Label::Negative };
+        Ok((!is_open).then_some((label, Some(value))))
+    }
+
+    /// The label that a word says.
+    fn word(&mut self, field: &str, line: usize) -> Result<Label> {
         let is = |word: &str| field.eq_ignore_ascii_case(word);
         let (kind, is_positive) = match field.parse::<f64>() {
             Ok(1.0) => {

@@ -1,9 +1,12 @@
 //! The text that stands in a file where nothing was measured.
 
 /// Words for a missing value, in upper or lower case.
-const WORDS: [&str; 9] = ["", "nan", "na", "n/a", "null", "none", "nil", "nodata", "no data"];
+const WORDS: [&str; 20] = [
+    "", "nan", "na", "n/a", "#n/a", "null", "none", "nil", "nodata", "no data", "missing", "nd",
+    "n.d.", "bdl", "-", "--", "---", "?", "*", "***",
+];
 
-/// Numbers for a missing value, as loggers and GIS write them.
+/// Numbers for a missing value that no position has. `fills` has those of measured values.
 const NUMBERS: [f64; 2] = [-9999.0, -99999.0];
 
 /// Whether a field says that there is no value.

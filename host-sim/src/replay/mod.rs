@@ -3,10 +3,13 @@
 pub mod answer;
 pub mod columns;
 pub mod crs;
+mod degrees;
 pub mod delimiter;
+mod encoding;
 #[cfg(test)]
 mod false_alarms;
 mod figure;
+mod fills;
 mod fit_record;
 mod fit_words;
 pub mod frame;

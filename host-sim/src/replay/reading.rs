@@ -3,6 +3,7 @@
 use anyhow::{Context as _, Result, anyhow};
 use planner_core::Label;
 
+use crate::replay::degrees::degrees;
 use crate::replay::delimiter::Delimiter;
 use crate::replay::label_words::LabelWords;
 use crate::replay::numbers::Numbers;
@@ -10,8 +11,8 @@ use crate::replay::rows::{Layout, Rows};
 
 /// A row.
 pub(crate) enum Row {
-    /// A sample: its position and its label.
-    Sample([f64; 2], Label),
+    /// Samples: their positions, their label, and the value that it was measured as.
+    Samples(Vec<[f64; 2]>, Label, Option<f64>),
     /// What it lacks, if that is a value.
     Gap(String),
 }
@@ -43,13 +44,15 @@ impl<'a> Reading<'a> {
             let words = LabelWords::of(layout.threshold);
             let mut reading = Self { name, layout, rows: Rows::default(), numbers, words };
             pass(&mut reading)?;
-            let Self { rows, numbers, words, .. } = reading;
+            let Self { mut rows, numbers, words, .. } = reading;
+            let unit = rows.unit;
             let at = |(row, error): (usize, anyhow::Error)| {
-                anyhow!("{}: {error}", rows.unit.place(name, row))
+                anyhow!("{}: {error}", unit.place(name, row))
             };
             words.end().map_err(at)?;
             settled = numbers.end().map_err(at)?;
             if settled.is_none() {
+                rows.leave_out_fills(layout).map_err(at)?;
                 return Ok(rows);
             }
         }
@@ -65,8 +68,11 @@ impl<'a> Reading<'a> {
         read: impl FnOnce(&mut Self) -> Result<Row>,
     ) -> Result<()> {
         let taken = read(self).and_then(|row| match row {
-            Row::Sample(position, label) => {
-                self.rows.push(position, label, number);
+            Row::Samples(positions, label, value) => {
+                for position in positions {
+                    self.rows.push(position, label, number);
+                    self.rows.values.extend(value);
+                }
                 Ok(())
             }
             Row::Gap(lacks) => self.rows.skip(self.layout, number, lacks),
@@ -80,8 +86,27 @@ impl<'a> Reading<'a> {
         number.with_context(|| format!("{name}: found {field:?}, expected a finite number"))
     }
 
-    /// The label in a field.
-    pub(crate) fn label(&mut self, field: &str, row: usize) -> Result<Label> {
-        self.words.read(field, &mut self.numbers, row)
+    /// The number in a field of this name, or its degrees if it is of an axis of the globe.
+    pub(crate) fn coordinate(&mut self, name: &str, field: &str, row: usize) -> Result<f64> {
+        if !self.rows.is_geographic {
+            return self.number(name, field, row);
+        }
+        let found = degrees(name, field).or_else(|| self.numbers.read(field, row));
+        found.with_context(|| {
+            let example = if name == "lat" { "54 12.06 N" } else { "10 48 7.2 E" };
+            format!("{name}: found {field:?}, expected degrees: a finite number, or as {example}")
+        })
+    }
+
+    /// Samples at positions, with the label in a field. A gap, if the field leaves the label open.
+    pub(crate) fn samples(
+        &mut self,
+        positions: Vec<[f64; 2]>,
+        field: &str,
+        row: usize,
+    ) -> Result<Row> {
+        let told = self.words.read(field, &mut self.numbers, row)?;
+        let open = || Row::Gap(format!("label: found {field:?}, which may be on both sides"));
+        Ok(told.map_or_else(open, |(label, value)| Row::Samples(positions, label, value)))
     }
 }

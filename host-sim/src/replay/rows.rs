@@ -75,6 +75,10 @@ pub(crate) struct Rows {
     /// Metres, or latitude and longitude.
     pub(crate) positions: Vec<[f64; 2]>,
     pub(crate) labels: Vec<Label>,
+    /// What the labels were measured as, of each row or of none.
+    pub(crate) values: Vec<f64>,
+    /// A row whose value is far outside the range of all others: its place, the value, that range.
+    pub(crate) odd: Option<(usize, f64, [f64; 2])>,
     /// The line of the file on which each begins, or the number of its feature.
     pub(crate) lines: Vec<usize>,
     pub(crate) unit: Unit,
@@ -104,6 +108,24 @@ impl Rows {
         self.positions.push(position);
         self.labels.push(label);
         self.lines.push(line);
+    }
+
+    /// Counts a row of units below the heading, which is no sample in a strict file either.
+    pub(crate) fn heading(&mut self, line: usize) {
+        self.skipped.count += 1;
+        self.skipped.first.get_or_insert((line, "a row of units".to_owned()));
+    }
+
+    /// Takes measured rows away, each if it is said of it.
+    pub(crate) fn leave_out(&mut self, rows: &[bool]) {
+        fn kept<T: Copy>(of: &mut Vec<T>, rows: &[bool]) {
+            let mut rows = rows.iter();
+            of.retain(|_| rows.next() != Some(&true));
+        }
+        kept(&mut self.positions, rows);
+        kept(&mut self.labels, rows);
+        kept(&mut self.values, rows);
+        kept(&mut self.lines, rows);
     }
 
     /// Leaves a row out, which lacks something.

@@ -9,7 +9,7 @@ use planner_core::{Label, Sample};
 use crate::output::plain;
 use crate::replay::frame::{Frame, check_degrees};
 use crate::replay::rows::{Layout, Rows, Skipped, Traced, Unit};
-use crate::replay::{geojson_file, gpx_file, swapped, table_file, trace_file};
+use crate::replay::{encoding, geojson_file, gpx_file, swapped, table_file, trace_file};
 
 /// Samples in the order in which they were recorded.
 pub(crate) struct SampleFile {
@@ -25,6 +25,8 @@ pub(crate) struct SampleFile {
     pub(crate) p: Option<f64>,
     /// Rows that are no samples.
     pub(crate) skipped: Skipped,
+    /// A row whose value is far outside the range of all others.
+    pub(crate) odd: Option<(usize, f64, [f64; 2])>,
     pub(crate) unit: Unit,
     /// The mission, of a trace.
     pub(crate) mission: Option<Box<Traced>>,
@@ -49,7 +51,7 @@ impl SampleFile {
     /// # Errors
     /// As [`read`](Self::read).
     pub(crate) fn parse(name: &str, text: &[u8], layout: &Layout) -> Result<Self> {
-        let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
+        let text = &*encoding::utf8(text).map_err(|error| anyhow!("{name}: {error}"))?;
         let rows = match text.trim_ascii_start().first() {
             Some(b'{') if geojson_file::is_one(text) => geojson_file::parse(name, text, layout),
             Some(b'{') => trace_file::parse(name, text, layout),
@@ -99,9 +101,9 @@ impl SampleFile {
         };
         let both = rows.positions.iter().zip(&rows.labels);
         let samples = both.enumerate().map(sample).collect::<Result<_>>()?;
-        let Rows { certain, p, lines, skipped, mission, .. } = rows;
+        let Rows { certain, p, lines, skipped, odd, mission, .. } = rows;
         let name = name.to_owned();
-        Ok(Self { name, samples, frame, certain, p, skipped, unit, mission, lines })
+        Ok(Self { name, samples, frame, certain, p, skipped, odd, unit, mission, lines })
     }
 
     /// The line on which a sample begins, or the number of its feature.

@@ -6,6 +6,7 @@ use anyhow::{Result, anyhow};
 use csv::ByteRecord;
 
 use crate::replay::columns::{Columns, Places};
+use crate::replay::degrees::degrees;
 use crate::replay::delimiter::Delimiter;
 use crate::replay::missing::is_missing;
 use crate::replay::numbers::Numbers;
@@ -43,19 +44,32 @@ fn places(at: &str, first: &ByteRecord, columns: &Columns, delimiter: Delimiter)
     // A value that is missing is no title, and no title is empty.
     let is_value = |field: &str| {
         let number = Numbers::of(Some(delimiter), None).read(field, 0);
-        number.is_some() || (!field.is_empty() && is_missing(field))
+        let degrees = ["lat", "lon"].iter().any(|axis| degrees(axis, field).is_some());
+        number.is_some() || degrees || (!field.is_empty() && is_missing(field))
     };
     columns.places(at, &titles, is_value)
 }
 
-/// The first delimiter with which the first row can be understood; if there is none, the comma.
-fn guess(text: &[u8], columns: &Columns) -> Delimiter {
-    let is_clear = |delimiter: &Delimiter| {
-        let mut first = ByteRecord::new();
-        let read = reader(text, *delimiter).read_byte_record(&mut first);
-        read.is_ok_and(|there| there) && places("", &first, columns, *delimiter).is_ok()
+/// Rows that may stand above the heading, as loggers write them.
+const PREAMBLE: usize = 200;
+
+/// Rows below the heading that may have units or the like in place of positions.
+const UNITS: usize = 3;
+
+/// The delimiter with which the first row can be understood, or else the one with which the first row of the file's
+/// beginning can; and how many rows stand above that one. The comma and none, if there is no such row.
+fn heading(text: &[u8], columns: &Columns, delimiter: Option<Delimiter>) -> (Delimiter, usize) {
+    let all = delimiter.map_or(Delimiter::ALL.to_vec(), |it| vec![it]);
+    let above = |delimiter: &Delimiter| {
+        // Words of a sentence are no titles.
+        let is_guessed = all.len() > 1 && *delimiter == Delimiter::Space;
+        let most = if is_guessed { 1 } else { PREAMBLE };
+        let rows = reader(text, *delimiter).into_byte_records().take(most);
+        let is_clear = |row: &ByteRecord| places("", row, columns, *delimiter).is_ok();
+        rows.map_while(Result::ok).position(|row| is_clear(&row))
     };
-    Delimiter::ALL.into_iter().find(is_clear).unwrap_or(Delimiter::Comma)
+    let found = all.iter().filter_map(|it| above(it).map(|above| (*it, above)));
+    found.min_by_key(|(_, above)| *above).unwrap_or((all[0], 0))
 }
 
 /// The rows of a table.
@@ -64,11 +78,18 @@ fn guess(text: &[u8], columns: &Columns) -> Delimiter {
 /// Names the file and the line, what was found and what was expected.
 pub(crate) fn parse(name: &str, text: &[u8], layout: &Layout) -> Result<Rows> {
     let columns = layout.columns.clone().unwrap_or_default();
-    let delimiter = layout.delimiter.unwrap_or_else(|| guess(text, &columns));
-    Reading::of(name, layout, Some(delimiter), |reading| pass(reading, text, &columns, delimiter))
+    let (delimiter, above) = heading(text, &columns, layout.delimiter);
+    Reading::of(name, layout, Some(delimiter), |reading| {
+        pass(reading, text, &columns, (delimiter, above))
+    })
 }
 
-fn pass(reading: &mut Reading, text: &[u8], columns: &Columns, delimiter: Delimiter) -> Result<()> {
+fn pass(
+    reading: &mut Reading,
+    text: &[u8],
+    columns: &Columns,
+    (delimiter, above): (Delimiter, usize),
+) -> Result<()> {
     let name = reading.name;
     let mut reader = reader(text, delimiter);
     let mut lines = Lines::of(text);
@@ -78,6 +99,9 @@ fn pass(reading: &mut Reading, text: &[u8], columns: &Columns, delimiter: Delimi
         Ok(there.then(|| lines.row(row)))
     };
     let mut line = next(&mut row)?;
+    for _ in 0..above {
+        line = next(&mut row)?;
+    }
     let first = format!("{name}:{}", line.unwrap_or(1));
     let places = places(&first, &row, columns, delimiter)?;
     reading.rows.is_geographic = places.is_geographic;
@@ -85,6 +109,19 @@ fn pass(reading: &mut Reading, text: &[u8], columns: &Columns, delimiter: Delimi
         let title = |column: usize| field(&row, delimiter, column).trim().to_owned();
         reading.rows.titles = Some(places.position.map(title));
         line = next(&mut row)?;
+        let is_unit = |row: &ByteRecord, column: usize| {
+            let field = field(row, delimiter, column);
+            !is_missing(field.trim()) && !field.contains(|it: char| it.is_ascii_digit())
+        };
+        let mut units = 0;
+        while let Some(number) = line
+            && units < UNITS
+            && places.position.into_iter().all(|column| is_unit(&row, column))
+        {
+            reading.rows.heading(number);
+            units += 1;
+            line = next(&mut row)?;
+        }
     }
     while let Some(number) = line {
         reading.row(number, |reading| read(reading, &row, places, delimiter, number))?;
@@ -109,8 +146,8 @@ fn read(
         return Ok(Row::Gap(format!("{name}: found {text:?}")));
     }
     let position =
-        [reading.number(first, texts[0], line)?, reading.number(second, texts[1], line)?];
-    Ok(Row::Sample(position, reading.label(texts[2], line)?))
+        [reading.coordinate(first, texts[0], line)?, reading.coordinate(second, texts[1], line)?];
+    reading.samples(vec![position], texts[2], line)
 }
 
 const COMMENT: u8 = b'#';

@@ -17,7 +17,8 @@ const MOST_NAMED: usize = 20;
 impl Replay {
     /// What the samples determine, in words.
     pub fn report(&self) -> String {
-        let (skipped, about) = (self.file.skipped_in_words(), self.file.about());
+        let skipped = self.file.skipped_in_words() + &self.file.odd_in_words();
+        let about = self.file.about();
         let mut text = format!("{}: {}.\n{skipped}{about}\n", self.file.name, self.headline());
         // Writing to a string cannot fail.
         let mut row = |name: &str, value: &str| {
@@ -133,6 +134,15 @@ impl SampleFile {
         let (row, name) = (unit.row(), unit.name());
         let s = if *count == 1 { "" } else { "s" };
         format!("Skipped {count} {row}{s} without a value, the first on {name} {line} ({lacks}).\n")
+    }
+
+    /// A value far outside all others, in words: a line, if there is one.
+    pub(crate) fn odd_in_words(&self) -> String {
+        let Some((line, value, [least, most])) = self.odd else { return String::new() };
+        let name = self.unit.name();
+        format!(
+            "On {name} {line} stands {value}, all other values are from {least} to {most}: leave such rows out if that is no value.\n"
+        )
     }
 
     /// The origin of positions, in words: a line, if there is one.
