@@ -16,7 +16,8 @@ use crate::cli::help;
 use crate::cli::passage::{Destination, Passage};
 use crate::cli::told::{Opening, tell};
 use crate::output::checksum::Checksum;
-use crate::output::file::{Output, prepare};
+use crate::output::file::{Output, place_for, prepare};
+use crate::output::partial::check_free;
 use crate::output::partial::with_suffix;
 
 #[derive(Debug, Args)]
@@ -47,6 +48,7 @@ pub(crate) fn merge(args: &MergeArgs) -> Result<String> {
         .collect();
     let asked = [("--csv", args.csv.as_deref()), ("--figure", args.figure.as_deref())];
     let [output, drawn] = prepare(&inputs, asked)?;
+    args.csv.as_deref().map_or(Ok(()), |path| check_free(path, &place_for(path)?, "rows"))?;
     let records = args.shards.iter().zip(&records).map(|(path, record)| read(path, record));
     let shards = in_order(records.collect::<Result<_>>()?)?;
     let campaigns = shards[0].record.flags.campaigns()?;

@@ -85,9 +85,10 @@ impl Partial {
     /// Begins a file, or opens an existing one to continue it.
     ///
     /// # Errors
-    /// Names the file if it exists although none is to be continued. Also if another program is writing it, or if it
+    /// Names the file if its finished work exists, or if it exists although none is to be continued. Also if another program is writing it, or if it
     /// cannot be written.
     pub fn open(path: &Path, place: &Place, begin: Begin) -> Result<Self> {
+        check_free(path, place, begin.holds)?;
         let name = with_suffix(path, ".partial").display().to_string();
         let path = with_suffix(place.path(), ".partial");
         let record = begin.record.map(|_| with_suffix(place.path(), ".partial.json"));
@@ -207,6 +208,23 @@ impl Partial {
         fs::rename(&self.path, &self.place).with_context(named)?;
         self.record.as_ref().map_or(Ok(()), fs::remove_file).with_context(named)
     }
+}
+
+/// Checks that no finished work is at a place. A file without content is none.
+///
+/// # Errors
+/// Names the file that is there.
+pub fn check_free(path: &Path, place: &Place, holds: &str) -> Result<()> {
+    if place.is_stream() || fs::metadata(place.path()).is_ok_and(|it| it.len() == 0) {
+        return Ok(());
+    }
+    if place.path().try_exists().with_context(|| path.display().to_string())? {
+        bail!(
+            "{}: found a file, and {holds} are never replaced; expected none there: remove it, or name another",
+            path.display()
+        );
+    }
+    Ok(())
 }
 
 impl Write for Partial {
