@@ -72,8 +72,9 @@ impl<P: Planner> Planner for Watched<P> {
         let label = if let Reading::Side(label) = reading { Some(label) } else { None };
         let chance = label.map_or(1.0, |label| self.belief().chance_of(site, label));
         let taken = self.planner.observe_on_the_way(site, reading);
-        // Whether it counts must not depend on what was read.
-        let counts = matches!(taken, Ok(_) | Err(ObservationError::Contradiction(_)));
+        // What the belief leaves out counts for nothing here either: the chance of the next label near by does not know of
+        // it. Of a true model no label is a contradiction, so what counts does not depend on what was read.
+        let counts = matches!(taken, Ok(true) | Err(ObservationError::Contradiction(_)));
         if let Some(label) = label.filter(|_| counts) {
             self.evidence.observe(label, chance);
         }

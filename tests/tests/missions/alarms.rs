@@ -3,6 +3,8 @@
 use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::Mission;
+use host_sim::mission::given::Given;
+use host_sim::mission::recording::Recorder;
 use host_sim::world::World;
 use planner_core::watch::{Alarm, Evidence};
 use planner_core::{Belief as _, Line, Reading};
@@ -70,4 +72,33 @@ fn an_alarm_is_rare_while_the_model_is_true() {
             expect(format!("{what}, warned"), warned, ..=if part.is_none() { 5.0 } else { 100.0 });
         }
     }
+}
+
+/// Readings on the way that a belief leaves out are no evidence, whether the robot begins with points or with nothing.
+#[test]
+fn readings_on_the_way_raise_no_alarm() {
+    use Algorithm::{Cfc, Lawnmower, Lookahead};
+    let mut all = Vec::new();
+    for (algorithm, knows) in
+        [(Lawnmower, false), (Lookahead, false), (Lookahead, true), (Cfc, true)]
+    {
+        all.extend(ensemble::fly_some(cases(40, 2_000), |number| {
+            let steps = [15, 25, 60][number as usize % 3];
+            let mut mission = standard_field::standard(43, number, algorithm, steps);
+            mission.readings = [2, 5, 9, 15, 50][number as usize % 5];
+            if !knows {
+                mission.given = Given::open(Vec::new());
+            }
+            let (mut recorder, mut most) = (Recorder::new(mission.clone()), 0.0_f32);
+            let (_, refused) = mission.fly_in_sight(|step, sight, belief| {
+                recorder.pass(sight.passed);
+                recorder.take(step, sight.true_pose, belief);
+                most = most.max(recorder.last().and_then(|it| it.evidence).unwrap_or(0.0));
+            });
+            assert_eq!(refused, None);
+            Some(most)
+        }));
+    }
+    expect("alarms", percent(&all, |it| *it >= Alarm::ALARM), ..=1.0);
+    expect("warnings", percent(&all, |it| *it >= Alarm::WARNING), ..=5.0);
 }

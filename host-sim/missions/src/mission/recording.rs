@@ -139,10 +139,14 @@ impl Recorder {
         let mut readings = Vec::new();
         for (site, reading) in passed {
             let Some(known) = &mut known else { break };
-            self.hear(&**known, site, reading);
+            let before = known.boxed();
             // The planner took it in, so this belief does.
-            let cuts = known.observe_on_the_way(site, reading).unwrap_or(false);
-            readings.push(ReadingRecord::of(site, reading, cuts));
+            let taken = known.observe_on_the_way(site, reading);
+            // As `Watched` counts.
+            if taken != Ok(false) {
+                self.hear(&*before, site, reading);
+            }
+            readings.push(ReadingRecord::of(site, reading, taken.unwrap_or(false)));
         }
         let known = known.as_deref().unwrap_or(before);
         if let Some(reading) = step.reading {
