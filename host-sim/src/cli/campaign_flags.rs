@@ -190,7 +190,7 @@ impl CampaignFlags {
         check_once(planners)?;
         let planners = &of_lines(flag, planners)?[..];
         let p = self.p.unwrap_or(if planners.contains(&Algorithm::Scc) { 0.7 } else { 1.0 });
-        let p = scenario::probability("--p", p)?;
+        let p = scenario::told("--p", p)?;
         let prior = self.p_prior.as_deref().map(prior).transpose()?;
         let p = prior.map_or(p, UnknownReliability::mean);
         let p_told = self.p_told(p, prior)?;

@@ -93,7 +93,7 @@ impl FrontsFlags {
         if flags.fields > MOST {
             bail!("--fields: found {}, expected at most {MOST} with --fronts", flags.fields);
         }
-        let p = flags.p.map(|p| scenario::probability("--p", p)).transpose()?;
+        let p = flags.p.map(|p| scenario::told("--p", p)).transpose()?;
         let p = p.map_or(USUAL_P.to_vec(), |p| vec![p]);
         let reach = flags.vehicle.reach();
         if let Some(reach) = reach.filter(|it| !is_reach(*it)) {

@@ -29,11 +29,17 @@ impl Noise {
     pub const NONE: Self =
         Self { reliability: Reliability::CERTAIN, trusted_radius: 0, tolerance: Tolerance::NONE };
 
-    /// Labels that are true with probability `p` wherever they are read.
+    /// Labels that are true with probability `p` wherever they are read. Of a sensor that mostly reads the other label,
+    /// swap the labels.
     ///
     /// # Errors
-    /// [`ValueError`] outside [0, 1].
+    /// [`ValueError`] unless it is above 0.5, and 1 at most.
     pub fn new(p: f64) -> Result<Self, ValueError> {
+        const RANGE: ValueError =
+            ValueError("labels are true with a probability above 0.5; below it, swap the labels");
+        if p <= 0.5 {
+            return Err(RANGE);
+        }
         Ok(Self { reliability: Reliability::new(p)?, ..Self::NONE })
     }
 

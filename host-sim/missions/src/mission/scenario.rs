@@ -9,8 +9,8 @@ use planner_core::link::message::MissionArea;
 use planner_core::link::message::Settings;
 use planner_core::motion::unicycle::Grid;
 use planner_core::{
-    AnyReliability, EffortWeight, Following, Heading, Label, Pose, Reliability, Site, Tolerance,
-    UnknownReliability, Workspace as _,
+    AnyReliability, EffortWeight, Following, Heading, Label, Noise, Pose, Reliability, Site,
+    Tolerance, UnknownReliability, Workspace as _,
 };
 use serde::Deserialize;
 
@@ -482,7 +482,7 @@ fn noise(table: &NoiseTable) -> Result<(NoiseModel, Option<AnyReliability>)> {
     let true_p = table.true_p.map(|p| probability("noise.true_p", p)).transpose()?;
     let (p, p_told) = match table.p {
         Told::Number(p) => {
-            let p = probability("noise.p", p)?;
+            let p = told("noise.p", p)?;
             // It is what the planner believes, if the sensor does otherwise.
             let differs = true_p.is_some_and(|true_p| true_p.to_bits() != p.to_bits());
             let told = differs.then(|| Reliability::new(p)).transpose().map_err(Error::msg)?;
@@ -534,6 +534,17 @@ pub fn check_unknown(field: &str, tolerance: Tolerance, algorithm: Algorithm) ->
         return wrong(field, found, "scc or lookahead: cfc takes labels to be true");
     }
     Ok(())
+}
+
+/// How often labels are true, as a planner is told it: more often than not. Of an inverted sensor the labels are swapped.
+///
+/// # Errors
+/// Names `field` and the number.
+pub fn told(field: &str, p: f64) -> Result<f64> {
+    if Noise::new(p).is_err() {
+        return wrong(field, p, "a probability above 0.5, 1 at most; below it, swap the labels");
+    }
+    Ok(p)
 }
 
 /// Whether this is a probability.

@@ -151,8 +151,7 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
 
     /// How often a label counts as true.
     pub(crate) fn counted(&self) -> f32 {
-        let p = self.reliability();
-        if p < MOST { p } else { MOST }
+        self.reliability().clamp(1.0 - MOST, MOST)
     }
 
     /// By how much a position may err, metres.
