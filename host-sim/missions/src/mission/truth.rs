@@ -9,6 +9,7 @@ use planner_core::link::message::MissionArea;
 use serde::Deserialize;
 
 use crate::mission::strict::{Numbers, Table, wrong};
+use crate::output::notes::mention;
 use crate::world::World;
 use crate::world::boundary::{CoastRecord, Curve};
 use crate::world::circle::Circle;
@@ -64,7 +65,12 @@ impl TruthTable {
                 return wrong("truth.threshold", threshold, "a number");
             }
             let grid = raster_file::read(&folder.join(name), rectangle);
-            let grid = grid.or_else(|why| wrong("truth.raster", name, why))?;
+            let mut grid = grid.or_else(|why| wrong("truth.raster", name, why))?;
+            if let Some([x, z]) = grid.brought_to(rectangle) {
+                mention(format_args!(
+                    "truth.raster: {name} lies far off, so its corner ({x}, {z}) is put at that of the area"
+                ));
+            }
             Box::new(Raster::new(name.clone(), &grid, threshold))
         } else {
             let start = self.line()?;

@@ -86,8 +86,8 @@ fn frame<R: Read + Seek>(decoder: &mut Decoder<R>, rows: usize) -> Result<(Point
     let left = x - (column + middle) * width;
     let top = y + (row + middle) * height;
     let corner = Point2::new(left, top - rows as f64 * height);
-    if !(corner.x.abs() <= 1e6 && corner.y.abs() <= 1e6) {
-        bail!("found its corner at ({}, {}), expected up to 1e6 m", corner.x, corner.y);
+    if !(corner.x.abs() <= 1e8 && corner.y.abs() <= 1e8) {
+        bail!("found its corner at ({}, {}), expected up to 1e8 m", corner.x, corner.y);
     }
     Ok((corner, cell))
 }
@@ -259,8 +259,8 @@ mod tests {
         refuses(Tags { turned: true, ..PLAIN }, "found ModelTransformation (34264)");
         refuses(Tags { scale: Some(&[2.0, -3.0, 0.0]), ..PLAIN }, "found ModelPixelScale");
         refuses(Tags { tie: Some(&[0.0; 12]), ..PLAIN }, "with 12 numbers, expected one point");
-        let far = Some(&[0.0, 0.0, 0.0, 5e5, 5.8e6, 0.0][..]);
-        refuses(Tags { tie: far, ..PLAIN }, "found its corner at (500000, 5799994)");
+        let far = Some(&[0.0, 0.0, 0.0, 5e8, 5.8e9, 0.0][..]);
+        refuses(Tags { tie: far, ..PLAIN }, "found its corner at (500000000, 5799999994)");
         refuses(Tags { missing: Some("none"), ..PLAIN }, "found GDAL_NODATA none");
         refuses(
             Tags { keys: &[1, 1, 0, 1, 1024, 0, 1, 2], ..PLAIN },

@@ -73,10 +73,13 @@ fn image(path: &Path, [min, max]: [Point2<f64>; 2]) -> Result<Grid> {
 fn ascii(text: &str) -> Result<Grid> {
     let mut words = text.split_ascii_whitespace().peekable();
     let [mut columns, mut rows] = [None; 2];
-    let [mut cell, mut missing] = [None; 2];
+    let (mut cell, mut missing) = ([None; 2], None);
     let mut corner = [None; 2];
-    while let Some(key) = words.next_if(|word| word.starts_with(|c: char| c.is_ascii_alphabetic()))
-    {
+    // A cell may be nan.
+    let is_key = |word: &&str| {
+        word.starts_with(|c: char| c.is_ascii_alphabetic()) && word.parse::<f64>().is_err()
+    };
+    while let Some(key) = words.next_if(is_key) {
         let key = key.to_ascii_lowercase();
         let word = words.next().with_context(|| format!("found {key} without a value"))?;
         let number: f64 =
@@ -90,25 +93,28 @@ fn ascii(text: &str) -> Result<Grid> {
             "yllcorner" => corner[1] = Some((number, 0.0)),
             "xllcenter" => corner[0] = Some((number, 0.5)),
             "yllcenter" => corner[1] = Some((number, 0.5)),
-            "cellsize" => cell = Some(number),
+            "cellsize" => cell = [Some(number); 2],
+            "dx" => cell[0] = Some(number),
+            "dy" => cell[1] = Some(number),
             "nodata_value" => missing = Some(number),
             _ => bail!(
-                "found {key}, expected ncols, nrows, xllcorner, yllcorner, cellsize or nodata_value"
+                "found {key}, expected ncols, nrows, xllcorner, yllcorner, cellsize (or dx and dy) or nodata_value"
             ),
         }
     }
     let columns = columns.context("expected ncols")?;
     let rows = rows.context("expected nrows")?;
-    let cell = cell
-        .filter(|it| (1e-6..=1e6).contains(it))
-        .context("expected a cellsize in metres, above 0")?;
+    let [Some(dx), Some(dy)] = cell.map(|it| it.filter(|it| (1e-6..=1e6).contains(it))) else {
+        bail!("expected a cellsize in metres, above 0");
+    };
+    let cell = [dx, dy];
     check_cells(columns, rows)?;
     let least = |axis: usize, name| {
         let (at, cells) = corner[axis].with_context(|| format!("expected {name}"))?;
-        if f64::abs(at) <= 1e6 {
-            Ok(at - cells * cell)
+        if f64::abs(at) <= 1e8 {
+            Ok(at - cells * cell[axis])
         } else {
-            bail!("found {name} {at}, expected up to 1e6 m")
+            bail!("found {name} {at}, expected up to 1e8 m")
         }
     };
     let corner = Point2::new(least(0, "xllcorner")?, least(1, "yllcorner")?);
@@ -121,7 +127,7 @@ fn ascii(text: &str) -> Result<Grid> {
     if values.len() != columns * rows {
         bail!("found {} values, expected {columns} x {rows}", values.len());
     }
-    Ok(Grid { corner, cell: [cell; 2], columns, values })
+    Ok(Grid { corner, cell, columns, values })
 }
 
 #[cfg(test)]
@@ -144,9 +150,10 @@ mod tests {
             ("nrows 2", "nrows 99999999999999999999", "expected a count"),
             ("nrows 2", "nrows 9999999", "expected 1 to 4000000"),
             ("xllcenter 10.5\n", "", "expected xllcorner"),
-            ("YLLCORNER -2", "YLLCORNER 2e6", "expected up to 1e6 m"),
+            ("YLLCORNER -2", "YLLCORNER 2e8", "expected up to 1e8 m"),
             ("cellsize 1", "cellsize 0", "expected a cellsize in metres"),
-            ("cellsize 1", "dx 1 dy 2", "found dx, expected ncols"),
+            ("cellsize 1", "dx 1 dz 2", "found dz, expected ncols"),
+            ("cellsize 1", "dx 1", "expected a cellsize in metres"),
             ("6.5", "six", "found six, expected a number"),
             ("6.5", "", "found 5 values"),
         ] {
