@@ -19,7 +19,7 @@ const PLANNER_CORE: Storeys = &[
     &["search"],
     &["planner"],
     &["robot"],
-    &["dynamics", "error", "link", "watch"],
+    &["dynamics", "error", "link", "parts", "watch"],
 ];
 
 const HOST_SIM: Storeys = &[
