@@ -666,7 +666,7 @@ planner_status planner_front_beside(planner_follower_t *follower,
 
 /*
  Writes what a planner of fronts has to remember over a sleep. Returns how many bytes that takes; 0 if there is not so
- much room. `planner_follower_bytes` are always enough.
+ much room, and then none is written. `planner_follower_bytes` are always enough.
 
  # Safety
  `follower` must be null or from `planner_follow` or `planner_watch`, `bytes` null or writable for so many bytes.

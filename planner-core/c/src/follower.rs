@@ -294,7 +294,7 @@ pub unsafe extern "C" fn front_beside(
 }
 
 /// Writes what a planner of fronts has to remember over a sleep. Returns how many bytes that takes; 0 if there is not so
-/// much room. `planner_follower_bytes` are always enough.
+/// much room, and then none is written. `planner_follower_bytes` are always enough.
 ///
 /// # Safety
 /// `follower` must be null or from `planner_follow` or `planner_watch`, `bytes` null or writable for so many bytes.
@@ -305,10 +305,14 @@ pub unsafe extern "C" fn follower_save(
     room: usize,
 ) -> usize {
     let Some(follower) = follower.filter(|_| !bytes.is_null()) else { return 0 };
-    // SAFETY: the caller promises so much room.
+    // An earlier snapshot stays until there is another.
+    let Some(count) = ask!(follower, it => snapshot::size(it)).filter(|it| *it <= room) else {
+        return 0;
+    };
+    // SAFETY: the caller promises more room than that.
     let bytes = unsafe {
-        bytes.write_bytes(0, room);
-        core::slice::from_raw_parts_mut(bytes, room)
+        bytes.write_bytes(0, count);
+        core::slice::from_raw_parts_mut(bytes, count)
     };
     ask!(follower, it => snapshot::write(it, bytes)).unwrap_or(0)
 }

@@ -44,6 +44,11 @@ impl Snapshot {
     }
 }
 
+/// How many bytes [`write`] writes.
+pub(crate) fn size<P: Persist<Snapshot: Serialize>>(planner: &P) -> Option<usize> {
+    Some(postcard::experimental::serialized_size(&planner.snapshot()).ok()? + SUM)
+}
+
 /// Writes what a planner has to remember, and a check sum; how many bytes these are. `None` if they do not fit.
 pub(crate) fn write<P: Persist<Snapshot: Serialize>>(
     planner: &P,

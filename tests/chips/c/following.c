@@ -47,8 +47,8 @@ int main(int count_of_words, char **words) {
         int32_t reading = PLANNER_READING_NONE;
         if (step == 65) {
             size_t count = planner_follower_save(follower, kept, sizeof kept);
+            // Without room for all of it, what was kept stays as it was.
             if (!count || planner_follower_save(follower, kept, count - 1)) return 2;
-            count = planner_follower_save(follower, kept, sizeof kept);
             memset(memory, 0xa5, sizeof memory);
             follower = begin(watches);
             kept[100] ^= 1;
