@@ -302,4 +302,8 @@ impl<T: Planner + ?Sized> Planner for &mut T {
     fn estimates(&self) -> Estimates {
         T::estimates(self)
     }
+
+    fn estimate(&self) -> Option<Line> {
+        T::estimate(self)
+    }
 }

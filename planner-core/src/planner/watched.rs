@@ -1,10 +1,12 @@
 //! A planner whose labels are watched: the [`Evidence`] of its mission against the model.
 
+use crate::belief::estimate::Estimates;
 use crate::belief::evidence::{Alarm, Evidence};
 use crate::belief::sample::Reading;
 use crate::belief::tolerance::Tolerance;
 use crate::belief::{Belief as _, ObservationError};
 use crate::geometry::lattice::Site;
+use crate::geometry::line::Line;
 use crate::motion::dynamics::Pose;
 use crate::planner::front_state::FrontState;
 use crate::planner::{Plan, Planner};
@@ -91,5 +93,86 @@ impl<P: Planner> Planner for Watched<P> {
 
     fn front(&self) -> Option<FrontState> {
         self.planner.front()
+    }
+
+    fn estimates(&self) -> Estimates {
+        self.planner.estimates()
+    }
+
+    fn estimate(&self) -> Option<Line> {
+        self.planner.estimate()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::belief::sample::{Label, Sample};
+    use crate::belief::true_labels::VersionSpace;
+    use crate::geometry::heading::Heading;
+    use crate::planner::StopReason;
+
+    /// A planner that says something of its own wherever the trait has an answer for all.
+    struct Outspoken(VersionSpace<8>);
+
+    impl Planner for Outspoken {
+        type Belief = VersionSpace<8>;
+
+        fn plan(&mut self, _: Pose) -> Plan {
+            Plan::Stop(StopReason::Worth)
+        }
+
+        fn observe_within(
+            &mut self,
+            _: Pose,
+            _: Option<Reading>,
+            _: Tolerance,
+        ) -> Result<(), ObservationError> {
+            Err(ObservationError::Reliability)
+        }
+
+        fn observe_on_the_way(&mut self, _: Site, _: Reading) -> Result<bool, ObservationError> {
+            Ok(true)
+        }
+
+        fn belief(&self) -> &VersionSpace<8> {
+            &self.0
+        }
+
+        fn front(&self) -> Option<FrontState> {
+            Some(FrontState { waist: None, is_closed: true })
+        }
+
+        fn estimates(&self) -> Estimates {
+            Estimates { bisector: None, centre: None, maximum_margin: None }
+        }
+
+        fn estimate(&self) -> Option<Line> {
+            None
+        }
+    }
+
+    /// What a planner answers, whoever is asked in its name.
+    fn answers(mut planner: impl Planner) {
+        let pose = Pose { site: Site::ORIGIN, heading: Heading::default() };
+        assert_eq!(planner.plan(pose), Plan::Stop(StopReason::Worth));
+        assert_eq!(planner.observe(pose, None), Err(ObservationError::Reliability));
+        assert_eq!(planner.observe_on_the_way(pose.site, Label::Positive.into()), Ok(true));
+        assert!(planner.front().is_some_and(|it| it.is_closed));
+        assert!(planner.estimates().centre.is_none() && planner.estimate().is_none());
+    }
+
+    #[test]
+    fn it_hands_on_all_that_its_planner_says() {
+        let given = [
+            Sample::at([0.0, 0.0], Label::Negative).unwrap(),
+            Sample::at([4.0, 0.0], Label::Negative).unwrap(),
+            Sample::at([2.0, 5.0], Label::Positive).unwrap(),
+        ];
+        let outspoken = || Outspoken(VersionSpace::new(&given).unwrap());
+        assert!(outspoken().0.centre().is_some());
+        answers(&mut outspoken());
+        answers(Watched::new(outspoken()));
+        answers(&mut Watched::new(outspoken()));
     }
 }

@@ -3,9 +3,10 @@
 use planner_core::dynamics::Dynamics;
 use planner_core::error::ObservationError;
 use planner_core::link::message::MissionArea;
+use planner_core::watch::Alarm;
 use planner_core::{
-    Belief as _, Front, OneLabel, Plan, Planner, Pose, Reading, Seek, Site, StopReason, Tolerance,
-    Tracker, VersionSpace, Workspace as _,
+    Belief as _, Front, FrontState, OneLabel, Plan, Planner, Pose, Reading, Seek, Site, StopReason,
+    Tolerance, Tracker, VersionSpace, Workspace as _,
 };
 use serde::{Deserialize, Serialize};
 
@@ -119,6 +120,14 @@ impl<D: Dynamics + 'static> Planner for FromNothing<D> {
 
     fn belief(&self) -> &(dyn ReadOut + 'static) {
         self.next.as_ref().map_or(self.seek.belief(), |next| next.belief())
+    }
+
+    fn alarm(&self) -> Option<Alarm> {
+        self.next.as_ref().map_or(self.seek.alarm(), |next| next.alarm())
+    }
+
+    fn front(&self) -> Option<FrontState> {
+        self.next.as_ref().map_or(self.seek.front(), |next| next.front())
     }
 }
 

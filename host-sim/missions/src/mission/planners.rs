@@ -3,9 +3,11 @@
 use planner_core::dynamics::Dynamics;
 use planner_core::error::ObservationError;
 use planner_core::link::message::MissionArea;
+use planner_core::watch::Alarm;
 use planner_core::{
-    Accuracy, AnyReliability, AnySight, AnyVehicle, Belief, Cfc, FrontState, Guard, Lookahead,
-    Plan, Planner, Pose, PredictiveBelief, Reading, Scc, Site, Tolerance, Track, Workspace,
+    Accuracy, AnyReliability, AnySight, AnyVehicle, Belief, Cfc, Estimates, FrontState, Guard,
+    Line, Lookahead, Plan, Planner, Pose, PredictiveBelief, Reading, Scc, Site, Tolerance, Track,
+    Workspace,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -53,8 +55,20 @@ impl<P: Planner<Belief: ReadOut + Sized + 'static>> Planner for Erased<P> {
         self.0.belief()
     }
 
+    fn alarm(&self) -> Option<Alarm> {
+        self.0.alarm()
+    }
+
     fn front(&self) -> Option<FrontState> {
         self.0.front()
+    }
+
+    fn estimates(&self) -> Estimates {
+        self.0.estimates()
+    }
+
+    fn estimate(&self) -> Option<Line> {
+        self.0.estimate()
     }
 }
 

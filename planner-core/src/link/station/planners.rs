@@ -25,6 +25,7 @@ use crate::link::station::flight::{Flown, Station, Watch};
 use crate::link::station::seam::Prepared;
 use crate::link::station::terms::{FromOutlines, Known, PlannerSetup};
 use crate::motion::dynamics::{Dynamics, Pose};
+use crate::planner::front_state::FrontState;
 use crate::planner::sight::{Near, Sight};
 use crate::planner::watched::Watched;
 use crate::planner::{Plan, Planner};
@@ -173,6 +174,10 @@ impl<L: Planner> Planner for CentreAlone<'_, L> {
 
     fn alarm(&self) -> Option<Alarm> {
         self.0.alarm()
+    }
+
+    fn front(&self) -> Option<FrontState> {
+        self.0.front()
     }
 
     fn estimates(&self) -> Estimates {
