@@ -6,6 +6,7 @@ use planner_core::error::GivenError;
 use planner_core::{Area, Label, Line, Sample};
 
 use crate::fitting::doubt::{Doubt, Votes};
+use crate::fitting::fewest::Fewest;
 use crate::fitting::fit::{Fit, Question};
 use crate::fitting::hull::{Row, in_order};
 use crate::fitting::line_posterior::{Cell, LinePosterior, TooOpen};
@@ -302,7 +303,16 @@ fn posterior(
     })?;
     LinePosterior::of(&votes, &Doubt::new(p, tolerance), reach).map_err(|why| match why {
         TooOpen::Cells(_) | TooOpen::Work(_) => {
-            anyhow!("{name}: labels that are true with probability {p} leave too much open: {why}")
+            let open =
+                format!("labels that are true with probability {p} leave too much open: {why}");
+            // Often that is because no straight line explains them at all.
+            let fewest = Fewest::of(&file.samples);
+            let fit = fewest.map(|it| fit(file, &it.line, p, tolerance.unwrap_or(0.0)));
+            let Some(fit) = fit.filter(|it| it.verdict.is_bad()) else {
+                return anyhow!("{name}: {open}");
+            };
+            let Words { says, advice } = Words::of(file, &fit, Some(p));
+            anyhow!("{name}: {says} {advice}")
         }
         TooOpen::NoLine => anyhow!("{name}: no line agrees with the labels that are certain"),
     })
