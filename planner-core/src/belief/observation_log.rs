@@ -122,7 +122,7 @@ pub trait FromLog {
 pub enum ReplayError {
     /// It comes from a belief of the other kind: one for true labels, the other for labels that may be wrong.
     Kind,
-    /// It says that more samples were given than it has.
+    /// What it holds goes together in no mission: it says that more samples were given than it has, or the like.
     Spoilt,
     /// The given samples make no belief.
     Given(GivenError),
@@ -134,7 +134,7 @@ impl core::fmt::Display for ReplayError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::Kind => f.write_str("the log is of labels of the other kind"),
-            Self::Spoilt => f.write_str("it says that more samples were given than it has"),
+            Self::Spoilt => f.write_str("what it holds goes together in no mission"),
             Self::Given(why) => why.fmt(f),
             Self::Label(why) => why.fmt(f),
         }

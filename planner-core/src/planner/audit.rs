@@ -105,6 +105,12 @@ impl Course {
         motions < UNKNOWN && motions > self.left.saturating_add(STRAYS)
     }
 
+    /// Whether an audit can have it: places that there are, and not more motions than a mission has.
+    fn is_possible(self) -> bool {
+        let is_place = self.to.is_none_or(|(place, _)| usize::from(place) < PLACES);
+        is_place && self.motions < u16::MAX / 2
+    }
+
     /// The same with its place settled.
     fn settle(self) -> Self {
         let settled = self.to.map_or(0, |(place, _)| 1 << place);
@@ -123,6 +129,14 @@ impl<V: Verdicts> Audit<V> {
         next: Course::NONE,
         arrives: false,
     };
+
+    /// Whether it can come of an audit, and not only of bytes.
+    pub(crate) fn is_possible(&self) -> bool {
+        self.agreed <= LABELS
+            && self.disagreed <= LABELS
+            && self.now.is_possible()
+            && self.next.is_possible()
+    }
 
     /// Labels that were read where the belief is sure, and are what it is sure of.
     pub const fn agreed(&self) -> u16 {
@@ -309,4 +323,22 @@ impl Places {
 /// Even places lie on the +1 side.
 const fn side(place: u8) -> f32 {
     if place.is_multiple_of(2) { 1.0 } else { -1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::belief::predictions::Decisive;
+
+    #[test]
+    fn bytes_of_no_audit_are_told_from_one() {
+        let of =
+            |course: Course, agreed: u16| Audit { now: course, agreed, ..Audit::<Decisive>::NONE };
+        assert!(of(Course { to: Some((5, 4)), ..Course::NONE }, LABELS).is_possible());
+        for to in [(6, 0), (200, 1)] {
+            assert!(!of(Course { to: Some(to), ..Course::NONE }, 0).is_possible());
+        }
+        assert!(!of(Course { motions: u16::MAX, ..Course::NONE }, 0).is_possible());
+        assert!(!of(Course::NONE, LABELS + 1).is_possible());
+    }
 }

@@ -32,6 +32,11 @@ impl Lap {
     /// No front is found.
     pub(crate) const NONE: Self = Self { faced: None, begun: None, turned: 0, is_closed: false };
 
+    /// Whether a mission can have turned so far.
+    pub(crate) const fn is_possible(&self) -> bool {
+        self.turned.unsigned_abs() < 1 << 62
+    }
+
     /// Takes in where the robot faces; what comes after the first time does not count.
     pub(crate) fn face(&mut self, heading: Heading) {
         self.faced.get_or_insert(heading);

@@ -23,7 +23,7 @@ use crate::belief::Belief as _;
 use crate::belief::ObservationError;
 use crate::belief::goal::{Criterion, Goal, NoGoal};
 use crate::belief::noise::Noise;
-use crate::belief::observation_log::FromLog;
+use crate::belief::observation_log::{FromLog, ReplayError};
 use crate::belief::predictions::{NoisyBelief, Prediction as _, PredictiveBelief};
 use crate::belief::sample::{Reading, Sample};
 use crate::belief::tolerance::Tolerance;
@@ -466,6 +466,9 @@ impl<D: Dynamics, B: PredictiveBelief + FromLog, G: Workspace, C: Criterion, S: 
 
     fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), RestoreError> {
         let (log, &(silence, audit, journey)) = snapshot.open()?;
+        if !audit.is_possible() {
+            return Err(ReplayError::Spoilt.into());
+        }
         self.belief.replay(log)?;
         (self.silence, self.journey) = (silence, journey);
         self.audit = self.audit.map(|_| audit);

@@ -23,7 +23,7 @@ use crate::belief::ObservationError;
 use crate::belief::evidence::Alarm;
 use crate::belief::front::{FrontMemory, FrontStretch, NINETY, Tracker, Unit, Waist};
 use crate::belief::noise::Noise;
-use crate::belief::observation_log::FromLog as _;
+use crate::belief::observation_log::{FromLog as _, ReplayError};
 use crate::belief::sample::{Reading, Sample};
 use crate::belief::tolerance::Tolerance;
 use crate::belief::weight::Prior;
@@ -389,6 +389,9 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
 
     fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), RestoreError> {
         let (log, &(silence, lap, heard_at)) = snapshot.open()?;
+        if !lap.is_possible() {
+            return Err(ReplayError::Spoilt.into());
+        }
         self.scout.tracker.replay(log)?;
         (self.scout.silence, self.lap, self.heard_at) = (silence, lap, heard_at);
         Ok(())

@@ -4,7 +4,7 @@
 //! of them. So one direction between each two neighbouring ones of those stands for all. The search is exact, but for
 //! directions that differ by the rounding of double precision.
 //!
-//! That takes `n^2` directions of `n` labels. Of more than [`EXACT`] labels it tries [`STEPS`] directions all around, and
+//! That takes `n^2` directions of `n` labels. Of more than 128 labels it tries 2,880 directions all around, and
 //! then ever finer ones about the best: `O(n log n)`. A few labels more may then disagree than with the best line.
 
 use std::f64::consts::{PI, TAU};

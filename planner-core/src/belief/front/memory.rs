@@ -32,14 +32,15 @@ impl<const K: usize, const M: usize, const L: usize> FrontMemory<K, M, L> {
         let Lay { turn, low, step, bend, .. } = self.lay;
         let masses = || self.masses.0.iter().flatten().flatten().chain(&self.nowhere);
         let sum: f32 = masses().sum();
-        let has_size = |it: f32| it > 0.0 && it < 1e6;
+        // Smaller cells come of bytes alone, and dividing by them overflows.
+        let has_size = |it: f32| it > 1e-7 && it < 1e6;
         masses().all(|it| (0.0..=1.0).contains(it))
             && (sum - 1.0).abs() < 1e-2
             && has_size(turn)
             && turn * K as f32 <= 6.3
             && has_size(step)
             && low.abs() < 1e6
-            && (bend == 0.0 || has_size(bend))
+            && (0.0..1e6).contains(&bend)
             && self.learnt.is_none_or(Learnt::is_valid)
     }
 }
@@ -141,6 +142,9 @@ mod tests {
             woken.replay(&FrontMemory { nowhere: [0.9, 0.9], ..log.clone() }),
             Err(ReplayError::Spoilt)
         );
+        for lay in [Lay { turn: 1e-30, ..log.lay }, Lay { step: 1e-38, ..log.lay }] {
+            assert_eq!(woken.replay(&FrontMemory { lay, ..log.clone() }), Err(ReplayError::Spoilt));
+        }
         let learnt = Some(Learnt::prior([8.0, 2.0]));
         assert_eq!(woken.replay(&FrontMemory { learnt, ..log }), Err(ReplayError::Kind));
         assert_eq!(awake.log(), woken.log());
