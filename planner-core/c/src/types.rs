@@ -243,7 +243,8 @@ impl Mission<'_> {
 
     pub(crate) fn unicycle(&self) -> Result<Unicycle, Refusal> {
         let refused = |what: &'static CStr| Refusal::of(Status::Mission, what);
-        let speeds = self.steps.checked_add(1).ok_or(refused(c"steps"))?;
+        // Without a step it would turn on the spot alone.
+        let speeds = self.steps.checked_add(1).filter(|it| *it > 1).ok_or(refused(c"steps"))?;
         let made = Unicycle::new(self.turn_step_urad, self.sharpest, speeds, self.step_mm);
         made.map_err(|bad| {
             // With a turn and a step that are possible for certain: what is still refused is something else.

@@ -132,3 +132,15 @@ impl TryFrom<[Site; 2]> for Area {
         Self::new(min, max)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_inset_of_an_inset_remembers_both_margins() {
+        let area = Area::metres([0.0, 0.0], [10.0, 10.0]).unwrap();
+        let twice = area.inset(3).and_then(|it| it.inset(4)).unwrap();
+        assert_eq!((twice.margin(), twice.whole()), (7, area));
+    }
+}

@@ -230,3 +230,20 @@ fn is_further(q: Site, (from, to): (Site, Site), by: u32) -> bool {
         square(along.cross(way)) > by * u128::from(length.unsigned_abs())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square(half: i32) -> [Site; 4] {
+        [(-half, -half), (half, -half), (half, half), (-half, half)]
+            .map(|(x, z)| Site::new(x, z).unwrap())
+    }
+
+    #[test]
+    fn a_hull_inside_another_is_not_apart_from_it() {
+        let (inner, outer) = (square(10), square(1_000));
+        assert!(!are_apart(&inner, &outer, 0) && !are_apart(&outer, &inner, 0));
+        assert!(!are_apart(&outer, &[Site::ORIGIN], 0));
+    }
+}

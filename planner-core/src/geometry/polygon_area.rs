@@ -263,3 +263,17 @@ impl<const C: usize, const K: usize> Workspace for PolygonArea<C, K> {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_margin_as_wide_as_the_polygon_leaves_no_area() {
+        let corners = [[0.0, 0.0], [10.0, 0.0], [0.0, 10.0]];
+        let triangle = PolygonArea::<3, 0>::metres(&corners, &[]).unwrap();
+        // Its widest circle has a radius of 2.93 m.
+        let inset = |metres| triangle.with_clearance(metres);
+        assert!(inset(2.9).is_ok() && inset(3.0).is_err());
+    }
+}

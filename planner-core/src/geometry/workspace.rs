@@ -201,3 +201,18 @@ impl<'a> Obstacle<'a> {
         is_near && (!begins(self.radius) || self.is_apart_from(swept, self.radius))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_motion_from_the_margin_does_not_leave_the_area() {
+        let whole = Area::metres([0.0, 0.0], [10.0, 10.0]).unwrap();
+        let area = Workspace::with_clearance(&whole, 1.0).unwrap();
+        let [inside, margin, outside] = [2.0, 0.5, -0.5].map(|x| Site::metres([x, 5.0]).unwrap());
+        assert!(area.confines(inside, inside) && !area.confines(inside, margin));
+        assert!(area.confines(margin, margin) && !area.confines(margin, outside));
+        assert!(area.confines(outside, outside) && area.confines(outside, margin));
+    }
+}

@@ -42,7 +42,7 @@ pub struct ActionGrid {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum GridError {
-    /// It has no motion, or more than 2^32 actions.
+    /// It has no action, or more than 2^32.
     Actions,
     /// Its steps of speed are zero, or 100 m or more. Or one of its motions is 3,000 m long or longer.
     Reach,
@@ -57,7 +57,7 @@ pub enum GridError {
 impl core::fmt::Display for GridError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str(match self {
-            Self::Actions => "an action grid has a direction, a speed besides 0, and 2^32 actions at most",
+            Self::Actions => "an action grid has 1 to 2^32 actions",
             Self::Reach => "steps of speed are 1 mm or more and below 100 m, and a motion is shorter than 3000 m",
             Self::Turn => {
                 "a step of turning is 1 to 3141592 urad, and the sharpest turn from 0.001 to pi rad"
@@ -87,7 +87,7 @@ impl ActionGrid {
     /// [`GridError::Actions`], [`GridError::Reach`].
     pub const fn new(rays: u32, speeds: u16, speed_step_mm: u32) -> Result<Self, GridError> {
         let actions = rays as u64 * speeds as u64;
-        if rays == 0 || speeds < 2 || actions > 1 << 32 {
+        if actions == 0 || actions > 1 << 32 {
             return Err(GridError::Actions);
         }
         let reach = (speeds as u64 - 1) * speed_step_mm as u64;

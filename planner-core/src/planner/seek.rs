@@ -364,4 +364,15 @@ mod tests {
         let has = |x, z| seek.samples.iter().any(|it| it.site == Site::metres([x, z]).unwrap());
         assert!(has(0.0, 0.0) && has(20.0, 0.0) && has(10.0, 5.9), "{:?}", seek.samples);
     }
+
+    #[test]
+    fn the_only_label_of_its_kind_is_kept() {
+        let mut labels = [(0.0, 1.0, Label::Negative); 20];
+        for (label, k) in labels.iter_mut().skip(1).zip(1..) {
+            *label = (f64::from(k), 1.0, Label::Positive);
+        }
+        let seek = after(&labels);
+        assert_eq!((seek.is, seek.samples.len()), (State::Sought, GIVEN));
+        assert!(seek.samples.iter().any(|it| it.label == Label::Negative));
+    }
 }

@@ -126,3 +126,16 @@ impl SeenLine {
         (away >= below).then(|| (Label::Negative, around - below))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_as_far_apart_as_a_turn_takes_them_within_reach() {
+        let line = SeenLine::new(3.0, Heading(0));
+        let other = SeenLine::new(5.0, Heading::from_radians(0.01).unwrap());
+        let aside = line.aside(&other, 1_000.0);
+        assert!((aside - 12.0).abs() < 0.2, "{aside}");
+    }
+}

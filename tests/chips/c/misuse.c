@@ -46,6 +46,8 @@ static int areas(const planner_mission *good, const planner_sample *given) {
     BLAMES(&bad, given, 4, PLANNER_STATUS_MISSION, "step_mm", -1);
     bad = *good, bad.steps = 65535;
     BLAMES(&bad, given, 4, PLANNER_STATUS_MISSION, "steps", -1);
+    bad = *good, bad.steps = 0;
+    BLAMES(&bad, given, 4, PLANNER_STATUS_MISSION, "steps", -1);
     bad = *good, bad.min_z = 30.0;
     BLAMES(&bad, given, 4, PLANNER_STATUS_MISSION, "max_z", -1);
     bad = *good, bad.max_x = 1e9;

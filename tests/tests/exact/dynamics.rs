@@ -153,6 +153,7 @@ enum Breaks {
     TurnsBeyond,
     // Speeds and ends of arcs.
     MoreWhenSlower,
+    MoreToOneSide,
     NotAllWhenFastest,
     KnowsTooMany,
     KnowsTooFew,
@@ -219,6 +220,10 @@ impl<D: Dynamics> Dynamics for Faulty<D> {
         let fastest = self.0.grid().speeds() - 1;
         match self.1 {
             Breaks::MoreWhenSlower if speed == 9 => self.0.rays_at(fastest),
+            Breaks::MoreToOneSide if speed == 9 => {
+                let [left, _] = self.0.rays_at(fastest)?;
+                self.0.rays_at(speed).map(|[_, right]| [left, right])
+            }
             Breaks::NotAllWhenFastest if speed == fastest => self.0.rays_at(fastest / 2),
             _ => self.0.rays_at(speed),
         }
@@ -274,14 +279,18 @@ impl<D: Dynamics> Dynamics for Faulty<D> {
 
     fn ray_of(&self, pose: Pose, action: Action) -> Option<Ray> {
         let (index, speed) = self.0.grid().split(action);
+        let ahead = self.0.fan().right;
         let action = match self.1 {
+            // What it says of its rays is true of its actions.
+            Breaks::MoreToOneSide if speed == 9 && index >= ahead => {
+                self.0.grid().action(index, self.0.grid().speeds() - 1)
+            }
             Breaks::KnowsTooMany if speed == 9 => {
                 self.0.grid().action(index, self.0.grid().speeds() - 1)
             }
             Breaks::KnowsTooFew if speed == 9 => return None,
             _ => action,
         };
-        let ahead = self.0.fan().right;
         self.0.ray_of(pose, action).map(|ray| {
             let side = if ray.index < ahead { Side::Right } else { Side::Left };
             self.ray(pose, side, ray.index.abs_diff(ahead))
@@ -333,6 +342,7 @@ fn each_broken_promise_is_named() {
     for (breaks, broken) in [
         (Breaks::Nothing, Ok(())),
         (Breaks::MoreWhenSlower, Err(Error::Speeds(9))),
+        (Breaks::MoreToOneSide, Err(Error::Speeds(9))),
         (Breaks::NotAllWhenFastest, Err(Error::Speeds(20))),
         (Breaks::KnowsTooMany, Err(Error::Speeds(9))),
         (Breaks::KnowsTooFew, Err(Error::Speeds(9))),

@@ -277,3 +277,21 @@ fn thousands_of_readings_run_in_the_memory_of_32() {
         });
     }
 }
+
+#[test]
+fn samples_of_the_shortest_pairs_go_last() {
+    let sample = |(x, z)| {
+        let label = if z > 5.0 { Label::Positive } else { Label::Negative };
+        Sample::at([x, z], label).expect("near")
+    };
+    let given = [(0.0, 0.0), (0.0, 10.0), (10.0, 10.0), (10.0, 0.0)].map(sample);
+    let mut space = VersionSpace::<9>::new(&given).expect("they are apart");
+    // The first one lies deeper in certain ground, but ends the shortest pair.
+    let [paired, other] = [(5.0, 3.0), (9.5, 4.0)].map(sample);
+    let bounds = [(5.0, 5.1), (1.0, 4.95), (9.0, 4.95)].map(sample);
+    let newest = sample((5.0, 5.05));
+    for it in [paired, other].into_iter().chain(bounds).chain([newest]) {
+        space.insert(it).expect("there is room");
+    }
+    assert_eq!(space.samples(), [&given[..], &[paired], &bounds, &[newest]].concat());
+}

@@ -93,6 +93,32 @@ fn equals_exhaustive_search_along_missions() {
     assert!(examined as f64 <= 0.05 * 6657.0 * states as f64, "{examined} in {states} states");
 }
 
+/// Beside the area, where an error may bring the agent: motions lead back in.
+#[test]
+fn equals_exhaustive_search_from_outside_the_area() {
+    let (unicycle, weight) = (Unicycle::paper(), EffortWeight::PAPER);
+    let found: u64 = (0..cases(4, 100))
+        .into_par_iter()
+        .map(|number| {
+            let mission = standard_field::standard(11, number, Algorithm::Cfc, 1);
+            let (space, area) = (mission.lines(), mission.config.area);
+            let mut found = 0;
+            for k in 0..20_i64 {
+                let along = i64::from(area.bounds().min().z()) + (k << 16);
+                let site = clamped(i64::from(area.bounds().min().x()) - (k + 1) * 5_000, along);
+                let pose = Pose { site, heading: Heading((k as u32) << 25) };
+                let context = format!("field {number}, place {k}");
+                check(&unicycle, &space, area, weight, pose, &context);
+                let rule = ArcRule::default();
+                let problem = Problem { lines: space.lines(), area, weight, rule };
+                found += u64::from(problem.solve(&unicycle, pose).best.is_some());
+            }
+            found
+        })
+        .sum();
+    assert!(found >= cases(4, 100), "{found}");
+}
+
 /// A version space of a few random samples, the area around it, and a pose inside.
 fn anywhere(rng: &mut ChaCha8Rng) -> Option<(VersionSpace<CAPACITY>, Area, Pose)> {
     // From centimetres, where rounding to the lattice shows, to kilometres.

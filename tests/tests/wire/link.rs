@@ -204,6 +204,26 @@ fn a_chip_declines_what_it_does_not_have() {
     }
 }
 
+/// A chip that lacks room for samples alone, or for hypotheses alone, declines too.
+#[test]
+fn a_chip_declines_what_it_has_no_room_for() {
+    let room = Capacity { samples: 36, hypotheses: 529 };
+    for (samples, hypotheses, fits) in [(36, 529, true), (37, 1, false), (5, 530, false)] {
+        let network = Network::new(&mission(1), LabelSource::Vehicle, Faults::default());
+        let flown = offered(&network, |chip, setup| {
+            let capacity = Capacity { samples, hypotheses };
+            fly(chip, &Setup { capacity, ..setup.clone() })
+        });
+        match flown {
+            Ok(Flown::Ended(_)) => assert!(fits, "{samples} {hypotheses}"),
+            Ok(Flown::Declined(declined)) => {
+                assert_eq!((declined, fits), (DeclinedError::Capacity(room), false));
+            }
+            Err(lost) => panic!("{lost:?}"),
+        }
+    }
+}
+
 /// The terms by which a chip flies are those that it was told, all of its area included. What is no vehicle, no area or no
 /// protocol of this version has none.
 #[test]

@@ -10,12 +10,13 @@ use host_sim::mission::recording::Recording;
 use planner_core::link::delivery::{Heard, Link, Responder};
 use planner_core::link::frame::{Decoder, Envelope, Frame};
 use planner_core::link::message::{
-    DeclinedError, EndReason, LabelSource, MissionEnd, PROTOCOL, Reply, Request, Setup,
+    DeclinedError, EndReason, LabelSource, MissionArea, MissionEnd, Outline, PROTOCOL, Reply,
+    Request, Setup,
 };
-use planner_core::link::station::Flown;
-use planner_core::{Label, Reading};
+use planner_core::link::station::{Flown, NoTerms};
+use planner_core::{AnyVehicle, Label, Reading};
 use tests::chip::{FarEnd, Network, Off, Reads, Socket, chip, fly, offered, power_up};
-use tests::missions::{mission, reading};
+use tests::missions::{mission, of_any_vehicle, reading};
 
 /// The motion whose label is missing, from 1.
 const MISSING: usize = 3;
@@ -126,13 +127,42 @@ fn a_vehicle_that_is_busy_is_waited_for() {
     assert_eq!(asked, 1_000);
 }
 
+/// A border is a polygon, and not all within a distance of one.
+#[test]
+fn a_border_with_a_radius_is_no_area() {
+    let mission = of_any_vehicle(0, 10);
+    let whole = mission.config.area;
+    let none = NoTerms::Declined(DeclinedError::Area);
+    for (radius, area) in [(0, Ok(whole)), (1, Err(none))] {
+        let vehicle = Vehicle::new(&mission, |request: &Request| {
+            let outline = match request {
+                Request::Outline(0) => {
+                    Outline { corners: whole.corners().iter().copied().collect(), radius }
+                }
+                Request::Outline(number) => {
+                    whole.hulls().nth(usize::from(*number) - 1).expect("a keep-out").into()
+                }
+                _ => return Some(Reply::Noted),
+            };
+            Some(Reply::Outline(outline))
+        });
+        let found = offered(&vehicle, |chip, setup| {
+            chip.terms::<AnyVehicle, MissionArea>(setup).map(|terms| terms.area)
+        });
+        assert_eq!(found, area, "{radius}");
+    }
+}
+
 /// The first motion is made to its end, and the step has the labels that were read on its way.
 #[test]
 fn a_player_hears_that_the_boards_own_sensor_failed() {
     let (ends, readings) = asking();
     // Labels are in doubt, so that no reading contradicts.
     let on_the_way = reading(mission(1));
-    for (mission, fails, steps, passed) in [(ends, MISSING, MISSING, 0), (on_the_way, 2, 1, 1)] {
+    let first = (on_the_way.clone(), 1, 1, 1);
+    for (mission, fails, steps, passed) in
+        [(ends, MISSING, MISSING, 0), first, (on_the_way, 2, 1, 1)]
+    {
         let network = Network::new(&mission, LabelSource::Chip, Faults::default());
         let mut read = 0;
         let mut sensor = Reads(|| {

@@ -281,9 +281,11 @@ impl Summary {
             }
         }
         let mut sorted = sorting.sorted()?;
-        // Labels on the way carry bits as well, and are not counted: then there are no shares.
+        // Labels on the way carry bits as well, and are not counted. And planners that are told another reliability count
+        // bits that labels do not carry. Then there are no shares.
         let readings = campaign.several_readings();
-        let most = if readings.is_some() { 0.0 } else { limit };
+        let is_told_otherwise = campaign.p_told.is_some() && !campaign.draws_p;
+        let most = if readings.is_some() || is_told_otherwise { 0.0 } else { limit };
         let rows = stages.iter().map(|(&labels, sums)| sums.row(labels, most, &mut sorted));
         let rows = rows.collect::<Result<_>>()?;
         let title = format!(

@@ -107,3 +107,36 @@ pub(super) fn first_inseparable_collinear(samples: &[Sample]) -> Option<usize> {
         pairs().any(is_inseparable).then_some(n - 1)
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_line_separates_two_labels_at_one_place() {
+        let sample = |x, label| Sample::at([x, x], label).unwrap();
+        let apart = [sample(0.0, Label::Positive), sample(1.0, Label::Negative)];
+        let both = [apart[0], apart[1], sample(1.0, Label::Positive)];
+        assert_eq!(first_inseparable_collinear(&apart), None);
+        assert_eq!(first_inseparable_collinear(&both), Some(2));
+    }
+
+    #[test]
+    fn tolerances_of_both_samples_of_a_pair_count() {
+        use Label::{Negative, Positive};
+        let given = [
+            (0.0, 0.0, Negative),
+            (0.0, 9.0, Positive),
+            (9.0, 9.0, Positive),
+            (9.0, 0.0, Negative),
+        ]
+        .map(|(x, z, label)| Sample::at([x, z], label).unwrap());
+        let left = |negative: f64, positive: f64| {
+            let tolerance = |label| if label == Negative { negative } else { positive };
+            let within = given.map(|it| (it, Tolerance::new(tolerance(it.label)).unwrap()));
+            directions_left(&within).unwrap()
+        };
+        assert_eq!(left(0.5, 0.0), left(0.25, 0.25));
+        assert_eq!(left(0.0, 0.5), left(0.25, 0.25));
+    }
+}
