@@ -17,8 +17,7 @@ use crate::cli::passage::{Destination, Passage};
 use crate::cli::told::{Opening, tell};
 use crate::output::checksum::Checksum;
 use crate::output::file::{Output, place_for, prepare};
-use crate::output::partial::check_free;
-use crate::output::partial::with_suffix;
+use crate::output::partial::{check_free, with_suffix};
 
 #[derive(Debug, Args)]
 #[command(after_help = help::MERGE)]

@@ -41,7 +41,8 @@ impl Rows {
         layout: &Layout,
     ) -> Result<(), (usize, anyhow::Error)> {
         let rest = range(self.values.iter().copied().filter(|it| !is_usual(*it)));
-        let is_fill = |value: f64| is_usual(value) && ranges_away(value, rest) > 1.0;
+        let is_outside = |value: f64| rest[0] > rest[1] || ranges_away(value, rest) > 1.0;
+        let is_fill = |value: f64| is_usual(value) && is_outside(value);
         let fills: Vec<_> = self.values.iter().map(|it| is_fill(*it)).collect();
         for (index, _) in fills.iter().enumerate().filter(|it| *it.1) {
             let (value, line) = (self.values[index], self.lines[index]);

@@ -56,8 +56,8 @@ const PREAMBLE: usize = 200;
 /// Rows below the heading that may have units or the like in place of positions.
 const UNITS: usize = 3;
 
-/// The delimiter with which the first row can be understood, or else the one with which the first row of the file's
-/// beginning can; and how many rows stand above that one. The comma and none, if there is no such row.
+/// The delimiter of the heading, and how many rows stand above it. The heading is the first row that can be understood
+/// with some delimiter. Without one, the answer is a comma and no row.
 fn heading(text: &[u8], columns: &Columns, delimiter: Option<Delimiter>) -> (Delimiter, usize) {
     let all = delimiter.map_or(Delimiter::ALL.to_vec(), |it| vec![it]);
     let above = |delimiter: &Delimiter| {

@@ -91,8 +91,8 @@ impl Asking {
     /// Labels are sought within one motion, and there may be as many as there is room for.
     pub const USUAL: Self = Self { price: None, seeks: Seeks::Accuracy, labels: None, worth: 0.0 };
 
-    /// What a file or flags ask of a mission of so many `steps`. Labels have the usual price without being given one where
-    /// they are scarce, which is where there are to be fewer than steps, and the area is large for the vehicle. Anybody
+    /// What a file or flags ask of a mission of so many `steps`. Labels are scarce if there are to be fewer than steps.
+    /// In an area that is large for the vehicle, scarce labels have the usual price without being given one. Anybody
     /// else is better served by a label after each motion. `names` are those of price, limit, choice and worth. There is
     /// room for `most` labels, of which each carries so many `bits` at most.
     ///
