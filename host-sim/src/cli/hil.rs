@@ -14,6 +14,7 @@ use crate::hil::faults::Faults;
 use crate::hil::firmware::{Firmware, STM32F405};
 use crate::hil::flight::{self, Chip, Timings};
 use crate::hil::player::Player;
+use crate::hil::qemu::usual_machine;
 use crate::output::file::{place_for, prepare, temporary};
 use crate::output::notes::announce;
 
@@ -37,7 +38,7 @@ pub(crate) struct HilArgs {
     #[expect(clippy::option_option, reason = "as clap tells a flag from one with a value")]
     pub(crate) emulator: Option<Option<PathBuf>>,
     /// The machine that QEMU emulates: netduinoplus2, microbit, or the name of one for your ELF [default:
-    /// netduinoplus2]
+    /// netduinoplus2, or virt for RISC-V]
     #[arg(long, value_name = "NAME", conflicts_with = "port", value_parser = machine)]
     pub(crate) machine: Option<String>,
     /// Write the emulated board's log here, for defmt-print
@@ -86,7 +87,11 @@ impl Emulated<'_> {
 
 impl HilArgs {
     fn machine(&self) -> &str {
-        self.machine.as_deref().unwrap_or(STM32F405.machine)
+        let usual = || match &self.emulator {
+            Some(Some(elf)) => usual_machine(elf),
+            _ => STM32F405.machine,
+        };
+        self.machine.as_deref().unwrap_or_else(usual)
     }
 
     fn emulated(&self) -> Result<Emulated<'_>> {

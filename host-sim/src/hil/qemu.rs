@@ -9,13 +9,62 @@ use std::{fs, thread};
 
 use anyhow::{Context as _, Result, anyhow, bail};
 
+use crate::hil::firmware::STM32F405;
 use crate::output::interruption::unfinished;
 
 /// Emulated nanoseconds that an instruction takes (`-icount shift=6`), so that the emulated clock counts
 /// them.
 pub const NS_PER_INSTRUCTION: f64 = 64.0;
 
-const QEMU: &str = "qemu-system-arm";
+/// A kind of core that a firmware is built for.
+#[derive(Debug)]
+struct Core {
+    /// The ELF's class (32 bits or 64) and machine.
+    named: [u8; 2],
+    qemu: &'static str,
+    /// The machine of QEMU's if none is asked for.
+    machine: &'static str,
+    arguments: &'static [&'static str],
+}
+
+const CORES: [Core; 3] = [
+    Core { named: [1, 40], qemu: "qemu-system-arm", machine: STM32F405.machine, arguments: &[] },
+    Core {
+        named: [1, 243],
+        qemu: "qemu-system-riscv32",
+        machine: "virt",
+        arguments: &["-bios", "none"],
+    },
+    Core {
+        named: [2, 243],
+        qemu: "qemu-system-riscv64",
+        machine: "virt",
+        arguments: &["-bios", "none"],
+    },
+];
+
+impl Core {
+    /// That of a firmware.
+    fn of(elf: &Path) -> Result<&'static Self> {
+        let content = fs::read(elf).unwrap_or_default();
+        let named = match content.get(..20) {
+            Some([b'\x7f', b'E', b'L', b'F', class, .., machine, 0]) => Some([*class, *machine]),
+            _ => None,
+        };
+        CORES.iter().find(|it| Some(it.named) == named).with_context(|| {
+            let found = if named.is_some() { "found the ELF of another core, " } else { "" };
+            format!(
+                "{}: {found}expected a firmware's ELF, for Arm or RISC-V; `cargo firmware` builds one",
+                elf.display()
+            )
+        })
+    }
+}
+
+/// The machine of QEMU's that runs a firmware, if none is asked for.
+pub fn usual_machine(elf: &Path) -> &'static str {
+    Core::of(elf).map_or(STM32F405.machine, |it| it.machine)
+}
 
 /// How long QEMU may take to come up.
 const PATIENCE: Duration = Duration::from_secs(20);
@@ -28,6 +77,7 @@ const DYING: Duration = Duration::from_millis(200);
 pub struct Emulator {
     /// The id of its process, which the registry of [`interruption`](crate::output::interruption) lists.
     id: u32,
+    qemu: &'static str,
     complaints: Option<ChildStderr>,
 }
 
@@ -43,36 +93,35 @@ impl Emulator {
         log: Option<&Path>,
         more: &[&str],
     ) -> Result<(Self, TcpStream)> {
-        if !fs::read(elf).is_ok_and(|content| is_arm_elf(&content)) {
-            bail!("{}: expected the firmware's ELF; `cargo firmware` builds it", elf.display());
-        }
+        let &Core { qemu, arguments, .. } = Core::of(elf)?;
         let listener = TcpListener::bind("127.0.0.1:0").context("no port for the link")?;
         let port = listener.local_addr()?.port();
         let log = log.map_or_else(|| "null".into(), |path| format!("file:{}", path.display()));
-        let mut command = Command::new(QEMU);
+        let mut command = Command::new(qemu);
         command
             .args(["-M", machine, "-nographic", "-monitor", "none"])
             .args(["-icount", "shift=6"])
             .args(["-serial", &format!("tcp:127.0.0.1:{port},nodelay=on")])
             .args(["-serial", &log])
+            .args(arguments)
             .args(more)
             .arg("-kernel")
             .arg(elf)
             .stdin(Stdio::null())
             .stdout(Stdio::null())
             .stderr(Stdio::piped());
-        let mut emulator = Self::spawn(&mut command)?;
+        let mut emulator = Self::spawn(qemu, &mut command)?;
         let link = emulator.accept(&listener)?;
         link.set_nodelay(true)?;
         Ok((emulator, link))
     }
 
-    fn spawn(command: &mut Command) -> Result<Self> {
+    fn spawn(qemu: &'static str, command: &mut Command) -> Result<Self> {
         let mut unfinished = unfinished();
-        let mut qemu = command.spawn().with_context(|| format!("{QEMU}: expected on PATH"))?;
-        let (id, complaints) = (qemu.id(), qemu.stderr.take());
-        unfinished.children.insert(id, qemu);
-        Ok(Self { id, complaints })
+        let mut child = command.spawn().with_context(|| format!("{qemu}: expected on PATH"))?;
+        let (id, complaints) = (child.id(), child.stderr.take());
+        unfinished.children.insert(id, child);
+        Ok(Self { id, qemu, complaints })
     }
 
     fn accept(&mut self, listener: &TcpListener) -> Result<TcpStream> {
@@ -88,7 +137,7 @@ impl Emulator {
             }
             thread::sleep(Duration::from_millis(5));
         }
-        bail!("{QEMU} did not come up within {} s", PATIENCE.as_secs())
+        bail!("{} did not come up within {} s", self.qemu, PATIENCE.as_secs())
     }
 
     /// What QEMU says if it has ended by itself.
@@ -99,7 +148,7 @@ impl Emulator {
             // If that cannot be read, the status is reported alone.
             let _ = complaints.read_to_string(&mut message);
         }
-        Some(anyhow!("{QEMU} ended with {status}: {}", message.trim()))
+        Some(anyhow!("{} ended with {status}: {}", self.qemu, message.trim()))
     }
 
     /// The error that broke a mission off: the emulator's, if the emulator has ended.
@@ -107,11 +156,6 @@ impl Emulator {
         thread::sleep(DYING);
         self.failure().unwrap_or(error)
     }
-}
-
-fn is_arm_elf(content: &[u8]) -> bool {
-    const ARM: [u8; 2] = [40, 0];
-    content.starts_with(b"\x7fELF") && content.get(18..20) == Some(&ARM)
 }
 
 impl Drop for Emulator {

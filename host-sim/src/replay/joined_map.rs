@@ -16,9 +16,6 @@ use crate::replay::map_file::MapFile;
 use crate::replay::rows::Layout;
 use crate::report::pieces::Pieces;
 
-/// Vertices of all maps, at most: the time grows with their square.
-const MOST: usize = 20_000;
-
 /// Maps of one front, and what they are together.
 pub struct JoinedMap {
     pub(crate) files: Vec<MapFile>,
@@ -41,10 +38,6 @@ impl JoinedMap {
         if let Some(other) = others.iter().find(|it| it.kind() != first.kind()) {
             let [name, found, expected] = [&other.name, other.kind(), first.kind()];
             bail!("{name}: found {found}, expected {expected}, as {} has them", first.name);
-        }
-        let count: usize = files.iter().map(|it| it.rows.len()).sum();
-        if count > MOST {
-            bail!("found {count} vertices in all maps, expected {MOST} at most");
         }
         if let (Some(crs), true) = (crs, first.is_geographic) {
             let name = &first.name;

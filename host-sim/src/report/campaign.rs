@@ -95,7 +95,11 @@ pub fn calibration(summary: &calibration::Summary) -> String {
             (Column::right("hypotheses", 11), &|row| format!("{:.1}", row.hypotheses)),
             (Column::right("pruned", 8), &|row| format!("{:.4}", row.pruned_mass)),
             (Column::centre("mean line, slope error deg", 26), &|row| spread(row.mean_deg, 3)),
+            (Column::centre("misclassified area, %", 26), &|row| {
+                spread(row.mean_misclassified.scaled(100.0), 3)
+            }),
             (Column::right("cost", 7), &|row| format!("{:.1}", row.control_cost)),
+            (Column::right("metres", 7), &|row| format!("{:.1}", row.metres)),
         ],
     );
     let [by_area, by_sequences] = [0, 1].map(|prior| coverage(rows, prior));

@@ -62,11 +62,13 @@ pub fn calibration(summaries: &[calibration::Summary]) -> String {
         row.expected_share.map_or("-".into(), |share| format!("{:.1} %", 100.0 * share))
     });
     add("mean, slope error deg", |row| format!("{:.3}", row.mean_deg.median));
+    add("mean, misclassified %", |row| format!("{:.4}", 100.0 * row.mean_misclassified.median));
     add("90 % set holds (states) %", |row| {
         let [Calibration { coverage, stated, .. }, _] = &row.calibration;
         format!("{:.1} ({:.1})", 100.0 * coverage, 100.0 * stated)
     });
     add("control cost", |row| format!("{:.1}", row.control_cost));
+    add("metres", |row| format!("{:.1}", row.metres));
     format!(
         "{} standard fields, seed {}, {}{}; a label tells {:.4} bits at most; \
          errors are medians, sets by the area prior\n\n{table}",

@@ -256,7 +256,8 @@ impl Picture {
             Dot { at: s.site.into(), label: s.label, ring }
         };
         // No belief takes in the labels of an audit.
-        let refuted = results.end.goal.and_then(|goal| goal.audit?.refuted);
+        let audit = results.end.goal.and_then(|goal| goal.audit);
+        let refuted = audit.filter(|it| !it.is_by_alarm).and_then(|it| it.refuted);
         let audited = (1..).zip(&recording.steps).filter_map(|(number, step)| {
             let is_of_audit = step.motion.stage == Some(Stage::Audit);
             let Some(Reading::Side(label)) = step.reading.filter(|_| is_of_audit) else {
@@ -286,7 +287,7 @@ impl Picture {
             note: Some(note(recording)),
             area,
             ground: Ground::of(&**belief, area),
-            is_refuted: refuted.is_some(),
+            is_refuted: audit.is_some_and(|it| it.refuted.is_some()),
             samples: samples.zip(numbers).map(dot).chain(audited).collect(),
             given,
             path: Some((Point2::from(mission.start.site), stops.collect())),

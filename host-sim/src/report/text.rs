@@ -255,7 +255,7 @@ pub(crate) fn promise(goal: &GoalRecord, reason: &str) -> String {
     let known = match () {
         () if is_cut_short => "Known, if a straight, still line fits,",
         () if is_met => "Known",
-        () if is_refuted => "Not known",
+        () if is_refuted || reason == "known" => "Not known",
         () => "Not known yet",
     };
     let lines = if level.is_some() {
@@ -290,9 +290,12 @@ pub(crate) fn of_the_boundary(told: &ToleranceRecord) -> String {
 
 /// What an audit came to, in words.
 fn audited(audit: &AuditRecord) -> String {
-    let &AuditRecord { agreed, disagreed, refuted, motions, metres } = audit;
+    let &AuditRecord { agreed, disagreed, refuted, is_by_alarm, motions, metres } = audit;
     let price = format!("{motions} motions, {metres:.1} m");
     match (refuted, disagreed) {
+        (Some(step), _) if is_by_alarm => {
+            format!("Refuted: up to step {step} the labels of the mission amount to an alarm.\n")
+        }
         (Some(step), Some(others)) => format!(
             "Refuted: up to step {step} {others} labels disagreed where the side is all but certain, and {agreed} agreed \
              ({price}).\n"

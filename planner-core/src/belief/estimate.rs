@@ -98,6 +98,8 @@ fn widest<F: Fn(usize) -> Option<Sample>>(trapezoids: Trapezoids<F>) -> Option<L
 /// `p3(+) p4(-)`. The diagonals `p1 p3` and `p2 p4` cross in `pm`. The estimate is the bisector of the angle
 /// `p1 pm p2`.
 ///
+/// Its +1 side is the one to which the pairs point, from their negative points to their positive ones.
+///
 /// `None` when there are no two such pairs or their diagonals do not cross. When the pairs lie side
 /// by side it is a poor estimate: prefer [`centre`]. `O(n^2)` for `n` samples.
 pub fn bisector(samples: &[Sample]) -> Option<LocalLine> {
@@ -120,7 +122,14 @@ pub fn bisector(samples: &[Sample]) -> Option<LocalLine> {
         () => [1.0 - cos, -sin],
     };
     let crossing = (cross(side, e) / cross(d, e)).abs() * METRE / frame.unit().per_length;
-    frame.line(normal, normal[0] * crossing)
+    let line = frame.line(normal, normal[0] * crossing)?;
+    // Where the diagonals cross beyond the pairs, a sample of a pair may lie on the wrong side of it.
+    let (along, slope) = (line.along(), line.slope());
+    let rise = |v: Vector| cross(along, v) - slope * cross(v, along.left());
+    if rise(side) + rise(p2 - n2) < 0.0 {
+        return LocalLine::new(line.about(), along.reversed(), slope, -line.intercept());
+    }
+    Some(line)
 }
 
 /// The two shortest pairs of opposite labels that share no point, of some samples and one more: each with its negative

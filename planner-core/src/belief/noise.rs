@@ -5,6 +5,7 @@ use crate::belief::tolerance::Tolerance;
 use crate::belief::trust::{AnyReliability, Trust};
 use crate::belief::unknown_reliability::UnknownReliability;
 use crate::geometry::lattice::Site;
+use crate::geometry::mark::Mark;
 use crate::geometry::value::ValueError;
 
 pub use crate::belief::reliability::Reliability;
@@ -68,6 +69,14 @@ impl Noise<UnknownReliability> {
 }
 
 impl<R: Trust> Noise<R> {
+    /// What tells it from others.
+    pub(crate) fn mark(&self) -> Mark {
+        let Self { reliability, trusted_radius, tolerance } = *self;
+        let is_unknown = reliability.unknown().is_some();
+        let words = [trusted_radius, tolerance.units(), is_unknown.into()];
+        Mark::NONE.and(words).and(reliability.nominal().words())
+    }
+
     /// The reliability of a label at a site. It is certain in a trusted ball (the paper's `B_r(p_j)`), whose radius is
     /// reduced by the tolerance. Elsewhere it is [`Trust::nominal`].
     pub fn at(&self, site: Site, given: &[Sample]) -> Reliability {

@@ -10,6 +10,7 @@ use crate::belief::noise::Reliability;
 use crate::belief::sample::Sample;
 use crate::belief::tolerance::Tolerance;
 use crate::belief::true_labels::{GivenError, VersionSpace};
+use crate::geometry::mark::Mark;
 
 /// Up to `N` samples, the given ones first. `24 N` bytes and some 16.
 ///
@@ -107,6 +108,9 @@ pub trait FromLog {
     /// The log of all that it has taken in so far.
     fn log(&self) -> Self::ObservationLog;
 
+    /// What it was told before the first label, as far as that tells a mission from others.
+    fn mark(&self) -> Mark;
+
     /// Begins again and takes in what was exported, with this belief's own noise and tolerance. It costs as much as the
     /// labels did when they came.
     ///
@@ -164,6 +168,10 @@ impl<const N: usize> FromLog for VersionSpace<N> {
     fn log(&self) -> ObservationLog<N> {
         let log = ObservationLog::new(self.given(), self.samples(), core::iter::empty());
         log.within(core::iter::once(self.expected()), self.tolerance())
+    }
+
+    fn mark(&self) -> Mark {
+        Mark::NONE.and([self.tolerance().units()])
     }
 
     fn replay(&mut self, log: &ObservationLog<N>) -> Result<(), ReplayError> {

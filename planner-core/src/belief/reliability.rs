@@ -43,6 +43,12 @@ impl Reliability {
         reliability.ok_or(RANGE)
     }
 
+    /// All that it is, as numbers.
+    pub(crate) const fn words(self) -> [u32; 2] {
+        let LogWeight(units) = self.log_odds;
+        [units as u32, (units >> 32) as u32]
+    }
+
     /// The probability that the label is true.
     pub fn probability(self) -> f64 {
         1.0 / (1.0 + libm::exp(-self.log_odds.value()))

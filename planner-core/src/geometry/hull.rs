@@ -136,7 +136,14 @@ pub fn are_apart(a: &[Site], b: &[Site], by: u32) -> bool {
 
 /// The same of hulls whose boxes are not so far apart.
 pub(crate) fn are_apart_beside(a: &[Site], b: &[Site], by: u32) -> bool {
-    has_edge_between(a, b, by) || has_edge_between(b, a, by) || have_corners_apart(a, b, by)
+    let has_inside = |hull: &[Site]| matches!(*hull, [a, b, c, ..] if orient(a, b, c) != 0);
+    match gap(a, b, by).max(gap(b, a, by)) {
+        Gap::Wide => true,
+        // Where a hull has an inside, an edge of one lies between any two that do not meet.
+        Gap::None if has_inside(a) || has_inside(b) => false,
+        Gap::None => !meet(a, b) && have_corners_apart(a, b, by),
+        Gap::Some => have_corners_apart(a, b, by),
+    }
 }
 
 /// The box around a hull, by its least and its greatest coordinates.
@@ -171,13 +178,23 @@ impl Extent {
     }
 }
 
-/// Whether one of a hull's edges separates it from another hull. All of the other hull must lie further than `by`
-/// beyond the edge's line.
-fn has_edge_between(hull: &[Site], other: &[Site], by: u32) -> bool {
+/// What lies between a hull and another, as far as the edges of one tell.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+enum Gap {
+    /// No edge has all of the other hull beyond its line.
+    None,
+    /// One has.
+    Some,
+    /// One has all of the other hull further beyond its line than was asked.
+    Wide,
+}
+
+fn gap(hull: &[Site], other: &[Site], by: u32) -> Gap {
     let square = |a: u64| u128::from(a) * u128::from(a);
     // On which side of its edges a hull lies: on none, if it is a segment or a point.
     let side = if let [a, b, c, ..] = *hull { orient(a, b, c).signum() } else { 0 };
-    edges(hull).any(|(from, to)| {
+    let mut found = Gap::None;
+    for (from, to) in edges(hull) {
         let along = to - from;
         let (low, high) = other.iter().fold((i64::MAX, i64::MIN), |(low, high), q| {
             let off = along.cross(*q - from);
@@ -188,16 +205,21 @@ fn has_edge_between(hull: &[Site], other: &[Site], by: u32) -> bool {
             -1 => low,
             _ => low.max(high.saturating_neg()),
         };
-        let length = along.dot(along).unsigned_abs();
-        nearest > 0 && square(nearest.unsigned_abs()) > square(by.into()) * u128::from(length)
-    })
+        if nearest > 0 {
+            let length = along.dot(along).unsigned_abs();
+            if square(nearest.unsigned_abs()) > square(by.into()) * u128::from(length) {
+                return Gap::Wide;
+            }
+            found = Gap::Some;
+        }
+    }
+    found
 }
 
-/// The same, computed from all pairs of a corner of one and an edge of the other. Exact in all cases.
+/// The same, computed from all pairs of a corner of one and an edge of the other: the nearest points of hulls that do
+/// not meet are such a corner, and a point of such an edge. Exact in all cases.
 fn have_corners_apart(a: &[Site], b: &[Site], by: u32) -> bool {
-    // The nearest points of hulls that do not meet are a corner of one and a point of the other's edge.
-    !meet(a, b)
-        && a.iter().all(|corner| edges(b).all(|edge| is_further(*corner, edge, by)))
+    a.iter().all(|corner| edges(b).all(|edge| is_further(*corner, edge, by)))
         && b.iter().all(|corner| edges(a).all(|edge| is_further(*corner, edge, by)))
 }
 

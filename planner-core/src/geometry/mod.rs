@@ -13,6 +13,7 @@ pub mod hull;
 pub mod lattice;
 pub mod line;
 pub mod local_line;
+pub mod mark;
 pub mod polygon_area;
 pub(crate) mod span;
 pub mod value;

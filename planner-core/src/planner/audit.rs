@@ -11,6 +11,9 @@
 //!   as the goal's level needs (`belief/predictions/verdicts.rs`). A place on the other side passes with a probability of `(1 - level) / level`
 //!   at most. On the model one audit in 100 refutes at most.
 //!
+//! Where labels may be wrong, each label of the mission also counts as [evidence](crate::belief::evidence) against the model.
+//! What amounts to an alarm refutes it: a promise and an alarm exclude each other.
+//!
 //! A place lies as near to the lines left as the vehicle can aim. Where
 //! the border, a keep-out or the vehicle is in the way, a place nearer to the middle of the chord takes its turn. So it does
 //! where a motion brings the vehicle no nearer: a car may circle about a place at which it cannot arrive. A place that
@@ -223,6 +226,13 @@ impl<V: Verdicts> Audit<V> {
     /// Whether the motion that was planned last ends where the audit asks for a label.
     pub(crate) const fn arrives(&self) -> bool {
         self.arrives
+    }
+
+    /// Records a label of the mission, and how likely it was before it was read.
+    pub(crate) fn hear(&mut self, sample: Sample, chance: f32) {
+        if self.verdicts.hear(sample.label, chance) {
+            self.refuted = self.refuted.or(Some(sample));
+        }
     }
 
     /// Records the motion that was planned last, without a label.

@@ -25,7 +25,7 @@ use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::options::{Options, first_to_second};
 use crate::planner::setup::{SetupError, aimed_for_by};
 use crate::planner::silence::Silence;
-use crate::planner::snapshot::{Persist, RestoreError, Snapshot};
+use crate::planner::snapshot::{Kind, Persist, RestoreError, Snapshot, mark};
 use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
 use crate::search::course::Course;
 use crate::search::dead_end::DeadEnd;
@@ -241,11 +241,13 @@ impl<D: Dynamics, const N: usize, G: Workspace> Persist for Cfc<D, N, G> {
     type Snapshot = Snapshot<ObservationLog<N>, ([Phase; 2], Label, Silence)>;
 
     fn snapshot(&self) -> Self::Snapshot {
-        Snapshot::new(self.space.log(), ([self.phase, self.due], self.past, self.silence))
+        let mark = mark(Kind::Cfc, (&self.dynamics, &self.area), self.space.mark());
+        Snapshot::new(mark, self.space.log(), ([self.phase, self.due], self.past, self.silence))
     }
 
     fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), RestoreError> {
-        let (log, &([phase, due], past, silence)) = snapshot.open()?;
+        let mark = mark(Kind::Cfc, (&self.dynamics, &self.area), self.space.mark());
+        let (log, &([phase, due], past, silence)) = snapshot.open(mark)?;
         self.space.replay(log)?;
         (self.phase, self.due, self.past, self.silence) = (phase, due, past, silence);
         Ok(())

@@ -26,7 +26,7 @@ use crate::planner::front_state::FrontState;
 use crate::planner::scout::{Ends, FAINT, Scout};
 use crate::planner::setup::{Restart, SetupError};
 use crate::planner::silence::Silence;
-use crate::planner::snapshot::{Persist, RestoreError, Snapshot};
+use crate::planner::snapshot::{Kind, Persist, RestoreError, Snapshot};
 use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
 
 /// The ends of motions that a plan looks at: a place costs more than along a front.
@@ -172,11 +172,15 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
     type Snapshot = Snapshot<FrontMemory<K, M, L>, (Silence, Option<Pose>)>;
 
     fn snapshot(&self) -> Self::Snapshot {
-        Snapshot::new(self.scout.tracker.log(), (self.scout.silence, self.middle))
+        Snapshot::new(
+            self.scout.mark(Kind::Guard),
+            self.scout.tracker.log(),
+            (self.scout.silence, self.middle),
+        )
     }
 
     fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), RestoreError> {
-        let (log, &(silence, middle)) = snapshot.open()?;
+        let (log, &(silence, middle)) = snapshot.open(self.scout.mark(Kind::Guard))?;
         self.scout.tracker.replay(log)?;
         (self.scout.silence, self.middle) = (silence, middle);
         Ok(())

@@ -24,7 +24,7 @@ use crate::belief::ObservationError;
 use crate::belief::goal::{Criterion, Goal, NoGoal};
 use crate::belief::noise::Noise;
 use crate::belief::observation_log::{FromLog, ReplayError};
-use crate::belief::predictions::{NoisyBelief, Prediction as _, PredictiveBelief};
+use crate::belief::predictions::{NoisyBelief, Prediction as _, PredictiveBelief, Verdicts as _};
 use crate::belief::sample::{Reading, Sample};
 use crate::belief::tolerance::Tolerance;
 use crate::belief::weight::Prior;
@@ -38,7 +38,7 @@ use crate::planner::decision::Decision;
 use crate::planner::setup::{Restart, SetupError, aimed_for, aimed_for_by};
 use crate::planner::sight::{Near, Sight};
 use crate::planner::silence::Silence;
-use crate::planner::snapshot::{Persist, RestoreError, Snapshot};
+use crate::planner::snapshot::{Kind, Persist, RestoreError, Snapshot, mark};
 use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
 use crate::search::course::Course;
 use crate::search::dead_end::{DeadEnd, is_broad};
@@ -281,6 +281,20 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion, S: Sight>
         if errs { LEAST } else { 0.0 }
     }
 
+    /// A label and how likely it is, if a promise depends on what speaks against the model.
+    fn heard(&self, site: Site, reading: Option<Reading>) -> Option<(Sample, f32)> {
+        let Some(Reading::Side(label)) = reading else { return None };
+        let promises = B::Verdicts::HEARS && self.goal.is_some() && self.audit.is_some();
+        promises.then(|| (Sample { site, label }, self.belief().chance_of(site, label)))
+    }
+
+    /// Takes a label as evidence.
+    fn hear(&mut self, heard: Option<(Sample, f32)>) {
+        if let (Some((sample, chance)), Some(audit)) = (heard, &mut self.audit) {
+            audit.hear(sample, chance);
+        }
+    }
+
     /// What a plan looks for labels with.
     fn lookout(&self) -> Lookout<'_, D, G> {
         let Self { area, dynamics, evaluations, .. } = self;
@@ -415,6 +429,7 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion, S: Sight> Pla
         reading: Option<Reading>,
         tolerance: Tolerance,
     ) -> Result<(), ObservationError> {
+        let heard = self.heard(pose.site, reading);
         let mut audit = self.goal.and_then(|goal| Some((self.audit.as_mut()?, goal.level)));
         let is_audited = tolerance <= self.belief.belief().tolerance()
             && audit.as_ref().is_some_and(|(audit, _)| audit.arrives());
@@ -430,6 +445,7 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion, S: Sight> Pla
         if let Some((audit, level)) = &mut audit {
             audit.observe(pose.site, seen, *level);
         }
+        self.hear(heard);
         self.silence.observe(reading.is_some());
         S::observe(&mut self.journey, reading.is_some());
         Ok(())
@@ -440,8 +456,10 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion, S: Sight> Pla
         site: Site,
         reading: Reading,
     ) -> Result<bool, ObservationError> {
+        let heard = self.heard(site, Some(reading));
         let is_kept = self.belief.observe_on_the_way(site, reading)?;
         if is_kept {
+            self.hear(heard);
             self.silence.hear();
             // Another place may be worth more by now.
             S::observe(&mut self.journey, true);
@@ -460,12 +478,14 @@ impl<D: Dynamics, B: PredictiveBelief + FromLog, G: Workspace, C: Criterion, S: 
     type Snapshot = Snapshot<B::ObservationLog, (Silence, Audit<B::Verdicts>, S::Journey)>;
 
     fn snapshot(&self) -> Self::Snapshot {
+        let mark = mark(Kind::Lookahead, (&self.dynamics, &self.area), self.belief.mark());
         let audit = self.audit.unwrap_or(Audit::NONE);
-        Snapshot::new(self.belief.log(), (self.silence, audit, self.journey))
+        Snapshot::new(mark, self.belief.log(), (self.silence, audit, self.journey))
     }
 
     fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), RestoreError> {
-        let (log, &(silence, audit, journey)) = snapshot.open()?;
+        let mark = mark(Kind::Lookahead, (&self.dynamics, &self.area), self.belief.mark());
+        let (log, &(silence, audit, journey)) = snapshot.open(mark)?;
         if !audit.is_possible() {
             return Err(ReplayError::Spoilt.into());
         }

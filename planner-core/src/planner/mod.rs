@@ -147,8 +147,8 @@ pub enum StopReason {
     /// [tolerance]: crate::belief::tolerance::Tolerance
     Tolerance,
     /// No straight, still line explains the labels: on ground that was certain the [audit] read the other label, or too
-    /// often where labels may be wrong. The boundary bends or moves, or the sensor fails. A shorter stretch, or a
-    /// tolerance that covers the bend, may help.
+    /// often where labels may be wrong; or the labels of the whole mission amount to an alarm. The boundary bends or moves,
+    /// or the sensor fails. A shorter stretch, or a tolerance that covers the bend, may help.
     ///
     /// [audit]: crate::planner::audit
     NoLine,

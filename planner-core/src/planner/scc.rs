@@ -42,7 +42,7 @@ use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::options::{Options, first_to_second};
 use crate::planner::setup::{Restart, SetupError, aimed_for, aimed_for_by};
 use crate::planner::silence::Silence;
-use crate::planner::snapshot::{Persist, RestoreError, Snapshot};
+use crate::planner::snapshot::{Kind, Persist, RestoreError, Snapshot, mark};
 use crate::planner::vote::Ballot;
 use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
 use crate::search::course::Course;
@@ -303,11 +303,13 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Workspace, R: Trust> Persis
     type Snapshot = Snapshot<ObservationLog<N>, (Silence, bool)>;
 
     fn snapshot(&self) -> Self::Snapshot {
-        Snapshot::new(self.hypotheses.log(), (self.silence, self.is_odd_on_the_way))
+        let mark = mark(Kind::Scc, (&self.dynamics, &self.area), self.hypotheses.mark());
+        Snapshot::new(mark, self.hypotheses.log(), (self.silence, self.is_odd_on_the_way))
     }
 
     fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), RestoreError> {
-        let (log, &(silence, is_odd_on_the_way)) = snapshot.open()?;
+        let mark = mark(Kind::Scc, (&self.dynamics, &self.area), self.hypotheses.mark());
+        let (log, &(silence, is_odd_on_the_way)) = snapshot.open(mark)?;
         self.hypotheses.replay(log)?;
         (self.silence, self.is_odd_on_the_way) = (silence, is_odd_on_the_way);
         Ok(())

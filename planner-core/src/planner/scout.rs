@@ -8,16 +8,19 @@ use crate::belief::Belief as _;
 use crate::belief::ObservationError;
 use crate::belief::front::{Tracker, Unit, Waist};
 use crate::belief::noise::Noise;
+use crate::belief::observation_log::FromLog as _;
 use crate::belief::sample::{Reading, Sample};
 use crate::belief::tolerance::Tolerance;
 use crate::geometry::approximate::{METRE, distance};
 use crate::geometry::heading::Heading;
 use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
+use crate::geometry::mark::Mark;
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose, Side};
 use crate::planner::one_label::{OneLabel, PLACES, anywhere};
 use crate::planner::setup::{SetupError, aimed_for, aimed_for_by};
 use crate::planner::silence::Silence;
+use crate::planner::snapshot::{Kind, mark};
 use crate::planner::{Motion, Plan, Stage, StopReason};
 use crate::search::course::Course;
 use crate::search::errand::{Errand, errand};
@@ -117,6 +120,11 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         let fastest = grid.speeds().saturating_sub(1).min(most).max(1);
         let price = PRICE * f32::from(fastest) * grid.step_units();
         Self { area, dynamics, tracker, fastest, price, silence: Silence::NONE }
+    }
+
+    /// What tells the mission from others.
+    pub(crate) fn mark(&self, planner: Kind) -> Mark {
+        mark(planner, (&self.dynamics, &self.area), self.tracker.mark())
     }
 
     /// Begins again in the rectangle around its area.

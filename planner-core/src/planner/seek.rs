@@ -41,7 +41,7 @@ use crate::planner::one_label::OneLabel;
 use crate::planner::scout::Scout;
 use crate::planner::setup::SetupError;
 use crate::planner::silence::Silence;
-use crate::planner::snapshot::{Persist, RestoreError, Snapshot};
+use crate::planner::snapshot::{Kind, Persist, RestoreError, Snapshot};
 use crate::planner::{Plan, Planner, StopReason};
 
 /// Samples that it lends at most.
@@ -304,11 +304,11 @@ impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Persist for Seek
     fn snapshot(&self) -> Self::Snapshot {
         let Self { scout: Scout { tracker, silence, .. }, samples, is } = self;
         let memory = SeekMemory { silence: *silence, samples: samples.clone(), is: *is };
-        Snapshot::new(tracker.log(), memory)
+        Snapshot::new(self.scout.mark(Kind::Seek), tracker.log(), memory)
     }
 
     fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), RestoreError> {
-        let (log, memory) = snapshot.open()?;
+        let (log, memory) = snapshot.open(self.scout.mark(Kind::Seek))?;
         self.scout.tracker.replay(log)?;
         self.scout.silence = memory.silence;
         (self.samples, self.is) = (memory.samples.clone(), memory.is);

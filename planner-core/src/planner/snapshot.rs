@@ -14,10 +14,13 @@
 //!          let agent = Agent::new(planner, vehicle, pose);
 //! ```
 //!
-//! Store a checksum with bytes that may be spoilt. `restore` refuses bytes that contradict themselves, but cannot
-//! detect bytes that are merely wrong.
+//! Store a checksum with bytes that may be spoilt. `restore` refuses bytes that contradict themselves, and those of a
+//! mission with other settings, but cannot detect bytes that are merely wrong.
 
 use crate::belief::observation_log::ReplayError;
+use crate::geometry::mark::Mark;
+use crate::geometry::workspace::Workspace;
+use crate::motion::dynamics::{Dynamics, RayFan};
 use crate::planner::Planner;
 
 /// The version of snapshots. It is written first, and changes whenever the data that follow change.
@@ -31,33 +34,61 @@ use crate::planner::Planner;
 /// | 6 | how many motions its way should take, and of Algorithm 2 whether the readings on the way are odd in number |
 /// | 7 | of a tracker, where it last counted a label |
 /// | 8 | and whether it knew a front |
-pub const SNAPSHOT_VERSION: u16 = 8;
+/// | 9 | which mission they are of, and of look-ahead what speaks against the model |
+pub const SNAPSHOT_VERSION: u16 = 9;
 
 /// What a planner has to remember over a sleep: the log of its belief (`T`), and what else it plans by (`M`).
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Snapshot<T, M> {
     version: u16,
+    mark: Mark,
     log: T,
     memory: M,
 }
 
 impl<T, M> Snapshot<T, M> {
-    pub(crate) const fn new(log: T, memory: M) -> Self {
-        Self { version: SNAPSHOT_VERSION, log, memory }
+    pub(crate) const fn new(mark: Mark, log: T, memory: M) -> Self {
+        Self { version: SNAPSHOT_VERSION, mark, log, memory }
     }
 
-    /// The log and the memory, if the snapshot is of this version.
-    pub(crate) fn open(&self) -> Result<(&T, &M), RestoreError> {
-        let Self { version, log, memory } = self;
-        let is_known = *version == SNAPSHOT_VERSION;
-        is_known.then_some((log, memory)).ok_or(RestoreError::Version(*version))
+    /// The log and the memory, if the snapshot is of this version and of a mission with this mark.
+    pub(crate) fn open(&self, of: Mark) -> Result<(&T, &M), RestoreError> {
+        let Self { version, mark, log, memory } = self;
+        if *version != SNAPSHOT_VERSION {
+            return Err(RestoreError::Version(*version));
+        }
+        (*mark == of).then_some((log, memory)).ok_or(RestoreError::Mission)
     }
 
     /// The log of what the belief took in.
     pub const fn log(&self) -> &T {
         &self.log
     }
+}
+
+/// Who plans.
+#[derive(Clone, Copy)]
+pub(crate) enum Kind {
+    Cfc = 1,
+    Scc,
+    Lookahead,
+    Track,
+    Guard,
+    Seek,
+}
+
+/// What tells a mission from others: its planner, its vehicle, the area in which it aims, and what its belief was told. Not
+/// what may change under way, as a goal and prices.
+pub(crate) fn mark<D: Dynamics, G: Workspace>(
+    planner: Kind,
+    (dynamics, area): (&D, &G),
+    belief: Mark,
+) -> Mark {
+    let (grid, RayFan { left, right, spacing }) = (dynamics.grid(), dynamics.fan());
+    let fastest = grid.speeds().saturating_sub(1);
+    let vehicle = [left, right, spacing.0, fastest.into(), grid.reach_mm(fastest)];
+    belief.and([planner as u32]).and(vehicle).within(area)
 }
 
 /// A planner that can sleep and wake.
@@ -83,6 +114,9 @@ pub trait Persist: Planner {
 pub enum RestoreError {
     /// It is of this version, not of [`SNAPSHOT_VERSION`].
     Version(u16),
+    /// It is of a mission with another planner, area, vehicle, noise, tolerance or front. Make the planner as that was
+    /// made.
+    Mission,
     /// The belief does not take in the log.
     Log(ReplayError),
 }
@@ -93,6 +127,9 @@ impl core::fmt::Display for RestoreError {
             Self::Version(version) => {
                 write!(f, "a snapshot of version {version}, not {SNAPSHOT_VERSION}")
             }
+            Self::Mission => f.write_str(
+                "a snapshot of a mission with another planner, area, vehicle, noise, tolerance or front",
+            ),
             Self::Log(why) => why.fmt(f),
         }
     }

@@ -41,7 +41,7 @@ use crate::planner::one_label::OneLabel;
 use crate::planner::scout::{Ends, FAINT, FOUND, LOOKED_AT, Scout};
 use crate::planner::setup::{Restart, SetupError};
 use crate::planner::silence::Silence;
-use crate::planner::snapshot::{Persist, RestoreError, Snapshot};
+use crate::planner::snapshot::{Kind, Persist, RestoreError, Snapshot};
 use crate::planner::{Plan, Planner, Stage, StopReason};
 
 /// How a vehicle goes along a front.
@@ -384,11 +384,15 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
 
     fn snapshot(&self) -> Self::Snapshot {
         let Scout { tracker, silence, .. } = &self.scout;
-        Snapshot::new(tracker.log(), (*silence, self.lap, self.heard_at))
+        Snapshot::new(
+            self.scout.mark(Kind::Track),
+            tracker.log(),
+            (*silence, self.lap, self.heard_at),
+        )
     }
 
     fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), RestoreError> {
-        let (log, &(silence, lap, heard_at)) = snapshot.open()?;
+        let (log, &(silence, lap, heard_at)) = snapshot.open(self.scout.mark(Kind::Track))?;
         if !lap.is_possible() {
             return Err(ReplayError::Spoilt.into());
         }

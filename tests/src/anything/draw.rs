@@ -13,7 +13,7 @@ use nalgebra::{Point2, Vector2};
 use planner_core::bounds::slope_within_degrees;
 use planner_core::dynamics::ActionGrid;
 use planner_core::geometry::lattice::UNITS_PER_METRE;
-use planner_core::link::message::{MOST_CORNERS, MissionArea};
+use planner_core::link::message::{MOST_CORNERS, MOST_KEEP_OUTS, MissionArea};
 use planner_core::motion::car::{self};
 use planner_core::{
     Accuracy, Angle, AnyVehicle, Boat, Car, Goal, Heading, Hull, KeepOut, Label, Line, Pose,
@@ -132,7 +132,7 @@ fn attempt(rng: &mut ChaCha8Rng, seed: u64) -> Option<Mission> {
     inset.encloses(given[0].site).then_some(mission)
 }
 
-/// A rectangle or a polygon with up to four keep-outs.
+/// A rectangle or an octagon with as many keep-outs as a mission has room for.
 fn area(rng: &mut ChaCha8Rng, side: f64) -> Option<MissionArea> {
     let border = if rng.random() {
         let height = side * rng.random_range(0.4..1.0);
@@ -142,18 +142,18 @@ fn area(rng: &mut ChaCha8Rng, side: f64) -> Option<MissionArea> {
         Hull::new(&sites?).ok()?
     } else {
         let middle = [0.5 * side; 2];
-        Hull::new(&on_circle(rng, middle, 0.5 * side, MOST_CORNERS.min(5))).ok()?
+        Hull::new(&on_circle(rng, middle, 0.5 * side, MOST_CORNERS)).ok()?
     };
     let mut keep_outs: Vec<KeepOut<MOST_CORNERS>> = Vec::new();
     if rng.random() {
-        for _ in 0..rng.random_range(1..=4) {
+        for _ in 0..rng.random_range(1..=MOST_KEEP_OUTS) {
             let middle = [rng.random_range(0.0..side), rng.random_range(0.0..side)];
             let size = side * scale(rng, 0.005, 0.12);
             keep_outs.push(if rng.random() {
                 let radius = (size * f64::from(UNITS_PER_METRE)) as u32;
                 KeepOut { hull: Hull::new(&[site(Point2::from(middle))?]).ok()?, radius }
             } else {
-                let count = rng.random_range(2..=6);
+                let count = rng.random_range(2..=MOST_CORNERS);
                 KeepOut { hull: Hull::new(&on_circle(rng, middle, size, count)).ok()?, radius: 0 }
             });
         }

@@ -161,7 +161,7 @@ fn the_posterior_mean_is_that_of_the_hypotheses_exact_means() {
 /// There is none where these are parallel, nor of one pair alone.
 #[test]
 fn the_bisector_is_that_of_the_two_shortest_pairs() {
-    let mut none = 0;
+    let (mut none, mut swapped) = (0, 0);
     for (number, space) in spaces(200, 12) {
         let samples = space.samples();
         let of = |label: Label| samples.iter().filter(move |s| s.label == label);
@@ -189,9 +189,14 @@ fn the_bisector_is_that_of_the_two_shortest_pairs() {
             let most = 2e-6 * (1.0 + (crossing - n1).norm());
             assert!(line.distance(place).abs() < most, "field {number}: {line:?}");
         }
-        assert!(line.distance(p1) > 0.0 && line.distance(n1) < 0.0, "field {number}: {line:?}");
+        assert!(line.distance(p1) * line.distance(n1) < 0.0, "field {number}: {line:?}");
+        let rise = line.distance(p1) - line.distance(n1) + line.distance(p2) - line.distance(n2);
+        assert!(rise > -1e-5, "field {number}: {line:?}");
+        let above = |s: &Sample| line.distance(Point2::from(s.site)) > 0.0;
+        let agree = samples.iter().filter(|s| above(s) == (s.label == Label::Positive)).count();
+        swapped += usize::from(2 * agree < samples.len());
     }
-    assert!(none < 20, "{none}");
+    assert!(none < 20 && swapped < 4, "{none} {swapped}");
     let alone = [(1.0, 1.0, false), (1.0, 3.0, true), (9.0, 3.0, true)].map(|(x, z, above)| {
         let label = if above { Label::Positive } else { Label::Negative };
         Sample::at([x, z], label).expect("near")

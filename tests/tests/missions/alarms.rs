@@ -4,10 +4,13 @@ use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::Mission;
 use host_sim::mission::given::Given;
-use host_sim::mission::recording::Recorder;
+use host_sim::mission::recording::{Recorder, Recording};
 use host_sim::world::World;
+use host_sim::world::circle::Circle;
+use host_sim::world::polygon::Polygon;
+use nalgebra::{Point2, Vector2};
 use planner_core::watch::{Alarm, Evidence};
-use planner_core::{Belief as _, Line, Reading};
+use planner_core::{Accuracy, Angle, Belief as _, Goal, Line, Reading, Sample};
 use tests::cases;
 use tests::ensemble::{self, expect, noisy, percent};
 
@@ -101,4 +104,37 @@ fn readings_on_the_way_raise_no_alarm() {
     }
     expect("alarms", percent(&all, |it| *it >= Alarm::ALARM), ..=1.0);
     expect("warnings", percent(&all, |it| *it >= Alarm::WARNING), ..=5.0);
+}
+
+/// A mission of which the labels amount to an alarm does not promise that the line is known, whatever the boundary does.
+#[test]
+fn a_promise_and_an_alarm_exclude_each_other() {
+    let area = standard_field::standard(44, 0, Algorithm::Lookahead, 1).config.area;
+    let flown = ensemble::fly_some(cases(18, 4_000), |number| {
+        // The 56th met its goal and had an alarm.
+        let number = number + 42;
+        let mission = standard_field::standard(44, number, Algorithm::Lookahead, 120);
+        let [a, b, c] = mission.world.line()?.coefficients();
+        let (normal, middle) = (Vector2::new(a, b), Point2::new(10.0, 10.0));
+        let foot = middle - normal * (normal.dot(&middle.coords) + c);
+        let radius = [15.0, 25.0, 60.0][number as usize % 3];
+        let circle = Circle { middle: foot + normal * radius, radius };
+        let world = World::divided_by_curve(Box::new(circle), &Polygon::from(area));
+        let is_true = |it: &Sample| world.agrees(it.site, it.label);
+        let are_true = mission.given.samples().iter().all(is_true);
+        let degrees = [0.5, 2.0, 8.0][number as usize / 3 % 3];
+        let accuracy = Accuracy::SlopeArc(Angle::from_degrees(degrees).expect("an angle"));
+        let goal = Some(Goal { accuracy, level: 900_000 });
+        let mission = Mission { world, goal, ..mission };
+        let p = [0.95, 0.9, 0.8][number as usize / 9 % 3];
+        let (recording, _) = Recording::until_refusal(&noisy(mission, p, 0.5));
+        let end = recording.results.end;
+        let alarm = end.alarm.is_some_and(|it| it.evidence >= Alarm::ALARM);
+        let is_met = end.goal.is_some_and(|it| it.is_met) || end.reason == "known";
+        are_true.then_some((number, is_met, alarm))
+    });
+    let both: Vec<_> = flown.iter().filter(|it| it.1 && it.2).collect();
+    assert!(both.is_empty(), "{both:?}");
+    expect("promises", percent(&flown, |it| it.1), 1.0..);
+    expect("alarms", percent(&flown, |it| it.2), 1.0..);
 }

@@ -7,9 +7,11 @@ use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::Mission;
 use planner_core::SNAPSHOT_VERSION;
 use planner_core::error::{ReplayError, RestoreError};
+use planner_core::link::message::{MOST_CORNERS, MissionArea};
 use planner_core::{
-    Belief as _, CellPosterior, Cfc, Label, Lookahead, Noise, NoisyBelief, Plan, Planner as _,
-    Policy, Pose, Prior, Reliability, Sample, Scc, Tolerance, Unicycle, VersionSpace,
+    AnyVehicle, Belief as _, CellPosterior, Cfc, Front, KeepOut, Label, Lookahead, Noise,
+    NoisyBelief, Persist as _, Plan, Planner as _, Policy, Pose, Prior, Reliability, Sample, Scc,
+    Tolerance, Unicycle, VersionSpace,
 };
 use tests::anything::flight::{Sleeper, bytes_of, sleep};
 use tests::cases;
@@ -146,16 +148,20 @@ fn what_is_no_snapshot_of_such_a_planner_is_refused() {
     };
     // Another version, which is the first that is written.
     assert_eq!(u16::from(of_lookahead[0]), SNAPSHOT_VERSION);
-    let later = restored(&mut lookahead, &with(&of_lookahead, 0, 9));
-    assert_eq!(later, Err(RestoreError::Version(9)));
-    // More given samples than there are: the number comes after the version.
+    let later = restored(&mut lookahead, &with(&of_lookahead, 0, 8));
+    assert_eq!(later, Err(RestoreError::Version(8)));
+    // More given samples than there are: the number comes after the version and the mark, whose last byte is below 128.
+    let given = |bytes: &[u8]| {
+        2 + bytes.iter().skip(1).position(|it| *it < 128).expect("the end of the mark")
+    };
     let spoilt = Err(RestoreError::Log(ReplayError::Spoilt));
-    assert_eq!(restored(&mut lookahead, &with(&of_lookahead, 1, 99)), spoilt);
-    assert_eq!(restored(&mut scc, &with(&of_scc, 1, 99)), spoilt);
-    // The other kind of labels. An audit comes after what the others remember.
-    let kind = Err(RestoreError::Log(ReplayError::Kind));
-    assert_eq!(restored(&mut lookahead, &[&of_scc[..], &[0; 32]].concat()), kind);
-    assert_eq!(restored(&mut scc, &of_lookahead), kind);
+    assert_eq!(restored(&mut lookahead, &with(&of_lookahead, given(&of_lookahead), 99)), spoilt);
+    assert_eq!(restored(&mut scc, &with(&of_scc, given(&of_scc), 99)), spoilt);
+    // Another planner's, and another mission's. An audit comes after what the others remember.
+    let mission = Err(RestoreError::Mission);
+    assert_eq!(restored(&mut lookahead, &[&of_scc[..], &[0; 64]].concat()), mission);
+    assert_eq!(restored(&mut scc, &of_lookahead), mission);
+    assert_eq!(restored(&mut lookahead, &with(&of_lookahead, 1, of_lookahead[1] ^ 1)), mission);
     // No phase, and no room.
     assert!(decoded(&cfc, &of_cfc).is_some() && decoded(&cfc, &of_scc).is_none());
     let (_, small, _) = planners::<7>();
@@ -198,5 +204,76 @@ fn spoilt_snapshots_are_refused_or_possible() {
     let (mut cfc, mut lookahead, mut scc) = planners::<16>();
     for outcomes in [spoil(&mut cfc), spoil(&mut lookahead), spoil(&mut scc)] {
         assert!(outcomes.iter().all(|it| *it > 0), "not read, refused, taken in: {outcomes:?}");
+    }
+}
+
+/// A setting of a mission, changed.
+type Change = (&'static str, fn(&mut Mission));
+
+const CHANGES: [Change; 4] = [
+    ("area", |it| it.config.area = rectangle(20.5, &[])),
+    ("keep-out", |it| {
+        let disc = KeepOut::disc([19.0, 0.5], 0.1).expect("a disc");
+        it.config.area = rectangle(20.0, &[disc]);
+    }),
+    ("tolerance", |it| it.config.tolerance = Tolerance::new(0.01).expect("a distance")),
+    ("vehicle", |it| it.vehicle = AnyVehicle::Unicycle(Unicycle::paper())),
+];
+
+const OF_NOISE: [Change; 2] = [
+    ("p", |it| *it = noisy(it.clone(), 0.81, 0.5)),
+    ("trusted balls", |it| *it = noisy(it.clone(), 0.8, 0.4)),
+];
+
+const OF_FRONTS: [Change; 2] = [
+    ("radius", |it| it.front = Front::bending(31.0).expect("a radius")),
+    ("speed", |it| it.front = it.front.moving(0.01).expect("a speed")),
+];
+
+fn rectangle(width: f64, keep_outs: &[KeepOut<MOST_CORNERS>]) -> MissionArea {
+    let corners = [[0.0, 0.0], [width, 0.0], [width, 20.0], [0.0, 20.0]];
+    MissionArea::metres(&corners, keep_outs).expect("a rectangle")
+}
+
+/// A snapshot is of one mission. A planner that was made with another setting refuses it, and its own is taken.
+fn refuses_other_missions<P: Sleeper>(
+    mission: &Mission,
+    changes: &[Change],
+    make: impl Fn(&Mission) -> P,
+) {
+    let snapshot = make(mission).snapshot();
+    assert_eq!(make(mission).restore(&snapshot), Ok(()));
+    for (what, change) in changes {
+        let mut other = mission.clone();
+        change(&mut other);
+        assert_eq!(make(&other).restore(&snapshot), Err(RestoreError::Mission), "{what}");
+    }
+}
+
+#[test]
+fn snapshots_of_other_missions_are_refused() {
+    let mission = standard_field::standard(46, 3, Algorithm::Lookahead, 20);
+    refuses_other_missions(&mission, &CHANGES, |it| it.cfc(it.config.area, it.vehicle));
+    refuses_other_missions(&mission, &CHANGES, |it| it.lookahead(it.config.area, it.vehicle));
+    let doubtful = [&CHANGES[..], &OF_NOISE].concat();
+    let mission = noisy(mission, 0.8, 0.5);
+    refuses_other_missions(&mission, &doubtful, |it| it.doubtful(it.config.area, it.vehicle));
+    refuses_other_missions(&mission, &doubtful, |it| it.scc(it.config.area, it.vehicle));
+    let front = Front::bending(30.0).expect("a radius");
+    let mission = Mission { algorithm: Algorithm::Track, front, ..mission };
+    let of_fronts = [&CHANGES[..], &OF_NOISE[..1], &OF_FRONTS].concat();
+    refuses_other_missions(&mission, &of_fronts, |it| it.track(it.config.area, it.vehicle));
+    refuses_other_missions(&mission, &of_fronts, |it| it.guard(it.config.area, it.vehicle, 20.0));
+}
+
+/// A follower and a guard remember things of the same shape.
+#[test]
+fn a_guard_refuses_the_bytes_of_a_follower() {
+    let mission = standard_field::standard(46, 3, Algorithm::Track, 20);
+    let (area, vehicle) = (mission.config.area, mission.vehicle);
+    let (follower, mut guard) = (mission.track(area, vehicle), mission.guard(area, vehicle, 20.0));
+    let bytes = bytes_of(&follower.snapshot());
+    if let Ok(snapshot) = postcard::from_bytes(&bytes) {
+        assert_eq!(guard.restore(&snapshot), Err(RestoreError::Mission));
     }
 }

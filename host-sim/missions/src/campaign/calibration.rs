@@ -48,7 +48,9 @@ pub struct Checkpoint {
     hypotheses: usize,
     pruned_mass: f64,
     mean_deg: f64,
+    mean_misclassified: f64,
     control_cost: f64,
+    metres: f64,
     area_credible_probability: f64,
     area_credible_holds: bool,
     area_best_probability: f64,
@@ -93,8 +95,12 @@ pub struct Row {
     pub pruned_mass: f64,
     /// Slope error of the posterior mean, degrees.
     pub mean_deg: Spread,
+    /// Share of the area that the posterior mean labels wrongly.
+    pub mean_misclassified: Spread,
     /// Mean control cost so far.
     pub control_cost: f64,
+    /// Mean metres travelled so far.
+    pub metres: f64,
     /// By the area prior and by the paper's.
     pub calibration: [Calibration; 2],
 }
@@ -200,7 +206,10 @@ impl Measure for Calibrated {
             }
         };
         let [area, paper] = [Prior::Area, Prior::Sequences].map(statement);
-        let error = |line| mission.world.line().map(|truth| Line::from(line).angle_to_deg(truth));
+        let mean = by_area.mean().map(Line::from);
+        let degrees = mean.and_then(|it| Some(it.angle_to_deg(mission.world.line()?)));
+        let misclassified =
+            mean.and_then(|it| mission.world.misclassified(mission.config.area, &it));
         Some(Checkpoint {
             field: progress.field,
             labels: progress.labels,
@@ -208,8 +217,10 @@ impl Measure for Calibrated {
             expected_bits: progress.expected_bits,
             hypotheses: table.iter().len(),
             pruned_mass: by_area.pruned_mass(),
-            mean_deg: by_area.mean().and_then(error).unwrap_or(90.0),
+            mean_deg: degrees.unwrap_or(90.0),
+            mean_misclassified: misclassified.unwrap_or(0.5),
             control_cost: progress.control_cost,
+            metres: progress.metres,
             area_credible_probability: area.credible_probability,
             area_credible_holds: area.credible_holds,
             area_best_probability: area.best_probability,
@@ -235,6 +246,7 @@ struct Sums {
     hypotheses: f64,
     pruned_mass: f64,
     control_cost: f64,
+    metres: f64,
     by_prior: [StatementSums; 2],
 }
 
@@ -245,9 +257,9 @@ struct StatementSums {
     credible_holds: f64,
 }
 
-/// What is sorted at a stage: the slope error, and the best hypothesis's probability by either prior, each marked with
+/// What is sorted at a stage: the errors of the mean, and the best hypothesis's probability by either prior, each marked with
 /// whether it holds the truth.
-const SORTED: u32 = 3;
+const SORTED: u32 = 4;
 
 impl Summary {
     /// The results of a campaign, from its rows in the order of the fields. Memory holds few rows at a time.
@@ -274,6 +286,7 @@ impl Summary {
             let slots = SORTED * checkpoint.labels..;
             for (slot, (value, mark)) in slots.zip([
                 (checkpoint.mean_deg, false),
+                (checkpoint.mean_misclassified, false),
                 (area.best_probability, area.best_holds),
                 (paper.best_probability, paper.best_holds),
             ]) {
@@ -334,6 +347,7 @@ impl Sums {
         self.hypotheses += checkpoint.hypotheses as f64;
         self.pruned_mass = self.pruned_mass.max(checkpoint.pruned_mass);
         self.control_cost += checkpoint.control_cost;
+        self.metres += checkpoint.metres;
         for (sums, statement) in self.by_prior.iter_mut().zip(checkpoint.statements()) {
             sums.credible_probability += statement.credible_probability;
             sums.credible_holds += share(statement.credible_holds);
@@ -355,7 +369,9 @@ impl Sums {
             hypotheses: mean(self.hypotheses),
             pruned_mass: self.pruned_mass,
             mean_deg: Spread::of(sorted, self.missions)?,
+            mean_misclassified: Spread::of(sorted, self.missions)?,
             control_cost: mean(self.control_cost),
+            metres: mean(self.metres),
             calibration: [
                 calibration(self.by_prior[0], self.missions, sorted)?,
                 calibration(self.by_prior[1], self.missions, sorted)?,

@@ -44,11 +44,11 @@ struct Taken {
 }
 
 impl DiagnosisRecord {
-    /// Of a mission that ended so, with this alarm. `None` if nothing speaks against a straight, still line.
+    /// Of a mission that ended so, with this alarm, by which it may be refuted. `None` if nothing speaks against a straight, still line.
     pub fn of(
         mission: &Mission,
         (steps, results): (&[Step], &[StepResult]),
-        (ending, alarm): (Ending, Option<&AlarmRecord>),
+        (ending, alarm, is_by_alarm): (Ending, Option<&AlarmRecord>, bool),
         belief: &dyn ReadOut,
     ) -> Option<Self> {
         let is_refuted = ending == Ending::Stopped(StopReason::NoLine);
@@ -74,7 +74,7 @@ impl DiagnosisRecord {
             .collect();
         let samples: Vec<_> = all.iter().map(|(_, sample)| *sample).collect();
         let fewest = Fewest::of(&samples)?;
-        let last = read.last().filter(|_| is_refuted);
+        let last = read.last().filter(|_| is_refuted && !is_by_alarm);
         let refuting = last.map(|Taken { step, sample, .. }| {
             let (at, label) = (Point2::<f64>::from(sample.site), sample.label);
             let (label, expected) = (label.sign(), (-label).sign());

@@ -5,6 +5,8 @@
 //! linked to the next one ahead. The front is still: one that moves is mapped where it was at different times.
 
 use nalgebra::Vector2;
+use rstar::RTree;
+use rstar::primitives::GeomWithData;
 
 use crate::mission::front::VertexRecord;
 
@@ -49,7 +51,7 @@ pub struct Joined {
 }
 
 impl Joined {
-    /// Joins the maps of robots. It takes a time that grows with the square of the number of vertices.
+    /// Joins the maps of robots. For `n` vertices it takes a time that grows with `n log n`.
     pub fn of(robots: &[Pieces]) -> Self {
         Self::until(robots, usize::MAX)
     }
@@ -91,18 +93,17 @@ impl Joined {
     /// such ends where vertices of two robots lie side by side: the nearest one ahead may have another one behind it.
     fn linked(kept: &[Place], usual: f64) -> Self {
         let all: Vec<_> = (0..kept.len()).collect();
-        let mut next = vec![None; kept.len()];
+        let (mut next, mut has_before) = (vec![None; kept.len()], vec![false; kept.len()]);
+        let ranked = Ranked::of(kept);
         loop {
-            let is_end = |it: &usize| next[*it].is_none();
-            let is_begin = |it: &usize| !next.contains(&Some(*it));
-            let ends: Vec<_> = all.iter().copied().filter(is_end).collect();
-            let begins: Vec<_> = all.iter().copied().filter(is_begin).collect();
-            let found = links(kept, &ends, &begins, usual);
+            let ends: Vec<_> = all.iter().copied().filter(|it| next[*it].is_none()).collect();
+            let begins: Vec<_> = all.iter().copied().filter(|it| !has_before[*it]).collect();
+            let found = links(&ranked, &ends, &begins, usual);
             if found.is_empty() {
                 break;
             }
             for (from, to) in found {
-                next[from] = Some(to);
+                (next[from], has_before[to]) = (Some(to), true);
             }
         }
         let mut is_taken = vec![false; kept.len()];
@@ -115,7 +116,7 @@ impl Joined {
             }
             (piece, at == Some(first))
         };
-        let begins = all.iter().copied().filter(|it| !next.contains(&Some(*it)));
+        let begins = all.iter().copied().filter(|it| !has_before[*it]);
         let mut pieces: Vec<_> = begins.map(|it| follow(it).0).collect();
         // What is left goes round. It begins with the last vertex of the first robot: where they met.
         let mut left = all.clone();
@@ -123,7 +124,8 @@ impl Joined {
         let mut is_closed = false;
         for first in left {
             let (piece, goes_round) = follow(first);
-            if goes_round && pieces.iter().all(|it| it.len() < piece.len()) {
+            let is_longest = || pieces.iter().all(|it| it.len() < piece.len());
+            if goes_round && is_longest() {
                 is_closed = true;
                 pieces.insert(0, piece);
             } else if !piece.is_empty() {
@@ -133,45 +135,94 @@ impl Joined {
         pieces.sort_by_key(|it| usize::MAX - it.len());
         let (mut lone, mut pieces): (Vec<_>, Vec<_>) =
             pieces.into_iter().partition(|it| it.len() == 1);
-        lone.retain(|it| !is_passed(&it[0], &pieces, REACH * usual));
+        let pairs: Vec<_> = pieces.iter().flat_map(|piece| piece.windows(2)).collect();
+        let begun: Vec<_> = pairs.iter().zip(0..).map(|(pair, k)| at(&pair[0], k)).collect();
+        let begun = RTree::bulk_load(begun);
+        lone.retain(|it| !is_passed(&it[0], (&begun, &pairs), REACH * usual));
         pieces.append(&mut lone);
         Self { pieces, is_closed }
     }
 }
 
-/// Links from ends to begins: each is the nearest one ahead of the other, and the nearest one behind.
-fn links(kept: &[Place], ends: &[usize], begins: &[usize], usual: f64) -> Vec<(usize, usize)> {
-    // Of each robot's pieces the vertices that are left, in their order; and the place of each there.
-    let mut order: Vec<_> = (0..kept.len()).collect();
-    order.sort_by_key(|it| (kept[*it].robot, kept[*it].piece, kept[*it].number));
-    let mut rank = vec![0_usize; kept.len()];
-    for (place, it) in order.into_iter().enumerate() {
-        rank[it] = place;
+/// A place on the map, by its number in a list.
+type Numbered = GeomWithData<[f64; 2], usize>;
+
+fn at(place: &Place, number: usize) -> Numbered {
+    GeomWithData::new([place.vertex.x, place.vertex.z], number)
+}
+
+/// The numbers of the places within a distance of one, and of some that are a little further away.
+fn around(places: &RTree<Numbered>, of: &Place, distance: f64) -> impl Iterator<Item = usize> {
+    const SPARE: f64 = 1.0 + 1e-9;
+    let within = (SPARE * distance).powi(2);
+    places.locate_within_distance([of.vertex.x, of.vertex.z], within).map(|it| it.data)
+}
+
+/// The vertices that are kept, and in which order their robots mapped them.
+struct Ranked<'a> {
+    kept: &'a [Place],
+    order: Vec<usize>,
+    /// The place of each in the order.
+    rank: Vec<usize>,
+}
+
+impl<'a> Ranked<'a> {
+    fn of(kept: &'a [Place]) -> Self {
+        let mut order: Vec<_> = (0..kept.len()).collect();
+        order.sort_by_key(|it| (kept[*it].robot, kept[*it].piece, kept[*it].number));
+        let mut rank = vec![0; kept.len()];
+        for (place, it) in order.iter().enumerate() {
+            rank[*it] = place;
+        }
+        Self { kept, order, rank }
     }
-    let are_neighbours = |one: usize, other: usize| {
-        let of = |it: usize| (kept[it].robot, kept[it].piece);
-        of(one) == of(other) && rank[one].abs_diff(rank[other]) <= NEIGHBOURS
+
+    /// Those that nearly precede or follow one in a piece of its robot.
+    fn neighbours(&self, one: usize) -> impl Iterator<Item = usize> {
+        let of = |it: usize| (self.kept[it].robot, self.kept[it].piece);
+        let rank = self.rank[one];
+        let around = rank.saturating_sub(NEIGHBOURS)..self.order.len().min(rank + NEIGHBOURS + 1);
+        self.order[around].iter().copied().filter(move |it| of(*it) == of(one))
+    }
+}
+
+/// Links from ends to begins: each is the nearest one ahead of the other, and the nearest one behind.
+fn links(ranked: &Ranked<'_>, ends: &[usize], begins: &[usize], usual: f64) -> Vec<(usize, usize)> {
+    let kept = ranked.kept;
+    let tree = |of: &[usize]| RTree::bulk_load(of.iter().map(|it| at(&kept[*it], *it)).collect());
+    let is_in = |of: &[usize]| {
+        let mut is_in = vec![false; kept.len()];
+        of.iter().for_each(|it| is_in[*it] = true);
+        is_in
     };
-    let nearest = |at: usize, others: &[usize], sign: f64| {
-        let way = |other: &usize| kept[*other].vertex.at() - kept[at].vertex.at();
+    let (ends_at, begins_at) = ((tree(ends), is_in(ends)), (tree(begins), is_in(begins)));
+    let nearest = |from: usize, (others, is_other): &(RTree<Numbered>, Vec<bool>), sign: f64| {
+        let way = |other: &usize| kept[*other].vertex.at() - kept[from].vertex.at();
         let is_ahead = |other: &usize| {
-            let (way, [from, to]) = (sign * way(other), [at, *other].map(|it| &kept[it]));
-            let is_along = |it: &Place| direction(&it.vertex).dot(&way) > 0.0;
-            let is_near = way.norm() <= REACH * usual || are_neighbours(at, *other);
-            is_near && is_along(from) && is_along(to)
+            let way = sign * way(other);
+            [from, *other].iter().all(|it| direction(&kept[*it].vertex).dot(&way) > 0.0)
         };
-        let ahead = others.iter().copied().filter(is_ahead);
-        ahead.min_by(|a, b| way(a).norm_squared().total_cmp(&way(b).norm_squared()))
+        let reach = REACH * usual;
+        let near = around(others, &kept[from], reach);
+        let near = near.filter(|it| way(it).norm() <= reach);
+        let own = ranked.neighbours(from).filter(|it| is_other[*it]);
+        let ahead = near.chain(own).filter(is_ahead);
+        // Of those as near the first.
+        let key = |it: &usize| (way(it).norm_squared(), *it);
+        ahead.min_by(|a, b| {
+            let ((a, first), (b, second)) = (key(a), key(b));
+            a.total_cmp(&b).then(first.cmp(&second))
+        })
     };
     let link = |from: &usize| {
-        let to = nearest(*from, begins, 1.0)?;
-        (nearest(to, ends, -1.0) == Some(*from)).then_some((*from, to))
+        let to = nearest(*from, &begins_at, 1.0)?;
+        (nearest(to, &ends_at, -1.0) == Some(*from)).then_some((*from, to))
     };
     ends.iter().filter_map(link).collect()
 }
 
-/// Whether a vertex has a linked pair around it, one behind it and one ahead.
-fn is_passed(place: &Place, pieces: &[Vec<Place>], reach: f64) -> bool {
+/// Whether a vertex has one of some linked pairs around it, one behind it and one ahead. The pairs begin at these places.
+fn is_passed(place: &Place, (begun, pairs): (&RTree<Numbered>, &[&[Place]]), reach: f64) -> bool {
     let ahead = direction(&place.vertex);
     let along = |other: &Place| {
         let way = other.vertex.at() - place.vertex.at();
@@ -181,7 +232,7 @@ fn is_passed(place: &Place, pieces: &[Vec<Place>], reach: f64) -> bool {
     let goes_by = |pair: &[Place]| {
         along(&pair[0]).is_some_and(|it| it <= 0.0) && along(&pair[1]).is_some_and(|it| it >= 0.0)
     };
-    pieces.iter().any(|piece| piece.windows(2).any(goes_by))
+    around(begun, place, reach).any(|it| goes_by(pairs[it]))
 }
 
 /// All vertices up to a number.
@@ -207,9 +258,13 @@ fn usual_distance(robots: &[Pieces]) -> f64 {
 /// Of vertices at one place the one with the smallest half-width, and of equals the first.
 fn narrowest(mut places: Vec<Place>, reach: f64) -> Vec<Place> {
     places.sort_by(|a, b| a.vertex.half_width.total_cmp(&b.vertex.half_width));
-    let mut kept = Vec::<Place>::new();
+    let (mut kept, mut tree) = (Vec::<Place>::new(), RTree::new());
     for place in places {
-        if kept.iter().all(|it| !are_at_one_place(&it.vertex, &place.vertex, reach)) {
+        // None before has a wider half-width.
+        let across = reach.max(2.0 * WIDE * place.vertex.half_width);
+        let is_there = |it: usize| are_at_one_place(&kept[it].vertex, &place.vertex, reach);
+        if !around(&tree, &place, across.hypot(ONE * reach)).any(is_there) {
+            tree.insert(at(&place, kept.len()));
             kept.push(place);
         }
     }

@@ -233,8 +233,16 @@ impl Recorder {
         let seeks_line = mission.algorithm.seeks_line();
         let after: Vec<_> = before.iter().skip(1).chain([&belief]).map(|it| &**it).collect();
         let fit = || world.fit().filter(|_| world.line().is_none());
+        let audit = audit((&steps, &results), &before, (ending, alarm.as_ref()));
+        let is_by_alarm = audit.is_some_and(|it| it.is_by_alarm);
+        // True labels on both sides of the line, at both its ends, prove it: what spoke against it was chance.
+        let is_proven = ending == Ending::Stopped(StopReason::Known)
+            && !mission.is_noisy()
+            && audit.is_some_and(|it| it.refuted.is_none());
+        let alarm = alarm.filter(|_| !is_proven);
         let diagnosis = || {
-            DiagnosisRecord::of(&mission, (&steps, &results), (ending, alarm.as_ref()), &*belief)
+            let why = (ending, alarm.as_ref(), is_by_alarm);
+            DiagnosisRecord::of(&mission, (&steps, &results), why, &*belief)
         };
         let has_ended = |reason| ending == Ending::Stopped(reason);
         let map = || {
@@ -260,7 +268,7 @@ impl Recorder {
             reliability: belief.hypotheses().filter(|it| is_unknown(it)).map(learnt),
             front: (!seeks_line).then(map),
             seek: SeekRecord::of(&mission, &labels, &after, has_ended(StopReason::OneLabel)),
-            goal: GoalRecord::of(&mission, &*belief, audit((&steps, &results), &before, ending)),
+            goal: GoalRecord::of(&mission, &*belief, audit, alarm.as_ref()),
             alarm,
             diagnosis: seeks_line.then(diagnosis).flatten().map(Box::new),
             flown: Legs::of(&results.iter().filter_map(|step| step.flown).collect::<Vec<_>>()),
@@ -343,28 +351,34 @@ fn start(mission: &Mission) -> Start {
     }
 }
 
-/// What the audit of a mission came to, by its steps, their results, and what was known before each.
+/// What the audit of a mission came to, by its steps, their results, what was known before each, and the alarm.
 fn audit(
     (steps, results): (&[Step], &[StepResult]),
     before: &[Box<dyn ReadOut>],
-    ending: Ending,
+    (ending, alarm): (Ending, Option<&AlarmRecord>),
 ) -> Option<AuditRecord> {
-    let is_of_audit = |step: &Step| step.motion.stage == Some(Stage::Audit);
-    let begin = steps.iter().position(is_of_audit)?;
-    let of_audit = || steps.iter().zip(before).filter(|(step, _)| is_of_audit(step));
-    let agrees = of_audit().filter_map(|(step, before)| {
-        let Some(Reading::Side(label)) = step.reading else { return None };
-        Some(before.chance_of(step.pose.site, label) > 0.5)
-    });
-    let (labels, agreed) = (agrees.clone().count(), agrees.filter(|it| *it).count());
-    let metres = |step: usize| results[step].metres;
+    let of_audit = || (0..steps.len()).filter(|k| steps[*k].motion.stage == Some(Stage::Audit));
+    let agrees = |k: &usize| {
+        let Some(Reading::Side(label)) = steps[*k].reading else { return None };
+        Some(before[*k].chance_of(steps[*k].pose.site, label) > 0.5)
+    };
+    let is_refuted = ending == Ending::Stopped(StopReason::NoLine);
+    let is_by_label = of_audit().last().is_some_and(|k| agrees(&k) == Some(false));
+    let is_grave = alarm.is_some_and(|it| it.evidence >= Alarm::ALARM);
+    let is_by_alarm = is_refuted && is_grave && !is_by_label;
+    if of_audit().next().is_none() && !is_by_alarm {
+        return None;
+    }
+    let labels = of_audit().filter_map(|k| agrees(&k));
+    let (labels, agreed) = (labels.clone().count(), labels.filter(|it| *it).count());
+    let metres = |k: usize| results[k].metres - k.checked_sub(1).map_or(0.0, |k| results[k].metres);
     Some(AuditRecord {
         agreed,
-        disagreed: before[begin].hypotheses().map(|_| labels - agreed),
-        refuted: (ending == Ending::Stopped(StopReason::NoLine)).then_some(steps.len()),
+        disagreed: before.first()?.hypotheses().map(|_| labels - agreed),
+        refuted: is_refuted.then_some(steps.len()),
+        is_by_alarm,
         motions: of_audit().count(),
-        metres: metres(steps.iter().rposition(is_of_audit)?)
-            - begin.checked_sub(1).map_or(0.0, metres),
+        metres: of_audit().map(metres).sum(),
     })
 }
 

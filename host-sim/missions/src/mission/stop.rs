@@ -4,12 +4,14 @@
 //! rounding of single precision. So when the planner's goal is met, the file's is met too.
 
 use anyhow::Result;
+use planner_core::watch::Alarm;
 use planner_core::{Accuracy, Angle, Goal, Workspace as _};
 use serde::{Deserialize, Serialize};
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::Mission;
 use crate::mission::read_out::{LEVEL, ReadOut};
+use crate::mission::results::AlarmRecord;
 use crate::mission::strict::wrong;
 
 /// A heading's units in a degree.
@@ -145,6 +147,9 @@ pub struct AuditRecord {
     /// The step with the label that refuted the model.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub refuted: Option<usize>,
+    /// Whether all labels together refuted it, by an alarm, and not the last one of the audit.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_by_alarm: bool,
     /// Motions.
     pub motions: usize,
     /// Metres driven.
@@ -153,9 +158,15 @@ pub struct AuditRecord {
 
 impl GoalRecord {
     /// What a mission was to find out, beside what is known in the end.
-    pub fn of(mission: &Mission, belief: &dyn ReadOut, audit: Option<AuditRecord>) -> Option<Self> {
+    pub fn of(
+        mission: &Mission,
+        belief: &dyn ReadOut,
+        audit: Option<AuditRecord>,
+        alarm: Option<&AlarmRecord>,
+    ) -> Option<Self> {
         let goal = mission.goal?;
-        let is_refuted = audit.is_some_and(|audit| audit.refuted.is_some());
+        let is_refuted = audit.is_some_and(|audit| audit.refuted.is_some())
+            || alarm.is_some_and(|it| it.evidence >= Alarm::ALARM);
         let (slope_arc_deg, misclassified) = match goal.accuracy {
             Accuracy::SlopeArc(turn) => {
                 let degrees = f64::from(turn.0 + TURN_OFF) / UNITS_PER_DEGREE;

@@ -9,7 +9,11 @@ impl Pilot {
     /// The first needed message that was not heard, in words.
     pub(super) fn unheard(&self, now: Duration) -> Option<String> {
         if self.fix(now).is_none() {
-            Some("its local position (LOCAL_POSITION_NED)".to_owned())
+            Some(
+                "its local position (LOCAL_POSITION_NED): without a fix its estimator has no origin until a ground \
+                 station sets one (SET_GPS_GLOBAL_ORIGIN)"
+                    .to_owned(),
+            )
         } else if self.vehicle.facing.is_none() {
             Some("its attitude (ATTITUDE)".to_owned())
         } else if self.vehicle.label.is_none() {
@@ -25,7 +29,10 @@ impl Pilot {
             return Some(format!("a heartbeat of system {}", self.system));
         };
         if let Some(message) = self.requests.missing() {
-            return Some(format!("its word that it sends {message}"));
+            return Some(format!(
+                "its word that it sends {message}: it answers no command if it obeys another station than system 255 \
+                 (SYSID_MYGCS), or if its link is signed, as `fly` signs nothing"
+            ));
         }
         if let Some(unheard) = self.unheard(now) {
             return Some(unheard);

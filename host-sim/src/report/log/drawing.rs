@@ -1,4 +1,9 @@
 //! The drawing of a mission for a viewer: the area and the true line once, then what each step adds or replaces.
+//!
+//! A viewer replaces what has the same name. So what grows with every step is drawn in parts: the last steps, written with
+//! each step, the earlier ones, written with every 64th, and the earliest, written with every 4,096th.
+
+use std::ops::Range;
 
 use foxglove::messages::{
     Color, CubePrimitive, LinePrimitive, SceneEntity, SceneUpdate, SpherePrimitive,
@@ -26,8 +31,6 @@ pub(super) fn begin(flight: &Flight) -> SceneUpdate {
     let keep_outs = flight.keep_outs.iter().map(|ring| fan(ring, opaque(KEEP_OUT)));
     let mut entities = vec![
         SceneEntity { lines: vec![border], triangles: keep_outs.collect(), ..entity("area", 0) },
-        entity("path", 0),
-        entity("samples", 0),
         samples(
             "given",
             0,
@@ -43,8 +46,10 @@ pub(super) fn begin(flight: &Flight) -> SceneUpdate {
         let lines = it.ways.iter().map(|way| line(way, false, THICK, opaque(TRUTH)));
         entities.push(SceneEntity { lines: lines.collect(), ..entity(it.name, 0) });
     }
-    if flight.scenes.iter().any(|it| it.front.is_some()) {
-        entities.push(entity("front", 0));
+    let follows = flight.scenes.iter().any(|it| it.front.is_some());
+    for part in names(flight) {
+        let kinds = ["path", "samples", "front"].into_iter().take(2 + usize::from(follows));
+        entities.extend(kinds.map(|kind| entity(&format!("{part}{kind}"), 0)));
     }
     if let Some(scene) = flight.scenes.first() {
         entities.extend(known(scene, 0));
@@ -60,49 +65,82 @@ pub(super) fn robot(flight: &Flight) -> SceneEntity {
     SceneEntity { lines: vec![border], frame_id: ROBOT.to_owned(), ..entity("robot", 0) }
 }
 
+/// Steps after which they belong to the next part.
+const PART: usize = 64;
+
+/// What the names of parts begin with, the last steps first.
+const PARTS: [&str; 3] = ["", "earlier ", "earliest "];
+
+/// The parts that a step changes: the beginning of the name of each, and the steps after the first and up to the last of
+/// its range.
+fn parts(step: usize) -> impl Iterator<Item = (&'static str, Range<usize>)> {
+    PARTS.into_iter().enumerate().filter_map(move |(level, name)| {
+        let unit = PART.pow(level as u32);
+        let is_last = level + 1 == PARTS.len();
+        let begin = if is_last { 0 } else { step - step % (unit * PART) };
+        step.is_multiple_of(unit).then_some((name, begin..step))
+    })
+}
+
+/// The names of the parts that a mission comes to.
+fn names(flight: &Flight) -> impl Iterator<Item = &'static str> {
+    let last = flight.scenes.len().saturating_sub(1);
+    (0..)
+        .zip(PARTS)
+        .filter(move |(level, _)| *level == 0 || last >= PART.pow(*level))
+        .map(|it| it.1)
+}
+
 /// What each step adds.
 pub(super) fn steps(flight: &Flight) -> impl Iterator<Item = SceneUpdate> {
-    let size = SAMPLE * flight.size();
-    let mut path: Vec<Place> = flight.scenes.iter().take(1).map(|scene| scene.at).collect();
-    let mut read = Vec::new();
-    let mut pieces: Vec<Vec<[Place; 3]>> = Vec::new();
-    let mut was_found = false;
+    let follows = flight.scenes.iter().any(|it| it.front.is_some());
     (1..).zip(flight.scenes.iter().skip(1)).map(move |(second, scene)| {
-        if let Some(moved) = &scene.motion {
-            path.extend(&moved.way);
-            read.extend(moved.label.map(|label| (scene.at, label)));
-        }
-        let way = line(&path, false, THIN, opaque(style::PATH.colour));
-        let mut entities = vec![
-            SceneEntity { lines: vec![way], ..entity("path", second) },
-            samples("samples", second, read.iter().copied(), size),
-        ];
-        if let Some(SeenFront { at, ends: [left, right], .. }) = &scene.front {
-            if !was_found {
-                pieces.push(Vec::new());
+        let mut entities = Vec::new();
+        for (part, steps) in parts(second as usize) {
+            entities
+                .extend([path(part, flight, &steps, second), read(part, flight, &steps, second)]);
+            if follows {
+                entities.push(front(part, flight, &steps, second));
             }
-            pieces.last_mut().expect("it was begun").push([*at, *left, *right]);
-        }
-        was_found = scene.front.is_some();
-        if flight.scenes.iter().any(|it| it.front.is_some()) {
-            entities.push(front(&pieces, second));
         }
         entities.extend(known(scene, second));
         SceneUpdate { entities, ..SceneUpdate::default() }
     })
 }
 
-/// The map of a front: each piece with the borders of its 90 % band.
-fn front(pieces: &[Vec<[Place; 3]>], second: u32) -> SceneEntity {
+/// The way of some steps.
+fn path(part: &str, flight: &Flight, steps: &Range<usize>, second: u32) -> SceneEntity {
+    let moved =
+        flight.scenes[steps.start + 1..=steps.end].iter().filter_map(|it| it.motion.as_ref());
+    let begin = flight.scenes[steps.start].at;
+    let way: Vec<_> = [begin].into_iter().chain(moved.flat_map(|it| it.way.clone())).collect();
+    let way = line(&way, false, THIN, opaque(style::PATH.colour));
+    let lines = if steps.is_empty() { Vec::new() } else { vec![way] };
+    SceneEntity { lines, ..entity(&format!("{part}path"), second) }
+}
+
+/// The samples of some steps.
+fn read(part: &str, flight: &Flight, steps: &Range<usize>, second: u32) -> SceneEntity {
+    let scenes = flight.scenes[steps.start + 1..=steps.end].iter();
+    let read = scenes.filter_map(|it| Some((it.at, it.motion.as_ref()?.label?)));
+    samples(&format!("{part}samples"), second, read, SAMPLE * flight.size())
+}
+
+/// The map of a front after some steps, and from the one before on: each piece with the borders of its 90 % band.
+fn front(part: &str, flight: &Flight, steps: &Range<usize>, second: u32) -> SceneEntity {
     let colour = style::FRONT.colour;
     let strokes = [(THICK, opaque(colour)), (THIN, opaque(SHADE)), (THIN, opaque(SHADE))];
-    let lines = pieces.iter().flat_map(|piece| {
-        strokes.into_iter().enumerate().map(|(k, (thickness, color))| {
-            let way: Vec<_> = piece.iter().map(|rung| rung[k]).collect();
+    let scenes = if steps.is_empty() { &[] } else { &flight.scenes[steps.start..=steps.end] };
+    let pieces = scenes.split(|it| it.front.is_none()).filter(|piece| !piece.is_empty());
+    let lines = pieces.flat_map(|piece| {
+        strokes.clone().into_iter().enumerate().map(|(k, (thickness, color))| {
+            let rung =
+                |SeenFront { at, ends: [left, right], .. }: &SeenFront| [*at, *left, *right][k];
+            let way: Vec<_> = piece.iter().filter_map(|it| it.front.as_ref()).map(rung).collect();
             line(&way, false, thickness, color)
         })
     });
-    SceneEntity { lines: lines.collect(), ..entity("front", second) }
+    SceneEntity { lines: lines.collect(), ..entity(&format!("{part}front"), second) }
 }
 
 /// What is known: the ground and the estimate.

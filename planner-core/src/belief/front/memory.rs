@@ -6,6 +6,7 @@ use crate::belief::front::learnt::Learnt;
 use crate::belief::front::tracker::Tracker;
 use crate::belief::observation_log::{FromLog, ReplayError};
 use crate::geometry::lattice::Site;
+use crate::geometry::mark::Mark;
 
 /// The masses of all cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,6 +53,10 @@ impl<const K: usize, const M: usize, const L: usize> FromLog for Tracker<K, M, L
         let Self { nowhere, learnt, evidence, heard, was_known, .. } = *self;
         let (lay, masses) = (self.grid.lay, Masses(self.grid.mass));
         FrontMemory { lay, masses, nowhere, learnt, evidence, heard, was_known }
+    }
+
+    fn mark(&self) -> Mark {
+        self.noise.mark().and(<[u32; 2]>::from(self.front))
     }
 
     /// Goes on from there at once: nothing is replayed.

@@ -310,7 +310,8 @@ impl<const K: usize, const M: usize, const L: usize> Belief for Tracker<K, M, L>
         let each = 1.0 / whole;
         let masses = self.grid.mass.iter().flatten().flatten().filter(|it| **it > 0.0);
         let bits: f32 = masses.map(|it| it * each * (libm::log2f(it * each) - cell)).sum();
-        f64::from(bits)
+        // The lines of a front that has moved on may be as many as at the start.
+        if bits < 0.0 { 0.0 } else { f64::from(bits) }
     }
 
     /// Never: a front goes on.

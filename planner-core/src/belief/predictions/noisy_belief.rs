@@ -21,6 +21,7 @@ use crate::belief::true_labels::GivenError;
 use crate::belief::trust::{Mean as _, Trust};
 use crate::belief::weight::Prior;
 use crate::geometry::lattice::Site;
+use crate::geometry::mark::Mark;
 
 /// How much of the distribution may have the other label where the belief is sure of one.
 const UNSURE: f32 = 0.0003;
@@ -120,6 +121,10 @@ impl<const N: usize, const H: usize, R: Trust> FromLog for NoisyBelief<N, H, R> 
         let believed = self.believed.iter().copied();
         let log = ObservationLog::new(self.table.given(), self.table.samples(), believed);
         log.within(self.table.tolerances(), self.table.noise().tolerance)
+    }
+
+    fn mark(&self) -> Mark {
+        self.table.mark()
     }
 
     fn replay(&mut self, log: &ObservationLog<N>) -> Result<(), ReplayError> {

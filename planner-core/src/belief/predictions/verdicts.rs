@@ -2,7 +2,9 @@
 
 use core::fmt::Debug;
 
+use crate::belief::evidence::Evidence;
 use crate::belief::noise::Reliability;
+use crate::belief::sample::Label;
 use crate::belief::weight::LogWeight;
 
 /// How many places an audit has.
@@ -38,11 +40,20 @@ pub trait Verdicts: Copy + Debug + PartialEq {
     /// Nothing has been read.
     const NONE: Self;
 
+    /// Whether any label of a mission counts, and not only those of audits.
+    const HEARS: bool = false;
+
     /// Takes in a label, and says what the labels of its place come to.
     fn observe(&mut self, heard: Heard) -> Verdict;
 
     /// Whether labels of a place were read that do not decide.
     fn is_open(&self, place: usize) -> bool;
+
+    /// Takes in any label of the mission and how likely it was before it was read. Whether all labels so far refute the
+    /// model.
+    fn hear(&mut self, _: Label, _: f32) -> bool {
+        false
+    }
 }
 
 /// Labels that are true: one decides.
@@ -74,17 +85,20 @@ const AGAINST: i64 = 29_215_921_873;
 /// place on the other side passes with no more than that as its probability. One test more asks whether all labels are
 /// those of a coin. No place is settled while they are likelier to be that, nor the last until these odds are down as
 /// well. The model is refuted when any odds have come to 900.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Odds {
     /// As logarithms in units of 2^-32.
     other_side: [i64; PLACES],
     coin: i64,
+    /// What all labels of the mission say against the model.
+    evidence: Evidence,
 }
 
 impl Verdicts for Odds {
-    const NONE: Self = Self { other_side: [0; PLACES], coin: 0 };
+    const NONE: Self = Self { other_side: [0; PLACES], coin: 0, evidence: Evidence::NONE };
+    const HEARS: bool = true;
 
     fn observe(&mut self, heard: Heard) -> Verdict {
         let Heard { place, is_last, agrees, reliability, level } = heard;
@@ -107,6 +121,11 @@ impl Verdicts for Odds {
 
     fn is_open(&self, place: usize) -> bool {
         self.other_side.get(place).is_some_and(|odds| *odds != 0)
+    }
+
+    fn hear(&mut self, label: Label, chance: f32) -> bool {
+        self.evidence.observe(label, chance);
+        self.evidence.alarm().is_some_and(|alarm| alarm.is_grave())
     }
 }
 

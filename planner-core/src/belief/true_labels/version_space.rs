@@ -372,7 +372,9 @@ impl<const N: usize> Belief for VersionSpace<N> {
     fn information(&self) -> f64 {
         // Given samples that made a version space make it again.
         let start = Self::new(self.given()).map_or(f32::NAN, |start| area(start.lines()));
-        libm::log2(f64::from(start) / f64::from(area(self.lines())))
+        let bits = libm::log2(f64::from(start) / f64::from(area(self.lines())));
+        // Areas are rounded.
+        if bits < 0.0 { 0.0 } else { bits }
     }
 
     /// Whether all lines that are left meet the goal. The goal's level has no effect, as labels are true.

@@ -25,6 +25,7 @@ use crate::belief::trust::{Tallies, Trust, counts};
 use crate::belief::unknown_reliability::Counts;
 use crate::belief::weight::{Coarse, LogWeight, Prior};
 use crate::geometry::lattice::Site;
+use crate::geometry::mark::Mark;
 
 /// A sequence of true labels that some line realises: the cell of these lines, and the sequence's weight given the
 /// labels seen. 24 bytes for `E = 15`.
@@ -378,6 +379,10 @@ impl<const N: usize, const H: usize, const E: usize, R: Trust> FromLog
         let believed = labels.map(|(label, it)| self.reliability_within(label.site, it));
         ObservationLog::new(self.given(), self.samples(), believed)
             .within(self.tolerances(), self.noise.tolerance)
+    }
+
+    fn mark(&self) -> Mark {
+        self.noise.mark().and([self.prior as u32])
     }
 
     fn replay(&mut self, log: &ObservationLog<N>) -> Result<(), ReplayError> {
