@@ -16,6 +16,7 @@ pub use crate::belief::trust::{Count, Mean, Tallies, Tally};
 pub use crate::belief::weight::LogWeight;
 pub use crate::geometry::heading::SinCos;
 pub use crate::geometry::line::Bound;
+pub use crate::geometry::mark::Mark;
 pub use crate::motion::unicycle::Grid;
 pub use crate::planner::cfc::Phase;
 pub use crate::planner::decision::Decision;

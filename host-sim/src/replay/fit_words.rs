@@ -59,6 +59,10 @@ impl Words {
                 fit.labels,
                 reliability(fit.suggested_p)
             ),
+            Verdict::Bend { radius, .. } => {
+                let says = Self::of(file, fit, None).says;
+                format!("{says} --front {} maps one that bends", rounded(radius))
+            }
             _ => Self::of(file, fit, None).says.trim_end_matches('.').to_owned(),
         }
     }
@@ -160,7 +164,9 @@ fn of_shape(file: &SampleFile, fit: &Fit) -> (String, String) {
                 with(disagreeing)
             ),
             format!(
-                "Take a shorter stretch, or a tolerance that covers the bend. The arc is {} m from its chord.",
+                "Map it as a front that bends: --front {}, or less if in doubt. For a straight line take a shorter stretch, \
+                 or a tolerance that covers the bend. The arc is {} m from its chord.",
+                rounded(radius),
                 rounded(sagitta)
             ),
         ),

@@ -19,6 +19,9 @@ use crate::world::extent::span;
 /// How far the lattice reaches, metres.
 const REACH: f64 = LIMIT as f64 / UNITS_PER_METRE as f64;
 
+/// Of latitude; a degree of longitude has fewer.
+const METRES_PER_DEGREE: f64 = 111_320.0;
+
 /// Rows that have a middle: fewer bound no line.
 const FEWEST: usize = 3;
 
@@ -42,7 +45,7 @@ impl Frame {
         is_geographic: bool,
         &Layout { origin, ref crs, .. }: &Layout,
     ) -> Result<Self> {
-        let middle = || bounds(positions).map(|[least, most]| least.midpoint(most).round());
+        let middle = || middle(positions, REACH).map(f64::round);
         if let Some(crs) = crs {
             let origin = origin.unwrap_or_else(middle);
             crs.check(origin)?;
@@ -154,9 +157,19 @@ fn to_grain(degrees: f64) -> f64 {
     (degrees * 1e9).round() / 1e9
 }
 
-/// The least and the most of both coordinates.
-fn bounds(positions: &[[f64; 2]]) -> [[f64; 2]; 2] {
-    [0, 1].map(|k| span(positions.iter().map(|at| at[k])))
+/// The middle of positions. Where they reach further from it than the lattice does, their medians: a stray one is far
+/// from these, and not all others.
+fn middle(positions: &[[f64; 2]], reach: f64) -> [f64; 2] {
+    let along = |k: usize| positions.iter().map(move |at| at[k]);
+    let spans = [0, 1].map(|k| span(along(k)));
+    if spans.iter().all(|[least, most]| most - least <= 2.0 * reach) {
+        return spans.map(|[least, most]| least.midpoint(most));
+    }
+    [0, 1].map(|k| {
+        let mut sorted: Vec<_> = along(k).collect();
+        sorted.sort_by(f64::total_cmp);
+        sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
+    })
 }
 
 /// The middle of latitudes and longitudes, to a ten-thousandth of a degree. Longitudes are counted from the first
@@ -165,7 +178,7 @@ fn geographic_middle(positions: &[[f64; 2]]) -> [f64; 2] {
     let Some(&[_, first]) = positions.first() else { return [0.0; 2] };
     let turned = |lon: f64| libm::remainder(lon - first, 360.0);
     let from_first: Vec<_> = positions.iter().map(|[lat, lon]| [*lat, turned(*lon)]).collect();
-    let [lat, lon] = bounds(&from_first).map(|[least, most]| least.midpoint(most));
+    let [lat, lon] = middle(&from_first, REACH / METRES_PER_DEGREE);
     [lat, libm::remainder(lon + first, 360.0)].map(|degrees| (degrees * 1e4).round() / 1e4)
 }
 

@@ -123,7 +123,8 @@ fn goes_round(corners: &[Site], side: i64) -> bool {
 
 /// A hull's edges in order. Those of a point and a segment run to and fro.
 pub(crate) fn edges(corners: &[Site]) -> impl Iterator<Item = (Site, Site)> + Clone {
-    corners.iter().copied().zip(corners.iter().copied().cycle().skip(1))
+    let next = corners.iter().skip(1).chain(corners.first());
+    corners.iter().copied().zip(next.copied())
 }
 
 /// Whether all of one hull is further than `by` lattice units from all of another. Corners go round in either order.

@@ -15,8 +15,9 @@ use crate::geometry::workspace::{HalfPlane, Obstacle, Workspace};
 pub struct PolygonArea<const C: usize, const K: usize> {
     polygon: Hull<C>,
     bounds: Area,
-    /// The lengths of the polygon's edges, lattice units, rounded up.
-    lengths: [u32; C],
+    /// The sides that are not sides of the bounds: so many, at the margin of these.
+    sides: [HalfPlane; C],
+    count: u8,
     keep_outs: [Option<KeepOut<C>>; K],
 }
 
@@ -107,7 +108,7 @@ impl<const C: usize, const K: usize> PolygonArea<C, K> {
             }
             *place = Some(*keep_out);
         }
-        Ok(Self { polygon, bounds, lengths: lengths(&polygon), keep_outs: kept })
+        Ok(Self::of(polygon, bounds, kept))
     }
 
     /// The area of a polygon with these corners, `[x, z]` in metres or points of `nalgebra`, without its keep-outs.
@@ -119,6 +120,22 @@ impl<const C: usize, const K: usize> PolygonArea<C, K> {
         keep_outs: &[KeepOut<C>],
     ) -> Result<Self, PolygonAreaError> {
         Self::new(Hull::metres(corners)?, keep_outs)
+    }
+
+    fn of(polygon: Hull<C>, bounds: Area, keep_outs: [Option<KeepOut<C>>; K]) -> Self {
+        let mut area = Self {
+            polygon,
+            bounds,
+            sides: [HalfPlane::between(Site::ORIGIN, Site::ORIGIN, 0); C],
+            count: 0,
+            keep_outs,
+        };
+        let cuts = |(from, to): &(Site, Site)| from.x() != to.x() && from.z() != to.z();
+        for (side, (from, to)) in area.sides.iter_mut().zip(edges(polygon.corners()).filter(cuts)) {
+            *side = HalfPlane::between(from, to, bounds.margin());
+            area.count += 1;
+        }
+        area
     }
 
     /// Its corners, counter-clockwise.
@@ -142,13 +159,8 @@ impl<const C: usize, const K: usize> PolygonArea<C, K> {
             let _ = polygon.push([(x - min.x()) as f32, (z - min.z()) as f32]);
         }
         for side in self.sides() {
-            let value = |[x, z]: [f32; 2]| {
-                let from = side.from - min;
-                let along = [side.along.x as f32, side.along.z as f32];
-                along[0] * (z - from.z as f32)
-                    - along[1] * (x - from.x as f32)
-                    - side.margin as f32 * side.length as f32
-            };
+            let (along, at) = ([side.along.x as f32, side.along.z as f32], side.at(min) as f32);
+            let value = |[x, z]: [f32; 2]| along[0] * z - along[1] * x + at;
             let mut rest: Vec<[f32; 2], 24, u8> = Vec::new();
             let next = polygon.iter().copied().cycle().skip(1);
             for (a, b) in polygon.iter().copied().zip(next) {
@@ -175,18 +187,8 @@ impl<const C: usize, const K: usize> PolygonArea<C, K> {
 /// A rectangle without keep-outs.
 impl<const C: usize, const K: usize> From<Area> for PolygonArea<C, K> {
     fn from(bounds: Area) -> Self {
-        let polygon = Hull::of(bounds);
-        Self { polygon, bounds, lengths: lengths(&polygon), keep_outs: [None; K] }
+        Self::of(Hull::of(bounds), bounds, [None; K])
     }
-}
-
-/// The lengths of a polygon's edges, rounded up.
-fn lengths<const C: usize>(polygon: &Hull<C>) -> [u32; C] {
-    let mut lengths = [0; C];
-    for (length, (from, to)) in lengths.iter_mut().zip(edges(polygon.corners())) {
-        *length = length_of(to - from);
-    }
-    lengths
 }
 
 /// The rectangle around positions; `None` unless it has an inside.
@@ -205,13 +207,6 @@ fn middle_of(corners: &[Site]) -> Site {
     let x = mean(corners.iter().map(|corner| i64::from(corner.x())).sum());
     let z = mean(corners.iter().map(|corner| i64::from(corner.z())).sum());
     Site::new(x, z).unwrap_or(Site::ORIGIN)
-}
-
-/// A vector's length, rounded up.
-fn length_of(v: Vector) -> u32 {
-    let square = v.dot(v).unsigned_abs();
-    let root = square.isqrt();
-    (root + u64::from(root * root < square)) as u32
 }
 
 impl<const C: usize, const K: usize> Workspace for PolygonArea<C, K> {
@@ -238,20 +233,16 @@ impl<const C: usize, const K: usize> Workspace for PolygonArea<C, K> {
     }
 
     fn inset(&self, margin: u32) -> Option<Self> {
-        let inset = Self { bounds: self.bounds.inset(margin)?, ..*self };
+        let inset = Self::of(self.polygon, self.bounds.inset(margin)?, self.keep_outs);
         inset.has_inside().then_some(inset)
     }
 
     fn whole(&self) -> Self {
-        Self { bounds: self.bounds.whole(), ..*self }
+        Self::of(self.polygon, self.bounds.whole(), self.keep_outs)
     }
 
     fn sides(&self) -> impl Iterator<Item = HalfPlane> {
-        edges(self.corners()).zip(self.lengths).filter_map(|((from, to), length)| {
-            let along = to - from;
-            let cuts = along.x != 0 && along.z != 0;
-            cuts.then_some(HalfPlane { from, along, length, margin: self.bounds.margin() })
-        })
+        self.sides.get(..usize::from(self.count)).unwrap_or_default().iter().copied()
     }
 
     fn keep_outs(&self) -> impl Iterator<Item = Obstacle<'_>> {

@@ -63,6 +63,12 @@ pub trait Workspace: Copy {
         self.bounds().contains(q) && self.sides().all(|side| side.at(q) >= 0)
     }
 
+    /// Whether all of a hull is further than `by` lattice units from all keep-outs and their margins.
+    fn is_clear(&self, hull: &[Site], by: u32) -> bool {
+        let extent = Extent::of(hull);
+        self.keep_outs().all(|it| !it.is_near(extent, by) || it.is_apart_beside(hull, by))
+    }
+
     /// How far inside the border a position lies, in lattice units or somewhat less; negative outside.
     fn depth(&self, q: Site) -> i32 {
         let (min, max) = (self.bounds().min(), self.bounds().max());
@@ -77,6 +83,9 @@ pub trait Workspace: Copy {
     /// has brought the agent into the margin, motions may use it but not leave the area. From outside, motions may go
     /// anywhere. Each side of the border is judged by itself.
     fn confines(&self, from: Site, to: Site) -> bool {
+        if self.encloses(to) {
+            return true;
+        }
         let bounds = self.bounds();
         let inside = |q: Site| {
             let (min, max) = (bounds.min(), bounds.max());
@@ -90,14 +99,14 @@ pub trait Workspace: Copy {
 
     /// Whether the agent may be at a position.
     fn contains(&self, q: Site) -> bool {
-        self.encloses(q) && self.keep_outs().all(|it| it.is_clear_of(&[q], 0))
+        self.encloses(q) && self.is_clear(&[q], 0)
     }
 
     /// Whether all of a disc is where the agent may be; the radius in lattice units, below 2^30.
     fn contains_disc(&self, centre: Site, radius: i32) -> bool {
         self.bounds().contains_disc(centre, radius)
             && self.sides().all(|side| side.at(centre) >= side.offset_of(radius))
-            && self.keep_outs().all(|it| it.is_clear_of(&[centre], radius.unsigned_abs()))
+            && self.is_clear(&[centre], radius.unsigned_abs())
     }
 
     /// Whether a motion stays clear of all keep-outs. `swept` are the corners of the hull that the motion sweeps. The
@@ -106,7 +115,8 @@ pub trait Workspace: Copy {
     /// If an error has brought the agent too near to a keep-out, a motion from there need only stay out of the keep-out
     /// itself.
     fn lets_pass(&self, swept: &[Site]) -> bool {
-        self.keep_outs().all(|it| it.lets_pass(swept))
+        let extent = Extent::of(swept);
+        self.keep_outs().all(|it| !it.is_near(extent, 0) || it.lets_pass(swept))
     }
 }
 
@@ -130,8 +140,9 @@ impl Workspace for Area {
     }
 }
 
-/// Positions to the left of a line, at least `margin` away from it.
-#[derive(Clone, Copy, Debug)]
+/// Positions to the left of a line, and some way off it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct HalfPlane {
     /// On the line.
     pub from: Site,
@@ -139,15 +150,25 @@ pub struct HalfPlane {
     pub along: Vector,
     /// The length of `along`, rounded up.
     pub length: u32,
-    /// How far positions stay from the line, lattice units.
-    pub margin: u32,
+    /// What [`at`](Self::at) would be at the origin, negative.
+    offset: i64,
 }
 
 impl HalfPlane {
-    /// How far inside a position lies, lattice units squared: `length` times its distance from the line less `margin`.
-    /// Negative outside.
+    /// To the left of the line from one position to another, at least so many lattice units away from it.
+    pub fn between(from: Site, to: Site, margin: u32) -> Self {
+        let along = to - from;
+        let square = along.dot(along).unsigned_abs();
+        let root = square.isqrt();
+        let length = (root + u64::from(root * root < square)) as u32;
+        let offset = along.cross(from - Site::ORIGIN) + i64::from(margin) * i64::from(length);
+        Self { from, along, length, offset }
+    }
+
+    /// How far inside a position lies, lattice units squared: the length of the direction times the distance from the
+    /// line less the margin. Negative outside.
     pub fn at(&self, q: Site) -> i64 {
-        self.along.cross(q - self.from) - i64::from(self.margin) * i64::from(self.length)
+        self.along.cross(q - Site::ORIGIN) - self.offset
     }
 
     /// The increase of [`at`](Self::at) for a distance further in, or somewhat more. The distance is in lattice units,
@@ -176,15 +197,23 @@ impl<'a> Obstacle<'a> {
         Self { corners, extent: Extent::of(corners), radius, margin }
     }
 
-    /// Whether the box around it comes as near as its margin to another box. Cheap.
-    pub(crate) fn is_near(&self, extent: Extent) -> bool {
-        !self.extent.is_apart_from(extent, self.radius.saturating_add(self.margin))
+    /// Whether the box around it comes as near to another box as its margin and `by` together. Cheap.
+    pub(crate) fn is_near(&self, extent: Extent, by: u32) -> bool {
+        !self.extent.is_apart_from(extent, self.away(by))
     }
 
     /// Whether a hull is further from it than its margin and `by` together, lattice units.
     pub fn is_clear_of(&self, hull: &[Site], by: u32) -> bool {
-        let by = self.radius.saturating_add(self.margin).saturating_add(by);
-        self.is_apart_from(hull, by)
+        self.is_apart_from(hull, self.away(by))
+    }
+
+    /// The same of a hull whose box is near.
+    fn is_apart_beside(&self, hull: &[Site], by: u32) -> bool {
+        are_apart_beside(self.corners, hull, self.away(by))
+    }
+
+    fn away(&self, by: u32) -> u32 {
+        self.radius.saturating_add(self.margin).saturating_add(by)
     }
 
     fn is_apart_from(&self, hull: &[Site], by: u32) -> bool {
@@ -193,7 +222,7 @@ impl<'a> Obstacle<'a> {
 
     fn lets_pass(&self, swept: &[Site]) -> bool {
         let start = swept.get(..1).unwrap_or_default();
-        if self.is_clear_of(swept, 0) {
+        if self.is_apart_beside(swept, 0) {
             return true;
         }
         let begins = |apart: u32| self.is_apart_from(start, apart);

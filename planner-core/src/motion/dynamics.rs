@@ -239,8 +239,13 @@ pub trait Dynamics {
     /// Whether a motion to a place inside the area stays inside and ends safe. The circle must have `room` around it,
     /// in lattice units, and a margin for the rounding of a round.
     fn keeps_inside<G: Workspace>(&self, from: Pose, to: Pose, area: &G, room: i32) -> bool {
-        self.stays_inside(from, to, area)
-            && has_circle_inside(self, to, area, |circle| circle.with_room(room))
+        self.stays_inside(from, to, area) && self.ends_safe(to, area, room)
+    }
+
+    /// Whether one of the circles from where a motion ends lies inside the area, with `room` around it, in lattice units, and
+    /// a margin for the rounding of a round.
+    fn ends_safe<G: Workspace>(&self, to: Pose, area: &G, room: i32) -> bool {
+        has_circle_inside(self, to, area, |circle| circle.with_room(room))
     }
 
     /// Whether all of a motion to a place that the border [allows](Workspace::confines) stays there, and touches no

@@ -147,7 +147,7 @@ impl<D: Dynamics, const N: usize, G: Workspace> Cfc<D, N, G> {
     ) -> (Result<Found, DeadEnd>, Phase, Effort) {
         let slopes = self.space.slope_arc();
         let problem = self.problem_of(self.due, slopes, lines);
-        let mut search = problem.search(&self.dynamics, pose, Effort::of(looks));
+        let mut search = problem.search(&self.dynamics, pose, Effort::within(&self.area, looks));
         let search = search.open();
         let mut followed = None;
         if self.due == Phase::Following {

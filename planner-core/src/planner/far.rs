@@ -154,7 +154,7 @@ impl Far {
             Rest::Over => {}
         }
         journey.next = journey.now;
-        let mut effort = Effort::of(LOOKS);
+        let mut effort = Effort::within(&lookout.area, LOOKS);
         for Place { site, worth } in places.list.into_iter().take_while(|it| it.worth > most) {
             let tells = |site| tells(belief, predictor, lookout, site);
             let leg = journey.go((lookout.dynamics, &lookout.area), pose, site, tells, &mut effort);

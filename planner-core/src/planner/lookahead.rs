@@ -319,7 +319,7 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion, S: Sight>
         let Some(audit) = self.audit.as_mut() else { return known };
         let Some(estimate) = self.belief.belief().centre() else { return known };
         self.belief.prepare();
-        let (dynamics, mut effort) = (&self.dynamics, Effort::of(LOOKS));
+        let (dynamics, mut effort) = (&self.dynamics, Effort::within(&self.area, LOOKS));
         let with = (dynamics, &self.area);
         let Some(Errand { leg, arrives, .. }) =
             audit.plan(with, (&self.belief, estimate), pose, &mut effort)
@@ -337,8 +337,8 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion, S: Sight>
         let (area, weight) = (self.area, self.price.0);
         let rule = ArcRule::default();
         let problem = Problem { lines, area, weight, rule };
-        let mut search =
-            problem.search(&self.dynamics, pose, Effort::of(LOOKS - self.sight.looks()));
+        let effort = Effort::within(&area, LOOKS - self.sight.looks());
+        let mut search = problem.search(&self.dynamics, pose, effort);
         let search = search.open();
         let found = solve_or_recover(&problem, search, None, course);
         (found, search.effort)

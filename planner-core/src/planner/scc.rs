@@ -55,7 +55,7 @@ use crate::search::recovery::{Found, Recovery, solve_or_recover};
 /// The most looks of a plan with a vote: half of them are for the vote, the rest for the ladder. When the half is used
 /// up, the hypotheses that have voted decide. These are the heaviest. The paper's example would take 26,000 at 60
 /// labels.
-pub const VOTE_LOOKS: u32 = 11_520;
+pub const VOTE_LOOKS: u32 = 10_240;
 
 /// How the hypotheses choose an action together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -244,7 +244,8 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Workspace, R: Trust> Planne
             (_, true) => Stage::P3,
             (_, false) => Stage::P4,
         };
-        let mut effort = Effort::of(if self.policy == Policy::Joint { LOOKS } else { VOTE_LOOKS });
+        let looks = if self.policy == Policy::Joint { LOOKS } else { VOTE_LOOKS };
+        let mut effort = Effort::within(&self.area, looks);
         let mut course = self.silence.course();
         match self.find(pose, &mut effort, &mut course) {
             Ok(found) => {

@@ -10,9 +10,15 @@ use crate::motion::dynamics::Pose;
 /// The most looks that a plan takes. A look at a ray counts as one. Any other long calculation counts as the number of
 /// looks that take as long.
 ///
-/// One look takes up to some 1,900 instructions of a Cortex-M4, so that a plan stays below 20 million. With the paper's
-/// grid, no plan in 3,000 standard missions of 60 steps needed more than 520 rays.
+/// One look takes up to some 1,900 instructions of a Cortex-M4, so that a plan stays below 20 million. In areas with more
+/// to compare there are [fewer](Effort::within). With the paper's grid, no plan in 3,000 standard missions of 60 steps
+/// needed more than 520 rays.
 pub const LOOKS: u32 = 9_216;
+
+/// How long a look takes in a rectangle, and how much longer with a side and with a keep-out.
+const RECTANGLE: u32 = 64;
+const SIDE: u32 = 1;
+const KEEP_OUT: u32 = 6;
 
 /// The looks that it costs to open a view, where many are opened.
 pub(crate) const OPENING: u32 = 2;
@@ -98,6 +104,13 @@ impl Effort {
         Self { looks, examined: 0 }
     }
 
+    /// The same in an area: a look takes longer with each side of its border that cuts the rectangle around it, and with
+    /// each keep-out.
+    pub(crate) fn within<G: Workspace>(area: &G, looks: u32) -> Self {
+        let more = SIDE * area.sides().count() as u32 + KEEP_OUT * area.keep_outs().count() as u32;
+        Self::of(if more > 0 { looks * RECTANGLE / (RECTANGLE + more) } else { looks })
+    }
+
     /// Keeps back all looks but `all_but`. [`give_back`](Self::give_back) adds them again.
     pub(crate) const fn keep_back(&mut self, all_but: u32) -> u32 {
         let kept = self.looks.saturating_sub(all_but);
@@ -133,6 +146,6 @@ impl Effort {
 /// of its corners.
 pub(crate) fn sweep<G: Workspace>(area: &G, hull: &[Site]) -> u32 {
     let extent = Extent::of(hull);
-    let near = area.keep_outs().filter(|it| it.is_near(extent));
+    let near = area.keep_outs().filter(|it| it.is_near(extent, 0));
     near.map(|it| 1 + it.corners.len() as u32 / 2).sum()
 }

@@ -244,6 +244,7 @@ impl Recorder {
             let why = (ending, alarm.as_ref(), is_by_alarm);
             DiagnosisRecord::of(&mission, (&steps, &results), why, &*belief)
         };
+        let is_alarmed = alarm.as_ref().is_some_and(|it| it.evidence >= Alarm::ALARM);
         let has_ended = |reason| ending == Ending::Stopped(reason);
         let map = || {
             let steps: Vec<_> = results.iter().map(|it| (it.metres, it.front)).collect();
@@ -268,7 +269,7 @@ impl Recorder {
             reliability: belief.hypotheses().filter(|it| is_unknown(it)).map(learnt),
             front: (!seeks_line).then(map),
             seek: SeekRecord::of(&mission, &labels, &after, has_ended(StopReason::OneLabel)),
-            goal: GoalRecord::of(&mission, &*belief, audit, alarm.as_ref()),
+            goal: GoalRecord::of(&mission, &*belief, audit, is_alarmed),
             alarm,
             diagnosis: seeks_line.then(diagnosis).flatten().map(Box::new),
             flown: Legs::of(&results.iter().filter_map(|step| step.flown).collect::<Vec<_>>()),

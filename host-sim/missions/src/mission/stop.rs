@@ -4,14 +4,12 @@
 //! rounding of single precision. So when the planner's goal is met, the file's is met too.
 
 use anyhow::Result;
-use planner_core::watch::Alarm;
 use planner_core::{Accuracy, Angle, Goal, Workspace as _};
 use serde::{Deserialize, Serialize};
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::Mission;
 use crate::mission::read_out::{LEVEL, ReadOut};
-use crate::mission::results::AlarmRecord;
 use crate::mission::strict::wrong;
 
 /// A heading's units in a degree.
@@ -162,11 +160,10 @@ impl GoalRecord {
         mission: &Mission,
         belief: &dyn ReadOut,
         audit: Option<AuditRecord>,
-        alarm: Option<&AlarmRecord>,
+        is_alarmed: bool,
     ) -> Option<Self> {
         let goal = mission.goal?;
-        let is_refuted = audit.is_some_and(|audit| audit.refuted.is_some())
-            || alarm.is_some_and(|it| it.evidence >= Alarm::ALARM);
+        let is_refuted = audit.is_some_and(|audit| audit.refuted.is_some()) || is_alarmed;
         let (slope_arc_deg, misclassified) = match goal.accuracy {
             Accuracy::SlopeArc(turn) => {
                 let degrees = f64::from(turn.0 + TURN_OFF) / UNITS_PER_DEGREE;

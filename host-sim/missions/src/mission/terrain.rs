@@ -109,7 +109,13 @@ fn hull(field: &str, corners: &[Numbers<2>], least: usize) -> Result<Hull<MOST_C
 pub(crate) fn site(field: &str, x: f64, z: f64) -> Result<Site> {
     for (name, value) in [("x", x), ("z", z)] {
         if Site::try_from(Point2::new(value, 0.0)).is_err() {
-            let expected = "a finite coordinate smaller than 8192 m in size";
+            let is_of_a_map = (1e5..1e8).contains(&value.abs());
+            let hint = if is_of_a_map {
+                ": count from a corner of the area, as a raster is brought there"
+            } else {
+                ""
+            };
+            let expected = format!("a finite coordinate smaller than 8192 m in size{hint}");
             return wrong(&format!("{field}.{name}"), value, expected);
         }
     }

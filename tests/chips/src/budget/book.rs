@@ -211,7 +211,7 @@ fn with_tables(page: &str, document: &DocumentMut) -> String {
 /// A column for each program, a row for each figure; cycles as time beside instructions.
 fn table(document: &DocumentMut, cores: &[&str]) -> String {
     let mut columns = columns(document);
-    columns.retain(|[core, program]| cores.contains(&&**core) && program != super::timing::RANDOM);
+    columns.retain(|[core, _]| cores.contains(&&**core));
     let rows = |[core, program]: &[String; 2]| document[core][program].as_table().expect("a table");
     let mut names: Vec<&str> = Vec::new();
     for (name, row) in columns.iter().flat_map(|it| rows(it).iter()) {

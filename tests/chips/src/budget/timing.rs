@@ -5,7 +5,6 @@
 //! checked here. So is that the mission's trace is the host's.
 
 use std::cmp::Reverse;
-use std::collections::BTreeMap;
 
 use host_sim::hil::player::Played;
 use host_sim::mission::algorithm::Algorithm;
@@ -13,8 +12,6 @@ use host_sim::mission::definition::Mission;
 use host_sim::mission::results::{Ending, Results};
 use host_sim::report::trace;
 use rayon::prelude::*;
-use tests::anything::draw::draw;
-use tests::anything::{asked_for, kind};
 use tests::{is_long, is_updating};
 
 use super::book::{Book, Place};
@@ -213,44 +210,6 @@ fn compare(book: &mut Book, place: Place<'_>, with: &[Flight], without: &[Flight
         });
         if with > MOST * without {
             book.fail(format!("{place:?}, {what}: {with} under a tolerance, {without} without"));
-        }
-    }
-}
-
-/// What the file calls random missions of every vehicle.
-pub const RANDOM: &str = "random_missions";
-
-/// Labels of a random mission at most, and what the program `vehicles` has room for, the given samples included.
-const LABELS: u32 = 32;
-const SAMPLES: u32 = 36;
-
-/// Plans of random missions, in which everything is drawn: the worst of each vehicle and algorithm.
-pub fn time_random(book: &mut Book, elf: &[u8]) {
-    const SEED: u64 = 21;
-    let numbers: Vec<u64> = if is_long() {
-        asked_for(200).collect()
-    } else {
-        asked_for(8).chain(book.hardest(RANDOM)).collect()
-    };
-    let mission = |number| {
-        let mut mission = draw(SEED, number);
-        // The program has room for so many samples, and no code for labels on the way.
-        mission.steps = LABELS.min(SAMPLES - mission.given.samples().len() as u32);
-        mission.readings = 1;
-        mission
-    };
-    let mut worst = BTreeMap::<String, (u64, u64)>::new();
-    for Flight { number, plans, .. } in fly(Core::M4F, elf, &numbers, mission, None) {
-        let mission = mission(number);
-        let algorithm = format!("{:?}", mission.algorithm).to_lowercase();
-        let most = plans.iter().map(|it| it.instructions).max().unwrap_or(0);
-        let worst = worst.entry(format!("{}_{algorithm}", kind(&mission.vehicle))).or_default();
-        *worst = (*worst).max((most, number));
-    }
-    for (kind, (most, number)) in worst {
-        book.figure([Core::M4F.name(), RANDOM], &format!("{kind}_plan_worst"), most);
-        if is_long() {
-            book.harder(RANDOM, number);
         }
     }
 }

@@ -219,7 +219,9 @@ impl Fit {
         fit.p_values[1] = counts::fitted_at_most(count, q, disagreeing, is_blurred);
         fit.p_values[2] = counts::run_at_least(count, disagreeing, run);
         let mut best = longest_run.map(|run| (fit.p_values[2], Verdict::Row(run)));
-        for (test, p_value, verdict) in shapes_of(question, &fit.along) {
+        // Where no label disagrees, nothing explains them better.
+        let shapes = if disagreeing > 0 { shapes_of(question, &fit.along) } else { Vec::new() };
+        for (test, p_value, verdict) in shapes {
             fit.p_values[test] = p_value;
             if best.is_none_or(|(least, _)| p_value < least) {
                 best = Some((p_value, verdict));
