@@ -1,4 +1,4 @@
-//! Numbers that stand in a file where nothing was measured, and values that look like such.
+//! Numbers that stand in a file where nothing was measured, and values and positions that look like such.
 
 use crate::replay::rows::{Layout, Rows};
 
@@ -31,6 +31,31 @@ fn ranges_away(value: f64, [least, most]: [f64; 2]) -> f64 {
 }
 
 impl Rows {
+    /// Leaves out the rows at latitude and longitude 0, which receivers write before their first fix, if most others are
+    /// further than a degree away.
+    ///
+    /// # Errors
+    /// The row, where the layout is strict.
+    pub(crate) fn leave_out_unfixed(
+        &mut self,
+        layout: &Layout,
+    ) -> Result<(), (usize, anyhow::Error)> {
+        let is_far = |at: &&[f64; 2]| at.iter().any(|it| it.abs() > 1.0);
+        let far = self.positions.iter().filter(is_far).count();
+        if !self.is_geographic || 2 * far < self.positions.len() {
+            return Ok(());
+        }
+        let unfixed: Vec<_> =
+            self.positions.iter().map(|at| at.iter().all(|it| *it == 0.0)).collect();
+        for (index, _) in unfixed.iter().enumerate().filter(|it| *it.1) {
+            let (line, lacks) =
+                (self.lines[index], "found (0, 0), where receivers are before their first fix");
+            self.skip(layout, line, lacks.to_owned()).map_err(|error| (line, error))?;
+        }
+        self.leave_out(&unfixed);
+        Ok(())
+    }
+
     /// Leaves out the rows whose measured value is a usual fill value and lies outside all others, by more than their
     /// range. Notes the first row whose value is far outside all others.
     ///

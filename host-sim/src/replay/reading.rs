@@ -53,6 +53,7 @@ impl<'a> Reading<'a> {
             settled = numbers.end().map_err(at)?;
             if settled.is_none() {
                 rows.leave_out_fills(layout).map_err(at)?;
+                rows.leave_out_unfixed(layout).map_err(at)?;
                 return Ok(rows);
             }
         }

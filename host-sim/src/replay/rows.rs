@@ -79,6 +79,8 @@ pub(crate) struct Rows {
     pub(crate) values: Vec<f64>,
     /// A row whose value is far outside the range of all others: its place, the value, that range.
     pub(crate) odd: Option<(usize, f64, [f64; 2])>,
+    /// Rows of an earlier time than the row before: how many, and the place of the first.
+    pub(crate) backwards: Option<(usize, usize)>,
     /// The line of the file on which each begins, or the number of its feature.
     pub(crate) lines: Vec<usize>,
     pub(crate) unit: Unit,

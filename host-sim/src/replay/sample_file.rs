@@ -27,6 +27,8 @@ pub(crate) struct SampleFile {
     pub(crate) skipped: Skipped,
     /// A row whose value is far outside the range of all others.
     pub(crate) odd: Option<(usize, f64, [f64; 2])>,
+    /// Rows of an earlier time than the row before: how many, and the place of the first.
+    pub(crate) backwards: Option<(usize, usize)>,
     pub(crate) unit: Unit,
     /// The mission, of a trace.
     pub(crate) mission: Option<Box<Traced>>,
@@ -101,9 +103,9 @@ impl SampleFile {
         };
         let both = rows.positions.iter().zip(&rows.labels);
         let samples = both.enumerate().map(sample).collect::<Result<_>>()?;
-        let Rows { certain, p, lines, skipped, odd, mission, .. } = rows;
+        let Rows { certain, p, lines, skipped, odd, backwards, mission, .. } = rows;
         let name = name.to_owned();
-        Ok(Self { name, samples, frame, certain, p, skipped, odd, unit, mission, lines })
+        Ok(Self { name, samples, frame, certain, p, skipped, odd, backwards, unit, mission, lines })
     }
 
     /// The line on which a sample begins, or the number of its feature.

@@ -72,6 +72,41 @@ fn heading(text: &[u8], columns: &Columns, delimiter: Option<Delimiter>) -> (Del
     found.min_by_key(|(_, above)| *above).unwrap_or((all[0], 0))
 }
 
+/// Titles of a column of times, in small letters.
+const TIMES: [&str; 7] = ["time", "timestamp", "datetime", "date_time", "utc", "time_utc", "t"];
+
+/// Times that a column has, as far as they can be compared: numbers, or words that begin with a year.
+#[derive(Debug, Default)]
+struct Times {
+    column: Option<usize>,
+    last: String,
+}
+
+impl Times {
+    /// Those below the titles of a row.
+    fn below(titles: &ByteRecord, delimiter: Delimiter) -> Self {
+        let is_time = |title: &[u8]| {
+            TIMES.iter().any(|it| it.as_bytes().eq_ignore_ascii_case(title.trim_ascii()))
+        };
+        Self { column: fields(titles, delimiter).position(is_time), last: String::new() }
+    }
+
+    /// Whether a row has an earlier time than the one before.
+    fn is_backwards(&mut self, row: &ByteRecord, delimiter: Delimiter) -> bool {
+        let Some(column) = self.column else { return false };
+        let now = field(row, delimiter, column).trim().to_owned();
+        let numbers = [&self.last, &now].map(|it| it.parse::<f64>().ok());
+        let begins_with_a_year =
+            |it: &str| it.len() > 8 && it.bytes().take(4).all(|it| it.is_ascii_digit());
+        let is_earlier = match numbers {
+            [Some(last), Some(now)] => now < last,
+            _ => now.len() == self.last.len() && begins_with_a_year(&now) && now < self.last,
+        };
+        self.last = now;
+        is_earlier
+    }
+}
+
 /// The rows of a table.
 ///
 /// # Errors
@@ -105,7 +140,9 @@ fn pass(
     let first = format!("{name}:{}", line.unwrap_or(1));
     let places = places(&first, &row, columns, delimiter)?;
     reading.rows.is_geographic = places.is_geographic;
+    let mut times = Times::default();
     if places.has_header {
+        times = Times::below(&row, delimiter);
         let title = |column: usize| field(&row, delimiter, column).trim().to_owned();
         reading.rows.titles = Some(places.position.map(title));
         line = next(&mut row)?;
@@ -124,6 +161,10 @@ fn pass(
         }
     }
     while let Some(number) = line {
+        if times.is_backwards(&row, delimiter) {
+            let (count, first) = reading.rows.backwards.unwrap_or((0, number));
+            reading.rows.backwards = Some((count + 1, first));
+        }
         reading.row(number, |reading| read(reading, &row, places, delimiter, number))?;
         line = next(&mut row)?;
     }

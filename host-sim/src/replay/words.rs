@@ -136,13 +136,22 @@ impl SampleFile {
         format!("Skipped {count} {row}{s} without a value, the first on {name} {line} ({lacks}).\n")
     }
 
-    /// A value far outside all others, in words: a line, if there is one.
+    /// A value far outside all others, and rows out of the order of their times, in words: a line each, if there are such.
     pub(crate) fn odd_in_words(&self) -> String {
-        let Some((line, value, [least, most])) = self.odd else { return String::new() };
         let name = self.unit.name();
-        format!(
-            "On {name} {line} stands {value}, all other values are from {least} to {most}: leave such rows out if that is no value.\n"
-        )
+        let odd = self.odd.map(|(line, value, [least, most])| {
+            format!(
+                "On {name} {line} stands {value}, all other values are from {least} to {most}: leave such rows out if that is no value.\n"
+            )
+        });
+        let backwards = self.backwards.map(|(count, line)| {
+            let rows = if count == 1 { "row is" } else { "rows are" };
+            format!(
+                "{count} {rows} of an earlier time than the row before, the first on {name} {line}: rows count in the order of \
+                 the file. Sort them by time if it matters.\n"
+            )
+        });
+        odd.unwrap_or_default() + &backwards.unwrap_or_default()
     }
 
     /// The origin of positions, in words: a line, if there is one.

@@ -1,6 +1,7 @@
 //! Where words stand beside what they name: off marks, ways and each other.
 
 use nalgebra::{Point2, Vector2};
+use rstar::{AABB, RTree, RTreeObject};
 
 use crate::report::shapes::Spot;
 
@@ -11,11 +12,31 @@ pub(crate) struct Frame {
     pub(crate) half: Vector2<f64>,
 }
 
+/// A straight way.
+struct Straight([Spot; 2]);
+
+impl RTreeObject for Frame {
+    type Envelope = AABB<[f64; 2]>;
+
+    fn envelope(&self) -> Self::Envelope {
+        let corners = [self.middle - self.half, self.middle + self.half];
+        AABB::from_corners(corners[0].into(), corners[1].into())
+    }
+}
+
+impl RTreeObject for Straight {
+    type Envelope = AABB<[f64; 2]>;
+
+    fn envelope(&self) -> Self::Envelope {
+        AABB::from_corners(self.0[0].into(), self.0[1].into())
+    }
+}
+
 /// A figure on which words find their places.
 pub(crate) struct Placing {
     within: Frame,
-    taken: Vec<Frame>,
-    ways: Vec<[Spot; 2]>,
+    taken: RTree<Frame>,
+    ways: RTree<Straight>,
 }
 
 impl Frame {
@@ -46,17 +67,17 @@ impl Frame {
 
 impl Placing {
     pub(crate) fn new(within: Frame) -> Self {
-        Self { within, taken: Vec::new(), ways: Vec::new() }
+        Self { within, taken: RTree::new(), ways: RTree::new() }
     }
 
     /// A mark of some radius, which words stay off.
     pub(crate) fn mark(&mut self, middle: Spot, radius: f64) {
-        self.taken.push(Frame { middle, half: Vector2::repeat(radius) });
+        self.taken.insert(Frame { middle, half: Vector2::repeat(radius) });
     }
 
     /// A way through some places, which words stay off.
     pub(crate) fn way(&mut self, places: &[Spot]) {
-        self.ways.extend(places.windows(2).map(|it| [it[0], it[1]]));
+        places.windows(2).for_each(|it| self.ways.insert(Straight([it[0], it[1]])));
     }
 
     /// The nearest free place for words of some size, between two distances from a spot. It is taken then. `None` if
@@ -82,14 +103,17 @@ impl Placing {
                 Frame { middle, half }
             })
             .find(|frame| self.is_free(frame))?;
-        self.taken.push(found);
+        self.taken.insert(found);
         Some(found)
     }
 
     fn is_free(&self, frame: &Frame) -> bool {
+        let around = frame.envelope();
+        let mut taken = self.taken.locate_in_envelope_intersecting(around);
+        let mut ways = self.ways.locate_in_envelope_intersecting(around);
         frame.is_within(&self.within)
-            && !self.taken.iter().any(|taken| taken.overlaps(frame))
-            && !self.ways.iter().any(|way| frame.meets(way))
+            && !taken.any(|taken| taken.overlaps(frame))
+            && !ways.any(|Straight(way)| frame.meets(way))
     }
 }
 

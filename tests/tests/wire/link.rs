@@ -158,7 +158,7 @@ fn a_chip_declines_what_it_does_not_have() {
     let long = Mission { steps: 60, ..tests::missions::mission(1) };
     let watching = Mission { watch: Some(12.3), ..following(9, 0, 10) };
     let dense = Mission { readings: 5, ..tests::missions::mission(1) };
-    for (mission, fly, declined, said) in [
+    for (mission, fly, declined, said) in vec![
         (
             following(9, 0, 10),
             fly_little as Fly,

@@ -192,7 +192,9 @@ fn links(ranked: &Ranked<'_>, ends: &[usize], begins: &[usize], usual: f64) -> V
     let tree = |of: &[usize]| RTree::bulk_load(of.iter().map(|it| at(&kept[*it], *it)).collect());
     let is_in = |of: &[usize]| {
         let mut is_in = vec![false; kept.len()];
-        of.iter().for_each(|it| is_in[*it] = true);
+        for it in of {
+            is_in[*it] = true;
+        }
         is_in
     };
     let (ends_at, begins_at) = ((tree(ends), is_in(ends)), (tree(begins), is_in(begins)));

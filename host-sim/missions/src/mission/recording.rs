@@ -364,7 +364,7 @@ fn audit(
         Some(before[*k].chance_of(steps[*k].pose.site, label) > 0.5)
     };
     let is_refuted = ending == Ending::Stopped(StopReason::NoLine);
-    let is_by_label = of_audit().last().is_some_and(|k| agrees(&k) == Some(false));
+    let is_by_label = of_audit().next_back().is_some_and(|k| agrees(&k) == Some(false));
     let is_grave = alarm.is_some_and(|it| it.evidence >= Alarm::ALARM);
     let is_by_alarm = is_refuted && is_grave && !is_by_label;
     if of_audit().next().is_none() && !is_by_alarm {

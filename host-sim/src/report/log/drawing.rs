@@ -133,7 +133,7 @@ fn front(part: &str, flight: &Flight, steps: &Range<usize>, second: u32) -> Scen
     let scenes = if steps.is_empty() { &[] } else { &flight.scenes[steps.start..=steps.end] };
     let pieces = scenes.split(|it| it.front.is_none()).filter(|piece| !piece.is_empty());
     let lines = pieces.flat_map(|piece| {
-        strokes.clone().into_iter().enumerate().map(|(k, (thickness, color))| {
+        strokes.into_iter().enumerate().map(|(k, (thickness, color))| {
             let rung =
                 |SeenFront { at, ends: [left, right], .. }: &SeenFront| [*at, *left, *right][k];
             let way: Vec<_> = piece.iter().filter_map(|it| it.front.as_ref()).map(rung).collect();

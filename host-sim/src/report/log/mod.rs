@@ -16,7 +16,7 @@ use anyhow::{Context as _, Result};
 use foxglove::Encode;
 use foxglove::messages::{FrameTransform, PointCloud, PoseInFrame, SceneUpdate};
 use mcap::records::MessageHeader;
-use mcap::{WriteOptions, Writer};
+use mcap::{Compression, WriteOptions, Writer};
 use prost::Message;
 
 use crate::mission::recording::Recording;
@@ -91,7 +91,7 @@ impl Log {
 /// # Errors
 /// When the format's library fails.
 pub fn mcap(recording: &Recording) -> Result<Vec<u8>> {
-    let options = WriteOptions::new().compression(None).library("host-sim");
+    let options = WriteOptions::new().compression(Some(Compression::Lz4)).library("host-sim");
     let writer = options.create(Cursor::new(Vec::new())).context("the log could not be begun")?;
     let mut log = Log { writer, clouds: BTreeMap::new() };
     let results = &recording.results;

@@ -332,11 +332,8 @@ fn shapes_of(question: &Question, along: &[Piece]) -> Vec<(usize, f64, Verdict)>
     }
     // Under a tolerance the line is found to a tenth.
     let straight = if tolerance > 0.0 { straight + 0.1 } else { straight };
-    let mut found = Vec::new();
+    let (mut found, mut lifted) = (Vec::new(), Vec::new());
     let bound = |log_odds: f64| libm::exp(-log_odds).min(1.0);
-    let by_trials = |p_value: f64, lift| {
-        if p_value <= EACH { 1.0 } else { trials::p_value(&labels, best, share, lift) }
-    };
     if let Some(it) = stretch(&labels, best, share, straight) {
         let [first, last] = it.ends;
         let against = (first..=last).filter(|index| (height(*index) > 0.0) != is_positive[*index]);
@@ -351,15 +348,20 @@ fn shapes_of(question: &Question, along: &[Piece]) -> Vec<(usize, f64, Verdict)>
         let disagreeing = it.disagreeing;
         let verdict = Verdict::Bend { radius: it.number, sagitta, disagreeing };
         found.push((4, bound(it.log_odds), verdict));
-        found.push((7, by_trials(bound(it.log_odds), Lift::Arc), verdict));
+        lifted.push((7, Lift::Arc, verdict));
     }
     if let Some(it) = moving(&labels, best, straight) {
         let (metres, disagreeing) = (it.number, it.disagreeing);
         let verdict = Verdict::Drift { metres, disagreeing };
         found.push((5, bound(it.log_odds), verdict));
-        found.push((8, by_trials(bound(it.log_odds), Lift::Drift), verdict));
+        lifted.push((8, Lift::Drift, verdict));
     }
     let it = two_lines(&labels, best, straight);
     found.push((6, bound(it.log_odds), Verdict::TwoLines { disagreeing: it.disagreeing }));
+    // Trials take long: they are for what the bounds leave open.
+    let is_settled = found.iter().any(|(_, p_value, _)| *p_value <= EACH);
+    for (test, lift, verdict) in lifted.into_iter().filter(|_| !is_settled) {
+        found.push((test, trials::p_value(&labels, best, share, lift), verdict));
+    }
     found
 }
