@@ -11,7 +11,7 @@ use crate::motion::dynamics::Pose;
 /// looks that take as long.
 ///
 /// One look takes up to some 1,900 instructions of a Cortex-M4, so that a plan stays below 20 million. In areas with more
-/// to compare there are [fewer](Effort::within). With the paper's grid, no plan in 3,000 standard missions of 60 steps
+/// to compare there are fewer. With the paper's grid, no plan in 3,000 standard missions of 60 steps
 /// needed more than 520 rays.
 pub const LOOKS: u32 = 9_216;
 

@@ -151,6 +151,7 @@ type Fly = fn(&mut Chip<'_>, &Setup) -> Result<Flown, LinkError>;
 
 /// What a chip is asked to fly and cannot: it says why, and so does the player.
 #[test]
+#[expect(clippy::useless_vec, reason = "missions are too large for an array on the stack")]
 fn a_chip_declines_what_it_does_not_have() {
     let capacity = DeclinedError::Capacity(Capacity { samples: 36, hypotheses: 529 });
     let kind = DeclinedError::Vehicle(ShapeError::Kind);
