@@ -61,7 +61,7 @@ impl Words {
             ),
             Verdict::Bend { radius, .. } => {
                 let says = Self::of(file, fit, None).says;
-                format!("{says} --front {} maps one that bends", rounded(radius))
+                format!("{says} Map it with --front {}", rounded(radius))
             }
             _ => Self::of(file, fit, None).says.trim_end_matches('.').to_owned(),
         }
@@ -154,25 +154,26 @@ fn of_rows(file: &SampleFile, fit: &Fit) -> (String, String) {
 /// Of another boundary than a straight, still line.
 fn of_shape(file: &SampleFile, fit: &Fit) -> (String, String) {
     let all = file.samples.len();
-    let best = format!("{} with the most likely line", fit.disagreeing);
-    let with = |count: usize| format!("{count} of {all} labels disagree, {best}.");
+    let with = |count: usize| {
+        format!("with {count} of {all} labels, the most likely line with {}.", fit.disagreeing)
+    };
     match fit.verdict {
         Verdict::Bend { radius, sagitta, disagreeing } => (
             format!(
-                "{NONE} the boundary bends. With an arc of radius {} m {}",
+                "{NONE} the boundary bends. An arc of radius {} m disagrees {}",
                 rounded(radius),
                 with(disagreeing)
             ),
             format!(
-                "Map it as a front that bends: --front {}, or less if in doubt. For a straight line take a shorter stretch, \
-                 or a tolerance that covers the bend. The arc is {} m from its chord.",
+                "Map it with --front {}, or with a smaller radius if in doubt. For a straight line take a shorter stretch, or \
+                 a tolerance that covers the bend. The arc is {} m from its chord.",
                 rounded(radius),
                 rounded(sagitta)
             ),
         ),
         Verdict::Drift { metres, disagreeing } => (
             format!(
-                "{NONE} the boundary moved. With a line that moves {} m from the first row to the last, {}",
+                "{NONE} the boundary moved. A line that moves {} m from the first row to the last disagrees {}",
                 rounded(metres),
                 with(disagreeing)
             ),
@@ -180,7 +181,7 @@ fn of_shape(file: &SampleFile, fit: &Fit) -> (String, String) {
         ),
         Verdict::TwoLines { disagreeing } => (
             format!(
-                "{NONE} there are two boundaries, or one with a corner. With two lines {}",
+                "{NONE} there are two boundaries, or one with a corner. Two lines disagree {}",
                 with(disagreeing)
             ),
             "Split the area so that each part has one straight boundary, and replay each part."

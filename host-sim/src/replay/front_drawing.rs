@@ -2,6 +2,8 @@
 
 use anyhow::{Context as _, Result};
 use geojson::{Feature, GeometryValue};
+use i_overlay::core::fill_rule::FillRule;
+use i_overlay::float::simplify::SimplifyShape as _;
 use nalgebra::Point2;
 use planner_core::Sample;
 use serde_json::{Value, json};
@@ -12,7 +14,7 @@ use crate::replay::front_map::FrontMap;
 use crate::replay::geojson::{collection, feature};
 use crate::report::picture::{Dot, Ground, Picture, area_of};
 use crate::report::pieces::Pieces;
-use crate::report::ribbon::Ribbon;
+use crate::report::ribbon::{Ribbon, Rung};
 
 /// Samples that a figure shows at most, so that they do not hide the front.
 const MOST: usize = 150;
@@ -109,15 +111,16 @@ pub(crate) fn features(
 ) -> Result<Vec<Feature>> {
     let mut features = Vec::new();
     for (piece, rungs) in (1..).zip(&ribbon.0) {
-        let quads = rungs.windows(2).map(|pair| ring([pair[0].ends, pair[1].ends]));
-        let ring = |corners: [Point2<f64>; 4]| {
-            let closed = corners.iter().chain(corners.first());
-            Ok([closed.map(|at| degrees(frame, *at)).collect::<Result<Vec<_>>>()?])
+        let on_globe = |ring: &Vec<[f64; 2]>| {
+            let closed = ring.iter().chain(ring.first());
+            closed.map(|at| degrees(frame, (*at).into())).collect::<Result<Vec<_>>>()
         };
-        let quads = quads.map(ring).collect::<Result<Vec<_>>>()?;
-        if !quads.is_empty() {
+        let band = band(rungs).into_iter();
+        let band = band.map(|polygon| polygon.iter().map(on_globe).collect::<Result<Vec<_>>>());
+        let band = band.collect::<Result<Vec<_>>>()?;
+        if !band.is_empty() {
             features.push(feature(
-                GeometryValue::new_multi_polygon(quads),
+                GeometryValue::new_multi_polygon(band),
                 json!({ "kind": "band", "piece": piece, "probability": 0.9 }),
             ));
         }
@@ -144,6 +147,14 @@ pub(crate) fn features(
         features.push(feature(GeometryValue::new_point(degrees(frame, it.at())?), told));
     }
     Ok(features)
+}
+
+/// The ground within the intervals of a piece: polygons that do not overlap, each by its rings, the outer one first and
+/// counter-clockwise.
+fn band(rungs: &[Rung]) -> Vec<Vec<Vec<[f64; 2]>>> {
+    let quads = rungs.windows(2).map(|pair| ring([pair[0].ends, pair[1].ends]));
+    let quads: Vec<Vec<[f64; 2]>> = quads.map(|it| it.map(Into::into).to_vec()).collect();
+    quads.simplify_shape(FillRule::NonZero)
 }
 
 /// The four ends of two intervals as a ring, counter-clockwise. Of the three orders the one with the most area does not

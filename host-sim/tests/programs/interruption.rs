@@ -123,7 +123,7 @@ fn with_emulator() -> TempDir {
     }
     fs::write(place("m.toml"), GOOD).expect("a file");
     // The header of an ELF file for an Arm.
-    fs::write(place("firmware"), [b"\x7fELF".as_slice(), &[0; 14], &[40, 0]].concat())
+    fs::write(place("firmware"), [b"\x7fELF\x01".as_slice(), &[0; 13], &[40, 0]].concat())
         .expect("a file");
     let emulator = place("bin/qemu-system-arm");
     fs::write(&emulator, "#!/bin/sh\necho $$ >started; mv started id; exec sleep 600\n")
