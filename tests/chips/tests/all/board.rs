@@ -52,8 +52,18 @@ impl Board {
     }
 
     pub(crate) fn play(&self, player: &mut Player, faults: Faults, seed: u64) -> Result<()> {
+        self.pass_over()?;
         let cable = Cable::new(self.link.try_clone()?, self.link.try_clone()?, faults, seed);
         flight::play(player, cable).map(drop)
+    }
+
+    /// Passes over what it has sent since the last mission: it asks for another ten times a second, and may have done so
+    /// for long.
+    fn pass_over(&self) -> Result<()> {
+        let mut old = [0; 4096];
+        self.link.set_nonblocking(true)?;
+        while (&self.link).read(&mut old).is_ok_and(|count| count > 0) {}
+        Ok(self.link.set_nonblocking(false)?)
     }
 
     /// Lets it fly a mission, over a link with faults.
