@@ -20,9 +20,6 @@ use crate::search::view::View;
 /// Waypoints that are considered: those of the first keep-outs.
 const MOST: usize = 64;
 
-/// The looks that the waypoints of a keep-out take.
-const LOOKS_A_KEEP_OUT: u32 = 8;
-
 /// How to get to uncertain ground.
 pub(crate) enum Way {
     /// Straight on.
@@ -85,9 +82,6 @@ fn begin_by<G: Workspace>(
     let mut best = way_out(from).map(|(way, length)| (Way::Straight(way), length));
     let mut waypoints: Vec<Waypoint, MOST, u8> = Vec::new();
     for keep_out in area.keep_outs() {
-        if !effort.take(LOOKS_A_KEEP_OUT) {
-            break;
-        }
         for site in octagon(&keep_out, 2.0 * step).into_iter().flatten() {
             if area.contains(site) {
                 let way = site - from;

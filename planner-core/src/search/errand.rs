@@ -23,9 +23,8 @@ const STRAIGHT: u32 = 8;
 /// Turns to one side at most. A vehicle with finer turns goes as far as these lead it.
 const TURNS: u32 = 64;
 
-/// The looks that a place on a way takes, and those that a drive from there takes, with all its checks.
+/// The looks that a place on a way takes.
 const LOOKS_A_PLACE: u32 = 4;
-const LOOKS_A_DRIVE: u32 = 3;
 
 /// Nobody knows how many motions lead to the place.
 pub(crate) const UNKNOWN: u8 = u8::MAX;
@@ -181,7 +180,7 @@ fn drive<D: Dynamics, G: Workspace>(
         let found = speeds.find_map(|(speed, arrives)| {
             let leads_there = (1..=fastest).contains(&speed)
                 && (arrives || nears(&ray, speed, way))
-                && motions.effort.take(LOOKS_A_DRIVE);
+                && motions.effort.take(1);
             let action = leads_there.then(|| grid.action(ray.index, speed))?;
             let after = dynamics.target(from.pose, action)?;
             let left = distance(aim.site - after.site);

@@ -66,9 +66,6 @@ impl<'d, 'p, D: Dynamics, G: Workspace> Motions<'d, 'p, D, G> {
         }
         let (_, speed) = grid.split(action);
         (1..speed).rev().find_map(|speed| {
-            if !self.effort.is_enough() {
-                return None;
-            }
             let [left, right] = dynamics.rays_at(speed)?;
             let n = if side == Side::Left { left.saturating_sub(1) } else { right };
             let ray = (n > 0).then(|| dynamics.ray(pose, side, n))?;
@@ -84,23 +81,17 @@ impl<'d, 'p, D: Dynamics, G: Workspace> Motions<'d, 'p, D, G> {
         let ray = dynamics.ray(pose, Side::Left, 0);
         let mut otherwise = None;
         for speed in (1..grid.speeds()).rev() {
-            if !self.effort.is_enough() {
-                break;
-            }
             let exists = dynamics.rays_at(speed).is_none_or(|[left, _]| left > 0);
             let after = exists.then(|| dynamics.arrive(pose, &ray, speed).ok()).flatten();
             let Some(after) = after else { continue };
             if self.stays(pose, after) {
                 let leg = (grid.action(ray.index, speed), after);
-                // Its circles are looked at as well.
-                self.effort.take(1);
-                self.effort.take_sweep(area, &[pose.site, after.site]);
-                let is_inside = self.start == Start::Safe
-                    || area.contains(after.site) && dynamics.stays_inside(pose, after, area);
-                if is_inside && dynamics.ends_safe(after, area, room) {
+                if area.contains(after.site) && dynamics.keeps_inside(pose, after, area, room) {
                     return Some(leg);
                 }
                 otherwise = otherwise.or(Some(leg));
+            } else if !self.effort.is_enough() {
+                break;
             }
         }
         if is_safe { None } else { otherwise }
@@ -136,7 +127,7 @@ impl<'d, 'p, D: Dynamics, G: Workspace> Motions<'d, 'p, D, G> {
             let [Ok(from), Ok(to)] = centres else { return false };
             area.contains_disc(from, radius)
                 && area.contains_disc(to, radius)
-                && area.is_clear(&[from, to], radius.unsigned_abs())
+                && area.keep_outs().all(|it| it.is_clear_of(&[from, to], radius.unsigned_abs()))
         };
         let mut circles = [Side::Left, Side::Right].into_iter();
         let stays = area.contains(after.site)

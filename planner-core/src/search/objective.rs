@@ -17,8 +17,8 @@ pub const LOOKS: u32 = 9_216;
 
 /// How long a look takes in a rectangle, and how much longer with a side and with a keep-out.
 const RECTANGLE: u32 = 64;
-const SIDE: u32 = 1;
-const KEEP_OUT: u32 = 6;
+const SIDE: u32 = 0;
+const KEEP_OUT: u32 = 0;
 
 /// The looks that it costs to open a view, where many are opened.
 pub(crate) const OPENING: u32 = 2;
