@@ -66,6 +66,9 @@ impl<'d, 'p, D: Dynamics, G: Workspace> Motions<'d, 'p, D, G> {
         }
         let (_, speed) = grid.split(action);
         (1..speed).rev().find_map(|speed| {
+            if !self.effort.is_enough() {
+                return None;
+            }
             let [left, right] = dynamics.rays_at(speed)?;
             let n = if side == Side::Left { left.saturating_sub(1) } else { right };
             let ray = (n > 0).then(|| dynamics.ray(pose, side, n))?;
@@ -81,6 +84,9 @@ impl<'d, 'p, D: Dynamics, G: Workspace> Motions<'d, 'p, D, G> {
         let ray = dynamics.ray(pose, Side::Left, 0);
         let mut otherwise = None;
         for speed in (1..grid.speeds()).rev() {
+            if !self.effort.is_enough() {
+                break;
+            }
             let exists = dynamics.rays_at(speed).is_none_or(|[left, _]| left > 0);
             let after = exists.then(|| dynamics.arrive(pose, &ray, speed).ok()).flatten();
             let Some(after) = after else { continue };
@@ -90,8 +96,6 @@ impl<'d, 'p, D: Dynamics, G: Workspace> Motions<'d, 'p, D, G> {
                     return Some(leg);
                 }
                 otherwise = otherwise.or(Some(leg));
-            } else if !self.effort.is_enough() {
-                break;
             }
         }
         if is_safe { None } else { otherwise }

@@ -161,12 +161,16 @@ pub(crate) fn stays<D: Dynamics, G: Workspace>(
     if !area.contains(to.site) {
         return false;
     }
-    // The way and two circles, twice.
-    let looks = sweep(area, &[from.site, to.site]).saturating_mul(3);
+    // The way, and two circles at either end.
+    let looks = sweep(area, &[from.site, to.site]);
     effort.take(looks);
-    if dynamics.keeps_inside(from, to, area, 0) {
+    if !dynamics.stays_inside(from, to, area) {
+        return false;
+    }
+    effort.take(2 * looks);
+    if dynamics.ends_safe(to, area, 0) {
         return true;
     }
-    effort.take(looks);
-    !dynamics.is_safe(from, area) && dynamics.stays_inside(from, to, area)
+    effort.take(2 * looks);
+    !dynamics.is_safe(from, area)
 }
