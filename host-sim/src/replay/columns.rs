@@ -28,8 +28,12 @@ impl Role {
         }
     }
 
-    /// Whether a title says this by itself.
+    /// Whether a title says this by itself, with a unit behind it or without.
     fn is_usual(self, title: &str) -> bool {
+        let title = match title.split_once(['(', '[']) {
+            Some((title, unit)) if unit.ends_with([')', ']']) => title.trim_end(),
+            _ => title,
+        };
         let is_one_of = |names: &[&str]| names.iter().any(|name| title.eq_ignore_ascii_case(name));
         match self {
             Self::Latitude => is_one_of(&["lat", "latitude"]),

@@ -112,10 +112,10 @@ impl Rows {
         self.lines.push(line);
     }
 
-    /// Counts a row of units below the heading, which is no sample in a strict file either.
-    pub(crate) fn heading(&mut self, line: usize) {
+    /// Counts a row of units or of titles, which is no sample in a strict file either.
+    pub(crate) fn heading(&mut self, line: usize, what: &str) {
         self.skipped.count += 1;
-        self.skipped.first.get_or_insert((line, "a row of units".to_owned()));
+        self.skipped.first.get_or_insert_with(|| (line, what.to_owned()));
     }
 
     /// Takes measured rows away, each if it is said of it.

@@ -73,6 +73,9 @@ impl SampleFile {
                 unit.name()
             );
         }
+        if rows.positions.is_empty() {
+            bail!("{name}: found no samples, expected some of both labels");
+        }
         if rows.is_geographic {
             if let Some(crs) = &layout.crs {
                 bail!(

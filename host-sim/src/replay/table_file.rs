@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use anyhow::{Result, anyhow};
+use anyhow::{Result, anyhow, bail};
 use csv::ByteRecord;
 
 use crate::replay::columns::{Columns, Places};
@@ -112,6 +112,9 @@ impl Times {
 /// # Errors
 /// Names the file and the line, what was found and what was expected.
 pub(crate) fn parse(name: &str, text: &[u8], layout: &Layout) -> Result<Rows> {
+    if text.trim_ascii().is_empty() {
+        bail!("{name}: found an empty file, expected samples");
+    }
     let columns = layout.columns.clone().unwrap_or_default();
     let (delimiter, above) = heading(text, &columns, layout.delimiter);
     Reading::of(name, layout, Some(delimiter), |reading| {
@@ -140,8 +143,9 @@ fn pass(
     let first = format!("{name}:{}", line.unwrap_or(1));
     let places = places(&first, &row, columns, delimiter)?;
     reading.rows.is_geographic = places.is_geographic;
-    let mut times = Times::default();
+    let (mut times, mut titles) = (Times::default(), None);
     if places.has_header {
+        titles = Some(row.clone());
         times = Times::below(&row, delimiter);
         let title = |column: usize| field(&row, delimiter, column).trim().to_owned();
         reading.rows.titles = Some(places.position.map(title));
@@ -155,12 +159,18 @@ fn pass(
             && units < UNITS
             && places.position.into_iter().all(|column| is_unit(&row, column))
         {
-            reading.rows.heading(number);
+            reading.rows.heading(number, "a row of units");
             units += 1;
             line = next(&mut row)?;
         }
     }
     while let Some(number) = line {
+        // Of files that were written one after the other.
+        if titles.as_ref() == Some(&row) {
+            reading.rows.heading(number, "the titles again");
+            line = next(&mut row)?;
+            continue;
+        }
         if times.is_backwards(&row, delimiter) {
             let (count, first) = reading.rows.backwards.unwrap_or((0, number));
             reading.rows.backwards = Some((count + 1, first));

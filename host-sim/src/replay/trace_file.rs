@@ -11,12 +11,6 @@ use crate::report::trace::Record;
 /// # Errors
 /// Names the file and the line, what was found and what was expected.
 pub(crate) fn parse(name: &str, text: &[u8], layout: &Layout) -> Result<Rows> {
-    let Layout { columns, delimiter, threshold, crs, .. } = layout;
-    if columns.is_some() || delimiter.is_some() || threshold.is_some() || crs.is_some() {
-        bail!(
-            "{name}: found a trace, expected no --columns, --delimiter, --threshold and --crs with it"
-        );
-    }
     let mut rows = Rows::default();
     for (line, record) in (1..).zip(text.split(|byte| *byte == b'\n')) {
         if record.trim_ascii().is_empty() {
@@ -28,6 +22,12 @@ pub(crate) fn parse(name: &str, text: &[u8], layout: &Layout) -> Result<Rows> {
             )
         })?;
         take(&mut rows, record, line).map_err(|error| anyhow!("{name}:{line}: {error}"))?;
+    }
+    let Layout { columns, delimiter, threshold, crs, .. } = layout;
+    if columns.is_some() || delimiter.is_some() || threshold.is_some() || crs.is_some() {
+        bail!(
+            "{name}: found a trace, expected no --columns, --delimiter, --threshold and --crs with it"
+        );
     }
     Ok(rows)
 }
