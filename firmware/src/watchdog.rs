@@ -7,8 +7,9 @@ use stm32f4xx_hal::watchdog::IndependentWatchdog;
 /// The watchdog's oscillator is 17 to 47 kHz where 32 is meant, so this is 4.1 to 11.3 s.
 const PERIOD_MS: u32 = 6_000;
 
-/// The longest time between two feeds is one plan: 20 million instructions, which the test `anything_on_a_chip` bounds.
-/// Three cycles an instruction are more than any plan takes. Without its crystal the chip runs at 16 MHz.
+/// The longest time between two feeds is one plan: 20 million instructions, as the test
+/// `no_plan_of_any_mission_passes_the_bound` says. Three cycles an instruction are more than any
+/// plan takes. Without its crystal the chip runs at 16 MHz.
 const _: () = assert!(20_000_000 / 16_000 * 3 < PERIOD_MS * 32 / 47);
 
 /// The watchdog, started. Nothing but a debugger that halts the core stops it.

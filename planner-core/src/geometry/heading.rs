@@ -55,7 +55,7 @@ impl Heading {
         (self.since(other).0 as i32).unsigned_abs() < 1 << 30
     }
 
-    /// The unit vector of this heading, to 2^-29. Integers alone: some 60 instructions.
+    /// The unit vector of this heading, to 2^-29. Integers alone: some 110 instructions.
     pub const fn unit(self) -> SinCos {
         // Within an eighth of a turn of a multiple of a quarter, sine and cosine are short series.
         let quarters = self.0.wrapping_add(1 << 29) >> 30;

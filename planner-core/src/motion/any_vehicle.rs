@@ -140,8 +140,8 @@ impl Dynamics for AnyVehicle {
         of!(self, it => it.tangent_intersection(from, to))
     }
 
-    fn turning_circle(&self, pose: Pose, side: Side) -> Option<TurningCircle> {
-        of!(self, it => it.turning_circle(pose, side))
+    fn turning_circles(&self, pose: Pose) -> Option<[TurningCircle; 2]> {
+        of!(self, it => it.turning_circles(pose))
     }
 
     fn turn_in_place(&self, pose: Pose, side: Side) -> Option<(Action, Pose)> {

@@ -74,19 +74,17 @@ impl Dynamics for Boat {
         (speed == 0).then_some([0; 2])
     }
 
-    fn turning_circle(&self, pose: Pose, side: Side) -> Option<TurningCircle> {
-        let last = self.steps.fan().right;
-        let half_turn = match side {
-            Side::Left => self.half_turn,
-            Side::Right => self.half_turn.mirrored(),
+    fn turning_circles(&self, pose: Pose) -> Option<[TurningCircle; 2]> {
+        let Self { half_turn, radius, margin, .. } = *self;
+        let left_of = |turn| pose.heading.turned(turn).unit().left().scaled(radius);
+        let circle = |ray, centre| TurningCircle {
+            action: self.grid().action(ray, 1),
+            centre,
+            radius,
+            margin,
         };
-        let left = pose.heading.turned(half_turn).unit().left().scaled(self.radius);
-        let (ray, centre) = match side {
-            Side::Left => (2 * last, left),
-            Side::Right => (0, left.reversed()),
-        };
-        let action = self.grid().action(ray, 1);
-        Some(TurningCircle { action, centre, radius: self.radius, margin: self.margin })
+        let left = circle(2 * self.steps.fan().right, left_of(half_turn));
+        Some([left, circle(0, left_of(half_turn.mirrored()).reversed())])
     }
 
     fn turn_in_place(&self, _: Pose, _: Side) -> Option<(Action, Pose)> {

@@ -255,11 +255,7 @@ fn has_rays<D: Dynamics>(
 fn goes_round<D: Dynamics>(dynamics: &D, from: Pose, side: Side) -> Result<(), ContractError> {
     /// Motions of a round at most.
     const MOST: u32 = 1 << 16;
-    let other = if side == Side::Left { Side::Right } else { Side::Left };
-    let Some(circle) = dynamics.turning_circle(from, side) else {
-        let none = dynamics.turning_circle(from, other).is_none();
-        return if none { Ok(()) } else { Err(ContractError::TurningCircle(side)) };
-    };
+    let Some(circle) = dynamics.turning_circles(from).map(|it| side.of(it)) else { return Ok(()) };
     let is_within = |v: Vector, radius: i32| {
         let off =
             Vector { x: v.x.wrapping_sub(circle.centre.x), z: v.z.wrapping_sub(circle.centre.z) };
@@ -267,7 +263,7 @@ fn goes_round<D: Dynamics>(dynamics: &D, from: Pose, side: Side) -> Result<(), C
     };
     let (mut pose, mut turned, mut radius) = (from, 0_u32, circle.radius);
     for _ in 0..MOST {
-        let action = dynamics.turning_circle(pose, side).map(|circle| circle.action);
+        let action = dynamics.turning_circles(pose).map(|it| side.of(it).action);
         let after = action.and_then(|action| dynamics.target(pose, action));
         let Some(after) = after else { break };
         let more = turn(pose.heading, after.heading, side);

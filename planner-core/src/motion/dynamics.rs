@@ -82,6 +82,13 @@ pub enum Side {
     Right,
 }
 
+impl Side {
+    /// This side's of two things, the left one first.
+    pub(crate) fn of<T>(self, [left, right]: [T; 2]) -> T {
+        if self == Self::Left { left } else { right }
+    }
+}
+
 /// The rays from a pose. They fan out from the 0th, straight ahead, to the left and to the right; see [`Dynamics`] for
 /// the contract.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -164,8 +171,8 @@ impl core::error::Error for RoomError {}
 /// 8. [`arrive`](Self::arrive) leads one [`displacement`](Ray::displacement) from the pose. The way there lies in the
 ///    triangle of its two ends and its [`tangent_intersection`](Self::tangent_intersection). Without one, the way is the
 ///    straight line.
-/// 9. There is a [`turning_circle`](Self::turning_circle) to both sides or to none. Repeating its action turns to its
-///    side and stays within its radius, and within its radius and margin for a round.
+/// 9. Repeating the action of one of the [`turning_circles`](Self::turning_circles) turns to its side and stays within its
+///    radius, and within its radius and margin for a round.
 ///
 /// The search for the best action needs 1 to 5, 7 and 8, in each algorithm. If no action ends on uncertain ground, the
 /// recovery ladder needs 6 or 9, unless the fan reaches all around. A vehicle that has neither ends its mission there.
@@ -213,9 +220,9 @@ pub trait Dynamics {
         None
     }
 
-    /// The smallest circle, or nearly, that the agent can go round to a side. `None` if it needs none, as it turns in
-    /// place or leaves in any direction.
-    fn turning_circle(&self, _pose: Pose, _side: Side) -> Option<TurningCircle> {
+    /// The smallest circles, or nearly, that the agent can go round to the left and to the right. `None` if it needs
+    /// none, as it turns in place or leaves in any direction.
+    fn turning_circles(&self, _pose: Pose) -> Option<[TurningCircle; 2]> {
         None
     }
 
@@ -225,7 +232,7 @@ pub trait Dynamics {
     /// [`RoomError`].
     fn fits(&self, area: Area) -> Result<(), RoomError> {
         let pose = Pose { site: area.middle(), heading: Heading(0) };
-        let Some(circle) = self.turning_circle(pose, Side::Left) else { return Ok(()) };
+        let Some([circle, _]) = self.turning_circles(pose) else { return Ok(()) };
         let radius = circle.with_room(room_for_errors(&area)).unsigned_abs();
         let across_mm = (u64::from(radius) * 2_000).div_ceil(UNITS_PER_METRE as u64) as u32;
         area.inset(radius).map(drop).ok_or(RoomError { across_mm })
@@ -319,9 +326,8 @@ fn has_circle_inside<D: Dynamics + ?Sized, G: Workspace>(
     area: &G,
     radius: impl Fn(&TurningCircle) -> i32,
 ) -> bool {
-    let fits = |circle: TurningCircle| circle.is_inside(pose.site, area, radius(&circle));
-    dynamics.turning_circle(pose, Side::Left).is_none_or(fits)
-        || dynamics.turning_circle(pose, Side::Right).is_none_or(fits)
+    let fits = |circle: &TurningCircle| circle.is_inside(pose.site, area, radius(circle));
+    dynamics.turning_circles(pose).is_none_or(|circles| circles.iter().any(fits))
 }
 
 /// The turn from straight ahead to the `n`-th ray of a side.

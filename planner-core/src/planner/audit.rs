@@ -167,7 +167,7 @@ impl<V: Verdicts> Audit<V> {
         effort: &mut Effort,
     ) -> Option<Errand> {
         let grid = dynamics.grid();
-        let circle = dynamics.turning_circle(pose, Side::Left).map_or(0, |it| it.radius);
+        let circle = dynamics.turning_circles(pose).map_or(0, |[left, _]| left.radius);
         let least = grid.step_units().max(NEAR_CIRCLE * circle as f32);
         let places = Places::of(estimate, area.bounds(), least)?;
         let reach = grid.longest_units();

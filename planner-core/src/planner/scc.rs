@@ -52,11 +52,6 @@ use crate::search::objective::{Effort, LOOKS, OPENING};
 use crate::search::problem::Problem;
 use crate::search::recovery::{Found, Recovery, solve_or_recover};
 
-/// The most looks of a plan with a vote: half of them are for the vote, the rest for the ladder. When the half is used
-/// up, the hypotheses that have voted decide. These are the heaviest. The paper's example would take 26,000 at 60
-/// labels.
-pub const VOTE_LOOKS: u32 = 10_240;
-
 /// How the hypotheses choose an action together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -244,8 +239,7 @@ impl<D: Dynamics, const N: usize, const H: usize, G: Workspace, R: Trust> Planne
             (_, true) => Stage::P3,
             (_, false) => Stage::P4,
         };
-        let looks = if self.policy == Policy::Joint { LOOKS } else { VOTE_LOOKS };
-        let mut effort = Effort::within(&self.area, looks);
+        let mut effort = Effort::within(&self.area, LOOKS);
         let mut course = self.silence.course();
         match self.find(pose, &mut effort, &mut course) {
             Ok(found) => {

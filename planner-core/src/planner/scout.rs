@@ -16,7 +16,7 @@ use crate::geometry::heading::Heading;
 use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
 use crate::geometry::mark::Mark;
 use crate::geometry::workspace::Workspace;
-use crate::motion::dynamics::{Dynamics, Pose, Side};
+use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::one_label::{OneLabel, PLACES, anywhere};
 use crate::planner::setup::{SetupError, aimed_for, aimed_for_by};
 use crate::planner::silence::Silence;
@@ -153,8 +153,8 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
     /// The radius of the smallest circle that the vehicle goes round; 0 if it needs none. Lattice units.
     pub(crate) fn radius(&self) -> f32 {
         let pose = Pose { site: self.area.bounds().middle(), heading: Heading(0) };
-        let circle = self.dynamics.turning_circle(pose, Side::Left);
-        circle.map_or(0.0, |it| it.radius as f32)
+        let circles = self.dynamics.turning_circles(pose);
+        circles.map_or(0.0, |[left, _]| left.radius as f32)
     }
 
     /// The reach, or this radius if it is longer: a vehicle cannot follow a front that it knows much less well. Lattice

@@ -16,7 +16,7 @@ use crate::geometry::heading::{Angle, Heading};
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose, Ray, Side, room_for_errors};
 use crate::search::direction_rule::DirectionRule;
-use crate::search::objective::{Choice, Effort, EffortWeight};
+use crate::search::objective::{Choice, Effort, EffortWeight, sweep};
 use crate::search::view::View;
 
 /// The search of one plan: what it moves by, from where, what it sees there, and what it has cost.
@@ -268,10 +268,8 @@ impl<D: Dynamics, G: Workspace> Search<'_, D, G> {
         if !self.view.can_cut(target.site) {
             return Err(if is_coarse { 0 } else { self.view.passed_over(target.site) });
         }
-        // The way and two circles, at most.
-        for _ in 0..2 {
-            self.effort.take_sweep(self.view.area(), &[pose.site, target.site]);
-        }
+        // The way, and two circles at most.
+        self.effort.take(2 * sweep(self.view.area(), &[pose.site, target.site]));
         if !self.dynamics.keeps_inside(
             pose,
             target,

@@ -91,10 +91,10 @@ pub(crate) fn motions_to<D: Dynamics>(dynamics: &D, pose: Pose, place: Site) -> 
     let reach = grid.longest_units();
     let drives = distance(way) / reach;
     let drives = if drives > 1.0 { drives } else { 1.0 };
-    let circle = |side| dynamics.turning_circle(pose, side);
-    let turned = match (dynamics.turn_in_place(pose, Side::Left), circle(Side::Left)) {
+    let circles = dynamics.turning_circles(pose);
+    let turned = match (dynamics.turn_in_place(pose, Side::Left), circles) {
         (Some((_, turned)), _) => Some(turned),
-        (None, Some(circle)) => dynamics.target(pose, circle.action),
+        (None, Some([left, _])) => dynamics.target(pose, left.action),
         (None, None) => None,
     };
     let Some(turned) = turned else { return drives };
@@ -102,7 +102,7 @@ pub(crate) fn motions_to<D: Dynamics>(dynamics: &D, pose: Pose, place: Site) -> 
         distance(Vector { x: way.x - circle.centre.x, z: way.z - circle.centre.z })
             < circle.radius as f32
     };
-    let is_within = [Side::Left, Side::Right].into_iter().filter_map(circle).any(is_within);
+    let is_within = circles.is_some_and(|it| it.into_iter().any(is_within));
     let off = (heading_of(way).since(pose.heading).0 as i32).unsigned_abs() as f32;
     let off = if is_within { 2.0 * Angle::HALF_TURN.0 as f32 } else { off };
     drives + off / turned.heading.since(pose.heading).0 as f32
@@ -124,7 +124,7 @@ fn search<D: Dynamics, G: Workspace>(
             break;
         }
         // One that turns on the spot has tried all directions.
-        let goes_round = motions.dynamics.turning_circle(from.pose, Side::Left).is_some();
+        let goes_round = motions.dynamics.turning_circles(from.pose).is_some();
         let ahead = if goes_round { motions.straight(from.pose) } else { None };
         let Some(leg) = ahead else { break };
         from = from.after(leg);

@@ -54,7 +54,7 @@ impl<'d, 'p, D: Dynamics, G: Workspace> Motions<'d, 'p, D, G> {
     /// inside.
     pub(crate) fn round(&mut self, pose: Pose, side: Side) -> Option<Leg> {
         let (dynamics, grid) = (self.dynamics, self.dynamics.grid());
-        let action = dynamics.turning_circle(pose, side)?.action;
+        let action = side.of(dynamics.turning_circles(pose)?).action;
         let after = dynamics.target(pose, action)?;
         if self.stays(pose, after)
             && (self.start == Start::Outside || self.may_hold(pose, after, side))
@@ -87,16 +87,22 @@ impl<'d, 'p, D: Dynamics, G: Workspace> Motions<'d, 'p, D, G> {
             if !self.effort.is_enough() {
                 break;
             }
-            let exists = dynamics.rays_at(speed).is_none_or(|[left, _]| left > 0);
-            let after = exists.then(|| dynamics.arrive(pose, &ray, speed).ok()).flatten();
-            let Some(after) = after else { continue };
-            if self.stays(pose, after) {
-                let leg = (grid.action(ray.index, speed), after);
-                if area.contains(after.site) && dynamics.keeps_inside(pose, after, area, room) {
-                    return Some(leg);
-                }
-                otherwise = otherwise.or(Some(leg));
+            let Ok(after) = dynamics.arrive(pose, &ray, speed) else { continue };
+            if !self.stays(pose, after) {
+                continue;
             }
+            // A fan never grows as the speed falls.
+            if dynamics.rays_at(speed).is_some_and(|[left, _]| left == 0) {
+                break;
+            }
+            let leg = (grid.action(ray.index, speed), after);
+            // Of a safe vehicle it is known by now that the motion stays inside.
+            let is_inside = self.start == Start::Safe
+                || area.contains(after.site) && dynamics.stays_inside(pose, after, area);
+            if is_inside && dynamics.ends_safe(after, area, room) {
+                return Some(leg);
+            }
+            otherwise = otherwise.or(Some(leg));
         }
         if is_safe { None } else { otherwise }
     }
@@ -133,10 +139,9 @@ impl<'d, 'p, D: Dynamics, G: Workspace> Motions<'d, 'p, D, G> {
                 && area.contains_disc(to, radius)
                 && area.keep_outs().all(|it| it.is_clear_of(&[from, to], radius.unsigned_abs()))
         };
-        let mut circles = [Side::Left, Side::Right].into_iter();
         let stays = area.contains(after.site)
             && area.lets_pass(&[pose.site, after.site])
-            && circles.any(|side| self.dynamics.turning_circle(pose, side).is_some_and(is_clear));
+            && self.dynamics.turning_circles(pose).is_some_and(|it| it.into_iter().any(is_clear));
         stays.then_some(after)
     }
 
@@ -159,7 +164,7 @@ impl<'d, 'p, D: Dynamics, G: Workspace> Motions<'d, 'p, D, G> {
         let fits = |circle: TurningCircle| circle.is_inside(after.site, area, circle.radius);
         !dynamics.is_safe(pose, area)
             || dynamics.keeps_inside(pose, after, area, self.room(pose))
-            || dynamics.turning_circle(after, side).is_some_and(fits)
+            || dynamics.turning_circles(after).is_some_and(|circles| fits(side.of(circles)))
     }
 
     /// The room that a motion must leave around its circle, lattice units. It is 0 if the circle at the beginning has

@@ -151,7 +151,7 @@ pub(crate) fn turn_round<D: Dynamics, R: DirectionRule, G: Workspace>(
 
 /// Whether a vehicle has to go round in order to turn.
 fn goes_round<D: Dynamics>(dynamics: &D, pose: Pose) -> bool {
-    dynamics.turning_circle(pose, Side::Left).is_some()
+    dynamics.turning_circles(pose).is_some()
 }
 
 /// The result of following a bearing.

@@ -161,7 +161,6 @@ enum Breaks {
     EndsStraight,
     CornerTooFar,
     // Turning circles.
-    OneOrbit,
     OrbitsTheOtherWay,
     DoesNotTurn,
     LeavesItsRadius,
@@ -244,20 +243,19 @@ impl<D: Dynamics> Dynamics for Faulty<D> {
         Some(if matches!(self.1, Breaks::CornerTooFar) { twice() } else { corner })
     }
 
-    fn turning_circle(&self, pose: Pose, side: Side) -> Option<TurningCircle> {
-        let orbit = self.0.turning_circle(pose, side)?;
-        let other = || self.0.turning_circle(pose, opposite(side));
-        Some(match self.1 {
-            Breaks::OneOrbit if side == Side::Right => return None,
-            Breaks::OrbitsTheOtherWay => TurningCircle { action: other()?.action, ..orbit },
+    fn turning_circles(&self, pose: Pose) -> Option<[TurningCircle; 2]> {
+        let [left, right] = self.0.turning_circles(pose)?;
+        let breaks = |orbit: TurningCircle, other: TurningCircle| match self.1 {
+            Breaks::OrbitsTheOtherWay => TurningCircle { action: other.action, ..orbit },
             Breaks::DoesNotTurn => {
                 let action = self.0.grid().action(self.0.fan().right, 10);
                 TurningCircle { action, ..orbit }
             }
             Breaks::LeavesItsRadius => TurningCircle { radius: orbit.radius / 2, ..orbit },
-            Breaks::LeavesItsCentre => TurningCircle { centre: other()?.centre, ..orbit },
+            Breaks::LeavesItsCentre => TurningCircle { centre: other.centre, ..orbit },
             _ => orbit,
-        })
+        };
+        Some([breaks(left, right), breaks(right, left)])
     }
 
     fn turn_in_place(&self, pose: Pose, side: Side) -> Option<(Action, Pose)> {
@@ -349,7 +347,6 @@ fn each_broken_promise_is_named() {
         (Breaks::EndsElsewhere, Err(Error::Arrival(left, 0))),
         (Breaks::EndsStraight, Err(Error::Arrival(left, 1))),
         (Breaks::CornerTooFar, Err(Error::Arrival(left, 1))),
-        (Breaks::OneOrbit, Err(Error::TurningCircle(Side::Right))),
         (Breaks::OrbitsTheOtherWay, Err(Error::TurningCircle(left))),
         (Breaks::DoesNotTurn, Err(Error::TurningCircle(left))),
         (Breaks::LeavesItsRadius, Err(Error::TurningCircle(left))),
@@ -581,8 +578,8 @@ fn compare<D: Dynamics>(it: &D, area: Area, rng: &mut ChaCha8Rng) -> [u32; 2] {
         let goes_round = |side| {
             let (mut pose, mut turned, mut inside) = (from, 0.0, true);
             while turned < 2.0 * std::f64::consts::TAU {
-                let TurningCircle { action, .. } =
-                    it.turning_circle(pose, side).expect("it has one");
+                let [left, right] = it.turning_circles(pose).expect("it has two");
+                let action = if side == Side::Left { left.action } else { right.action };
                 let after = it.target(pose, action).expect("an action");
                 let (points, _) = drive(pose, it.control(pose, action));
                 // A boat turns before it drives.

@@ -26,7 +26,8 @@ use tests::{cases, seed};
 
 const SEED: u64 = 21;
 
-/// What a plan asks of its area at most, in corners of keep-outs. On a chip `anything_on_a_chip` counts instructions.
+/// What a plan asks of its area at most, in corners of keep-outs. On a chip
+/// `no_plan_of_any_mission_passes_the_bound` counts instructions.
 const MOST_ASKED: u64 = 1_500_000;
 
 /// Of 1,000 missions so many may end for a reason that a brute force refutes: it finds a way that the planner does not.

@@ -61,7 +61,6 @@ fn every_program_keeps_its_budgets() {
 
 /// A long run says what the 500 dearest take.
 #[test]
-#[ignore = "the bound does not hold yet: issue 47, point 6"]
 fn no_plan_of_any_mission_passes_the_bound() {
     let Some(elf) = bare(CHIP, "vehicles") else { return };
     let plans = dearest(&elf);
