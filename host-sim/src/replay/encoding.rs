@@ -28,7 +28,7 @@ pub(crate) fn utf8(bytes: &[u8]) -> Result<Cow<'_, [u8]>> {
     if let Some((_, what)) = OTHERS.iter().find(|(begins, _)| bytes.starts_with(begins)) {
         bail!("{what}");
     }
-    let is_binary = |it: &u8| *it < b'\t';
+    let is_binary = |it: &u8| *it == 0;
     // Of two bytes of a letter or a digit in UTF-16 one is 0.
     let [units, is_big] = match bytes {
         [0xff, 0xfe, rest @ ..] => [rest, &[]],
