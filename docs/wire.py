@@ -11,7 +11,7 @@ import struct
 import sys
 import zlib
 
-PROTOCOL = 10
+PROTOCOL = 11
 METRE = 1 << 16
 
 
@@ -182,7 +182,7 @@ NOISE = {"reliability": "i64", "trusted_radius": "u32", "tolerance": "u32"}
 FRONT = {"radius_mm": "u32", "speed_um": "u32"}
 POLICY = Choice(Joint=None, MixtureOfStart=None, MixtureOfOwn=None)
 PRIOR = Choice(Area=None, Sequences=None)
-FAR = {"price_mm": "u32", "seeks": Choice(Accuracy=None, Bits=None)}
+FAR = {"price_mm": "u32", "labels": "u16"}
 SIGHT = {"far": Optional(FAR), "least": "u16", "readings": "u8"}
 GOAL = {"accuracy": Choice(SlopeArc="u32", Misclassified="u32"), "level": "u32"}
 STEPS = {"turn_step_urad": "u32", "sharpest": "u32", "speeds": "u16", "speed_step_mm": "u32"}

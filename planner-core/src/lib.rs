@@ -203,7 +203,7 @@ pub use crate::motion::dynamics::Pose;
 pub use crate::motion::holonomic::Holonomic;
 pub use crate::motion::unicycle::{Shape as UnicycleShape, Unicycle};
 pub use crate::planner::cfc::Cfc;
-pub use crate::planner::far::{Far, Seeks};
+pub use crate::planner::far::Far;
 pub use crate::planner::front_state::FrontState;
 pub use crate::planner::guard::Guard;
 pub use crate::planner::lookahead::{DrivingPrice, Lookahead};

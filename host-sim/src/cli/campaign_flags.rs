@@ -16,9 +16,7 @@ use crate::cli::campaign_planner::{CampaignPlanner, of_lines};
 use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::Allowance;
 use crate::mission::asking::{Asked, Asking, Price};
-use crate::mission::names::{
-    CrossingName, FanName, FollowingName, PolicyName, PriorName, SeeksName,
-};
+use crate::mission::names::{CrossingName, FanName, FollowingName, PolicyName, PriorName};
 use crate::mission::scenario::{self, Room};
 use crate::mission::vehicle::{Source, VehicleTable};
 use crate::world::errors::Errors;
@@ -118,15 +116,11 @@ pub(crate) struct CampaignFlags {
     #[arg(long, conflicts_with = "trusted_radius")]
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     from_nothing: bool,
-    /// What a label costs, metres driven; labels are then sought all over the area (lookahead) [default: an eighth of the
-    /// mean of its sides where that is over 16 motions, else none]
+    /// What a label costs, metres driven; labels are then sought all over the area (lookahead) [default: none, or with
+    /// fewer --labels than steps an eighth of the mean of its sides]
     #[arg(long, value_name = "METRES|none")]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     price: Option<Price>,
-    /// What a label is to bring (lookahead with --price) [default: accuracy]
-    #[arg(long, value_enum)]
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    seek: Option<SeeksName>,
     /// Bits that a label must be expected to carry, else it is not read (lookahead) [default: 0]
     #[arg(long, value_name = "BITS", allow_hyphen_values = true)]
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -221,14 +215,13 @@ impl CampaignFlags {
             let asked = Asked {
                 price: self.price.filter(|_| is_meant),
                 labels: self.labels,
-                seek: self.seek.filter(|_| is_meant),
                 worth: self.worth.filter(|_| is_meant),
             };
-            let names = ["--price", "--labels", "--seek", "--worth"];
+            let names = ["--price", "--labels", "--worth"];
             let weighs = algorithm.weighs(p < 1.0);
             let most = scenario::most_labels(ORACLE, weighs)?;
             let bounds = (self.steps, most, limit(p));
-            let asking = Asking::of(names, asked, (algorithm, &area, &vehicle), bounds)?;
+            let asking = Asking::of(names, asked, (algorithm, &area), bounds)?;
             let room = Room::of(weighs, &asking, false);
             scenario::check_steps("--steps", self.steps, ORACLE, room)?;
             Ok::<_, Error>(Campaign {

@@ -35,7 +35,7 @@ pub(crate) struct FrontsFlags {
 }
 
 /// Flags of the standard fields that have no meaning with `--fronts`.
-const MEANINGLESS: [&str; 33] = [
+const MEANINGLESS: [&str; 32] = [
     "steps",
     "readings",
     "every",
@@ -58,7 +58,6 @@ const MEANINGLESS: [&str; 33] = [
     "drift",
     "area",
     "price",
-    "seek",
     "worth",
     "labels",
     "policy",

@@ -47,7 +47,7 @@ pub use crate::link::setup::{Algorithm, Capacity, LabelSource, MOST_GIVEN, Setti
 
 /// The version of this protocol. The layout of [`Request::Hello`] and of its frame is that of every
 /// version from 2 on.
-pub const PROTOCOL: u16 = 10;
+pub const PROTOCOL: u16 = 11;
 
 /// Corners that an area can have, and each keep-out in it.
 pub const MOST_CORNERS: usize = 8;

@@ -6,14 +6,10 @@ use crate::belief::sample::Label;
 use crate::geometry::workspace::Workspace;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Pose, Side};
-use crate::search::lookout::{ENOUGH, Lookout, Prospect, Prospects, Sought};
+use crate::search::lookout::{Circles, ENOUGH, Lookout, Prospect, Prospects, Sought};
 
-/// Circles on which the first step may end, and the second.
-const FIRST_CIRCLES: u16 = 6;
-const SECOND_CIRCLES: u16 = 3;
-
-/// Circles on which the first step may end if none of the usual ones has an open place.
-const MOST_CIRCLES: u16 = 24;
+/// Circles on which the second step may end.
+const SECOND_CIRCLES: Circles = Circles::Even(3);
 
 /// Where no label is worth as much, turns in place are considered.
 const POOR: f32 = 0.9;
@@ -35,7 +31,7 @@ impl Decision {
         lookout: &mut Lookout<'_, D, G>,
         pose: Pose,
     ) -> Option<Self> {
-        let prospects = prospects(predictor, ground, lookout, pose);
+        let prospects = Prospects::few(predictor, ground, lookout, pose);
         let mut best = None;
         for prospect in prospects.as_slice() {
             look_beyond(lookout, predictor, prospect, &mut best);
@@ -54,24 +50,6 @@ impl Decision {
             *best = Some(self);
         }
     }
-}
-
-/// The ends of motions whose labels tell the most.
-pub(crate) fn prospects<P: Prediction, D: Dynamics, G: Workspace>(
-    prediction: &P,
-    ground: CellView<'_>,
-    lookout: &mut Lookout<'_, D, G>,
-    pose: Pose,
-) -> Prospects {
-    let mut prospects = Prospects::new();
-    let fastest = lookout.dynamics.grid().speeds().saturating_sub(1);
-    for circles in [(FIRST_CIRCLES, lookout.usual), (MOST_CIRCLES, fastest)] {
-        if prospects.as_slice().is_empty() {
-            let mut sought = Sought::Prospects(&mut prospects, ground);
-            lookout.look(prediction, pose, circles, &mut sought);
-        }
-    }
-    prospects
 }
 
 fn is_better(worth: f32, best: Option<&Decision>) -> bool {

@@ -1,35 +1,34 @@
 //! Far sight: labels are sought all over the area, at a price.
 //!
-//! Where the area is large for the longest motion, the labels that tell the most lie far apart. So a plan considers some
-//! places along the estimate and some anywhere, beside the ends of one motion. A place is worth
+//! The labels that tell the most of a line lie far apart. So a plan considers places along the estimate, beside the ends
+//! of one motion. Each [costs](crate::planner::outlook) the way there, and the error that is left after the next labels.
 //!
-//! ```text
-//! what its label is expected to bring / (price of a label + way to get there)
-//! ```
+//! The planner goes to the place that costs the least, by several motions without a label. It plans the way anew after
+//! each of them. Where an end of the next motion costs less by then, it asks there.
 //!
-//! The planner goes to the place that is worth the most, by several motions without a label. It plans the way anew after
-//! each of them. Where an end of the next motion has become worth more, it asks there.
-//!
-//! The price is the one number that says what a user wants: few labels, or little driving.
+//! The price is the one number that says what a user wants: few labels, or little driving. With the number of labels
+//! that a mission has, the planner spreads them over two far places with one drive between them.
 
 use crate::belief::Belief as _;
-use crate::belief::predictions::{Prediction, PredictiveBelief, Spread as _};
-use crate::geometry::approximate::distance;
+use crate::belief::predictions::{Prediction, PredictiveBelief};
 use crate::geometry::lattice::{Site, UNITS_PER_METRE};
 use crate::geometry::value::ValueError;
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose};
-use crate::planner::decision::{Decision, prospects};
+use crate::planner::decision::Decision;
+use crate::planner::outlook::Outlook;
 use crate::search::chord::Chord;
-use crate::search::dead_end::place;
 use crate::search::errand::{Errand, UNKNOWN, errand, motions_to};
-use crate::search::lookout::Lookout;
+use crate::search::lookout::{Lookout, Prospects};
 use crate::search::motions::Leg;
 use crate::search::objective::Effort;
 
-/// Places along the estimate, and others all over the area.
+/// Places along the estimate.
 const ALONG: u16 = 17;
-const PLACES: u32 = 36;
+
+/// A label where a way ends is read if it is expected to tell so much, as a share of the most that one can. Else the next
+/// plan finds a better place in reach.
+const WORTHWHILE: f32 = 0.9;
 
 /// Places along the estimate begin and end at this share of it.
 const END: f32 = 0.01;
@@ -49,9 +48,6 @@ const MORE_ROUND: u16 = 16;
 /// The usual price of a label, as a share of the mean of the area's sides.
 const USUAL: f32 = 0.125;
 
-/// An area is large if the mean of its sides is longer than so many of the longest motions.
-const LARGE: f32 = 16.0;
-
 /// All of the area, one label deep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -59,54 +55,36 @@ const LARGE: f32 = 16.0;
 pub struct Far {
     /// What a label costs, millimetres of driving.
     price_mm: u32,
-    seeks: Seeks,
-}
-
-/// What a label is to bring.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Seeks {
-    /// Little misclassified ground after few labels. It counts the expected information, times the share of the variance
-    /// of the lines over the area that the label is expected to remove.
-    #[default]
-    Accuracy,
-    /// Much information for little driving. It counts the expected information alone.
-    Bits,
+    /// The labels of the mission; 0 if nobody knows.
+    labels: u16,
 }
 
 impl Far {
-    /// A label costs as much as a drive of so many metres, to the nearest millimetre. With a high price the planner
-    /// drives far for each label. With 0 it weighs what a label brings against the way alone.
+    /// A label costs as much as a drive of so many metres, to the nearest millimetre. The higher the price, the farther
+    /// the planner drives for each label. A label that costs nothing needs no far sight.
     ///
     /// # Errors
-    /// [`ValueError`] unless it is from 0 to 16,384 m.
+    /// [`ValueError`] unless it is above 0, and 16,384 m at most.
     pub fn at_price(metres: f64) -> Result<Self, ValueError> {
         const RANGE: ValueError =
-            ValueError("the price of a label is from 0 to 16384 m of driving");
+            ValueError("the price of a label is above 0 and at most 16384 m of driving");
         let price_mm = libm::round(metres * 1e3) as u32;
-        let is_price = (0.0..=16_384.0).contains(&metres);
-        is_price.then_some(Self { price_mm, seeks: Seeks::Accuracy }).ok_or(RANGE)
+        let is_price = price_mm > 0 && metres <= 16_384.0;
+        is_price.then_some(Self { price_mm, labels: 0 }).ok_or(RANGE)
     }
 
     /// At the usual price: an eighth of the mean of the sides of the rectangle around an area.
     pub fn across(area: &impl Workspace) -> Self {
         let price = f64::from(USUAL * area.bounds().mean_side());
         let price_mm = libm::round(price * 1e3 / f64::from(UNITS_PER_METRE)) as u32;
-        Self { price_mm, seeks: Seeks::Accuracy }
+        Self { price_mm: price_mm.max(1), labels: 0 }
     }
 
-    /// At the usual price where the area is so large that far sight pays: the mean of its sides is more than sixteen of the
-    /// vehicle's longest motions. `None` elsewhere.
-    pub fn usual(area: &impl Workspace, dynamics: &impl Dynamics) -> Option<Self> {
-        let is_large = area.bounds().mean_side() > LARGE * dynamics.grid().longest_units();
-        is_large.then(|| Self::across(area))
-    }
-
-    /// The same, for labels that are to bring something else.
+    /// The same for a mission of so many labels in all. The planner drives as little as it can to know the line well
+    /// after the last of them. Without it, the line is known about as well as it can be after each.
     #[must_use]
-    pub const fn seeking(self, seeks: Seeks) -> Self {
-        Self { seeks, ..self }
+    pub const fn with_labels(self, labels: u16) -> Self {
+        Self { labels, ..self }
     }
 
     /// What a label costs, metres of driving.
@@ -124,31 +102,25 @@ impl Far {
         pose: Pose,
         journey: &mut Journey,
     ) -> Option<Decision> {
-        let chord = Chord::of(belief.belief().centre()?, lookout.area.bounds())?;
-        let spread = match self.seeks {
-            Seeks::Accuracy => chord.stretch().map(|over| belief.spread(&over)),
-            Seeks::Bits => None,
-        };
-        // A unit more, so that nothing is divided by 0.
-        let price = self.price_mm as f32 * (1e-3 * UNITS_PER_METRE as f32) + 1.0;
-        let worth = |site: Site, share: f32| {
-            let told = predictor.brings(site, share, predictor.information(site, share));
-            let brings = spread.as_ref().map_or(1.0, |spread| spread.reduction(site)) * told;
-            brings / (price + distance(site - pose.site))
-        };
+        let bounds = lookout.area.bounds();
+        let chord = Chord::of(belief.belief().centre()?, bounds)?;
+        let price = self.price_mm as f32 * (1e-3 * UNITS_PER_METRE as f32);
+        let to_come = (self.labels > 0).then(|| self.labels.saturating_sub(journey.labels + 1));
+        let outlook = Outlook::of(belief, bounds, price, to_come)?;
+        let worth = |site: Site| -outlook.cost(site, pose.site);
         let mut best = None;
-        for it in prospects(predictor, belief.ground(), lookout, pose).as_slice() {
-            let (action, target, worth) = (it.action, it.target, worth(it.target.site, it.share));
+        for it in Prospects::many(predictor, belief.ground(), lookout, pose).as_slice() {
+            let (action, target, worth) = (it.action, it.target, worth(it.target.site));
             Decision { action, target, worth, wants_label: true, is_far: false }.beat(&mut best);
         }
-        let most = best.as_ref().map_or(0.0, |best| best.worth);
+        let most = best.as_ref().map_or(f32::NEG_INFINITY, |best| best.worth);
         let mut places = Places::NONE;
         let mut consider = |site: Site| {
-            places.add(Place { site, worth: worth(site, predictor.share_above(site)) });
+            places.add(Place { site, worth: worth(site) });
         };
         match journey.now {
-            Rest::None => sites(&chord, lookout)
-                .filter(|site| tells(belief, predictor, lookout, *site))
+            Rest::None => sites(&chord)
+                .filter(|site| tells(belief, predictor, lookout, *site, 0.0))
                 .for_each(consider),
             Rest::To(site, _) => consider(site),
             Rest::Over => {}
@@ -156,7 +128,7 @@ impl Far {
         journey.next = journey.now;
         let mut effort = Effort::within(&lookout.area, LOOKS);
         for Place { site, worth } in places.list.into_iter().take_while(|it| it.worth > most) {
-            let tells = |site| tells(belief, predictor, lookout, site);
+            let tells = |site| tells(belief, predictor, lookout, site, WORTHWHILE);
             let leg = journey.go((lookout.dynamics, &lookout.area), pose, site, tells, &mut effort);
             if let Some(((action, target), wants_label)) = leg {
                 return Some(Decision { action, target, worth, wants_label, is_far: true });
@@ -166,29 +138,28 @@ impl Far {
     }
 }
 
-/// Sites along the estimate, and others all over the area.
-fn sites<D: Dynamics, G: Workspace>(
-    chord: &Chord,
-    lookout: &Lookout<'_, D, G>,
-) -> impl Iterator<Item = Site> {
-    let along = |k: u16| {
+/// Sites along the estimate.
+fn sites(chord: &Chord) -> impl Iterator<Item = Site> {
+    (0..ALONG).filter_map(|k| {
         let share = END + (1.0 - 2.0 * END) * f32::from(k) / f32::from(ALONG - 1);
         chord.site(share, 0.0)
-    };
-    (0..ALONG).map(along).chain((0..PLACES).map(|k| place(&lookout.area, k))).flatten()
+    })
 }
 
-/// Whether a label at a site is to be considered.
+/// Whether a label at a site is expected to tell so much, and may be read.
 fn tells<B: PredictiveBelief, P: Prediction, D: Dynamics, G: Workspace>(
     belief: &B,
     predictor: &P,
     lookout: &Lookout<'_, D, G>,
     site: Site,
+    least: f32,
 ) -> bool {
     let share = predictor.share_above(site);
+    let information = predictor.information(site, share);
     share > 0.0
         && share < 1.0
-        && predictor.information(site, share) >= lookout.least
+        && information >= lookout.least
+        && information >= least
         && lookout.area.contains(site)
         && belief.ground().may_tell(site)
 }
@@ -206,7 +177,8 @@ struct Places {
 }
 
 impl Places {
-    const NONE: Self = Self { list: [Place { site: Site::ORIGIN, worth: 0.0 }; TRIES] };
+    const NONE: Self =
+        Self { list: [Place { site: Site::ORIGIN, worth: f32::NEG_INFINITY }; TRIES] };
 
     fn add(&mut self, mut new: Place) {
         for place in &mut self.list {
@@ -225,6 +197,8 @@ pub struct Journey {
     now: Rest,
     /// The same after the motion that was planned last.
     next: Rest,
+    /// Labels that were read since the mission began.
+    labels: u16,
 }
 
 /// What is left of a way.
@@ -246,6 +220,7 @@ impl Journey {
     pub(crate) fn observe(&mut self, has_label: bool) {
         self.now = if has_label { Rest::None } else { self.next };
         self.next = self.now;
+        self.labels = self.labels.saturating_add(has_label.into());
     }
 
     /// The next motion of the way to a site, and whether a label is to be read at its end. `None` if there is no way, or
@@ -277,11 +252,7 @@ impl Journey {
         }
         // A label where the way ends may tell less than at the place itself.
         let wants_label = arrives && tells(leg.1.site);
-        let is_vain = arrives && !wants_label;
-        if is_vain && self.now == Rest::None {
-            return None;
-        }
-        if !is_vain {
+        if wants_label || !arrives {
             self.next = Rest::To(site, after);
         }
         Some((leg, wants_label))

@@ -247,7 +247,8 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion, S: Sight>
     /// The belief, for example to take in a label that has its own reliability. The planner then forgets its turns
     /// since the last label, as after a label. A place of an audit counts as visited, and its label as not judged.
     pub fn belief_mut(&mut self) -> &mut B {
-        (self.silence, self.journey) = (Silence::NONE, S::Journey::default());
+        self.silence = Silence::NONE;
+        S::observe(&mut self.journey, true);
         if let Some(audit) = &mut self.audit {
             audit.pass();
         }

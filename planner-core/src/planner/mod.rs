@@ -23,6 +23,7 @@ pub mod lap;
 pub mod lookahead;
 pub(crate) mod one_label;
 pub mod options;
+mod outlook;
 pub mod scc;
 pub mod scout;
 pub mod seek;

@@ -26,11 +26,39 @@ const NEAR_HALF: f32 = 0.02;
 /// False position goes at least this share of the way from either end.
 const LEAST_STEP: f32 = 1.0 / 64.0;
 
-/// Prospects that are kept to be looked at more closely.
-const PROSPECTS: usize = 4;
+/// Prospects that are kept at most, and those that are kept to be looked at more closely.
+const MANY: usize = 12;
+const FEW: usize = 4;
 
-/// Prospects are at least so far apart, lattice units: 25 cm.
+/// These few are at least so far apart, lattice units: 25 cm.
 const APART: i64 = UNITS_PER_METRE as i64 / 4;
+
+/// Of many, each lies at least so far from the others, as a share of the usual reach.
+const PART: f32 = 0.125;
+
+/// The speeds of the circles that are looked at, so many up to one speed.
+#[derive(Clone, Copy)]
+pub(crate) enum Circles {
+    Even(u16),
+    /// Closer together inside: their speeds grow as squares do.
+    Squares(u16),
+}
+
+impl Circles {
+    /// The speeds, the lowest first.
+    fn speeds(self, fastest: u16) -> impl Iterator<Item = u16> {
+        let (Self::Even(count) | Self::Squares(count)) = self;
+        let fastest = u32::from(fastest);
+        let count = NonZeroU32::new(u32::from(count).min(fastest)).unwrap_or(NonZeroU32::MIN);
+        (1..=count.get()).map(move |k| {
+            let (part, all) = match self {
+                Self::Even(_) => (k, count),
+                Self::Squares(_) => (k * k, count.saturating_mul(count)),
+            };
+            ((fastest * part + all.get() - 1) / all) as u16
+        })
+    }
+}
 
 /// A motion that may be made, and what the label at its end is worth.
 #[derive(Clone, Copy, Debug)]
@@ -109,14 +137,10 @@ impl<D: Dynamics, G: Workspace> Lookout<'_, D, G> {
         &mut self,
         prediction: &P,
         pose: Pose,
-        (circles, fastest): (u16, u16),
+        (circles, fastest): (Circles, u16),
         sought: &mut Sought<'_>,
     ) {
-        let fastest = u32::from(fastest);
-        let circles = NonZeroU32::new(u32::from(circles).min(fastest)).unwrap_or(NonZeroU32::MIN);
-        for k in 1..=circles.get() {
-            let speed = (fastest * k + circles.get() - 1) / circles;
-            let speed = speed as u16;
+        for speed in circles.speeds(fastest) {
             if self.circle(prediction, pose, speed, sought).is_none() {
                 return;
             }
@@ -227,12 +251,57 @@ impl<D: Dynamics, G: Workspace> Lookout<'_, D, G> {
 
 /// The best prospects, some way apart, the best first.
 pub(crate) struct Prospects {
-    list: Vec<Prospect, PROSPECTS, u8>,
+    list: Vec<Prospect, MANY, u8>,
+    /// How many may be kept.
+    most: usize,
+    /// Lattice units.
+    apart: i64,
 }
 
 impl Prospects {
-    pub(crate) const fn new() -> Self {
-        Self { list: Vec::new() }
+    const fn new(most: usize, apart: i64) -> Self {
+        Self { list: Vec::new(), most, apart }
+    }
+
+    /// A few that are to be looked at more closely.
+    pub(crate) fn few<P: Prediction, D: Dynamics, G: Workspace>(
+        prediction: &P,
+        ground: CellView<'_>,
+        lookout: &mut Lookout<'_, D, G>,
+        pose: Pose,
+    ) -> Self {
+        Self::new(FEW, APART).sought(prediction, ground, lookout, pose, Circles::Even)
+    }
+
+    /// Many, near the pose too.
+    pub(crate) fn many<P: Prediction, D: Dynamics, G: Workspace>(
+        prediction: &P,
+        ground: CellView<'_>,
+        lookout: &mut Lookout<'_, D, G>,
+        pose: Pose,
+    ) -> Self {
+        let reach = f32::from(lookout.usual) * lookout.dynamics.grid().step_units();
+        let apart = (PART * reach) as i64;
+        Self::new(MANY, apart).sought(prediction, ground, lookout, pose, Circles::Squares)
+    }
+
+    fn sought<P: Prediction, D: Dynamics, G: Workspace>(
+        mut self,
+        prediction: &P,
+        ground: CellView<'_>,
+        lookout: &mut Lookout<'_, D, G>,
+        pose: Pose,
+        circles: impl Fn(u16) -> Circles,
+    ) -> Self {
+        let fastest = lookout.dynamics.grid().speeds().saturating_sub(1);
+        // If none of the usual ends is open, all are looked at.
+        for (count, fastest) in [(6, lookout.usual), (24, fastest)] {
+            if self.list.is_empty() {
+                let mut sought = Sought::Prospects(&mut self, ground);
+                lookout.look(prediction, pose, (circles(count), fastest), &mut sought);
+            }
+        }
+        self
     }
 
     pub(crate) fn as_slice(&self) -> &[Prospect] {
@@ -243,11 +312,11 @@ impl Prospects {
     fn add(&mut self, new: Prospect, lines: CellView<'_>) {
         let is_near = |old: &Prospect| {
             let apart = old.target.site - new.target.site;
-            apart.dot(apart) < APART * APART
+            apart.dot(apart) < self.apart * self.apart
         };
         let rank = self.list.iter().take_while(|old| old.worth >= new.worth).count();
         let (better, _) = self.list.split_at_checked(rank).unwrap_or_default();
-        if rank >= PROSPECTS || better.iter().any(is_near) || !lines.may_tell(new.target.site) {
+        if rank >= self.most || better.iter().any(is_near) || !lines.may_tell(new.target.site) {
             return;
         }
         let mut number = 0;
@@ -260,7 +329,9 @@ impl Prospects {
         for place in self.list.get_mut(rank..).unwrap_or_default() {
             core::mem::swap(place, &mut next);
         }
-        let _ = self.list.push(next);
+        if self.list.len() < self.most {
+            let _ = self.list.push(next);
+        }
     }
 }
 
@@ -293,7 +364,7 @@ mod tests {
         let mut random = |below: u32| draws.below(below) as i32;
         let mut full = 0;
         for case in 0..500 {
-            let mut prospects = Prospects::new();
+            let mut prospects = Prospects::new(FEW, APART);
             let mut offered = Vec::<Prospect, 24>::new();
             // Within 20 cm, so that all are near each other, up to 5 m.
             let breadth = metre as u32 * [1, 3, 10, 25][case % 4] / 5;
@@ -321,7 +392,7 @@ mod tests {
                 |it: &&Prospect| space.certainty(it.target.site) == Certainty::Uncertain;
             let best = offered.iter().filter(is_uncertain).map(|it| it.worth).reduce(f32::max);
             assert_eq!(kept.first().map(|it| it.worth), best, "case {case}");
-            full += usize::from(kept.len() == PROSPECTS && case % 4 == 3);
+            full += usize::from(kept.len() == FEW && case % 4 == 3);
         }
         assert!(full > 120, "{full} of 125");
     }

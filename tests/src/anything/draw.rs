@@ -17,7 +17,7 @@ use planner_core::link::message::{MOST_CORNERS, MOST_KEEP_OUTS, MissionArea};
 use planner_core::motion::car::{self};
 use planner_core::{
     Accuracy, Angle, AnyVehicle, Boat, Car, Goal, Heading, Hull, KeepOut, Label, Line, Pose,
-    Sample, Seeks, Site, Tolerance, Unicycle, VersionSpace, Workspace as _, aimed_for,
+    Sample, Site, Tolerance, Unicycle, VersionSpace, Workspace as _, aimed_for,
 };
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -120,7 +120,7 @@ fn attempt(rng: &mut ChaCha8Rng, seed: u64) -> Option<Mission> {
     }
     if algorithm == Algorithm::Lookahead && rng.random() {
         mission.asking.price = Some(side * scale(rng, 1e-3, 3.0));
-        mission.asking.seeks = if rng.random() { Seeks::Accuracy } else { Seeks::Bits };
+        mission.asking.labels = rng.random::<bool>().then_some(mission.steps);
     }
     if algorithm == Algorithm::Lookahead && rng.random_range(0..4) == 0 {
         let most = mission.noise.map_or(1.0, |noise| limit(noise.p));

@@ -6,7 +6,7 @@ use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::asking::Asking;
 use planner_core::{
     AnySight, AnyVehicle, Area, Far, Heading, Label, Lookahead, Near, NoGoal, Persist as _, Plan,
-    Planner as _, Pose, Sample, Seeks, Sight, Site, Unicycle, VersionSpace,
+    Planner as _, Pose, Sample, Sight, Site, Unicycle, VersionSpace,
 };
 use tests::cases;
 use tests::ensemble::expect;
@@ -33,29 +33,32 @@ fn priced(price: f64, labels: u32) -> Asking {
     Asking { price: Some(price), labels: Some(labels), ..Asking::USUAL }
 }
 
-/// With motions of 5 and 20 m, 24 labels: without a price the median is 2 degrees.
+/// With motions of 5 and 20 m, 24 labels: without a price the median is 2 degrees. Two bisected chords come to 0.0022
+/// degrees, and drive 700 m.
 #[test]
 fn twenty_four_labels_are_enough_for_a_lake() {
     for reach_mm in [5_000, 20_000] {
         let row = lake(reach_mm, priced(81.25, 24), 1, cases(100, 1_000));
-        expect("degrees, median", row.centre_deg.median, ..=0.1);
-        expect("degrees, 90 %", row.centre_deg.p90, ..=0.3);
-        expect("degrees, worst", row.centre_deg.worst, ..=0.5);
-        expect("misclassified, worst", row.centre_misclassified.worst, ..=0.01);
+        expect("degrees, median", row.centre_deg.median, ..=0.006);
+        expect("degrees, 90 %", row.centre_deg.p90, ..=0.02);
+        expect("degrees, worst", row.centre_deg.worst, ..=0.1);
+        expect("misclassified, worst", row.centre_misclassified.worst, ..=0.001);
+        expect("metres", row.metres, ..=420.0);
     }
 }
 
-/// On standard fields, a few metres more for each label misclassify less with as many labels.
+/// On standard fields: two bisected chords misclassify 0.27 and 0.0086 % after so many labels, and drive 21 m.
 #[test]
 fn a_price_makes_labels_worth_more() {
     let usual = Unicycle::from(Algorithm::Lookahead.grid());
     let fields = cases(200, 1_000);
     let chance = if fields < 1_000 { 1.15 } else { 1.0 };
-    for (labels, most) in [(10, 0.0045), (20, 0.0002)] {
+    for (labels, most, metres) in [(10, 0.0032, 13.5), (20, 0.000_105, 16.0)] {
         let row = flown([20.0; 2], usual, priced(2.5, labels), 1, fields);
         let misclassified = row.centre_misclassified.median;
         expect(format!("{labels} labels"), misclassified, ..=most * chance);
-        expect(format!("bits, {labels} labels"), row.bits_per_step, 0.95..);
+        expect(format!("bits, {labels} labels"), row.bits_per_step, 0.98..);
+        expect(format!("metres, {labels} labels"), row.metres, ..=metres);
     }
 }
 
@@ -71,16 +74,13 @@ fn readings_on_the_way_to_a_place_pay() {
 }
 
 /// The price says what a user wants: the higher it is, the farther the robot drives, and the more it learns from as many
-/// labels. Bits save driving, accuracy saves labels.
+/// labels.
 #[test]
 fn a_higher_price_drives_farther_for_more() {
     let flown = |asking| lake(5_000, asking, 1, cases(60, 300));
-    let rows = [0.0, 5.0, 50.0, 200.0].map(|price| flown(priced(price, 16)));
+    let rows = [5.0, 20.0, 80.0, 320.0].map(|price| flown(priced(price, 16)));
     assert!(rows.is_sorted_by(|before, after| before.metres < after.metres));
     assert!(rows.is_sorted_by(|before, after| before.centre_deg.median > after.centre_deg.median));
-    let bits = flown(Asking { seeks: Seeks::Bits, ..priced(50.0, 16) });
-    expect("metres for bits", bits.metres / rows[2].metres, ..0.6);
-    expect("degrees for bits", bits.centre_deg.median, rows[2].centre_deg.median..);
 }
 
 type Seeing<S> = Lookahead<Unicycle, VersionSpace<32>, Area, NoGoal, S>;
@@ -128,17 +128,21 @@ fn fly<S: Sight>(
 
 #[test]
 fn a_price_buys_driving_for_fewer_labels() {
-    let [none, some, high] = [0.0, 50.0, 16_384.0]
+    let [low, some, high] = [1.0, 50.0, 16_384.0]
         .map(|price| fly(Far::at_price(price).expect("a price"), 400, |_, _| ()).0);
-    assert!(none >= 28 && high < some && high >= 2, "{none}, {some}, {high} labels");
-    assert!(Far::at_price(-1.0).is_err() && Far::at_price(f64::NAN).is_err());
+    assert!(low >= 28 && high < some && high >= 2, "{low}, {some}, {high} labels");
+    assert!(
+        Far::at_price(0.0).is_err()
+            && Far::at_price(-1.0).is_err()
+            && Far::at_price(f64::NAN).is_err()
+    );
 }
 
 /// A plan by a planner that was asleep on the way is the same, and so is that of a planner whose sight is chosen at run
 /// time.
 #[test]
 fn a_way_goes_on_after_a_sleep() {
-    let far = Far::across(&square(500.0)).seeking(Seeks::Bits);
+    let far = Far::across(&square(500.0));
     let mut silent = 0;
     fly(far, 150, |awake, pose| {
         let plan = awake.plan(pose);
@@ -149,16 +153,6 @@ fn a_way_goes_on_after_a_sleep() {
     });
     assert!(silent > 50, "{silent}");
     assert_eq!(fly(Near, 60, |_, _| ()), fly(AnySight::from(None), 60, |_, _| ()));
-}
-
-#[test]
-fn sight_is_far_by_default_where_the_area_is_large() {
-    let vehicle = Unicycle::default();
-    assert_eq!(Far::usual(&square(20.0), &vehicle), None);
-    assert_eq!(Far::usual(&square(32.0), &vehicle), None);
-    let lake = Area::metres([0.0, 0.0], [800.0, 500.0]).expect("an area");
-    let usual = Far::usual(&lake, &vehicle).expect("a lake is large");
-    expect("price", usual.price(), 81.249..81.251);
 }
 
 /// More motions than a number of 16 bits holds lead to the places of a large area, where motions are of millimetres.

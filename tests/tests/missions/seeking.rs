@@ -36,7 +36,7 @@ fn from_nothing(sides: [f64; 2], number: u64, algorithm: Algorithm, p: f64) -> M
     if sides == LAKE {
         let lake = unicycle(1, 20_000);
         mission.vehicle = AnyVehicle::Unicycle(lake);
-        let far = Far::usual(&mission.config.area, &lake).expect("a lake is large");
+        let far = Far::across(&mission.config.area);
         mission.asking = Asking { price: Some(far.price()), ..Asking::USUAL };
     }
     if p < 1.0 { noisy(mission, p, 0.0) } else { mission }

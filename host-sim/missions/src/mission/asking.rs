@@ -4,11 +4,10 @@ use std::str::FromStr;
 
 use anyhow::{Result, bail};
 use planner_core::link::message::MissionArea;
-use planner_core::{AnySight, AnyVehicle, Far, Seeks};
+use planner_core::{AnySight, Far};
 use serde::{Deserialize, Serialize};
 
 use crate::mission::algorithm::Algorithm;
-use crate::mission::names::SeeksName;
 use crate::mission::strict::wrong;
 
 /// How a mission asks for labels.
@@ -16,8 +15,6 @@ use crate::mission::strict::wrong;
 pub struct Asking {
     /// What a label costs, metres driven. `None`: labels are sought within one motion (look-ahead).
     pub price: Option<f64>,
-    /// What a label is to bring (look-ahead with a price).
-    pub seeks: Seeks,
     /// Labels at most.
     pub labels: Option<u32>,
     /// Bits that a label must be expected to carry (look-ahead).
@@ -31,8 +28,6 @@ pub struct Asked {
     pub price: Option<Price>,
     /// `labels`.
     pub labels: Option<u32>,
-    /// What a label is to bring.
-    pub seek: Option<SeeksName>,
     /// Bits that it must be expected to carry.
     pub worth: Option<f64>,
 }
@@ -83,54 +78,44 @@ impl FromStr for Price {
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AskTable {
-    seek: Option<SeeksName>,
     worth: Option<f64>,
 }
 
 impl Asking {
     /// Labels are sought within one motion, and there may be as many as there is room for.
-    pub const USUAL: Self = Self { price: None, seeks: Seeks::Accuracy, labels: None, worth: 0.0 };
+    pub const USUAL: Self = Self { price: None, labels: None, worth: 0.0 };
 
     /// What a file or flags ask of a mission of so many `steps`. Labels are scarce if there are to be fewer than steps.
-    /// In an area that is large for the vehicle, scarce labels have the usual price without being given one. Anybody
-    /// else is better served by a label after each motion. `names` are those of price, limit, choice and worth. There is
-    /// room for `most` labels, of which each carries so many `bits` at most.
+    /// Scarce labels have the usual price without being given one. Anybody else is better served by a label after each
+    /// motion. `names` are those of price, limit and worth. There is room for `most` labels, of which each carries so many
+    /// `bits` at most.
     ///
     /// # Errors
     /// Names the field, what was found and what was expected.
     pub fn of(
-        [price_name, labels_name, seek_name, worth_name]: [&str; 4],
-        Asked { price, labels, seek, worth }: Asked,
-        (algorithm, area, vehicle): (Algorithm, &MissionArea, &AnyVehicle),
+        [price_name, labels_name, worth_name]: [&str; 3],
+        Asked { price, labels, worth }: Asked,
+        (algorithm, area): (Algorithm, &MissionArea),
         (steps, most, bits): (u32, u32, f64),
     ) -> Result<Self> {
         let looks_ahead = algorithm == Algorithm::Lookahead;
         let are_scarce = looks_ahead && labels.is_some_and(|most| most < steps);
         let sought = match price {
-            Some(Price::Metres(metres)) => Some(metres),
-            None if are_scarce => Far::usual(area, vehicle).map(Far::price),
-            None | Some(Price::Word(NoPrice::None)) => None,
+            Some(Price::Metres(metres)) if metres != 0.0 => Some(metres),
+            None if are_scarce => Some(Far::across(area).price()),
+            _ => None,
         };
-        let of_lookahead = [
-            (price_name, price.is_some()),
-            (seek_name, seek.is_some()),
-            (worth_name, worth.is_some()),
-        ];
+        let of_lookahead = [(price_name, price.is_some()), (worth_name, worth.is_some())];
         for (name, is_given) in of_lookahead {
             if is_given && !looks_ahead {
                 let found = format!("with algorithm {}", algorithm.name());
                 return wrong(name, found, "with algorithm lookahead");
             }
         }
-        if let Some(Price::Metres(price)) = price
+        if let Some(price) = sought
             && Far::at_price(price).is_err()
         {
             return wrong(price_name, price, "metres driven, 0 to 16384, or none");
-        }
-        if seek.is_some() && sought.is_none() {
-            let expected =
-                format!("with a {price_name}: a label within one motion is to bring bits");
-            return wrong(seek_name, "one", expected);
         }
         if let Some(labels) = labels
             && !(1..=most).contains(&labels)
@@ -142,7 +127,7 @@ impl Asking {
             let expected = format!("0 to {bits:.3} bits, as many as a label can carry");
             return wrong(worth_name, worth, expected);
         }
-        Ok(Self { price: sought, seeks: seek.unwrap_or_default().into(), labels, worth })
+        Ok(Self { price: sought, labels, worth })
     }
 
     /// Whether labels are limited by themselves, so that a mission may have more steps than there is room for labels.
@@ -161,7 +146,8 @@ impl Asking {
     /// When price or worth is out of range. Reading scenario files and flags refuses such ones.
     pub fn sight(&self) -> AnySight {
         let far = |price| Far::at_price(price).expect("prices out of range were refused");
-        let far = self.price.map(|price| far(price).seeking(self.seeks));
+        let labels = self.labels.map_or(0, |labels| labels.try_into().unwrap_or(u16::MAX));
+        let far = self.price.map(|price| far(price).with_labels(labels));
         let sight = AnySight::from(far).with_least_bits(self.worth);
         sight.expect("worths out of range were refused")
     }
@@ -170,6 +156,6 @@ impl Asking {
 impl AskTable {
     /// All that a file asks for, with its price and its limit of labels.
     pub fn with(&self, price: Option<Price>, labels: Option<u32>) -> Asked {
-        Asked { price, labels, seek: self.seek, worth: self.worth }
+        Asked { price, labels, worth: self.worth }
     }
 }

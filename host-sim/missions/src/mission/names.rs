@@ -1,7 +1,7 @@
 //! The names of choices in scenario files and flags.
 
 use planner_core::motion::unicycle::Grid;
-use planner_core::{Crossing, Following, Policy, Prior, Seeks};
+use planner_core::{Crossing, Following, Policy, Prior};
 use serde::{Deserialize, Serialize};
 
 /// How finely the unicycle turns, by name.
@@ -61,26 +61,6 @@ impl From<FollowingName> for Following {
         match name {
             FollowingName::Anyhow => Self::Unrestricted,
             FollowingName::AlongBisector => Self::AlongBisector,
-        }
-    }
-}
-
-/// What a label is to bring, by name.
-#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, clap::ValueEnum)]
-#[serde(rename_all = "kebab-case")]
-pub enum SeeksName {
-    /// Lines that lie closer together over the area: little misclassified ground for few labels
-    #[default]
-    Accuracy,
-    /// Bits: much information for few metres
-    Bits,
-}
-
-impl From<SeeksName> for Seeks {
-    fn from(name: SeeksName) -> Self {
-        match name {
-            SeeksName::Accuracy => Self::Accuracy,
-            SeeksName::Bits => Self::Bits,
         }
     }
 }

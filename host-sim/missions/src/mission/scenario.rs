@@ -317,7 +317,7 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
         lawnmower::check_area(&area)?;
     }
     let asked = file.ask.0.with(file.price, file.labels);
-    let names = ["price", "labels", "ask.seek", "ask.worth"];
+    let names = ["price", "labels", "ask.worth"];
     let noise = file.noise.as_ref().map(|table| noise(&table.0)).transpose()?;
     let (noise, p_told) = noise.map_or((None, None), |(noise, p_told)| (Some(noise), p_told));
     let trusts = check_trust(noise, &file.bounds.0)?;
@@ -327,7 +327,7 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
     let bounds = file.bounds.0;
     let given_count = file.oracle.len() + bounds.len();
     let most = most_labels(given_count, weighs)?;
-    let asking = Asking::of(names, asked, (algorithm, &area, &vehicle), (steps, most, bits))?;
+    let asking = Asking::of(names, asked, (algorithm, &area), (steps, most, bits))?;
     let steps_name = if overrides.steps.is_some() { "--steps" } else { "steps" };
     let room = Room::of(weighs, &asking, file.audits());
     check_steps(steps_name, steps, given_count, room)?;

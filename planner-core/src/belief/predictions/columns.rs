@@ -25,7 +25,7 @@ use crate::belief::list::List;
 use crate::belief::noise::Reliability;
 use crate::belief::predictions::column::{Column, Counts, Density, Step, Sums, Threshold, exp};
 use crate::belief::predictions::directions::{Direction, directions};
-use crate::belief::predictions::spread::{LineSums, Stretch, Whole};
+use crate::belief::predictions::spread::{Covariance, LineSums, Stretch, Whole};
 use crate::belief::sample::{Label, Sample};
 use crate::belief::trust::Trust;
 use crate::geometry::approximate::precise_heading_of;
@@ -113,13 +113,14 @@ impl<const K: usize> Columns<K> {
         let direction = precise_heading_of(over.along).unit();
         let middle = self.view.vector(over.middle);
         let turns = self.lines.each_ref().map(|column| column.turn_from(direction));
-        let (mut sums, mut squares) = (LineSums::default(), [0.0; 2]);
+        let (mut sums, mut squares) = (LineSums::default(), [0.0; 3]);
         for (column, &turn) in self.lines.iter().zip(&turns) {
             let [mass, offset, square] = column.moments_above(None, middle);
             sums.add(mass, [0.0, turn]);
             sums.offset += offset;
             squares[0] += square;
-            squares[1] += mass * turn * turn;
+            squares[1] += offset * turn;
+            squares[2] += mass * turn * turn;
         }
         // A quarter of a unit of the view is a unit of offsets.
         let length = 0.25 * over.length * (1_u32 << self.view.shift) as f32;
@@ -173,9 +174,13 @@ pub struct ColumnSpread<'a, const K: usize> {
 }
 
 impl<const K: usize> ColumnSpread<'_, K> {
-    /// See [`Spread::reduction`](crate::belief::predictions::Spread::reduction), of a label that is true with probability
-    /// `p`.
-    pub fn reduction(&self, site: Site, p: f32) -> f32 {
+    /// The covariance of all lines.
+    pub fn covariance(&self) -> Covariance {
+        self.whole.covariance
+    }
+
+    /// See [`Spread::after`](crate::belief::predictions::Spread::after), of a label that is true with probability `p`.
+    pub fn after(&self, site: Site, p: f32) -> Covariance {
         let place = self.columns.view.vector(site);
         let mut sums = LineSums::default();
         for (column, &turn) in self.columns.lines.iter().zip(&self.turns) {
@@ -183,7 +188,7 @@ impl<const K: usize> ColumnSpread<'_, K> {
             sums.add(mass, [0.0, turn]);
             sums.offset += offset;
         }
-        self.whole.reduction([sums, self.sums.without(sums)], p)
+        self.whole.after([sums, self.sums.without(sums)], p, 1.0)
     }
 }
 

@@ -15,7 +15,7 @@ use crate::belief::noise::Reliability;
 use crate::belief::predictions::predictor::{
     Prediction, PredictiveBelief, Predictor, entropy, log2,
 };
-use crate::belief::predictions::spread::{LineSums, Spread, Stretch, Whole};
+use crate::belief::predictions::spread::{Covariance, LineSums, Spread, Stretch, Whole};
 use crate::belief::predictions::verdicts::Decisive;
 use crate::belief::sample::{Label, Reading};
 use crate::belief::tolerance::Tolerance;
@@ -248,7 +248,7 @@ impl<const N: usize> PredictiveBelief for VersionSpace<N> {
     }
 
     fn spread(&self, over: &Stretch) -> PolygonSpread {
-        PolygonSpread::of(DualPolygon::of(self.lines(), over.middle), over.length * METRE)
+        PolygonSpread::of(DualPolygon::of(self.lines(), over.middle), over)
     }
 
     fn capacity(&self) -> f32 {
@@ -337,17 +337,23 @@ pub struct PolygonSpread {
 }
 
 impl PolygonSpread {
-    /// Over a stretch of so many metres, in the middle of which the polygon's frame lies.
-    fn of(polygon: DualPolygon, length: f32) -> Self {
-        let (mut sums, mut squares) = (LineSums::default(), [0.0; 2]);
+    /// Over a stretch in the middle of which the polygon's frame lies.
+    fn of(polygon: DualPolygon, over: &Stretch) -> Self {
+        // Where the frame's axis points the other way, offsets are to the other side.
+        let length =
+            if polygon.axis.along.dot(over.along) < 0 { -over.length } else { over.length };
+        let length = length * METRE;
+        let (mut sums, mut squares) = (LineSums::default(), [0.0; 3]);
         if let [apex, ref rest @ ..] = *polygon.vertices {
             for (mass, corners) in triangles(apex, rest.iter()) {
                 sums.add(mass, mean(corners));
-                for (axis, square) in squares.iter_mut().enumerate() {
-                    let at = corners.map(|corner| corner.get(axis).copied().unwrap_or(0.0));
-                    let sum = at[0] + at[1] + at[2];
-                    let own = at[0] * at[0] + at[1] * at[1] + at[2] * at[2];
-                    *square += mass * (own + sum * sum) / 12.0;
+                let sum = mean(corners).map(|it| 3.0 * it);
+                let all = corners.into_iter().chain([sum]);
+                let more = all.fold([0.0; 3], |[a, b, c], [offset, turn]| {
+                    [a + offset * offset, b + offset * turn, c + turn * turn]
+                });
+                for (square, more) in squares.iter_mut().zip(more) {
+                    *square += mass * more / 12.0;
                 }
             }
         }
@@ -356,7 +362,11 @@ impl PolygonSpread {
 }
 
 impl Spread for PolygonSpread {
-    fn reduction(&self, site: Site) -> f32 {
+    fn covariance(&self) -> Covariance {
+        self.whole.covariance
+    }
+
+    fn after(&self, site: Site) -> Covariance {
         let polygon = &self.polygon;
         let place = polygon.axis.see(site - polygon.origin);
         let sums = [Label::Positive, Label::Negative].map(|label| {
@@ -373,7 +383,7 @@ impl Spread for PolygonSpread {
         let told = polygon.information(site, share);
         let most = entropy(share);
         let told = if told < most { told / most } else { 1.0 };
-        self.whole.reduction(sums, 1.0) * told
+        self.whole.after(sums, 1.0, told)
     }
 }
 

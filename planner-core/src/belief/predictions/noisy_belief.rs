@@ -13,7 +13,7 @@ use crate::belief::noise::{Noise, Reliability};
 use crate::belief::observation_log::{FromLog, ObservationLog, ReplayError};
 use crate::belief::predictions::columns::{After, ColumnSpread, Columns};
 use crate::belief::predictions::predictor::{Prediction, PredictiveBelief, Predictor, entropy};
-use crate::belief::predictions::spread::{Spread, Stretch};
+use crate::belief::predictions::spread::{Covariance, Spread, Stretch};
 use crate::belief::predictions::verdicts::Odds;
 use crate::belief::sample::{Label, Reading, Sample};
 use crate::belief::tolerance::Tolerance;
@@ -316,8 +316,12 @@ pub struct TableSpread<'a, const N: usize, const H: usize, R: Trust = Reliabilit
 }
 
 impl<const N: usize, const H: usize, R: Trust> Spread for TableSpread<'_, N, H, R> {
-    fn reduction(&self, site: Site) -> f32 {
-        self.columns.reduction(site, self.labels.p(site))
+    fn covariance(&self) -> Covariance {
+        self.columns.covariance()
+    }
+
+    fn after(&self, site: Site) -> Covariance {
+        self.columns.after(site, self.labels.p(site))
     }
 }
 

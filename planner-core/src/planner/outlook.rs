@@ -1,0 +1,115 @@
+//! What a place costs at which a label may be read: the way there, and the error that is left after the next labels.
+//!
+//! A label where +1 and -1 are equally likely halves the lines that are left, wherever along the estimate it is read. So
+//! bits that are read near one place leave the slope open. What tells a good place is the error that is left if the next
+//! labels are read well too: all at one place of the estimate, so many levers `s` from the middle of its chord. With the
+//! covariance `S` of the lines over the chord and `h = (1, s)`, `t` labels of `I` bits each leave of the squared error
+//!
+//! ```text
+//! tr S_t = tr S - (1 - 4^(-I t)) |S h|^2 / (h' S h)
+//! ```
+//!
+//! With the number of labels to come, the last error counts. Without it, the mean of the logarithms over eight labels
+//! counts: so the robot reads about as many at one place before it drives to another. With `halving`, the metres that
+//! half of the error is worth, a place costs
+//!
+//! ```text
+//! way + min over s of (way to s + halving * mean of half log2(tr S_t))
+//! ```
+
+use crate::belief::Belief as _;
+use crate::belief::predictions::{Covariance, PredictiveBelief, Spread, Stretch};
+use crate::belief::weight::LogWeight;
+use crate::geometry::approximate::{distance, sqrt};
+use crate::geometry::area::Area;
+use crate::geometry::lattice::Site;
+use crate::search::chord::Chord;
+
+/// Labels that are looked ahead where nobody knows how many there will be.
+const AHEAD: u16 = 8;
+
+/// Labels that are looked ahead at most. They leave nothing of what one place can tell.
+const MOST: u16 = 64;
+
+/// Labels at one place leave the squared error at most so many times that of the same labels spread evenly: one drive more
+/// can mend it.
+const UNEVEN: f32 = 100.0;
+
+/// Places along the chord at which the next labels may be read, from one end to the other.
+const PLACES: u16 = 9;
+
+/// Half the chord, levers.
+const HALF: f32 = 1.732_050_8;
+
+/// What the belief says of the estimate, and what errors are worth.
+pub(crate) struct Outlook<S> {
+    spread: S,
+    chord: Stretch,
+    /// The squared error of now.
+    whole: f32,
+    /// What half of the error is worth, lattice units of driving.
+    halving: f32,
+    /// The share of the variance at a place that a label there leaves.
+    quarter: f32,
+    /// Labels to come, if somebody knows.
+    labels: Option<u16>,
+}
+
+impl<'a, S: Spread + 'a> Outlook<S> {
+    /// With a price of a label, lattice units, and the labels that are read after the next one, if somebody knows. `None`
+    /// if the estimate does not cross the area.
+    pub(crate) fn of<B: PredictiveBelief<Spread<'a> = S>>(
+        belief: &'a B,
+        area: Area,
+        price: f32,
+        labels: Option<u16>,
+    ) -> Option<Self> {
+        let labels = labels.map(|labels| labels.min(MOST));
+        let chord = Chord::of(belief.belief().centre()?, area)?.stretch()?;
+        let spread = belief.spread(&chord);
+        let whole = spread.covariance().trace();
+        let bits = belief.capacity();
+        let quarter =
+            LogWeight::from_log(-2.0 * f64::from(bits) * core::f64::consts::LN_2).exp_single();
+        // A label takes `bits`, and two bits are half of the error.
+        let halving = 2.0 * price / bits;
+        (whole > 0.0).then_some(Self { spread, chord, whole, halving, quarter, labels })
+    }
+
+    /// What it costs to read the next label at one site, coming from another; lattice units.
+    pub(crate) fn cost(&self, site: Site, from: Site) -> f32 {
+        let left = self.spread.after(site);
+        let (lever, [along, aside]) = (self.chord.lever(), self.chord.sees(site));
+        let at = along / lever;
+        let places = (0..PLACES).map(|k| HALF * (2.0 * f32::from(k) / f32::from(PLACES - 1) - 1.0));
+        let mut least = f32::INFINITY;
+        for place in core::iter::once(at).chain(places) {
+            let ahead = (place - at) * lever;
+            let cost = sqrt(ahead * ahead + aside * aside) + self.halving * self.error(left, place);
+            least = if cost < least { cost } else { least };
+        }
+        distance(site - from) + least
+    }
+
+    /// The logarithm of the error, halvings, after the next labels at a place of the chord.
+    fn error(&self, left: Covariance, place: f32) -> f32 {
+        let after = |labels: u16| left.trace_after(place, power(self.quarter, labels)) / self.whole;
+        let Some(labels) = self.labels else {
+            let product: f32 = (0..=AHEAD).map(after).product();
+            return 0.5 * log2(product) / f32::from(AHEAD + 1);
+        };
+        let even = sqrt(left.determinant()) / self.whole * power(sqrt(self.quarter), labels);
+        let (last, most) = (after(labels), UNEVEN * even);
+        0.5 * log2(if last < most { last } else { most })
+    }
+}
+
+/// A power of a number.
+fn power(base: f32, exponent: u16) -> f32 {
+    (0..exponent).fold(1.0, |power, _| power * base)
+}
+
+/// The logarithm to base 2.
+fn log2(x: f32) -> f32 {
+    LogWeight::of(x) * core::f32::consts::LOG2_E
+}
