@@ -6,7 +6,7 @@ use crate::belief::sample::Label;
 use crate::geometry::workspace::Workspace;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Pose, Side};
-use crate::search::lookout::{Circles, ENOUGH, Lookout, Prospect, Prospects, Sought};
+use crate::search::lookout::{Circles, ENOUGH, Lookout, Prospect, Sought, few};
 
 /// Circles on which the second step may end.
 const SECOND_CIRCLES: Circles = Circles::Even(3);
@@ -31,7 +31,7 @@ impl Decision {
         lookout: &mut Lookout<'_, D, G>,
         pose: Pose,
     ) -> Option<Self> {
-        let prospects = Prospects::few(predictor, ground, lookout, pose);
+        let prospects = few(predictor, ground, lookout, pose);
         let mut best = None;
         for prospect in prospects.as_slice() {
             look_beyond(lookout, predictor, prospect, &mut best);

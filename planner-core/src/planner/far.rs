@@ -19,7 +19,7 @@ use crate::planner::decision::Decision;
 use crate::planner::outlook::Outlook;
 use crate::search::chord::Chord;
 use crate::search::errand::{Errand, UNKNOWN, errand, motions_to};
-use crate::search::lookout::{Lookout, Prospects};
+use crate::search::lookout::{Lookout, many};
 use crate::search::motions::Leg;
 use crate::search::objective::Effort;
 
@@ -109,7 +109,7 @@ impl Far {
         let outlook = Outlook::of(belief, bounds, price, to_come)?;
         let worth = |site: Site| -outlook.cost(site, pose.site);
         let mut best = None;
-        for it in Prospects::many(predictor, belief.ground(), lookout, pose).as_slice() {
+        for it in &many(predictor, belief.ground(), lookout, pose) {
             let (action, target, worth) = (it.action, it.target, worth(it.target.site));
             Decision { action, target, worth, wants_label: true, is_far: false }.beat(&mut best);
         }

@@ -41,9 +41,14 @@ const PLACES: u16 = 9;
 /// Half the chord, levers.
 const HALF: f32 = 1.732_050_8;
 
-/// What the belief says of the estimate, and what errors are worth.
+/// How the lines lie over the estimate's chord, and what errors are worth.
 pub(crate) struct Outlook<S> {
     spread: S,
+    to_go: ToGo,
+}
+
+/// What is left to do, whatever the belief.
+struct ToGo {
     chord: Stretch,
     /// The squared error of now.
     whole: f32,
@@ -64,34 +69,48 @@ impl<'a, S: Spread + 'a> Outlook<S> {
         price: f32,
         labels: Option<u16>,
     ) -> Option<Self> {
-        let labels = labels.map(|labels| labels.min(MOST));
         let chord = Chord::of(belief.belief().centre()?, area)?.stretch()?;
         let spread = belief.spread(&chord);
         let whole = spread.covariance().trace();
-        let bits = belief.capacity();
-        let quarter =
-            LogWeight::from_log(-2.0 * f64::from(bits) * core::f64::consts::LN_2).exp_single();
-        // A label takes `bits`, and two bits are half of the error.
-        let halving = 2.0 * price / bits;
-        (whole > 0.0).then_some(Self { spread, chord, whole, halving, quarter, labels })
+        let to_go = ToGo::new(chord, whole, (price, belief.capacity()), labels);
+        (whole > 0.0).then_some(Self { spread, to_go })
     }
 
     /// What it costs to read the next label at one site, coming from another; lattice units.
     pub(crate) fn cost(&self, site: Site, from: Site) -> f32 {
-        let left = self.spread.after(site);
+        distance(site - from) + self.to_go.cost(self.spread.after(site), site)
+    }
+}
+
+impl ToGo {
+    #[inline(never)] // one for all beliefs, as all of this
+    fn new(chord: Stretch, whole: f32, (price, bits): (f32, f32), labels: Option<u16>) -> Self {
+        let logarithm = LogWeight::from_log(-2.0 * f64::from(bits) * core::f64::consts::LN_2);
+        // A label takes `bits`, and two bits are half of the error.
+        let halving = 2.0 * price / bits;
+        let labels = labels.map(|labels| labels.min(MOST));
+        Self { chord, whole, halving, quarter: logarithm.exp_single(), labels }
+    }
+
+    /// From a site, when this covariance is left.
+    #[inline(never)]
+    fn cost(&self, left: Covariance, site: Site) -> f32 {
         let (lever, [along, aside]) = (self.chord.lever(), self.chord.sees(site));
         let at = along / lever;
-        let places = (0..PLACES).map(|k| HALF * (2.0 * f32::from(k) / f32::from(PLACES - 1) - 1.0));
         let mut least = f32::INFINITY;
-        for place in core::iter::once(at).chain(places) {
+        for k in 0..=PLACES {
+            let place = HALF * (2.0 * f32::from(k) / f32::from(PLACES - 1) - 1.0);
+            // The last is where the robot is.
+            let place = if k < PLACES { place } else { at };
             let ahead = (place - at) * lever;
             let cost = sqrt(ahead * ahead + aside * aside) + self.halving * self.error(left, place);
             least = if cost < least { cost } else { least };
         }
-        distance(site - from) + least
+        least
     }
 
     /// The logarithm of the error, halvings, after the next labels at a place of the chord.
+    #[inline(never)]
     fn error(&self, left: Covariance, place: f32) -> f32 {
         let after = |labels: u16| left.trace_after(place, power(self.quarter, labels)) / self.whole;
         let Some(labels) = self.labels else {

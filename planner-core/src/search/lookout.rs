@@ -7,7 +7,7 @@
 
 use core::num::NonZeroU32;
 
-use heapless::Vec;
+use heapless::{Vec, VecView};
 
 use crate::belief::cells::CellView;
 use crate::belief::predictions::Prediction;
@@ -26,11 +26,7 @@ const NEAR_HALF: f32 = 0.02;
 /// False position goes at least this share of the way from either end.
 const LEAST_STEP: f32 = 1.0 / 64.0;
 
-/// Prospects that are kept at most, and those that are kept to be looked at more closely.
-const MANY: usize = 12;
-const FEW: usize = 4;
-
-/// These few are at least so far apart, lattice units: 25 cm.
+/// Few prospects are at least so far apart, lattice units: 25 cm.
 const APART: i64 = UNITS_PER_METRE as i64 / 4;
 
 /// Of many, each lies at least so far from the others, as a share of the usual reach.
@@ -78,7 +74,7 @@ pub(crate) const ENOUGH: f32 = 0.98;
 /// What a look is for.
 pub(crate) enum Sought<'a> {
     /// The best prospects whose ends these lines disagree on.
-    Prospects(&'a mut Prospects, CellView<'a>),
+    Prospects(Prospects<'a>, CellView<'a>),
     /// The worth of the best prospect. If lines are given, only prospects count on whose ends these lines disagree.
     Worth(&'a mut f32, Option<CellView<'a>>),
 }
@@ -249,65 +245,64 @@ impl<D: Dynamics, G: Workspace> Lookout<'_, D, G> {
     }
 }
 
+/// Few prospects, that are looked at more closely.
+pub(crate) type Few = Vec<Prospect, 4, u8>;
+
+/// Many, near the pose too.
+pub(crate) type Many = Vec<Prospect, 12, u8>;
+
 /// The best prospects, some way apart, the best first.
-pub(crate) struct Prospects {
-    list: Vec<Prospect, MANY, u8>,
-    /// How many may be kept.
-    most: usize,
+pub(crate) struct Prospects<'a> {
+    list: &'a mut VecView<Prospect, u8>,
     /// Lattice units.
     apart: i64,
 }
 
-impl Prospects {
-    const fn new(most: usize, apart: i64) -> Self {
-        Self { list: Vec::new(), most, apart }
-    }
+/// The ends of motions whose labels tell the most: few of them.
+pub(crate) fn few<P: Prediction, D: Dynamics, G: Workspace>(
+    prediction: &P,
+    ground: CellView<'_>,
+    lookout: &mut Lookout<'_, D, G>,
+    pose: Pose,
+) -> Few {
+    let mut list = Few::new();
+    seek((prediction, ground), lookout, pose, (&mut list, APART), [6, 24].map(Circles::Even));
+    list
+}
 
-    /// A few that are to be looked at more closely.
-    pub(crate) fn few<P: Prediction, D: Dynamics, G: Workspace>(
-        prediction: &P,
-        ground: CellView<'_>,
-        lookout: &mut Lookout<'_, D, G>,
-        pose: Pose,
-    ) -> Self {
-        Self::new(FEW, APART).sought(prediction, ground, lookout, pose, Circles::Even)
-    }
+/// The same, but many of them.
+pub(crate) fn many<P: Prediction, D: Dynamics, G: Workspace>(
+    prediction: &P,
+    ground: CellView<'_>,
+    lookout: &mut Lookout<'_, D, G>,
+    pose: Pose,
+) -> Many {
+    let mut list = Many::new();
+    let reach = f32::from(lookout.usual) * lookout.dynamics.grid().step_units();
+    let apart = (PART * reach) as i64;
+    seek((prediction, ground), lookout, pose, (&mut list, apart), [6, 24].map(Circles::Squares));
+    list
+}
 
-    /// Many, near the pose too.
-    pub(crate) fn many<P: Prediction, D: Dynamics, G: Workspace>(
-        prediction: &P,
-        ground: CellView<'_>,
-        lookout: &mut Lookout<'_, D, G>,
-        pose: Pose,
-    ) -> Self {
-        let reach = f32::from(lookout.usual) * lookout.dynamics.grid().step_units();
-        let apart = (PART * reach) as i64;
-        Self::new(MANY, apart).sought(prediction, ground, lookout, pose, Circles::Squares)
-    }
-
-    fn sought<P: Prediction, D: Dynamics, G: Workspace>(
-        mut self,
-        prediction: &P,
-        ground: CellView<'_>,
-        lookout: &mut Lookout<'_, D, G>,
-        pose: Pose,
-        circles: impl Fn(u16) -> Circles,
-    ) -> Self {
-        let fastest = lookout.dynamics.grid().speeds().saturating_sub(1);
-        // If none of the usual ends is open, all are looked at.
-        for (count, fastest) in [(6, lookout.usual), (24, fastest)] {
-            if self.list.is_empty() {
-                let mut sought = Sought::Prospects(&mut self, ground);
-                lookout.look(prediction, pose, (circles(count), fastest), &mut sought);
-            }
+fn seek<P: Prediction, D: Dynamics, G: Workspace>(
+    (prediction, ground): (&P, CellView<'_>),
+    lookout: &mut Lookout<'_, D, G>,
+    pose: Pose,
+    (list, apart): (&mut VecView<Prospect, u8>, i64),
+    [usual, all]: [Circles; 2],
+) {
+    let fastest = lookout.dynamics.grid().speeds().saturating_sub(1);
+    // If none of the usual ends is open, all are looked at.
+    for circles in [(usual, lookout.usual), (all, fastest)] {
+        if list.is_empty() {
+            let prospects = Prospects { list: &mut *list, apart };
+            let mut sought = Sought::Prospects(prospects, ground);
+            lookout.look(prediction, pose, circles, &mut sought);
         }
-        self
     }
+}
 
-    pub(crate) fn as_slice(&self) -> &[Prospect] {
-        &self.list
-    }
-
+impl Prospects<'_> {
     /// Takes in a prospect if it is among the best, and lines disagree on its end.
     fn add(&mut self, new: Prospect, lines: CellView<'_>) {
         let is_near = |old: &Prospect| {
@@ -316,7 +311,10 @@ impl Prospects {
         };
         let rank = self.list.iter().take_while(|old| old.worth >= new.worth).count();
         let (better, _) = self.list.split_at_checked(rank).unwrap_or_default();
-        if rank >= self.most || better.iter().any(is_near) || !lines.may_tell(new.target.site) {
+        if rank >= self.list.capacity()
+            || better.iter().any(is_near)
+            || !lines.may_tell(new.target.site)
+        {
             return;
         }
         let mut number = 0;
@@ -329,9 +327,7 @@ impl Prospects {
         for place in self.list.get_mut(rank..).unwrap_or_default() {
             core::mem::swap(place, &mut next);
         }
-        if self.list.len() < self.most {
-            let _ = self.list.push(next);
-        }
+        let _ = self.list.push(next);
     }
 }
 
@@ -364,7 +360,8 @@ mod tests {
         let mut random = |below: u32| draws.below(below) as i32;
         let mut full = 0;
         for case in 0..500 {
-            let mut prospects = Prospects::new(FEW, APART);
+            let mut list = Few::new();
+            let mut prospects = Prospects { list: &mut list, apart: APART };
             let mut offered = Vec::<Prospect, 24>::new();
             // Within 20 cm, so that all are near each other, up to 5 m.
             let breadth = metre as u32 * [1, 3, 10, 25][case % 4] / 5;
@@ -376,7 +373,7 @@ mod tests {
                 prospects.add(new, space.lines());
                 let _ = offered.push(new);
             }
-            let kept = prospects.as_slice();
+            let kept = list.as_slice();
             let apart = |a: &Prospect, b: &Prospect| {
                 let off = a.target.site - b.target.site;
                 f64::from(off.x).hypot(f64::from(off.z)) / f64::from(metre)
@@ -392,7 +389,7 @@ mod tests {
                 |it: &&Prospect| space.certainty(it.target.site) == Certainty::Uncertain;
             let best = offered.iter().filter(is_uncertain).map(|it| it.worth).reduce(f32::max);
             assert_eq!(kept.first().map(|it| it.worth), best, "case {case}");
-            full += usize::from(kept.len() == FEW && case % 4 == 3);
+            full += usize::from(list.is_full() && case % 4 == 3);
         }
         assert!(full > 120, "{full} of 125");
     }
