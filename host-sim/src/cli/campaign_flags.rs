@@ -116,8 +116,8 @@ pub(crate) struct CampaignFlags {
     #[arg(long, conflicts_with = "trusted_radius")]
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     from_nothing: bool,
-    /// What a label costs, metres driven; labels are then sought all over the area (lookahead) [default: none, or with
-    /// fewer --labels than steps an eighth of the mean of its sides]
+    /// What a label costs, metres driven; labels are then sought all along the line (lookahead) [default: an eighth of the
+    /// mean of its sides if the --steps beside --labels lead once across, else none]
     #[arg(long, value_name = "METRES|none")]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     price: Option<Price>,
@@ -221,7 +221,7 @@ impl CampaignFlags {
             let weighs = algorithm.weighs(p < 1.0);
             let most = scenario::most_labels(ORACLE, weighs)?;
             let bounds = (self.steps, most, limit(p));
-            let asking = Asking::of(names, asked, (algorithm, &area), bounds)?;
+            let asking = Asking::of(names, asked, (algorithm, &area, &vehicle), bounds)?;
             let room = Room::of(weighs, &asking, false);
             scenario::check_steps("--steps", self.steps, ORACLE, room)?;
             Ok::<_, Error>(Campaign {

@@ -1,7 +1,7 @@
-//! Far sight: labels are sought all over the area, at a price.
+//! Far sight: labels are sought all along the estimate, at a price.
 //!
 //! The labels that tell the most of a line lie far apart. So a plan considers places along the estimate, beside the ends
-//! of one motion. Each [costs](crate::planner::outlook) the way there, and the error that is left after the next labels.
+//! of one motion. Each costs (`outlook.rs`) the way there, and the error that is left after the next labels.
 //!
 //! The planner goes to the place that costs the least, by several motions without a label. It plans the way anew after
 //! each of them. Where an end of the next motion costs less by then, it asks there.
@@ -129,7 +129,8 @@ impl Far {
         let mut effort = Effort::within(&lookout.area, LOOKS);
         for Place { site, worth } in places.list.into_iter().take_while(|it| it.worth > most) {
             let tells = |site| tells(belief, predictor, lookout, site, WORTHWHILE);
-            let leg = journey.go((lookout.dynamics, &lookout.area), pose, site, tells, &mut effort);
+            let to = (site, nearness(lookout));
+            let leg = journey.go((lookout.dynamics, &lookout.area), pose, to, tells, &mut effort);
             if let Some(((action, target), wants_label)) = leg {
                 return Some(Decision { action, target, worth, wants_label, is_far: true });
             }
@@ -229,12 +230,11 @@ impl Journey {
         &mut self,
         (dynamics, area): (&D, &G),
         pose: Pose,
-        site: Site,
+        (site, near): (Site, f32),
         tells: impl Fn(Site) -> bool,
         effort: &mut Effort,
     ) -> Option<(Leg, bool)> {
         self.next = Rest::Over;
-        let near = nearness(dynamics);
         let Errand { leg, arrives, motions } =
             errand((dynamics, area), pose, (site, near), effort)?;
         let seems = (motions != UNKNOWN).then_some(u16::from(motions));
@@ -259,8 +259,9 @@ impl Journey {
     }
 }
 
-/// How near to a place a way ends, lattice units: an eighth of the longest motion, and a step at least.
-fn nearness<D: Dynamics>(dynamics: &D) -> f32 {
-    let (eighth, step) = (0.125 * dynamics.grid().longest_units(), dynamics.grid().step_units());
+/// How near to a place a way ends, lattice units: an eighth of the longest motion that is usual, and a step at least.
+fn nearness<D: Dynamics, G: Workspace>(lookout: &Lookout<'_, D, G>) -> f32 {
+    let step = lookout.dynamics.grid().step_units();
+    let eighth = 0.125 * f32::from(lookout.usual) * step;
     if eighth > step { eighth } else { step }
 }

@@ -8,7 +8,7 @@
 //! | [`cfc`] | the paper's Algorithm 1, for labels that are true |
 //! | [`scc`] | the paper's Algorithm 2, for labels that are sometimes wrong |
 //!
-//! [`scout`] is how both of these seek. [`sight`] is how far look-ahead looks for labels, and [`far`] sight looks all over the area. [`audit`] is what
+//! [`scout`] is how both of these seek. [`sight`] is how far look-ahead looks for labels, and [`far`] sight looks all along the estimate. [`audit`] is what
 //! look-ahead does before it promises a goal. A [`watched`] planner says when no line explains its
 //! labels. [`options`] are what Algorithms 1 and 2 leave open. [`setup`] checks the parts that every planner is made of.
 //! A [`snapshot`] is what a planner has to remember over a sleep.

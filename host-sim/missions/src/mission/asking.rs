@@ -3,8 +3,9 @@
 use std::str::FromStr;
 
 use anyhow::{Result, bail};
+use planner_core::dynamics::Dynamics as _;
 use planner_core::link::message::MissionArea;
-use planner_core::{AnySight, Far};
+use planner_core::{AnySight, AnyVehicle, Far};
 use serde::{Deserialize, Serialize};
 
 use crate::mission::algorithm::Algorithm;
@@ -86,8 +87,8 @@ impl Asking {
     pub const USUAL: Self = Self { price: None, labels: None, worth: 0.0 };
 
     /// What a file or flags ask of a mission of so many `steps`. Labels are scarce if there are to be fewer than steps.
-    /// Scarce labels have the usual price without being given one. Anybody else is better served by a label after each
-    /// motion. `names` are those of price, limit and worth. There is room for `most` labels, of which each carries so many
+    /// Scarce labels have the usual price without being given one: if the steps, less one for each label, lead once across
+    /// the area. Anybody else is better served by a label after each motion. `names` are those of price, limit and worth. There is room for `most` labels, of which each carries so many
     /// `bits` at most.
     ///
     /// # Errors
@@ -95,11 +96,16 @@ impl Asking {
     pub fn of(
         [price_name, labels_name, worth_name]: [&str; 3],
         Asked { price, labels, worth }: Asked,
-        (algorithm, area): (Algorithm, &MissionArea),
+        (algorithm, area, vehicle): (Algorithm, &MissionArea, &AnyVehicle),
         (steps, most, bits): (u32, u32, f64),
     ) -> Result<Self> {
         let looks_ahead = algorithm == Algorithm::Lookahead;
-        let are_scarce = looks_ahead && labels.is_some_and(|most| most < steps);
+        let grid = vehicle.grid();
+        let reach = f64::from(grid.reach_m(grid.speeds() - 1));
+        // The usual price is an eighth of the mean of its sides.
+        let leads_across = |spare: u32| f64::from(spare) * reach >= 8.0 * Far::across(area).price();
+        let are_scarce =
+            looks_ahead && labels.is_some_and(|most| most < steps && leads_across(steps - most));
         let sought = match price {
             Some(Price::Metres(metres)) if metres != 0.0 => Some(metres),
             None if are_scarce => Some(Far::across(area).price()),

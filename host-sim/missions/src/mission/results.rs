@@ -97,7 +97,7 @@ pub struct Start {
     /// What planners are told instead.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub p_told: Option<PTold>,
-    /// What a label costs, metres driven, if labels are sought all over the area.
+    /// What a label costs, metres driven, if labels are sought beyond one motion.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub price: Option<f64>,
     /// Labels at most, if they are limited by themselves.

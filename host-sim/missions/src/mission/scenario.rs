@@ -327,7 +327,7 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
     let bounds = file.bounds.0;
     let given_count = file.oracle.len() + bounds.len();
     let most = most_labels(given_count, weighs)?;
-    let asking = Asking::of(names, asked, (algorithm, &area), (steps, most, bits))?;
+    let asking = Asking::of(names, asked, (algorithm, &area, &vehicle), (steps, most, bits))?;
     let steps_name = if overrides.steps.is_some() { "--steps" } else { "steps" };
     let room = Room::of(weighs, &asking, file.audits());
     check_steps(steps_name, steps, given_count, room)?;
