@@ -7,7 +7,7 @@
 //! each of them. Where an end of the next motion costs less by then, it asks there.
 //!
 //! The price is the one number that says what a user wants: few labels, or little driving. With the number of labels
-//! that a mission has, the planner spreads them over two far places with one drive between them.
+//! that a mission has, the planner reads most of them near two far places, and drives between them once or twice.
 
 use crate::belief::Belief as _;
 use crate::belief::predictions::{Prediction, PredictiveBelief};
@@ -55,7 +55,7 @@ const USUAL: f32 = 0.125;
 pub struct Far {
     /// What a label costs, millimetres of driving.
     price_mm: u32,
-    /// The labels of the mission; 0 if nobody knows.
+    /// The labels of the mission at ends of motions; 0 if nobody knows.
     labels: u16,
 }
 
@@ -80,8 +80,8 @@ impl Far {
         Self { price_mm: price_mm.max(1), labels: 0 }
     }
 
-    /// The same for a mission of so many labels in all. The planner drives as little as it can to know the line well
-    /// after the last of them. Without it, the line is known about as well as it can be after each.
+    /// The same for a mission of so many labels in all, at ends of motions. The planner drives little, and knows the line
+    /// well after the last of them. With 0, as without, it aims to know the line well after each.
     #[must_use]
     pub const fn with_labels(self, labels: u16) -> Self {
         Self { labels, ..self }
@@ -105,8 +105,9 @@ impl Far {
         let bounds = lookout.area.bounds();
         let chord = Chord::of(belief.belief().centre()?, bounds)?;
         let price = self.price_mm as f32 * (1e-3 * UNITS_PER_METRE as f32);
-        let to_come = (self.labels > 0).then(|| self.labels.saturating_sub(journey.labels + 1));
-        let outlook = Outlook::of(belief, bounds, price, to_come)?;
+        let to_come = journey.to_come(self.labels);
+        let bits = belief.capacity() * predictor.most();
+        let outlook = Outlook::of(belief, bounds, (price, bits), to_come)?;
         let worth = |site: Site| -outlook.cost(site, pose.site);
         let mut best = None;
         for it in &many(predictor, belief.ground(), lookout, pose) {
@@ -198,7 +199,7 @@ pub struct Journey {
     now: Rest,
     /// The same after the motion that was planned last.
     next: Rest,
-    /// Labels that were read since the mission began.
+    /// Labels that were read at ends of motions since the mission began.
     labels: u16,
 }
 
@@ -222,6 +223,16 @@ impl Journey {
         self.now = if has_label { Rest::None } else { self.next };
         self.next = self.now;
         self.labels = self.labels.saturating_add(has_label.into());
+    }
+
+    /// Labels that come after the next one, of so many in all; `None` if nobody knows.
+    fn to_come(self, all: u16) -> Option<u16> {
+        (all > 0).then(|| all.saturating_sub(self.labels).saturating_sub(1))
+    }
+
+    /// Forgets the way.
+    pub(crate) fn forget(&mut self) {
+        (self.now, self.next) = (Rest::None, Rest::None);
     }
 
     /// The next motion of the way to a site, and whether a label is to be read at its end. `None` if there is no way, or
@@ -264,4 +275,21 @@ fn nearness<D: Dynamics, G: Workspace>(lookout: &Lookout<'_, D, G>) -> f32 {
     let step = lookout.dynamics.grid().step_units();
     let eighth = 0.125 * f32::from(lookout.usual) * step;
     if eighth > step { eighth } else { step }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Journey;
+
+    #[test]
+    fn labels_to_come_are_never_below_none() {
+        let read = |labels| Journey { labels, ..Journey::default() };
+        assert_eq!(read(3).to_come(10), Some(6));
+        assert_eq!(read(3).to_come(0), None);
+        for labels in [9, 10, 11, u16::MAX] {
+            let mut journey = read(labels);
+            journey.observe(true);
+            assert_eq!(journey.to_come(10), Some(0));
+        }
+    }
 }

@@ -462,8 +462,7 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion, S: Sight> Pla
         if is_kept {
             self.hear(heard);
             self.silence.hear();
-            // Another place may be worth more by now.
-            S::observe(&mut self.journey, true);
+            S::forget(&mut self.journey);
         }
         Ok(is_kept)
     }

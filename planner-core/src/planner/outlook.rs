@@ -1,17 +1,18 @@
 //! What a place costs at which a label may be read: the way there, and the error that is left after the next labels.
 //!
 //! A label where +1 and -1 are equally likely halves the lines that are left, wherever along the estimate it is read. So
-//! bits that are read near one place leave the slope open. What tells a good place is the error that is left if the next
-//! labels are read well too: all at one place of the estimate, so many levers `s` from the middle of its chord. With the
-//! covariance `S` of the lines over the chord and `h = (1, s)`, `t` labels of `I` bits each leave of the squared error
+//! bits that are read near one place leave the slope open. A good place is one after which the next labels leave little
+//! error. They are taken to be read all at one place of the estimate, so many levers `s` from the middle of its chord.
+//! Let `S` be the covariance of the lines over the chord, and `h = (1, s)`. Then `t` labels of `I` bits leave of the
+//! squared error
 //!
 //! ```text
 //! tr S_t = tr S - (1 - 4^(-I t)) |S h|^2 / (h' S h)
 //! ```
 //!
-//! With the number of labels to come, the last error counts. Without it, the mean of the logarithms over eight labels
-//! counts: so the robot reads about as many at one place before it drives to another. With `halving`, the metres that
-//! half of the error is worth, a place costs
+//! Where somebody knows how many labels are to come, the error after the last one counts. Else the mean of the logarithms
+//! over eight labels counts, so the robot reads about as many before it drives to another place. `halving` is the metres
+//! that half of the error is worth. A place costs
 //!
 //! ```text
 //! way + min over s of (way to s + halving * mean of half log2(tr S_t))
@@ -31,8 +32,8 @@ const AHEAD: u16 = 8;
 /// Labels that are looked ahead at most. They leave nothing of what one place can tell.
 const MOST: u16 = 64;
 
-/// Labels at one place leave the squared error at most so many times that of the same labels spread evenly: one drive more
-/// can mend it.
+/// Labels at one place leave the squared error at most so many times that of the same labels spread evenly. A plan knows one
+/// place only for all labels to come, and another drive can mend more than this.
 const UNEVEN: f32 = 100.0;
 
 /// Places along the chord at which the next labels may be read, from one end to the other.
@@ -61,18 +62,18 @@ struct ToGo {
 }
 
 impl<'a, S: Spread + 'a> Outlook<S> {
-    /// With a price of a label, lattice units, and the labels that are read after the next one, if somebody knows. `None`
-    /// if the estimate does not cross the area.
+    /// With a price of a label, lattice units, what it can tell with those on the way to it, bits, and the labels that are
+    /// read after the next one, if somebody knows. `None` if the estimate does not cross the area.
     pub(crate) fn of<B: PredictiveBelief<Spread<'a> = S>>(
         belief: &'a B,
         area: Area,
-        price: f32,
+        worth: (f32, f32),
         labels: Option<u16>,
     ) -> Option<Self> {
         let chord = Chord::of(belief.belief().centre()?, area)?.stretch()?;
         let spread = belief.spread(&chord);
         let whole = spread.covariance().trace();
-        let to_go = ToGo::new(chord, whole, (price, belief.capacity()), labels);
+        let to_go = ToGo::new(chord, whole, worth, labels);
         (whole > 0.0).then_some(Self { spread, to_go })
     }
 

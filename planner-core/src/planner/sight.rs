@@ -41,6 +41,10 @@ pub trait Sight: Copy {
     /// Records that the motion was made, and whether a label was read.
     #[doc(hidden)]
     fn observe(journey: &mut Self::Journey, has_label: bool);
+
+    /// Forgets the way to a place, as another may be worth more by now.
+    #[doc(hidden)]
+    fn forget(journey: &mut Self::Journey);
 }
 
 /// As far as one motion leads, two labels deep.
@@ -69,6 +73,8 @@ impl Sight for Near {
     }
 
     fn observe((): &mut (), _: bool) {}
+
+    fn forget((): &mut ()) {}
 }
 
 impl Sight for Far {
@@ -94,6 +100,10 @@ impl Sight for Far {
 
     fn observe(journey: &mut Journey, has_label: bool) {
         journey.observe(has_label);
+    }
+
+    fn forget(journey: &mut Journey) {
+        journey.forget();
     }
 }
 
@@ -170,5 +180,9 @@ impl Sight for AnySight {
 
     fn observe(journey: &mut Journey, has_label: bool) {
         journey.observe(has_label);
+    }
+
+    fn forget(journey: &mut Journey) {
+        journey.forget();
     }
 }

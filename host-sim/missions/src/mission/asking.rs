@@ -86,10 +86,11 @@ impl Asking {
     /// Labels are sought within one motion, and there may be as many as there is room for.
     pub const USUAL: Self = Self { price: None, labels: None, worth: 0.0 };
 
-    /// What a file or flags ask of a mission of so many `steps`. Labels are scarce if there are to be fewer than steps.
-    /// Scarce labels have the usual price without being given one: if the steps, less one for each label, lead once across
-    /// the area. Anybody else is better served by a label after each motion. `names` are those of price, limit and worth. There is room for `most` labels, of which each carries so many
-    /// `bits` at most.
+    /// What a file or flags ask of a mission of so many `steps`. `names` are those of price, limit and worth. There is room
+    /// for `most` labels, of which each carries so many `bits` at most.
+    ///
+    /// Labels are scarce if the steps, less one for each label, lead once across the area. Scarce labels have the usual
+    /// price without being given one. Anybody else is better served by a label after each motion.
     ///
     /// # Errors
     /// Names the field, what was found and what was expected.
@@ -121,7 +122,7 @@ impl Asking {
         if let Some(price) = sought
             && Far::at_price(price).is_err()
         {
-            return wrong(price_name, price, "metres driven, 0 to 16384, or none");
+            return wrong(price_name, price, "metres driven, 0.001 to 16384, or none");
         }
         if let Some(labels) = labels
             && !(1..=most).contains(&labels)

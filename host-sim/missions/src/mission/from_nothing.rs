@@ -102,6 +102,10 @@ impl<D: Dynamics + 'static> Planner for FromNothing<D> {
             return next.observe_within(pose, reading, tolerance);
         }
         self.seek.observe_within(pose, reading, tolerance)?;
+        // The planner that goes on has as many labels less.
+        if let (Some(left), Some(_)) = (&mut self.mission.asking.labels, reading) {
+            *left = left.saturating_sub(1);
+        }
         self.go_on();
         Ok(())
     }

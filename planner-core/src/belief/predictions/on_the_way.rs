@@ -133,9 +133,13 @@ impl<P: Prediction> Prediction for OnTheWay<P> {
         u32::from(self.places)
     }
 
+    fn most(&self) -> f32 {
+        MOST.get(usize::from(self.places)).copied().unwrap_or(1.0)
+    }
+
     fn brings(&self, site: Site, share: f32, information: f32) -> f32 {
-        let most = MOST.get(usize::from(self.places)).copied().unwrap_or(1.0);
-        if self.places < 2 { information } else { (information + self.more(site, share)) / most }
+        let more = || (information + self.more(site, share)) / self.most();
+        if self.places < 2 { information } else { more() }
     }
 }
 

@@ -112,6 +112,11 @@ pub trait Prediction {
         information
     }
 
+    /// The most that the labels of a motion can tell together, as a multiple of what one can.
+    fn most(&self) -> f32 {
+        1.0
+    }
+
     /// Places that are asked for that: as many evaluations does the end of a motion take of a plan's limit.
     fn asks(&self) -> u32 {
         1

@@ -2,7 +2,7 @@
 //!
 //! Over a stretch a line is an offset at its middle and a turn against it. With the lever `l = length / sqrt(12)`, the
 //! distance of a line from the estimate at `s` levers from the middle is `offset + s l turn`. The variance of the lines over
-//! the stretch is that of the offset and that of `l turn` together: the mean of the variances at `s = -1` and `s = 1`.
+//! the stretch is the sum of the variances of `offset` and `l turn`. It is also their mean at `s = -1` and `s = 1`.
 //!
 //! A label parts the lines in two, and what it removes of the covariance is what lies between the means of the parts. With
 //! the share `F` of the lines on one side, and `d` from the mean offset and turn of the one part to those of the other:
