@@ -304,6 +304,11 @@ impl CampaignFlags {
         if !planner.copes_with(self.grid(planner)) {
             bail!("--fan: found fine with {flag} {name}, expected paper, as it tries every action");
         }
+        if self.from_nothing && planner == Algorithm::Chords {
+            bail!(
+                "--from-nothing: found with {flag} {name}, expected given points, between which chords lead"
+            );
+        }
         let plans = planner.poses_problems();
         let weighs = planner == Algorithm::Scc;
         // Look-ahead predicts from hypotheses, margin sampling asks the most likely one.

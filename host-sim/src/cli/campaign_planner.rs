@@ -30,6 +30,7 @@ impl ValueEnum for CampaignPlanner {
             Self::Line(Algorithm::Cfc),
             Self::Line(Algorithm::Scc),
             Self::Line(Algorithm::Lookahead),
+            Self::Line(Algorithm::Chords),
             Self::Line(Algorithm::Margin),
             Self::Line(Algorithm::Random),
             Self::Line(Algorithm::Lawnmower),

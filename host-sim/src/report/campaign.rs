@@ -18,16 +18,17 @@ fn spread(Spread { median, p90, worst }: Spread, decimals: usize) -> String {
 pub fn accuracy(summary: &accuracy::Summary) -> String {
     let accuracy::Summary { algorithm, fields, seed, rows, .. } = summary;
     let (degrees, areas) = (degrees(rows), areas(rows));
-    let examined = if matches!(algorithm, Algorithm::Random | Algorithm::Lawnmower) {
-        String::new()
-    } else {
-        let (mean, actions) = (summary.mean_examined, summary.actions);
-        format!(
-            "Actions examined per plan: mean {mean:.1} of {actions} ({:.2} %), at most {}\n",
-            100.0 * mean / actions as f64,
-            summary.most_examined
-        )
-    };
+    let examined =
+        if matches!(algorithm, Algorithm::Chords | Algorithm::Random | Algorithm::Lawnmower) {
+            String::new()
+        } else {
+            let (mean, actions) = (summary.mean_examined, summary.actions);
+            format!(
+                "Actions examined per plan: mean {mean:.1} of {actions} ({:.2} %), at most {}\n",
+                100.0 * mean / actions as f64,
+                summary.most_examined
+            )
+        };
     format!(
         "{}, {fields} standard fields, seed {seed}{}\n\n\
          Slope error, degrees: median, 90th percentile, worst\n\n{degrees}\n\

@@ -16,6 +16,8 @@ pub enum Algorithm {
     Scc,
     /// Two labels ahead.
     Lookahead,
+    /// Two bisected chords.
+    Chords,
     /// Margin sampling, the usual rule of active learning.
     Margin,
     /// A random walk, for scale.
@@ -33,6 +35,7 @@ impl Algorithm {
             Self::Cfc => "Algorithm 1 (cfc)",
             Self::Scc => "Algorithm 2 (scc)",
             Self::Lookahead => "look-ahead",
+            Self::Chords => "two chords",
             Self::Margin => "margin sampling",
             Self::Random => "random walk",
             Self::Lawnmower => "lawnmower",
@@ -56,10 +59,10 @@ impl Algorithm {
         }
     }
 
-    /// The default fan of the unicycle. Look-ahead takes the fine one, as more rays cost it no more looks.
+    /// The default fan of the unicycle: the fine one where more rays cost no more looks.
     pub fn grid(self) -> Grid {
         match self {
-            Self::Lookahead | Self::Track => Grid::Fine,
+            Self::Lookahead | Self::Track | Self::Chords => Grid::Fine,
             _ => Grid::Paper,
         }
     }
@@ -74,7 +77,9 @@ impl Algorithm {
         match self {
             Self::Cfc | Self::Track => false,
             Self::Scc => true,
-            Self::Lookahead | Self::Margin | Self::Random | Self::Lawnmower => labels_err,
+            Self::Lookahead | Self::Chords | Self::Margin | Self::Random | Self::Lawnmower => {
+                labels_err
+            }
         }
     }
 

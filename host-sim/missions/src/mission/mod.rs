@@ -6,6 +6,7 @@ pub mod allowance;
 pub mod asking;
 pub mod baseline;
 pub mod bounds;
+pub mod chords;
 pub mod crossings;
 pub mod definition;
 mod diagnosing;

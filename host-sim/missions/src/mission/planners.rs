@@ -7,12 +7,13 @@ use planner_core::watch::Alarm;
 use planner_core::{
     Accuracy, AnyReliability, AnySight, AnyVehicle, Belief, Cfc, Estimates, FrontState, Guard,
     Line, Lookahead, Plan, Planner, Pose, PredictiveBelief, Reading, Scc, Site, Tolerance, Track,
-    Workspace,
+    Trust, Workspace,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use crate::mission::algorithm::Algorithm;
+use crate::mission::chords::{self, Chords};
 use crate::mission::definition::{DoubtfulBelief, HYPOTHESES, Mission};
 use crate::mission::from_nothing::FromNothing;
 use crate::mission::given::{CAPACITY, Lines};
@@ -111,6 +112,8 @@ impl Mission {
             Algorithm::Scc => erased(self.scc(area, dynamics)),
             Algorithm::Lookahead if self.is_noisy() => erased(self.doubtful(area, dynamics)),
             Algorithm::Lookahead => erased(self.lookahead(area, dynamics)),
+            Algorithm::Chords if self.is_noisy() => erased(self.chords((dynamics, self.table()))),
+            Algorithm::Chords => erased(self.chords((dynamics, self.lines()))),
             Algorithm::Margin if self.is_noisy() => {
                 erased(Margin { dynamics, area, belief: self.table() })
             }
@@ -128,6 +131,12 @@ impl Mission {
                 None => erased(self.track(area, dynamics)),
             },
         }
+    }
+
+    fn chords<D: Dynamics, B: Belief>(&self, of: (D, B)) -> Chords<D, B> {
+        let ends = chords::ends(self.oracle()).expect(FITS);
+        let p = self.noise_told().reliability.nominal().probability();
+        Chords::new(of, ends, p, self.start.site, (self.steps, self.asking.labels))
     }
 
     fn lawnmower<D: Dynamics, B: Belief>(&self, of: (MissionArea, D, B)) -> Lawnmower<D, B> {

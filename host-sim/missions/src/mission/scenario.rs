@@ -18,6 +18,7 @@ use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::{self, Allowance};
 use crate::mission::asking::{AskTable, Asking, Price};
 use crate::mission::bounds::Bounds;
+use crate::mission::chords;
 use crate::mission::definition::Mission;
 use crate::mission::front::{self, FrontTable};
 use crate::mission::given::{CAPACITY, Lines};
@@ -316,6 +317,9 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
     if algorithm == Algorithm::Lawnmower {
         lawnmower::check_area(&area)?;
     }
+    if algorithm == Algorithm::Chords {
+        chords::check_area(&area)?;
+    }
     let asked = file.ask.0.with(file.price, file.labels);
     let names = ["price", "labels", "ask.worth"];
     let noise = file.noise.as_ref().map(|table| noise(&table.0)).transpose()?;
@@ -335,6 +339,9 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
     let world = truth.unwrap_or(World::UNKNOWN);
     let given = if algorithm.seeks_line() { given } else { given_of_front };
     let given = given(&file.oracle, &bounds, &area, &world)?;
+    if algorithm == Algorithm::Chords {
+        chords::ends(&given.samples()[..file.oracle.len()])?;
+    }
     if trusts && algorithm.seeks_line() && given.lines().is_none() {
         let expected =
             "points of both labels, as labels are trusted around them, or trusted_radius = 0.0";

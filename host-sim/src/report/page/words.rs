@@ -170,6 +170,7 @@ fn planned(mission: &Mission, step: &StepResult) -> String {
                 "Where a label is worth the most for its price and the way"
             }
             Algorithm::Lookahead => "Where this label and the next tell the most for their cost",
+            Algorithm::Chords => "The middle of what is left of a chord, or beside it",
             Algorithm::Margin => "The place in reach nearest to the maximum-margin line",
             Algorithm::Lawnmower => "Along the tracks of its survey",
             _ => "At random",
