@@ -4,6 +4,7 @@
 //! is one of these lines, so the promise holds. If labels may be wrong, the promise is about a credible set. It then
 //! holds with at least the probability of that set.
 
+use crate::belief::predictions::LEVER;
 use crate::geometry::approximate::{METRE, cross, single, sqrt};
 use crate::geometry::arc::SlopeArc;
 use crate::geometry::area::Area;
@@ -112,6 +113,9 @@ pub trait Criterion: Copy {
     /// Conservative: `true` is always correct.
     fn is_met<B: Bounds>(self, bounds: &B, area: Area) -> bool;
 
+    /// The standard deviation, over a chord so long, of lines that just meet it, about; lattice units.
+    fn spread(self, chord: f32, area: Area) -> f32;
+
     /// The same criterion for the rectangle around an area.
     #[must_use]
     fn in_bounds_of<G: Workspace>(self, _area: &G) -> Self {
@@ -132,6 +136,10 @@ impl Criterion for NoGoal {
     fn is_met<B: Bounds>(self, _: &B, _: Area) -> bool {
         match self {}
     }
+
+    fn spread(self, _: f32, _: Area) -> f32 {
+        match self {}
+    }
 }
 
 /// Any two of the lines make an angle of this at most, below a quarter turn.
@@ -146,6 +154,11 @@ impl Criterion for SlopeWithin {
 
     fn is_met<B: Bounds>(self, bounds: &B, _: Area) -> bool {
         arc_of(bounds).is_some_and(|arc| is_narrower(arc, self.0))
+    }
+
+    fn spread(self, chord: f32, _: Area) -> f32 {
+        const RADIANS: f32 = core::f32::consts::PI / (1_u32 << 31) as f32;
+        LEVER * chord * self.0.0 as f32 * RADIANS / RANGE
     }
 }
 
@@ -164,6 +177,11 @@ impl Criterion for ShareWithin {
         arc_of(bounds).is_some_and(|arc| {
             is_narrower(arc, Angle(1 << 29)) && uncertain_share(arc, bounds, area) <= most
         })
+    }
+
+    fn spread(self, chord: f32, area: Area) -> f32 {
+        let [x, z] = area.half_sides().map(|half| 2.0 * half as f32);
+        1e-6 * self.0 as f32 * x * z / (chord * RANGE)
     }
 
     fn in_bounds_of<G: Workspace>(self, area: &G) -> Self {
@@ -194,6 +212,13 @@ impl Criterion for Accuracy {
         }
     }
 
+    fn spread(self, chord: f32, area: Area) -> f32 {
+        match self {
+            Self::SlopeArc(most) => SlopeWithin(most).spread(chord, area),
+            Self::Misclassified(most) => ShareWithin(most).spread(chord, area),
+        }
+    }
+
     fn in_bounds_of<G: Workspace>(self, area: &G) -> Self {
         match self {
             Self::SlopeArc(_) => self,
@@ -218,6 +243,10 @@ impl<I: Iterator<Item = Bound> + Clone> Bounds for I {
 
 /// Points along the area at which the breadth of the uncertain ground is taken, but for the first.
 const STATIONS: usize = 16;
+
+/// A goal is met with this part of it as standard deviation. Lines reach over some 4.5. Twice that is better than half: who
+/// counts on fewer labels than it takes drives to and fro for the last ones.
+const RANGE: f32 = 9.0;
 
 /// The most that rounding takes from a promise, as a share of it.
 const ROUNDING: f32 = 1e-4;

@@ -10,6 +10,7 @@
 //! that a mission has, the planner reads most of them near two far places, and drives between them once or twice.
 
 use crate::belief::Belief as _;
+use crate::belief::goal::{Criterion, Goal};
 use crate::belief::predictions::{Prediction, PredictiveBelief};
 use crate::geometry::lattice::{Site, UNITS_PER_METRE};
 use crate::geometry::value::ValueError;
@@ -95,19 +96,26 @@ impl Far {
 
 impl Far {
     /// What to do next; `None` if no label is in sight.
-    pub(crate) fn decide<B: PredictiveBelief, P: Prediction, D: Dynamics, G: Workspace>(
+    pub(crate) fn decide<B, P, D, G, C>(
         self,
         (belief, predictor): (&B, &P),
         lookout: &mut Lookout<'_, D, G>,
         pose: Pose,
-        journey: &mut Journey,
-    ) -> Option<Decision> {
+        (goal, journey): (Option<Goal<C>>, &mut Journey),
+    ) -> Option<Decision>
+    where
+        B: PredictiveBelief,
+        P: Prediction,
+        D: Dynamics,
+        G: Workspace,
+        C: Criterion,
+    {
         let bounds = lookout.area.bounds();
         let chord = Chord::of(belief.belief().centre()?, bounds)?;
         let price = self.price_mm as f32 * (1e-3 * UNITS_PER_METRE as f32);
         let to_come = journey.to_come(self.labels);
         let bits = belief.capacity() * predictor.most();
-        let outlook = Outlook::of(belief, bounds, (price, bits), to_come)?;
+        let outlook = Outlook::of(belief, bounds, (price, bits), to_come, goal)?;
         let worth = |site: Site| -outlook.cost(site, pose.site);
         let mut best = None;
         for it in &many(predictor, belief.ground(), lookout, pose) {

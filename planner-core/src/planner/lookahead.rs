@@ -272,7 +272,7 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion, S: Sight>
         let least = self.worthwhile();
         let mut lookout = Lookout { least, evaluations, ..self.lookout() };
         let mut journey = self.journey;
-        self.sight.decide(&self.belief, &mut lookout, pose, &mut journey).is_some()
+        self.sight.decide(&self.belief, &mut lookout, pose, (self.goal, &mut journey)).is_some()
     }
 
     /// The least expected information of a label that is worth its way, whatever was asked for.
@@ -382,7 +382,8 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion, S: Sight> Pla
         let mut lookout = self.lookout();
         let (least, dynamics) = (lookout.least, &self.dynamics);
         let mut journey = self.journey;
-        let decision = self.sight.decide(&self.belief, &mut lookout, pose, &mut journey);
+        let decision =
+            self.sight.decide(&self.belief, &mut lookout, pose, (self.goal, &mut journey));
         let looks = lookout.evaluations;
         self.journey = journey;
         if let Some(decision) = decision {

@@ -19,6 +19,7 @@
 //! ```
 
 use crate::belief::Belief as _;
+use crate::belief::goal::{Criterion, Goal};
 use crate::belief::predictions::{Covariance, PredictiveBelief, Spread, Stretch};
 use crate::belief::weight::LogWeight;
 use crate::geometry::approximate::{distance, sqrt};
@@ -63,18 +64,21 @@ struct ToGo {
 
 impl<'a, S: Spread + 'a> Outlook<S> {
     /// With a price of a label, lattice units, what it can tell with those on the way to it, bits, and the labels that are
-    /// read after the next one, if somebody knows. `None` if the estimate does not cross the area.
-    pub(crate) fn of<B: PredictiveBelief<Spread<'a> = S>>(
+    /// read after the next one, if somebody knows. If a goal ends the mission, it may be met with fewer. `None` if the
+    /// estimate does not cross the area.
+    pub(crate) fn of<B: PredictiveBelief<Spread<'a> = S>, C: Criterion>(
         belief: &'a B,
         area: Area,
         worth: (f32, f32),
         labels: Option<u16>,
+        goal: Option<Goal<C>>,
     ) -> Option<Self> {
         let chord = Chord::of(belief.belief().centre()?, area)?.stretch()?;
         let spread = belief.spread(&chord);
-        let whole = spread.covariance().trace();
-        let to_go = ToGo::new(chord, whole, worth, labels);
-        (whole > 0.0).then_some(Self { spread, to_go })
+        let wanted = goal
+            .map(|goal| goal.accuracy.spread(chord.length, area) / chord.lever() * spread.lever());
+        let to_go = ToGo::new(chord, spread.covariance(), worth, (labels, wanted));
+        (to_go.whole > 0.0).then_some(Self { spread, to_go })
     }
 
     /// What it costs to read the next label at one site, coming from another; lattice units.
@@ -85,12 +89,21 @@ impl<'a, S: Spread + 'a> Outlook<S> {
 
 impl ToGo {
     #[inline(never)] // one for all beliefs, as all of this
-    fn new(chord: Stretch, whole: f32, (price, bits): (f32, f32), labels: Option<u16>) -> Self {
+    fn new(
+        chord: Stretch,
+        now: Covariance,
+        (price, bits): (f32, f32),
+        (labels, wanted): (Option<u16>, Option<f32>),
+    ) -> Self {
         let logarithm = LogWeight::from_log(-2.0 * f64::from(bits) * core::f64::consts::LN_2);
         // A label takes `bits`, and two bits are half of the error.
         let halving = 2.0 * price / bits;
-        let labels = labels.map(|labels| labels.min(MOST));
-        Self { chord, whole, halving, quarter: logarithm.exp_single(), labels }
+        let quarter = logarithm.exp_single();
+        let known = labels.map_or(u16::MAX, |labels| labels.min(MOST));
+        let needed = wanted.map_or(u16::MAX, |wanted| needed(now, quarter, wanted));
+        let labels = if needed < known { needed } else { known };
+        let labels = (labels < u16::MAX).then_some(labels);
+        Self { chord, whole: now.trace(), halving, quarter, labels }
     }
 
     /// From a site, when this covariance is left.
@@ -122,6 +135,15 @@ impl ToGo {
         let (last, most) = (after(labels), UNEVEN * even);
         0.5 * log2(if last < most { last } else { most })
     }
+}
+
+/// Labels after the next one until lines that lie evenly have this standard deviation.
+fn needed(now: Covariance, quarter: f32, wanted: f32) -> u16 {
+    let (half, mut variance, mut labels) = (sqrt(quarter), sqrt(now.determinant()), 0);
+    while variance * half > wanted * wanted && labels < MOST {
+        (variance, labels) = (variance * half, labels + 1);
+    }
+    labels
 }
 
 /// A power of a number.

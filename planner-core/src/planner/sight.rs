@@ -1,5 +1,6 @@
 //! How far look-ahead looks for labels: one motion ([`Near`]), or all of the area ([`Far`]). And which of them it reads.
 
+use crate::belief::goal::{Criterion, Goal};
 use crate::belief::predictions::{OnTheWay, PredictiveBelief};
 use crate::geometry::value::ValueError;
 use crate::geometry::workspace::Workspace;
@@ -28,14 +29,14 @@ pub trait Sight: Copy {
     #[doc(hidden)]
     fn looks(self) -> u32;
 
-    /// What to do next; `None` if no label is in sight.
+    /// What to do next until a goal is met; `None` if no label is in sight.
     #[doc(hidden)]
-    fn decide<B: PredictiveBelief, D: Dynamics, G: Workspace>(
+    fn decide<B: PredictiveBelief, D: Dynamics, G: Workspace, C: Criterion>(
         self,
         belief: &B,
         lookout: &mut Lookout<'_, D, G>,
         pose: Pose,
-        journey: &mut Self::Journey,
+        until: (Option<Goal<C>>, &mut Self::Journey),
     ) -> Option<Decision>;
 
     /// Records that the motion was made, and whether a label was read.
@@ -62,12 +63,12 @@ impl Sight for Near {
         0
     }
 
-    fn decide<B: PredictiveBelief, D: Dynamics, G: Workspace>(
+    fn decide<B: PredictiveBelief, D: Dynamics, G: Workspace, C: Criterion>(
         self,
         belief: &B,
         lookout: &mut Lookout<'_, D, G>,
         pose: Pose,
-        (): &mut (),
+        _: (Option<Goal<C>>, &mut ()),
     ) -> Option<Decision> {
         Decision::of((&belief.predictor(pose.site), belief.ground()), lookout, pose)
     }
@@ -88,14 +89,14 @@ impl Sight for Far {
         LOOKS
     }
 
-    fn decide<B: PredictiveBelief, D: Dynamics, G: Workspace>(
+    fn decide<B: PredictiveBelief, D: Dynamics, G: Workspace, C: Criterion>(
         self,
         belief: &B,
         lookout: &mut Lookout<'_, D, G>,
         pose: Pose,
-        journey: &mut Journey,
+        until: (Option<Goal<C>>, &mut Journey),
     ) -> Option<Decision> {
-        Self::decide(self, (belief, &belief.predictor(pose.site)), lookout, pose, journey)
+        Self::decide(self, (belief, &belief.predictor(pose.site)), lookout, pose, until)
     }
 
     fn observe(journey: &mut Journey, has_label: bool) {
@@ -164,17 +165,17 @@ impl Sight for AnySight {
         self.far.map_or(0, Sight::looks)
     }
 
-    fn decide<B: PredictiveBelief, D: Dynamics, G: Workspace>(
+    fn decide<B: PredictiveBelief, D: Dynamics, G: Workspace, C: Criterion>(
         self,
         belief: &B,
         lookout: &mut Lookout<'_, D, G>,
         pose: Pose,
-        journey: &mut Journey,
+        until: (Option<Goal<C>>, &mut Journey),
     ) -> Option<Decision> {
         let predictor = OnTheWay::new(belief.predictor(pose.site), pose.site, self.readings);
         match self.far {
             None => Decision::of((&predictor, belief.ground()), lookout, pose),
-            Some(far) => far.decide((belief, &predictor), lookout, pose, journey),
+            Some(far) => far.decide((belief, &predictor), lookout, pose, until),
         }
     }
 

@@ -8,6 +8,7 @@ mod doubtful_audits;
 mod far;
 mod fields;
 mod fronts;
+mod goals;
 mod honesty;
 mod lawnmower;
 mod lookahead;

@@ -170,15 +170,10 @@ pub struct ColumnSpread<'a, const K: usize> {
     turns: [f32; K],
     /// All lines.
     sums: LineSums,
-    whole: Whole,
+    pub(crate) whole: Whole,
 }
 
 impl<const K: usize> ColumnSpread<'_, K> {
-    /// The covariance of all lines.
-    pub fn covariance(&self) -> Covariance {
-        self.whole.covariance
-    }
-
     /// See [`Spread::after`](crate::belief::predictions::Spread::after), of a label that is true with probability `p`.
     pub fn after(&self, site: Site, p: f32) -> Covariance {
         let place = self.columns.view.vector(site);

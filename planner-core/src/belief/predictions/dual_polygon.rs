@@ -366,6 +366,10 @@ impl Spread for PolygonSpread {
         self.whole.covariance
     }
 
+    fn lever(&self) -> f32 {
+        self.whole.lever
+    }
+
     fn after(&self, site: Site) -> Covariance {
         let polygon = &self.polygon;
         let place = polygon.axis.see(site - polygon.origin);

@@ -317,7 +317,11 @@ pub struct TableSpread<'a, const N: usize, const H: usize, R: Trust = Reliabilit
 
 impl<const N: usize, const H: usize, R: Trust> Spread for TableSpread<'_, N, H, R> {
     fn covariance(&self) -> Covariance {
-        self.columns.covariance()
+        self.columns.whole.covariance
+    }
+
+    fn lever(&self) -> f32 {
+        self.columns.whole.lever
     }
 
     fn after(&self, site: Site) -> Covariance {

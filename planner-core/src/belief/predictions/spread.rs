@@ -32,7 +32,7 @@ pub struct Stretch {
 }
 
 /// The lever of a stretch, as a share of its length: 1 / sqrt(12).
-const LEVER: f32 = 0.288_675_13;
+pub(crate) const LEVER: f32 = 0.288_675_13;
 
 impl Stretch {
     /// Its lever, lattice units.
@@ -92,6 +92,9 @@ pub trait Spread {
     /// The covariance of all lines.
     fn covariance(&self) -> Covariance;
 
+    /// The lever of the stretch, in the unit of the covariance.
+    fn lever(&self) -> f32;
+
     /// What it is expected to be after a label at a site.
     fn after(&self, site: Site) -> Covariance;
 }
@@ -126,7 +129,7 @@ impl LineSums {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Whole {
     /// In the unit of offsets.
-    lever: f32,
+    pub(crate) lever: f32,
     pub(crate) covariance: Covariance,
 }
 
