@@ -23,7 +23,6 @@ import warnings
 from pathlib import Path
 
 import numpy as np
-
 from modAL.models import ActiveLearner
 from modAL.uncertainty import margin_sampling
 from skactiveml.classifier import SklearnClassifier

@@ -114,7 +114,7 @@ pub trait Criterion: Copy {
     fn is_met<B: Bounds>(self, bounds: &B, area: Area) -> bool;
 
     /// The standard deviation, over a chord so long, of lines that just meet it, about; lattice units.
-    fn spread(self, chord: f32, area: Area) -> f32;
+    fn deviation(self, chord: f32, area: Area) -> f32;
 
     /// The same criterion for the rectangle around an area.
     #[must_use]
@@ -137,7 +137,7 @@ impl Criterion for NoGoal {
         match self {}
     }
 
-    fn spread(self, _: f32, _: Area) -> f32 {
+    fn deviation(self, _: f32, _: Area) -> f32 {
         match self {}
     }
 }
@@ -156,7 +156,7 @@ impl Criterion for SlopeWithin {
         arc_of(bounds).is_some_and(|arc| is_narrower(arc, self.0))
     }
 
-    fn spread(self, chord: f32, _: Area) -> f32 {
+    fn deviation(self, chord: f32, _: Area) -> f32 {
         const RADIANS: f32 = core::f32::consts::PI / (1_u32 << 31) as f32;
         LEVER * chord * self.0.0 as f32 * RADIANS / RANGE
     }
@@ -179,7 +179,7 @@ impl Criterion for ShareWithin {
         })
     }
 
-    fn spread(self, chord: f32, area: Area) -> f32 {
+    fn deviation(self, chord: f32, area: Area) -> f32 {
         let [x, z] = area.half_sides().map(|half| 2.0 * half as f32);
         1e-6 * self.0 as f32 * x * z / (chord * RANGE)
     }
@@ -212,10 +212,10 @@ impl Criterion for Accuracy {
         }
     }
 
-    fn spread(self, chord: f32, area: Area) -> f32 {
+    fn deviation(self, chord: f32, area: Area) -> f32 {
         match self {
-            Self::SlopeArc(most) => SlopeWithin(most).spread(chord, area),
-            Self::Misclassified(most) => ShareWithin(most).spread(chord, area),
+            Self::SlopeArc(most) => SlopeWithin(most).deviation(chord, area),
+            Self::Misclassified(most) => ShareWithin(most).deviation(chord, area),
         }
     }
 
@@ -244,8 +244,8 @@ impl<I: Iterator<Item = Bound> + Clone> Bounds for I {
 /// Points along the area at which the breadth of the uncertain ground is taken, but for the first.
 const STATIONS: usize = 16;
 
-/// A goal is met with this part of it as standard deviation. Lines reach over some 4.5. Twice that is better than half: who
-/// counts on fewer labels than it takes drives to and fro for the last ones.
+/// A goal counts as met where lines would reach over so many standard deviations within it. They reach over some 4.5. Too
+/// many are better than too few: a planner that counts on too few labels drives to and fro for the last ones.
 const RANGE: f32 = 9.0;
 
 /// The most that rounding takes from a promise, as a share of it.

@@ -10,7 +10,8 @@
 //! tr S_t = tr S - (1 - 4^(-I t)) |S h|^2 / (h' S h)
 //! ```
 //!
-//! Where somebody knows how many labels are to come, the error after the last one counts. Else the mean of the logarithms
+//! Where somebody knows how many labels are to come, the error after the last one counts. A goal says that too: labels come
+//! until lines that lie evenly are as close as it asks. Else the mean of the logarithms
 //! over eight labels counts, so the robot reads about as many before it drives to another place. `halving` is the metres
 //! that half of the error is worth. A place costs
 //!
@@ -58,14 +59,14 @@ struct ToGo {
     halving: f32,
     /// The share of the variance at a place that a label there leaves.
     quarter: f32,
-    /// Labels to come, if somebody knows.
+    /// Labels to come, if somebody knows or a goal says.
     labels: Option<u16>,
 }
 
 impl<'a, S: Spread + 'a> Outlook<S> {
-    /// With a price of a label, lattice units, what it can tell with those on the way to it, bits, and the labels that are
-    /// read after the next one, if somebody knows. If a goal ends the mission, it may be met with fewer. `None` if the
-    /// estimate does not cross the area.
+    /// `worth` is the price of a label, lattice units, and what it can tell with those on the way to it, bits. `labels` are
+    /// read after the next one, if somebody knows, or fewer if they meet the goal. `None` if the estimate does not cross the
+    /// area.
     pub(crate) fn of<B: PredictiveBelief<Spread<'a> = S>, C: Criterion>(
         belief: &'a B,
         area: Area,
@@ -75,8 +76,9 @@ impl<'a, S: Spread + 'a> Outlook<S> {
     ) -> Option<Self> {
         let chord = Chord::of(belief.belief().centre()?, area)?.stretch()?;
         let spread = belief.spread(&chord);
-        let wanted = goal
-            .map(|goal| goal.accuracy.spread(chord.length, area) / chord.lever() * spread.lever());
+        let wanted = goal.map(|goal| {
+            goal.accuracy.deviation(chord.length, area) / chord.lever() * spread.lever()
+        });
         let to_go = ToGo::new(chord, spread.covariance(), worth, (labels, wanted));
         (to_go.whole > 0.0).then_some(Self { spread, to_go })
     }

@@ -6,8 +6,8 @@
 //! other, each in the middle of what is left of the chord. Where labels may be wrong, the middle is the median of the
 //! crossing's distribution: probabilistic bisection.
 //!
-//! It stops exactly where it wants, whatever its vehicle: it turns on the spot and drives straight, no further at once than
-//! the longest motion. So it knows no keep-outs.
+//! It stops exactly where it wants, whatever its vehicle. It turns on the spot and drives straight, at most the longest
+//! motion at once. It knows no keep-outs.
 //!
 //! A mission without a limit on labels reads one after each motion. It drives to the other chord after half of them.
 
@@ -31,10 +31,11 @@ pub struct Chords<D, B> {
     pair: [Chord; 2],
     /// How often a label is true.
     p: f64,
-    /// What halves: labels on chords where labels are limited, else motions.
+    /// After so many labels or motions it drives to the other chord.
     half: u32,
+    /// Whether these are labels. If not, they are motions.
     counts_labels: bool,
-    /// So many of them were read or made.
+    /// Labels or motions so far.
     done: u32,
     /// Whether the motion that was planned last ends at its place.
     arrives: bool,
