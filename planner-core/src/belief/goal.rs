@@ -4,8 +4,7 @@
 //! is one of these lines, so the promise holds. If labels may be wrong, the promise is about a credible set. It then
 //! holds with at least the probability of that set.
 
-use crate::belief::predictions::LEVER;
-use crate::geometry::approximate::{METRE, cross, single, sqrt};
+use crate::geometry::approximate::{LEVER, METRE, cross, single, sqrt};
 use crate::geometry::arc::SlopeArc;
 use crate::geometry::area::Area;
 use crate::geometry::heading::Angle;

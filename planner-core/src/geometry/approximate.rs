@@ -8,6 +8,9 @@ use crate::geometry::lattice::{UNITS_PER_METRE, Vector};
 /// Metres in a lattice unit.
 pub(crate) const METRE: f32 = 1.0 / UNITS_PER_METRE as f32;
 
+/// The lever of a stretch, as a share of its length: 1 / sqrt(12), the deviation of places spread evenly over it.
+pub(crate) const LEVER: f32 = 0.288_675_13;
+
 /// The [cross product](Vector::cross) to 2 10^-7 of it, however small it is beside the vectors.
 #[inline(never)] // in many places, and not for speed
 pub(crate) fn cross(a: Vector, b: Vector) -> f32 {

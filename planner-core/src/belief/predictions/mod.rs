@@ -21,7 +21,6 @@ pub use noisy_belief::{
 pub(crate) use on_the_way::OnTheWay;
 pub(crate) use predictor::entropy;
 pub use predictor::{Prediction, PredictiveBelief, Predictor};
-pub(crate) use spread::LEVER;
 pub use spread::{Covariance, Spread, Stretch};
 pub(crate) use verdicts::PLACES;
 pub use verdicts::{Decisive, Heard, Odds, Verdict, Verdicts};

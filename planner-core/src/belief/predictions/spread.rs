@@ -14,7 +14,7 @@
 //! `P` is the chance of a label +1. Bits do not care where along the line they are asked; the variance does. It is nearly
 //! the square of the ground that the estimate misclassifies.
 
-use crate::geometry::approximate::single;
+use crate::geometry::approximate::{LEVER, single};
 use crate::geometry::lattice::{Site, Vector};
 
 /// A label that leaves out less than this share of the lines removes nothing: single precision has no digits for it.
@@ -30,9 +30,6 @@ pub struct Stretch {
     /// How long it is, lattice units.
     pub length: f32,
 }
-
-/// The lever of a stretch, as a share of its length: 1 / sqrt(12).
-pub(crate) const LEVER: f32 = 0.288_675_13;
 
 impl Stretch {
     /// Its lever, lattice units.
