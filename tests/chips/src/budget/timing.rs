@@ -142,7 +142,8 @@ impl Flight {
 
 /// Has the workloads of a program flown on a core, and enters what their calls took: the median of a few missions, and
 /// the worst of these and the hardest that are known. The Cortex-M0 is slow here: unless figures are written, it flies
-/// the hardest alone, and along no fronts. Returns the deepest stack.
+/// the hardest alone, along no fronts and with exact
+/// positions. Returns the deepest stack.
 ///
 /// # Panics
 /// When there is nothing to fly.
@@ -155,7 +156,8 @@ pub fn time(
     let is_slow = place[0] == Core::M0.name() && !is_updating() && !is_long();
     let searches = is_first && is_long();
     let is_flown = |it: &&Workload| {
-        (is_first || it.everywhere) && !(is_slow && it.algorithm == Algorithm::Track)
+        let is_dear = it.algorithm == Algorithm::Track || it.positions.len() > 1;
+        (is_first || it.everywhere) && !(is_slow && is_dear)
     };
     let mut stack = 0;
     for workload in Workload::of(place[1]).iter().filter(is_flown) {

@@ -11,7 +11,9 @@ use chips::emulator::{Call, Core};
 use chips::program::image::Image;
 use chips::program::{CHIP, bare};
 use planner_core::{Track, Unicycle};
+use tests::build::leave_out;
 use tests::missions::of_any_vehicle;
+use tests::{is_long, is_updating};
 
 use crate::board::Board;
 use crate::debugger::{Debugger, free_port};
@@ -20,6 +22,9 @@ use crate::machines::{self, Machine as _, NRF51, STM32, riscv};
 /// The programs of `tests/bare-core`.
 const PROGRAMS: [&str; 8] =
     ["alone", "small", "medium", "standard", "vehicles", "large", "track", "watch"];
+
+/// Those that are built for every core in a short run.
+const EVERYWHERE: [&str; 4] = ["alone", "small", "standard", "track"];
 
 /// The planner of the program `track`. A host needs no less memory for it than a chip.
 type Follower = Track<Unicycle, 16, 16, 3>;
@@ -41,7 +46,12 @@ fn every_program_keeps_its_budgets() {
         footprint::measure(&mut book, "firmware", &fs::read(elf).expect("cargo left an ELF"));
     }
     micro_bit(&mut book);
-    for name in PROGRAMS {
+    let others: &[_] = if is_updating() || is_long() { &PROGRAMS } else { &EVERYWHERE };
+    if others.len() < PROGRAMS.len() {
+        let why = "a long run has it: LONG=1 cargo test -p chips --features all footprint::";
+        leave_out("half of the programs on a Cortex-M0 and RISC-V", why);
+    }
+    for &name in others {
         if let Some(elf) = bare(Core::M0.target(), name) {
             let place = [Core::M0.name(), name];
             sizes(&mut book, place, &elf);

@@ -152,8 +152,8 @@ fn bare_cores_make_the_traces_of_this_machine() {
 fn bare_cores_make_the_same_maps_of_fronts() {
     compare(bare(Core::M4F, "track"), &fronts(cases(8, 24), 60));
     compare(riscv("track"), &fronts(cases(8, 40), 60));
-    // A Cortex-M0 needs thirty times as many instructions: a few steps of one of each kind.
-    compare(bare(Core::M0, "track"), &fronts(cases(4, 24), cases(10, 60) as u32));
+    // A Cortex-M0 needs thirty times as many instructions: a few steps of two kinds.
+    compare(bare(Core::M0, "track"), &fronts(cases(2, 24), cases(8, 60) as u32));
 }
 
 #[test]
