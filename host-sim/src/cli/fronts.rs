@@ -23,7 +23,7 @@ const USUAL_P: [f64; 2] = [1.0, 0.9];
 /// `--reach` and `--format`.
 #[derive(Debug, Args)]
 pub(crate) struct FrontsFlags {
-    /// Follow fronts that bend and move, and measure the maps (track, zigzag, bang-bang)
+    /// Follow fronts that bend and move, and measure the maps (track, trail, zigzag, bang-bang)
     #[arg(long, conflicts_with_all = MEANINGLESS)]
     pub(crate) fronts: bool,
     /// The tracker is told this multiple of each front's radius (track) [default: 1]

@@ -22,6 +22,7 @@
 
 pub mod bounds;
 pub mod cells;
+pub mod curve;
 pub mod deviation;
 pub mod doubtful_labels;
 pub mod estimate;

@@ -32,6 +32,7 @@ pub mod sight;
 pub mod silence;
 pub mod snapshot;
 pub mod track;
+pub mod trail;
 mod vote;
 pub mod watched;
 

@@ -72,10 +72,10 @@ fn fly(who: Who, p: f64, reach: Option<f64>) -> Vec<Row> {
 }
 
 /// With the bounds of a long run; of a quick one they are loose.
-fn check(p: f64, bounds: [Bounds; 6]) {
+fn check(who: Who, p: f64, bounds: &[Bounds]) {
     let slack = if is_long() { 1.0 } else { 1.4 };
     let mut faults = Vec::new();
-    for (it, [median, p95, driven, lost]) in fly(Who::Track, p, None).into_iter().zip(bounds) {
+    for (it, [median, p95, driven, lost]) in fly(who, p, None).into_iter().zip(bounds) {
         let few = if is_long() { 0.0 } else { 0.1 };
         let within = |number: Option<f64>, most| number.is_some_and(|it| it <= most);
         let is_near = within(it.off_median, slack * median) && within(it.off_p95, slack * p95);
@@ -98,7 +98,7 @@ fn true_labels_map_a_front() {
         [0.07, 0.29, 1.04, 0.005],
         [0.04, 0.13, 1.02, 0.0],
     ];
-    check(1.0, bounds);
+    check(Who::Track, 1.0, &bounds);
 }
 
 #[test]
@@ -111,17 +111,49 @@ fn labels_that_are_sometimes_wrong_map_a_front() {
         [0.28, 1.3, 1.14, 0.01],
         [0.105, 0.53, 1.035, 0.0],
     ];
-    check(0.9, bounds);
+    check(Who::Track, 0.9, &bounds);
+}
+
+/// Told nothing of how a front bends, over all kinds but the saw: its corners come too suddenly.
+#[test]
+fn a_front_is_mapped_by_one_who_is_told_nothing() {
+    let of_circles = [0.004, 0.10, 1.03, 0.0];
+    let certain = [
+        of_circles,
+        of_circles,
+        of_circles,
+        [0.10, 0.30, 1.08, 0.0],
+        [0.065, 0.22, 1.05, 0.0],
+        [0.025, 0.18, 1.04, 0.0],
+        of_circles,
+        [0.025, 0.20, 1.04, 0.0],
+        [0.10, 0.40, 1.30, 0.0],
+    ];
+    check(Who::Trail, 1.0, &certain);
+    let of_circles = [0.05, 0.42, 1.06, 0.0];
+    let doubtful = [
+        of_circles,
+        of_circles,
+        of_circles,
+        [0.26, 1.2, 1.26, 0.01],
+        [0.25, 1.2, 1.17, 0.01],
+        [0.12, 0.60, 1.07, 0.0],
+        of_circles,
+        [0.12, 0.60, 1.07, 0.0],
+        [0.28, 1.7, 1.60, 0.01],
+    ];
+    check(Who::Trail, 0.9, &doubtful);
 }
 
 /// With as many labels and as many metres, the tracker's map is nearer to every kind of front than those of planners
-/// without a belief: 95 % of its vertices. It also drives less for a metre of it.
+/// without a belief: 95 % of its vertices. It also drives less for a metre of it. All but the saw: with true labels a
+/// zigzag turns its corners better.
 #[test]
 fn steering_without_a_belief_maps_a_front_less_well() {
     for p in [1.0, 0.9] {
         let track = fly(Who::Track, p, Some(1.0));
         for who in [Who::Zigzag, Who::BangBang] {
-            for (track, other) in track.iter().zip(fly(who, p, Some(1.0))) {
+            for (track, other) in track.iter().take(9).zip(fly(who, p, Some(1.0))) {
                 let is_nearer = track.off_p95 < other.off_p95;
                 let is_shorter = track.driven < other.driven || track.front.starts_with("sine");
                 let is_alike = (track.labels - other.labels).abs() < 4.0;

@@ -41,7 +41,8 @@ mod tracker;
 mod waist;
 mod walk;
 
-pub(crate) use lay::Unit;
+pub(crate) use lay::{Unit, angle, limited};
+pub(crate) use learnt::Learnt;
 pub use memory::FrontMemory;
 pub use settings::{Front, FrontStretch};
 pub use stretch::Beside;

@@ -6,7 +6,8 @@ use anyhow::{Error, Result};
 use indicatif::ProgressBar;
 use planner_core::dynamics::Dynamics;
 use planner_core::{
-    AnyReliability, Area, Noise, Planner as _, Track, Tracker, Unicycle, Workspace,
+    AnyReliability, Area, Curve, Front, Noise, Planner as _, Track, Tracker, Trail, Unicycle,
+    Workspace,
 };
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
@@ -106,6 +107,15 @@ impl Fronts {
                 let tracker = tracker(&front, told, Noise::new(p).map_err(Error::msg)?)?;
                 let planner = Track::new(sea, vehicle, tracker).map_err(Error::msg)?;
                 follow(&front, planner, (course, pose), &mut rng, |_, _, _| ())
+            }
+            Who::Trail => {
+                let noise = Noise::new(p).map_err(Error::msg)?;
+                let speed =
+                    Front::STRAIGHT.moving(kind.told.times([1.0, self.told[1] * steps]).speed);
+                let speed = speed.map_err(Error::msg)?;
+                let curve = Curve::between(&front.given(), pose.heading, reach, speed, noise);
+                let planner = Trail::new(sea, vehicle, curve.map_err(Error::msg)?);
+                follow(&front, planner.map_err(Error::msg)?, (course, pose), &mut rng, |_, _, _| ())
             }
             Who::Zigzag => follow(&front, steered(ZIGZAG), (course, pose), &mut rng, |_, _, _| ()),
             Who::BangBang => {

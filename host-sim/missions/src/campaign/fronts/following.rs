@@ -3,7 +3,7 @@
 use nalgebra::Point2;
 use planner_core::dynamics::Dynamics;
 use planner_core::watch::Evidence;
-use planner_core::{Plan, Planner, Pose, Track, Workspace};
+use planner_core::{Plan, Planner, Pose, Track, Trail, Waist, Workspace};
 use rand_chacha::ChaCha8Rng;
 
 use crate::campaign::fronts::true_front::TrueFront;
@@ -21,6 +21,21 @@ const AWAY: f64 = 10.0;
 pub trait Follower: Planner {
     /// The place on the front that its last motion adds to the map, if it adds one.
     fn vertex(&self) -> Option<Vertex>;
+
+    /// Places on the map that come at the end.
+    fn rest(&self) -> Vec<Vertex> {
+        Vec::new()
+    }
+
+    /// How often it began again.
+    fn restarts(&self) -> u32 {
+        0
+    }
+
+    /// Whether the front is found.
+    fn is_found(&self) -> bool {
+        self.vertex().is_some()
+    }
 
     /// Whether it has gone along all of a closed front.
     fn is_closed(&self) -> bool;
@@ -42,8 +57,7 @@ impl<D: Dynamics, G: Workspace, const K: usize, const M: usize, const L: usize> 
     for Track<D, K, M, L, G>
 {
     fn vertex(&self) -> Option<Vertex> {
-        let waist = self.found()?;
-        Some(Vertex { at: waist.site.into(), half_width: Some(waist.half_width(0.9)) })
+        self.found().map(of_waist)
     }
 
     fn is_closed(&self) -> bool {
@@ -53,6 +67,38 @@ impl<D: Dynamics, G: Workspace, const K: usize, const M: usize, const L: usize> 
     fn has_evidence(&self) -> bool {
         *self.belief().evidence() != Evidence::NONE
     }
+}
+
+impl<D: Dynamics, G: Workspace> Follower for Trail<D, G> {
+    fn vertex(&self) -> Option<Vertex> {
+        self.belief().gone().map(of_waist)
+    }
+
+    fn rest(&self) -> Vec<Vertex> {
+        let mut rest: Vec<_> = self.belief().places().map(of_waist).collect();
+        rest.reverse();
+        rest
+    }
+
+    fn is_found(&self) -> bool {
+        true
+    }
+
+    fn restarts(&self) -> u32 {
+        self.belief().alarms()
+    }
+
+    fn is_closed(&self) -> bool {
+        false
+    }
+
+    fn has_evidence(&self) -> bool {
+        false
+    }
+}
+
+fn of_waist(waist: Waist) -> Vertex {
+    Vertex { at: waist.site.into(), half_width: Some(waist.half_width(0.9)) }
 }
 
 /// A vertex of the map beside the front as it was then.
@@ -118,12 +164,16 @@ pub fn follow<P: Follower>(
         let at = Point2::<f64>::from(pose.site);
         let label = front.sensed(at, steps, course.p, rng);
         let reading = next.wants_label.then(|| label.into());
+        let was_found = planner.is_found();
+        let restarts = planner.restarts();
         let had_evidence = planner.has_evidence();
         planner.observe(pose, reading).expect("any label is taken in");
         flown.labels += u32::from(reading.is_some());
+        flown.restarts += planner.restarts() - restarts;
         flown.restarts += u32::from(had_evidence && !planner.has_evidence());
-        flown.driven += if last.is_some() { (at - from).norm() } else { 0.0 };
-        if let Some(vertex) = planner.vertex() {
+        flown.driven += if last.is_some() || was_found { (at - from).norm() } else { 0.0 };
+        let rest = if motion == course.motions { planner.rest() } else { Vec::new() };
+        for vertex in planner.vertex().into_iter().chain(rest) {
             let off = front.distance(vertex.at, steps);
             let is_covered = vertex.half_width.map(|half| off <= half);
             flown.vertices.push(Measured { off, is_covered });

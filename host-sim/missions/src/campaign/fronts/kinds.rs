@@ -43,7 +43,7 @@ impl Told {
 }
 
 /// The kinds, in the order of tables.
-pub const KINDS: [Kind; 6] = [
+pub const KINDS: [Kind; 10] = [
     Kind {
         name: "circle of 20 m",
         draw: |rng| TrueFront::circle(20.0, rng),
@@ -73,5 +73,25 @@ pub const KINDS: [Kind; 6] = [
         name: "circle of 100 m, moving 5 cm",
         draw: |rng| TrueFront::circle(100.0, rng).moving(0.05, rng),
         told: Told { radius: 100.0, speed: 0.05 },
+    },
+    Kind {
+        name: "line, told 100",
+        draw: TrueFront::line,
+        told: Told { radius: 100.0, speed: 0.0 },
+    },
+    Kind {
+        name: "line, moving 5 cm, told 100",
+        draw: |rng| TrueFront::line(rng).moving(0.05, rng),
+        told: Told { radius: 100.0, speed: 0.05 },
+    },
+    Kind {
+        name: "sine of 2 m at 23 m, told 6",
+        draw: |rng| TrueFront::sine(2.0, 23.0, rng),
+        told: Told { radius: 6.0, speed: 0.0 },
+    },
+    Kind {
+        name: "corners of 90 degrees, 40 m, told 10",
+        draw: |rng| TrueFront::corners(40.0, rng),
+        told: Told { radius: 10.0, speed: 0.0 },
     },
 ];

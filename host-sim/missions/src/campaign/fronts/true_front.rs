@@ -1,6 +1,6 @@
 //! A front of the ensemble as it really is: a curve that may move, and the place on it where missions begin.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4, TAU};
 
 use nalgebra::{Point2, Vector2};
 use planner_core::{Heading, Label, Line, Pose, Sample, Site};
@@ -59,6 +59,34 @@ impl TrueFront {
         Self::new(Box::new(Circle { middle, radius }), place, angle, true)
     }
 
+    /// A straight front, in a direction that is drawn.
+    pub fn line(rng: &mut ChaCha8Rng) -> Self {
+        let angle = rng.random_range(-1.2..1.2);
+        let (sin, cos) = libm::sincos(angle);
+        let at = |along: f64| Point2::new(cos, sin) * along;
+        let count = FAR as i32;
+        Self::through((-count..=count).map(|n| at(n.into())).collect(), angle)
+    }
+
+    /// A saw with corners of 90 degrees, so far apart, metres.
+    pub fn corners(length: f64, rng: &mut ChaCha8Rng) -> Self {
+        let begin = rng.random_range(4..16);
+        let each = length * FRAC_1_SQRT_2 / 20.0;
+        // Twenty places lead up, and twenty down.
+        let at = |n: i32| {
+            let part = (begin + n).rem_euclid(40);
+            Point2::new(f64::from(n), f64::from(part.min(40 - part))) * each
+        };
+        let count = 20 * (FAR / length) as i32;
+        Self::through((-count..=count).map(at).collect(), FRAC_PI_4)
+    }
+
+    /// Through places, from the one in the middle.
+    fn through(way: Vec<Point2<f64>>, angle: f64) -> Self {
+        let place = way[way.len() / 2];
+        Self::new(Box::new(Polyline::through(way).expect("a way")), place, angle, false)
+    }
+
     /// A sine of this height and length, metres, with its phase drawn.
     ///
     /// # Panics
@@ -79,7 +107,7 @@ impl TrueFront {
         let way = coast(rng, shape, 500.0);
         let (place, next) = (way[way.len() / 2], way[way.len() / 2 + 1]);
         let angle = libm::atan2(next.y - place.y, next.x - place.x);
-        Self::new(Box::new(Polyline::through(way).expect("a way")), place, angle, false)
+        Self::through(way, angle)
     }
 
     /// The same, but it moves by so many metres a step, in a direction that is drawn.

@@ -11,6 +11,8 @@ use crate::campaign::fronts::following::REACH;
 pub enum Who {
     /// Finds a front that bends and moves, and goes along it.
     Track,
+    /// Goes along a front, told nothing of how it bends.
+    Trail,
     /// Turns by 45 degrees when the label changes, for comparison.
     Zigzag,
     /// Goes in circles towards the front, for comparison.
@@ -22,6 +24,7 @@ impl Who {
     pub const fn title(self) -> &'static str {
         match self {
             Self::Track => "front tracking",
+            Self::Trail => "trail",
             Self::Zigzag => "zigzag",
             Self::BangBang => "bang-bang",
         }
@@ -30,7 +33,7 @@ impl Who {
     /// Its longest motion if nobody says, metres.
     pub const fn usual_reach(self) -> f64 {
         match self {
-            Self::Track => REACH,
+            Self::Track | Self::Trail => REACH,
             Self::Zigzag | Self::BangBang => 1.0,
         }
     }

@@ -1,0 +1,381 @@
+//! A Gaussian over the front beside the robot and behind it, of which labels ask the offset alone.
+//!
+//! It has the offset `y` of the front from the reference arc, its turn against the arc, its curvature, and the offsets at a
+//! few places behind. All others are kept as what follows from the offset (`gain`, a slope each) and what is left beside
+//! it (`rest`). A label changes the offset's mean and variance, and nothing of the slopes or of the rest. So no label takes a
+//! difference of covariances, and none becomes indefinite. The places behind are not compared with one another.
+//!
+//! Lengths are in reaches.
+
+/// Places behind the robot of which offsets are kept.
+pub(crate) const PLACES: usize = 8;
+
+/// What depends on the offset: the turn, the curvature, and the places.
+const OTHERS: usize = 2 + PLACES;
+
+/// A place differs from the front's smooth curve by this deviation.
+const ROUGH: f32 = 0.006;
+
+/// No label takes more than this share of a variance: numbers keep their digits.
+const MOST: f32 = 0.95;
+
+/// How a front goes on.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Gait {
+    /// Deviations of curvature, of direction and of offset that it gains in a reach.
+    pub(crate) noise: [f32; 3],
+    /// The curvature fades in so many reaches, as the inverse.
+    pub(crate) fades: f32,
+    /// How likely a front goes so.
+    pub(crate) prior: f32,
+}
+
+/// A Gaussian and its weight in a sum of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Gaussian {
+    pub(crate) weight: f32,
+    /// Of the offset.
+    pub(crate) mean: f32,
+    pub(crate) variance: f32,
+    /// The means of the turn, the curvature, and the places.
+    pub(crate) means: [f32; OTHERS],
+    /// By how much each goes up with the offset.
+    pub(crate) gain: [f32; OTHERS],
+    /// Covariances of the turn and the curvature beside what the offset says.
+    pub(crate) rest: [f32; 3],
+    /// The same of each place: with the turn, with the curvature, and its own variance.
+    pub(crate) behind: [[f32; 3]; PLACES],
+}
+
+/// Where the front lies at a place ahead: mean and variance.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Offset {
+    pub(crate) weight: f32,
+    pub(crate) mean: f32,
+    pub(crate) variance: f32,
+}
+
+impl Gaussian {
+    pub(crate) const NONE: Self = Self {
+        weight: 0.0,
+        mean: 0.0,
+        variance: 1.0,
+        means: [0.0; OTHERS],
+        gain: [0.0; OTHERS],
+        rest: [1.0, 0.0, 1.0],
+        behind: [[0.0, 0.0, 1.0]; PLACES],
+    };
+
+    /// About the reference: a turn, and deviations of offset, turn and curvature.
+    pub(crate) fn about(weight: f32, turn: f32, [offset, turns, bends]: [f32; 3]) -> Self {
+        let mut new = Self { weight, variance: offset * offset, ..Self::NONE };
+        new.means[0] = turn;
+        new.rest = [turns * turns, 0.0, bends * bends];
+        new
+    }
+
+    /// The variance of a place behind.
+    pub(crate) fn variance_behind(&self, place: usize) -> Offset {
+        let at = |of: &[f32; OTHERS]| of.get(2 + place).copied().unwrap_or(0.0);
+        let rest = self.behind.get(place).map_or(0.0, |it| it[2]);
+        let gain = at(&self.gain);
+        let variance = gain * gain * self.variance + rest;
+        Offset { weight: self.weight, mean: at(&self.means), variance }
+    }
+
+    /// Where the front lies so far ahead. `bend` is the curvature of the reference there.
+    pub(crate) fn ahead(&self, way: f32, gait: &Gait) -> Offset {
+        let half = 0.5 * way * way;
+        let [turn, bend, ..] = self.means;
+        let [by_turn, by_bend, ..] = self.gain;
+        let [tt, tb, bb] = self.rest;
+        let own = 1.0 + way * by_turn + half * by_bend;
+        let rest = way * way * tt + 2.0 * way * half * tb + half * half * bb;
+        let [grown, ..] = gait.grown(way);
+        Offset {
+            weight: self.weight,
+            mean: self.mean + way * turn + half * bend,
+            variance: own * own * self.variance + rest + grown,
+        }
+    }
+
+    /// Goes along the reference, whose curvature is `bend`, back if the way is negative.
+    pub(crate) fn advance(&mut self, way: f32, bend: f32, gait: &Gait) {
+        let (half, size) = (0.5 * way * way, way.abs());
+        let kept = 1.0 - gait.fades * size;
+        let kept = if kept > 0.0 { kept } else { 0.0 };
+        let [turn, curve, ..] = self.means;
+        self.mean += way * turn + half * curve;
+        self.means[0] = turn + way * curve;
+        self.means[1] = kept * (curve + bend) - bend;
+
+        let v = self.variance;
+        let [by_turn, by_bend, ..] = self.gain;
+        let [tt, tb, bb] = self.rest;
+        let own = 1.0 + way * by_turn + half * by_bend;
+        let others = [by_turn + way * by_bend, kept * by_bend];
+        // What the rest comes to, with what the gait adds.
+        let [yy, yt, yb, gtt, gtb, gbb] = gait.grown(way);
+        let with_turn = way * tt + half * tb;
+        let with_bend = way * tb + half * bb;
+        let s = way * with_turn + half * with_bend + yy;
+        let to = [with_turn + way * with_bend + yt, kept * with_bend + yb];
+        let all = [
+            tt + 2.0 * way * tb + way * way * bb + gtt,
+            kept * (tb + way * bb) + gtb,
+            kept * kept * bb + gbb,
+        ];
+        let variance = own * own * v + s;
+        if s <= 0.0 || variance <= 0.0 {
+            return;
+        }
+        // The rest beside what its own share of the offset says, and what the two shares of the offset leave open.
+        let slopes = to.map(|it| it / s);
+        let beside =
+            [all[0] - slopes[0] * to[0], all[1] - slopes[0] * to[1], all[2] - slopes[1] * to[1]];
+        let open = v * s / variance;
+        let apart = [others[0] - own * slopes[0], others[1] - own * slopes[1]];
+        let least = |it: f32| if it > 0.0 { it } else { 0.0 };
+        self.rest = [
+            least(beside[0]) + open * apart[0] * apart[0],
+            beside[1] + open * apart[0] * apart[1],
+            least(beside[2]) + open * apart[1] * apart[1],
+        ];
+        let [others_turn, others_bend] = others;
+        let [to_turn, to_bend] = to;
+        let gains = [own * others_turn * v + to_turn, own * others_bend * v + to_bend]
+            .map(|it| it / variance);
+        for (gain, behind) in self.gain.iter_mut().skip(2).zip(&mut self.behind) {
+            let [pt, pb, pp] = *behind;
+            let (before, cross) = (*gain, v * *gain);
+            let after = (cross * own + way * pt + half * pb) / variance;
+            let with = [cross * others[0] + pt + way * pb, cross * others[1] + kept * pb];
+            let left = pp + before * cross - after * after * variance;
+            *gain = after;
+            *behind = [
+                with[0] - after * variance * gains[0],
+                with[1] - after * variance * gains[1],
+                if left > ROUGH * ROUGH { left } else { ROUGH * ROUGH },
+            ];
+        }
+        [self.gain[0], self.gain[1]] = gains;
+        self.variance = variance;
+    }
+
+    /// The place where the robot is becomes the first one behind it.
+    pub(crate) fn pass(&mut self) {
+        self.means.copy_within(2..OTHERS - 1, 3);
+        self.gain.copy_within(2..OTHERS - 1, 3);
+        self.behind.copy_within(..PLACES - 1, 1);
+        (self.means[2], self.gain[2]) = (self.mean, 1.0);
+        self.behind[0] = [0.0, 0.0, ROUGH * ROUGH];
+    }
+
+    /// Takes in that the offset has a gradient and a curvature of its logarithm: a label.
+    pub(crate) fn hear(&mut self, gradient: f32, curvature: f32) {
+        let by = self.variance * gradient;
+        self.mean += by;
+        for (mean, gain) in self.means.iter_mut().zip(&self.gain) {
+            *mean += gain * by;
+        }
+        let taken = self.variance * curvature;
+        self.variance *= 1.0 - if taken < MOST { taken } else { MOST };
+    }
+
+    /// The Gaussian with the mean and the covariance of both together.
+    pub(crate) fn merged(&self, other: &Self) -> Self {
+        let weight = self.weight + other.weight;
+        let b = if weight > 0.0 { other.weight / weight } else { 0.5 };
+        let a = 1.0 - b;
+        let off = other.mean - self.mean;
+        let (mine, its, between) = (a * self.variance, b * other.variance, a * b * off);
+        let variance = mine + its + between * off;
+        let mut new = Self { weight, mean: self.mean + b * off, variance, ..*self };
+        // How far each one's slopes are from those of both, and its mean from their line.
+        let mut apart = [[0.0; OTHERS]; 3];
+        let pairs = self.means.iter().zip(&other.means).zip(self.gain.iter().zip(&other.gain));
+        for (k, ((mean, its_mean), (gain, its_gain))) in pairs.enumerate() {
+            let way = its_mean - mean;
+            let slope = (mine * gain + its * its_gain + between * way) / variance;
+            if let (Some(to), Some(of)) = (new.means.get_mut(k), new.gain.get_mut(k)) {
+                (*to, *of) = (mean + b * way, slope);
+            }
+            let [x, y, z] = &mut apart;
+            for (into, off) in [(x, gain - slope), (y, its_gain - slope), (z, way - slope * off)] {
+                if let Some(into) = into.get_mut(k) {
+                    *into = off;
+                }
+            }
+        }
+        let [x, y, z] = &apart;
+        let both = |i: usize, j: usize| {
+            let of = |it: &[f32; OTHERS]| match (it.get(i), it.get(j)) {
+                (Some(a), Some(b)) => a * b,
+                _ => 0.0,
+            };
+            mine * of(x) + its * of(y) + a * b * of(z)
+        };
+        for (n, (i, j)) in [(0, 0), (0, 1), (1, 1)].into_iter().enumerate() {
+            if let (Some(to), Some(it)) = (new.rest.get_mut(n), other.rest.get(n)) {
+                *to = a * *to + b * it + both(i, j);
+            }
+        }
+        for (k, (to, it)) in new.behind.iter_mut().zip(&other.behind).enumerate() {
+            let with = [both(0, k + 2), both(1, k + 2), both(k + 2, k + 2)];
+            for ((to, it), with) in to.iter_mut().zip(it).zip(with) {
+                *to = a * *to + b * it + with;
+            }
+        }
+        new
+    }
+}
+
+impl Gait {
+    /// What a way adds to the covariance of offset, turn and curvature, row by row.
+    fn grown(&self, way: f32) -> [f32; 6] {
+        let (a, sign) = (way.abs(), if way < 0.0 { -1.0 } else { 1.0 });
+        let [bend, turn, offset] = self.noise.map(|it| it * it);
+        let (a2, a3) = (a * a, a * a * a);
+        [
+            a * (offset + a2 * (turn / 3.0 + bend * a2 / 20.0)),
+            sign * a2 * (turn * 0.5 + bend * a2 * 0.125),
+            bend * a3 / 6.0,
+            a * (turn + bend * a2 / 3.0),
+            sign * bend * a2 * 0.5,
+            bend * a,
+        ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::draws::Draws;
+
+    type Full = [[f64; 4]; 4];
+
+    /// Means and covariance of offset, turn, curvature and one place.
+    fn full(it: &Gaussian, place: usize) -> ([f64; 4], Full) {
+        let f = f64::from;
+        let k = 2 + place;
+        let slope = [1.0, f(it.gain[0]), f(it.gain[1]), f(it.gain[k])];
+        let [pt, pb, pp] = it.behind[place].map(f);
+        let [tt, tb, bb] = it.rest.map(f);
+        let rest = [[0.0; 4], [0.0, tt, tb, pt], [0.0, tb, bb, pb], [0.0, pt, pb, pp]];
+        let of = |i: usize, j: usize| slope[i] * slope[j] * f(it.variance) + rest[i][j];
+        let all = core::array::from_fn(|i| core::array::from_fn(|j| of(i, j)));
+        ([f(it.mean), f(it.means[0]), f(it.means[1]), f(it.means[k])], all)
+    }
+
+    fn near(a: ([f64; 4], Full), b: ([f64; 4], Full), what: &str) {
+        for i in 0..4 {
+            assert!(
+                (a.0[i] - b.0[i]).abs() < 1e-4 * (1.0 + b.0[i].abs()),
+                "{what} mean {i}: {a:?} {b:?}"
+            );
+            for j in 0..4 {
+                let scale = (b.1[i][i] * b.1[j][j]).sqrt();
+                assert!(
+                    (a.1[i][j] - b.1[i][j]).abs() < 2e-4 * scale,
+                    "{what} {i} {j}: {a:?} {b:?}"
+                );
+            }
+        }
+    }
+
+    fn drawn(draws: &mut Draws) -> Gaussian {
+        let mut unit = || draws.unit() as f32;
+        let mut it =
+            Gaussian::about(0.1 + unit(), unit() - 0.5, [0.1 + unit(), 0.1 + unit(), 0.1 + unit()]);
+        it.mean = unit() - 0.5;
+        it.means[1] = unit() - 0.5;
+        for _ in 0..3 {
+            it.advance(0.3 + unit(), 0.0, &GAIT);
+            it.pass();
+            it.hear(unit() - 0.5, unit());
+        }
+        it
+    }
+
+    const GAIT: Gait = Gait { noise: [0.1, 0.2, 0.05], fades: 0.3, prior: 0.0 };
+
+    fn times(f: &Full, p: &Full) -> Full {
+        let of = |i: usize, j: usize| {
+            (0..4)
+                .flat_map(|k| (0..4).map(move |l| (k, l)))
+                .map(|(k, l)| f[i][k] * p[k][l] * f[j][l])
+                .sum()
+        };
+        core::array::from_fn(|i| core::array::from_fn(|j| of(i, j)))
+    }
+
+    #[test]
+    fn it_does_what_a_matrix_does() {
+        let mut draws = Draws::new(7);
+        for _ in 0..200 {
+            let it = drawn(&mut draws);
+            let other = drawn(&mut draws);
+            let way = draws.unit() * 2.0 - 1.0;
+            for place in 0..3 {
+                let (mean, p) = full(&it, place);
+                // Ahead.
+                let (half, kept) = (0.5 * way * way, 1.0 - 0.3 * way.abs());
+                let f = [
+                    [1.0, way, half, 0.0],
+                    [0.0, 1.0, way, 0.0],
+                    [0.0, 0.0, kept, 0.0],
+                    [0.0, 0.0, 0.0, 1.0],
+                ];
+                let mut q = times(&f, &p);
+                let [yy, yt, yb, tt, tb, bb] = GAIT.grown(way as f32).map(f64::from);
+                for (i, j, it) in [
+                    (0, 0, yy),
+                    (0, 1, yt),
+                    (1, 0, yt),
+                    (0, 2, yb),
+                    (2, 0, yb),
+                    (1, 1, tt),
+                    (1, 2, tb),
+                    (2, 1, tb),
+                    (2, 2, bb),
+                ] {
+                    q[i][j] += it;
+                }
+                let moved = [
+                    mean[0] + way * mean[1] + half * mean[2],
+                    mean[1] + way * mean[2],
+                    kept * (mean[2] + 0.25) - 0.25,
+                    mean[3],
+                ];
+                let mut went = it;
+                went.advance(way as f32, 0.25, &GAIT);
+                near(full(&went, place), (moved, q), "advance");
+                let seen = it.ahead(way as f32, &GAIT);
+                assert!((f64::from(seen.variance) - q[0][0]).abs() < 1e-4 * q[0][0]);
+                assert!((f64::from(seen.mean) - moved[0]).abs() < 1e-4);
+                // A label.
+                let (g, b) = (0.3, 0.5 / p[0][0]);
+                let mut heard = it;
+                heard.hear(g as f32, b as f32);
+                let means = core::array::from_fn(|i| mean[i] + p[i][0] * g);
+                let all = core::array::from_fn(|i| {
+                    core::array::from_fn(|j| p[i][j] - b * p[i][0] * p[0][j])
+                });
+                near(full(&heard, place), (means, all), "hear");
+                // Both together.
+                let (its, o) = full(&other, place);
+                let share = f64::from(other.weight) / f64::from(it.weight + other.weight);
+                let means = core::array::from_fn(|i| mean[i] * (1.0 - share) + its[i] * share);
+                let all = core::array::from_fn(|i| {
+                    core::array::from_fn(|j| {
+                        p[i][j] * (1.0 - share)
+                            + o[i][j] * share
+                            + share * (1.0 - share) * (mean[i] - its[i]) * (mean[j] - its[j])
+                    })
+                });
+                near(full(&it.merged(&other), place), (means, all), "merge");
+            }
+        }
+    }
+}

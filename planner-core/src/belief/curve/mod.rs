@@ -1,0 +1,23 @@
+//! What is known of a front beside a robot that goes along it, told nothing of how the front bends.
+//!
+//! - **Along an arc.** The front is told as an offset, a turn and a curvature against an arc that goes with the robot, and
+//!   as its offsets at the last places that the robot has passed. Labels ahead narrow these too, for some reaches.
+//! - **A sum of Gaussians** (`bank.rs`), three for each of five gaits: straight on, gentle and tight bends, corners. The
+//!   mass passes from gait to gait on the way, so nobody has to know a radius. A steady motion shows as a turn.
+//! - **A label asks the offset alone** (`gaussian.rs`). All else is kept as what follows from the offset, and what is left.
+//!   So a label takes no difference of covariances, and none becomes indefinite.
+//! - **Widths** are quantiles of the sum, not multiples of its deviation.
+//! - **At the start** (`start.rs`) the front lies between two samples that differ, in any direction that the others leave.
+//!
+//! Lengths are in *reaches*, the longest motion of the robot. All is in single precision, by `+ - * /` in a fixed order and
+//! the functions of libm and `geometry/approximate.rs`: the same on every machine.
+
+mod arc;
+mod bank;
+mod follower;
+mod gaussian;
+mod normal;
+mod start;
+
+pub(crate) use bank::Sum;
+pub use follower::Curve;

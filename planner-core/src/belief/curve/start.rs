@@ -1,0 +1,90 @@
+//! How a front may go between two samples that differ, by all samples that are given.
+//!
+//! It crosses the way from one to the other anywhere, in any direction. Each of a few such lines is weighed by the other
+//! samples, the less the further off they are, as the front may bend on the way there.
+
+use crate::belief::curve::normal::Normal;
+use crate::belief::front::{Unit, angle};
+use crate::belief::sample::{Label, Sample};
+use crate::geometry::approximate::{METRE, distance, heading_of, sqrt};
+use crate::geometry::heading::{Angle, Heading};
+use crate::geometry::lattice::{Site, Vector};
+
+/// Directions to either side of the most likely one, and places on either side of the middle.
+const SIDE: i32 = 8;
+
+/// From one direction to the next, radians.
+const TURN: f32 = 1.4 / SIDE as f32;
+
+/// The deviation of a curvature in a reach.
+const BEND: f32 = 0.2;
+
+/// Where and how a front begins.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Start {
+    pub(crate) site: Site,
+    /// Its +1 side is to the left.
+    pub(crate) heading: Heading,
+    /// The deviations of offset and direction; the former in reaches.
+    pub(crate) deviation: [f32; 2],
+}
+
+impl Start {
+    /// Between those two samples that differ and are the nearest to each other; `None` if none differ.
+    pub(crate) fn of(given: &[Sample], errs: f32, reach: f32) -> Option<Self> {
+        let of = |label| given.iter().filter(move |it| it.label == label).map(|it| it.site);
+        let pairs =
+            of(Label::Positive).flat_map(|plus| of(Label::Negative).map(move |it| [plus, it]));
+        let length = |[plus, minus]: &[Site; 2]| {
+            let way = *plus - *minus;
+            way.dot(way)
+        };
+        pairs.min_by_key(length).map(|pair| Self::between(pair, given, errs, reach))
+    }
+
+    fn between([plus, minus]: [Site; 2], given: &[Sample], errs: f32, reach: f32) -> Self {
+        let way = plus - minus;
+        let middle = minus.step(Vector { x: way.x / 2, z: way.z / 2 }).unwrap_or(minus);
+        let gap = distance(way) * METRE / reach;
+        let heading = heading_of(way).turned(Angle(0_u32.wrapping_sub(1 << 30)));
+        let along = Unit::of(heading);
+        let (mut sum, mut first, mut second) = (0.0, [0.0_f32; 2], [0.0_f32; 2]);
+        for k in -SIDE..=SIDE {
+            let turn = k as f32 * TURN;
+            let Unit { x: cos, z: sin } = Unit::of(Heading(angle(turn).0));
+            for n in -SIDE..=SIDE {
+                let offset = n as f32 / (2 * SIDE + 1) as f32 * gap;
+                let mut weight = cos;
+                for sample in given {
+                    let by = sample.site - middle;
+                    let at = along.seen([by.x as f32, by.z as f32]).map(|it| it * METRE / reach);
+                    let [ahead, left] = [
+                        at[0] * cos + (at[1] - offset) * sin,
+                        (at[1] - offset) * cos - at[0] * sin,
+                    ];
+                    let bulge = 0.5 * BEND * ahead * ahead;
+                    let sign = if sample.label == Label::Positive { 1.0 } else { -1.0 };
+                    let is_so = Normal::below(sign * left / (bulge + 0.05));
+                    weight *= errs + (1.0 - 2.0 * errs) * is_so;
+                }
+                sum += weight;
+                for ((first, second), it) in
+                    first.iter_mut().zip(&mut second).zip([offset * cos, turn])
+                {
+                    *first += weight * it;
+                    *second += weight * it * it;
+                }
+            }
+        }
+        let each = if sum > 0.0 { 1.0 / sum } else { 0.0 };
+        let [offset, turn] = first.map(|it| it * each);
+        let [offsets, turns] = second.map(|it| it * each);
+        let deviation = [offsets - offset * offset, turns - turn * turn]
+            .map(|it| sqrt(if it > 1e-4 { it } else { 1e-4 }));
+        let heading = heading.turned(angle(turn));
+        let Unit { x, z } = Unit::of(heading);
+        let units = offset * reach / METRE;
+        let site = middle.step(Vector { x: (-z * units) as i32, z: (x * units) as i32 });
+        Self { site: site.unwrap_or(middle), heading, deviation }
+    }
+}
