@@ -32,9 +32,9 @@ pub trait Follower: Planner {
         0
     }
 
-    /// Whether the front is found.
+    /// Whether the front is known although the map has no place yet.
     fn is_found(&self) -> bool {
-        self.vertex().is_some()
+        false
     }
 
     /// Whether it has gone along all of a closed front.
@@ -164,14 +164,13 @@ pub fn follow<P: Follower>(
         let at = Point2::<f64>::from(pose.site);
         let label = front.sensed(at, steps, course.p, rng);
         let reading = next.wants_label.then(|| label.into());
-        let was_found = planner.is_found();
         let restarts = planner.restarts();
         let had_evidence = planner.has_evidence();
         planner.observe(pose, reading).expect("any label is taken in");
         flown.labels += u32::from(reading.is_some());
         flown.restarts += planner.restarts() - restarts;
         flown.restarts += u32::from(had_evidence && !planner.has_evidence());
-        flown.driven += if last.is_some() || was_found { (at - from).norm() } else { 0.0 };
+        flown.driven += if last.is_some() || planner.is_found() { (at - from).norm() } else { 0.0 };
         let rest = if motion == course.motions { planner.rest() } else { Vec::new() };
         for vertex in planner.vertex().into_iter().chain(rest) {
             let off = front.distance(vertex.at, steps);
