@@ -1,6 +1,7 @@
 //! What people and their programs read: examples, golden outputs, logs, pages, the package, the sources.
 
 mod examples;
+mod figures;
 mod golden;
 mod logs;
 mod package;
