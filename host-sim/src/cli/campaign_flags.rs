@@ -116,8 +116,8 @@ pub(crate) struct CampaignFlags {
     #[arg(long, conflicts_with = "trusted_radius")]
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     from_nothing: bool,
-    /// What a label costs, metres driven; labels are then sought all along the line (lookahead) [default: none; an eighth
-    /// of the mean side if --steps lead once across beside --labels]
+    /// What a label costs, metres driven; labels are then sought all along the line (lookahead) [default: none; with
+    /// --labels up to an eighth of the mean side, by how far --steps lead]
     #[arg(long, value_name = "METRES|none")]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     price: Option<Price>,

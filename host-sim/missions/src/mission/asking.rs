@@ -82,6 +82,21 @@ pub struct AskTable {
     worth: Option<f64>,
 }
 
+/// The price of a label that fits so many motions without a label, and so many with one. `None` if look-ahead within one
+/// motion is better.
+///
+/// With the usual price the robot drives about once across the area, of which the mean side is eight times that price. Where
+/// motions lead less far, or a few are lost as they end beside a place, the price falls with the square of what they lead.
+fn fitting_price(area: &MissionArea, reach: f64, (spare, labels): (u32, u32)) -> Option<f64> {
+    const LOST: f64 = 4.0;
+    let usual = Far::across(area).price();
+    let across = 8.0 * usual;
+    let leads = ((f64::from(spare) - LOST) * reach / across).min(1.0);
+    // Motions to so many labels lead once across: then these alone go far enough, and more has to be gained.
+    let least = 0.5 * (f64::from(labels) * reach / across).min(1.0);
+    (leads > 0.0 && leads >= least).then(|| (usual * leads * leads).max(1e-3))
+}
+
 impl Asking {
     /// Labels are sought within one motion, and there may be as many as there is room for.
     pub const USUAL: Self = Self { price: None, labels: None, worth: 0.0 };
@@ -89,8 +104,8 @@ impl Asking {
     /// What a file or flags ask of a mission of so many `steps`. `names` are those of price, limit and worth. There is room
     /// for `most` labels, of which each carries so many `bits` at most.
     ///
-    /// Labels are scarce if the steps, less one for each label, lead once across the area. Scarce labels have the usual
-    /// price without being given one. Anybody else is better served by a label after each motion.
+    /// Labels that are scarce have a price without being given one: one that [fits](fitting_price) the motions. Anybody
+    /// else is better served by a label after each motion.
     ///
     /// # Errors
     /// Names the field, what was found and what was expected.
@@ -103,13 +118,10 @@ impl Asking {
         let looks_ahead = algorithm == Algorithm::Lookahead;
         let grid = vehicle.grid();
         let reach = f64::from(grid.reach_m(grid.speeds() - 1));
-        // The usual price is an eighth of the mean of its sides.
-        let leads_across = |spare: u32| f64::from(spare) * reach >= 8.0 * Far::across(area).price();
-        let are_scarce =
-            looks_ahead && labels.is_some_and(|most| most < steps && leads_across(steps - most));
+        let scarce = |most: u32| fitting_price(area, reach, (steps.saturating_sub(most), most));
         let sought = match price {
             Some(Price::Metres(metres)) if metres != 0.0 => Some(metres),
-            None if are_scarce => Some(Far::across(area).price()),
+            None if looks_ahead => labels.and_then(scarce),
             _ => None,
         };
         let of_lookahead = [(price_name, price.is_some()), (worth_name, worth.is_some())];
