@@ -104,7 +104,7 @@ impl Asking {
     /// What a file or flags ask of a mission of so many `steps`. `names` are those of price, limit and worth. There is room
     /// for `most` labels, of which each carries so many `bits` at most.
     ///
-    /// Labels that are scarce have a price without being given one: one that [fits](fitting_price) the motions. Anybody
+    /// Labels that are scarce have a price without being given one: one that fits the motions. Anybody
     /// else is better served by a label after each motion.
     ///
     /// # Errors
