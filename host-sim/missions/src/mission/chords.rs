@@ -6,8 +6,8 @@
 //! other, each in the middle of what is left of the chord. Where labels may be wrong, the middle is the median of the
 //! crossing's distribution: probabilistic bisection.
 //!
-//! It stops exactly where it wants, whatever its vehicle. It turns on the spot and drives straight, at most the longest
-//! motion at once. It knows no keep-outs.
+//! It stops exactly where it wants, whatever the vehicle's steps are. It turns on the spot and drives straight, at most the
+//! longest motion at once. It knows no keep-outs, no boats and no cars.
 //!
 //! A mission without a limit on labels reads one after each motion. It drives to the other chord after half of them.
 

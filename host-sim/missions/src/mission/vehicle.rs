@@ -229,15 +229,14 @@ pub fn with_steps(
 /// Refuses a vehicle that the algorithm cannot drive: margin sampling, the random walk and the lawnmower drive no boat and no car,
 /// and margin sampling tries no more than [`MOST_TRIED`] actions.
 fn check_suits(name: &str, vehicle: &AnyVehicle, algorithm: Algorithm) -> Result<()> {
-    let tries = matches!(algorithm, Algorithm::Margin | Algorithm::Random | Algorithm::Lawnmower);
+    use Algorithm::{Chords, Lawnmower, Margin, Random};
+    let tries = matches!(algorithm, Chords | Lawnmower | Margin | Random);
     match vehicle {
         AnyVehicle::Boat(_) | AnyVehicle::Car(_) if tries => {
             let found = format!("one that cannot turn on the spot, with {}", algorithm.name());
             wrong(name, found, "cfc, scc or lookahead, which see to it that it can go on")
         }
-        AnyVehicle::Unicycle(it)
-            if algorithm == Algorithm::Margin && it.grid().actions() > MOST_TRIED =>
-        {
+        AnyVehicle::Unicycle(it) if algorithm == Margin && it.grid().actions() > MOST_TRIED => {
             let found = format!("{} actions with margin", it.grid().actions());
             wrong(name, found, format!("at most {MOST_TRIED}, as it tries every action"))
         }
