@@ -6,6 +6,7 @@
 //! - Missions that follow a front ([`fronts`]).
 //! - A chip in the test's own thread ([`chip`]), and a wire that spoils frames ([`wire`]).
 //! - Ensembles of missions and their figures ([`ensemble`]), and vehicles ([`vehicles`]).
+//! - The command line in the test's own process ([`command`]).
 //! - What tests build and need besides ([`build`]).
 //! - Beliefs to ask ([`known`]), and areas with keep-outs ([`terrain`]).
 
@@ -20,6 +21,7 @@ use rand_chacha::ChaCha8Rng;
 pub mod anything;
 pub mod build;
 pub mod chip;
+pub mod command;
 pub mod ensemble;
 pub mod fronts;
 pub mod known;

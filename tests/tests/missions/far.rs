@@ -1,17 +1,15 @@
 //! Large areas, and labels that have a price: look-ahead goes where labels pay.
 
-use clap::Parser as _;
 use host_sim::campaign::accuracy::{Accuracy, Row, Summary};
 use host_sim::campaign::ensemble::Campaign;
-use host_sim::cli::arguments::Cli;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::asking::Asking;
 use planner_core::{
     AnySight, AnyVehicle, Area, Far, Heading, Label, Lookahead, Near, NoGoal, Persist as _, Plan,
     Planner as _, Pose, Sample, Sight, Site, Unicycle, VersionSpace,
 };
-use serde_json::Value;
 use tests::cases;
+use tests::command;
 use tests::ensemble::expect;
 use tests::vehicles::unicycle;
 
@@ -86,16 +84,12 @@ fn a_higher_price_drives_farther_for_more() {
     assert!(rows.is_sorted_by(|before, after| before.centre_deg.median > after.centre_deg.median));
 }
 
-/// The median misclassified share after 24 labels of which nobody says a price, in so many steps.
-fn unpriced(steps: u32) -> f64 {
+/// The median misclassified share after the last label, by look-ahead.
+fn misclassified(flags: &str) -> f64 {
     let fields = cases(60, 1_000);
-    let line = format!(
-        "host-sim campaign --area 800,500 --reach 5 --labels 24 --steps {steps} --algorithm lookahead \
-         --fields {fields} --seed 1 --format json"
-    );
-    let told = Cli::try_parse_from(line.split_whitespace()).expect(&line).execute().expect(&line);
-    let summary: Value = serde_json::from_str(&told.text).expect("JSON");
-    let last = summary["rows"].as_array().and_then(|it| it.last()).expect("a row");
+    let campaign = "host-sim campaign --algorithm lookahead --seed 1";
+    let record = command::record(&format!("{campaign} --fields {fields} {flags}"));
+    let last = record["rows"].as_array().and_then(|it| it.last()).expect("a row");
     last["centre_misclassified"]["median"].as_f64().expect("a share")
 }
 
@@ -104,11 +98,25 @@ fn unpriced(steps: u32) -> f64 {
 fn labels_without_a_price_have_one_that_fits_the_motions() {
     let most =
         [(30, 0.03), (50, 0.014), (60, 0.004), (84, 0.0004), (110, 1e-4), (153, 6e-5), (154, 6e-5)];
-    let found = most.map(|(steps, _)| unpriced(steps));
+    let lake = "--area 800,500 --reach 5 --labels 24";
+    let found = most.map(|(steps, _)| misclassified(&format!("{lake} --steps {steps}")));
     for ((steps, most), found) in most.into_iter().zip(found) {
         expect(format!("misclassified, {steps} steps"), found, ..=most);
     }
     assert!(found.windows(2).all(|pair| pair[1] <= 1.1 * pair[0]), "{found:?}");
+}
+
+/// A vehicle that goes round to turn needs several motions to a far place: with few it has near sight.
+#[test]
+fn boats_and_cars_have_no_price_that_their_motions_do_not_fit() {
+    for vehicle in ["boat --sharpest 0.349", "car --radius 1", "car --radius 3"] {
+        for steps in [24, 30, 60, 120, 130, 160] {
+            let flags = format!("--vehicle {vehicle} --labels 20 --steps {steps}");
+            let [usual, none] =
+                ["", "--price none"].map(|price| misclassified(&format!("{flags} {price}")));
+            expect(format!("{vehicle}, {steps} steps, of near sight's"), usual / none, ..=1.1);
+        }
+    }
 }
 
 type Seeing<S> = Lookahead<Unicycle, VersionSpace<32>, Area, NoGoal, S>;

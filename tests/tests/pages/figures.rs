@@ -11,10 +11,9 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use clap::Parser as _;
-use host_sim::cli::arguments::Cli;
 use serde_json::Value;
 use tests::build::is_long;
+use tests::command;
 use tests::is_updating;
 
 const HEAD: &str = "| flags | after | slope error, degrees | 90 % | worst | misclassified, % | 90 % | worst | metres | control cost |
@@ -69,12 +68,9 @@ struct Flown(HashMap<String, Value>);
 impl Flown {
     fn found(&mut self, command: &str, flags: &str, after: u32) -> &Value {
         let seed = other_seed().unwrap_or_else(|| "1".to_owned());
-        let line = format!("host-sim {command} {flags} --seed {seed} --format json");
+        let line = format!("host-sim {command} {flags} --seed {seed}");
         let line = line.replace('N', &after.to_string());
-        self.0.entry(line).or_insert_with_key(|line| {
-            let cli = Cli::try_parse_from(line.split_whitespace()).expect(line);
-            serde_json::from_str(&cli.execute().expect(line).text).expect(line)
-        })
+        self.0.entry(line).or_insert_with_key(|line| command::record(line))
     }
 }
 

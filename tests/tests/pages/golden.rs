@@ -7,10 +7,8 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use clap::Parser as _;
 use expect_test::expect_file;
 use host_sim::campaign::standard_field;
-use host_sim::cli::arguments::Cli;
 use host_sim::cli::paper::FLIGHTS;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::Mission;
@@ -22,6 +20,7 @@ use host_sim::report::text;
 use host_sim::report::trace;
 use host_sim::world::noise::{Extent, NoiseModel};
 use planner_core::{Policy, Prior};
+use tests::command;
 
 #[test]
 fn standard_scenarios() {
@@ -87,10 +86,7 @@ fn hashes_of_traces_figures_and_campaigns() {
         }
     }
     let program = Path::new(env!("CARGO_MANIFEST_DIR")).join("../host-sim/scenarios");
-    let run = |args: &str| {
-        let args = std::iter::once("host-sim").chain(args.split(' '));
-        Cli::try_parse_from(args).expect("good arguments").execute().expect("it runs").text
-    };
+    let run = |args: &str| command::told(&format!("host-sim {args}"));
     for args in [
         "campaign --fields 40 --steps 40 --format json",
         "campaign --fields 40 --steps 40",

@@ -82,19 +82,26 @@ pub struct AskTable {
     worth: Option<f64>,
 }
 
-/// The price of a label that fits so many motions without a label, and so many with one. `None` if look-ahead within one
-/// motion is better.
+/// The price of a label that fits a mission of so many steps and labels. `None` where look-ahead within one motion is
+/// better.
 ///
-/// With the usual price the robot drives about once across the area, of which the mean side is eight times that price. Where
-/// motions lead less far, or a few are lost as they end beside a place, the price falls with the square of what they lead.
-fn fitting_price(area: &MissionArea, reach: f64, (spare, labels): (u32, u32)) -> Option<f64> {
-    const LOST: f64 = 4.0;
+/// With the usual price, an eighth of the mean side, the robot drives about once across the area. Where the motions without
+/// a label lead less far, the price falls with the square of that. Some are lost: a drive ends beside a place, and a
+/// vehicle that goes round to turn needs several to each place.
+fn fitting_price(
+    area: &MissionArea,
+    vehicle: &AnyVehicle,
+    (steps, labels): (u32, u32),
+) -> Option<f64> {
+    let turns = matches!(vehicle, AnyVehicle::Unicycle(_));
+    let lost = if turns { 4.0 } else { 5.0 * f64::from(labels) };
     let usual = Far::across(area).price();
-    let across = 8.0 * usual;
-    let leads = ((f64::from(spare) - LOST) * reach / across).min(1.0);
-    // Motions to so many labels lead once across: then these alone go far enough, and more has to be gained.
-    let least = 0.5 * (f64::from(labels) * reach / across).min(1.0);
-    (leads > 0.0 && leads >= least).then(|| (usual * leads * leads).max(1e-3))
+    let grid = vehicle.grid();
+    let per_motion = f64::from(grid.reach_m(grid.speeds() - 1)) / (8.0 * usual);
+    let across = |motions: f64| (motions * per_motion).clamp(0.0, 1.0);
+    let led = across(f64::from(steps) - f64::from(labels) - lost);
+    // One motion to each label may lead across by itself: then far sight needs half of the way.
+    (led > 0.0 && led >= 0.5 * across(labels.into())).then(|| (usual * led * led).max(1e-3))
 }
 
 impl Asking {
@@ -104,8 +111,7 @@ impl Asking {
     /// What a file or flags ask of a mission of so many `steps`. `names` are those of price, limit and worth. There is room
     /// for `most` labels, of which each carries so many `bits` at most.
     ///
-    /// Labels that are scarce have a price without being given one: one that fits the motions. Anybody
-    /// else is better served by a label after each motion.
+    /// Fewer labels than steps have a price without being given one, which fits the motions.
     ///
     /// # Errors
     /// Names the field, what was found and what was expected.
@@ -116,12 +122,10 @@ impl Asking {
         (steps, most, bits): (u32, u32, f64),
     ) -> Result<Self> {
         let looks_ahead = algorithm == Algorithm::Lookahead;
-        let grid = vehicle.grid();
-        let reach = f64::from(grid.reach_m(grid.speeds() - 1));
-        let scarce = |most: u32| fitting_price(area, reach, (steps.saturating_sub(most), most));
+        let fitting = |labels: u32| fitting_price(area, vehicle, (steps, labels));
         let sought = match price {
             Some(Price::Metres(metres)) if metres != 0.0 => Some(metres),
-            None if looks_ahead => labels.and_then(scarce),
+            None if looks_ahead => labels.and_then(fitting),
             _ => None,
         };
         let of_lookahead = [(price_name, price.is_some()), (worth_name, worth.is_some())];
