@@ -29,7 +29,7 @@ pub(crate) struct FrontsFlags {
     /// The tracker is told this multiple of each front's radius (track) [default: 1]
     #[arg(long, value_name = "FACTOR", requires = "fronts", allow_hyphen_values = true)]
     told_radius: Option<f64>,
-    /// The tracker is told this multiple of each front's speed (track) [default: 1]
+    /// The tracker is told this multiple of each front's speed (track, trail) [default: 1]
     #[arg(long, value_name = "FACTOR", requires = "fronts", allow_hyphen_values = true)]
     told_speed: Option<f64>,
 }
@@ -105,16 +105,17 @@ impl FrontsFlags {
         Ok(who.iter().map(of).collect())
     }
 
-    /// Whether a tracker can be told so, and whether there is one.
+    /// Whether a planner can be told so, and whether there is one.
     fn check_told(&self, who: &[Who], flag: &str) -> Result<()> {
         let told = [("--told-radius", self.told_radius), ("--told-speed", self.told_speed)];
         for (k, (name, factor)) in told.into_iter().enumerate() {
             let Some(factor) = factor else { continue };
-            if !who.contains(&Who::Track) {
+            let is_told = |who: &Who| [who.is_told_radius(), who.is_told_speed()][k];
+            if !who.iter().any(is_told) {
                 let names: Vec<_> = who.iter().map(|it| it.name()).collect();
-                let names = names.join(",");
+                let (names, those) = (names.join(","), ["track", "track or trail"][k]);
                 bail!(
-                    "{name}: found with {flag} {names}, expected with track, which is told of fronts"
+                    "{name}: found with {flag} {names}, expected with {those}, told so of fronts"
                 );
             }
             let mut factors = [1.0; 2];

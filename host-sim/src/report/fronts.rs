@@ -28,9 +28,10 @@ pub fn text(summaries: &[Summary]) -> String {
             table.row(named.into_iter().chain([title]).chain(figures));
         }
     }
-    let told = summaries.iter().find_map(|it| Some((it.told_radius?, it.told_speed?)));
-    let told = told.filter(|it| *it != (1.0, 1.0)).map_or(String::new(), |(radius, speed)| {
-        format!("Front tracking is told {radius} times the radius and {speed} times the speed of each front.\n")
+    let of = |it: &Summary| Some((it.told_radius.unwrap_or(1.0), it.told_speed?));
+    let told = summaries.iter().find_map(of).filter(|it| *it != (1.0, 1.0));
+    let told = told.map_or(String::new(), |(radius, speed)| {
+        format!("Told {radius} times the radius (front tracking) and {speed} times the speed of each front.\n")
     });
     let reach: Vec<_> =
         summaries.iter().map(|it| format!("{} {} m", it.algorithm.title(), it.reach)).collect();

@@ -1,15 +1,15 @@
 //! A planner that goes along a front, told nothing of how it bends.
 //!
-//! It learns from a [`Curve`] and looks one motion ahead, at some distances along the front, and on two lines there: the
-//! median of the front, and the robot's own line, or the nearest to it on which a label tells enough. A place is worth
+//! It learns from a [`Curve`] and looks one motion ahead, at some distances along the front. At each it looks at two places:
+//! on the median of the front, and on the robot's own line or near it, where a label still tells enough. A place is worth
 //!
 //! ```text
 //! bits of its label + counts * progress - 0.5 (way - progress)
 //! ```
 //!
-//! with way and progress in reaches. Progress counts in full where the front is known to a fifth of a reach, less where it
-//! is known worse, and is lost where it is hardly known: there the robot stays and looks. Where the last two labels were the
-//! same, it looks on the other side: labels on one side alone do not show that the front has bent away.
+//! with way and progress in reaches. Progress counts in full where the front is known to a fifth of a reach, and less where
+//! it is known worse. Where it is hardly known, progress counts against a place, so the robot stays and looks. Where the
+//! last two labels were the same, it looks on the other side. Labels on one side alone do not show that a front bends away.
 //!
 //! The vehicle takes the motion that ends nearest to the best place. It is meant for one that turns on the spot.
 
@@ -37,9 +37,10 @@ use crate::search::recovery::Found;
 /// How far ahead it looks, reaches.
 const WAYS: [f32; 11] = [0.0, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 0.95, 0.98, 1.0];
 
-/// Progress counts in full where the front is known to this, in reaches, and not at all where it is known to that: of
-/// labels that are true. Of others it takes more to know as much.
+/// With true labels progress counts in full where the front is known to this, in reaches. With others it is more.
 const FULL: f32 = 0.22;
+
+/// The same where it does not count.
 const NONE: f32 = 0.37;
 
 /// What it counts where the front is hardly known.
@@ -58,7 +59,7 @@ const STILL: f32 = 0.02;
 const ENDS: u32 = 64;
 const CLOSER: u32 = 6;
 
-/// The share of a turn of the cross product, whose sign alone counts.
+/// Of the cross product the sign alone counts. It is scaled to a share.
 const SIDE: f32 = 1e-9;
 
 /// A planner that goes along a front: `D` is the vehicle, `G` the area.

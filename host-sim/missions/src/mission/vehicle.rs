@@ -226,8 +226,8 @@ pub fn with_steps(
     table.vehicle(Source::Flags, algorithm, false, Grid::Paper)
 }
 
-/// Refuses a vehicle that the algorithm cannot drive: margin sampling, the random walk and the lawnmower drive no boat and no car,
-/// and margin sampling tries no more than [`MOST_TRIED`] actions.
+/// Refuses a vehicle that the algorithm cannot drive. Chords, margin sampling, the random walk and the lawnmower drive no
+/// boat and no car, and margin sampling tries no more than [`MOST_TRIED`] actions.
 fn check_suits(name: &str, vehicle: &AnyVehicle, algorithm: Algorithm) -> Result<()> {
     use Algorithm::{Chords, Lawnmower, Margin, Random};
     let tries = matches!(algorithm, Chords | Lawnmower | Margin | Random);

@@ -1,12 +1,14 @@
 //! The arc beside which offsets are told: a place, a direction, and a curvature.
 
-use crate::belief::front::{Unit, angle, limited};
-use crate::geometry::approximate::METRE;
+use crate::belief::front::{Unit, angle, limited, metres};
 use crate::geometry::heading::Heading;
 use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
 
 /// An arc is looked at no further than this, radians.
 const TURN: f32 = 1.2;
+
+/// A way on the inner side counts as no shorter than this share of that on the arc.
+const INNER: f32 = 0.3;
 
 /// Times that the nearest place of an arc is computed anew.
 const CLOSER: u32 = 3;
@@ -16,7 +18,7 @@ const CLOSER: u32 = 3;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Arc {
     pub(crate) site: Site,
-    /// The front's +1 side is to the left.
+    /// Along the front, the way that the robot goes.
     pub(crate) heading: Heading,
     /// 1/m, positive to the left.
     pub(crate) bend: f32,
@@ -57,8 +59,7 @@ impl Arc {
 
     /// Where a site lies beside it.
     pub(crate) fn see(&self, site: Site) -> Seen {
-        let way = site - self.site;
-        let at = Unit::of(self.heading).seen([way.x as f32 * METRE, way.z as f32 * METRE]);
+        let at = Unit::of(self.heading).seen(metres(site - self.site));
         let mut along = self.within(at[0]);
         let mut left = 0.0;
         for _ in 0..=CLOSER {
@@ -68,7 +69,7 @@ impl Arc {
             left = cos * off[1] - sin * off[0];
             // Along an arc a way beside it is shorter on the inner side.
             let per = 1.0 - self.bend * left;
-            let per = if per > 0.3 { per } else { 0.3 };
+            let per = if per > INNER { per } else { INNER };
             along = self.within(along + (cos * off[0] + sin * off[1]) / per);
         }
         Seen { along, left }
@@ -82,8 +83,8 @@ impl Arc {
         let at = [ahead - left * sin, aside + left * cos];
         let Unit { x, z } = Unit::of(self.heading);
         let units = UNITS_PER_METRE as f32;
-        let by = [x * at[0] - z * at[1], z * at[0] + x * at[1]].map(|it| (it * units) as i32);
-        let by = Vector::new(by[0], by[1]).unwrap_or_default();
+        let [x, z] = [x * at[0] - z * at[1], z * at[0] + x * at[1]].map(|it| (it * units) as i32);
+        let by = Vector::new(x, z).unwrap_or_default();
         self.site.step(by).unwrap_or(self.site)
     }
 

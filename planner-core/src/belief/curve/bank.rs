@@ -4,7 +4,7 @@
 //! the label tells nothing with the chance that it is false, or it is true. Those that change the distribution of the
 //! offset the least are merged until three are left (Runnalls 2007).
 
-use crate::belief::curve::gaussian::{Gait, Gaussian, Offset};
+use crate::belief::curve::gaussian::{BEND, Gait, Gaussian, Offset};
 use crate::belief::curve::normal::Normal;
 use crate::geometry::approximate::sqrt;
 
@@ -26,9 +26,6 @@ const LEAVES: f32 = 0.02;
 /// Of a Gaussian of less weight none is made.
 const LIGHT: f32 = 1e-6;
 
-/// The deviation of a curvature at first, in a reach.
-const BEND: f32 = 0.2;
-
 /// Three Gaussians one deviation of the turn apart have so much of it each: together they have all of it.
 const APART: f32 = 0.577_35;
 
@@ -37,6 +34,8 @@ const HALVINGS: u32 = 14;
 
 /// All Gaussians at a place, as many as there are.
 pub(crate) type Offsets = [Offset; EACH * GAITS.len()];
+
+const NOTHING: Offsets = [Offset { weight: 0.0, mean: 0.0, variance: 1.0 }; EACH * GAITS.len()];
 
 /// The sum. Weights make 1 together.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,7 +72,7 @@ impl Bank {
         Self { of }
     }
 
-    pub(crate) fn all(&self) -> impl Iterator<Item = &Gaussian> {
+    fn all(&self) -> impl Iterator<Item = &Gaussian> {
         self.of.iter().flatten()
     }
 
@@ -89,22 +88,10 @@ impl Bank {
 
     /// Adds to the variance of the offset.
     pub(crate) fn widen(&mut self, variance: f32) {
-        for it in self.of.iter_mut().flatten() {
-            let kept = it.variance / (it.variance + variance);
-            // What is left beside the offset grows by what its slope no longer says.
-            let lost = it.variance * (1.0 - kept);
-            let [t, b, ..] = it.gain;
-            let [tt, tb, bb] = &mut it.rest;
-            (*tt, *tb, *bb) = (*tt + t * t * lost, *tb + t * b * lost, *bb + b * b * lost);
-            for (gain, [pt, pb, pp]) in it.gain.iter().skip(2).zip(&mut it.behind) {
-                (*pt, *pb, *pp) =
-                    (*pt + gain * t * lost, *pb + gain * b * lost, *pp + gain * gain * lost);
-            }
-            it.gain.iter_mut().for_each(|gain| *gain *= kept);
-            it.variance += variance;
-        }
+        self.of.iter_mut().flatten().for_each(|it| it.widen(variance));
     }
 
+    /// Lets a share of the mass leave its gait on a way, and come back into each.
     fn mix(&mut self, way: f32) {
         let leaves = 1.0 - libm::expf(-LEAVES * way);
         let pool = self
@@ -151,7 +138,7 @@ impl Bank {
 
     /// Where the front lies so far ahead.
     pub(crate) fn ahead(&self, way: f32) -> Offsets {
-        let mut all = [Offset { weight: 0.0, mean: 0.0, variance: 1.0 }; EACH * GAITS.len()];
+        let mut all = NOTHING;
         let of = self
             .of
             .iter()
@@ -165,9 +152,9 @@ impl Bank {
 
     /// Where it lies at a place behind.
     pub(crate) fn behind(&self, place: usize) -> Offsets {
-        let mut all = [Offset { weight: 0.0, mean: 0.0, variance: 1.0 }; EACH * GAITS.len()];
+        let mut all = NOTHING;
         for (to, it) in all.iter_mut().zip(self.all()) {
-            *to = it.variance_behind(place);
+            *to = it.offset_behind(place);
         }
         all
     }

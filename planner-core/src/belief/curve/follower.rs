@@ -4,20 +4,15 @@ use crate::belief::curve::arc::Arc;
 use crate::belief::curve::bank::{Bank, Heard, Offsets, Sum as _};
 use crate::belief::curve::gaussian::PLACES;
 use crate::belief::curve::start::Start;
-use crate::belief::estimate::Estimates;
 use crate::belief::evidence::Evidence;
-use crate::belief::front::{Front, Learnt, NINETY, Waist, angle, limited};
-use crate::belief::goal::{Criterion, Goal};
+use crate::belief::front::{Front, Learnt, Waist, angle, limited};
 use crate::belief::noise::Noise;
-use crate::belief::sample::{Label, Reading, Sample};
+use crate::belief::sample::{Label, Sample};
 use crate::belief::tolerance::Tolerance;
 use crate::belief::trust::{AnyReliability, Trust as _};
-use crate::belief::{Belief, ObservationError};
-use crate::geometry::approximate::{METRE, sqrt};
-use crate::geometry::area::Area;
+use crate::geometry::approximate::METRE;
 use crate::geometry::heading::{Angle, Heading};
 use crate::geometry::lattice::Site;
-use crate::geometry::local_line::LocalLine;
 use crate::geometry::value::ValueError;
 
 /// A label is false with this chance at least, so that one false label does not rule out the truth.
@@ -44,12 +39,10 @@ const PIECES: u32 = 8;
 /// A shorter way is none, reaches.
 const STILL: f32 = 1e-5;
 
-/// For evidence a label is likelier by this: a few Gaussians stand for all curves.
-const MISFIT: f32 = 0.02;
+/// The deviation of the way of a front in a unit of time since a place was passed, as a share of the most that it moves.
+pub(super) const DRIFTS: f32 = 0.8;
 
-/// The deviation of the way of a front in a unit of time, as a share of the most that it moves: since a place was passed,
-/// and beside the robot, where labels follow it.
-const DRIFTS: f32 = 0.8;
+/// The same beside the robot, where labels follow it.
 const BESIDE: f32 = 0.3;
 
 /// A place is as good as it gets when that is more than this share of its deviation.
@@ -60,9 +53,9 @@ const ANEW: [f32; 2] = [0.5, 0.6];
 
 /// A place that was passed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Passed {
-    arc: Arc,
-    age: f32,
+pub(super) struct Passed {
+    pub(super) arc: Arc,
+    pub(super) age: f32,
 }
 
 /// What is known of a front beside a robot that goes along it. Nothing is told of how it bends.
@@ -91,27 +84,25 @@ struct Passed {
 #[derive(Clone, Debug)]
 pub struct Curve {
     /// Metres in a reach.
-    reach: f32,
+    pub(super) reach: f32,
     /// Metres in a unit of time.
-    pace: f32,
-    noise: Noise<AnyReliability>,
+    pub(super) pace: f32,
+    pub(super) noise: Noise<AnyReliability>,
     /// What labels have said of a reliability that nobody knows.
     learnt: Option<Learnt>,
     /// The robot's way along the front, from beside it on.
-    arc: Arc,
+    pub(super) arc: Arc,
     /// Whether the front's +1 side is to the right of this way.
-    is_flipped: bool,
-    bank: Bank,
-    passed: heapless::Deque<Passed, PLACES>,
+    pub(super) is_flipped: bool,
+    pub(super) bank: Bank,
+    pub(super) passed: heapless::Deque<Passed, PLACES>,
     /// How far the arc has gone since the last of these, reaches.
     since: f32,
-    evidence: Evidence,
-    /// How often labels have spoken against what was known.
-    alarms: u32,
+    pub(super) evidence: Evidence,
     /// The last label, and how many were the same.
-    run: (Option<Label>, u32),
+    pub(super) run: (Option<Label>, u32),
     /// The last place that has left the window at this motion.
-    gone: Option<Waist>,
+    pub(super) gone: Option<Waist>,
 }
 
 impl Curve {
@@ -146,7 +137,6 @@ impl Curve {
             passed: heapless::Deque::new(),
             since: 0.0,
             evidence: Evidence::NONE,
-            alarms: 0,
             run: (None, 0),
             gone: None,
         };
@@ -158,7 +148,7 @@ impl Curve {
     }
 
     /// The robot's direction along the front, of the front's own; and the other way round.
-    const fn along(&self, heading: Heading) -> Heading {
+    pub(super) const fn along(&self, heading: Heading) -> Heading {
         if self.is_flipped { heading.turned(Angle::HALF_TURN) } else { heading }
     }
 
@@ -173,7 +163,7 @@ impl Curve {
     }
 
     /// The deviation of where a label is read, reaches.
-    fn blur(&self, tolerance: Tolerance) -> f32 {
+    pub(super) fn blur(&self, tolerance: Tolerance) -> f32 {
         let told = tolerance.units() as f32 * METRE / (TOLERANCE * self.reach);
         if told > BLUR { told } else { BLUR }
     }
@@ -245,7 +235,7 @@ impl Curve {
     }
 
     /// Takes in a label. Returns how likely it was.
-    fn hear(&mut self, site: Site, label: Label, blur: f32) -> f32 {
+    pub(super) fn hear(&mut self, site: Site, label: Label, blur: f32) -> f32 {
         let left = self.arc.see(site).left / self.reach;
         let is_left = (label == Label::Positive) != self.is_flipped;
         let (sign, errs) = (if is_left { 1.0 } else { -1.0 }, self.error());
@@ -275,14 +265,13 @@ impl Curve {
     }
 
     /// Labels speak against what is known: the front is sought where it was known last, in any direction near that it had.
-    fn begin_again(&mut self) {
+    pub(super) fn begin_again(&mut self) {
         if let Some(Passed { arc, .. }) = self.passed.back() {
             self.arc = Arc { bend: 0.0, ..*arc };
         }
         self.bank = Bank::about(ANEW);
         self.passed.clear();
         (self.since, self.evidence, self.run) = (0.0, Evidence::NONE, (None, 0));
-        self.alarms = self.alarms.saturating_add(1);
     }
 
     /// The side of the robot's way on which the last labels were not: 1 to the left, -1 to the right. 0 where they differ.
@@ -314,132 +303,8 @@ impl Curve {
         self.reach
     }
 
-    /// The front on an arc: what is known of its offset, its turn, the deviation of that, and of how far it has moved.
-    fn waist(&self, arc: Arc, offsets: &Offsets, [turn, turns, moved]: [f32; 3]) -> Waist {
-        let middle = offsets.mean();
-        let half = offsets.half_width(middle, 0.9) * self.reach / NINETY;
-        let curvature = if self.is_flipped { -arc.bend } else { arc.bend };
-        Waist {
-            site: arc.site_at(0.0, middle * self.reach),
-            heading: self.along(arc.heading.turned(angle(turn))),
-            curvature,
-            deviation: sqrt(half * half + moved * moved),
-            turn_deviation: turns,
-        }
-    }
-
-    /// The front at a place behind, the last one first.
-    fn place(&self, number: usize) -> Option<Waist> {
-        let Passed { arc, age } = self.passed.iter().nth(number)?;
-        let [_, _, turns] = self.bank.direction();
-        let moved = DRIFTS * self.pace * age;
-        Some(self.waist(*arc, &self.bank.behind(number), [0.0, turns, moved]))
-    }
-
-    /// The front beside the robot.
-    pub fn now(&self) -> Waist {
-        let [turn, _, turns] = self.bank.direction();
-        self.waist(self.arc, &self.bank.ahead(0.0), [turn, turns, 0.0])
-    }
-
-    /// The last place that the map has from this motion on, if it has one more: no label changes it any more.
-    pub const fn gone(&self) -> Option<Waist> {
-        self.gone
-    }
-
-    /// The places passed that may still change, the last one first.
-    pub fn places(&self) -> impl Iterator<Item = Waist> {
-        (0..self.passed.len()).filter_map(|number| self.place(number))
-    }
-
-    /// The share of the curves that have a site on their +1 side.
-    pub fn share_above(&self, site: Site) -> f32 {
-        let [along, left] = self.see(site);
-        let blur = self.blur(self.noise.tolerance);
-        let below = self.bank.ahead(along).below(left, blur * blur);
-        if self.is_flipped { 1.0 - below } else { below }
-    }
-
     /// The evidence of the labels against what is known, since it began again.
     pub const fn evidence(&self) -> &Evidence {
         &self.evidence
-    }
-
-    /// How often the evidence was an alarm, and it began again.
-    pub const fn alarms(&self) -> u32 {
-        self.alarms
-    }
-}
-
-impl Belief for Curve {
-    fn is_full(&self) -> bool {
-        false
-    }
-
-    /// As at the end of a motion, but the robot goes on, and evidence does not count it: labels close together may err
-    /// together.
-    fn observe_on_the_way(
-        &mut self,
-        site: Site,
-        reading: Reading,
-    ) -> Result<bool, ObservationError> {
-        let Reading::Side(label) = reading else { return Ok(false) };
-        let gone = self.gone;
-        self.moved(site, 0.0);
-        self.gone = self.gone.or(gone);
-        self.hear(site, label, self.blur(self.noise.tolerance));
-        Ok(true)
-    }
-
-    fn tolerance(&self) -> Tolerance {
-        self.noise.tolerance
-    }
-
-    fn observe_within(
-        &mut self,
-        site: Site,
-        reading: Reading,
-        tolerance: Tolerance,
-    ) -> Result<(), ObservationError> {
-        if tolerance > self.noise.tolerance {
-            return Err(ObservationError::Tolerance(tolerance));
-        }
-        // A reading on the boundary agrees with both sides.
-        let Reading::Side(label) = reading else { return Ok(()) };
-        let chance = self.hear(site, label, self.blur(tolerance));
-        self.evidence.observe(label, chance + MISFIT);
-        let (last, run) = self.run;
-        self.run = (Some(label), if last == Some(label) { run.saturating_add(1) } else { 1 });
-        if self.evidence.alarm().is_some_and(|it| it.is_grave()) {
-            self.begin_again();
-        }
-        Ok(())
-    }
-
-    fn estimates(&self) -> Estimates {
-        Estimates { bisector: None, centre: self.centre(), maximum_margin: None }
-    }
-
-    fn centre(&self) -> Option<LocalLine> {
-        let waist = self.now();
-        LocalLine::new(waist.site, waist.heading.unit().scaled(1 << 24), 0.0, 0.0)
-    }
-
-    /// By how much the front beside the robot is known better than to a reach and a radian, bits.
-    fn information(&self) -> f64 {
-        let waist = self.now();
-        let share = waist.deviation * waist.turn_deviation / self.reach;
-        let bits = -libm::log2f(if share > 1e-12 { share } else { 1e-12 });
-        if bits > 0.0 { f64::from(bits) } else { 0.0 }
-    }
-
-    /// Never: a front goes on.
-    fn meets<C: Criterion>(&self, _: Goal<C>, _: Area) -> bool {
-        false
-    }
-
-    fn chance(&self, site: Site) -> f64 {
-        let (above, errs) = (f64::from(self.share_above(site)), f64::from(self.error()));
-        (1.0 - errs) * above + errs * (1.0 - above)
     }
 }

@@ -1,9 +1,9 @@
 //! A Gaussian over the front beside the robot and behind it, of which labels ask the offset alone.
 //!
-//! It has the offset `y` of the front from the reference arc, its turn against the arc, its curvature, and the offsets at a
-//! few places behind. All others are kept as what follows from the offset (`gain`, a slope each) and what is left beside
-//! it (`rest`). A label changes the offset's mean and variance, and nothing of the slopes or of the rest. So no label takes a
-//! difference of covariances, and none becomes indefinite. The places behind are not compared with one another.
+//! It has the front's offset from the reference arc, its turn against the arc, its curvature, and its offsets at a few
+//! places behind. All but the first are stored as a slope on the offset (`gain`), and what that leaves open (`rest`). A
+//! label changes the mean and the variance of the offset, and none of these. So no label subtracts covariances, and none
+//! becomes indefinite. The places behind are not compared with one another.
 //!
 //! Lengths are in reaches.
 
@@ -12,6 +12,9 @@ pub(crate) const PLACES: usize = 8;
 
 /// What depends on the offset: the turn, the curvature, and the places.
 const OTHERS: usize = 2 + PLACES;
+
+/// The deviation of a curvature at first, in a reach.
+pub(crate) const BEND: f32 = 0.2;
 
 /// A place differs from the front's smooth curve by this deviation.
 const ROUGH: f32 = 0.006;
@@ -75,8 +78,8 @@ impl Gaussian {
         new
     }
 
-    /// The variance of a place behind.
-    pub(crate) fn variance_behind(&self, place: usize) -> Offset {
+    /// Where the front lies at a place behind.
+    pub(crate) fn offset_behind(&self, place: usize) -> Offset {
         let at = |of: &[f32; OTHERS]| of.get(2 + place).copied().unwrap_or(0.0);
         let rest = self.behind.get(place).map_or(0.0, |it| it[2]);
         let gain = at(&self.gain);
@@ -84,7 +87,7 @@ impl Gaussian {
         Offset { weight: self.weight, mean: at(&self.means), variance }
     }
 
-    /// Where the front lies so far ahead. `bend` is the curvature of the reference there.
+    /// Where the front lies so far ahead.
     pub(crate) fn ahead(&self, way: f32, gait: &Gait) -> Offset {
         let half = 0.5 * way * way;
         let [turn, bend, ..] = self.means;
@@ -161,6 +164,21 @@ impl Gaussian {
         }
         [self.gain[0], self.gain[1]] = gains;
         self.variance = variance;
+    }
+
+    /// Adds to the variance of the offset. The rest grows by what the slopes no longer say.
+    pub(crate) fn widen(&mut self, by: f32) {
+        let kept = self.variance / (self.variance + by);
+        let lost = self.variance * (1.0 - kept);
+        let [t, b, ..] = self.gain;
+        let [tt, tb, bb] = self.rest;
+        self.rest = [tt + t * t * lost, tb + t * b * lost, bb + b * b * lost];
+        for (gain, behind) in self.gain.iter().skip(2).zip(&mut self.behind) {
+            let [pt, pb, pp] = *behind;
+            *behind = [pt + gain * t * lost, pb + gain * b * lost, pp + gain * gain * lost];
+        }
+        self.gain.iter_mut().for_each(|gain| *gain *= kept);
+        self.variance += by;
     }
 
     /// The place where the robot is becomes the first one behind it.
@@ -363,6 +381,11 @@ mod tests {
                     core::array::from_fn(|j| p[i][j] - b * p[i][0] * p[0][j])
                 });
                 near(full(&heard, place), (means, all), "hear");
+                let mut widened = it;
+                widened.widen(0.4);
+                let mut wide = p;
+                wide[0][0] += f64::from(0.4_f32);
+                near(full(&widened, place), (mean, wide), "widen");
                 // Both together.
                 let (its, o) = full(&other, place);
                 let share = f64::from(other.weight) / f64::from(it.weight + other.weight);

@@ -1,11 +1,11 @@
 //! What is known of a front beside a robot that goes along it, told nothing of how the front bends.
 //!
-//! - **Along an arc.** The front is told as an offset, a turn and a curvature against an arc that goes with the robot, and
-//!   as its offsets at the last places that the robot has passed. Labels ahead narrow these too, for some reaches.
+//! - **Along an arc.** An arc goes with the robot. Against it the front has an offset, a turn and a curvature, and offsets at
+//!   the last places that the robot has passed. Labels ahead narrow these too, for some reaches.
 //! - **A sum of Gaussians** (`bank.rs`), three for each of five gaits: straight on, gentle and tight bends, corners. The
 //!   mass passes from gait to gait on the way, so nobody has to know a radius. A steady motion shows as a turn.
-//! - **A label asks the offset alone** (`gaussian.rs`). All else is kept as what follows from the offset, and what is left.
-//!   So a label takes no difference of covariances, and none becomes indefinite.
+//! - **A label asks the offset alone** (`gaussian.rs`). All else is stored as slopes on the offset, and what these leave
+//!   open. So a label subtracts no covariances, and none becomes indefinite.
 //! - **Widths** are quantiles of the sum, not multiples of its deviation.
 //! - **At the start** (`start.rs`) the front lies between two samples that differ, in any direction that the others leave.
 //!
@@ -17,6 +17,7 @@ mod bank;
 mod follower;
 mod gaussian;
 mod normal;
+mod readout;
 mod start;
 
 pub(crate) use bank::Sum;

@@ -1,10 +1,11 @@
 //! How a front may go between two samples that differ, by all samples that are given.
 //!
-//! It crosses the way from one to the other anywhere, in any direction. Each of a few such lines is weighed by the other
-//! samples, the less the further off they are, as the front may bend on the way there.
+//! It crosses the way from one to the other anywhere, in any direction. A few such lines are weighed by all samples. Those
+//! further off count less, as the front may bend on the way there.
 
+use crate::belief::curve::gaussian::BEND;
 use crate::belief::curve::normal::Normal;
-use crate::belief::front::{Unit, angle};
+use crate::belief::front::{Unit, angle, metres};
 use crate::belief::sample::{Label, Sample};
 use crate::geometry::approximate::{METRE, distance, heading_of, sqrt};
 use crate::geometry::heading::{Angle, Heading};
@@ -16,8 +17,11 @@ const SIDE: i32 = 8;
 /// From one direction to the next, radians.
 const TURN: f32 = 1.4 / SIDE as f32;
 
-/// The deviation of a curvature in a reach.
-const BEND: f32 = 0.2;
+/// A sample blurs where the front is by this at least, reaches.
+const BLUR: f32 = 0.05;
+
+/// A deviation is no less than the root of this, in reaches or radians.
+const LEAST: f32 = 1e-4;
 
 /// Where and how a front begins.
 #[derive(Clone, Copy, Debug)]
@@ -56,15 +60,11 @@ impl Start {
                 let offset = n as f32 / (2 * SIDE + 1) as f32 * gap;
                 let mut weight = cos;
                 for sample in given {
-                    let by = sample.site - middle;
-                    let at = along.seen([by.x as f32, by.z as f32]).map(|it| it * METRE / reach);
-                    let [ahead, left] = [
-                        at[0] * cos + (at[1] - offset) * sin,
-                        (at[1] - offset) * cos - at[0] * sin,
-                    ];
+                    let [x, z] = along.seen(metres(sample.site - middle)).map(|it| it / reach);
+                    let [ahead, left] = Unit { x: cos, z: sin }.seen([x, z - offset]);
                     let bulge = 0.5 * BEND * ahead * ahead;
                     let sign = if sample.label == Label::Positive { 1.0 } else { -1.0 };
-                    let is_so = Normal::below(sign * left / (bulge + 0.05));
+                    let is_so = Normal::below(sign * left / (bulge + BLUR));
                     weight *= errs + (1.0 - 2.0 * errs) * is_so;
                 }
                 sum += weight;
@@ -80,7 +80,7 @@ impl Start {
         let [offset, turn] = first.map(|it| it * each);
         let [offsets, turns] = second.map(|it| it * each);
         let deviation = [offsets - offset * offset, turns - turn * turn]
-            .map(|it| sqrt(if it > 1e-4 { it } else { 1e-4 }));
+            .map(|it| sqrt(if it > LEAST { it } else { LEAST }));
         let heading = heading.turned(angle(turn));
         let Unit { x, z } = Unit::of(heading);
         let units = offset * reach / METRE;

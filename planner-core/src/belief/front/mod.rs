@@ -41,7 +41,7 @@ mod tracker;
 mod waist;
 mod walk;
 
-pub(crate) use lay::{Unit, angle, limited};
+pub(crate) use lay::{Unit, angle, limited, metres};
 pub(crate) use learnt::Learnt;
 pub use memory::FrontMemory;
 pub use settings::{Front, FrontStretch};

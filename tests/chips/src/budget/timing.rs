@@ -142,8 +142,7 @@ impl Flight {
 
 /// Has the workloads of a program flown on a core, and enters what their calls took: the median of a few missions, and
 /// the worst of these and the hardest that are known. The Cortex-M0 is slow here: unless figures are written, it flies
-/// the hardest alone, along no fronts and with exact
-/// positions. Returns the deepest stack.
+/// the hardest alone, along no fronts and with exact positions. Returns the deepest stack.
 ///
 /// # Panics
 /// When there is nothing to fly.

@@ -57,14 +57,14 @@ impl Fronts {
         let bar = bar.with_message(self.who.title());
         let rows: Result<_> = rows.into_iter().map(|(kind, p)| self.row(kind, p, &bar)).collect();
         bar.finish_and_clear();
-        let told = (self.who == Who::Track).then_some(self.told);
+        let [radius, speed] = self.told;
         Ok(Summary {
             algorithm: self.who,
             missions: self.missions,
             seed: self.seed,
             reach: self.reach(),
-            told_radius: told.map(|it| it[0]),
-            told_speed: told.map(|it| it[1]),
+            told_radius: self.who.is_told_radius().then_some(radius),
+            told_speed: self.who.is_told_speed().then_some(speed),
             rows: rows?,
         })
     }

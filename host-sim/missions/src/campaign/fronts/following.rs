@@ -22,14 +22,9 @@ pub trait Follower: Planner {
     /// The place on the front that its last motion adds to the map, if it adds one.
     fn vertex(&self) -> Option<Vertex>;
 
-    /// Places on the map that come at the end.
+    /// Places that the map has more when the mission ends.
     fn rest(&self) -> Vec<Vertex> {
         Vec::new()
-    }
-
-    /// How often it began again.
-    fn restarts(&self) -> u32 {
-        0
     }
 
     /// Whether the front is known although the map has no place yet.
@@ -84,16 +79,12 @@ impl<D: Dynamics, G: Workspace> Follower for Trail<D, G> {
         true
     }
 
-    fn restarts(&self) -> u32 {
-        self.belief().alarms()
-    }
-
     fn is_closed(&self) -> bool {
         false
     }
 
     fn has_evidence(&self) -> bool {
-        false
+        *self.belief().evidence() != Evidence::NONE
     }
 }
 
@@ -164,11 +155,9 @@ pub fn follow<P: Follower>(
         let at = Point2::<f64>::from(pose.site);
         let label = front.sensed(at, steps, course.p, rng);
         let reading = next.wants_label.then(|| label.into());
-        let restarts = planner.restarts();
         let had_evidence = planner.has_evidence();
         planner.observe(pose, reading).expect("any label is taken in");
         flown.labels += u32::from(reading.is_some());
-        flown.restarts += planner.restarts() - restarts;
         flown.restarts += u32::from(had_evidence && !planner.has_evidence());
         flown.driven += if last.is_some() || planner.is_found() { (at - from).norm() } else { 0.0 };
         let rest = if motion == course.motions { planner.rest() } else { Vec::new() };

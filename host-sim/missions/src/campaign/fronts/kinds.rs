@@ -90,7 +90,7 @@ pub const KINDS: [Kind; 10] = [
         told: Told { radius: 6.0, speed: 0.0 },
     },
     Kind {
-        name: "corners of 90 degrees, 40 m, told 10",
+        name: "saw of 40 m, told 10",
         draw: |rng| TrueFront::corners(40.0, rng),
         told: Told { radius: 10.0, speed: 0.0 },
     },

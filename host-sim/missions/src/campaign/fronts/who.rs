@@ -30,6 +30,16 @@ impl Who {
         }
     }
 
+    /// Whether it is told how tightly a front bends.
+    pub const fn is_told_radius(self) -> bool {
+        matches!(self, Self::Track)
+    }
+
+    /// Whether it is told how fast a front moves.
+    pub const fn is_told_speed(self) -> bool {
+        matches!(self, Self::Track | Self::Trail)
+    }
+
     /// Its longest motion if nobody says, metres.
     pub const fn usual_reach(self) -> f64 {
         match self {

@@ -1,0 +1,191 @@
+//! What a curve says of the front, and how it is asked as any belief is.
+
+use crate::belief::curve::arc::Arc;
+use crate::belief::curve::bank::{Offsets, Sum as _};
+use crate::belief::curve::follower::{Curve, DRIFTS, Passed};
+use crate::belief::estimate::Estimates;
+use crate::belief::front::{NINETY, Waist, angle};
+use crate::belief::goal::{Criterion, Goal};
+use crate::belief::sample::Reading;
+use crate::belief::tolerance::Tolerance;
+use crate::belief::{Belief, ObservationError};
+use crate::geometry::approximate::sqrt;
+use crate::geometry::area::Area;
+use crate::geometry::lattice::Site;
+use crate::geometry::local_line::LocalLine;
+
+/// For evidence a label is likelier by this: a few Gaussians stand for all curves.
+const MISFIT: f32 = 0.02;
+
+impl Curve {
+    /// The front on an arc: what is known of its offset, its turn, the deviation of that, and of how far it has moved.
+    fn waist(&self, arc: Arc, offsets: &Offsets, [turn, turns, moved]: [f32; 3]) -> Waist {
+        let middle = offsets.mean();
+        let half = offsets.half_width(middle, 0.9) * self.reach / NINETY;
+        let curvature = if self.is_flipped { -arc.bend } else { arc.bend };
+        Waist {
+            site: arc.site_at(0.0, middle * self.reach),
+            heading: self.along(arc.heading.turned(angle(turn))),
+            curvature,
+            deviation: sqrt(half * half + moved * moved),
+            turn_deviation: turns,
+        }
+    }
+
+    /// The front at a place behind, the last one first.
+    pub(super) fn place(&self, number: usize) -> Option<Waist> {
+        let Passed { arc, age } = self.passed.iter().nth(number)?;
+        let [_, _, turns] = self.bank.direction();
+        let moved = DRIFTS * self.pace * age;
+        Some(self.waist(*arc, &self.bank.behind(number), [0.0, turns, moved]))
+    }
+
+    /// The front beside the robot.
+    pub fn now(&self) -> Waist {
+        let [turn, _, turns] = self.bank.direction();
+        self.waist(self.arc, &self.bank.ahead(0.0), [turn, turns, 0.0])
+    }
+
+    /// The last place that the map has from this motion on, if it has one more: no label changes it any more.
+    pub const fn gone(&self) -> Option<Waist> {
+        self.gone
+    }
+
+    /// The places passed that may still change, the last one first.
+    pub fn places(&self) -> impl Iterator<Item = Waist> {
+        (0..self.passed.len()).filter_map(|number| self.place(number))
+    }
+
+    /// The share of the curves that have a site on their +1 side.
+    pub fn share_above(&self, site: Site) -> f32 {
+        let [along, left] = self.see(site);
+        let blur = self.blur(self.noise.tolerance);
+        let below = self.bank.ahead(along).below(left, blur * blur);
+        if self.is_flipped { 1.0 - below } else { below }
+    }
+}
+
+impl Belief for Curve {
+    fn is_full(&self) -> bool {
+        false
+    }
+
+    /// As at the end of a motion, but the robot goes on, and evidence does not count it: labels close together may err
+    /// together.
+    fn observe_on_the_way(
+        &mut self,
+        site: Site,
+        reading: Reading,
+    ) -> Result<bool, ObservationError> {
+        let Reading::Side(label) = reading else { return Ok(false) };
+        let gone = self.gone;
+        self.moved(site, 0.0);
+        self.gone = self.gone.or(gone);
+        self.hear(site, label, self.blur(self.noise.tolerance));
+        Ok(true)
+    }
+
+    fn tolerance(&self) -> Tolerance {
+        self.noise.tolerance
+    }
+
+    fn observe_within(
+        &mut self,
+        site: Site,
+        reading: Reading,
+        tolerance: Tolerance,
+    ) -> Result<(), ObservationError> {
+        if tolerance > self.noise.tolerance {
+            return Err(ObservationError::Tolerance(tolerance));
+        }
+        // A reading on the boundary agrees with both sides.
+        let Reading::Side(label) = reading else { return Ok(()) };
+        let chance = self.hear(site, label, self.blur(tolerance));
+        self.evidence.observe(label, chance + MISFIT);
+        let (last, run) = self.run;
+        self.run = (Some(label), if last == Some(label) { run.saturating_add(1) } else { 1 });
+        if self.evidence.alarm().is_some_and(|it| it.is_grave()) {
+            self.begin_again();
+        }
+        Ok(())
+    }
+
+    fn estimates(&self) -> Estimates {
+        Estimates { bisector: None, centre: self.centre(), maximum_margin: None }
+    }
+
+    fn centre(&self) -> Option<LocalLine> {
+        let waist = self.now();
+        LocalLine::new(waist.site, waist.heading.unit().scaled(1 << 24), 0.0, 0.0)
+    }
+
+    /// By how much the front beside the robot is known better than to a reach and a radian, bits.
+    fn information(&self) -> f64 {
+        let waist = self.now();
+        let share = waist.deviation * waist.turn_deviation / self.reach;
+        let bits = -libm::log2f(if share > 1e-12 { share } else { 1e-12 });
+        if bits > 0.0 { f64::from(bits) } else { 0.0 }
+    }
+
+    /// Never: a front goes on.
+    fn meets<C: Criterion>(&self, _: Goal<C>, _: Area) -> bool {
+        false
+    }
+
+    fn chance(&self, site: Site) -> f64 {
+        let (above, errs) = (f64::from(self.share_above(site)), f64::from(self.error()));
+        (1.0 - errs) * above + errs * (1.0 - above)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::belief::front::Front;
+    use crate::belief::noise::Noise;
+    use crate::belief::sample::{Label, Sample};
+    use crate::draws::Draws;
+    use crate::geometry::heading::Heading;
+
+    fn label(is_plus: bool) -> Label {
+        if is_plus { Label::Positive } else { Label::Negative }
+    }
+
+    /// Labels at random, at places near and far, after short times and long ones.
+    #[test]
+    fn it_stays_definite_whatever_it_is_told() {
+        for seed in 0..120 {
+            let mut draws = Draws::new(seed);
+            let mut unit = || draws.unit();
+            let p = 0.5 + 0.5 * unit();
+            let noise =
+                Noise { tolerance: Tolerance::new(unit()).unwrap(), ..Noise::new(p).unwrap() };
+            let speed = if seed % 3 == 0 { 10.0 * unit() } else { 0.0 };
+            let front = Front::STRAIGHT.moving(speed).unwrap();
+            let reach = [0.001, 0.1, 2.0, 50.0, 1_000.0][seed as usize % 5];
+            let at = |x: f64, z: f64| Site::metres([x, z]).unwrap();
+            let given = [
+                Sample { site: at(0.0, reach * unit()), label: Label::Positive },
+                Sample { site: at(0.0, -reach * unit()), label: Label::Negative },
+            ];
+            let mut curve = Curve::between(&given, Heading(1 << 31), reach, front, noise).unwrap();
+            let far = [0.1, 1.0, 3.0][seed as usize % 3] * reach;
+            let [mut x, mut z] = [0.0; 2];
+            for k in 0..300 {
+                let jump = if k % 97 == 96 { 2_000.0 } else { far };
+                x = (x + jump * (unit() - 0.5)).clamp(-8e3, 8e3);
+                z = (z + jump * (unit() - 0.5)).clamp(-8e3, 8e3);
+                let time = if k % 11 == 0 { 1e4 * unit() } else { unit() };
+                curve.moved(at(x, z), time as f32);
+                curve.observe(at(x, z), label(unit() < 0.5).into()).unwrap();
+                let waist = curve.now();
+                let numbers = [waist.deviation, waist.turn_deviation, waist.curvature];
+                let are_numbers = numbers.iter().all(|it| it.is_finite());
+                let is_wide = waist.deviation > 0.0;
+                let share = curve.share_above(at(x, z));
+                let is_share = (-1e-4..=1.0001).contains(&share);
+                assert!(are_numbers && is_wide && is_share, "{seed}, {k}: {waist:?} {share}");
+            }
+        }
+    }
+}
