@@ -72,10 +72,10 @@ impl UnitVector {
     }
 }
 
-/// The square root of a number that is not negative, to 10^-5 of it.
+/// The square root of a number, to 10^-5 of it. 0 where rounding left less than 0, and where it is no number.
 #[inline(never)] // as above
 pub(crate) fn sqrt(x: f32) -> f32 {
-    root(x)
+    if x > 0.0 { root(x) } else { 0.0 }
 }
 
 /// The same in line. Newton's method on `1 / sqrt(x)`.
@@ -175,7 +175,9 @@ mod tests {
             let off = f64::from(sqrt(y)) / f64::from(y).sqrt() - 1.0;
             assert!(off.abs() < 1e-5, "sqrt {y}: {off}");
         }
-        assert!(sqrt(0.0).abs() < 1e-30);
+        for x in [0.0, -1.0, f32::NAN, -f32::NAN] {
+            assert!(sqrt(x).abs() < 1e-30);
+        }
         assert_eq!(heading(-1.0, 0.0), Heading(1 << 31));
     }
 }
