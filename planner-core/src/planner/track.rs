@@ -257,7 +257,7 @@ impl Aim {
     fn shift(&self, site: Site, half: f32, radius: f32) -> f32 {
         let aside = self.waist.aside(site).abs() - LANE * half;
         // Two arcs that turn by an angle t go aside by 2 R (1 - cos t), and are 2 R t long.
-        2.0 * sqrt(if aside > 0.0 { radius * aside * UNITS_PER_METRE as f32 } else { 0.0 })
+        2.0 * sqrt(radius * aside * UNITS_PER_METRE as f32)
     }
 
     /// The progress of a way that ends where the front has this half-width, lattice units. It counts less where the front

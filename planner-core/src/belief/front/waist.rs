@@ -94,7 +94,7 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
             site: lay.pivot.step(by).unwrap_or(lay.pivot),
             heading: heading.turned(angle((moments.bend * ahead).clamp(-1.0, 1.0))),
             curvature: moments.bend,
-            deviation: lay.step * sqrt(if variance > 0.0 { variance } else { 0.0 }),
+            deviation: lay.step * sqrt(variance),
             turn_deviation: lay.turn * sqrt(turns),
         }
     }
