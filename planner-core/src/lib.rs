@@ -176,6 +176,7 @@ pub use crate::belief::deviation::Deviation;
 pub use crate::belief::doubtful_labels::CellPosterior;
 pub use crate::belief::doubtful_labels::{PosteriorView, ReliabilityEstimate};
 pub use crate::belief::estimate::Estimates;
+pub use crate::belief::field::{Left, Likely, Seeking};
 pub use crate::belief::front::{Beside, Front, FrontMemory, FrontStretch, Tracker, Waist};
 pub use crate::belief::goal::{Accuracy, Criterion, Goal, NoGoal, ShareWithin, SlopeWithin};
 pub use crate::belief::noise::Noise;

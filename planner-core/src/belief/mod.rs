@@ -11,6 +11,7 @@
 //! | [`cells`] | the lines that agree with some labels, and what can be read off them |
 //! | [`estimate`] | three estimates of the line |
 //! | [`evidence`] | what speaks against a straight, still line |
+//! | [`field`] | where a boundary of unknown shape may be, by a byte for each of some regions |
 //! | [`front`] | a front that bends and moves, by a grid over curves |
 //! | [`goal`] | decides when the line is known well enough |
 //! | [`true_labels`] | for labels that are true: the version space |
@@ -27,6 +28,7 @@ pub mod deviation;
 pub mod doubtful_labels;
 pub mod estimate;
 pub mod evidence;
+pub mod field;
 pub mod front;
 pub mod goal;
 pub(crate) mod list;

@@ -7,7 +7,8 @@
 //!
 //! If no action is feasible, a ladder of recoveries takes over. It leads round keep-outs if necessary (`detour`). A
 //! vehicle that cannot turn on the spot makes a `manoeuvre`, of `motions`. Look-ahead searches the same circles for the places where
-//! labels tell the most (`lookout`). An `errand` leads to a given place. A `chord` is the part of an estimate that lies in
+//! labels tell the most (`lookout`). An `errand` leads to a given place, and a `route` over an area of which
+//! nothing is known. A `chord` is the part of an estimate that lies in
 //! the area.
 
 pub(crate) mod chord;
@@ -25,5 +26,6 @@ pub mod objective;
 pub(crate) mod places;
 pub mod problem;
 pub mod recovery;
+pub mod route;
 pub(crate) mod view;
 pub(crate) mod wander;

@@ -1,0 +1,133 @@
+//! What a field remembers: the sum of the labels in each region, in a byte, and the last labels one by one.
+
+use crate::belief::field::layout::{DIRECTIONS, DISCS, Layout, OFFSETS};
+use crate::belief::field::recent::Recent;
+use crate::belief::sample::Label;
+use crate::geometry::lattice::Site;
+use crate::geometry::workspace::Workspace;
+
+/// A disc whose centre the robot cannot come to: it is not sought.
+pub(crate) const SHUT: i8 = i8::MIN;
+
+/// Sums of labels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Sums<const N: usize>(pub(crate) [i8; N]);
+
+/// What a field has to remember: 1.6 kB.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct FieldMemory {
+    /// Of each disc.
+    pub(crate) discs: Sums<DISCS>,
+    /// Of each direction, the labels between one half-plane's border and the next one's.
+    pub(crate) bins: Sums<{ DIRECTIONS * (OFFSETS + 1) }>,
+    /// Of all labels.
+    pub(crate) total: i32,
+    pub(crate) recent: Recent,
+}
+
+impl FieldMemory {
+    /// No label.
+    pub(crate) const NONE: Self = Self {
+        discs: Sums([0; DISCS]),
+        bins: Sums([0; DIRECTIONS * (OFFSETS + 1)]),
+        total: 0,
+        recent: Recent::NONE,
+    };
+
+    /// Forgets all labels of an area, but for the last ones if they are `kept`.
+    pub(crate) fn begin<G: Workspace>(&mut self, layout: &Layout, area: &G, kept: &Recent) {
+        *self = Self::NONE;
+        for (sum, (shape, _)) in self.discs.0.iter_mut().zip(layout.discs()) {
+            let site = layout.site(shape.centre());
+            *sum = if site.is_some_and(|it| area.contains(it)) { 0 } else { SHUT };
+        }
+        for it in kept.iter() {
+            self.take(layout, it.site, it.label, 1);
+        }
+    }
+
+    /// Takes in a label that counts so many times.
+    pub(crate) fn take(&mut self, layout: &Layout, site: Site, label: Label, times: i8) {
+        let by = if label == Label::Positive { times } else { times.saturating_neg() };
+        let at = layout.seen(site);
+        let add = |sum: &mut i8| {
+            if *sum != SHUT {
+                *sum = sum.saturating_add(by).max(-i8::MAX);
+            }
+        };
+        for k in layout.discs_at(at) {
+            self.discs.0.get_mut(k).into_iter().for_each(add);
+        }
+        for (k, bins) in self.bins.0.chunks_mut(OFFSETS + 1).enumerate() {
+            bins.get_mut(layout.bin(k, at)).into_iter().for_each(add);
+        }
+        self.total = self.total.saturating_add(by.into());
+        self.recent.push(site, label);
+    }
+}
+
+#[cfg(feature = "serde")]
+mod bytes {
+    use core::fmt::{Formatter, Result as Written};
+
+    use serde::de::{Error, SeqAccess, Visitor};
+    use serde::ser::SerializeTuple as _;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    use super::Sums;
+    use crate::belief::field::recent::{REMEMBERED, Recent};
+    use crate::belief::sample::Sample;
+
+    impl<const N: usize> Serialize for Sums<N> {
+        fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+            let mut tuple = serializer.serialize_tuple(N)?;
+            for sum in &self.0 {
+                tuple.serialize_element(sum)?;
+            }
+            tuple.end()
+        }
+    }
+
+    struct Reader<const N: usize>;
+
+    impl<'de, const N: usize> Visitor<'de> for Reader<N> {
+        type Value = Sums<N>;
+
+        fn expecting(&self, f: &mut Formatter<'_>) -> Written {
+            write!(f, "{N} sums")
+        }
+
+        fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Self::Value, A::Error> {
+            let mut sums = [0; N];
+            for (k, sum) in sums.iter_mut().enumerate() {
+                *sum = seq.next_element()?.ok_or_else(|| Error::invalid_length(k, &self))?;
+            }
+            Ok(Sums(sums))
+        }
+    }
+
+    impl<'de, const N: usize> Deserialize<'de> for Sums<N> {
+        fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+            deserializer.deserialize_tuple(N, Reader)
+        }
+    }
+
+    type Labels = heapless::Vec<Sample, REMEMBERED, u8>;
+
+    impl Serialize for Recent {
+        fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+            self.iter().collect::<Labels>().serialize(serializer)
+        }
+    }
+
+    impl<'de> Deserialize<'de> for Recent {
+        fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+            let mut recent = Self::NONE;
+            for it in &Labels::deserialize(deserializer)? {
+                recent.push(it.site, it.label);
+            }
+            Ok(recent)
+        }
+    }
+}

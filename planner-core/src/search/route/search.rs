@@ -1,0 +1,179 @@
+//! The search for a route: a few candidates a plan, and the best of them is kept.
+
+use heapless::Vec;
+
+use crate::belief::field::{Field, Shape};
+use crate::search::route::cost::Costs;
+use crate::search::route::patterns::{Ground, Random};
+
+/// Corners of a route, at most.
+const CORNERS: usize = 16;
+
+/// Visits of a region by a leg, at most: some 0.8 million instructions of a Cortex-M4F.
+const VISITS: u32 = 24_000;
+
+/// Patterns and changes that a plan tries.
+const TRIED: usize = 30;
+
+/// Patterns are tried in one of so many plans, or where the route is shorter than so many corners.
+const SELDOM: usize = 10;
+const SHORT: usize = 2;
+
+/// The old route is taken unless another costs less than this share of it.
+const OLD: f32 = 0.99;
+
+/// A disc with more than this share of all odds may be gone to first.
+const HEAVY: f32 = 0.02;
+
+/// The most detections a reading: a reading in a region is one at least, however sure labels are.
+const MOST: f32 = 4.0;
+
+/// The corners of a route, metres from the middle of the area.
+pub(crate) type Corners = Vec<[f32; 2], CORNERS, u8>;
+
+/// How well labels hear a boundary.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Hears {
+    /// What a label carries: the logarithm of its odds.
+    pub(crate) odds: f32,
+    /// Metres from one label to the next.
+    pub(crate) apart: f32,
+}
+
+impl Hears {
+    /// The bits of a label, nearly: twice its probability less one, times its odds; at most [`MOST`].
+    pub(crate) fn label(self) -> f32 {
+        let wrong = libm::expf(-self.odds);
+        let bits = self.odds * (1.0 - wrong) / (1.0 + wrong);
+        if bits < MOST { bits } else { MOST }
+    }
+
+    /// Detections a metre.
+    pub(super) fn rate(self) -> f32 {
+        self.label() / self.apart
+    }
+}
+
+/// A route that seeks a boundary.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Route {
+    corners: Corners,
+    random: Random,
+}
+
+impl Route {
+    /// No route yet.
+    pub(crate) const NONE: Self = Self { corners: Vec::new(), random: Random::START };
+
+    /// The corner to go to.
+    pub(crate) fn next(&self) -> Option<[f32; 2]> {
+        self.corners.first().copied()
+    }
+
+    /// Leaves out the corner to go to: the robot is there, or there is no way.
+    pub(crate) fn pass(&mut self) {
+        if !self.corners.is_empty() {
+            self.corners.remove(0);
+        }
+    }
+
+    /// Gives up all of it.
+    pub(crate) fn clear(&mut self) {
+        self.corners.clear();
+    }
+
+    /// Whether a search can have found it in an area with these half sides.
+    pub(crate) fn is_valid(&self, [x, z]: [f32; 2]) -> bool {
+        self.corners.iter().all(|it| it[0].abs() <= x && it[1].abs() <= z)
+    }
+
+    /// Looks for a better route from a place.
+    #[inline(never)] // what it needs is not on the stack while a motion is sought
+    pub(crate) fn improve(&mut self, field: &Field, from: [f32; 2], hears: Hears) {
+        let mut costs = Costs::of(field, hears, VISITS);
+        let ground = Ground { half: field.layout.half, patch: field.layout.patch };
+        let mut best = self.corners.clone();
+        let mut least = costs.cost(from, &best, f32::MAX).unwrap_or(f32::MAX) * OLD;
+        let mut take = |corners: Corners| {
+            if let Some(cost) = costs.cost(from, &corners, least) {
+                (best, least) = (corners, cost);
+            }
+            (costs.visits > 0).then(|| best.clone())
+        };
+        if let Some(disc) = heaviest(field) {
+            let mut corners = self.corners.clone();
+            corners.truncate(CORNERS - 1);
+            let _ = corners.insert(0, disc);
+            take(corners);
+        }
+        if self.corners.len() < SHORT || self.random.below(SELDOM) == 0 {
+            for _ in 0..TRIED {
+                take(ground.pattern(&mut self.random));
+            }
+        }
+        let mut route = self.corners.clone();
+        for _ in 0..TRIED {
+            let changed = ground.changed(&route, &mut self.random);
+            let Some(best) = take(changed) else { break };
+            route = best;
+        }
+        self.corners = best;
+    }
+}
+
+/// The centre of the disc with the most odds, if they are a good part of all.
+fn heaviest(field: &Field) -> Option<[f32; 2]> {
+    let (mut sum, mut most, mut at) = (0.0, 0.0, None);
+    field.each(|region, odds| {
+        sum += odds;
+        if let Shape::Disc { centre, .. } = region.shape
+            && odds > most
+        {
+            (most, at) = (odds, Some(centre));
+        }
+    });
+    at.filter(|_| most > HEAVY * sum)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::belief::field::Seeking;
+    use crate::belief::sample::Label;
+    use crate::geometry::area::Area;
+    use crate::geometry::lattice::Site;
+
+    /// A robot that follows its route hears of an empty area about as fast as one that mows it.
+    #[test]
+    fn a_route_covers_an_area() {
+        let area = Area::metres([0.0, 0.0], [200.0, 150.0]).unwrap();
+        let mut field = Field::NONE;
+        field.begin(&area, (Seeking::patches(20.0).unwrap(), true), 0.95).unwrap();
+        let hears = Hears { odds: field.odds(), apart: 3.0 };
+        let (mut route, mut place, mut steps) = (Route::NONE, [-90.0, -60.0], 0);
+        loop {
+            let sought = field.sought();
+            let left = field.left(sought);
+            if left.patch.unwrap() < 0.01 && left.coast < 0.01 {
+                break;
+            }
+            route.improve(&field, place, hears);
+            assert!(route.is_valid(field.layout.half));
+            let Some([x, z]) = route.next() else { panic!("no route") };
+            let (dx, dz) = (x - place[0], z - place[1]);
+            let way = (dx * dx + dz * dz).sqrt();
+            if way <= 3.0 {
+                route.pass();
+                place = [x, z];
+            } else {
+                place = [place[0] + 3.0 * dx / way, place[1] + 3.0 * dz / way];
+            }
+            field.observe(field.layout.site(place).unwrap(), Label::Negative);
+            steps += 1;
+            assert!(steps < 700, "{left:?}");
+        }
+        let _ = Site::ORIGIN;
+        assert!(steps > 200, "{steps}");
+    }
+}
