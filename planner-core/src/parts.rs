@@ -23,6 +23,7 @@ pub use crate::planner::cfc::Phase;
 pub use crate::planner::decision::Decision;
 pub use crate::planner::far::Journey;
 pub use crate::planner::lap::Lap;
+pub use crate::planner::quest::QuestMemory;
 pub use crate::planner::seek::SeekMemory;
 pub use crate::planner::silence::Silence;
 pub use crate::search::direction_rule::{ArcRule, DirectionRule};

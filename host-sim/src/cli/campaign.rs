@@ -20,6 +20,7 @@ use crate::cli::fronts::FrontsFlags;
 use crate::cli::help;
 use crate::cli::merge::{MergeArgs, merge};
 use crate::cli::passage::{Destination, Passage, ToFly};
+use crate::cli::patches::PatchesFlags;
 use crate::cli::told::{Opening, tell};
 use crate::output::ending;
 use crate::output::file::{Output, json, place_for, prepare};
@@ -34,6 +35,8 @@ pub(crate) struct CampaignArgs {
     pub(crate) flags: CampaignFlags,
     #[command(flatten)]
     pub(crate) fronts: FrontsFlags,
+    #[command(flatten)]
+    pub(crate) patches: PatchesFlags,
     /// Write a row for each field and stage here, as they are finished
     #[arg(long, value_name = "FILE")]
     pub(crate) csv: Option<PathBuf>,
@@ -66,6 +69,7 @@ pub(crate) fn campaign(args: CampaignArgs) -> Result<String> {
         command,
         flags,
         fronts,
+        patches,
         csv,
         resume,
         shard: part,
@@ -78,6 +82,9 @@ pub(crate) fn campaign(args: CampaignArgs) -> Result<String> {
     }
     if fronts.fronts {
         return fronts.tell(&flags, format);
+    }
+    if patches.patches {
+        return patches.tell(&flags, format);
     }
     let mut campaigns = flags.campaigns()?;
     let shard = part.unwrap_or(Shard::WHOLE);

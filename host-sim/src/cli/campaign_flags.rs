@@ -29,11 +29,15 @@ const ORACLE: usize = 4;
 #[derive(Debug, Args, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) struct CampaignFlags {
-    /// Number of standard fields; with --fronts missions for each kind of front, 300 by default and at most 10000
+    /// Number of standard fields; with --fronts missions for each kind of front, 300 by default and at most 10000; the
+    /// same with --patches, 200 by default
     #[arg(
         long,
         default_value_t = 1000,
-        default_value_if("fronts", ArgPredicate::IsPresent, "300"),
+        default_value_ifs([
+            ("fronts", ArgPredicate::IsPresent, "300"),
+            ("patches", ArgPredicate::IsPresent, "200"),
+        ]),
         value_parser = clap::value_parser!(u64).range(1..)
     )]
     pub(crate) fields: u64,

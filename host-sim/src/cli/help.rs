@@ -81,6 +81,7 @@ Examples:
   host-sim campaign --algorithm scc --steps 36 --p-prior 8,2    nobody knows how often labels are true
   host-sim campaign --compare cfc,lookahead,random --figure curves.svg
   host-sim campaign --fronts --compare track,zigzag,bang-bang   fronts that bend and move
+  host-sim campaign --patches                        patches and coasts from nothing, beside a lawnmower
   host-sim campaign --fields 1000000 --csv rows.csv             if stopped: the same with --resume
   host-sim campaign --shard 1/4 --csv 1.csv                     a quarter, see docs/campaigns.md";
 

@@ -22,6 +22,7 @@ mod join;
 mod merge;
 pub mod paper;
 mod passage;
+mod patches;
 mod reference;
 mod replay;
 mod run;

@@ -18,6 +18,7 @@ mod map;
 mod numbers;
 pub mod page;
 pub mod paper;
+pub mod patches;
 pub mod picture;
 pub mod pieces;
 mod placing;

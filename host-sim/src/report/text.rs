@@ -132,8 +132,7 @@ fn end(results: &Results, estimates: &[(&str, Option<LineRecord>); 3]) -> String
         text.push('\n');
     }
     if let Some(seek) = &results.end.seek {
-        let radius = results.start.front.as_ref().and_then(|it| it.radius);
-        text += &sought(seek, radius.is_some_and(f64::is_finite));
+        text += &sought(seek);
     }
     if let Some(map) = &results.end.front {
         text += &front::map(map, "step");
@@ -178,18 +177,25 @@ pub(crate) fn diagnosed(record: &DiagnosisRecord) -> Vec<(&'static str, String)>
     diagnosis::told(record, &line(&record.line))
 }
 
-/// What seeking the boundary from nothing came to, in words. A front that bends is sought where it would cross the area.
-pub(crate) fn sought(record: &SeekRecord, bends: bool) -> String {
-    let &SeekRecord { found, labels, metres, label, other } = record;
+/// What seeking the boundary from nothing came to, in words.
+pub(crate) fn sought(record: &SeekRecord) -> String {
+    let &SeekRecord { found, labels, metres, label, radius, patch, coast } = record;
     let took = format!("{labels} labels and {metres:.1} m");
-    let unless = if bends { ", unless a front is closed within it" } else { "" };
-    match (found, label, other) {
-        (Some(step), _, _) => format!("The boundary was found at step {step}, with {took}.\n"),
-        (None, Some(label), Some(other)) => format!(
-            "All of the area most likely has the label {label}{unless}: it took {took}.\n\
-             A boundary may still cut off a piece at the border: {:.2} % of the area is expected to have the other label.\n",
-            100.0 * other
-        ),
+    match (found, label, radius, coast) {
+        (Some(step), ..) => format!("The boundary was found at step {step}, with {took}.\n"),
+        (None, Some(label), Some(radius), Some(coast)) => {
+            let of_patch = patch.map_or(String::new(), |patch| {
+                format!(
+                    "A patch that holds a disc of {radius:.1} m is left with probability {patch:.3}, if every second area has one. \
+                     A smaller one may have been missed.\n"
+                )
+            });
+            format!(
+                "All of the area most likely has the label {label}: it took {took}.\n{of_patch}\
+                 A boundary that cuts off more than {:.1} m is left with probability {coast:.3}, if every second area has one.\n",
+                0.5 * radius
+            )
+        }
         _ => format!("The boundary was not found with {took}.\n"),
     }
 }
@@ -202,7 +208,7 @@ pub(crate) fn why(reason: &str) -> &str {
         "known" => "what was asked for is known",
         "resolution" => "what is uncertain is thinner than the action grid can hit",
         "no line" => "no straight, still line explains the labels",
-        "one label" => "no label in reach is expected to tell much",
+        "one label" => "the area most likely has one label",
         "closed" => "the robot has gone all round the front",
         "worth" => "no label in sight was expected to carry the bits asked for",
         "tolerance" => {

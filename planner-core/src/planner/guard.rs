@@ -13,7 +13,7 @@ use crate::belief::ObservationError;
 use crate::belief::evidence::Alarm;
 use crate::belief::front::{ASKED, FrontMemory, FrontStretch, Spread, Tracker, Unit, Waist};
 use crate::belief::noise::Noise;
-use crate::belief::observation_log::FromLog as _;
+use crate::belief::observation_log::{FromLog as _, ReplayError};
 use crate::belief::sample::{Reading, Sample};
 use crate::belief::tolerance::Tolerance;
 use crate::belief::weight::Prior;
@@ -23,6 +23,7 @@ use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::front_state::FrontState;
+use crate::planner::quest::QuestMemory;
 use crate::planner::scout::{Ends, FAINT, Scout};
 use crate::planner::setup::{Restart, SetupError};
 use crate::planner::silence::Silence;
@@ -169,18 +170,21 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
 impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> Persist
     for Guard<D, K, M, L, G>
 {
-    type Snapshot = Snapshot<FrontMemory<K, M, L>, (Silence, Option<Pose>)>;
+    type Snapshot = Snapshot<FrontMemory<K, M, L>, (Silence, Option<Pose>, QuestMemory)>;
 
     fn snapshot(&self) -> Self::Snapshot {
         Snapshot::new(
             self.scout.mark(Kind::Guard),
             self.scout.tracker.log(),
-            (self.scout.silence, self.middle),
+            (self.scout.silence, self.middle, self.scout.quest.memory()),
         )
     }
 
     fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), RestoreError> {
-        let (log, &(silence, middle)) = snapshot.open(self.scout.mark(Kind::Guard))?;
+        let (log, &(silence, middle, ref quest)) = snapshot.open(self.scout.mark(Kind::Guard))?;
+        if !self.scout.quest.recall(quest) {
+            return Err(ReplayError::Spoilt.into());
+        }
         self.scout.tracker.replay(log)?;
         (self.scout.silence, self.middle) = (silence, middle);
         Ok(())

@@ -8,7 +8,7 @@
 //! | [`cfc`] | the paper's Algorithm 1, for labels that are true |
 //! | [`scc`] | the paper's Algorithm 2, for labels that are sometimes wrong |
 //!
-//! [`scout`] is how both of these seek. [`sight`] is how far look-ahead looks for labels, and [`far`] sight looks all along the estimate. [`audit`] is what
+//! [`scout`] is how both of these seek, and [`quest`] what they know of a boundary that is not found. [`sight`] is how far look-ahead looks for labels, and [`far`] sight looks all along the estimate. [`audit`] is what
 //! look-ahead does before it promises a goal. A [`watched`] planner says when no line explains its
 //! labels. [`options`] are what Algorithms 1 and 2 leave open. [`setup`] checks the parts that every planner is made of.
 //! A [`snapshot`] is what a planner has to remember over a sleep.
@@ -24,6 +24,7 @@ pub mod lookahead;
 pub(crate) mod one_label;
 pub mod options;
 mod outlook;
+pub mod quest;
 pub mod scc;
 pub mod scout;
 pub mod seek;
@@ -161,8 +162,8 @@ pub enum StopReason {
     Worth,
     /// The robot has gone along all of a closed [front](crate::planner::track), and is back where it found it.
     Closed,
-    /// All of the area most likely has one label: nowhere in reach is a label expected to tell much. A boundary may still
-    /// cut off a small piece at the border. A closed [front](crate::planner::track) inside the area is not meant.
+    /// All of the area most likely has one label: no patch of the radius that was sought is left, and no boundary that
+    /// crosses the area. See [`OneLabel`](crate::planner::one_label::OneLabel).
     OneLabel,
 }
 

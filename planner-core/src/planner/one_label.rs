@@ -1,13 +1,12 @@
 //! An area that most likely has one label everywhere, and what may be left of the other one.
 
-use crate::belief::front::Tracker;
-use crate::belief::sample::Label;
-use crate::geometry::lattice::Site;
+use crate::belief::field::{Field, Left, Seeking};
+use crate::belief::sample::{Label, Sample};
+use crate::belief::trust::AnyReliability;
 use crate::geometry::workspace::Workspace;
-use crate::search::dead_end::place;
 
-/// So many places stand for an area.
-pub(crate) const PLACES: u32 = 36;
+/// The area has one label where what is left has at most this probability.
+const LEFT: f32 = 0.01;
 
 /// All of an area has one label, most likely.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,35 +15,40 @@ pub(crate) const PLACES: u32 = 36;
 pub struct OneLabel {
     /// That label.
     pub label: Label,
-    /// The share of the area that is expected to have the other label all the same, from 0 to 1. A boundary that is left
-    /// cuts off a piece at the border, or a corner.
-    pub other: f32,
+    /// Patches that hold a disc of this radius were sought, metres. A smaller one may have been missed, and a boundary
+    /// that cuts off less than half of it at the border.
+    pub radius: f32,
+    /// The boundaries that may be left all the same.
+    pub left: Left,
 }
 
 impl OneLabel {
-    /// What a tracker says of an area; `None` where places all over it do not most likely have one label.
-    ///
-    /// Cost: 36 [questions](Tracker::share_above).
-    pub fn of<const K: usize, const M: usize, const L: usize>(
-        tracker: &Tracker<K, M, L>,
-        area: &impl Workspace,
+    /// What given points and labels say that were read all over the part of an area that motions
+    /// [aim for](crate::planner::setup::aimed_for); `None` where it does not most likely have one label. A straight
+    /// boundary has no patches.
+    pub fn of<G: Workspace>(
+        area: &G,
+        (seeking, patches): (Seeking, bool),
+        reliability: AnyReliability,
+        (given, labels): (&[Sample], &[Sample]),
     ) -> Option<Self> {
-        let (mut sum, mut count, mut is_above, mut is_below) = (0.0, 0.0, false, false);
-        for site in anywhere(area) {
-            let share = tracker.share_above(site);
-            (is_above, is_below) = (is_above || share > 0.5, is_below || share <= 0.5);
-            (sum, count) = (sum + share, count + 1.0);
-        }
-        let share = sum / count;
-        match (is_above, is_below) {
-            (true, false) => Some(Self { label: Label::Positive, other: 1.0 - share }),
-            (false, true) => Some(Self { label: Label::Negative, other: share }),
-            _ => None,
-        }
+        let p = match reliability {
+            AnyReliability::Known(known) => known.single(),
+            AnyReliability::Unknown(prior) => {
+                let [a, b] = prior.parameters().map(|it| it as f32);
+                a / (a + b)
+            }
+        };
+        let mut field = Field::NONE;
+        field.begin(area, (seeking, patches), p).ok()?;
+        given.iter().for_each(|it| field.know(it.site, it.label));
+        labels.iter().for_each(|it| field.observe(it.site, it.label));
+        Self::of_field(&field, field.left(field.sought()))
     }
-}
 
-/// Some places all over an area.
-pub(crate) fn anywhere(area: &impl Workspace) -> impl Iterator<Item = Site> {
-    (0..PLACES).filter_map(|k| place(area, k))
+    /// What a field says that leaves so much.
+    pub(crate) fn of_field(field: &Field, left: Left) -> Option<Self> {
+        let is_one = left.coast < LEFT && left.patch.is_none_or(|it| it < LEFT);
+        is_one.then(|| Self { label: field.label(), radius: field.layout.patch, left })
+    }
 }

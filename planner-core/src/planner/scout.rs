@@ -1,23 +1,27 @@
 //! How a boundary is sought: the part that [`Seek`](crate::planner::seek) and [`Track`](crate::planner::track) share.
 //!
-//! A place is worth the information of its label over a price and the way there. The places are ends of the next
-//! motion, some along the mean line, some all over the area, and its corners. The corners matter where there is no
-//! boundary: a straight line that crosses a rectangle parts its corners.
+//! As long as nothing is known, the robot drives along a route over the area (`quest.rs`). Close to the boundary, a
+//! place is worth the information of its label over a price and the way there. The places are ends of the next motion,
+//! and some along the mean line.
 
 use crate::belief::Belief as _;
 use crate::belief::ObservationError;
+use crate::belief::field::Seeking;
 use crate::belief::front::{Tracker, Unit, Waist};
 use crate::belief::noise::Noise;
 use crate::belief::observation_log::FromLog as _;
+use crate::belief::predictions::entropy;
 use crate::belief::sample::{Reading, Sample};
 use crate::belief::tolerance::Tolerance;
 use crate::geometry::approximate::{METRE, distance};
+use crate::geometry::area::Area;
 use crate::geometry::heading::Heading;
 use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
 use crate::geometry::mark::Mark;
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose};
-use crate::planner::one_label::{OneLabel, PLACES, anywhere};
+use crate::planner::one_label::OneLabel;
+use crate::planner::quest::{Lead, Phase, Quest};
 use crate::planner::setup::{SetupError, aimed_for, aimed_for_by};
 use crate::planner::silence::Silence;
 use crate::planner::snapshot::{Kind, mark};
@@ -36,14 +40,16 @@ pub const LOOKED_AT: u32 = 112;
 const SEEKING: u16 = 2;
 
 /// Places along the mean line, a reach apart.
-const ALONG: u16 = 17;
+const ALONG: usize = 17;
 
-/// Corners of the area, at most; and all these places together, with those all over it.
-const CORNERS: u32 = 12;
-const FAR: u32 = 17 + PLACES + CORNERS;
+/// A boundary that is sought from nothing is found where there is none with less than this probability.
+const ABSENT: f32 = 0.01;
 
-/// Places beyond a motion that are asked at once.
-const AT_ONCE: usize = 18;
+/// It is given up where there is none with more than this probability.
+const GIVEN_UP: f32 = 0.5;
+
+/// The square in which it is close reaches so many spans to either side at least.
+const SQUARE: f32 = 1.5;
 
 /// The usual price of a label, as a share of the reach: it keeps places that are near from being all that is considered.
 const PRICE: f32 = 0.5;
@@ -66,8 +72,8 @@ const AGAIN: f32 = 6.0;
 /// An errand ends within this share of the reach.
 const NEAR: f32 = 0.25;
 
-/// A corner is looked for in so many halves of the way to it.
-const HALVES: u32 = 10;
+/// A corner of the route is passed within this share of the reach, or of the radius of the turning circle.
+const PASSES: f32 = 0.5;
 
 /// Vehicle, area and belief of a planner that seeks a boundary.
 #[derive(Clone, Debug)]
@@ -80,6 +86,7 @@ pub(crate) struct Scout<D, const K: usize, const M: usize, const L: usize, G> {
     /// What a label costs, lattice units of driving.
     pub(crate) price: f32,
     pub(crate) silence: Silence,
+    pub(crate) quest: Quest,
 }
 
 /// Which ends of the next motion to look at.
@@ -119,12 +126,34 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         let most = (longest / grid.step_units()) as u16;
         let fastest = grid.speeds().saturating_sub(1).min(most).max(1);
         let price = PRICE * f32::from(fastest) * grid.step_units();
-        Self { area, dynamics, tracker, fastest, price, silence: Silence::NONE }
+        let (silence, quest) = (Silence::NONE, Quest::NONE);
+        let mut scout = Self { area, dynamics, tracker, fastest, price, silence, quest };
+        // The usual radius suits every area.
+        let _ = scout.begin(Seeking::USUAL);
+        scout
+    }
+
+    /// Begins the search with what was said of the boundary.
+    pub(crate) fn begin(&mut self, seeking: Seeking) -> Result<(), SetupError> {
+        let patches = self.tracker.front().bend() > 0.0;
+        let (p, is_near) = (self.tracker.reliability(), self.tracker.is_near());
+        self.quest.begin(&self.area, (seeking, patches), p, is_near)
+    }
+
+    /// Takes in points whose labels are known for sure, before the first plan.
+    pub(crate) fn know(&mut self, points: &[Sample]) {
+        self.tracker.give(points);
+        self.quest.know(points);
+        if self.tracker.is_near() {
+            self.quest.phase = Phase::Follow;
+        }
     }
 
     /// What tells the mission from others.
     pub(crate) fn mark(&self, planner: Kind) -> Mark {
+        let (patch_mm, likely) = self.quest.seeking().into();
         mark(planner, (&self.dynamics, &self.area), self.tracker.mark())
+            .and([patch_mm, likely as u32])
     }
 
     /// Begins again in the rectangle around its area.
@@ -132,12 +161,19 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         self.area = aimed_for(self.area, &self.dynamics, noise.tolerance)?;
         self.tracker.restart(self.area.whole().bounds(), noise.into(), given);
         self.silence = Silence::NONE;
+        self.begin(self.quest.seeking())?;
+        self.quest.know(given);
         Ok(())
     }
 
     /// Where the boundary is known best; `None` as long as it is not found, and where it is lost.
     pub(crate) fn found(&self) -> Option<Waist> {
-        self.tracker.found(self.width())
+        let is_sure = match self.quest.phase {
+            Phase::Search => false,
+            Phase::Close(_) => self.tracker.share_nowhere() < ABSENT,
+            Phase::Follow => true,
+        };
+        self.tracker.found(self.width()).filter(|_| is_sure)
     }
 
     /// The half-width below which the boundary counts as found, metres.
@@ -219,36 +255,29 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         (best, examined)
     }
 
-    /// The two places beyond the ends of one motion that are worth the most, if that is more than the best of these, the
-    /// best first. And its worth.
+    /// The two places along the mean line, beyond the ends of one motion, that are worth the most, if that is more than
+    /// the best of these, the best first. And its worth.
     #[inline(never)] // what it needs is not on the stack while a motion is sought
     fn far_places(&self, pose: Pose, waist: Waist, least: f32) -> ([Option<Site>; 2], f32) {
         let unit = Unit::of(waist.heading);
-        let along = |k: u16| {
-            let ahead = (f32::from(k) - 0.5 * f32::from(ALONG - 1)) * self.reach();
+        let along = |k: usize| {
+            let ahead = (k as f32 - 0.5 * (ALONG - 1) as f32) * self.reach();
             let by = Vector::new((unit.x * ahead) as i32, (unit.z * ahead) as i32)?;
             let site = waist.site.step(by).ok()?;
             // Where the boundary is known well, a way to a place nearby may end beside it.
             let is_far = distance(site - pose.site) > 2.0 * NEAR * self.reach();
             (is_far && self.area.contains(site)).then_some(site)
         };
+        let sites: heapless::Vec<Site, ALONG> = (0..ALONG).filter_map(along).collect();
+        let mut shares = [0.0; ALONG];
+        self.tracker.shares_above(&sites, &mut shares);
         let [mut first, mut second] = [(None, least); 2];
-        let of_area = anywhere(&self.area).chain(self.corners());
-        let mut sites = (0..ALONG).filter_map(along).chain(of_area);
-        loop {
-            let some: heapless::Vec<Site, AT_ONCE> = sites.by_ref().take(AT_ONCE).collect();
-            if some.is_empty() {
-                break;
-            }
-            let mut shares = [0.0; AT_ONCE];
-            self.tracker.shares_above(&some, &mut shares);
-            for (&site, share) in some.iter().zip(shares) {
-                let Some(worth) = self.worth(site - pose.site, share) else { continue };
-                if worth > first.1 {
-                    (first, second) = ((Some(site), worth), first);
-                } else if worth > second.1 {
-                    second = (Some(site), worth);
-                }
+        for (&site, share) in sites.iter().zip(shares) {
+            let Some(worth) = self.worth(site - pose.site, share) else { continue };
+            if worth > first.1 {
+                (first, second) = ((Some(site), worth), first);
+            } else if worth > second.1 {
+                second = (Some(site), worth);
             }
         }
         ([first.0, second.0], first.1)
@@ -256,42 +285,7 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
 
     /// The label that all of the area has, if it most likely has one.
     pub(crate) fn one_label(&self) -> Option<OneLabel> {
-        OneLabel::of(&self.tracker, &self.area)
-    }
-
-    /// The corners of the area, or the places nearest to them, towards the middle, where the vehicle can be.
-    fn corners(&self) -> impl Iterator<Item = Site> {
-        let area = &self.area;
-        let radius = self.radius() as i32;
-        let (min, max, middle) = (area.bounds().min(), area.bounds().max(), area.bounds().middle());
-        let aside = [(max.x(), min.z()), (min.x(), max.z())];
-        let [right, left] = aside.map(|(x, z)| Site::new(x, z).unwrap_or(middle));
-        // Each side's end, and its beginning where no other side ends.
-        let of_sides = area.sides().scan(None, |before, side| {
-            let end = side.from.step(side.along).ok();
-            let begin = Some(side.from).filter(|from| before.replace(end) != Some(Some(*from)));
-            Some([begin, end])
-        });
-        let all = [min, right, max, left].into_iter().chain(of_sides.flatten().flatten());
-        all.filter_map(move |corner| {
-            let way = corner - middle;
-            let at = |n: u32| {
-                let part = |it: i32| ((i64::from(it) * i64::from(n)) >> HALVES) as i32;
-                let by = Vector { x: part(way.x), z: part(way.z) };
-                middle.step(by).ok()
-            };
-            let is_inside =
-                |site: &Site| area.encloses(*site) && area.bounds().contains_disc(*site, radius);
-            let mut inside = 0;
-            for bit in (0..=HALVES).rev() {
-                let next = inside + (1 << bit);
-                if next <= 1 << HALVES && at(next).is_some_and(|it| is_inside(&it)) {
-                    inside = next;
-                }
-            }
-            at(inside).filter(|it| area.contains(*it))
-        })
-        .take(CORNERS as usize)
+        self.quest.one_label()
     }
 
     /// The motion to the first of some places to which there is a way, or to the best end of one.
@@ -326,29 +320,61 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
 
     /// The next motion of a planner that seeks the boundary.
     pub(crate) fn seek(&mut self, pose: Pose) -> Plan {
-        let is_inside = self.area.contains(pose.site);
+        if !self.area.contains(pose.site) {
+            let home = self.go(pose, (Stage::Return, [self.home(pose), None]), None, (FAINT, 0));
+            return home.unwrap_or(Plan::Stop(StopReason::OutsideArea));
+        }
+        if self.quest.phase != Phase::Search {
+            if let Some(plan) = self.close(pose) {
+                return plan;
+            }
+            self.quest.search_on();
+        }
+        match self.one_label() {
+            Some(_) => Plan::Stop(StopReason::OneLabel),
+            None => self.explore(pose).unwrap_or(Plan::Stop(StopReason::Cornered)),
+        }
+    }
+
+    /// The next motion along the route. `None` if there is no way to any of its corners.
+    fn explore(&mut self, pose: Pose) -> Option<Plan> {
+        let (reach, radius) = (self.reach(), self.radius());
+        let apart = if self.price > reach { self.price } else { reach };
+        self.quest.improve(pose.site, apart * METRE);
+        let passes = PASSES * if radius > reach { radius } else { reach };
+        let mut effort = Effort { looks: LOOKS, examined: 0 };
+        let with = (&self.dynamics, &self.area);
+        let Errand { leg, arrives, .. } = loop {
+            let corner = self.quest.next(&self.area)?;
+            let is_there = distance(corner - pose.site) <= passes;
+            let mut on_the_way = || errand(with, pose, (corner, NEAR * reach), &mut effort);
+            match if is_there { None } else { on_the_way() } {
+                Some(errand) => break errand,
+                None => self.quest.pass(),
+            }
+        };
+        let is_due = arrives || self.quest.unheard(leg.1.site) >= self.price;
+        let wants_label = leg.1.site != pose.site && (is_due || self.silence.is_long());
+        let found = Found::of(None, leg);
+        let motion = Motion::of(Some(Stage::Seek), pose, &found, &self.dynamics, effort);
+        let motion = Motion { wants_label, ..motion };
+        Some(self.silence.keep(pose, motion, Course::NONE, &self.dynamics))
+    }
+
+    /// The next motion where the boundary is close. `None` if no label tells much.
+    fn close(&mut self, pose: Pose) -> Option<Plan> {
         let worth = |end: Pose, share: f32| self.worth(end.site - pose.site, share);
-        let ends = Ends { circles: SEEKING, beside: 0, most: LOOKED_AT - FAR };
+        let ends = Ends { circles: SEEKING, beside: 0, most: LOOKED_AT - ALONG as u32 };
         let (best, examined) = self.best_end(pose, ends, |end| end.site, worth);
         let waist = self.tracker.waist();
         let (far, worth) = self.far_places(pose, waist, best.map_or(0.0, |best| best.worth));
-        let is_open = best.is_some() || far != [None; 2];
         // It has gone round about a place without a label.
         let is_vain = best.is_some() && self.silence.is_long();
-        let to = if is_inside {
-            (Stage::Seek, if is_vain { [None; 2] } else { far })
-        } else {
-            (Stage::Return, [self.home(pose), None])
-        };
+        let to = (Stage::Seek, if is_vain { [None; 2] } else { far });
         // On the way to a place a label is read where it is worth as much for its price.
         let least = worth * self.price;
         let least = if least > FAINT { least } else { FAINT };
-        let best = best.map(|best| (best, Stage::Seek));
-        self.go(pose, to, best, (least, examined)).unwrap_or(Plan::Stop(match () {
-            () if !is_inside => StopReason::OutsideArea,
-            () if !is_open && self.one_label().is_some() => StopReason::OneLabel,
-            () => StopReason::Cornered,
-        }))
+        self.go(pose, to, best.map(|best| (best, Stage::Seek)), (least, examined))
     }
 
     /// Takes in the end of a motion.
@@ -361,20 +387,61 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         if reading.is_some() && tolerance > self.tracker.tolerance() {
             return Err(ObservationError::Tolerance(tolerance));
         }
-        self.tracker.moved(pose.site, 1.0);
-        if let Some(reading) = reading {
-            self.tracker.observe_within(pose.site, reading, tolerance)?;
-        } else {
-            self.tracker.settle(pose.site);
+        if let Some(Reading::Side(label)) = reading {
+            self.quest.hear(pose.site, label);
+        }
+        if self.quest.phase != Phase::Search {
+            self.tracker.moved(pose.site, 1.0);
+            match reading {
+                Some(reading) => self.tracker.observe_within(pose.site, reading, tolerance)?,
+                None => self.tracker.settle(pose.site),
+            }
         }
         self.silence.observe(reading.is_some());
+        self.quest.moved();
+        match self.quest.phase {
+            Phase::Search => self.take_lead(),
+            Phase::Close(left) => {
+                self.quest.phase = match left.checked_sub(1) {
+                    _ if self.found().is_some() => Phase::Follow,
+                    Some(left) => Phase::Close(left),
+                    None => Phase::Search,
+                };
+                if self.quest.phase == Phase::Search || self.tracker.share_nowhere() > GIVEN_UP {
+                    self.quest.search_on();
+                }
+            }
+            Phase::Follow => {}
+        }
         Ok(())
+    }
+
+    /// Closes in on the boundary, if the search has come near to it.
+    fn take_lead(&mut self) {
+        let (reach, span) = (self.reach() * METRE, self.span() * METRE);
+        let Some(lead) = self.quest.lead(self.tracker.is_certain(), reach) else { return };
+        let within = if lead.within > SQUARE * span { lead.within } else { SQUARE * span };
+        let lead = Lead { within, ..lead };
+        let half = (within * UNITS_PER_METRE as f32) as i32;
+        let corner = |sign: i32| {
+            let by = Vector::new(sign * half, sign * half)?;
+            lead.place.step(by).ok()
+        };
+        let (Some(min), Some(max)) = (corner(-1), corner(1)) else { return };
+        let Ok(square) = Area::new(min, max) else { return };
+        self.tracker.close_in(square, self.quest.labels_near(&lead), lead.nowhere);
+        self.quest.close_in(1.0 - entropy(self.tracker.counted()));
     }
 
     /// Begins again where labels speak against what is known of the boundary.
     pub(crate) fn seek_anew(&mut self, site: Site) {
-        let near = (site, self.near());
-        self.tracker.seek_anew(near, self.area.whole().bounds());
+        if self.quest.phase == Phase::Follow {
+            let near = (site, self.near());
+            let begins = self.tracker.seek_anew(near, self.area.whole().bounds());
+            if begins && self.tracker.is_open() {
+                self.quest.lose(&self.area);
+            }
+        }
     }
 
     pub(crate) fn observe_on_the_way(
@@ -382,8 +449,11 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         site: Site,
         reading: Reading,
     ) -> Result<bool, ObservationError> {
-        let is_kept = self.tracker.observe_on_the_way(site, reading)?;
+        let Reading::Side(label) = reading else { return Ok(false) };
+        let is_kept =
+            self.quest.phase == Phase::Search || self.tracker.observe_on_the_way(site, reading)?;
         if is_kept {
+            self.quest.hear(site, label);
             self.silence.hear();
         }
         Ok(is_kept)

@@ -1,13 +1,13 @@
 //! A planner that finds a straight boundary from nothing, and then lends samples to the planner that goes on.
 //!
 //! All other planners of straight lines begin with given points of both labels. [`Seek`] begins with none, or with
-//! points of one label. It learns from a [`Tracker`] of lines, and goes where a label is worth the most information
-//! for its price and the way there (`scout.rs`). It ends by itself:
+//! points of one label. It drives along a route over the area. Once a line is close, it learns from a [`Tracker`] of lines,
+//! and goes where a label is worth the most information for its price and the way there (`scout.rs`). It ends by itself:
 //!
 //! | reason | what is true then |
 //! | --- | --- |
 //! | [`Known`](StopReason::Known) | the boundary is found, and [`given`](Seek::given) lends the samples |
-//! | [`OneLabel`](StopReason::OneLabel) | nowhere in reach is a label expected to tell much: see [`one_label`](Seek::one_label) |
+//! | [`OneLabel`](StopReason::OneLabel) | no line is left that cuts off more than a piece at the border: see [`one_label`](Seek::one_label) |
 //! | [`NoLine`](StopReason::NoLine) | labels are true, and no line separates them: the boundary bends |
 //! | any other | as for other planners |
 //!
@@ -25,7 +25,7 @@ use heapless::Vec;
 
 use crate::belief::evidence::Alarm;
 use crate::belief::front::{FrontMemory, Tracker, Unit, Waist};
-use crate::belief::observation_log::FromLog as _;
+use crate::belief::observation_log::{FromLog as _, ReplayError};
 use crate::belief::sample::{Label, Reading, Sample};
 use crate::belief::tolerance::Tolerance;
 use crate::belief::true_labels::{GivenError, VersionSpace};
@@ -38,6 +38,7 @@ use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::far::Far;
 use crate::planner::one_label::OneLabel;
+use crate::planner::quest::QuestMemory;
 use crate::planner::scout::Scout;
 use crate::planner::setup::SetupError;
 use crate::planner::silence::Silence;
@@ -106,6 +107,7 @@ enum State {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SeekMemory {
     silence: Silence,
+    quest: QuestMemory,
     samples: Vec<Sample, GIVEN, u8>,
     is: State,
 }
@@ -137,7 +139,7 @@ impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Seek<D, K, M, G>
     /// plan.
     #[must_use]
     pub fn knowing(mut self, points: &[Sample]) -> Self {
-        self.scout.tracker = self.scout.tracker.given(points);
+        self.scout.know(points);
         for &point in points {
             self.keep(point);
         }
@@ -150,9 +152,7 @@ impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Seek<D, K, M, G>
         if self.is == State::Found { &self.samples } else { &[] }
     }
 
-    /// The label that all of the area has, if it most likely has one; and how much of it may have the other one.
-    ///
-    /// Cost: some 40 [questions](Tracker::share_above).
+    /// The label that all of the area has, if it most likely has one; and what may be left of the other one.
     pub fn one_label(&self) -> Option<OneLabel> {
         self.scout.one_label()
     }
@@ -302,13 +302,17 @@ impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Persist for Seek
     type Snapshot = Snapshot<FrontMemory<K, M, 1>, SeekMemory>;
 
     fn snapshot(&self) -> Self::Snapshot {
-        let Self { scout: Scout { tracker, silence, .. }, samples, is } = self;
-        let memory = SeekMemory { silence: *silence, samples: samples.clone(), is: *is };
+        let Self { scout: Scout { tracker, silence, quest, .. }, samples, is } = self;
+        let (silence, quest) = (*silence, quest.memory());
+        let memory = SeekMemory { silence, quest, samples: samples.clone(), is: *is };
         Snapshot::new(self.scout.mark(Kind::Seek), tracker.log(), memory)
     }
 
     fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), RestoreError> {
         let (log, memory) = snapshot.open(self.scout.mark(Kind::Seek))?;
+        if !self.scout.quest.recall(&memory.quest) {
+            return Err(ReplayError::Spoilt.into());
+        }
         self.scout.tracker.replay(log)?;
         self.scout.silence = memory.silence;
         (self.samples, self.is) = (memory.samples.clone(), memory.is);

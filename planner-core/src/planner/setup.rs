@@ -11,7 +11,7 @@ use crate::motion::dynamics::{Dynamics, RoomError};
 use crate::planner::Planner;
 
 /// Area, vehicle and belief contradict each other: no planner is made of them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum SetupError {
@@ -23,6 +23,13 @@ pub enum SetupError {
     Full,
     /// No line agrees with the given samples, or they do not bound the lines.
     Given(GivenError),
+    /// A patch of the radius that was told does not suit the area.
+    Patch {
+        /// The least radius for an area of this size, metres: a smaller patch could be missed.
+        least: f32,
+        /// The radius that is too large for it, metres.
+        most: f32,
+    },
 }
 
 impl core::fmt::Display for SetupError {
@@ -38,6 +45,10 @@ impl core::fmt::Display for SetupError {
                 f.write_str("the given samples fill the belief: there is no room for a label")
             }
             Self::Given(why) => why.fmt(f),
+            Self::Patch { least, most } => write!(
+                f,
+                "the radius of a patch in this area is from {least:.1} to below {most:.1} m: seek smaller ones in parts of it"
+            ),
         }
     }
 }

@@ -35,7 +35,8 @@ use crate::planner::Planner;
 /// | 7 | of a tracker, where it last counted a label |
 /// | 8 | and whether it knew a front |
 /// | 9 | which mission they are of, and of look-ahead what speaks against the model |
-pub const SNAPSHOT_VERSION: u16 = 10;
+/// | 11 | of a planner that seeks a boundary, the labels of an area and the route through it |
+pub const SNAPSHOT_VERSION: u16 = 11;
 
 /// What a planner has to remember over a sleep: the log of its belief (`T`), and what else it plans by (`M`).
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -2,8 +2,8 @@
 //!
 //! It learns from a [`Tracker`], and looks one motion ahead. What it does depends on what is known:
 //!
-//! - **Seek**: as long as the front is not found, a place is worth the information of its label over a price and the
-//!   way there. The places are ends of the next motion, some along the mean line, and some all over the area.
+//! - **Seek**: as long as nothing is known of the front, it drives along a route over the area (`quest.rs`). Close to the
+//!   front, a place is worth the information of its label over a price and the way there.
 //! - **Follow**: once the front is found, an end of the next motion is worth the information of its label, and the
 //!   progress along the front as a share of the reach, the way that the robot faced at the start. What else it drives
 //!   costs as much as that. Where the front is not known well, progress counts less, and in the end not at all. So the
@@ -14,13 +14,15 @@
 //! - **Come home**: where no label in reach would tell anything, the robot goes to the front, a reach ahead. If it has
 //!   turned all round on such ways without a label, it reads one where it arrives.
 //! - **Begin again**: an alarm of the tracker's evidence says that the front bends more tightly than was told, or is
-//!   lost. Then it is sought anew nearby. It is sought all over the area if it is most likely not where it was.
+//!   lost. Then it is sought anew nearby. It is sought all over the area, as at the start, if it is most likely not
+//!   where it was.
 //!
 //! A plan looks at [`LOOKED_AT`] places at most. A mission ends where no front is left to find, where there is no way on,
 //! where the robot is back at its last label, or where [a closed front](Track::until_closed) is to end it.
 
 use crate::belief::ObservationError;
 use crate::belief::evidence::Alarm;
+use crate::belief::field::Seeking;
 use crate::belief::front::{FrontMemory, FrontStretch, NINETY, Tracker, Unit, Waist};
 use crate::belief::noise::Noise;
 use crate::belief::observation_log::{FromLog as _, ReplayError};
@@ -38,6 +40,7 @@ use crate::planner::front_state::FrontState;
 use crate::planner::guard::Guard;
 use crate::planner::lap::Lap;
 use crate::planner::one_label::OneLabel;
+use crate::planner::quest::QuestMemory;
 use crate::planner::scout::{Ends, FAINT, FOUND, LOOKED_AT, Scout};
 use crate::planner::setup::{Restart, SetupError};
 use crate::planner::silence::Silence;
@@ -169,9 +172,32 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         Ok(Guard::of(self.scout, FrontStretch::metres(metres)?))
     }
 
-    /// The label that all of the area has, if it most likely has one; and how much of it may have the other one. The
-    /// planner ends with [`StopReason::OneLabel`] where no label in reach is expected to tell much. Fronts that cross the
-    /// area are meant: a closed one inside may be missed, unless a point inside it is [given](Tracker::given).
+    /// The same with what is said of a front of which nothing is known.
+    ///
+    /// # Errors
+    /// [`SetupError::Patch`] if patches of this radius do not suit the area.
+    pub fn seeking(mut self, seeking: Seeking) -> Result<Self, SetupError> {
+        self.scout.begin(seeking)?;
+        Ok(self)
+    }
+
+    /// The same after some points whose labels are known for sure, of one label or of both. Call it before the first
+    /// plan, and after [`seeking`](Self::seeking).
+    #[must_use]
+    pub fn knowing(mut self, points: &[Sample]) -> Self {
+        self.scout.know(points);
+        self
+    }
+
+    /// The same, but it seeks the front along a route of your own first, up to 16 corners of it.
+    #[must_use]
+    pub fn surveying(mut self, corners: &[Site]) -> Self {
+        self.scout.quest.survey(corners);
+        self
+    }
+
+    /// The label that all of the area has, if it most likely has one; and what may be left of the other one. The planner
+    /// ends with [`StopReason::OneLabel`] then.
     pub fn one_label(&self) -> Option<OneLabel> {
         self.scout.one_label()
     }
@@ -380,20 +406,21 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
 impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> Persist
     for Track<D, K, M, L, G>
 {
-    type Snapshot = Snapshot<FrontMemory<K, M, L>, (Silence, Lap, Option<Pose>)>;
+    type Snapshot = Snapshot<FrontMemory<K, M, L>, (Silence, Lap, Option<Pose>, QuestMemory)>;
 
     fn snapshot(&self) -> Self::Snapshot {
-        let Scout { tracker, silence, .. } = &self.scout;
+        let Scout { tracker, silence, quest, .. } = &self.scout;
         Snapshot::new(
             self.scout.mark(Kind::Track),
             tracker.log(),
-            (*silence, self.lap, self.heard_at),
+            (*silence, self.lap, self.heard_at, quest.memory()),
         )
     }
 
     fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), RestoreError> {
-        let (log, &(silence, lap, heard_at)) = snapshot.open(self.scout.mark(Kind::Track))?;
-        if !lap.is_possible() {
+        let (log, &(silence, lap, heard_at, ref quest)) =
+            snapshot.open(self.scout.mark(Kind::Track))?;
+        if !lap.is_possible() || !self.scout.quest.recall(quest) {
             return Err(ReplayError::Spoilt.into());
         }
         self.scout.tracker.replay(log)?;

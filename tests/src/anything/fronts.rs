@@ -15,7 +15,7 @@ use host_sim::world::polyline::Polyline;
 use host_sim::world::sine::Sine;
 use nalgebra::{Point2, Vector2};
 use planner_core::{
-    AnyReliability, Front, Line, Reading, Sample, UnknownReliability, Workspace as _,
+    AnyReliability, Front, Line, Reading, Sample, Seeking, UnknownReliability, Workspace as _,
 };
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -64,6 +64,7 @@ pub fn draw_front(seed: u64, number: u64) -> Mission {
         given,
         front: told.moving(speed).expect("a speed"),
         watch,
+        seeking: Seeking::USUAL,
         until_closed: rng.random(),
         p_told,
         goal: None,

@@ -10,6 +10,7 @@ pub mod ensemble;
 pub mod field_record;
 pub mod fronts;
 pub mod order;
+pub mod patches;
 pub mod rows;
 pub mod shard;
 mod sorting;

@@ -10,8 +10,8 @@
 use nalgebra::{Point2, Vector2};
 use planner_core::link::message::Settings;
 use planner_core::{
-    Area, Crossing, Front, Heading, Label, Line, Policy, Pose, Prior, Reading, Sample, Site,
-    Tolerance, VersionSpace,
+    Area, Crossing, Front, Heading, Label, Line, Policy, Pose, Prior, Reading, Sample, Seeking,
+    Site, Tolerance, VersionSpace,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -133,6 +133,7 @@ pub fn stretched(
         bounds: Bounds::NONE,
         front: Front::STRAIGHT,
         watch: None,
+        seeking: Seeking::USUAL,
         until_closed: true,
     }
 }

@@ -4,7 +4,7 @@ use planner_core::link::message::MissionArea;
 use planner_core::link::message::Settings;
 use planner_core::{
     AnyReliability, AnySight, AnyVehicle, CellPosterior, Crossing, Following, Front, Goal, Noise,
-    NoisyBelief, Policy, Pose, Prior, Sample, Tracker, UnknownReliability, Workspace as _,
+    NoisyBelief, Policy, Pose, Prior, Sample, Seeking, Tracker, UnknownReliability, Workspace as _,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -81,6 +81,8 @@ pub struct Mission {
     pub asking: Asking,
     /// What a planner of fronts is told of the front.
     pub front: Front,
+    /// What it is told of a boundary of which nothing is known.
+    pub seeking: Seeking,
     /// Metres of front that it watches, if it does not go along all of it.
     pub watch: Option<f64>,
     /// Whether it ends once it has gone round a closed front.

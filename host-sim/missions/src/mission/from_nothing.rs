@@ -5,8 +5,8 @@ use planner_core::error::ObservationError;
 use planner_core::link::message::MissionArea;
 use planner_core::watch::Alarm;
 use planner_core::{
-    Belief as _, Front, FrontState, OneLabel, Plan, Planner, Pose, Reading, Seek, Site, StopReason,
-    Tolerance, Tracker, VersionSpace, Workspace as _,
+    Belief as _, Front, FrontState, OneLabel, Plan, Planner, Pose, Reading, Sample, Seek, Site,
+    StopReason, Tolerance, Tracker, VersionSpace, Workspace as _, aimed_for,
 };
 use serde::{Deserialize, Serialize};
 
@@ -33,6 +33,14 @@ impl Mission {
     pub fn sought(&self) -> SoughtLine {
         let bounds = self.config.area.bounds();
         Tracker::new(bounds, Front::STRAIGHT, self.noise_told()).given(self.given.samples())
+    }
+
+    /// What labels all over its area say, if it most likely has one label.
+    pub fn one_label(&self, labels: &[Sample]) -> Option<OneLabel> {
+        let area = aimed_for(self.config.area, &self.vehicle, self.config.tolerance).ok()?;
+        let patches = !self.algorithm.seeks_line() && self.front.radius().is_some();
+        let noise = self.noise_told().reliability;
+        OneLabel::of(&area, (self.seeking, patches), noise, (self.given.samples(), labels))
     }
 
     /// The planner that seeks the line.
@@ -148,9 +156,15 @@ pub struct SeekRecord {
     /// The label that all of the area most likely has, where the boundary was not found.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub label: Option<i8>,
-    /// The share of the area that is expected to have the other label all the same.
+    /// Patches that hold a disc of this radius were sought, metres.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub other: Option<f32>,
+    pub radius: Option<f32>,
+    /// The probability that such a patch is left, if every second area has one. None if no patch was sought.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub patch: Option<f32>,
+    /// The same of a boundary that crosses the area.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub coast: Option<f32>,
 }
 
 impl SeekRecord {
@@ -160,7 +174,7 @@ impl SeekRecord {
         mission: &Mission,
         steps: &[(usize, f64)],
         after: &[&dyn ReadOut],
-        is_one: bool,
+        (labels_read, is_one): (&[Sample], bool),
     ) -> Option<Self> {
         let hands_over = mission.begins_from_nothing() && mission.algorithm != Algorithm::Lawnmower;
         if !hands_over && !is_one {
@@ -170,17 +184,15 @@ impl SeekRecord {
         let found = after.iter().position(is_found).map(|k| k + 1);
         let (labels, metres) =
             steps[..found.unwrap_or(steps.len())].last().copied().unwrap_or_default();
-        let one = after.last().filter(|_| is_one).and_then(|belief| {
-            let area = &mission.config.area;
-            let of_line = belief.sought().and_then(|it| OneLabel::of(it, area));
-            of_line.or_else(|| belief.front().and_then(|it| OneLabel::of(it, area)))
-        });
+        let one = is_one.then(|| mission.one_label(labels_read)).flatten();
         Some(Self {
             found,
             labels,
             metres,
             label: one.map(|it| it.label.sign()),
-            other: one.map(|it| it.other),
+            radius: one.map(|it| it.radius),
+            patch: one.and_then(|it| it.left.patch),
+            coast: one.map(|it| it.left.coast),
         })
     }
 }

@@ -28,6 +28,7 @@ pub mod read_out;
 pub mod recording;
 pub mod results;
 pub mod scenario;
+pub mod seeking;
 pub mod sensor;
 pub mod steering;
 pub mod stop;

@@ -1,13 +1,13 @@
 //! The planner of a mission, whichever belief it has.
 
 use planner_core::dynamics::Dynamics;
-use planner_core::error::ObservationError;
+use planner_core::error::{ObservationError, SetupError};
 use planner_core::link::message::MissionArea;
 use planner_core::watch::Alarm;
 use planner_core::{
     Accuracy, AnyReliability, AnySight, AnyVehicle, Belief, Cfc, Estimates, FrontState, Guard,
     Line, Lookahead, Plan, Planner, Pose, PredictiveBelief, Reading, Scc, Site, Tolerance, Track,
-    Trust, Workspace,
+    Tracker, Trust, Workspace,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -143,12 +143,21 @@ impl Mission {
         Lawnmower::new(of, self.start, self.steps, self.asking.labels)
     }
 
+    /// Whether what is told of a boundary that is sought suits the area.
+    pub(crate) fn fits(&self) -> Result<(), SetupError> {
+        let (area, front) = (self.config.area, self.front);
+        let tracker = Tracker::<16, 16, 3>::new(area.bounds(), front, self.noise_told());
+        Track::new(area, self.vehicle, tracker)?.seeking(self.seeking).map(|_| ())
+    }
+
     /// The follower of fronts with the mission's settings.
     ///
     /// # Panics
     /// When settings contradict each other.
     pub fn track<D: Dynamics, G: Workspace>(&self, area: G, dynamics: D) -> Track<D, 16, 16, 3, G> {
-        let planner = Track::new(area, dynamics, self.tracker()).expect(FITS);
+        let tracker = Tracker::new(area.bounds(), self.front, self.noise_told());
+        let planner = Track::new(area, dynamics, tracker).expect(FITS);
+        let planner = planner.seeking(self.seeking).expect(FITS).knowing(self.given.samples());
         if self.until_closed { planner.until_closed() } else { planner }
     }
 

@@ -9,7 +9,7 @@ use planner_core::belief::evidence::{Alarm, Evidence};
 use planner_core::error::ObservationError;
 use planner_core::{
     AnyReliability, Estimates, Line, Pose, PosteriorView, Prior, Reading, Reliability,
-    ReliabilityEstimate, Site, Stage, Step, StopReason,
+    ReliabilityEstimate, Sample, Site, Stage, Step, StopReason,
 };
 
 use crate::mission::definition::{FrontBelief, Mission, SoughtLine, Table};
@@ -268,7 +268,12 @@ impl Recorder {
             credible,
             reliability: belief.hypotheses().filter(|it| is_unknown(it)).map(learnt),
             front: (!seeks_line).then(map),
-            seek: SeekRecord::of(&mission, &labels, &after, has_ended(StopReason::OneLabel)),
+            seek: SeekRecord::of(
+                &mission,
+                &labels,
+                &after,
+                (&read(&results, &steps), has_ended(StopReason::OneLabel)),
+            ),
             goal: GoalRecord::of(&mission, &*belief, audit, is_alarmed),
             alarm,
             diagnosis: seeks_line.then(diagnosis).flatten().map(Box::new),
@@ -305,6 +310,19 @@ impl Recording {
         let refusal = refused.map(|it| recorder.refusal(&it));
         (recorder.end(flown), refusal)
     }
+}
+
+/// The labels of some steps, in order.
+fn read(results: &[StepResult], steps: &[Step]) -> Vec<Sample> {
+    let of_step = |(result, step): (&StepResult, &Step)| {
+        let end = step.reading.map(|it| (step.pose.site, it));
+        result.passed().chain(end).collect::<Vec<_>>()
+    };
+    let sample = |(site, reading)| match reading {
+        Reading::Side(label) => Some(Sample { site, label }),
+        Reading::Boundary => None,
+    };
+    results.iter().zip(steps).flat_map(of_step).filter_map(sample).collect()
 }
 
 /// Estimates of a mission's line, each beside its world as that is at the time. Degrees are those to the true line, or to

@@ -25,6 +25,7 @@ use crate::mission::given::{CAPACITY, Lines};
 use crate::mission::given::{SampleTable, given, given_of_front};
 use crate::mission::lawnmower;
 use crate::mission::names::{CrossingName, FanName, FollowingName, PolicyName, PriorName};
+use crate::mission::seeking::{self, SeekTable};
 use crate::mission::sensor::{self, FaultTable};
 use crate::mission::stop::StopTable;
 use crate::mission::strict::{Table, wrong};
@@ -86,6 +87,7 @@ struct File {
     #[serde(default)]
     bounds: Table<Bounds>,
     front: Option<Table<FrontTable>>,
+    seek: Option<Table<SeekTable>>,
 }
 
 mod defaults {
@@ -348,6 +350,7 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
         return wrong("oracle", "no points of both labels", expected);
     }
     let (front, watch) = front::front(file.front.as_ref(), algorithm, (&vehicle, area.bounds()))?;
+    let seeking = seeking::seeking(file.seek.as_ref())?;
     let first = file.oracle.first().map(|_| given.samples()[0].site);
     let start = start(&file.start.0, first, &area)?;
     let errors = errors(&file.errors.0)?;
@@ -371,7 +374,7 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
     } else {
         (None, stop.map_or(Ok(true), StopTable::until_closed)?)
     };
-    Ok(Mission {
+    let mission = Mission {
         algorithm,
         steps,
         readings: file.readings,
@@ -393,9 +396,17 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
         audits: file.stop.as_ref().is_none_or(|table| table.0.audits()),
         asking,
         front,
+        seeking,
         watch,
         until_closed,
-    })
+    };
+    if !mission.algorithm.seeks_line()
+        && let Err(why) = mission.fits()
+    {
+        let radius = mission.seeking.radius().unwrap_or_default();
+        return wrong("seek.patch", radius, format!("metres ({why})"));
+    }
+    Ok(mission)
 }
 
 /// Whether labels are trusted around what the oracle has seen. A bound was seen by nobody.

@@ -27,8 +27,8 @@ mod odds;
 mod recent;
 mod seeking;
 
-pub(crate) use layout::{Layout, Region, Shape};
+pub(crate) use layout::{Region, Shape};
 pub use memory::FieldMemory;
-pub(crate) use odds::Field;
 pub use odds::Left;
+pub(crate) use odds::{Field, Sought};
 pub use seeking::{Likely, Seeking};

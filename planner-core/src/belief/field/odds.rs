@@ -33,13 +33,19 @@ pub struct Left {
 pub(crate) struct Sought {
     pub(crate) discs: f32,
     pub(crate) half_planes: f32,
+    /// The centre of the disc with the most odds, and these.
+    pub(crate) heaviest: ([f32; 2], f32),
 }
 
 impl Sought {
+    /// Of all regions.
+    pub(crate) fn odds(self) -> f32 {
+        self.discs + self.half_planes
+    }
+
     /// The probability that there is a boundary.
     pub(crate) fn probability(self) -> f32 {
-        let odds = self.discs + self.half_planes;
-        odds / (1.0 + odds)
+        self.odds() / (1.0 + self.odds())
     }
 }
 
@@ -171,7 +177,12 @@ impl Field {
     pub(crate) fn sought(&self) -> Sought {
         let mut sought = Sought::default();
         self.each(|region, odds| match region.shape {
-            Shape::Disc { .. } => sought.discs += odds,
+            Shape::Disc { centre, .. } => {
+                sought.discs += odds;
+                if odds > sought.heaviest.1 {
+                    sought.heaviest = (centre, odds);
+                }
+            }
             Shape::HalfPlane { .. } => sought.half_planes += odds,
         });
         sought

@@ -26,6 +26,9 @@ const OUTER: f32 = 1.035;
 /// A front that was known is elsewhere where "there is none" has more than this probability. Labels tell little then.
 const ELSEWHERE: f32 = 0.97;
 
+/// With this probability there is none for sure.
+const ALL: f32 = 0.9999;
+
 /// Given points are weighed so many times, each time among fewer curves.
 const GIVEN_ROUNDS: u32 = 4;
 
@@ -42,7 +45,7 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
 
     /// Spreads the mass evenly over the lines that cross a rectangle. Returns the logarithm of their measure to the base 2.
     fn fill_within(&mut self, area: Area) -> f32 {
-        (self.evidence, self.was_known) = (Evidence::NONE, false);
+        (self.evidence, self.was_known, self.is_near) = (Evidence::NONE, false, false);
         self.nowhere = [0.5 * NOWHERE; 2];
         let [x, z] = area.half_sides().map(|it| it as f32 * METRE);
         let far = sqrt(x * x + z * z);
@@ -83,11 +86,12 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
     }
 
     /// The same, where it is.
-    pub(super) fn give(&mut self, given: &[Sample]) {
+    pub(crate) fn give(&mut self, given: &[Sample]) {
         let has = |label| given.iter().any(|it| it.label == label);
         let is_between = has(Label::Positive) && has(Label::Negative);
         if let Some(between) = Area::around(given.iter().map(|it| it.site)).filter(|_| is_between) {
             self.start = self.fill_within(between);
+            self.is_near = true;
         }
         // Points of one label do not bound the front, and count once.
         for round in 0..if is_between { GIVEN_ROUNDS } else { 1 } {
@@ -101,6 +105,33 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
             self.grid.lay_around(None, 0.0);
         }
         self.start -= self.information() as f32;
+    }
+
+    /// Begins again in a square, with labels that were read there. The front crosses it, but for a probability of
+    /// `nowhere`. That counts these labels already.
+    ///
+    /// Cost: a label each, but for the laying of cells.
+    pub(crate) fn close_in(
+        &mut self,
+        square: Area,
+        labels: impl Iterator<Item = Sample>,
+        nowhere: f32,
+    ) {
+        self.start = self.fill_within(square);
+        let (p, blur) = (self.counted(), self.blurred());
+        for Sample { site, label } in labels {
+            self.weigh(site, label, p, blur);
+        }
+        let absent = self.share_nowhere();
+        // All of them agree that there is none: the odds stay as they are.
+        if absent < ALL {
+            let [plus, minus] = self.nowhere;
+            let share = if absent > 0.0 { nowhere / absent } else { 0.0 };
+            self.nowhere = [plus * share, minus * share];
+            self.grid.scale((1.0 - self.share_nowhere()) / (1.0 - absent), 0.0);
+        }
+        self.grid.lay_around(None, 0.0);
+        self.is_near = true;
     }
 
     /// Begins again near a site: the front lies within so many metres of it, and its direction has changed by less

@@ -80,6 +80,8 @@ pub struct Tracker<const K: usize, const M: usize, const L: usize> {
     pub(super) start: f32,
     /// Whether the robot [stays](Self::staying).
     pub(super) stays: bool,
+    /// Whether it was told about where the front is.
+    pub(super) is_near: bool,
     /// Whether a front was known, or sought near a place, since one was sought all over an area.
     pub(super) was_known: bool,
 }
@@ -113,6 +115,7 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
             heard: Site::ORIGIN,
             start: 0.0,
             stays: false,
+            is_near: false,
             was_known: false,
         }
     }
@@ -242,6 +245,11 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
     /// What was told of the front.
     pub const fn front(&self) -> Front {
         self.front
+    }
+
+    /// Whether it was told about where the front is: between given points, or near a place.
+    pub(crate) const fn is_near(&self) -> bool {
+        self.is_near
     }
 
     /// Whether the front may have any direction.

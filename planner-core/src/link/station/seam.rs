@@ -227,6 +227,6 @@ fn declined(error: SetupError) -> DeclinedError {
         SetupError::Tolerance(_) => DeclinedError::Tolerance,
         SetupError::Room(none) => DeclinedError::Vehicle(ShapeError::Room(none)),
         SetupError::Given(why) => DeclinedError::Given(why),
-        SetupError::Full => DeclinedError::Given(GivenError::TooMany),
+        SetupError::Full | SetupError::Patch { .. } => DeclinedError::Given(GivenError::TooMany),
     }
 }

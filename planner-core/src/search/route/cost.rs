@@ -5,7 +5,7 @@
 
 use heapless::Vec;
 
-use crate::belief::field::{Field, Region, Shape};
+use crate::belief::field::{Field, Region, Shape, Sought};
 use crate::geometry::approximate::sqrt;
 use crate::search::route::search::{Corners, Hears};
 
@@ -28,11 +28,10 @@ pub(super) struct Costs {
 
 impl Costs {
     /// What a field says. `visits` bounds the work.
-    pub(super) fn of(field: &Field, hears: Hears, visits: u32) -> Self {
+    pub(super) fn of((field, sought): (&Field, Sought), hears: Hears, visits: u32) -> Self {
         let [x, z] = field.layout.half;
         let after = SURVEY * 2.0 * x * z / field.layout.patch;
-        let sought = field.sought();
-        let step = (sought.discs + sought.half_planes) / REGIONS as f32;
+        let step = sought.odds() / REGIONS as f32;
         let (mut regions, mut sum, mut next) = (Vec::new(), 0.0, 0.5 * step);
         field.each(|region, odds| {
             sum += odds;

@@ -2,7 +2,7 @@
 
 use heapless::Vec;
 
-use crate::belief::field::{Field, Shape};
+use crate::belief::field::{Field, Sought};
 use crate::search::route::cost::Costs;
 use crate::search::route::patterns::{Ground, Random};
 
@@ -59,12 +59,25 @@ impl Hears {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Route {
     corners: Corners,
+    /// Whether a user told its corners: they are not changed.
+    is_told: bool,
     random: Random,
 }
 
 impl Route {
     /// No route yet.
-    pub(crate) const NONE: Self = Self { corners: Vec::new(), random: Random::START };
+    pub(crate) const NONE: Self =
+        Self { corners: Vec::new(), is_told: false, random: Random::START };
+
+    /// A route that a user tells, as far as there is room.
+    pub(crate) fn told(corners: impl Iterator<Item = [f32; 2]>) -> Self {
+        Self { corners: corners.take(CORNERS).collect(), is_told: true, ..Self::NONE }
+    }
+
+    /// Whether a user told it, and some of it is left.
+    pub(crate) fn is_told(&self) -> bool {
+        self.is_told && !self.corners.is_empty()
+    }
 
     /// The corner to go to.
     pub(crate) fn next(&self) -> Option<[f32; 2]> {
@@ -78,11 +91,6 @@ impl Route {
         }
     }
 
-    /// Gives up all of it.
-    pub(crate) fn clear(&mut self) {
-        self.corners.clear();
-    }
-
     /// Whether a search can have found it in an area with these half sides.
     pub(crate) fn is_valid(&self, [x, z]: [f32; 2]) -> bool {
         self.corners.iter().all(|it| it[0].abs() <= x && it[1].abs() <= z)
@@ -90,9 +98,15 @@ impl Route {
 
     /// Looks for a better route from a place.
     #[inline(never)] // what it needs is not on the stack while a motion is sought
-    pub(crate) fn improve(&mut self, field: &Field, from: [f32; 2], hears: Hears) {
-        let mut costs = Costs::of(field, hears, VISITS);
+    pub(crate) fn improve(
+        &mut self,
+        (field, sought): (&Field, Sought),
+        from: [f32; 2],
+        hears: Hears,
+    ) {
+        let mut costs = Costs::of((field, sought), hears, VISITS);
         let ground = Ground { half: field.layout.half, patch: field.layout.patch };
+        self.is_told = false;
         let mut best = self.corners.clone();
         let mut least = costs.cost(from, &best, f32::MAX).unwrap_or(f32::MAX) * OLD;
         let mut take = |corners: Corners| {
@@ -101,7 +115,8 @@ impl Route {
             }
             (costs.visits > 0).then(|| best.clone())
         };
-        if let Some(disc) = heaviest(field) {
+        let (disc, odds) = sought.heaviest;
+        if odds > HEAVY * sought.odds() {
             let mut corners = self.corners.clone();
             corners.truncate(CORNERS - 1);
             let _ = corners.insert(0, disc);
@@ -122,27 +137,12 @@ impl Route {
     }
 }
 
-/// The centre of the disc with the most odds, if they are a good part of all.
-fn heaviest(field: &Field) -> Option<[f32; 2]> {
-    let (mut sum, mut most, mut at) = (0.0, 0.0, None);
-    field.each(|region, odds| {
-        sum += odds;
-        if let Shape::Disc { centre, .. } = region.shape
-            && odds > most
-        {
-            (most, at) = (odds, Some(centre));
-        }
-    });
-    at.filter(|_| most > HEAVY * sum)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::belief::field::Seeking;
     use crate::belief::sample::Label;
     use crate::geometry::area::Area;
-    use crate::geometry::lattice::Site;
 
     /// A robot that follows its route hears of an empty area about as fast as one that mows it.
     #[test]
@@ -158,7 +158,7 @@ mod tests {
             if left.patch.unwrap() < 0.01 && left.coast < 0.01 {
                 break;
             }
-            route.improve(&field, place, hears);
+            route.improve((&field, sought), place, hears);
             assert!(route.is_valid(field.layout.half));
             let Some([x, z]) = route.next() else { panic!("no route") };
             let (dx, dz) = (x - place[0], z - place[1]);
@@ -173,7 +173,6 @@ mod tests {
             steps += 1;
             assert!(steps < 700, "{left:?}");
         }
-        let _ = Site::ORIGIN;
         assert!(steps > 200, "{steps}");
     }
 }

@@ -1,0 +1,266 @@
+//! A boundary that is sought from nothing: what is known, the route, and how near it is.
+//!
+//! ```text
+//!              P > 0.9, or true labels that differ          found, and none with less than 0.01
+//!   Search ------------------------------------> Close ------------------------------------> Follow
+//!      ^                                            |                                           |
+//!      +-- most likely none, or too many labels ----+------------- lost, most likely not there -+
+//! ```
+//!
+//! - **Search**: the robot drives along a [`Route`], and a [field](crate::belief::field) takes in the labels.
+//! - **Close**: the tracker begins in a square about the last crossing, with the labels that were read there.
+//! - **Follow**: the tracker knows the boundary, or was told about where it is.
+
+use crate::belief::field::{Field, FieldMemory, Seeking, Sought};
+use crate::belief::sample::{Label, Sample};
+use crate::geometry::approximate::{METRE, distance};
+use crate::geometry::lattice::Site;
+use crate::geometry::workspace::Workspace;
+use crate::planner::one_label::OneLabel;
+use crate::planner::setup::SetupError;
+use crate::search::route::{Hears, Route};
+
+/// There is a boundary nearby where the field has this probability.
+const NEAR: f32 = 0.9;
+
+/// The square about a crossing reaches so many reaches to either side, and so many more for labels that tell little.
+const REACHES: f32 = 2.5;
+
+/// Labels within so many times the square count.
+const LABELS: f32 = 2.0;
+
+/// With true labels on both sides, there is no boundary with this probability.
+const NONE: f32 = 1e-3;
+
+/// The boundary is given up after labels that carry so many bits together.
+const BITS: f32 = 40.0;
+
+/// How near the boundary is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) enum Phase {
+    Search,
+    /// It is given up after so many steps.
+    Close(u16),
+    Follow,
+}
+
+/// What the search for a boundary has to remember.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct QuestMemory {
+    field: FieldMemory,
+    route: Route,
+    phase: Phase,
+    is_fresh: bool,
+    heard: Option<Site>,
+    news: u8,
+}
+
+/// The search for a boundary.
+#[derive(Clone, Debug)]
+pub(crate) struct Quest {
+    field: Field,
+    sought: Sought,
+    route: Route,
+    pub(crate) phase: Phase,
+    /// Whether a label or a motion came since the route was made better.
+    is_fresh: bool,
+    /// Where a label was read last.
+    heard: Option<Site>,
+    /// Labels since the search began again.
+    news: u8,
+}
+
+/// About where a boundary is.
+pub(crate) struct Lead {
+    pub(crate) place: Site,
+    /// It crosses the square that reaches so far to either side of the place, metres.
+    pub(crate) within: f32,
+    /// There is none with this probability.
+    pub(crate) nowhere: f32,
+}
+
+impl Quest {
+    pub(crate) const NONE: Self = Self {
+        field: Field::NONE,
+        sought: Sought { discs: 0.0, half_planes: 0.0, heaviest: ([0.0; 2], 0.0) },
+        route: Route::NONE,
+        phase: Phase::Search,
+        is_fresh: true,
+        heard: None,
+        news: 0,
+    };
+
+    /// Begins in an area with labels that are true with probability `p`. A straight boundary has no `patches`. The tracker
+    /// may be told about where it is.
+    ///
+    /// # Errors
+    /// [`SetupError::Patch`].
+    pub(crate) fn begin<G: Workspace>(
+        &mut self,
+        area: &G,
+        (seeking, patches): (Seeking, bool),
+        p: f32,
+        is_near: bool,
+    ) -> Result<(), SetupError> {
+        let begun = self.field.begin(area, (seeking, patches), p);
+        begun.map_err(|[least, most]| SetupError::Patch { least, most })?;
+        (self.route, self.is_fresh, self.heard, self.news) = (Route::NONE, true, None, 0);
+        self.phase = if is_near { Phase::Follow } else { Phase::Search };
+        self.sought = self.field.sought();
+        Ok(())
+    }
+
+    /// What was said of the boundary.
+    pub(crate) fn seeking(&self) -> Seeking {
+        self.field.seeking()
+    }
+
+    /// Takes in points whose labels are known for sure.
+    pub(crate) fn know(&mut self, points: &[Sample]) {
+        for it in points {
+            self.field.know(it.site, it.label);
+        }
+        self.sought = self.field.sought();
+    }
+
+    /// Takes in a label.
+    pub(crate) fn hear(&mut self, site: Site, label: Label) {
+        self.field.observe(site, label);
+        self.heard = Some(site);
+        self.news = self.news.saturating_add(1);
+    }
+
+    /// A motion has ended, and its labels are taken in.
+    pub(crate) fn moved(&mut self) {
+        self.sought = self.field.sought();
+        self.is_fresh = true;
+    }
+
+    /// What labels tell, read so many metres apart.
+    fn hears(&self, apart: f32) -> Hears {
+        Hears { odds: self.field.odds(), apart }
+    }
+
+    /// Where the boundary is close enough for the tracker: of labels that are surely true, between the last two that
+    /// differ; otherwise where the labels changed last, if there most likely is a boundary.
+    pub(crate) fn lead(&self, is_certain: bool, reach: f32) -> Option<Lead> {
+        let crossed = || self.field.memory.recent.crossed();
+        let ([a, b], nowhere) = if is_certain {
+            (self.bracket()?, NONE)
+        } else {
+            let nowhere = 1.0 - self.sought.probability();
+            if nowhere >= 1.0 - NEAR {
+                return None;
+            }
+            (crossed()?, nowhere)
+        };
+        let gap = 0.5 * METRE * distance(b - a);
+        let square = reach * (REACHES + REACHES / self.hears(reach).label());
+        let within = if gap > square { gap } else { square };
+        Some(Lead { place: Site::between(a, b), within, nowhere })
+    }
+
+    /// The last two labels in a row that differ, among those since the search began again and the one before.
+    fn bracket(&self) -> Option<[Site; 2]> {
+        let recent = &self.field.memory.recent;
+        let old = usize::from(recent.count).saturating_sub(usize::from(self.news) + 1);
+        let mut before: Option<Sample> = None;
+        let mut last = None;
+        for it in recent.iter().skip(old) {
+            if let Some(before) = before.filter(|before| before.label != it.label) {
+                last = Some([before.site, it.site]);
+            }
+            before = Some(it);
+        }
+        last
+    }
+
+    /// The labels that were read near a lead, the oldest first.
+    pub(crate) fn labels_near(&self, lead: &Lead) -> impl Iterator<Item = Sample> {
+        let (place, within) = (lead.place, LABELS * lead.within / METRE);
+        self.field.memory.recent.iter().filter(move |it| {
+            let way = it.site - place;
+            (way.x as f32).abs() <= within && (way.z as f32).abs() <= within
+        })
+    }
+
+    /// The tracker takes over, for labels that carry so many bits each.
+    pub(crate) fn close_in(&mut self, bits: f32) {
+        let bits = if bits > 1e-3 { bits } else { 1e-3 };
+        self.phase = Phase::Close((BITS / bits) as u16);
+    }
+
+    /// The tracker has found nothing: the search goes on.
+    pub(crate) fn search_on(&mut self) {
+        (self.phase, self.news) = (Phase::Search, 0);
+    }
+
+    /// The boundary is not where it was: the search begins again, and forgets all but the last labels.
+    pub(crate) fn lose<G: Workspace>(&mut self, area: &G) {
+        self.field.forget(area);
+        self.search_on();
+        self.moved();
+    }
+
+    /// The label that all of the area has, if it most likely has one.
+    pub(crate) fn one_label(&self) -> Option<OneLabel> {
+        OneLabel::of_field(&self.field, self.field.left(self.sought))
+    }
+
+    /// Makes the route better, once after each motion. Labels come so many metres apart.
+    pub(crate) fn improve(&mut self, from: Site, apart: f32) {
+        let is_fresh = core::mem::take(&mut self.is_fresh) && !self.route.is_told();
+        if is_fresh || self.route.next().is_none() {
+            let (from, hears) = (self.field.layout.seen(from), self.hears(apart));
+            self.route.improve((&self.field, self.sought), from, hears);
+        }
+    }
+
+    /// The corner of the route to go to, or the place nearest to it, towards the middle, where the robot can be.
+    pub(crate) fn next<G: Workspace>(&mut self, area: &G) -> Option<Site> {
+        const EIGHTHS: [f32; 7] = [1.0, 0.875, 0.75, 0.625, 0.5, 0.375, 0.25];
+        while let Some([x, z]) = self.route.next() {
+            let places = EIGHTHS.iter().filter_map(|it| self.field.layout.site([it * x, it * z]));
+            let place = places.into_iter().find(|it| area.contains(*it));
+            if place.is_some() {
+                return place;
+            }
+            self.route.pass();
+        }
+        None
+    }
+
+    /// Drives along a route that is told, up to 16 corners of it, before it plans its own.
+    pub(crate) fn survey(&mut self, corners: &[Site]) {
+        let layout = self.field.layout;
+        self.route = Route::told(corners.iter().map(|it| layout.seen(*it)));
+    }
+
+    /// Leaves out the corner to go to.
+    pub(crate) fn pass(&mut self) {
+        self.route.pass();
+    }
+
+    /// How far the last label lies from a site, lattice units.
+    pub(crate) fn unheard(&self, site: Site) -> f32 {
+        self.heard.map_or(f32::MAX, |heard| distance(site - heard))
+    }
+
+    pub(crate) fn memory(&self) -> QuestMemory {
+        let Self { ref field, ref route, phase, is_fresh, heard, news, .. } = *self;
+        let (field, route) = (field.memory.clone(), route.clone());
+        QuestMemory { field, route, phase, is_fresh, heard, news }
+    }
+
+    /// Goes on from there. Whether a search of the same area can have stored it.
+    pub(crate) fn recall(&mut self, memory: &QuestMemory) -> bool {
+        let QuestMemory { field, route, phase, is_fresh, heard, news } = memory.clone();
+        let is_valid = route.is_valid(self.field.layout.half);
+        (self.field.memory, self.route, self.phase) = (field, route, phase);
+        (self.is_fresh, self.heard, self.news) = (is_fresh, heard, news);
+        self.sought = self.field.sought();
+        is_valid
+    }
+}
