@@ -41,8 +41,12 @@ impl OneLabel {
         };
         let mut field = Field::NONE;
         field.begin(area, (seeking, patches), p).ok()?;
-        given.iter().for_each(|it| field.know(it.site, it.label));
-        labels.iter().for_each(|it| field.observe(it.site, it.label));
+        for it in given {
+            field.know(it.site, it.label);
+        }
+        for it in labels {
+            field.observe(it.site, it.label);
+        }
         Self::of_field(&field, field.left(field.sought()))
     }
 

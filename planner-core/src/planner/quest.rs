@@ -209,13 +209,16 @@ impl Quest {
         OneLabel::of_field(&self.field, self.field.left(self.sought))
     }
 
-    /// Makes the route better, once after each motion. Labels come so many metres apart.
+    /// Whether the route may be made better: once after each motion, unless it was told.
+    pub(crate) fn is_fresh(&self) -> bool {
+        self.is_fresh && !self.route.is_told()
+    }
+
+    /// Makes the route better. Labels come so many metres apart.
     pub(crate) fn improve(&mut self, from: Site, apart: f32) {
-        let is_fresh = core::mem::take(&mut self.is_fresh) && !self.route.is_told();
-        if is_fresh || self.route.next().is_none() {
-            let (from, hears) = (self.field.layout.seen(from), self.hears(apart));
-            self.route.improve((&self.field, self.sought), from, hears);
-        }
+        self.is_fresh = false;
+        let (from, hears) = (self.field.layout.seen(from), self.hears(apart));
+        self.route.improve((&self.field, self.sought), from, hears);
     }
 
     /// The corner of the route to go to, or the place nearest to it, towards the middle, where the robot can be.

@@ -72,6 +72,9 @@ const AGAIN: f32 = 6.0;
 /// An errand ends within this share of the reach.
 const NEAR: f32 = 0.25;
 
+/// A plan looks for a route so many times, less one: once more if there is no way to any corner.
+const ROUTES: u32 = 3;
+
 /// A corner of the route is passed within this share of the reach, or of the radius of the turning circle.
 const PASSES: f32 = 0.5;
 
@@ -340,13 +343,24 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
     fn explore(&mut self, pose: Pose) -> Option<Plan> {
         let (reach, radius) = (self.reach(), self.radius());
         let apart = if self.price > reach { self.price } else { reach };
-        self.quest.improve(pose.site, apart * METRE);
         let passes = PASSES * if radius > reach { radius } else { reach };
         let mut effort = Effort { looks: LOOKS, examined: 0 };
         let with = (&self.dynamics, &self.area);
+        let mut routes = ROUTES;
         let Errand { leg, arrives, .. } = loop {
-            let corner = self.quest.next(&self.area)?;
+            let Some(corner) = self.quest.next(&self.area) else {
+                routes -= 1;
+                if routes == 0 {
+                    return None;
+                }
+                self.quest.improve(pose.site, apart * METRE);
+                continue;
+            };
             let is_there = distance(corner - pose.site) <= passes;
+            if !is_there && self.quest.is_fresh() {
+                self.quest.improve(pose.site, apart * METRE);
+                continue;
+            }
             let mut on_the_way = || errand(with, pose, (corner, NEAR * reach), &mut effort);
             match if is_there { None } else { on_the_way() } {
                 Some(errand) => break errand,

@@ -1,7 +1,7 @@
 //! The planner of a mission, whichever belief it has.
 
 use planner_core::dynamics::Dynamics;
-use planner_core::error::{ObservationError, SetupError};
+use planner_core::error::ObservationError;
 use planner_core::link::message::MissionArea;
 use planner_core::watch::Alarm;
 use planner_core::{
@@ -141,13 +141,6 @@ impl Mission {
 
     fn lawnmower<D: Dynamics, B: Belief>(&self, of: (MissionArea, D, B)) -> Lawnmower<D, B> {
         Lawnmower::new(of, self.start, self.steps, self.asking.labels)
-    }
-
-    /// Whether what is told of a boundary that is sought suits the area.
-    pub(crate) fn fits(&self) -> Result<(), SetupError> {
-        let (area, front) = (self.config.area, self.front);
-        let tracker = Tracker::<16, 16, 3>::new(area.bounds(), front, self.noise_told());
-        Track::new(area, self.vehicle, tracker)?.seeking(self.seeking).map(|_| ())
     }
 
     /// The follower of fronts with the mission's settings.

@@ -400,12 +400,7 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
         watch,
         until_closed,
     };
-    if !mission.algorithm.seeks_line()
-        && let Err(why) = mission.fits()
-    {
-        let radius = mission.seeking.radius().unwrap_or_default();
-        return wrong("seek.patch", radius, format!("metres ({why})"));
-    }
+    mission.check_patch()?;
     Ok(mission)
 }
 

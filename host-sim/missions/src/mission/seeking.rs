@@ -1,9 +1,11 @@
 //! `seek` of a scenario file: what a planner is told of a boundary of which nothing is known.
 
 use anyhow::Result;
-use planner_core::{Likely, Seeking};
+use planner_core::error::SetupError;
+use planner_core::{Likely, Seeking, Track, Tracker, Workspace as _};
 use serde::{Deserialize, Serialize};
 
+use crate::mission::definition::Mission;
 use crate::mission::strict::{Table, wrong};
 
 /// What a boundary is like that is sought from nothing.
@@ -28,4 +30,23 @@ pub(crate) fn seeking(table: Option<&Table<SeekTable>>) -> Result<Seeking> {
     let seeking = seeking
         .or_else(|why| wrong("seek.patch", patch.unwrap_or_default(), format!("metres ({why})")))?;
     Ok(seeking.likely(likely))
+}
+
+impl Mission {
+    /// Whether patches of the radius that is told suit the area.
+    ///
+    /// # Errors
+    /// Names the field, what was found and what was expected.
+    pub(crate) fn check_patch(&self) -> Result<()> {
+        let (area, noise) = (self.config.area, self.noise_told());
+        let tracker = Tracker::<16, 16, 3>::new(area.bounds(), self.front, noise);
+        let track = Track::new(area, self.vehicle, tracker);
+        match track.and_then(|track| track.seeking(self.seeking)) {
+            Err(why @ SetupError::Patch { .. }) if !self.algorithm.seeks_line() => {
+                let radius = self.seeking.radius().unwrap_or_default();
+                wrong("seek.patch", radius, format!("metres ({why})"))
+            }
+            _ => Ok(()),
+        }
+    }
 }

@@ -293,7 +293,7 @@ pub(crate) mod tests {
         for patch in [5.0, 75.0] {
             let [least, most] =
                 Layout::of(&area, Seeking::patches(patch).unwrap(), true).unwrap_err();
-            assert!(least > 5.0 && least < 9.0 && most == 75.0, "{least}, {most}");
+            assert!(least > 5.0 && least < 9.0 && most > 74.9, "{least}, {most}");
         }
         let coast = Layout::of(&area, Seeking::USUAL, false).unwrap();
         assert!(!coast.has_discs() && (coast.patch - 10.9375).abs() < 1e-3);

@@ -12,7 +12,7 @@ pub enum Likely {
     Spill,
     /// A boundary that crosses the area, such as a coast.
     Coast,
-    /// Nobody knows: four in five are patches.
+    /// Nobody knows: nine in ten are patches.
     #[default]
     Either,
 }
@@ -21,9 +21,9 @@ impl Likely {
     /// The share of patches among all boundaries.
     pub(crate) const fn patches(self) -> f32 {
         match self {
-            Self::Spill => 0.95,
+            Self::Spill => 0.98,
             Self::Coast => 0.1,
-            Self::Either => 0.8,
+            Self::Either => 0.9,
         }
     }
 }

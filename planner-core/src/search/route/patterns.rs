@@ -32,7 +32,7 @@ impl Random {
 }
 
 /// The first way of a pattern keeps so many radii of a patch from the border, and its lanes lie so many apart.
-const INSET: [f32; 2] = [0.7, 1.9];
+const INSET: [f32; 2] = [0.4, 1.9];
 const SPACING: [f32; 2] = [1.8, 4.0];
 
 /// A corner is shifted by so many radii at most along either axis.

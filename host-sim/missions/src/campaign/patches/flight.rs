@@ -1,5 +1,7 @@
 //! The missions of a campaign, flown on all cores, and what they come to.
 
+use std::f64::consts::TAU;
+
 use anyhow::{Error, Result};
 use indicatif::ProgressBar;
 use nalgebra::Point2;
@@ -165,7 +167,7 @@ fn start(
 ) -> Result<Pose> {
     loop {
         let [x, z] = sides.map(|side| rng.random_range(10.0..side - 10.0));
-        let heading = Heading::from_radians(rng.random_range(0.0..6.28)).map_err(Error::msg)?;
+        let heading = Heading::from_radians(rng.random_range(0.0..TAU)).map_err(Error::msg)?;
         let pose = Pose::at([x, z], heading).map_err(Error::msg)?;
         if area.contains_disc(pose.site, 8 << 16) {
             return Ok(pose);
