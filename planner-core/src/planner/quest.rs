@@ -23,7 +23,7 @@ use crate::search::route::{Hears, Route};
 /// There is a boundary nearby where the field has this probability.
 const NEAR: f32 = 0.9;
 
-/// The square about a crossing reaches so many reaches to either side, and so many more for labels that tell little.
+/// The square about a crossing reaches so many ways between labels to either side, and so many more for labels that tell little.
 const REACHES: f32 = 2.5;
 
 /// Labels within so many times the square count.
@@ -74,6 +74,10 @@ pub(crate) struct Quest {
 
 /// About where a boundary is.
 pub(crate) struct Lead {
+    /// It was crossed between these two labels.
+    pub(crate) between: [Site; 2],
+    /// Whether they are too far apart to begin there: the robot drives from one to the other first.
+    pub(crate) is_wide: bool,
     pub(crate) place: Site,
     /// It crosses the square that reaches so far to either side of the place, metres.
     pub(crate) within: f32,
@@ -132,10 +136,11 @@ impl Quest {
         self.news = self.news.saturating_add(1);
     }
 
-    /// A motion has ended, and its labels are taken in.
-    pub(crate) fn moved(&mut self) {
+    /// A motion has ended, and its labels are taken in. The route stays until a label comes: a robot that turns on the
+    /// spot would turn to and fro.
+    pub(crate) fn moved(&mut self, has_label: bool) {
         self.sought = self.field.sought();
-        self.is_fresh = true;
+        self.is_fresh |= has_label;
     }
 
     /// What labels tell, read so many metres apart.
@@ -144,8 +149,8 @@ impl Quest {
     }
 
     /// Where the boundary is close enough for the tracker: of labels that are surely true, between the last two that
-    /// differ; otherwise where the labels changed last, if there most likely is a boundary.
-    pub(crate) fn lead(&self, is_certain: bool, reach: f32) -> Option<Lead> {
+    /// differ; otherwise where the labels changed last, if there most likely is a boundary. Labels come so many metres apart.
+    pub(crate) fn lead(&self, is_certain: bool, apart: f32) -> Option<Lead> {
         let crossed = || self.field.memory.recent.crossed();
         let ([a, b], nowhere) = if is_certain {
             (self.bracket()?, NONE)
@@ -157,9 +162,9 @@ impl Quest {
             (crossed()?, nowhere)
         };
         let gap = 0.5 * METRE * distance(b - a);
-        let square = reach * (REACHES + REACHES / self.hears(reach).label());
-        let within = if gap > square { gap } else { square };
-        Some(Lead { place: Site::between(a, b), within, nowhere })
+        let square = apart * (REACHES + REACHES / self.hears(apart).label());
+        let (between, is_wide, place) = ([a, b], gap > square, Site::between(a, b));
+        Some(Lead { between, is_wide, place, within: square, nowhere })
     }
 
     /// The last two labels in a row that differ, among those since the search began again and the one before.
@@ -201,7 +206,7 @@ impl Quest {
     pub(crate) fn lose<G: Workspace>(&mut self, area: &G) {
         self.field.forget(area);
         self.search_on();
-        self.moved();
+        self.moved(true);
     }
 
     /// The label that all of the area has, if it most likely has one.
@@ -233,6 +238,15 @@ impl Quest {
             self.route.pass();
         }
         None
+    }
+
+    /// Drives from a place to the end of a lead that is farther away.
+    pub(crate) fn narrow(&mut self, lead: &Lead, from: Site) {
+        if !self.route.is_told() {
+            let [a, b] = lead.between;
+            let is_first = distance(a - from) > distance(b - from);
+            self.survey(&[if is_first { a } else { b }]);
+        }
     }
 
     /// Drives along a route that is told, up to 16 corners of it, before it plans its own.

@@ -75,8 +75,8 @@ const NEAR: f32 = 0.25;
 /// A plan looks for a route so many times, less one: once more if there is no way to any corner.
 const ROUTES: u32 = 3;
 
-/// A corner of the route is passed within this share of the reach, or of the radius of the turning circle.
-const PASSES: f32 = 0.5;
+/// A corner of the route is passed within these shares of the reach and of the radius of the turning circle.
+const PASSES: [f32; 2] = [0.25, 0.5];
 
 /// Vehicle, area and belief of a planner that seeks a boundary.
 #[derive(Clone, Debug)]
@@ -213,6 +213,12 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         f32::from(self.fastest) * self.dynamics.grid().step_units()
     }
 
+    /// How far apart labels come along a route, lattice units.
+    fn apart(&self) -> f32 {
+        let (price, reach) = (self.price, self.reach());
+        if price > reach { price } else { reach }
+    }
+
     /// What a label tells at a place that has this share of the curves above it, if it is enough.
     pub(crate) fn tells(&self, share: f32) -> Option<f32> {
         let told = self.tracker.tells(share);
@@ -342,8 +348,9 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
     /// The next motion along the route. `None` if there is no way to any of its corners.
     fn explore(&mut self, pose: Pose) -> Option<Plan> {
         let (reach, radius) = (self.reach(), self.radius());
-        let apart = if self.price > reach { self.price } else { reach };
-        let passes = PASSES * if radius > reach { radius } else { reach };
+        let apart = self.apart();
+        let passes = [PASSES[0] * reach, PASSES[1] * radius];
+        let passes = if passes[0] > passes[1] { passes[0] } else { passes[1] };
         let mut effort = Effort { looks: LOOKS, examined: 0 };
         let with = (&self.dynamics, &self.area);
         let mut routes = ROUTES;
@@ -412,9 +419,9 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
             }
         }
         self.silence.observe(reading.is_some());
-        self.quest.moved();
+        self.quest.moved(reading.is_some());
         match self.quest.phase {
-            Phase::Search => self.take_lead(),
+            Phase::Search => self.take_lead(pose.site),
             Phase::Close(left) => {
                 self.quest.phase = match left.checked_sub(1) {
                     _ if self.found().is_some() => Phase::Follow,
@@ -431,9 +438,13 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
     }
 
     /// Closes in on the boundary, if the search has come near to it.
-    fn take_lead(&mut self) {
-        let (reach, span) = (self.reach() * METRE, self.span() * METRE);
-        let Some(lead) = self.quest.lead(self.tracker.is_certain(), reach) else { return };
+    fn take_lead(&mut self, from: Site) {
+        let (apart, span) = (self.apart() * METRE, self.span() * METRE);
+        let Some(lead) = self.quest.lead(self.tracker.is_certain(), apart) else { return };
+        if lead.is_wide {
+            self.quest.narrow(&lead, from);
+            return;
+        }
         let within = if lead.within > SQUARE * span { lead.within } else { SQUARE * span };
         let lead = Lead { within, ..lead };
         let half = (within * UNITS_PER_METRE as f32) as i32;

@@ -76,12 +76,9 @@ pub(crate) enum Shape {
 }
 
 impl Shape {
-    /// The middle of a disc; of a half-plane, the place on its border that is the nearest to the middle.
-    pub(crate) fn centre(self) -> [f32; 2] {
-        match self {
-            Self::Disc { centre, .. } => centre,
-            Self::HalfPlane { normal: [x, z], offset } => [x * offset, z * offset],
-        }
+    /// The centre of a disc. A half-plane has none.
+    pub(crate) fn centre(self) -> Option<[f32; 2]> {
+        if let Self::Disc { centre, .. } = self { Some(centre) } else { None }
     }
 }
 
@@ -140,6 +137,18 @@ impl Layout {
         let step = (most - least) / (OFFSETS - 1) as f32;
         // An area that is no broader than that has all its half-planes in the middle.
         if step > 0.0 { [least, step] } else { [0.5 * (least + most), 1e-3] }
+    }
+
+    /// A place deep in a region: the centre of a disc, or a corner of the rectangle.
+    pub(crate) fn heart(&self, Region { shape, is_inside }: Region) -> [f32; 2] {
+        let [x, z] = match shape {
+            Shape::Disc { centre, .. } if is_inside => return centre,
+            Shape::Disc { centre, .. } => centre,
+            Shape::HalfPlane { normal, .. } if is_inside => normal,
+            Shape::HalfPlane { normal: [x, z], .. } => [-x, -z],
+        };
+        let far = |it: f32, half: f32| if it > 0.0 { -half } else { half };
+        [far(x, self.half[0]), far(z, self.half[1])]
     }
 
     /// Where a site lies.

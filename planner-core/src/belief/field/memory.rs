@@ -39,7 +39,7 @@ impl FieldMemory {
     pub(crate) fn begin<G: Workspace>(&mut self, layout: &Layout, area: &G, kept: &Recent) {
         *self = Self::NONE;
         for (sum, (shape, _)) in self.discs.0.iter_mut().zip(layout.discs()) {
-            let site = layout.site(shape.centre());
+            let site = shape.centre().and_then(|at| layout.site(at));
             *sum = if site.is_some_and(|it| area.contains(it)) { 0 } else { SHUT };
         }
         for it in kept.iter() {

@@ -33,7 +33,7 @@ pub struct Left {
 pub(crate) struct Sought {
     pub(crate) discs: f32,
     pub(crate) half_planes: f32,
-    /// The centre of the disc with the most odds, and these.
+    /// The heart of the region with the most odds, and these.
     pub(crate) heaviest: ([f32; 2], f32),
 }
 
@@ -175,16 +175,18 @@ impl Field {
 
     /// The odds of all regions together.
     pub(crate) fn sought(&self) -> Sought {
-        let mut sought = Sought::default();
-        self.each(|region, odds| match region.shape {
-            Shape::Disc { centre, .. } => {
-                sought.discs += odds;
-                if odds > sought.heaviest.1 {
-                    sought.heaviest = (centre, odds);
-                }
+        let (mut sought, mut heaviest) = (Sought::default(), None);
+        self.each(|region, odds| {
+            match region.shape {
+                Shape::Disc { .. } => sought.discs += odds,
+                Shape::HalfPlane { .. } => sought.half_planes += odds,
             }
-            Shape::HalfPlane { .. } => sought.half_planes += odds,
+            if odds > sought.heaviest.1 {
+                (heaviest, sought.heaviest.1) = (Some(region), odds);
+            }
         });
+        let heart = heaviest.map(|region| self.layout.heart(region));
+        sought.heaviest.0 = heart.unwrap_or_default();
         sought
     }
 

@@ -22,7 +22,7 @@ const SHORT: usize = 2;
 /// The old route is taken unless another costs less than this share of it.
 const OLD: f32 = 0.99;
 
-/// A disc with more than this share of all odds may be gone to first.
+/// A region with more than this share of all odds may be gone to first.
 const HEAVY: f32 = 0.02;
 
 /// The most detections a reading: a reading in a region is one at least, however sure labels are.
@@ -115,11 +115,14 @@ impl Route {
             }
             (costs.visits > 0).then(|| best.clone())
         };
-        let (disc, odds) = sought.heaviest;
-        if odds > HEAVY * sought.odds() {
+        let (heart, odds) = sought.heaviest;
+        // Where the robot is there already, it needs another place to come back from.
+        let [x, z] = [heart[0] - from[0], heart[1] - from[1]];
+        let is_there = x * x + z * z < hears.apart * hears.apart;
+        if odds > HEAVY * sought.odds() && !is_there {
             let mut corners = self.corners.clone();
             corners.truncate(CORNERS - 1);
-            let _ = corners.insert(0, disc);
+            let _ = corners.insert(0, heart);
             take(corners);
         }
         if self.corners.len() < SHORT || self.random.below(SELDOM) == 0 {
