@@ -29,6 +29,9 @@ const REACHES: f32 = 2.5;
 /// Labels within so many times the square count.
 const LABELS: f32 = 2.0;
 
+/// And where so much of the last labels, as a logarithm of odds, says that the boundary was crossed. A false label does not.
+const CHANGED: f32 = 3.0;
+
 /// With true labels on both sides, there is no boundary with this probability.
 const NONE: f32 = 1e-3;
 
@@ -53,6 +56,7 @@ pub struct QuestMemory {
     route: Route,
     phase: Phase,
     is_fresh: bool,
+    is_stuck: bool,
     heard: Option<Site>,
     news: u8,
 }
@@ -66,6 +70,8 @@ pub(crate) struct Quest {
     pub(crate) phase: Phase,
     /// Whether a label or a motion came since the route was made better.
     is_fresh: bool,
+    /// Whether a plan found no way to any corner since.
+    is_stuck: bool,
     /// Where a label was read last.
     heard: Option<Site>,
     /// Labels since the search began again.
@@ -92,6 +98,7 @@ impl Quest {
         route: Route::NONE,
         phase: Phase::Search,
         is_fresh: true,
+        is_stuck: false,
         heard: None,
         news: 0,
     };
@@ -110,7 +117,8 @@ impl Quest {
     ) -> Result<(), SetupError> {
         let begun = self.field.begin(area, (seeking, patches), p);
         begun.map_err(|[least, most]| SetupError::Patch { least, most })?;
-        (self.route, self.is_fresh, self.heard, self.news) = (Route::NONE, true, None, 0);
+        (self.route, self.heard, self.news) = (Route::NONE, None, 0);
+        (self.is_fresh, self.is_stuck) = (true, false);
         self.phase = if is_near { Phase::Follow } else { Phase::Search };
         self.sought = self.field.sought();
         Ok(())
@@ -141,6 +149,7 @@ impl Quest {
     pub(crate) fn moved(&mut self, has_label: bool) {
         self.sought = self.field.sought();
         self.is_fresh |= has_label;
+        self.is_stuck &= !has_label;
     }
 
     /// What labels tell, read so many metres apart.
@@ -151,35 +160,25 @@ impl Quest {
     /// Where the boundary is close enough for the tracker: of labels that are surely true, between the last two that
     /// differ; otherwise where the labels changed last, if there most likely is a boundary. Labels come so many metres apart.
     pub(crate) fn lead(&self, is_certain: bool, apart: f32) -> Option<Lead> {
-        let crossed = || self.field.memory.recent.crossed();
+        // Where nothing was found, a change that was there before does not count again.
+        let recent = self.field.memory.recent.newest(usize::from(self.news) + 1);
         let ([a, b], nowhere) = if is_certain {
-            (self.bracket()?, NONE)
+            (recent.changed()?, NONE)
         } else {
             let nowhere = 1.0 - self.sought.probability();
             if nowhere >= 1.0 - NEAR {
                 return None;
             }
-            (crossed()?, nowhere)
+            let (between, gain) = recent.crossed()?;
+            if self.field.odds() * (gain as f32) < CHANGED {
+                return None;
+            }
+            (between, nowhere)
         };
         let gap = 0.5 * METRE * distance(b - a);
         let square = apart * (REACHES + REACHES / self.hears(apart).label());
         let (between, is_wide, place) = ([a, b], gap > square, Site::between(a, b));
         Some(Lead { between, is_wide, place, within: square, nowhere })
-    }
-
-    /// The last two labels in a row that differ, among those since the search began again and the one before.
-    fn bracket(&self) -> Option<[Site; 2]> {
-        let recent = &self.field.memory.recent;
-        let old = usize::from(recent.count).saturating_sub(usize::from(self.news) + 1);
-        let mut before: Option<Sample> = None;
-        let mut last = None;
-        for it in recent.iter().skip(old) {
-            if let Some(before) = before.filter(|before| before.label != it.label) {
-                last = Some([before.site, it.site]);
-            }
-            before = Some(it);
-        }
-        last
     }
 
     /// The labels that were read near a lead, the oldest first.
@@ -212,6 +211,15 @@ impl Quest {
     /// The label that all of the area has, if it most likely has one.
     pub(crate) fn one_label(&self) -> Option<OneLabel> {
         OneLabel::of_field(&self.field, self.field.left(self.sought))
+    }
+
+    /// There is no way to any corner, until a label comes.
+    pub(crate) fn get_stuck(&mut self) {
+        self.is_stuck = true;
+    }
+
+    pub(crate) fn is_stuck(&self) -> bool {
+        self.is_stuck
     }
 
     /// Whether the route may be made better: once after each motion, unless it was told.
@@ -266,17 +274,18 @@ impl Quest {
     }
 
     pub(crate) fn memory(&self) -> QuestMemory {
-        let Self { ref field, ref route, phase, is_fresh, heard, news, .. } = *self;
+        let Self { ref field, ref route, phase, is_fresh, is_stuck, heard, news, .. } = *self;
         let (field, route) = (field.memory.clone(), route.clone());
-        QuestMemory { field, route, phase, is_fresh, heard, news }
+        QuestMemory { field, route, phase, is_fresh, is_stuck, heard, news }
     }
 
     /// Goes on from there. Whether a search of the same area can have stored it.
     pub(crate) fn recall(&mut self, memory: &QuestMemory) -> bool {
-        let QuestMemory { field, route, phase, is_fresh, heard, news } = memory.clone();
+        let QuestMemory { field, route, phase, is_fresh, is_stuck, heard, news } = memory.clone();
         let is_valid = route.is_valid(self.field.layout.half);
         (self.field.memory, self.route, self.phase) = (field, route, phase);
-        (self.is_fresh, self.heard, self.news) = (is_fresh, heard, news);
+        (self.is_fresh, self.is_stuck) = (is_fresh, is_stuck);
+        (self.heard, self.news) = (heard, news);
         self.sought = self.field.sought();
         is_valid
     }

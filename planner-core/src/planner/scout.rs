@@ -341,7 +341,13 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         }
         match self.one_label() {
             Some(_) => Plan::Stop(StopReason::OneLabel),
-            None => self.explore(pose).unwrap_or(Plan::Stop(StopReason::Cornered)),
+            None => {
+                let plan = if self.quest.is_stuck() { None } else { self.explore(pose) };
+                if plan.is_none() {
+                    self.quest.get_stuck();
+                }
+                plan.or_else(|| self.close(pose)).unwrap_or(Plan::Stop(StopReason::Cornered))
+            }
         }
     }
 

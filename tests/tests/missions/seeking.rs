@@ -5,6 +5,8 @@
 
 use std::f64::consts::TAU;
 
+use host_sim::campaign::patches::flight::Patches;
+use host_sim::campaign::patches::kinds::KINDS;
 use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::asking::Asking;
@@ -157,6 +159,44 @@ fn an_area_of_one_label_ends_as_that() {
             let one = it.one.expect("one label");
             assert_eq!(one.label, label, "{what}, {number}: {one:?}");
         }
+    }
+}
+
+/// Patches and coasts from nothing, in a lake of 200 m x 150 m with motions of 3 m. A lawnmower with tracks of 40 m needs
+/// some 300 m for a patch.
+#[test]
+fn patches_are_found_sooner_than_by_mowing() {
+    let missions = cases(24, 400);
+    for (name, p, metres) in [
+        ("circle of 25 to 45 m", 1.0, 200.0),
+        ("blob", 0.9, 220.0),
+        ("circle, island of 20 %", 0.9, 300.0),
+        ("circle, a boat", 0.9, 260.0),
+        ("line", 0.9, 260.0),
+    ] {
+        let kind = KINDS.iter().find(|it| it.name == name).expect("a kind");
+        let patches = Patches { mows: false, missions, seed: SEED, p: vec![p], told: 1.0 };
+        let flown =
+            ensemble::fly(missions, |number| patches.mission(kind, p, number).expect("a mission"));
+        let what = format!("{name}, p = {p}");
+        expect(format!("{what}, found"), percent(&flown, |it| it.is_found), 95.0..);
+        expect(format!("{what}, falsely"), percent(&flown, |it| it.is_false), ..=2.0);
+        assert!(!flown.iter().any(|it| it.is_empty), "{what}: said to be empty");
+        expect(format!("{what}, metres"), mean(flown.iter().map(|it| it.metres)), ..=metres);
+    }
+}
+
+/// An area without a boundary ends as that, and none is found.
+#[test]
+fn a_lake_without_a_patch_ends_as_that() {
+    let kind = KINDS.iter().find(|it| it.name == "nothing").expect("a kind");
+    for p in [1.0, 0.9] {
+        let missions = cases(10, 200);
+        let patches = Patches { mows: false, missions, seed: SEED, p: vec![p], told: 1.0 };
+        let flown =
+            ensemble::fly(missions, |number| patches.mission(kind, p, number).expect("a mission"));
+        expect(format!("p = {p}, empty"), percent(&flown, |it| it.is_empty), 98.0..);
+        expect(format!("p = {p}, false"), percent(&flown, |it| it.is_false), ..=1.0);
     }
 }
 

@@ -63,7 +63,9 @@ impl FieldMemory {
             bins.get_mut(layout.bin(k, at)).into_iter().for_each(add);
         }
         self.total = self.total.saturating_add(by.into());
-        self.recent.push(site, label);
+        for _ in 0..times {
+            self.recent.push(site, label);
+        }
     }
 }
 

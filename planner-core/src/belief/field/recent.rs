@@ -40,15 +40,28 @@ impl Recent {
         })
     }
 
+    /// The newest labels, so many.
+    pub(crate) fn newest(self, count: usize) -> Self {
+        Self { count: self.count.min(count.min(REMEMBERED) as u8), ..self }
+    }
+
     /// The two labels between which the boundary was crossed last: of all ways to cut the row of labels into three parts
-    /// of alternating labels, the one that the most labels agree with. `None` if no cut does better than none.
-    pub(crate) fn crossed(&self) -> Option<[Site; 2]> {
+    /// of alternating labels, the one that the most labels agree with. And how many more agree with it than with no cut.
+    /// `None` if no cut does better.
+    pub(crate) fn crossed(&self) -> Option<([Site; 2], i32)> {
         let sign = |it: Sample| if it.label == Label::Positive { 1 } else { -1 };
         let total: i32 = self.iter().map(sign).sum();
         // Both labellings of the parts: the middle may be +1 or -1.
         let better = [1, -1].map(|middle| self.cut(total, middle)).into_iter().flatten();
         let best = better.reduce(|a, b| if b.0 > a.0 { b } else { a });
-        best.filter(|(score, _)| *score > total.abs()).map(|(_, at)| at)
+        let gain = best.map(|(score, at)| (at, (score - total.abs()) / 2));
+        gain.filter(|(_, gain)| *gain > 0)
+    }
+
+    /// The last two labels in a row that differ.
+    pub(crate) fn changed(&self) -> Option<[Site; 2]> {
+        let pairs = self.iter().zip(self.iter().skip(1));
+        pairs.filter(|(a, b)| a.label != b.label).last().map(|(a, b)| [a.site, b.site])
     }
 
     /// The best cut with the middle part of this sign: how many more labels agree than disagree, and the sites about the
@@ -109,7 +122,7 @@ mod tests {
 
     #[test]
     fn the_last_change_is_between_the_labels_that_agree_the_most() {
-        let at = |recent: &Recent| recent.crossed().map(|it| it.map(Site::x));
+        let at = |recent: &Recent| recent.crossed().map(|it| it.0.map(Site::x));
         assert_eq!(at(&row(&[true; 5])), None);
         assert_eq!(at(&row(&[true, true, false])), Some([1, 2]));
         assert_eq!(at(&row(&[true, false, false, false, true, true, true])), Some([3, 4]));

@@ -102,7 +102,7 @@ fn blob(ground: &Ground, rng: &mut ChaCha8Rng) -> Truth {
 }
 
 /// The kinds, in the order of tables.
-pub const KINDS: [Kind; 13] = [
+pub const KINDS: [Kind; 12] = [
     Kind { name: "circle of 25 to 45 m", draw: circle, ground: LAKE },
     Kind { name: "ellipse", draw: ellipse, ground: LAKE },
     Kind { name: "blob", draw: blob, ground: LAKE },
@@ -129,7 +129,6 @@ pub const KINDS: [Kind; 13] = [
         ground: Ground { vehicle: Vehicle::Boat, ..LAKE },
     },
     Kind { name: "circle, a car", draw: circle, ground: Ground { vehicle: Vehicle::Car, ..LAKE } },
-    Kind { name: "circle, told half", draw: circle, ground: Ground { patch: 20.0, ..LAKE } },
     Kind { name: "circle, 800 m x 500 m", draw: circle, ground: WIDE },
     Kind { name: "nothing", draw: |_, _| Truth::Empty, ground: Ground { steps: 1_500, ..LAKE } },
 ];
