@@ -7,7 +7,7 @@ use planner_core::link::message::{
     self, Capacity, DeclinedError, LabelSource, MissionArea, Outline, PROTOCOL, Setup,
 };
 use planner_core::planner::lookahead;
-use planner_core::{AnySight, FrontStretch, Workspace as _};
+use planner_core::{AnySight, FrontStretch, Seeking, Workspace as _};
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::Mission;
@@ -45,6 +45,9 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
             "no points of both labels",
             "some with hil: a board does not seek them",
         );
+    }
+    if mission.seeking != Seeking::USUAL {
+        return wrong("seek", "some with hil", "none: a board seeks in the usual way");
     }
     check_sensor(mission, labels)?;
     let Some(noise) = mission.noise_known() else {

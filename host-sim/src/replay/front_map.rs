@@ -7,7 +7,7 @@
 use std::path::Path;
 
 use anyhow::Result;
-use planner_core::{Belief as _, Front, Label};
+use planner_core::{Front, Label};
 
 use crate::mission::front::VertexRecord;
 use crate::mission::map::{MapRecord, State};
@@ -57,23 +57,15 @@ impl FrontMap {
     }
 
     fn of(file: SampleFile, front: Front, trust: Trust) -> Result<Self> {
-        let RecordedTrack { rows, apart, mut tracker, width, near, area, p, is_closed } =
+        let RecordedTrack { rows, apart, mut known, width, near, area, p, is_closed } =
             RecordedTrack::of(&file, front, trust)?;
         let bar = progress(rows.len() as u64, "rows")?;
         let (mut alarms, mut after) = (Vec::new(), Vec::with_capacity(rows.len()));
-        for (k, Row { number, site, label, passed, elapsed, driven }) in rows.iter().enumerate() {
-            for (site, reading) in passed {
-                tracker.observe_on_the_way(*site, *reading)?;
+        for (k, row) in rows.iter().enumerate() {
+            if known.take(row, near, area)? {
+                alarms.push(row.number);
             }
-            tracker.moved(*site, *elapsed);
-            match label {
-                Some(label) => tracker.observe(*site, (*label).into())?,
-                None => tracker.settle(*site),
-            }
-            if tracker.seek_anew((*site, near), area) {
-                alarms.push(*number);
-            }
-            after.push((*driven, tracker.found(width).map(VertexRecord::from)));
+            after.push((row.driven, known.found(width).map(VertexRecord::from)));
             if k % ROWS == 0 {
                 bar.set_position(k as u64);
             }
@@ -91,7 +83,7 @@ impl FrontMap {
             }),
             ..map
         };
-        let absent = tracker.share_nowhere();
+        let absent = known.tracker().share_nowhere();
         let one_label = one_label(&rows, absent).filter(|_| map.state == State::Sought);
         Ok(Self {
             file,

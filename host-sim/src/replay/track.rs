@@ -3,8 +3,10 @@
 use anyhow::{Context as _, Result, bail};
 use nalgebra::Point2;
 use planner_core::motion::unicycle::Grid;
+use planner_core::watch::Evidence;
 use planner_core::{
-    AnyReliability, Area, Front, Label, Noise, Reading, Sample, Site, Tolerance, Track,
+    AnyReliability, AnyVehicle, Area, Belief as _, Front, Heading, Label, Noise, Planner as _,
+    Pose, Reading, Sample, Site, Tolerance, Track, Waist,
 };
 
 use crate::mission::algorithm::Algorithm;
@@ -49,6 +51,57 @@ pub(crate) struct Row {
     pub(crate) driven: f64,
 }
 
+/// What takes in the rows.
+pub(crate) enum Known {
+    /// A tracker by itself, for rows that no mission has read.
+    Rows(Box<FrontBelief>),
+    /// The follower of the mission.
+    Mission(Box<Track<AnyVehicle, 16, 16, 3>>),
+}
+
+impl Known {
+    /// What is known of the front.
+    pub(crate) fn tracker(&self) -> &FrontBelief {
+        match self {
+            Self::Rows(tracker) => tracker,
+            Self::Mission(follower) => follower.belief(),
+        }
+    }
+
+    /// Takes in a row. Whether the front is sought anew, within so many metres or in an area.
+    pub(crate) fn take(&mut self, row: &Row, near: f32, area: Area) -> Result<bool> {
+        match self {
+            Self::Rows(tracker) => {
+                tracker.moved(row.site, row.elapsed);
+                match row.label {
+                    Some(label) => tracker.observe(row.site, label.into())?,
+                    None => tracker.settle(row.site),
+                }
+                Ok(tracker.seek_anew((row.site, near), area))
+            }
+            Self::Mission(follower) => {
+                let has_evidence =
+                    |it: &Track<_, 16, 16, 3>| *it.belief().evidence() != Evidence::NONE;
+                let had = has_evidence(follower);
+                for (site, reading) in &row.passed {
+                    follower.observe_on_the_way(*site, *reading)?;
+                }
+                let pose = Pose { site: row.site, heading: Heading::default() };
+                follower.observe(pose, row.label.map(Into::into))?;
+                Ok(had && !has_evidence(follower))
+            }
+        }
+    }
+
+    /// Where the front is known best, if its half-width is below this, metres.
+    pub(crate) fn found(&self, within: f32) -> Option<Waist> {
+        match self {
+            Self::Rows(tracker) => tracker.found(within),
+            Self::Mission(follower) => follower.found(),
+        }
+    }
+}
+
 /// A recorded track.
 pub(crate) struct RecordedTrack {
     /// The rows that are taken in.
@@ -56,7 +109,7 @@ pub(crate) struct RecordedTrack {
     /// They are at least so far apart, metres.
     pub(crate) apart: f64,
     /// What is known of the front before the first row.
-    pub(crate) tracker: FrontBelief,
+    pub(crate) known: Known,
     /// The front counts as found where its half-width is below this, metres.
     pub(crate) width: f32,
     /// After an alarm it is sought within so many metres, and then in this area.
@@ -111,7 +164,7 @@ impl RecordedTrack {
         Ok(Self {
             rows,
             apart: APART * reach,
-            tracker: FrontBelief::new(area, front, noise),
+            known: Known::Rows(Box::new(FrontBelief::new(area, front, noise))),
             width: (FOUND * reach) as f32,
             near: (AGAIN * reach) as f32,
             area,
@@ -149,18 +202,19 @@ impl RecordedTrack {
             None => Ok(Grid::Fine.into()),
         };
         let tracker = FrontBelief::new(area, front, noise);
-        let tracker = tracker.given(&file.samples[..start.oracle.len()]);
         let watches = start.front.is_some_and(|it| it.watch.is_some());
         let tracker = if watches { tracker.staying() } else { tracker };
         // How wide a front that is found may be, and how near one that is lost, is for the follower itself to say.
-        let follower = Track::new(area, vehicle.with_context(named)?, tracker.clone());
-        let follower = follower.with_context(named)?;
+        let follower = Track::new(area, vehicle.with_context(named)?, tracker);
+        let seeking = start.seek.unwrap_or_default().told().with_context(named)?;
+        let follower = follower.and_then(|it| it.seeking(seeking)).with_context(named)?;
+        let follower = follower.knowing(&file.samples[..start.oracle.len()]);
         Ok(Self {
             rows: steps.iter().zip(sites).zip(ways).map(row).collect(),
             apart: 0.0,
-            tracker,
             width: follower.width(),
             near: follower.near(),
+            known: Known::Mission(Box::new(follower)),
             area,
             p,
             is_closed: reason.as_deref() == Some("closed"),

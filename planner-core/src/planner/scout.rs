@@ -339,16 +339,14 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
             }
             self.quest.search_on();
         }
-        match self.one_label() {
-            Some(_) => Plan::Stop(StopReason::OneLabel),
-            None => {
-                let plan = if self.quest.is_stuck() { None } else { self.explore(pose) };
-                if plan.is_none() {
-                    self.quest.get_stuck();
-                }
-                plan.or_else(|| self.close(pose)).unwrap_or(Plan::Stop(StopReason::Cornered))
-            }
+        if self.one_label().is_some() {
+            return Plan::Stop(StopReason::OneLabel);
         }
+        let plan = if self.quest.is_stuck() { None } else { self.explore(pose) };
+        if plan.is_none() {
+            self.quest.get_stuck();
+        }
+        plan.or_else(|| self.close(pose)).unwrap_or(Plan::Stop(StopReason::Cornered))
     }
 
     /// The next motion along the route. `None` if there is no way to any of its corners.

@@ -25,6 +25,7 @@ use crate::mission::results::{
     KeepOutRecord, LineError, PTold, ReadingRecord, ReliabilityRecord, Results, Start, StepResult,
     VERSION, cost, recovery_name, stage_name,
 };
+use crate::mission::seeking::SeekTable;
 use crate::mission::stop::{AuditRecord, GoalRecord};
 use crate::mission::vehicle::VehicleTable;
 use crate::world::World;
@@ -361,6 +362,7 @@ fn start(mission: &Mission) -> Start {
         labels_err: mission.noise.is_some(),
         readings: (mission.readings > 1).then_some(mission.readings),
         steps: mission.steps,
+        seek: SeekTable::of(mission.seeking),
         front: (!mission.algorithm.seeks_line())
             .then(|| FrontTable::told(mission.front, mission.watch)),
         slope_arcs: mission

@@ -29,6 +29,7 @@ use crate::mission::legs::{Leg, Legs};
 pub use crate::mission::line_record::{LineError, LineRecord};
 use crate::mission::map::MapRecord;
 use crate::mission::read_out::Expectation;
+use crate::mission::seeking::SeekTable;
 use crate::mission::sensor::FaultTable;
 use crate::mission::stop::GoalRecord;
 use crate::mission::vehicle::VehicleTable;
@@ -109,6 +110,9 @@ pub struct Start {
     /// What is told of the front, if one is followed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub front: Option<FrontTable>,
+    /// What is told of a boundary that is sought, if it is not the usual.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seek: Option<SeekTable>,
     /// Readings a motion, if there are several.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub readings: Option<u32>,

@@ -1,7 +1,7 @@
 //! `seek` of a scenario file: what a planner is told of a boundary of which nothing is known.
 
 use anyhow::Result;
-use planner_core::error::SetupError;
+use planner_core::error::{SetupError, ValueError};
 use planner_core::{Likely, Seeking, Track, Tracker, Workspace as _};
 use serde::{Deserialize, Serialize};
 
@@ -20,16 +20,30 @@ pub struct SeekTable {
     pub likely: Likely,
 }
 
+impl SeekTable {
+    /// What a planner is told, if it is not the usual.
+    pub(crate) fn of(seeking: Seeking) -> Option<Self> {
+        let it = Self { patch: seeking.radius(), likely: seeking.most_likely() };
+        (seeking != Seeking::USUAL).then_some(it)
+    }
+
+    /// The same as a planner has it.
+    ///
+    /// # Errors
+    /// Says what is expected.
+    pub fn told(self) -> Result<Seeking, ValueError> {
+        Ok(self.patch.map_or(Ok(Seeking::USUAL), Seeking::patches)?.likely(self.likely))
+    }
+}
+
 /// What a planner is told.
 ///
 /// # Errors
 /// Names the field, what was found and what was expected.
 pub(crate) fn seeking(table: Option<&Table<SeekTable>>) -> Result<Seeking> {
-    let SeekTable { patch, likely } = table.map(|table| table.0).unwrap_or_default();
-    let seeking = patch.map_or(Ok(Seeking::USUAL), Seeking::patches);
-    let seeking = seeking
-        .or_else(|why| wrong("seek.patch", patch.unwrap_or_default(), format!("metres ({why})")))?;
-    Ok(seeking.likely(likely))
+    let table = table.map(|table| table.0).unwrap_or_default();
+    let radius = table.patch.unwrap_or_default();
+    table.told().or_else(|why| wrong("seek.patch", radius, format!("metres ({why})")))
 }
 
 impl Mission {

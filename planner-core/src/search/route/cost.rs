@@ -7,7 +7,7 @@ use heapless::Vec;
 
 use crate::belief::field::{Field, Region, Shape, Sought};
 use crate::geometry::approximate::sqrt;
-use crate::search::route::search::{Corners, Hears};
+use crate::search::route::corners::{Corners, Hears};
 
 /// Regions that stand for all.
 pub(crate) const REGIONS: usize = 96;

@@ -1,6 +1,6 @@
 //! Sweeps and spirals over a rectangle, and random changes of a route.
 
-use crate::search::route::search::Corners;
+use crate::search::route::corners::Corners;
 
 /// Random numbers that are the same on every machine (Marsaglia's xorshift, 2003).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,13 +1,9 @@
 //! The search for a route: a few candidates a plan, and the best of them is kept.
 
-use heapless::Vec;
-
 use crate::belief::field::{Field, Sought};
+use crate::search::route::corners::{CORNERS, Corners, Hears};
 use crate::search::route::cost::Costs;
 use crate::search::route::patterns::{Ground, Random};
-
-/// Corners of a route, at most.
-const CORNERS: usize = 16;
 
 /// Visits of a region by a leg, at most: some 0.8 million instructions of a Cortex-M4F.
 const VISITS: u32 = 24_000;
@@ -25,35 +21,6 @@ const OLD: f32 = 0.99;
 /// A region with more than this share of all odds may be gone to first.
 const HEAVY: f32 = 0.02;
 
-/// The most detections a reading: a reading in a region is one at least, however sure labels are.
-const MOST: f32 = 4.0;
-
-/// The corners of a route, metres from the middle of the area.
-pub(crate) type Corners = Vec<[f32; 2], CORNERS, u8>;
-
-/// How well labels hear a boundary.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Hears {
-    /// What a label carries: the logarithm of its odds.
-    pub(crate) odds: f32,
-    /// Metres from one label to the next.
-    pub(crate) apart: f32,
-}
-
-impl Hears {
-    /// The bits of a label, nearly: twice its probability less one, times its odds; at most [`MOST`].
-    pub(crate) fn label(self) -> f32 {
-        let wrong = libm::expf(-self.odds);
-        let bits = self.odds * (1.0 - wrong) / (1.0 + wrong);
-        if bits < MOST { bits } else { MOST }
-    }
-
-    /// Detections a metre.
-    pub(super) fn rate(self) -> f32 {
-        self.label() / self.apart
-    }
-}
-
 /// A route that seeks a boundary.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -67,7 +34,7 @@ pub struct Route {
 impl Route {
     /// No route yet.
     pub(crate) const NONE: Self =
-        Self { corners: Vec::new(), is_told: false, random: Random::START };
+        Self { corners: Corners::new(), is_told: false, random: Random::START };
 
     /// A route that a user tells, as far as there is room.
     pub(crate) fn told(corners: impl Iterator<Item = [f32; 2]>) -> Self {
