@@ -86,8 +86,7 @@ pub(crate) fn remedy(record: &MapRecord) -> Option<&'static str> {
              smaller front.radius or a higher front.speed may keep it.",
         ),
         State::Sought => Some(
-            "To find it, allow more steps, or give points of both labels. A front that is closed within the area is easily \
-             missed without a point inside it.",
+            "To find it, allow more steps, say a smaller seek.patch, or give points of both labels.",
         ),
         State::Followed | State::Closed => None,
     }
