@@ -113,7 +113,7 @@ fuzz_target!(|bytes: &[u8]| {
                     }
                 }
                 Algorithm::Track { front, noise, ends } => {
-                    let mut planner = setup.track::<_, _, 16, 16, 3>(terms, front, ends);
+                    let mut planner = setup.track(terms, front, ends);
                     if let Ok(mut prepared) = setup.prepare(&mut planner, Prior::Area, noise) {
                         fly(prepared.planner_mut(), &setup);
                     }

@@ -69,8 +69,7 @@
 //! | a planner | [`Lookahead`]. [`Cfc`] and [`Scc`] are the paper's Algorithms 1 and 2 |
 //! | labels that are true | [`VersionSpace`], with a tolerance if positions err |
 //! | labels that are sometimes wrong | [`NoisyBelief`], made with a [`Noise`]: how often labels are right |
-//! | a boundary that bends or moves, to find it and go along it | [`Track`] with a [`Tracker`] |
-//! | the same from a place where it is known, told nothing of how it bends | [`Trail`] with a [`Curve`] |
+//! | a boundary that bends or moves, to find it and go along it | [`Track`] |
 //! | a boundary that bends or moves a little | a tolerance from a [`Deviation`] |
 //! | to begin with a slope or an intercept instead of points | [`bounds`] |
 //! | to begin with nothing, or with points of one label | [`Seek`], and then one of these |
@@ -171,7 +170,7 @@ pub use nalgebra;
 pub use crate::belief::Belief;
 pub use crate::belief::bounds;
 pub use crate::belief::cells::{CellView, Certainty};
-pub use crate::belief::curve::Curve;
+pub use crate::belief::curve::{Curve, CurveMemory, MapPlace};
 pub use crate::belief::deviation::Deviation;
 pub use crate::belief::doubtful_labels::CellPosterior;
 pub use crate::belief::doubtful_labels::{PosteriorView, ReliabilityEstimate};
@@ -218,7 +217,6 @@ pub use crate::planner::setup::{Restart, aimed_for};
 pub use crate::planner::sight::{AnySight, Near, Sight};
 pub use crate::planner::snapshot::{Persist, SNAPSHOT_VERSION, Snapshot};
 pub use crate::planner::track::Track;
-pub use crate::planner::trail::Trail;
 pub use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
 pub use crate::robot::{Agent, Event, PinSensor, Step, ThresholdSensor, Vehicle};
 pub use crate::search::objective::EffortWeight;

@@ -26,6 +26,7 @@ pub use crate::planner::lap::Lap;
 pub use crate::planner::quest::QuestMemory;
 pub use crate::planner::seek::SeekMemory;
 pub use crate::planner::silence::Silence;
+pub use crate::planner::track::TrackMemory;
 pub use crate::search::direction_rule::{ArcRule, DirectionRule};
 pub use crate::search::lookout::Lookout;
 pub use crate::search::objective::Choice;

@@ -7,10 +7,10 @@ use planner_core::error::{
 };
 use planner_core::{
     AnyReliability, AnyVehicle, Area, Boat, Car, CarShape, CellPosterior, CellView, Certainty, Cfc,
-    Far, Front, Goal, Guard, Heading, Holonomic, Hull, KeepOut, Label, Lookahead, Motion, Noise,
-    NoisyBelief, Plan, Planner, PolygonArea, Pose, Prior, Recovery, Reliability, Sample, Scc, Seek,
-    Site, SlopeArc, Tolerance, Track, Tracker, Unicycle, UnicycleShape, UnknownReliability,
-    VehicleShape, VersionSpace, Workspace,
+    Far, Front, FrontStretch, Goal, Guard, Heading, Holonomic, Hull, KeepOut, Label, Lookahead,
+    Motion, Noise, NoisyBelief, Plan, Planner, PolygonArea, Pose, Prior, Recovery, Reliability,
+    Sample, Scc, Seek, Site, SlopeArc, Tolerance, Track, Tracker, Unicycle, UnicycleShape,
+    UnknownReliability, VehicleShape, VersionSpace, Workspace,
 };
 
 type Result<T = (), E = Box<dyn Error>> = std::result::Result<T, E>;
@@ -80,11 +80,9 @@ fn areas_beliefs_and_planners_with_any_vehicle() -> Result {
     let (area, front) = (Area::metres([0.0; 2], [20.0; 2])?, Front::bending(10.0)?);
     let known: Noise<AnyReliability> = Noise::from(noise);
     flies(Seek::new(area, Unicycle::default(), Tracker::<16, 16, 1>::new(area, front, known))?)?;
-    let track =
-        || Track::new(area, Unicycle::default(), Tracker::<16, 16, 3>::new(area, front, known));
-    flies(track()?)?;
-    let guard: Guard<Unicycle, 16, 16, 3> = track()?.watching(10.0)?;
-    flies(guard)?;
+    flies(Track::new(area, Unicycle::default(), front, known)?)?;
+    let tracker = Tracker::<16, 16, 3>::new(area, front, known);
+    flies(Guard::new(area, Unicycle::default(), tracker, FrontStretch::metres(10.0)?)?)?;
     Ok(())
 }
 

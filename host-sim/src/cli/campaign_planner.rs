@@ -35,7 +35,6 @@ impl ValueEnum for CampaignPlanner {
             Self::Line(Algorithm::Random),
             Self::Line(Algorithm::Lawnmower),
             Self::Front(Who::Track),
-            Self::Front(Who::Trail),
             Self::Front(Who::Zigzag),
             Self::Front(Who::BangBang),
         ]
@@ -71,7 +70,7 @@ pub(crate) fn of_fronts(flag: &str, planners: &[CampaignPlanner]) -> Result<Vec<
     let of_front = |planner: &CampaignPlanner| match planner {
         CampaignPlanner::Front(who) => Ok(*who),
         CampaignPlanner::Line(algorithm) => bail!(
-            "{flag}: found {} with --fronts, expected track, trail, zigzag or bang-bang, which follow fronts",
+            "{flag}: found {} with --fronts, expected track, zigzag or bang-bang, which follow fronts",
             algorithm.name()
         ),
     };

@@ -3,6 +3,8 @@
 use anyhow::{Result, bail};
 use clap::Args;
 
+use planner_core::Front;
+
 use crate::campaign::fronts::flight::Fronts;
 use crate::campaign::fronts::kinds::KINDS;
 use crate::campaign::fronts::who::Who;
@@ -23,13 +25,10 @@ const USUAL_P: [f64; 2] = [1.0, 0.9];
 /// `--reach` and `--format`.
 #[derive(Debug, Args)]
 pub(crate) struct FrontsFlags {
-    /// Follow fronts that bend and move, and measure the maps (track, trail, zigzag, bang-bang)
+    /// Follow fronts that bend and move, and measure the maps (track, zigzag, bang-bang)
     #[arg(long, conflicts_with_all = MEANINGLESS)]
     pub(crate) fronts: bool,
-    /// The tracker is told this multiple of each front's radius (track) [default: 1]
-    #[arg(long, value_name = "FACTOR", requires = "fronts", allow_hyphen_values = true)]
-    told_radius: Option<f64>,
-    /// The tracker is told this multiple of each front's speed (track, trail) [default: 1]
+    /// The follower is told this multiple of each front's speed (track) [default: 1]
     #[arg(long, value_name = "FACTOR", requires = "fronts", allow_hyphen_values = true)]
     told_speed: Option<f64>,
 }
@@ -99,31 +98,24 @@ impl FrontsFlags {
             bail!("--reach: found {reach}, expected 0.1 to 2 m in steps of 0.1 with --fronts");
         }
         self.check_told(who, flag)?;
-        let told = [self.told_radius, self.told_speed].map(|it| it.unwrap_or(1.0));
+        let told_speed = self.told_speed.unwrap_or(1.0);
         let (missions, seed) = (flags.fields, flags.seed);
-        let of = |who: &Who| Fronts { who: *who, missions, seed, p: p.clone(), told, reach };
+        let of = |who: &Who| Fronts { who: *who, missions, seed, p: p.clone(), told_speed, reach };
         Ok(who.iter().map(of).collect())
     }
 
     /// Whether a planner can be told so, and whether there is one.
     fn check_told(&self, who: &[Who], flag: &str) -> Result<()> {
-        let told = [("--told-radius", self.told_radius), ("--told-speed", self.told_speed)];
-        for (k, (name, factor)) in told.into_iter().enumerate() {
-            let Some(factor) = factor else { continue };
-            let is_told = |who: &Who| [who.is_told_radius(), who.is_told_speed()][k];
-            if !who.iter().any(is_told) {
-                let names: Vec<_> = who.iter().map(|it| it.name()).collect();
-                let (names, those) = (names.join(","), ["track", "track or trail"][k]);
-                bail!(
-                    "{name}: found with {flag} {names}, expected with {those}, told so of fronts"
-                );
-            }
-            let mut factors = [1.0; 2];
-            factors[k] = factor;
-            for kind in KINDS {
-                if let Err(why) = kind.told.times(factors).front() {
-                    bail!("{name}: found {factor}, expected a factor that suits all fronts: {why}");
-                }
+        const NAME: &str = "--told-speed";
+        let Some(factor) = self.told_speed else { return Ok(()) };
+        if !who.iter().any(|it| it.is_told_speed()) {
+            let names: Vec<_> = who.iter().map(|it| it.name()).collect();
+            let names = names.join(",");
+            bail!("{NAME}: found with {flag} {names}, expected with track, told so of fronts");
+        }
+        for kind in KINDS {
+            if let Err(why) = Front::BENDING.moving(kind.speed * factor) {
+                bail!("{NAME}: found {factor}, expected a factor that suits all fronts: {why}");
             }
         }
         Ok(())

@@ -22,9 +22,6 @@ pub(crate) struct SizeArgs {
     /// Hypotheses, if labels may be wrong: all that 32 labels can have are 529
     #[arg(long, value_name = "H", value_parser = clap::value_parser!(u16).range(2..))]
     hypotheses: Option<u16>,
-    /// Directions, offsets and layers of curvature of a tracker, which takes any number of labels [default: 16,16,3]
-    #[arg(long, value_name = "K,M,L", value_parser = cells)]
-    cells: Option<[u16; 3]>,
     /// Any vehicle among polygons and keep-outs, instead of a unicycle in a rectangle
     #[arg(long)]
     any_vehicle: bool,
@@ -40,14 +37,6 @@ fn clock(word: &str) -> Result<f64> {
     match word.parse() {
         Ok(mhz) if (0.001..=10_000.0).contains(&mhz) => Ok(mhz),
         _ => bail!("expected a clock from 0.001 to 10000 MHz"),
-    }
-}
-
-fn cells(word: &str) -> Result<[u16; 3]> {
-    let numbers: Option<Vec<u16>> = word.split(',').map(|it| it.trim().parse().ok()).collect();
-    match numbers.as_deref() {
-        Some(&[k, m, l]) if k >= 4 && m >= 4 && l >= 1 => Ok([k, m, l]),
-        _ => bail!("expected 4 directions, 4 offsets and a layer at least, such as 16,16,3"),
     }
 }
 
@@ -68,11 +57,9 @@ fn configuration(args: &SizeArgs) -> Result<Configuration> {
             [("--samples", args.samples.is_some()), ("--hypotheses", args.hypotheses.is_some())]
         {
             if given {
-                bail!("{flag}: a follower of fronts stores no labels: say --cells instead");
+                bail!("{flag}: a follower of fronts stores no labels");
             }
         }
-    } else if args.cells.is_some() {
-        bail!("--cells: only a follower of fronts has a tracker: say --algorithm track");
     }
     let (samples, hypotheses) = match (planner, args.hypotheses) {
         (Planner::Track, _) => (0, 0),
@@ -82,13 +69,11 @@ fn configuration(args: &SizeArgs) -> Result<Configuration> {
         }
         (_, hypotheses) => (args.samples.unwrap_or(36), hypotheses.unwrap_or(1)),
     };
-    let cells = (planner == Planner::Track).then(|| args.cells.unwrap_or([16, 16, 3]));
-    Ok(Configuration { planner, samples, hypotheses, cells, roams: args.any_vehicle })
+    Ok(Configuration { planner, samples, hypotheses, roams: args.any_vehicle })
 }
 
 fn text(asked: Configuration, size: &Size, mhz: f64) -> String {
-    let Size { program, room, flash, flash_of_planner, stack, tracker, static_ram, calls, others } =
-        size;
+    let Size { program, room, flash, flash_of_planner, stack, static_ram, calls, others } = size;
     let mut text =
         format!("{asked}\nat most what `{program}` takes, which has room for {room}\n\n");
     for Flash { core, bytes } in flash {
@@ -97,9 +82,6 @@ fn text(asked: Configuration, size: &Size, mhz: f64) -> String {
     let name = M4F.name;
     let _ = writeln!(text, "flash of the planner, {name:<10}{flash_of_planner:>9} bytes");
     let _ = writeln!(text, "stack, {name:<24}{stack:>10} bytes, a bound; the planner is on it");
-    if let Some(tracker) = tracker {
-        let _ = writeln!(text, "the tracker as asked, alone{tracker:>14} bytes at most");
-    }
     let _ = writeln!(text, "other RAM{static_ram:>32} bytes");
     for Call { call, program, median, worst, worst_ms } in calls {
         let _ = writeln!(

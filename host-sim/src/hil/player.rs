@@ -379,14 +379,19 @@ impl Player {
         known.or_else(pending)
     }
 
-    /// Makes a motion.
+    /// Makes a motion that the chip has planned.
     fn make(&mut self, motion: Motion) {
-        let robot_senses = self.setup.labels == LabelSource::Vehicle;
-        let made = Motion { wants_label: motion.wants_label && robot_senses, ..motion };
-        if motion.stage == Some(Stage::Audit) {
-            // The planner here has to know that the label is the audit's.
+        if motion.stage == Some(Stage::Audit) || self.planner.front().is_some() {
+            // The planner here has to know that the label is the audit's, and one of fronts which way the robot faces.
             let _ = self.planner.plan(self.pose);
         }
+        self.make_planned(motion);
+    }
+
+    /// Makes a motion that the planner here has planned too, where it has to.
+    fn make_planned(&mut self, motion: Motion) {
+        let robot_senses = self.setup.labels == LabelSource::Vehicle;
+        let made = Motion { wants_label: motion.wants_label && robot_senses, ..motion };
         let mut passed = Vec::new();
         let mut pass = |Glimpse { reported, reading, .. }| {
             if !robot_senses || reading.is_some() {
@@ -460,7 +465,7 @@ impl Player {
             Plan::Move(motion) if self.steps() < usize::from(self.setup.steps) => motion,
             _ => bail!("expected no more than {} steps", self.steps()),
         };
-        self.make(motion);
+        self.make_planned(motion);
         let made = self.pending.as_mut().context("a motion")?;
         let reading = match self.setup.labels {
             LabelSource::Vehicle => made.sensed,

@@ -9,8 +9,8 @@ use std::path::Path;
 use anyhow::Result;
 use planner_core::{Front, Label};
 
-use crate::mission::front::VertexRecord;
-use crate::mission::map::{MapRecord, State};
+use crate::mission::front::{PassedRecord, VertexRecord};
+use crate::mission::map::{MapRecord, Mapped, State, pieces};
 use crate::mission::results::PTold;
 use crate::output::notes::progress;
 use crate::replay::answer::Trust;
@@ -65,25 +65,23 @@ impl FrontMap {
             if known.take(row, near, area)? {
                 alarms.push(row.number);
             }
-            after.push((row.driven, known.found(width).map(VertexRecord::from)));
+            let (number, metres) = (row.number, row.driven);
+            let passed = |it| PassedRecord::of(it, number);
+            let vertices = known.mapped(width).into_iter().map(passed).collect();
+            let is_known = known.found(width).is_some();
+            after.push(Mapped { number, metres, is_known, vertices });
             if k % ROWS == 0 {
                 bar.set_position(k as u64);
             }
         }
         bar.finish_and_clear();
-        let numbered = rows.iter().zip(&after).map(|(row, (_, vertex))| (row.number, *vertex));
-        let pieces = Pieces::of(numbered);
-        let map = MapRecord::after(after.iter().copied(), is_closed);
-        let number = |row: usize| rows[row - 1].number;
-        let map = MapRecord {
-            found: map.found.map(number),
-            lost: map.lost.map(|mut it| {
-                it.step = number(it.step);
-                it
-            }),
-            ..map
-        };
-        let absent = known.tracker().share_nowhere();
+        if let Some(last) = after.last_mut() {
+            let passed = |it| PassedRecord::of(it, last.number);
+            last.vertices.extend(known.rest().into_iter().map(passed));
+        }
+        let pieces = Pieces::from(pieces(&after));
+        let map = MapRecord::after(&after, is_closed);
+        let absent = known.share_nowhere();
         let one_label = one_label(&rows, absent).filter(|_| map.state == State::Sought);
         Ok(Self {
             file,

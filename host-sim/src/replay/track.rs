@@ -5,12 +5,13 @@ use nalgebra::Point2;
 use planner_core::motion::unicycle::Grid;
 use planner_core::watch::Evidence;
 use planner_core::{
-    AnyReliability, AnyVehicle, Area, Belief as _, Front, Heading, Label, Noise, Planner as _,
-    Pose, Reading, Sample, Site, Tolerance, Track, Waist,
+    AnyReliability, AnyVehicle, Area, Belief as _, Front, Heading, Label, MapPlace, Noise,
+    Planner as _, Pose, Reading, Sample, Site, Tolerance, Track, Waist,
 };
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::FrontBelief;
+use crate::mission::read_out::FrontKnown;
 use crate::mission::results::{PTold, Start, StepResult};
 use crate::mission::vehicle::Source;
 use crate::replay::answer::Trust;
@@ -43,6 +44,7 @@ pub(crate) struct Row {
     /// The line of the file, its feature, or the step of a trace.
     pub(crate) number: usize,
     pub(crate) site: Site,
+    pub(crate) heading: Heading,
     pub(crate) label: Option<Label>,
     pub(crate) passed: Vec<(Site, Reading)>,
     /// The time since the row before, in units of the tracker: one motion of a follower takes about one.
@@ -56,15 +58,15 @@ pub(crate) enum Known {
     /// A tracker by itself, for rows that no mission has read.
     Rows(Box<FrontBelief>),
     /// The follower of the mission.
-    Mission(Box<Track<AnyVehicle, 16, 16, 3>>),
+    Mission(Box<Track<AnyVehicle>>, Pose),
 }
 
 impl Known {
-    /// What is known of the front.
-    pub(crate) fn tracker(&self) -> &FrontBelief {
+    /// The probability that there is no front.
+    pub(crate) fn share_nowhere(&self) -> f32 {
         match self {
-            Self::Rows(tracker) => tracker,
-            Self::Mission(follower) => follower.belief(),
+            Self::Rows(tracker) => tracker.share_nowhere(),
+            Self::Mission(follower, _) => f32::from(u8::from(follower.one_label().is_some())),
         }
     }
 
@@ -79,15 +81,16 @@ impl Known {
                 }
                 Ok(tracker.seek_anew((row.site, near), area))
             }
-            Self::Mission(follower) => {
-                let has_evidence =
-                    |it: &Track<_, 16, 16, 3>| *it.belief().evidence() != Evidence::NONE;
+            Self::Mission(follower, pose) => {
+                let has_evidence = |it: &Track<_>| *it.belief().evidence() != Evidence::NONE;
                 let had = has_evidence(follower);
+                // What it plans may differ, if it is told something else than in the mission.
+                let _ = follower.plan(*pose);
                 for (site, reading) in &row.passed {
                     follower.observe_on_the_way(*site, *reading)?;
                 }
-                let pose = Pose { site: row.site, heading: Heading::default() };
-                follower.observe(pose, row.label.map(Into::into))?;
+                *pose = Pose { site: row.site, heading: row.heading };
+                follower.observe(*pose, row.label.map(Into::into))?;
                 Ok(had && !has_evidence(follower))
             }
         }
@@ -97,7 +100,23 @@ impl Known {
     pub(crate) fn found(&self, within: f32) -> Option<Waist> {
         match self {
             Self::Rows(tracker) => tracker.found(within),
-            Self::Mission(follower) => follower.found(),
+            Self::Mission(follower, _) => follower.found(),
+        }
+    }
+
+    /// The places that the map has more after a row.
+    pub(crate) fn mapped(&self, within: f32) -> Vec<MapPlace> {
+        match self {
+            Self::Rows(tracker) => FrontKnown::mapped(&**tracker, within),
+            Self::Mission(follower, _) => follower.belief().mapped().to_vec(),
+        }
+    }
+
+    /// The places that it has more at the end.
+    pub(crate) fn rest(&self) -> Vec<MapPlace> {
+        match self {
+            Self::Rows(_) => Vec::new(),
+            Self::Mission(follower, _) => FrontKnown::rest(follower.belief()),
         }
     }
 }
@@ -157,7 +176,8 @@ impl RecordedTrack {
             if rows.is_empty() || (at - last.1).norm() >= APART * reach {
                 let elapsed = (each * (k - last.0) as f64) as f32;
                 let (number, label, passed) = (file.line(k), Some(label), Vec::new());
-                rows.push(Row { number, site, label, passed, elapsed, driven });
+                let heading = Heading::default();
+                rows.push(Row { number, site, heading, label, passed, elapsed, driven });
                 last = (k, at);
             }
         }
@@ -179,17 +199,20 @@ impl RecordedTrack {
         let sites = steps.iter().map(|step| at(step.pose.x, step.pose.z));
         let sites = sites.collect::<Result<Vec<_>>>()?;
         let ways = ways(sites.iter().copied());
-        let row = |((step, site), driven): ((&StepResult, Site), f64)| Row {
-            number: step.step,
-            site,
-            label: match step.label {
-                Some(1) => Some(Label::Positive),
-                Some(-1) => Some(Label::Negative),
-                _ => None, // on the front itself there is no side
-            },
-            passed: step.passed().collect(),
-            elapsed: 1.0,
-            driven,
+        let row = |((step, site), driven): ((&StepResult, Site), f64)| -> Result<Row> {
+            Ok(Row {
+                number: step.step,
+                site,
+                heading: Heading::from_radians(step.pose.heading)?,
+                label: match step.label {
+                    Some(1) => Some(Label::Positive),
+                    Some(-1) => Some(Label::Negative),
+                    _ => None, // on the front itself there is no side
+                },
+                passed: step.passed().collect(),
+                elapsed: 1.0,
+                driven,
+            })
         };
         let area = || -> Result<Area> {
             let Start { area, .. } = start;
@@ -201,20 +224,26 @@ impl RecordedTrack {
             Some(table) => table.vehicle(Source::File, Algorithm::Track, false, Grid::Fine),
             None => Ok(Grid::Fine.into()),
         };
-        let tracker = FrontBelief::new(area, front, noise);
-        let watches = start.front.is_some_and(|it| it.watch.is_some());
-        let tracker = if watches { tracker.staying() } else { tracker };
-        // How wide a front that is found may be, and how near one that is lost, is for the follower itself to say.
-        let follower = Track::new(area, vehicle.with_context(named)?, tracker);
+        let given = &file.samples[..start.oracle.len()];
+        let is_watch = start.front.is_some_and(|it| it.watch.is_some());
         let seeking = start.seek.unwrap_or_default().told().with_context(named)?;
+        let follower = Track::new(area, vehicle.with_context(named)?, front, noise);
         let follower = follower.and_then(|it| it.seeking(seeking)).with_context(named)?;
-        let follower = follower.knowing(&file.samples[..start.oracle.len()]);
+        // How wide a front that is found may be is for the follower itself to say.
+        let width = follower.width();
+        let known = if is_watch {
+            Known::Rows(Box::new(FrontBelief::new(area, front, noise).given(given).staying()))
+        } else {
+            let site = at(start.pose.x, start.pose.z)?;
+            let pose = Pose { site, heading: Heading::from_radians(start.pose.heading)? };
+            Known::Mission(Box::new(follower.knowing(given)), pose)
+        };
         Ok(Self {
-            rows: steps.iter().zip(sites).zip(ways).map(row).collect(),
+            rows: steps.iter().zip(sites).zip(ways).map(row).collect::<Result<_>>()?,
             apart: 0.0,
-            width: follower.width(),
-            near: follower.near(),
-            known: Known::Mission(Box::new(follower)),
+            width,
+            near: (AGAIN / FOUND) as f32 * width,
+            known,
             area,
             p,
             is_closed: reason.as_deref() == Some("closed"),

@@ -9,16 +9,18 @@ use crate::report::table::{Cells, Column};
 
 /// What the planner is told of the front.
 pub(crate) fn told(&FrontTable { radius, speed, watch }: &FrontTable) -> String {
-    let bends = radius.map_or("is straight".to_owned(), |radius| {
-        format!("bends with a radius of {radius} m or more")
-    });
     let moves = if speed > 0.0 {
         format!("moves by up to {speed} m a step")
     } else {
         "does not move".to_owned()
     };
-    let watches = watch.map_or(String::new(), |metres| format!(" It watches {metres} m of it."));
-    format!("The planner is told that the front {bends}, and {moves}.{watches}")
+    let Some(metres) = watch else {
+        return format!("The planner is told that the front {moves}, and nothing of how it bends.");
+    };
+    let bends = radius.map_or("is straight".to_owned(), |radius| {
+        format!("bends with a radius of {radius} m or more")
+    });
+    format!("The planner is told that the front {bends}, and {moves}. It watches {metres} m of it.")
 }
 
 /// What is known of the front after each step: where it was known best, and within how much it lies there.
@@ -36,8 +38,8 @@ pub(crate) const KNOWN: [Cells<'static, StepResult>; 4] = [
 ];
 
 /// What an alarm says of a front, where it says of a line that none explains the labels.
-pub(crate) const BENDS_MORE: &str = "labels do not follow the front: it bends more tightly or moves faster than was told, \
-                                     or the sensor reads at random";
+pub(crate) const BENDS_MORE: &str = "labels do not follow the front: it turns sharply or moves faster than was told, or the \
+                                     sensor reads at random";
 
 /// The map in words: sentences, a line each. `unit` is what the record numbers.
 pub(crate) fn map(record: &MapRecord, unit: &str) -> String {
@@ -82,8 +84,8 @@ pub(crate) fn map(record: &MapRecord, unit: &str) -> String {
 pub(crate) fn remedy(record: &MapRecord) -> Option<&'static str> {
     match record.state {
         State::Lost => Some(
-            "A front is lost if it leaves the area, or bends more tightly or moves faster than was told. A larger area, a \
-             smaller front.radius or a higher front.speed may keep it.",
+            "A front is lost if it turns sharply, or moves faster than was told. Shorter motions or a higher front.speed \
+             may keep it.",
         ),
         State::Sought => Some(
             "To find it, allow more steps, say a smaller seek.patch, or give points of both labels.",

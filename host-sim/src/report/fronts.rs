@@ -28,11 +28,9 @@ pub fn text(summaries: &[Summary]) -> String {
             table.row(named.into_iter().chain([title]).chain(figures));
         }
     }
-    let of = |it: &Summary| Some((it.told_radius.unwrap_or(1.0), it.told_speed?));
-    let told = summaries.iter().find_map(of).filter(|it| *it != (1.0, 1.0));
-    let told = told.map_or(String::new(), |(radius, speed)| {
-        format!("Told {radius} times the radius (front tracking) and {speed} times the speed of each front.\n")
-    });
+    let told = summaries.iter().find_map(|it| it.told_speed).filter(|it| (it - 1.0).abs() > 1e-9);
+    let told = told
+        .map_or(String::new(), |speed| format!("Told {speed} times the speed of each front.\n"));
     let reach: Vec<_> =
         summaries.iter().map(|it| format!("{} {} m", it.algorithm.title(), it.reach)).collect();
     format!(

@@ -293,7 +293,7 @@ impl Picture {
             path: Some((Point2::from(mission.start.site), stops.collect())),
             truth: Truth::of(mission, recording.steps.len()),
             lines,
-            front: Ribbon::of(&results.steps),
+            front: Ribbon::of(results),
         }
     }
 

@@ -3,7 +3,8 @@
 use anyhow::Result;
 
 use crate::mission::front::VertexRecord;
-use crate::mission::results::StepResult;
+use crate::mission::map::pieces;
+use crate::mission::results::Results;
 
 /// The vertices of a map by its pieces, each vertex with the number of its step or row. A new piece begins where the
 /// front was not known after a step or a row.
@@ -17,24 +18,9 @@ pub(crate) const ROBOT: &str = "robot";
 pub(crate) type Own<'a> = ([&'static str; 2], &'a dyn Fn(&VertexRecord) -> [f64; 2]);
 
 impl Pieces {
-    /// Those of steps or rows, each with its number.
-    pub(crate) fn of(after: impl IntoIterator<Item = (usize, Option<VertexRecord>)>) -> Self {
-        let (mut pieces, mut is_known) = (Vec::<Vec<_>>::new(), false);
-        for (number, vertex) in after {
-            if let Some(vertex) = vertex {
-                match pieces.last_mut() {
-                    Some(piece) if is_known => piece.push((number, vertex)),
-                    _ => pieces.push(vec![(number, vertex)]),
-                }
-            }
-            is_known = vertex.is_some();
-        }
-        Self(pieces)
-    }
-
-    /// Those of a mission's steps.
-    pub fn of_steps(steps: &[StepResult]) -> Self {
-        Self::of(steps.iter().map(|it| (it.step, it.front)))
+    /// Those of a mission.
+    pub fn of(results: &Results) -> Self {
+        Self(pieces(&results.mapped()))
     }
 
     /// The pieces in their order. None is empty.
@@ -93,6 +79,8 @@ impl From<Vec<Vec<(usize, VertexRecord)>>> for Pieces {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mission::front::PassedRecord;
+    use crate::mission::map::Mapped;
 
     fn vertex(x: f64) -> VertexRecord {
         let (curvature, turn_deviation) = (0.0, 0.25);
@@ -100,8 +88,13 @@ mod tests {
     }
 
     fn map(known: &str) -> Pieces {
-        let known = known.bytes().map(|it| it == b'#').enumerate();
-        Pieces::of(known.map(|(k, is)| (k + 1, is.then(|| vertex(k as f64)))))
+        let step = |(k, it)| {
+            let is_known = it == b'#';
+            let here = |vertex| PassedRecord { passed: k + 1, begins: false, vertex };
+            let vertices = is_known.then(|| here(vertex(k as f64))).into_iter().collect();
+            Mapped { number: k + 1, metres: k as f64, is_known, vertices }
+        };
+        pieces(&known.bytes().enumerate().map(step).collect::<Vec<_>>()).into()
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use nalgebra::{Point2, Vector2};
 
 use crate::mission::front::VertexRecord;
-use crate::mission::results::StepResult;
+use crate::mission::results::Results;
 use crate::report::pieces::Pieces;
 
 /// A place of the map: where it is, and the two ends of its 90 % interval, to the left and to the right.
@@ -28,9 +28,9 @@ impl From<&VertexRecord> for Rung {
 pub struct Ribbon(pub(crate) Vec<Vec<Rung>>);
 
 impl Ribbon {
-    /// That of a mission's steps.
-    pub(crate) fn of(steps: &[StepResult]) -> Self {
-        Self::from(&Pieces::of_steps(steps))
+    /// That of a mission.
+    pub(crate) fn of(results: &Results) -> Self {
+        Self::from(&Pieces::of(results))
     }
 
     /// Whether there is none.

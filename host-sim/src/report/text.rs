@@ -209,7 +209,7 @@ pub(crate) fn why(reason: &str) -> &str {
         "resolution" => "what is uncertain is thinner than the action grid can hit",
         "no line" => "no straight, still line explains the labels",
         "one label" => "the area most likely has one label",
-        "closed" => "the robot has gone all round the front",
+        "closed" => "all of the front is mapped",
         "worth" => "no label in sight was expected to carry the bits asked for",
         "tolerance" => {
             "what is uncertain is so thin that no label tells more, as positions err by the tolerance"

@@ -15,9 +15,6 @@ pub struct Configuration {
     /// Hypotheses; 1 where labels are true, 0 of a follower of fronts.
     #[serde(skip_serializing_if = "is_zero")]
     pub hypotheses: u16,
-    /// Of a follower of fronts: the directions, offsets and layers of curvature of its tracker.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub cells: Option<[u16; 3]>,
     /// Any vehicle in any area, instead of the unicycle in a rectangle.
     pub roams: bool,
 }
@@ -41,19 +38,10 @@ const fn is_zero(count: &u16) -> bool {
     *count == 0
 }
 
-/// Bytes of a tracker beside its cells and directions, at most.
-const TRACKER: u64 = 150;
-
 impl Configuration {
     /// Whether labels may be wrong.
     pub const fn is_noisy(self) -> bool {
         self.hypotheses > 1
-    }
-
-    /// Bytes of a follower's tracker, at most. They are part of the stack.
-    pub fn tracker(self) -> Option<u64> {
-        let [directions, offsets, layers] = self.cells?.map(u64::from);
-        Some(4 * directions * offsets * layers + 8 * directions + TRACKER)
     }
 }
 
@@ -65,7 +53,7 @@ impl fmt::Display for Configuration {
             Planner::Lookahead => "look-ahead",
             Planner::Track => "the follower of fronts",
         };
-        write!(f, "{planner}, {}", holds(self.samples, self.hypotheses, self.cells))?;
+        write!(f, "{planner}, {}", holds(self.samples, self.hypotheses))?;
         f.write_str(if self.roams {
             ", any vehicle in any area"
         } else {
@@ -74,14 +62,12 @@ impl fmt::Display for Configuration {
     }
 }
 
-/// What there is room for, in words.
-fn holds(samples: u16, hypotheses: u16, cells: Option<[u16; 3]>) -> String {
-    match (cells, hypotheses) {
-        (Some([directions, offsets, layers]), _) => {
-            format!("{directions} x {offsets} x {layers} cells")
-        }
-        (None, 0 | 1) => format!("{samples} samples"),
-        (None, _) => format!("{samples} samples, {hypotheses} hypotheses"),
+/// What there is room for, in words. A follower of fronts stores no samples.
+fn holds(samples: u16, hypotheses: u16) -> String {
+    match (samples, hypotheses) {
+        (0, _) => "no samples".to_owned(),
+        (_, 0 | 1) => format!("{samples} samples"),
+        _ => format!("{samples} samples, {hypotheses} hypotheses"),
     }
 }
 
@@ -93,7 +79,6 @@ pub struct Program {
     planners: &'static [Planner],
     samples: u16,
     hypotheses: u16,
-    cells: Option<[u16; 3]>,
     roams: bool,
 }
 
@@ -108,7 +93,7 @@ pub const PROGRAMS: [Program; 7] = [
     Program::new("standard", ALL, 36, 529),
     Program { roams: true, ..Program::new("vehicles", ALL, 36, 529) },
     Program::new("large", ALL, 68, 2_081),
-    Program { cells: Some([16, 16, 3]), ..Program::new("track", &[Planner::Track], 0, 0) },
+    Program::new("track", &[Planner::Track], 0, 0),
 ];
 
 impl Program {
@@ -118,7 +103,7 @@ impl Program {
         samples: u16,
         hypotheses: u16,
     ) -> Self {
-        Self { name, planners, samples, hypotheses, cells: None, roams: false }
+        Self { name, planners, samples, hypotheses, roams: false }
     }
 
     /// Whether it has room for all that is asked.
@@ -126,16 +111,12 @@ impl Program {
         self.planners.contains(&asked.planner)
             && self.samples >= asked.samples
             && self.hypotheses >= asked.hypotheses
-            && asked.cells.is_none_or(|asked| {
-                self.cells
-                    .is_some_and(|cells| asked.iter().zip(cells).all(|(asked, it)| *asked <= it))
-            })
             && (self.roams || !asked.roams)
     }
 
     /// What it has room for.
     pub fn room(&self) -> String {
         let roams = if self.roams { ", any vehicle in any area" } else { "" };
-        holds(self.samples, self.hypotheses, self.cells) + roams
+        holds(self.samples, self.hypotheses) + roams
     }
 }

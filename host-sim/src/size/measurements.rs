@@ -43,9 +43,6 @@ pub struct Size {
     pub flash_of_planner: u64,
     /// Bytes of stack at most, the planner on it; a bound from the machine code of the Cortex-M4F.
     pub stack: u64,
-    /// Bytes of the tracker that was asked for, at most. The stack has the one that the program has room for.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub tracker: Option<u64>,
     /// Bytes of RAM that are not stack.
     pub static_ram: u64,
     /// What calls take.
@@ -124,7 +121,6 @@ pub fn size(asked: Configuration, mhz: f64) -> Result<Size> {
         flash: [M4F].into_iter().chain(OTHERS).filter_map(flash_of).collect(),
         flash_of_planner: of_program("flash_of_planner")?,
         stack: of_program("stack")?,
-        tracker: asked.tracker(),
         static_ram: of_program("static_ram")?,
         calls: calls(&footprint, M4F, asked, mhz),
         others: OTHERS.into_iter().filter_map(other).collect(),
@@ -174,12 +170,7 @@ const fn estimate(asked: Configuration) -> &'static [&'static str] {
 
 /// The largest that was measured for the same planner.
 fn largest(asked: Configuration) -> String {
-    let none = Configuration {
-        samples: 0,
-        hypotheses: asked.hypotheses.min(2),
-        cells: asked.cells.map(|_| [0; 3]),
-        ..asked
-    };
+    let none = Configuration { samples: 0, hypotheses: asked.hypotheses.min(2), ..asked };
     // Where no program knows other vehicles, the unicycle's is the largest.
     let same = [none, Configuration { roams: false, ..none }];
     let last = same.into_iter().find_map(|same| PROGRAMS.iter().rfind(|it| it.covers(same)));
@@ -209,8 +200,7 @@ mod tests {
                 if planner == Planner::Cfc && hypotheses > 1 {
                     continue;
                 }
-                let asked =
-                    Configuration { planner, samples, hypotheses, cells: None, roams: false };
+                let asked = Configuration { planner, samples, hypotheses, roams: false };
                 let size = size(asked, 168.0).unwrap_or_else(|error| panic!("{asked}: {error}"));
                 assert_eq!(size.flash.len(), 3, "{asked}: {size:?}");
                 assert!(size.stack > 4_000 && size.flash_of_planner > 20_000, "{asked}: {size:?}");
@@ -232,38 +222,21 @@ mod tests {
     }
 
     #[test]
-    fn a_follower_has_figures_for_its_tracker_and_for_each_smaller_one() {
-        let asked = |cells| Configuration {
-            planner: Planner::Track,
-            samples: 0,
-            hypotheses: 0,
-            cells: Some(cells),
-            roams: false,
-        };
-        for cells in [[16, 16, 3], [4, 4, 1], [12, 16, 3]] {
-            let size = size(asked(cells), 168.0).expect("measured");
-            assert_eq!((size.program, size.flash.len()), ("track", 3), "{size:?}");
-            let calls: Vec<_> = size.calls.iter().map(|it| it.call).collect();
-            assert_eq!(calls, ["plan", "observe", "estimates"]);
-            assert!(size.others.iter().all(|it| it.calls.len() == 3), "{size:?}");
-            assert!(size.tracker.is_some_and(|it| it < size.stack), "{size:?}");
-        }
-        for cells in [[17, 16, 3], [16, 17, 3], [16, 16, 5], [24, 24, 1]] {
-            let refused = size(asked(cells), 168.0).expect_err("larger").to_string();
-            assert!(refused.contains("the largest is 16 x 16 x 3 cells"), "{refused}");
-        }
-        // Pointers and doubles are not smaller here than on a chip.
-        let bytes = |cells| asked(cells).tracker().expect("a tracker");
-        assert!(size_of::<planner_core::Tracker<16, 16, 3>>() as u64 <= bytes([16, 16, 3]));
-        assert!(size_of::<planner_core::Tracker<4, 4, 1>>() as u64 <= bytes([4, 4, 1]));
-        assert!(size_of::<planner_core::Tracker<24, 8, 5>>() as u64 <= bytes([24, 8, 5]));
+    fn a_follower_has_figures() {
+        let asked =
+            Configuration { planner: Planner::Track, samples: 0, hypotheses: 0, roams: false };
+        let size = size(asked, 168.0).expect("measured");
+        assert_eq!((size.program, size.flash.len()), ("track", 3), "{size:?}");
+        let calls: Vec<_> = size.calls.iter().map(|it| it.call).collect();
+        assert_eq!(calls, ["plan", "observe", "estimates"]);
+        assert!(size.others.iter().all(|it| it.calls.len() == 3), "{size:?}");
     }
 
     #[test]
     fn more_never_takes_less() {
         let asked = |samples, hypotheses, roams| {
             let planner = Planner::Lookahead;
-            let asked = Configuration { planner, samples, hypotheses, cells: None, roams };
+            let asked = Configuration { planner, samples, hypotheses, roams };
             size(asked, 168.0).expect("measured")
         };
         let sizes =

@@ -397,11 +397,12 @@ typedef struct {
 } planner_snapshot;
 
 /*
- How tightly a front bends, and how fast it moves.
+ How a front bends, and how fast it moves.
  */
 typedef struct {
   /*
-   The radius of the tightest bend, metres, from 0.1; 0 for a straight line. If in doubt, name a smaller one.
+   The radius of the tightest bend, metres, from 0.1; 0 for a straight line. It counts for a stretch that is watched:
+   if in doubt, name a smaller one. A planner that goes along a front needs none: name any.
    */
   double radius;
   /*

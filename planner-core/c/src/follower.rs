@@ -6,8 +6,8 @@ use core::ffi::c_void;
 use core::mem::{MaybeUninit, align_of, size_of};
 
 use planner_core::{
-    Beside, Front, FrontState, Guard, Noise, Plan, Planner as _, Prior, Restart as _, Site, Track,
-    Tracker, Unicycle, Waist,
+    Beside, Front, FrontState, FrontStretch, Guard, Noise, Plan, Planner as _, Prior, Restart as _,
+    Site, Track, Tracker, Unicycle, Waist,
 };
 
 use crate::area::Ground;
@@ -15,7 +15,7 @@ use crate::possible::MOST_GIVEN;
 use crate::snapshot;
 use crate::types::{Mission, Motion, Pose, Reading, Sample, Status};
 
-type Tracks = Track<Unicycle, 16, 16, 3, Ground>;
+type Tracks = Track<Unicycle, Ground>;
 type Guards = Guard<Unicycle, 16, 16, 3, Ground>;
 
 /// A planner that goes along a front or watches a stretch of it, in memory of the caller.
@@ -25,6 +25,7 @@ pub struct Follower {
 }
 
 /// What the planner does with the front.
+#[expect(clippy::large_enum_variant, reason = "the caller has memory for either")]
 enum Either {
     Track(Tracks),
     Guard(Guards),
@@ -40,11 +41,12 @@ macro_rules! ask {
     };
 }
 
-/// How tightly a front bends, and how fast it moves.
+/// How a front bends, and how fast it moves.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct FrontSettings {
-    /// The radius of the tightest bend, metres, from 0.1; 0 for a straight line. If in doubt, name a smaller one.
+    /// The radius of the tightest bend, metres, from 0.1; 0 for a straight line. It counts for a stretch that is watched:
+    /// if in doubt, name a smaller one. A planner that goes along a front needs none: name any.
     pub radius: f64,
     /// How far the front may move in the time of a motion, metres. If in doubt, name a higher speed.
     pub speed: f64,
@@ -156,11 +158,7 @@ unsafe fn begin(
     const { assert!(align_of::<Follower>() <= 8) };
     // SAFETY: the caller promises so many samples.
     let given = if count == 0 { &[] } else { unsafe { core::slice::from_raw_parts(given, count) } };
-    let begun = prepared(mission, front, given).and_then(|(track, noise, samples)| {
-        let planner = match stretch {
-            None => Either::Track(track),
-            Some(metres) => Either::Guard(track.watching(metres).map_err(|_| Status::Mission)?),
-        };
+    let begun = prepared(mission, (front, stretch), given).and_then(|(planner, noise, samples)| {
         let place = memory.cast::<Follower>();
         // SAFETY: there is room, and it is aligned.
         let follower = unsafe {
@@ -180,12 +178,12 @@ unsafe fn begin(
     }
 }
 
-type Parts = (Tracks, Noise, [planner_core::Sample; MOST_GIVEN]);
+type Parts = (Either, Noise, [planner_core::Sample; MOST_GIVEN]);
 
 /// A planner of a mission, its noise and its given samples.
 fn prepared(
     mission: &Mission<'_>,
-    FrontSettings { radius, speed }: FrontSettings,
+    (FrontSettings { radius, speed }, stretch): (FrontSettings, Option<f64>),
     given: &[Sample],
 ) -> Result<Parts, Status> {
     let label = planner_core::Label::Negative;
@@ -204,9 +202,15 @@ fn prepared(
         (mission.ground().map_err(status)?, mission.unicycle().map_err(status)?);
     let tolerance = mission.tolerance().map_err(status)?;
     let noise = mission.noise().map_err(status)?.unwrap_or(Noise { tolerance, ..Noise::NONE });
-    let tracker = Tracker::new(planner_core::Workspace::bounds(&ground), front, noise);
-    let track = Track::new(ground, unicycle, tracker).map_err(|_| Status::ToleranceTooLarge)?;
-    Ok((track, noise, samples))
+    let planner = match stretch {
+        None => Track::new(ground, unicycle, front, noise).map(Either::Track),
+        Some(metres) => {
+            let stretch = FrontStretch::metres(metres).map_err(|_| Status::Mission)?;
+            let tracker = Tracker::new(planner_core::Workspace::bounds(&ground), front, noise);
+            Guard::new(ground, unicycle, tracker, stretch).map(Either::Guard)
+        }
+    };
+    Ok((planner.map_err(|_| Status::ToleranceTooLarge)?, noise, samples))
 }
 
 /// Plans the next motion from where the robot is. `Ok`, or why there is none.

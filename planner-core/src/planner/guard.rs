@@ -11,6 +11,7 @@
 
 use crate::belief::ObservationError;
 use crate::belief::evidence::Alarm;
+use crate::belief::field::Seeking;
 use crate::belief::front::{ASKED, FrontMemory, FrontStretch, Spread, Tracker, Unit, Waist};
 use crate::belief::noise::Noise;
 use crate::belief::observation_log::{FromLog as _, ReplayError};
@@ -23,8 +24,9 @@ use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::front_state::FrontState;
+use crate::planner::hunt::Hunt;
 use crate::planner::quest::QuestMemory;
-use crate::planner::scout::{Ends, FAINT, Scout};
+use crate::planner::scout::{Ends, FAINT};
 use crate::planner::setup::{Restart, SetupError};
 use crate::planner::silence::Silence;
 use crate::planner::snapshot::{Kind, Persist, RestoreError, Snapshot};
@@ -33,12 +35,11 @@ use crate::planner::{Motion, Plan, Planner, Stage, StopReason};
 /// The ends of motions that a plan looks at: a place costs more than along a front.
 const ENDS: Ends = Ends { circles: 1, beside: 0, most: 24 };
 
-/// A planner that finds a front and watches a stretch of it: what [`Track::watching`] returns.
-///
-/// [`Track::watching`]: crate::planner::track::Track::watching
+/// A planner that finds a front and watches a stretch of it, about the place where it finds it. It learns where the
+/// front is all along the stretch, and does not end for a closed front.
 #[derive(Clone, Debug)]
 pub struct Guard<D, const K: usize, const M: usize, const L: usize, G = Area> {
-    scout: Scout<D, K, M, L, G>,
+    hunt: Hunt<D, K, M, L, G>,
     stretch: FrontStretch,
     /// Its middle and direction, once the front is found.
     middle: Option<Pose>,
@@ -47,16 +48,60 @@ pub struct Guard<D, const K: usize, const M: usize, const L: usize, G = Area> {
 impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
     Guard<D, K, M, L, G>
 {
+    /// A planner with what is known so far, for so much of a front. Motions are no longer than an eighth of the tightest
+    /// bend's radius.
+    ///
+    /// # Errors
+    /// [`SetupError`].
     #[inline] // it is made where it stays, as it may be large
-    pub(crate) fn of(mut scout: Scout<D, K, M, L, G>, stretch: FrontStretch) -> Self {
-        scout.tracker.stay();
-        Self { scout, stretch, middle: None }
+    pub fn new(
+        area: G,
+        dynamics: D,
+        tracker: Tracker<K, M, L>,
+        stretch: FrontStretch,
+    ) -> Result<Self, SetupError> {
+        Ok(Self::with(Hunt::new(area, dynamics, tracker)?, stretch))
+    }
+
+    /// The same in the part of an area that motions [aim for](crate::planner::setup::aimed_for).
+    #[inline]
+    pub(crate) fn of(of: (G, D), tracker: Tracker<K, M, L>, stretch: FrontStretch) -> Self {
+        Self::with(Hunt::of(of, tracker), stretch)
+    }
+
+    #[inline]
+    fn with(mut hunt: Hunt<D, K, M, L, G>, stretch: FrontStretch) -> Self {
+        hunt.tracker.stay();
+        Self { hunt, stretch, middle: None }
+    }
+
+    /// The same with what is said of a front of which nothing is known.
+    ///
+    /// # Errors
+    /// [`SetupError::Patch`] if patches of this radius do not suit the area.
+    pub fn seeking(mut self, seeking: Seeking) -> Result<Self, SetupError> {
+        self.hunt.begin(seeking)?;
+        Ok(self)
+    }
+
+    /// The same after some points whose labels are known for sure, of one label or of both. Call it before the first
+    /// plan, and after [`seeking`](Self::seeking).
+    #[must_use]
+    pub fn knowing(mut self, points: &[Sample]) -> Self {
+        self.hunt.know(points);
+        self
     }
 
     /// Where the front is known best; `None` as long as it is not found, and where it is lost. The tracker says where it
     /// lies [beside any place](Tracker::beside).
     pub fn found(&self) -> Option<Waist> {
-        self.scout.found()
+        self.hunt.found()
+    }
+
+    /// The half-width below which the front counts as found, metres: one and a half of the longest motion, or of the
+    /// radius of the turning circle if that is longer.
+    pub fn width(&self) -> f32 {
+        self.hunt.scout.width()
     }
 
     /// The middle of the stretch, and its direction. `None` before the front is found.
@@ -86,8 +131,8 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
             let site = by.and_then(|by| middle.site.step(by).ok()).unwrap_or(middle.site);
             waist.place_at(waist.ahead(site)).unwrap_or(site)
         });
-        let (middle, most) = (middle.site, half + self.scout.reach());
-        let spread = self.scout.tracker.spread_over(places);
+        let (middle, most) = (middle.site, half + self.hunt.scout.reach());
+        let spread = self.hunt.tracker.spread_over(places);
         Some(Asked { waist, middle, along, most, places, spread })
     }
 }
@@ -98,22 +143,25 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
     type Belief = Tracker<K, M, L>;
 
     fn plan(&mut self, pose: Pose) -> Plan {
-        let Some(asked) = self.ask() else { return self.scout.seek(pose) };
-        let scout = &self.scout;
-        let worth = |Pose { site, .. }, share| asked.worth(scout, (site - pose.site, site), share);
-        let (best, examined) = scout.best_end(pose, ENDS, |end| end.site, worth);
-        let beyond = asked.best(scout, pose, best.map_or(0.0, |best| best.worth));
-        let is_inside = scout.area.contains(pose.site);
+        let Some(asked) = self.ask() else { return self.hunt.seek(pose) };
+        let hunt = &self.hunt;
+        let worth = |Pose { site, .. }, share| asked.worth(hunt, (site - pose.site, site), share);
+        let (best, examined) = hunt.best_end(pose, ENDS, worth);
+        let beyond = asked.best(hunt, pose, best.map_or(0.0, |best| best.worth));
+        if let Some(plan) = self.hunt.scout.come_home(pose) {
+            return plan;
+        }
         let (stage, places) = match () {
-            () if !is_inside => (Stage::Return, [scout.home(pose), None]),
             () if best.is_some() || beyond.is_some() => (Stage::Follow, [beyond, None]),
             () => (Stage::Return, [Some(asked.waist.site), Some(asked.middle)]),
         };
-        let why = if is_inside { StopReason::Cornered } else { StopReason::OutsideArea };
         let best = best.map(|best| (best, Stage::Follow));
-        let is_silent = self.scout.silence.is_back();
-        let plan = self.scout.go(pose, (stage, places), best, (FAINT, examined));
-        match plan.unwrap_or(Plan::Stop(why)) {
+        let is_silent = self.hunt.scout.silence.is_back();
+        let Hunt { scout, tracker } = &mut self.hunt;
+        let to = (stage, places);
+        let plan =
+            scout.go(pose, to, best, (FAINT, examined), Hunt::<D, K, M, L, G>::told(tracker));
+        match plan.unwrap_or(Plan::Stop(StopReason::Cornered)) {
             Plan::Move(motion) if is_silent && motion.target.site != pose.site => {
                 Plan::Move(Motion { wants_label: true, ..motion })
             }
@@ -127,8 +175,8 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
         reading: Option<Reading>,
         tolerance: Tolerance,
     ) -> Result<(), ObservationError> {
-        self.scout.observe(pose, reading, tolerance)?;
-        self.scout.seek_anew(pose.site);
+        self.hunt.observe(pose, reading, tolerance)?;
+        self.hunt.seek_anew(pose.site);
         self.lie();
         Ok(())
     }
@@ -138,15 +186,15 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
         site: Site,
         reading: Reading,
     ) -> Result<bool, ObservationError> {
-        self.scout.observe_on_the_way(site, reading)
+        self.hunt.observe_on_the_way(site, reading)
     }
 
     fn belief(&self) -> &Tracker<K, M, L> {
-        &self.scout.tracker
+        &self.hunt.tracker
     }
 
     fn alarm(&self) -> Option<Alarm> {
-        self.scout.tracker.evidence().alarm()
+        self.hunt.tracker.evidence().alarm()
     }
 
     fn front(&self) -> Option<FrontState> {
@@ -163,7 +211,7 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
     /// Begins again in the rectangle around its area. A tracker has one prior: see [`Tracker::new`].
     fn restart(&mut self, given: &[Sample], _: Prior, noise: Noise) -> Result<(), SetupError> {
         self.middle = None;
-        self.scout.restart(noise, given)
+        self.hunt.restart(noise, given)
     }
 }
 
@@ -174,19 +222,19 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace> 
 
     fn snapshot(&self) -> Self::Snapshot {
         Snapshot::new(
-            self.scout.mark(Kind::Guard),
-            self.scout.tracker.log(),
-            (self.scout.silence, self.middle, self.scout.quest.memory()),
+            self.hunt.mark(Kind::Guard),
+            self.hunt.tracker.log(),
+            (self.hunt.scout.silence, self.middle, self.hunt.scout.quest.memory()),
         )
     }
 
     fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), RestoreError> {
-        let (log, &(silence, middle, ref quest)) = snapshot.open(self.scout.mark(Kind::Guard))?;
-        if !self.scout.quest.recall(quest) {
+        let (log, &(silence, middle, ref quest)) = snapshot.open(self.hunt.mark(Kind::Guard))?;
+        if !self.hunt.scout.quest.recall(quest) {
             return Err(ReplayError::Spoilt.into());
         }
-        self.scout.tracker.replay(log)?;
-        (self.scout.silence, self.middle) = (silence, middle);
+        self.hunt.tracker.replay(log)?;
+        (self.hunt.scout.silence, self.middle) = (silence, middle);
         Ok(())
     }
 }
@@ -207,7 +255,7 @@ impl Asked {
     /// metres a motion.
     fn worth<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>(
         &self,
-        scout: &Scout<D, K, M, L, G>,
+        hunt: &Hunt<D, K, M, L, G>,
         (way, to): (Vector, Site),
         share: f32,
     ) -> Option<f32> {
@@ -216,25 +264,25 @@ impl Asked {
         if ahead.abs() > self.most {
             return None;
         }
-        scout.tells(share)?;
-        let motions = distance(way) / scout.reach();
-        let reduces = scout.tracker.reduces(&self.spread, to, share);
+        hunt.tells(share)?;
+        let motions = distance(way) / hunt.scout.reach();
+        let reduces = hunt.tracker.reduces(&self.spread, to, share);
         Some(if motions > 1.0 { reduces / motions } else { reduces })
     }
 
     /// The place of the stretch, beyond the ends of a motion, that is worth the most, if that is more than this.
     fn best<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>(
         &self,
-        scout: &Scout<D, K, M, L, G>,
+        hunt: &Hunt<D, K, M, L, G>,
         pose: Pose,
         least: f32,
     ) -> Option<Site> {
         let (mut best, mut most) = (None, least);
         for to in self.places {
             let way = to - pose.site;
-            if distance(way) > scout.reach() && scout.area.contains(to) {
-                let share = scout.tracker.share_above(to);
-                let worth = self.worth(scout, (way, to), share).unwrap_or(0.0);
+            if distance(way) > hunt.scout.reach() && hunt.scout.area.contains(to) {
+                let share = hunt.tracker.share_above(to);
+                let worth = self.worth(hunt, (way, to), share).unwrap_or(0.0);
                 if worth > most {
                     (best, most) = (Some(to), worth);
                 }

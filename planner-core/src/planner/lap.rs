@@ -1,4 +1,4 @@
-//! A lap round a closed front: which way the robot goes along it, and whether it is back where it began.
+//! The way along a front: whether the robot is back where it began, and how often the front led out of the area.
 //!
 //! It goes along the front as it faced at the start. So two robots that start back to back part.
 
@@ -15,47 +15,73 @@ const TURNED: i64 = 3 << 30;
 const BACK: f32 = 1.0;
 
 /// The way along a front since it was found.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Lap {
     /// Where the robot faced at the start: that way it goes along the front.
     faced: Option<Heading>,
-    /// Where it was found, whether the robot goes along its direction, and the direction it had last.
-    begun: Option<(Site, bool, Heading)>,
+    /// Where it was found, and the direction it had last.
+    begun: Option<(Waist, Heading)>,
+    /// Steps since.
+    steps: u32,
     /// How far it has turned since, to the left.
     turned: i64,
     is_closed: bool,
+    /// How often it led out of the area.
+    borders: u8,
+    /// Whether the robot drives back to where it was found.
+    is_back: bool,
 }
 
 impl Lap {
     /// No front is found.
-    pub(crate) const NONE: Self = Self { faced: None, begun: None, turned: 0, is_closed: false };
+    pub(crate) const NONE: Self = Self {
+        faced: None,
+        begun: None,
+        steps: 0,
+        turned: 0,
+        is_closed: false,
+        borders: 0,
+        is_back: false,
+    };
 
     /// Whether a mission can have turned so far.
     pub(crate) const fn is_possible(&self) -> bool {
         self.turned.unsigned_abs() < 1 << 62
     }
 
-    /// Takes in where the robot faces; what comes after the first time does not count.
-    pub(crate) fn face(&mut self, heading: Heading) {
+    /// Takes in where the robot faces. Whether this was the first time: what comes after does not count.
+    pub(crate) fn face(&mut self, heading: Heading) -> bool {
+        let is_first = self.faced.is_none();
         self.faced.get_or_insert(heading);
+        is_first
     }
 
-    /// Whether the robot goes along the front's direction; `None` before it is found.
-    pub(crate) fn sense(&self) -> Option<bool> {
-        self.begun.map(|(_, sense, _)| sense)
+    /// Where the robot faced at the start, if that was before this pose.
+    pub(crate) fn faced(&self, pose: Pose) -> Heading {
+        self.faced.unwrap_or(pose.heading)
     }
 
-    /// The same as soon as it is found.
-    pub(crate) fn sense_along(&self, waist: Waist, pose: Pose) -> bool {
-        let faced = self.faced.unwrap_or(pose.heading);
-        self.sense().unwrap_or_else(|| faced.agrees(waist.heading))
+    /// Where the robot drives back to, if it does.
+    pub(crate) fn back(&self) -> Option<Waist> {
+        self.begun.map(|it| it.0).filter(|_| self.is_back)
     }
 
-    /// The robot goes on in the other direction.
-    pub(crate) fn turn(&mut self) {
-        self.begun = self.begun.map(|(site, sense, heading)| (site, !sense, heading));
+    /// It goes on from there, or from where it is.
+    pub(crate) const fn arrive(&mut self) {
+        self.is_back = false;
+    }
+
+    /// Steps since the front was found.
+    pub(crate) const fn age(&self) -> f32 {
+        self.steps as f32
+    }
+
+    /// The front leaves the area. The first time the robot drives back to where it was found, if that is still near.
+    pub(crate) const fn turn(&mut self, is_near: bool) {
+        self.is_back = is_near && self.borders == 0;
+        self.borders = self.borders.saturating_add(1);
     }
 
     /// Whether the robot has been all around.
@@ -63,16 +89,22 @@ impl Lap {
         self.is_closed
     }
 
-    /// Takes in where the front is known best, if it is found.
-    pub(crate) fn observe(&mut self, found: Option<Waist>, pose: Pose, reach: f32) {
-        let Some(waist @ Waist { site, heading, .. }) = found else { return };
-        let Some((start, sense, last)) = self.begun else {
-            self.begun = Some((site, self.sense_along(waist, pose), heading));
+    /// Whether all of the front is mapped: it is closed, or led out of the area twice.
+    pub(crate) const fn is_over(&self) -> bool {
+        self.is_closed || self.borders >= 2
+    }
+
+    /// Takes in where the front is beside the robot, if it is found.
+    pub(crate) fn observe(&mut self, found: Option<Waist>, site: Site, reach: f32) {
+        self.steps = self.steps.saturating_add(1);
+        let Some(waist) = found else { return };
+        let Some((begun, last)) = &mut self.begun else {
+            (self.begun, self.steps) = (Some((waist, waist.heading)), 0);
             return;
         };
-        self.turned += i64::from(heading.since(last).0 as i32);
-        self.begun = Some((start, sense, heading));
-        let is_back = distance(site - start) < BACK * reach;
+        self.turned += i64::from(waist.heading.since(*last).0 as i32);
+        *last = waist.heading;
+        let is_back = distance(site - begun.site) < BACK * reach;
         self.is_closed |= is_back && self.turned.abs() >= TURNED;
     }
 }
@@ -97,32 +129,41 @@ mod tests {
     #[test]
     fn a_circle_closes_when_the_robot_is_back() {
         let mut lap = Lap::NONE;
-        assert_eq!(lap.sense(), None);
         let closed = (0..=72_u32).find(|step| {
             let angle = -f64::from(*step) * core::f64::consts::PI / 36.0;
             let (sin, cos) = libm::sincos(angle);
             let it = waist(20.0 * sin, -20.0 * cos, angle);
-            let pose = Pose { site: it.site, heading: Heading(1 << 31) };
-            lap.observe((*step != 30).then_some(it), pose, REACH);
+            lap.observe((*step != 30).then_some(it), it.site, REACH);
             lap.is_closed()
         });
-        assert_eq!((closed, lap.sense()), (Some(71), Some(false)));
-        lap.turn();
-        assert_eq!((lap.is_closed(), lap.sense()), (true, Some(true)));
+        assert_eq!((closed, lap.is_over()), (Some(71), true));
     }
 
     /// Before it finds the front it may turn any way.
     #[test]
     fn it_goes_the_way_that_it_faced_at_the_start() {
-        for (angle, sense) in [(0.3, true), (3.3, false)] {
-            let mut lap = Lap::NONE;
-            for faced in [angle, 1.0, 4.0] {
-                lap.face(Heading::from_radians(faced).unwrap());
-            }
-            let it = waist(0.0, 0.0, 0.0);
-            lap.observe(Some(it), Pose { site: it.site, heading: it.heading }, REACH);
-            assert_eq!(lap.sense(), Some(sense), "{angle}");
+        let mut lap = Lap::NONE;
+        for faced in [0.3, 1.0, 4.0] {
+            lap.face(Heading::from_radians(faced).unwrap());
         }
+        let pose = Pose { site: Site::ORIGIN, heading: Heading(0) };
+        assert_eq!(lap.faced(pose), Heading::from_radians(0.3).unwrap());
+        assert_eq!(Lap::NONE.faced(pose), pose.heading);
+    }
+
+    #[test]
+    fn it_drives_back_from_the_first_border_and_is_over_at_the_second() {
+        let mut lap = Lap::NONE;
+        lap.observe(Some(waist(1.0, 2.0, 0.0)), Site::ORIGIN, REACH);
+        lap.turn(true);
+        assert!(lap.back() == Some(waist(1.0, 2.0, 0.0)) && !lap.is_over());
+        lap.arrive();
+        lap.turn(true);
+        assert!(lap.back().is_none() && lap.is_over());
+        // One that moves has left that place.
+        let mut moved = Lap { borders: 0, ..lap };
+        moved.turn(false);
+        assert!(moved.back().is_none());
     }
 
     /// The front goes out, turns round and comes back beside itself.
@@ -133,9 +174,8 @@ mod tests {
         let back =
             (0..12).map(|k| waist(20.0 - 2.0 * f64::from(k), 1.5, core::f64::consts::PI - 0.01));
         for it in out.chain([waist(20.0, 0.7, 1.5)]).chain(back) {
-            lap.observe(Some(it), Pose { site: it.site, heading: it.heading }, REACH);
+            lap.observe(Some(it), it.site, REACH);
             assert!(!lap.is_closed());
         }
-        assert_eq!(lap.sense(), Some(true));
     }
 }

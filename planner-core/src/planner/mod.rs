@@ -13,12 +13,15 @@
 //! labels. [`options`] are what Algorithms 1 and 2 leave open. [`setup`] checks the parts that every planner is made of.
 //! A [`snapshot`] is what a planner has to remember over a sleep.
 
+mod aim;
+mod along;
 pub mod audit;
 pub mod cfc;
 pub mod decision;
 pub mod far;
 pub mod front_state;
 pub(crate) mod guard;
+mod hunt;
 pub mod lap;
 pub mod lookahead;
 pub(crate) mod one_label;
@@ -33,7 +36,6 @@ pub mod sight;
 pub mod silence;
 pub mod snapshot;
 pub mod track;
-pub mod trail;
 mod vote;
 pub mod watched;
 
@@ -160,7 +162,8 @@ pub enum StopReason {
     ///
     /// [least bits]: crate::planner::sight::AnySight::with_least_bits
     Worth,
-    /// The robot has gone along all of a closed [front](crate::planner::track), and is back where it found it.
+    /// The robot has gone along all of a [front](crate::planner::track): it is back where it found it, or the front has led it
+    /// out of the area at both ends.
     Closed,
     /// All of the area most likely has one label: no patch of the radius that was sought is left, and no boundary that
     /// crosses the area. See [`OneLabel`](crate::planner::one_label::OneLabel).

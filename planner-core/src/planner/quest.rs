@@ -11,6 +11,7 @@
 //! - **Close**: the tracker begins in a square about the last crossing, with the labels that were read there.
 //! - **Follow**: the tracker knows the boundary, or was told about where it is.
 
+use crate::belief::curve::nearest_pair;
 use crate::belief::field::{Field, FieldMemory, Seeking, Sought};
 use crate::belief::sample::{Label, Sample};
 use crate::geometry::approximate::{METRE, distance};
@@ -129,9 +130,13 @@ impl Quest {
         self.field.seeking()
     }
 
-    /// Takes in points whose labels are known for sure.
+    /// Takes in points whose labels are known for sure. The two that differ and are the nearest to each other come last:
+    /// the boundary is sought between them first.
     pub(crate) fn know(&mut self, points: &[Sample]) {
-        for it in points {
+        let pair = nearest_pair(points);
+        let is_last = |it: &&Sample| pair.is_some_and(|pair| pair.contains(&it.site));
+        let others = points.iter().filter(|it| !is_last(it));
+        for it in others.chain(points.iter().filter(is_last)) {
             self.field.know(it.site, it.label);
         }
         self.sought = self.field.sought();
@@ -147,7 +152,9 @@ impl Quest {
     /// A motion has ended, and its labels are taken in. The route stays until a label comes: a robot that turns on the
     /// spot would turn to and fro.
     pub(crate) fn moved(&mut self, has_label: bool) {
-        self.sought = self.field.sought();
+        if self.phase == Phase::Search {
+            self.sought = self.field.sought();
+        }
         self.is_fresh |= has_label;
         self.is_stuck &= !has_label;
     }
@@ -199,6 +206,7 @@ impl Quest {
     /// The tracker has found nothing: the search goes on.
     pub(crate) fn search_on(&mut self) {
         (self.phase, self.news) = (Phase::Search, 0);
+        self.sought = self.field.sought();
     }
 
     /// The boundary is not where it was: the search begins again, and forgets all but the last labels.
@@ -248,12 +256,12 @@ impl Quest {
         None
     }
 
-    /// Drives from a place to the end of a lead that is farther away.
+    /// Drives from a place to the nearer end of a lead and on to the other.
     pub(crate) fn narrow(&mut self, lead: &Lead, from: Site) {
         if !self.route.is_told() {
             let [a, b] = lead.between;
-            let is_first = distance(a - from) > distance(b - from);
-            self.survey(&[if is_first { a } else { b }]);
+            let is_first = distance(a - from) < distance(b - from);
+            self.survey(&if is_first { [a, b] } else { [b, a] });
         }
     }
 

@@ -2,7 +2,7 @@
 //!
 //! All other planners of straight lines begin with given points of both labels. [`Seek`] begins with none, or with
 //! points of one label. It drives along a route over the area. Once a line is close, it learns from a [`Tracker`] of lines,
-//! and goes where a label is worth the most information for its price and the way there (`scout.rs`). It ends by itself:
+//! and goes where a label is worth the most information for its price and the way there (`hunt.rs`). It ends by itself:
 //!
 //! | reason | what is true then |
 //! | --- | --- |
@@ -37,6 +37,7 @@ use crate::geometry::value::ValueError;
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::far::Far;
+use crate::planner::hunt::Hunt;
 use crate::planner::one_label::OneLabel;
 use crate::planner::quest::QuestMemory;
 use crate::planner::scout::Scout;
@@ -87,7 +88,7 @@ const STEPS: u32 = 24;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Seek<D, const K: usize, const M: usize, G = Area> {
-    scout: Scout<D, K, M, 1, G>,
+    hunt: Hunt<D, K, M, 1, G>,
     samples: Vec<Sample, GIVEN, u8>,
     is: State,
 }
@@ -120,9 +121,9 @@ impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Seek<D, K, M, G>
     #[inline] // it is made where it stays, as it may be large
     pub fn new(area: G, dynamics: D, tracker: Tracker<K, M, 1>) -> Result<Self, SetupError> {
         let price = Far::across(&area).price();
-        let mut scout = Scout::new(area, dynamics, tracker)?;
-        scout.price = units(price as f32);
-        Ok(Self { scout, samples: Vec::new(), is: State::Sought })
+        let mut hunt = Hunt::new(area, dynamics, tracker)?;
+        hunt.scout.price = units(price as f32);
+        Ok(Self { hunt, samples: Vec::new(), is: State::Sought })
     }
 
     /// The same at another price of a label, metres of driving. The higher it is, the fewer labels are read on the way,
@@ -131,7 +132,7 @@ impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Seek<D, K, M, G>
     /// # Errors
     /// [`ValueError`] unless it is from 0 to 16,384 m.
     pub fn at_price(mut self, metres: f64) -> Result<Self, ValueError> {
-        self.scout.price = units(Far::at_price(metres)?.price() as f32);
+        self.hunt.scout.price = units(Far::at_price(metres)?.price() as f32);
         Ok(self)
     }
 
@@ -139,7 +140,7 @@ impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Seek<D, K, M, G>
     /// plan.
     #[must_use]
     pub fn knowing(mut self, points: &[Sample]) -> Self {
-        self.scout.know(points);
+        self.hunt.know(points);
         for &point in points {
             self.keep(point);
         }
@@ -154,14 +155,14 @@ impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Seek<D, K, M, G>
 
     /// The label that all of the area has, if it most likely has one; and what may be left of the other one.
     pub fn one_label(&self) -> Option<OneLabel> {
-        self.scout.one_label()
+        self.hunt.scout.one_label()
     }
 
     /// Whether the labels that are kept make a version space: what it takes to go on, and no less.
     fn judge(&mut self) {
-        let tracker = &self.scout.tracker;
+        let tracker = &self.hunt.tracker;
         if !tracker.is_certain() {
-            if let Some(sure) = self.scout.found().and_then(|waist| self.sure(waist)) {
+            if let Some(sure) = self.hunt.found().and_then(|waist| self.sure(waist)) {
                 self.samples = sure.into_iter().collect();
                 self.is = State::Found;
             }
@@ -188,7 +189,7 @@ impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Seek<D, K, M, G>
 
     /// Two places on each side of the boundary whose labels are sure. They lie as far along it as its direction matters.
     fn sure(&self, waist: Waist) -> Option<[Sample; 4]> {
-        let (unit, reach) = (Unit::of(waist.heading), self.scout.reach() * METRE);
+        let (unit, reach) = (Unit::of(waist.heading), self.hunt.scout.reach() * METRE);
         let long = waist.deviation / waist.turn_deviation;
         let long = if long > reach { long } else { reach };
         let place = |ahead: f32, left: f32| {
@@ -203,7 +204,7 @@ impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Seek<D, K, M, G>
             *sample = (0..STEPS).find_map(|_| {
                 off *= FARTHER;
                 let site = place(end * long, side * off)?;
-                let above = self.scout.tracker.share_above(site);
+                let above = self.hunt.tracker.share_above(site);
                 let (label, other) = if side > 0.0 {
                     (Label::Positive, 1.0 - above)
                 } else {
@@ -240,7 +241,7 @@ impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Seek<D, K, M, G>
         if let Reading::Side(label) = reading
             && self.is == State::Sought
         {
-            if self.scout.tracker.is_certain() {
+            if self.hunt.tracker.is_certain() {
                 self.keep(Sample { site, label });
             }
             self.judge();
@@ -258,7 +259,7 @@ impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Planner for Seek
 
     fn plan(&mut self, pose: Pose) -> Plan {
         match self.is {
-            State::Sought => self.scout.seek(pose),
+            State::Sought => self.hunt.seek(pose),
             State::Found => Plan::Stop(StopReason::Known),
             State::Bent => Plan::Stop(StopReason::NoLine),
         }
@@ -270,7 +271,7 @@ impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Planner for Seek
         reading: Option<Reading>,
         tolerance: Tolerance,
     ) -> Result<(), ObservationError> {
-        self.scout.observe(pose, reading, tolerance)?;
+        self.hunt.observe(pose, reading, tolerance)?;
         if let Some(reading) = reading {
             self.take(pose.site, reading);
         }
@@ -282,7 +283,7 @@ impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Planner for Seek
         site: Site,
         reading: Reading,
     ) -> Result<bool, ObservationError> {
-        let is_kept = self.scout.observe_on_the_way(site, reading)?;
+        let is_kept = self.hunt.observe_on_the_way(site, reading)?;
         if is_kept {
             self.take(site, reading);
         }
@@ -290,11 +291,11 @@ impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Planner for Seek
     }
 
     fn belief(&self) -> &Tracker<K, M, 1> {
-        &self.scout.tracker
+        &self.hunt.tracker
     }
 
     fn alarm(&self) -> Option<Alarm> {
-        self.scout.tracker.evidence().alarm()
+        self.hunt.tracker.evidence().alarm()
     }
 }
 
@@ -302,19 +303,20 @@ impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Persist for Seek
     type Snapshot = Snapshot<FrontMemory<K, M, 1>, SeekMemory>;
 
     fn snapshot(&self) -> Self::Snapshot {
-        let Self { scout: Scout { tracker, silence, quest, .. }, samples, is } = self;
+        let Self { hunt: Hunt { tracker, scout }, samples, is } = self;
+        let Scout { silence, quest, .. } = scout;
         let (silence, quest) = (*silence, quest.memory());
         let memory = SeekMemory { silence, quest, samples: samples.clone(), is: *is };
-        Snapshot::new(self.scout.mark(Kind::Seek), tracker.log(), memory)
+        Snapshot::new(self.hunt.mark(Kind::Seek), tracker.log(), memory)
     }
 
     fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), RestoreError> {
-        let (log, memory) = snapshot.open(self.scout.mark(Kind::Seek))?;
-        if !self.scout.quest.recall(&memory.quest) {
+        let (log, memory) = snapshot.open(self.hunt.mark(Kind::Seek))?;
+        if !self.hunt.scout.quest.recall(&memory.quest) {
             return Err(ReplayError::Spoilt.into());
         }
-        self.scout.tracker.replay(log)?;
-        self.scout.silence = memory.silence;
+        self.hunt.tracker.replay(log)?;
+        self.hunt.scout.silence = memory.silence;
         (self.samples, self.is) = (memory.samples.clone(), memory.is);
         Ok(())
     }

@@ -144,7 +144,7 @@ fn fly_little(chip: &mut Chip<'_>, setup: &Setup) -> Result<Flown, LinkError> {
 
 /// Follows fronts, but watches no stretch of one.
 fn fly_fronts(chip: &mut Chip<'_>, setup: &Setup) -> Result<Flown, LinkError> {
-    chip.fly_with::<Tracks<16, 16, 3>, Unicycle, Area>(setup, &mut ())
+    chip.fly_with::<Tracks, Unicycle, Area>(setup, &mut ())
 }
 
 type Fly = fn(&mut Chip<'_>, &Setup) -> Result<Flown, LinkError>;

@@ -4,7 +4,7 @@ use planner_core::link::message::MissionArea;
 use planner_core::link::message::Settings;
 use planner_core::{
     AnyReliability, AnySight, AnyVehicle, CellPosterior, Crossing, Following, Front, Goal, Noise,
-    NoisyBelief, Policy, Pose, Prior, Sample, Seeking, Tracker, UnknownReliability, Workspace as _,
+    NoisyBelief, Policy, Pose, Prior, Sample, Seeking, Tracker, UnknownReliability,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -27,7 +27,7 @@ pub const HYPOTHESES: usize = 2081;
 /// The hypothesis table of simulated planners.
 pub type Table = CellPosterior<CAPACITY, HYPOTHESES, 15, AnyReliability>;
 
-/// The belief of simulated planners of fronts.
+/// The belief of simulated planners that watch a front.
 pub type FrontBelief = Tracker<16, 16, 3>;
 
 /// The belief of simulated planners that seek a line from nothing.
@@ -218,14 +218,6 @@ impl Mission {
         let lines = self.given.lines().expect("given points that bound the line");
         let lines = lines.clone().with_tolerance(self.config.tolerance);
         lines.expect("the tolerance leaves something to find")
-    }
-
-    /// What is known of a front before the first label. If the given points have both labels, it lies between them;
-    /// otherwise it may be anywhere in the area.
-    pub fn tracker(&self) -> FrontBelief {
-        let tracker = Tracker::new(self.config.area.bounds(), self.front, self.noise_told());
-        let tracker = tracker.given(self.given.samples());
-        if self.watch.is_some() { tracker.staying() } else { tracker }
     }
 
     /// How far look-ahead looks for labels, what they must carry, and how many there are a motion.

@@ -4,7 +4,7 @@ use anyhow::Result;
 use nalgebra::Point2;
 use planner_core::belief::front::Waist;
 use planner_core::dynamics::Dynamics as _;
-use planner_core::{AnyVehicle, Area, Front};
+use planner_core::{AnyVehicle, Area, Front, MapPlace};
 use serde::{Deserialize, Serialize};
 
 use crate::mission::algorithm::Algorithm;
@@ -114,6 +114,27 @@ impl From<Waist> for VertexRecord {
         let at = Point2::<f64>::from(site);
         let half_width = waist.half_width(LEVEL);
         Self { x: at.x, z: at.y, heading: heading.radians(), curvature, half_width, turn_deviation }
+    }
+}
+
+/// A vertex of the map, with the step after which the robot passed it.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub struct PassedRecord {
+    /// That step.
+    pub passed: usize,
+    /// Whether a piece of the map begins with it.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub begins: bool,
+    /// The vertex.
+    #[serde(flatten)]
+    pub vertex: VertexRecord,
+}
+
+impl PassedRecord {
+    /// A place that is on the map after so many steps or rows.
+    pub fn of(MapPlace { waist, age, begins }: MapPlace, step: usize) -> Self {
+        let passed = step.saturating_sub(age as usize).max(1);
+        Self { passed, begins, vertex: waist.into() }
     }
 }
 

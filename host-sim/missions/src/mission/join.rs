@@ -26,7 +26,7 @@ const REACH: f64 = 3.0;
 const NEIGHBOURS: usize = 4;
 
 /// The map of a robot by its pieces, each vertex with its number.
-pub type Pieces = Vec<Vec<(usize, VertexRecord)>>;
+pub type Pieces = crate::mission::map::Places;
 
 /// A vertex of the joined map.
 #[derive(Clone, Copy, Debug)]

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::mission::front::VertexRecord;
+use crate::mission::front::{PassedRecord, VertexRecord};
 use crate::world::World;
 
 /// What following a front came to.
@@ -16,7 +16,7 @@ pub struct MapRecord {
     /// Where it was known best when it was found last, if it is lost, and after which step.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lost: Option<LostRecord>,
-    /// Vertices of the map: steps after which the front was found.
+    /// Vertices of the map.
     pub vertices: usize,
     /// Metres of front that they go along, to and fro.
     pub metres: f64,
@@ -65,58 +65,101 @@ pub struct OffRecord {
     pub covered: f64,
 }
 
+/// A step of a mission, or a row of a track, as the map has it.
+#[derive(Clone, Debug)]
+pub struct Mapped {
+    /// The number of the step or row.
+    pub number: usize,
+    /// Metres driven so far.
+    pub metres: f64,
+    /// Whether the front is known after it.
+    pub is_known: bool,
+    /// The places that the map has more.
+    pub vertices: Vec<PassedRecord>,
+}
+
+/// The places of a map, each with the number of the step or row at which the robot passed it. A new piece begins
+/// where the front was not known after one, and where the robot drove back.
+pub type Places = Vec<Vec<(usize, VertexRecord)>>;
+
+/// The map by its pieces. None is empty.
+pub fn pieces<'a>(steps: impl IntoIterator<Item = &'a Mapped>) -> Places {
+    let (mut pieces, mut is_open) = (Places::new(), false);
+    for Mapped { is_known, vertices, .. } in steps {
+        for it in vertices {
+            let vertex = (it.passed, it.vertex);
+            match pieces.last_mut() {
+                Some(piece) if is_open && !it.begins => piece.push(vertex),
+                _ => pieces.push(vec![vertex]),
+            }
+            is_open = true;
+        }
+        is_open &= *is_known;
+    }
+    pieces
+}
+
 impl MapRecord {
     /// Of a mission's steps in a world, as [`Self::after`] has them.
-    pub fn of(steps: &[(f64, Option<VertexRecord>)], world: &World, is_closed: bool) -> Self {
-        let vertices: Vec<_> =
-            (1..).zip(steps).filter_map(|(step, (_, vertex))| Some((step, (*vertex)?))).collect();
-        let off = OffRecord::of(&vertices, world);
-        Self { off, ..Self::after(steps.iter().copied(), is_closed) }
+    pub fn of(steps: &[Mapped], world: &World, is_over: bool) -> Self {
+        let off = OffRecord::of(&pieces(steps).concat(), world);
+        Self { off, ..Self::after(steps, is_over) }
     }
 
-    /// Of the steps or rows of a track, counted from 1: after each how far the robot had driven, and where the front was
-    /// known best, if it was found. `is_closed` says whether the robot went all round it.
-    pub fn after(
-        steps: impl IntoIterator<Item = (f64, Option<VertexRecord>)>,
-        is_closed: bool,
-    ) -> Self {
-        let (mut vertices, mut begin) = (Vec::new(), None);
-        let (mut whole, mut is_found) = (0.0, false);
-        for (step, (metres, vertex)) in (1..).zip(steps) {
-            (whole, is_found) = (metres, vertex.is_some());
-            if let Some(vertex) = vertex {
-                begin.get_or_insert(metres);
-                vertices.push((step, vertex));
-            }
-        }
-        let last = vertices.last();
-        let state = match last {
+    /// Of the steps of a mission or the rows of a track. `is_over` says whether all of the front is mapped.
+    pub fn after(steps: &[Mapped], is_over: bool) -> Self {
+        let pieces = pieces(steps);
+        let is_closed = is_over && turns(&pieces) > ROUND;
+        let along = |pair: &[(usize, VertexRecord)]| match pair {
+            [(_, from), (_, to)] => along(from, to),
+            _ => 0.0,
+        };
+        let metres: f64 = pieces.iter().flat_map(|piece| piece.windows(2)).map(along).sum();
+        let vertices = pieces.concat();
+        let found = steps.iter().find(|it| it.is_known);
+        let known = steps.iter().rfind(|it| it.is_known);
+        let (last, end) = (vertices.last(), steps.last());
+        let is_known = end.is_some_and(|it| it.is_known);
+        let state = match found {
             Some(_) if is_closed => State::Closed,
-            Some(_) if is_found => State::Followed,
+            Some(_) if is_known => State::Followed,
             Some(_) => State::Lost,
             None => State::Sought,
         };
-        let lost = last.filter(|_| state == State::Lost);
+        let lost = known.zip(last).filter(|_| state == State::Lost);
+        let whole = end.map_or(0.0, |it| it.metres);
         Self {
             state,
-            found: vertices.first().map(|(step, _)| *step),
-            lost: lost.map(|&(step, it)| LostRecord { step, x: it.x, z: it.z }),
+            found: found.map(|it| it.number),
+            lost: lost.map(|(known, (_, at))| LostRecord { step: known.number, x: at.x, z: at.z }),
             vertices: vertices.len(),
             // The sum of nothing is -0.
-            metres: 0.0 + vertices.windows(2).map(along).sum::<f64>(),
-            driven: begin.map_or(0.0, |begin| whole - begin),
+            metres: 0.0 + metres,
+            driven: found.map_or(0.0, |it| whole - it.metres),
             half_width: median_and_most(vertices.iter().map(|(_, it)| it.half_width), 1.0),
             off: None,
         }
     }
 }
 
+/// A front of which all is mapped is closed if it turns by more than this, radians. One that leads out of the area at both
+/// ends turns less.
+const ROUND: f64 = 4.0;
+
+/// By how much the front turns along its pieces, radians.
+fn turns(pieces: &Places) -> f64 {
+    let turn = |pair: &[(usize, VertexRecord)]| {
+        let by = pair[1].1.heading - pair[0].1.heading;
+        libm::remainder(by, std::f64::consts::TAU)
+    };
+    pieces.iter().flat_map(|it| it.windows(2)).map(turn).sum::<f64>().abs()
+}
+
 /// Metres along the front between two vertices of one piece of the map.
-fn along(pair: &[(usize, VertexRecord)]) -> f64 {
-    let [(step, from), (next, to)] = pair else { return 0.0 };
+fn along(from: &VertexRecord, to: &VertexRecord) -> f64 {
     let (sin, cos) = libm::sincos(from.heading);
     let way = to.at() - from.at();
-    if *next == step + 1 { (way.x * cos + way.y * sin).abs() } else { 0.0 }
+    (way.x * cos + way.y * sin).abs()
 }
 
 /// The median, and the number below which so large a share lies.

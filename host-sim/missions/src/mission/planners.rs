@@ -5,9 +5,9 @@ use planner_core::error::ObservationError;
 use planner_core::link::message::MissionArea;
 use planner_core::watch::Alarm;
 use planner_core::{
-    Accuracy, AnyReliability, AnySight, AnyVehicle, Belief, Cfc, Estimates, FrontState, Guard,
-    Line, Lookahead, Plan, Planner, Pose, PredictiveBelief, Reading, Scc, Site, Tolerance, Track,
-    Tracker, Trust, Workspace,
+    Accuracy, AnyReliability, AnySight, AnyVehicle, Belief, Cfc, Estimates, FrontState,
+    FrontStretch, Guard, Line, Lookahead, Plan, Planner, Pose, PredictiveBelief, Reading, Scc,
+    Site, Tolerance, Track, Tracker, Trust, Workspace,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -92,7 +92,12 @@ impl Mission {
     /// As [`planner`](Self::planner).
     pub fn belief(&self) -> Box<dyn ReadOut> {
         match () {
-            () if !self.algorithm.seeks_line() => Box::new(self.tracker()),
+            () if !self.algorithm.seeks_line() => match self.watch {
+                Some(metres) => {
+                    Box::new(self.guard(self.config.area, self.vehicle, metres).belief().clone())
+                }
+                None => Box::new(self.track(self.config.area, self.vehicle).belief().clone()),
+            },
             () if self.begins_from_nothing() => Box::new(self.sought()),
             () if self.is_noisy() => Box::new(self.table()),
             () => Box::new(self.lines()),
@@ -147,9 +152,8 @@ impl Mission {
     ///
     /// # Panics
     /// When settings contradict each other.
-    pub fn track<D: Dynamics, G: Workspace>(&self, area: G, dynamics: D) -> Track<D, 16, 16, 3, G> {
-        let tracker = Tracker::new(area.bounds(), self.front, self.noise_told());
-        let planner = Track::new(area, dynamics, tracker).expect(FITS);
+    pub fn track<D: Dynamics, G: Workspace>(&self, area: G, dynamics: D) -> Track<D, G> {
+        let planner = Track::new(area, dynamics, self.front, self.noise_told()).expect(FITS);
         let planner = planner.seeking(self.seeking).expect(FITS).knowing(self.given.samples());
         if self.until_closed { planner.until_closed() } else { planner }
     }
@@ -164,13 +168,19 @@ impl Mission {
         dynamics: D,
         metres: f64,
     ) -> Guard<D, 16, 16, 3, G> {
-        self.track(area, dynamics).watching(metres).expect(FITS)
+        let tracker = Tracker::new(area.bounds(), self.front, self.noise_told());
+        let stretch = FrontStretch::metres(metres).expect("a length that was checked");
+        let guard = Guard::new(area, dynamics, tracker, stretch).expect(FITS);
+        guard.seeking(self.seeking).expect(FITS).knowing(self.given.samples())
     }
 
     /// The half-width below which the front counts as found, metres; `None` if the planner seeks a line.
     pub fn found_width(&self) -> Option<f32> {
-        let of = |dynamics: AnyVehicle| self.track(self.config.area, dynamics).width();
-        (!self.algorithm.seeks_line()).then(|| of(self.vehicle))
+        let (area, vehicle) = (self.config.area, self.vehicle);
+        (!self.algorithm.seeks_line()).then(|| match self.watch {
+            Some(metres) => self.guard(area, vehicle, metres).width(),
+            None => self.track(area, vehicle).width(),
+        })
     }
 
     /// Algorithm 1 with the mission's settings, in an area and with a vehicle that may be others than its own.

@@ -5,8 +5,8 @@ use std::fmt::Debug;
 
 use planner_core::belief::front::Waist;
 use planner_core::{
-    AnyReliability, Area, Belief, Goal, Label, Planner, PosteriorView, Reliability, Sample, Site,
-    Tolerance, Tracker,
+    AnyReliability, Area, Belief, Curve, Goal, Label, MapPlace, Planner, PosteriorView,
+    Reliability, Sample, Site, Tolerance, Tracker,
 };
 
 use crate::mission::definition::{FrontBelief, SoughtLine, Table};
@@ -76,7 +76,7 @@ pub trait ReadOut: Belief + Debug + Send {
     }
 
     /// The front, where one is followed.
-    fn front(&self) -> Option<&FrontBelief> {
+    fn front(&self) -> Option<&dyn FrontKnown> {
         None
     }
 
@@ -92,6 +92,92 @@ pub trait ReadOut: Belief + Debug + Send {
 
     /// A copy.
     fn boxed(&self) -> Box<dyn ReadOut>;
+}
+
+/// What is known of a front that is followed or watched.
+pub trait FrontKnown {
+    /// Whether labels say nothing against what was told: there may be no front.
+    fn may_be_nowhere(&self) -> bool;
+
+    /// Where it is known now, if its half-width is below so many metres.
+    fn found(&self, within: f32) -> Option<Waist>;
+
+    /// Places that the last motion adds to the map, if that is found within so many metres.
+    fn mapped(&self, within: f32) -> Vec<MapPlace>;
+
+    /// Places that the map has more when the mission ends.
+    fn rest(&self) -> Vec<MapPlace> {
+        Vec::new()
+    }
+}
+
+impl FrontKnown for FrontBelief {
+    fn may_be_nowhere(&self) -> bool {
+        Self::may_be_nowhere(self)
+    }
+
+    fn found(&self, within: f32) -> Option<Waist> {
+        Self::found(self, within)
+    }
+
+    fn mapped(&self, within: f32) -> Vec<MapPlace> {
+        let place = |waist| MapPlace { waist, age: 0.0, begins: false };
+        Self::found(self, within).map(place).into_iter().collect()
+    }
+}
+
+impl FrontKnown for Curve {
+    fn may_be_nowhere(&self) -> bool {
+        !self.is_begun()
+    }
+
+    fn found(&self, within: f32) -> Option<Waist> {
+        Self::found(self, within)
+    }
+
+    fn mapped(&self, _: f32) -> Vec<MapPlace> {
+        Self::mapped(self).to_vec()
+    }
+
+    fn rest(&self) -> Vec<MapPlace> {
+        let mut rest: Vec<_> = self.places().collect();
+        rest.reverse();
+        rest
+    }
+}
+
+impl ReadOut for Curve {
+    fn knowledge(&self) -> Knowledge {
+        let waist = self.now();
+        let half = DEVIATIONS * f64::from(waist.turn_deviation).to_degrees();
+        let slopes = || slopes_about(waist.heading.radians().to_degrees(), half);
+        let slope_arcs = if self.is_begun() { slopes() } else { vec![[-90.0, 90.0]] };
+        let bits = if self.is_begun() { self.information() } else { 0.0 };
+        Knowledge { slope_arcs, intercept: None, bits, doubt: None }
+    }
+
+    fn expects(&self, site: Site) -> Expectation {
+        let chance = self.chance(site);
+        Expectation { chance, bits: limit(self.reliability().into()) - limit(chance) }
+    }
+
+    /// Never: a front goes on.
+    fn reaches(&self, _: Goal, _: Area) -> bool {
+        false
+    }
+
+    /// None: it keeps no samples.
+    fn samples(&self) -> &[Sample] {
+        &[]
+    }
+
+    fn front(&self) -> Option<&dyn FrontKnown> {
+        Some(self)
+    }
+
+    fn boxed(&self) -> Box<dyn ReadOut> {
+        Box::new(self.clone())
+    }
 }
 
 impl ReadOut for Lines {
@@ -155,8 +241,8 @@ impl<const L: usize> ReadOut for Tracker<16, 16, L> {
         &[]
     }
 
-    fn front(&self) -> Option<&FrontBelief> {
-        (self as &dyn Any).downcast_ref()
+    fn front(&self) -> Option<&dyn FrontKnown> {
+        (self as &dyn Any).downcast_ref::<FrontBelief>().map(|it| it as &dyn FrontKnown)
     }
 
     fn sought(&self) -> Option<&SoughtLine> {

@@ -12,18 +12,18 @@ use planner_core::{
     ReliabilityEstimate, Sample, Site, Stage, Step, StopReason,
 };
 
-use crate::mission::definition::{FrontBelief, Mission, SoughtLine, Table};
+use crate::mission::definition::{Mission, SoughtLine, Table};
 use crate::mission::diagnosis::DiagnosisRecord;
 use crate::mission::flight::Flown;
 use crate::mission::from_nothing::SeekRecord;
-use crate::mission::front::{FrontTable, VertexRecord};
+use crate::mission::front::{FrontTable, PassedRecord, VertexRecord};
 use crate::mission::legs::{Leg, Legs};
 use crate::mission::map::MapRecord;
-use crate::mission::read_out::{Knowledge, LEVEL, ReadOut, is_unknown};
+use crate::mission::read_out::{FrontKnown, Knowledge, LEVEL, ReadOut, is_unknown};
 use crate::mission::results::{
     AlarmRecord, BestRecord, CredibleRecord, End, Ending, EstimateRecords, FitRecord,
     KeepOutRecord, LineError, PTold, ReadingRecord, ReliabilityRecord, Results, Start, StepResult,
-    VERSION, cost, recovery_name, stage_name,
+    VERSION, cost, mapped, recovery_name, stage_name,
 };
 use crate::mission::seeking::SeekTable;
 use crate::mission::stop::{AuditRecord, GoalRecord};
@@ -113,6 +113,7 @@ impl Recorder {
             examined: motion.examined,
             proven: (!motion.proven).then_some(false),
             front: self.vertex(belief),
+            mapped: self.mapped(belief),
             trusted: reliability.map(|it| it == Reliability::CERTAIN),
             hypotheses: doubt.map(|doubt| doubt.hypotheses),
             pruned_mass: doubt.map(|doubt| doubt.pruned_mass),
@@ -164,7 +165,7 @@ impl Recorder {
 
     /// Takes down what a label says against the model, where it says anything.
     fn hear(&mut self, known: &dyn ReadOut, site: Site, reading: Reading) {
-        let front = known.front().map(FrontBelief::may_be_nowhere);
+        let front = known.front().map(FrontKnown::may_be_nowhere);
         let may_be_nowhere = front.or_else(|| known.sought().map(SoughtLine::may_be_nowhere));
         if let (Reading::Side(label), None | Some(false)) = (reading, may_be_nowhere) {
             self.evidence.observe(label, known.chance_of(site, label));
@@ -174,6 +175,14 @@ impl Recorder {
     /// Where the front is known best, if it is found.
     fn vertex(&self, belief: &dyn ReadOut) -> Option<VertexRecord> {
         belief.front()?.found(self.width?).map(Into::into)
+    }
+
+    /// The places that the map has more, if a front is followed.
+    fn mapped(&self, belief: &dyn ReadOut) -> Vec<PassedRecord> {
+        let front = belief.front().filter(|_| self.mission.watch.is_none());
+        let mapped = front.zip(self.width).map(|(it, width)| it.mapped(width));
+        let step = self.steps.len();
+        mapped.into_iter().flatten().map(|it| PassedRecord::of(it, step)).collect()
     }
 
     /// What a perfect sensor reads at a pose at the end of the current step, if the boundary is known.
@@ -224,6 +233,8 @@ impl Recorder {
     /// The mission is over.
     pub fn end(self, Flown { ending, belief }: Flown) -> Recording {
         let Self { mission, steps, results, before, alarm, .. } = self;
+        let rest = belief.front().map(FrontKnown::rest).unwrap_or_default();
+        let rest: Vec<_> = rest.into_iter().map(|it| PassedRecord::of(it, steps.len())).collect();
         let doubted = belief.hypotheses().and_then(|table| doubted(table, &mission.world));
         let (best, credible) = doubted.unzip();
         let world = mission.world.after(steps.len());
@@ -248,8 +259,7 @@ impl Recorder {
         let is_alarmed = alarm.as_ref().is_some_and(|it| it.evidence >= Alarm::ALARM);
         let has_ended = |reason| ending == Ending::Stopped(reason);
         let map = || {
-            let steps: Vec<_> = results.iter().map(|it| (it.metres, it.front)).collect();
-            MapRecord::of(&steps, &mission.world, has_ended(StopReason::Closed))
+            MapRecord::of(&mapped(&results, &rest), &mission.world, has_ended(StopReason::Closed))
         };
         let labels: Vec<_> = results
             .iter()
@@ -260,6 +270,7 @@ impl Recorder {
             .collect();
         let end = End {
             reason: ending.name().into(),
+            mapped: rest.clone(),
             estimates,
             fit: seeks_line
                 .then(fit)

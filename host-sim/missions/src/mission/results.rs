@@ -24,10 +24,10 @@ use crate::mission::allowance::ToleranceRecord;
 use crate::mission::bounds::Bounds;
 use crate::mission::diagnosis::DiagnosisRecord;
 use crate::mission::from_nothing::SeekRecord;
-use crate::mission::front::{FrontTable, VertexRecord};
+use crate::mission::front::{FrontTable, PassedRecord, VertexRecord};
 use crate::mission::legs::{Leg, Legs};
 pub use crate::mission::line_record::{LineError, LineRecord};
-use crate::mission::map::MapRecord;
+use crate::mission::map::{MapRecord, Mapped};
 use crate::mission::read_out::Expectation;
 use crate::mission::seeking::SeekTable;
 use crate::mission::sensor::FaultTable;
@@ -45,6 +45,35 @@ pub struct Results {
     pub steps: Vec<StepResult>,
     /// How it ended.
     pub end: End,
+}
+
+impl Results {
+    /// What the map has of the mission's steps.
+    pub fn mapped(&self) -> Vec<Mapped> {
+        mapped(&self.steps, &self.end.mapped)
+    }
+}
+
+/// What the map has of a mission's steps, and of the places at its end. A planner that follows a front says what the map has;
+/// of one that watches it, that is where the front is.
+pub fn mapped(steps: &[StepResult], rest: &[PassedRecord]) -> Vec<Mapped> {
+    let follows = !rest.is_empty() || steps.iter().any(|it| !it.mapped.is_empty());
+    let of_step = |it: &StepResult| Mapped {
+        number: it.step,
+        metres: it.metres,
+        is_known: it.front.is_some(),
+        vertices: if follows {
+            it.mapped.clone()
+        } else {
+            let here = |vertex| PassedRecord { passed: it.step, begins: false, vertex };
+            it.front.map(here).into_iter().collect()
+        },
+    };
+    let mut steps: Vec<_> = steps.iter().map(of_step).collect();
+    if let Some(last) = steps.last_mut() {
+        last.vertices.extend(rest);
+    }
+    steps
 }
 
 /// The version of the trace, which its start says. Fields that are added do not change it.
@@ -167,9 +196,12 @@ pub struct StepResult {
     /// `Some(false)` if it is not known to be the best.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub proven: Option<bool>,
-    /// Where the front is known best, if one is followed and found.
+    /// Where the front is beside the robot, if one is followed and found.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub front: Option<VertexRecord>,
+    /// Places that the map has more, if a front is followed. Labels change them no more.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub mapped: Vec<PassedRecord>,
     /// Where labels may err: whether the sample lies in a trusted ball.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub trusted: Option<bool>,
@@ -211,6 +243,9 @@ pub type Name = Cow<'static, str>;
 pub struct End {
     /// Why it ended.
     pub reason: Name,
+    /// Places that the map has more, if a front was followed: those that the robot passed last.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub mapped: Vec<PassedRecord>,
     /// The estimates of the line.
     pub estimates: EstimateRecords,
     /// The straight line that misclassifies least, where the true boundary is no fixed line.

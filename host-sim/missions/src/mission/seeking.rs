@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use planner_core::error::{SetupError, ValueError};
-use planner_core::{Likely, Seeking, Track, Tracker, Workspace as _};
+use planner_core::{Likely, Seeking, Track};
 use serde::{Deserialize, Serialize};
 
 use crate::mission::definition::Mission;
@@ -53,8 +53,7 @@ impl Mission {
     /// Names the field, what was found and what was expected.
     pub(crate) fn check_patch(&self) -> Result<()> {
         let (area, noise) = (self.config.area, self.noise_told());
-        let tracker = Tracker::<16, 16, 3>::new(area.bounds(), self.front, noise);
-        let track = Track::new(area, self.vehicle, tracker);
+        let track = Track::new(area, self.vehicle, self.front, noise);
         match track.and_then(|track| track.seeking(self.seeking)) {
             Err(why @ SetupError::Patch { .. }) if !self.algorithm.seeks_line() => {
                 let radius = self.seeking.radius().unwrap_or_default();

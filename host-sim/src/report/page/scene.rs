@@ -335,7 +335,9 @@ impl Stage<'_> {
             heading,
             ground: GroundRecord::of(&Ground::of(belief, area), rounding),
             estimate: centre.map(|line| seen(&line, &area.into(), rounding)),
-            front: step.and_then(|step| rounding.front(step, &world)),
+            front: step
+                .filter(|step| is_beside(&recording.results.steps, step.step))
+                .and_then(|step| rounding.front(step, &world)),
             slopes: knowledge.slope_arcs,
             intercepts: knowledge.intercept,
             bits,
@@ -393,4 +395,13 @@ impl GroundRecord {
             Ground::Plain => Self::Plain,
         }
     }
+}
+/// Whether the front that is known after a step is beside the robot. While this drives back to where it began, that place
+/// stays what it knows.
+fn is_beside(steps: &[StepResult], step: usize) -> bool {
+    let at = |step: usize| {
+        let step = steps.get(step.checked_sub(1)?)?;
+        step.front.map(|it| it.at())
+    };
+    at(step) != at(step - 1) && at(step) != at(step + 1)
 }

@@ -61,19 +61,28 @@ pub(crate) struct Heard {
 type Crowd = heapless::Vec<(Gaussian, f32), { 2 * EACH }>;
 
 impl Bank {
-    /// With deviations of offset and turn.
-    pub(crate) fn about([offset, turn]: [f32; 2]) -> Self {
-        let of = GAITS.map(|gait| {
-            [-1.0, 0.0, 1.0].map(|side| {
+    /// Nothing is known.
+    pub(crate) const NONE: Self = Self { of: [[Gaussian::NONE; EACH]; GAITS.len()] };
+
+    /// Begins with deviations of offset and turn, where it is: it is large.
+    #[inline(never)]
+    pub(crate) fn begin(&mut self, [offset, turn]: [f32; 2]) {
+        for (some, gait) in self.of.iter_mut().zip(&GAITS) {
+            for (it, side) in some.iter_mut().zip([-1.0, 0.0, 1.0]) {
                 let spread = [offset, APART * turn, BEND];
-                Gaussian::about(gait.prior / EACH as f32, side * turn, spread)
-            })
-        });
-        Self { of }
+                *it = Gaussian::about(gait.prior / EACH as f32, side * turn, spread);
+            }
+        }
     }
 
     fn all(&self) -> impl Iterator<Item = &Gaussian> {
         self.of.iter().flatten()
+    }
+
+    /// Whether motions and labels can have made it.
+    pub(crate) fn is_valid(&self) -> bool {
+        let sum: f32 = self.all().map(|it| it.weight).sum();
+        (sum - 1.0).abs() < 1e-2 && self.all().all(Gaussian::is_valid)
     }
 
     /// Goes along the reference, which has a curvature, in reaches.
@@ -104,7 +113,7 @@ impl Bank {
                 join(&mut crowd, Gaussian { weight: it.weight * (1.0 - leaves), ..*it });
             }
             join(&mut crowd, Gaussian { weight: leaves * gait.prior, ..pool });
-            settle(crowd, some);
+            settle(&mut crowd, some);
         }
     }
 
@@ -129,7 +138,7 @@ impl Bank {
                 join(&mut crowd, told);
                 join(&mut crowd, Gaussian { weight: it.weight * errs, ..*it });
             }
-            settle(crowd, some);
+            settle(&mut crowd, some);
         }
         let each = if chance > 0.0 { 1.0 / chance } else { 1.0 };
         self.of.iter_mut().flatten().for_each(|it| it.weight *= each);
@@ -252,7 +261,8 @@ fn join(crowd: &mut Crowd, it: Gaussian) {
 }
 
 /// Merges those that change the offset's distribution the least, until there is room.
-fn settle(mut crowd: Crowd, into: &mut [Gaussian; EACH]) {
+#[inline(never)] // it is called in two places, with many Gaussians on the stack
+fn settle(crowd: &mut Crowd, into: &mut [Gaussian; EACH]) {
     while crowd.len() > EACH {
         let mut best: Option<(f32, usize, usize)> = None;
         for (j, (b, b_log)) in crowd.iter().enumerate() {

@@ -3,14 +3,15 @@
 use crate::belief::curve::arc::Arc;
 use crate::belief::curve::bank::{Bank, Heard, Offsets, Sum as _};
 use crate::belief::curve::gaussian::PLACES;
-use crate::belief::curve::start::Start;
+use crate::belief::curve::start::{Start, nearest_pair};
 use crate::belief::evidence::Evidence;
 use crate::belief::front::{Front, Learnt, Waist, angle, limited};
-use crate::belief::noise::Noise;
+use crate::belief::noise::{Noise, Reliability};
+use crate::belief::predictions::{entropy, information};
 use crate::belief::sample::{Label, Sample};
 use crate::belief::tolerance::Tolerance;
 use crate::belief::trust::{AnyReliability, Trust as _};
-use crate::geometry::approximate::METRE;
+use crate::geometry::approximate::{METRE, sqrt};
 use crate::geometry::heading::{Angle, Heading};
 use crate::geometry::lattice::Site;
 use crate::geometry::value::ValueError;
@@ -48,19 +49,42 @@ const BESIDE: f32 = 0.3;
 /// A place is as good as it gets when that is more than this share of its deviation.
 const STALE: f32 = 0.3;
 
+/// Where a front is begun that was known before, its deviations are no less than this, in reaches and radians.
+const AGAIN: f32 = 0.02;
+
+/// Beside a front that is known, there is none with this probability at least, for either label: it may be lost.
+const LEFT: f32 = 1e-4;
+
+/// There is a front for sure where there is none with less than this.
+const ABSENT: f32 = 0.01;
+
 /// After an alarm the front has these deviations of offset, in reaches, and of direction, in radians.
 const ANEW: [f32; 2] = [0.5, 0.6];
 
+/// A place of the map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct MapPlace {
+    /// Where the front is there.
+    pub waist: Waist,
+    /// The robot passed it so many units of time ago.
+    pub age: f32,
+    /// Whether a piece of the map begins with it: the robot did not come here along the front.
+    pub begins: bool,
+}
+
 /// A place that was passed.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Passed {
     pub(super) arc: Arc,
     pub(super) age: f32,
+    pub(super) begins: bool,
 }
 
 /// What is known of a front beside a robot that goes along it. Nothing is told of how it bends.
 ///
-/// It takes 3.4 kB. A label and a motion take time that does not depend on how many there were.
+/// It takes 3.6 kB. A label and a motion take time that does not depend on how many there were.
 ///
 /// ```
 /// # use planner_core::{
@@ -89,7 +113,7 @@ pub struct Curve {
     pub(super) pace: f32,
     pub(super) noise: Noise<AnyReliability>,
     /// What labels have said of a reliability that nobody knows.
-    learnt: Option<Learnt>,
+    pub(super) learnt: Option<Learnt>,
     /// The robot's way along the front, from beside it on.
     pub(super) arc: Arc,
     /// Whether the front's +1 side is to the right of this way.
@@ -97,12 +121,19 @@ pub struct Curve {
     pub(super) bank: Bank,
     pub(super) passed: heapless::Deque<Passed, PLACES>,
     /// How far the arc has gone since the last of these, reaches.
-    since: f32,
+    pub(super) since: f32,
     pub(super) evidence: Evidence,
     /// The last label, and how many were the same.
     pub(super) run: (Option<Label>, u32),
-    /// The last place that has left the window at this motion.
-    pub(super) gone: Option<Waist>,
+    /// Places that have left the window since the last plan, the oldest first.
+    pub(super) mapped: heapless::Vec<MapPlace, PLACES>,
+    /// The probability that there is no front here, and all of the ground is +1, or is -1.
+    pub(super) nowhere: [f32; 2],
+    /// How often labels spoke against it since the last place that was passed.
+    pub(super) doubts: u8,
+    pub(super) is_begun: bool,
+    /// Whether no place was passed since it began.
+    pub(super) is_fresh: bool,
 }
 
 impl Curve {
@@ -118,33 +149,112 @@ impl Curve {
         front: Front,
         noise: impl Into<Noise<AnyReliability>>,
     ) -> Result<Self, ValueError> {
-        const REACH: ValueError = ValueError("the longest motion is from 0.001 to 1000 m");
         const ONE_LABEL: ValueError = ValueError("a front lies between two samples that differ");
+        const REACH: ValueError = ValueError("the longest motion is from 0.001 to 1000 m");
         if !(1e-3..=1e3).contains(&reach) {
             return Err(REACH);
         }
-        let noise = noise.into();
-        let prior = noise.reliability.unknown();
-        let learnt = prior.map(|it| Learnt::prior(it.parameters().map(|it| it as f32)));
-        let mut curve = Self {
-            reach: reach as f32,
-            pace: front.pace(),
-            noise,
-            learnt,
+        let mut curve = Self::NONE;
+        curve.restart((reach as f32, front), noise.into());
+        let pair = nearest_pair(given).ok_or(ONE_LABEL)?;
+        curve.begin(pair, given);
+        curve.face(facing);
+        Ok(curve)
+    }
+
+    /// Nothing is known yet.
+    pub(crate) const NONE: Self = {
+        const NO_NOISE: Noise<AnyReliability> = Noise {
+            reliability: AnyReliability::Known(Reliability::CERTAIN),
+            trusted_radius: 0,
+            tolerance: Tolerance::NONE,
+        };
+        Self {
+            reach: 1.0,
+            pace: 0.0,
+            noise: NO_NOISE,
+            learnt: None,
             arc: Arc { site: Site::ORIGIN, heading: Heading(0), bend: 0.0 },
             is_flipped: false,
-            bank: Bank::about([1.0; 2]),
+            bank: Bank::NONE,
             passed: heapless::Deque::new(),
             since: 0.0,
             evidence: Evidence::NONE,
             run: (None, 0),
-            gone: None,
-        };
-        let start = Start::of(given, LEAST, curve.reach).ok_or(ONE_LABEL)?;
-        curve.is_flipped = !facing.agrees(start.heading);
-        curve.arc = Arc { site: start.site, heading: curve.along(start.heading), bend: 0.0 };
-        curve.bank = Bank::about(start.deviation);
-        Ok(curve)
+            mapped: heapless::Vec::new(),
+            nowhere: [0.0; 2],
+            doubts: 0,
+            is_begun: false,
+            is_fresh: true,
+        }
+    };
+
+    /// Forgets all, where it is: it is large. The longest motion has so many metres.
+    pub(crate) fn restart(&mut self, (reach, front): (f32, Front), noise: Noise<AnyReliability>) {
+        let prior = noise.reliability.unknown();
+        self.learnt = prior.map(|it| Learnt::prior(it.parameters().map(|it| it as f32)));
+        (self.reach, self.pace, self.noise) = (reach, front.pace(), noise);
+        self.passed.clear();
+        self.mapped.clear();
+        (self.evidence, self.doubts, self.is_begun) = (Evidence::NONE, 0, false);
+        (self.nowhere, self.is_fresh) = ([0.0; 2], true);
+    }
+
+    /// Begins across the way between two sites, where some labels changed. The robot goes along the front's own direction.
+    pub(crate) fn begin(&mut self, between: [Site; 2], labels: &[Sample]) {
+        let Start { site, heading, deviation } = Start::across(between, labels, LEAST, self.reach);
+        self.leave();
+        self.is_flipped = false;
+        self.set(Arc { site, heading, bend: 0.0 }, deviation);
+    }
+
+    /// The robot goes along the front the way that it faces. Just after the beginning, when both ways look the same.
+    pub(crate) fn face(&mut self, facing: Heading) {
+        if !facing.agrees(self.arc.heading) {
+            self.is_flipped = !self.is_flipped;
+            self.arc.heading = self.arc.heading.turned(Angle::HALF_TURN);
+        }
+    }
+
+    /// Begins where the front was known before, in one of the two directions. It has moved on for so long since.
+    pub(crate) fn begin_at(&mut self, waist: Waist, (is_flipped, age): (bool, f32)) {
+        self.leave(); // as it goes now
+        self.is_flipped = is_flipped;
+        let heading = self.along(waist.heading);
+        let bend = if is_flipped { -waist.curvature } else { waist.curvature };
+        let moved = DRIFTS * self.pace * age;
+        let offset = sqrt(waist.deviation * waist.deviation + moved * moved) / self.reach;
+        let turn = waist.turn_deviation;
+        let deviations = [offset, turn].map(|it| if it > AGAIN { it } else { AGAIN });
+        self.set(Arc { site: waist.site, heading, bend }, deviations);
+    }
+
+    fn set(&mut self, arc: Arc, deviations: [f32; 2]) {
+        self.arc = arc;
+        self.bank.begin(deviations);
+        (self.since, self.run) = (0.0, (None, 0));
+        (self.doubts, self.is_begun, self.nowhere) = (0, true, [0.0; 2]);
+        self.is_fresh = true;
+    }
+
+    /// There may be no front with a probability.
+    pub(crate) fn doubt(&mut self, nowhere: f32) {
+        self.nowhere = [0.5 * nowhere; 2];
+    }
+
+    /// The robot leaves the front. What it has passed is on the map.
+    pub(crate) fn leave(&mut self) {
+        while !self.passed.is_empty() {
+            self.drop_last();
+        }
+        self.is_begun = false;
+    }
+
+    /// There is no such front: the last places are not on the map.
+    pub(crate) fn lose(&mut self) {
+        self.passed.clear();
+        self.evidence = Evidence::NONE;
+        self.leave();
     }
 
     /// The robot's direction along the front, of the front's own; and the other way round.
@@ -162,6 +272,11 @@ impl Curve {
         0.5 + limited(0.5 - p, 0.5 - LEAST)
     }
 
+    /// How often a label is true, as far as that is known.
+    pub fn reliability(&self) -> f32 {
+        1.0 - self.error()
+    }
+
     /// The deviation of where a label is read, reaches.
     pub(super) fn blur(&self, tolerance: Tolerance) -> f32 {
         let told = tolerance.units() as f32 * METRE / (TOLERANCE * self.reach);
@@ -170,14 +285,7 @@ impl Curve {
 
     /// The robot has come to a site, in so many units of time.
     pub fn moved(&mut self, site: Site, time: f32) {
-        self.gone = None;
-        for _ in 0..PIECES {
-            let way = self.arc.see(site).along / self.reach;
-            self.go(limited(way, 1.0));
-            if way.abs() <= 1.0 {
-                break;
-            }
-        }
+        self.go_to(site);
         let grown = BESIDE * self.pace * time / self.reach;
         if grown > 0.0 {
             self.bank.widen(grown * grown);
@@ -186,6 +294,17 @@ impl Curve {
             it.age += time;
         }
         self.let_go();
+    }
+
+    /// Goes on along the arc to beside a site.
+    pub(super) fn go_to(&mut self, site: Site) {
+        for _ in 0..PIECES {
+            let way = self.arc.see(site).along / self.reach;
+            self.go(limited(way, 1.0));
+            if way.abs() <= 1.0 {
+                break;
+            }
+        }
     }
 
     /// Goes on along the arc, back if the way is negative. Places are passed on the way.
@@ -206,6 +325,10 @@ impl Curve {
             self.arc = self.arc.from(way * self.reach);
         }
         self.since += way;
+        if self.passed.is_empty() && self.since < 0.0 {
+            // It begins behind where the front was told: the map does so too.
+            self.since = 0.0;
+        }
     }
 
     fn pass(&mut self) {
@@ -213,12 +336,18 @@ impl Curve {
             self.drop_last();
         }
         self.bank.pass();
-        self.since = 0.0;
-        let _ = self.passed.push_front(Passed { arc: self.arc, age: 0.0 }); // there is room
+        (self.since, self.doubts) = (0.0, 0);
+        let begins = core::mem::replace(&mut self.is_fresh, false);
+        let _ = self.passed.push_front(Passed { arc: self.arc, age: 0.0, begins }); // there is room
     }
 
     fn drop_last(&mut self) {
-        self.gone = self.place(self.passed.len().saturating_sub(1)).or(self.gone);
+        if let Some(gone) = self.place(self.passed.len().saturating_sub(1)) {
+            if self.mapped.is_full() {
+                self.mapped.remove(0);
+            }
+            let _ = self.mapped.push(gone); // there is room
+        }
         let _ = self.passed.pop_back();
     }
 
@@ -240,6 +369,12 @@ impl Curve {
         let is_left = (label == Label::Positive) != self.is_flipped;
         let (sign, errs) = (if is_left { 1.0 } else { -1.0 }, self.error());
         let chance = self.bank.hear(Heard { sign, left, errs, blur: blur * blur });
+        let [plus, minus] = self.nowhere;
+        let agrees = if label == Label::Positive { [1.0 - errs, errs] } else { [errs, 1.0 - errs] };
+        let [plus, minus] = [plus * agrees[0], minus * agrees[1]];
+        let whole = (1.0 - self.share_nowhere()) * chance + plus + minus;
+        let share = |it: f32| if it > LEFT * whole { it / whole } else { LEFT };
+        self.nowhere = [share(plus), share(minus)];
         if let Some(learnt) = &mut self.learnt {
             let sharp = 1.0 - 2.0 * errs;
             let agree = (chance - errs) / sharp;
@@ -269,9 +404,37 @@ impl Curve {
         if let Some(Passed { arc, .. }) = self.passed.back() {
             self.arc = Arc { bend: 0.0, ..*arc };
         }
-        self.bank = Bank::about(ANEW);
-        self.passed.clear();
-        (self.since, self.evidence, self.run) = (0.0, Evidence::NONE, (None, 0));
+        self.passed.clear(); // labels speak against these
+        let doubts = self.doubts.saturating_add(1);
+        self.set(self.arc, ANEW);
+        (self.doubts, self.evidence) = (doubts, Evidence::NONE);
+    }
+
+    /// How often labels have spoken against it since a place was passed.
+    pub(crate) const fn doubts(&self) -> u8 {
+        self.doubts
+    }
+
+    /// The probability that there is no front here.
+    pub(crate) fn share_nowhere(&self) -> f32 {
+        self.nowhere.iter().sum()
+    }
+
+    /// Whether there is a front for sure.
+    pub(crate) fn is_sure(&self) -> bool {
+        self.is_begun && self.share_nowhere() < ABSENT
+    }
+
+    /// Whether the robot goes against the front's own direction.
+    pub(crate) const fn is_flipped(&self) -> bool {
+        self.is_flipped
+    }
+
+    /// The expected information of a label at a place with this share of the curves above, as a share of the most that a
+    /// label can carry.
+    pub(crate) fn tells(&self, share: f32) -> f32 {
+        let errs = self.error();
+        information(share, 1.0 - errs, (1.0 - errs, 1.0 - entropy(errs)))
     }
 
     /// The side of the robot's way on which the last labels were not: 1 to the left, -1 to the right. 0 where they differ.
@@ -301,6 +464,11 @@ impl Curve {
     /// Metres in a reach.
     pub(crate) const fn reach(&self) -> f32 {
         self.reach
+    }
+
+    /// Forgets the places that [have left](Self::mapped) so far.
+    pub fn clear_mapped(&mut self) {
+        self.mapped.clear();
     }
 
     /// The evidence of the labels against what is known, since it began again.

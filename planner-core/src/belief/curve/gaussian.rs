@@ -78,6 +78,22 @@ impl Gaussian {
         new
     }
 
+    /// Whether its numbers have a size that others can come of.
+    pub(crate) fn is_valid(&self) -> bool {
+        let has_size = |it: &f32| it.abs() < 1e9;
+        let is_wide = |it: f32| it > 1e-12;
+        let [turns, _, bends] = self.rest;
+        (0.0..=1.01).contains(&self.weight)
+            && is_wide(self.variance)
+            && turns >= 0.0
+            && bends >= 0.0
+            && self.behind.iter().all(|it| is_wide(it[2]))
+            && has_size(&self.mean)
+            && has_size(&self.variance)
+            && self.means.iter().chain(&self.gain).chain(&self.rest).all(has_size)
+            && self.behind.iter().flatten().all(has_size)
+    }
+
     /// Where the front lies at a place behind.
     pub(crate) fn offset_behind(&self, place: usize) -> Offset {
         let at = |of: &[f32; OTHERS]| of.get(2 + place).copied().unwrap_or(0.0);

@@ -16,9 +16,12 @@ mod arc;
 mod bank;
 mod follower;
 mod gaussian;
+mod memory;
 mod normal;
 mod readout;
 mod start;
 
 pub(crate) use bank::Sum;
-pub use follower::Curve;
+pub use follower::{Curve, MapPlace};
+pub use memory::CurveMemory;
+pub(crate) use start::nearest_pair;

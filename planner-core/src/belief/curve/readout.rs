@@ -2,20 +2,24 @@
 
 use crate::belief::curve::arc::Arc;
 use crate::belief::curve::bank::{Offsets, Sum as _};
-use crate::belief::curve::follower::{Curve, DRIFTS, Passed};
+use crate::belief::curve::follower::{Curve, DRIFTS, MapPlace, Passed};
 use crate::belief::estimate::Estimates;
-use crate::belief::front::{NINETY, Waist, angle};
+use crate::belief::front::{Beside, NINETY, Unit, Waist, angle, metres};
 use crate::belief::goal::{Criterion, Goal};
 use crate::belief::sample::Reading;
 use crate::belief::tolerance::Tolerance;
 use crate::belief::{Belief, ObservationError};
 use crate::geometry::approximate::sqrt;
 use crate::geometry::area::Area;
+use crate::geometry::heading::Heading;
 use crate::geometry::lattice::Site;
 use crate::geometry::local_line::LocalLine;
 
 /// For evidence a label is likelier by this: a few Gaussians stand for all curves.
 const MISFIT: f32 = 0.02;
+
+/// A front that a line crosses at a smaller angle than this, as a cosine, is taken to cross it at this.
+const OBLIQUE: f32 = 0.2;
 
 impl Curve {
     /// The front on an arc: what is known of its offset, its turn, the deviation of that, and of how far it has moved.
@@ -33,11 +37,12 @@ impl Curve {
     }
 
     /// The front at a place behind, the last one first.
-    pub(super) fn place(&self, number: usize) -> Option<Waist> {
-        let Passed { arc, age } = self.passed.iter().nth(number)?;
+    pub(super) fn place(&self, number: usize) -> Option<MapPlace> {
+        let Passed { arc, age, begins } = self.passed.iter().nth(number)?;
         let [_, _, turns] = self.bank.direction();
         let moved = DRIFTS * self.pace * age;
-        Some(self.waist(*arc, &self.bank.behind(number), [0.0, turns, moved]))
+        let waist = self.waist(*arc, &self.bank.behind(number), [0.0, turns, moved]);
+        Some(MapPlace { waist, age: *age, begins: *begins })
     }
 
     /// The front beside the robot.
@@ -46,18 +51,49 @@ impl Curve {
         self.waist(self.arc, &self.bank.ahead(0.0), [turn, turns, 0.0])
     }
 
-    /// The last place that the map has from this motion on, if it has one more: no label changes it any more.
-    pub const fn gone(&self) -> Option<Waist> {
-        self.gone
+    /// Places that the map has now: no label changes them any more. The oldest first, and the last few since they were
+    /// [cleared](Self::clear_mapped).
+    pub fn mapped(&self) -> &[MapPlace] {
+        &self.mapped
+    }
+
+    /// Whether the front is followed, or may only seem to be there.
+    pub const fn is_begun(&self) -> bool {
+        self.is_begun
+    }
+
+    /// The front beside the robot, if there is one for sure, and it lies within so many metres with 90 %.
+    pub fn found(&self, within: f32) -> Option<Waist> {
+        let now = self.now();
+        (self.is_sure() && now.ninety() <= within).then_some(now)
     }
 
     /// The places passed that may still change, the last one first.
-    pub fn places(&self) -> impl Iterator<Item = Waist> {
+    pub fn places(&self) -> impl Iterator<Item = MapPlace> {
         (0..self.passed.len()).filter_map(|number| self.place(number))
+    }
+
+    /// Where the front crosses the line through a site that is square to a heading, on average, and how well that is
+    /// known. Of no meaning before the front [is found](Self::found).
+    pub fn beside(&self, site: Site, heading: Heading) -> Beside {
+        let [along, _] = self.see(site);
+        let offsets = self.bank.ahead(along);
+        let left = offsets.mean();
+        let place = metres(self.site_at(along, left) - site);
+        let [ahead, to_left] = Unit::of(heading).seen(place);
+        let front = self.arc.heading_at(along * self.reach);
+        let Unit { x: cos, z: sin } = Unit::of(Heading(front.since(heading).0));
+        let size = if cos.abs() > OBLIQUE { cos.abs() } else { OBLIQUE };
+        let slope = if cos < 0.0 { -sin } else { sin } / size;
+        let deviation = offsets.deviation() * self.reach / size;
+        Beside { left: to_left - ahead * slope, deviation }
     }
 
     /// The share of the curves that have a site on their +1 side.
     pub fn share_above(&self, site: Site) -> f32 {
+        if !self.is_begun {
+            return 0.5;
+        }
         let [along, left] = self.see(site);
         let blur = self.blur(self.noise.tolerance);
         let below = self.bank.ahead(along).below(left, blur * blur);
@@ -78,9 +114,7 @@ impl Belief for Curve {
         reading: Reading,
     ) -> Result<bool, ObservationError> {
         let Reading::Side(label) = reading else { return Ok(false) };
-        let gone = self.gone;
-        self.moved(site, 0.0);
-        self.gone = self.gone.or(gone);
+        self.go_to(site);
         self.hear(site, label, self.blur(self.noise.tolerance));
         Ok(true)
     }
@@ -145,7 +179,11 @@ mod tests {
     use crate::belief::noise::Noise;
     use crate::belief::sample::{Label, Sample};
     use crate::draws::Draws;
-    use crate::geometry::heading::Heading;
+
+    #[test]
+    fn it_holds_as_little_as_it_says() {
+        assert!(size_of::<Curve>() <= 3_600, "{}", size_of::<Curve>());
+    }
 
     fn label(is_plus: bool) -> Label {
         if is_plus { Label::Positive } else { Label::Negative }

@@ -20,6 +20,10 @@ const TURN: f32 = 1.4 / SIDE as f32;
 /// A sample blurs where the front is by this at least, reaches.
 const BLUR: f32 = 0.05;
 
+/// Labels that are false with a higher chance than this are doubtful. The front may lie so many times further off then.
+const DOUBTFUL: f32 = 0.01;
+const WIDER: f32 = 3.0;
+
 /// A deviation is no less than the root of this, in reaches or radians.
 const LEAST: f32 = 1e-4;
 
@@ -34,22 +38,19 @@ pub(crate) struct Start {
 }
 
 impl Start {
-    /// Between those two samples that differ and are the nearest to each other; `None` if none differ.
-    pub(crate) fn of(given: &[Sample], errs: f32, reach: f32) -> Option<Self> {
-        let of = |label| given.iter().filter(move |it| it.label == label).map(|it| it.site);
-        let pairs =
-            of(Label::Positive).flat_map(|plus| of(Label::Negative).map(move |it| [plus, it]));
-        let length = |[plus, minus]: &[Site; 2]| {
-            let way = *plus - *minus;
-            way.dot(way)
+    /// Across the way from one site to another. The +1 side is where more of the labels are +1.
+    pub(crate) fn across([from, to]: [Site; 2], labels: &[Sample], errs: f32, reach: f32) -> Self {
+        let middle = Site::between(from, to);
+        let sign = |it: &Sample| {
+            let way = (it.site - middle).dot(to - from);
+            if (it.label == Label::Positive) == (way > 0) { 1 } else { -1 }
         };
-        pairs.min_by_key(length).map(|pair| Self::between(pair, given, errs, reach))
-    }
-
-    fn between([plus, minus]: [Site; 2], given: &[Sample], errs: f32, reach: f32) -> Self {
+        let rises: i32 = labels.iter().map(sign).sum();
+        let [plus, minus] = if rises > 0 { [to, from] } else { [from, to] };
         let way = plus - minus;
-        let middle = minus.step(Vector { x: way.x / 2, z: way.z / 2 }).unwrap_or(minus);
-        let gap = distance(way) * METRE / reach;
+        // A false label beside the front shifts where labels seem to change.
+        let wider = if errs > DOUBTFUL { WIDER } else { 1.0 };
+        let gap = wider * distance(way) * METRE / reach;
         let heading = heading_of(way).turned(Angle(0_u32.wrapping_sub(1 << 30)));
         let along = Unit::of(heading);
         let (mut sum, mut first, mut second) = (0.0, [0.0_f32; 2], [0.0_f32; 2]);
@@ -59,7 +60,7 @@ impl Start {
             for n in -SIDE..=SIDE {
                 let offset = n as f32 / (2 * SIDE + 1) as f32 * gap;
                 let mut weight = cos;
-                for sample in given {
+                for sample in labels {
                     let [x, z] = along.seen(metres(sample.site - middle)).map(|it| it / reach);
                     let [ahead, left] = Unit { x: cos, z: sin }.seen([x, z - offset]);
                     let bulge = 0.5 * BEND * ahead * ahead;
@@ -87,4 +88,15 @@ impl Start {
         let site = middle.step(Vector { x: (-z * units) as i32, z: (x * units) as i32 });
         Self { site: site.unwrap_or(middle), heading, deviation }
     }
+}
+
+/// Those two samples that differ and are the nearest to each other; `None` if none differ.
+pub(crate) fn nearest_pair(given: &[Sample]) -> Option<[Site; 2]> {
+    let of = |label| given.iter().filter(move |it| it.label == label).map(|it| it.site);
+    let pairs = of(Label::Positive).flat_map(|plus| of(Label::Negative).map(move |it| [plus, it]));
+    let length = |[plus, minus]: &[Site; 2]| {
+        let way = *plus - *minus;
+        way.dot(way)
+    };
+    pairs.min_by_key(length)
 }

@@ -31,4 +31,5 @@ pub(crate) use layout::{Region, Shape};
 pub use memory::FieldMemory;
 pub use odds::Left;
 pub(crate) use odds::{Field, Sought};
+pub(crate) use recent::REMEMBERED;
 pub use seeking::{Likely, Seeking};

@@ -18,6 +18,10 @@ impl Front {
     /// Straight and still.
     pub const STRAIGHT: Self = Self { radius_mm: 0, speed_um: 0 };
 
+    /// It bends, nobody knows how, and is still. For [`Track`](crate::Track): a [`Tracker`](crate::Tracker) takes it for
+    /// one that bends by 20 m.
+    pub const BENDING: Self = Self { radius_mm: 20_000, speed_um: 0 };
+
     /// The tightest bend has a radius of so many metres. If in doubt, name a smaller one.
     ///
     /// # Errors
@@ -40,6 +44,11 @@ impl Front {
         let speed_um = libm::round(metres * 1e6) as u32;
         let is_speed = (0.0..=1e3).contains(&metres);
         is_speed.then_some(Self { speed_um, ..self }).ok_or(RANGE)
+    }
+
+    /// The same, but it moves as fast as another one.
+    pub(crate) const fn as_fast_as(self, other: Self) -> Self {
+        Self { speed_um: other.speed_um, ..self }
     }
 
     /// The radius of the tightest bend, metres; `None` if it is straight.

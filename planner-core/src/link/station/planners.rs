@@ -60,7 +60,7 @@ pub struct AllLabels<const T: usize, const N: usize, const H: usize, S = Near>(P
 /// The follower of fronts, by a [`Tracker`](crate::Tracker) of `K` directions, `M` offsets and `L` layers, and the
 /// planners of `A`: by default none.
 #[derive(Debug)]
-pub struct Tracks<const K: usize, const M: usize, const L: usize, A = NoOthers>(PhantomData<A>);
+pub struct Tracks<A = NoOthers>(PhantomData<A>);
 
 /// The guard of a stretch of a front, by a [`Tracker`](crate::Tracker) of `K` directions, `M` offsets and `L` layers, and
 /// the planners of `A`: by default none.
@@ -227,7 +227,7 @@ impl<const T: usize, const N: usize, const H: usize, V: Sight> Planners for AllL
     }
 }
 
-impl<const K: usize, const M: usize, const L: usize, A: Planners> Planners for Tracks<K, M, L, A> {
+impl<A: Planners> Planners for Tracks<A> {
     fn fly<P: Port, S: LabelSensor, D: Dynamics, G: Workspace, W: Watch>(
         mission: Mission<'_, P, S, W>,
         terms: PlannerSetup<D, G>,
@@ -236,7 +236,7 @@ impl<const K: usize, const M: usize, const L: usize, A: Planners> Planners for T
         match setup.algorithm {
             Algorithm::Track { front, noise, ends } => {
                 // It watches its labels itself: they speak of a front, not of a line.
-                let mut planner = setup.track::<_, _, K, M, L>(terms, front, ends);
+                let mut planner = setup.track(terms, front, ends);
                 station.fly(setup, &mut setup.prepare(&mut planner, Prior::Area, noise), watch)
             }
             _ => A::fly(Mission { station, setup, watch }, terms),

@@ -21,7 +21,6 @@ use crate::planner::cfc::Cfc;
 use crate::planner::guard::Guard;
 use crate::planner::lookahead::Lookahead;
 use crate::planner::scc::{Policy, Scc};
-use crate::planner::scout::Scout;
 use crate::planner::setup::{Restart, SetupError, aimed_for};
 use crate::planner::sight::{AnySight, Sight};
 use crate::planner::track::Track;
@@ -181,14 +180,13 @@ impl Setup {
 
     /// The follower of fronts for this mission, with none of its samples yet: the memory for
     /// [`prepare`](Self::prepare).
-    pub fn track<D: Dynamics, G: Workspace, const K: usize, const M: usize, const L: usize>(
+    pub fn track<D: Dynamics, G: Workspace>(
         &self,
         PlannerSetup { dynamics, area, .. }: PlannerSetup<D, G>,
         front: Front,
         ends: bool,
-    ) -> Track<D, K, M, L, G> {
-        let planner = Track::of((area, dynamics), Tracker::blank(front));
-        if ends { planner.until_closed() } else { planner }
+    ) -> Track<D, G> {
+        Track::of((area, dynamics), front, ends)
     }
 
     /// The guard of a stretch of a front for this mission, with none of its samples yet: the memory for
@@ -199,7 +197,7 @@ impl Setup {
         front: Front,
         stretch: FrontStretch,
     ) -> Guard<D, K, M, L, G> {
-        Guard::of(Scout::of((area, dynamics), Tracker::blank(front)), stretch)
+        Guard::of((area, dynamics), Tracker::blank(front), stretch)
     }
 
     /// Begins the mission in this memory, so that there is never a second planner beside it.

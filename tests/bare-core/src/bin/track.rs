@@ -8,7 +8,7 @@ fn main() -> ! {
     use planner_core::link::station::Tracks;
     use planner_core::{Area, Unicycle};
 
-    bare_core::fly::<Tracks<16, 16, 3>, Unicycle, Area>()
+    bare_core::fly::<Tracks, Unicycle, Area>()
 }
 
 /// On a host there is nothing to run.

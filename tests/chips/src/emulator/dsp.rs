@@ -7,10 +7,10 @@ use armagnac::registers::RegisterIndex;
 use super::decoder::{Decoded, added};
 
 /// Whether a code is one of the parallel additions and subtractions that lose flags: in armagnac 0.3 those that set GE
-/// clear N, Z, C and V. Compilers choose none of them by themselves but the unsigned saturating ones, which set no
+/// clear N, Z, C and V. Compilers choose none of them by themselves but the saturating ones, which set no
 /// flags.
 pub(super) fn loses_flags(code: u32) -> bool {
-    code & 0xff80_f080 == 0xfa80_f000 && code & 0xf0 != 0x50
+    code & 0xff80_f080 == 0xfa80_f000 && !matches!(code & 0xf0, 0x10 | 0x50)
 }
 
 pub(super) fn decode(code: u32) -> Option<Decoded> {
@@ -25,9 +25,19 @@ pub(super) fn decode(code: u32) -> Option<Decoded> {
             p.set(rd, extend(row, or_zero(p, rn), m));
             Ok(Effect::None)
         }),
-        // UQADD8, UQADD16, UQSUB8, UQSUB16
-        0xfa8 | 0xfa9 | 0xfac | 0xfad if code & 0xf0f0 == 0xf050 => added(move |p| {
-            p.set(rd, saturating(row, p[rn], p[rm]));
+        // QADD8, QADD16, QSUB8, QSUB16, and the same of unsigned numbers
+        0xfa8 | 0xfa9 | 0xfac | 0xfad if matches!(code & 0xf0f0, 0xf010 | 0xf050) => {
+            added(move |p| {
+                p.set(rd, saturating(row, column == 1, [p[rn], p[rm]]));
+                Ok(Effect::None)
+            })
+        }
+        // SMLABB, SMLABT, SMLATB, SMLATT; and SMULBB and so on without an addend
+        0xfb1 if column < 4 => added(move |p| {
+            let half =
+                |word: u32, is_top: bool| i32::from((word >> (16 * u32::from(is_top))) as i16);
+            let product = half(p[rn], column & 2 != 0) * half(p[rm], column & 1 != 0);
+            p.set(rd, or_zero(p, ra).wrapping_add(product as u32));
             Ok(Effect::None)
         }),
         0xeac if code & 0x8010 == 0 => {
@@ -80,14 +90,18 @@ fn extend(row: u32, n: u32, m: u32) -> u32 {
     }
 }
 
-/// The unsigned saturating sums and differences of bytes (an even row) or halfwords.
-fn saturating(row: u32, n: u32, m: u32) -> u32 {
+/// The saturating sums and differences of bytes (an even row) or halfwords.
+fn saturating(row: u32, is_signed: bool, [n, m]: [u32; 2]) -> u32 {
     let width = if row & 1 == 0 { 8 } else { 16 };
-    let most = (1_u32 << width) - 1;
+    let ones = (1_i32 << width) - 1;
+    let (least, most) = if is_signed { (-(1 << (width - 1)), ones >> 1) } else { (0, ones) };
     (0..32 / width).fold(0, |result, lane| {
-        let [a, b] = [n, m].map(|word| word >> (lane * width) & most);
-        let value = if row & 4 == 0 { (a + b).min(most) } else { a.saturating_sub(b) };
-        result | value << (lane * width)
+        let [a, b] = [n, m].map(|word| {
+            let bits = (word >> (lane * width)) as i32 & ones;
+            if bits > most { bits - ones - 1 } else { bits }
+        });
+        let value = if row & 4 == 0 { a + b } else { a - b };
+        result | ((value.clamp(least, most) & ones) as u32) << (lane * width)
     })
 }
 

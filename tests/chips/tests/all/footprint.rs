@@ -27,7 +27,7 @@ const PROGRAMS: [&str; 8] =
 const EVERYWHERE: [&str; 4] = ["alone", "small", "standard", "track"];
 
 /// The planner of the program `track`. A host needs no less memory for it than a chip.
-type Follower = Track<Unicycle, 16, 16, 3>;
+type Follower = Track<Unicycle>;
 
 #[test]
 fn every_program_keeps_its_budgets() {

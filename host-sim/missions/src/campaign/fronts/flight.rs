@@ -5,18 +5,14 @@ use std::f64::consts::FRAC_PI_2;
 use anyhow::{Error, Result};
 use indicatif::ProgressBar;
 use planner_core::dynamics::Dynamics;
-use planner_core::{
-    AnyReliability, Area, Curve, Front, Noise, Planner as _, Track, Tracker, Trail, Unicycle,
-    Workspace,
-};
+use planner_core::{Area, Front, Noise, Planner as _, Track, Unicycle, Workspace};
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
 use crate::campaign::fronts::following::{Course, Flown, Follower, REACH, Vertex, follow};
-use crate::campaign::fronts::kinds::{KINDS, Kind, Told};
+use crate::campaign::fronts::kinds::{KINDS, Kind};
 use crate::campaign::fronts::summary::{Row, Summary};
-use crate::campaign::fronts::true_front::TrueFront;
 use crate::campaign::fronts::who::Who;
 use crate::mission::crossings::Crossings;
 use crate::mission::steering::{BANG_BANG, Steered, ZIGZAG};
@@ -24,9 +20,6 @@ use crate::output::notes::progress;
 
 /// How long a mission is, in steps: 400 m.
 pub const STEPS: f64 = 200.0;
-
-/// The front is known to lie within so many metres of the start along either axis.
-const AROUND: f64 = 10.0;
 
 /// Missions along each kind of front.
 #[derive(Clone, Debug)]
@@ -39,8 +32,8 @@ pub struct Fronts {
     pub seed: u64,
     /// Labels are true with these probabilities.
     pub p: Vec<f64>,
-    /// The radius and the speed that a tracker is told are multiplied by these.
-    pub told: [f64; 2],
+    /// The speed that a planner is told is that of the front, times this.
+    pub told_speed: f64,
     /// The longest motion, metres, if it is not the usual one.
     pub reach: Option<f64>,
 }
@@ -57,14 +50,12 @@ impl Fronts {
         let bar = bar.with_message(self.who.title());
         let rows: Result<_> = rows.into_iter().map(|(kind, p)| self.row(kind, p, &bar)).collect();
         bar.finish_and_clear();
-        let [radius, speed] = self.told;
         Ok(Summary {
             algorithm: self.who,
             missions: self.missions,
             seed: self.seed,
             reach: self.reach(),
-            told_radius: self.who.is_told_radius().then_some(radius),
-            told_speed: self.who.is_told_speed().then_some(speed),
+            told_speed: self.who.is_told_speed().then_some(self.told_speed),
             rows: rows?,
         })
     }
@@ -103,19 +94,11 @@ impl Fronts {
         };
         Ok(match self.who {
             Who::Track => {
-                let told = kind.told.times([self.told[0], self.told[1] * steps]);
-                let tracker = tracker(&front, told, Noise::new(p).map_err(Error::msg)?)?;
-                let planner = Track::new(sea, vehicle, tracker).map_err(Error::msg)?;
-                follow(&front, planner, (course, pose), &mut rng, |_, _, _| ())
-            }
-            Who::Trail => {
+                let told = Front::BENDING.moving(kind.speed * self.told_speed * steps);
                 let noise = Noise::new(p).map_err(Error::msg)?;
-                let speed =
-                    Front::STRAIGHT.moving(kind.told.times([1.0, self.told[1] * steps]).speed);
-                let speed = speed.map_err(Error::msg)?;
-                let curve = Curve::between(&front.given(), pose.heading, reach, speed, noise);
-                let planner = Trail::new(sea, vehicle, curve.map_err(Error::msg)?);
-                follow(&front, planner.map_err(Error::msg)?, (course, pose), &mut rng, |_, _, _| ())
+                let planner = Track::new(sea, vehicle, told.map_err(Error::msg)?, noise);
+                let planner = planner.map_err(Error::msg)?.knowing(&front.given());
+                follow(&front, planner, (course, pose), &mut rng, |_, _, _| ())
             }
             Who::Zigzag => follow(&front, steered(ZIGZAG), (course, pose), &mut rng, |_, _, _| ()),
             Who::BangBang => {
@@ -126,8 +109,9 @@ impl Fronts {
 }
 
 impl<D: Dynamics, G: Workspace> Follower for Steered<D, G> {
-    fn vertex(&self) -> Option<Vertex> {
-        self.belief().crossing.map(|at| Vertex { at, half_width: None })
+    fn vertices(&self) -> Vec<Vertex> {
+        let vertex = |at| Vertex { at, half_width: None, age: 0.0 };
+        self.belief().crossing.map(vertex).into_iter().collect()
     }
 
     fn is_closed(&self) -> bool {
@@ -137,21 +121,6 @@ impl<D: Dynamics, G: Workspace> Follower for Steered<D, G> {
     fn has_evidence(&self) -> bool {
         false
     }
-}
-
-/// The usual tracker of a mission: four points are given, and the front lies within 10 m of its place.
-///
-/// # Errors
-/// When it cannot be told so.
-pub fn tracker(
-    front: &TrueFront,
-    told: Told,
-    noise: impl Into<Noise<AnyReliability>>,
-) -> Result<Tracker<16, 16, 3>> {
-    let [x, z] = front.place.into();
-    let near = Area::metres([x - AROUND, z - AROUND], [x + AROUND, z + AROUND]);
-    let tracker = Tracker::new(near.map_err(Error::msg)?, told.front()?, noise);
-    Ok(tracker.given(&front.given()))
 }
 
 /// A unicycle with motions of up to so many metres, in steps of 10 cm. It turns by up to a quarter turn.

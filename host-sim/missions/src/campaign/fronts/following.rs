@@ -3,7 +3,7 @@
 use nalgebra::Point2;
 use planner_core::dynamics::Dynamics;
 use planner_core::watch::Evidence;
-use planner_core::{Plan, Planner, Pose, Track, Trail, Waist, Workspace};
+use planner_core::{MapPlace, Plan, Planner, Pose, Track, Workspace};
 use rand_chacha::ChaCha8Rng;
 
 use crate::campaign::fronts::true_front::TrueFront;
@@ -19,8 +19,8 @@ const AWAY: f64 = 10.0;
 
 /// A planner that follows a front and maps it.
 pub trait Follower: Planner {
-    /// The place on the front that its last motion adds to the map, if it adds one.
-    fn vertex(&self) -> Option<Vertex>;
+    /// Places on the front that its last motion adds to the map.
+    fn vertices(&self) -> Vec<Vertex>;
 
     /// Places that the map has more when the mission ends.
     fn rest(&self) -> Vec<Vertex> {
@@ -46,13 +46,23 @@ pub struct Vertex {
     pub at: Point2<f64>,
     /// The front lies within so many metres with a probability of 90 %. `None` if the planner states no width.
     pub half_width: Option<f64>,
+    /// So many motions ago.
+    pub age: f64,
 }
 
-impl<D: Dynamics, G: Workspace, const K: usize, const M: usize, const L: usize> Follower
-    for Track<D, K, M, L, G>
-{
-    fn vertex(&self) -> Option<Vertex> {
-        self.found().map(of_waist)
+impl<D: Dynamics, G: Workspace> Follower for Track<D, G> {
+    fn vertices(&self) -> Vec<Vertex> {
+        self.belief().mapped().iter().copied().map(Vertex::from).collect()
+    }
+
+    fn rest(&self) -> Vec<Vertex> {
+        let mut rest: Vec<_> = self.belief().places().map(Vertex::from).collect();
+        rest.reverse();
+        rest
+    }
+
+    fn is_found(&self) -> bool {
+        self.found().is_some()
     }
 
     fn is_closed(&self) -> bool {
@@ -64,32 +74,11 @@ impl<D: Dynamics, G: Workspace, const K: usize, const M: usize, const L: usize> 
     }
 }
 
-impl<D: Dynamics, G: Workspace> Follower for Trail<D, G> {
-    fn vertex(&self) -> Option<Vertex> {
-        self.belief().gone().map(of_waist)
+impl From<MapPlace> for Vertex {
+    fn from(MapPlace { waist, age, .. }: MapPlace) -> Self {
+        let half_width = Some(waist.half_width(0.9));
+        Self { at: waist.site.into(), half_width, age: age.into() }
     }
-
-    fn rest(&self) -> Vec<Vertex> {
-        let mut rest: Vec<_> = self.belief().places().map(of_waist).collect();
-        rest.reverse();
-        rest
-    }
-
-    fn is_found(&self) -> bool {
-        true
-    }
-
-    fn is_closed(&self) -> bool {
-        false
-    }
-
-    fn has_evidence(&self) -> bool {
-        *self.belief().evidence() != Evidence::NONE
-    }
-}
-
-fn of_waist(waist: Waist) -> Vertex {
-    Vertex { at: waist.site.into(), half_width: Some(waist.half_width(0.9)) }
 }
 
 /// A vertex of the map beside the front as it was then.
@@ -131,7 +120,7 @@ pub struct Course {
     pub p: f64,
 }
 
-/// Follows a front from a pose. Each motion is shown to `look`, from where and to where, before it is observed.
+/// Follows a front from a pose. Each motion is shown to `look`, from where and to where, after it was observed.
 ///
 /// # Panics
 /// When the planner refuses a label.
@@ -140,7 +129,7 @@ pub fn follow<P: Follower>(
     mut planner: P,
     (course, mut pose): (Course, Pose),
     rng: &mut ChaCha8Rng,
-    mut look: impl FnMut(&mut P, Pose, Pose),
+    mut look: impl FnMut(&P, Pose, Pose),
 ) -> Flown {
     let (mut flown, mut last, mut away) = (Flown::default(), None, 0.0);
     for motion in 1..=course.motions {
@@ -149,7 +138,7 @@ pub fn follow<P: Follower>(
             flown.is_lost = true;
             break;
         };
-        look(&mut planner, pose, next.target);
+        let before = pose;
         let from = Point2::<f64>::from(pose.site);
         pose = next.target;
         let at = Point2::<f64>::from(pose.site);
@@ -157,15 +146,17 @@ pub fn follow<P: Follower>(
         let reading = next.wants_label.then(|| label.into());
         let had_evidence = planner.has_evidence();
         planner.observe(pose, reading).expect("any label is taken in");
+        look(&planner, before, pose);
         flown.labels += u32::from(reading.is_some());
         flown.restarts += u32::from(had_evidence && !planner.has_evidence());
         flown.driven += if last.is_some() || planner.is_found() { (at - from).norm() } else { 0.0 };
         let rest = if motion == course.motions { planner.rest() } else { Vec::new() };
-        for vertex in planner.vertex().into_iter().chain(rest) {
-            let off = front.distance(vertex.at, steps);
+        for vertex in planner.vertices().into_iter().chain(rest) {
+            let then = steps - vertex.age * course.steps;
+            let off = front.distance(vertex.at, then);
             let is_covered = vertex.half_width.map(|half| off <= half);
             flown.vertices.push(Measured { off, is_covered });
-            let along = front.along(vertex.at, steps);
+            let along = front.along(vertex.at, then);
             flown.followed += last.map_or(0.0, |last| front.way_between(last, along));
             last = Some(along);
         }

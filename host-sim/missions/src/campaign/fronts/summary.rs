@@ -16,10 +16,7 @@ pub struct Summary {
     pub seed: u64,
     /// The longest motion, metres.
     pub reach: f64,
-    /// The radius that a tracker was told is that of the kind of front, times this.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub told_radius: Option<f64>,
-    /// The same of the speed.
+    /// The speed that a planner was told is that of the kind of front, times this.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub told_speed: Option<f64>,
     /// A row for each kind of front and each reliability of labels.

@@ -11,8 +11,6 @@ use crate::campaign::fronts::following::REACH;
 pub enum Who {
     /// Finds a front that bends and moves, and goes along it.
     Track,
-    /// Goes along a front, told nothing of how it bends.
-    Trail,
     /// Turns by 45 degrees when the label changes, for comparison.
     Zigzag,
     /// Goes in circles towards the front, for comparison.
@@ -24,26 +22,20 @@ impl Who {
     pub const fn title(self) -> &'static str {
         match self {
             Self::Track => "front tracking",
-            Self::Trail => "trail",
             Self::Zigzag => "zigzag",
             Self::BangBang => "bang-bang",
         }
     }
 
-    /// Whether it is told how tightly a front bends.
-    pub const fn is_told_radius(self) -> bool {
-        matches!(self, Self::Track)
-    }
-
     /// Whether it is told how fast a front moves.
     pub const fn is_told_speed(self) -> bool {
-        matches!(self, Self::Track | Self::Trail)
+        matches!(self, Self::Track)
     }
 
     /// Its longest motion if nobody says, metres.
     pub const fn usual_reach(self) -> f64 {
         match self {
-            Self::Track | Self::Trail => REACH,
+            Self::Track => REACH,
             Self::Zigzag | Self::BangBang => 1.0,
         }
     }

@@ -7,7 +7,6 @@ use indicatif::ProgressBar;
 use nalgebra::Point2;
 use planner_core::{
     Front, Heading, Label, Noise, Plan, Planner as _, Pose, Seeking, Site, StopReason, Track,
-    Tracker, Workspace as _,
 };
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
@@ -16,9 +15,6 @@ use serde::Serialize;
 
 use crate::campaign::patches::kinds::{KINDS, Kind};
 use crate::output::notes::progress;
-
-/// The radius of the tightest bend that the follower is told, metres.
-const BEND: f64 = 24.0;
 
 /// A front that is said to be further away than so many widths is found falsely.
 const FALSE: f64 = 2.0;
@@ -111,12 +107,11 @@ impl Patches {
         let ground = kind.ground;
         let (truth, area) = ((kind.draw)(&ground, &mut rng), ground.area()?);
         let mut pose = start(&area, ground.sides, &mut rng)?;
-        let front = Front::bending(BEND).map_err(Error::msg)?;
-        let tracker =
-            Tracker::<16, 16, 3>::new(area.bounds(), front, Noise::new(p).map_err(Error::msg)?);
+        let noise = Noise::new(p).map_err(Error::msg)?;
         let patch = self.told * ground.patch;
         let seeking = Seeking::patches(patch).map_err(Error::msg)?.likely(ground.likely);
-        let planner = Track::new(area, ground.vehicle()?, tracker).map_err(Error::msg)?;
+        let planner =
+            Track::new(area, ground.vehicle()?, Front::BENDING, noise).map_err(Error::msg)?;
         let planner = planner.seeking(seeking).map_err(Error::msg)?;
         let mut planner = if self.mows {
             planner.surveying(&survey(ground.sides, patch, pose)?)
