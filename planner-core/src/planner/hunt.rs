@@ -136,7 +136,10 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
             let is_far = distance(site - pose.site) > 2.0 * NEAR * self.scout.reach();
             (is_far && self.scout.area.contains(site)).then_some(site)
         };
-        let sites: heapless::Vec<Site, ALONG> = (0..ALONG).filter_map(along).collect();
+        let mut sites = heapless::Vec::<Site, ALONG>::new();
+        for site in (0..ALONG).filter_map(along) {
+            let _ = sites.push(site); // there is room
+        }
         let mut shares = [0.0; ALONG];
         self.tracker.shares_above(&sites, &mut shares);
         let [mut first, mut second] = [(None, least); 2];

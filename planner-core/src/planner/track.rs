@@ -231,8 +231,10 @@ impl<D: Dynamics, G: Workspace> Track<D, G> {
     #[inline(never)] // the labels are not on the stack of all that observes
     fn take_lead(&mut self, pose: Pose) {
         let Some(lead) = self.hunt.scout.take_lead(true, pose.site) else { return };
-        let labels: heapless::Vec<Sample, REMEMBERED> =
-            self.hunt.scout.quest.labels_near(&lead).collect();
+        let mut labels = heapless::Vec::<Sample, REMEMBERED>::new();
+        for it in self.hunt.scout.quest.labels_near(&lead) {
+            let _ = labels.push(it); // there is room
+        }
         self.curve.begin(lead.between, &labels);
         self.follow_from(pose);
     }

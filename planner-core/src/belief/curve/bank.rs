@@ -5,8 +5,9 @@
 //! offset the least are merged until three are left (Runnalls 2007).
 
 use crate::belief::curve::gaussian::{BEND, Gait, Gaussian, Offset};
+use crate::belief::curve::mixture::Mixture;
 use crate::belief::curve::normal::Normal;
-use crate::geometry::approximate::sqrt;
+use crate::geometry::approximate::{inverse_sqrt, sqrt};
 
 /// Gaussians of a gait.
 const EACH: usize = 3;
@@ -20,6 +21,9 @@ const GAITS: [Gait; 5] = [
     Gait { noise: [0.1, 0.4, 0.7], fades: 1.0 / 3.0, prior: 0.02 },
 ];
 
+/// Parts of a gait's Gaussians: a label splits each of them.
+const PARTS: usize = 2 * EACH;
+
 /// The mass that leaves its gait in a reach.
 const LEAVES: f32 = 0.02;
 
@@ -29,13 +33,11 @@ const LIGHT: f32 = 1e-6;
 /// Three Gaussians one deviation of the turn apart have so much of it each: together they have all of it.
 const APART: f32 = 0.577_35;
 
-/// Halvings in which a quantile is found.
-const HALVINGS: u32 = 14;
+/// How many there are.
+const ALL: usize = EACH * GAITS.len();
 
-/// All Gaussians at a place, as many as there are.
-pub(crate) type Offsets = [Offset; EACH * GAITS.len()];
-
-const NOTHING: Offsets = [Offset { weight: 0.0, mean: 0.0, variance: 1.0 }; EACH * GAITS.len()];
+/// What they say of the offset at a place.
+pub(crate) type Offsets = Mixture<ALL>;
 
 /// The sum. Weights make 1 together.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,9 +58,6 @@ pub(crate) struct Heard {
     /// The variance of where it was read.
     pub(crate) blur: f32,
 }
-
-/// Gaussians that are to be as few as [`EACH`].
-type Crowd = heapless::Vec<(Gaussian, f32), { 2 * EACH }>;
 
 impl Bank {
     /// Nothing is known.
@@ -92,7 +91,6 @@ impl Bank {
                 it.advance(way, bend, gait);
             }
         }
-        self.mix(way.abs());
     }
 
     /// Adds to the variance of the offset.
@@ -101,19 +99,21 @@ impl Bank {
     }
 
     /// Lets a share of the mass leave its gait on a way, and come back into each.
-    fn mix(&mut self, way: f32) {
+    #[inline(never)] // what it needs is not on the stack of all that observes
+    pub(crate) fn mix(&mut self, way: f32) {
         let leaves = 1.0 - libm::expf(-LEAVES * way);
-        let pool = self
-            .all()
-            .filter(|it| it.weight > LIGHT)
-            .fold(Gaussian::NONE, |pool, it| if pool.weight > 0.0 { pool.merged(it) } else { *it });
+        let mut pool = Gaussian::NONE;
+        for it in self.all().filter(|it| it.weight > LIGHT) {
+            pool.join(it, it.offset());
+        }
+        let all = pool.offset();
         for (some, gait) in self.of.iter_mut().zip(&GAITS) {
-            let mut crowd = Crowd::new();
-            for it in some.iter() {
-                join(&mut crowd, Gaussian { weight: it.weight * (1.0 - leaves), ..*it });
+            let mut crowd = Crowd::NONE;
+            for (k, it) in some.iter().enumerate() {
+                crowd.add(k, Offset { weight: it.weight * (1.0 - leaves), ..it.offset() });
             }
-            join(&mut crowd, Gaussian { weight: leaves * gait.prior, ..pool });
-            settle(&mut crowd, some);
+            crowd.add(EACH, Offset { weight: leaves * gait.prior, ..all });
+            crowd.settle(some, &pool);
         }
     }
 
@@ -127,45 +127,37 @@ impl Bank {
         let Heard { sign, left, errs, blur } = heard;
         let mut chance = 0.0;
         for some in &mut self.of {
-            let mut crowd = Crowd::new();
-            for it in some.iter() {
-                let per = 1.0 / sqrt(it.variance + blur);
+            let mut crowd = Crowd::NONE;
+            for (k, it) in some.iter().enumerate() {
+                let per = inverse_sqrt(it.variance + blur);
                 let u = sign * (left - it.mean) * per;
                 let Normal { below, hazard, .. } = Normal::at(u);
-                let mut told = Gaussian { weight: it.weight * (1.0 - 2.0 * errs) * below, ..*it };
-                told.hear(-sign * hazard * per, (hazard * hazard + u * hazard) * per * per);
-                chance += told.weight + it.weight * errs;
-                join(&mut crowd, told);
-                join(&mut crowd, Gaussian { weight: it.weight * errs, ..*it });
+                let told =
+                    it.told(-sign * hazard * per, (hazard * hazard + u * hazard) * per * per);
+                let told = Offset { weight: it.weight * (1.0 - 2.0 * errs) * below, ..told };
+                let untold = Offset { weight: it.weight * errs, ..it.offset() };
+                chance += told.weight + untold.weight;
+                crowd.add(k, told);
+                crowd.add(k, untold);
             }
-            settle(&mut crowd, some);
+            crowd.settle(some, &Gaussian::NONE);
         }
         let each = if chance > 0.0 { 1.0 / chance } else { 1.0 };
         self.of.iter_mut().flatten().for_each(|it| it.weight *= each);
         chance
     }
 
-    /// Where the front lies so far ahead.
-    pub(crate) fn ahead(&self, way: f32) -> Offsets {
-        let mut all = NOTHING;
-        let of = self
-            .of
-            .iter()
-            .zip(&GAITS)
-            .flat_map(|(some, gait)| some.iter().map(move |it| (it, gait)));
-        for (to, (it, gait)) in all.iter_mut().zip(of) {
-            *to = it.ahead(way, gait);
-        }
-        all
+    /// Where the front lies so far ahead, with a variance that is added.
+    pub(crate) fn ahead(&self, way: f32, blur: f32) -> Offsets {
+        let of = |(some, gait): (&[Gaussian; EACH], &Gait)| {
+            some.each_ref().map(|it| it.ahead(way, gait))
+        };
+        Mixture::of(self.of.iter().zip(&GAITS).flat_map(of), blur)
     }
 
     /// Where it lies at a place behind.
     pub(crate) fn behind(&self, place: usize) -> Offsets {
-        let mut all = NOTHING;
-        for (to, it) in all.iter_mut().zip(self.all()) {
-            *to = it.offset_behind(place);
-        }
-        all
+        Mixture::of(self.all().map(|it| it.offset_behind(place)), 0.0)
     }
 
     /// The mean turn and curvature, and the deviation of the turn.
@@ -190,102 +182,88 @@ impl Bank {
     }
 }
 
-/// What a sum of Gaussians says of the front at a place.
-pub(crate) trait Sum {
-    /// How much of it lies below a place.
-    fn below(&self, left: f32, blur: f32) -> f32;
-    /// The mean place.
-    fn mean(&self) -> f32;
-    /// The standard deviation.
-    fn deviation(&self) -> f32;
-    /// The mean distance of each Gaussian from a place.
-    fn distance(&self, from: f32) -> f32;
-    /// The place with so much below.
-    fn quantile(&self, share: f32) -> f32;
-    /// So far on either side of a place lies this share.
-    fn half_width(&self, about: f32, share: f32) -> f32;
+/// An offset of one of the Gaussians that come together.
+#[derive(Clone, Copy, Debug)]
+struct Part {
+    /// The number of the Gaussian that it is of.
+    of: usize,
+    /// Those with the same number go into one.
+    group: usize,
+    offset: Offset,
 }
 
-impl Sum for Offsets {
-    fn below(&self, left: f32, blur: f32) -> f32 {
-        let below = |it: &Offset| {
-            if it.weight < LIGHT {
-                return 0.0;
+/// Offsets that are to be as few Gaussians as [`EACH`]. All else of a Gaussian goes with its offset.
+struct Crowd {
+    parts: heapless::Vec<Part, PARTS, u8>,
+}
+
+impl Crowd {
+    const NONE: Self = Self { parts: heapless::Vec::new() };
+
+    /// Adds an offset of a Gaussian, if it has a weight.
+    fn add(&mut self, of: usize, offset: Offset) {
+        if offset.weight > LIGHT * LIGHT {
+            let group = self.parts.len();
+            let _ = self.parts.push(Part { of, group, offset }); // there is room
+        }
+    }
+
+    /// Puts those into one group that change the distribution the least, until there are few.
+    fn group(&mut self) {
+        let mut groups = [None; PARTS];
+        for (it, part) in groups.iter_mut().zip(&self.parts) {
+            *it = Some((part.offset, libm::log2f(part.offset.variance)));
+        }
+        for _ in EACH..self.parts.len() {
+            let mut best: Option<(f32, usize, usize, Offset)> = None;
+            for (j, b) in groups.iter().enumerate() {
+                for (i, a) in groups.iter().take(j).enumerate() {
+                    let (Some((a, a_log)), Some((b, b_log))) = (a, b) else { continue };
+                    let both = a.with(*b);
+                    let cost = both.weight * libm::log2f(both.variance)
+                        - a.weight * a_log
+                        - b.weight * b_log;
+                    if best.is_none_or(|best| cost < best.0) {
+                        best = Some((cost, i, j, both));
+                    }
+                }
             }
-            it.weight * Normal::below((left - it.mean) / sqrt(it.variance + blur))
-        };
-        self.iter().map(below).sum()
-    }
-
-    fn mean(&self) -> f32 {
-        self.iter().map(|it| it.weight * it.mean).sum()
-    }
-
-    fn deviation(&self) -> f32 {
-        let mean = self.mean();
-        let square = |it: &Offset| it.weight * (it.variance + (it.mean - mean) * (it.mean - mean));
-        sqrt(self.iter().map(square).sum())
-    }
-
-    fn distance(&self, from: f32) -> f32 {
-        let off = |it: &Offset| it.weight * sqrt(it.variance + (it.mean - from) * (it.mean - from));
-        self.iter().map(off).sum()
-    }
-
-    fn quantile(&self, share: f32) -> f32 {
-        let (mean, reach) = (self.mean(), 4.0 * self.deviation());
-        let (mut low, mut high) = (mean - reach, mean + reach);
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            if self.below(middle, 0.0) < share { low = middle } else { high = middle }
+            let Some((_, into, gone, both)) = best else { break };
+            for (n, it) in groups.iter_mut().enumerate() {
+                match n {
+                    _ if n == into => *it = Some((both, libm::log2f(both.variance))),
+                    _ if n == gone => *it = None,
+                    _ => {}
+                }
+            }
+            for part in self.parts.iter_mut().filter(|it| it.group == gone) {
+                part.group = into;
+            }
         }
-        0.5 * (low + high)
     }
 
-    fn half_width(&self, about: f32, share: f32) -> f32 {
-        let (mut low, mut high) = (0.0, 4.0 * self.deviation() + (self.mean() - about).abs());
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            let within = self.below(about + middle, 0.0) - self.below(about - middle, 0.0);
-            if within < share { low = middle } else { high = middle }
-        }
-        high
-    }
-}
-
-/// Adds one with the logarithm of its variance, if it has a weight.
-fn join(crowd: &mut Crowd, it: Gaussian) {
-    if it.weight > LIGHT * LIGHT {
-        let _ = crowd.push((it, libm::log2f(it.variance)));
-    }
-}
-
-/// Merges those that change the offset's distribution the least, until there is room.
-#[inline(never)] // it is called in two places, with many Gaussians on the stack
-fn settle(crowd: &mut Crowd, into: &mut [Gaussian; EACH]) {
-    while crowd.len() > EACH {
-        let mut best: Option<(f32, usize, usize)> = None;
-        for (j, (b, b_log)) in crowd.iter().enumerate() {
-            for (i, (a, a_log)) in crowd.iter().take(j).enumerate() {
-                let weight = a.weight + b.weight;
-                let (share, off) = (b.weight / weight, b.mean - a.mean);
-                let variance =
-                    (1.0 - share) * (a.variance + share * off * off) + share * b.variance;
-                let cost = weight * libm::log2f(variance) - a.weight * a_log - b.weight * b_log;
-                if best.is_none_or(|best| cost < best.0) {
-                    best = Some((cost, i, j));
+    /// Makes them Gaussians again, in place of those that they are of. The pool comes after these.
+    #[inline(never)] // it is called in two places, with some Gaussians on the stack
+    fn settle(&mut self, some: &mut [Gaussian; EACH], pool: &Gaussian) {
+        self.group();
+        let mut new = [Gaussian::NONE; EACH];
+        let mut free = new.iter_mut();
+        for group in 0..PARTS {
+            if !self.parts.iter().any(|it| it.group == group) {
+                continue;
+            }
+            let Some(to) = free.next() else { break };
+            for of in 0..=EACH {
+                let offsets = self
+                    .parts
+                    .iter()
+                    .filter(|it| (it.group, it.of) == (group, of))
+                    .map(|it| it.offset);
+                if let Some(offset) = offsets.reduce(Offset::with) {
+                    to.join(some.get(of).unwrap_or(pool), offset);
                 }
             }
         }
-        let Some((_, i, j)) = best else { break };
-        let (gone, _) = crowd.remove(j);
-        if let Some((it, log)) = crowd.get_mut(i) {
-            *it = it.merged(&gone);
-            *log = libm::log2f(it.variance);
-        }
-    }
-    let mut left = crowd.iter();
-    for it in into {
-        *it = left.next().map_or(Gaussian { weight: 0.0, ..*it }, |it| it.0);
+        *some = new;
     }
 }

@@ -1,7 +1,7 @@
 //! A curve in arc length: takes in motions and labels, and says where the front is.
 
 use crate::belief::curve::arc::Arc;
-use crate::belief::curve::bank::{Bank, Heard, Offsets, Sum as _};
+use crate::belief::curve::bank::{Bank, Heard, Offsets};
 use crate::belief::curve::gaussian::PLACES;
 use crate::belief::curve::start::{Start, nearest_pair};
 use crate::belief::evidence::Evidence;
@@ -298,12 +298,18 @@ impl Curve {
 
     /// Goes on along the arc to beside a site.
     pub(super) fn go_to(&mut self, site: Site) {
+        let mut gone = 0.0;
         for _ in 0..PIECES {
             let way = self.arc.see(site).along / self.reach;
-            self.go(limited(way, 1.0));
+            let piece = limited(way, 1.0);
+            self.go(piece);
+            gone += piece.abs();
             if way.abs() <= 1.0 {
                 break;
             }
+        }
+        if gone > STILL {
+            self.bank.mix(gone);
         }
     }
 
@@ -386,7 +392,7 @@ impl Curve {
 
     /// Moves the arc onto the mean front.
     fn centre(&mut self) {
-        let offset = self.bank.ahead(0.0).mean();
+        let offset = self.bank.ahead(0.0, 0.0).mean();
         let [turn, bend, _] = self.bank.direction();
         let turn = limited(turn, MOST_TURN);
         let before = self.arc.bend * self.reach;
@@ -454,7 +460,7 @@ impl Curve {
 
     /// Where the front lies so far ahead.
     pub(crate) fn ahead(&self, way: f32) -> Offsets {
-        self.bank.ahead(way)
+        self.bank.ahead(way, 0.0)
     }
 
     pub(crate) fn site_at(&self, along: f32, left: f32) -> Site {

@@ -59,6 +59,16 @@ pub(crate) struct Offset {
     pub(crate) variance: f32,
 }
 
+impl Offset {
+    /// The Gaussian with the mean and the variance of both together.
+    pub(crate) fn with(self, other: Self) -> Self {
+        let weight = self.weight + other.weight;
+        let (share, off) = (other.weight / weight, other.mean - self.mean);
+        let variance = (1.0 - share) * (self.variance + share * off * off) + share * other.variance;
+        Self { weight, mean: self.mean + share * off, variance }
+    }
+}
+
 impl Gaussian {
     pub(crate) const NONE: Self = Self {
         weight: 0.0,
@@ -206,62 +216,62 @@ impl Gaussian {
         self.behind[0] = [0.0, 0.0, ROUGH * ROUGH];
     }
 
-    /// Takes in that the offset has a gradient and a curvature of its logarithm: a label.
-    pub(crate) fn hear(&mut self, gradient: f32, curvature: f32) {
-        let by = self.variance * gradient;
-        self.mean += by;
-        for (mean, gain) in self.means.iter_mut().zip(&self.gain) {
-            *mean += gain * by;
-        }
-        let taken = self.variance * curvature;
-        self.variance *= 1.0 - if taken < MOST { taken } else { MOST };
+    /// Its offset.
+    pub(crate) const fn offset(&self) -> Offset {
+        Offset { weight: self.weight, mean: self.mean, variance: self.variance }
     }
 
-    /// The Gaussian with the mean and the covariance of both together.
-    pub(crate) fn merged(&self, other: &Self) -> Self {
-        let weight = self.weight + other.weight;
-        let b = if weight > 0.0 { other.weight / weight } else { 0.5 };
+    /// Its offset, where the logarithm has a gradient and a curvature more: a label.
+    pub(crate) fn told(&self, gradient: f32, curvature: f32) -> Offset {
+        let (by, taken) = (self.variance * gradient, self.variance * curvature);
+        let variance = self.variance * (1.0 - if taken < MOST { taken } else { MOST });
+        Offset { weight: self.weight, mean: self.mean + by, variance }
+    }
+
+    /// Takes in another one, whose offset is this now, with all that depends on that. It has the mean and the covariance of
+    /// both together. One without a weight becomes the other.
+    pub(crate) fn join(&mut self, other: &Self, offset: Offset) {
+        let shift = offset.mean - other.mean;
+        if self.weight <= 0.0 {
+            let Offset { weight, mean, variance } = offset;
+            *self = Self { weight, mean, variance, ..*other };
+            for (mean, gain) in self.means.iter_mut().zip(&self.gain) {
+                *mean += gain * shift;
+            }
+            return;
+        }
+        let both = self.offset().with(offset);
+        let b = offset.weight / both.weight;
         let a = 1.0 - b;
-        let off = other.mean - self.mean;
-        let (mine, its, between) = (a * self.variance, b * other.variance, a * b * off);
-        let variance = mine + its + between * off;
-        let mut new = Self { weight, mean: self.mean + b * off, variance, ..*self };
+        let off = offset.mean - self.mean;
+        let parts = [a * self.variance, b * offset.variance, a * b];
+        let per = 1.0 / both.variance;
         // How far each one's slopes are from those of both, and its mean from their line.
-        let mut apart = [[0.0; OTHERS]; 3];
-        let pairs = self.means.iter().zip(&other.means).zip(self.gain.iter().zip(&other.gain));
-        for (k, ((mean, its_mean), (gain, its_gain))) in pairs.enumerate() {
-            let way = its_mean - mean;
-            let slope = (mine * gain + its * its_gain + between * way) / variance;
-            if let (Some(to), Some(of)) = (new.means.get_mut(k), new.gain.get_mut(k)) {
-                (*to, *of) = (mean + b * way, slope);
-            }
-            let [x, y, z] = &mut apart;
-            for (into, off) in [(x, gain - slope), (y, its_gain - slope), (z, way - slope * off)] {
-                if let Some(into) = into.get_mut(k) {
-                    *into = off;
-                }
-            }
+        let mut apart = [[0.0; 3]; OTHERS];
+        let mine = self.means.iter_mut().zip(&mut self.gain);
+        let pairs = mine.zip(other.means.iter().zip(&other.gain));
+        for (((mean, gain), (its_mean, its_gain)), apart) in pairs.zip(&mut apart) {
+            let way = its_mean + its_gain * shift - *mean;
+            let slope = (parts[0] * *gain + parts[1] * its_gain + parts[2] * off * way) * per;
+            *apart = [*gain - slope, its_gain - slope, way - slope * off];
+            (*mean, *gain) = (*mean + b * way, slope);
         }
-        let [x, y, z] = &apart;
-        let both = |i: usize, j: usize| {
-            let of = |it: &[f32; OTHERS]| match (it.get(i), it.get(j)) {
-                (Some(a), Some(b)) => a * b,
-                _ => 0.0,
-            };
-            mine * of(x) + its * of(y) + a * b * of(z)
+        let of = |[x, y, z]: [f32; 3], [u, v, w]: [f32; 3]| {
+            parts[0] * x * u + parts[1] * y * v + parts[2] * z * w
         };
-        for (n, (i, j)) in [(0, 0), (0, 1), (1, 1)].into_iter().enumerate() {
-            if let (Some(to), Some(it)) = (new.rest.get_mut(n), other.rest.get(n)) {
-                *to = a * *to + b * it + both(i, j);
+        let [turn, bend, places @ ..] = apart;
+        let own = [of(turn, turn), of(turn, bend), of(bend, bend)];
+        let rests = self.rest.iter_mut().zip(&other.rest);
+        for ((rest, its), own) in rests.zip(own) {
+            *rest = a * *rest + b * its + own;
+        }
+        for ((behind, its), place) in self.behind.iter_mut().zip(&other.behind).zip(places) {
+            let with = [of(turn, place), of(bend, place), of(place, place)];
+            for ((it, its), with) in behind.iter_mut().zip(its).zip(with) {
+                *it = a * *it + b * its + with;
             }
         }
-        for (k, (to, it)) in new.behind.iter_mut().zip(&other.behind).enumerate() {
-            let with = [both(0, k + 2), both(1, k + 2), both(k + 2, k + 2)];
-            for ((to, it), with) in to.iter_mut().zip(it).zip(with) {
-                *to = a * *to + b * it + with;
-            }
-        }
-        new
+        (self.weight, self.mean, self.variance) = (both.weight, both.mean, both.variance);
     }
 }
 
@@ -327,7 +337,9 @@ mod tests {
         for _ in 0..3 {
             it.advance(0.3 + unit(), 0.0, &GAIT);
             it.pass();
-            it.hear(unit() - 0.5, unit());
+            let told = it.told(unit() - 0.5, unit());
+            let before = core::mem::replace(&mut it, Gaussian::NONE);
+            it.join(&before, told);
         }
         it
     }
@@ -390,8 +402,8 @@ mod tests {
                 assert!((f64::from(seen.mean) - moved[0]).abs() < 1e-4);
                 // A label.
                 let (g, b) = (0.3, 0.5 / p[0][0]);
-                let mut heard = it;
-                heard.hear(g as f32, b as f32);
+                let mut heard = Gaussian::NONE;
+                heard.join(&it, it.told(g as f32, b as f32));
                 let means = core::array::from_fn(|i| mean[i] + p[i][0] * g);
                 let all = core::array::from_fn(|i| {
                     core::array::from_fn(|j| p[i][j] - b * p[i][0] * p[0][j])
@@ -413,7 +425,9 @@ mod tests {
                             + share * (1.0 - share) * (mean[i] - its[i]) * (mean[j] - its[j])
                     })
                 });
-                near(full(&it.merged(&other), place), (means, all), "merge");
+                let mut joined = it;
+                joined.join(&other, other.offset());
+                near(full(&joined, place), (means, all), "join");
             }
         }
     }

@@ -17,11 +17,11 @@ mod bank;
 mod follower;
 mod gaussian;
 mod memory;
+mod mixture;
 mod normal;
 mod readout;
 mod start;
 
-pub(crate) use bank::Sum;
 pub use follower::{Curve, MapPlace};
 pub use memory::CurveMemory;
 pub(crate) use start::nearest_pair;

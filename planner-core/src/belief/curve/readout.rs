@@ -1,7 +1,7 @@
 //! What a curve says of the front, and how it is asked as any belief is.
 
 use crate::belief::curve::arc::Arc;
-use crate::belief::curve::bank::{Offsets, Sum as _};
+use crate::belief::curve::bank::Offsets;
 use crate::belief::curve::follower::{Curve, DRIFTS, MapPlace, Passed};
 use crate::belief::estimate::Estimates;
 use crate::belief::front::{Beside, NINETY, Unit, Waist, angle, metres};
@@ -48,7 +48,7 @@ impl Curve {
     /// The front beside the robot.
     pub fn now(&self) -> Waist {
         let [turn, _, turns] = self.bank.direction();
-        self.waist(self.arc, &self.bank.ahead(0.0), [turn, turns, 0.0])
+        self.waist(self.arc, &self.bank.ahead(0.0, 0.0), [turn, turns, 0.0])
     }
 
     /// Places that the map has now: no label changes them any more. The oldest first, and the last few since they were
@@ -77,7 +77,7 @@ impl Curve {
     /// known. Of no meaning before the front [is found](Self::found).
     pub fn beside(&self, site: Site, heading: Heading) -> Beside {
         let [along, _] = self.see(site);
-        let offsets = self.bank.ahead(along);
+        let offsets = self.bank.ahead(along, 0.0);
         let left = offsets.mean();
         let place = metres(self.site_at(along, left) - site);
         let [ahead, to_left] = Unit::of(heading).seen(place);
@@ -96,7 +96,7 @@ impl Curve {
         }
         let [along, left] = self.see(site);
         let blur = self.blur(self.noise.tolerance);
-        let below = self.bank.ahead(along).below(left, blur * blur);
+        let below = self.bank.ahead(along, blur * blur).below(left);
         if self.is_flipped { 1.0 - below } else { below }
     }
 }

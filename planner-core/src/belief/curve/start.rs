@@ -12,10 +12,11 @@ use crate::geometry::heading::{Angle, Heading};
 use crate::geometry::lattice::{Site, Vector};
 
 /// Directions to either side of the most likely one, and places on either side of the middle.
-const SIDE: i32 = 8;
+const TURNS: i32 = 7;
+const PLACES: i32 = 3;
 
 /// From one direction to the next, radians.
-const TURN: f32 = 1.4 / SIDE as f32;
+const TURN: f32 = 1.4 / TURNS as f32;
 
 /// A sample blurs where the front is by this at least, reaches.
 const BLUR: f32 = 0.05;
@@ -54,11 +55,11 @@ impl Start {
         let heading = heading_of(way).turned(Angle(0_u32.wrapping_sub(1 << 30)));
         let along = Unit::of(heading);
         let (mut sum, mut first, mut second) = (0.0, [0.0_f32; 2], [0.0_f32; 2]);
-        for k in -SIDE..=SIDE {
+        for k in -TURNS..=TURNS {
             let turn = k as f32 * TURN;
             let Unit { x: cos, z: sin } = Unit::of(Heading(angle(turn).0));
-            for n in -SIDE..=SIDE {
-                let offset = n as f32 / (2 * SIDE + 1) as f32 * gap;
+            for n in -PLACES..=PLACES {
+                let offset = n as f32 / (2 * PLACES + 1) as f32 * gap;
                 let mut weight = cos;
                 for sample in labels {
                     let [x, z] = along.seen(metres(sample.site - middle)).map(|it| it / reach);

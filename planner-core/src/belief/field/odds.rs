@@ -49,6 +49,39 @@ impl Sought {
     }
 }
 
+/// Sums whose odds are known, by their last bits.
+const KNOWN: usize = 32;
+
+/// The odds of regions by the sums of their labels. Many regions have the same sum.
+struct Known {
+    total: i32,
+    /// The odds of all that is possible.
+    whole: f32,
+    odds: [Option<(i32, f32)>; KNOWN],
+}
+
+impl Known {
+    fn of_total(field: &Field, total: i32) -> Self {
+        Self { total, whole: 1.0 + field.power(total.abs()), odds: [None; KNOWN] }
+    }
+
+    /// Whether the inside of a region is what has not been seen, and its odds, if it was as likely as none beforehand.
+    fn of(&mut self, field: &Field, sum: i32) -> (bool, f32) {
+        let inside = if self.total < 0 { sum.wrapping_neg() } else { sum };
+        let outside = self.total.abs().wrapping_sub(inside);
+        let is_inside = inside <= outside;
+        let Some(known) = self.odds.get_mut(sum as usize % KNOWN) else { return (is_inside, 0.0) };
+        match known {
+            Some((of, odds)) if *of == sum => (is_inside, *odds),
+            _ => {
+                let odds = (field.power(inside) + field.power(outside)) / self.whole;
+                *known = Some((sum, odds));
+                (is_inside, odds)
+            }
+        }
+    }
+}
+
 /// What is known of a boundary of any shape in an area: 1.9 kB.
 #[derive(Clone, Debug)]
 pub(crate) struct Field {
@@ -143,34 +176,30 @@ impl Field {
         }
     }
 
-    /// Goes through all regions, each with its odds. Some 60 instructions a region.
+    /// Goes through all regions, each with its odds. Some 30 instructions a region.
     pub(crate) fn each(&self, mut take: impl FnMut(Region, f32)) {
         let share =
             if self.layout.has_discs() { self.seeking.most_likely().patches() } else { 0.0 };
+        let mut known = Known::of_total(self, self.memory.total);
         for (sum, (shape, weight)) in self.memory.discs.0.iter().zip(self.layout.discs()) {
             if *sum != SHUT {
-                let (is_inside, odds) = self.region(self.memory.total, (*sum).into());
+                let (is_inside, odds) = known.of(self, (*sum).into());
                 take(Region { shape, is_inside }, odds * weight * share);
             }
         }
         let weight = (1.0 - share) / (DIRECTIONS * OFFSETS) as f32;
         for (direction, bins) in self.memory.bins.0.chunks(OFFSETS + 1).enumerate() {
             let total = bins.iter().map(|it| i32::from(*it)).sum();
+            if total != known.total {
+                known = Known::of_total(self, total);
+            }
             let mut sum = 0;
             for (bin, shape) in bins.iter().zip(self.layout.half_planes(direction)) {
                 sum += i32::from(*bin);
-                let (is_inside, odds) = self.region(total, sum);
+                let (is_inside, odds) = known.of(self, sum);
                 take(Region { shape, is_inside }, odds * weight);
             }
         }
-    }
-
-    /// Whether the inside of a region is what has not been seen, and its odds, if it was as likely as none beforehand.
-    fn region(&self, total: i32, sum: i32) -> (bool, f32) {
-        let inside = if total < 0 { -sum } else { sum };
-        let outside = total.abs() - inside;
-        let odds = self.power(inside) + self.power(outside);
-        (inside <= outside, odds / (1.0 + self.power(total.abs())))
     }
 
     /// The odds of all regions together.

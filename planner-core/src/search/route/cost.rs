@@ -30,19 +30,23 @@ pub(super) struct Costs {
 }
 
 impl Costs {
-    /// What a field says. `visits` bounds the work.
-    pub(super) fn of((field, sought): (&Field, Sought), hears: Hears, visits: u32) -> Self {
+    /// Of no regions yet. `visits` bounds the work.
+    pub(super) fn new(hears: Hears, visits: u32) -> Self {
+        Self { regions: Vec::new(), rate: hears.rate(), after: 0.0, visits }
+    }
+
+    /// Takes what a field says, where it is: it is large.
+    pub(super) fn stand_for(&mut self, field: &Field, sought: Sought) {
         let [x, z] = field.layout.half;
-        let after = SURVEY * 2.0 * x * z / field.layout.patch;
+        self.after = SURVEY * 2.0 * x * z / field.layout.patch;
         let step = sought.odds() / REGIONS as f32;
-        let (mut regions, mut sum, mut next) = (Vec::new(), 0.0, 0.5 * step);
+        let (mut sum, mut next) = (0.0, 0.5 * step);
         field.each(|region, odds| {
             sum += odds;
-            while sum > next && regions.push(region).is_ok() {
+            while sum > next && self.regions.push(region).is_ok() {
                 next += step;
             }
         });
-        Self { regions, rate: hears.rate(), after, visits }
     }
 
     /// The cost of a route from a place, metres. `None` if it is not below `most`, leads nowhere, or the visits are used

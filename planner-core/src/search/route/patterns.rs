@@ -89,7 +89,8 @@ impl Ground {
     /// A route with a random change: a corner is shifted, added, left out or moved to another place in the order, or a
     /// part is turned round.
     pub(super) fn changed(self, route: &Corners, random: &mut Random) -> Corners {
-        let mut corners = route.clone();
+        let mut corners = Corners::new();
+        let _ = corners.extend_from_slice(route); // there is room
         let count = corners.len();
         let (a, b) = (random.below(count.max(1)), random.below(count.max(1)));
         match random.below(5) {
@@ -109,7 +110,7 @@ impl Ground {
                 }
             }
             1 => {
-                let at = random.below(count + 1);
+                let at = random.below(count + 1).min(count);
                 let _ = corners.insert(at, self.any(random));
             }
             2 if a < count => {
@@ -121,7 +122,8 @@ impl Ground {
             }
             4 if a < count => {
                 let corner = corners.remove(a);
-                let _ = corners.insert(random.below(count), corner);
+                let to = random.below(count).min(corners.len());
+                let _ = corners.insert(to, corner);
             }
             _ => {}
         }

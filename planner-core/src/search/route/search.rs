@@ -1,12 +1,12 @@
 //! The search for a route: a few candidates a plan, and the best of them is kept.
 
 use crate::belief::field::{Field, Sought};
-use crate::search::route::corners::{CORNERS, Corners, Hears};
+use crate::search::route::corners::{Corners, Hears};
 use crate::search::route::cost::Costs;
 use crate::search::route::patterns::{Ground, Random};
 
-/// Visits of a region by a leg, at most: some 0.8 million instructions of a Cortex-M4F.
-const VISITS: u32 = 24_000;
+/// Visits of a region by a leg, at most: some 0.7 million instructions of a Cortex-M4F.
+const VISITS: u32 = 11_000;
 
 /// Patterns and changes that a plan tries.
 const TRIED: usize = 30;
@@ -38,7 +38,11 @@ impl Route {
 
     /// A route that a user tells, as far as there is room.
     pub(crate) fn told(corners: impl Iterator<Item = [f32; 2]>) -> Self {
-        Self { corners: corners.take(CORNERS).collect(), is_told: true, ..Self::NONE }
+        let mut told = Self { is_told: true, ..Self::NONE };
+        for it in corners {
+            let _ = told.corners.push(it);
+        }
+        told
     }
 
     /// Whether a user told it, and some of it is left.
@@ -71,39 +75,41 @@ impl Route {
         from: [f32; 2],
         hears: Hears,
     ) {
-        let mut costs = Costs::of((field, sought), hears, VISITS);
+        let mut costs = Costs::new(hears, VISITS);
+        costs.stand_for(field, sought);
         let ground = Ground { half: field.layout.half, patch: field.layout.patch };
         self.is_told = false;
-        let mut best = self.corners.clone();
-        let mut least = costs.cost(from, &best, f32::MAX).unwrap_or(f32::MAX) * OLD;
-        let mut take = |corners: Corners| {
+        let Self { corners: best, random, .. } = self;
+        let was_short = best.len() < SHORT;
+        let mut least = costs.cost(from, best, f32::MAX).unwrap_or(f32::MAX) * OLD;
+        let mut take = |best: &mut Corners, corners: Corners| {
             if let Some(cost) = costs.cost(from, &corners, least) {
-                (best, least) = (corners, cost);
+                (*best, least) = (corners, cost);
             }
-            (costs.visits > 0).then(|| best.clone())
+            costs.visits > 0
         };
         let (heart, odds) = sought.heaviest;
         // Where the robot is there already, it needs another place to come back from.
         let [x, z] = [heart[0] - from[0], heart[1] - from[1]];
         let is_there = x * x + z * z < hears.apart * hears.apart;
         if odds > HEAVY * sought.odds() && !is_there {
-            let mut corners = self.corners.clone();
-            corners.truncate(CORNERS - 1);
-            let _ = corners.insert(0, heart);
-            take(corners);
+            let mut corners = Corners::new();
+            for it in [heart].iter().chain(best.iter()) {
+                let _ = corners.push(*it); // as far as there is room
+            }
+            take(best, corners);
         }
-        if self.corners.len() < SHORT || self.random.below(SELDOM) == 0 {
+        if was_short || random.below(SELDOM) == 0 {
             for _ in 0..TRIED {
-                take(ground.pattern(&mut self.random));
+                take(best, ground.pattern(random));
             }
         }
-        let mut route = self.corners.clone();
         for _ in 0..TRIED {
-            let changed = ground.changed(&route, &mut self.random);
-            let Some(best) = take(changed) else { break };
-            route = best;
+            let changed = ground.changed(best, random);
+            if !take(best, changed) {
+                break;
+            }
         }
-        self.corners = best;
     }
 }
 
