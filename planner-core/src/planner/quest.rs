@@ -95,7 +95,7 @@ pub(crate) struct Lead {
 impl Quest {
     pub(crate) const NONE: Self = Self {
         field: Field::NONE,
-        sought: Sought { discs: 0.0, half_planes: 0.0, heaviest: ([0.0; 2], 0.0) },
+        sought: Sought { discs: 0.0, half_planes: 0.0, heaviest: (None, 0.0) },
         route: Route::NONE,
         phase: Phase::Search,
         is_fresh: true,
@@ -236,10 +236,11 @@ impl Quest {
     }
 
     /// Makes the route better. Labels come so many metres apart.
-    pub(crate) fn improve(&mut self, from: Site, apart: f32) {
+    pub(crate) fn improve<G: Workspace>(&mut self, area: &G, from: Site, apart: f32) {
         self.is_fresh = false;
         let (from, hears) = (self.field.layout.seen(from), self.hears(apart));
-        self.route.improve((&self.field, self.sought), from, hears);
+        let heart = self.sought.heaviest.0.map(|it| self.field.layout.heart(area, it));
+        self.route.improve((&self.field, self.sought), (from, heart), hears);
     }
 
     /// The corner of the route to go to, or the place nearest to it, towards the middle, where the robot can be.

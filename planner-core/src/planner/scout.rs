@@ -19,7 +19,7 @@ use crate::planner::silence::Silence;
 use crate::planner::snapshot::{Kind, mark};
 use crate::planner::{Motion, Plan, Stage, StopReason};
 use crate::search::course::Course;
-use crate::search::errand::{Errand, errand};
+use crate::search::errand::{Errand, errand, errand_in_steps};
 use crate::search::motions::Leg;
 use crate::search::objective::{Effort, LOOKS};
 use crate::search::places::Places;
@@ -278,15 +278,16 @@ impl<D: Dynamics, G: Workspace> Scout<D, G> {
                 if routes == 0 {
                     return None;
                 }
-                self.quest.improve(pose.site, apart * METRE);
+                self.quest.improve(&self.area, pose.site, apart * METRE);
                 continue;
             };
             let is_there = distance(corner - pose.site) <= passes;
             if !is_there && self.quest.is_fresh() {
-                self.quest.improve(pose.site, apart * METRE);
+                self.quest.improve(&self.area, pose.site, apart * METRE);
                 continue;
             }
-            let mut on_the_way = || errand(with, pose, (corner, NEAR * reach), &mut effort);
+            let mut on_the_way =
+                || errand_in_steps(with, pose, (corner, NEAR * reach, self.fastest), &mut effort);
             match if is_there { None } else { on_the_way() } {
                 Some(errand) => break errand,
                 None => self.quest.pass(),

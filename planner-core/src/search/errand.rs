@@ -44,6 +44,8 @@ struct Aim {
     site: Site,
     /// A drive that ends so near to it arrives, lattice units. None arrives at a waypoint.
     near: Option<f32>,
+    /// The fastest speed of a drive.
+    fastest: u16,
 }
 
 /// The best way so far: its first motion, and about how many motions it has.
@@ -70,10 +72,21 @@ pub(crate) fn errand<D: Dynamics, G: Workspace>(
     (place, near): (Site, f32),
     effort: &mut Effort,
 ) -> Option<Errand> {
+    errand_in_steps((dynamics, area), pose, (place, near, u16::MAX), effort)
+}
+
+/// The same in drives up to a speed.
+pub(crate) fn errand_in_steps<D: Dynamics, G: Workspace>(
+    (dynamics, area): (&D, &G),
+    pose: Pose,
+    (place, near, fastest): (Site, f32, u16),
+    effort: &mut Effort,
+) -> Option<Errand> {
+    let fastest = fastest.min(dynamics.grid().speeds().saturating_sub(1));
     let step = dynamics.grid().step_units();
     let aim = match detour::begin_to(place, (area, step), pose.site, effort)? {
-        Way::Straight(_) => Aim { site: place, near: Some(near) },
-        Way::Round(way) => Aim { site: pose.site.step(way).ok()?, near: None },
+        Way::Straight(_) => Aim { site: place, near: Some(near), fastest },
+        Way::Round(way) => Aim { site: pose.site.step(way).ok()?, near: None, fastest },
     };
     let mut motions = Motions::new(dynamics, area, pose, *effort);
     let best = search(&mut motions, pose, aim);
@@ -168,7 +181,7 @@ fn drive<D: Dynamics, G: Workspace>(
     }
     let (dynamics, grid) = (motions.dynamics, motions.dynamics.grid());
     let way = aim.site - from.pose.site;
-    let (fastest, steps) = (grid.speeds().saturating_sub(1), distance(way) / grid.step_units());
+    let (fastest, steps) = (aim.fastest, distance(way) / grid.step_units());
     let nearest = (steps + 0.5) as u16;
     for ray in dynamics.around(from.pose, heading_of(way)) {
         // The speeds that may arrive, then ever slower ones that do not overshoot.

@@ -117,9 +117,9 @@ fn found([mut low, mut high]: [f32; 2], first: f32, of: impl Fn(f32) -> [f32; 2]
             break;
         }
         if off < 0.0 {
-            low = at
+            low = at;
         } else {
-            high = at
+            high = at;
         }
         let next = at - off / slope;
         at = if next > low && next < high { next } else { 0.5 * (low + high) };

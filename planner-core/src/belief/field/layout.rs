@@ -3,6 +3,7 @@
 //! All is in metres from the middle of the rectangle around the area.
 
 use crate::belief::field::seeking::Seeking;
+use crate::belief::front::limited;
 use crate::geometry::approximate::{METRE, sqrt};
 use crate::geometry::heading::Heading;
 use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
@@ -139,16 +140,36 @@ impl Layout {
         if step > 0.0 { [least, step] } else { [0.5 * (least + most), 1e-3] }
     }
 
-    /// A place deep in a region: the centre of a disc, or a corner of the rectangle.
-    pub(crate) fn heart(&self, Region { shape, is_inside }: Region) -> [f32; 2] {
-        let [x, z] = match shape {
-            Shape::Disc { centre, .. } if is_inside => return centre,
-            Shape::Disc { centre, .. } => centre,
-            Shape::HalfPlane { normal, .. } if is_inside => normal,
-            Shape::HalfPlane { normal: [x, z], .. } => [-x, -z],
+    /// A place deep in a region: the centre of a disc, or the corner of the area that lies furthest beyond a border.
+    pub(crate) fn heart<G: Workspace>(
+        &self,
+        area: &G,
+        Region { shape, is_inside }: Region,
+    ) -> [f32; 2] {
+        // Of a place: how far it lies from the border of a half-plane, or from a disc that has been seen.
+        let depth = |[x, z]: [f32; 2]| match shape {
+            Shape::Disc { centre: [a, b], .. } => (x - a) * (x - a) + (z - b) * (z - b),
+            Shape::HalfPlane { normal: [a, b], .. } if is_inside => -(a * x + b * z),
+            Shape::HalfPlane { normal: [a, b], .. } => a * x + b * z,
         };
-        let far = |it: f32, half: f32| if it > 0.0 { -half } else { half };
-        [far(x, self.half[0]), far(z, self.half[1])]
+        match shape.centre() {
+            Some(centre) if is_inside => centre,
+            _ => {
+                let mut deepest = ([0.0; 2], f32::MIN);
+                for place in corners(area).map(|it| self.in_bounds(self.seen(it))) {
+                    let depth = depth(place);
+                    if depth > deepest.1 {
+                        deepest = (place, depth);
+                    }
+                }
+                deepest.0
+            }
+        }
+    }
+
+    /// The place of the rectangle that is the nearest to a place.
+    fn in_bounds(&self, [x, z]: [f32; 2]) -> [f32; 2] {
+        [limited(x, self.half[0]), limited(z, self.half[1])]
     }
 
     /// Where a site lies.

@@ -33,8 +33,8 @@ pub struct Left {
 pub(crate) struct Sought {
     pub(crate) discs: f32,
     pub(crate) half_planes: f32,
-    /// The heart of the region with the most odds, and these.
-    pub(crate) heaviest: ([f32; 2], f32),
+    /// The region with the most odds, and these.
+    pub(crate) heaviest: (Option<Region>, f32),
 }
 
 impl Sought {
@@ -204,18 +204,16 @@ impl Field {
 
     /// The odds of all regions together.
     pub(crate) fn sought(&self) -> Sought {
-        let (mut sought, mut heaviest) = (Sought::default(), None);
+        let mut sought = Sought::default();
         self.each(|region, odds| {
             match region.shape {
                 Shape::Disc { .. } => sought.discs += odds,
                 Shape::HalfPlane { .. } => sought.half_planes += odds,
             }
             if odds > sought.heaviest.1 {
-                (heaviest, sought.heaviest.1) = (Some(region), odds);
+                sought.heaviest = (Some(region), odds);
             }
         });
-        let heart = heaviest.map(|region| self.layout.heart(region));
-        sought.heaviest.0 = heart.unwrap_or_default();
         sought
     }
 

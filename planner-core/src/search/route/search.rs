@@ -67,12 +67,12 @@ impl Route {
         self.corners.iter().all(|it| it[0].abs() <= x && it[1].abs() <= z)
     }
 
-    /// Looks for a better route from a place.
+    /// Looks for a better route from a place. The heaviest region may have a heart to be gone to first.
     #[inline(never)] // what it needs is not on the stack while a motion is sought
     pub(crate) fn improve(
         &mut self,
         (field, sought): (&Field, Sought),
-        from: [f32; 2],
+        (from, heart): ([f32; 2], Option<[f32; 2]>),
         hears: Hears,
     ) {
         let mut costs = Costs::new(hears, VISITS);
@@ -88,11 +88,14 @@ impl Route {
             }
             costs.visits > 0
         };
-        let (heart, odds) = sought.heaviest;
         // Where the robot is there already, it needs another place to come back from.
-        let [x, z] = [heart[0] - from[0], heart[1] - from[1]];
-        let is_there = x * x + z * z < hears.apart * hears.apart;
-        if odds > HEAVY * sought.odds() && !is_there {
+        let is_far = |[x, z]: &[f32; 2]| {
+            let way = [x - from[0], z - from[1]];
+            way[0] * way[0] + way[1] * way[1] >= hears.apart * hears.apart
+        };
+        if let Some(heart) = heart.filter(is_far)
+            && sought.heaviest.1 > HEAVY * sought.odds()
+        {
             let mut corners = Corners::new();
             for it in [heart].iter().chain(best.iter()) {
                 let _ = corners.push(*it); // as far as there is room
@@ -134,7 +137,8 @@ mod tests {
             if left.patch.unwrap() < 0.01 && left.coast < 0.01 {
                 break;
             }
-            route.improve((&field, sought), place, hears);
+            let heart = sought.heaviest.0.map(|it| field.layout.heart(&area, it));
+            route.improve((&field, sought), (place, heart), hears);
             assert!(route.is_valid(field.layout.half));
             let Some([x, z]) = route.next() else { panic!("no route") };
             let (dx, dz) = (x - place[0], z - place[1]);
