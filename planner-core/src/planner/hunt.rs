@@ -217,7 +217,7 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
             }
         }
         self.scout.silence.observe(reading.is_some());
-        self.scout.quest.moved(reading.is_some());
+        self.scout.quest.moved(pose.site, reading.is_some());
         match self.scout.quest.phase {
             Phase::Search => self.take_lead(pose.site),
             Phase::Close(left) => {

@@ -14,7 +14,7 @@
 use crate::belief::curve::nearest_pair;
 use crate::belief::field::{Field, FieldMemory, Seeking, Sought};
 use crate::belief::sample::{Label, Sample};
-use crate::geometry::approximate::{METRE, distance};
+use crate::geometry::approximate::{METRE, distance, sqrt};
 use crate::geometry::lattice::Site;
 use crate::geometry::workspace::Workspace;
 use crate::planner::one_label::OneLabel;
@@ -35,6 +35,12 @@ const CHANGED: f32 = 3.0;
 
 /// With true labels on both sides, there is no boundary with this probability.
 const NONE: f32 = 1e-3;
+
+/// The robot gives a corner up after so many motions without coming nearer.
+const VAIN: u8 = 72;
+
+/// A corner is the same where it differs by this share of how near the robot came.
+const SAME: f32 = 0.25;
 
 /// The boundary is given up after labels that carry so many bits together.
 const BITS: f32 = 40.0;
@@ -60,6 +66,32 @@ pub struct QuestMemory {
     is_stuck: bool,
     heard: Option<Site>,
     news: u8,
+    approach: Approach,
+}
+
+/// How the robot comes to the corner that it goes to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct Approach {
+    corner: [f32; 2],
+    /// How near it came, metres.
+    least: f32,
+    /// Motions since it came nearer.
+    vain: u8,
+}
+
+impl Approach {
+    const NONE: Self = Self { corner: [0.0; 2], least: f32::MAX, vain: 0 };
+
+    /// Whether a corner is about the one that the robot goes to.
+    fn is_to(&self, corner: [f32; 2]) -> bool {
+        apart(self.corner, corner) <= SAME * self.least
+    }
+}
+
+/// Metres between two places.
+fn apart([x, z]: [f32; 2], [a, b]: [f32; 2]) -> f32 {
+    sqrt((x - a) * (x - a) + (z - b) * (z - b))
 }
 
 /// The search for a boundary.
@@ -77,6 +109,7 @@ pub(crate) struct Quest {
     heard: Option<Site>,
     /// Labels since the search began again.
     news: u8,
+    approach: Approach,
 }
 
 /// About where a boundary is.
@@ -102,6 +135,7 @@ impl Quest {
         is_stuck: false,
         heard: None,
         news: 0,
+        approach: Approach::NONE,
     };
 
     /// Begins in an area with labels that are true with probability `p`. A straight boundary has no `patches`. The tracker
@@ -119,6 +153,7 @@ impl Quest {
         let begun = self.field.begin(area, (seeking, patches), p);
         begun.map_err(|[least, most]| SetupError::Patch { least, most })?;
         (self.route, self.heard, self.news) = (Route::NONE, None, 0);
+        self.approach = Approach::NONE;
         (self.is_fresh, self.is_stuck) = (true, false);
         self.phase = if is_near { Phase::Follow } else { Phase::Search };
         self.sought = self.field.sought();
@@ -151,12 +186,32 @@ impl Quest {
 
     /// A motion has ended, and its labels are taken in. The route stays until a label comes: a robot that turns on the
     /// spot would turn to and fro.
-    pub(crate) fn moved(&mut self, has_label: bool) {
+    pub(crate) fn moved(&mut self, site: Site, has_label: bool) {
         if self.phase == Phase::Search {
             self.sought = self.field.sought();
         }
+        self.come(site);
         self.is_fresh |= has_label;
         self.is_stuck &= !has_label;
+    }
+
+    /// Keeps in mind how near the robot comes to the corner that it goes to.
+    fn come(&mut self, site: Site) {
+        let Some(corner) = self.route.next() else { return };
+        let left = apart(self.field.layout.seen(site), corner);
+        let Approach { least, vain, .. } = self.approach;
+        self.approach = match () {
+            () if left < least || !self.approach.is_to(corner) => {
+                Approach { corner, least: left, vain: 0 }
+            }
+            () => Approach { vain: vain.saturating_add(1), ..self.approach },
+        };
+    }
+
+    /// Whether the robot comes no nearer to the corner that it goes to.
+    pub(crate) fn is_vain(&self) -> bool {
+        let is_to_it = self.route.next().is_some_and(|corner| self.approach.is_to(corner));
+        is_to_it && self.approach.vain >= VAIN
     }
 
     /// What labels tell, read so many metres apart.
@@ -213,7 +268,8 @@ impl Quest {
     pub(crate) fn lose<G: Workspace>(&mut self, area: &G) {
         self.field.forget(area);
         self.search_on();
-        self.moved(true);
+        self.is_fresh = true;
+        self.is_stuck = false;
     }
 
     /// The label that all of the area has, if it most likely has one.
@@ -272,8 +328,18 @@ impl Quest {
         self.route = Route::told(corners.iter().map(|it| layout.seen(*it)));
     }
 
-    /// Leaves out the corner to go to.
+    /// Leaves out the corner to go to: there is no way now.
     pub(crate) fn pass(&mut self) {
+        self.route.pass();
+    }
+
+    /// The robot has come as near to the corner as it can. Ground that lies beyond is not sought.
+    pub(crate) fn arrive<G: Workspace>(&mut self, area: &G, from: Site) {
+        self.come(from);
+        if let Some(corner) = self.route.next() {
+            self.field.memory.shut((&self.field.layout, area), corner, self.approach.least);
+        }
+        self.approach = Approach::NONE;
         self.route.pass();
     }
 
@@ -283,18 +349,20 @@ impl Quest {
     }
 
     pub(crate) fn memory(&self) -> QuestMemory {
-        let Self { ref field, ref route, phase, is_fresh, is_stuck, heard, news, .. } = *self;
+        let Self { ref field, ref route, phase, is_fresh, is_stuck, heard, news, approach, .. } =
+            *self;
         let (field, route) = (field.memory.clone(), route.clone());
-        QuestMemory { field, route, phase, is_fresh, is_stuck, heard, news }
+        QuestMemory { field, route, phase, is_fresh, is_stuck, heard, news, approach }
     }
 
     /// Goes on from there. Whether a search of the same area can have stored it.
     pub(crate) fn recall(&mut self, memory: &QuestMemory) -> bool {
-        let QuestMemory { field, route, phase, is_fresh, is_stuck, heard, news } = memory.clone();
+        let QuestMemory { field, route, phase, is_fresh, is_stuck, heard, news, approach } =
+            memory.clone();
         let is_valid = route.is_valid(self.field.layout.half);
         (self.field.memory, self.route, self.phase) = (field, route, phase);
         (self.is_fresh, self.is_stuck) = (is_fresh, is_stuck);
-        (self.heard, self.news) = (heard, news);
+        (self.heard, self.news, self.approach) = (heard, news, approach);
         self.sought = self.field.sought();
         is_valid
     }

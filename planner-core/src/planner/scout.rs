@@ -281,7 +281,7 @@ impl<D: Dynamics, G: Workspace> Scout<D, G> {
                 self.quest.improve(&self.area, pose.site, apart * METRE);
                 continue;
             };
-            let is_there = distance(corner - pose.site) <= passes;
+            let is_there = distance(corner - pose.site) <= passes || self.quest.is_vain();
             if !is_there && self.quest.is_fresh() {
                 self.quest.improve(&self.area, pose.site, apart * METRE);
                 continue;
@@ -290,6 +290,7 @@ impl<D: Dynamics, G: Workspace> Scout<D, G> {
                 || errand_in_steps(with, pose, (corner, NEAR * reach, self.fastest), &mut effort);
             match if is_there { None } else { on_the_way() } {
                 Some(errand) => break errand,
+                None if is_there => self.quest.arrive(&self.area, pose.site),
                 None => self.quest.pass(),
             }
         };

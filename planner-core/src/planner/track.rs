@@ -426,7 +426,7 @@ impl<D: Dynamics, G: Workspace> Planner for Track<D, G> {
             scout.hear(pose.site, reading);
         }
         scout.silence.observe(reading.is_some());
-        scout.quest.moved(reading.is_some());
+        scout.quest.moved(pose.site, reading.is_some());
         self.keep_lap(pose);
         Ok(())
     }

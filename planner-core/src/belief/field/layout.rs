@@ -77,6 +77,12 @@ pub(crate) enum Shape {
 }
 
 impl Shape {
+    /// How far a place lies from the border of a half-plane. 0 for a disc.
+    pub(crate) fn beyond(self, [x, z]: [f32; 2]) -> f32 {
+        let Self::HalfPlane { normal: [a, b], offset } = self else { return 0.0 };
+        (a * x + b * z - offset).abs()
+    }
+
     /// The centre of a disc. A half-plane has none.
     pub(crate) fn centre(self) -> Option<[f32; 2]> {
         if let Self::Disc { centre, .. } = self { Some(centre) } else { None }

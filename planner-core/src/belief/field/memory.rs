@@ -1,6 +1,6 @@
 //! What a field remembers: the sum of the labels in each region, in a byte, and the last labels one by one.
 
-use crate::belief::field::layout::{DIRECTIONS, DISCS, Layout, OFFSETS};
+use crate::belief::field::layout::{DIRECTIONS, DISCS, Layout, OFFSETS, Region, Shape};
 use crate::belief::field::recent::Recent;
 use crate::belief::sample::Label;
 use crate::geometry::lattice::Site;
@@ -8,6 +8,9 @@ use crate::geometry::workspace::Workspace;
 
 /// A disc whose centre the robot cannot come to: it is not sought.
 pub(crate) const SHUT: i8 = i8::MIN;
+
+/// The square of how near a heart is to a place where the robot sought it, as a share of how near the robot came.
+const SAME: f32 = 0.01;
 
 /// Sums of labels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,6 +24,8 @@ pub struct FieldMemory {
     pub(crate) discs: Sums<DISCS>,
     /// Of each direction, the labels between one half-plane's border and the next one's.
     pub(crate) bins: Sums<{ DIRECTIONS * (OFFSETS + 1) }>,
+    /// Of each direction, how many half-planes from either end are not sought: the robot cannot come to them.
+    pub(crate) shut: [[u8; 2]; DIRECTIONS],
     /// Of all labels.
     pub(crate) total: i32,
     pub(crate) recent: Recent,
@@ -31,6 +36,7 @@ impl FieldMemory {
     pub(crate) const NONE: Self = Self {
         discs: Sums([0; DISCS]),
         bins: Sums([0; DIRECTIONS * (OFFSETS + 1)]),
+        shut: [[0; 2]; DIRECTIONS],
         total: 0,
         recent: Recent::NONE,
     };
@@ -44,6 +50,38 @@ impl FieldMemory {
         }
         for it in kept.iter() {
             self.take(layout, it.site, it.label, 1);
+        }
+    }
+
+    /// The robot came no nearer to a place than `least`, metres: what lies about it and goes no further is not sought.
+    pub(crate) fn shut<G: Workspace>(
+        &mut self,
+        (layout, area): (&Layout, &G),
+        at: [f32; 2],
+        least: f32,
+    ) {
+        let is_there = |[x, z]: [f32; 2]| {
+            let [x, z] = [x - at[0], z - at[1]];
+            x * x + z * z <= SAME * least * least
+        };
+        for (sum, (shape, _)) in self.discs.0.iter_mut().zip(layout.discs()) {
+            if let Shape::Disc { centre, radius } = shape
+                && radius <= least
+                && is_there(centre)
+            {
+                *sum = SHUT;
+            }
+        }
+        for (direction, shut) in self.shut.iter_mut().enumerate() {
+            for (shut, is_inside) in shut.iter_mut().zip([true, false]) {
+                let Some(shape) = layout.half_planes(direction).next() else { continue };
+                let heart = layout.heart(area, Region { shape, is_inside });
+                let is_shallow = |it: &Shape| it.beyond(heart) <= least;
+                if is_there(heart) {
+                    let count = layout.half_planes(direction).filter(is_shallow).count();
+                    *shut = (*shut).max(count as u8);
+                }
+            }
         }
     }
 

@@ -188,16 +188,23 @@ impl Field {
             }
         }
         let weight = (1.0 - share) / (DIRECTIONS * OFFSETS) as f32;
-        for (direction, bins) in self.memory.bins.0.chunks(OFFSETS + 1).enumerate() {
+        let shut = self.memory.shut.iter();
+        for ((direction, bins), [first, last]) in
+            self.memory.bins.0.chunks(OFFSETS + 1).enumerate().zip(shut)
+        {
+            let sought = usize::from(*first)..OFFSETS.saturating_sub((*last).into());
             let total = bins.iter().map(|it| i32::from(*it)).sum();
             if total != known.total {
                 known = Known::of_total(self, total);
             }
             let mut sum = 0;
-            for (bin, shape) in bins.iter().zip(self.layout.half_planes(direction)) {
+            for (n, (bin, shape)) in bins.iter().zip(self.layout.half_planes(direction)).enumerate()
+            {
                 sum += i32::from(*bin);
-                let (is_inside, odds) = known.of(self, sum);
-                take(Region { shape, is_inside }, odds * weight);
+                if sought.contains(&n) {
+                    let (is_inside, odds) = known.of(self, sum);
+                    take(Region { shape, is_inside }, odds * weight);
+                }
             }
         }
     }
