@@ -1,4 +1,5 @@
-//! The command line: commands and flags. The contract is in ARCHITECTURE.md; each command has a file of its own.
+//! The command line: commands and flags. The contract is in docs/reference/command-line.md, whose tables of flags are made
+//! from these. Each command has a file of its own.
 
 use anyhow::Result;
 use clap::{CommandFactory as _, Parser, Subcommand};

@@ -5,7 +5,7 @@ use std::time::Duration;
 use anyhow::{Context as _, Result, anyhow, bail};
 use clap::Args;
 use planner_core::dynamics::Dynamics as _;
-use planner_core::{AnyVehicle, Line};
+use planner_core::{AnyVehicle, Belief as _, Line};
 
 use crate::cli::done::Done;
 use crate::cli::help;
@@ -121,7 +121,9 @@ fn sensed(mut mission: Mission, name: &str) -> Result<Mission> {
         return wrong("truth.drift", "one", expected).with_context(|| name.to_owned());
     }
     if !mission.world.is_known() {
-        let Some(line) = mission.belief().estimates().centre.map(Line::from) else {
+        // A planner of fronts has no line, though the points may leave one.
+        let left = || mission.given.lines().and_then(|lines| lines.estimates().centre);
+        let Some(line) = mission.belief().estimates().centre.or_else(left).map(Line::from) else {
             let expected =
                 "a line, or an oracle that a line separates, for the ideal vehicle to sense";
             return wrong("truth", "none", expected).with_context(|| name.to_owned());

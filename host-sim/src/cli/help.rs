@@ -27,7 +27,7 @@ Examples:
   host-sim run mission.toml --format flat > steps.jsonl
       then, in Python: pandas.read_json('steps.jsonl', lines=True)
 
-The scenario file is described in ARCHITECTURE.md; `host-sim init` writes one to begin with.";
+The scenario file is described in docs/reference/scenario.md; `host-sim init` writes one to begin with.";
 
 pub(crate) const HIL: &str = "\
 Examples:
@@ -44,7 +44,8 @@ Examples:
   host-sim fly mission.toml --mavlink serial:/dev/ttyUSB0:57600 --label channel:7 --trace t.jsonl
 
 The scenario's x points east and its z north of the origin of the vehicle's local position. It needs a tolerance, how far
-that position may be off, and no truth. The mission begins where the vehicle is, once its operator has armed it in
+that position may be off, and no truth. A dry run reads the labels of the truth, or else of a line between the oracle's points:
+without a truth it needs points of both labels. The mission begins where the vehicle is, once its operator has armed it in
 guided mode: this program does neither. Addresses: udp:HOST:PORT listens, as udpin does; udpout:HOST:PORT speaks first;
 tcp:HOST:PORT; serial:DEVICE:BAUD. Autopilots: ArduPilot Rover, of boats too, and Sub.
 

@@ -28,7 +28,7 @@ pub(crate) struct Run {
     /// Who plans [default: the file's]
     #[arg(long)]
     pub(crate) algorithm: Option<Algorithm>,
-    /// Steps at most: 1 to 68 less the oracle's points [default: the file's]
+    /// Steps at most, 1 to 10000, and fewer where labels may be wrong [default: the file's]
     #[arg(long)]
     pub(crate) steps: Option<u32>,
     /// Seed of whatever is random [default: the file's]

@@ -1,4 +1,4 @@
-//! The trace: a mission's results as JSON Lines, written and read. The contract is in ARCHITECTURE.md.
+//! The trace: a mission's results as JSON Lines, written and read. The contract is in docs/reference/trace.md.
 
 use std::borrow::Cow;
 

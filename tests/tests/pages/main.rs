@@ -1,4 +1,4 @@
-//! What people and their programs read: examples, golden outputs, logs, pages, the package, the sources.
+//! What people and their programs read: examples, golden outputs, logs, pages, references, the package, the sources.
 
 mod examples;
 mod figures;
@@ -6,4 +6,5 @@ mod golden;
 mod logs;
 mod package;
 mod page;
+mod reference_pages;
 mod storeys;

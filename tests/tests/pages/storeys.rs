@@ -1,4 +1,4 @@
-//! The storeys of ARCHITECTURE.md: a module reads only from its own folder and from folders below it, and
+//! The storeys, which ARCHITECTURE.md shows: a module reads only from its own folder and from folders below it, and
 //! modules never read each other in a circle. Checked on the sources of `planner-core` and `host-sim` (with the crate
 //! below it), test code included; then on made-up sources, so that the check is known to fail when it should.
 //!

@@ -79,6 +79,7 @@ impl FromStr for Price {
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AskTable {
+    /// Bits that a label must be expected to carry, or it is not read [default: 0]
     worth: Option<f64>,
 }
 

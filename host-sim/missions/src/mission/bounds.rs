@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Bounds {
-    /// Its direction lies between these, degrees.
+    /// The line's direction lies between these, degrees, less than 180 apart.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub slope: Option<[f64; 2]>,
     /// It crosses `x = 0` between these, metres.

@@ -22,9 +22,10 @@ pub struct DiagnosisRecord {
     pub share: f64,
     /// The steps of those that do. Others are given samples.
     pub steps: Vec<usize>,
-    /// What explains the labels.
+    /// What explains the labels: `bend`, `drift`, `stuck`, `inverted`, `stuck or inverted` (both read the same), `late`, `random`,
+    /// `line` (a straight line does all the same), `cannot tell`.
     pub cause: Cause,
-    /// Where labels are true: how likely each cause is.
+    /// Where labels are true: the probability of each cause, if all are alike beforehand.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shares: Option<Shares>,
     /// The tolerance that covers a bend or a drift as the labels have it, metres: with probability 0.9 where labels are

@@ -159,7 +159,7 @@ pub struct SeekRecord {
     /// Patches that hold a disc of this radius were sought, metres.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub radius: Option<f32>,
-    /// The probability that such a patch is left, if every second area has one. None if no patch was sought.
+    /// The probability that such a patch is left, if every second area has one; absent if no patch was sought.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub patch: Option<f32>,
     /// The same of a boundary that crosses the area.

@@ -26,12 +26,13 @@ const LEVEL: f64 = 0.9;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FrontTable {
-    /// The radius of the tightest bend, metres; infinite for a straight line, and none in a trace.
+    /// The radius of the tightest bend, metres, for a watch; `inf` for a straight line, null in a trace [default: 20 of the
+    /// longest motions].
     pub radius: Option<f64>,
-    /// How far it may move in a step, metres.
+    /// How far it may move in a step, metres [default: 0].
     #[serde(default)]
     pub speed: f64,
-    /// Metres of front to watch, if the robot is not to go along all of it.
+    /// Metres of front to watch, 0.1 to the diagonal of the area, instead of going along all of it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub watch: Option<f64>,
 }
@@ -120,7 +121,7 @@ impl From<Waist> for VertexRecord {
 /// A vertex of the map, with the step after which the robot passed it.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct PassedRecord {
-    /// That step.
+    /// The step after which the robot passed it.
     pub passed: usize,
     /// Whether a piece of the map begins with it.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]

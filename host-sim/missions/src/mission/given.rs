@@ -24,8 +24,11 @@ const MOST_BOUNDING: usize = 15;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SampleTable {
+    /// Metres
     x: f64,
+    /// Metres
     z: f64,
+    /// -1 or 1
     label: i64,
 }
 

@@ -20,9 +20,9 @@ pub struct Legs {
     pub motions: usize,
     /// Median duration of a motion, seconds.
     pub seconds: f64,
-    /// Median of [`Leg::off`], metres.
+    /// Median of the distance from the target, metres.
     pub off: f64,
-    /// The largest `off`, metres.
+    /// The largest, metres.
     pub off_most: f64,
     /// The least tolerance that covers `off_most`, in whole tenths of a metre.
     pub tolerance: f64,

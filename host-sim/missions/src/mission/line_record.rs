@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 /// A line; slope and intercept are `None` for a vertical one.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct LineRecord {
-    /// The paper's `rho`.
+    /// `z = slope x + intercept`: the paper's `rho`; `None` of a vertical line.
     pub slope: Option<f64>,
-    /// The paper's `c`, metres.
+    /// The paper's `c`, metres; `None` of a vertical line.
     pub intercept: Option<f64>,
-    /// Degrees.
+    /// Degrees within [-90, 90].
     pub angle: f64,
     /// `a x + b z + c = 0` with `a^2 + b^2 = 1`.
     #[serde(skip)]

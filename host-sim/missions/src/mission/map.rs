@@ -8,12 +8,12 @@ use crate::world::World;
 /// What following a front came to.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct MapRecord {
-    /// How it stands in the end.
+    /// How it stands in the end: `followed`, `closed`, `lost`, or `sought` if it was never found.
     pub state: State,
     /// The step after which the front was found first.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub found: Option<usize>,
-    /// Where it was known best when it was found last, if it is lost, and after which step.
+    /// If it is lost: the last place where it was known (`step`, `x`, `z`).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lost: Option<LostRecord>,
     /// Vertices of the map.
@@ -24,7 +24,7 @@ pub struct MapRecord {
     pub driven: f64,
     /// The half-widths (90 %), metres: their median and the largest. Null without vertices.
     pub half_width: Option<[f64; 2]>,
-    /// Beside the true front, if that is known.
+    /// Beside the true front as it was then, if that is known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub off: Option<OffRecord>,
 }

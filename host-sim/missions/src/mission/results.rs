@@ -1,5 +1,6 @@
 //! A mission's results: plain data, recorded once. Serialised, they are the records of the trace, whose contract is in
-//! ARCHITECTURE.md; the same types read a trace again. Fields that only reports use are not serialised.
+//! docs/reference/trace.md, with the comments of these fields; the same types read a trace again. Fields that only reports use
+//! are not serialised.
 //!
 //! A new field of a step is added here and in [`Recorder::take`](crate::mission::recording::Recorder::take). Flat rows
 //! and the log take it over from the trace.
@@ -82,10 +83,10 @@ pub const VERSION: u32 = 1;
 /// What a mission began with.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Start {
-    /// [`VERSION`].
+    /// The version of the trace: 1.
     #[serde(default)]
     pub version: u32,
-    /// Who planned.
+    /// Who planned, as in a scenario file.
     #[serde(default)]
     pub algorithm: Algorithm,
     /// Seed of whatever was random.
@@ -94,18 +95,18 @@ pub struct Start {
     /// The weight of the control.
     #[serde(default)]
     pub varrho: f64,
-    /// Where positions stayed.
+    /// Where positions stayed: `x` and `z`, each from and to, and `polygon` if it is one: its corners, counter-clockwise.
     #[serde(default)]
     pub area: AreaRecord,
-    /// What no motion touches.
+    /// What no motion touches: all within a `radius` of a `polygon`, or of a point.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub keep_out: Vec<KeepOutRecord>,
     /// The oracle's samples.
     pub oracle: Vec<SampleRecord>,
-    /// What is known of the line beside them.
+    /// What is known of the line beside them, as in a scenario file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bounds: Option<Bounds>,
-    /// What moved, unless it is the unicycle of a fan.
+    /// What moved, with all keys of its kind in a scenario file, unless it is the unicycle of a fan.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub vehicle: Option<VehicleTable>,
     /// The tolerance and its parts, if it allows for more than positions that err.
@@ -116,15 +117,15 @@ pub struct Start {
     pub pose: PoseRecord,
     /// The true line, if there is one that stays where it is.
     pub truth: Option<LineRecord>,
-    /// The true boundary, if it is no fixed line.
+    /// The true boundary, if it is no fixed line: the keys of `truth` in a scenario file, and a base or moving line as `line`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub boundary: Option<BoundaryRecord>,
-    /// How the sensor fails.
+    /// How the sensor fails, as in a scenario file.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sensor: Vec<FaultTable>,
     /// Labels are true with this probability.
     pub p: f64,
-    /// What planners are told instead.
+    /// What planners are told instead: a number, or `[a, b]` of a prior.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub p_told: Option<PTold>,
     /// What a label costs, metres driven, if labels are sought beyond one motion.
@@ -136,10 +137,10 @@ pub struct Start {
     /// Bits that a label must be expected to carry.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub worth: Option<f64>,
-    /// What is told of the front, if one is followed.
+    /// What is told of the front, if one is followed, as in a scenario file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub front: Option<FrontTable>,
-    /// What is told of a boundary that is sought, if it is not the usual.
+    /// What is told of a boundary that is sought, if it is not the usual, as in a scenario file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seek: Option<SeekTable>,
     /// Readings a motion, if there are several.
@@ -162,14 +163,15 @@ pub struct StepResult {
     /// Its number, from 1.
     #[serde(default)]
     pub step: usize,
-    /// The one-step problem that was solved, for planners that pose one.
+    /// What the motion is for: the paper's `P1` to `P4`, or `audit`, `seek`, `follow`, `pass` (a keep-out on the front), `return`;
+    /// `None` of planners that pose no problem.
     pub problem: Option<Name>,
-    /// The rung of the recovery ladder, if it was climbed.
+    /// The rung of the recovery ladder: `undirected`, `reorient`, `transit`; `None` if it was not climbed.
     pub recovery: Option<Name>,
-    /// What was done.
+    /// What was done: its `index` in the grid, `v`, the length of the motion in metres, and `w`, the turn in radians.
     #[serde(default)]
     pub action: ActionRecord,
-    /// Where it ended.
+    /// Where it ended, as the robot reports it.
     pub pose: PoseRecord,
     /// Where the motion should have ended, if it ended elsewhere.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -182,24 +184,26 @@ pub struct StepResult {
     /// All readings of the motion in order, its label at the end included, where there are readings on the way.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub readings: Vec<ReadingRecord>,
-    /// The slopes left, as intervals of degrees.
+    /// The slopes left, as intervals of degrees: two across the vertical. Of labels that may be wrong those of the 90 % credible
+    /// set, of a front its directions within 90 %.
     #[serde(default)]
     pub slope_arcs: Vec<[f64; 2]>,
     /// The intercepts left, metres; `None` when unbounded.
     pub intercept: Option<[f64; 2]>,
-    /// Bits learnt since the start.
+    /// Bits learnt since the start. Of labels that may be wrong, the divergence of the posterior from the uniform distribution;
+    /// of a front, what is known now.
     #[serde(default)]
     pub bits: f64,
     /// Actions whose position was looked at to find this one.
     #[serde(default)]
     pub examined: u32,
-    /// `Some(false)` if it is not known to be the best.
+    /// `false` if the plan used up its looks, and so took the best action so far.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub proven: Option<bool>,
-    /// Where the front is beside the robot, if one is followed and found.
+    /// Where the front is known best beside the robot, if one is followed and found.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub front: Option<VertexRecord>,
-    /// Places that the map has more, if a front is followed. Labels change them no more.
+    /// Places that the map has more, if a front is followed. Labels change them no more. Each has the keys of `front` too.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub mapped: Vec<PassedRecord>,
     /// Where labels may err: whether the sample lies in a trusted ball.
@@ -214,7 +218,7 @@ pub struct StepResult {
     /// Where labels may err: the entropy over the hypotheses, bits.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub entropy: Option<f64>,
-    /// The evidence against a straight, still line, from a warning on.
+    /// The evidence against a straight, still line, from a warning on (20).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub evidence: Option<f32>,
     /// How a real vehicle made it.
@@ -241,12 +245,12 @@ pub type Name = Cow<'static, str>;
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct End {
-    /// Why it ended.
+    /// Why it ended, see below.
     pub reason: Name,
-    /// Places that the map has more, if a front was followed: those that the robot passed last.
+    /// As of a step: the places that the robot passed last.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub mapped: Vec<PassedRecord>,
-    /// The estimates of the line.
+    /// The estimates of the line, each null where there is none.
     pub estimates: EstimateRecords,
     /// The straight line that misclassifies least, where the true boundary is no fixed line.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -333,7 +337,7 @@ pub struct AlarmRecord {
     pub step: usize,
     /// The e-value then.
     pub evidence: f32,
-    /// What explains the labels best.
+    /// What explains the labels best: `coin`, `inverted`, `stuck`.
     pub suspect: Suspect,
 }
 
@@ -443,11 +447,11 @@ pub struct ActionRecord {
 /// The straight line that misclassifies least.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct FitRecord {
-    /// The paper's `rho`; `None` of a vertical line.
+    /// As of any line; `None` of a vertical one.
     pub slope: Option<f64>,
-    /// The paper's `c`, metres; `None` of a vertical line.
+    /// As of any line, metres; `None` of a vertical one.
     pub intercept: Option<f64>,
-    /// Degrees.
+    /// Degrees within [-90, 90].
     pub angle: f64,
     /// The share of the area that it misclassifies.
     pub misclassified: f64,
@@ -462,11 +466,11 @@ pub struct FitRecord {
 /// The three estimates, `None` where there is none.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct EstimateRecords<L = LineRecord> {
-    /// The paper's.
+    /// The paper's; of labels that may be wrong, as they were seen.
     pub bisector: Option<L>,
     /// The centre of the version space, or the posterior mean.
     pub centre: Option<L>,
-    /// The hard-margin separator.
+    /// The hard-margin separator; of labels that may be wrong, that of the most likely hypothesis.
     pub maximum_margin: Option<L>,
 }
 

@@ -1,4 +1,4 @@
-//! Scenario files: what a mission is, in TOML. The contract is in ARCHITECTURE.md.
+//! Scenario files: what a mission is, in TOML. The contract is in docs/reference/scenario.md.
 
 use std::path::Path;
 
@@ -42,51 +42,81 @@ pub const PAPER_NOISELESS: &str = include_str!("../../../scenarios/paper-noisele
 /// The paper's noisy example (Section V).
 pub const PAPER_NOISY: &str = include_str!("../../../scenarios/paper-noisy.toml");
 
+/// The keys of a scenario file. Their comments are the tables of `docs/reference/scenario.md`, as are those of the tables
+/// below them.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
+    /// Who plans: `cfc`, `scc`, `lookahead`, `chords`, `margin`, `random`, `lawnmower`, `track` [default: `cfc`]
     #[serde(default)]
     algorithm: Algorithm,
+    /// Motions at most, 1 to 10000; fewer where labels may be wrong [default: 10]
     #[serde(default = "defaults::steps")]
     steps: u32,
+    /// Readings of a motion, 1 to 50, evenly spread over it; the last is the label at its end [default: 1]
     #[serde(default = "defaults::readings")]
     readings: u32,
+    /// Seed of whatever is random [default: 1]
     #[serde(default = "defaults::seed")]
     seed: u64,
+    /// The weight of driving against a label, 0 to below 1 [default: 0.1; `lookahead` 0.002]
     varrho: Option<f64>,
+    /// Rays of the unicycle: `paper`, 10 mrad apart, or `fine`, 1 urad [default: `paper`; `lookahead`, `chords` and `track` `fine`]
     fan: Option<FanName>,
+    /// What moves [default: the unicycle of the fan]
     vehicle: Option<Table<VehicleTable>>,
+    /// How P1 looks for the opposite label: `anyhow`, `along-oracle`, `across-bisector` [default: `anyhow`]
     #[serde(default)]
     crossing: CrossingName,
+    /// How P2 follows the boundary: `along-bisector`, `anyhow` [default: `along-bisector`; `scc` `anyhow`]
     following: Option<FollowingName>,
+    /// How hypotheses choose together (`scc`): `mixture-of-own`, `mixture-of-start`, `joint` [default: `mixture-of-own`]
     #[serde(default)]
     policy: PolicyName,
+    /// How hypotheses are weighed beforehand: `area`, `sequences` (the paper's) [default: `area`]
     #[serde(default)]
     prior: PriorName,
+    /// How often labels are true [default: always]
     noise: Option<Table<NoiseTable>>,
+    /// Standard deviations of the simulated robot [default: 0]
     #[serde(default)]
     errors: Table<ErrorsTable>,
+    /// Faults of the simulated sensor, 16 at most [default: none]
     #[serde(default)]
     sensor: Vec<Table<FaultTable>>,
+    /// How far a reported position may be off, metres [default: 3 `errors.position`]
     tolerance: Option<f64>,
+    /// Added to the tolerance [default: nothing]
     #[serde(default)]
     allow: Table<Allowance>,
+    /// What is enough to know (`lookahead`, `track`) [default: nothing]
     stop: Option<Table<StopTable>>,
+    /// What a label costs, metres driven up to 16384, or `"none"` (`lookahead`) [default: see below]
     price: Option<Price>,
+    /// Labels at ends of motions, at most [default: no limit]
     labels: Option<u32>,
+    /// Which labels are read (`lookahead`) [default: all]
     #[serde(default)]
     ask: Table<AskTable>,
+    /// Where positions stay [default: a square of 20 m]
     #[serde(default)]
     area: Table<AreaTable>,
+    /// What no motion touches, 8 at most [default: nothing]
     #[serde(default)]
     keep_out: Vec<Table<KeepOutTable>>,
+    /// Where the mission begins [default: the first oracle point, heading 0]
     #[serde(default)]
     start: Table<StartTable>,
+    /// The boundary that the simulated sensor reads; required, but for `fly`
     truth: Option<Table<TruthTable>>,
+    /// Points whose labels are known; required, `[]` if there are none
     oracle: Vec<Table<SampleTable>>,
+    /// What else is known of the line [default: nothing]
     #[serde(default)]
     bounds: Table<Bounds>,
+    /// What is known of a front (`track`) [default: it stands still]
     front: Option<Table<FrontTable>>,
+    /// What is known of a boundary that is sought from nothing [default: its usual]
     seek: Option<Table<SeekTable>>,
 }
 
@@ -105,9 +135,13 @@ mod defaults {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct NoiseTable {
+    /// Labels are true with this probability, above 0.5; or `[a, b]`: nobody knows, and planners are told the prior Beta(a, b)
     p: Told,
+    /// What the simulated sensor does, whatever planners are told [default: `p`, or the mean of the prior]
     true_p: Option<f64>,
+    /// Within this distance of the oracle's points labels are certain, metres [default: 0]
     trusted_radius: Option<f64>,
+    /// The paper's band: labels err within this distance of the line alone, metres. Planners are told `p` alone
     band: Option<f64>,
 }
 
@@ -123,17 +157,24 @@ enum Told {
 #[derive(Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 struct ErrorsTable {
+    /// Where a motion ends, metres an axis
     motion: f64,
+    /// How far a motion turns, radians
     turn: f64,
+    /// The position that is reported, metres an axis
     position: f64,
+    /// The heading that is reported, radians
     heading: f64,
 }
 
 #[derive(Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct StartTable {
+    /// Metres [default: that of the first oracle point]
     x: Option<f64>,
+    /// Metres [default: that of the first oracle point]
     z: Option<f64>,
+    /// Radians from the x axis to the z axis [default: 0]
     #[serde(default)]
     heading: f64,
 }

@@ -12,10 +12,10 @@ use crate::mission::strict::{Table, wrong};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SeekTable {
-    /// The radius of the smallest patch that is to be found, metres. None for a sixteenth of the mean of the area's sides.
+    /// The radius of the smallest patch that is to be found, metres [default: a sixteenth of the mean of the area's sides].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub patch: Option<f64>,
-    /// What the boundary most likely is: a spill, a coast, or either.
+    /// What the boundary most likely is: `spill`, `coast`, or `either` [default: `either`].
     #[serde(default)]
     pub likely: Likely,
 }

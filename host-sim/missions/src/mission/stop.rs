@@ -29,10 +29,15 @@ const MILLION: f64 = 1e6;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct StopTable {
+    /// Any two of the lines left differ by so many degrees at most, 0.00001 to below 90
     slope_arc_deg: Option<f64>,
+    /// The ground on which some two of them disagree is this share of the area at most, 0.00001 to below 1
     misclassified: Option<f64>,
+    /// With noise: the promise holds with this probability, 0.9999 at most [default: 0.9]
     level: Option<f64>,
+    /// Whether an audit comes before the promise [default: true]
     audit: Option<bool>,
+    /// Of `track`: whether the mission ends once all of the front is mapped [default: true]
     closed: Option<bool>,
 }
 
@@ -124,7 +129,7 @@ pub struct GoalRecord {
     /// The ground on which some two of the lines left disagree is this share of the area at most.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub misclassified: Option<f64>,
-    /// With this probability at least; `None` where labels are true.
+    /// With this probability at least, where labels may be wrong.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub level: Option<f64>,
     /// Whether the goal is met in the end, and nothing speaks against it.

@@ -14,8 +14,11 @@ use crate::world::polygon::Polygon;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct AreaTable {
+    /// From and to
     x: Option<Numbers<2>>,
+    /// From and to
     z: Option<Numbers<2>>,
+    /// Instead of both: three to eight corners in order around a convex polygon
     polygon: Option<Vec<Numbers<2>>>,
 }
 
@@ -30,9 +33,13 @@ impl Default for AreaTable {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct KeepOutTable {
+    /// The middle of a disc
     x: Option<f64>,
+    /// The middle of a disc
     z: Option<f64>,
+    /// Its radius, up to 4096
     radius: Option<f64>,
+    /// Instead: two corners (a wall) to eight, in order around a convex polygon
     polygon: Option<Vec<Numbers<2>>>,
 }
 

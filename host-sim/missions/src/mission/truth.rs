@@ -31,15 +31,25 @@ const MOST_LENGTHS: f64 = 1_000.0;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct TruthTable {
+    /// A line `z = slope x + intercept`, +1 above
     slope: Option<f64>,
+    /// Its height at `x = 0`, metres
     intercept: Option<f64>,
+    /// Instead of both: `[A, B, C]` of `A x + B z + C = 0`, +1 where it is positive
     line: Option<Numbers<3>>,
+    /// `[x, z, radius]`, +1 inside
     circle: Option<Numbers<3>>,
+    /// `[height, length, phase]` of a wave about `slope` and `intercept` (0 unless given) or `line`, see below
     sine: Option<Numbers<3>>,
+    /// `[[x, z], ...]`, +1 above; each `x` is greater than the one before, and the ends go on straight
     polyline: Option<Vec<Numbers<2>>>,
+    /// A random coast about the middle of the area, +1 above
     coast: Option<Table<CoastRecord>>,
+    /// A file beside the scenario, +1 where its value is `threshold` or more, see below
     raster: Option<String>,
+    /// Of a raster
     threshold: Option<f64>,
+    /// The boundary moves with every motion: a line by `[metres along its normal, degrees]`, any other by `[x, z]`, metres
     drift: Option<Numbers<2>>,
 }
 

@@ -58,11 +58,11 @@ pub struct BoundaryRecord {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CoastRecord {
-    /// The standard deviation of its heights.
+    /// The standard deviation of its heights, metres.
     pub height: f64,
-    /// The distance over which they are alike.
+    /// The distance over which they are alike, metres.
     pub length: f64,
-    /// The seed.
+    /// The seed [default: 0].
     #[serde(default)]
     pub seed: u64,
 }
