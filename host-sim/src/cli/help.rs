@@ -44,10 +44,10 @@ Examples:
   host-sim fly mission.toml --mavlink serial:/dev/ttyUSB0:57600 --label channel:7 --trace t.jsonl
 
 The scenario's x points east and its z north of the origin of the vehicle's local position. It needs a tolerance, how far
-that position may be off, and no truth. A dry run reads the labels of the truth, or else of a line between the oracle's points:
-without a truth it needs points of both labels. The mission begins where the vehicle is, once its operator has armed it in
-guided mode: this program does neither. Addresses: udp:HOST:PORT listens, as udpin does; udpout:HOST:PORT speaks first;
-tcp:HOST:PORT; serial:DEVICE:BAUD. Autopilots: ArduPilot Rover, of boats too, and Sub.
+that position may be off, and no truth. A dry run takes its labels from the truth, or else from a line that the oracle's
+points leave: without points of both labels it may need a truth. The mission begins where the vehicle is, once its operator
+has armed it in guided mode: this program does neither. Addresses: udp:HOST:PORT listens, as udpin does; udpout:HOST:PORT
+speaks first; tcp:HOST:PORT; serial:DEVICE:BAUD. Autopilots: ArduPilot Rover, of boats too, and Sub.
 
 On every failure, and on Ctrl-C, the vehicle is told to stop until it says that it is at rest, unless someone has taken it
 over; what was flown is written all the same, and the exit status is 1. See docs/mavlink.md.";

@@ -3,6 +3,7 @@
 mod examples;
 mod figures;
 mod golden;
+mod links;
 mod logs;
 mod package;
 mod page;

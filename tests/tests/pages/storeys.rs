@@ -41,17 +41,23 @@ type Reads<'a> = BTreeMap<&'a str, BTreeSet<String>>;
 
 #[test]
 fn modules_read_downwards() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let page = fs::read_to_string(root.join("ARCHITECTURE.md")).expect("the page");
     for (folders, storeys, least) in [
         (&["planner-core/src"][..], PLANNER_CORE, 300),
         (&["host-sim/missions/src", "host-sim/src"], HOST_SIM, 500),
     ] {
         let mut modules = Modules::new();
         for folder in folders {
-            let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(folder);
-            read_folder(&folder, "crate", &mut modules);
+            read_folder(&root.join(folder), "crate", &mut modules);
         }
         for name in storeys.iter().copied().flatten() {
             assert!(modules.contains_key(&format!("crate::{name}")), "{folders:?} have no {name}");
+            let is_folder = folders.iter().any(|it| root.join(it).join(name).is_dir());
+            assert!(
+                !is_folder || page.contains(&format!(" {name}/ ")),
+                "no {name} in ARCHITECTURE.md"
+            );
         }
         let reads = reads(&modules);
         let found: usize = reads.values().map(BTreeSet::len).sum();
