@@ -6,6 +6,10 @@
 //! `include/planner.h` is made from these sources, `example.c` is a program that uses it. There is no allocation: a
 //! planner lives in memory of the caller, which may be moved. Nothing is global, so there may be many.
 //!
+//! A mission is checked as a whole before memory is written, so a refusal changes nothing. All planners take one type of area, so
+//! each is compiled once. Functions match on the planner's kind and there is no table of methods: a program that is linked with
+//! `--gc-sections` carries only what it calls.
+//!
 //! ```sh
 //! cargo build -p planner-c --profile chip --target thumbv7em-none-eabihf
 //! # target/thumbv7em-none-eabihf/chip/libplanner_c.a

@@ -1,4 +1,7 @@
 //! Why a search found no further motion.
+//!
+//! Places of the area are sampled to see whether there is ground to find. That no way leads there is no proof: in some missions a
+//! search of all ways would find one.
 
 use crate::belief::cells::CellView;
 use crate::geometry::lattice::{Site, Vector};

@@ -13,6 +13,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use clap::builder::PossibleValue;
 use clap::{Arg, Command, CommandFactory as _};
 use expect_test::expect_file;
 use host_sim::cli::arguments::Cli;
@@ -79,7 +80,7 @@ fn flags(name: &str) -> Option<String> {
 
 fn flag(arg: &Arg) -> String {
     let choices = arg.get_possible_values();
-    let choices: Vec<_> = choices.iter().map(|it| it.get_name()).collect();
+    let choices: Vec<_> = choices.iter().map(PossibleValue::get_name).collect();
     let value = match arg.get_value_names() {
         _ if !arg.get_action().takes_values() => String::new(),
         Some([name]) if choices.is_empty() || name.contains("...") => name.to_string(),
@@ -177,7 +178,7 @@ fn the_examples_of_a_scenario_are_good() {
     let examples: Vec<_> = examples.map(|it| (it, format!("{:?}", read(it)))).collect();
     let is_required = |it: &&str| !it.contains(" = ") || it.starts_with([' ', 't', 'o']);
     let (whole, mission) = &examples[0];
-    let least: String = whole.lines().filter(is_required).map(|it| format!("{it}\n")).collect();
+    let least: String = whole.lines().filter(is_required).flat_map(|it| [it, "\n"]).collect();
     assert!(least.len() < whole.len() / 2, "{least}");
     assert_eq!(format!("{:?}", read(&least)), *mission, "a default differs");
 }

@@ -1,4 +1,7 @@
 //! What a chip plans with for a setup: the vehicle and the area, of all that a setup can ask for.
+//!
+//! A setup carries a vehicle's numbers, and the chip makes the vehicle from them. So it can decline by name what makes no vehicle;
+//! a frame that it could not read would be asked for again and again.
 
 use heapless::Vec;
 

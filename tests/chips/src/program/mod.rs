@@ -1,4 +1,7 @@
 //! Programs for a chip: how they are built, what their ELF holds, who calls whom in it.
+//!
+//! Stack bounds, paths to a panic and callers of `f64` routines follow from the decoded instructions. So they are facts of the
+//! machine code, and an instruction that the decoder does not know is an error.
 
 mod body;
 pub mod graph;
