@@ -92,7 +92,8 @@ pub enum Request {
         /// [`PROTOCOL`] as the chip has it.
         protocol: u16,
     },
-    /// For an outline, before it begins: 0 is the area's border, then come the keep-outs.
+    /// For an outline, before it begins: 0 is the area's border, then come the keep-outs. A setup with all of them would
+    /// need frames of 1,152 bytes.
     Outline(u8),
     /// To begin: the setup is accepted.
     Ready(Accepted),
@@ -138,7 +139,8 @@ pub enum Reply {
     Busy,
     /// To any: it belongs to no session that runs here, or is older than the last.
     Stale,
-    /// To [`Request::Move`] and [`Request::Onward`]: a label is read on the way of the motion, which goes on.
+    /// To [`Request::Move`] and [`Request::Onward`]: a label is read on the way of the motion, which goes on. A
+    /// list of all labels of a motion may not fit a frame.
     OnTheWay {
         /// Where the vehicle is, or was when it read the label.
         site: Site,

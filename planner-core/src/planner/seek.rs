@@ -19,7 +19,7 @@
 //! **Labels that may be wrong.** A label that was read is not certain. So it lends four places at which it is sure of
 //! the label, two on either side. Each of the four labels is wrong with a probability of at most 1 in 3,000, as the
 //! tracker has it. A line that they rule out cannot be found any more. So a later interval is right less often. Of 2,000
-//! missions with labels of 90 and 70 % it happened in one: see the note `docs/notes/2026-11-25-from-nothing.md`.
+//! missions with labels of 90 and 70 % it happened in one.
 
 use heapless::Vec;
 

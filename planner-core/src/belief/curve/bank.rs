@@ -9,7 +9,7 @@ use crate::belief::curve::mixture::Mixture;
 use crate::belief::curve::normal::Normal;
 use crate::geometry::approximate::{inverse_sqrt, sqrt};
 
-/// Gaussians of a gait.
+/// Gaussians of a gait. With four or five, maps are up to 10 % nearer, and a label costs a third to two thirds more.
 const EACH: usize = 3;
 
 /// The gaits: straight on, gentle and tight bends, and corners.
